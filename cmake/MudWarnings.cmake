@@ -1,0 +1,22 @@
+# mud_set_warnings(TARGET [TESTS])
+# The language standard and the warnings every target of ours is held to.
+# TESTS leaves out -Wuse-without-only, because .pf files say `use funit`.
+function(mud_set_warnings target)
+   cmake_parse_arguments(PARSE_ARGV 1 arg "TESTS" "" "")
+   set(fortran -std=f2018 -Wall -Wextra)
+   set(c -std=c11 -Wall -Wextra)
+   if(NOT arg_TESTS)
+      list(APPEND fortran -Wuse-without-only)
+   endif()
+   # Without optimisation gfortran 12 takes every allocation on assignment for a use of undefined bounds.
+   if(CMAKE_BUILD_TYPE STREQUAL "Debug")
+      list(APPEND fortran -Wno-maybe-uninitialized)
+   endif()
+   if(MUD_WERROR)
+      list(APPEND fortran -Werror)
+      list(APPEND c -Werror)
+   endif()
+   target_compile_options(${target} PRIVATE
+      "$<$<COMPILE_LANG_AND_ID:Fortran,GNU>:${fortran}>"
+      "$<$<COMPILE_LANG_AND_ID:C,GNU,Clang>:${c}>")
+endfunction()

@@ -1,0 +1,140 @@
+!> Element tests on the MUD model: drained and undrained triaxial tests, compression, strain and suction paths.
+program mud_triax
+   use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit, error_unit
+   use triax_fault, only: fault_t, raise, EXIT_INPUT
+   use triax_text, only: short, whole
+   use triax_case, only: case_t, read_case, CONTROL_NAMES, STRAIN_PATH
+   use triax_point, only: point_t, library_version
+   use triax_control, only: plan_t, tally_t, plan_stage, advance, lead, excess_pressure
+   use triax_output, only: table_t, clock_t, open_table, write_row, close_table, start_clock, show_progress, &
+      show_summary
+   use triax_help, only: print_help, print_template
+   implicit none (type, external)
+
+   integer, parameter :: PATH_LENGTH = 256
+   real(wp), parameter :: ON_GRID = 1.0e-6_wp   !< Share of an output interval that counts as none: rounding.
+
+   character(PATH_LENGTH) :: case_file, output_file
+   type(fault_t) :: fault
+   logical :: quiet, done
+
+   call read_arguments(done)
+   if (fault%code == 0 .and. .not. done) call run(trim(case_file))
+   if (fault%code /= 0) then
+      write (error_unit, '(a)') 'mud_triax: '//trim(fault%text)
+      stop fault%code, quiet=.true.
+   end if
+
+contains
+   !> Fills case_file, output_file and quiet; `answered` if the call only asked for a text.
+   subroutine read_arguments(answered)
+      logical, intent(out) :: answered
+      character(PATH_LENGTH) :: word
+      integer :: i, status
+
+      case_file = ''
+      output_file = ''
+      quiet = .false.
+      answered = .true.
+      i = 0
+      do while (i < command_argument_count())
+         i = i + 1
+         call get_command_argument(i, word, status=status)
+         if (status /= 0) then
+            call raise(fault, EXIT_INPUT, 'An argument is longer than '//whole(PATH_LENGTH)//' characters.')
+            return
+         end if
+         select case (word)
+         case ('--help', '-h')
+            call print_help()
+            return
+         case ('--version')
+            write (output_unit, '(a)') 'mud_triax, MUD library '//library_version()
+            return
+         case ('--template')
+            call print_template()
+            return
+         case ('--quiet', '-q')
+            quiet = .true.
+         case ('--output', '-o')
+            i = i + 1
+            call get_command_argument(i, output_file, status=status)
+            if (status /= 0 .or. len_trim(output_file) == 0) then
+               call raise(fault, EXIT_INPUT, '--output needs the name of a file (shorter than '//whole(PATH_LENGTH)// &
+                          ' characters).')
+               return
+            end if
+         case default
+            if (word(1:1) == '-') then
+               call raise(fault, EXIT_INPUT, 'There is no option '//trim(word)//'; see mud_triax --help.')
+               return
+            else if (len_trim(case_file) > 0) then
+               call raise(fault, EXIT_INPUT, 'One case at a time: '//trim(case_file)//' or '//trim(word)//'?')
+               return
+            end if
+            case_file = word
+         end select
+      end do
+      answered = .false.
+      if (len_trim(case_file) == 0) call raise(fault, EXIT_INPUT, 'No case file is named; see mud_triax --help.')
+   end subroutine read_arguments
+
+   subroutine run(file)
+      character(*), intent(in) :: file
+      type(case_t) :: test
+      type(table_t) :: table
+      type(clock_t) :: clock
+      type(point_t) :: point
+      type(plan_t) :: plan
+      type(tally_t) :: tally
+      type(fault_t) :: ending
+      real(wp) :: pressure
+      integer :: i, k, increments
+
+      call read_case(file, test, fault)
+      if (fault%code /= 0) return
+      if (len_trim(output_file) == 0) output_file = trim(test%name)//'.csv'
+      call open_table(trim(output_file), test, any(test%stages%control == STRAIN_PATH), table, fault)
+      if (fault%code /= 0) return
+
+      call start_clock(clock)
+      point = test%start
+      pressure = 0.0_wp
+      increments = 0
+      call write_row(table, test%soil, point, pressure, 0.0_wp, 0, fault)
+      stages: do i = 1, size(test%stages)
+         call plan_stage(test%soil, test%stages(i), point, pressure, plan)
+         do k = 1, plan%increments
+            call advance(test%soil, plan, k, point, tally, fault)
+            if (fault%code /= 0) exit stages
+            increments = increments + 1
+            if (k == plan%increments .or. passes(lead(plan, k - 1), lead(plan, k), test%stages(i)%interval)) then
+               call write_row(table, test%soil, point, excess_pressure(plan, point), tally%error, i, fault)
+               tally%error = 0.0_wp
+               if (fault%code /= 0) exit stages
+            end if
+            if (.not. quiet) call show_progress(clock, (real(i - 1, wp) + real(k, wp)/real(plan%increments, wp))/ &
+                                                real(size(test%stages), wp), 'stage '//whole(i)//' of '// &
+                                                whole(size(test%stages))//' ('//trim(CONTROL_NAMES(plan%control))//')')
+         end do
+         pressure = excess_pressure(plan, point)
+      end do stages
+
+      if (fault%code /= 0) then
+         fault%text = trim(test%name)//', stage '//whole(i)//': '//fault%text
+         call close_table(table, trim(fault%text), ending)
+      else
+         call close_table(table, '', fault)
+      end if
+      if (.not. quiet) call show_summary(test, table, point, tally, increments, clock)
+   end subroutine run
+
+   !> True if a multiple of the interval lies after `before` and not after `now`, whichever way the lead goes.
+   pure logical function passes(before, now, interval)
+      real(wp), intent(in) :: before, now, interval
+      real(wp) :: way
+
+      way = sign(1.0_wp, now - before)
+      passes = floor(way*now/interval + ON_GRID) > floor(way*before/interval + ON_GRID)
+   end function passes
+end program mud_triax

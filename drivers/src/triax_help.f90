@@ -1,0 +1,89 @@
+!> Texts on request: how to call the driver, and a case file that runs unchanged.
+module triax_help
+   use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit
+   use triax_text, only: short
+   use triax_case, only: print_keys
+   use triax_point, only: property_count, property_name, property_unit, property_origin, property_meaning, &
+      property_range
+   implicit none (type, external)
+   private
+   public :: print_help, print_template
+
+contains
+   subroutine print_help()
+      write (output_unit, '(a)') &
+         'usage: mud_triax CASE.nml [--output FILE.csv] [--quiet]', &
+         '       mud_triax --template > my_case.nml', &
+         '       mud_triax --help | --version', &
+         '', &
+         'Runs a laboratory test on the MUD soil model at a point and writes a CSV file.', &
+         'Compression is positive, stresses are effective, q = sigma_a - sigma_r is negative in extension.', &
+         '', &
+         '   --output FILE   where to write; default: NAME.csv in the present folder; "-" is the screen', &
+         '   --quiet         no summary, no progress', &
+         '   --template      prints a case that runs unchanged, with every parameter and its range', &
+         '', &
+         'Exit codes: 0 done; 2 input refused, nothing written; 3 the run stopped, rows so far are kept;', &
+         '4 the output cannot be written.', &
+         '', &
+         'A case file is made of groups, "&name", "key = value" lines, "/"; "!" begins a comment:', &
+         '   &material', &
+         '      file             path of a material file, relative to the case file', &
+         '      name, reference  texts', &
+         '      (parameters)     by name, see --template; they replace those of the file'
+      call print_keys(output_unit)
+   end subroutine print_help
+
+   subroutine print_template()
+      real(wp) :: lower, upper, preset
+      integer :: i
+
+      write (output_unit, '(a)') &
+         '! A case for mud_triax: undrained compression, then drained extension. All keys: mud_triax --help', &
+         '&case', &
+         '   name = ''my_case''', &
+         '   title = ''undrained compression, then drained extension''', &
+         '/', &
+         '&material   ! or file = ''path'', with the values to change after it; a parameter left out has its default', &
+         '   name = ''my sand'''
+      do i = 1, property_count()
+         call property_range(i, lower, upper, preset)
+         write (output_unit, '(a)') '   '//padded(property_name(i)//' = '//short(preset), 26)//' ! '// &
+            property_meaning(i)// &
+            '; '//short(lower)//' to '//short(upper)//units(property_unit(i))//' ['//property_origin(i)//']'
+      end do
+      write (output_unit, '(a)') &
+         '/', &
+         '&initial', &
+         '   p_eff = 100.0             ! mean effective stress [kPa]; or sigma_a and sigma_r', &
+         '   void_ratio = 0.8', &
+         '   suction = 0.0             ! [kPa], 0: saturated', &
+         '/', &
+         '&stage', &
+         '   control = ''undrained''', &
+         '   eps_a_end = 0.01          ! strains count from the start of the test', &
+         '   increment = 1e-4', &
+         '   output_interval = 1e-3', &
+         '/', &
+         '&stage', &
+         '   control = ''drained''', &
+         '   eps_a_end = -0.02', &
+         '/'
+   end subroutine print_template
+
+   pure function padded(text, width) result(filled)
+      character(*), intent(in) :: text
+      integer, intent(in) :: width
+      character(max(width, len(text))) :: filled
+
+      filled = text
+   end function padded
+
+   pure function units(unit) result(text)
+      character(*), intent(in) :: unit
+      character(:), allocatable :: text
+
+      text = ''
+      if (unit /= '1') text = ' '//unit
+   end function units
+end module triax_help

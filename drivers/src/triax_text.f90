@@ -1,0 +1,176 @@
+!> Words and numbers: reading, writing, and the nearest name to a misspelt one.
+module triax_text
+   use, intrinsic :: iso_fortran_env, only: wp => real64
+   use, intrinsic :: iso_c_binding, only: c_null_char
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   implicit none (type, external)
+   private
+   public :: lower_case, distance, short, whole, read_number, from_c, word_place
+
+
+contains
+   pure function lower_case(text) result(lower)
+      character(*), intent(in) :: text
+      character(len(text)) :: lower
+      integer :: i
+
+      lower = text
+      do i = 1, len(text)
+         if (lge(text(i:i), 'A') .and. lle(text(i:i), 'Z')) lower(i:i) = achar(iachar(text(i:i)) + 32)
+      end do
+   end function lower_case
+
+   !> Edit distance between two names, case ignored: 2 for each letter to insert, delete or replace,
+   !> 1 where the two letters look alike (O and 0, l and 1).
+   pure integer function distance(first, second)
+      character(*), intent(in) :: first, second
+      character(len_trim(first)) :: a
+      character(len_trim(second)) :: b
+      integer :: row(0:len_trim(second)), diagonal, above, i, j
+
+      a = lower_case(first(:len(a)))
+      b = lower_case(second(:len(b)))
+      row = [(2*j, j=0, len(b))]
+      do i = 1, len(a)
+         diagonal = row(0)
+         row(0) = 2*i
+         do j = 1, len(b)
+            above = row(j)
+            row(j) = min(above + 2, row(j - 1) + 2, diagonal + replacement(a(i:i), b(j:j)))
+            diagonal = above
+         end do
+      end do
+      distance = row(len(b))
+   end function distance
+
+   pure integer function replacement(a, b)
+      character, intent(in) :: a, b
+
+      if (a == b) then
+         replacement = 0
+      else if (index('o0 0o l1 1l', a//b) > 0) then
+         replacement = 1
+      else
+         replacement = 2
+      end if
+   end function replacement
+
+   !> Where a text first has a word that no letter, digit or underscore continues, 0 if nowhere; case ignored.
+   pure integer function word_place(text, word)
+      character(*), intent(in) :: text, word
+      character(*), parameter :: LETTERS = 'abcdefghijklmnopqrstuvwxyz0123456789_'
+      character(len(text) + 2) :: padded
+      integer :: next, last
+
+      padded = ' '//lower_case(text)//' '
+      word_place = 0
+      if (len_trim(word) == 0) return
+      do
+         next = index(padded(word_place + 1:), lower_case(trim(word)))
+         if (next == 0) exit
+         word_place = word_place + next
+         last = word_place + len_trim(word)
+         if (scan(padded(word_place - 1:word_place - 1)//padded(last:last), LETTERS) == 0) exit
+      end do
+      word_place = merge(0, word_place - 1, next == 0)
+   end function word_place
+
+   !> A number with six significant digits and nothing superfluous.
+   pure function short(value) result(text)
+      real(wp), intent(in) :: value
+      character(:), allocatable :: text
+      character(32) :: digits
+      integer :: mark
+
+      if (.not. ieee_is_finite(value)) then
+         text = 'not finite'
+      else if (abs(value) <= 0.0_wp) then
+         text = '0'
+      else if (abs(value) >= 1.0e-3_wp .and. abs(value) < 0.9999995e6_wp) then
+         write (digits, '(f0.'//whole(max(0, 5 - floor(log10(abs(value)))))//')') value
+         text = without_zeros(trim(digits))
+         if (text(1:1) == '.') text = '0'//text
+         if (text(1:1) == '-' .and. text(2:2) == '.') text = '-0'//text(2:)
+      else
+         write (digits, '(es13.5e3)') value
+         digits = adjustl(digits)
+         mark = index(digits, 'E')
+         text = without_zeros(digits(:mark - 1))//'e'
+         if (digits(mark + 1:mark + 1) == '-') text = text//'-'
+         text = text//trim(adjustl(digits(mark + 2 + verify(digits(mark + 2:mark + 3)//'1', '0') - 1:)))
+      end if
+   end function short
+
+   pure function without_zeros(digits) result(text)
+      character(*), intent(in) :: digits
+      character(:), allocatable :: text
+      integer :: last
+
+      last = len(digits)
+      if (index(digits, '.') > 0) then
+         last = verify(digits, '0', back=.true.)
+         if (digits(last:last) == '.') last = last - 1
+      end if
+      text = digits(:last)
+   end function without_zeros
+
+   pure function whole(value) result(text)
+      integer, intent(in) :: value
+      character(:), allocatable :: text
+      character(12) :: digits
+
+      write (digits, '(i0)') value
+      text = trim(digits)
+   end function whole
+
+   !> Reads a decimal number; anything that is not entirely one ('1.2.3', '1e999', 'nan') is refused.
+   subroutine read_number(text, value, good)
+      character(*), intent(in) :: text
+      real(wp), intent(out) :: value
+      logical, intent(out) :: good
+      integer :: problem
+
+      value = 0.0_wp
+      good = looks_like_number(trim(text))
+      if (.not. good) return
+      read (text, *, iostat=problem) value
+      good = problem == 0
+      if (good) good = ieee_is_finite(value)
+      if (.not. good) value = 0.0_wp
+   end subroutine read_number
+
+   !> [sign] digits [. digits] [e [sign] digits], at least one digit before the exponent.
+   pure logical function looks_like_number(text)
+      character(*), intent(in) :: text
+      integer :: mark, start
+
+      looks_like_number = .false.
+      if (len(text) == 0) return
+      mark = scan(text, 'eEdD')
+      if (mark == 0) mark = len(text) + 1
+      if (mark < len(text) + 1) then
+         start = mark + 1
+         if (start > len(text)) return
+         if (scan(text(start:start), '+-') > 0) start = start + 1
+         if (start > len(text)) return
+         if (verify(text(start:), '0123456789') > 0) return
+      end if
+      start = 1
+      if (scan(text(1:1), '+-') > 0) start = 2
+      if (start > mark - 1) return
+      if (scan(text(start:mark - 1), '0123456789') == 0) return
+      if (verify(text(start:mark - 1), '0123456789.') > 0) return
+      looks_like_number = index(text(start:mark - 1), '.') == index(text(start:mark - 1), '.', back=.true.)
+   end function looks_like_number
+
+   !> Text of a C buffer, up to its terminating null.
+   pure function from_c(buffer) result(text)
+      character(*), intent(in) :: buffer
+      character(:), allocatable :: text
+      integer :: last
+
+      last = index(buffer, c_null_char) - 1
+      if (last < 0) last = len_trim(buffer)
+      text = buffer(:last)
+   end function from_c
+end module triax_text

@@ -1,0 +1,107 @@
+# Sourced by ./check and ./demo: makes sure that the tools are there. Quick when nothing is missing.
+# Leaves $root (the repository) and $venv_python. A missing tool that cannot be installed ends with code 3.
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+venv=$root/build/venv
+venv_python=$venv/bin/python3
+
+setup_fail() {
+   echo "setup: $*" >&2
+   exit 3
+}
+
+# numpy as pinned needs 3.11; a shim earlier on the PATH may be older than the system's own.
+find_python() {
+   local candidate
+   for candidate in python3 /usr/bin/python3; do
+      if "$candidate" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
+         echo "$candidate"
+         return
+      fi
+   done
+}
+
+# The one list of what is needed: each line prints a Debian package if what it brings is missing.
+missing_packages() {
+   [ -n "${FC:-}" ] || command -v gfortran >/dev/null || echo gfortran
+   [ -n "${CC:-}" ] || command -v cc >/dev/null || echo gcc libc6-dev
+   command -v cmake >/dev/null || echo cmake
+   command -v ninja >/dev/null || echo ninja-build
+   local python
+   python=$(find_python)
+   if [ -z "$python" ]; then
+      echo python3 python3-venv
+   elif [ ! -e "$venv_python" ] && ! "$python" -c 'import venv, ensurepip' 2>/dev/null; then
+      echo python3-venv
+   fi
+}
+
+install_packages() {
+   local packages as_root=()
+   packages=$(missing_packages | xargs)
+   [ -n "$packages" ] || return 0
+   if [ "$(id -u)" != 0 ]; then
+      sudo -n true 2>/dev/null && as_root=(sudo) ||
+         setup_fail "missing: $packages; no right to install. Run:
+   sudo apt-get update && sudo apt-get install -y --no-install-recommends $packages"
+   fi
+   command -v apt-get >/dev/null ||
+      setup_fail "missing: $packages (Debian names); there is no apt-get here, so install them by hand."
+   echo "setup: installing $packages"
+   # shellcheck disable=SC2086  # one word per package
+   { "${as_root[@]}" apt-get update -q -o DPkg::Lock::Timeout=300 &&
+      "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+         apt-get install -q -y --no-install-recommends -o DPkg::Lock::Timeout=300 $packages; } >&2 ||
+      setup_fail "apt-get could not install: $packages (its own message is above)"
+   packages=$(missing_packages | xargs)
+   [ -z "$packages" ] || setup_fail "still missing after the installation: $packages"
+}
+
+check_versions() {
+   local compiler=${FC:-gfortran} found
+   found=$("$compiler" -dumpversion 2>/dev/null) ||
+      setup_fail "the Fortran compiler '$compiler' is not there or does not run (FC chooses it)"
+   "$compiler" --version | head -n 1 | grep -qi 'gnu fortran' ||
+      setup_fail "the Fortran compiler '$compiler' is not gfortran; set FC to gfortran 12 or later"
+   [ "${found%%.*}" -ge 12 ] ||
+      setup_fail "gfortran 12 or later is needed, '$compiler' is $found; set FC to a later one"
+   found=$(cmake --version | sed -n '1s/[^0-9]*\([0-9.]*\).*/\1/p')
+   [ "$(printf '%s\n' 3.25 "$found" | sort -V | head -n 1)" = 3.25 ] ||
+      setup_fail "cmake 3.25 or later is needed, found $found"
+}
+
+# The stamp is a copy of the requirements, written last: an interrupted installation is redone.
+install_python_packages() {
+   if cmp -s "$root/requirements.txt" "$venv/requirements.stamp" && "$venv_python" -c '' 2>/dev/null; then
+      return 0
+   fi
+   echo "setup: installing the Python packages of requirements.txt in build/venv"
+   mkdir -p "$root/build"
+   "$(find_python)" -m venv --clear "$venv" || setup_fail "could not make the Python environment build/venv"
+   "$venv_python" -m pip install --quiet --disable-pip-version-check -r "$root/requirements.txt" ||
+      setup_fail "pip could not install requirements.txt (its own message is above)"
+   cp "$root/requirements.txt" "$venv/requirements.stamp"
+}
+
+# configure_and_build PRESET BUILD_DIR [CMAKE_ARGUMENT...]: logs beside the build, shown only if it fails.
+configure_and_build() {
+   local preset=$1 dir=$2
+   shift 2
+   mkdir -p "$dir"
+   # The presets of cmake are looked up in the present folder.
+   if ! (cd "$root" && cmake --preset "$preset" -B "$dir" -DMUD_PYTHON="$venv_python" "$@") \
+      >"$dir/configure.log" 2>&1; then
+      cat "$dir/configure.log" >&2
+      echo "configuring the $preset build failed: see above" >&2
+      return 1
+   fi
+   if ! cmake --build "$dir" -- -k 0 >"$dir/build.log" 2>&1; then
+      grep -v '^\[[0-9]*/[0-9]*\] \(Building\|Linking\|Generating\|Reading\)' "$dir/build.log" | head -n 200 >&2
+      echo "the $preset build failed: see above; the whole log is $dir/build.log" >&2
+      return 1
+   fi
+}
+
+install_packages
+check_versions
+install_python_packages

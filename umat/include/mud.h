@@ -1,0 +1,93 @@
+/* MUD: bounding-surface model for unsaturated soil dynamics. C interface.
+ *
+ * Conventions of every array here are those of a UMAT: tension positive, components 11, 22, 33, 12, 13, 23,
+ * strain with ENGINEERING shear (gamma = 2 eps), stress and suction in the unit of p_atm (kPa by default).
+ * "Stress" is Bishop's effective stress sigma' with chi = S_w. Suction p_c = p_a - p_w is positive when unsaturated.
+ * Indices of PROPS and STATEV are those of C, from 0.
+ *
+ * Every array is the caller's. Nothing is allocated, printed or kept between calls; calls are thread-safe.
+ * Functions return MUD_OK (0), a negative code (the caller's mistake) or a positive one (a hard increment: cut it).
+ * Text goes into the caller's buffer of `len` bytes, cut to fit and always terminated; a NULL buffer is allowed.
+ */
+#ifndef MUD_H
+#define MUD_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define MUD_ABI_VERSION 1
+
+enum mud_status {
+   MUD_OK = 0,
+   MUD_BAD_NPROPS = -1, MUD_BAD_NSTATV = -2, MUD_BAD_NTENS = -3, MUD_BAD_PROPS = -4, MUD_BAD_STATE = -5,
+   MUD_BAD_INPUT = -6, MUD_NULL_ARGUMENT = -7, MUD_BAD_VOID_RATIO = -8, MUD_BAD_OPTION = -9,
+   MUD_MINIMUM_STEP = 1, MUD_TOO_MANY_SUBSTEPS = 2, MUD_NO_DIRECTION = 3, MUD_VOID_RATIO_LIMIT = 4,
+   MUD_NOT_FINITE = 5, MUD_INCREMENT_TOO_LARGE = 6
+};
+
+enum mud_list  { MUD_PROPS = 1, MUD_STATEV = 2 };
+enum mud_field { MUD_NAME = 1, MUD_SYMBOL = 2, MUD_UNIT = 3, MUD_ORIGIN = 4, MUD_MEANING = 5, MUD_INITIAL = 6 };
+enum mud_tangent { MUD_TANGENT_NONE = 0, MUD_TANGENT_ELASTIC = 1, MUD_TANGENT_CONTINUUM = 2 };
+
+/* What one update did and, on failure, where it stopped: filled by every mud_update. */
+typedef struct mud_report {
+   int status;              /* the code that was returned                                              */
+   int subject;             /* what a failure is about (internal; mud_message makes a sentence of it)  */
+   int index;               /* entry of that array, from 1; 0: none                                    */
+   int n_rate;              /* rate evaluations                                                        */
+   int n_substep;           /* accepted substeps                                                       */
+   int n_reject;            /* rejected substeps                                                       */
+   int n_reseat;            /* re-seats of the memory                                                  */
+   int n_floor;             /* rates with the floor x_0 active                                         */
+   int n_cap_d;             /* rates with the contraction cap active                                   */
+   int n_cap_h;             /* rates with the softening cap active                                     */
+   int n_hysteresis;        /* substeps whose re-seat the hysteresis x_rev held back                   */
+   int n_iso_kept;          /* rates where the isotropic mechanism contradicted itself                 */
+   int n_no_root;           /* rates without an admissible direction, taken as elastic                 */
+   int n_min_step;          /* substeps accepted at the minimum size (rule as_published)               */
+   int n_open;              /* substeps held by the tension cut-off                                    */
+   int n_tensile;           /* 1 if the increment ended with a tensile principal effective stress      */
+   double value;            /* offending value                                                         */
+   double lower, upper;     /* its allowed range                                                       */
+   double reached;          /* share of the increment that was integrated, 1 on success                */
+   double pnewdt;           /* suggested factor on the increment, below 1 on a positive code, else 1   */
+} mud_report;
+
+/* --- the library and its tables --------------------------------------------------------------------- */
+int mud_abi_version(void);
+int mud_version(char *text, int len);                       /* "0.1.0" */
+int mud_count(int list);                                    /* entries of PROPS or STATEV; MUD_BAD_OPTION */
+int mud_index(int list, const char *name);                  /* index from 0; -1: no such name (case is ignored) */
+int mud_text(int list, int index, int field, char *text, int len);
+int mud_bounds(int list, int index, double *lower, double *upper, double *preset);  /* of PROPS: bounds, default */
+int mud_default_props(double *props, int nprops);
+int mud_validate_props(const double *props, int nprops, char *text, int len);       /* a sentence for the first fault */
+
+/* --- one integration point --------------------------------------------------------------------------- */
+/* Fills statev[nstatev] for a stress[6] (lifted in place to p_min if its mean is below), suction and void ratio
+ * (0: e_0 of the props). */
+int mud_init_state(const double *props, int nprops, double *stress, double suction, double void_ratio,
+                   double *statev, int nstatev, char *text, int len);
+
+/* Integrates dstrain[6] and dsuction from (stress0, statev0, suction0) to (stress1, statev1). Outputs may be the same
+ * arrays as inputs. On any failure stress1, statev1 and the tangent blocks are untouched. An uninitialised statev0
+ * (layout = 0) is initialised first. Tangent blocks, each may be NULL:
+ *   dsig_deps[36]  column j (at 6*j) = d sigma' / d (engineering strain j)
+ *   dsig_dpc[6]    d sigma' / d suction
+ *   dsw_deps[6]    d S_w / d strain
+ *   dsw_dpc[1]     d S_w / d suction
+ * report may be NULL. */
+int mud_update(const double *props, int nprops, const double *stress0, const double *statev0, int nstatev,
+               const double *dstrain, double suction0, double dsuction, int tangent,
+               double *stress1, double *statev1, double *dsig_deps, double *dsig_dpc, double *dsw_deps,
+               double *dsw_dpc, mud_report *report);
+
+/* A sentence for a status code; with a report, one that says where, the value, the allowed range and the remedy. */
+int mud_status_text(int code, char *text, int len);
+int mud_message(const mud_report *report, char *text, int len);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

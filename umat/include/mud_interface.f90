@@ -1,0 +1,107 @@
+!> Fortran view of mud.h, for hosts: interfaces only, nothing of the library's inside. Compile it with your code.
+!> Conventions, meanings and errors are those of mud.h; indices are those of C, from 0.
+module mud_interface
+   use, intrinsic :: iso_c_binding, only: c_int, c_double, c_char
+   implicit none (type, external)
+   private
+   public :: mud_report, mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_bounds, mud_default_props, &
+             mud_validate_props, mud_init_state, mud_update, mud_status_text, mud_message
+   public :: MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL
+   public :: MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONTINUUM
+
+   integer(c_int), parameter :: MUD_PROPS = 1, MUD_STATEV = 2
+   integer(c_int), parameter :: MUD_NAME = 1, MUD_SYMBOL = 2, MUD_UNIT = 3, MUD_ORIGIN = 4, MUD_MEANING = 5, MUD_INITIAL = 6
+   integer(c_int), parameter :: MUD_TANGENT_NONE = 0, MUD_TANGENT_ELASTIC = 1, MUD_TANGENT_CONTINUUM = 2
+
+   !> struct mud_report of mud.h.
+   type, bind(c) :: mud_report
+      integer(c_int) :: status, subject, index, n_rate, n_substep, n_reject, n_reseat, n_floor, n_cap_d, n_cap_h, &
+                        n_hysteresis, n_iso_kept, n_no_root, n_min_step, n_open, n_tensile
+      real(c_double) :: value, lower, upper, reached, pnewdt
+   end type mud_report
+
+   interface
+      integer(c_int) function mud_abi_version() bind(c, name='mud_abi_version')
+         import :: c_int
+      end function mud_abi_version
+
+      integer(c_int) function mud_version(text, len) bind(c, name='mud_version')
+         import :: c_int, c_char
+         character(kind=c_char), intent(out) :: text(*)
+         integer(c_int), value :: len
+      end function mud_version
+
+      integer(c_int) function mud_count(list) bind(c, name='mud_count')
+         import :: c_int
+         integer(c_int), value :: list
+      end function mud_count
+
+      !> The name must end with c_null_char.
+      integer(c_int) function mud_index(list, name) bind(c, name='mud_index')
+         import :: c_int, c_char
+         integer(c_int), value :: list
+         character(kind=c_char), intent(in) :: name(*)
+      end function mud_index
+
+      integer(c_int) function mud_text(list, index, field, text, len) bind(c, name='mud_text')
+         import :: c_int, c_char
+         integer(c_int), value :: list, index, field, len
+         character(kind=c_char), intent(out) :: text(*)
+      end function mud_text
+
+      integer(c_int) function mud_bounds(list, index, lower, upper, preset) bind(c, name='mud_bounds')
+         import :: c_int, c_double
+         integer(c_int), value :: list, index
+         real(c_double), intent(out) :: lower, upper, preset
+      end function mud_bounds
+
+      integer(c_int) function mud_default_props(props, nprops) bind(c, name='mud_default_props')
+         import :: c_int, c_double
+         integer(c_int), value :: nprops
+         real(c_double), intent(out) :: props(nprops)
+      end function mud_default_props
+
+      integer(c_int) function mud_validate_props(props, nprops, text, len) bind(c, name='mud_validate_props')
+         import :: c_int, c_double, c_char
+         integer(c_int), value :: nprops, len
+         real(c_double), intent(in) :: props(nprops)
+         character(kind=c_char), intent(out) :: text(*)
+      end function mud_validate_props
+
+      integer(c_int) function mud_init_state(props, nprops, stress, suction, void_ratio, statev, nstatev, text, len) &
+         bind(c, name='mud_init_state')
+         import :: c_int, c_double, c_char
+         integer(c_int), value :: nprops, nstatev, len
+         real(c_double), intent(in) :: props(nprops)
+         real(c_double), intent(inout) :: stress(6)
+         real(c_double), value :: suction, void_ratio
+         real(c_double), intent(inout) :: statev(nstatev)
+         character(kind=c_char), intent(out) :: text(*)
+      end function mud_init_state
+
+      integer(c_int) function mud_update(props, nprops, stress0, statev0, nstatev, dstrain, suction0, dsuction, tangent, &
+                                         stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, report) &
+         bind(c, name='mud_update')
+         import :: c_int, c_double, mud_report
+         integer(c_int), value :: nprops, nstatev, tangent
+         real(c_double), intent(in) :: props(nprops), stress0(6), statev0(nstatev), dstrain(6)
+         real(c_double), value :: suction0, dsuction
+         real(c_double), intent(inout) :: stress1(6), statev1(nstatev)
+         real(c_double), intent(inout), optional :: dsig_deps(6, 6), dsig_dpc(6), dsw_deps(6), dsw_dpc
+         type(mud_report), intent(out), optional :: report
+      end function mud_update
+
+      integer(c_int) function mud_status_text(code, text, len) bind(c, name='mud_status_text')
+         import :: c_int, c_char
+         integer(c_int), value :: code, len
+         character(kind=c_char), intent(out) :: text(*)
+      end function mud_status_text
+
+      integer(c_int) function mud_message(report, text, len) bind(c, name='mud_message')
+         import :: c_int, c_char, mud_report
+         type(mud_report), intent(in) :: report
+         integer(c_int), value :: len
+         character(kind=c_char), intent(out) :: text(*)
+      end function mud_message
+   end interface
+end module mud_interface

@@ -1,0 +1,280 @@
+!> The functions of mud.h.
+module mud_c_api
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_associated, c_f_pointer
+   use mud_kernel, only: report_t, output_t, kernel_init, kernel_update, failed_report
+   use mud_kinds, only: wp
+   use mud_messages, only: status_text, report_text
+   use mud_params, only: params_t, read_params, default_props
+   use mud_registry, only: NPROPS, NSTATV, PROPERTIES, VARIABLES, property_index, statev_index, statev_name, &
+      statev_variable
+   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, &
+      MUD_BAD_PROPS, ON_PROPS, ON_STATEV, ON_ARGUMENT
+   implicit none (type, external)
+   private
+   public :: mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_bounds, mud_default_props, &
+             mud_validate_props, mud_init_state, mud_update, mud_status_text, mud_message
+
+   integer, parameter :: ABI_VERSION = 1
+   character(*), parameter :: VERSION = '0.1.0'
+   integer, parameter :: LIST_PROPS = 1, LIST_STATEV = 2
+   integer, parameter :: FIELD_NAME = 1, FIELD_SYMBOL = 2, FIELD_UNIT = 3, FIELD_ORIGIN = 4, FIELD_MEANING = 5, &
+                         FIELD_INITIAL = 6
+contains
+   pure integer(c_int) function mud_abi_version() bind(c, name='mud_abi_version')
+      mud_abi_version = ABI_VERSION
+   end function mud_abi_version
+
+   integer(c_int) function mud_version(text, len) bind(c, name='mud_version')
+      type(c_ptr), value :: text
+      integer(c_int), value :: len
+
+      call put(VERSION, text, len)
+      mud_version = MUD_OK
+   end function mud_version
+
+   pure integer(c_int) function mud_count(list) bind(c, name='mud_count')
+      integer(c_int), intent(in), value :: list
+
+      select case (list)
+      case (LIST_PROPS)
+         mud_count = NPROPS
+      case (LIST_STATEV)
+         mud_count = NSTATV
+      case default
+         mud_count = MUD_BAD_OPTION
+      end select
+   end function mud_count
+
+   integer(c_int) function mud_index(list, name) bind(c, name='mud_index')
+      integer(c_int), value :: list
+      type(c_ptr), value :: name
+      character(kind=c_char), pointer :: letters(:)
+      character(64) :: word
+      integer :: i
+
+      mud_index = -1
+      if (.not. c_associated(name)) return
+      call c_f_pointer(name, letters, [len(word) + 1])
+      word = ''
+      do i = 1, len(word) + 1
+         if (letters(i) == c_null_char) exit
+         if (i > len(word)) return
+         word(i:i) = letters(i)
+      end do
+      if (list == LIST_PROPS) mud_index = property_index(word) - 1
+      if (list == LIST_STATEV) mud_index = statev_index(word) - 1
+   end function mud_index
+
+   integer(c_int) function mud_text(list, index, field, text, len) bind(c, name='mud_text')
+      integer(c_int), value :: list, index, field, len
+      type(c_ptr), value :: text
+
+      mud_text = MUD_BAD_OPTION
+      if (index < 0 .or. index >= mud_count(list)) return
+      mud_text = MUD_OK
+      if (list == LIST_PROPS) then
+         associate (entry => PROPERTIES(index + 1))
+            select case (field)
+            case (FIELD_NAME)
+               call put(entry%name, text, len)
+            case (FIELD_SYMBOL)
+               call put(entry%symbol, text, len)
+            case (FIELD_UNIT)
+               call put(entry%unit, text, len)
+            case (FIELD_ORIGIN)
+               call put(entry%origin, text, len)
+            case (FIELD_MEANING)
+               call put(entry%meaning, text, len)
+            case (FIELD_INITIAL)
+               call put('', text, len)
+            case default
+               mud_text = MUD_BAD_OPTION
+            end select
+         end associate
+      else
+         associate (entry => VARIABLES(statev_variable(index + 1)))
+            select case (field)
+            case (FIELD_NAME)
+               call put(statev_name(index + 1), text, len)
+            case (FIELD_SYMBOL)
+               call put(entry%symbol, text, len)
+            case (FIELD_UNIT)
+               call put(entry%unit, text, len)
+            case (FIELD_ORIGIN)
+               call put(entry%origin, text, len)
+            case (FIELD_MEANING)
+               call put(entry%meaning, text, len)
+            case (FIELD_INITIAL)
+               call put(entry%initial, text, len)
+            case default
+               mud_text = MUD_BAD_OPTION
+            end select
+         end associate
+      end if
+   end function mud_text
+
+   !> Bounds and default of a parameter; state variables have none.
+   integer(c_int) function mud_bounds(list, index, lower, upper, preset) bind(c, name='mud_bounds')
+      integer(c_int), value :: list, index
+      type(c_ptr), value :: lower, upper, preset
+
+      mud_bounds = MUD_BAD_OPTION
+      if (list /= LIST_PROPS .or. index < 0 .or. index >= NPROPS) return
+      call put_real(PROPERTIES(index + 1)%lower, lower)
+      call put_real(PROPERTIES(index + 1)%upper, upper)
+      call put_real(PROPERTIES(index + 1)%default, preset)
+      mud_bounds = MUD_OK
+   end function mud_bounds
+
+   integer(c_int) function mud_default_props(props, n_props) bind(c, name='mud_default_props')
+      type(c_ptr), value :: props
+      integer(c_int), value :: n_props
+      real(c_double), pointer :: values(:)
+
+      mud_default_props = MUD_NULL_ARGUMENT
+      if (.not. c_associated(props)) return
+      mud_default_props = MUD_BAD_NPROPS
+      if (n_props /= NPROPS) return
+      call c_f_pointer(props, values, [NPROPS])
+      values = default_props()
+      mud_default_props = MUD_OK
+   end function mud_default_props
+
+   integer(c_int) function mud_validate_props(props, n_props, text, len) bind(c, name='mud_validate_props')
+      type(c_ptr), value :: props, text
+      integer(c_int), value :: n_props, len
+      real(c_double), pointer :: values(:)
+      type(params_t) :: par
+      type(mud_status_t) :: status
+
+      if (c_associated(props)) then
+         call c_f_pointer(props, values, [max(n_props, 0)])
+         call read_params(values, par, status)
+      else
+         status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
+      end if
+      mud_validate_props = status%code
+      call put(report_text(failed_report(status)), text, len)
+   end function mud_validate_props
+
+   integer(c_int) function mud_init_state(props, n_props, stress, suction, void_ratio, statev, n_statev, text, len) &
+      bind(c, name='mud_init_state')
+      type(c_ptr), value :: props, stress, statev, text
+      integer(c_int), value :: n_props, n_statev, len
+      real(c_double), value :: suction, void_ratio
+      real(c_double), pointer :: props_in(:), stress_in(:), statev_in(:)
+      type(report_t) :: report
+
+      if (c_associated(props) .and. c_associated(stress) .and. c_associated(statev)) then
+         call c_f_pointer(props, props_in, [max(n_props, 0)])
+         call c_f_pointer(stress, stress_in, [6])
+         call c_f_pointer(statev, statev_in, [max(n_statev, 0)])
+         call kernel_init(props_in, stress_in, suction, void_ratio, statev_in, report)
+      else
+         report = failed_report(fail(MUD_NULL_ARGUMENT, ON_ARGUMENT))
+      end if
+      mud_init_state = report%status
+      call put(report_text(report), text, len)
+   end function mud_init_state
+
+   integer(c_int) function mud_update(props, n_props, stress0, statev0, n_statev, dstrain, suction0, dsuction, tangent, &
+                                      stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, report_out) &
+      bind(c, name='mud_update')
+      type(c_ptr), value :: props, stress0, statev0, dstrain, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, &
+                            report_out
+      integer(c_int), value :: n_props, n_statev, tangent
+      real(c_double), value :: suction0, dsuction
+      real(c_double), pointer :: props_in(:), stress_in(:), statev_in(:), dstrain_in(:), array(:), matrix(:, :)
+      type(report_t), pointer :: report_to
+      type(report_t) :: report
+      type(output_t) :: output
+
+      if (c_associated(props) .and. c_associated(stress0) .and. c_associated(statev0) .and. c_associated(dstrain) .and. &
+          c_associated(stress1) .and. c_associated(statev1)) then
+         call c_f_pointer(props, props_in, [max(n_props, 0)])
+         call c_f_pointer(stress0, stress_in, [6])
+         call c_f_pointer(statev0, statev_in, [max(n_statev, 0)])
+         call c_f_pointer(dstrain, dstrain_in, [6])
+         if (tangent >= 0) then
+            call kernel_update(props_in, stress_in, statev_in, dstrain_in, suction0, dsuction, tangent, output, report)
+         else
+            report = failed_report(fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(tangent, wp)))
+         end if
+      else
+         report = failed_report(fail(MUD_NULL_ARGUMENT, ON_ARGUMENT))
+      end if
+      if (report%status == MUD_OK) then
+         call c_f_pointer(stress1, array, [6])
+         array = output%stress
+         call c_f_pointer(statev1, array, [NSTATV])
+         array = output%statev
+         if (output%has_tangent) then
+            if (c_associated(dsig_deps)) then
+               call c_f_pointer(dsig_deps, matrix, [6, 6])
+               matrix = output%dsig_deps
+            end if
+            if (c_associated(dsig_dpc)) then
+               call c_f_pointer(dsig_dpc, array, [6])
+               array = output%dsig_dpc
+            end if
+         end if
+         if (c_associated(dsw_deps)) then
+            call c_f_pointer(dsw_deps, array, [6])
+            array = output%dsw_deps
+         end if
+         call put_real(output%dsw_dpc, dsw_dpc)
+      end if
+      if (c_associated(report_out)) then
+         call c_f_pointer(report_out, report_to)
+         report_to = report
+      end if
+      mud_update = report%status
+   end function mud_update
+
+   integer(c_int) function mud_status_text(code, text, len) bind(c, name='mud_status_text')
+      integer(c_int), value :: code, len
+      type(c_ptr), value :: text
+
+      call put(status_text(code), text, len)
+      mud_status_text = MUD_OK
+   end function mud_status_text
+
+   integer(c_int) function mud_message(report_in, text, len) bind(c, name='mud_message')
+      type(c_ptr), value :: report_in, text
+      integer(c_int), value :: len
+      type(report_t), pointer :: report
+
+      mud_message = MUD_NULL_ARGUMENT
+      if (.not. c_associated(report_in)) return
+      call c_f_pointer(report_in, report)
+      call put(report_text(report), text, len)
+      mud_message = MUD_OK
+   end function mud_message
+
+   !> Text into a C buffer of `length` bytes, cut to fit, terminated.
+   subroutine put(text, buffer, length)
+      character(*), intent(in) :: text
+      type(c_ptr), intent(in) :: buffer
+      integer(c_int), intent(in) :: length
+      character(kind=c_char), pointer :: letters(:)
+      integer :: i, n
+
+      if (.not. c_associated(buffer) .or. length < 1) return
+      call c_f_pointer(buffer, letters, [length])
+      n = min(len_trim(text), length - 1)
+      do i = 1, n
+         letters(i) = text(i:i)
+      end do
+      letters(n + 1) = c_null_char
+   end subroutine put
+
+   subroutine put_real(value, target_)
+      real(wp), intent(in) :: value
+      type(c_ptr), intent(in) :: target_
+      real(c_double), pointer :: place
+
+      if (.not. c_associated(target_)) return
+      call c_f_pointer(target_, place)
+      place = value
+   end subroutine put_real
+end module mud_c_api

@@ -1,0 +1,240 @@
+!> The one door to the core: UMAT conventions (tension positive, engineering shear) outside, soil mechanics inside.
+!> umat_ and mud_update both end here.
+module mud_kernel
+   use, intrinsic :: iso_c_binding, only: c_int, c_double
+   use mud_kinds, only: wp
+   use mud_params, only: params_t, read_params
+   use mud_point, only: blocks_t, initial_state, update_point
+   use mud_registry, only: NSTATV, VARIABLES, S_LAYOUT, S_VOID_RATIO, S_SUCTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV
+   use mud_state, only: state_t, counters_t, pack_state, unpack_state, E_LOWER, E_UPPER
+   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_BAD_STATE, MUD_BAD_INPUT, MUD_BAD_OPTION, &
+      MUD_NOT_FINITE, ON_STATEV, ON_STRESS, ON_ARGUMENT
+   use mud_tensor, only: is_finite, rotate
+   implicit none (type, external)
+   private
+   public :: report_t, output_t, kernel_init, kernel_update, rotate_statev, failed_report, TANGENT_FROM_PROPS
+
+   integer, parameter :: TANGENT_FROM_PROPS = -1   !< Take the tangent kind from PROPS.
+   integer, parameter :: LAST_TANGENT = 2          !< Largest tangent kind.
+   real(wp), parameter :: SMALLEST_CUT = 0.1_wp, LARGEST_CUT = 0.5_wp   !< Range of the suggested PNEWDT [-].
+
+   !> struct mud_report of mud.h.
+   type, bind(c) :: report_t
+      integer(c_int) :: status, subject, index, n_rate, n_substep, n_reject, n_reseat, n_floor, n_cap_d, n_cap_h, &
+                        n_hysteresis, n_iso_kept, n_no_root, n_min_step, n_open, n_tensile
+      real(c_double) :: value, lower, upper, reached, pnewdt
+   end type report_t
+
+   !> What a successful update returns, UMAT conventions.
+   type :: output_t
+      real(wp) :: stress(6), statev(NSTATV)
+      real(wp) :: dsig_deps(6, 6), dsig_dpc(6), dsw_deps(6), dsw_dpc
+      logical :: has_tangent
+   end type output_t
+contains
+   !> Initialises a point. stress and statev are written on success only.
+   pure subroutine kernel_init(props, stress, suction, void_ratio, statev, report)
+      real(wp), intent(in) :: props(:)
+      real(wp), intent(inout) :: stress(6)     !< Lifted to p_min if its mean is below [kPa].
+      real(wp), intent(in) :: suction, void_ratio
+      real(wp), intent(inout) :: statev(:)
+      type(report_t), intent(out) :: report
+      type(params_t) :: par
+      type(state_t) :: state
+      type(mud_status_t) :: status
+      real(wp) :: packed(NSTATV)
+
+      call read_params(props, par, status)
+      if (status%code == MUD_OK .and. size(statev) < NSTATV) status = wrong_nstatv(size(statev))
+      if (status%code == MUD_OK) call initialise(par, stress, suction, void_ratio, state, packed, status)
+      report = report_of(status, counters_t(), 0.0_wp)
+      if (status%code /= MUD_OK) return
+      stress = to_umat_stress(state%sigma)
+      statev(1:NSTATV) = packed
+   end subroutine kernel_init
+
+   !> One increment. On failure output is undefined.
+   pure subroutine kernel_update(props, stress, statev, d_strain, suction, d_suction, tangent, output, report)
+      real(wp), intent(in) :: props(:)
+      real(wp), intent(in) :: stress(6)       !< sigma' [kPa]
+      real(wp), intent(in) :: statev(:)       !< Initialised here where layout = 0.
+      real(wp), intent(in) :: d_strain(6)     !< Engineering shear [-].
+      real(wp), intent(in) :: suction, d_suction   !< [kPa]
+      integer, intent(in) :: tangent          !< TANGENT_* of mud_point or TANGENT_FROM_PROPS.
+      type(output_t), intent(inout) :: output
+      type(report_t), intent(out) :: report
+      type(params_t) :: par
+      type(state_t) :: state0, state1
+      type(blocks_t) :: blocks
+      type(counters_t) :: counters
+      type(mud_status_t) :: status
+      real(wp) :: reached
+      integer :: kind
+
+      reached = 0.0_wp
+      call read_params(props, par, status)
+      if (status%code == MUD_OK) call read_state(par, stress, statev, suction, state0, output%statev, status)
+      kind = tangent
+      if (kind == TANGENT_FROM_PROPS) kind = par%tangent
+      if (status%code == MUD_OK .and. (kind < 0 .or. kind > LAST_TANGENT)) then
+         status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(tangent, wp), 0.0_wp, real(LAST_TANGENT, wp))
+      end if
+      if (status%code == MUD_OK) then
+         call update_point(par, state0, from_umat_strain(d_strain), d_suction, kind, state1, blocks, counters, reached, &
+                           status)
+      end if
+      if (status%code == MUD_OK) call write_output(state1, blocks, counters, kind > 0, output, status)
+      report = report_of(status, counters, reached)
+   end subroutine kernel_update
+
+   !> Rotates every tensor of STATEV by DROT, as Abaqus asks for.
+   pure subroutine rotate_statev(drot, statev)
+      real(wp), intent(in) :: drot(3, 3)
+      real(wp), intent(inout) :: statev(NSTATV)
+      integer :: i, first
+
+      do i = 1, size(VARIABLES)
+         if (.not. VARIABLES(i)%rotates) cycle
+         first = VARIABLES(i)%first
+         statev(first:first + 5) = rotate(statev(first:first + 5), drot)
+      end do
+   end subroutine rotate_statev
+
+   !> Report of a call that failed before it began.
+   pure function failed_report(status) result(report)
+      type(mud_status_t), intent(in) :: status
+      type(report_t) :: report
+
+      report = report_of(status, counters_t(), 0.0_wp)
+   end function failed_report
+
+   !> State at the start of an increment, from an initialised STATEV or from nothing.
+   pure subroutine read_state(par, stress, statev, suction, state, packed, status)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: stress(6), statev(:), suction
+      type(state_t), intent(inout) :: state
+      real(wp), intent(inout) :: packed(NSTATV)   !< Totals so far.
+      type(mud_status_t), intent(out) :: status
+
+      if (size(statev) < NSTATV) then
+         status = wrong_nstatv(size(statev))
+         return
+      end if
+      if (.not. is_finite(statev(S_LAYOUT))) then
+         status = fail(MUD_BAD_STATE, ON_STATEV, S_LAYOUT, statev(S_LAYOUT), 0.0_wp, 1.0_wp)
+         return
+      end if
+      if (abs(statev(S_LAYOUT)) <= 0.0_wp) then
+         call initialise(par, stress, suction, statev(S_VOID_RATIO), state, packed, status)
+      else
+         call unpack_state(statev, state, status)
+         packed = statev(1:NSTATV)
+         state%sigma = -stress
+         state%p_c = suction
+      end if
+   end subroutine read_state
+
+   !> A state without a past; a void ratio of zero means that of the parameters, stress zero means p_min.
+   pure subroutine initialise(par, stress, suction, void_ratio, state, packed, status)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: stress(6), suction, void_ratio
+      type(state_t), intent(inout) :: state
+      real(wp), intent(out) :: packed(NSTATV)
+      type(mud_status_t), intent(out) :: status
+      real(wp) :: e
+
+      e = void_ratio
+      if (is_finite(e)) then
+         if (abs(e) <= 0.0_wp) e = par%e_0
+      end if
+      packed = 0.0_wp
+      call initial_state(par, -stress, e, suction, state, status)
+      if (status%code == MUD_OK) call pack_state(state, counters_t(), packed)
+   end subroutine initialise
+
+   !> From the core's results to UMAT conventions; a result that is not finite is a failure.
+   pure subroutine write_output(state, blocks, counters, has_tangent, output, status)
+      type(state_t), intent(in) :: state
+      type(blocks_t), intent(in) :: blocks
+      type(counters_t), intent(in) :: counters
+      logical, intent(in) :: has_tangent
+      type(output_t), intent(inout) :: output
+      type(mud_status_t), intent(out) :: status
+
+      output%has_tangent = has_tangent
+      output%stress = to_umat_stress(state%sigma)
+      call pack_state(state, counters, output%statev)
+      output%dsw_deps = 0.0_wp
+      output%dsw_deps(1:3) = -blocks%dsw_dev
+      output%dsw_dpc = blocks%dsw_dpc
+      output%statev(S_DSW_DPC) = blocks%dsw_dpc
+      output%statev(S_DSW_DEV) = -blocks%dsw_dev
+      if (has_tangent) then
+         output%dsig_deps = blocks%dsig_deps
+         output%dsig_dpc = to_umat_stress(blocks%dsig_dpc)
+         output%statev(S_DSIGMA_DPC:S_DSIGMA_DPC + 5) = output%dsig_dpc
+         if (.not. all(is_finite(output%dsig_deps))) status = fail(MUD_NOT_FINITE, ON_STRESS)
+      else
+         output%statev(S_DSIGMA_DPC:S_DSIGMA_DPC + 5) = 0.0_wp
+      end if
+      if (.not. (all(is_finite(output%stress)) .and. all(is_finite(output%statev)))) status = fail(MUD_NOT_FINITE, ON_STRESS)
+   end subroutine write_output
+
+   !> Compression positive to tension positive; minus zero would only confuse.
+   pure function to_umat_stress(sigma) result(stress)
+      real(wp), intent(in) :: sigma(6)
+      real(wp) :: stress(6)
+
+      stress = 0.0_wp - sigma
+   end function to_umat_stress
+
+   !> Tension positive engineering strain to compression positive tensor strain.
+   pure function from_umat_strain(d_strain) result(eps)
+      real(wp), intent(in) :: d_strain(6)
+      real(wp) :: eps(6)
+      integer :: i
+
+      ! A NaN passes through: the core refuses it.
+      do i = 1, 6
+         eps(i) = d_strain(i)
+         if (is_finite(eps(i))) eps(i) = -eps(i)*merge(1.0_wp, 0.5_wp, i <= 3)
+      end do
+   end function from_umat_strain
+
+   pure function wrong_nstatv(n) result(status)
+      integer, intent(in) :: n
+      type(mud_status_t) :: status
+
+      status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n, wp), real(NSTATV, wp), huge(1.0_wp))
+   end function wrong_nstatv
+
+   pure function report_of(status, counters, reached) result(report)
+      type(mud_status_t), intent(in) :: status
+      type(counters_t), intent(in) :: counters
+      real(wp), intent(in) :: reached
+      type(report_t) :: report
+
+      report%status = status%code
+      report%subject = status%subject
+      report%index = status%index
+      report%value = status%value
+      report%lower = status%lower
+      report%upper = status%upper
+      report%n_rate = counters%rate
+      report%n_substep = counters%substep
+      report%n_reject = counters%reject
+      report%n_reseat = counters%reseat
+      report%n_floor = counters%floor
+      report%n_cap_d = counters%cap_d
+      report%n_cap_h = counters%cap_h
+      report%n_hysteresis = counters%hysteresis
+      report%n_iso_kept = counters%iso_kept
+      report%n_no_root = counters%no_root
+      report%n_min_step = counters%min_step
+      report%n_open = counters%open
+      report%n_tensile = counters%tensile
+      report%reached = reached
+      report%pnewdt = 1.0_wp
+      if (status%code /= MUD_OK) report%pnewdt = min(max(reached, SMALLEST_CUT), LARGEST_CUT)
+   end function report_of
+end module mud_kernel

@@ -1,0 +1,71 @@
+!> Critical state line, state parameter, stress ratios that depend on it, Lode dependence, compression line.
+module mud_critical_state
+   use mud_kinds, only: wp, SQRT_6
+   use mud_params, only: params_t
+   implicit none (type, external)
+   private
+   public :: critical_void_ratio, bounding_ratio, dilatancy_ratio, lode_factor, lode_slope, compression_image
+
+   real(wp), parameter :: EXPONENT_LIMIT = 50.0_wp   !< |n psi| beyond it is held: only absurd parameters get there [-].
+contains
+   !> e_c [-] at a mean effective stress [kPa] and a bonding factor [-], paper eq. (8).
+   pure real(wp) function critical_void_ratio(par, f, p) result(e_c)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: f, p
+
+      e_c = par%n_c*f*(p + par%alpha_csl)**(-par%lambda)
+   end function critical_void_ratio
+
+   !> M^b [-] in triaxial compression at a state parameter [-], paper eq. (12).
+   pure real(wp) function bounding_ratio(par, psi) result(m_b)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: psi
+
+      m_b = par%m_c*exp(min(max(-par%n_b*psi, 0.0_wp), EXPONENT_LIMIT))
+   end function bounding_ratio
+
+   !> M^d [-] in triaxial compression at a state parameter [-], paper eq. (10).
+   pure real(wp) function dilatancy_ratio(par, psi) result(m_d)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: psi
+
+      m_d = par%m_c*exp(min(max(par%n_d*psi, -EXPONENT_LIMIT), EXPONENT_LIMIT))
+   end function dilatancy_ratio
+
+   !> Lode factor g [-] of a unit deviatoric direction with tr(n^3) = trace_cube: 1 in triaxial compression, c in
+   !> extension. Rebuilt: the fourth-root form, convex for c >= 0.611.
+   pure real(wp) function lode_factor(par, trace_cube) result(g)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: trace_cube
+
+      if (par%lode) then
+         g = sqrt(sqrt(2.0_wp*par%c4/lode_denominator(par, trace_cube)))
+      else
+         g = 1.0_wp
+      end if
+   end function lode_factor
+
+   !> d g / d tr(n^3) [-].
+   pure real(wp) function lode_slope(par, g, trace_cube) result(slope)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: g, trace_cube
+
+      slope = 0.0_wp
+      if (par%lode) slope = 0.25_wp*g*SQRT_6*(1.0_wp - par%c4)/lode_denominator(par, trace_cube)
+   end function lode_slope
+
+   pure real(wp) function lode_denominator(par, trace_cube) result(d)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: trace_cube
+
+      d = 1.0_wp + par%c4 - (1.0_wp - par%c4)*min(max(SQRT_6*trace_cube, -1.0_wp), 1.0_wp)
+   end function lode_denominator
+
+   !> Image alpha_hat [kPa] of a void ratio on the compression line, paper eq. (7) with the factor f mended.
+   pure real(wp) function compression_image(par, f, e) result(alpha)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: f, e
+
+      alpha = (par%n_l*f/e)**(1.0_wp/par%lambda)
+   end function compression_image
+end module mud_critical_state

@@ -1,0 +1,38 @@
+!> Plastic flow: dilatancy and fabric.
+module mud_flow
+   use mud_kinds, only: wp, SQRT_2_3
+   use mud_params, only: params_t
+   implicit none (type, external)
+   private
+   public :: dilatancy_factor, dilatancy, fabric_rate
+contains
+   !> A_d = A_0 (1 + <z:n>) [-]. Dafalias & Manzari (2004).
+   pure real(wp) function dilatancy_factor(par, z_n) result(a_d)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: z_n   !< z:n [-]
+
+      a_d = par%a_0
+      if (par%fabric) a_d = a_d*(1.0_wp + max(z_n, 0.0_wp))
+   end function dilatancy_factor
+
+   !> D [-] of d eps^p = L (n + D/3 I): in triaxial compression exactly paper eq. (9).
+   pure real(wp) function dilatancy(a_d, g, m_d, r_n) result(d)
+      real(wp), intent(in) :: a_d   !< dilatancy factor [-]
+      real(wp), intent(in) :: g     !< Lode factor [-]
+      real(wp), intent(in) :: m_d   !< M^d [-]
+      real(wp), intent(in) :: r_n   !< r:n [-]
+
+      d = a_d*(SQRT_2_3*g*m_d - r_n)
+   end function dilatancy
+
+   !> dz = -c_z <-L D> (z_max n + z), Dafalias & Manzari (2004); grows in dilation only.
+   pure function fabric_rate(par, loading, d, n, z) result(dz)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: loading, d   !< L and D
+      real(wp), intent(in) :: n(6), z(6)
+      real(wp) :: dz(6)
+
+      dz = 0.0_wp
+      if (par%fabric .and. d < 0.0_wp) dz = par%c_z*loading*d*(par%z_max*n + z)
+   end function fabric_rate
+end module mud_flow

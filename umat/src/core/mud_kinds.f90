@@ -1,0 +1,11 @@
+!> Working precision and the few numbers that several modules share.
+module mud_kinds
+   use, intrinsic :: iso_c_binding, only: c_double
+   implicit none (type, external)
+   private
+   public :: wp, SQRT_2_3, SQRT_6
+
+   integer, parameter :: wp = c_double                               !< Working precision, that of the C interface.
+   real(wp), parameter :: SQRT_2_3 = 0.81649658092772603_wp          !< Square root of 2/3 [-].
+   real(wp), parameter :: SQRT_6 = 2.4494897427831781_wp             !< Square root of 6 [-].
+end module mud_kinds

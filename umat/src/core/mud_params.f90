@@ -1,0 +1,127 @@
+!> Material parameters: from PROPS to named values, checked against the registry.
+module mud_params
+   use mud_kinds, only: wp
+   use mud_registry, only: NPROPS, PROPERTIES, KIND_REAL, RULE_AS_PUBLISHED, &
+      P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, P_H_0, P_C_H, &
+      P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, P_P_ATM, P_P_MIN, &
+      P_BONDING, P_FABRIC, P_ISOTROPIC, P_LODE, P_MEMORY_RULE, P_EPS_HAT, P_J_EXP, P_X_0, P_X_REV, P_CAP_D, P_CAP_H, &
+      P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, P_TANGENT
+   use mud_status, only: mud_status_t, fail, MUD_BAD_NPROPS, MUD_BAD_PROPS, ON_PROPS
+   use mud_tensor, only: is_finite
+   implicit none (type, external)
+   private
+   public :: params_t, read_params, default_props, FLOOR_AS_PUBLISHED
+
+   real(wp), parameter :: FLOOR_AS_PUBLISHED = 1.0e-15_wp   !< The only floor of (r - r_in):n with the guard off [-].
+
+   !> Parameters of one material; names and units as in mud_registry.
+   type :: params_t
+      real(wp) :: k_0, g_0, n_c, lambda, alpha_csl, n_l, theta, m_c, c, n_b, n_d, a_0, h_0, c_h, c_z, z_max
+      real(wp) :: b_1, b_2, s_max, s_min, p_a, omega, n_x, m_x, e_0, p_atm, p_min
+      logical :: bonding, fabric, isotropic, lode, cutoff
+      integer :: memory_rule
+      real(wp) :: eps_hat, j_exp
+      real(wp) :: x_floor   !< Floor of (r - r_in):n, FLOOR_AS_PUBLISHED with the guard off [-].
+      logical :: floored    !< The floor guard is on.
+      real(wp) :: x_rev     !< Hysteresis of the reversal test, 0 with the guard off [-].
+      real(wp) :: cap_d     !< Contraction cap, 0 with the guard off [-].
+      real(wp) :: cap_h     !< Softening cap, 0 with the guard off [-].
+      logical :: accept_minimum   !< Accept a substep at the minimum size (as_published).
+      integer :: scheme, tangent, max_substeps
+      real(wp) :: tolerance, h_min
+      real(wp) :: c4        !< c**4, for the Lode function [-].
+   end type params_t
+contains
+   !> The parameters of Tables 2 and 3 with every default of the registry.
+   pure function default_props() result(props)
+      real(wp) :: props(NPROPS)
+
+      props = PROPERTIES%default
+   end function default_props
+
+   !> Checks PROPS and names its values. On an error params is undefined and status names the first bad entry.
+   pure subroutine read_params(props, params, status)
+      real(wp), intent(in) :: props(:)
+      type(params_t), intent(out) :: params
+      type(mud_status_t), intent(out) :: status
+      integer :: i
+      logical :: published
+
+      if (size(props) /= NPROPS) then
+         status = fail(MUD_BAD_NPROPS, ON_PROPS, 0, real(size(props), wp), real(NPROPS, wp), real(NPROPS, wp))
+         return
+      end if
+      do i = 1, NPROPS
+         if (acceptable(i, props(i))) cycle
+         status = fail(MUD_BAD_PROPS, ON_PROPS, i, props(i), PROPERTIES(i)%lower, PROPERTIES(i)%upper)
+         return
+      end do
+      if (props(P_S_MIN) >= props(P_S_MAX)) then
+         status = fail(MUD_BAD_PROPS, ON_PROPS, P_S_MIN, props(P_S_MIN), 0.0_wp, props(P_S_MAX))
+         return
+      end if
+
+      params%k_0 = props(P_K_0)
+      params%g_0 = props(P_G_0)
+      params%n_c = props(P_N_C)
+      params%lambda = props(P_LAMBDA)
+      params%alpha_csl = props(P_ALPHA_CSL)
+      params%n_l = props(P_N_L)
+      params%theta = props(P_THETA)
+      params%m_c = props(P_M_C)
+      params%c = props(P_C)
+      params%n_b = props(P_N_B)
+      params%n_d = props(P_N_D)
+      params%a_0 = props(P_A_0)
+      params%h_0 = props(P_H_0)
+      params%c_h = props(P_C_H)
+      params%c_z = props(P_C_Z)
+      params%z_max = props(P_Z_MAX)
+      params%b_1 = props(P_B_1)
+      params%b_2 = props(P_B_2)
+      params%s_max = props(P_S_MAX)
+      params%s_min = props(P_S_MIN)
+      params%p_a = props(P_P_A)
+      params%omega = props(P_OMEGA)
+      params%n_x = props(P_N_X)
+      params%m_x = props(P_M_X)
+      params%e_0 = props(P_E_0)
+      params%p_atm = props(P_P_ATM)
+      params%p_min = props(P_P_MIN)
+      params%bonding = nint(props(P_BONDING)) == 1
+      params%fabric = nint(props(P_FABRIC)) == 1
+      params%isotropic = nint(props(P_ISOTROPIC)) == 1
+      params%lode = nint(props(P_LODE)) == 1
+      params%memory_rule = nint(props(P_MEMORY_RULE))
+      params%eps_hat = props(P_EPS_HAT)
+      params%j_exp = props(P_J_EXP)
+      params%scheme = nint(props(P_SCHEME))
+      params%tolerance = props(P_TOLERANCE)
+      params%h_min = props(P_H_MIN)
+      params%max_substeps = nint(props(P_MAX_SUBSTEPS))
+      params%tangent = nint(props(P_TANGENT))
+      params%c4 = params%c**4
+
+      ! `as_published` is the classic rule with every guard off, whatever the guards' entries say.
+      published = params%memory_rule == RULE_AS_PUBLISHED
+      params%accept_minimum = published
+      params%floored = props(P_X_0) > 0.0_wp .and. .not. published
+      params%x_floor = merge(props(P_X_0), FLOOR_AS_PUBLISHED, params%floored)
+      params%x_rev = merge(0.0_wp, props(P_X_REV), published)
+      params%cap_d = merge(0.0_wp, props(P_CAP_D), published)
+      params%cap_h = merge(0.0_wp, props(P_CAP_H), published)
+      params%cutoff = nint(props(P_CUTOFF)) == 1 .and. .not. published
+   end subroutine read_params
+
+   !> Finite, within the bounds and, for switches, options and counts, a whole number.
+   pure logical function acceptable(i, value)
+      integer, intent(in) :: i
+      real(wp), intent(in) :: value
+
+      acceptable = is_finite(value)
+      if (.not. acceptable) return
+      acceptable = value >= PROPERTIES(i)%lower .and. value <= PROPERTIES(i)%upper
+      if (.not. acceptable) return
+      if (PROPERTIES(i)%kind /= KIND_REAL) acceptable = abs(value - anint(value)) < 1.0e-9_wp
+   end function acceptable
+end module mud_params

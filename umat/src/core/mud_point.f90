@@ -1,0 +1,634 @@
+!> One increment at one integration point: substeps of rates, with the jumps of memory between them.
+module mud_point
+   use mud_kinds, only: wp
+   use mud_params, only: params_t
+   use mud_registry, only: RULE_AS_PUBLISHED
+   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_INPUT, MUD_BAD_VOID_RATIO, MUD_MINIMUM_STEP, &
+      MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, MUD_VOID_RATIO_LIMIT, MUD_NOT_FINITE, MUD_INCREMENT_TOO_LARGE, &
+      ON_STRESS, ON_STRAIN, ON_SUCTION, ON_VOID_RATIO
+   use mud_tensor, only: IDENTITY, trace, deviator, norm, is_finite
+   use mud_elastic, only: bulk_modulus, shear_modulus
+   use mud_bonding, only: bonding_t, bonding, UNBONDED
+   use mud_critical_state, only: critical_void_ratio, bounding_ratio
+   use mud_retention, only: saturation_t, saturation
+   use mud_rates, only: rate_t, rate_at, stress_ratio, bounding_norm, MODE_ORDINARY, MODE_ELASTIC
+   use mud_reversal, only: new_memory, reseat, accept_process, turns_back, begin_way_back, leave_way_back, &
+      way_back_distance, resume_process
+   use mud_state, only: memory_t, state_t, counters_t, E_LOWER, E_UPPER
+   use mud_substep, only: scheme_t, SCHEMES, MAX_STAGES, stage_point, solution, error_vector, step_factor
+   use mud_tangent, only: continuum_tangent, elastic_tangent
+   implicit none (type, external)
+   private
+   public :: blocks_t, initial_state, update_point, TANGENT_NONE, TANGENT_ELASTIC, TANGENT_CONTINUUM
+
+   integer, parameter :: MODE_HELD = 2                       !< A substep held at p_min by the tension cut-off.
+   integer, parameter :: TANGENT_NONE = 0, TANGENT_ELASTIC = 1, TANGENT_CONTINUUM = 2
+
+   integer, parameter :: NY = 13                             !< sigma'(6), z(6), plastic shear.
+   real(wp), parameter :: LARGEST_STRAIN = 1.0_wp            !< Larger increments are asked to be cut [-].
+   real(wp), parameter :: LARGEST_SUCTION_STEP = 1.0e7_wp    !< Likewise [kPa].
+   real(wp), parameter :: LARGEST_STRESS = 1.0e9_wp          !< A stress or suction beyond it is an input error [kPa].
+   real(wp), parameter :: PLASTIC_SHEAR_SCALE = 0.01_wp      !< Of the error norm [-].
+   real(wp), parameter :: LAST_SLIVER = 1.0e-9_wp            !< A rest of this share joins the substep before it [-].
+   real(wp), parameter :: AT_LIMIT = 1.0e-9_wp               !< p' this close (relative) to p_min is at p_min [-].
+   real(wp), parameter :: EVENT_TOLERANCE = 1.0e-13_wp       !< Width of the bracket of an event, share of increment [-].
+   integer, parameter :: MAX_EVENT_ITERATIONS = 100          !< Bisection alone needs about 45.
+
+   integer, parameter :: EVENT_OPENS = 1     !< p' falls to p_min.
+   integer, parameter :: EVENT_ARRIVES = 2   !< An elastic way back reaches the turning point.
+   integer, parameter :: EVENT_CLOSES = 3    !< p' would rise from p_min.
+   real(wp), parameter :: EVENT_RESIDUAL = 1.0e-13_wp        !< An event's function this small is zero [-].
+
+   !> Tangent blocks, compression positive, with engineering shear strain.
+   type :: blocks_t
+      real(wp) :: dsig_deps(6, 6)   !< d sigma'/d eps [kPa]
+      real(wp) :: dsig_dpc(6)       !< d sigma'/d p_c [-]
+      real(wp) :: dsw_dev           !< d S_w/d eps_v [-]
+      real(wp) :: dsw_dpc           !< d S_w/d p_c [1/kPa]
+   end type blocks_t
+
+   !> What stays the same through an update.
+   type :: increment_t
+      real(wp) :: d_strain(6), d_pc, p_c0, e0, d_v
+      logical :: bonded             !< Bonding is on and there is suction: decided once.
+      type(scheme_t) :: scheme
+   end type increment_t
+
+   !> A trial substep from one point.
+   type :: trial_t
+      real(wp) :: rates(NY, MAX_STAGES)
+      real(wp) :: y0(NY), y(NY)
+      type(rate_t) :: first, last   !< First rate (of the memory as it is) and rate of the last stage.
+      integer :: mode
+      real(wp) :: r_in(6)
+      real(wp) :: time              !< Pseudo-time of y0 [-].
+   end type trial_t
+contains
+   !> State of a point that starts at a stress, a void ratio and a suction without a past. A mean stress below p_min is
+   !> lifted to p_min, its stress ratio limited to the bounding surface.
+   pure subroutine initial_state(par, sigma, e, p_c, state, status)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: sigma(6), e, p_c   !< [kPa, -, kPa], compression positive
+      type(state_t), intent(out) :: state
+      type(mud_status_t), intent(out) :: status
+      real(wp) :: p, r(6)
+
+      call check_stress(sigma, p_c, status)
+      if (status%code /= MUD_OK) return
+      if (.not. is_finite(e)) then
+         status = fail(MUD_BAD_VOID_RATIO, ON_VOID_RATIO, 0, e, E_LOWER, E_UPPER)
+         return
+      end if
+      if (e <= E_LOWER .or. e >= E_UPPER) then
+         status = fail(MUD_BAD_VOID_RATIO, ON_VOID_RATIO, 0, e, E_LOWER, E_UPPER)
+         return
+      end if
+      state%sigma = sigma
+      state%e = e
+      state%p_c = p_c
+      state%z = 0.0_wp
+      state%eps_q_total = 0.0_wp
+      state%last_step = 0.0_wp
+      state%open = .false.
+      call lift_to_limit(par, par%bonding .and. p_c > 0.0_wp, state)
+      call stress_ratio(par, state%sigma, p, r)
+      state%memory = new_memory(r)
+      call finish_state(par, state)
+   end subroutine initial_state
+
+   !> Integrates d_strain and d_pc. On failure state1 and blocks are undefined and state0 is what it was.
+   pure subroutine update_point(par, state0, d_strain, d_pc, tangent, state1, blocks, counters, reached, status)
+      type(params_t), intent(in) :: par
+      type(state_t), intent(in) :: state0
+      real(wp), intent(in) :: d_strain(6)         !< tensor shear, compression positive [-]
+      real(wp), intent(in) :: d_pc                !< [kPa]
+      integer, intent(in) :: tangent              !< TANGENT_*
+      type(state_t), intent(inout) :: state1
+      type(blocks_t), intent(inout) :: blocks     !< untouched for TANGENT_NONE, but for the S_w blocks
+      type(counters_t), intent(inout) :: counters
+      real(wp), intent(out) :: reached            !< share of the increment integrated [-]
+      type(mud_status_t), intent(out) :: status
+      type(increment_t) :: inc
+      type(trial_t) :: trial
+      real(wp) :: size, k, g, p, r(6)
+
+      reached = 0.0_wp
+      call check_increment(state0, d_strain, d_pc, status)
+      if (status%code /= MUD_OK) return
+      inc%d_strain = d_strain
+      inc%d_pc = d_pc
+      inc%p_c0 = state0%p_c
+      inc%e0 = state0%e
+      inc%d_v = trace(d_strain)
+      inc%bonded = par%bonding .and. max(state0%p_c, state0%p_c + d_pc) > 0.0_wp
+      inc%scheme = SCHEMES(par%scheme)
+      if (void_ratio_at(inc, 1.0_wp) <= E_LOWER .or. void_ratio_at(inc, 1.0_wp) >= E_UPPER) then
+         status = fail(MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO, 0, void_ratio_at(inc, 1.0_wp), E_LOWER, E_UPPER)
+         return
+      end if
+
+      state1 = state0
+      if (par%cutoff) call lift_to_limit(par, inc%bonded, state1)
+      call stress_ratio(par, state1%sigma, p, r)
+      k = bulk_modulus(par, state1%e, p)
+      size = norm(d_strain) + abs(d_pc)/k
+      if (size > 0.0_wp) call integrate(par, inc, size, state1, trial, counters, reached, status)
+      if (status%code /= MUD_OK) return
+      reached = 1.0_wp
+      state1%e = void_ratio_at(inc, 1.0_wp)
+      state1%p_c = state0%p_c + d_pc
+      call finish_state(par, state1, blocks)
+      if (has_tension(state1%sigma)) counters%tensile = 1
+
+      select case (tangent)
+      case (TANGENT_NONE)
+         continue
+      case (TANGENT_CONTINUUM)
+         if (size > 0.0_wp) then
+            blocks%dsig_deps = 0.0_wp   ! an open point has no stiffness
+            blocks%dsig_dpc = 0.0_wp
+            if (trial%mode /= MODE_HELD) call continuum_tangent(par, trial%last, blocks%dsig_deps, blocks%dsig_dpc)
+            return
+         end if
+         blocks%dsig_deps = elastic_tangent(k, shear_modulus(par, state1%e, p))
+         blocks%dsig_dpc = 0.0_wp
+      case default
+         call stress_ratio(par, state1%sigma, p, r)
+         k = bulk_modulus(par, state1%e, p)
+         g = shear_modulus(par, state1%e, p)
+         blocks%dsig_deps = elastic_tangent(k, g)
+         blocks%dsig_dpc = 0.0_wp
+      end select
+   end subroutine update_point
+
+   !> The loop over substeps.
+   pure subroutine integrate(par, inc, size, state, trial, counters, reached, status)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: size                !< of the increment, in units of strain [-]
+      type(state_t), intent(inout) :: state
+      type(trial_t), intent(inout) :: trial       !< the last accepted substep
+      type(counters_t), intent(inout) :: counters
+      real(wp), intent(out) :: reached
+      type(mud_status_t), intent(out) :: status
+      real(wp) :: time, h, h_taken, error, factor, p, r(6)
+      integer :: elastic_substeps
+      logical :: may_grow, crossed
+
+      time = 0.0_wp
+      h = 1.0_wp
+      if (state%last_step > 0.0_wp .and. state%last_step < size) h = state%last_step/size
+      may_grow = .true.
+      elastic_substeps = 0
+      substeps: do while (time < 1.0_wp)
+         reached = time
+         trial%time = time
+         trial%y0(1:6) = state%sigma
+         trial%y0(7:12) = state%z
+         trial%y0(13) = 0.0_wp
+         call begin_substep(par, inc, state, trial, counters)
+         attempts: do
+            if (counters%substep + counters%reject >= par%max_substeps) then
+               status = fail(MUD_TOO_MANY_SUBSTEPS, value=real(par%max_substeps, wp))
+               return
+            end if
+            h = max(h, par%h_min)
+            h_taken = h
+            if (time + h*(1.0_wp + LAST_SLIVER) >= 1.0_wp) h_taken = 1.0_wp - time
+            call take_step(par, inc, h_taken, trial, counters)
+            error = error_norm(par, inc%scheme, trial, h_taken)
+            if (.not. all(is_finite(trial%y)) .or. .not. is_finite(error)) then
+               status = fail(MUD_NOT_FINITE, ON_STRESS)
+               return
+            end if
+            factor = step_factor(inc%scheme, error, par%tolerance, may_grow)
+            if (error <= par%tolerance) exit attempts
+            if (h_taken <= par%h_min) then
+               if (.not. par%accept_minimum) then
+                  status = fail(MUD_MINIMUM_STEP, value=error, lower=0.0_wp, upper=par%tolerance)
+                  return
+               end if
+               counters%min_step = counters%min_step + 1
+               factor = 1.0_wp
+               exit attempts
+            end if
+            counters%reject = counters%reject + 1
+            may_grow = .false.
+            h = h_taken*min(factor, 0.9_wp)
+         end do attempts
+         may_grow = .true.
+
+         h = h_taken*factor
+         call stop_at_event(par, inc, state%memory, h_taken, trial, counters, crossed)
+         if (trial%first%no_root) elastic_substeps = elastic_substeps + 1
+         if (elastic_substeps > 1 .and. par%memory_rule /= RULE_AS_PUBLISHED) then
+            status = fail(MUD_NO_DIRECTION)
+            return
+         end if
+         time = time + h_taken
+         if (1.0_wp - time < EVENT_TOLERANCE) time = 1.0_wp
+         state%e = void_ratio_at(inc, time)
+         state%p_c = inc%p_c0 + time*inc%d_pc
+         call accept_substep(par, trial, state, counters)
+         if (crossed .and. trial%mode == MODE_ELASTIC) then
+            call stress_ratio(par, state%sigma, p, r)
+            if (way_back_distance(state%memory, r) >= 0.0_wp) call resume_process(state%memory)
+         end if
+      end do substeps
+      state%last_step = h*size
+      reached = 1.0_wp
+   end subroutine integrate
+
+   !> Decides what the coming substep is - ordinary, elastic way back or held by the tension cut-off - applies the memory
+   !> rule, and leaves the first rate in the trial.
+   pure subroutine begin_substep(par, inc, state, trial, counters)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(state_t), intent(inout) :: state
+      type(trial_t), intent(inout) :: trial
+      type(counters_t), intent(inout) :: counters
+      real(wp) :: p, r(6)
+
+      call stress_ratio(par, state%sigma, p, r)
+      trial%mode = MODE_ORDINARY
+      trial%r_in = state%memory%r_in
+      if (state%open) then
+         call try_to_close(par, inc, r, state, trial, counters)
+         return
+      end if
+
+      if (state%memory%suspended) then
+         trial%mode = MODE_ELASTIC
+         call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%first, counters)
+         if (turns_back(state%memory, trial%first%t)) then
+            if (way_back_distance(state%memory, r) < 0.0_wp) then
+               call begin_way_back(state%memory, r)
+            else
+               call resume_process(state%memory)
+               trial%mode = MODE_ORDINARY
+            end if
+         else
+            trial%mode = MODE_ORDINARY
+         end if
+      end if
+
+      trial%r_in = state%memory%r_in
+      if (trial%mode == MODE_ORDINARY) then
+         call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%first, counters)
+         if (trial%first%loading .and. trial%first%x < 0.0_wp) then
+            if (trial%first%x < -par%x_rev) then
+               counters%reseat = counters%reseat + 1
+               call reseat(par, r, trial%first%n, trial%first%t, state%memory)
+               trial%r_in = state%memory%r_in
+               call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%first, counters)
+            else
+               counters%hysteresis = counters%hysteresis + 1
+            end if
+         end if
+      end if
+
+      if (par%cutoff .and. trial%first%d_p <= 0.0_wp) then
+         if (trace(state%sigma) <= 3.0_wp*par%p_min*(1.0_wp + AT_LIMIT)) then
+            call try_to_close(par, inc, r, state, trial, counters)
+         end if
+      end if
+   end subroutine begin_substep
+
+   !> A point at p_min stays open while p' would not rise from there; it closes without memory of the gap. The trial holds
+   !> the ordinary rate of a point without a past.
+   pure subroutine try_to_close(par, inc, r, state, trial, counters)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: r(6)
+      type(state_t), intent(inout) :: state
+      type(trial_t), intent(inout) :: trial
+      type(counters_t), intent(inout) :: counters
+
+      trial%r_in = r
+      trial%mode = MODE_ORDINARY
+      call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%first, counters)
+      state%open = trial%first%d_p <= 0.0_wp
+      if (state%open) then
+         trial%mode = MODE_HELD
+      else
+         state%memory = new_memory(r)
+      end if
+   end subroutine try_to_close
+
+   !> Rate at a vector of the integration and a pseudo-time; void ratio and suction follow from the latter exactly.
+   pure subroutine rate_of(par, inc, time, y, r_in, mode, w, counters)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time, y(NY), r_in(6)
+      integer, intent(in) :: mode
+      type(rate_t), intent(inout) :: w
+      type(counters_t), intent(inout) :: counters
+
+      call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), inc%p_c0 + time*inc%d_pc, y(7:12), r_in, &
+                   inc%d_strain, inc%d_pc, mode, w)
+      counters%rate = counters%rate + 1
+      if (w%floored .and. par%floored) counters%floor = counters%floor + 1
+      if (w%capped_d) counters%cap_d = counters%cap_d + 1
+      if (w%capped_h) counters%cap_h = counters%cap_h + 1
+      if (w%iso_kept) counters%iso_kept = counters%iso_kept + 1
+      if (w%no_root) counters%no_root = counters%no_root + 1
+   end subroutine rate_of
+
+   !> One trial substep from the first rate that the trial holds.
+   pure subroutine take_step(par, inc, h, trial, counters)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: h
+      type(trial_t), intent(inout) :: trial
+      type(counters_t), intent(inout) :: counters
+      real(wp) :: y(NY)
+      integer :: i
+
+      if (trial%mode == MODE_HELD) then
+         call hold(par, inc, h, trial)
+         return
+      end if
+      call store_rate(trial%first, trial%rates(:, 1))
+      do i = 2, inc%scheme%stages
+         call stage_point(inc%scheme, i, trial%y0, trial%rates, h, y)
+         call rate_of(par, inc, trial%time + inc%scheme%node(i)*h, y, trial%r_in, trial%mode, trial%last, counters)
+         call store_rate(trial%last, trial%rates(:, i))
+      end do
+      call solution(inc%scheme, trial%y0, trial%rates, h, trial%y)
+   end subroutine take_step
+
+   !> A substep at p_min: p', fabric, memory and plastic shear stay. The stress ratio follows the strain elastically, but not
+   !> beyond the bounding surface. (Were it frozen, an undrained path that gets here on its contractive side could never
+   !> leave, in whatever direction it is sheared.)
+   pure subroutine hold(par, inc, h, trial)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: h
+      type(trial_t), intent(inout) :: trial
+      real(wp) :: e, r(6)
+
+      e = void_ratio_at(inc, trial%time + h)
+      r = deviator(trial%y0(1:6) + (2.0_wp*shear_modulus(par, e, par%p_min)*h)*inc%d_strain)/par%p_min
+      trial%y = trial%y0
+      trial%y(1:6) = par%p_min*(limited(par, inc%bonded, e, inc%p_c0 + (trial%time + h)*inc%d_pc, par%p_min, r) + IDENTITY)
+   end subroutine hold
+
+   pure subroutine store_rate(w, dy)
+      type(rate_t), intent(in) :: w
+      real(wp), intent(out) :: dy(NY)
+
+      dy(1:6) = w%d_sigma
+      dy(7:12) = w%d_z
+      dy(13) = w%d_eps_q
+   end subroutine store_rate
+
+   !> Relative error of a trial substep; the void ratio is exact.
+   pure real(wp) function error_norm(par, scheme, trial, h) result(error)
+      type(params_t), intent(in) :: par
+      type(scheme_t), intent(in) :: scheme
+      type(trial_t), intent(in) :: trial
+      real(wp), intent(in) :: h
+      real(wp) :: delta(NY)
+
+      error = 0.0_wp
+      if (trial%mode == MODE_HELD) return
+      call error_vector(scheme, trial%rates, h, delta)
+      error = max(norm(delta(1:6))/max(norm(trial%y(1:6)), par%p_min), norm(delta(7:12))/par%z_max, &
+                  abs(delta(13))/PLASTIC_SHEAR_SCALE)
+   end function error_norm
+
+   !> Takes over an accepted substep; state already has its void ratio and suction.
+   pure subroutine accept_substep(par, trial, state, counters)
+      type(params_t), intent(in) :: par
+      type(trial_t), intent(in) :: trial
+      type(state_t), intent(inout) :: state
+      type(counters_t), intent(inout) :: counters
+      real(wp) :: p, r(6)
+
+      counters%substep = counters%substep + 1
+      state%sigma = trial%y(1:6)
+      if (trial%mode == MODE_HELD) then
+         counters%open = counters%open + 1
+         return
+      end if
+      state%z = trial%y(7:12)
+      state%eps_q_total = state%eps_q_total + trial%y(13)
+      if (par%cutoff .and. trace(state%sigma) < 3.0_wp*par%p_min) then
+         state%sigma = deviator(state%sigma) + par%p_min*IDENTITY
+      end if
+      if (trial%mode == MODE_ELASTIC) then
+         call stress_ratio(par, state%sigma, p, r)
+         call leave_way_back(state%memory, r)
+      else
+         call accept_process(par, trial%first%loading, trial%first%x, trial%first%n, trial%y(13), state%memory)
+      end if
+   end subroutine accept_substep
+
+   !> Shortens an accepted substep so that it lands where p' reaches p_min, where an elastic way back arrives, or where a
+   !> held point would close.
+   pure subroutine stop_at_event(par, inc, memory, h, trial, counters, crossed)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(memory_t), intent(in) :: memory
+      real(wp), intent(inout) :: h
+      type(trial_t), intent(inout) :: trial
+      type(counters_t), intent(inout) :: counters
+      logical, intent(out) :: crossed      !< the last event looked for in this mode happened
+
+      crossed = .false.
+      select case (trial%mode)
+      case (MODE_HELD)
+         call land_on(par, inc, EVENT_CLOSES, memory, h, trial, counters, crossed)
+      case (MODE_ELASTIC)
+         if (par%cutoff) call land_on(par, inc, EVENT_OPENS, memory, h, trial, counters, crossed)
+         call land_on(par, inc, EVENT_ARRIVES, memory, h, trial, counters, crossed)
+      case default
+         if (par%cutoff) call land_on(par, inc, EVENT_OPENS, memory, h, trial, counters, crossed)
+      end select
+   end subroutine stop_at_event
+
+   !> Finds the end of the substep where the event's function turns negative (Illinois' variant of false position), and
+   !> leaves the trial there, just beyond.
+   pure subroutine land_on(par, inc, event, memory, h, trial, counters, crossed)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: event
+      type(memory_t), intent(in) :: memory
+      real(wp), intent(inout) :: h
+      type(trial_t), intent(inout) :: trial
+      type(counters_t), intent(inout) :: counters
+      logical, intent(out) :: crossed
+      real(wp) :: low, high, f_low, f_high, f, h_trial
+      integer :: iteration
+
+      call event_function(par, inc, event, memory, trial%time + h, trial%y, counters, f_high)
+      crossed = f_high < 0.0_wp
+      if (.not. crossed) return
+      call event_function(par, inc, event, memory, trial%time, trial%y0, counters, f_low)
+      low = 0.0_wp
+      high = h
+      h_trial = h
+      do iteration = 1, MAX_EVENT_ITERATIONS
+         if (high - low <= EVENT_TOLERANCE .or. high <= par%h_min) exit
+         if (f_low > 0.0_wp) then
+            h_trial = low + (high - low)*f_low/(f_low - f_high)
+            h_trial = min(max(h_trial, low + 0.01_wp*(high - low)), high - 0.01_wp*(high - low))
+         else
+            h_trial = 0.5_wp*(low + high)
+         end if
+         call take_step(par, inc, h_trial, trial, counters)
+         call event_function(par, inc, event, memory, trial%time + h_trial, trial%y, counters, f)
+         if (f < 0.0_wp) then
+            if (f_low > 0.0_wp .and. high < h) f_low = 0.5_wp*f_low
+            high = h_trial
+            f_high = f
+            if (f > -EVENT_RESIDUAL) exit
+         else
+            f_high = 0.5_wp*f_high
+            low = h_trial
+            f_low = f
+         end if
+      end do
+      if (abs(h_trial - high) > 0.0_wp) call take_step(par, inc, high, trial, counters)
+      h = high
+   end subroutine land_on
+
+   !> Function of an event, dimensionless, negative beyond it.
+   pure subroutine event_function(par, inc, event, memory, time, y, counters, f)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: event
+      type(memory_t), intent(in) :: memory
+      real(wp), intent(in) :: time, y(NY)
+      type(counters_t), intent(inout) :: counters
+      real(wp), intent(out) :: f
+      type(rate_t) :: w
+      real(wp) :: p, r(6)
+
+      select case (event)
+      case (EVENT_OPENS)
+         f = trace(y(1:6))/(3.0_wp*par%p_min) - 1.0_wp
+      case (EVENT_ARRIVES)
+         call stress_ratio(par, y(1:6), p, r)
+         f = -way_back_distance(memory, r)
+      case default
+         call stress_ratio(par, y(1:6), p, r)
+         call rate_of(par, inc, time, y, r, MODE_ORDINARY, w, counters)
+         f = -w%d_p/(w%k*norm(inc%d_strain) + abs(inc%d_pc))
+      end select
+   end subroutine event_function
+
+   !> Void ratio at a pseudo-time: 1 + e falls as exp(-eps_v), exactly.
+   pure real(wp) function void_ratio_at(inc, time) result(e)
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time
+
+      e = inc%e0
+      if (abs(inc%d_v) > 0.0_wp) e = (1.0_wp + e)*exp(-inc%d_v*time) - 1.0_wp
+   end function void_ratio_at
+
+   !> Mean stress below p_min, as at a free surface: p_min, with a stress ratio on or inside the bounding surface.
+   pure subroutine lift_to_limit(par, bonded, state)
+      type(params_t), intent(in) :: par
+      logical, intent(in) :: bonded
+      type(state_t), intent(inout) :: state
+
+      if (trace(state%sigma) >= 3.0_wp*par%p_min*(1.0_wp - AT_LIMIT)) return
+      state%sigma = par%p_min*(limited(par, bonded, state%e, state%p_c, par%p_min, deviator(state%sigma)/par%p_min) &
+                               + IDENTITY)
+   end subroutine lift_to_limit
+
+   !> A stress ratio, shortened to the bounding surface where it is beyond.
+   pure function limited(par, bonded, e, p_c, p, r) result(r_limited)
+      type(params_t), intent(in) :: par
+      logical, intent(in) :: bonded
+      real(wp), intent(in) :: e, p_c, p, r(6)
+      real(wp) :: r_limited(6), r_norm, limit
+
+      r_limited = r
+      r_norm = norm(r)
+      if (r_norm <= 0.0_wp) return
+      limit = bounding_norm(par, r, r_norm, bounding_ratio(par, state_parameter(par, bonded, e, p_c, p)))
+      if (r_norm > limit) r_limited = (limit/r_norm)*r
+   end function limited
+
+   pure real(wp) function state_parameter(par, bonded, e, p_c, p) result(psi)
+      type(params_t), intent(in) :: par
+      logical, intent(in) :: bonded
+      real(wp), intent(in) :: e, p_c, p
+      type(bonding_t) :: bond
+
+      bond = UNBONDED
+      if (bonded) bond = bonding(par, p_c, e)
+      psi = e - critical_void_ratio(par, bond%f, p)
+   end function state_parameter
+
+   !> Saturation and state parameter of a state, and the saturation's slopes.
+   pure subroutine finish_state(par, state, blocks)
+      type(params_t), intent(in) :: par
+      type(state_t), intent(inout) :: state
+      type(blocks_t), intent(inout), optional :: blocks
+      type(saturation_t) :: sat
+
+      sat = saturation(par, state%p_c, state%e)
+      state%s_w = sat%s_w
+      state%psi = state_parameter(par, par%bonding .and. state%p_c > 0.0_wp, state%e, state%p_c, &
+                                  max(trace(state%sigma)/3.0_wp, par%p_min))
+      if (.not. present(blocks)) return
+      blocks%dsw_dpc = sat%ds_dpc
+      blocks%dsw_dev = -(1.0_wp + state%e)*sat%ds_de
+   end subroutine finish_state
+
+   !> True if a principal stress is negative (tensile): Sylvester's criterion fails.
+   pure logical function has_tension(s)
+      real(wp), intent(in) :: s(6)
+      real(wp) :: minor
+
+      minor = s(1)*s(2) - s(4)*s(4)
+      has_tension = s(1) < 0.0_wp .or. minor < 0.0_wp .or. &
+                    s(3)*minor + 2.0_wp*s(4)*s(5)*s(6) - s(1)*s(6)*s(6) - s(2)*s(5)*s(5) < 0.0_wp
+   end function has_tension
+
+   pure subroutine check_stress(sigma, p_c, status)
+      real(wp), intent(in) :: sigma(6), p_c
+      type(mud_status_t), intent(out) :: status
+      integer :: i
+
+      do i = 1, 6
+         if (within(sigma(i), LARGEST_STRESS)) cycle
+         status = fail(MUD_BAD_INPUT, ON_STRESS, i, sigma(i), -LARGEST_STRESS, LARGEST_STRESS)
+         return
+      end do
+      if (.not. within(p_c, LARGEST_STRESS)) then
+         status = fail(MUD_BAD_INPUT, ON_SUCTION, 0, p_c, -LARGEST_STRESS, LARGEST_STRESS)
+      end if
+   end subroutine check_stress
+
+   pure subroutine check_increment(state, d_strain, d_pc, status)
+      type(state_t), intent(in) :: state
+      real(wp), intent(in) :: d_strain(6), d_pc
+      type(mud_status_t), intent(out) :: status
+      integer :: i
+
+      call check_stress(state%sigma, state%p_c, status)
+      if (status%code /= MUD_OK) return
+      do i = 1, 6
+         if (within(d_strain(i), LARGEST_STRAIN)) cycle
+         status = fail(merge(MUD_INCREMENT_TOO_LARGE, MUD_BAD_INPUT, is_finite(d_strain(i))), ON_STRAIN, i, d_strain(i), &
+                       -LARGEST_STRAIN, LARGEST_STRAIN)
+         return
+      end do
+      if (.not. within(d_pc, LARGEST_SUCTION_STEP)) then
+         status = fail(merge(MUD_INCREMENT_TOO_LARGE, MUD_BAD_INPUT, is_finite(d_pc)), ON_SUCTION, 0, d_pc, &
+                       -LARGEST_SUCTION_STEP, LARGEST_SUCTION_STEP)
+      end if
+   end subroutine check_increment
+
+   !> Finite and of magnitude up to a limit. A NaN is not compared: a comparison would trap.
+   pure logical function within(value, limit)
+      real(wp), intent(in) :: value, limit
+
+      within = is_finite(value)
+      if (within) within = abs(value) <= limit
+   end function within
+end module mud_point

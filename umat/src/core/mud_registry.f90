@@ -1,0 +1,339 @@
+!> Every entry of PROPS and STATEV, once: index, name, symbol, unit, bounds, default, origin, meaning.
+!> Validation, queries of the C interface, tables of the documentation and input files all come from here.
+module mud_registry
+   use mud_kinds, only: wp
+   implicit none (type, external)
+   private
+   public :: property_t, variable_t, PROPERTIES, VARIABLES, NPROPS, NSTATV, NVARIABLES, STATE_LAYOUT
+   public :: KIND_REAL, KIND_SWITCH, KIND_OPTION, KIND_COUNT
+   public :: property_index, statev_index, statev_name, statev_variable, COMPONENTS
+   public :: RULE_CLASSIC, RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RESUME, RULE_AS_PUBLISHED
+
+   public :: P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, &
+             P_H_0, P_C_H, P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, &
+             P_P_ATM, P_P_MIN, P_BONDING, P_FABRIC, P_ISOTROPIC, P_LODE, P_MEMORY_RULE, P_EPS_HAT, P_J_EXP, &
+             P_X_0, P_X_REV, P_CAP_D, P_CAP_H, P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, &
+             P_TANGENT
+   public :: S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION, S_STATE_PARAMETER, S_EPS_Q_P, S_EPS_Q_P_TOTAL, &
+             S_X_BEFORE, S_X_RUNNING, S_WAY_BACK, S_SUSPENDED, S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, &
+             S_MEMORY_BEFORE, S_TURNING_POINT, S_DIRECTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, S_N_RATE, &
+             S_N_SUBSTEP, S_N_REJECT, S_N_RESEAT, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE
+
+   integer, parameter :: STATE_LAYOUT = 1   !< Layout number that an initialised STATEV carries.
+   integer, parameter :: KIND_REAL = 0, KIND_SWITCH = 1, KIND_OPTION = 2, KIND_COUNT = 3
+   integer, parameter :: RULE_CLASSIC = 0, RULE_THRESHOLD = 1, RULE_REPOSITIONING = 2, RULE_RESUME = 3, &
+                         RULE_AS_PUBLISHED = 4
+   character(2), parameter :: COMPONENTS(6) = ['11', '22', '33', '12', '13', '23']   !< Order of tensor components.
+
+   !> One material parameter.
+   type :: property_t
+      integer :: index         !< Place in PROPS, from 1.
+      character(16) :: name    !< Name in input files and in the C interface.
+      character(12) :: symbol  !< Symbol in the theory.
+      character(8) :: unit     !< Unit, 1 if it has none.
+      integer :: kind          !< KIND_REAL, KIND_SWITCH (0 or 1), KIND_OPTION or KIND_COUNT (whole numbers).
+      real(wp) :: lower        !< Smallest allowed value.
+      real(wp) :: upper        !< Largest allowed value.
+      real(wp) :: default      !< Value of the paper, or ours.
+      character(12) :: origin  !< paper, mended, rebuilt, ours or numerical.
+      character(112) :: meaning
+   end type property_t
+
+   !> One state variable: a scalar or a tensor of six components.
+   type :: variable_t
+      integer :: first         !< First place in STATEV, from 1.
+      integer :: size          !< 1 or 6.
+      character(16) :: name
+      character(12) :: symbol
+      character(8) :: unit
+      logical :: rotates       !< DROT acts on it.
+      character(12) :: origin
+      character(112) :: meaning
+      character(20) :: initial !< How it is initialised.
+   end type variable_t
+
+   integer, parameter :: P_K_0 = 1
+   integer, parameter :: P_G_0 = 2
+   integer, parameter :: P_N_C = 3
+   integer, parameter :: P_LAMBDA = 4
+   integer, parameter :: P_ALPHA_CSL = 5
+   integer, parameter :: P_N_L = 6
+   integer, parameter :: P_THETA = 7
+   integer, parameter :: P_M_C = 8
+   integer, parameter :: P_C = 9
+   integer, parameter :: P_N_B = 10
+   integer, parameter :: P_N_D = 11
+   integer, parameter :: P_A_0 = 12
+   integer, parameter :: P_H_0 = 13
+   integer, parameter :: P_C_H = 14
+   integer, parameter :: P_C_Z = 15
+   integer, parameter :: P_Z_MAX = 16
+   integer, parameter :: P_B_1 = 17
+   integer, parameter :: P_B_2 = 18
+   integer, parameter :: P_S_MAX = 19
+   integer, parameter :: P_S_MIN = 20
+   integer, parameter :: P_P_A = 21
+   integer, parameter :: P_OMEGA = 22
+   integer, parameter :: P_N_X = 23
+   integer, parameter :: P_M_X = 24
+   integer, parameter :: P_E_0 = 25
+   integer, parameter :: P_P_ATM = 26
+   integer, parameter :: P_P_MIN = 27
+   integer, parameter :: P_BONDING = 28
+   integer, parameter :: P_FABRIC = 29
+   integer, parameter :: P_ISOTROPIC = 30
+   integer, parameter :: P_LODE = 31
+   integer, parameter :: P_MEMORY_RULE = 32
+   integer, parameter :: P_EPS_HAT = 33
+   integer, parameter :: P_J_EXP = 34
+   integer, parameter :: P_X_0 = 35
+   integer, parameter :: P_X_REV = 36
+   integer, parameter :: P_CAP_D = 37
+   integer, parameter :: P_CAP_H = 38
+   integer, parameter :: P_CUTOFF = 39
+   integer, parameter :: P_SCHEME = 40
+   integer, parameter :: P_TOLERANCE = 41
+   integer, parameter :: P_H_MIN = 42
+   integer, parameter :: P_MAX_SUBSTEPS = 43
+   integer, parameter :: P_TANGENT = 44
+   integer, parameter :: NPROPS = 44
+
+   integer, parameter :: S_LAYOUT = 1
+   integer, parameter :: S_VOID_RATIO = 2
+   integer, parameter :: S_SATURATION = 3
+   integer, parameter :: S_SUCTION = 4
+   integer, parameter :: S_STATE_PARAMETER = 5
+   integer, parameter :: S_EPS_Q_P = 6
+   integer, parameter :: S_EPS_Q_P_TOTAL = 7
+   integer, parameter :: S_X_BEFORE = 8
+   integer, parameter :: S_X_RUNNING = 9
+   integer, parameter :: S_WAY_BACK = 10
+   integer, parameter :: S_SUSPENDED = 11
+   integer, parameter :: S_OPEN = 12
+   integer, parameter :: S_LAST_STEP = 13
+   integer, parameter :: S_FABRIC = 14
+   integer, parameter :: S_MEMORY = 20
+   integer, parameter :: S_MEMORY_BEFORE = 26
+   integer, parameter :: S_TURNING_POINT = 32
+   integer, parameter :: S_DIRECTION = 38
+   integer, parameter :: S_DSIGMA_DPC = 44
+   integer, parameter :: S_DSW_DPC = 50
+   integer, parameter :: S_DSW_DEV = 51
+   integer, parameter :: S_N_RATE = 52
+   integer, parameter :: S_N_SUBSTEP = 53
+   integer, parameter :: S_N_REJECT = 54
+   integer, parameter :: S_N_RESEAT = 55
+   integer, parameter :: S_N_GUARD = 56
+   integer, parameter :: S_N_NO_ROOT = 57
+   integer, parameter :: S_N_MIN_STEP = 58
+   integer, parameter :: S_N_OPEN = 59
+   integer, parameter :: S_N_TENSILE = 60
+   integer, parameter :: NVARIABLES = 30
+   integer, parameter :: NSTATV = 60
+
+   type(property_t), parameter :: PROPERTIES(NPROPS) = [ &
+      property_t(P_K_0, 'K_0', 'K_0', '1', KIND_REAL, 0.001_wp, 1.0e5_wp, 150.0_wp, 'paper', &
+         'bulk modulus number, eq. (2)'), &
+      property_t(P_G_0, 'G_0', 'G_0', '1', KIND_REAL, 0.001_wp, 1.0e5_wp, 125.0_wp, 'paper', &
+         'shear modulus number, eq. (3)'), &
+      property_t(P_N_C, 'N_c', 'N_c', '1', KIND_REAL, 0.001_wp, 10000.0_wp, 18.7_wp, 'paper', &
+         'position of the critical state line in ln e - ln p'', eq. (8)'), &
+      property_t(P_LAMBDA, 'lambda', 'lambda', '1', KIND_REAL, 0.001_wp, 5.0_wp, 0.37_wp, 'paper', &
+         'slope of the critical state line and of the compression line, eqs (7), (8)'), &
+      property_t(P_ALPHA_CSL, 'alpha_csl', 'alpha_csl', 'kPa', KIND_REAL, 0.0_wp, 1000000.0_wp, 3370.0_wp, 'paper', &
+         'shift of p'' in the critical state line, eq. (8)'), &
+      property_t(P_N_L, 'N_l', 'N_l', '1', KIND_REAL, 0.001_wp, 10000.0_wp, 25.0_wp, 'paper', &
+         'position of the compression line in ln e - ln p'', eq. (7)'), &
+      property_t(P_THETA, 'theta', 'theta', '1', KIND_REAL, 0.01_wp, 5.0_wp, 0.2_wp, 'mended', &
+         'exponent of the distance to the compression line, eq. (4); missing in the paper''s Table 2'), &
+      property_t(P_M_C, 'M_c', 'M_c', '1', KIND_REAL, 0.1_wp, 2.5_wp, 1.25_wp, 'paper', &
+         'critical stress ratio q/p'' in triaxial compression'), &
+      property_t(P_C, 'c', 'c', '1', KIND_REAL, 0.611_wp, 1.0_wp, 0.712_wp, 'paper', &
+         'M_e/M_c, strength in extension over compression; the surface is convex from 0.611'), &
+      property_t(P_N_B, 'n_b', 'n_b', '1', KIND_REAL, 0.0_wp, 20.0_wp, 1.25_wp, 'paper', &
+         'dependence of the bounding stress ratio on the state parameter, eq. (12)'), &
+      property_t(P_N_D, 'n_d', 'n_d', '1', KIND_REAL, 0.0_wp, 20.0_wp, 2.1_wp, 'paper', &
+         'dependence of the dilatancy stress ratio on the state parameter, eq. (10)'), &
+      property_t(P_A_0, 'A_0', 'A_0', '1', KIND_REAL, 0.0_wp, 20.0_wp, 0.4_wp, 'paper', &
+         'dilatancy constant, eq. (9)'), &
+      property_t(P_H_0, 'h_0', 'h_0', '1', KIND_REAL, 0.001_wp, 10000.0_wp, 12.0_wp, 'paper', &
+         'kinematic hardening constant, eq. (13)'), &
+      property_t(P_C_H, 'c_h', 'c_h', '1', KIND_REAL, 0.0_wp, 5.0_wp, 0.968_wp, 'paper', &
+         'void ratio in the kinematic hardening, eq. (13)'), &
+      property_t(P_C_Z, 'c_z', 'c_z', '1', KIND_REAL, 0.0_wp, 1.0e5_wp, 600.0_wp, 'paper', &
+         'rate of fabric evolution'), &
+      property_t(P_Z_MAX, 'z_max', 'z_max', '1', KIND_REAL, 1e-06_wp, 1000.0_wp, 4.0_wp, 'paper', &
+         'largest fabric'), &
+      property_t(P_B_1, 'b_1', 'b_1', '1', KIND_REAL, 0.0_wp, 10.0_wp, 0.5_wp, 'paper', &
+         'bonding function, eq. (5)'), &
+      property_t(P_B_2, 'b_2', 'b_2', '1', KIND_REAL, 0.0_wp, 5.0_wp, 0.5_wp, 'paper', &
+         'bonding function, eq. (5)'), &
+      property_t(P_S_MAX, 'S_max', 'S_max', '1', KIND_REAL, 0.001_wp, 1.0_wp, 1.0_wp, 'paper', &
+         'largest degree of saturation, eq. (24); S_i of Table 3'), &
+      property_t(P_S_MIN, 'S_min', 'S_min', '1', KIND_REAL, 0.0_wp, 0.999_wp, 0.0_wp, 'paper', &
+         'residual degree of saturation, eq. (24), below S_max; S_rw of Table 3'), &
+      property_t(P_P_A, 'P_a', 'P_a', 'kPa', KIND_REAL, 1e-06_wp, 1000000.0_wp, 5.0_wp, 'paper', &
+         'air-entry value, eq. (24)'), &
+      property_t(P_OMEGA, 'Omega', 'Omega', '1', KIND_REAL, 0.0_wp, 20.0_wp, 2.0_wp, 'paper', &
+         'void ratio in the modified suction p_c e^Omega, eq. (23)'), &
+      property_t(P_N_X, 'n_x', 'n_x', '1', KIND_REAL, 1.0_wp, 20.0_wp, 2.0_wp, 'paper', &
+         'inner exponent of the retention curve, eq. (24)'), &
+      property_t(P_M_X, 'm_x', 'm_x', '1', KIND_REAL, 0.001_wp, 20.0_wp, 1.0_wp, 'paper', &
+         'outer exponent of the retention curve, eq. (24)'), &
+      property_t(P_E_0, 'e_0', 'e_0', '1', KIND_REAL, 0.01_wp, 5.0_wp, 0.8_wp, 'ours', &
+         'initial void ratio, used where the host has not preset STATEV'), &
+      property_t(P_P_ATM, 'p_atm', 'p_atm', 'kPa', KIND_REAL, 1e-06_wp, 1000000000.0_wp, 101.325_wp, 'paper', &
+         'atmospheric pressure; its unit is the unit of all stresses'), &
+      property_t(P_P_MIN, 'p_min', 'p_min', 'kPa', KIND_REAL, 1e-09_wp, 1000000.0_wp, 0.101325_wp, 'numerical', &
+         'smallest mean effective stress, tension cut-off'), &
+      property_t(P_BONDING, 'bonding', 'bonding', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 1.0_wp, 'paper', &
+         '1: suction bonding zeta acts on the lines of eqs (7), (8); 0: f = 1'), &
+      property_t(P_FABRIC, 'fabric', 'fabric', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 1.0_wp, 'rebuilt', &
+         '1: fabric z evolves and acts on dilatancy; 0: A_d = A_0'), &
+      property_t(P_ISOTROPIC, 'isotropic', 'isotropic', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 1.0_wp, 'mended', &
+         '1: isotropic mechanism, eq. (4); 0: none'), &
+      property_t(P_LODE, 'lode', 'lode', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 1.0_wp, 'rebuilt', &
+         '1: strength depends on the Lode angle; 0: circle of M_c'), &
+      property_t(P_MEMORY_RULE, 'memory_rule', 'rule', '1', KIND_OPTION, 0.0_wp, 4.0_wp, 1.0_wp, 'paper', &
+         '0 classic, 1 threshold, 2 repositioning, 3 resume, 4 as_published'), &
+      property_t(P_EPS_HAT, 'eps_hat', 'eps_hat', '1', KIND_REAL, 1e-12_wp, 1.0_wp, 0.0001_wp, 'paper', &
+         'plastic shear below which a process counts as an oscillation, eq. (16); value of Dafalias & Taiebat 2016'), &
+      property_t(P_J_EXP, 'j_exp', 'j', '1', KIND_REAL, 0.01_wp, 100.0_wp, 1.0_wp, 'paper', &
+         'exponent of eq. (16)'), &
+      property_t(P_X_0, 'x_0', 'x_0', '1', KIND_REAL, 0.0_wp, 1.0_wp, 0.003_wp, 'numerical', &
+         'floor of (r - r_in):n in the hardening; 0: off'), &
+      property_t(P_X_REV, 'x_rev', 'x_rev', '1', KIND_REAL, 0.0_wp, 1.0_wp, 0.001_wp, 'numerical', &
+         'hysteresis of the reversal test; 0: off'), &
+      property_t(P_CAP_D, 'cap_d', 'k_D', '1', KIND_REAL, 0.0_wp, 0.999_wp, 0.95_wp, 'numerical', &
+         'contraction cap as a share of 2G/(K r:n); 0: off'), &
+      property_t(P_CAP_H, 'cap_h', 'kappa_c', '1', KIND_REAL, 0.0_wp, 0.999_wp, 0.5_wp, 'numerical', &
+         'softening cap; 0: off'), &
+      property_t(P_CUTOFF, 'cutoff', 'cutoff', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 1.0_wp, 'numerical', &
+         '1: tension cut-off at p_min; 0: off'), &
+      property_t(P_SCHEME, 'scheme', 'scheme', '1', KIND_OPTION, 1.0_wp, 1.0_wp, 1.0_wp, 'paper', &
+         '1 modified Euler 2(1)'), &
+      property_t(P_TOLERANCE, 'tolerance', 'tol', '1', KIND_REAL, 1e-12_wp, 0.1_wp, 1e-05_wp, 'paper', &
+         'relative tolerance of the stress integration'), &
+      property_t(P_H_MIN, 'h_min', 'h_min', '1', KIND_REAL, 1e-12_wp, 0.1_wp, 1e-07_wp, 'numerical', &
+         'smallest substep as a share of the increment'), &
+      property_t(P_MAX_SUBSTEPS, 'max_substeps', 'n_max', '1', KIND_COUNT, 1.0_wp, 1.0e8_wp, 1.0e5_wp, 'numerical', &
+         'largest number of attempted substeps in an update'), &
+      property_t(P_TANGENT, 'tangent', 'tangent', '1', KIND_OPTION, 0.0_wp, 2.0_wp, 2.0_wp, 'ours', &
+         'tangent that umat_ returns: 0 none, 1 elastic, 2 continuum')]
+
+   type(variable_t), parameter :: VARIABLES(NVARIABLES) = [ &
+      variable_t(S_LAYOUT, 1, 'layout', '-', '1', .false., 'ours', &
+         '0: not initialised; otherwise the layout number of this table', 'set to 1'), &
+      variable_t(S_VOID_RATIO, 1, 'void_ratio', 'e', '1', .false., 'paper', &
+         'void ratio; preset it (layout = 0) to override e_0', 'preset or e_0'), &
+      variable_t(S_SATURATION, 1, 'saturation', 'S_w', '1', .false., 'paper', &
+         'degree of saturation, eq. (24)', 'eq. (24)'), &
+      variable_t(S_SUCTION, 1, 'suction', 'p_c', 'kPa', .false., 'paper', &
+         'suction at the end of the last increment', 'PREDEF(1)'), &
+      variable_t(S_STATE_PARAMETER, 1, 'state_parameter', 'psi', '1', .false., 'paper', &
+         'e - e_c, eq. (8)', 'from e, p'', p_c'), &
+      variable_t(S_EPS_Q_P, 1, 'eps_q_p', 'eps_q^p', '1', .false., 'paper', &
+         'plastic shear of the present loading process, eq. (16)', '0'), &
+      variable_t(S_EPS_Q_P_TOTAL, 1, 'eps_q_p_total', '-', '1', .false., 'ours', &
+         'plastic shear of all processes', '0'), &
+      variable_t(S_X_BEFORE, 1, 'x_before', 'J', '1', .false., 'paper', &
+         '(r - r_in):n at the end of the process before (rule repositioning)', '0'), &
+      variable_t(S_X_RUNNING, 1, 'x_running', 'x', '1', .false., 'paper', &
+         '(r - r_in):n of the last accepted rate with x >= 0', '0'), &
+      variable_t(S_WAY_BACK, 1, 'way_back', 'd', '1', .false., 'ours', &
+         'distance from the turning point where an elastic way back began; 0: none (rule resume)', '0'), &
+      variable_t(S_SUSPENDED, 1, 'suspended', '-', '1', .false., 'ours', &
+         '1 while a process is suspended (rule resume)', '0'), &
+      variable_t(S_OPEN, 1, 'open', '-', '1', .false., 'numerical', &
+         '1 while the tension cut-off holds p'' at p_min', '0'), &
+      variable_t(S_LAST_STEP, 1, 'last_step', 'h', '1', .false., 'numerical', &
+         'last substep proposed, in units of strain', '0'), &
+      variable_t(S_FABRIC, 6, 'fabric', 'z', '1', .true., 'rebuilt', &
+         'fabric deviator', '0'), &
+      variable_t(S_MEMORY, 6, 'memory', 'r_in', '1', .true., 'paper', &
+         'stress ratio where the present loading process began', 'r'), &
+      variable_t(S_MEMORY_BEFORE, 6, 'memory_before', 'r_prev', '1', .true., 'paper', &
+         'memory of the process before (threshold) or of the suspended one (resume)', 'r'), &
+      variable_t(S_TURNING_POINT, 6, 'turning_point', 'r_t', '1', .true., 'ours', &
+         'stress ratio where the suspended process was left (resume)', '0'), &
+      variable_t(S_DIRECTION, 6, 'direction', 'n', '1', .true., 'ours', &
+         'last loading direction with x >= 0; direction before the turn while suspended', '0'), &
+      variable_t(S_DSIGMA_DPC, 6, 'dsigma_dpc', '-', '1', .true., 'paper', &
+         'output: d sigma''/d p_c in the sign convention of STRESS', '0'), &
+      variable_t(S_DSW_DPC, 1, 'dsw_dpc', '-', '1/kPa', .false., 'paper', &
+         'output: d S_w/d p_c at constant e', 'eq. (24)'), &
+      variable_t(S_DSW_DEV, 1, 'dsw_dev', '-', '1', .false., 'paper', &
+         'output: d S_w/d eps_v at constant p_c, eps_v in the sign convention of STRAN', 'eq. (24)'), &
+      variable_t(S_N_RATE, 1, 'n_rate', '-', '1', .false., 'ours', &
+         'total: rate evaluations', '0'), &
+      variable_t(S_N_SUBSTEP, 1, 'n_substep', '-', '1', .false., 'ours', &
+         'total: accepted substeps', '0'), &
+      variable_t(S_N_REJECT, 1, 'n_reject', '-', '1', .false., 'ours', &
+         'total: rejected substeps', '0'), &
+      variable_t(S_N_RESEAT, 1, 'n_reseat', '-', '1', .false., 'ours', &
+         'total: re-seats of the memory', '0'), &
+      variable_t(S_N_GUARD, 1, 'n_guard', '-', '1', .false., 'ours', &
+         'total: rates in which a guard of section 4 acted', '0'), &
+      variable_t(S_N_NO_ROOT, 1, 'n_no_root', '-', '1', .false., 'ours', &
+         'total: rates without an admissible direction, taken as elastic', '0'), &
+      variable_t(S_N_MIN_STEP, 1, 'n_min_step', '-', '1', .false., 'ours', &
+         'total: substeps accepted at the minimum size (rule as_published)', '0'), &
+      variable_t(S_N_OPEN, 1, 'n_open', '-', '1', .false., 'ours', &
+         'total: substeps held by the tension cut-off', '0'), &
+      variable_t(S_N_TENSILE, 1, 'n_tensile', '-', '1', .false., 'ours', &
+         'total: increments that ended with a tensile principal effective stress', '0')]
+contains
+   !> Place of a parameter in PROPS, 0 if there is none of that name. Case does not matter, as in a namelist.
+   pure integer function property_index(name) result(index)
+      character(*), intent(in) :: name
+
+      do index = 1, NPROPS
+         if (lower_case(PROPERTIES(index)%name) == lower_case(name)) return
+      end do
+      index = 0
+   end function property_index
+
+   !> Place of a state variable in STATEV, 0 if there is none of that name; tensors as name_11 and so on.
+   pure integer function statev_index(name) result(index)
+      character(*), intent(in) :: name
+
+      do index = 1, NSTATV
+         if (statev_name(index) == lower_case(name)) return
+      end do
+      index = 0
+   end function statev_index
+
+   !> Name of one place in STATEV.
+   pure function statev_name(index) result(name)
+      integer, intent(in) :: index
+      character(20) :: name
+      integer :: variable
+
+      variable = statev_variable(index)
+      name = VARIABLES(variable)%name
+      if (VARIABLES(variable)%size == 6) then
+         name = trim(name)//'_'//COMPONENTS(index - VARIABLES(variable)%first + 1)
+      end if
+   end function statev_name
+
+   !> Entry of VARIABLES that a place in STATEV belongs to.
+   pure integer function statev_variable(index) result(variable)
+      integer, intent(in) :: index
+
+      do variable = 1, NVARIABLES
+         if (index < VARIABLES(variable)%first + VARIABLES(variable)%size) return
+      end do
+      variable = NVARIABLES
+   end function statev_variable
+
+   pure function lower_case(text) result(lower)
+      character(*), intent(in) :: text
+      character(len(text)) :: lower
+      integer :: i
+
+      lower = text
+      do i = 1, len(text)
+         if (lge(text(i:i), 'A') .and. lle(text(i:i), 'Z')) lower(i:i) = achar(iachar(text(i:i)) + 32)
+      end do
+   end function lower_case
+end module mud_registry

@@ -1,0 +1,44 @@
+!> Water retention: how much of the pore space is water.
+module mud_retention
+   use mud_kinds, only: wp
+   use mud_params, only: params_t
+   implicit none (type, external)
+   private
+   public :: saturation_t, saturation
+
+   real(wp), parameter :: EULER = 2.7182818284590452_wp      !< exp(1)
+   real(wp), parameter :: LOG_LARGE = 200.0_wp               !< Beyond it exp(1) is lost in exp(1) + a, and a might overflow.
+
+   !> Degree of saturation and its slopes.
+   type :: saturation_t
+      real(wp) :: s_w      !< S_w [-]
+      real(wp) :: ds_dpc   !< dS_w/dp_c at constant e [1/kPa]
+      real(wp) :: ds_de    !< dS_w/de at constant p_c [-]
+   end type saturation_t
+contains
+   !> Degree of saturation at a suction [kPa] and a void ratio [-], paper eqs (23), (24). No suction: S_max, zero slopes.
+   pure function saturation(par, p_c, e) result(sat)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: p_c, e
+      type(saturation_t) :: sat
+      real(wp) :: log_a, a, share, log_sum, s_e, slope
+
+      sat = saturation_t(par%s_max, 0.0_wp, 0.0_wp)
+      if (p_c <= 0.0_wp) return
+      log_a = par%n_x*(log(p_c/par%p_a) + par%omega*log(e))     ! a = (p*/P_a)^n
+      if (log_a < -LOG_LARGE) return
+      if (log_a > LOG_LARGE) then
+         log_sum = log_a
+         share = 1.0_wp                                         ! a/(exp(1) + a)
+      else
+         a = exp(log_a)
+         log_sum = log(EULER + a)
+         share = a/(EULER + a)
+      end if
+      s_e = (par%s_max - par%s_min)*log_sum**(-par%m_x)
+      sat%s_w = par%s_min + s_e
+      slope = -par%m_x*s_e/log_sum*share*par%n_x                ! dS_w/d ln p*
+      sat%ds_dpc = slope/p_c
+      sat%ds_de = slope*par%omega/e
+   end function saturation
+end module mud_retention

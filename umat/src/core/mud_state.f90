@@ -1,0 +1,140 @@
+!> State of an integration point, and its place in STATEV.
+module mud_state
+   use mud_kinds, only: wp
+   use mud_registry, only: NSTATV, STATE_LAYOUT, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION, S_STATE_PARAMETER, &
+      S_EPS_Q_P, S_EPS_Q_P_TOTAL, S_X_BEFORE, S_X_RUNNING, S_WAY_BACK, S_SUSPENDED, S_OPEN, S_LAST_STEP, S_FABRIC, &
+      S_MEMORY, S_MEMORY_BEFORE, S_TURNING_POINT, S_DIRECTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, S_N_RATE, &
+      S_N_SUBSTEP, S_N_REJECT, S_N_RESEAT, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE
+   use mud_status, only: mud_status_t, fail, MUD_BAD_STATE, MUD_BAD_NSTATV, ON_STATEV
+   use mud_tensor, only: is_finite
+   implicit none (type, external)
+   private
+   public :: memory_t, state_t, counters_t, pack_state, unpack_state, E_LOWER, E_UPPER
+
+   real(wp), parameter :: E_LOWER = 0.01_wp, E_UPPER = 5.0_wp   !< Range of the void ratio [-].
+
+   !> What the point remembers of its loading processes.
+   type :: memory_t
+      real(wp) :: r_in(6)      !< stress ratio where the present process began
+      real(wp) :: r_before(6)  !< memory of the process before (threshold) or of the suspended one (resume)
+      real(wp) :: r_turn(6)    !< turning point of the suspended process
+      real(wp) :: n_turn(6)    !< running direction; while suspended that before the turn
+      real(wp) :: eps_q_p      !< plastic shear of the present process
+      real(wp) :: x_before     !< J
+      real(wp) :: x_running    !< (r - r_in):n of the last accepted rate with x >= 0
+      real(wp) :: way_back     !< distance from r_turn where the elastic way back began, 0 if not on it
+      logical :: suspended
+   end type memory_t
+
+   type :: state_t
+      real(wp) :: sigma(6)     !< sigma' [kPa], compression positive
+      real(wp) :: z(6)         !< fabric [-]
+      real(wp) :: e            !< void ratio [-]
+      real(wp) :: p_c          !< suction [kPa]
+      real(wp) :: s_w          !< degree of saturation [-]
+      real(wp) :: psi          !< state parameter [-]
+      real(wp) :: eps_q_total  !< plastic shear of all processes [-]
+      real(wp) :: last_step    !< size of the substep proposed last, in units of strain [-]
+      logical :: open          !< held by the tension cut-off
+      type(memory_t) :: memory
+   end type state_t
+
+   !> What an update did.
+   type :: counters_t
+      integer :: rate = 0, substep = 0, reject = 0, reseat = 0, floor = 0, cap_d = 0, cap_h = 0, hysteresis = 0, &
+                 iso_kept = 0, no_root = 0, min_step = 0, open = 0, tensile = 0
+   end type counters_t
+contains
+   !> Reads a state from an initialised STATEV; the stress is set by the caller.
+   pure subroutine unpack_state(statev, state, status)
+      real(wp), intent(in) :: statev(:)
+      type(state_t), intent(inout) :: state
+      type(mud_status_t), intent(out) :: status
+      integer :: i
+
+      if (size(statev) < NSTATV) then
+         status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(size(statev), wp), real(NSTATV, wp), huge(1.0_wp))
+         return
+      end if
+      do i = 1, NSTATV
+         if (is_finite(statev(i))) cycle
+         status = fail(MUD_BAD_STATE, ON_STATEV, i, statev(i), -huge(1.0_wp), huge(1.0_wp))
+         return
+      end do
+      call require(statev, S_LAYOUT, real(STATE_LAYOUT, wp), real(STATE_LAYOUT, wp), status)
+      call require(statev, S_VOID_RATIO, E_LOWER, E_UPPER, status)
+      call require(statev, S_SUSPENDED, 0.0_wp, 1.0_wp, status)
+      call require(statev, S_OPEN, 0.0_wp, 1.0_wp, status)
+      call require(statev, S_LAST_STEP, 0.0_wp, huge(1.0_wp), status)
+      call require(statev, S_EPS_Q_P, 0.0_wp, huge(1.0_wp), status)
+      call require(statev, S_WAY_BACK, 0.0_wp, huge(1.0_wp), status)
+      if (status%code /= 0) return
+
+      state%e = statev(S_VOID_RATIO)
+      state%s_w = statev(S_SATURATION)
+      state%p_c = statev(S_SUCTION)
+      state%psi = statev(S_STATE_PARAMETER)
+      state%eps_q_total = statev(S_EPS_Q_P_TOTAL)
+      state%last_step = statev(S_LAST_STEP)
+      state%open = statev(S_OPEN) > 0.5_wp
+      state%z = statev(S_FABRIC:S_FABRIC + 5)
+      state%memory%r_in = statev(S_MEMORY:S_MEMORY + 5)
+      state%memory%r_before = statev(S_MEMORY_BEFORE:S_MEMORY_BEFORE + 5)
+      state%memory%r_turn = statev(S_TURNING_POINT:S_TURNING_POINT + 5)
+      state%memory%n_turn = statev(S_DIRECTION:S_DIRECTION + 5)
+      state%memory%eps_q_p = statev(S_EPS_Q_P)
+      state%memory%x_before = statev(S_X_BEFORE)
+      state%memory%x_running = statev(S_X_RUNNING)
+      state%memory%way_back = statev(S_WAY_BACK)
+      state%memory%suspended = statev(S_SUSPENDED) > 0.5_wp
+   end subroutine unpack_state
+
+   !> Keeps the first entry that is out of its range.
+   pure subroutine require(statev, entry, lower, upper, status)
+      real(wp), intent(in) :: statev(:)
+      integer, intent(in) :: entry
+      real(wp), intent(in) :: lower, upper
+      type(mud_status_t), intent(inout) :: status
+
+      if (status%code /= 0) return
+      if (statev(entry) >= lower .and. statev(entry) <= upper) return
+      status = fail(MUD_BAD_STATE, ON_STATEV, entry, statev(entry), lower, upper)
+   end subroutine require
+
+   !> Writes a state and the sums of the counters to STATEV; the tangent outputs are the caller's.
+   pure subroutine pack_state(state, counters, statev)
+      type(state_t), intent(in) :: state
+      type(counters_t), intent(in) :: counters
+      real(wp), intent(inout) :: statev(:)   !< Holds the totals so far.
+
+      statev(S_LAYOUT) = real(STATE_LAYOUT, wp)
+      statev(S_VOID_RATIO) = state%e
+      statev(S_SATURATION) = state%s_w
+      statev(S_SUCTION) = state%p_c
+      statev(S_STATE_PARAMETER) = state%psi
+      statev(S_EPS_Q_P_TOTAL) = state%eps_q_total
+      statev(S_LAST_STEP) = state%last_step
+      statev(S_OPEN) = merge(1.0_wp, 0.0_wp, state%open)
+      statev(S_FABRIC:S_FABRIC + 5) = state%z
+      statev(S_MEMORY:S_MEMORY + 5) = state%memory%r_in
+      statev(S_MEMORY_BEFORE:S_MEMORY_BEFORE + 5) = state%memory%r_before
+      statev(S_TURNING_POINT:S_TURNING_POINT + 5) = state%memory%r_turn
+      statev(S_DIRECTION:S_DIRECTION + 5) = state%memory%n_turn
+      statev(S_EPS_Q_P) = state%memory%eps_q_p
+      statev(S_X_BEFORE) = state%memory%x_before
+      statev(S_X_RUNNING) = state%memory%x_running
+      statev(S_WAY_BACK) = state%memory%way_back
+      statev(S_SUSPENDED) = merge(1.0_wp, 0.0_wp, state%memory%suspended)
+
+      statev(S_N_RATE) = statev(S_N_RATE) + counters%rate
+      statev(S_N_SUBSTEP) = statev(S_N_SUBSTEP) + counters%substep
+      statev(S_N_REJECT) = statev(S_N_REJECT) + counters%reject
+      statev(S_N_RESEAT) = statev(S_N_RESEAT) + counters%reseat
+      statev(S_N_GUARD) = statev(S_N_GUARD) + counters%floor + counters%cap_d + counters%cap_h + counters%hysteresis &
+                          + counters%iso_kept
+      statev(S_N_NO_ROOT) = statev(S_N_NO_ROOT) + counters%no_root
+      statev(S_N_MIN_STEP) = statev(S_N_MIN_STEP) + counters%min_step
+      statev(S_N_OPEN) = statev(S_N_OPEN) + counters%open
+      statev(S_N_TENSILE) = statev(S_N_TENSILE) + counters%tensile
+   end subroutine pack_state
+end module mud_state

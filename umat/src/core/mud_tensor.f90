@@ -1,0 +1,88 @@
+!> Symmetric second-order tensors as six components 11, 22, 33, 12, 13, 23 with TENSOR shear (not engineering).
+!> Every contraction of the core goes through this module, for each shear component stands for two.
+module mud_tensor
+   use, intrinsic :: iso_fortran_env, only: int64
+   use mud_kinds, only: wp
+   implicit none (type, external)
+   private
+   public :: IDENTITY, SHEAR_WEIGHT, ddot, trace, deviator, norm, square, is_finite, outer_add, rotate
+
+   real(wp), parameter :: IDENTITY(6) = [1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
+   !> How often a stored component stands in the 3 x 3 matrix.
+   real(wp), parameter :: SHEAR_WEIGHT(6) = [1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp, 2.0_wp, 2.0_wp]
+   integer(int64), parameter :: EXPONENT_BITS = int(z'7FF0000000000000', int64)   !< All set: NaN or infinity.
+contains
+   !> Full contraction a:b.
+   pure real(wp) function ddot(a, b)
+      real(wp), intent(in) :: a(6), b(6)
+
+      ddot = a(1)*b(1) + a(2)*b(2) + a(3)*b(3) + 2.0_wp*(a(4)*b(4) + a(5)*b(5) + a(6)*b(6))
+   end function ddot
+
+   pure real(wp) function trace(a)
+      real(wp), intent(in) :: a(6)
+
+      trace = a(1) + a(2) + a(3)
+   end function trace
+
+   pure function deviator(a) result(s)
+      real(wp), intent(in) :: a(6)
+      real(wp) :: s(6), mean
+
+      mean = trace(a)/3.0_wp
+      s = a
+      s(1:3) = s(1:3) - mean
+   end function deviator
+
+   !> Frobenius norm, the square root of a:a.
+   pure real(wp) function norm(a)
+      real(wp), intent(in) :: a(6)
+
+      norm = sqrt(ddot(a, a))
+   end function norm
+
+   !> Matrix square a.a of a symmetric tensor; ddot(square(a), b) = tr(a a b).
+   pure function square(a) result(c)
+      real(wp), intent(in) :: a(6)
+      real(wp) :: c(6)
+
+      c(1) = a(1)*a(1) + a(4)*a(4) + a(5)*a(5)
+      c(2) = a(4)*a(4) + a(2)*a(2) + a(6)*a(6)
+      c(3) = a(5)*a(5) + a(6)*a(6) + a(3)*a(3)
+      c(4) = a(4)*(a(1) + a(2)) + a(5)*a(6)
+      c(5) = a(5)*(a(1) + a(3)) + a(4)*a(6)
+      c(6) = a(6)*(a(2) + a(3)) + a(4)*a(5)
+   end function square
+
+   !> True if x is neither NaN nor infinite. Looks at the exponent's bits: it never traps, and costs nothing, while a
+   !> procedure that uses ieee_arithmetic saves and restores the whole floating-point environment.
+   pure elemental logical function is_finite(x)
+      real(wp), intent(in) :: x
+
+      is_finite = iand(transfer(x, 0_int64), EXPONENT_BITS) /= EXPONENT_BITS
+   end function is_finite
+
+   !> c <- c + a (x) b for a map from ENGINEERING strain to stress: the factor two of b:eps and the one of
+   !> gamma = 2 eps cancel, so plain products of components are right.
+   pure subroutine outer_add(a, b, c)
+      real(wp), intent(in) :: a(6), b(6)
+      real(wp), intent(inout) :: c(6, 6)
+      integer :: j
+
+      do j = 1, 6
+         c(:, j) = c(:, j) + a*b(j)
+      end do
+   end subroutine outer_add
+
+   !> R a R^T for a rotation matrix R(3,3).
+   pure function rotate(a, r) result(b)
+      real(wp), intent(in) :: a(6), r(3, 3)
+      real(wp) :: b(6), full(3, 3)
+
+      full(:, 1) = [a(1), a(4), a(5)]
+      full(:, 2) = [a(4), a(2), a(6)]
+      full(:, 3) = [a(5), a(6), a(3)]
+      full = matmul(r, matmul(full, transpose(r)))
+      b = [full(1, 1), full(2, 2), full(3, 3), full(1, 2), full(1, 3), full(2, 3)]
+   end function rotate
+end module mud_tensor
