@@ -10,7 +10,8 @@ module mud_interface
    public :: MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONTINUUM
 
    integer(c_int), parameter :: MUD_PROPS = 1, MUD_STATEV = 2
-   integer(c_int), parameter :: MUD_NAME = 1, MUD_SYMBOL = 2, MUD_UNIT = 3, MUD_ORIGIN = 4, MUD_MEANING = 5, MUD_INITIAL = 6
+   integer(c_int), parameter :: MUD_NAME = 1, MUD_SYMBOL = 2, MUD_UNIT = 3, MUD_ORIGIN = 4, MUD_MEANING = 5, &
+      MUD_INITIAL = 6
    integer(c_int), parameter :: MUD_TANGENT_NONE = 0, MUD_TANGENT_ELASTIC = 1, MUD_TANGENT_CONTINUUM = 2
 
    !> struct mud_report of mud.h.
@@ -79,7 +80,8 @@ module mud_interface
          character(kind=c_char), intent(out) :: text(*)
       end function mud_init_state
 
-      integer(c_int) function mud_update(props, nprops, stress0, statev0, nstatev, dstrain, suction0, dsuction, tangent, &
+      integer(c_int) function mud_update(props, nprops, stress0, statev0, nstatev, dstrain, suction0, dsuction, &
+         tangent, &
                                          stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, report) &
          bind(c, name='mud_update')
          import :: c_int, c_double, mud_report

@@ -7,7 +7,8 @@ module mud_c_api
    use mud_params, only: params_t, read_params, default_props
    use mud_registry, only: NPROPS, NSTATV, PROPERTIES, VARIABLES, property_index, statev_index, statev_name, &
       statev_variable
-   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, &
+   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, &
+      MUD_BAD_OPTION, &
       MUD_BAD_PROPS, ON_PROPS, ON_STATEV, ON_ARGUMENT
    implicit none (type, external)
    private
@@ -177,10 +178,12 @@ contains
       call put(report_text(report), text, len)
    end function mud_init_state
 
-   integer(c_int) function mud_update(props, n_props, stress0, statev0, n_statev, dstrain, suction0, dsuction, tangent, &
+   integer(c_int) function mud_update(props, n_props, stress0, statev0, n_statev, dstrain, suction0, dsuction, &
+      tangent, &
                                       stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, report_out) &
       bind(c, name='mud_update')
-      type(c_ptr), value :: props, stress0, statev0, dstrain, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, &
+      type(c_ptr), value :: props, stress0, statev0, dstrain, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, &
+         dsw_dpc, &
                             report_out
       integer(c_int), value :: n_props, n_statev, tangent
       real(c_double), value :: suction0, dsuction
@@ -189,7 +192,8 @@ contains
       type(report_t) :: report
       type(output_t) :: output
 
-      if (c_associated(props) .and. c_associated(stress0) .and. c_associated(statev0) .and. c_associated(dstrain) .and. &
+      if (c_associated(props) .and. c_associated(stress0) .and. c_associated(statev0) .and. c_associated(dstrain) &
+         .and. &
           c_associated(stress1) .and. c_associated(statev1)) then
          call c_f_pointer(props, props_in, [max(n_props, 0)])
          call c_f_pointer(stress0, stress_in, [6])

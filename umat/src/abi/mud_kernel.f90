@@ -80,7 +80,8 @@ contains
          status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(tangent, wp), 0.0_wp, real(LAST_TANGENT, wp))
       end if
       if (status%code == MUD_OK) then
-         call update_point(par, state0, from_umat_strain(d_strain), d_suction, kind, state1, blocks, counters, reached, &
+         call update_point(par, state0, from_umat_strain(d_strain), d_suction, kind, state1, blocks, counters, &
+            reached, &
                            status)
       end if
       if (status%code == MUD_OK) call write_output(state1, blocks, counters, kind > 0, output, status)
@@ -177,7 +178,8 @@ contains
       else
          output%statev(S_DSIGMA_DPC:S_DSIGMA_DPC + 5) = 0.0_wp
       end if
-      if (.not. (all(is_finite(output%stress)) .and. all(is_finite(output%statev)))) status = fail(MUD_NOT_FINITE, ON_STRESS)
+      if (.not. (all(is_finite(output%stress)) .and. all(is_finite(output%statev)))) status = fail(MUD_NOT_FINITE, &
+         ON_STRESS)
    end subroutine write_output
 
    !> Compression positive to tension positive; minus zero would only confuse.

@@ -27,13 +27,13 @@ contains
       case (MUD_BAD_NSTATV)
          text = 'too few STATEV: reserve at least mud_count(MUD_STATEV) per point (Abaqus: *Depvar)'
       case (MUD_BAD_NTENS)
-         text = 'NTENS must be 6 (solid) or 4 (plane strain, axisymmetric), with three direct components: no plane stress'
+         text = 'NTENS must be 6 (solid) or 4 (plane strain, axisymmetric) with three direct components'
       case (MUD_BAD_PROPS)
          text = 'a material parameter is not finite or out of its range'
       case (MUD_BAD_STATE)
          text = 'a state variable is not finite or impossible: was STATEV zeroed before the first call and kept since?'
       case (MUD_BAD_INPUT)
-         text = 'stress, strain increment, suction or DROT is not finite, absurdly large or no rotation: look at the host'
+         text = 'stress, strain, suction or DROT is not finite, absurdly large or no rotation: look at the host'
       case (MUD_NULL_ARGUMENT)
          text = 'a pointer that must be given is NULL'
       case (MUD_BAD_VOID_RATIO)
@@ -47,7 +47,7 @@ contains
       case (MUD_NO_DIRECTION)
          text = 'no admissible loading direction, again: cut the increment, or switch the guards x_0, cap_d, cap_h on'
       case (MUD_VOID_RATIO_LIMIT)
-         text = 'the increment would drive the void ratio out of its range: cut it, and look whether the strain is meant'
+         text = 'the increment would drive the void ratio out of its range: cut it, or mend the strain'
       case (MUD_NOT_FINITE)
          text = 'the result is not finite: cut the increment'
       case (MUD_INCREMENT_TOO_LARGE)

@@ -11,23 +11,24 @@ module mud_umat
    private
    public :: umat
 
-   real(wp), parameter :: ORTHOGONAL = 1.0e-6_wp   !< DROT may differ from a rotation by this, rounding of single-precision hosts [-].
+   !> DROT may differ from a rotation by this, rounding of single-precision hosts [-].
+   real(wp), parameter :: ORTHOGONAL = 1.0e-6_wp
 contains
-   !> Suction is PREDEF(1), its increment DPRED(1); STRESS is Bishop's effective stress. On failure only PNEWDT (a factor
-   !> below 1) and SCD (the status code) are written. See umat/README.md for PROPS, STATEV and the pitfalls.
-   subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, time, dtime, temp, &
-                   dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv_, props, nprops, coords, drot, pnewdt, celent, &
-                   dfgrd0, dfgrd1, noel, npt, layer, kspt, kstep, kinc) bind(c, name='umat_')
+   !> Suction is PREDEF(1), its increment DPRED(1); STRESS is Bishop's effective stress. On failure only PNEWDT (a
+   !> factor below 1) and SCD (the status code) are written. See umat/README.md for PROPS, STATEV and the pitfalls.
+   subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, time, dtime, &
+                   temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv_, props, nprops, coords, drot, &
+                   pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, kstep, kinc) bind(c, name='umat_')
       type(c_ptr), value :: stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, time, &
-                            dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv_, props, nprops, coords, &
-                            drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, kstep, kinc
+                            dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv_, props, nprops, &
+                            coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, kstep, kinc
       type(report_t) :: report
       type(mud_status_t) :: status
 
       call check_arguments(stress, statev, dstran, ndi, ntens, nstatv_, props, nprops, status)
       if (status%code == MUD_OK) then
-         call update(stress, statev, ddsdde, dstran, integer_at(ntens), integer_at(nstatv_), props, integer_at(nprops), &
-                     real_at(predef), real_at(dpred), drot, report)
+         call update(stress, statev, ddsdde, dstran, integer_at(ntens), integer_at(nstatv_), props, &
+                     integer_at(nprops), real_at(predef), real_at(dpred), drot, report)
       else
          report = failed_report(status)
       end if
@@ -154,8 +155,8 @@ contains
       end do
    end function unit_matrix
 
-   !> PNEWDT is written only to ask for a cut, and never raised: another point may have asked for a smaller one. Hosts that
-   !> enter with 0 or less have no request yet.
+   !> PNEWDT is written only to ask for a cut, and never raised: another point may have asked for a smaller one. Hosts
+   !> that enter with 0 or less have no request yet.
    subroutine ask_for_a_cut(report, pnewdt, scd)
       type(report_t), intent(in) :: report
       type(c_ptr), intent(in) :: pnewdt, scd

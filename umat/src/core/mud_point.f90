@@ -31,7 +31,8 @@ module mud_point
    real(wp), parameter :: PLASTIC_SHEAR_SCALE = 0.01_wp      !< Of the error norm [-].
    real(wp), parameter :: LAST_SLIVER = 1.0e-9_wp            !< A rest of this share joins the substep before it [-].
    real(wp), parameter :: AT_LIMIT = 1.0e-9_wp               !< p' this close (relative) to p_min is at p_min [-].
-   real(wp), parameter :: EVENT_TOLERANCE = 1.0e-13_wp       !< Width of the bracket of an event, share of increment [-].
+   !> Width of the bracket of an event, share of increment [-].
+   real(wp), parameter :: EVENT_TOLERANCE = 1.0e-13_wp
    integer, parameter :: MAX_EVENT_ITERATIONS = 100          !< Bisection alone needs about 45.
 
    integer, parameter :: EVENT_OPENS = 1     !< p' falls to p_min.
@@ -239,8 +240,8 @@ contains
       reached = 1.0_wp
    end subroutine integrate
 
-   !> Decides what the coming substep is - ordinary, elastic way back or held by the tension cut-off - applies the memory
-   !> rule, and leaves the first rate in the trial.
+   !> Decides what the coming substep is - ordinary, elastic way back or held by the tension cut-off - applies the
+   !> memory rule, and leaves the first rate in the trial.
    pure subroutine begin_substep(par, inc, state, trial, counters)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -294,8 +295,8 @@ contains
       end if
    end subroutine begin_substep
 
-   !> A point at p_min stays open while p' would not rise from there; it closes without memory of the gap. The trial holds
-   !> the ordinary rate of a point without a past.
+   !> A point at p_min stays open while p' would not rise from there; it closes without memory of the gap. The trial
+   !> holds the ordinary rate of a point without a past.
    pure subroutine try_to_close(par, inc, r, state, trial, counters)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -357,9 +358,9 @@ contains
       call solution(inc%scheme, trial%y0, trial%rates, h, trial%y)
    end subroutine take_step
 
-   !> A substep at p_min: p', fabric, memory and plastic shear stay. The stress ratio follows the strain elastically, but not
-   !> beyond the bounding surface. (Were it frozen, an undrained path that gets here on its contractive side could never
-   !> leave, in whatever direction it is sheared.)
+   !> A substep at p_min: p', fabric, memory and plastic shear stay. The stress ratio follows the strain elastically,
+   !> but not beyond the bounding surface. (Were it frozen, an undrained path that gets here on its contractive side
+   !> could never leave, in whatever direction it is sheared.)
    pure subroutine hold(par, inc, h, trial)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -370,7 +371,8 @@ contains
       e = void_ratio_at(inc, trial%time + h)
       r = deviator(trial%y0(1:6) + (2.0_wp*shear_modulus(par, e, par%p_min)*h)*inc%d_strain)/par%p_min
       trial%y = trial%y0
-      trial%y(1:6) = par%p_min*(limited(par, inc%bonded, e, inc%p_c0 + (trial%time + h)*inc%d_pc, par%p_min, r) + IDENTITY)
+      trial%y(1:6) = par%p_min*(limited(par, inc%bonded, e, inc%p_c0 + (trial%time + h)*inc%d_pc, par%p_min, &
+         r) + IDENTITY)
    end subroutine hold
 
    pure subroutine store_rate(w, dy)
@@ -424,8 +426,8 @@ contains
       end if
    end subroutine accept_substep
 
-   !> Shortens an accepted substep so that it lands where p' reaches p_min, where an elastic way back arrives, or where a
-   !> held point would close.
+   !> Shortens an accepted substep so that it lands where p' reaches p_min, where an elastic way back arrives, or where
+   !> a held point would close.
    pure subroutine stop_at_event(par, inc, memory, h, trial, counters, crossed)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -614,7 +616,8 @@ contains
       if (status%code /= MUD_OK) return
       do i = 1, 6
          if (within(d_strain(i), LARGEST_STRAIN)) cycle
-         status = fail(merge(MUD_INCREMENT_TOO_LARGE, MUD_BAD_INPUT, is_finite(d_strain(i))), ON_STRAIN, i, d_strain(i), &
+         status = fail(merge(MUD_INCREMENT_TOO_LARGE, MUD_BAD_INPUT, is_finite(d_strain(i))), ON_STRAIN, i, &
+            d_strain(i), &
                        -LARGEST_STRAIN, LARGEST_STRAIN)
          return
       end do

@@ -18,8 +18,9 @@ module mud_rates
    integer, parameter :: MODE_ORDINARY = 0   !< Both mechanisms act.
    integer, parameter :: MODE_ELASTIC = 1    !< L = 0: the elastic way back of the rule resume.
 
-   !> |t| below this share of its terms is rounding. The terms are measured by the whole strain and by a stress ratio of at
-   !> least SMALLEST_RATIO: where both deviators are rounding themselves, as in isotropic compression, theirs would not do.
+   !> |t| below this share of its terms is rounding. The terms are measured by the whole strain and by a stress ratio of
+   !> at least SMALLEST_RATIO: where both deviators are rounding themselves, as in isotropic compression, theirs would
+   !> not do.
    real(wp), parameter :: PURE_VOLUMETRIC = 1.0e-14_wp, SMALLEST_RATIO = 1.0e-3_wp
    real(wp), parameter :: PARALLEL = 1.0e-13_wp          !< r normal to t below this share of r is rounding [-].
    real(wp), parameter :: ROOT_TOLERANCE = 1.0e-14_wp    !< Of the direction equation, share of its terms [-].
@@ -244,9 +245,9 @@ contains
 
    !> The admissible root of the direction equation with the smallest |w| on the side where it lies.
    !>
-   !> In units of that side the residual begins negative at w = 0. With every guard on it ends positive at a right angle, so
-   !> a bracketed Newton iteration cannot fail. Where the floor or a cap acts, and with guards off, several roots or none
-   !> are possible: there the arc is scanned for the first change of sign.
+   !> In units of that side the residual begins negative at w = 0. With every guard on it ends positive at a right
+   !> angle, so a bracketed Newton iteration cannot fail. Where the floor or a cap acts, and with guards off, several
+   !> roots or none are possible: there the arc is scanned for the first change of sign.
    pure subroutine find_angle(par, arc, w, angle, at, found)
       type(params_t), intent(in) :: par
       type(arc_t), intent(in) :: arc
@@ -277,8 +278,8 @@ contains
       found = at%admissible > 0.0_wp
    end subroutine find_angle
 
-   !> Newton's method kept inside a bracket (angles without sign, `side` gives it) whose low end has a negative residual and
-   !> whose high end a positive one. Leaves w and at evaluated at the angle it returns.
+   !> Newton's method kept inside a bracket (angles without sign, `side` gives it) whose low end has a negative residual
+   !> and whose high end a positive one. Leaves w and at evaluated at the angle it returns.
    pure subroutine newton(par, arc, side, from, to, first, w, angle, at)
       type(params_t), intent(in) :: par
       type(arc_t), intent(in) :: arc
@@ -315,16 +316,22 @@ contains
       end do
    end subroutine newton
 
-   !> False where an earlier root is possible: only a floor, a cap or a small (r - r_in):n bends the residual back.
+   !> False where an earlier root is possible: a cap, or a change between the floor and a small (r - r_in):n, bends the
+   !> residual back. (200,000 random states against a scan of 2048 points: three misses, under the softening cap;
+   !> without the scan 169.)
    pure logical function single_root(par, arc, w, angle)
       type(params_t), intent(in) :: par
       type(arc_t), intent(in) :: arc
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: angle
       real(wp) :: x_end
+      logical :: always_floored, never_near
 
       x_end = arc%x_t*cos(angle) + arc%x_q*sin(angle)
-      single_root = .not. (w%floored .or. w%capped_h .or. w%capped_d) .and. min(arc%x_t, x_end) > 2.0_wp*par%x_floor
+      ! On less than a right angle x cannot become positive between two negative ends.
+      always_floored = hypot(arc%x_t, arc%x_q) < par%x_floor .or. max(arc%x_t, x_end) < 0.0_wp
+      never_near = min(arc%x_t, x_end) > 2.0_wp*par%x_floor
+      single_root = .not. (w%capped_h .or. w%capped_d) .and. (always_floored .or. never_near)
    end function single_root
 
    !> The first of SCAN intervals up to `last` at whose end the residual has become positive at an admissible angle.

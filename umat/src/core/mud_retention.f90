@@ -7,7 +7,8 @@ module mud_retention
    public :: saturation_t, saturation
 
    real(wp), parameter :: EULER = 2.7182818284590452_wp      !< exp(1)
-   real(wp), parameter :: LOG_LARGE = 200.0_wp               !< Beyond it exp(1) is lost in exp(1) + a, and a might overflow.
+   !> Beyond it exp(1) is lost in exp(1) + a, and a might overflow.
+   real(wp), parameter :: LOG_LARGE = 200.0_wp
 
    !> Degree of saturation and its slopes.
    type :: saturation_t
@@ -16,7 +17,8 @@ module mud_retention
       real(wp) :: ds_de    !< dS_w/de at constant p_c [-]
    end type saturation_t
 contains
-   !> Degree of saturation at a suction [kPa] and a void ratio [-], paper eqs (23), (24). No suction: S_max, zero slopes.
+   !> Degree of saturation at a suction [kPa] and a void ratio [-], paper eqs (23), (24). No suction: S_max, zero
+   !> slopes.
    pure function saturation(par, p_c, e) result(sat)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: p_c, e

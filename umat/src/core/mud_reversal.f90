@@ -55,7 +55,8 @@ contains
             memory%x_running = 0.0_wp
             return
          end if
-         ! Softening drifts past r_in while it goes on forwards: that is no interruption, and it would resume on the spot.
+         ! Softening drifts past r_in while it goes on forwards: that is no interruption, and it would resume on the
+         ! spot.
          if (ddot(t, memory%n_turn) <= 0.0_wp) then
             memory%suspended = .true.
             memory%r_turn = r

@@ -21,7 +21,8 @@ module mud_substep
 
    !> Modified Euler 2(1), the paper's scheme (Sloan, Abbo & Sheng 2001).
    type(scheme_t), parameter :: MODIFIED_EULER = scheme_t(2, 2, .false., &
-      reshape([0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, &
+      reshape([0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, &
+      0, &
                0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]*1.0_wp, [MAX_STAGES, MAX_STAGES]), &
       [0.5_wp, 0.5_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], &
       [-0.5_wp, 0.5_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], &

@@ -24,8 +24,8 @@ contains
 
    !> d sigma'/d eps [kPa] (engineering strain) and d sigma'/d p_c [-] of one rate.
    !>
-   !> From gamma n = t y + beta r: gamma dn = y dt + t dy - n a + r b with a = gamma_n:dn, b = beta_n:dn, n:dn = 0, three
-   !> scalar equations for dy, a, b. Everything is then n (x) something + r (x) something + a multiple of dt.
+   !> From gamma n = t y + beta r: gamma dn = y dt + t dy - n a + r b with a = gamma_n:dn, b = beta_n:dn, n:dn = 0,
+   !> three scalar equations for dy, a, b. Everything is then n (x) something + r (x) something + a multiple of dt.
    pure subroutine continuum_tangent(par, w, c, c_pc)
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
