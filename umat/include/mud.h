@@ -28,7 +28,9 @@ enum mud_status {
 
 enum mud_list  { MUD_PROPS = 1, MUD_STATEV = 2 };
 enum mud_field { MUD_NAME = 1, MUD_SYMBOL = 2, MUD_UNIT = 3, MUD_ORIGIN = 4, MUD_MEANING = 5, MUD_INITIAL = 6 };
-enum mud_tangent { MUD_TANGENT_NONE = 0, MUD_TANGENT_ELASTIC = 1, MUD_TANGENT_CONTINUUM = 2 };
+enum mud_tangent {
+   MUD_TANGENT_NONE = 0, MUD_TANGENT_ELASTIC = 1, MUD_TANGENT_CONTINUUM = 2, MUD_TANGENT_CONSISTENT = 3
+};
 
 /* What one update did and, on failure, where it stopped: filled by every mud_update. */
 typedef struct mud_report {

@@ -8,14 +8,14 @@ module mud_kernel
    use mud_registry, only: NSTATV, VARIABLES, S_LAYOUT, S_VOID_RATIO, S_SUCTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV
    use mud_state, only: state_t, counters_t, pack_state, unpack_state, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_BAD_STATE, MUD_BAD_INPUT, MUD_BAD_OPTION, &
-      MUD_NOT_FINITE, ON_STATEV, ON_STRESS, ON_ARGUMENT
+      MUD_NOT_FINITE, ON_STATEV, ON_STRESS, ON_STRAIN, ON_ARGUMENT
    use mud_tensor, only: is_finite, rotate
    implicit none (type, external)
    private
    public :: report_t, output_t, kernel_init, kernel_update, rotate_statev, failed_report, TANGENT_FROM_PROPS
 
    integer, parameter :: TANGENT_FROM_PROPS = -1   !< Take the tangent kind from PROPS.
-   integer, parameter :: LAST_TANGENT = 2          !< Largest tangent kind.
+   integer, parameter :: LAST_TANGENT = 3          !< Largest tangent kind.
    real(wp), parameter :: SMALLEST_CUT = 0.1_wp, LARGEST_CUT = 0.5_wp   !< Range of the suggested PNEWDT [-].
 
    !> struct mud_report of mud.h.
@@ -203,6 +203,16 @@ contains
       end do
    end function from_umat_strain
 
+   !> The offending value as the host gave it: the core's signs are the other way round, its shear strain is half.
+   pure real(wp) function host_value(status)
+      type(mud_status_t), intent(in) :: status
+
+      host_value = status%value
+      if (.not. is_finite(host_value) .or. status%index < 1) return
+      if (status%subject == ON_STRESS) host_value = -host_value
+      if (status%subject == ON_STRAIN) host_value = -host_value*merge(1.0_wp, 2.0_wp, status%index <= 3)
+   end function host_value
+
    pure function wrong_nstatv(n) result(status)
       integer, intent(in) :: n
       type(mud_status_t) :: status
@@ -219,7 +229,7 @@ contains
       report%status = status%code
       report%subject = status%subject
       report%index = status%index
-      report%value = status%value
+      report%value = host_value(status)
       report%lower = status%lower
       report%upper = status%upper
       report%n_rate = counters%rate

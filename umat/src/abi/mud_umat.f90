@@ -133,8 +133,17 @@ contains
       end if
       if (any(abs(matmul(rotation, transpose(rotation)) - unit_matrix()) > ORTHOGONAL)) then
          status = fail(MUD_BAD_INPUT, ON_ARGUMENT)
+      else if (determinant(rotation) < 0.0_wp) then
+         status = fail(MUD_BAD_INPUT, ON_ARGUMENT)
       end if
    end subroutine read_rotation
+
+   pure real(wp) function determinant(a)
+      real(wp), intent(in) :: a(3, 3)
+
+      determinant = a(1, 1)*(a(2, 2)*a(3, 3) - a(2, 3)*a(3, 2)) - a(1, 2)*(a(2, 1)*a(3, 3) - a(2, 3)*a(3, 1)) &
+                    + a(1, 3)*(a(2, 1)*a(3, 2) - a(2, 2)*a(3, 1))
+   end function determinant
 
    !> True if there is something to rotate: a point with a past and a rotation that is not exactly none.
    pure logical function rotates(rotation, statev)

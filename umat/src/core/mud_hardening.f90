@@ -6,7 +6,7 @@ module mud_hardening
    use mud_critical_state, only: compression_image
    implicit none (type, external)
    private
-   public :: kinematic_modulus, isotropic_t, isotropic_hardening
+   public :: kinematic_modulus, isotropic_t, isotropic_hardening, SMALLEST_VOID_TERM, NO_HARDENING
 
    real(wp), parameter :: SMALLEST_VOID_TERM = 0.01_wp   !< Guard: 1 - c_h e >= it [-].
    real(wp), parameter :: SMALLEST_DELTA = 1.0e-8_wp     !< Below it |delta|^theta is a straight line through zero [-].
@@ -16,7 +16,19 @@ module mud_hardening
    type :: isotropic_t
       real(wp) :: a   !< [-]
       real(wp) :: b   !< [1/kPa]
+      ! on the way there, for derivatives
+      real(wp) :: weight     !< w [-]
+      real(wp) :: crowding   !< (p'/alpha_hat)(1 + 2 eta^2/M^2) = 1 - delta [-]
+      real(wp) :: approach   !< p'/alpha_hat [-]
+      real(wp) :: f          !< F(delta) [-]
+      real(wp) :: f_slope    !< dF/d delta [-]
+      real(wp) :: c          !< C [-]
+      real(wp) :: share      !< w e/(1 + e)/(1 + C) [-]
+      logical :: floored     !< 1 + C is at its guard
    end type isotropic_t
+   !> The mechanism off.
+   type(isotropic_t), parameter :: NO_HARDENING = isotropic_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
+      0.0_wp, 0.0_wp, .false.)
 contains
    !> b_0 = h x [-], the numerator of the hardening modulus h, paper eq. (13).
    pure real(wp) function kinematic_modulus(par, e, p) result(b_0)
@@ -37,19 +49,20 @@ contains
       real(wp), intent(in) :: eta2    !< eta squared [-]
       real(wp), intent(in) :: weight  !< w, the share of the mechanism that shear leaves (rebuilt) [-]
       type(isotropic_t) :: iso
-      real(wp) :: delta, distance, power, c, share
+      real(wp) :: delta, distance
 
-      delta = 1.0_wp - p/compression_image(par, bond%f, e)*(1.0_wp + 2.0_wp*eta2/par%m_c**2)
-      distance = abs(delta)
-      if (distance > SMALLEST_DELTA) then
-         power = distance**par%theta
-      else
-         power = distance*SMALLEST_DELTA**(par%theta - 1.0_wp)
-      end if
-      power = 1.0_wp - sign(power, delta)                      ! F
-      c = -e*bond%df_de/bond%f*power
-      share = weight*e/(1.0_wp + e)/max(1.0_wp + c, SMALLEST_COUPLING)
-      iso%a = share*((par%lambda - kappa)*power - kappa*c)
-      iso%b = -share*power*bond%df_dpc/bond%f
+      iso%weight = weight
+      iso%approach = p/compression_image(par, bond%f, e)
+      iso%crowding = iso%approach*(1.0_wp + 2.0_wp*eta2/par%m_c**2)
+      delta = 1.0_wp - iso%crowding
+      distance = max(abs(delta), SMALLEST_DELTA)
+      iso%f_slope = -distance**(par%theta - 1.0_wp)
+      iso%f = 1.0_wp + iso%f_slope*sign(min(abs(delta), distance), delta)
+      if (abs(delta) > SMALLEST_DELTA) iso%f_slope = par%theta*iso%f_slope
+      iso%c = -e*bond%df_de/bond%f*iso%f
+      iso%floored = 1.0_wp + iso%c < SMALLEST_COUPLING
+      iso%share = weight*e/(1.0_wp + e)/max(1.0_wp + iso%c, SMALLEST_COUPLING)
+      iso%a = iso%share*((par%lambda - kappa)*iso%f - kappa*iso%c)
+      iso%b = -iso%share*iso%f*bond%df_dpc/bond%f
    end function isotropic_hardening
 end module mud_hardening

@@ -8,27 +8,27 @@ module mud_point
       ON_STRESS, ON_STRAIN, ON_SUCTION, ON_VOID_RATIO
    use mud_tensor, only: IDENTITY, trace, deviator, norm, is_finite
    use mud_elastic, only: bulk_modulus, shear_modulus
-   use mud_bonding, only: bonding_t, bonding, UNBONDED
-   use mud_critical_state, only: critical_void_ratio, bounding_ratio
    use mud_retention, only: saturation_t, saturation
-   use mud_rates, only: rate_t, rate_at, stress_ratio, bounding_norm, MODE_ORDINARY, MODE_ELASTIC
+   use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY, MODE_ELASTIC
    use mud_reversal, only: new_memory, reseat, accept_process, turns_back, begin_way_back, leave_way_back, &
       way_back_distance, resume_process
    use mud_state, only: memory_t, state_t, counters_t, E_LOWER, E_UPPER
-   use mud_substep, only: scheme_t, SCHEMES, MAX_STAGES, stage_point, solution, error_vector, step_factor
+   use mud_substep, only: SCHEMES, step_factor
+   use mud_increment, only: increment_t, trial_t, void_ratio_at, suction_at, rate_of, take_step, error_norm, limited, &
+      state_parameter, NY, MODE_HELD
+   use mud_consistent, only: sensitivity_t, no_sensitivity, propagate, jump_of_memory, JUMP_NONE, JUMP_RESEAT, JUMP_RESUME, &
+      JUMP_NEW
    use mud_tangent, only: continuum_tangent, elastic_tangent
    implicit none (type, external)
    private
-   public :: blocks_t, initial_state, update_point, TANGENT_NONE, TANGENT_ELASTIC, TANGENT_CONTINUUM
+   public :: blocks_t, initial_state, update_point, TANGENT_NONE, TANGENT_ELASTIC, TANGENT_CONTINUUM, TANGENT_CONSISTENT
 
-   integer, parameter :: MODE_HELD = 2                       !< A substep held at p_min by the tension cut-off.
-   integer, parameter :: TANGENT_NONE = 0, TANGENT_ELASTIC = 1, TANGENT_CONTINUUM = 2
+   integer, parameter :: TANGENT_NONE = 0, TANGENT_ELASTIC = 1, TANGENT_CONTINUUM = 2, &
+                         TANGENT_CONSISTENT = 3
 
-   integer, parameter :: NY = 13                             !< sigma'(6), z(6), plastic shear.
    real(wp), parameter :: LARGEST_STRAIN = 1.0_wp            !< Larger increments are asked to be cut [-].
    real(wp), parameter :: LARGEST_SUCTION_STEP = 1.0e7_wp    !< Likewise [kPa].
    real(wp), parameter :: LARGEST_STRESS = 1.0e9_wp          !< A stress or suction beyond it is an input error [kPa].
-   real(wp), parameter :: PLASTIC_SHEAR_SCALE = 0.01_wp      !< Of the error norm [-].
    real(wp), parameter :: LAST_SLIVER = 1.0e-9_wp            !< A rest of this share joins the substep before it [-].
    real(wp), parameter :: AT_LIMIT = 1.0e-9_wp               !< p' this close (relative) to p_min is at p_min [-].
    !> Width of the bracket of an event, share of increment [-].
@@ -48,22 +48,6 @@ module mud_point
       real(wp) :: dsw_dpc           !< d S_w/d p_c [1/kPa]
    end type blocks_t
 
-   !> What stays the same through an update.
-   type :: increment_t
-      real(wp) :: d_strain(6), d_pc, p_c0, e0, d_v
-      logical :: bonded             !< Bonding is on and there is suction: decided once.
-      type(scheme_t) :: scheme
-   end type increment_t
-
-   !> A trial substep from one point.
-   type :: trial_t
-      real(wp) :: rates(NY, MAX_STAGES)
-      real(wp) :: y0(NY), y(NY)
-      type(rate_t) :: first, last   !< First rate (of the memory as it is) and rate of the last stage.
-      integer :: mode
-      real(wp) :: r_in(6)
-      real(wp) :: time              !< Pseudo-time of y0 [-].
-   end type trial_t
 contains
    !> State of a point that starts at a stress, a void ratio and a suction without a past. A mean stress below p_min is
    !> lifted to p_min, its stress ratio limited to the bounding surface.
@@ -111,6 +95,7 @@ contains
       type(mud_status_t), intent(out) :: status
       type(increment_t) :: inc
       type(trial_t) :: trial
+      type(sensitivity_t) :: sens
       real(wp) :: size, k, g, p, r(6)
 
       reached = 0.0_wp
@@ -133,7 +118,9 @@ contains
       call stress_ratio(par, state1%sigma, p, r)
       k = bulk_modulus(par, state1%e, p)
       size = norm(d_strain) + abs(d_pc)/k
-      if (size > 0.0_wp) call integrate(par, inc, size, state1, trial, counters, reached, status)
+      if (size > 0.0_wp) then
+         call integrate(par, inc, size, tangent == TANGENT_CONSISTENT, state1, trial, sens, counters, reached, status)
+      end if
       if (status%code /= MUD_OK) return
       reached = 1.0_wp
       state1%e = void_ratio_at(inc, 1.0_wp)
@@ -144,11 +131,16 @@ contains
       select case (tangent)
       case (TANGENT_NONE)
          continue
-      case (TANGENT_CONTINUUM)
+      case (TANGENT_CONTINUUM, TANGENT_CONSISTENT)
+         if (size > 0.0_wp .and. tangent == TANGENT_CONSISTENT) then
+            blocks%dsig_deps = sens%y(1:6, 1:6)
+            blocks%dsig_dpc = sens%y(1:6, 7)
+            return
+         end if
          if (size > 0.0_wp) then
             blocks%dsig_deps = 0.0_wp   ! an open point has no stiffness
             blocks%dsig_dpc = 0.0_wp
-            if (trial%mode /= MODE_HELD) call continuum_tangent(par, trial%last, blocks%dsig_deps, blocks%dsig_dpc)
+            if (trial%mode /= MODE_HELD) call continuum_tangent(par, trial%w(inc%scheme%stages), blocks%dsig_deps, blocks%dsig_dpc)
             return
          end if
          blocks%dsig_deps = elastic_tangent(k, shear_modulus(par, state1%e, p))
@@ -163,31 +155,41 @@ contains
    end subroutine update_point
 
    !> The loop over substeps.
-   pure subroutine integrate(par, inc, size, state, trial, counters, reached, status)
+   pure subroutine integrate(par, inc, size, consistent, state, trial, sens, counters, reached, status)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       real(wp), intent(in) :: size                !< of the increment, in units of strain [-]
+      logical, intent(in) :: consistent           !< derivatives are wanted
       type(state_t), intent(inout) :: state
       type(trial_t), intent(inout) :: trial       !< the last accepted substep
+      type(sensitivity_t), intent(inout) :: sens
       type(counters_t), intent(inout) :: counters
       real(wp), intent(out) :: reached
       type(mud_status_t), intent(out) :: status
       real(wp) :: time, h, h_taken, error, factor, p, r(6)
-      integer :: elastic_substeps
-      logical :: may_grow, crossed
+      type(memory_t) :: before
+      type(rate_t) :: trigger
+      integer :: elastic_substeps, jump
+      logical :: may_grow, crossed, known
 
       time = 0.0_wp
       h = 1.0_wp
       if (state%last_step > 0.0_wp .and. state%last_step < size) h = state%last_step/size
       may_grow = .true.
       elastic_substeps = 0
+      known = .false.
+      if (consistent) sens = no_sensitivity()
       substeps: do while (time < 1.0_wp)
          reached = time
          trial%time = time
          trial%y0(1:6) = state%sigma
          trial%y0(7:12) = state%z
          trial%y0(13) = 0.0_wp
-         call begin_substep(par, inc, state, trial, counters)
+         if (consistent) before = state%memory
+         call begin_substep(par, inc, known, state, trial, trigger, jump, counters)
+         if (consistent .and. jump /= JUMP_NONE) then
+            call jump_of_memory(par, inc, jump, before, state%memory, trigger, trial, sens)
+         end if
          attempts: do
             if (counters%substep + counters%reject >= par%max_substeps) then
                status = fail(MUD_TOO_MANY_SUBSTEPS, value=real(par%max_substeps, wp))
@@ -221,7 +223,7 @@ contains
 
          h = h_taken*factor
          call stop_at_event(par, inc, state%memory, h_taken, trial, counters, crossed)
-         if (trial%first%no_root) elastic_substeps = elastic_substeps + 1
+         if (trial%w(1)%no_root) elastic_substeps = elastic_substeps + 1
          if (elastic_substeps > 1 .and. par%memory_rule /= RULE_AS_PUBLISHED) then
             status = fail(MUD_NO_DIRECTION)
             return
@@ -229,11 +231,16 @@ contains
          time = time + h_taken
          if (1.0_wp - time < EVENT_TOLERANCE) time = 1.0_wp
          state%e = void_ratio_at(inc, time)
-         state%p_c = inc%p_c0 + time*inc%d_pc
+         state%p_c = suction_at(inc, time)
+         if (consistent) call propagate(par, inc, trial, h_taken, sens)
          call accept_substep(par, trial, state, counters)
+         known = inc%scheme%first_same_as_last .and. trial%mode == MODE_ORDINARY .and. .not. crossed
          if (crossed .and. trial%mode == MODE_ELASTIC) then
             call stress_ratio(par, state%sigma, p, r)
-            if (way_back_distance(state%memory, r) >= 0.0_wp) call resume_process(state%memory)
+            if (way_back_distance(state%memory, r) >= 0.0_wp) then
+               call resume_process(state%memory)
+               sens%r_in = sens%r_before
+            end if
          end if
       end do substeps
       state%last_step = h*size
@@ -242,30 +249,36 @@ contains
 
    !> Decides what the coming substep is - ordinary, elastic way back or held by the tension cut-off - applies the
    !> memory rule, and leaves the first rate in the trial.
-   pure subroutine begin_substep(par, inc, state, trial, counters)
+   pure subroutine begin_substep(par, inc, known, state, trial, trigger, jump, counters)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
+      logical, intent(in) :: known   !< The trial's last rate is that of this point.
       type(state_t), intent(inout) :: state
       type(trial_t), intent(inout) :: trial
+      type(rate_t), intent(inout) :: trigger   !< The rate that made the memory jump.
+      integer, intent(out) :: jump             !< JUMP_*
       type(counters_t), intent(inout) :: counters
       real(wp) :: p, r(6)
 
+      jump = JUMP_NONE
       call stress_ratio(par, state%sigma, p, r)
       trial%mode = MODE_ORDINARY
       trial%r_in = state%memory%r_in
       if (state%open) then
          call try_to_close(par, inc, r, state, trial, counters)
+         if (.not. state%open) jump = JUMP_NEW
          return
       end if
 
       if (state%memory%suspended) then
          trial%mode = MODE_ELASTIC
-         call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%first, counters)
-         if (turns_back(state%memory, trial%first%t)) then
+         call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
+         if (turns_back(state%memory, trial%w(1)%t)) then
             if (way_back_distance(state%memory, r) < 0.0_wp) then
                call begin_way_back(state%memory, r)
             else
                call resume_process(state%memory)
+               jump = JUMP_RESUME
                trial%mode = MODE_ORDINARY
             end if
          else
@@ -275,22 +288,29 @@ contains
 
       trial%r_in = state%memory%r_in
       if (trial%mode == MODE_ORDINARY) then
-         call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%first, counters)
-         if (trial%first%loading .and. trial%first%x < 0.0_wp) then
-            if (trial%first%x < -par%x_rev) then
+         if (known) then
+            trial%w(1) = trial%w(inc%scheme%stages)
+         else
+            call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
+         end if
+         if (trial%w(1)%loading .and. trial%w(1)%x < 0.0_wp) then
+            if (trial%w(1)%x < -par%x_rev) then
                counters%reseat = counters%reseat + 1
-               call reseat(par, r, trial%first%n, trial%first%t, state%memory)
+               jump = JUMP_RESEAT
+               trigger = trial%w(1)
+               call reseat(par, r, trial%w(1)%n, trial%w(1)%t, state%memory)
                trial%r_in = state%memory%r_in
-               call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%first, counters)
+               call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
             else
                counters%hysteresis = counters%hysteresis + 1
             end if
          end if
       end if
 
-      if (par%cutoff .and. trial%first%d_p <= 0.0_wp) then
+      if (par%cutoff .and. trial%w(1)%d_p <= 0.0_wp) then
          if (trace(state%sigma) <= 3.0_wp*par%p_min*(1.0_wp + AT_LIMIT)) then
             call try_to_close(par, inc, r, state, trial, counters)
+            if (.not. state%open) jump = JUMP_NEW
          end if
       end if
    end subroutine begin_substep
@@ -307,97 +327,14 @@ contains
 
       trial%r_in = r
       trial%mode = MODE_ORDINARY
-      call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%first, counters)
-      state%open = trial%first%d_p <= 0.0_wp
+      call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
+      state%open = trial%w(1)%d_p <= 0.0_wp
       if (state%open) then
          trial%mode = MODE_HELD
       else
          state%memory = new_memory(r)
       end if
    end subroutine try_to_close
-
-   !> Rate at a vector of the integration and a pseudo-time; void ratio and suction follow from the latter exactly.
-   pure subroutine rate_of(par, inc, time, y, r_in, mode, w, counters)
-      type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: time, y(NY), r_in(6)
-      integer, intent(in) :: mode
-      type(rate_t), intent(inout) :: w
-      type(counters_t), intent(inout) :: counters
-
-      call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), inc%p_c0 + time*inc%d_pc, y(7:12), r_in, &
-                   inc%d_strain, inc%d_pc, mode, w)
-      counters%rate = counters%rate + 1
-      if (w%floored .and. par%floored) counters%floor = counters%floor + 1
-      if (w%capped_d) counters%cap_d = counters%cap_d + 1
-      if (w%capped_h) counters%cap_h = counters%cap_h + 1
-      if (w%iso_kept) counters%iso_kept = counters%iso_kept + 1
-      if (w%no_root) counters%no_root = counters%no_root + 1
-   end subroutine rate_of
-
-   !> One trial substep from the first rate that the trial holds.
-   pure subroutine take_step(par, inc, h, trial, counters)
-      type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: h
-      type(trial_t), intent(inout) :: trial
-      type(counters_t), intent(inout) :: counters
-      real(wp) :: y(NY)
-      integer :: i
-
-      if (trial%mode == MODE_HELD) then
-         call hold(par, inc, h, trial)
-         return
-      end if
-      call store_rate(trial%first, trial%rates(:, 1))
-      do i = 2, inc%scheme%stages
-         call stage_point(inc%scheme, i, trial%y0, trial%rates, h, y)
-         call rate_of(par, inc, trial%time + inc%scheme%node(i)*h, y, trial%r_in, trial%mode, trial%last, counters)
-         call store_rate(trial%last, trial%rates(:, i))
-      end do
-      call solution(inc%scheme, trial%y0, trial%rates, h, trial%y)
-   end subroutine take_step
-
-   !> A substep at p_min: p', fabric, memory and plastic shear stay. The stress ratio follows the strain elastically,
-   !> but not beyond the bounding surface. (Were it frozen, an undrained path that gets here on its contractive side
-   !> could never leave, in whatever direction it is sheared.)
-   pure subroutine hold(par, inc, h, trial)
-      type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: h
-      type(trial_t), intent(inout) :: trial
-      real(wp) :: e, r(6)
-
-      e = void_ratio_at(inc, trial%time + h)
-      r = deviator(trial%y0(1:6) + (2.0_wp*shear_modulus(par, e, par%p_min)*h)*inc%d_strain)/par%p_min
-      trial%y = trial%y0
-      trial%y(1:6) = par%p_min*(limited(par, inc%bonded, e, inc%p_c0 + (trial%time + h)*inc%d_pc, par%p_min, &
-         r) + IDENTITY)
-   end subroutine hold
-
-   pure subroutine store_rate(w, dy)
-      type(rate_t), intent(in) :: w
-      real(wp), intent(out) :: dy(NY)
-
-      dy(1:6) = w%d_sigma
-      dy(7:12) = w%d_z
-      dy(13) = w%d_eps_q
-   end subroutine store_rate
-
-   !> Relative error of a trial substep; the void ratio is exact.
-   pure real(wp) function error_norm(par, scheme, trial, h) result(error)
-      type(params_t), intent(in) :: par
-      type(scheme_t), intent(in) :: scheme
-      type(trial_t), intent(in) :: trial
-      real(wp), intent(in) :: h
-      real(wp) :: delta(NY)
-
-      error = 0.0_wp
-      if (trial%mode == MODE_HELD) return
-      call error_vector(scheme, trial%rates, h, delta)
-      error = max(norm(delta(1:6))/max(norm(trial%y(1:6)), par%p_min), norm(delta(7:12))/par%z_max, &
-                  abs(delta(13))/PLASTIC_SHEAR_SCALE)
-   end function error_norm
 
    !> Takes over an accepted substep; state already has its void ratio and suction.
    pure subroutine accept_substep(par, trial, state, counters)
@@ -422,7 +359,7 @@ contains
          call stress_ratio(par, state%sigma, p, r)
          call leave_way_back(state%memory, r)
       else
-         call accept_process(par, trial%first%loading, trial%first%x, trial%first%n, trial%y(13), state%memory)
+         call accept_process(par, trial%w(1)%loading, trial%w(1)%x, trial%w(1)%n, trial%y(13), state%memory)
       end if
    end subroutine accept_substep
 
@@ -520,15 +457,6 @@ contains
       end select
    end subroutine event_function
 
-   !> Void ratio at a pseudo-time: 1 + e falls as exp(-eps_v), exactly.
-   pure real(wp) function void_ratio_at(inc, time) result(e)
-      type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: time
-
-      e = inc%e0
-      if (abs(inc%d_v) > 0.0_wp) e = (1.0_wp + e)*exp(-inc%d_v*time) - 1.0_wp
-   end function void_ratio_at
-
    !> Mean stress below p_min, as at a free surface: p_min, with a stress ratio on or inside the bounding surface.
    pure subroutine lift_to_limit(par, bonded, state)
       type(params_t), intent(in) :: par
@@ -539,31 +467,6 @@ contains
       state%sigma = par%p_min*(limited(par, bonded, state%e, state%p_c, par%p_min, deviator(state%sigma)/par%p_min) &
                                + IDENTITY)
    end subroutine lift_to_limit
-
-   !> A stress ratio, shortened to the bounding surface where it is beyond.
-   pure function limited(par, bonded, e, p_c, p, r) result(r_limited)
-      type(params_t), intent(in) :: par
-      logical, intent(in) :: bonded
-      real(wp), intent(in) :: e, p_c, p, r(6)
-      real(wp) :: r_limited(6), r_norm, limit
-
-      r_limited = r
-      r_norm = norm(r)
-      if (r_norm <= 0.0_wp) return
-      limit = bounding_norm(par, r, r_norm, bounding_ratio(par, state_parameter(par, bonded, e, p_c, p)))
-      if (r_norm > limit) r_limited = (limit/r_norm)*r
-   end function limited
-
-   pure real(wp) function state_parameter(par, bonded, e, p_c, p) result(psi)
-      type(params_t), intent(in) :: par
-      logical, intent(in) :: bonded
-      real(wp), intent(in) :: e, p_c, p
-      type(bonding_t) :: bond
-
-      bond = UNBONDED
-      if (bonded) bond = bonding(par, p_c, e)
-      psi = e - critical_void_ratio(par, bond%f, p)
-   end function state_parameter
 
    !> Saturation and state parameter of a state, and the saturation's slopes.
    pure subroutine finish_state(par, state, blocks)

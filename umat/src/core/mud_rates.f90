@@ -10,7 +10,7 @@ module mud_rates
    use mud_bonding, only: bonding_t, bonding, UNBONDED
    use mud_critical_state, only: critical_void_ratio, bounding_ratio, dilatancy_ratio, lode_factor, lode_slope
    use mud_flow, only: dilatancy_factor, dilatancy, fabric_rate
-   use mud_hardening, only: kinematic_modulus, isotropic_t, isotropic_hardening
+   use mud_hardening, only: kinematic_modulus, isotropic_t, isotropic_hardening, NO_HARDENING
    implicit none (type, external)
    private
    public :: rate_t, rate_at, stress_ratio, bounding_norm, MODE_ORDINARY, MODE_ELASTIC
@@ -163,7 +163,7 @@ contains
       w%m_b = bounding_ratio(par, w%psi)
       w%m_d = dilatancy_ratio(par, w%psi)
       w%b_0 = kinematic_modulus(par, e, w%p)
-      w%iso = isotropic_t(0.0_wp, 0.0_wp)
+      w%iso = NO_HARDENING
       if (par%isotropic) then
          r_norm = norm(w%r)
          weight = max(1.0_wp - (r_norm/bounding_norm(par, w%r, r_norm, w%m_b))**2, 0.0_wp)

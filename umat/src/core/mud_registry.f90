@@ -210,16 +210,16 @@ module mud_registry
          'softening cap; 0: off'), &
       property_t(P_CUTOFF, 'cutoff', 'cutoff', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 1.0_wp, 'numerical', &
          '1: tension cut-off at p_min; 0: off'), &
-      property_t(P_SCHEME, 'scheme', 'scheme', '1', KIND_OPTION, 1.0_wp, 1.0_wp, 1.0_wp, 'paper', &
-         '1 modified Euler 2(1)'), &
+      property_t(P_SCHEME, 'scheme', 'scheme', '1', KIND_OPTION, 1.0_wp, 3.0_wp, 1.0_wp, 'paper', &
+         '1 modified Euler 2(1), 2 Bogacki-Shampine 3(2), 3 Dormand-Prince 5(4)'), &
       property_t(P_TOLERANCE, 'tolerance', 'tol', '1', KIND_REAL, 1e-12_wp, 0.1_wp, 1e-05_wp, 'paper', &
          'relative tolerance of the stress integration'), &
       property_t(P_H_MIN, 'h_min', 'h_min', '1', KIND_REAL, 1e-12_wp, 0.1_wp, 1e-07_wp, 'numerical', &
          'smallest substep as a share of the increment'), &
       property_t(P_MAX_SUBSTEPS, 'max_substeps', 'n_max', '1', KIND_COUNT, 1.0_wp, 1.0e8_wp, 1.0e5_wp, 'numerical', &
          'largest number of attempted substeps in an update'), &
-      property_t(P_TANGENT, 'tangent', 'tangent', '1', KIND_OPTION, 0.0_wp, 2.0_wp, 2.0_wp, 'ours', &
-         'tangent that umat_ returns: 0 none, 1 elastic, 2 continuum')]
+      property_t(P_TANGENT, 'tangent', 'tangent', '1', KIND_OPTION, 0.0_wp, 3.0_wp, 2.0_wp, 'ours', &
+         'tangent that umat_ returns: 0 none, 1 elastic, 2 continuum, 3 consistent')]
 
    type(variable_t), parameter :: VARIABLES(NVARIABLES) = [ &
       variable_t(S_LAYOUT, 1, 'layout', '-', '1', .false., 'ours', &

@@ -4,7 +4,7 @@ module mud_retention
    use mud_params, only: params_t
    implicit none (type, external)
    private
-   public :: saturation_t, saturation
+   public :: saturation_t, saturation, saturation_curvature
 
    real(wp), parameter :: EULER = 2.7182818284590452_wp      !< exp(1)
    !> Beyond it exp(1) is lost in exp(1) + a, and a might overflow.
@@ -15,6 +15,8 @@ module mud_retention
       real(wp) :: s_w      !< S_w [-]
       real(wp) :: ds_dpc   !< dS_w/dp_c at constant e [1/kPa]
       real(wp) :: ds_de    !< dS_w/de at constant p_c [-]
+      real(wp) :: share    !< a/(exp(1) + a) of eq. (24), for the curvature [-]
+      real(wp) :: log_sum  !< ln(exp(1) + a), likewise [-]
    end type saturation_t
 contains
    !> Degree of saturation at a suction [kPa] and a void ratio [-], paper eqs (23), (24). No suction: S_max, zero
@@ -25,7 +27,7 @@ contains
       type(saturation_t) :: sat
       real(wp) :: log_a, a, share, log_sum, s_e, slope
 
-      sat = saturation_t(par%s_max, 0.0_wp, 0.0_wp)
+      sat = saturation_t(par%s_max, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp)
       if (p_c <= 0.0_wp) return
       log_a = par%n_x*(log(p_c/par%p_a) + par%omega*log(e))     ! a = (p*/P_a)^n
       if (log_a < -LOG_LARGE) return
@@ -42,5 +44,21 @@ contains
       slope = -par%m_x*s_e/log_sum*share*par%n_x                ! dS_w/d ln p*
       sat%ds_dpc = slope/p_c
       sat%ds_de = slope*par%omega/e
+      sat%share = share
+      sat%log_sum = log_sum
    end function saturation
+
+   !> Second derivatives [d2S/dp_c2 (1/kPa2), d2S/dp_c de (1/kPa), d2S/de2 (-)] at the suction and void ratio of sat.
+   pure function saturation_curvature(par, sat, p_c, e) result(curvature)
+      type(params_t), intent(in) :: par
+      type(saturation_t), intent(in) :: sat
+      real(wp), intent(in) :: p_c, e
+      real(wp) :: curvature(3), slope, bend
+
+      curvature = 0.0_wp
+      if (p_c <= 0.0_wp) return
+      slope = sat%ds_dpc*p_c                                    ! dS_w/d ln p*
+      bend = slope*par%n_x*(1.0_wp - sat%share*(1.0_wp + (par%m_x + 1.0_wp)/sat%log_sum))
+      curvature = [(bend - slope)/p_c**2, bend*par%omega/(p_c*e), (bend*par%omega - slope)*par%omega/e**2]
+   end function saturation_curvature
 end module mud_retention

@@ -6,29 +6,49 @@ module mud_substep
    public :: scheme_t, SCHEMES, MAX_STAGES, stage_point, solution, error_vector, step_factor
 
    integer, parameter :: MAX_STAGES = 7
+   integer, parameter :: TRIANGLE = MAX_STAGES*(MAX_STAGES - 1)/2
    real(wp), parameter :: SAFETY = 0.9_wp, SMALLEST_FACTOR = 0.1_wp, LARGEST_FACTOR = 2.0_wp
 
    !> An explicit pair with local extrapolation.
    type :: scheme_t
       integer :: stages
-      integer :: order                            !< Of the solution; the estimate is one lower [-].
-      logical :: first_same_as_last               !< The last stage is the rate at the solution.
-      real(wp) :: a(MAX_STAGES, MAX_STAGES)       !< a(j, i): weight of rate j in stage i.
-      real(wp) :: b(MAX_STAGES)                   !< Weights of the solution.
-      real(wp) :: error(MAX_STAGES)               !< Weights of solution minus embedded solution.
-      real(wp) :: node(MAX_STAGES)                !< Share of the step where a stage stands.
+      integer :: order                  !< Of the solution; the estimate is one lower [-].
+      logical :: first_same_as_last     !< The last stage is the rate at the solution.
+      real(wp) :: a(TRIANGLE)           !< Strict lower triangle row by row: weights of the earlier rates in a stage.
+      real(wp) :: b(MAX_STAGES)         !< Weights of the solution.
+      real(wp) :: error(MAX_STAGES)     !< Weights of solution minus embedded solution.
+      real(wp) :: node(MAX_STAGES)      !< Share of the step where a stage stands.
    end type scheme_t
+
+   real(wp), parameter :: ZERO(TRIANGLE) = 0.0_wp
 
    !> Modified Euler 2(1), the paper's scheme (Sloan, Abbo & Sheng 2001).
    type(scheme_t), parameter :: MODIFIED_EULER = scheme_t(2, 2, .false., &
-      reshape([0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, &
-      0, &
-               0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]*1.0_wp, [MAX_STAGES, MAX_STAGES]), &
-      [0.5_wp, 0.5_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], &
-      [-0.5_wp, 0.5_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], &
-      [0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp])
+      [1.0_wp, ZERO(2:)], &
+      [0.5_wp, 0.5_wp, ZERO(3:7)], &
+      [-0.5_wp, 0.5_wp, ZERO(3:7)], &
+      [0.0_wp, 1.0_wp, ZERO(3:7)])
 
-   type(scheme_t), parameter :: SCHEMES(1) = [MODIFIED_EULER]
+   !> Bogacki & Shampine 3(2), Appl. Math. Lett. 2 (1989).
+   type(scheme_t), parameter :: BOGACKI_SHAMPINE = scheme_t(4, 3, .true., &
+      [1.0_wp/2, 0.0_wp, 3.0_wp/4, 2.0_wp/9, 1.0_wp/3, 4.0_wp/9, ZERO(7:)], &
+      [2.0_wp/9, 1.0_wp/3, 4.0_wp/9, ZERO(4:7)], &
+      [-5.0_wp/72, 1.0_wp/12, 1.0_wp/9, -1.0_wp/8, ZERO(5:7)], &
+      [0.0_wp, 1.0_wp/2, 3.0_wp/4, 1.0_wp, ZERO(5:7)])
+
+   !> Dormand & Prince 5(4), J. Comput. Appl. Math. 6 (1980).
+   type(scheme_t), parameter :: DORMAND_PRINCE = scheme_t(7, 5, .true., &
+      [1.0_wp/5, &
+       3.0_wp/40, 9.0_wp/40, &
+       44.0_wp/45, -56.0_wp/15, 32.0_wp/9, &
+       19372.0_wp/6561, -25360.0_wp/2187, 64448.0_wp/6561, -212.0_wp/729, &
+       9017.0_wp/3168, -355.0_wp/33, 46732.0_wp/5247, 49.0_wp/176, -5103.0_wp/18656, &
+       35.0_wp/384, 0.0_wp, 500.0_wp/1113, 125.0_wp/192, -2187.0_wp/6784, 11.0_wp/84], &
+      [35.0_wp/384, 0.0_wp, 500.0_wp/1113, 125.0_wp/192, -2187.0_wp/6784, 11.0_wp/84, 0.0_wp], &
+      [71.0_wp/57600, 0.0_wp, -71.0_wp/16695, 71.0_wp/1920, -17253.0_wp/339200, 22.0_wp/525, -1.0_wp/40], &
+      [0.0_wp, 1.0_wp/5, 3.0_wp/10, 4.0_wp/5, 8.0_wp/9, 1.0_wp, 1.0_wp])
+
+   type(scheme_t), parameter :: SCHEMES(3) = [MODIFIED_EULER, BOGACKI_SHAMPINE, DORMAND_PRINCE]
 contains
    !> Where stage i of a step h stands.
    pure subroutine stage_point(scheme, i, y0, rates, h, y)
@@ -36,12 +56,8 @@ contains
       integer, intent(in) :: i
       real(wp), intent(in) :: y0(:), rates(:, :), h
       real(wp), intent(out) :: y(:)
-      integer :: j
 
-      y = y0
-      do j = 1, i - 1
-         if (abs(scheme%a(j, i)) > 0.0_wp) y = y + (h*scheme%a(j, i))*rates(:, j)
-      end do
+      call combine(scheme%a((i - 1)*(i - 2)/2 + 1:i*(i - 1)/2), y0, rates, h, y)
    end subroutine stage_point
 
    !> The solution of a step h.
@@ -49,12 +65,8 @@ contains
       type(scheme_t), intent(in) :: scheme
       real(wp), intent(in) :: y0(:), rates(:, :), h
       real(wp), intent(out) :: y(:)
-      integer :: j
 
-      y = y0
-      do j = 1, scheme%stages
-         y = y + (h*scheme%b(j))*rates(:, j)
-      end do
+      call combine(scheme%b(1:scheme%stages), y0, rates, h, y)
    end subroutine solution
 
    !> Solution minus embedded solution of a step h.
@@ -62,13 +74,21 @@ contains
       type(scheme_t), intent(in) :: scheme
       real(wp), intent(in) :: rates(:, :), h
       real(wp), intent(out) :: error(:)
+
+      call combine(scheme%error(1:scheme%stages), ZERO(1:size(error)), rates, h, error)
+   end subroutine error_vector
+
+   !> y = y0 + h times the weighted sum of the first rates.
+   pure subroutine combine(weights, y0, rates, h, y)
+      real(wp), intent(in) :: weights(:), y0(:), rates(:, :), h
+      real(wp), intent(out) :: y(:)
       integer :: j
 
-      error = 0.0_wp
-      do j = 1, scheme%stages
-         error = error + (h*scheme%error(j))*rates(:, j)
+      y = y0
+      do j = 1, size(weights)
+         if (abs(weights(j)) > 0.0_wp) y = y + (h*weights(j))*rates(:, j)
       end do
-   end subroutine error_vector
+   end subroutine combine
 
    !> Factor on the step for an error of a tolerance; no growth right after a rejection.
    pure real(wp) function step_factor(scheme, error, tolerance, may_grow) result(factor)
@@ -79,7 +99,7 @@ contains
 
       factor = LARGEST_FACTOR
       ratio = error/tolerance
-      if (ratio > SAFETY**scheme%order/LARGEST_FACTOR**scheme%order) then
+      if (ratio > (SAFETY/LARGEST_FACTOR)**scheme%order) then
          if (scheme%order == 2) then
             factor = SAFETY/sqrt(ratio)
          else

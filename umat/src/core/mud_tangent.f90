@@ -6,7 +6,7 @@ module mud_tangent
    use mud_tensor, only: IDENTITY, ddot, deviator, square, outer_add
    implicit none (type, external)
    private
-   public :: continuum_tangent, elastic_tangent
+   public :: continuum_tangent, elastic_tangent, gradients, inverse_of
 contains
    !> Elastic stiffness [kPa] at moduli K, G [kPa], a map from engineering strain.
    pure function elastic_tangent(k, g) result(c)

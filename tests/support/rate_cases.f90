@@ -1,0 +1,85 @@
+!> Random arguments of a rate, by kind of state, for tests of derivatives.
+module rate_cases
+   use mud_kinds, only: wp
+   use mud_params, only: params_t, read_params, default_props
+   use mud_rates, only: rate_t, rate_at, bounding_norm, MODE_ORDINARY, MODE_ELASTIC
+   use mud_status, only: mud_status_t
+   use mud_tensor, only: IDENTITY, norm, ddot, deviator
+   use random_states, only: random_t, uniform, log_uniform, random_tensor, random_deviator
+   implicit none (type, external)
+   private
+   public :: case_t, random_case, evaluate, same_branch
+
+   !> A rate's arguments.
+   type :: case_t
+      type(params_t) :: par
+      real(wp) :: sigma(6), e, p_c, z(6), r_in(6), d_strain(6), d_pc
+      integer :: mode = MODE_ORDINARY
+   end type case_t
+contains
+   !> True if the same pieces of every min, max and < > act, and the direction has not jumped to another root.
+   logical function same_branch(a, b)
+      type(rate_t), intent(in) :: a, b
+
+      same_branch = (a%loading .eqv. b%loading) .and. (a%iso_active .eqv. b%iso_active) .and. &
+                    (a%floored .eqv. b%floored) .and. (a%capped_d .eqv. b%capped_d) .and. &
+                    (a%capped_h .eqv. b%capped_h) .and. (a%iso_kept .eqv. b%iso_kept)
+      if (.not. same_branch) return
+      if (a%loading) same_branch = (a%z_n > 0.0_wp .eqv. b%z_n > 0.0_wp) .and. norm(a%n - b%n) < 0.1_wp
+   end function same_branch
+
+   subroutine evaluate(this, d_strain, d_pc, w)
+      type(case_t), intent(in) :: this
+      real(wp), intent(in) :: d_strain(6), d_pc
+      type(rate_t), intent(inout) :: w
+
+      call rate_at(this%par, this%p_c > 0.0_wp, this%sigma, this%e, this%p_c, this%z, this%r_in, d_strain, d_pc, &
+                   this%mode, w)
+   end subroutine evaluate
+
+   !> A random state of a kind, with stress ratios up to and beyond the bounding surface.
+   function random_case(random, kind) result(this)
+      type(random_t), intent(inout) :: random
+      character(*), intent(in) :: kind
+      type(case_t) :: this
+      type(mud_status_t) :: status
+      type(rate_t) :: w
+      real(wp) :: p, r(6), q(6)
+
+      call read_params(default_props(), this%par, status)
+      this%e = uniform(random, 0.5_wp, 1.1_wp)
+      p = log_uniform(random, 1.0_wp, 5000.0_wp)
+      if (kind == 'low') p = this%par%p_min*uniform(random, 1.0_wp, 3.0_wp)
+      this%p_c = 0.0_wp
+      this%d_pc = 0.0_wp
+      if (kind == 'unsaturated') this%p_c = log_uniform(random, 1.0_wp, 1.0e4_wp)
+      if (kind == 'critical') then
+         this%e = this%par%n_c*(p + this%par%alpha_csl)**(-this%par%lambda) + uniform(random, -1.0e-3_wp, 1.0e-3_wp)
+      end if
+      this%z = uniform(random, 0.0_wp, 4.0_wp)*random_deviator(random)
+      this%r_in = 0.0_wp
+      this%sigma = p*IDENTITY
+      this%d_strain = 1.0e-3_wp*random_tensor(random)
+      call evaluate(this, this%d_strain, 0.0_wp, w)
+      r = random_deviator(random)
+      r = uniform(random, 0.0_wp, 1.1_wp)*bounding_norm(this%par, r, norm(r), w%m_b)*r
+      this%sigma = p*(r + IDENTITY)
+      this%r_in = r - uniform(random, 0.0_wp, 1.0_wp)*random_deviator(random)
+      select case (kind)
+      case ('turning')
+         ! (r - r_in):n small or negative, n across r
+         this%r_in = r + uniform(random, -1.0e-2_wp, 1.0e-2_wp)*random_deviator(random)
+      case ('unsaturated')
+         this%d_pc = uniform(random, -1.0_wp, 1.0_wp)*1.0e-3_wp*w%k
+      case ('suspended')
+         this%mode = MODE_ELASTIC
+      case ('kink')
+         ! at r = 0 the direction is that of the strain, so x is known beforehand
+         this%sigma = p*IDENTITY
+         r = deviator(this%d_strain)/norm(deviator(this%d_strain))
+         q = random_deviator(random)
+         q = q - ddot(q, r)*r
+         this%r_in = -this%par%x_floor*((1.0_wp + uniform(random, -1.0e-8_wp, 1.0e-8_wp))*r + q)
+      end select
+   end function random_case
+end module rate_cases

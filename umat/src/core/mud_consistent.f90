@@ -1,0 +1,159 @@
+!> Consistent tangent: the derivative of the algorithm, carried through the accepted substeps. Sizes of substeps, landings
+!> on events and the choice of branch are frozen; the jumps of memory are differentiated.
+module mud_consistent
+   use mud_kinds, only: wp
+   use mud_increment, only: increment_t, trial_t, void_ratio_at, suction_at, NY, MODE_HELD
+   use mud_params, only: params_t
+   use mud_rates, only: rate_t, stress_ratio
+   use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING
+   use mud_sensitivity, only: change_t, linearised_t, linearise, change_of_rate
+   use mud_state, only: memory_t
+   use mud_substep, only: MAX_STAGES, stage_point, solution
+   use mud_tensor, only: trace, deviator
+   implicit none (type, external)
+   private
+   public :: sensitivity_t, no_sensitivity, propagate, jump_of_memory, JUMP_NONE, JUMP_RESEAT, JUMP_RESUME, JUMP_NEW
+
+   integer, parameter :: DIRECTIONS = 7   !< Six engineering strains and the suction at the end of the increment.
+   integer, parameter :: JUMP_NONE = 0, JUMP_RESEAT = 1, JUMP_RESUME = 2, JUMP_NEW = 3
+
+   !> Derivatives along the seven directions.
+   type :: sensitivity_t
+      real(wp) :: y(NY, DIRECTIONS)          !< of sigma', z and the plastic shear of the present process
+      real(wp) :: r_in(6, DIRECTIONS)        !< of the memory
+      real(wp) :: r_before(6, DIRECTIONS)    !< of the memory of the process before, or of the suspended one
+   end type sensitivity_t
+contains
+   !> At the start of an increment nothing depends on it yet.
+   pure function no_sensitivity() result(sens)
+      type(sensitivity_t) :: sens
+
+      sens%y = 0.0_wp
+      sens%r_in = 0.0_wp
+      sens%r_before = 0.0_wp
+   end function no_sensitivity
+
+   !> Carries the derivatives through an accepted substep h.
+   pure subroutine propagate(par, inc, trial, h, sens)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      real(wp), intent(in) :: h
+      type(sensitivity_t), intent(inout) :: sens
+      real(wp) :: rates(NY*DIRECTIONS, MAX_STAGES), y0(NY*DIRECTIONS), y(NY*DIRECTIONS), point(NY)
+      integer :: i
+
+      if (trial%mode == MODE_HELD) then
+         sens%y(1:6, :) = 0.0_wp   ! an open point has no stiffness
+         return
+      end if
+      y0 = reshape(sens%y, shape(y0))
+      y = y0
+      point = trial%y0
+      do i = 1, inc%scheme%stages
+         if (i > 1) then
+            call stage_point(inc%scheme, i, y0, rates, h, y)
+            call stage_point(inc%scheme, i, trial%y0, trial%rates, h, point)
+         end if
+         call change_of_stage(par, inc, trial%w(i), point, trial%time + inc%scheme%node(i)*h, sens%r_in, y, rates(:, i))
+      end do
+      call solution(inc%scheme, y0, rates, h, y)
+      sens%y = reshape(y, shape(sens%y))
+   end subroutine propagate
+
+   !> Derivatives of one stage's rates.
+   pure subroutine change_of_stage(par, inc, w, point, time, r_in, y, rates)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(rate_t), intent(in) :: w
+      real(wp), intent(in) :: point(NY), time, r_in(6, DIRECTIONS), y(NY, DIRECTIONS)
+      real(wp), intent(out) :: rates(NY, DIRECTIONS)
+      type(linearised_t) :: lin
+      real(wp) :: dn(6)
+      integer :: j
+
+      call linearise(par, inc%bonded, w, point(1:6), void_ratio_at(inc, time), suction_at(inc, time), inc%d_strain, &
+                     inc%d_pc, lin)
+      do j = 1, DIRECTIONS
+         call change_of_rate(par, w, lin, direction(inc, j, time, y(:, j), r_in(:, j)), rates(1:6, j), rates(7:12, j), &
+                             rates(13, j), dn)
+      end do
+   end subroutine change_of_stage
+
+   !> How the arguments of a rate change along a direction.
+   pure function direction(inc, j, time, y, r_in) result(change)
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: j
+      real(wp), intent(in) :: time, y(NY), r_in(6)
+      type(change_t) :: change
+
+      change%sigma = y(1:6)
+      change%z = y(7:12)
+      change%r_in = r_in
+      change%d_strain = 0.0_wp
+      change%e = 0.0_wp
+      change%d_pc = 0.0_wp
+      change%p_c = 0.0_wp
+      if (j <= 3) then
+         change%d_strain(j) = 1.0_wp
+         change%e = -(1.0_wp + void_ratio_at(inc, time))*time
+      else if (j <= 6) then
+         change%d_strain(j) = 0.5_wp
+      else
+         change%d_pc = 1.0_wp
+         change%p_c = time
+      end if
+   end function direction
+
+   !> Derivatives of the memory across its jump at the start of a substep; `before` is the memory ahead of it and `trigger`
+   !> the rate that made it jump.
+   pure subroutine jump_of_memory(par, inc, jump, before, after, trigger, trial, sens)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: jump
+      type(memory_t), intent(in) :: before, after
+      type(rate_t), intent(in) :: trigger
+      type(trial_t), intent(in) :: trial
+      type(sensitivity_t), intent(inout) :: sens
+      type(linearised_t) :: lin
+      real(wp) :: p, r(6), dr(6), dn(6), d_sigma(6), d_z(6), d_eps_q, m, dm, old_r_in(6)
+      integer :: j
+      logical :: held_p
+
+      if (jump == JUMP_RESUME) then
+         sens%r_in = sens%r_before
+         return
+      end if
+      call stress_ratio(par, trial%y0(1:6), p, r)
+      held_p = trace(trial%y0(1:6)) < 3.0_wp*par%p_min
+      if (jump == JUMP_RESEAT .and. par%memory_rule == RULE_REPOSITIONING) then
+         call linearise(par, inc%bonded, trigger, trial%y0(1:6), void_ratio_at(inc, trial%time), &
+                        suction_at(inc, trial%time), inc%d_strain, inc%d_pc, lin)
+      end if
+      m = 0.0_wp
+      if (before%eps_q_p < par%eps_hat) m = 1.0_wp - (before%eps_q_p/par%eps_hat)**par%j_exp
+      do j = 1, DIRECTIONS
+         dr = deviator(sens%y(1:6, j))/p
+         if (.not. held_p) dr = dr - (trace(sens%y(1:6, j))/(3.0_wp*p))*r
+         dm = 0.0_wp
+         if (m > 0.0_wp .and. before%eps_q_p > 0.0_wp) dm = -par%j_exp*(1.0_wp - m)/before%eps_q_p*sens%y(13, j)
+         old_r_in = sens%r_in(:, j)
+         sens%r_in(:, j) = dr
+         if (jump == JUMP_RESEAT) then
+            select case (par%memory_rule)
+            case (RULE_THRESHOLD)
+               ! a fall-back left r_in at r
+               if (any(abs(after%r_in - r) > 0.0_wp)) then
+                  sens%r_in(:, j) = (1.0_wp - m)*dr + m*sens%r_before(:, j) + dm*(before%r_before - r)
+               end if
+            case (RULE_REPOSITIONING)
+               call change_of_rate(par, trigger, lin, direction(inc, j, trial%time, sens%y(:, j), old_r_in), d_sigma, &
+                                   d_z, d_eps_q, dn)
+               sens%r_in(:, j) = dr - before%x_before*(m*dn + dm*trigger%n)
+            end select
+         end if
+         sens%r_before(:, j) = merge(dr, old_r_in, jump == JUMP_NEW)
+         sens%y(13, j) = 0.0_wp
+      end do
+   end subroutine jump_of_memory
+end module mud_consistent

@@ -1,0 +1,163 @@
+!> One trial substep: rates along an increment, the scheme's stages, the error, the substep held by the tension cut-off.
+module mud_increment
+   use mud_kinds, only: wp
+   use mud_params, only: params_t
+   use mud_state, only: counters_t
+   use mud_tensor, only: IDENTITY, deviator, norm
+   use mud_elastic, only: shear_modulus
+   use mud_bonding, only: bonding_t, bonding, UNBONDED
+   use mud_critical_state, only: critical_void_ratio, bounding_ratio
+   use mud_rates, only: rate_t, rate_at, bounding_norm
+   use mud_substep, only: scheme_t, MAX_STAGES, stage_point, solution, error_vector
+   implicit none (type, external)
+   private
+   public :: increment_t, trial_t, void_ratio_at, suction_at, rate_of, take_step, error_norm, limited, state_parameter
+   public :: NY, MODE_HELD
+
+   integer, parameter :: MODE_HELD = 2   !< A substep held at p_min by the tension cut-off; see MODE_* of mud_rates.
+   integer, parameter :: NY = 13         !< Length of the integrated vector: sigma'(6), z(6), plastic shear.
+   real(wp), parameter :: PLASTIC_SHEAR_SCALE = 0.01_wp   !< Of the error norm [-].
+
+   !> What stays the same through an update.
+   type :: increment_t
+      real(wp) :: d_strain(6), d_pc, p_c0, e0, d_v
+      logical :: bonded             !< Bonding is on and there is suction: decided once.
+      type(scheme_t) :: scheme
+   end type increment_t
+
+   !> A trial substep from one point.
+   type :: trial_t
+      real(wp) :: rates(NY, MAX_STAGES)
+      real(wp) :: y0(NY), y(NY)
+      type(rate_t) :: w(MAX_STAGES) !< What each stage's rate went through; the first is that of the memory as it is.
+      integer :: mode
+      real(wp) :: r_in(6)
+      real(wp) :: time              !< Pseudo-time of y0 [-].
+   end type trial_t
+contains
+   !> Rate at a vector of the integration and a pseudo-time; void ratio and suction follow from the latter exactly.
+   pure subroutine rate_of(par, inc, time, y, r_in, mode, w, counters)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time, y(NY), r_in(6)
+      integer, intent(in) :: mode
+      type(rate_t), intent(inout) :: w
+      type(counters_t), intent(inout) :: counters
+
+      call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), suction_at(inc, time), y(7:12), r_in, &
+                   inc%d_strain, inc%d_pc, mode, w)
+      counters%rate = counters%rate + 1
+      if (w%floored .and. par%floored) counters%floor = counters%floor + 1
+      if (w%capped_d) counters%cap_d = counters%cap_d + 1
+      if (w%capped_h) counters%cap_h = counters%cap_h + 1
+      if (w%iso_kept) counters%iso_kept = counters%iso_kept + 1
+      if (w%no_root) counters%no_root = counters%no_root + 1
+   end subroutine rate_of
+
+   !> One trial substep from the first rate that the trial holds.
+   pure subroutine take_step(par, inc, h, trial, counters)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: h
+      type(trial_t), intent(inout) :: trial
+      type(counters_t), intent(inout) :: counters
+      real(wp) :: y(NY)
+      integer :: i
+
+      if (trial%mode == MODE_HELD) then
+         call hold(par, inc, h, trial)
+         return
+      end if
+      call store_rate(trial%w(1), trial%rates(:, 1))
+      do i = 2, inc%scheme%stages
+         call stage_point(inc%scheme, i, trial%y0, trial%rates, h, y)
+         call rate_of(par, inc, trial%time + inc%scheme%node(i)*h, y, trial%r_in, trial%mode, trial%w(i), &
+                      counters)
+         call store_rate(trial%w(i), trial%rates(:, i))
+      end do
+      call solution(inc%scheme, trial%y0, trial%rates, h, trial%y)
+   end subroutine take_step
+
+   !> A substep at p_min: p', fabric, memory and plastic shear stay. The stress ratio follows the strain elastically,
+   !> but not beyond the bounding surface. (Were it frozen, an undrained path that gets here on its contractive side
+   !> could never leave, in whatever direction it is sheared.)
+   pure subroutine hold(par, inc, h, trial)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: h
+      type(trial_t), intent(inout) :: trial
+      real(wp) :: e, r(6)
+
+      e = void_ratio_at(inc, trial%time + h)
+      r = deviator(trial%y0(1:6) + (2.0_wp*shear_modulus(par, e, par%p_min)*h)*inc%d_strain)/par%p_min
+      trial%y = trial%y0
+      trial%y(1:6) = par%p_min*(limited(par, inc%bonded, e, suction_at(inc, trial%time + h), par%p_min, &
+         r) + IDENTITY)
+   end subroutine hold
+
+   pure subroutine store_rate(w, dy)
+      type(rate_t), intent(in) :: w
+      real(wp), intent(out) :: dy(NY)
+
+      dy(1:6) = w%d_sigma
+      dy(7:12) = w%d_z
+      dy(13) = w%d_eps_q
+   end subroutine store_rate
+
+   !> Relative error of a trial substep; the void ratio is exact.
+   pure real(wp) function error_norm(par, scheme, trial, h) result(error)
+      type(params_t), intent(in) :: par
+      type(scheme_t), intent(in) :: scheme
+      type(trial_t), intent(in) :: trial
+      real(wp), intent(in) :: h
+      real(wp) :: delta(NY)
+
+      error = 0.0_wp
+      if (trial%mode == MODE_HELD) return
+      call error_vector(scheme, trial%rates, h, delta)
+      error = max(norm(delta(1:6))/max(norm(trial%y(1:6)), par%p_min), norm(delta(7:12))/par%z_max, &
+                  abs(delta(13))/PLASTIC_SHEAR_SCALE)
+   end function error_norm
+
+   !> Void ratio at a pseudo-time: 1 + e falls as exp(-eps_v), exactly.
+   pure real(wp) function void_ratio_at(inc, time) result(e)
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time
+
+      e = inc%e0
+      if (abs(inc%d_v) > 0.0_wp) e = (1.0_wp + e)*exp(-inc%d_v*time) - 1.0_wp
+   end function void_ratio_at
+
+   !> Suction at a pseudo-time [kPa].
+   pure real(wp) function suction_at(inc, time) result(p_c)
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time
+
+      p_c = inc%p_c0 + time*inc%d_pc
+   end function suction_at
+
+   !> A stress ratio, shortened to the bounding surface where it is beyond.
+   pure function limited(par, bonded, e, p_c, p, r) result(r_limited)
+      type(params_t), intent(in) :: par
+      logical, intent(in) :: bonded
+      real(wp), intent(in) :: e, p_c, p, r(6)
+      real(wp) :: r_limited(6), r_norm, limit
+
+      r_limited = r
+      r_norm = norm(r)
+      if (r_norm <= 0.0_wp) return
+      limit = bounding_norm(par, r, r_norm, bounding_ratio(par, state_parameter(par, bonded, e, p_c, p)))
+      if (r_norm > limit) r_limited = (limit/r_norm)*r
+   end function limited
+
+   pure real(wp) function state_parameter(par, bonded, e, p_c, p) result(psi)
+      type(params_t), intent(in) :: par
+      logical, intent(in) :: bonded
+      real(wp), intent(in) :: e, p_c, p
+      type(bonding_t) :: bond
+
+      bond = UNBONDED
+      if (bonded) bond = bonding(par, p_c, e)
+      psi = e - critical_void_ratio(par, bond%f, p)
+   end function state_parameter
+end module mud_increment
