@@ -16,7 +16,7 @@ program mud_triax
 
    character(PATH_LENGTH) :: case_file, output_file
    type(fault_t) :: fault
-   logical :: quiet, done
+   logical :: quiet, residuals, done
 
    call read_arguments(done)
    if (fault%code == 0 .and. .not. done) call run(trim(case_file))
@@ -35,6 +35,7 @@ contains
       case_file = ''
       output_file = ''
       quiet = .false.
+      residuals = .false.
       answered = .true.
       i = 0
       do while (i < command_argument_count())
@@ -56,6 +57,8 @@ contains
             return
          case ('--quiet', '-q')
             quiet = .true.
+         case ('--residuals')
+            residuals = .true.
          case ('--output', '-o')
             i = i + 1
             call get_command_argument(i, output_file, status=status)
@@ -97,6 +100,8 @@ contains
       call open_table(trim(output_file), test, any(test%stages%control == STRAIN_PATH), table, fault)
       if (fault%code /= 0) return
 
+      tally%residuals = residuals
+      if (residuals) write (output_unit, '(a)') 'increment,iteration,error'
       call start_clock(clock)
       point = test%start
       pressure = 0.0_wp

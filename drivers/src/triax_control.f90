@@ -1,11 +1,11 @@
 !> Mixed control of a stage: given strains and held stresses, solved with the library's tangent blocks.
 module triax_control
-   use, intrinsic :: iso_fortran_env, only: wp => real64
+   use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit
    use triax_fault, only: fault_t, raise, EXIT_RUN
    use triax_text, only: short, whole
    use triax_case, only: stage_t, CONTROL_NAMES, DRAINED, UNDRAINED, ISOTROPIC, OEDOMETER, CONSTANT_NET_STRESS, &
                          STRAIN_PATH
-   use triax_point, only: soil_t, point_t, tangent_t, mud_report, update_point, update_sentence, state_value, &
+   use triax_point, only: soil_t, point_t, tangent_t, mud_report, update_point, update_sentence, state_value, slope_is_exact, &
                           axial_strain, volumetric_strain, radial_stress, mean_stress, deviator_stress, AXIAL, RADIAL
    implicit none (type, external)
    private
@@ -14,7 +14,8 @@ module triax_control
    !> Held stresses are met to this, relative to the effective stress held: a hundred thousand times below the
    !> library's own default tolerance, and far above rounding (1e-16 times the ratio of stiffness to stress, about 1e3).
    real(wp), parameter :: CONTROL_TOLERANCE = 1.0e-10_wp
-   integer, parameter :: MAX_ITERATIONS = 40   !< A quasi-Newton step gains a digit or more; 10 are usual.
+   !> A quasi-Newton step gains a digit or more, 10 are usual; Newton steps with the consistent tangent need 2 to 4.
+   integer, parameter :: MAX_ITERATIONS = 40
    integer, parameter :: MAX_CUTS = 20         !< An increment is halved at most so often: a millionth.
 
    !> A stage that is being run.
@@ -37,6 +38,7 @@ module triax_control
       integer :: updates = 0                 !< Calls of the library.
       integer :: solved = 0                  !< Increments with a held stress.
       integer :: cuts = 0                    !< Increments cut and retried.
+      logical :: residuals = .false.         !< Print the error of every iteration.
       integer :: n_floor = 0, n_cap_d = 0, n_cap_h = 0, n_hysteresis = 0, n_iso_kept = 0, n_no_root = 0, &
                  n_min_step = 0, n_open = 0, n_tensile = 0
       real(wp) :: error = 0.0_wp             !< Largest error of a held stress since the caller set it to 0, relative.
@@ -180,8 +182,9 @@ contains
          residual = merge(after%stress - plan%net_stress - bishop(soil, after), 0.0_wp, plan%held)
          scale = max(maxval(abs(after%stress), mask=plan%held .and. [1, 2, 3, 4, 5, 6] <= 3), tiny(scale))
          error = maxval(abs(residual))/scale
+         if (tally%residuals) write (output_unit, '(i0, a, i0, a, es10.3)') k, ',', iteration, ',', error
          if (error <= CONTROL_TOLERANCE) exit
-         if (iteration == 1) then
+         if (iteration == 1 .or. slope_is_exact(soil)) then
             slope = held_slope(plan, tangent, after%suction)
          else
             slope = slope + outer(residual - last_residual - matmul(slope, step), step)/dot_product(step, step)

@@ -6,7 +6,7 @@ module triax_point
    use, intrinsic :: iso_c_binding, only: c_int, c_null_char
    use mud_interface, only: mud_report, mud_version, mud_count, mud_index, mud_text, mud_bounds, mud_default_props, &
                             mud_validate_props, mud_init_state, mud_update, mud_message, MUD_PROPS, MUD_STATEV, &
-                            MUD_NAME, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_TANGENT_CONTINUUM
+                            MUD_NAME, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONSISTENT
    use triax_fault, only: fault_t, raise, EXIT_INPUT
    use triax_text, only: from_c, whole
    implicit none (type, external)
@@ -15,7 +15,7 @@ module triax_point
    public :: AXIAL, RADIAL
    public :: library_version, default_soil, check_soil, property_count, property_index, property_name, property_unit, &
              property_origin, property_meaning, property_range
-   public :: start_point, update_point, update_sentence
+   public :: start_point, update_point, update_sentence, slope_is_exact
    public :: mean_stress, deviator_stress, radial_stress, axial_strain, radial_strain, volumetric_strain, state_value
 
    integer, parameter :: AXIAL = 3            !< Component along the axis of the sample.
@@ -27,6 +27,7 @@ module triax_point
       real(wp), allocatable :: props(:)
       integer :: n_statev = 0
       integer :: i_void_ratio = 0, i_saturation = 0, i_state_parameter = 0   !< Places in STATEV, from 1.
+      integer :: i_tangent = 0                                               !< Place in PROPS, from 1.
       integer :: i_n_substep = 0, i_n_reseat = 0, i_n_rate = 0, i_n_reject = 0, i_n_guard = 0
    end type soil_t
 
@@ -66,6 +67,7 @@ contains
       if (mud_default_props(soil%props, size(soil%props)) /= 0) then
          call raise(fault, EXIT_INPUT, 'The library refuses to fill its own defaults; driver and library do not match.')
       end if
+      soil%i_tangent = property_index('tangent')
       call locate('void_ratio', soil%i_void_ratio)
       call locate('saturation', soil%i_saturation)
       call locate('state_parameter', soil%i_state_parameter)
@@ -202,7 +204,7 @@ contains
       dsig_dpc = 0.0_wp
       dsw_dpc = 0.0_wp
       code = mud_update(soil%props, size(soil%props), tension0, before%statev, soil%n_statev, -strain, before%suction, &
-                        suction, MUD_TANGENT_CONTINUUM, tension1, after%statev, tangent%dsig_deps, dsig_dpc, &
+                        suction, tangent_kind(soil), tension1, after%statev, tangent%dsig_deps, dsig_dpc, &
                         tangent%dsw_deps, dsw_dpc, report)
       report%status = code
       if (code /= 0) return
@@ -211,6 +213,20 @@ contains
       after%strain = before%strain + strain
       after%suction = before%suction + suction
    end subroutine update_point
+
+   !> Kind of tangent asked for: that of the material, but a held stress needs a slope of some kind.
+   pure integer(c_int) function tangent_kind(soil)
+      type(soil_t), intent(in) :: soil
+
+      tangent_kind = max(nint(soil%props(soil%i_tangent), c_int), MUD_TANGENT_ELASTIC)
+   end function tangent_kind
+
+   !> True if the slope is the derivative of the update itself, so that Newton's method is quadratic with it.
+   pure logical function slope_is_exact(soil)
+      type(soil_t), intent(in) :: soil
+
+      slope_is_exact = tangent_kind(soil) == MUD_TANGENT_CONSISTENT
+   end function slope_is_exact
 
    !> The library's sentence for a report.
    function update_sentence(report) result(sentence)
