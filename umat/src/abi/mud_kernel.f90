@@ -210,8 +210,15 @@ contains
       host_value = status%value
       if (.not. is_finite(host_value) .or. status%index < 1) return
       if (status%subject == ON_STRESS) host_value = -host_value
-      if (status%subject == ON_STRAIN) host_value = -host_value*merge(1.0_wp, 2.0_wp, status%index <= 3)
+      if (status%subject == ON_STRAIN) host_value = -host_value*host_factor(status)
    end function host_value
+
+   !> 2 for an engineering shear strain, else 1.
+   pure real(wp) function host_factor(status)
+      type(mud_status_t), intent(in) :: status
+
+      host_factor = merge(2.0_wp, 1.0_wp, status%subject == ON_STRAIN .and. status%index > 3)
+   end function host_factor
 
    pure function wrong_nstatv(n) result(status)
       integer, intent(in) :: n
@@ -230,8 +237,8 @@ contains
       report%subject = status%subject
       report%index = status%index
       report%value = host_value(status)
-      report%lower = status%lower
-      report%upper = status%upper
+      report%lower = status%lower*host_factor(status)
+      report%upper = status%upper*host_factor(status)
       report%n_rate = counters%rate
       report%n_substep = counters%substep
       report%n_reject = counters%reject

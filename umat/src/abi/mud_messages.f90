@@ -69,24 +69,24 @@ contains
       select case (report%status)
       case (MUD_BAD_PROPS)
          if (report%index < 1 .or. report%index > NPROPS) return
-         text = 'parameter '//trim(PROPERTIES(report%index)%name)//' (PROPS '//whole(report%index)//') is '// &
+         text = 'parameter '//trim(PROPERTIES(report%index)%name)//' (PROPS '//trim(whole(report%index))//') is '// &
                 trim(number(report%value))//', allowed '//trim(lower)//' to '//trim(upper)
          if (PROPERTIES(report%index)%kind /= KIND_REAL) text = trim(text)//', whole numbers only'
          text = trim(text)//' (default '//trim(number(PROPERTIES(report%index)%default))//'): '// &
                 PROPERTIES(report%index)%meaning
       case (MUD_BAD_STATE)
          if (report%index < 1 .or. report%index > NSTATV) return
-         text = 'state variable '//trim(statev_name(report%index))//' (STATEV '//whole(report%index)//') is '// &
-                trim(number(report%value))//span(lower, upper)// &
+         text = 'state variable '//trim(statev_name(report%index))//' (STATEV '//trim(whole(report%index))//') is '// &
+                trim(number(report%value))//trim(span(lower, upper))// &
                 ': was STATEV zeroed before the first call and kept since?'
       case (MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_BAD_NTENS)
          text = trim(text)//'; given '//trim(number(report%value))//', needed '//trim(lower)
       case (MUD_BAD_VOID_RATIO)
-         text = 'void ratio '//trim(number(report%value))//span(lower, upper)// &
+         text = 'void ratio '//trim(number(report%value))//trim(span(lower, upper))// &
                 ': mend e_0 of PROPS or the preset in STATEV'
       case (MUD_BAD_INPUT, MUD_INCREMENT_TOO_LARGE)
          if (report%subject == ON_STRESS .or. report%subject == ON_STRAIN .or. report%subject == ON_SUCTION) then
-            text = trim(quantity(report))//' is '//trim(number(report%value))//span(lower, upper)//': '//text
+            text = trim(quantity(report))//' is '//trim(number(report%value))//trim(span(lower, upper))//': '//text
          end if
       case (MUD_VOID_RATIO_LIMIT)
          text = trim(text)//'; it would become '//trim(number(report%value))//span(lower, upper)
@@ -114,9 +114,10 @@ contains
       if (report%index >= 1 .and. report%index <= 6) text = trim(text)//' '//COMPONENT(report%index)
    end function quantity
 
+   !> Texts of fixed length: gfortran keeps the length of deferred-length results in static storage, which threads share.
    pure function span(lower, upper) result(text)
       character(*), intent(in) :: lower, upper
-      character(:), allocatable :: text
+      character(48) :: text
 
       text = ', allowed '//trim(lower)//' to '//trim(upper)
    end function span
@@ -144,10 +145,8 @@ contains
 
    pure function whole(value) result(text)
       integer, intent(in) :: value
-      character(:), allocatable :: text
-      character(12) :: buffer
+      character(12) :: text
 
-      write (buffer, '(i0)') value
-      text = trim(buffer)
+      write (text, '(i0)') value
    end function whole
 end module mud_messages

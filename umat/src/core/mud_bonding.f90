@@ -5,7 +5,7 @@ module mud_bonding
    use mud_retention, only: saturation_t, saturation, saturation_curvature
    implicit none (type, external)
    private
-   public :: bonding_t, bonding, bonding_curvature, UNBONDED
+   public :: bonding_t, is_bonded, bonding, bonding_curvature, UNBONDED
 
    !> The factor f(zeta) and its slopes.
    type :: bonding_t
@@ -17,6 +17,14 @@ module mud_bonding
    type(bonding_t), parameter :: UNBONDED = bonding_t(1.0_wp, 0.0_wp, 0.0_wp)   !< Saturated, or the effect off.
    real(wp), parameter :: FORCE_A = 10.7_wp, FORCE_B = 2.4_wp   !< g = 1 + t/(A + B t), Borja (2004).
 contains
+   !> True if bonding acts at suctions up to p_c [kPa]: with S_max < 1 it does so without suction too.
+   pure logical function is_bonded(par, p_c)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: p_c
+
+      is_bonded = par%bonding .and. (p_c > 0.0_wp .or. par%s_max < 1.0_wp)
+   end function is_bonded
+
    !> f(zeta) at a suction [kPa] and a void ratio [-]: paper eq. (1) for zeta, eq. (5) restored for f (mended; Gallipoli
    !> et al. 2003), so that f(0) = 1.
    pure function bonding(par, p_c, e) result(bond)

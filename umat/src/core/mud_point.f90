@@ -7,6 +7,7 @@ module mud_point
       MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, MUD_VOID_RATIO_LIMIT, MUD_NOT_FINITE, MUD_INCREMENT_TOO_LARGE, &
       ON_STRESS, ON_STRAIN, ON_SUCTION, ON_VOID_RATIO
    use mud_tensor, only: IDENTITY, trace, deviator, norm, is_finite
+   use mud_bonding, only: is_bonded
    use mud_elastic, only: bulk_modulus, shear_modulus
    use mud_retention, only: saturation_t, saturation
    use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY, MODE_ELASTIC
@@ -75,7 +76,7 @@ contains
       state%eps_q_total = 0.0_wp
       state%last_step = 0.0_wp
       state%open = .false.
-      call lift_to_limit(par, par%bonding .and. p_c > 0.0_wp, state)
+      call lift_to_limit(par, is_bonded(par, p_c), state)
       call stress_ratio(par, state%sigma, p, r)
       state%memory = new_memory(r)
       call finish_state(par, state)
@@ -106,7 +107,7 @@ contains
       inc%p_c0 = state0%p_c
       inc%e0 = state0%e
       inc%d_v = trace(d_strain)
-      inc%bonded = par%bonding .and. max(state0%p_c, state0%p_c + d_pc) > 0.0_wp
+      inc%bonded = is_bonded(par, max(state0%p_c, state0%p_c + d_pc))
       inc%scheme = SCHEMES(par%scheme)
       if (void_ratio_at(inc, 1.0_wp) <= E_LOWER .or. void_ratio_at(inc, 1.0_wp) >= E_UPPER) then
          status = fail(MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO, 0, void_ratio_at(inc, 1.0_wp), E_LOWER, E_UPPER)
@@ -477,7 +478,7 @@ contains
 
       sat = saturation(par, state%p_c, state%e)
       state%s_w = sat%s_w
-      state%psi = state_parameter(par, par%bonding .and. state%p_c > 0.0_wp, state%e, state%p_c, &
+      state%psi = state_parameter(par, is_bonded(par, state%p_c), state%e, state%p_c, &
                                   max(trace(state%sigma)/3.0_wp, par%p_min))
       if (.not. present(blocks)) return
       blocks%dsw_dpc = sat%ds_dpc
