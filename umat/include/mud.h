@@ -85,6 +85,17 @@ int mud_update(const double *props, int nprops, const double *stress0, const dou
                double *stress1, double *statev1, double *dsig_deps, double *dsig_dpc, double *dsw_deps,
                double *dsw_dpc, mud_report *report);
 
+/* n points of one material over contiguous arrays: stress[6*n], statev[nstatev*n], dstrain[6*n], suction[n] (suction0
+ * and dsuction may be NULL: saturated, constant), tangent blocks [36*n], [6*n], [6*n], [n], each may be NULL. `threads`
+ * 0: as many as OpenMP would take. status[n] receives the code of every point; a failed point leaves its own outputs
+ * untouched and the others alone. The answer is bitwise that of mud_update, whatever the number of threads.
+ * reports[n] may be NULL.
+ * Returns the number of failed points, or a negative code if nothing was done. */
+int mud_update_batch(const double *props, int nprops, int n, const double *stress0, const double *statev0, int nstatev,
+                     const double *dstrain, const double *suction0, const double *dsuction, int tangent, int threads,
+                     double *stress1, double *statev1, double *dsig_deps, double *dsig_dpc, double *dsw_deps,
+                     double *dsw_dpc, int *status, mud_report *reports);
+
 /* A sentence for a status code; with a report, one that says where, the value, the allowed range and the remedy. */
 int mud_status_text(int code, char *text, int len);
 int mud_message(const mud_report *report, char *text, int len);

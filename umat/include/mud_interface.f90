@@ -5,7 +5,7 @@ module mud_interface
    implicit none (type, external)
    private
    public :: mud_report, mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_bounds, mud_default_props, &
-             mud_validate_props, mud_init_state, mud_update, mud_status_text, mud_message
+             mud_validate_props, mud_init_state, mud_update, mud_update_batch, mud_status_text, mud_message
    public :: MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL
    public :: MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONTINUUM, MUD_TANGENT_CONSISTENT
 
@@ -82,9 +82,7 @@ module mud_interface
       end function mud_init_state
 
       integer(c_int) function mud_update(props, nprops, stress0, statev0, nstatev, dstrain, suction0, dsuction, &
-         tangent, &
-                                         stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, report) &
-         bind(c, name='mud_update')
+              tangent, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, report) bind(c, name='mud_update')
          import :: c_int, c_double, mud_report
          integer(c_int), value :: nprops, nstatev, tangent
          real(c_double), intent(in) :: props(nprops), stress0(6), statev0(nstatev), dstrain(6)
@@ -93,6 +91,20 @@ module mud_interface
          real(c_double), intent(inout), optional :: dsig_deps(6, 6), dsig_dpc(6), dsw_deps(6), dsw_dpc
          type(mud_report), intent(out), optional :: report
       end function mud_update
+
+      !> n points at once: the number of failed ones, or a negative code.
+      integer(c_int) function mud_update_batch(props, nprops, n, stress0, statev0, nstatev, dstrain, suction0, &
+              dsuction, tangent, threads, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status, &
+              reports) bind(c, name='mud_update_batch')
+         import :: c_int, c_double, mud_report
+         integer(c_int), value :: nprops, n, nstatev, tangent, threads
+         real(c_double), intent(in) :: props(nprops), stress0(6, n), statev0(nstatev, n), dstrain(6, n)
+         real(c_double), intent(in), optional :: suction0(n), dsuction(n)
+         real(c_double), intent(inout) :: stress1(6, n), statev1(nstatev, n)
+         real(c_double), intent(inout), optional :: dsig_deps(6, 6, n), dsig_dpc(6, n), dsw_deps(6, n), dsw_dpc(n)
+         integer(c_int), intent(out) :: status(n)
+         type(mud_report), intent(out), optional :: reports(n)
+      end function mud_update_batch
 
       integer(c_int) function mud_status_text(code, text, len) bind(c, name='mud_status_text')
          import :: c_int, c_char

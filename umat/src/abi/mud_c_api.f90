@@ -179,12 +179,9 @@ contains
    end function mud_init_state
 
    integer(c_int) function mud_update(props, n_props, stress0, statev0, n_statev, dstrain, suction0, dsuction, &
-      tangent, &
-                                      stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, report_out) &
-      bind(c, name='mud_update')
+           tangent, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, report_out) bind(c, name='mud_update')
       type(c_ptr), value :: props, stress0, statev0, dstrain, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, &
-         dsw_dpc, &
-                            report_out
+                            dsw_dpc, report_out
       integer(c_int), value :: n_props, n_statev, tangent
       real(c_double), value :: suction0, dsuction
       real(c_double), pointer :: props_in(:), stress_in(:), statev_in(:), dstrain_in(:), array(:), matrix(:, :)

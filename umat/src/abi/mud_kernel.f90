@@ -12,7 +12,8 @@ module mud_kernel
    use mud_tensor, only: is_finite, rotate
    implicit none (type, external)
    private
-   public :: report_t, output_t, kernel_init, kernel_update, rotate_statev, failed_report, TANGENT_FROM_PROPS
+   public :: report_t, output_t, kernel_init, kernel_update, kernel_point, rotate_statev, failed_report, &
+      TANGENT_FROM_PROPS
 
    integer, parameter :: TANGENT_FROM_PROPS = -1   !< Take the tangent kind from PROPS.
    integer, parameter :: LAST_TANGENT = 3          !< Largest tangent kind.
@@ -53,9 +54,27 @@ contains
       statev(1:NSTATV) = packed
    end subroutine kernel_init
 
-   !> One increment. On failure output is undefined.
+   !> One increment of a material as PROPS give it. On failure output is undefined.
    pure subroutine kernel_update(props, stress, statev, d_strain, suction, d_suction, tangent, output, report)
       real(wp), intent(in) :: props(:)
+      real(wp), intent(in) :: stress(6), statev(:), d_strain(6), suction, d_suction
+      integer, intent(in) :: tangent
+      type(output_t), intent(inout) :: output
+      type(report_t), intent(out) :: report
+      type(params_t) :: par
+      type(mud_status_t) :: status
+
+      call read_params(props, par, status)
+      if (status%code == MUD_OK) then
+         call kernel_point(par, stress, statev, d_strain, suction, d_suction, tangent, output, report)
+      else
+         report = failed_report(status)
+      end if
+   end subroutine kernel_update
+
+   !> The same for checked parameters.
+   pure subroutine kernel_point(par, stress, statev, d_strain, suction, d_suction, tangent, output, report)
+      type(params_t), intent(in) :: par
       real(wp), intent(in) :: stress(6)       !< sigma' [kPa]
       real(wp), intent(in) :: statev(:)       !< Initialised here where layout = 0.
       real(wp), intent(in) :: d_strain(6)     !< Engineering shear [-].
@@ -63,7 +82,6 @@ contains
       integer, intent(in) :: tangent          !< TANGENT_* of mud_point or TANGENT_FROM_PROPS.
       type(output_t), intent(inout) :: output
       type(report_t), intent(out) :: report
-      type(params_t) :: par
       type(state_t) :: state0, state1
       type(blocks_t) :: blocks
       type(counters_t) :: counters
@@ -72,21 +90,19 @@ contains
       integer :: kind
 
       reached = 0.0_wp
-      call read_params(props, par, status)
-      if (status%code == MUD_OK) call read_state(par, stress, statev, suction, state0, output%statev, status)
       kind = tangent
       if (kind == TANGENT_FROM_PROPS) kind = par%tangent
+      call read_state(par, stress, statev, suction, state0, output%statev, status)
       if (status%code == MUD_OK .and. (kind < 0 .or. kind > LAST_TANGENT)) then
          status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(tangent, wp), 0.0_wp, real(LAST_TANGENT, wp))
       end if
       if (status%code == MUD_OK) then
          call update_point(par, state0, from_umat_strain(d_strain), d_suction, kind, state1, blocks, counters, &
-            reached, &
-                           status)
+                           reached, status)
       end if
       if (status%code == MUD_OK) call write_output(state1, blocks, counters, kind > 0, output, status)
       report = report_of(status, counters, reached)
-   end subroutine kernel_update
+   end subroutine kernel_point
 
    !> Rotates every tensor of STATEV by DROT, as Abaqus asks for.
    pure subroutine rotate_statev(drot, statev)

@@ -114,7 +114,8 @@ contains
       if (report%index >= 1 .and. report%index <= 6) text = trim(text)//' '//COMPONENT(report%index)
    end function quantity
 
-   !> Texts of fixed length: gfortran keeps the length of deferred-length results in static storage, which threads share.
+   !> Texts of fixed length: gfortran keeps the length of deferred-length results in static storage, which threads
+   !> share.
    pure function span(lower, upper) result(text)
       character(*), intent(in) :: lower, upper
       character(48) :: text

@@ -1,5 +1,5 @@
-!> Consistent tangent: the derivative of the algorithm, carried through the accepted substeps. Sizes of substeps, landings
-!> on events and the choice of branch are frozen; the jumps of memory are differentiated.
+!> Consistent tangent: the derivative of the algorithm, carried through the accepted substeps. Sizes of substeps,
+!> landings on events and the choice of branch are frozen; the jumps of memory are differentiated.
 module mud_consistent
    use mud_kinds, only: wp
    use mud_increment, only: increment_t, trial_t, void_ratio_at, suction_at, NY, MODE_HELD
@@ -105,8 +105,8 @@ contains
       end if
    end function direction
 
-   !> Derivatives of the memory across its jump at the start of a substep; `before` is the memory ahead of it and `trigger`
-   !> the rate that made it jump.
+   !> Derivatives of the memory across its jump at the start of a substep; `before` is the memory ahead of it and
+   !> `trigger` the rate that made it jump.
    pure subroutine jump_of_memory(par, inc, jump, before, after, trigger, trial, sens)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc

@@ -17,7 +17,8 @@ module mud_point
    use mud_substep, only: SCHEMES, step_factor
    use mud_increment, only: increment_t, trial_t, void_ratio_at, suction_at, rate_of, take_step, error_norm, limited, &
       state_parameter, NY, MODE_HELD
-   use mud_consistent, only: sensitivity_t, no_sensitivity, propagate, jump_of_memory, JUMP_NONE, JUMP_RESEAT, JUMP_RESUME, &
+   use mud_consistent, only: sensitivity_t, no_sensitivity, propagate, jump_of_memory, JUMP_NONE, JUMP_RESEAT, &
+      JUMP_RESUME, &
       JUMP_NEW
    use mud_tangent, only: continuum_tangent, elastic_tangent
    implicit none (type, external)
@@ -141,7 +142,8 @@ contains
          if (size > 0.0_wp) then
             blocks%dsig_deps = 0.0_wp   ! an open point has no stiffness
             blocks%dsig_dpc = 0.0_wp
-            if (trial%mode /= MODE_HELD) call continuum_tangent(par, trial%w(inc%scheme%stages), blocks%dsig_deps, blocks%dsig_dpc)
+            if (trial%mode /= MODE_HELD) call continuum_tangent(par, trial%w(inc%scheme%stages), blocks%dsig_deps, &
+               blocks%dsig_dpc)
             return
          end if
          blocks%dsig_deps = elastic_tangent(k, shear_modulus(par, state1%e, p))
@@ -521,8 +523,7 @@ contains
       do i = 1, 6
          if (within(d_strain(i), LARGEST_STRAIN)) cycle
          status = fail(merge(MUD_INCREMENT_TOO_LARGE, MUD_BAD_INPUT, is_finite(d_strain(i))), ON_STRAIN, i, &
-            d_strain(i), &
-                       -LARGEST_STRAIN, LARGEST_STRAIN)
+                       d_strain(i), -LARGEST_STRAIN, LARGEST_STRAIN)
          return
       end do
       if (.not. within(d_pc, LARGEST_SUCTION_STEP)) then

@@ -1,0 +1,104 @@
+!> Many points at once: mud_update_batch of mud.h.
+module mud_batch
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
+   use mud_kernel, only: report_t, output_t, kernel_point, failed_report
+   use mud_kinds, only: wp
+   use mud_params, only: params_t, read_params
+   use mud_registry, only: NSTATV
+   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, ON_STATEV, &
+      ON_ARGUMENT
+   implicit none (type, external)
+   private
+   public :: mud_update_batch
+
+   integer, parameter :: CHUNK = 16   !< Points a thread takes at a time: costs differ from point to point.
+contains
+   !> n points of one material over contiguous arrays, each point as in mud_update; see mud.h. A point that fails leaves
+   !> its own outputs untouched and the others alone. Bitwise independent of the number of threads, for no point sees
+   !> another.
+   integer(c_int) function mud_update_batch(props, n_props, n, stress0, statev0, n_statev, dstrain, suction0, &
+           dsuction, tangent, threads, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status_out, &
+           reports) bind(c, name='mud_update_batch')
+      type(c_ptr), value :: props, stress0, statev0, dstrain, suction0, dsuction, stress1, statev1, dsig_deps, &
+                            dsig_dpc, dsw_deps, dsw_dpc, status_out, reports
+      integer(c_int), value :: n_props, n, n_statev, tangent, threads
+      real(c_double), pointer :: props_in(:), s0(:, :), v0(:, :), de(:, :), pc0(:), dpc(:), s1(:, :), v1(:, :)
+      real(c_double), pointer :: c(:, :, :), c_pc(:, :), sw_e(:, :), sw_pc(:)
+      type(report_t), pointer :: report_to(:)
+      integer(c_int), pointer :: codes(:)
+      type(params_t) :: par
+      type(mud_status_t) :: status
+      type(output_t) :: output
+      type(report_t) :: report
+      integer :: i, failures
+
+      if (n < 0 .or. tangent < 0) status = fail(MUD_BAD_OPTION, ON_ARGUMENT)
+      if (n_statev < NSTATV) status = fail(MUD_BAD_NSTATV, ON_STATEV)
+      if (.not. (c_associated(props) .and. c_associated(stress0) .and. c_associated(statev0) .and. &
+                 c_associated(dstrain) .and. c_associated(stress1) .and. c_associated(statev1) .and. &
+                 c_associated(status_out))) status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
+      if (status%code == MUD_OK) then
+         call c_f_pointer(props, props_in, [max(n_props, 0)])
+         call read_params(props_in, par, status)
+      end if
+      mud_update_batch = status%code
+      if (status%code /= MUD_OK) return
+
+      call c_f_pointer(stress0, s0, [6, n])
+      call c_f_pointer(statev0, v0, [n_statev, n])
+      call c_f_pointer(dstrain, de, [6, n])
+      call c_f_pointer(stress1, s1, [6, n])
+      call c_f_pointer(statev1, v1, [n_statev, n])
+      call c_f_pointer(status_out, codes, [n])
+      nullify (pc0, dpc, c, c_pc, sw_e, sw_pc, report_to)
+      if (c_associated(suction0)) call c_f_pointer(suction0, pc0, [n])
+      if (c_associated(dsuction)) call c_f_pointer(dsuction, dpc, [n])
+      if (c_associated(dsig_deps)) call c_f_pointer(dsig_deps, c, [6, 6, n])
+      if (c_associated(dsig_dpc)) call c_f_pointer(dsig_dpc, c_pc, [6, n])
+      if (c_associated(dsw_deps)) call c_f_pointer(dsw_deps, sw_e, [6, n])
+      if (c_associated(dsw_dpc)) call c_f_pointer(dsw_dpc, sw_pc, [n])
+      if (c_associated(reports)) call c_f_pointer(reports, report_to, [n])
+
+      failures = 0
+      !$omp parallel do schedule(dynamic, CHUNK) default(shared) private(i, output, report) reduction(+:failures) &
+      !$omp num_threads(thread_count(threads))
+      do i = 1, n
+         call kernel_point(par, s0(:, i), v0(:, i), de(:, i), suction_at(pc0, i), suction_at(dpc, i), tangent, output, &
+                           report)
+         codes(i) = report%status
+         if (associated(report_to)) report_to(i) = report
+         if (report%status /= MUD_OK) then
+            failures = failures + 1
+            cycle
+         end if
+         s1(:, i) = output%stress
+         v1(1:NSTATV, i) = output%statev
+         if (output%has_tangent) then
+            if (associated(c)) c(:, :, i) = output%dsig_deps
+            if (associated(c_pc)) c_pc(:, i) = output%dsig_dpc
+         end if
+         if (associated(sw_e)) sw_e(:, i) = output%dsw_deps
+         if (associated(sw_pc)) sw_pc(i) = output%dsw_dpc
+      end do
+      !$omp end parallel do
+      mud_update_batch = int(failures, c_int)
+   end function mud_update_batch
+
+   !> Entry of an optional array, 0 where it is not given.
+   pure real(wp) function suction_at(array, i)
+      real(c_double), pointer, intent(in) :: array(:)
+      integer, intent(in) :: i
+
+      suction_at = 0.0_wp
+      if (associated(array)) suction_at = array(i)
+   end function suction_at
+
+   !> The number asked for; 0 or less means what OpenMP would take.
+   integer function thread_count(threads)
+      !$ use omp_lib, only: omp_get_max_threads
+      integer(c_int), intent(in) :: threads
+
+      thread_count = max(threads, 1)
+      !$ if (threads <= 0) thread_count = omp_get_max_threads()
+   end function thread_count
+end module mud_batch
