@@ -33,6 +33,7 @@ module mud_increment
       integer :: mode
       real(wp) :: r_in(6)
       real(wp) :: time              !< Pseudo-time of y0 [-].
+      real(wp) :: held_error        !< Error of a held substep's stress ratio [-].
    end type trial_t
 contains
    !> Rate at a vector of the integration and a pseudo-time; void ratio and suction follow from the latter exactly.
@@ -78,22 +79,37 @@ contains
       call solution(inc%scheme, trial%y0, trial%rates, h, trial%y)
    end subroutine take_step
 
-   !> A substep at p_min: p', fabric, memory and plastic shear stay. The stress ratio follows the strain elastically,
-   !> but not beyond the bounding surface. (Were it frozen, an undrained path that gets here on its contractive side
-   !> could never leave, in whatever direction it is sheared.)
+   !> A substep at p_min: p', fabric, memory and plastic shear stay. The stress ratio follows the strain elastically, but
+   !> not beyond the bounding surface, along which it slides (two half steps, the error against the whole one). Were it
+   !> frozen, an undrained path that gets here on its contractive side could never leave, in whatever direction it is
+   !> sheared.
    pure subroutine hold(par, inc, h, trial)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       real(wp), intent(in) :: h
       type(trial_t), intent(inout) :: trial
-      real(wp) :: e, r(6)
+      real(wp) :: whole(6), half(6)
 
-      e = void_ratio_at(inc, trial%time + h)
-      r = deviator(trial%y0(1:6) + (2.0_wp*shear_modulus(par, e, par%p_min)*h)*inc%d_strain)/par%p_min
+      half = deviator(trial%y0(1:6))/par%p_min
+      whole = slide(par, inc, half, trial%time, h)
+      half = slide(par, inc, half, trial%time, 0.5_wp*h)
+      half = slide(par, inc, half, trial%time + 0.5_wp*h, 0.5_wp*h)
       trial%y = trial%y0
-      trial%y(1:6) = par%p_min*(limited(par, inc%bonded, e, suction_at(inc, trial%time + h), par%p_min, &
-         r) + IDENTITY)
+      trial%y(1:6) = par%p_min*(half + IDENTITY)
+      trial%held_error = norm(half - whole)
    end subroutine hold
+
+   !> Stress ratio after an elastic step and back to the bounding surface.
+   pure function slide(par, inc, r0, time, h) result(r)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: r0(6), time, h
+      real(wp) :: r(6), e
+
+      e = void_ratio_at(inc, time + h)
+      r = r0 + deviator((2.0_wp*shear_modulus(par, e, par%p_min)/par%p_min*h)*inc%d_strain)
+      r = limited(par, inc%bonded, e, suction_at(inc, time + h), par%p_min, r)
+   end function slide
 
    pure subroutine store_rate(w, dy)
       type(rate_t), intent(in) :: w
@@ -112,8 +128,10 @@ contains
       real(wp), intent(in) :: h
       real(wp) :: delta(NY)
 
-      error = 0.0_wp
-      if (trial%mode == MODE_HELD) return
+      if (trial%mode == MODE_HELD) then
+         error = trial%held_error
+         return
+      end if
       call error_vector(scheme, trial%rates, h, delta)
       error = max(norm(delta(1:6))/max(norm(trial%y(1:6)), par%p_min), norm(delta(7:12))/par%z_max, &
                   abs(delta(13))/PLASTIC_SHEAR_SCALE)

@@ -209,7 +209,7 @@ contains
             end if
             factor = step_factor(inc%scheme, error, par%tolerance, may_grow)
             if (error <= par%tolerance) exit attempts
-            if (h_taken <= par%h_min) then
+            if (min(h, h_taken) <= par%h_min*(1.0_wp + LAST_SLIVER)) then
                if (.not. par%accept_minimum) then
                   status = fail(MUD_MINIMUM_STEP, value=error, lower=0.0_wp, upper=par%tolerance)
                   return
