@@ -37,6 +37,9 @@ module mud_point
    real(wp), parameter :: EVENT_TOLERANCE = 1.0e-13_wp
    integer, parameter :: MAX_EVENT_ITERATIONS = 100          !< Bisection alone needs about 45.
 
+   !> An open point closes when p' would rise by this share of the elastic rate: opening and closing at the same rate
+   !> would chatter where the two pull the stress ratio to opposite sides [-].
+   real(wp), parameter :: CLOSING = 0.01_wp
    integer, parameter :: EVENT_OPENS = 1     !< p' falls to p_min.
    integer, parameter :: EVENT_ARRIVES = 2   !< An elastic way back reaches the turning point.
    integer, parameter :: EVENT_CLOSES = 3    !< p' would rise from p_min.
@@ -331,13 +334,21 @@ contains
       trial%r_in = r
       trial%mode = MODE_ORDINARY
       call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
-      state%open = trial%w(1)%d_p <= 0.0_wp
+      state%open = rise(inc, trial%w(1)) <= CLOSING
       if (state%open) then
          trial%mode = MODE_HELD
       else
          state%memory = new_memory(r)
       end if
    end subroutine try_to_close
+
+   !> Rate of p' as a share of what the increment could do elastically [-].
+   pure real(wp) function rise(inc, w)
+      type(increment_t), intent(in) :: inc
+      type(rate_t), intent(in) :: w
+
+      rise = w%d_p/(w%k*norm(inc%d_strain) + abs(inc%d_pc))
+   end function rise
 
    !> Takes over an accepted substep; state already has its void ratio and suction.
    pure subroutine accept_substep(par, trial, state, counters)
@@ -456,7 +467,7 @@ contains
       case default
          call stress_ratio(par, y(1:6), p, r)
          call rate_of(par, inc, time, y, r, MODE_ORDINARY, w, counters)
-         f = -w%d_p/(w%k*norm(inc%d_strain) + abs(inc%d_pc))
+         f = CLOSING - rise(inc, w)
       end select
    end subroutine event_function
 
