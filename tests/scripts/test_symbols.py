@@ -1,0 +1,64 @@
+"""The archive keeps nothing between calls (no writable data of ours) and offers what mud.h promises."""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2])
+build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
+preset = os.environ.get("MUD_PRESET") or build.name
+
+WRITABLE = "BbCcDdGgSs"  # nm's letters of .bss, common and .data, global or local
+# Descriptors that gfortran makes of every derived type. It never writes them, but does not mark them read-only either.
+DESCRIPTOR = re.compile(r"__\w+_MOD___(vtab|def_init)_\w+$")
+
+
+def symbols(archive):
+    """(object, letter, name) of every symbol of an archive."""
+    text = subprocess.run(["nm", archive], check=True, capture_output=True, text=True).stdout
+    member, found = "", []
+    for line in text.splitlines():
+        words = line.split()
+        if line.endswith(":"):
+            member = line[:-1]
+        elif len(words) >= 2 and len(words[-2]) == 1:
+            found.append((member, words[-2], words[-1]))
+    return found
+
+
+def promised():
+    """Functions that mud.h declares, and the UMAT."""
+    header = re.sub(r"/\*.*?\*/", "", (root / "umat/include/mud.h").read_text(encoding="utf-8"), flags=re.DOTALL)
+    return set(re.findall(r"\b(mud_\w+)\s*\([^;{]*\)\s*;", header)) | {"umat_"}
+
+
+archive = build / "umat/libmud.a"
+found = symbols(archive)
+defined = {name for _, letter, name in found if letter == "T"}
+names = promised()
+failures, passed = [], 0
+
+# The header has 12 functions today; fewer would mean that the expression above no longer reads it.
+checks = [("mud.h: fewer than 12 functions found", len(names) < 13)]
+checks += [(f"{name} is not a defined global symbol", name not in defined) for name in sorted(names)]
+# A C name that no header promises would collide with other people's: gfortran's own begin with __.
+checks += [(f"{name} is global but not in mud.h", name not in names)
+           for name in sorted(defined) if not name.startswith("__mud_") and not name.startswith("_GLOBAL_")]
+if preset == "sanitize":
+    print("note: writable data is not looked for here, because the sanitizers add their own (1 check fewer)")
+else:
+    writable = [(member, letter, name) for member, letter, name in found
+                if letter in WRITABLE and not DESCRIPTOR.match(name)]
+    for member, letter, name in writable:
+        print(f"  {member}: {name} ({letter})")
+    checks.append((f"{len(writable)} writable symbols: state between calls, and threads that share it", bool(writable)))
+
+for text, wrong in checks:
+    if wrong:
+        failures.append(text)
+        print(f"FAILED {archive.name} ({preset}): {text}")
+    else:
+        passed += 1
+print(f"{passed} passed, {len(failures)} failed")
+sys.exit(bool(failures))

@@ -1,0 +1,193 @@
+/* A host written in C: what only a C compiler can say about mud.h, and two threads. */
+#define _POSIX_C_SOURCE 200809L
+#include <pthread.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include "mud.h"
+
+_Static_assert(MUD_OK == 0, "success is zero");
+_Static_assert(offsetof(mud_report, value) == 16 * sizeof(int), "16 counts before the numbers, no gap");
+
+enum { MAX_PROPS = 128, MAX_STATEV = 256, STEPS = 300 };
+
+/* Layout of the report, in bytes. */
+int abi_report_size(void) { return (int)sizeof(mud_report); }
+int abi_header_version(void) { return MUD_ABI_VERSION; }
+
+/* Every member has its own number, to be read on the Fortran side. */
+void abi_fill_report(mud_report *r)
+{
+   *r = (mud_report){
+      .status = 1, .subject = 2, .index = 3, .n_rate = 4, .n_substep = 5, .n_reject = 6, .n_reseat = 7, .n_floor = 8,
+      .n_cap_d = 9, .n_cap_h = 10, .n_hysteresis = 11, .n_iso_kept = 12, .n_no_root = 13, .n_min_step = 14,
+      .n_open = 15, .n_tensile = 16, .value = 17.0, .lower = 18.0, .upper = 19.0, .reached = 20.0, .pnewdt = 21.0};
+}
+
+/* Constants of mud.h in the order in which it lists them. */
+void abi_status_codes(int codes[16])
+{
+   const int all[16] = {
+      MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_BAD_NTENS, MUD_BAD_PROPS, MUD_BAD_STATE, MUD_BAD_INPUT,
+      MUD_NULL_ARGUMENT, MUD_BAD_VOID_RATIO, MUD_BAD_OPTION, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION,
+      MUD_VOID_RATIO_LIMIT, MUD_NOT_FINITE, MUD_INCREMENT_TOO_LARGE};
+   memcpy(codes, all, sizeof all);
+}
+
+void abi_options(int options[12])
+{
+   const int all[12] = {MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL,
+                        MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONTINUUM,
+                        MUD_TANGENT_CONSISTENT};
+   memcpy(options, all, sizeof all);
+}
+
+/* One point on its own walk. */
+typedef struct {
+   unsigned seed;
+   int in_place, status;
+   double stress[6], statev[MAX_STATEV], tangent[36];
+} walk_t;
+
+static double next(unsigned *seed)
+{
+   *seed = 1664525u * *seed + 1013904223u;
+   return (double)*seed / 4294967296.0 - 0.5;
+}
+
+/* In place, outputs are the inputs; otherwise they are others, filled with nonsense before. */
+static void *walk(void *argument)
+{
+   walk_t *w = argument;
+   double props[MAX_PROPS], stress[6], statev[MAX_STATEV];
+   const int nprops = mud_count(MUD_PROPS), nstatev = mud_count(MUD_STATEV);
+   char text[200];
+   unsigned seed = w->seed;
+
+   memset(w->statev, 0, sizeof w->statev);
+   for (int i = 0; i < 6; i++)
+      w->stress[i] = i < 3 ? -80.0 : 0.0;
+   w->status = mud_default_props(props, nprops);
+   if (w->status == MUD_OK)
+      w->status = mud_init_state(props, nprops, w->stress, 25.0, 0.0, w->statev, nstatev, text, (int)sizeof text);
+   for (int step = 0; step < STEPS && w->status == MUD_OK; step++) {
+      double dstrain[6], *to_stress = w->in_place ? w->stress : stress, *to_statev = w->in_place ? w->statev : statev;
+      for (int i = 0; i < 6; i++)
+         dstrain[i] = 1.0e-3 * next(&seed);
+      for (int i = 0; i < 3; i++)
+         dstrain[i] *= 0.5;
+      if (!w->in_place) {
+         memset(stress, 0x55, sizeof stress);
+         memset(statev, 0x55, sizeof statev);
+      }
+      w->status = mud_update(props, nprops, w->stress, w->statev, nstatev, dstrain, 25.0, 0.0, MUD_TANGENT_CONTINUUM,
+                             to_stress, to_statev, w->tangent, NULL, NULL, NULL, NULL);
+      if (!w->in_place) {
+         memcpy(w->stress, stress, sizeof stress);
+         memcpy(w->statev, statev, (size_t)nstatev * sizeof *statev);
+      }
+   }
+   return NULL;
+}
+
+static int same(const walk_t *a, const walk_t *b)
+{
+   return a->status == MUD_OK && b->status == MUD_OK && !memcmp(a->stress, b->stress, sizeof a->stress) &&
+          !memcmp(a->statev, b->statev, sizeof a->statev) && !memcmp(a->tangent, b->tangent, sizeof a->tangent);
+}
+
+/* 1 if a walk in place ends with the bits of one that keeps inputs and outputs apart. */
+int abi_walk_in_place_is_the_same(void)
+{
+   static walk_t apart, in_place;
+   apart = (walk_t){.seed = 5u};
+   in_place = (walk_t){.seed = 5u, .in_place = 1};
+   walk(&apart);
+   walk(&in_place);
+   return same(&apart, &in_place);
+}
+
+/* 1 if a failed update in place leaves every byte. */
+int abi_failure_in_place_leaves_all(void)
+{
+   static walk_t before, after;
+   double props[MAX_PROPS], dstrain[6] = {3.0};
+   const int nprops = mud_count(MUD_PROPS);
+   before = (walk_t){.seed = 6u, .in_place = 1};
+   walk(&before);
+   memcpy(&after, &before, sizeof after);
+   mud_default_props(props, nprops);
+   int status = mud_update(props, nprops, after.stress, after.statev, mud_count(MUD_STATEV), dstrain, 25.0, 0.0,
+                           MUD_TANGENT_CONTINUUM, after.stress, after.statev, after.tangent, NULL, NULL, NULL, NULL);
+   return status == MUD_INCREMENT_TOO_LARGE && !memcmp(&before, &after, sizeof after);
+}
+
+/* 1 if walks in `n` threads at the same time end with the bits of the same walks one after the other. */
+int abi_threads_walk_as_one(int n)
+{
+   walk_t *serial = calloc((size_t)n, sizeof *serial), *parallel = calloc((size_t)n, sizeof *parallel);
+   pthread_t *thread = calloc((size_t)n, sizeof *thread);
+   int good = serial && parallel && thread, started = 0;
+
+   for (int i = 0; i < n && good; i++) {
+      serial[i] = (walk_t){.seed = 100u + (unsigned)i, .in_place = 1};
+      parallel[i] = serial[i];
+      walk(&serial[i]);
+   }
+   for (int i = 0; i < n && good; i++) {
+      good = !pthread_create(&thread[i], NULL, walk, &parallel[i]);
+      started += good;
+   }
+   for (int i = 0; i < started; i++)
+      pthread_join(thread[i], NULL);
+   for (int i = 0; i < n && good; i++)
+      good = same(&serial[i], &parallel[i]);
+   for (int i = 1; i < n && good; i++)   /* different walks, or the test would be none */
+      good = memcmp(serial[i].stress, serial[0].stress, sizeof serial[i].stress) != 0;
+   free(serial);
+   free(parallel);
+   free(thread);
+   return good;
+}
+
+/* 1 if every mandatory pointer of mud_update, NULL alone, is refused with nothing written, and NULL for the others
+ * is not. */
+int abi_null_pointers_of_update(void)
+{
+   static walk_t w, copy;
+   double props[MAX_PROPS], dstrain[6] = {-1.0e-5};
+   const int nprops = mud_count(MUD_PROPS), nstatev = mud_count(MUD_STATEV);
+   w = (walk_t){.seed = 7u, .in_place = 1};
+   walk(&w);
+   mud_default_props(props, nprops);
+   for (int i = 0; i < 7; i++) {
+      mud_report report;
+      memcpy(&copy, &w, sizeof copy);
+      int status = mud_update(i == 0 ? NULL : props, nprops, i == 1 ? NULL : w.stress, i == 2 ? NULL : w.statev,
+                              nstatev, i == 3 ? NULL : dstrain, 25.0, 0.0, MUD_TANGENT_CONTINUUM,
+                              i == 4 ? NULL : copy.stress, i == 5 ? NULL : copy.statev, NULL, NULL, NULL, NULL,
+                              i == 6 ? NULL : &report);
+      if (i < 6 && (status != MUD_NULL_ARGUMENT || report.status != status || memcmp(&copy, &w, sizeof copy)))
+         return 0;
+      if (i == 6 && status != MUD_OK)
+         return 0;
+   }
+   return 1;
+}
+
+/* 1 if NULL is answered with a code by every other function that takes a pointer. */
+int abi_null_pointers_of_the_rest(void)
+{
+   double props[MAX_PROPS], stress[6] = {-1.0, -1.0, -1.0}, statev[MAX_STATEV] = {0.0};
+   const int nprops = mud_count(MUD_PROPS), nstatev = mud_count(MUD_STATEV);
+   return mud_default_props(NULL, nprops) == MUD_NULL_ARGUMENT && mud_default_props(props, nprops) == MUD_OK &&
+          mud_validate_props(NULL, nprops, NULL, 0) == MUD_NULL_ARGUMENT &&
+          mud_validate_props(props, nprops, NULL, 0) == MUD_OK && mud_message(NULL, NULL, 0) == MUD_NULL_ARGUMENT &&
+          mud_init_state(NULL, nprops, stress, 0.0, 0.0, statev, nstatev, NULL, 0) == MUD_NULL_ARGUMENT &&
+          mud_init_state(props, nprops, NULL, 0.0, 0.0, statev, nstatev, NULL, 0) == MUD_NULL_ARGUMENT &&
+          mud_init_state(props, nprops, stress, 0.0, 0.0, NULL, nstatev, NULL, 0) == MUD_NULL_ARGUMENT &&
+          mud_init_state(props, nprops, stress, 0.0, 0.0, statev, nstatev, NULL, 0) == MUD_OK &&
+          mud_index(MUD_PROPS, NULL) == -1 && mud_bounds(MUD_PROPS, 0, NULL, NULL, NULL) == MUD_OK &&
+          mud_version(NULL, 10) == MUD_OK && mud_text(MUD_PROPS, 0, MUD_NAME, NULL, 10) == MUD_OK &&
+          mud_status_text(0, NULL, 10) == MUD_OK;
+}

@@ -1,0 +1,2 @@
+! The module that every Fortran host compiles for itself.
+include 'mud_interface.f90'
