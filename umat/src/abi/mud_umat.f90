@@ -122,10 +122,10 @@ contains
          call c_f_pointer(drot, matrix, [3, 3])
          rotation = matrix
       end if
-      if (.not. all(is_finite(rotation))) then
-         status = fail(MUD_BAD_INPUT, ON_ARGUMENT)
-         return
-      end if
+      if (.not. all(is_finite(rotation))) status = fail(MUD_BAD_INPUT, ON_ARGUMENT)
+      if (status%code /= MUD_OK) return
+      if (any(abs(rotation) > 1.0_wp + ORTHOGONAL)) status = fail(MUD_BAD_INPUT, ON_ARGUMENT)
+      if (status%code /= MUD_OK) return
       if (all(abs(rotation) <= 0.0_wp)) then
          do i = 1, 3
             rotation(i, i) = 1.0_wp

@@ -6,7 +6,8 @@ module mud_critical_state
    private
    public :: critical_void_ratio, bounding_ratio, dilatancy_ratio, lode_factor, lode_slope, compression_image
 
-   real(wp), parameter :: EXPONENT_LIMIT = 50.0_wp   !< |n psi| beyond it is held: only absurd parameters get there [-].
+   !> |n psi| and |ln alpha_hat| beyond these are held, lest something overflows: only absurd parameters get there [-].
+   real(wp), parameter :: EXPONENT_LIMIT = 20.0_wp, IMAGE_LIMIT = 50.0_wp
 contains
    !> e_c [-] at a mean effective stress [kPa] and a bonding factor [-], paper eq. (8).
    pure real(wp) function critical_void_ratio(par, f, p) result(e_c)
@@ -66,6 +67,6 @@ contains
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: f, e
 
-      alpha = (par%n_l*f/e)**(1.0_wp/par%lambda)
+      alpha = exp(min(max(log(par%n_l*f/e)/par%lambda, -IMAGE_LIMIT), IMAGE_LIMIT))
    end function compression_image
 end module mud_critical_state

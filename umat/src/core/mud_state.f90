@@ -13,6 +13,10 @@ module mud_state
 
    real(wp), parameter :: E_LOWER = 0.01_wp, E_UPPER = 5.0_wp   !< Range of the void ratio [-].
 
+   real(wp), parameter :: LARGEST_RATIO = 1.0e12_wp       !< A stress ratio beyond it is no state [-].
+   real(wp), parameter :: LARGEST_FABRIC = 1.0e6_wp       !< Likewise; z_max is at most 1e3 [-].
+   real(wp), parameter :: LARGEST_DIRECTION = 1.01_wp     !< Components of a unit tensor [-].
+
    !> What the point remembers of its loading processes.
    type :: memory_t
       real(wp) :: r_in(6)      !< stress ratio where the present process began
@@ -67,7 +71,16 @@ contains
       call require(statev, S_OPEN, 0.0_wp, 1.0_wp, status)
       call require(statev, S_LAST_STEP, 0.0_wp, huge(1.0_wp), status)
       call require(statev, S_EPS_Q_P, 0.0_wp, huge(1.0_wp), status)
-      call require(statev, S_WAY_BACK, 0.0_wp, huge(1.0_wp), status)
+      call require(statev, S_WAY_BACK, 0.0_wp, LARGEST_RATIO, status)
+      call require(statev, S_X_BEFORE, -LARGEST_RATIO, LARGEST_RATIO, status)
+      call require(statev, S_X_RUNNING, -LARGEST_RATIO, LARGEST_RATIO, status)
+      do i = 0, 5
+         call require(statev, S_FABRIC + i, -LARGEST_FABRIC, LARGEST_FABRIC, status)
+         call require(statev, S_MEMORY + i, -LARGEST_RATIO, LARGEST_RATIO, status)
+         call require(statev, S_MEMORY_BEFORE + i, -LARGEST_RATIO, LARGEST_RATIO, status)
+         call require(statev, S_TURNING_POINT + i, -LARGEST_RATIO, LARGEST_RATIO, status)
+         call require(statev, S_DIRECTION + i, -LARGEST_DIRECTION, LARGEST_DIRECTION, status)
+      end do
       if (status%code /= 0) return
 
       state%e = statev(S_VOID_RATIO)
