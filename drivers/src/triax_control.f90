@@ -5,7 +5,8 @@ module triax_control
    use triax_text, only: short, whole
    use triax_case, only: stage_t, CONTROL_NAMES, DRAINED, UNDRAINED, ISOTROPIC, OEDOMETER, CONSTANT_NET_STRESS, &
                          STRAIN_PATH
-   use triax_point, only: soil_t, point_t, tangent_t, mud_report, update_point, update_sentence, state_value, slope_is_exact, &
+   use triax_point, only: soil_t, point_t, tangent_t, mud_report, update_point, update_sentence, state_value, &
+      slope_is_exact, &
                           axial_strain, volumetric_strain, radial_stress, mean_stress, deviator_stress, AXIAL, RADIAL
    implicit none (type, external)
    private

@@ -12,7 +12,8 @@ BLOCK = re.compile(r"(<!-- mud_describe (\w+) -->\n)(.*?)(<!-- end -->)", re.DOT
 
 
 def describe(what):
-    text = subprocess.run([build / "drivers/mud_describe", what], check=True, capture_output=True, text=True).stdout
+    program = build / "drivers/mud_describe"
+    text = subprocess.run([program, what], check=True, capture_output=True, text=True).stdout
     return f"```\n{text}```\n" if what in ("abaqus", "namelist") else text
 
 
@@ -24,7 +25,7 @@ blocks = BLOCK.findall(text)
 wrong = [what for _, what, held, _ in blocks if held != describe(what)]
 missing = {"props", "statev", "abaqus"} - {what for _, what, _, _ in blocks}
 for what in wrong:
-    print(f"FAILED umat/README.md, block {what}: differs from mud_describe; renew with tests/scripts/test_readme.py --write")
+    print(f"FAILED umat/README.md, block {what}: not what mud_describe says; renew with test_readme.py --write")
 for what in missing:
     print(f"FAILED umat/README.md: no block {what}")
 print(f"{len(blocks) - len(wrong)} passed, {len(wrong) + len(missing)} failed")

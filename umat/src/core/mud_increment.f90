@@ -79,9 +79,9 @@ contains
       call solution(inc%scheme, trial%y0, trial%rates, h, trial%y)
    end subroutine take_step
 
-   !> A substep at p_min: p', fabric, memory and plastic shear stay. The stress ratio follows the strain elastically, but
-   !> not beyond the bounding surface, along which it slides (two half steps, the error against the whole one). Were it
-   !> frozen, an undrained path that gets here on its contractive side could never leave, in whatever direction it is
+   !> A substep at p_min: p', fabric, memory and plastic shear stay. The stress ratio follows the strain elastically,
+   !> but not beyond the bounding surface, along which it slides (two half steps, the error against the whole one). Were
+   !> it frozen, an undrained path that gets here on its contractive side could never leave, in whatever direction it is
    !> sheared.
    pure subroutine hold(par, inc, h, trial)
       type(params_t), intent(in) :: par

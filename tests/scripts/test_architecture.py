@@ -1,0 +1,227 @@
+"""Layers and style that a compiler does not hold: reads the sources. Every rule is first shown a planted offence."""
+import os
+import pathlib
+import re
+import sys
+
+root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2])
+COLUMNS = 120
+SHOWN = 30  # findings that are printed of one rule
+# Layers of the core, lowest first (conventions); what is not listed belongs to the last group.
+GROUPS = [["kinds", "status", "tensor"], ["registry", "params", "state"],
+          ["elastic", "critical_state", "retention", "bonding", "flow", "hardening"]]
+
+USE = re.compile(r"^\s*use\b\s*(,\s*(non_)?intrinsic\s*)?(::)?\s*(\w+)\s*(,\s*only\s*:)?", re.IGNORECASE)
+HEAD = re.compile(r"^\s*((?:(?:\w+\s*\([^()]*\)|[\w*]+)\s+)*?)(function|subroutine)\s+(\w+)\s*\(", re.IGNORECASE)
+IMPURE = re.compile(r"^\s*(?:if\s*\(.*\)\s*)?(print\b|write\s*\(|read\s*\(|open\s*\(|close\s*\(|flush\b|stop\b|"
+                    r"error\s+stop\b|call\s+(?:execute_command_line|exit|abort)\b|allocate\s*\(|save\b)", re.IGNORECASE)
+DECLARATION = re.compile(r"^\s*(integer|real|logical|character|complex|type\s*\(|class\s*\()[^!]*::", re.IGNORECASE)
+
+
+def code_lines(text):
+    """(line number, statement) without comments and with continuations joined; strings are emptied."""
+    statement, start = "", 0
+    for number, line in enumerate(text.splitlines(), 1):
+        line = re.sub(r"'[^']*'|\"[^\"]*\"", "''", line)
+        line = line.split("!", 1)[0].rstrip()
+        if not line.strip():
+            continue
+        start = start or number
+        statement += " " + line.strip().lstrip("&").strip() if statement else line.strip()
+        if statement.endswith("&"):
+            statement = statement[:-1].rstrip()
+            continue
+        yield start, statement
+        statement, start = "", 0
+
+
+def uses(text):
+    return [(n, m[4].lower(), bool(m[5])) for n, line in code_lines(text) if (m := USE.match(line))]
+
+
+def use_without_only(text):
+    return [f"{n}: use {module} without only" for n, module, only in uses(text) if not only]
+
+
+def upward_use(text, name, order, allowed_beside=frozenset()):
+    """Modules of the library that `name` may not see: those at or above its own place."""
+    return [f"{n}: {name} uses {module}, which is not below it" for n, module, _ in uses(text)
+            if module.startswith("mud_") and module not in order[:order.index(name)] and module not in allowed_beside]
+
+
+def inner_use(text, inner):
+    return [f"{n}: uses {module}, which is the library's own" for n, module, _ in uses(text) if module in inner]
+
+
+def not_pure(text):
+    """Procedures that are not pure, and statements that would make them so."""
+    wrong = []
+    for n, line in code_lines(text):
+        head = HEAD.match(line)
+        if head and not line.lower().startswith("end") and not {"pure", "elemental"} & set(head[1].lower().split()):
+            wrong.append(f"{n}: {head[3]} is not pure")
+        if IMPURE.match(line):
+            wrong.append(f"{n}: {line[:40]}")
+        if re.search(r"\b(allocatable|save)\b", line.split("::")[0], re.IGNORECASE) and DECLARATION.match(line):
+            wrong.append(f"{n}: {line[:40]}")
+    return wrong
+
+
+def module_variables(text):
+    """Declarations before `contains`, outside a type and an interface, that are no parameters."""
+    wrong, inside = [], False
+    for n, line in code_lines(text):
+        lower = line.lower()
+        if lower == "contains" and not inside:
+            break
+        if re.match(r"(type\b(?!\s*\()|interface\b)", lower):
+            inside = True
+        elif re.match(r"end\s*(type|interface)", lower):
+            inside = False
+        elif not inside and DECLARATION.match(line) and "parameter" not in lower.split("::")[0]:
+            wrong.append(f"{n}: {line[:60]}")
+    return wrong
+
+
+def not_strict(text):
+    """Modules and programs that leave out implicit none; modules that leave out private."""
+    wrong = []
+    for unit in re.finditer(r"^(module|program) (\w+)$.*?^end \1 \2", text, re.MULTILINE | re.DOTALL | re.IGNORECASE):
+        if not re.search(r"^ +implicit none \(type, external\)$", unit[0], re.MULTILINE):
+            wrong.append(f"{unit[2]}: no `implicit none (type, external)`")
+        if unit[1].lower() == "module" and not re.search(r"^ +private$", unit[0], re.MULTILINE):
+            wrong.append(f"{unit[2]}: no `private`")
+    return wrong
+
+
+def wrong_name(text, stem):
+    names = re.findall(r"^(?:module|program) (\w+)$", text, re.MULTILINE)
+    return [] if names == [stem] else [f"units {names} in a file called {stem}"]
+
+
+def long_lines(text):
+    """An assertion must stand on one line, so it may be longer."""
+    return [f"{n}: {len(line)} columns" for n, line in enumerate(text.splitlines(), 1)
+            if len(line) > COLUMNS and not line.lstrip().startswith("@assert")]
+
+
+def idle_tests(text):
+    """Tests of a .pf file without an assertion, in themselves or in a procedure of the file that they call."""
+    bodies = dict(re.findall(r"^ *(?:recursive )?subroutine (\w+)\(.*?$(.*?)^ *end subroutine \1", text,
+                             re.MULTILINE | re.DOTALL))
+
+    def asserts(name, seen=()):
+        body = bodies.get(name, "")
+        return "@assert" in body or any(asserts(called, (*seen, name)) for called in re.findall(r"\bcall (\w+)", body)
+                                        if called not in (*seen, name))
+
+    return [f"{name} asserts nothing" for name in re.findall(r"^ *@test\s*\n *subroutine (\w+)", text, re.MULTILINE)
+            if not asserts(name)]
+
+
+def sources(*patterns):
+    return [file for pattern in patterns for file in sorted(root.glob(pattern))]
+
+
+def cmake_order():
+    """Modules of the library in the order of umat/CMakeLists.txt: (core, abi)."""
+    text = (root / "umat/CMakeLists.txt").read_text(encoding="utf-8")
+    return [["mud_" + name for name in re.search(rf"set\({list_name}\s+([^)]*)\)", text)[1].split()]
+            for list_name in ("core", "abi")]
+
+
+def group_order(core):
+    """The groups of the conventions stand one after the other in the CMake list, and their members exist."""
+    wrong, rest = [], [name.removeprefix("mud_") for name in core]
+    for group in GROUPS:
+        if sorted(rest[:len(group)]) != sorted(group):
+            wrong.append(f"expected the layer {group}, found {rest[:len(group)]}")
+        rest = rest[len(group):]
+    if rest[:2] != ["rates", "reversal"] or rest[-1:] != ["point"]:
+        wrong.append(f"expected rates, reversal .. point, found {rest}")
+    return wrong
+
+
+def planted_offences():
+    """Every rule against an offence it must see, and against the nearest innocent text."""
+    module = "module mud_x\n   implicit none (type, external)\n   private\ncontains\nend module mud_x\n"
+    order = ["mud_a", "mud_b", "mud_c"]
+    cases = [
+        ("use without only", use_without_only, "use mud_a", "use mud_a, only: b"),
+        ("continued use", use_without_only, "use, intrinsic :: iso_x", "use, intrinsic :: iso_x, only: &\n  c"),
+        ("upward use", lambda t: upward_use(t, "mud_b", order), "use mud_c, only: x", "use mud_a, only: x"),
+        ("inner use", lambda t: inner_use(t, {"mud_a"}), "use mud_a, only: x", "use mud_interface, only: x"),
+        ("impure function", not_pure, "real(wp) function f(x)", "pure real(wp) function f(x)"),
+        ("impure subroutine", not_pure, "subroutine f(x)", "pure subroutine f(x) ! end"),
+        ("print", not_pure, "print '(a)', 'x'", "x = 1 ! print"),
+        ("write after if", not_pure, "if (a(1) > 0) write (*, *) x", "if (a(1) > 0) x = 1"),
+        ("stop", not_pure, "error stop 'x'", "stopped = .true."),
+        ("saved local", not_pure, "integer, save :: n", "integer :: n"),
+        ("allocatable", not_pure, "real(wp), allocatable :: a(:)", "real(wp) :: allocatable_size"),
+        ("module variable", module_variables, "integer :: n = 0", "integer, parameter :: n = 0"),
+        ("module variable after a type", module_variables, "type :: t\nreal :: a\nend type t\ntype(t) :: b",
+         "type :: t\nreal :: a\nend type t\ncontains\nreal :: b"),
+        ("no private", not_strict, module.replace("   private\n", ""), module),
+        ("implicit typing", not_strict, module.replace(" (type, external)", ""), module),
+        ("file name", lambda t: wrong_name(t, "mud_x"), module.replace("mud_x", "mud_y"), module),
+        ("long line", long_lines, "x" * (COLUMNS + 1), "x" * COLUMNS),
+        ("idle test", idle_tests, "@test\nsubroutine a()\nx = 1\nend subroutine a\n",
+         "@test\nsubroutine a()\ncall b(1)\nend subroutine a\nsubroutine b(x)\n@assertTrue(x)\nend subroutine b\n")]
+    return ([f"{name}: the offence is not seen" for name, rule, bad, _ in cases if not rule(bad)]
+            + [f"{name}: innocent text is blamed" for name, rule, _, good in cases if rule(good)])
+
+
+def main():
+    core, abi = cmake_order()
+    inside = core + abi
+    core_files, abi_files = sources("umat/src/core/*.f90"), sources("umat/src/abi/*.f90")
+    library = core_files + abi_files
+    clients = sources("host/**/*.f90", "drivers/**/*.f90")
+    helpers = sources("tests/**/*.f90")
+    suites = sources("tests/**/*.pf")
+    # mud_interface.f90 defines one module per file too; the helper that includes it has none of its own.
+    others = [f for f in sources("umat/include/*", "tests/**/*.[ch]", "tests/**/*.py")
+              if f.name != "mutations.py"]  # quotes lines of the sources
+    modules = [f for f in library + clients + helpers + sources("umat/include/*.f90") if f.stem != "abi_mud_interface"]
+
+    def over(files, rule, needs_name=False):
+        found = []
+        for file in files:
+            text = file.read_text(encoding="utf-8")
+            wrong = rule(text, file.stem) if needs_name else rule(text)
+            found += [f"{file.relative_to(root)}:{line}" for line in wrong]
+        return found
+
+    checks = [
+        ("every rule sees its planted offence and nothing else", planted_offences()),
+        ("the sources of the library are those of umat/CMakeLists.txt",
+         sorted(set(inside) ^ {file.stem for file in library})),
+        ("there are drivers, helpers and suites to look at", [] if clients and helpers and suites else ["none found"]),
+        ("the layers stand in the order of the conventions", group_order(core)),
+        ("core uses only what is below", over(core_files, lambda t, n: upward_use(t, n, core), True)),
+        ("abi uses the core and what is below in abi", over(abi_files, lambda t, n: upward_use(t, n, inside), True)),
+        ("drivers and host see mud_interface only", over(clients, lambda t: inner_use(t, set(inside)))),
+        ("the host's view of the library uses nothing of it",
+         over(sources("umat/include/*.f90"), lambda t: inner_use(t, set(inside)))),
+        ("every use says only", over(library + clients + helpers + suites, use_without_only)),
+        ("core procedures are pure", over(core_files, not_pure)),
+        ("core and abi have no module variables", over(library, module_variables)),
+        ("every unit is strict", over(modules + suites, not_strict)),
+        ("a file and its module share one name", over(modules + suites, wrong_name, True)),
+        (f"no line has more than {COLUMNS} columns",
+         over(library + clients + helpers + suites + others, long_lines)),
+        ("every test asserts something", over(suites, idle_tests))]
+    failed = 0
+    for name, findings in checks:
+        failed += bool(findings)
+        if findings:
+            print(f"FAILED {name}:")
+            print("\n".join("  " + finding for finding in findings[:SHOWN]))
+            if len(findings) > SHOWN:
+                print(f"  and {len(findings) - SHOWN} more")
+    print(f"{len(checks) - failed} passed, {failed} failed")
+    return failed > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
