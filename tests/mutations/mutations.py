@@ -1,0 +1,108 @@
+"""The mutations: (title, (file below umat/src, text that stands there once, its replacement), ...)."""
+
+TENSOR, RATES, POINT = "core/mud_tensor.f90", "core/mud_rates.f90", "core/mud_point.f90"
+INCREMENT, REVERSAL, SUBSTEP = "core/mud_increment.f90", "core/mud_reversal.f90", "core/mud_substep.f90"
+FLOW, HARDENING, CRITICAL = "core/mud_flow.f90", "core/mud_hardening.f90", "core/mud_critical_state.f90"
+RETENTION, BONDING, ELASTIC = "core/mud_retention.f90", "core/mud_bonding.f90", "core/mud_elastic.f90"
+PARAMS, REGISTRY, STATE = "core/mud_params.f90", "core/mud_registry.f90", "core/mud_state.f90"
+
+MUTATIONS = [
+    # those the issue names
+    ("halve the shear weight of the contraction",
+     (TENSOR, "+ 2.0_wp*(a(4)*b(4) + a(5)*b(5) + a(6)*b(6))", "+ (a(4)*b(4) + a(5)*b(5) + a(6)*b(6))")),
+    ("drop the -r of the hardening direction",
+     (RATES, "w%t = 2.0_wp*w%g*d_e - w%r*volumetric", "w%t = 2.0_wp*w%g*d_e")),
+    ("swap two shear components in square()",
+     (TENSOR, "c(5) = a(5)*(a(1) + a(3)) + a(4)*a(6)", "c(6) = a(5)*(a(1) + a(3)) + a(4)*a(6)"),
+     (TENSOR, "c(6) = a(6)*(a(2) + a(3)) + a(4)*a(5)", "c(5) = a(6)*(a(2) + a(3)) + a(4)*a(5)")),
+    ("swap two shear components in rotate()",
+     (TENSOR, "full(1, 2), full(1, 3), full(2, 3)]", "full(1, 3), full(1, 2), full(2, 3)]")),
+    ("freeze the fabric", (INCREMENT, "dy(7:12) = w%d_z", "dy(7:12) = 0.0_wp*w%d_z")),
+    # tensors and elasticity
+    ("transpose the rotation",
+     (TENSOR, "matmul(r, matmul(full, transpose(r)))", "matmul(transpose(r), matmul(full, r))")),
+    ("bulk modulus with the exponent of the shear modulus", (ELASTIC, "(2.0_wp/3.0_wp)", "0.5_wp")),
+    ("shear modulus without the square", (ELASTIC, "(2.97_wp - e)**2", "(2.97_wp - e)")),
+    ("no smallest mean stress in the stress ratio",
+     (RATES, "p = max(trace(sigma)/3.0_wp, par%p_min)", "p = trace(sigma)/3.0_wp + 0.0_wp*par%p_min")),
+    # critical state and flow
+    ("sign of the dilatancy", (FLOW, "d = a_d*(SQRT_2_3*g*m_d - r_n)", "d = -a_d*(SQRT_2_3*g*m_d - r_n)")),
+    ("dilatancy without the Lode factor", (FLOW, "SQRT_2_3*g*m_d - r_n", "SQRT_2_3*m_d - r_n + 0.0_wp*g")),
+    ("fabric also grows in contraction", (FLOW, ".and. d < 0.0_wp) dz", ") dz")),
+    ("fabric acts in every direction", (FLOW, "max(z_n, 0.0_wp)", "z_n")),
+    ("drop the Lode slope", (CRITICAL, "slope = 0.25_wp*g*SQRT_6", "slope = 0.0_wp*g*SQRT_6")),
+    ("Lode factor with c squared", (PARAMS, "params%c4 = params%c**4", "params%c4 = params%c**2")),
+    ("no Macaulay brackets in the bounding ratio",
+     (CRITICAL, "min(max(-par%n_b*psi, 0.0_wp), EXPONENT_LIMIT)", "min(-par%n_b*psi, EXPONENT_LIMIT)")),
+    ("dilatancy ratio with n_b", (CRITICAL, "min(max(par%n_d*psi", "min(max(par%n_b*psi")),
+    ("compression line without f", (CRITICAL, "(par%n_l*f/e)", "(par%n_l/e + 0.0_wp*f)")),
+    ("critical state line without f", (CRITICAL, "e_c = par%n_c*f*", "e_c = par%n_c*")),
+    # hardening
+    ("kinematic hardening without the void ratio",
+     (HARDENING, "max(1.0_wp - par%c_h*e, SMALLEST_VOID_TERM)", "1.0_wp")),
+    ("isotropic mechanism without its weight",
+     (HARDENING, "iso%share = weight*e/(1.0_wp + e)", "iso%share = e/(1.0_wp + e)")),
+    ("isotropic mechanism without the change of f with suction",
+     (HARDENING, "iso%b = -iso%share", "iso%b = -0.0_wp*iso%share")),
+    ("isotropic mechanism with twice kappa",
+     (HARDENING, "(par%lambda - kappa)*iso%f", "(par%lambda - 2.0_wp*kappa)*iso%f")),
+    ("wrong sign of df/de", (BONDING, "bond%df_de = -slope", "bond%df_de = slope")),
+    ("meniscus force without suction in the divisor",
+     (BONDING, "divisor = FORCE_A + FORCE_B*t", "divisor = FORCE_A + 0.0_wp*FORCE_B*t")),
+    ("retention without Omega in dS_w/de", (RETENTION, "sat%ds_de = slope*par%omega/e", "sat%ds_de = slope/e")),
+    ("retention without the void ratio",
+     (RETENTION, "log(p_c/par%p_a) + par%omega*log(e)", "log(p_c/par%p_a) + 0.0_wp*log(e)")),
+    # rates and guards
+    ("isotropic mechanism never rejected", (RATES, "w%b_rate < 0.0_wp) then", "w%b_rate < -huge(1.0_wp)) then")),
+    ("isotropic mechanism acts in extension too",
+     (RATES, "if (w%iso%a*w%d_p/w%p + w%iso%b*d_pc > 0.0_wp) then",
+      "if (abs(w%iso%a*w%d_p/w%p + w%iso%b*d_pc) > 0.0_wp) then")),
+    ("no floor", (RATES, "w%h_b = max(w%x, par%x_floor)/w%b_0", "w%h_b = max(w%x, 1.0e-15_wp)/w%b_0")),
+    ("no contraction cap", (RATES, "w%d = limit", "w%d = w%d")),
+    ("softening cap twice as large", (RATES, "w%h_b = limit\n", "w%h_b = 2.0_wp*limit\n")),
+    ("first root found taken",
+     (RATES, "if (single_root(par, arc, w, angle)) return", "if (single_root(par, arc, w, angle) .or. .true.) return")),
+    ("plastic shear without sqrt(2/3)", (RATES, "w%d_eps_q = SQRT_2_3*w%l", "w%d_eps_q = w%l")),
+    # memory
+    ("forget to store the memory", (REVERSAL, "      memory%r_in = r_in\n", "      memory%r_in = memory%r_in\n")),
+    ("forget to zero the plastic shear at a reversal",
+     (REVERSAL, "memory%r_in = r_in\n      memory%eps_q_p = 0.0_wp",
+      "memory%r_in = r_in\n      memory%eps_q_p = memory%eps_q_p")),
+    ("threshold weight on the wrong memory", (REVERSAL, "*(memory%r_before - r)", "*(memory%r_in - r)")),
+    ("no fall-back of the threshold rule", (REVERSAL, "if (ddot(r - r_in, n) < 0.0_wp) r_in = r", "continue")),
+    ("repositioning with the process that ends",
+     (REVERSAL, "x_before = memory%x_before\n", "x_before = memory%x_running\n")),
+    ("resume forgets at once", (REVERSAL, "memory%eps_q_p > par%eps_hat", "memory%eps_q_p > 0.0_wp*par%eps_hat")),
+    ("resume never leaves its ball", (REVERSAL, "BALL*memory%way_back", "1.0e9_wp*BALL*memory%way_back")),
+    ("resume does not restore the memory",
+     (REVERSAL, "memory%r_in = memory%r_before\n", "memory%r_before = memory%r_in\n")),
+    ("hysteresis the other way round", (POINT, "%x < -par%x_rev) then", "%x < par%x_rev) then")),
+    ("reversals never found", (POINT, "%x < -par%x_rev) then", "%x < -huge(1.0_wp) + par%x_rev) then")),
+    # integration
+    ("suction stays at its start",
+     (INCREMENT, "p_c = inc%p_c0 + time*inc%d_pc", "p_c = inc%p_c0 + 0.0_wp*time*inc%d_pc")),
+    ("void ratio linear in the increment",
+     (INCREMENT, "e = (1.0_wp + e)*exp(-inc%d_v*time) - 1.0_wp", "e = e - (1.0_wp + e)*inc%d_v*time")),
+    ("error norm without the stress",
+     (INCREMENT, "error = max(norm(delta(1:6))/", "error = max(0.0_wp*norm(delta(1:6))/")),
+    ("a weight of Dormand-Prince mistyped", (SUBSTEP, "19372.0_wp/6561", "19732.0_wp/6561")),
+    ("an error weight of Bogacki-Shampine mistyped", (SUBSTEP, "[-5.0_wp/72, ", "[-5.0_wp/27, ")),
+    ("growth right after a rejection", (SUBSTEP, "factor = min(factor, 1.0_wp)", "factor = min(factor, 2.0_wp)")),
+    # tension cut-off
+    ("p' is not held at the opening",
+     (POINT, "if (par%cutoff) call land_on(par, inc, EVENT_OPENS, memory, h, trial, counters, crossed)\n"
+             "         call land_on", "call land_on"),
+     (POINT, "      case default\n         if (par%cutoff) call land_on",
+      "      case default\n         if (.false.) call land_on")),
+    ("closing remembers the gap",
+     (POINT, "state%memory = new_memory(r)\n      end if", "state%memory%r_in = state%memory%r_in\n      end if")),
+    ("open stress ratio beyond the bounding surface",
+     (INCREMENT, "if (r_norm > limit) r_limited", "if (r_norm > 1.0e9_wp*limit) r_limited")),
+    ("an open point never closes",
+     (POINT, "state%open = rise(inc, trial%w(1)) <= CLOSING",
+      "state%open = rise(inc, trial%w(1)) <= huge(1.0_wp) + CLOSING")),
+    ("tension is not reported", (POINT, "if (has_tension(state1%sigma)) counters%tensile = 1", "continue")),
+    # tables
+    ("two parameters swapped", (PARAMS, "params%n_b = props(P_N_B)", "params%n_b = props(P_N_D)")),
+    ("a default mistyped", (REGISTRY, "3370.0_wp", "3730.0_wp")),
+]

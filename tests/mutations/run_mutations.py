@@ -1,0 +1,154 @@
+"""Change the library in one place at a time and see which tests notice.
+
+Usage: run_mutations.py [-k WORD] [--readme] [--keep] [-j N]. Works on a copy of the source tree in a temporary
+folder; builds release with our own runner. A mutation that no test notices survives: exit code 1. A mutation that does
+not apply or does not compile is an error of mutations.py: exit code 2.
+  -k WORD    only mutations whose title contains it
+  --readme   write the table to README.md beside this file
+  --keep     keep the temporary folder
+"""
+import argparse
+import concurrent.futures
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+from mutations import MUTATIONS
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+LEFT_OUT = {"test_random", "test_random_long"}  # minutes each
+TIMEOUT = 180  # s; the slowest suite takes 5 s, so a suite that takes longer hangs
+FAILED = re.compile(r"^FAILED (\w+) at", re.MULTILINE)
+
+
+def run(command, folder, **more):
+    return subprocess.run(command, cwd=folder, text=True, errors="replace", stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, **more)
+
+
+def suites_of(tree):
+    files = sorted(tree.glob("tests/unit/*.pf")) + sorted(tree.glob("tests/contract/*.pf"))
+    return [file.stem for file in files if file.stem not in LEFT_OUT]
+
+
+def build(tree, jobs):
+    """Output if the build fails, else None."""
+    done = run(["cmake", "--build", "build", "-j", str(jobs), "--target", *suites_of(tree)], tree)
+    return done.stdout if done.returncode else None
+
+
+def failures_of(tree, suite):
+    """Names of the tests of a suite that fail, as suite.test."""
+    program = tree / "build" / "tests" / suite
+    environment = dict(os.environ, MUD_SOURCE_DIR=str(tree), MUD_BUILD_DIR=str(tree / "build"), MUD_PRESET="release")
+    try:
+        done = run([str(program)], tree, env=environment, timeout=TIMEOUT)
+    except subprocess.TimeoutExpired:
+        return [f"{suite} (hangs)"]
+    names = [f"{suite}.{name}" for name in FAILED.findall(done.stdout)]
+    if done.returncode and not names:
+        return [f"{suite} (stops)"]
+    return names
+
+
+def all_failures(tree, jobs):
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        return sorted(set(sum(pool.map(lambda suite: failures_of(tree, suite), suites_of(tree)), [])))
+
+
+def mutate(tree, changes):
+    """Apply (file, old, new) ...; the originals by file."""
+    originals = {}
+    for file, old, new in changes:
+        path = tree / "umat" / "src" / file
+        text = path.read_text(encoding="utf-8")
+        originals.setdefault(path, text)
+        if text.count(old) != 1:
+            raise ValueError(f"{file}: {old!r} stands there {text.count(old)} times, not once")
+        path.write_text(text.replace(old, new), encoding="utf-8")
+    return originals
+
+
+def restore(originals):
+    for path, text in originals.items():
+        path.write_text(text, encoding="utf-8")
+
+
+def write_readme(table, suites, seconds):
+    survived = sum(not caught for _, caught in table)
+    lines = ["# Mutations", "",
+             "`python3 tests/mutations/run_mutations.py --readme` changes the library in one place at a time "
+             "(`mutations.py`), builds it and runs the suites of `tests/unit` and `tests/contract`. It is not part of "
+             "`./check`. \"(hangs)\" and \"(stops)\" mean that the suite's program did so.", "",
+             f"Measured: {len(table)} mutations, {len(table) - survived} noticed, {survived} survived; {suites} "
+             f"suites, {seconds / 60:.0f} minutes on {os.cpu_count()} cores. Left out: "
+             f"{', '.join(sorted(LEFT_OUT))}.", "",
+             "| mutation | tests | noticed by |", "|---|---|---|"]
+    for title, caught in table:
+        shown = ", ".join(f"`{name}`" for name in caught[:4])
+        if len(caught) > 4:
+            shown += f" and {len(caught) - 4} more"
+        lines.append(f"| {title} | {len(caught)} | {shown or '**none**'} |")
+    (HERE / "README.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments.add_argument("-k", default="", metavar="WORD")
+    arguments.add_argument("--readme", action="store_true")
+    arguments.add_argument("--keep", action="store_true")
+    arguments.add_argument("-j", type=int, default=os.cpu_count())
+    arguments = arguments.parse_args()
+    start = time.monotonic()
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="mud-mutations-"))
+    tree = folder / "mud"
+    try:
+        shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns("build", ".git", "__pycache__"))
+        configured = run(["cmake", "-S", ".", "-B", "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                          "-DMUD_PRESET=release", "-DMUD_USE_PFUNIT=OFF", "-DMUD_WERROR=OFF",
+                          "-DMUD_BUILD_DRIVERS=OFF"], tree)
+        problem = configured.stdout if configured.returncode else build(tree, arguments.j)
+        if problem:
+            print(problem)
+            return 2
+        before = all_failures(tree, arguments.j)
+        print(f"unchanged: {len(suites_of(tree))} suites, failing {before or 'none'}", flush=True)
+        table, broken = [], 0
+        for title, *changes in MUTATIONS:
+            if arguments.k not in title:
+                continue
+            originals = {}
+            try:
+                originals = mutate(tree, changes)
+                problem = build(tree, arguments.j)
+                if problem:
+                    raise ValueError("does not compile:\n" + problem[-2000:])
+                caught = [name for name in all_failures(tree, arguments.j) if name not in before]
+            except ValueError as error:
+                broken += 1
+                print(f"ERROR {title}: {error}", flush=True)
+                restore(originals)
+                continue
+            restore(originals)
+            table.append((title, caught))
+            print(f"{'caught' if caught else 'SURVIVED'}: {title}: {len(caught)}: {', '.join(caught)}", flush=True)
+        survived = [title for title, caught in table if not caught]
+        print(f"{len(table)} mutations, {len(survived)} survived, {broken} not applicable")
+        if arguments.readme and not arguments.k:
+            write_readme(table, len(suites_of(tree)), time.monotonic() - start)
+        return 2 if broken else bool(survived)
+    finally:
+        if arguments.keep:
+            print(f"kept: {folder}")
+        else:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
