@@ -3,7 +3,7 @@ program mud_describe
    use, intrinsic :: iso_c_binding, only: c_int, c_double, c_char, c_null_char
    use, intrinsic :: iso_fortran_env, only: error_unit
    use mud_interface, only: mud_count, mud_text, mud_bounds, mud_version, MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, &
-      MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL
+      MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL, MUD_ROTATION, MUD_EVOLUTION
    implicit none (type, external)
    character(16) :: what
 
@@ -52,11 +52,12 @@ contains
    subroutine print_statev()
       integer(c_int) :: i
 
-      print '(a)', '| STATEV | name | symbol | unit | initially | origin | meaning |', '|---|---|---|---|---|---|---|'
+      print '(a)', '| STATEV | name | symbol | unit | initially | rotates | evolves | origin | meaning |', &
+         '|---|---|---|---|---|---|---|---|---|'
       do i = 0, mud_count(MUD_STATEV) - 1
          print '(a, i0, *(a))', '| ', i + 1, ' | `', text(MUD_STATEV, i, MUD_NAME), '` | ', text(MUD_STATEV, i, &
-            MUD_SYMBOL), &
-            ' | ', text(MUD_STATEV, i, MUD_UNIT), ' | ', text(MUD_STATEV, i, MUD_INITIAL), ' | ', &
+            MUD_SYMBOL), ' | ', text(MUD_STATEV, i, MUD_UNIT), ' | ', text(MUD_STATEV, i, MUD_INITIAL), ' | ', &
+            text(MUD_STATEV, i, MUD_ROTATION), ' | ', text(MUD_STATEV, i, MUD_EVOLUTION), ' | ', &
             text(MUD_STATEV, i, MUD_ORIGIN), ' | ', text(MUD_STATEV, i, MUD_MEANING), ' |'
       end do
    end subroutine print_statev

@@ -34,10 +34,10 @@ void abi_status_codes(int codes[16])
    memcpy(codes, all, sizeof all);
 }
 
-void abi_options(int options[12])
+void abi_options(int options[14])
 {
-   const int all[12] = {MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL,
-                        MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONTINUUM,
+   const int all[14] = {MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL,
+                        MUD_ROTATION, MUD_EVOLUTION, MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONTINUUM,
                         MUD_TANGENT_CONSISTENT};
    memcpy(options, all, sizeof all);
 }

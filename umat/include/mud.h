@@ -27,7 +27,10 @@ enum mud_status {
 };
 
 enum mud_list  { MUD_PROPS = 1, MUD_STATEV = 2 };
-enum mud_field { MUD_NAME = 1, MUD_SYMBOL = 2, MUD_UNIT = 3, MUD_ORIGIN = 4, MUD_MEANING = 5, MUD_INITIAL = 6 };
+enum mud_field {
+   MUD_NAME = 1, MUD_SYMBOL = 2, MUD_UNIT = 3, MUD_ORIGIN = 4, MUD_MEANING = 5,
+   MUD_INITIAL = 6, MUD_ROTATION = 7, MUD_EVOLUTION = 8   /* of STATEV only */
+};
 enum mud_tangent {
    MUD_TANGENT_NONE = 0, MUD_TANGENT_ELASTIC = 1, MUD_TANGENT_CONTINUUM = 2, MUD_TANGENT_CONSISTENT = 3
 };

@@ -6,12 +6,13 @@ module mud_interface
    private
    public :: mud_report, mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_bounds, mud_default_props, &
              mud_validate_props, mud_init_state, mud_update, mud_update_batch, mud_status_text, mud_message
-   public :: MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL
+   public :: MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL, &
+      MUD_ROTATION, MUD_EVOLUTION
    public :: MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONTINUUM, MUD_TANGENT_CONSISTENT
 
    integer(c_int), parameter :: MUD_PROPS = 1, MUD_STATEV = 2
    integer(c_int), parameter :: MUD_NAME = 1, MUD_SYMBOL = 2, MUD_UNIT = 3, MUD_ORIGIN = 4, MUD_MEANING = 5, &
-      MUD_INITIAL = 6
+      MUD_INITIAL = 6, MUD_ROTATION = 7, MUD_EVOLUTION = 8
    integer(c_int), parameter :: MUD_TANGENT_NONE = 0, MUD_TANGENT_ELASTIC = 1, MUD_TANGENT_CONTINUUM = 2, &
                                 MUD_TANGENT_CONSISTENT = 3
 

@@ -19,7 +19,7 @@ module mud_c_api
    character(*), parameter :: VERSION = '0.1.0'
    integer, parameter :: LIST_PROPS = 1, LIST_STATEV = 2
    integer, parameter :: FIELD_NAME = 1, FIELD_SYMBOL = 2, FIELD_UNIT = 3, FIELD_ORIGIN = 4, FIELD_MEANING = 5, &
-                         FIELD_INITIAL = 6
+                         FIELD_INITIAL = 6, FIELD_ROTATION = 7, FIELD_EVOLUTION = 8
 contains
    pure integer(c_int) function mud_abi_version() bind(c, name='mud_abi_version')
       mud_abi_version = ABI_VERSION
@@ -86,7 +86,7 @@ contains
                call put(entry%origin, text, len)
             case (FIELD_MEANING)
                call put(entry%meaning, text, len)
-            case (FIELD_INITIAL)
+            case (FIELD_INITIAL, FIELD_ROTATION, FIELD_EVOLUTION)
                call put('', text, len)
             case default
                mud_text = MUD_BAD_OPTION
@@ -107,6 +107,10 @@ contains
                call put(entry%meaning, text, len)
             case (FIELD_INITIAL)
                call put(entry%initial, text, len)
+            case (FIELD_ROTATION)
+               call put(merge('DROT', 'no  ', entry%rotates), text, len)
+            case (FIELD_EVOLUTION)
+               call put(entry%evolution, text, len)
             case default
                mud_text = MUD_BAD_OPTION
             end select

@@ -50,6 +50,7 @@ module mud_registry
       character(12) :: origin
       character(112) :: meaning
       character(20) :: initial !< How it is initialised.
+      character(64) :: evolution !< How and when it changes.
    end type variable_t
 
    integer, parameter :: P_K_0 = 1
@@ -223,65 +224,71 @@ module mud_registry
 
    type(variable_t), parameter :: VARIABLES(NVARIABLES) = [ &
       variable_t(S_LAYOUT, 1, 'layout', '-', '1', .false., 'ours', &
-         '0: not initialised; otherwise the layout number of this table', 'set to 1'), &
+         '0: not initialised; otherwise the layout number of this table', 'set to 1', 'never'), &
       variable_t(S_VOID_RATIO, 1, 'void_ratio', 'e', '1', .false., 'paper', &
-         'void ratio; preset it (layout = 0) to override e_0', 'preset or e_0'), &
+         'void ratio; preset it (layout = 0) to override e_0', 'preset or e_0', &
+         '1 + e falls with exp(-eps_v), exactly'), &
       variable_t(S_SATURATION, 1, 'saturation', 'S_w', '1', .false., 'paper', &
-         'degree of saturation, eq. (24)', 'eq. (24)'), &
+         'degree of saturation, eq. (24)', 'eq. (24)', 'eq. (24) at the end of the increment'), &
       variable_t(S_SUCTION, 1, 'suction', 'p_c', 'kPa', .false., 'paper', &
-         'suction at the end of the last increment', 'PREDEF(1)'), &
+         'suction at the end of the last increment', 'PREDEF(1)', 'by DPRED(1)'), &
       variable_t(S_STATE_PARAMETER, 1, 'state_parameter', 'psi', '1', .false., 'paper', &
-         'e - e_c, eq. (8)', 'from e, p'', p_c'), &
+         'e - e_c, eq. (8)', 'from e, p'', p_c', 'computed at the end of the increment'), &
       variable_t(S_EPS_Q_P, 1, 'eps_q_p', 'eps_q^p', '1', .false., 'paper', &
-         'plastic shear of the present loading process, eq. (16)', '0'), &
+         'plastic shear of the present loading process, eq. (16)', '0', 'grows with plastic shear; 0 at a re-seat'), &
       variable_t(S_EPS_Q_P_TOTAL, 1, 'eps_q_p_total', '-', '1', .false., 'ours', &
-         'plastic shear of all processes', '0'), &
+         'plastic shear of all processes', '0', 'grows with plastic shear'), &
       variable_t(S_X_BEFORE, 1, 'x_before', 'J', '1', .false., 'paper', &
-         '(r - r_in):n at the end of the process before (rule repositioning)', '0'), &
+         '(r - r_in):n at the end of the process before (rule repositioning)', '0', 'set at a reversal'), &
       variable_t(S_X_RUNNING, 1, 'x_running', 'x', '1', .false., 'paper', &
-         '(r - r_in):n of the last accepted rate with x >= 0', '0'), &
+         '(r - r_in):n of the last accepted rate with x >= 0', '0', 'set by every accepted substep'), &
       variable_t(S_WAY_BACK, 1, 'way_back', 'd', '1', .false., 'ours', &
-         'distance from the turning point where an elastic way back began; 0: none (rule resume)', '0'), &
+         'distance from the turning point where an elastic way back began; 0: none (rule resume)', '0', &
+         'set where an elastic way back begins, 0 at its end'), &
       variable_t(S_SUSPENDED, 1, 'suspended', '-', '1', .false., 'ours', &
-         '1 while a process is suspended (rule resume)', '0'), &
+         '1 while a process is suspended (rule resume)', '0', &
+         'set where a process turns, 0 when it resumes or is given up'), &
       variable_t(S_OPEN, 1, 'open', '-', '1', .false., 'numerical', &
-         '1 while the tension cut-off holds p'' at p_min', '0'), &
+         '1 while the tension cut-off holds p'' at p_min', '0', &
+         'set where p'' would fall below p_min, 0 when p'' rises again'), &
       variable_t(S_LAST_STEP, 1, 'last_step', 'h', '1', .false., 'numerical', &
-         'last substep proposed, in units of strain', '0'), &
+         'last substep proposed, in units of strain', '0', 'set by every accepted substep'), &
       variable_t(S_FABRIC, 6, 'fabric', 'z', '1', .true., 'rebuilt', &
-         'fabric deviator', '0'), &
+         'fabric deviator', '0', 'grows against n in dilation, bounded by z_max'), &
       variable_t(S_MEMORY, 6, 'memory', 'r_in', '1', .true., 'paper', &
-         'stress ratio where the present loading process began', 'r'), &
+         'stress ratio where the present loading process began', 'r', 'jumps at a reversal, by the memory rule'), &
       variable_t(S_MEMORY_BEFORE, 6, 'memory_before', 'r_prev', '1', .true., 'paper', &
-         'memory of the process before (threshold) or of the suspended one (resume)', 'r'), &
+         'memory of the process before (threshold) or of the suspended one (resume)', 'r', 'set where memory jumps'), &
       variable_t(S_TURNING_POINT, 6, 'turning_point', 'r_t', '1', .true., 'ours', &
-         'stress ratio where the suspended process was left (resume)', '0'), &
+         'stress ratio where the suspended process was left (resume)', '0', 'set where a process is suspended'), &
       variable_t(S_DIRECTION, 6, 'direction', 'n', '1', .true., 'ours', &
-         'last loading direction with x >= 0; direction before the turn while suspended', '0'), &
+         'last loading direction with x >= 0; direction before the turn while suspended', '0', &
+         'set by every accepted substep'), &
       variable_t(S_DSIGMA_DPC, 6, 'dsigma_dpc', '-', '1', .true., 'paper', &
-         'output: d sigma''/d p_c in the sign convention of STRESS', '0'), &
+         'output: d sigma''/d p_c in the sign convention of STRESS', '0', 'written with every tangent'), &
       variable_t(S_DSW_DPC, 1, 'dsw_dpc', '-', '1/kPa', .false., 'paper', &
-         'output: d S_w/d p_c at constant e', 'eq. (24)'), &
+         'output: d S_w/d p_c at constant e', 'eq. (24)', 'written by every update'), &
       variable_t(S_DSW_DEV, 1, 'dsw_dev', '-', '1', .false., 'paper', &
-         'output: d S_w/d eps_v at constant p_c, eps_v in the sign convention of STRAN', 'eq. (24)'), &
+         'output: d S_w/d eps_v at constant p_c, eps_v in the sign convention of STRAN', 'eq. (24)', &
+         'written by every update'), &
       variable_t(S_N_RATE, 1, 'n_rate', '-', '1', .false., 'ours', &
-         'total: rate evaluations', '0'), &
+         'total: rate evaluations', '0', 'adds up'), &
       variable_t(S_N_SUBSTEP, 1, 'n_substep', '-', '1', .false., 'ours', &
-         'total: accepted substeps', '0'), &
+         'total: accepted substeps', '0', 'adds up'), &
       variable_t(S_N_REJECT, 1, 'n_reject', '-', '1', .false., 'ours', &
-         'total: rejected substeps', '0'), &
+         'total: rejected substeps', '0', 'adds up'), &
       variable_t(S_N_RESEAT, 1, 'n_reseat', '-', '1', .false., 'ours', &
-         'total: re-seats of the memory', '0'), &
+         'total: re-seats of the memory', '0', 'adds up'), &
       variable_t(S_N_GUARD, 1, 'n_guard', '-', '1', .false., 'ours', &
-         'total: rates in which a guard of section 4 acted', '0'), &
+         'total: rates in which a guard of section 4 acted', '0', 'adds up'), &
       variable_t(S_N_NO_ROOT, 1, 'n_no_root', '-', '1', .false., 'ours', &
-         'total: rates without an admissible direction, taken as elastic', '0'), &
+         'total: rates without an admissible direction, taken as elastic', '0', 'adds up'), &
       variable_t(S_N_MIN_STEP, 1, 'n_min_step', '-', '1', .false., 'ours', &
-         'total: substeps accepted at the minimum size (rule as_published)', '0'), &
+         'total: substeps accepted at the minimum size (rule as_published)', '0', 'adds up'), &
       variable_t(S_N_OPEN, 1, 'n_open', '-', '1', .false., 'ours', &
-         'total: substeps held by the tension cut-off', '0'), &
+         'total: substeps held by the tension cut-off', '0', 'adds up'), &
       variable_t(S_N_TENSILE, 1, 'n_tensile', '-', '1', .false., 'ours', &
-         'total: increments that ended with a tensile principal effective stress', '0')]
+         'total: increments that ended with a tensile principal effective stress', '0', 'adds up')]
 contains
    !> Place of a parameter in PROPS, 0 if there is none of that name. Case does not matter, as in a namelist.
    pure integer function property_index(name) result(index)
