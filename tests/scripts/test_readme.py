@@ -1,4 +1,7 @@
-"""The tables of umat/README.md are what the library says of itself; run with --write to renew them."""
+"""The tables of umat/README.md are what the library says of itself, its programs those that test_install builds.
+
+Run with --write to renew both.
+"""
 import os
 import pathlib
 import re
@@ -8,10 +11,16 @@ import sys
 root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2])
 build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
 readme = root / "umat/README.md"
-BLOCK = re.compile(r"(<!-- mud_describe (\w+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+BLOCK = re.compile(r"(<!-- (mud_describe \w+|source \S+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+PROMISED = {"mud_describe props", "mud_describe statev", "mud_describe abaqus", "source tests/consumers/minimal_host.c",
+            "source tests/consumers/minimal_host.f90"}
 
 
-def describe(what):
+def content(block):
+    kind, what = block.split()
+    if kind == "source":
+        language = {".c": "c", ".f90": "fortran"}[pathlib.Path(what).suffix]
+        return f"```{language}\n{(root / what).read_text(encoding='utf-8')}```\n"
     program = build / "drivers/mud_describe"
     text = subprocess.run([program, what], check=True, capture_output=True, text=True).stdout
     return f"```\n{text}```\n" if what in ("abaqus", "namelist") else text
@@ -19,13 +28,13 @@ def describe(what):
 
 text = readme.read_text(encoding="utf-8")
 if "--write" in sys.argv:
-    readme.write_text(BLOCK.sub(lambda m: m[1] + describe(m[2]) + m[4], text), encoding="utf-8")
+    readme.write_text(BLOCK.sub(lambda m: m[1] + content(m[2]) + m[4], text), encoding="utf-8")
     sys.exit()
 blocks = BLOCK.findall(text)
-wrong = [what for _, what, held, _ in blocks if held != describe(what)]
-missing = {"props", "statev", "abaqus"} - {what for _, what, _, _ in blocks}
+wrong = [what for _, what, held, _ in blocks if held != content(what)]
+missing = PROMISED - {what for _, what, _, _ in blocks}
 for what in wrong:
-    print(f"FAILED umat/README.md, block {what}: not what mud_describe says; renew with test_readme.py --write")
+    print(f"FAILED umat/README.md, block {what}: not what it should be; renew with test_readme.py --write")
 for what in missing:
     print(f"FAILED umat/README.md: no block {what}")
 print(f"{len(blocks) - len(wrong)} passed, {len(wrong) + len(missing)} failed")

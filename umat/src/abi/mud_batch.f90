@@ -30,7 +30,7 @@ contains
       type(mud_status_t) :: status
       type(output_t) :: output
       type(report_t) :: report
-      integer :: i, failures
+      integer :: i, failures, workers
 
       if (n < 0 .or. tangent < 0) status = fail(MUD_BAD_OPTION, ON_ARGUMENT)
       if (n_statev < NSTATV) status = fail(MUD_BAD_NSTATV, ON_STATEV)
@@ -60,8 +60,9 @@ contains
       if (c_associated(reports)) call c_f_pointer(reports, report_to, [n])
 
       failures = 0
+      workers = thread_count(threads)
       !$omp parallel do schedule(dynamic, CHUNK) default(shared) private(i, output, report) reduction(+:failures) &
-      !$omp num_threads(thread_count(threads))
+      !$omp num_threads(workers)
       do i = 1, n
          call kernel_point(par, s0(:, i), v0(:, i), de(:, i), suction_at(pc0, i), suction_at(dpc, i), tangent, output, &
                            report)

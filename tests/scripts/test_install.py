@@ -1,0 +1,329 @@
+"""Installs the library and uses it as a stranger would: find_package, pkg-config, plain compilers, C and Fortran."""
+import concurrent.futures
+import ctypes
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2]).resolve()
+build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release").resolve()
+preset = os.environ.get("MUD_PRESET") or build.name
+cache = dict(re.findall(r"^(\w+):\w+=(.*)$", (build / "CMakeCache.txt").read_text(encoding="utf-8"), re.MULTILINE))
+consumers = root / "tests/consumers"
+header = re.sub(r"/\*.*?\*/", "", (root / "umat/include/mud.h").read_text(encoding="utf-8"), flags=re.DOTALL)
+abi = re.search(r"MUD_ABI_VERSION (\d+)", header)[1]
+version = re.search(r"project\(mud VERSION ([\d.]+)", (root / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
+STRICT = {"C": ["-std=c11", "-Wall", "-Wextra", "-Werror"], "Fortran": ["-std=f2018", "-Wall", "-Wextra", "-Werror"]}
+# The Fortran run-time library with what comes with it (libquadmath, libgcc_s), OpenMP, C and mathematics.
+ALLOWED = {"libgfortran", "libquadmath", "libgcc_s", "libgomp", "libm", "libc"}
+# p' and q [kPa] at 1 % axial strain, undrained e 0.735 p' 100 (verification/reference/section7.py), their tolerance.
+KNOWN, WITHIN = (147.354, 219.588), 1e-4
+ALL, OPTIMISED, PLAIN = ("release", "debug", "sanitize"), ("release",), ("release", "debug")
+WHY_FEWER = {
+   "debug": "how the library is found does not depend on how it was compiled; the release does it in full",
+   "sanitize": "sanitizers add symbols and libraries of their own, and a host would have to be compiled with them"}
+checks = []
+
+
+class Wrong(Exception):
+    """A finding, with what was seen."""
+
+
+def check(presets):
+    """A function named as a sentence; it raises Wrong. It runs in these presets."""
+    def keep(function):
+        checks.append((function.__name__.replace("_", " "), presets, function))
+        return function
+    return keep
+
+
+def expect(condition, seen=""):
+    if not condition:
+        raise Wrong(str(seen).strip()[-3000:])
+
+
+def run(*command, folder=None, environment=None):
+    done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True,
+                          env={**os.environ, **(environment or {})})
+    expect(done.returncode == 0, f"{' '.join(map(str, command))}\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def expect_known(text):
+    found = re.search(r"p' ([-\d.]+) kPa, q ([-\d.]+) kPa", text)
+    expect(found and all(abs(float(value)/known - 1.0) <= WITHIN for value, known in zip(found.groups(), KNOWN)), text)
+
+
+def needed(file):
+    return set(re.findall(r"NEEDED\s+(\S+)", run("objdump", "-p", file)))
+
+
+def install(prefix):
+    run("cmake", "--install", build, "--prefix", prefix)
+    return prefix
+
+
+def find_package(folder, prefix, *arguments, language="NONE", body=""):
+    """Configure a small project: CMake's answer and whether it went well."""
+    folder.mkdir()
+    (folder / "CMakeLists.txt").write_text(f"cmake_minimum_required(VERSION 3.25)\nproject(p LANGUAGES {language})\n"
+                                           f"find_package(mud {' '.join(arguments)})\n{body}\n", encoding="utf-8")
+    done = subprocess.run(["cmake", "-S", folder, "-B", folder / "b", *common(prefix)], capture_output=True, text=True)
+    return done.returncode == 0, re.sub(r"\s+", " ", done.stdout + done.stderr)
+
+
+def common(prefix):
+    """Same compilers and generator as the build under test."""
+    return [f"-DCMAKE_PREFIX_PATH={prefix}", "-G", cache["CMAKE_GENERATOR"],
+            f"-DCMAKE_C_COMPILER={cache['CMAKE_C_COMPILER']}",
+            f"-DCMAKE_Fortran_COMPILER={cache['CMAKE_Fortran_COMPILER']}",
+            "-DCMAKE_BUILD_TYPE=Release", "--no-warn-unused-cli"]
+
+
+def cmake_consumer(folder, prefix, language, kind):
+    """Configure, build and run tests/consumers/c or /fortran."""
+    out = folder / f"{language}-{kind or 'default'}"
+    flags = " ".join(STRICT[language])
+    run("cmake", "-S", consumers / language.lower(), "-B", out, f"-DMUD_KIND={kind}",
+        f"-DCMAKE_{language}_FLAGS={flags}", *common(prefix))
+    run("cmake", "--build", out)
+    expect_known(run(out / "minimal_host"))
+    libraries = needed(out / "minimal_host")
+    expect(any("libmud" in name for name in libraries) == (kind == "shared"), libraries)
+
+
+def pkg_config(prefix, *arguments):
+    return run("pkg-config", *arguments, "mud", environment={"PKG_CONFIG_PATH": pc_folder(prefix)}).split()
+
+
+def pc_folder(prefix):
+    return str(next(prefix.rglob("mud.pc")).parent)
+
+
+def library(prefix, name="libmud.so"):
+    return next(prefix.rglob(name))
+
+
+def plain_consumer(folder, prefix, language, *link, shared=True):
+    """One command line of the compiler, flags from pkg-config, then the program."""
+    source = consumers / ("minimal_host.c" if language == "C" else "minimal_host.f90")
+    out = pathlib.Path(tempfile.mkdtemp(dir=folder)) / "host"
+    run(cache[f"CMAKE_{language}_COMPILER"], *STRICT[language], source, *pkg_config(prefix, "--cflags"), *link,
+        "-o", out, folder=out.parent)
+    where = {"LD_LIBRARY_PATH": str(library(prefix).parent)} if shared else {}
+    expect_known(run(out, environment=where))
+    return out
+
+
+@check(ALL)
+def every_promised_file_is_installed(folder, prefix):
+    there = {str(file.relative_to(prefix)) for file in prefix.rglob("*")}
+    lib = str(library(prefix).parent.relative_to(prefix))
+    promised = {f"{lib}/libmud.a", f"{lib}/libmud.so", f"{lib}/libmud.so.{abi}", f"{lib}/libmud.so.{version}",
+                "include/mud.h", "include/mud_interface.f90", "include/mud/modules/mud_interface.mod",
+                f"{lib}/cmake/mud/mudConfig.cmake", f"{lib}/cmake/mud/mudConfigVersion.cmake",
+                f"{lib}/pkgconfig/mud.pc",
+                "share/mud/mud_umat_single.f90", "share/mud/LICENSE"}
+    expect(promised <= there, f"missing: {sorted(promised - there)}")
+
+
+@check(ALL)
+def nothing_installed_names_the_source_or_the_build_folder(folder, prefix):
+    texts = [file for file in prefix.rglob("*") if file.suffix in (".cmake", ".pc", ".h", ".f90", ".mod")]
+    places = [str(place).encode() for place in (root, build, prefix)]
+    named = [file for file in texts for place in places if place in file.read_bytes()]
+    expect(not named and len(texts) > 7, named)
+
+
+@check(ALL)
+def the_shared_library_shows_the_functions_of_the_header_and_umat_only(folder, prefix):
+    declared = set(re.findall(r"\b(mud_\w+)\s*\([^;{]*\)\s*;", header)) | {"umat_"}
+    lines = run("nm", "-D", "--defined-only", library(prefix)).splitlines()
+    shown = {line.split()[-1] for line in lines}
+    expect(len(declared) >= 13 and shown == declared, f"too many: {shown - declared}, missing: {declared - shown}")
+
+
+@check(ALL)
+def the_soname_carries_the_abi_version(folder, prefix):
+    text = run("objdump", "-p", library(prefix))
+    expect(re.search(rf"SONAME\s+libmud\.so\.{abi}$", text, re.MULTILINE), text[:1500])
+    expect(library(prefix).resolve().name == f"libmud.so.{version}", library(prefix).resolve())
+
+
+@check(ALL)
+def the_shared_library_has_no_path_to_search_built_in(folder, prefix):
+    expect(not re.search("RPATH|RUNPATH", run("objdump", "-p", library(prefix))), "RPATH or RUNPATH")
+
+
+@check(PLAIN)
+def the_shared_library_needs_the_fortran_run_time_and_nothing_else(folder, prefix):
+    direct = {name.split(".so")[0] for name in needed(library(prefix))}
+    # What those need in turn is the run-time library's business: here only that all of it is found.
+    listed = run("ldd", library(prefix))
+    expect(direct <= ALLOWED and "libgfortran" in direct and "not found" not in listed, f"{direct}\n{listed}")
+
+
+@check(PLAIN)
+def the_archive_needs_the_fortran_run_time_and_nothing_else(folder, prefix):
+    """A C program of the archive with -lgfortran -lgomp -lm links: nothing is left undefined."""
+    out = folder / "archive_host"
+    run(cache["CMAKE_C_COMPILER"], consumers / "minimal_host.c", "-I", prefix / "include", library(prefix, "libmud.a"),
+        "-lgfortran", "-lgomp", "-lm", "-o", out)
+    expect_known(run(out))
+
+
+@check(PLAIN)
+def the_shared_library_loads_and_says_its_version(folder, prefix):
+    mud = ctypes.CDLL(str(library(prefix)))
+    text = ctypes.create_string_buffer(20)
+    mud.mud_version(text, 20)
+    expect((text.value.decode(), str(mud.mud_abi_version())) == (version, abi), (text.value, mud.mud_abi_version()))
+
+
+@check(ALL)
+def the_installed_single_source_is_that_of_the_build_tree(folder, prefix):
+    expect((prefix / "share/mud/mud_umat_single.f90").read_bytes() == (build / "umat/mud_umat_single.f90").read_bytes())
+
+
+@check(PLAIN)
+def a_c_project_finds_the_static_library_without_asking(folder, prefix):
+    cmake_consumer(folder, prefix, "C", "")
+
+
+@check(PLAIN)
+def a_fortran_project_finds_the_static_library_without_asking(folder, prefix):
+    cmake_consumer(folder, prefix, "Fortran", "")
+
+
+@check(OPTIMISED)
+def a_c_project_finds_the_static_library_by_name(folder, prefix):
+    cmake_consumer(folder, prefix, "C", "static")
+
+
+@check(OPTIMISED)
+def a_c_project_finds_the_shared_library(folder, prefix):
+    cmake_consumer(folder, prefix, "C", "shared")
+
+
+@check(OPTIMISED)
+def a_fortran_project_finds_the_shared_library(folder, prefix):
+    cmake_consumer(folder, prefix, "Fortran", "shared")
+
+
+@check(OPTIMISED)
+def a_project_may_compile_the_interface_itself(folder, prefix):
+    """For compilers that cannot read gfortran's module files."""
+    good, text = find_package(folder / "own_interface", prefix, "REQUIRED", language="Fortran", body=(
+        f"add_executable(host {consumers}/minimal_host.f90 ${{mud_INTERFACE_SOURCE}})\n"
+        "target_link_libraries(host PRIVATE mud::mud)"))
+    expect(good, text)
+    run("cmake", "--build", folder / "own_interface/b")
+    expect_known(run(folder / "own_interface/b/host"))
+
+
+@check(OPTIMISED)
+def a_moved_tree_works_as_well(folder, prefix):
+    old = install(folder / "before")
+    moved = pathlib.Path(shutil.move(old, folder / "moved to"))
+    there = folder / "moved"
+    there.mkdir()
+    cmake_consumer(there, moved, "Fortran", "")
+    cmake_consumer(there, moved, "C", "shared")
+    good, text = find_package(folder / "where", moved, "REQUIRED", body="message(\"in ${mud_DIR}\")")
+    expect(good and f"in {moved}/" in text, text)
+
+
+@check(OPTIMISED)
+def a_later_version_is_not_found(folder, prefix):
+    good, text = find_package(folder / "later", prefix, "9.0", "REQUIRED")
+    expect(not good and f"version: {version}" in text, text)
+
+
+@check(OPTIMISED)
+def an_unknown_component_is_refused_with_the_known_ones(folder, prefix):
+    good, text = find_package(folder / "unknown", prefix, "REQUIRED", "COMPONENTS", "fast")
+    expect(not good and "component 'fast' is not installed here; there is: static;shared" in text, text)
+
+
+@check(OPTIMISED)
+def the_other_kind_asked_for_later_is_refused_with_its_name(folder, prefix):
+    good, text = find_package(folder / "both", prefix, "REQUIRED", body="find_package(mud REQUIRED COMPONENTS shared)")
+    expect(not good and "link mud::shared by that name" in text, text)
+
+
+@check(PLAIN)
+def pkg_config_says_version_and_flags(folder, prefix):
+    expect(pkg_config(prefix, "--modversion") == [version], pkg_config(prefix, "--modversion"))
+    expect("-lmud" in pkg_config(prefix, "--libs") and "-lgfortran" not in pkg_config(prefix, "--libs"))
+    expect({"-lmud", "-lgfortran", "-lm"} <= set(pkg_config(prefix, "--static", "--libs")))
+    expect(pathlib.Path(pkg_config(prefix, "--variable=moduledir")[0], "mud_interface.mod").exists())
+
+
+@check(OPTIMISED)
+def one_gcc_line_with_pkg_config_links_the_shared_library(folder, prefix):
+    host = plain_consumer(folder, prefix, "C", *pkg_config(prefix, "--libs"))
+    expect(f"libmud.so.{abi}" in needed(host), needed(host))
+
+
+@check(OPTIMISED)
+def one_gfortran_line_with_pkg_config_links_the_shared_library(folder, prefix):
+    host = plain_consumer(folder, prefix, "Fortran", *pkg_config(prefix, "--libs"))
+    expect(f"libmud.so.{abi}" in needed(host), needed(host))
+
+
+@check(OPTIMISED)
+def one_gcc_line_with_pkg_config_links_the_archive(folder, prefix):
+    plain_consumer(folder, prefix, "C", *pkg_config(prefix, "--variable=static_libs"), shared=False)
+
+
+@check(OPTIMISED)
+def one_gfortran_line_with_pkg_config_links_the_archive(folder, prefix):
+    plain_consumer(folder, prefix, "Fortran", *pkg_config(prefix, "--variable=static_libs"), shared=False)
+
+
+@check(OPTIMISED)
+def a_program_without_any_shared_library_links(folder, prefix):
+    host = plain_consumer(folder, prefix, "C", "-static", *pkg_config(prefix, "--static", "--libs"), shared=False)
+    expect(not needed(host), needed(host))
+
+
+def outcome(job):
+    sentence, function, folder, prefix = job
+    try:
+        function(folder, prefix)
+    except Wrong as problem:
+        return f"FAILED {sentence}: {problem}"
+    except (OSError, LookupError, StopIteration, AttributeError) as problem:
+        return f"FAILED {sentence}: {type(problem).__name__}: {problem}"
+    return ""
+
+
+def main():
+    todo = [entry for entry in checks if preset in entry[1] or preset not in ALL]
+    if len(todo) < len(checks):
+        fewer = len(checks) - len(todo)
+        print(f"note: {fewer} of {len(checks)} checks are left out in the {preset} preset: {WHY_FEWER[preset]}")
+    without = [entry for entry in todo if "pkg config" in entry[0] or "any shared" in entry[0]]
+    if not shutil.which("pkg-config"):
+        todo = [entry for entry in todo if entry not in without]
+        print(f"note: there is no pkg-config on this machine: {len(without)} checks fewer")
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        try:
+            prefix = install(folder / "prefix")
+        except Wrong as problem:
+            print(f"FAILED cmake --install: {problem}\n0 passed, {len(todo)} failed")
+            return True
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            findings = list(filter(None, pool.map(outcome, [(s, f, folder, prefix) for s, _, f in todo])))
+    print("".join(finding + "\n" for finding in findings), end="")
+    print(f"{len(todo) - len(findings)} passed, {len(findings)} failed")
+    return bool(findings)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
