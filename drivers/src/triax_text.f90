@@ -20,8 +20,8 @@ contains
       end do
    end function lower_case
 
-   !> Edit distance between two names, case ignored: 2 for each letter to insert, delete or replace,
-   !> 1 where the two letters look alike (O and 0, l and 1).
+   !> Edit distance between two names, case ignored: 2 for each letter to insert, delete or replace, 1 where the two
+   !> letters look alike (O and 0, l and 1).
    pure integer function distance(first, second)
       character(*), intent(in) :: first, second
       character(len_trim(first)) :: a
