@@ -1,7 +1,7 @@
 !> Element tests on the MUD model: drained and undrained triaxial tests, compression, strain and suction paths.
 program mud_triax
    use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit, error_unit
-   use triax_fault, only: fault_t, raise, EXIT_INPUT
+   use triax_fault, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
    use triax_text, only: short, whole
    use triax_case, only: case_t, read_case, CONTROL_NAMES, STRAIN_PATH
    use triax_point, only: point_t, library_version
@@ -14,7 +14,7 @@ program mud_triax
    integer, parameter :: PATH_LENGTH = 256
    real(wp), parameter :: ON_GRID = 1.0e-6_wp   !< Share of an output interval that counts as none: rounding.
 
-   character(PATH_LENGTH) :: case_file, output_file
+   character(PATH_LENGTH) :: case_file, output_file, save_file
    type(fault_t) :: fault
    logical :: quiet, residuals, done
 
@@ -26,7 +26,7 @@ program mud_triax
    end if
 
 contains
-   !> Fills case_file, output_file and quiet; `answered` if the call only asked for a text.
+   !> Fills case_file, output_file, save_file and quiet; `answered` if the call only asked for a text.
    subroutine read_arguments(answered)
       logical, intent(out) :: answered
       character(PATH_LENGTH) :: word
@@ -34,6 +34,7 @@ contains
 
       case_file = ''
       output_file = ''
+      save_file = ''
       quiet = .false.
       residuals = .false.
       answered = .true.
@@ -67,6 +68,14 @@ contains
                           ' characters).')
                return
             end if
+         case ('--save-failed')
+            i = i + 1
+            call get_command_argument(i, save_file, status=status)
+            if (status /= 0 .or. len_trim(save_file) == 0) then
+               call raise(fault, EXIT_INPUT, '--save-failed needs the name of a new file (shorter than '// &
+                          whole(PATH_LENGTH)//' characters).')
+               return
+            end if
          case default
             if (word(1:1) == '-') then
                call raise(fault, EXIT_INPUT, 'There is no option '//trim(word)//'; see mud_triax --help.')
@@ -93,14 +102,23 @@ contains
       type(fault_t) :: ending
       real(wp) :: pressure
       integer :: i, k, increments
+      logical :: taken
 
       call read_case(file, test, fault)
       if (fault%code /= 0) return
       if (len_trim(output_file) == 0) output_file = trim(test%name)//'.csv'
+      taken = .false.
+      if (len_trim(save_file) > 0) inquire (file=save_file, exist=taken)
+      if (taken) then
+         call raise(fault, EXIT_OUTPUT, '--save-failed '//trim(save_file)//': there is a file of that name, and '// &
+                    'it is not overwritten; remove it or choose another name.')
+         return
+      end if
       call open_table(trim(output_file), test, any(test%stages%control == STRAIN_PATH), table, fault)
       if (fault%code /= 0) return
 
       tally%residuals = residuals
+      tally%save_to = save_file
       if (residuals) write (output_unit, '(a)') 'increment,iteration,error'
       call start_clock(clock)
       point = test%start

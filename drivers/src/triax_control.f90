@@ -1,11 +1,12 @@
 !> Mixed control of a stage: given strains and held stresses, solved with the library's tangent blocks.
 module triax_control
    use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit
-   use triax_fault, only: fault_t, raise, EXIT_RUN
+   use triax_fault, only: fault_t, raise, EXIT_RUN, EXIT_OUTPUT
    use triax_text, only: short, whole
    use triax_case, only: stage_t, CONTROL_NAMES, DRAINED, UNDRAINED, ISOTROPIC, OEDOMETER, CONSTANT_NET_STRESS, &
                          STRAIN_PATH
-   use triax_point, only: soil_t, point_t, tangent_t, mud_report, update_point, update_sentence, state_value, &
+   use triax_point, only: soil_t, point_t, tangent_t, mud_report, update_point, save_update, update_sentence, &
+      state_value, &
       slope_is_exact, &
                           axial_strain, volumetric_strain, radial_stress, mean_stress, deviator_stress, AXIAL, RADIAL
    implicit none (type, external)
@@ -40,6 +41,8 @@ module triax_control
       integer :: solved = 0                  !< Increments with a held stress.
       integer :: cuts = 0                    !< Increments cut and retried.
       logical :: residuals = .false.         !< Print the error of every iteration.
+      character(256) :: save_to = ''         !< File for the first update that the library refuses; blank: none.
+      logical :: saved = .false.
       integer :: n_floor = 0, n_cap_d = 0, n_cap_h = 0, n_hysteresis = 0, n_iso_kept = 0, n_no_root = 0, &
                  n_min_step = 0, n_open = 0, n_tensile = 0
       real(wp) :: error = 0.0_wp             !< Largest error of a held stress since the caller set it to 0, relative.
@@ -131,6 +134,9 @@ contains
          if (trouble%code == 0) then
             done = done + share
             share = min(2.0_wp*share, 1.0_wp - done)
+         else if (trouble%code == EXIT_OUTPUT) then
+            fault = trouble
+            return
          else
             tally%cuts = tally%cuts + 1
             share = 0.5_wp*share
@@ -176,6 +182,12 @@ contains
          tally%updates = tally%updates + 1
          if (report%status /= 0) then
             call raise(fault, EXIT_RUN, update_sentence(report))
+            if (len_trim(tally%save_to) > 0 .and. .not. tally%saved) then
+               tally%saved = .true.
+               call save_update(tally%save_to, 'mud_triax, '//trim(CONTROL_NAMES(plan%control))// &
+                                ' stage, increment '//whole(k)//' of '//whole(plan%increments), soil, point, strain, &
+                                suction, fault)
+            end if
             plan%rate = 0.0_wp
             return
          end if

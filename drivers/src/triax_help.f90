@@ -12,7 +12,7 @@ module triax_help
 contains
    subroutine print_help()
       write (output_unit, '(a)') &
-         'usage: mud_triax CASE.nml [--output FILE.csv] [--quiet] [--residuals]', &
+         'usage: mud_triax CASE.nml [--output FILE.csv] [--quiet] [--residuals] [--save-failed FILE]', &
          '       mud_triax --template > my_case.nml', &
          '       mud_triax --help | --version', &
          '', &
@@ -22,6 +22,7 @@ contains
          '   --output FILE   where to write; default: NAME.csv in the present folder; "-" is the screen', &
          '   --quiet         no summary, no progress', &
          '   --residuals     print the error of every iteration of a held stress', &
+         '   --save-failed FILE   write the first update that the library refuses to a new file for mud_replay', &
          '   --template      prints a case that runs unchanged, with every parameter and its range', &
          '', &
          'Exit codes: 0 done; 2 input refused, nothing written; 3 the run stopped, rows so far are kept;', &

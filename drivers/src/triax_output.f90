@@ -247,6 +247,8 @@ contains
                ' of its value (allowed '// &
                short(CONTROL_TOLERANCE)//')'
          end if
+         if (tally%saved) write (output_unit, '(a)') '   saved      '//trim(tally%save_to)// &
+            ', the first refused update, for mud_replay'
          write (output_unit, '(a)') '   output     '//trim(table%path)//', '//whole(table%rows)//' rows'
       end associate
    contains

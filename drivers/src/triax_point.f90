@@ -5,9 +5,10 @@ module triax_point
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use, intrinsic :: iso_c_binding, only: c_int, c_null_char
    use mud_interface, only: mud_report, mud_version, mud_count, mud_index, mud_text, mud_bounds, mud_default_props, &
-                            mud_validate_props, mud_init_state, mud_update, mud_message, MUD_PROPS, MUD_STATEV, &
+                            mud_validate_props, mud_init_state, mud_update, mud_save_increment, mud_message, &
+                            MUD_PROPS, MUD_STATEV, &
                             MUD_NAME, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONSISTENT
-   use triax_fault, only: fault_t, raise, EXIT_INPUT
+   use triax_fault, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
    use triax_text, only: from_c, whole
    implicit none (type, external)
    private
@@ -15,7 +16,7 @@ module triax_point
    public :: AXIAL, RADIAL
    public :: library_version, default_soil, check_soil, property_count, property_index, property_name, property_unit, &
              property_origin, property_meaning, property_range
-   public :: start_point, update_point, update_sentence, slope_is_exact
+   public :: start_point, update_point, save_update, update_sentence, slope_is_exact
    public :: mean_stress, deviator_stress, radial_stress, axial_strain, radial_strain, volumetric_strain, state_value
 
    integer, parameter :: AXIAL = 3            !< Component along the axis of the sample.
@@ -213,6 +214,23 @@ contains
       after%strain = before%strain + strain
       after%suction = before%suction + suction
    end subroutine update_point
+
+   !> Writes an update to a file that mud_replay runs.
+   subroutine save_update(file, origin, soil, before, strain, suction, fault)
+      character(*), intent(in) :: file, origin
+      type(soil_t), intent(in) :: soil
+      type(point_t), intent(in) :: before
+      real(wp), intent(in) :: strain(6), suction   !< Increments as of update_point.
+      type(fault_t), intent(inout) :: fault
+      character(BUFFER) :: text
+
+      text = c_null_char
+      if (mud_save_increment(trim(file)//c_null_char, origin//c_null_char, soil%props, size(soil%props), &
+                             -before%stress, before%statev, soil%n_statev, -strain, before%suction, suction, &
+                             tangent_kind(soil), text, BUFFER) /= 0) then
+         call raise(fault, EXIT_OUTPUT, '--save-failed '//trim(file)//': '//from_c(text)//'.')
+      end if
+   end subroutine save_update
 
    !> Kind of tangent asked for: that of the material, but a held stress needs a slope of some kind.
    pure integer(c_int) function tangent_kind(soil)

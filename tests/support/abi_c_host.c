@@ -8,6 +8,11 @@
 
 _Static_assert(MUD_OK == 0, "success is zero");
 _Static_assert(offsetof(mud_report, value) == 16 * sizeof(int), "16 counts before the numbers, no gap");
+_Static_assert(sizeof(mud_substep) == 8 * sizeof(int) + 12 * sizeof(double), "8 counts and 12 numbers, no gap");
+_Static_assert(offsetof(mud_substep, landed) == 3 * sizeof(int) && offsetof(mud_substep, n_guard) == 6 * sizeof(int),
+               "counts in the order of mud_interface.f90");
+_Static_assert(offsetof(mud_substep, error) == 8 * sizeof(int) + 2 * sizeof(double)
+               && offsetof(mud_substep, stress) == 8 * sizeof(int) + 6 * sizeof(double), "likewise the numbers");
 
 enum { MAX_PROPS = 128, MAX_STATEV = 256, STEPS = 300 };
 
@@ -25,12 +30,12 @@ void abi_fill_report(mud_report *r)
 }
 
 /* Constants of mud.h in the order in which it lists them. */
-void abi_status_codes(int codes[16])
+void abi_status_codes(int codes[17])
 {
-   const int all[16] = {
+   const int all[17] = {
       MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_BAD_NTENS, MUD_BAD_PROPS, MUD_BAD_STATE, MUD_BAD_INPUT,
       MUD_NULL_ARGUMENT, MUD_BAD_VOID_RATIO, MUD_BAD_OPTION, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION,
-      MUD_VOID_RATIO_LIMIT, MUD_NOT_FINITE, MUD_INCREMENT_TOO_LARGE};
+      MUD_VOID_RATIO_LIMIT, MUD_NOT_FINITE, MUD_INCREMENT_TOO_LARGE, MUD_NOT_WRITTEN};
    memcpy(codes, all, sizeof all);
 }
 

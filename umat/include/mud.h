@@ -5,7 +5,8 @@
  * "Stress" is Bishop's effective stress sigma' with chi = S_w. Suction p_c = p_a - p_w is positive when unsaturated.
  * Indices of PROPS and STATEV are those of C, from 0.
  *
- * Every array is the caller's. Nothing is allocated, printed or kept between calls; calls are thread-safe.
+ * Every array is the caller's. Nothing is allocated, printed or kept between calls; calls are thread-safe. No file is
+ * read or written, but for mud_save_increment and what MUD_SAVE_FAILED asks of umat_ (see "failed increments" below).
  * Functions return MUD_OK (0), a negative code (the caller's mistake) or a positive one (a hard increment: cut it).
  * Text goes into the caller's buffer of `len` bytes, cut to fit and always terminated; a NULL buffer is allowed.
  */
@@ -22,6 +23,7 @@ enum mud_status {
    MUD_OK = 0,
    MUD_BAD_NPROPS = -1, MUD_BAD_NSTATV = -2, MUD_BAD_NTENS = -3, MUD_BAD_PROPS = -4, MUD_BAD_STATE = -5,
    MUD_BAD_INPUT = -6, MUD_NULL_ARGUMENT = -7, MUD_BAD_VOID_RATIO = -8, MUD_BAD_OPTION = -9,
+   MUD_NOT_WRITTEN = -10,
    MUD_MINIMUM_STEP = 1, MUD_TOO_MANY_SUBSTEPS = 2, MUD_NO_DIRECTION = 3, MUD_VOID_RATIO_LIMIT = 4,
    MUD_NOT_FINITE = 5, MUD_INCREMENT_TOO_LARGE = 6
 };
@@ -99,6 +101,42 @@ int mud_update_batch(const double *props, int nprops, int n, const double *stres
                      double *stress1, double *statev1, double *dsig_deps, double *dsig_dpc, double *dsw_deps,
                      double *dsw_dpc, int *status, mud_report *reports);
 
+/* --- failed increments ---------------------------------------------------------------------------------- */
+/* One substep that an update tried. */
+enum mud_outcome { MUD_SUBSTEP_REJECTED = 0, MUD_SUBSTEP_ACCEPTED = 1, MUD_SUBSTEP_FAILED = 2 /* the update ended */ };
+enum mud_mode { MUD_MODE_ORDINARY = 0, MUD_MODE_ELASTIC = 1 /* way back */, MUD_MODE_HELD = 2 /* by the cut-off */ };
+enum mud_jump {   /* of the memory, where the substep begins */
+   MUD_JUMP_NONE = 0, MUD_JUMP_RESEAT = 1, MUD_JUMP_RESUME = 2, MUD_JUMP_NEW = 3 /* the cut-off let go */
+};
+typedef struct mud_substep {
+   int outcome, mode, jump; /* enumerations above                                                      */
+   int landed;              /* 1: shortened to end at an event (p_min reached or left, turning point)  */
+   int n_rate, n_reseat;    /* counted since the increment began, as in mud_report                     */
+   int n_guard, n_no_root;  /* likewise; n_guard: all guards together                                  */
+   double time, size;       /* where it began and how long it was, shares of the increment             */
+   double error;            /* relative; compare with `tolerance` of PROPS                             */
+   double void_ratio, saturation, suction, stress[6];   /* where it led                                */
+} mud_substep;
+
+/* The update of mud_update told substep by substep: rows[i] is substep number first + i (from 1), as far as there are
+ * nrows; *attempts receives how many were tried. Only rows, attempts and report are written; each may be NULL.
+ * Returns the status of the update. */
+int mud_trace_increment(const double *props, int nprops, const double *stress0, const double *statev0, int nstatev,
+                        const double *dstrain, double suction0, double dsuction, int tangent,
+                        int first, mud_substep *rows, int nrows, int *attempts, mud_report *report);
+
+/* Writes an increment, with the arguments of mud_update and how it ends, to a new text file that mud_replay runs alone;
+ * bit by bit the same. `origin` is a remark for the reader (may be NULL). A file of that name is never overwritten, an
+ * unfinished one is removed: MUD_NOT_WRITTEN, and text says why.
+ *
+ * umat_ does the same by itself where the environment variable MUD_SAVE_FAILED names a folder: each failed increment
+ * takes the first free name of mud_failed_01.txt .. mud_failed_20.txt there. When all are taken, or the folder cannot
+ * be written, nothing is saved. */
+int mud_save_increment(const char *path, const char *origin, const double *props, int nprops, const double *stress0,
+                       const double *statev0, int nstatev, const double *dstrain, double suction0, double dsuction,
+                       int tangent, char *text, int len);
+
+/* --- texts ---------------------------------------------------------------------------------------------- */
 /* A sentence for a status code; with a report, one that says where, the value, the allowed range and the remedy. */
 int mud_status_text(int code, char *text, int len);
 int mud_message(const mud_report *report, char *text, int len);

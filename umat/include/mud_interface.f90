@@ -5,9 +5,12 @@ module mud_interface
    implicit none (type, external)
    private
    public :: mud_report, mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_bounds, mud_default_props, &
-             mud_validate_props, mud_init_state, mud_update, mud_update_batch, mud_status_text, mud_message
+             mud_validate_props, mud_init_state, mud_update, mud_update_batch, mud_status_text, mud_message, &
+             mud_substep, mud_trace_increment, mud_save_increment
    public :: MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL, &
       MUD_ROTATION, MUD_EVOLUTION
+   public :: MUD_SUBSTEP_REJECTED, MUD_SUBSTEP_ACCEPTED, MUD_SUBSTEP_FAILED, MUD_MODE_ORDINARY, MUD_MODE_ELASTIC, &
+      MUD_MODE_HELD, MUD_JUMP_NONE, MUD_JUMP_RESEAT, MUD_JUMP_RESUME, MUD_JUMP_NEW
    public :: MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONTINUUM, MUD_TANGENT_CONSISTENT
 
    integer(c_int), parameter :: MUD_PROPS = 1, MUD_STATEV = 2
@@ -16,12 +19,22 @@ module mud_interface
    integer(c_int), parameter :: MUD_TANGENT_NONE = 0, MUD_TANGENT_ELASTIC = 1, MUD_TANGENT_CONTINUUM = 2, &
                                 MUD_TANGENT_CONSISTENT = 3
 
+   integer(c_int), parameter :: MUD_SUBSTEP_REJECTED = 0, MUD_SUBSTEP_ACCEPTED = 1, MUD_SUBSTEP_FAILED = 2
+   integer(c_int), parameter :: MUD_MODE_ORDINARY = 0, MUD_MODE_ELASTIC = 1, MUD_MODE_HELD = 2
+   integer(c_int), parameter :: MUD_JUMP_NONE = 0, MUD_JUMP_RESEAT = 1, MUD_JUMP_RESUME = 2, MUD_JUMP_NEW = 3
+
    !> struct mud_report of mud.h.
    type, bind(c) :: mud_report
       integer(c_int) :: status, subject, index, n_rate, n_substep, n_reject, n_reseat, n_floor, n_cap_d, n_cap_h, &
                         n_hysteresis, n_iso_kept, n_no_root, n_min_step, n_open, n_tensile
       real(c_double) :: value, lower, upper, reached, pnewdt
    end type mud_report
+
+   !> struct mud_substep of mud.h.
+   type, bind(c) :: mud_substep
+      integer(c_int) :: outcome, mode, jump, landed, n_rate, n_reseat, n_guard, n_no_root
+      real(c_double) :: time, size, error, void_ratio, saturation, suction, stress(6)
+   end type mud_substep
 
    interface
       integer(c_int) function mud_abi_version() bind(c, name='mud_abi_version')
@@ -106,6 +119,28 @@ module mud_interface
          integer(c_int), intent(out) :: status(n)
          type(mud_report), intent(out), optional :: reports(n)
       end function mud_update_batch
+
+      integer(c_int) function mud_trace_increment(props, nprops, stress0, statev0, nstatev, dstrain, suction0, &
+              dsuction, tangent, first, rows, nrows, attempts, report) bind(c, name='mud_trace_increment')
+         import :: c_int, c_double, mud_report, mud_substep
+         integer(c_int), value :: nprops, nstatev, tangent, first, nrows
+         real(c_double), intent(in) :: props(nprops), stress0(6), statev0(nstatev), dstrain(6)
+         real(c_double), value :: suction0, dsuction
+         type(mud_substep), intent(inout) :: rows(nrows)
+         integer(c_int), intent(out) :: attempts
+         type(mud_report), intent(out), optional :: report
+      end function mud_trace_increment
+
+      !> The texts handed over must end with c_null_char.
+      integer(c_int) function mud_save_increment(path, origin, props, nprops, stress0, statev0, nstatev, dstrain, &
+              suction0, dsuction, tangent, text, len) bind(c, name='mud_save_increment')
+         import :: c_int, c_double, c_char
+         character(kind=c_char), intent(in) :: path(*), origin(*)
+         integer(c_int), value :: nprops, nstatev, tangent, len
+         real(c_double), intent(in) :: props(nprops), stress0(6), statev0(nstatev), dstrain(6)
+         real(c_double), value :: suction0, dsuction
+         character(kind=c_char), intent(out) :: text(*)
+      end function mud_save_increment
 
       integer(c_int) function mud_status_text(code, text, len) bind(c, name='mud_status_text')
          import :: c_int, c_char

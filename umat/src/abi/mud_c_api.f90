@@ -10,10 +10,12 @@ module mud_c_api
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, &
       MUD_BAD_OPTION, &
       MUD_BAD_PROPS, ON_PROPS, ON_STATEV, ON_ARGUMENT
+   use mud_trace, only: trace_t
    implicit none (type, external)
    private
    public :: mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_bounds, mud_default_props, &
-             mud_validate_props, mud_init_state, mud_update, mud_status_text, mud_message
+             mud_validate_props, mud_init_state, mud_update, mud_trace_increment, mud_status_text, mud_message
+   public :: put, ABI_VERSION, VERSION
 
    integer, parameter :: ABI_VERSION = 1
    character(*), parameter :: VERSION = '0.1.0'
@@ -235,6 +237,51 @@ contains
       end if
       mud_update = report%status
    end function mud_update
+
+   !> The update of mud_update told substep by substep; see mud.h.
+   integer(c_int) function mud_trace_increment(props, n_props, stress0, statev0, n_statev, dstrain, suction0, &
+           dsuction, tangent, first, rows, n_rows, attempts, report_out) bind(c, name='mud_trace_increment')
+      type(c_ptr), value :: props, stress0, statev0, dstrain, rows, attempts, report_out
+      integer(c_int), value :: n_props, n_statev, tangent, first, n_rows
+      real(c_double), value :: suction0, dsuction
+      real(c_double), pointer :: props_in(:), stress_in(:), statev_in(:), dstrain_in(:)
+      integer(c_int), pointer :: attempts_to
+      type(report_t), pointer :: report_to
+      type(report_t) :: report
+      type(output_t) :: output
+      type(trace_t) :: trace
+      integer :: i
+
+      if (.not. (c_associated(props) .and. c_associated(stress0) .and. c_associated(statev0) .and. &
+                 c_associated(dstrain))) then
+         report = failed_report(fail(MUD_NULL_ARGUMENT, ON_ARGUMENT))
+      else if (tangent < 0 .or. first < 1 .or. n_rows < 0) then
+         report = failed_report(fail(MUD_BAD_OPTION, ON_ARGUMENT))
+      else
+         call c_f_pointer(props, props_in, [max(n_props, 0)])
+         call c_f_pointer(stress0, stress_in, [6])
+         call c_f_pointer(statev0, statev_in, [max(n_statev, 0)])
+         call c_f_pointer(dstrain, dstrain_in, [6])
+         trace%first = first
+         if (c_associated(rows)) call c_f_pointer(rows, trace%rows, [n_rows])
+         call kernel_update(props_in, stress_in, statev_in, dstrain_in, suction0, dsuction, tangent, output, report, &
+                            trace)
+      end if
+      if (associated(trace%rows)) then
+         do i = 1, min(trace%attempts - trace%first + 1, n_rows)
+            trace%rows(i)%stress = 0.0_wp - trace%rows(i)%stress
+         end do
+      end if
+      if (c_associated(attempts)) then
+         call c_f_pointer(attempts, attempts_to)
+         attempts_to = trace%attempts
+      end if
+      if (c_associated(report_out)) then
+         call c_f_pointer(report_out, report_to)
+         report_to = report
+      end if
+      mud_trace_increment = report%status
+   end function mud_trace_increment
 
    integer(c_int) function mud_status_text(code, text, len) bind(c, name='mud_status_text')
       integer(c_int), value :: code, len

@@ -10,6 +10,7 @@ module mud_kernel
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_BAD_STATE, MUD_BAD_INPUT, MUD_BAD_OPTION, &
       MUD_NOT_FINITE, ON_STATEV, ON_STRESS, ON_STRAIN, ON_ARGUMENT
    use mud_tensor, only: is_finite, rotate
+   use mud_trace, only: trace_t
    implicit none (type, external)
    private
    public :: report_t, output_t, kernel_init, kernel_update, kernel_point, rotate_statev, failed_report, &
@@ -55,25 +56,27 @@ contains
    end subroutine kernel_init
 
    !> One increment of a material as PROPS give it. On failure output is undefined.
-   pure subroutine kernel_update(props, stress, statev, d_strain, suction, d_suction, tangent, output, report)
+   pure subroutine kernel_update(props, stress, statev, d_strain, suction, d_suction, tangent, output, report, trace)
       real(wp), intent(in) :: props(:)
       real(wp), intent(in) :: stress(6), statev(:), d_strain(6), suction, d_suction
       integer, intent(in) :: tangent
       type(output_t), intent(inout) :: output
       type(report_t), intent(out) :: report
+      type(trace_t), intent(inout), optional :: trace
       type(params_t) :: par
       type(mud_status_t) :: status
 
       call read_params(props, par, status)
       if (status%code == MUD_OK) then
-         call kernel_point(par, stress, statev, d_strain, suction, d_suction, tangent, output, report)
+         call kernel_point(par, stress, statev, d_strain, suction, d_suction, tangent, output, report, &
+                           trace)
       else
          report = failed_report(status)
       end if
    end subroutine kernel_update
 
    !> The same for checked parameters.
-   pure subroutine kernel_point(par, stress, statev, d_strain, suction, d_suction, tangent, output, report)
+   pure subroutine kernel_point(par, stress, statev, d_strain, suction, d_suction, tangent, output, report, trace)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: stress(6)       !< sigma' [kPa]
       real(wp), intent(in) :: statev(:)       !< Initialised here where layout = 0.
@@ -82,6 +85,7 @@ contains
       integer, intent(in) :: tangent          !< TANGENT_* of mud_point or TANGENT_FROM_PROPS.
       type(output_t), intent(inout) :: output
       type(report_t), intent(out) :: report
+      type(trace_t), intent(inout), optional :: trace   !< Stress compression positive as the core has it.
       type(state_t) :: state0, state1
       type(blocks_t) :: blocks
       type(counters_t) :: counters
@@ -98,7 +102,7 @@ contains
       end if
       if (status%code == MUD_OK) then
          call update_point(par, state0, from_umat_strain(d_strain), d_suction, kind, state1, blocks, counters, &
-                           reached, status)
+                           reached, status, trace)
       end if
       if (status%code == MUD_OK) call write_output(state1, blocks, counters, kind > 0, output, status)
       report = report_of(status, counters, reached)

@@ -3,7 +3,8 @@ module mud_umat
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
    use mud_kernel, only: report_t, output_t, kernel_update, rotate_statev, failed_report, TANGENT_FROM_PROPS
    use mud_kinds, only: wp
-   use mud_registry, only: NSTATV, S_LAYOUT
+   use mud_registry, only: NPROPS, NSTATV, P_TANGENT, S_LAYOUT
+   use mud_save, only: write_increment, PATH_LENGTH
    use mud_status, only: fail, mud_status_t, MUD_OK, MUD_BAD_NTENS, MUD_NULL_ARGUMENT, MUD_BAD_NPROPS, MUD_BAD_NSTATV, &
       MUD_BAD_INPUT, ON_ARGUMENT
    use mud_tensor, only: is_finite
@@ -13,6 +14,9 @@ module mud_umat
 
    !> DROT may differ from a rotation by this, rounding of single-precision hosts [-].
    real(wp), parameter :: ORTHOGONAL = 1.0e-6_wp
+   !> Failed increments are saved here, if the environment names a folder, and no more of them than this.
+   character(*), parameter :: SAVE_VARIABLE = 'MUD_SAVE_FAILED'
+   integer, parameter :: MAX_SAVED = 20
 contains
    !> Suction is PREDEF(1), its increment DPRED(1); STRESS is Bishop's effective stress. On failure only PNEWDT (a
    !> factor below 1) and SCD (the status code) are written. See umat/README.md for PROPS, STATEV and the pitfalls.
@@ -28,7 +32,8 @@ contains
       call check_arguments(stress, statev, dstran, ndi, ntens, nstatv_, props, nprops, status)
       if (status%code == MUD_OK) then
          call update(stress, statev, ddsdde, dstran, integer_at(ntens), integer_at(nstatv_), props, &
-                     integer_at(nprops), real_at(predef), real_at(dpred), drot, report)
+                     integer_at(nprops), real_at(predef), real_at(dpred), drot, &
+                     [integer_at(kstep), integer_at(kinc), integer_at(noel), integer_at(npt)], report)
       else
          report = failed_report(status)
       end if
@@ -39,16 +44,17 @@ contains
                        c_associated(drplde), c_associated(drpldt), c_associated(stran), c_associated(time), &
                        c_associated(dtime), c_associated(temp), c_associated(dtemp), c_associated(cmname), &
                        c_associated(nshr), c_associated(coords), c_associated(celent), c_associated(dfgrd0), &
-                       c_associated(dfgrd1), c_associated(noel), c_associated(npt), c_associated(layer), &
-                       c_associated(kspt), c_associated(kstep), c_associated(kinc)])
+                       c_associated(dfgrd1), c_associated(layer), c_associated(kspt)])
       end associate
    end subroutine umat
 
    !> The update itself, once the arguments are known to be there.
-   subroutine update(stress, statev, ddsdde, dstran, ntens, n_statev, props, n_props, suction, d_suction, drot, report)
+   subroutine update(stress, statev, ddsdde, dstran, ntens, n_statev, props, n_props, suction, d_suction, drot, place, &
+                     report)
       type(c_ptr), intent(in) :: stress, statev, ddsdde, dstran, props, drot
       integer, intent(in) :: ntens, n_statev, n_props
       real(wp), intent(in) :: suction, d_suction
+      integer, intent(in) :: place(4)   !< Step, increment, element and point, for the record.
       type(report_t), intent(out) :: report
       type(output_t) :: output
       real(c_double), pointer :: stress_in(:), statev_in(:), dstran_in(:), props_in(:), tangent_out(:, :)
@@ -72,7 +78,12 @@ contains
       if (rotates(rotation, statev0)) call rotate_statev(rotation, statev0)
 
       call kernel_update(props_in, stress6, statev0, dstran6, suction, d_suction, TANGENT_FROM_PROPS, output, report)
-      if (report%status /= MUD_OK) return
+      if (report%status /= MUD_OK) then
+         if (n_props == NPROPS) then
+            call save_if_asked(props_in, stress6, statev0, dstran6, suction, d_suction, place, report)
+         end if
+         return
+      end if
       stress_in = output%stress(1:ntens)
       statev_in(1:NSTATV) = output%statev
       if (output%has_tangent .and. c_associated(ddsdde)) then
@@ -80,6 +91,47 @@ contains
          tangent_out = output%dsig_deps(1:ntens, 1:ntens)
       end if
    end subroutine update
+
+   !> Saves a failed increment under the first free name of mud_failed_01.txt and so on, if the user has named a folder.
+   !> A user cannot be told of more: that nothing could be written leaves the failure as it is.
+   subroutine save_if_asked(props, stress, statev, d_strain, suction, d_suction, place, report)
+      real(wp), intent(in) :: props(NPROPS), stress(6), statev(NSTATV), d_strain(6), suction, d_suction
+      integer, intent(in) :: place(4)
+      type(report_t), intent(in) :: report
+      character(PATH_LENGTH) :: folder, path
+      character(200) :: problem
+      character(120) :: origin
+      integer :: length, code, i, tangent
+      logical :: taken
+
+      call get_environment_variable(SAVE_VARIABLE, folder, length, code)
+      if (code /= 0 .or. length == 0 .or. length > PATH_LENGTH - len('/mud_failed_00.txt')) return
+      tangent = 0   ! where PROPS have none, they fail before it matters
+      if (is_finite(props(P_TANGENT))) tangent = nint(min(max(props(P_TANGENT), 0.0_wp), 3.0_wp))
+      write (origin, '(4(a, i0))') 'umat_, step ', place(1), ', increment ', place(2), ', element ', place(3), &
+         ', point ', place(4)
+      ! The last name first: once it is taken, a thousand failures more cost no more than this look.
+      path = name_of(MAX_SAVED)
+      inquire (file=path, exist=taken)
+      if (taken) return
+      do i = 1, MAX_SAVED
+         path = name_of(i)
+         inquire (file=path, exist=taken)
+         if (taken) cycle
+         call write_increment(path, origin, props, stress, statev, d_strain, suction, d_suction, tangent, report, &
+                              problem)
+         if (problem == '') return
+         inquire (file=path, exist=taken)   ! by another thread or process, a moment ago
+         if (.not. taken) return
+      end do
+   contains
+      function name_of(number) result(name)
+         integer, intent(in) :: number
+         character(PATH_LENGTH) :: name
+
+         write (name, '(2a, i2.2, a)') folder(:length), '/mud_failed_', number, '.txt'
+      end function name_of
+   end subroutine save_if_asked
 
    !> NULL pointers, NTENS, and counts that would make the arrays unreadable.
    subroutine check_arguments(stress, statev, dstran, ndi, ntens, nstatv_, props, nprops, status)
@@ -185,15 +237,18 @@ contains
       end if
    end subroutine ask_for_a_cut
 
+   !> First number of an optional array, 0 where the host gives none.
    integer function integer_at(pointer)
       type(c_ptr), intent(in) :: pointer
       integer(c_int), pointer :: value
 
+      integer_at = 0
+      if (.not. c_associated(pointer)) return
       call c_f_pointer(pointer, value)
       integer_at = value
    end function integer_at
 
-   !> First number of an optional array, 0 where the host gives none.
+   !> The same of a real array.
    real(wp) function real_at(pointer)
       type(c_ptr), intent(in) :: pointer
       real(c_double), pointer :: value

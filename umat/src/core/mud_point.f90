@@ -21,6 +21,7 @@ module mud_point
       JUMP_RESUME, &
       JUMP_NEW
    use mud_tangent, only: continuum_tangent, elastic_tangent
+   use mud_trace, only: trace_t, record_substep, SUBSTEP_REJECTED, SUBSTEP_ACCEPTED, SUBSTEP_FAILED
    implicit none (type, external)
    private
    public :: blocks_t, initial_state, update_point, TANGENT_NONE, TANGENT_ELASTIC, TANGENT_CONTINUUM, TANGENT_CONSISTENT
@@ -87,7 +88,8 @@ contains
    end subroutine initial_state
 
    !> Integrates d_strain and d_pc. On failure state1 and blocks are undefined and state0 is what it was.
-   pure subroutine update_point(par, state0, d_strain, d_pc, tangent, state1, blocks, counters, reached, status)
+   pure subroutine update_point(par, state0, d_strain, d_pc, tangent, state1, blocks, counters, reached, status, &
+                                record)
       type(params_t), intent(in) :: par
       type(state_t), intent(in) :: state0
       real(wp), intent(in) :: d_strain(6)         !< tensor shear, compression positive [-]
@@ -98,6 +100,7 @@ contains
       type(counters_t), intent(inout) :: counters
       real(wp), intent(out) :: reached            !< share of the increment integrated [-]
       type(mud_status_t), intent(out) :: status
+      type(trace_t), intent(inout), optional :: record
       type(increment_t) :: inc
       type(trial_t) :: trial
       type(sensitivity_t) :: sens
@@ -124,7 +127,8 @@ contains
       k = bulk_modulus(par, state1%e, p)
       size = norm(d_strain) + abs(d_pc)/k
       if (size > 0.0_wp) then
-         call integrate(par, inc, size, tangent == TANGENT_CONSISTENT, state1, trial, sens, counters, reached, status)
+         call integrate(par, inc, size, tangent == TANGENT_CONSISTENT, state1, trial, sens, counters, reached, status, &
+                        record)
       end if
       if (status%code /= MUD_OK) return
       reached = 1.0_wp
@@ -161,7 +165,7 @@ contains
    end subroutine update_point
 
    !> The loop over substeps.
-   pure subroutine integrate(par, inc, size, consistent, state, trial, sens, counters, reached, status)
+   pure subroutine integrate(par, inc, size, consistent, state, trial, sens, counters, reached, status, record)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       real(wp), intent(in) :: size                !< of the increment, in units of strain [-]
@@ -172,6 +176,7 @@ contains
       type(counters_t), intent(inout) :: counters
       real(wp), intent(out) :: reached
       type(mud_status_t), intent(out) :: status
+      type(trace_t), intent(inout), optional :: record
       real(wp) :: time, h, h_taken, error, factor, p, r(6)
       type(memory_t) :: before
       type(rate_t) :: trigger
@@ -208,6 +213,8 @@ contains
             error = error_norm(par, inc%scheme, trial, h_taken)
             if (.not. all(is_finite(trial%y)) .or. .not. is_finite(error)) then
                status = fail(MUD_NOT_FINITE, ON_STRESS)
+               if (present(record)) call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), &
+                                                        SUBSTEP_FAILED, jump, .false., counters, record)
                return
             end if
             factor = step_factor(inc%scheme, error, par%tolerance, may_grow)
@@ -215,6 +222,8 @@ contains
             if (min(h, h_taken) <= par%h_min*(1.0_wp + LAST_SLIVER)) then
                if (.not. par%accept_minimum) then
                   status = fail(MUD_MINIMUM_STEP, value=error, lower=0.0_wp, upper=par%tolerance)
+                  if (present(record)) call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), &
+                                                           SUBSTEP_FAILED, jump, .false., counters, record)
                   return
                end if
                counters%min_step = counters%min_step + 1
@@ -222,6 +231,8 @@ contains
                exit attempts
             end if
             counters%reject = counters%reject + 1
+            if (present(record)) call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), &
+                                                     SUBSTEP_REJECTED, jump, .false., counters, record)
             may_grow = .false.
             h = h_taken*min(factor, 0.9_wp)
          end do attempts
@@ -232,6 +243,8 @@ contains
          if (trial%w(1)%no_root) elastic_substeps = elastic_substeps + 1
          if (elastic_substeps > 1 .and. par%memory_rule /= RULE_AS_PUBLISHED) then
             status = fail(MUD_NO_DIRECTION)
+            if (present(record)) call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), SUBSTEP_FAILED, &
+                                                     jump, crossed, counters, record)
             return
          end if
          time = time + h_taken
@@ -240,6 +253,8 @@ contains
          state%p_c = suction_at(inc, time)
          if (consistent) call propagate(par, inc, trial, h_taken, sens)
          call accept_substep(par, trial, state, counters)
+         if (present(record)) call record_substep(par, inc, trial, h_taken, error, state%sigma, SUBSTEP_ACCEPTED, &
+                                                  jump, crossed, counters, record)
          known = inc%scheme%first_same_as_last .and. trial%mode == MODE_ORDINARY .and. .not. crossed
          if (crossed .and. trial%mode == MODE_ELASTIC) then
             call stress_ratio(par, state%sigma, p, r)

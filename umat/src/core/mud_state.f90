@@ -9,7 +9,7 @@ module mud_state
    use mud_tensor, only: is_finite
    implicit none (type, external)
    private
-   public :: memory_t, state_t, counters_t, pack_state, unpack_state, E_LOWER, E_UPPER
+   public :: memory_t, state_t, counters_t, guard_count, pack_state, unpack_state, E_LOWER, E_UPPER
 
    real(wp), parameter :: E_LOWER = 0.01_wp, E_UPPER = 5.0_wp   !< Range of the void ratio [-].
 
@@ -143,11 +143,17 @@ contains
       statev(S_N_SUBSTEP) = statev(S_N_SUBSTEP) + counters%substep
       statev(S_N_REJECT) = statev(S_N_REJECT) + counters%reject
       statev(S_N_RESEAT) = statev(S_N_RESEAT) + counters%reseat
-      statev(S_N_GUARD) = statev(S_N_GUARD) + counters%floor + counters%cap_d + counters%cap_h + counters%hysteresis &
-                          + counters%iso_kept
+      statev(S_N_GUARD) = statev(S_N_GUARD) + guard_count(counters)
       statev(S_N_NO_ROOT) = statev(S_N_NO_ROOT) + counters%no_root
       statev(S_N_MIN_STEP) = statev(S_N_MIN_STEP) + counters%min_step
       statev(S_N_OPEN) = statev(S_N_OPEN) + counters%open
       statev(S_N_TENSILE) = statev(S_N_TENSILE) + counters%tensile
    end subroutine pack_state
+
+   !> How often a guard acted.
+   pure integer function guard_count(counters)
+      type(counters_t), intent(in) :: counters
+
+      guard_count = counters%floor + counters%cap_d + counters%cap_h + counters%hysteresis + counters%iso_kept
+   end function guard_count
 end module mud_state

@@ -1,0 +1,164 @@
+!> A failed increment as a small text file, which mud_replay runs alone. The only place of the library that writes a
+!> file, and only where it is asked to.
+module mud_save
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_associated, c_f_pointer
+   use, intrinsic :: iso_fortran_env, only: int64
+   use mud_c_api, only: put, ABI_VERSION, VERSION
+   use mud_kernel, only: report_t, output_t, kernel_update
+   use mud_kinds, only: wp
+   use mud_messages, only: status_text, report_text
+   use mud_registry, only: NPROPS, NSTATV, PROPERTIES, statev_name
+   use mud_status, only: MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_NOT_WRITTEN
+   implicit none (type, external)
+   private
+   public :: mud_save_increment, write_increment, PATH_LENGTH
+
+   integer, parameter :: FORMAT_VERSION = 1
+   integer, parameter :: PATH_LENGTH = 1024, ORIGIN_LENGTH = 200, PROBLEM_LENGTH = 300
+   integer, parameter :: LAST_TANGENT = 3
+   character(2), parameter :: COMPONENT(6) = ['11', '22', '33', '12', '13', '23']
+contains
+   !> See mud.h. The increment is run once more, so that the file says how it ends.
+   integer(c_int) function mud_save_increment(path, origin, props, n_props, stress0, statev0, n_statev, dstrain, &
+           suction0, dsuction, tangent, text, len) bind(c, name='mud_save_increment')
+      type(c_ptr), value :: path, origin, props, stress0, statev0, dstrain, text
+      integer(c_int), value :: n_props, n_statev, tangent, len
+      real(c_double), value :: suction0, dsuction
+      real(c_double), pointer :: props_in(:), stress_in(:), statev_in(:), dstrain_in(:)
+      type(report_t) :: report
+      type(output_t) :: output
+      character(PATH_LENGTH) :: name
+      character(ORIGIN_LENGTH) :: whence
+      character(PROBLEM_LENGTH) :: problem
+      logical :: whole
+
+      mud_save_increment = MUD_OK
+      if (n_statev < NSTATV) mud_save_increment = MUD_BAD_NSTATV
+      if (n_props /= NPROPS) mud_save_increment = MUD_BAD_NPROPS
+      if (tangent < 0 .or. tangent > LAST_TANGENT) mud_save_increment = MUD_BAD_OPTION
+      if (.not. (c_associated(path) .and. c_associated(props) .and. c_associated(stress0) .and. &
+                 c_associated(statev0) .and. c_associated(dstrain))) mud_save_increment = MUD_NULL_ARGUMENT
+      call put(status_text(mud_save_increment), text, len)
+      if (mud_save_increment /= MUD_OK) return
+
+      call c_f_pointer(props, props_in, [NPROPS])
+      call c_f_pointer(stress0, stress_in, [6])
+      call c_f_pointer(statev0, statev_in, [NSTATV])
+      call c_f_pointer(dstrain, dstrain_in, [6])
+      call get(origin, whence, whole)
+      call get(path, name, whole)
+      problem = 'the name of the file is empty or too long'
+      if (whole .and. name /= '') then
+         call kernel_update(props_in, stress_in, statev_in, dstrain_in, suction0, dsuction, tangent, output, report)
+         call write_increment(name, whence, props_in, stress_in, statev_in, dstrain_in, suction0, dsuction, tangent, &
+                              report, problem)
+      end if
+      if (problem == '') return
+      mud_save_increment = MUD_NOT_WRITTEN
+      call put(trim(problem)//': '//status_text(MUD_NOT_WRITTEN), text, len)
+   end function mud_save_increment
+
+   !> Writes a new file or none: one of that name is never touched, one that cannot be finished is removed.
+   subroutine write_increment(path, origin, props, stress, statev, d_strain, suction, d_suction, tangent, report, &
+                              problem)
+      character(*), intent(in) :: path, origin
+      real(wp), intent(in) :: props(:), stress(6), statev(:), d_strain(6), suction, d_suction
+      integer, intent(in) :: tangent
+      type(report_t), intent(in) :: report
+      character(*), intent(out) :: problem   !< Blank if the file is written.
+      integer(int64) :: bytes, on_disk
+      integer :: unit, code, i
+
+      problem = ''
+      bytes = 0
+      open (newunit=unit, file=path, status='new', action='write', access='stream', form='formatted', iostat=code, &
+            iomsg=problem)
+      if (code /= 0) return
+      problem = ''
+      call line('# An increment of MUD as of mud.h (tension positive, engineering shear); mud_replay runs it.')
+      call count_line('format', FORMAT_VERSION)
+      call line('library '//VERSION)
+      call count_line('abi', ABI_VERSION)
+      call line('origin '//origin)
+      call line('# '//report_text(report))
+      call count_line('status', report%status)
+      call count_line('n_rate', report%n_rate)
+      call count_line('n_substep', report%n_substep)
+      call count_line('n_reject', report%n_reject)
+      call real_line('reached', report%reached)
+      call count_line('tangent', tangent)
+      call real_line('suction', suction)
+      call real_line('dsuction', d_suction)
+      do i = 1, 6
+         call real_line('stress_'//COMPONENT(i), stress(i))
+      end do
+      do i = 1, 6
+         call real_line('dstrain_'//COMPONENT(i), d_strain(i))
+      end do
+      call count_line('props', NPROPS)
+      do i = 1, NPROPS
+         call real_line(PROPERTIES(i)%name, props(i))
+      end do
+      call count_line('statev', NSTATV)
+      do i = 1, NSTATV
+         call real_line(statev_name(i), statev(i))
+      end do
+      call line('end')
+
+      ! gfortran's buffered output does not report a full disk: compare what should be there with what is.
+      close (unit, iostat=i)
+      inquire (file=path, size=on_disk)
+      if (code == 0 .and. i == 0 .and. on_disk == bytes) return
+      problem = 'the file could not be finished; is the disk full?'
+      open (newunit=unit, file=path, status='old', iostat=code)
+      if (code == 0) close (unit, status='delete', iostat=code)
+   contains
+      !> One line, as long as nothing has gone wrong.
+      subroutine line(text)
+         character(*), intent(in) :: text
+
+         if (code /= 0) return
+         write (unit, '(a)', iostat=code) trim(text)
+         bytes = bytes + len_trim(text) + 1
+      end subroutine line
+
+      subroutine count_line(name, value)
+         character(*), intent(in) :: name
+         integer, intent(in) :: value
+         character(12) :: digits
+
+         write (digits, '(i0)') value
+         call line(name//' '//digits)
+      end subroutine count_line
+
+      !> Seventeen digits: the same bits when they are read again.
+      subroutine real_line(name, value)
+         character(*), intent(in) :: name
+         real(wp), intent(in) :: value
+         character(24) :: digits
+
+         write (digits, '(es24.16e3)') value
+         call line(trim(name)//' '//adjustl(digits))
+      end subroutine real_line
+   end subroutine write_increment
+
+   !> A C string; `whole` if it fits. What is not printable becomes a blank: a line must stay a line.
+   subroutine get(string, text, whole)
+      type(c_ptr), intent(in) :: string
+      character(*), intent(out) :: text
+      logical, intent(out) :: whole
+      character(kind=c_char), pointer :: letters(:)
+      integer :: i
+
+      text = ''
+      whole = .true.
+      if (.not. c_associated(string)) return
+      call c_f_pointer(string, letters, [len(text) + 1])
+      do i = 1, len(text) + 1
+         if (letters(i) == c_null_char) return
+         if (i > len(text)) exit
+         text(i:i) = merge(letters(i), ' ', iachar(letters(i)) >= 32)
+      end do
+      whole = .false.
+   end subroutine get
+end module mud_save
