@@ -163,7 +163,7 @@ contains
       integer, intent(in) :: first
       real(wp) :: p, deviator(6)
       character(8) :: outcome
-      character(:), allocatable :: notes
+      character(120) :: notes
       integer :: i
 
       do i = 1, size(steps)
@@ -175,17 +175,17 @@ contains
             if (step%outcome == MUD_SUBSTEP_ACCEPTED) outcome = 'accepted'
             if (step%outcome == MUD_SUBSTEP_REJECTED) outcome = 'rejected'
             notes = ''
-            if (step%jump == MUD_JUMP_RESEAT) notes = notes//' reseat'
-            if (step%jump == MUD_JUMP_RESUME) notes = notes//' resume'
-            if (step%jump == MUD_JUMP_NEW) notes = notes//' new'
-            if (step%mode == MUD_MODE_ELASTIC) notes = notes//' way back'
-            if (step%mode == MUD_MODE_HELD) notes = notes//' held'
-            if (step%landed /= 0) notes = notes//' event'
-            if (step%n_no_root > 0) notes = notes//' no direction: '//whole(int(step%n_no_root))
+            if (step%jump == MUD_JUMP_RESEAT) notes = trim(notes)//' reseat'
+            if (step%jump == MUD_JUMP_RESUME) notes = trim(notes)//' resume'
+            if (step%jump == MUD_JUMP_NEW) notes = trim(notes)//' new'
+            if (step%mode == MUD_MODE_ELASTIC) notes = trim(notes)//' way back'
+            if (step%mode == MUD_MODE_HELD) notes = trim(notes)//' held'
+            if (step%landed /= 0) notes = trim(notes)//' event'
+            if (step%n_no_root > 0) notes = trim(notes)//' no direction: '//whole(int(step%n_no_root))
             write (output_unit, '(i8, 2es10.3, 2x, a, es10.2, 2es13.5, 2f9.5, i9, i9, i7, a)') first + i - 1, &
                step%time, step%size, outcome, step%error, -p, sqrt(1.5_wp*(sum(deviator(1:3)**2) + &
                2.0_wp*sum(deviator(4:6)**2))), step%void_ratio, step%saturation, step%n_rate, step%n_reseat, &
-               step%n_guard, notes
+               step%n_guard, trim(notes)
          end associate
       end do
    end subroutine print_rows

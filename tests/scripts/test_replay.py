@@ -127,9 +127,9 @@ def small_disk():
 
 
 for name, path, words, more in (
-        ("a file that exists", saved, ["exists"], {}),
-        ("a folder that does not", work / "absent/x.txt", ["absent", "folder"], {}),
-        ("a device that is full", "/dev/full", ["exists"], {}),
+        ("a file that exists", saved, ["a file of that name"], {}),
+        ("a folder that does not", work / "absent/x.txt", ["cannot be made", "folder"], {}),
+        ("a device", "/dev/full", ["a file of that name"], {}),
         ("a disk that is full", work / "full.txt", ["is the disk full"], {"preexec_fn": small_disk}),
         ("an empty name", "", ["empty"], {}), ("a name too long", "x"*3000, ["too long"], {})):
     before = sorted(work.iterdir())
@@ -211,7 +211,7 @@ for name, words, code, told in (
         ("an absent file", ["absent.txt"], 2, "absent.txt"), ("no file", [], 2, "No file"),
         ("two files", ["a", "b"], 2, "One increment"), ("an unknown option", ["--frob"], 2, "--frob"),
         ("no number of steps", [saved, "--steps", "many"], 2, "many"),
-        ("a copy onto a file", [saved, "--save", saved], 4, "exists")):
+        ("a copy onto a file", [saved, "--save", saved], 4, "a file of that name")):
     done = run(replay, *words)
     check(f"{name} is explained", done.returncode == code and told in done.stderr, f"{done.returncode} {done.stderr}")
 done = run(replay, "--help")

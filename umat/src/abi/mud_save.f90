@@ -1,8 +1,8 @@
 !> A failed increment as a small text file, which mud_replay runs alone. The only place of the library that writes a
 !> file, and only where it is asked to.
 module mud_save
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_associated, c_f_pointer
-   use, intrinsic :: iso_fortran_env, only: int64
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_size_t, c_associated, &
+      c_f_pointer
    use mud_c_api, only: put, ABI_VERSION, VERSION
    use mud_kernel, only: report_t, output_t, kernel_update
    use mud_kinds, only: wp
@@ -17,6 +17,31 @@ module mud_save
    integer, parameter :: PATH_LENGTH = 1024, ORIGIN_LENGTH = 200, PROBLEM_LENGTH = 300
    integer, parameter :: LAST_TANGENT = 3
    character(2), parameter :: COMPONENT(6) = ['11', '22', '33', '12', '13', '23']
+
+   ! C's streams: gfortran's own do not report a full disk, and leave the unit behind when it is.
+   interface
+      type(c_ptr) function c_fopen(path, mode) bind(c, name='fopen')
+         import :: c_ptr, c_char
+         character(kind=c_char), intent(in) :: path(*), mode(*)
+      end function c_fopen
+
+      integer(c_size_t) function c_fwrite(text, size, n, file) bind(c, name='fwrite')
+         import :: c_ptr, c_char, c_size_t
+         character(kind=c_char), intent(in) :: text(*)
+         integer(c_size_t), value :: size, n
+         type(c_ptr), value :: file
+      end function c_fwrite
+
+      integer(c_int) function c_fclose(file) bind(c, name='fclose')
+         import :: c_ptr, c_int
+         type(c_ptr), value :: file
+      end function c_fclose
+
+      integer(c_int) function c_remove(path) bind(c, name='remove')
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+      end function c_remove
+   end interface
 contains
    !> See mud.h. The increment is run once more, so that the file says how it ends.
    integer(c_int) function mud_save_increment(path, origin, props, n_props, stress0, statev0, n_statev, dstrain, &
@@ -66,14 +91,19 @@ contains
       integer, intent(in) :: tangent
       type(report_t), intent(in) :: report
       character(*), intent(out) :: problem   !< Blank if the file is written.
-      integer(int64) :: bytes, on_disk
-      integer :: unit, code, i
+      type(c_ptr) :: file
+      logical :: good, taken
+      integer :: i
 
-      problem = ''
-      bytes = 0
-      open (newunit=unit, file=path, status='new', action='write', access='stream', form='formatted', iostat=code, &
-            iomsg=problem)
-      if (code /= 0) return
+      ! "x": a file that exists, were it made by another thread a moment ago, is an error.
+      file = c_fopen(trim(path)//c_null_char, 'wx'//c_null_char)
+      good = c_associated(file)
+      if (.not. good) then
+         inquire (file=path, exist=taken)
+         problem = 'the file cannot be made'
+         if (taken) problem = 'there is a file of that name'
+         return
+      end if
       problem = ''
       call line('# An increment of MUD as of mud.h (tension positive, engineering shear); mud_replay runs it.')
       call count_line('format', FORMAT_VERSION)
@@ -105,21 +135,18 @@ contains
       end do
       call line('end')
 
-      ! gfortran's buffered output does not report a full disk: compare what should be there with what is.
-      close (unit, iostat=i)
-      inquire (file=path, size=on_disk)
-      if (code == 0 .and. i == 0 .and. on_disk == bytes) return
+      if (c_fclose(file) == 0 .and. good) return
       problem = 'the file could not be finished; is the disk full?'
-      open (newunit=unit, file=path, status='old', iostat=code)
-      if (code == 0) close (unit, status='delete', iostat=code)
+      i = c_remove(trim(path)//c_null_char)
    contains
       !> One line, as long as nothing has gone wrong.
       subroutine line(text)
          character(*), intent(in) :: text
+         integer(c_size_t) :: n
 
-         if (code /= 0) return
-         write (unit, '(a)', iostat=code) trim(text)
-         bytes = bytes + len_trim(text) + 1
+         if (.not. good) return
+         n = len_trim(text) + 1
+         good = c_fwrite(trim(text)//new_line(text), 1_c_size_t, n, file) == n
       end subroutine line
 
       subroutine count_line(name, value)
