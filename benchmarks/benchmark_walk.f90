@@ -1,0 +1,223 @@
+!> Paths that the benchmarks walk along, through the doors of mud.h and through the rate itself.
+module benchmark_walk
+   use, intrinsic :: iso_c_binding, only: c_int, c_double, c_null_char
+   use, intrinsic :: iso_fortran_env, only: int64
+   use mud_bonding, only: is_bonded
+   use mud_interface, only: mud_default_props, mud_init_state, mud_update, mud_update_batch, mud_index, mud_count, &
+      mud_report, MUD_PROPS, MUD_STATEV, MUD_TANGENT_NONE
+   use mud_params, only: params_t, read_params
+   use mud_rates, only: rate_t, rate_at, MODE_ORDINARY
+   use mud_status, only: mud_status_t
+   implicit none (type, external)
+   private
+   public :: wp, path_t, PATHS, path_named, tally_t, walk, walk_batch, evaluate_rates, number_of_updates
+
+   integer, parameter :: wp = c_double, WORDS = 128   !< Room for PROPS and STATEV.
+   real(wp), parameter :: RIGHT_ANGLE = acos(0.0_wp)
+   real(wp), parameter :: LONGEST = 0.05_wp           !< A walk ends here [-] ...
+   integer, parameter :: MOST_UPDATES = 500           !< ... or after so many updates.
+
+   !> From an effective stress along a strain that turns from one direction to another. Tension positive.
+   type :: path_t
+      character(24) :: name
+      real(wp) :: stress(6), void_ratio, suction
+      real(wp) :: from(6), to(6)      !< engineering shear, for a strain of 1
+      real(wp) :: d_suction           !< for a strain of 1 [kPa]
+   end type path_t
+
+   real(wp), parameter :: EQUAL(6) = [-1.0_wp, -1.0_wp, -1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
+   real(wp), parameter :: GENERAL(6) = [-130.0_wp, -90.0_wp, -80.0_wp, -12.0_wp, 9.0_wp, -6.0_wp]
+   real(wp), parameter :: UNDRAINED(6) = [-1.0_wp, 0.5_wp, 0.5_wp, 0.0_wp, 0.0_wp, 0.0_wp]
+   real(wp), parameter :: TURN_FROM(6) = [-1.0_wp, 0.4_wp, 0.5_wp, -0.6_wp, 0.4_wp, -0.3_wp]
+   real(wp), parameter :: TURN_TO(6) = [0.2_wp, -0.5_wp, 0.2_wp, 1.0_wp, -0.8_wp, -0.6_wp]
+   !> Section 7's dense undrained test and its unsaturated one; the same two states sheared in six components, the
+   !> unsaturated one while it is wetted.
+   type(path_t), parameter :: PATHS(4) = [ &
+      path_t('saturated', 100.0_wp*EQUAL, 0.735_wp, 0.0_wp, UNDRAINED, UNDRAINED, 0.0_wp), &
+      path_t('unsaturated', 20.0_wp*EQUAL, 0.8_wp, 100.0_wp, UNDRAINED, UNDRAINED, 0.0_wp), &
+      path_t('saturated_turning', GENERAL, 0.735_wp, 0.0_wp, TURN_FROM, TURN_TO, 0.0_wp), &
+      path_t('unsaturated_turning', GENERAL, 0.8_wp, 100.0_wp, TURN_FROM, TURN_TO, -500.0_wp)]
+
+   !> What a walk took.
+   type :: tally_t
+      integer(int64) :: nanoseconds = 0
+      integer :: rates = 0, updates = 0
+   end type tally_t
+contains
+   !> A failure of the library here is a fault of the benchmark: it ends the program.
+   type(path_t) function path_named(name) result(path)
+      character(*), intent(in) :: name
+      integer :: i
+
+      do i = 1, size(PATHS)
+         if (PATHS(i)%name /= name) cycle
+         path = PATHS(i)
+         return
+      end do
+      error stop 'benchmark: unknown path'
+   end function path_named
+
+   pure integer function number_of_updates(strain) result(n)
+      real(wp), intent(in) :: strain   !< of one update [-]
+
+      n = min(nint(LONGEST/strain), MOST_UPDATES)
+   end function number_of_updates
+
+   !> Strain of update i of n [-].
+   pure function strain_of(path, i, n, strain) result(d_strain)
+      type(path_t), intent(in) :: path
+      integer, intent(in) :: i, n
+      real(wp), intent(in) :: strain
+      real(wp) :: d_strain(6), angle
+
+      angle = RIGHT_ANGLE*real(i - 1, wp)/real(n, wp)
+      d_strain = strain*(cos(angle)*path%from + sin(angle)*path%to)
+      if (all(abs(path%from - path%to) <= 0.0_wp)) d_strain = strain*path%from
+   end function strain_of
+
+   subroutine start(path, scheme, tolerance, props, n_props, stress, statev, n_statev)
+      type(path_t), intent(in) :: path
+      integer, intent(in) :: scheme
+      real(wp), intent(in) :: tolerance
+      real(wp), intent(out) :: props(WORDS), stress(6), statev(WORDS)
+      integer(c_int), intent(out) :: n_props, n_statev
+      character :: text(1)
+      integer(c_int) :: code
+
+      n_props = mud_count(MUD_PROPS)
+      n_statev = mud_count(MUD_STATEV)
+      if (max(n_props, n_statev) > WORDS) error stop 'benchmark: WORDS is too small'
+      code = mud_default_props(props, n_props)
+      props(mud_index(MUD_PROPS, 'scheme'//c_null_char) + 1) = real(scheme, wp)
+      props(mud_index(MUD_PROPS, 'tolerance'//c_null_char) + 1) = tolerance
+      stress = path%stress
+      statev = 0.0_wp
+      code = mud_init_state(props, n_props, stress, path%suction, path%void_ratio, statev, n_statev, text, 0_c_int)
+      if (code /= 0) error stop 'benchmark: a start is not accepted'
+   end subroutine start
+
+   !> One point along a path, timed from its first update to its last.
+   subroutine walk(path, strain, scheme, tolerance, tangent, tally)
+      type(path_t), intent(in) :: path
+      real(wp), intent(in) :: strain, tolerance
+      integer, intent(in) :: scheme, tangent
+      type(tally_t), intent(out) :: tally
+      real(wp) :: props(WORDS), stress(6), statev(WORDS), suction, d_suction, d_strain(6), c(6, 6), c_pc(6), sw_e(6), sw_pc
+      real(wp), allocatable :: steps(:, :)
+      type(mud_report) :: report
+      integer(c_int) :: n_props, n_statev, code
+      integer(int64) :: before, after
+      integer :: i
+
+      call start(path, scheme, tolerance, props, n_props, stress, statev, n_statev)
+      tally%updates = number_of_updates(strain)
+      allocate (steps(6, tally%updates))
+      do i = 1, tally%updates
+         steps(:, i) = strain_of(path, i, tally%updates, strain)
+      end do
+      suction = path%suction
+      d_suction = strain*path%d_suction
+      call system_clock(before)
+      do i = 1, tally%updates
+         d_strain = steps(:, i)
+         code = mud_update(props, n_props, stress, statev, n_statev, d_strain, suction, d_suction, int(tangent, c_int), &
+                           stress, statev, c, c_pc, sw_e, sw_pc, report)
+         if (code /= 0) error stop 'benchmark: an update failed'
+         suction = suction + d_suction
+         tally%rates = tally%rates + report%n_rate
+      end do
+      call system_clock(after)
+      tally%nanoseconds = in_nanoseconds(after - before)
+   end subroutine walk
+
+   !> Many points side by side along a path, each from its own place on it.
+   subroutine walk_batch(path, strain, scheme, tolerance, tangent, threads, points, tally)
+      type(path_t), intent(in) :: path
+      real(wp), intent(in) :: strain, tolerance
+      integer, intent(in) :: scheme, tangent, threads, points
+      type(tally_t), intent(out) :: tally
+      real(wp), dimension(:, :), allocatable :: stress, statev, d_strain, c_pc, sw_e
+      real(wp), allocatable :: c(:, :, :), suction(:), d_suction(:), sw_pc(:)
+      type(mud_report), allocatable :: reports(:)
+      integer(c_int), allocatable :: status(:)
+      real(wp) :: props(WORDS), one(6), state(WORDS)
+      integer(c_int) :: n_props, n_statev, failed
+      integer(int64) :: before, after
+      integer :: i
+
+      call start(path, scheme, tolerance, props, n_props, one, state, n_statev)
+      allocate (stress(6, points), statev(n_statev, points), d_strain(6, points), c(6, 6, points), c_pc(6, points), &
+                sw_e(6, points), suction(points), d_suction(points), sw_pc(points), reports(points), status(points))
+      c = 0.0_wp
+      c_pc = 0.0_wp
+      sw_e = 0.0_wp
+      sw_pc = 0.0_wp
+      do i = 1, points
+         stress(:, i) = one
+         statev(:, i) = state(1:n_statev)
+         d_strain(:, i) = 10.0_wp*strain*real(i, wp)/real(points, wp)*path%from
+      end do
+      suction = path%suction
+      d_suction = 0.0_wp
+      ! the first call spreads the points along the path and wakes the threads
+      failed = mud_update_batch(props, n_props, int(points, c_int), stress, statev, n_statev, d_strain, suction, d_suction, &
+         int(tangent, c_int), int(threads, c_int), stress, statev, c, c_pc, sw_e, sw_pc, status, reports)
+      do i = 1, points
+         d_strain(:, i) = strain_of(path, i, points, strain)
+      end do
+      d_suction = strain*path%d_suction
+      call system_clock(before)
+      failed = failed + mud_update_batch(props, n_props, int(points, c_int), stress, statev, n_statev, d_strain, suction, &
+         d_suction, int(tangent, c_int), int(threads, c_int), stress, statev, c, c_pc, sw_e, sw_pc, status, reports)
+      call system_clock(after)
+      if (failed /= 0) error stop 'benchmark: a batch failed'
+      tally = tally_t(in_nanoseconds(after - before), sum(reports%n_rate), points)
+   end subroutine walk_batch
+
+   !> Single rates in a state some way along a path, in directions that differ by a little.
+   subroutine evaluate_rates(path, evaluations, tally)
+      type(path_t), intent(in) :: path
+      integer, intent(in) :: evaluations
+      type(tally_t), intent(out) :: tally
+      real(wp) :: props(WORDS), stress(6), statev(WORDS), d_strain(6), d_pc, z(6), r_in(6), checksum
+      type(params_t) :: par
+      type(mud_status_t) :: status
+      type(rate_t) :: w
+      type(mud_report) :: report
+      integer(c_int) :: n_props, n_statev, code
+      integer(int64) :: before, after
+      integer :: i, fabric, memory
+
+      call start(path, 1, 1.0e-5_wp, props, n_props, stress, statev, n_statev)
+      d_strain = 1.0e-3_wp*path%from
+      code = mud_update(props, n_props, stress, statev, n_statev, d_strain, path%suction, 0.0_wp, MUD_TANGENT_NONE, stress, &
+                        statev, report=report)
+      if (code /= 0) error stop 'benchmark: an update failed'
+      call read_params(props(1:n_props), par, status)
+      fabric = mud_index(MUD_STATEV, 'fabric_11'//c_null_char)
+      memory = mud_index(MUD_STATEV, 'memory_11'//c_null_char)
+      z = statev(fabric + 1:fabric + 6)
+      r_in = statev(memory + 1:memory + 6)
+      d_strain = -path%to*[1.0_wp, 1.0_wp, 1.0_wp, 0.5_wp, 0.5_wp, 0.5_wp]
+      d_pc = path%d_suction
+      checksum = 0.0_wp
+      call system_clock(before)
+      do i = 1, evaluations
+         d_strain(1) = d_strain(1)*(1.0_wp + 1.0e-6_wp)
+         call rate_at(par, is_bonded(par, path%suction), -stress, path%void_ratio, path%suction, z, r_in, d_strain, d_pc, &
+                      MODE_ORDINARY, w)
+         checksum = checksum + w%d_p
+      end do
+      call system_clock(after)
+      if (.not. w%loading .or. .not. abs(checksum) > 0.0_wp) error stop 'benchmark: a rate is not plastic'
+      tally = tally_t(in_nanoseconds(after - before), evaluations, evaluations)
+   end subroutine evaluate_rates
+
+   integer(int64) function in_nanoseconds(ticks)
+      integer(int64), intent(in) :: ticks
+      integer(int64) :: per_second
+
+      call system_clock(count_rate=per_second)
+      in_nanoseconds = nint(real(ticks, wp)*1.0e9_wp/real(per_second, wp), int64)
+   end function in_nanoseconds
+end module benchmark_walk

@@ -1,0 +1,144 @@
+!> Nanoseconds and rate evaluations per update: scheme x tolerance x tangent x path x threads, as CSV on the screen.
+!>
+!> mud_benchmark [ROUNDS]                                    everything; medians of so many rounds
+!> mud_benchmark PATH STRAIN SCHEME TOLERANCE TANGENT WALKS  one variant, for a profiler; nothing is timed
+!>
+!> A round walks every variant once, one after the other, so that a disturbance of the machine falls on all alike; a
+!> ratio is the median of the rounds' own ratios.
+program mud_benchmark
+   use benchmark_walk, only: wp, path_t, PATHS, path_named, tally_t, walk, walk_batch, evaluate_rates
+   implicit none (type, external)
+
+   !> One row of the table and what its rounds took.
+   type :: variant_t
+      character(8) :: door              !< update, batch, or rate
+      type(path_t) :: path
+      real(wp) :: strain = 0.0_wp, tolerance = 0.0_wp
+      integer :: scheme = 0, tangent = 0, threads = 1
+      integer :: reference = 0          !< the row that the ratio refers to
+      type(tally_t) :: tally
+      real(wp), allocatable :: ns(:)    !< per update
+   end type variant_t
+
+   character(*), parameter :: SCHEME_NAMES(0:3) = ['-   ', 'ME21', 'BS32', 'DP54']
+   character(*), parameter :: TANGENT_NAMES(0:3) = ['none      ', 'elastic   ', 'continuum ', 'consistent']
+   integer, parameter :: POINTS = 2000, EVALUATIONS = 1000
+   type(variant_t), allocatable :: variants(:)
+   integer :: rounds
+
+   rounds = 21
+   if (command_argument_count() == 6) then
+      call walk_one()
+   else
+      if (command_argument_count() == 1) rounds = nint(number(1))
+      call list_variants()
+      call run()
+      call print_table()
+   end if
+contains
+   subroutine walk_one()
+      type(tally_t) :: tally
+      character(24) :: name
+      integer :: i
+
+      call get_command_argument(1, name)
+      do i = 1, nint(number(6))
+         call walk(path_named(name), number(2), nint(number(3)), number(4), nint(number(5)), tally)
+      end do
+      print '(i0, a, i0, a)', tally%updates, ' updates and ', tally%rates, ' rates a walk'
+   end subroutine walk_one
+
+   real(wp) function number(argument)
+      integer, intent(in) :: argument
+      character(24) :: text
+      integer :: status
+
+      call get_command_argument(argument, text)
+      read (text, *, iostat=status) number
+      if (status /= 0) error stop 'usage: mud_benchmark [ROUNDS | PATH STRAIN SCHEME TOLERANCE TANGENT WALKS]'
+   end function number
+
+   !> The variant without tangent (batch: with one thread) stands before those that are compared with it.
+   subroutine list_variants()
+      real(wp), parameter :: TOLERANCES(3) = [1.0e-3_wp, 1.0e-5_wp, 1.0e-7_wp], STRAINS(2) = [1.0e-5_wp, 1.0e-3_wp]
+      integer :: i, j, k, scheme, tangent, threads, first
+
+      allocate (variants(0))
+      do i = 1, size(PATHS)
+         variants = [variants, variant_t('rate', PATHS(i), reference=size(variants) + 1)]
+      end do
+      do j = 1, size(STRAINS)
+         do i = 1, size(PATHS)
+            do scheme = 1, 3
+               do k = 1, size(TOLERANCES)
+                  first = size(variants) + 1
+                  do tangent = 0, 3
+                     variants = [variants, variant_t('update', PATHS(i), STRAINS(j), TOLERANCES(k), scheme, tangent, &
+                                                     reference=first)]
+                  end do
+               end do
+            end do
+         end do
+      end do
+      do i = 1, size(PATHS)
+         do tangent = 0, 3
+            first = size(variants) + 1
+            do threads = 1, 2
+               variants = [variants, variant_t('batch', PATHS(i), 1.0e-5_wp, 1.0e-5_wp, 1, tangent, threads, first)]
+            end do
+         end do
+      end do
+   end subroutine list_variants
+
+   subroutine run()
+      integer :: i, round
+
+      do i = 1, size(variants)
+         allocate (variants(i)%ns(rounds))
+      end do
+      do round = 0, rounds          ! the first one only warms up
+         do i = 1, size(variants)
+            associate (v => variants(i))
+               select case (v%door)
+               case ('rate')
+                  call evaluate_rates(v%path, EVALUATIONS, v%tally)
+               case ('batch')
+                  call walk_batch(v%path, v%strain, v%scheme, v%tolerance, v%tangent, v%threads, POINTS, v%tally)
+               case default
+                  call walk(v%path, v%strain, v%scheme, v%tolerance, v%tangent, v%tally)
+               end select
+               if (round > 0) v%ns(round) = real(v%tally%nanoseconds, wp)/v%tally%updates
+            end associate
+         end do
+      end do
+   end subroutine run
+
+   subroutine print_table()
+      integer :: i
+
+      print '(a)', 'call,path,strain,scheme,tolerance,tangent,threads,rates_per_update,ns,ns_lower_quartile,'// &
+         'ns_upper_quartile,ratio'
+      do i = 1, size(variants)
+         associate (v => variants(i))
+            print '(2(a, ","), es7.1, ",", a, ",", es7.1, ",", a, ",", i0, ",", f0.2, 3(",", i0), ",", f5.3)', &
+               trim(v%door), trim(v%path%name), v%strain, trim(SCHEME_NAMES(v%scheme)), v%tolerance, &
+               trim(TANGENT_NAMES(v%tangent)), v%threads, real(v%tally%rates, wp)/v%tally%updates, &
+               nint(quantile(v%ns, 0.5_wp)), nint(quantile(v%ns, 0.25_wp)), nint(quantile(v%ns, 0.75_wp)), &
+               quantile(v%ns/variants(v%reference)%ns, 0.5_wp)
+         end associate
+      end do
+   end subroutine print_table
+
+   !> The value below which a share of the numbers lies, by counting: the lists are short.
+   pure real(wp) function quantile(values, share)
+      real(wp), intent(in) :: values(:)
+      real(wp), intent(in) :: share
+      integer :: i, rank
+
+      rank = nint(share*(size(values) - 1))
+      quantile = values(1)
+      do i = 1, size(values)
+         if (count(values < values(i)) <= rank .and. count(values <= values(i)) > rank) quantile = values(i)
+      end do
+   end function quantile
+end program mud_benchmark
