@@ -30,7 +30,7 @@ MUTATIONS = [
     ("dilatancy without the Lode factor", (FLOW, "SQRT_2_3*g*m_d - r_n", "SQRT_2_3*m_d - r_n + 0.0_wp*g")),
     ("fabric also grows in contraction", (FLOW, ".and. d < 0.0_wp) dz", ") dz")),
     ("fabric acts in every direction", (FLOW, "max(z_n, 0.0_wp)", "z_n")),
-    ("drop the Lode slope", (CRITICAL, "slope = 0.25_wp*g*SQRT_6", "slope = 0.0_wp*g*SQRT_6")),
+    ("drop the Lode slope", (CRITICAL, "slope = par%lode_bend*g**5", "slope = 0.0_wp*par%lode_bend*g**5")),
     ("Lode factor with c squared", (PARAMS, "params%c4 = params%c**4", "params%c4 = params%c**2")),
     ("no Macaulay brackets in the bounding ratio",
      (CRITICAL, "min(max(-par%n_b*psi, 0.0_wp), EXPONENT_LIMIT)", "min(-par%n_b*psi, EXPONENT_LIMIT)")),
@@ -61,7 +61,7 @@ MUTATIONS = [
     ("no contraction cap", (RATES, "w%d = limit", "w%d = w%d")),
     ("softening cap twice as large", (RATES, "w%h_b = limit\n", "w%h_b = 2.0_wp*limit\n")),
     ("first root found taken",
-     (RATES, "if (single_root(par, arc, w, angle)) return", "if (single_root(par, arc, w, angle) .or. .true.) return")),
+     (RATES, "if (single_root(par, arc, w)) return", "if (single_root(par, arc, w) .or. .true.) return")),
     ("plastic shear without sqrt(2/3)", (RATES, "w%d_eps_q = SQRT_2_3*w%l", "w%d_eps_q = w%l")),
     # memory
     ("forget to store the memory", (REVERSAL, "      memory%r_in = r_in\n", "      memory%r_in = memory%r_in\n")),

@@ -38,29 +38,22 @@ contains
    pure real(wp) function lode_factor(par, trace_cube) result(g)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: trace_cube
+      real(wp) :: cos_3t
 
-      if (par%lode) then
-         g = sqrt(sqrt(2.0_wp*par%c4/lode_denominator(par, trace_cube)))
-      else
-         g = 1.0_wp
-      end if
+      g = 1.0_wp
+      if (.not. par%lode) return
+      cos_3t = min(max(SQRT_6*trace_cube, -1.0_wp), 1.0_wp)
+      g = sqrt(sqrt(2.0_wp*par%c4/(1.0_wp + par%c4 - (1.0_wp - par%c4)*cos_3t)))
    end function lode_factor
 
-   !> d g / d tr(n^3) [-].
-   pure real(wp) function lode_slope(par, g, trace_cube) result(slope)
+   !> d g / d tr(n^3) [-]. With g**4 = 2 c**4/(1 + c**4 - (1 - c**4) cos3t) it is a power of g.
+   pure real(wp) function lode_slope(par, g) result(slope)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: g, trace_cube
+      real(wp), intent(in) :: g
 
       slope = 0.0_wp
-      if (par%lode) slope = 0.25_wp*g*SQRT_6*(1.0_wp - par%c4)/lode_denominator(par, trace_cube)
+      if (par%lode) slope = par%lode_bend*g**5
    end function lode_slope
-
-   pure real(wp) function lode_denominator(par, trace_cube) result(d)
-      type(params_t), intent(in) :: par
-      real(wp), intent(in) :: trace_cube
-
-      d = 1.0_wp + par%c4 - (1.0_wp - par%c4)*min(max(SQRT_6*trace_cube, -1.0_wp), 1.0_wp)
-   end function lode_denominator
 
    !> Image alpha_hat [kPa] of a void ratio on the compression line, paper eq. (7) with the factor f mended.
    pure real(wp) function compression_image(par, f, e) result(alpha)

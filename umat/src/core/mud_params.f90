@@ -1,6 +1,6 @@
 !> Material parameters: from PROPS to named values, checked against the registry.
 module mud_params
-   use mud_kinds, only: wp
+   use mud_kinds, only: wp, SQRT_6
    use mud_registry, only: NPROPS, PROPERTIES, KIND_REAL, RULE_AS_PUBLISHED, &
       P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, P_H_0, P_C_H, &
       P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, P_P_ATM, P_P_MIN, &
@@ -13,6 +13,10 @@ module mud_params
    public :: params_t, read_params, default_props, FLOOR_AS_PUBLISHED
 
    real(wp), parameter :: FLOOR_AS_PUBLISHED = 1.0e-15_wp   !< The only floor of (r - r_in):n with the guard off [-].
+
+   ! Side by side: an update checks them every time, and entries of PROPERTIES are several hundred bytes apart.
+   real(wp), parameter :: LOWER(NPROPS) = PROPERTIES%lower, UPPER(NPROPS) = PROPERTIES%upper
+   logical, parameter :: WHOLE(NPROPS) = PROPERTIES%kind /= KIND_REAL   !< Switches, options and counts.
 
    !> Parameters of one material; names and units as in mud_registry.
    type :: params_t
@@ -30,6 +34,7 @@ module mud_params
       integer :: scheme, tangent, max_substeps
       real(wp) :: tolerance, h_min
       real(wp) :: c4        !< c**4, for the Lode function [-].
+      real(wp) :: lode_bend !< sqrt(6) (1 - c**4)/(8 c**4), for its slope [-].
    end type params_t
 contains
    !> The parameters of Tables 2 and 3 with every default of the registry.
@@ -53,7 +58,7 @@ contains
       end if
       do i = 1, NPROPS
          if (acceptable(i, props(i))) cycle
-         status = fail(MUD_BAD_PROPS, ON_PROPS, i, props(i), PROPERTIES(i)%lower, PROPERTIES(i)%upper)
+         status = fail(MUD_BAD_PROPS, ON_PROPS, i, props(i), LOWER(i), UPPER(i))
          return
       end do
       if (props(P_S_MIN) >= props(P_S_MAX)) then
@@ -101,6 +106,7 @@ contains
       params%max_substeps = nint(props(P_MAX_SUBSTEPS))
       params%tangent = nint(props(P_TANGENT))
       params%c4 = params%c**4
+      params%lode_bend = SQRT_6*(1.0_wp - params%c4)/(8.0_wp*params%c4)
 
       ! `as_published` is the classic rule with every guard off, whatever the guards' entries say.
       published = params%memory_rule == RULE_AS_PUBLISHED
@@ -120,8 +126,8 @@ contains
 
       acceptable = is_finite(value)
       if (.not. acceptable) return
-      acceptable = value >= PROPERTIES(i)%lower .and. value <= PROPERTIES(i)%upper
+      acceptable = value >= LOWER(i) .and. value <= UPPER(i)
       if (.not. acceptable) return
-      if (PROPERTIES(i)%kind /= KIND_REAL) acceptable = abs(value - anint(value)) < 1.0e-9_wp
+      if (WHOLE(i)) acceptable = abs(value - anint(value)) < 1.0e-9_wp
    end function acceptable
 end module mud_params

@@ -26,7 +26,6 @@ module mud_rates
    real(wp), parameter :: ROOT_TOLERANCE = 1.0e-14_wp    !< Of the direction equation, share of its terms [-].
    integer, parameter :: MAX_ITERATIONS = 80             !< Bisection alone needs 53.
    integer, parameter :: SCAN = 64                       !< Points of the scan for roots where a bracket is not certain.
-   real(wp), parameter :: RIGHT_ANGLE = 1.5707963267948966_wp
 
    !> One rate and everything it went through, as mud_tangent needs it. Per unit of the pseudo-time of d_strain, d_pc.
    type :: rate_t
@@ -71,7 +70,8 @@ module mud_rates
 
    !> The direction equation at one angle.
    type :: trial_t
-      real(wp) :: residual, slope   !< gamma sin(w) - beta r:q and its derivative [kPa]
+      real(wp) :: cosine, sine      !< of the angle w
+      real(wp) :: residual          !< gamma sin(w) - beta r:q [kPa]
       real(wp) :: scale             !< gamma + |beta| r:q [kPa]
       real(wp) :: admissible        !< y |t|, positive if admissible [kPa]
    end type trial_t
@@ -206,7 +206,7 @@ contains
       type(rate_t), intent(inout) :: w
       type(arc_t) :: arc
       type(trial_t) :: at
-      real(wp) :: n_t(6), q(6), t2(6), q2(6), angle
+      real(wp) :: n_t(6), q(6), t2(6), q2(6), tau
       logical :: found
 
       n_t = w%t/w%t_norm
@@ -223,7 +223,7 @@ contains
          arc%z_q = 0.0_wp
          arc%cubic(1:3) = 0.0_wp
          w%n = n_t
-         call evaluate_direction(par, arc, 1.0_wp, 0.0_wp, w, at)
+         call evaluate_direction(par, arc, 0.0_wp, w, at)
          found = at%admissible > 0.0_wp
       else
          q = q/arc%r_q
@@ -233,61 +233,71 @@ contains
          arc%cubic(1) = ddot(t2, q)
          arc%cubic(2) = ddot(q2, n_t)
          arc%cubic(3) = ddot(q2, q)
-         call find_angle(par, arc, w, angle, at, found)
-         w%n = cos(angle)*n_t + sin(angle)*q
+         call find_angle(par, arc, w, tau, at, found)
+         w%n = at%cosine*n_t + at%sine*q
       end if
       w%loading = found
       w%no_root = .not. found
       if (.not. found) return
+      w%lode_slope = lode_slope(par, w%lode)
       w%y = at%admissible/w%t_norm
       w%l = w%h_b/w%y
    end subroutine find_direction
 
-   !> The admissible root of the direction equation with the smallest |w| on the side where it lies.
+   !> The admissible root of the direction equation with the smallest |w| on the side where it lies. An angle is known
+   !> by the tangent of its half, tau: its cosine and sine then cost a division.
    !>
    !> In units of that side the residual begins negative at w = 0. With every guard on it ends positive at a right
    !> angle, so a bracketed Newton iteration cannot fail. Where the floor or a cap acts, and with guards off, several
    !> roots or none are possible: there the arc is scanned for the first change of sign.
-   pure subroutine find_angle(par, arc, w, angle, at, found)
+   pure subroutine find_angle(par, arc, w, tau, at, found)
       type(params_t), intent(in) :: par
       type(arc_t), intent(in) :: arc
       type(rate_t), intent(inout) :: w
-      real(wp), intent(out) :: angle
+      real(wp), intent(out) :: tau      !< with the sign of w
       type(trial_t), intent(out) :: at
       logical, intent(out) :: found
-      real(wp) :: side, low, high, start, last
-      logical :: guarded
+      real(wp) :: side, low, high, last, start
+      logical :: guarded, crossed
 
-      call evaluate_direction(par, arc, 1.0_wp, 0.0_wp, w, at)
-      angle = 0.0_wp
+      call evaluate_direction(par, arc, 0.0_wp, w, at)
       side = sign(1.0_wp, w%beta)
-      start = asin(min(abs(w%beta)*arc%r_q/w%gamma, 1.0_wp))
-      last = RIGHT_ANGLE
       guarded = par%floored .and. par%cap_d > 0.0_wp .and. par%cap_h > 0.0_wp
+      last = 1.0_wp
+      found = .false.
       if (guarded) then
-         call newton(par, arc, side, 0.0_wp, RIGHT_ANGLE, start, w, angle, at)
+         start = min(abs(w%beta)*arc%r_q/w%gamma, 1.0_wp)      ! sine of the angle if gamma and beta did not change
+         start = start/(1.0_wp + sqrt(1.0_wp - start*start))
+         call newton(par, arc, side, 0.0_wp, 1.0_wp, start, w, tau, at)
          found = at%admissible > 0.0_wp
+         last = abs(tau)
          if (found) then
-            if (single_root(par, arc, w, angle)) return
+            if (single_root(par, arc, w)) return
+            call scan_arc(par, arc, side, last, SCAN - 1, w, low, high, crossed)
+            if (.not. crossed) then
+               call evaluate_direction(par, arc, tau, w, at)
+               return
+            end if
          end if
-         last = abs(angle)
       end if
-      call scan_arc(par, arc, side, last, w, low, high, at, found)
-      if (.not. found) return
-      call newton(par, arc, side, low, high, 0.5_wp*(low + high), w, angle, at)
+      if (.not. found) then
+         call scan_arc(par, arc, side, last, SCAN, w, low, high, found)
+         if (.not. found) return
+      end if
+      call newton(par, arc, side, low, high, 0.5_wp*(low + high), w, tau, at)
       found = at%admissible > 0.0_wp
    end subroutine find_angle
 
-   !> Newton's method kept inside a bracket (angles without sign, `side` gives it) whose low end has a negative residual
+   !> Newton's method kept inside a bracket (tau without sign, `side` gives it) whose low end has a negative residual
    !> and whose high end a positive one. Leaves w and at evaluated at the angle it returns.
-   pure subroutine newton(par, arc, side, from, to, first, w, angle, at)
+   pure subroutine newton(par, arc, side, from, to, first, w, tau, at)
       type(params_t), intent(in) :: par
       type(arc_t), intent(in) :: arc
       real(wp), intent(in) :: side, from, to, first
       type(rate_t), intent(inout) :: w
-      real(wp), intent(out) :: angle
+      real(wp), intent(out) :: tau
       type(trial_t), intent(out) :: at
-      real(wp) :: lower, upper, u, step, previous
+      real(wp) :: lower, upper, u, slope, step, previous
       integer :: iteration
 
       lower = from
@@ -295,8 +305,8 @@ contains
       u = first
       previous = to - from
       do iteration = 1, MAX_ITERATIONS
-         call evaluate_direction(par, arc, cos(u), side*sin(u), w, at)
-         angle = side*u
+         tau = side*u
+         call evaluate_direction(par, arc, tau, w, at)
          if (abs(at%residual) <= ROOT_TOLERANCE*at%scale) return
          if (side*at%residual < 0.0_wp) then
             lower = u
@@ -304,8 +314,9 @@ contains
             upper = u
          end if
          if (upper - lower <= 2.0_wp*epsilon(u)*upper) return
+         slope = slope_of_residual(par, arc, w, at)*2.0_wp/(1.0_wp + u*u)
          step = 2.0_wp*previous
-         if (at%slope > 0.0_wp) step = -side*at%residual/at%slope
+         if (slope > 0.0_wp) step = -side*at%residual/slope
          if (abs(step) > 0.5_wp*previous .or. u + step <= lower .or. u + step >= upper) then
             step = 0.5_wp*(lower + upper) - u
             previous = upper - lower
@@ -316,106 +327,136 @@ contains
       end do
    end subroutine newton
 
-   !> False where an earlier root is possible: a cap, or a change between the floor and a small (r - r_in):n, bends the
-   !> residual back. (200,000 random states against a scan of 2048 points: three misses, under the softening cap;
-   !> without the scan 169.)
-   pure logical function single_root(par, arc, w, angle)
+   !> False where a root earlier than the one that w holds is possible: a cap, or a change between the floor and a
+   !> small (r - r_in):n, bends the residual back. (200,000 random states against a scan of 2048 points: three misses,
+   !> under the softening cap; without the scan 169.)
+   pure logical function single_root(par, arc, w)
       type(params_t), intent(in) :: par
       type(arc_t), intent(in) :: arc
       type(rate_t), intent(in) :: w
-      real(wp), intent(in) :: angle
-      real(wp) :: x_end
       logical :: always_floored, never_near
 
-      x_end = arc%x_t*cos(angle) + arc%x_q*sin(angle)
       ! On less than a right angle x cannot become positive between two negative ends.
-      always_floored = hypot(arc%x_t, arc%x_q) < par%x_floor .or. max(arc%x_t, x_end) < 0.0_wp
-      never_near = min(arc%x_t, x_end) > 2.0_wp*par%x_floor
+      always_floored = arc%x_t**2 + arc%x_q**2 < par%x_floor**2 .or. max(arc%x_t, w%x) < 0.0_wp
+      never_near = min(arc%x_t, w%x) > 2.0_wp*par%x_floor
       single_root = .not. (w%capped_h .or. w%capped_d) .and. (always_floored .or. never_near)
    end function single_root
 
-   !> The first of SCAN intervals up to `last` at whose end the residual has become positive at an admissible angle.
-   pure subroutine scan_arc(par, arc, side, last, w, lower, upper, at, crossed)
+   !> The first of `points` of the SCAN intervals up to `last` at whose end the residual has become positive at an
+   !> admissible angle.
+   pure subroutine scan_arc(par, arc, side, last, points, w, lower, upper, crossed)
       type(params_t), intent(in) :: par
       type(arc_t), intent(in) :: arc
       real(wp), intent(in) :: side, last
+      integer, intent(in) :: points
       type(rate_t), intent(inout) :: w
-      real(wp), intent(out) :: lower, upper
-      type(trial_t), intent(out) :: at
+      real(wp), intent(out) :: lower, upper   !< tau of the interval's ends
       logical, intent(out) :: crossed
+      type(trial_t) :: at
       integer :: i
 
       lower = 0.0_wp
-      do i = 1, SCAN
-         upper = last*real(i, wp)/real(SCAN, wp)
-         call evaluate_direction(par, arc, cos(upper), side*sin(upper), w, at)
+      crossed = .false.
+      do i = 1, points
+         upper = last*(real(i, wp)/real(SCAN, wp))
+         call evaluate_direction(par, arc, side*upper, w, at)
          crossed = side*at%residual >= -ROOT_TOLERANCE*at%scale .and. at%admissible > 0.0_wp
          if (crossed) return
          lower = upper
       end do
    end subroutine scan_arc
 
-   !> The direction equation at the angle with cosine c and sine s, with the guards that bound hardening and dilatancy.
-   pure subroutine evaluate_direction(par, arc, c, s, w, at)
+   !> The direction equation at the angle whose half has the tangent tau, with the guards that bound hardening and
+   !> dilatancy.
+   pure subroutine evaluate_direction(par, arc, tau, w, at)
       type(params_t), intent(in) :: par
       type(arc_t), intent(in) :: arc
-      real(wp), intent(in) :: c, s
+      real(wp), intent(in) :: tau
       type(rate_t), intent(inout) :: w
       type(trial_t), intent(out) :: at
-      real(wp) :: trace_cube, stiffness, r_b, limit, reach
-      real(wp) :: dr, dx, da, dd, dh, dg, dr_b, d_stiffness, d_beta, d_gamma
+      real(wp) :: c, s, trace_cube, r_b, limit
 
+      at%cosine = 2.0_wp/(1.0_wp + tau*tau) - 1.0_wp
+      at%sine = tau*(1.0_wp + at%cosine)
+      c = at%cosine
+      s = at%sine
       w%r_n = c*arc%r_t + s*arc%r_q
       w%x = c*arc%x_t + s*arc%x_q
       w%z_n = c*arc%z_t + s*arc%z_q
-      dr = c*arc%r_q - s*arc%r_t
-      dx = c*arc%x_q - s*arc%x_t
       trace_cube = c*(c*(c*arc%cubic(0) + 3.0_wp*s*arc%cubic(1)) + 3.0_wp*s*s*arc%cubic(2)) + s*s*s*arc%cubic(3)
       w%lode = lode_factor(par, trace_cube)
-      w%lode_slope = lode_slope(par, w%lode, trace_cube)
-      dg = w%lode_slope*3.0_wp*(c*c*(c*arc%cubic(1) - s*arc%cubic(0)) + 2.0_wp*c*s*(c*arc%cubic(2) - s*arc%cubic(1)) &
-                                + s*s*(c*arc%cubic(3) - s*arc%cubic(2)))
 
       w%a_d = dilatancy_factor(par, w%z_n)
       w%d = dilatancy(w%a_d, w%lode, w%m_d, w%r_n)
-      da = 0.0_wp
-      if (par%fabric .and. w%z_n > 0.0_wp) da = par%a_0*(c*arc%z_q - s*arc%z_t)
-      dd = da*(SQRT_2_3*w%lode*w%m_d - w%r_n) + w%a_d*(SQRT_2_3*w%m_d*dg - dr)
       w%capped_d = .false.
       if (par%cap_d > 0.0_wp .and. w%r_n > 0.0_wp) then
          limit = par%cap_d*2.0_wp*w%g/(w%k_e*w%r_n)
          w%capped_d = w%d > limit
-         if (w%capped_d) then
-            w%d = limit
-            dd = -limit/w%r_n*dr
-         end if
+         if (w%capped_d) w%d = limit
       end if
 
       w%floored = w%x < par%x_floor
       w%h_b = max(w%x, par%x_floor)/w%b_0
-      dh = merge(0.0_wp, dx/w%b_0, w%floored)
       r_b = SQRT_2_3*w%lode*w%m_b
-      dr_b = SQRT_2_3*w%m_b*dg
-      stiffness = 2.0_wp*w%g - w%k_e*w%d*w%r_n
       w%capped_h = .false.
-      if (par%cap_h > 0.0_wp .and. w%r_n > r_b .and. stiffness > 0.0_wp) then
-         reach = 2.0_wp/3.0_wp*w%p/((1.0_wp - par%cap_h)*stiffness)
-         limit = reach*(w%r_n - r_b)
+      if (par%cap_h > 0.0_wp .and. w%r_n > r_b) then
+         limit = softening_limit(par, w)
          w%capped_h = w%h_b < limit
-         if (w%capped_h) then
-            d_stiffness = -w%k_e*(dd*w%r_n + w%d*dr)
-            w%h_b = limit
-            dh = reach*(dr - dr_b) - limit*d_stiffness/stiffness
-         end if
+         if (w%capped_h) w%h_b = limit
       end if
 
       w%beta = 2.0_wp/3.0_wp*w%p + w%h_b*w%k_e*w%d
       w%gamma = 2.0_wp/3.0_wp*w%p*r_b + 2.0_wp*w%g*w%h_b
-      d_beta = w%k_e*(dh*w%d + w%h_b*dd)
-      d_gamma = 2.0_wp/3.0_wp*w%p*dr_b + 2.0_wp*w%g*dh
       at%residual = w%gamma*s - w%beta*arc%r_q
-      at%slope = d_gamma*s + w%gamma*c - d_beta*arc%r_q
       at%scale = w%gamma + abs(w%beta)*arc%r_q
       at%admissible = w%gamma*c - w%beta*arc%r_t
    end subroutine evaluate_direction
+
+   !> Least 1/h of the softening cap [-]; 0 where it does not apply.
+   pure real(wp) function softening_limit(par, w) result(limit)
+      type(params_t), intent(in) :: par
+      type(rate_t), intent(in) :: w
+      real(wp) :: stiffness
+
+      limit = 0.0_wp
+      stiffness = 2.0_wp*w%g - w%k_e*w%d*w%r_n
+      if (stiffness > 0.0_wp) then
+         limit = 2.0_wp/3.0_wp*w%p/((1.0_wp - par%cap_h)*stiffness)*(w%r_n - SQRT_2_3*w%lode*w%m_b)
+      end if
+   end function softening_limit
+
+   !> Derivative of the residual with respect to the angle, where it was evaluated [kPa].
+   pure real(wp) function slope_of_residual(par, arc, w, at) result(slope)
+      type(params_t), intent(in) :: par
+      type(arc_t), intent(in) :: arc
+      type(rate_t), intent(in) :: w
+      type(trial_t), intent(in) :: at
+      real(wp) :: c, s, dr, dx, dg, da, dd, dh, dr_b, stiffness, d_stiffness, d_beta, d_gamma
+
+      c = at%cosine
+      s = at%sine
+      dr = c*arc%r_q - s*arc%r_t
+      dx = c*arc%x_q - s*arc%x_t
+      dg = lode_slope(par, w%lode)*3.0_wp*(c*c*(c*arc%cubic(1) - s*arc%cubic(0)) &
+                                           + 2.0_wp*c*s*(c*arc%cubic(2) - s*arc%cubic(1)) &
+                                           + s*s*(c*arc%cubic(3) - s*arc%cubic(2)))
+      if (w%capped_d) then
+         dd = -w%d/w%r_n*dr
+      else
+         da = 0.0_wp
+         if (par%fabric .and. w%z_n > 0.0_wp) da = par%a_0*(c*arc%z_q - s*arc%z_t)
+         dd = da*(SQRT_2_3*w%lode*w%m_d - w%r_n) + w%a_d*(SQRT_2_3*w%m_d*dg - dr)
+      end if
+      dr_b = SQRT_2_3*w%m_b*dg
+      if (w%capped_h) then
+         stiffness = 2.0_wp*w%g - w%k_e*w%d*w%r_n
+         d_stiffness = -w%k_e*(dd*w%r_n + w%d*dr)
+         dh = 2.0_wp/3.0_wp*w%p/((1.0_wp - par%cap_h)*stiffness)*(dr - dr_b) - w%h_b*d_stiffness/stiffness
+      else
+         dh = merge(0.0_wp, dx/w%b_0, w%floored)
+      end if
+      d_beta = w%k_e*(dh*w%d + w%h_b*dd)
+      d_gamma = 2.0_wp/3.0_wp*w%p*dr_b + 2.0_wp*w%g*dh
+      slope = d_gamma*s + w%gamma*c - d_beta*arc%r_q
+   end function slope_of_residual
 end module mud_rates

@@ -66,7 +66,7 @@ contains
             r2 = square(w%r)
             cube = ddot(r2, w%r)/lin%r_norm**3
             lin%lode_r = lode_factor(par, cube)
-            lin%lode_slope_r = lode_slope(par, lin%lode_r, cube)
+            lin%lode_slope_r = lode_slope(par, lin%lode_r)
             lin%r_cube_slope = 3.0_wp*(r2/lin%r_norm**3 - (cube/lin%r_norm**2)*w%r)
          end if
       end if
