@@ -102,7 +102,8 @@ contains
       real(wp), intent(in) :: strain, tolerance
       integer, intent(in) :: scheme, tangent
       type(tally_t), intent(out) :: tally
-      real(wp) :: props(WORDS), stress(6), statev(WORDS), suction, d_suction, d_strain(6), c(6, 6), c_pc(6), sw_e(6), sw_pc
+      real(wp) :: props(WORDS), stress(6), statev(WORDS), suction, d_suction, d_strain(6)
+      real(wp) :: c(6, 6), c_pc(6), sw_e(6), sw_pc
       real(wp), allocatable :: steps(:, :)
       type(mud_report) :: report
       integer(c_int) :: n_props, n_statev, code
@@ -120,8 +121,8 @@ contains
       call system_clock(before)
       do i = 1, tally%updates
          d_strain = steps(:, i)
-         code = mud_update(props, n_props, stress, statev, n_statev, d_strain, suction, d_suction, int(tangent, c_int), &
-                           stress, statev, c, c_pc, sw_e, sw_pc, report)
+         code = mud_update(props, n_props, stress, statev, n_statev, d_strain, suction, d_suction, &
+                           int(tangent, c_int), stress, statev, c, c_pc, sw_e, sw_pc, report)
          if (code /= 0) error stop 'benchmark: an update failed'
          suction = suction + d_suction
          tally%rates = tally%rates + report%n_rate
@@ -160,15 +161,16 @@ contains
       suction = path%suction
       d_suction = 0.0_wp
       ! the first call spreads the points along the path and wakes the threads
-      failed = mud_update_batch(props, n_props, int(points, c_int), stress, statev, n_statev, d_strain, suction, d_suction, &
-         int(tangent, c_int), int(threads, c_int), stress, statev, c, c_pc, sw_e, sw_pc, status, reports)
+      failed = mud_update_batch(props, n_props, int(points, c_int), stress, statev, n_statev, d_strain, suction, &
+         d_suction, int(tangent, c_int), int(threads, c_int), stress, statev, c, c_pc, sw_e, sw_pc, status, reports)
       do i = 1, points
          d_strain(:, i) = strain_of(path, i, points, strain)
       end do
       d_suction = strain*path%d_suction
       call system_clock(before)
-      failed = failed + mud_update_batch(props, n_props, int(points, c_int), stress, statev, n_statev, d_strain, suction, &
-         d_suction, int(tangent, c_int), int(threads, c_int), stress, statev, c, c_pc, sw_e, sw_pc, status, reports)
+      failed = failed + mud_update_batch(props, n_props, int(points, c_int), stress, statev, n_statev, d_strain, &
+         suction, d_suction, int(tangent, c_int), int(threads, c_int), stress, statev, c, c_pc, sw_e, sw_pc, status, &
+         reports)
       call system_clock(after)
       if (failed /= 0) error stop 'benchmark: a batch failed'
       tally = tally_t(in_nanoseconds(after - before), sum(reports%n_rate), points)
@@ -190,8 +192,8 @@ contains
 
       call start(path, 1, 1.0e-5_wp, props, n_props, stress, statev, n_statev)
       d_strain = 1.0e-3_wp*path%from
-      code = mud_update(props, n_props, stress, statev, n_statev, d_strain, path%suction, 0.0_wp, MUD_TANGENT_NONE, stress, &
-                        statev, report=report)
+      code = mud_update(props, n_props, stress, statev, n_statev, d_strain, path%suction, 0.0_wp, MUD_TANGENT_NONE, &
+                        stress, statev, report=report)
       if (code /= 0) error stop 'benchmark: an update failed'
       call read_params(props(1:n_props), par, status)
       fabric = mud_index(MUD_STATEV, 'fabric_11'//c_null_char)
@@ -204,8 +206,8 @@ contains
       call system_clock(before)
       do i = 1, evaluations
          d_strain(1) = d_strain(1)*(1.0_wp + 1.0e-6_wp)
-         call rate_at(par, is_bonded(par, path%suction), -stress, path%void_ratio, path%suction, z, r_in, d_strain, d_pc, &
-                      MODE_ORDINARY, w)
+         call rate_at(par, is_bonded(par, path%suction), -stress, path%void_ratio, path%suction, z, r_in, d_strain, &
+                      d_pc, MODE_ORDINARY, w)
          checksum = checksum + w%d_p
       end do
       call system_clock(after)

@@ -22,8 +22,9 @@ contains
       type(c_ptr), value :: props, stress0, statev0, dstrain, suction0, dsuction, stress1, statev1, dsig_deps, &
                             dsig_dpc, dsw_deps, dsw_dpc, status_out, reports
       integer(c_int), value :: n_props, n, n_statev, tangent, threads
-      real(c_double), pointer :: props_in(:), s0(:, :), v0(:, :), de(:, :), pc0(:), dpc(:), s1(:, :), v1(:, :)
-      real(c_double), pointer :: c(:, :, :), c_pc(:, :), sw_e(:, :), sw_pc(:)
+      real(c_double), pointer, contiguous :: props_in(:), s0(:, :), v0(:, :), de(:, :), pc0(:), dpc(:)
+      real(c_double), pointer, contiguous :: s1(:, :), v1(:, :)
+      real(c_double), pointer, contiguous :: c(:, :, :), c_pc(:, :), sw_e(:, :), sw_pc(:)
       type(report_t), pointer :: report_to(:)
       integer(c_int), pointer :: codes(:)
       type(params_t) :: par
@@ -87,7 +88,7 @@ contains
 
    !> Entry of an optional array, 0 where it is not given.
    pure real(wp) function suction_at(array, i)
-      real(c_double), pointer, intent(in) :: array(:)
+      real(c_double), pointer, contiguous, intent(in) :: array(:)
       integer, intent(in) :: i
 
       suction_at = 0.0_wp

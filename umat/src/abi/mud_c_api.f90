@@ -136,7 +136,7 @@ contains
    integer(c_int) function mud_default_props(props, n_props) bind(c, name='mud_default_props')
       type(c_ptr), value :: props
       integer(c_int), value :: n_props
-      real(c_double), pointer :: values(:)
+      real(c_double), pointer, contiguous :: values(:)
 
       mud_default_props = MUD_NULL_ARGUMENT
       if (.not. c_associated(props)) return
@@ -150,7 +150,7 @@ contains
    integer(c_int) function mud_validate_props(props, n_props, text, len) bind(c, name='mud_validate_props')
       type(c_ptr), value :: props, text
       integer(c_int), value :: n_props, len
-      real(c_double), pointer :: values(:)
+      real(c_double), pointer, contiguous :: values(:)
       type(params_t) :: par
       type(mud_status_t) :: status
 
@@ -169,7 +169,7 @@ contains
       type(c_ptr), value :: props, stress, statev, text
       integer(c_int), value :: n_props, n_statev, len
       real(c_double), value :: suction, void_ratio
-      real(c_double), pointer :: props_in(:), stress_in(:), statev_in(:)
+      real(c_double), pointer, contiguous :: props_in(:), stress_in(:), statev_in(:)
       type(report_t) :: report
 
       if (c_associated(props) .and. c_associated(stress) .and. c_associated(statev)) then
@@ -190,7 +190,8 @@ contains
                             dsw_dpc, report_out
       integer(c_int), value :: n_props, n_statev, tangent
       real(c_double), value :: suction0, dsuction
-      real(c_double), pointer :: props_in(:), stress_in(:), statev_in(:), dstrain_in(:), array(:), matrix(:, :)
+      real(c_double), pointer, contiguous :: props_in(:), stress_in(:), statev_in(:), dstrain_in(:)
+      real(c_double), pointer, contiguous :: array(:), matrix(:, :)
       type(report_t), pointer :: report_to
       type(report_t) :: report
       type(output_t) :: output

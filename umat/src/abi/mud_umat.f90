@@ -57,7 +57,7 @@ contains
       integer, intent(in) :: place(4)   !< Step, increment, element and point, for the record.
       type(report_t), intent(out) :: report
       type(output_t) :: output
-      real(c_double), pointer :: stress_in(:), statev_in(:), dstran_in(:), props_in(:), tangent_out(:, :)
+      real(c_double), pointer, contiguous :: stress_in(:), statev_in(:), dstran_in(:), props_in(:), tangent_out(:, :)
       real(wp) :: stress6(6), dstran6(6), statev0(NSTATV), rotation(3, 3)
       type(mud_status_t) :: status
 
@@ -166,7 +166,7 @@ contains
       type(c_ptr), intent(in) :: drot
       real(wp), intent(out) :: rotation(3, 3)
       type(mud_status_t), intent(out) :: status
-      real(c_double), pointer :: matrix(:, :)
+      real(c_double), pointer, contiguous :: matrix(:, :)
       integer :: i
 
       rotation = 0.0_wp
