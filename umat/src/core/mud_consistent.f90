@@ -40,14 +40,25 @@ contains
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h
       type(sensitivity_t), intent(inout) :: sens
-      real(wp) :: rates(NY*DIRECTIONS, MAX_STAGES), y0(NY*DIRECTIONS), y(NY*DIRECTIONS), point(NY)
-      integer :: i
 
       if (trial%mode == MODE_HELD) then
          sens%y(1:6, :) = 0.0_wp   ! an open point has no stiffness
-         return
+      else
+         call through_stages(par, inc, trial, h, sens%r_in, sens%y)
       end if
-      y0 = reshape(sens%y, shape(y0))
+   end subroutine propagate
+
+   !> The scheme applied to all directions as one long vector.
+   pure subroutine through_stages(par, inc, trial, h, r_in, y1)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      real(wp), intent(in) :: h, r_in(6, DIRECTIONS)
+      real(wp), intent(inout) :: y1(NY*DIRECTIONS)
+      real(wp) :: rates(NY*DIRECTIONS, MAX_STAGES), y0(NY*DIRECTIONS), y(NY*DIRECTIONS), point(NY)
+      integer :: i
+
+      y0 = y1
       y = y0
       point = trial%y0
       do i = 1, inc%scheme%stages
@@ -55,11 +66,10 @@ contains
             call stage_point(inc%scheme, i, y0, rates, h, y)
             call stage_point(inc%scheme, i, trial%y0, trial%rates, h, point)
          end if
-         call change_of_stage(par, inc, trial%w(i), point, trial%time + inc%scheme%node(i)*h, sens%r_in, y, rates(:, i))
+         call change_of_stage(par, inc, trial%w(i), point, trial%time + inc%scheme%node(i)*h, r_in, y, rates(:, i))
       end do
-      call solution(inc%scheme, y0, rates, h, y)
-      sens%y = reshape(y, shape(sens%y))
-   end subroutine propagate
+      call solution(inc%scheme, y0, rates, h, y1)
+   end subroutine through_stages
 
    !> Derivatives of one stage's rates.
    pure subroutine change_of_stage(par, inc, w, point, time, r_in, y, rates)
@@ -69,22 +79,21 @@ contains
       real(wp), intent(in) :: point(NY), time, r_in(6, DIRECTIONS), y(NY, DIRECTIONS)
       real(wp), intent(out) :: rates(NY, DIRECTIONS)
       type(linearised_t) :: lin
-      real(wp) :: dn(6)
+      real(wp) :: dn(6), e
       integer :: j
 
-      call linearise(par, inc%bonded, w, point(1:6), void_ratio_at(inc, time), suction_at(inc, time), inc%d_strain, &
-                     inc%d_pc, lin)
+      e = void_ratio_at(inc, time)
+      call linearise(par, inc%bonded, w, point(1:6), e, suction_at(inc, time), inc%d_strain, inc%d_pc, lin)
       do j = 1, DIRECTIONS
-         call change_of_rate(par, w, lin, direction(inc, j, time, y(:, j), r_in(:, j)), rates(1:6, j), rates(7:12, j), &
+         call change_of_rate(par, w, lin, direction(j, time, e, y(:, j), r_in(:, j)), rates(1:6, j), rates(7:12, j), &
                              rates(13, j), dn)
       end do
    end subroutine change_of_stage
 
    !> How the arguments of a rate change along a direction.
-   pure function direction(inc, j, time, y, r_in) result(change)
-      type(increment_t), intent(in) :: inc
+   pure function direction(j, time, e, y, r_in) result(change)
       integer, intent(in) :: j
-      real(wp), intent(in) :: time, y(NY), r_in(6)
+      real(wp), intent(in) :: time, e, y(NY), r_in(6)
       type(change_t) :: change
 
       change%sigma = y(1:6)
@@ -96,7 +105,7 @@ contains
       change%p_c = 0.0_wp
       if (j <= 3) then
          change%d_strain(j) = 1.0_wp
-         change%e = -(1.0_wp + void_ratio_at(inc, time))*time
+         change%e = -(1.0_wp + e)*time
       else if (j <= 6) then
          change%d_strain(j) = 0.5_wp
       else
@@ -116,7 +125,7 @@ contains
       type(trial_t), intent(in) :: trial
       type(sensitivity_t), intent(inout) :: sens
       type(linearised_t) :: lin
-      real(wp) :: p, r(6), dr(6), dn(6), d_sigma(6), d_z(6), d_eps_q, m, dm, old_r_in(6)
+      real(wp) :: p, r(6), dr(6), dn(6), d_sigma(6), d_z(6), d_eps_q, m, dm, e, old_r_in(6)
       integer :: j
       logical :: held_p
 
@@ -125,10 +134,11 @@ contains
          return
       end if
       call stress_ratio(par, trial%y0(1:6), p, r)
+      e = void_ratio_at(inc, trial%time)
       held_p = trace(trial%y0(1:6)) < 3.0_wp*par%p_min
       if (jump == JUMP_RESEAT .and. par%memory_rule == RULE_REPOSITIONING) then
-         call linearise(par, inc%bonded, trigger, trial%y0(1:6), void_ratio_at(inc, trial%time), &
-                        suction_at(inc, trial%time), inc%d_strain, inc%d_pc, lin)
+         call linearise(par, inc%bonded, trigger, trial%y0(1:6), e, suction_at(inc, trial%time), inc%d_strain, &
+                        inc%d_pc, lin)
       end if
       m = 0.0_wp
       if (before%eps_q_p < par%eps_hat) m = 1.0_wp - (before%eps_q_p/par%eps_hat)**par%j_exp
@@ -147,7 +157,7 @@ contains
                   sens%r_in(:, j) = (1.0_wp - m)*dr + m*sens%r_before(:, j) + dm*(before%r_before - r)
                end if
             case (RULE_REPOSITIONING)
-               call change_of_rate(par, trigger, lin, direction(inc, j, trial%time, sens%y(:, j), old_r_in), d_sigma, &
+               call change_of_rate(par, trigger, lin, direction(j, trial%time, e, sens%y(:, j), old_r_in), d_sigma, &
                                    d_z, d_eps_q, dn)
                sens%r_in(:, j) = dr - before%x_before*(m*dn + dm*trigger%n)
             end select

@@ -28,6 +28,9 @@ module mud_sensitivity
       type(bonding_t) :: bond
       real(wp) :: curvature(3)              !< of f [1/kPa2, 1/kPa, -]
       real(wp) :: e_c, kappa, r_norm
+      real(wp) :: e_c_slope                 !< -d ln e_c/dp' [1/kPa]
+      real(wp) :: k_slope, g_slope, b_slope !< d ln K/de, d ln G/de, d ln b_0/de [-]
+      real(wp) :: per_p, per_f, per_b_0, per_gamma, per_y   !< Reciprocals of p', f, b_0, gamma, y.
       real(wp) :: r_cube_slope(6)           !< d tr(r^3/|r|^3)/dr
       real(wp) :: lode_r, lode_slope_r      !< Lode factor in the direction of r and its slope
       real(wp), dimension(6) :: h_n, d_n, beta_n, gamma_n
@@ -56,6 +59,14 @@ contains
          lin%curvature = bonding_curvature(par, p_c, e)
       end if
       lin%e_c = e - w%psi
+      lin%e_c_slope = par%lambda/(w%p + par%alpha_csl)
+      lin%k_slope = 1.0_wp/(1.0_wp + e) - 1.0_wp/e
+      lin%g_slope = -2.0_wp/(2.97_wp - e) - 1.0_wp/(1.0_wp + e)
+      lin%b_slope = 0.0_wp
+      if (1.0_wp - par%c_h*e > SMALLEST_VOID_TERM) lin%b_slope = -par%c_h/(1.0_wp - par%c_h*e)
+      lin%per_p = 1.0_wp/w%p
+      lin%per_f = 1.0_wp/lin%bond%f
+      lin%per_b_0 = 1.0_wp/w%b_0
       if (w%iso_active) then
          lin%kappa = swelling_slope(w%k, e, w%p)
          lin%r_norm = norm(w%r)
@@ -76,6 +87,8 @@ contains
       m(2, :) = [ddot(lin%gamma_n, w%t), -w%gamma, ddot(lin%gamma_n, w%r)]
       m(3, :) = [ddot(lin%beta_n, w%t), 0.0_wp, ddot(lin%beta_n, w%r) - w%gamma]
       lin%inverse = inverse_of(m)
+      lin%per_gamma = 1.0_wp/w%gamma
+      lin%per_y = 1.0_wp/w%y
    end subroutine linearise
 
    !> Change of the rates of stress, fabric and plastic shear, and of the loading direction.
@@ -86,20 +99,20 @@ contains
       type(change_t), intent(in) :: change
       real(wp), intent(out) :: d_sigma(6), d_z(6), d_eps_q, dn(6)
       real(wp) :: dp, dr(6), dt(6), dk, dg, df, dpsi, dm_b, dm_d, db_0, dk_e, db, dv, volumetric, dvolumetric
-      real(wp) :: dx, drn, dr_b, da_d, dd, dh, dstiffness, stiffness, reach, dbeta, dgamma, dy, dl, scalars(3)
+      real(wp) :: dx, drn, dr_b, da_d, dd, dh, dstiffness, stiffness, reach, dbeta, dgamma, dy, dl, s(3), a, b
+      real(wp) :: d_e(6), share
 
       ! the point
       dp = merge(0.0_wp, trace(change%sigma)/3.0_wp, lin%held_p)
-      dr = (deviator(change%sigma) - dp*w%r)/w%p
-      dk = w%k*(2.0_wp/3.0_wp*dp/w%p + change%e*(1.0_wp/(1.0_wp + lin%e) - 1.0_wp/lin%e))
-      dg = w%g*(0.5_wp*dp/w%p - change%e*(2.0_wp/(2.97_wp - lin%e) + 1.0_wp/(1.0_wp + lin%e)))
+      share = dp*lin%per_p
+      dr = (deviator(change%sigma) - dp*w%r)*lin%per_p
+      dk = w%k*(2.0_wp/3.0_wp*share + change%e*lin%k_slope)
+      dg = w%g*(0.5_wp*share + change%e*lin%g_slope)
       df = lin%bond%df_de*change%e + lin%bond%df_dpc*change%p_c
-      dpsi = change%e - lin%e_c*(df/lin%bond%f - par%lambda*dp/(w%p + par%alpha_csl))
+      dpsi = change%e - lin%e_c*(df*lin%per_f - dp*lin%e_c_slope)
       dm_b = merge(-par%n_b*w%m_b*dpsi, 0.0_wp, w%psi < 0.0_wp)
       dm_d = par%n_d*w%m_d*dpsi
-      db_0 = -0.5_wp*dp/w%p
-      if (1.0_wp - par%c_h*lin%e > SMALLEST_VOID_TERM) db_0 = db_0 - par%c_h*change%e/(1.0_wp - par%c_h*lin%e)
-      db_0 = w%b_0*db_0
+      db_0 = w%b_0*(lin%b_slope*change%e - 0.5_wp*share)
 
       ! the isotropic mechanism and the trial stress
       dk_e = dk
@@ -108,13 +121,14 @@ contains
       dv = trace(change%d_strain)
       volumetric = w%k_e*(lin%d_v - w%b_rate)
       dvolumetric = dk_e*(lin%d_v - w%b_rate) + w%k_e*(dv - db)
-      dt = 2.0_wp*(dg*lin%d_e + w%g*deviator(change%d_strain)) - volumetric*dr - dvolumetric*w%r
+      d_e = dg*lin%d_e + w%g*deviator(change%d_strain)
+      dt = 2.0_wp*d_e - volumetric*dr - dvolumetric*w%r
 
       if (.not. w%loading) then
          dn = 0.0_wp
          d_z = 0.0_wp
          d_eps_q = 0.0_wp
-         d_sigma = 2.0_wp*(dg*lin%d_e + w%g*deviator(change%d_strain)) + dvolumetric*IDENTITY
+         d_sigma = 2.0_wp*d_e + dvolumetric*IDENTITY
          return
       end if
 
@@ -132,27 +146,26 @@ contains
       dstiffness = 2.0_wp*dg - dk_e*w%d*w%r_n - w%k_e*(dd*w%r_n + w%d*drn)
       if (w%capped_h) then
          reach = 2.0_wp/3.0_wp*w%p/((1.0_wp - par%cap_h)*stiffness)
-         dh = w%h_b*(dp/w%p - dstiffness/stiffness) + reach*(drn - dr_b)
+         dh = w%h_b*(share - dstiffness/stiffness) + reach*(drn - dr_b)
       else
          dx = merge(0.0_wp, drn - ddot(change%r_in, w%n), w%floored)
-         dh = (dx - w%h_b*db_0)/w%b_0
+         dh = (dx - w%h_b*db_0)*lin%per_b_0
       end if
       dbeta = 2.0_wp/3.0_wp*dp + dh*w%k_e*w%d + w%h_b*(dk_e*w%d + w%k_e*dd)
       dgamma = 2.0_wp/3.0_wp*(dp*SQRT_2_3*w%lode*w%m_b + w%p*dr_b) + 2.0_wp*(dg*w%h_b + w%g*dh)
 
       ! the direction turns: gamma dn = y dt + beta dr + t dy - n dgamma + r dbeta
       dt = w%y*dt + w%beta*dr
-      scalars(1) = -ddot(w%n, dt)
-      scalars(2) = -ddot(lin%gamma_n, dt) - w%gamma*dgamma
-      scalars(3) = -ddot(lin%beta_n, dt) - w%gamma*dbeta
-      scalars = matmul(lin%inverse, scalars)
-      dy = scalars(1)
-      dn = (dt + dy*w%t - scalars(2)*w%n + scalars(3)*w%r)/w%gamma
+      s = [-ddot(w%n, dt), -ddot(lin%gamma_n, dt) - w%gamma*dgamma, -ddot(lin%beta_n, dt) - w%gamma*dbeta]
+      dy = lin%inverse(1, 1)*s(1) + lin%inverse(1, 2)*s(2) + lin%inverse(1, 3)*s(3)
+      a = lin%inverse(2, 1)*s(1) + lin%inverse(2, 2)*s(2) + lin%inverse(2, 3)*s(3)
+      b = lin%inverse(3, 1)*s(1) + lin%inverse(3, 2)*s(2) + lin%inverse(3, 3)*s(3)
+      dn = (dt + dy*w%t - a*w%n + b*w%r)*lin%per_gamma
       dh = dh + ddot(lin%h_n, dn)
       dd = dd + ddot(lin%d_n, dn)
-      dl = (dh - w%l*dy)/w%y
+      dl = (dh - w%l*dy)*lin%per_y
 
-      d_sigma = 2.0_wp*(dg*(lin%d_e - w%l*w%n) + w%g*(deviator(change%d_strain) - dl*w%n - w%l*dn)) &
+      d_sigma = 2.0_wp*(d_e - (dg*w%l + w%g*dl)*w%n - (w%g*w%l)*dn) &
                 + (dvolumetric - dk_e*w%l*w%d - w%k_e*(dl*w%d + w%l*dd))*IDENTITY
       d_eps_q = SQRT_2_3*dl
       d_z = 0.0_wp
