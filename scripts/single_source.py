@@ -18,7 +18,7 @@ It defines the UMAT (symbol umat_) and the functions of mud.h. PROPS, STATEV, co
 umat/README.md. Free form, Fortran 2018; gfortran 12 or later. Compiling leaves .mod files in the working folder, which
 nobody needs. With -fopenmp mud_update_batch uses several threads; everything else is the same without.
 
-   gfortran -O3 -fPIC -c mud_umat_single.f90
+   gfortran -O3 -fPIC -fno-semantic-interposition -c mud_umat_single.f90
 
 Abaqus:    abaqus job=JOB user=mud_umat_single.o     (add -lgfortran to link_sl of the environment file if it links with
            another compiler; user=mud_umat_single.f90 works where compile_fortran is gfortran with free form)

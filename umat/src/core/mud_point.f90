@@ -213,8 +213,8 @@ contains
             error = error_norm(par, inc%scheme, trial, h_taken)
             if (.not. all(is_finite(trial%y)) .or. .not. is_finite(error)) then
                status = fail(MUD_NOT_FINITE, ON_STRESS)
-               if (present(record)) call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), &
-                                                        SUBSTEP_FAILED, jump, .false., counters, record)
+               call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), SUBSTEP_FAILED, jump, .false., &
+                                   counters, record)
                return
             end if
             factor = step_factor(inc%scheme, error, par%tolerance, may_grow)
@@ -222,8 +222,8 @@ contains
             if (min(h, h_taken) <= par%h_min*(1.0_wp + LAST_SLIVER)) then
                if (.not. par%accept_minimum) then
                   status = fail(MUD_MINIMUM_STEP, value=error, lower=0.0_wp, upper=par%tolerance)
-                  if (present(record)) call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), &
-                                                           SUBSTEP_FAILED, jump, .false., counters, record)
+                  call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), SUBSTEP_FAILED, jump, .false., &
+                                      counters, record)
                   return
                end if
                counters%min_step = counters%min_step + 1
@@ -231,8 +231,8 @@ contains
                exit attempts
             end if
             counters%reject = counters%reject + 1
-            if (present(record)) call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), &
-                                                     SUBSTEP_REJECTED, jump, .false., counters, record)
+            call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), SUBSTEP_REJECTED, jump, .false., &
+                                counters, record)
             may_grow = .false.
             h = h_taken*min(factor, 0.9_wp)
          end do attempts
@@ -243,8 +243,8 @@ contains
          if (trial%w(1)%no_root) elastic_substeps = elastic_substeps + 1
          if (elastic_substeps > 1 .and. par%memory_rule /= RULE_AS_PUBLISHED) then
             status = fail(MUD_NO_DIRECTION)
-            if (present(record)) call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), SUBSTEP_FAILED, &
-                                                     jump, crossed, counters, record)
+            call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), SUBSTEP_FAILED, jump, crossed, &
+                                counters, record)
             return
          end if
          time = time + h_taken
@@ -253,8 +253,8 @@ contains
          state%p_c = suction_at(inc, time)
          if (consistent) call propagate(par, inc, trial, h_taken, sens)
          call accept_substep(par, trial, state, counters)
-         if (present(record)) call record_substep(par, inc, trial, h_taken, error, state%sigma, SUBSTEP_ACCEPTED, &
-                                                  jump, crossed, counters, record)
+         call record_substep(par, inc, trial, h_taken, error, state%sigma, SUBSTEP_ACCEPTED, jump, crossed, &
+                             counters, record)
          known = inc%scheme%first_same_as_last .and. trial%mode == MODE_ORDINARY .and. .not. crossed
          if (crossed .and. trial%mode == MODE_ELASTIC) then
             call stress_ratio(par, state%sigma, p, r)

@@ -36,11 +36,12 @@ contains
       integer, intent(in) :: outcome, jump    !< SUBSTEP_*; JUMP_* of the memory at its start.
       logical, intent(in) :: landed           !< Shortened to end at an event.
       type(counters_t), intent(in) :: counters
-      type(trace_t), intent(inout) :: trace
+      type(trace_t), intent(inout), optional :: trace   !< Without it nothing is done.
       type(saturation_t) :: sat
       real(wp) :: e, p_c
       integer :: row
 
+      if (.not. present(trace)) return
       trace%attempts = trace%attempts + 1
       row = trace%attempts - trace%first + 1
       if (.not. associated(trace%rows) .or. row < 1) return
