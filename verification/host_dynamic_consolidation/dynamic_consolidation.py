@@ -168,7 +168,8 @@ def main():
         out = csv.writer(file, lineterminator="\n")
         for inertia in (0, 1):
             half = HalfSpace(inertia)
-            print(f"seepage inertia {inertia}: a {half.a:.10g} s2/m2, b {half.b:.10g} s/m2, front {half.a**-0.5:.8g} m/s"
+            print(f"seepage inertia {inertia}: a {half.a:.10g} s2/m2, b {half.b:.10g} s/m2, "
+                  f"front {half.a**-0.5:.8g} m/s"
                   f", at {DEPTH} m at {DEPTH*half.a**0.5:.6g} s, b/2a {half.beta:.8g} per second")
             u_c, p_c = extrapolated(TIMES, DEPTHS, 2.2e6, inertia, 6000)
             for i, t in enumerate(TIMES):
