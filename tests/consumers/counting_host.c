@@ -1,17 +1,21 @@
 /* Counts allocations of memory during updates: every malloc, calloc, realloc of the process passes through here, those
- * of the Fortran runtime as well. Usage: counting_host UPDATES. One line per variant; the last one is a control. */
+ * of the Fortran runtime as well. Usage: counting_host UPDATES. One line per variant; the last one is a control.
+ * Compiled with -DSANITIZED it leaves the allocator to the sanitizers and counts nothing: they look for leaks. */
 #include <stdio.h>
 #include <stdlib.h>
 #include "mud.h"
 
 enum { MAX = 128, POINTS = 400 };   /* room for PROPS and STATEV; points of a batch */
 
-void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t), *__libc_realloc(void *, size_t);
 static volatile long allocations;
+
+#ifndef SANITIZED
+void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t), *__libc_realloc(void *, size_t);
 
 void *malloc(size_t n) { __atomic_add_fetch(&allocations, 1, __ATOMIC_RELAXED); return __libc_malloc(n); }
 void *calloc(size_t n, size_t m) { __atomic_add_fetch(&allocations, 1, __ATOMIC_RELAXED); return __libc_calloc(n, m); }
 void *realloc(void *p, size_t n) { __atomic_add_fetch(&allocations, 1, __ATOMIC_RELAXED); return __libc_realloc(p, n); }
+#endif
 
 static double props[MAX], stress[6*POINTS], statev[MAX*POINTS], dstrain[6*POINTS], suction[POINTS], dsuction[POINTS];
 static double c[36*POINTS], c_pc[6*POINTS], sw_e[6*POINTS], sw_pc[POINTS];
