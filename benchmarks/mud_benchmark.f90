@@ -22,7 +22,7 @@ program mud_benchmark
 
    character(*), parameter :: SCHEME_NAMES(0:3) = ['-   ', 'ME21', 'BS32', 'DP54']
    character(*), parameter :: TANGENT_NAMES(0:3) = ['none      ', 'elastic   ', 'continuum ', 'consistent']
-   integer, parameter :: POINTS = 2000, EVALUATIONS = 1000
+   integer, parameter :: POINTS = 400, EVALUATIONS = 200
    type(variant_t), allocatable :: variants(:)
    integer :: rounds
 

@@ -45,7 +45,7 @@ for (strain, path, scheme), mine in groups.items():
           + " | ".join(f"{float(r['rates_per_update']):.1f}, {r['ns']}" for r in none)
           + f" | {largest[0]:.2f} | {largest[1]:.2f} |")
 
-print("\n| batch of 2000 points, 1e-5 strain | tangent | 1 thread: ns per point | 2 threads | ratio |\n|---|---|---|---|---|")
+print("\n| batch of 400 points, 1e-5 strain | tangent | 1 thread: ns per point | 2 threads | ratio |\n|---|---|---|---|---|")
 batch = [r for r in speed if r["call"] == "batch"]
 for one, two in zip(batch[::2], batch[1::2]):
     print(f"| {one['path']} | {one['tangent']} | {one['ns']} | {two['ns']} | {two['ratio']} |")

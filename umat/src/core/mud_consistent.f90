@@ -56,12 +56,15 @@ contains
       real(wp), intent(in) :: h, r_in(6, DIRECTIONS)
       real(wp), intent(inout) :: y1(NY*DIRECTIONS)
       real(wp) :: rates(NY*DIRECTIONS, MAX_STAGES), y0(NY*DIRECTIONS), y(NY*DIRECTIONS), point(NY)
-      integer :: i
+      integer :: i, last
 
+      ! the last stage of such a pair serves the error estimate and the next substep, not the solution
+      last = inc%scheme%stages
+      if (inc%scheme%first_same_as_last) last = last - 1
       y0 = y1
       y = y0
       point = trial%y0
-      do i = 1, inc%scheme%stages
+      do i = 1, last
          if (i > 1) then
             call stage_point(inc%scheme, i, y0, rates, h, y)
             call stage_point(inc%scheme, i, trial%y0, trial%rates, h, point)
