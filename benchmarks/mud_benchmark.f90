@@ -120,7 +120,7 @@ contains
          'ns_upper_quartile,ratio'
       do i = 1, size(variants)
          associate (v => variants(i))
-            print '(2(a, ","), es7.1, ",", a, ",", es7.1, ",", a, ",", i0, ",", f0.2, 3(",", i0), ",", f5.3)', &
+            print '(2(a, ","), es7.1, ",", a, ",", es7.1, ",", a, ",", i0, ",", f0.2, 3(",", i0), ",", f0.3)', &
                trim(v%door), trim(v%path%name), v%strain, trim(SCHEME_NAMES(v%scheme)), v%tolerance, &
                trim(TANGENT_NAMES(v%tangent)), v%threads, real(v%tally%rates, wp)/v%tally%updates, &
                nint(quantile(v%ns, 0.5_wp)), nint(quantile(v%ns, 0.25_wp)), nint(quantile(v%ns, 0.75_wp)), &
