@@ -2,17 +2,18 @@
 program mud_triax
    use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit, error_unit
    use triax_fault, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
-   use triax_text, only: short, whole
-   use triax_case, only: case_t, read_case, CONTROL_NAMES, STRAIN_PATH
+   use triax_text, only: whole
+   use triax_case, only: case_t, read_case
+   use triax_stage, only: CONTROL_NAMES
    use triax_point, only: point_t, library_version
-   use triax_control, only: plan_t, tally_t, plan_stage, advance, lead, excess_pressure
-   use triax_output, only: table_t, clock_t, open_table, write_row, close_table, start_clock, show_progress, &
+   use triax_control, only: tally_t
+   use triax_course, only: course_t, begin_stage, next_increment, share_done
+   use triax_output, only: table_t, clock_t, open_table, write_row, add_note, close_table, start_clock, show_progress, &
       show_summary
    use triax_help, only: print_help, print_template
    implicit none (type, external)
 
    integer, parameter :: PATH_LENGTH = 256
-   real(wp), parameter :: ON_GRID = 1.0e-6_wp   !< Share of an output interval that counts as none: rounding.
 
    character(PATH_LENGTH) :: case_file, output_file, save_file
    type(fault_t) :: fault
@@ -97,11 +98,11 @@ contains
       type(table_t) :: table
       type(clock_t) :: clock
       type(point_t) :: point
-      type(plan_t) :: plan
+      type(course_t) :: course
       type(tally_t) :: tally
       type(fault_t) :: ending
       real(wp) :: pressure
-      integer :: i, k, increments
+      integer :: i, increments
       logical :: taken
 
       call read_case(file, test, fault)
@@ -114,7 +115,7 @@ contains
                     'it is not overwritten; remove it or choose another name.')
          return
       end if
-      call open_table(trim(output_file), test, any(test%stages%control == STRAIN_PATH), table, fault)
+      call open_table(trim(output_file), test, table, fault)
       if (fault%code /= 0) return
 
       tally%residuals = residuals
@@ -124,23 +125,28 @@ contains
       point = test%start
       pressure = 0.0_wp
       increments = 0
-      call write_row(table, test%soil, point, pressure, 0.0_wp, 0, fault)
+      call write_row(table, test%soil, point, course, 0.0_wp, 0, fault)
       stages: do i = 1, size(test%stages)
-         call plan_stage(test%soil, test%stages(i), point, pressure, plan)
-         do k = 1, plan%increments
-            call advance(test%soil, plan, k, point, tally, fault)
+         associate (stage => test%stages(i))
+            call begin_stage(test%soil, stage, point, pressure, course, fault)
             if (fault%code /= 0) exit stages
-            increments = increments + 1
-            if (k == plan%increments .or. passes(lead(plan, k - 1), lead(plan, k), test%stages(i)%interval)) then
-               call write_row(table, test%soil, point, excess_pressure(plan, point), tally%error, i, fault)
-               tally%error = 0.0_wp
+            do while (.not. course%finished)
+               call next_increment(test%soil, stage, course, point, tally, fault)
                if (fault%code /= 0) exit stages
-            end if
-            if (.not. quiet) call show_progress(clock, (real(i - 1, wp) + real(k, wp)/real(plan%increments, wp))/ &
-                                                real(size(test%stages), wp), 'stage '//whole(i)//' of '// &
-                                                whole(size(test%stages))//' ('//trim(CONTROL_NAMES(plan%control))//')')
-         end do
-         pressure = excess_pressure(plan, point)
+               increments = increments + 1
+               if (course%row) then
+                  call write_row(table, test%soil, point, course, tally%error, i, fault)
+                  tally%error = 0.0_wp
+                  if (fault%code /= 0) exit stages
+               end if
+               if (.not. quiet) call show_progress(clock, (real(i - 1, wp) + share_done(course))/ &
+                                                   real(size(test%stages), wp), 'stage '//whole(i)//' of '// &
+                                                   whole(size(test%stages))//' ('// &
+                                                   trim(CONTROL_NAMES(stage%control))//')'//in_cycle(course))
+            end do
+            pressure = course%pressure
+            if (len_trim(course%note) > 0) call add_note(table, 'stage '//whole(i)//': '//trim(course%note), fault)
+         end associate
       end do stages
 
       if (fault%code /= 0) then
@@ -152,12 +158,12 @@ contains
       if (.not. quiet) call show_summary(test, table, point, tally, increments, clock)
    end subroutine run
 
-   !> True if a multiple of the interval lies after `before` and not after `now`, whichever way the lead goes.
-   pure logical function passes(before, now, interval)
-      real(wp), intent(in) :: before, now, interval
-      real(wp) :: way
+   !> ", cycle 3", or nothing.
+   pure function in_cycle(course) result(text)
+      type(course_t), intent(in) :: course
+      character(:), allocatable :: text
 
-      way = sign(1.0_wp, now - before)
-      passes = floor(way*now/interval + ON_GRID) > floor(way*before/interval + ON_GRID)
-   end function passes
+      text = ''
+      if (course%cycle > 0) text = ', cycle '//whole(course%cycle)
+   end function in_cycle
 end program mud_triax

@@ -2,40 +2,16 @@
 module triax_case
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use triax_fault, only: fault_t, raise, at_line, EXIT_INPUT
-   use triax_text, only: lower_case, distance, short, whole, read_number
-   use triax_namelist, only: group_t, entry_t, read_groups, find_entry, LENGTH
+   use triax_text, only: lower_case, short, whole
+   use triax_namelist, only: group_t, read_groups, LENGTH
+   use triax_keys, only: check_keys, describe_key, nearest_name, get_text, get_number, get_numbers, line_of, has_key
+   use triax_stage, only: stage_t, set_constraints, leads_of, sealed_control, CONTROL_NAMES, QUANTITIES, LINEAR, &
+                          BY_EPS_A, BY_GAMMA, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES, PER_PRESSURE, ROWS
    use triax_material, only: read_material
    use triax_point, only: soil_t, point_t, start_point, mean_stress, AXIAL, RADIAL
    implicit none (type, external)
    private
-   public :: case_t, stage_t, read_case, print_keys
-   public :: DRAINED, UNDRAINED, ISOTROPIC, OEDOMETER, CONSTANT_NET_STRESS, STRAIN_PATH, CONTROL_NAMES
-
-   integer, parameter :: LENGTH_OF_KEY = 16
-   integer, parameter :: DRAINED = 1               !< Axial strain given, net radial stress held.
-   integer, parameter :: UNDRAINED = 2             !< Axial strain given, volume held.
-   integer, parameter :: ISOTROPIC = 3             !< Volumetric strain given, equal in all directions.
-   integer, parameter :: OEDOMETER = 4             !< Volumetric strain given, radial strain zero.
-   integer, parameter :: CONSTANT_NET_STRESS = 5   !< Suction given, net stress held.
-   integer, parameter :: STRAIN_PATH = 6           !< All six strains given.
-   character(19), parameter :: CONTROL_NAMES(6) = [character(19) :: 'drained', 'undrained', 'isotropic', 'oedometer', &
-                                                   'constant_net_stress', 'strain_path']
-
-   !> The key that each of them needs.
-   character(LENGTH_OF_KEY), parameter :: LEADS(6) = [character(LENGTH_OF_KEY) :: 'eps_a_end', 'eps_a_end', &
-                                                      'eps_v_end', 'eps_v_end', 'suction_end', 'd_eps']
-
-   !> One stage of a test.
-   type :: stage_t
-      integer :: control = 0
-      integer :: line = 0
-      real(wp) :: target = 0.0_wp            !< eps_a_end, eps_v_end or suction_end; 1 on a strain path.
-      real(wp) :: strain_change(6) = 0.0_wp  !< d_eps of a strain path [-].
-      logical :: moves_suction = .false.
-      real(wp) :: suction_end = 0.0_wp       !< [kPa]
-      real(wp) :: increment = 0.0_wp         !< [-]; [kPa] where suction leads.
-      real(wp) :: interval = 0.0_wp          !< Between rows of the output, in the unit of the increment.
-   end type stage_t
+   public :: case_t, read_case
 
    !> A test.
    type :: case_t
@@ -45,44 +21,12 @@ module triax_case
       type(stage_t), allocatable :: stages(:)
    end type case_t
 
-   !> A key of a case file; `size` is 0 for a text, otherwise how many numbers it takes.
-   type :: key_t
-      character(8) :: group
-      character(LENGTH_OF_KEY) :: name
-      integer :: size
-      real(wp) :: lower, upper
-      character(8) :: unit
-      character(100) :: meaning
-   end type key_t
-
-   real(wp), parameter :: DEFAULT_INCREMENT = 1.0e-4_wp, DEFAULT_INTERVAL = 1.0e-3_wp        ! [-]
-   real(wp), parameter :: DEFAULT_SUCTION_INCREMENT = 0.1_wp, DEFAULT_SUCTION_INTERVAL = 1.0_wp  ! [kPa]
+   !> Defaults by the unit of what leads (PER_*), suction apart.
+   real(wp), parameter :: INCREMENTS(3) = [1.0e-4_wp, 1.0_wp, 1.0e-3_wp]
+   real(wp), parameter :: INTERVALS(3) = [1.0e-3_wp, 10.0_wp, 1.0e-2_wp]
+   real(wp), parameter :: SUCTION_INCREMENT = 0.1_wp, SUCTION_INTERVAL = 1.0_wp   ! [kPa]
    real(wp), parameter :: LIFTED = 1.0e-12_wp   !< Far above rounding: the library has raised the stress to p_min.
    real(wp), parameter :: MAX_INCREMENTS = 1.0e8_wp
-
-   type(key_t), parameter :: KEYS(*) = [ &
-      key_t('case', 'name', 0, 0.0_wp, 0.0_wp, '', 'name of the case and of its output; default: name of the file'), &
-      key_t('case', 'title', 0, 0.0_wp, 0.0_wp, '', 'a line about the case'), &
-      key_t('initial', 'p_eff', 1, 1.0e-6_wp, 1.0e7_wp, 'kPa', 'mean effective stress of an isotropic start'), &
-      key_t('initial', 'sigma_a', 1, 1.0e-6_wp, 1.0e7_wp, 'kPa', &
-            'axial effective stress, with sigma_r, instead of p_eff'), &
-      key_t('initial', 'sigma_r', 1, 1.0e-6_wp, 1.0e7_wp, 'kPa', 'radial effective stress, with sigma_a'), &
-      key_t('initial', 'void_ratio', 1, 0.01_wp, 5.0_wp, '-', 'void ratio'), &
-      key_t('initial', 'suction', 1, 0.0_wp, 1.0e6_wp, 'kPa', 'p_a - p_w; default 0, saturated'), &
-      key_t('stage', 'control', 0, 0.0_wp, 0.0_wp, '', &
-            'drained, undrained, isotropic, oedometer, constant_net_stress or strain_path'), &
-      key_t('stage', 'eps_a_end', 1, -1.0_wp, 1.0_wp, '-', &
-            'axial strain at the end, from the start of the test (drained, undrained)'), &
-      key_t('stage', 'eps_v_end', 1, -1.0_wp, 1.0_wp, '-', &
-            'volumetric strain at the end, from the start of the test (isotropic, oedometer)'), &
-      key_t('stage', 'd_eps', 6, -1.0_wp, 1.0_wp, '-', &
-            'change of the strains 11, 22, 33, 12, 13, 23, shear as engineering strain (strain_path)'), &
-      key_t('stage', 'suction_end', 1, 0.0_wp, 1.0e6_wp, 'kPa', &
-            'suction at the end, reached in equal parts; without it suction stays'), &
-      key_t('stage', 'increment', 1, 1.0e-12_wp, 1.0e6_wp, '-', &
-            'largest strain of an increment, default 1e-4; constant_net_stress: suction [kPa], default 0.1'), &
-      key_t('stage', 'output_interval', 1, 1.0e-12_wp, 1.0e6_wp, '-', &
-            'a row at each multiple of this, default 1e-3; constant_net_stress: suction [kPa], default 1')]
 
 contains
    !> Reads and checks a case with its material, and brings the sample to its start.
@@ -182,7 +126,7 @@ contains
       call get_number(group, 'void_ratio', ratio, found)
       if (.not. found) then
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&initial lacks void_ratio ('// &
-                    described(find_key('initial', 'void_ratio'))//').')
+                    describe_key('initial', 'void_ratio')//').')
       else if (has_p .eqv. (has_a .or. has_r)) then
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)// &
                     '&initial needs the stress once: either p_eff, or sigma_a and sigma_r.')
@@ -208,210 +152,224 @@ contains
       type(group_t), intent(in) :: group
       type(stage_t), intent(out) :: stage
       type(fault_t), intent(inout) :: fault
-      character(LENGTH) :: word
-      character(LENGTH_OF_KEY) :: lead
-      integer :: i
       logical :: found
 
       stage%line = group%line
-      word = ''
-      call get_text(group, 'control', word)
-      do i = 1, size(CONTROL_NAMES)
-         if (lower_case(word) == CONTROL_NAMES(i)) stage%control = i
-      end do
-      if (stage%control == 0) then
-         if (len_trim(word) == 0) then
-            call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&stage lacks control: '// &
-                       described(find_key('stage', 'control'))//'.')
-         else
-            call raise(fault, EXIT_INPUT, at_line(group%file, group%entries(find_entry(group, 'control'))%line)// &
-                       'control = '//trim(word)//' is unknown; the nearest is '// &
-                       trim(CONTROL_NAMES(nearest_name(word, CONTROL_NAMES)))//' (one of '// &
-                       described(find_key('stage', 'control'))//').')
-         end if
-         return
-      end if
+      call read_control(group, stage, fault)
+      if (fault%code == 0) call read_cycles(group, stage, fault)
+      if (fault%code == 0) call read_lead(group, stage, fault)
+      if (fault%code == 0) call read_water(group, stage, fault)
+      if (fault%code /= 0) return
 
-      lead = LEADS(stage%control)
-      if (find_entry(group, lead) == 0) then
-         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'a stage of control '//trim(word)//' needs '// &
-                    trim(lead)//': '//described(find_key('stage', lead))//'.')
-         return
+      if (stage%lead == BY_SUCTION) then
+         stage%increment = SUCTION_INCREMENT
+         stage%interval = SUCTION_INTERVAL
+      else
+         stage%increment = INCREMENTS(QUANTITIES(stage%lead)%unit)
+         stage%interval = INTERVALS(QUANTITIES(stage%lead)%unit)
       end if
-      do i = 1, size(LEADS)
-         if (LEADS(i) == lead .or. LEADS(i) == 'suction_end') cycle
-         if (find_entry(group, LEADS(i)) > 0) then
-            call raise(fault, EXIT_INPUT, at_line(group%file, group%entries(find_entry(group, LEADS(i)))%line)// &
-                       trim(LEADS(i))//' means nothing in a stage of control '//trim(word)//', which is led by '// &
-                       trim(lead)//'; remove it.')
-            return
-         end if
-      end do
-
-      stage%increment = merge(DEFAULT_SUCTION_INCREMENT, DEFAULT_INCREMENT, stage%control == CONSTANT_NET_STRESS)
-      stage%interval = merge(DEFAULT_SUCTION_INTERVAL, DEFAULT_INTERVAL, stage%control == CONSTANT_NET_STRESS)
       call get_number(group, 'increment', stage%increment, found)
       call get_number(group, 'output_interval', stage%interval, found)
-      call get_number(group, 'suction_end', stage%suction_end, stage%moves_suction)
-      if (stage%control == STRAIN_PATH) then
-         stage%target = 1.0_wp
-         call get_numbers(group, 'd_eps', stage%strain_change)
-         if (all(abs(stage%strain_change) <= 0.0_wp)) then
-            call raise(fault, EXIT_INPUT, at_line(group%file, group%entries(find_entry(group, lead))%line)// &
-                       'all six entries of d_eps are zero; give the strain to apply.')
-         end if
-      else
-         call get_number(group, lead, stage%target, found)
-      end if
-      if (2.0_wp/stage%increment > MAX_INCREMENTS .and. stage%control /= CONSTANT_NET_STRESS) then
-         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'increment = '//short(stage%increment)// &
-                    ' could make more than '//short(MAX_INCREMENTS)//' increments; use '// &
-                       short(2.0_wp/MAX_INCREMENTS)// &
-                    ' or more.')
+      call get_number(group, 'stop_r_u', stage%stop_r_u, found)
+      if (found .and. .not. sealed_control(stage%control)) then
+         call refuse(group, 'stop_r_u', 'means nothing in a stage of control '//name_of(stage%control)// &
+                     ', in which no pore pressure builds up; remove it.', fault)
+      else if (2.0_wp/stage%increment > MAX_INCREMENTS .and. QUANTITIES(stage%lead)%unit /= PER_PRESSURE) then
+         call refuse(group, 'increment', '= '//short(stage%increment)//' could make more than '// &
+                     short(MAX_INCREMENTS)//' increments; use '//short(2.0_wp/MAX_INCREMENTS)//' or more.', fault)
       end if
    end subroutine read_stage
 
-   !> Every key of a group is known, has as many values as it takes, and these are in range.
-   subroutine check_keys(group, fault)
+   !> "file:line: key sentence", where the key is given or its group begins.
+   subroutine refuse(group, key, sentence, fault)
       type(group_t), intent(in) :: group
+      character(*), intent(in) :: key, sentence
       type(fault_t), intent(inout) :: fault
-      integer :: i, near
 
-      do i = 1, group%count
-         associate (item => group%entries(i))
-            if (find_key(group%name, item%key) == 0) then
-               near = nearest_key(group%name, item%key)
-               call raise(fault, EXIT_INPUT, at_line(group%file, item%line)//'&'//trim(group%name)//' has no '// &
-                          trim(item%key)//'; the nearest is '//trim(KEYS(near)%name)//' ('//described(near)//').')
-            else
-               call check_values(group%file, item, KEYS(find_key(group%name, item%key)), fault)
-            end if
-         end associate
-         if (fault%code /= 0) return
-      end do
-   end subroutine check_keys
+      call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, key))//trim(key)//' '//sentence)
+   end subroutine refuse
 
-   subroutine check_values(file, item, key, fault)
-      character(*), intent(in) :: file
-      type(entry_t), intent(in) :: item
-      type(key_t), intent(in) :: key
+   function name_of(control) result(name)
+      integer, intent(in) :: control
+      character(:), allocatable :: name
+
+      name = trim(CONTROL_NAMES(control))
+   end function name_of
+
+   !> Place of the word that a key gives in a list, the preset where the key is absent.
+   subroutine read_word(group, key, words, preset, place, fault)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: key, words(:)
+      integer, intent(in) :: preset   !< 0: the key must be there.
+      integer, intent(out) :: place
       type(fault_t), intent(inout) :: fault
-      real(wp) :: value
+      character(LENGTH) :: word
+      character(:), allocatable :: list
       integer :: i
-      logical :: good
 
-      if (item%count /= max(key%size, 1)) then
-         call raise(fault, EXIT_INPUT, at_line(file, item%line)//trim(key%name)//' takes '//whole(max(key%size, 1))// &
-                    merge(' value ', ' values', key%size <= 1)//', '//whole(item%count)//' given ('// &
-                    described(find_key(key%group, key%name))//').')
+      list = trim(words(1))
+      do i = 2, size(words)
+         list = list//', '//trim(words(i))
+      end do
+      place = preset
+      if (.not. has_key(group, key)) then
+         if (preset == 0) call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&'//trim(group%name)// &
+                                     ' lacks '//key//': one of '//list//'.')
          return
       end if
-      if (key%size == 0) return
-      do i = 1, item%count
-         call read_number(item%values(i), value, good)
-         if (.not. good) then
-            call raise(fault, EXIT_INPUT, at_line(file, item%line)//trim(key%name)//' = '//trim(item%values(i))// &
-                       ' is not a number ('//described(find_key(key%group, key%name))//').')
-         else if (value < key%lower .or. value > key%upper) then
-            call raise(fault, EXIT_INPUT, at_line(file, item%line)//trim(key%name)//' = '//trim(item%values(i))// &
-                       ' is outside its range ('//described(find_key(key%group, key%name))//').')
-         end if
-         if (fault%code /= 0) return
+      word = ''
+      call get_text(group, key, word)
+      do place = 1, size(words)
+         if (lower_case(word) == words(place)) return
       end do
-   end subroutine check_values
+      place = preset
+      call refuse(group, key, '= '//trim(word)//' is unknown; the nearest is '// &
+                  trim(words(nearest_name(word, words)))//' (one of '//list//').', fault)
+   end subroutine read_word
 
-   !> The keys of case files, for the help text.
-   subroutine print_keys(unit)
-      integer, intent(in) :: unit
-      character(8) :: previous
-      integer :: i
-
-      previous = ''
-      do i = 1, size(KEYS)
-         if (KEYS(i)%group /= previous) write (unit, '(2a)') '   &', trim(KEYS(i)%group)
-         previous = KEYS(i)%group
-         write (unit, '(3a)') '      ', KEYS(i)%name, described(i)
-      end do
-   end subroutine print_keys
-
-   !> "from 0.01 to 5: void ratio"
-   pure function described(place) result(text)
-      integer, intent(in) :: place
-      character(:), allocatable :: text
-
-      text = ''
-      if (KEYS(place)%size > 0) text = 'from '//short(KEYS(place)%lower)//' to '//short(KEYS(place)%upper)
-      if (KEYS(place)%size > 0 .and. KEYS(place)%unit /= '-') text = text//' '//trim(KEYS(place)%unit)
-      if (KEYS(place)%size > 0) text = text//': '
-      text = text//trim(KEYS(place)%meaning)
-   end function described
-
-   pure integer function find_key(group, name) result(place)
-      character(*), intent(in) :: group, name
-
-      do place = 1, size(KEYS)
-         if (KEYS(place)%group == group .and. KEYS(place)%name == lower_case(name)) return
-      end do
-      place = 0
-   end function find_key
-
-   pure integer function nearest_key(group, word) result(best)
-      character(*), intent(in) :: group, word
-      integer :: i
-
-      best = 0
-      do i = 1, size(KEYS)
-         if (KEYS(i)%group /= group) cycle
-         if (best == 0) best = i
-         if (distance(word, KEYS(i)%name) < distance(word, KEYS(best)%name)) best = i
-      end do
-   end function nearest_key
-
-   pure integer function nearest_name(word, names) result(best)
-      character(*), intent(in) :: word, names(:)
-      integer :: i
-
-      best = 1
-      do i = 2, size(names)
-         if (distance(word, names(i)) < distance(word, names(best))) best = i
-      end do
-   end function nearest_name
-
-   !> A text that check_keys has passed; `value` stays where the group has none.
-   subroutine get_text(group, key, value)
+   subroutine read_control(group, stage, fault)
       type(group_t), intent(in) :: group
-      character(*), intent(in) :: key
-      character(LENGTH), intent(inout) :: value
-      integer :: place
+      type(stage_t), intent(inout) :: stage
+      type(fault_t), intent(inout) :: fault
+      integer :: kind
 
-      place = find_entry(group, key)
-      if (place > 0) value = group%entries(place)%values(1)
-   end subroutine get_text
+      call read_word(group, 'control', CONTROL_NAMES, 0, stage%control, fault)
+      if (fault%code /= 0) return
+      call read_word(group, 'stress', ['net      ', 'effective'], 1, kind, fault)
+      stage%effective = kind == 2
+   end subroutine read_control
 
-   !> A number that check_keys has passed; `value` stays where the group has none.
-   subroutine get_number(group, key, value, found)
+   !> Cycles: by what, how many, how far. The stage is then led by the strain that is driven.
+   subroutine read_cycles(group, stage, fault)
       type(group_t), intent(in) :: group
-      character(*), intent(in) :: key
-      real(wp), intent(inout) :: value
-      logical, intent(out) :: found
-      integer :: place
+      type(stage_t), intent(inout) :: stage
+      type(fault_t), intent(inout) :: fault
+      character(*), parameter :: OF_CYCLES(4) = [character(21) :: 'cycles', 'amplitude', 'centre', &
+                                                 'stop_double_amplitude']
+      integer, allocatable :: leads(:)
+      real(wp) :: cycles
+      integer :: kind, i
+      logical :: has_cycles, has_amplitude, found
 
-      place = find_entry(group, key)
-      found = place > 0
-      if (found) call read_number(group%entries(place)%values(1), value, found)
-   end subroutine get_number
+      if (.not. has_key(group, 'cycle_by')) then
+         do i = 1, size(OF_CYCLES)
+            if (has_key(group, trim(OF_CYCLES(i)))) then
+               call refuse(group, OF_CYCLES(i), 'needs cycle_by: '//describe_key('stage', 'cycle_by')//'.', fault)
+            end if
+         end do
+         return
+      end if
+      allocate (leads(0))   ! or gfortran believes the assignment to read it
+      leads = leads_of(stage%control)
+      if (.not. any(leads == BY_EPS_A .or. leads == BY_GAMMA)) then
+         call refuse(group, 'cycle_by', 'means nothing in a stage of control '//name_of(stage%control)// &
+                     '; cycles run in drained, undrained, constant_p and in simple shear.', fault)
+         return
+      end if
+      call read_word(group, 'cycle_by', QUANTITIES(leads)%name, 0, kind, fault)
+      if (fault%code /= 0) return
+      stage%cycle_by = leads(kind)
+      stage%lead = leads(1)
+      cycles = 0.0_wp
+      call get_number(group, 'cycles', cycles, has_cycles)
+      call get_number(group, 'amplitude', stage%amplitude, has_amplitude)
+      call get_number(group, 'centre', stage%centre, stage%has_centre)
+      call get_number(group, 'stop_double_amplitude', stage%stop_double_amplitude, found)
+      stage%cycles = nint(cycles)
+      if (.not. has_cycles) then
+         call refuse(group, 'cycle_by', 'needs cycles: '//describe_key('stage', 'cycles')//'.', fault)
+      else if (.not. has_amplitude) then
+         call refuse(group, 'cycle_by', 'needs amplitude: '//describe_key('stage', 'amplitude')//'.', fault)
+      else if (abs(stage%amplitude) <= 0.0_wp) then
+         call refuse(group, 'amplitude', '= 0: there is nothing to do.', fault)
+      else if (abs(cycles - stage%cycles) > 0.0_wp) then
+         call refuse(group, 'cycles', '= '//short(cycles)//' is not whole.', fault)
+      end if
+   end subroutine read_cycles
 
-   subroutine get_numbers(group, key, values)
+   !> What leads a stage of one way, and where to.
+   subroutine read_lead(group, stage, fault)
       type(group_t), intent(in) :: group
-      character(*), intent(in) :: key
-      real(wp), intent(inout) :: values(:)
-      integer :: place, i
-      logical :: good
+      type(stage_t), intent(inout) :: stage
+      type(fault_t), intent(inout) :: fault
+      integer, allocatable :: leads(:)
+      character(:), allocatable :: choice
+      integer :: i
+      logical :: found
 
-      place = find_entry(group, key)
-      if (place == 0) return
-      do i = 1, size(values)
-         call read_number(group%entries(place)%values(i), values(i), good)
+      allocate (leads(0))   ! or gfortran believes the assignment to read it
+      leads = leads_of(stage%control)
+      choice = trim(QUANTITIES(leads(1))%key)
+      do i = 2, size(leads)
+         choice = choice//' or '//trim(QUANTITIES(leads(i))%key)
       end do
-   end subroutine get_numbers
+      do i = 1, size(QUANTITIES)
+         associate (key => QUANTITIES(i)%key)
+            if (.not. has_key(group, key) .or. (i == BY_SUCTION .and. .not. any(leads == i))) cycle
+            if (stage%cycles > 0) then
+               call refuse(group, key, 'cannot go with cycles, which begin where the stage before ends; remove it.', &
+                           fault)
+            else if (.not. any(leads == i)) then
+               call refuse(group, key, 'means nothing in a stage of control '//name_of(stage%control)// &
+                           ', which is led by '//choice//'; remove it.', fault)
+            else if (stage%lead > 0) then
+               call refuse(group, key, 'leads the stage together with '//trim(QUANTITIES(stage%lead)%key)// &
+                           '; keep one of them.', fault)
+            end if
+            if (fault%code /= 0) return
+            stage%lead = i
+         end associate
+      end do
+      if (stage%control == LINEAR) stage%lead = BY_CHANGES
+      if (stage%lead == 0) then
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'a stage of control '// &
+                    name_of(stage%control)//' needs '//choice//': '// &
+                    describe_key('stage', QUANTITIES(leads(1))%key)//'.')
+         return
+      end if
+
+      call set_constraints(stage, stage%lead)
+      stage%target = 1.0_wp
+      select case (stage%lead)
+      case (BY_D_EPS)
+         call get_numbers(group, 'd_eps', stage%changes)
+      case (BY_D_SIGMA)
+         call get_numbers(group, 'd_sigma', stage%changes)
+      case (BY_CHANGES)
+         do i = 1, ROWS
+            call get_numbers(group, 'strain_'//whole(i), stage%strain_rows(:, i))
+            call get_numbers(group, 'stress_'//whole(i), stage%stress_rows(:, i))
+            call get_number(group, 'change_'//whole(i), stage%changes(i), found)
+            if (all(abs([stage%strain_rows(:, i), stage%stress_rows(:, i)]) <= 0.0_wp)) then
+               call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'constraint '//whole(i)// &
+                          ' of a linear stage is empty; give strain_'//whole(i)//' or stress_'//whole(i)// &
+                          ', six factors.')
+               return
+            end if
+         end do
+      case default
+         call get_number(group, QUANTITIES(stage%lead)%key, stage%target, found)
+      end select
+      if (any(stage%lead == [BY_D_EPS, BY_D_SIGMA]) .and. all(abs(stage%changes) <= 0.0_wp)) then
+         call refuse(group, QUANTITIES(stage%lead)%key, 'has six zeros; give what changes.', fault)
+      end if
+   end subroutine read_lead
+
+   !> The path of suction.
+   subroutine read_water(group, stage, fault)
+      type(group_t), intent(in) :: group
+      type(stage_t), intent(inout) :: stage
+      type(fault_t), intent(inout) :: fault
+      integer :: kind
+
+      call read_word(group, 'water', ['free    ', 'constant'], 1, kind, fault)
+      if (fault%code /= 0) return
+      stage%keeps_water = kind == 2
+      call get_number(group, 'suction_end', stage%suction_end, stage%moves_suction)
+      if (stage%moves_suction .and. stage%keeps_water) then
+         call refuse(group, 'suction_end', 'cannot go with a constant water content; remove one of them.', fault)
+      else if (stage%moves_suction .and. stage%cycles > 0) then
+         call refuse(group, 'suction_end', 'cannot go with cycles; move suction in a stage of its own.', fault)
+      end if
+   end subroutine read_water
 end module triax_case

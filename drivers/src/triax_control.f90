@@ -1,104 +1,111 @@
-!> Mixed control of a stage: given strains and held stresses, solved with the library's tangent blocks.
+!> Mixed control: six linear constraints on strain and stress and one on suction, solved increment by increment with the
+!> library's tangent blocks. An increment that fails is cut and retried.
 module triax_control
    use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit
    use triax_fault, only: fault_t, raise, EXIT_RUN, EXIT_OUTPUT
    use triax_text, only: short, whole
-   use triax_case, only: stage_t, CONTROL_NAMES, DRAINED, UNDRAINED, ISOTROPIC, OEDOMETER, CONSTANT_NET_STRESS, &
-                         STRAIN_PATH
+   use triax_linear, only: solve, outer
+   use triax_stage, only: stage_t, quantity_rows, CONTROL_NAMES, ROWS, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
    use triax_point, only: soil_t, point_t, tangent_t, mud_report, update_point, save_update, update_sentence, &
-      state_value, &
-      slope_is_exact, &
-                          axial_strain, volumetric_strain, radial_stress, mean_stress, deviator_stress, AXIAL, RADIAL
+                          state_value, slope_is_exact, axial_strain, volumetric_strain, mean_stress, deviator_stress
    implicit none (type, external)
    private
-   public :: plan_t, tally_t, plan_stage, advance, lead, excess_pressure, CONTROL_TOLERANCE
+   public :: plan_t, tally_t, plan_way, advance, lead, quantity, CONTROL_TOLERANCE
 
-   !> Held stresses are met to this, relative to the effective stress held: a hundred thousand times below the
+   !> Constraints are met to this, relative to the effective stress they speak of: a hundred thousand times below the
    !> library's own default tolerance, and far above rounding (1e-16 times the ratio of stiffness to stress, about 1e3).
    real(wp), parameter :: CONTROL_TOLERANCE = 1.0e-10_wp
    !> A quasi-Newton step gains a digit or more, 10 are usual; Newton steps with the consistent tangent need 2 to 4.
    integer, parameter :: MAX_ITERATIONS = 40
    integer, parameter :: MAX_CUTS = 20         !< An increment is halved at most so often: a millionth.
+   !> A strain itself is rounded: an increment below this share of it cannot be met to the tolerance.
+   real(wp), parameter :: ROUNDING = 10.0_wp*epsilon(1.0_wp)/CONTROL_TOLERANCE
+   integer, parameter :: SUCTION = 7           !< Place of suction among the unknowns, after the six strains.
+   integer, parameter :: NORMAL = 3            !< Components up to this are normal ones.
+   real(wp), parameter :: IDENTITY(6) = [1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
 
-   !> A stage that is being run.
+   !> One way, from where the sample is to where the constraints lead it in equal increments.
    type :: plan_t
       integer :: control = 0
-      integer :: increments = 0
+      integer :: increments = 0                   !< An open way has 1, and goes on beyond it.
       real(wp) :: lead_start = 0.0_wp, lead_change = 0.0_wp
-      real(wp) :: strain_start(6) = 0.0_wp, strain_change(6) = 0.0_wp
-      real(wp) :: suction_start = 0.0_wp, suction_change = 0.0_wp
-      logical :: held(6) = .false.           !< Net stress is held, strain is free.
-      real(wp) :: net_stress(6) = 0.0_wp     !< What is held [kPa].
-      real(wp) :: rate(6) = 0.0_wp           !< Free strains of the last increment, per increment.
-      real(wp) :: radial_start = 0.0_wp      !< Effective radial stress at the start [kPa].
-      real(wp) :: pressure_start = 0.0_wp    !< Excess pore pressure at the start [kPa].
-      logical :: sealed = .false.            !< Undrained and saturated: pore pressure is what changes.
+      real(wp) :: strain_rows(6, ROWS) = 0.0_wp, stress_rows(6, ROWS) = 0.0_wp, changes(ROWS) = 0.0_wp
+      logical :: effective = .false., keeps_water = .false.
+      real(wp) :: strain_start(6) = 0.0_wp, stress_start(6) = 0.0_wp, suction_start = 0.0_wp, water_start = 0.0_wp
+      logical :: given(7) = .false.               !< Strains, and suction, that the constraints give directly.
+      real(wp) :: given_change(7) = 0.0_wp
+      real(wp) :: rate(7) = 0.0_wp                !< Unknowns of the last increment, per increment.
    end type plan_t
 
    !> What a run cost.
    type :: tally_t
       integer :: updates = 0                 !< Calls of the library.
-      integer :: solved = 0                  !< Increments with a held stress.
+      integer :: solved = 0                  !< Increments that needed a solution.
       integer :: cuts = 0                    !< Increments cut and retried.
       logical :: residuals = .false.         !< Print the error of every iteration.
       character(256) :: save_to = ''         !< File for the first update that the library refuses; blank: none.
       logical :: saved = .false.
       integer :: n_floor = 0, n_cap_d = 0, n_cap_h = 0, n_hysteresis = 0, n_iso_kept = 0, n_no_root = 0, &
                  n_min_step = 0, n_open = 0, n_tensile = 0
-      real(wp) :: error = 0.0_wp             !< Largest error of a held stress since the caller set it to 0, relative.
+      real(wp) :: error = 0.0_wp             !< Largest error of a constraint since the caller set it to 0, relative.
       real(wp) :: worst = 0.0_wp             !< The same, of the whole run.
    end type tally_t
 
 contains
-   !> Lays out a stage from where the sample is.
-   subroutine plan_stage(soil, stage, point, pressure, plan)
+   !> Lays out a way of a stage from where the sample is.
+   subroutine plan_way(soil, stage, target, point, plan)
       type(soil_t), intent(in) :: soil
       type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: target   !< Value of what leads, at the end.
       type(point_t), intent(in) :: point
-      real(wp), intent(in) :: pressure   !< Excess pore pressure so far [kPa].
       type(plan_t), intent(out) :: plan
+      real(wp) :: strain(6)
+      integer :: i
+      logical :: good
 
       plan%control = stage%control
+      plan%strain_rows = stage%strain_rows
+      plan%stress_rows = stage%stress_rows
+      plan%changes = stage%changes
+      plan%effective = stage%effective
+      plan%keeps_water = stage%keeps_water
       plan%strain_start = point%strain
       plan%suction_start = point%suction
-      if (stage%moves_suction) plan%suction_change = stage%suction_end - point%suction
-      plan%radial_start = radial_stress(point)
-      plan%pressure_start = pressure
-      select case (stage%control)
-      case (DRAINED)
-         plan%held(RADIAL) = .true.
-         call lead_from(axial_strain(point))
-         plan%strain_change(AXIAL) = plan%lead_change
-      case (UNDRAINED)
-         call lead_from(axial_strain(point))
-         plan%strain_change(AXIAL) = plan%lead_change
-         plan%strain_change(RADIAL) = -0.5_wp*plan%lead_change
-         plan%sealed = max(point%suction, point%suction + plan%suction_change) <= 0.0_wp
-      case (ISOTROPIC)
-         call lead_from(volumetric_strain(point))
-         plan%strain_change(1:3) = plan%lead_change/3.0_wp
-      case (OEDOMETER)
-         call lead_from(volumetric_strain(point))
-         plan%strain_change(AXIAL) = plan%lead_change
-      case (CONSTANT_NET_STRESS)
-         plan%held = .true.
-         call lead_from(point%suction)
-      case (STRAIN_PATH)
-         plan%strain_change = stage%strain_change
-         plan%lead_change = maxval(abs(stage%strain_change))
+      plan%stress_start = controlled_stress(soil, plan, point)
+      plan%water_start = water(soil, point)
+      select case (stage%lead)
+      case (BY_SUCTION)
+         plan%lead_start = point%suction
+         plan%lead_change = target - point%suction
+      case (BY_D_EPS, BY_D_SIGMA)
+         plan%lead_change = maxval(abs(stage%changes))
+      case (BY_CHANGES)
+         plan%lead_change = 1.0_wp
+      case default
+         plan%lead_start = quantity(soil, stage, stage%lead, point)
+         plan%lead_change = target - plan%lead_start
+         plan%changes(ROWS) = plan%lead_change
       end select
-      plan%net_stress = point%stress - bishop(soil, point)
       plan%increments = ceiling(abs(plan%lead_change)/stage%increment*(1.0_wp - 1.0e-9_wp))
-   contains
-      subroutine lead_from(start)
-         real(wp), intent(in) :: start
 
-         plan%lead_start = start
-         plan%lead_change = stage%target - start
-      end subroutine lead_from
-   end subroutine plan_stage
+      plan%given(SUCTION) = .not. stage%keeps_water
+      if (stage%moves_suction) plan%given_change(SUCTION) = stage%suction_end - point%suction
+      ! A constraint on one strain gives it, and six on strains alone give all.
+      do i = 1, ROWS
+         if (any(abs(plan%stress_rows(:, i)) > 0.0_wp) .or. count(abs(plan%strain_rows(:, i)) > 0.0_wp) /= 1) cycle
+         where (abs(plan%strain_rows(:, i)) > 0.0_wp)
+            plan%given(:6) = .true.
+            plan%given_change(:6) = plan%changes(i)/plan%strain_rows(:, i)
+         end where
+      end do
+      if (all(abs(plan%stress_rows) <= 0.0_wp)) then
+         call solve(transpose(plan%strain_rows), plan%changes, strain, good)
+         if (good) plan%given(:6) = .true.
+         if (good) plan%given_change(:6) = strain
+      end if
+   end subroutine plan_way
 
-   !> The variable that leads a stage, after increment k: axial strain, volumetric strain, suction, largest strain.
+   !> The variable that leads a stage, after increment k: by value, or the share of a change.
    pure real(wp) function lead(plan, k)
       type(plan_t), intent(in) :: plan
       integer, intent(in) :: k
@@ -106,20 +113,27 @@ contains
       lead = plan%lead_start + plan%lead_change*real(k, wp)/real(max(plan%increments, 1), wp)
    end function lead
 
-   !> Excess pore pressure under constant total radial stress [kPa]; it stays where a stage is not sealed.
-   pure real(wp) function excess_pressure(plan, point)
-      type(plan_t), intent(in) :: plan
+   !> Present value of a quantity that can lead a stage, stress as the stage means it.
+   pure real(wp) function quantity(soil, stage, which, point)
+      type(soil_t), intent(in) :: soil
+      type(stage_t), intent(in) :: stage
+      integer, intent(in) :: which   !< BY_*
       type(point_t), intent(in) :: point
+      type(plan_t) :: plan
+      real(wp) :: strain_row(6), stress_row(6)
 
-      excess_pressure = plan%pressure_start
-      if (plan%sealed) excess_pressure = plan%pressure_start + plan%radial_start - radial_stress(point)
-   end function excess_pressure
+      plan%effective = stage%effective
+      call quantity_rows(which, strain_row, stress_row)
+      quantity = dot_product(strain_row, point%strain) + dot_product(stress_row, controlled_stress(soil, plan, point))
+   end function quantity
 
-   !> Increment k of a stage. A part that fails is halved and retried, and the next ones grow again.
-   subroutine advance(soil, plan, k, point, tally, fault)
+   !> Increment k of a way, or the part of it up to `upto`. A part that fails is halved and retried, and the next ones
+   !> grow again.
+   subroutine advance(soil, plan, k, upto, point, tally, fault)
       type(soil_t), intent(in) :: soil
       type(plan_t), intent(inout) :: plan
       integer, intent(in) :: k
+      real(wp), intent(in) :: upto   !< 1: the whole increment.
       type(point_t), intent(inout) :: point
       type(tally_t), intent(inout) :: tally
       type(fault_t), intent(inout) :: fault
@@ -127,20 +141,20 @@ contains
       real(wp) :: done, share
 
       done = 0.0_wp
-      share = 1.0_wp
-      do while (done < 1.0_wp)
+      share = upto
+      do while (done < upto)
          trouble = fault_t()
          call solve_part(soil, plan, k, done, share, point, tally, trouble)
          if (trouble%code == 0) then
             done = done + share
-            share = min(2.0_wp*share, 1.0_wp - done)
+            share = min(2.0_wp*share, upto - done)
          else if (trouble%code == EXIT_OUTPUT) then
             fault = trouble
             return
          else
             tally%cuts = tally%cuts + 1
             share = 0.5_wp*share
-            if (share < 0.5_wp**MAX_CUTS) then
+            if (share < upto*0.5_wp**MAX_CUTS) then
                call raise(fault, EXIT_RUN, trim(CONTROL_NAMES(plan%control))//' stage, increment '//whole(k)//' of '// &
                           whole(plan%increments)//', at eps_a '//short(axial_strain(point))//', eps_v '// &
                           short(volumetric_strain(point))//', p'' '//short(mean_stress(point))//' kPa, q '// &
@@ -164,57 +178,63 @@ contains
       type(point_t) :: after
       type(tangent_t) :: tangent
       type(mud_report) :: report
-      real(wp) :: progress, strain(6), suction, residual(6), last_residual(6), slope(6, 6), step(6), error, scale
+      real(wp) :: progress, x(7), residual(7), last_residual(7), slope(7, 7), step(7), error, stiffness
       integer :: iteration
       logical :: good
 
       progress = (real(k - 1, wp) + done + share)/real(plan%increments, wp)
       if (done + share >= 1.0_wp) progress = real(k, wp)/real(plan%increments, wp)
-      strain = plan%strain_start + plan%strain_change*progress - point%strain
-      suction = plan%suction_start + plan%suction_change*progress - point%suction
-      where (plan%held) strain = plan%rate*share
+      x = plan%rate*share
+      where (plan%given(:6)) x(:6) = plan%strain_start + plan%given_change(:6)*progress - point%strain
+      if (plan%given(SUCTION)) x(SUCTION) = plan%suction_start + plan%given_change(SUCTION)*progress - point%suction
       slope = 0.0_wp
       last_residual = 0.0_wp
       step = 0.0_wp
+      stiffness = 1.0_wp
 
       do iteration = 1, MAX_ITERATIONS
-         call update_point(soil, point, strain, suction, after, tangent, report)
+         call update_point(soil, point, x(:6), x(SUCTION), after, tangent, report)
          tally%updates = tally%updates + 1
          if (report%status /= 0) then
             call raise(fault, EXIT_RUN, update_sentence(report))
             if (len_trim(tally%save_to) > 0 .and. .not. tally%saved) then
                tally%saved = .true.
                call save_update(tally%save_to, 'mud_triax, '//trim(CONTROL_NAMES(plan%control))// &
-                                ' stage, increment '//whole(k)//' of '//whole(plan%increments), soil, point, strain, &
-                                suction, fault)
+                                ' stage, increment '//whole(k)//' of '//whole(plan%increments), soil, point, x(:6), &
+                                x(SUCTION), fault)
             end if
             plan%rate = 0.0_wp
             return
          end if
-         if (.not. any(plan%held)) exit
-         residual = merge(after%stress - plan%net_stress - bishop(soil, after), 0.0_wp, plan%held)
-         scale = max(maxval(abs(after%stress), mask=plan%held .and. [1, 2, 3, 4, 5, 6] <= 3), tiny(scale))
-         error = maxval(abs(residual))/scale
+         if (all(plan%given)) exit
+         call find_residual(soil, plan, progress, x, point, after, residual, error)
          if (tally%residuals) write (output_unit, '(i0, a, i0, a, es10.3)') k, ',', iteration, ',', error
          if (error <= CONTROL_TOLERANCE) exit
+         ! In the slope suction is counted in strains: [kPa] over a stiffness.
          if (iteration == 1 .or. slope_is_exact(soil)) then
-            slope = held_slope(plan, tangent, after%suction)
+            stiffness = max(maxval(abs(tangent%dsig_deps)), tiny(stiffness)**0.5_wp)
+            slope = slope_of(soil, plan, tangent, after)
+            slope(:, SUCTION) = slope(:, SUCTION)*stiffness
          else
             slope = slope + outer(residual - last_residual - matmul(slope, step), step)/dot_product(step, step)
          end if
          call solve(slope, -residual, step, good)
          if (.not. good) then
-            call raise(fault, EXIT_RUN, 'The slope of the held stresses is singular; the sample cannot be held.')
+            call raise(fault, EXIT_RUN, 'The slope of what is held is singular: the sample cannot be held'// &
+                       trim(merge(', perhaps because it became saturated at constant water content.', &
+                                  '.                                                               ', &
+                                  plan%keeps_water)))
             plan%rate = 0.0_wp
             return
          end if
          last_residual = residual
-         strain = strain + step
+         x(:6) = x(:6) + step(:6)
+         x(SUCTION) = x(SUCTION) + step(SUCTION)*stiffness
       end do
 
-      if (any(plan%held)) then
+      if (.not. all(plan%given)) then
          if (iteration > MAX_ITERATIONS) then
-            call raise(fault, EXIT_RUN, 'The held stress is off by '//short(error)//' of its value after '// &
+            call raise(fault, EXIT_RUN, 'What is held is off by '//short(error)//' of its value after '// &
                        whole(MAX_ITERATIONS)//' iterations; allowed is '//short(CONTROL_TOLERANCE)// &
                        '. A smaller increment may help, unless the sample cannot carry what is held any more.')
             plan%rate = 0.0_wp
@@ -223,82 +243,90 @@ contains
          tally%solved = tally%solved + 1
          tally%error = max(tally%error, error)
          tally%worst = max(tally%worst, error)
-         plan%rate = merge(strain/share, 0.0_wp, plan%held)
+         plan%rate = x/share
       end if
       ! Given strains and suction land on their values exactly instead of adding up roundings.
-      where (.not. plan%held) after%strain = plan%strain_start + plan%strain_change*progress
-      after%suction = plan%suction_start + plan%suction_change*progress
+      where (plan%given(:6)) after%strain = plan%strain_start + plan%given_change(:6)*progress
+      if (plan%given(SUCTION)) after%suction = plan%suction_start + plan%given_change(SUCTION)*progress
       point = after
       call count_guards(report, tally)
    end subroutine solve_part
 
-   !> Share of suction in the effective stress, S_w p_c on the normal components.
-   pure function bishop(soil, point) result(stress)
+   !> How far the constraints are missed, and the largest such error relative to what the constraint speaks of.
+   subroutine find_residual(soil, plan, progress, x, before, after, residual, error)
       type(soil_t), intent(in) :: soil
+      type(plan_t), intent(in) :: plan
+      real(wp), intent(in) :: progress, x(7)
+      type(point_t), intent(in) :: before, after
+      real(wp), intent(out) :: residual(7), error
+      real(wp) :: stress_moved(6), size_of(6), strain_left, scale
+      integer :: i
+
+      stress_moved = controlled_stress(soil, plan, after) - plan%stress_start
+      size_of = maxval(abs(after%stress(:NORMAL)))
+      size_of(:NORMAL) = abs(after%stress(:NORMAL))
+      error = 0.0_wp
+      do i = 1, ROWS
+         ! What strain still has to do is counted from the increment: a difference of large strains would round.
+         strain_left = dot_product(plan%strain_rows(:, i), x(:6) - (plan%strain_start - before%strain))
+         residual(i) = strain_left + dot_product(plan%stress_rows(:, i), stress_moved) - plan%changes(i)*progress
+         scale = sum(abs(plan%stress_rows(:, i))*size_of) + sum(abs(plan%strain_rows(:, i)))* &
+                 max(maxval(abs(x(:6))), ROUNDING*maxval(abs(after%strain)))
+         error = max(error, abs(residual(i))/max(scale, tiny(scale)))
+      end do
+      if (plan%keeps_water) then
+         residual(SUCTION) = water(soil, after) - plan%water_start
+         error = max(error, abs(residual(SUCTION))/plan%water_start)
+      else
+         residual(SUCTION) = 0.0_wp
+      end if
+   end subroutine find_residual
+
+   !> Derivatives of the constraints by the six strains and suction; row i: constraint i.
+   function slope_of(soil, plan, tangent, point) result(slope)
+      type(soil_t), intent(in) :: soil
+      type(plan_t), intent(in) :: plan
+      type(tangent_t), intent(in) :: tangent
+      type(point_t), intent(in) :: point
+      real(wp) :: slope(7, 7)
+      real(wp) :: by_strain(6, 6), by_suction(6), e, s_w
+
+      e = state_value(point, soil%i_void_ratio)
+      s_w = state_value(point, soil%i_saturation)
+      by_strain = tangent%dsig_deps
+      by_suction = tangent%dsig_dpc
+      if (.not. plan%effective) then
+         by_strain = by_strain - point%suction*outer(IDENTITY, tangent%dsw_deps)
+         by_suction = by_suction - (s_w + point%suction*tangent%dsw_dpc)*IDENTITY
+      end if
+      slope(:6, :6) = transpose(plan%strain_rows) + matmul(transpose(plan%stress_rows), by_strain)
+      slope(:6, SUCTION) = matmul(transpose(plan%stress_rows), by_suction)
+      slope(SUCTION, :) = 0.0_wp
+      slope(SUCTION, SUCTION) = 1.0_wp
+      if (plan%keeps_water) then
+         slope(SUCTION, :6) = e*tangent%dsw_deps - s_w*(1.0_wp + e)*IDENTITY   ! de = -(1+e) d eps_v
+         slope(SUCTION, SUCTION) = e*tangent%dsw_dpc
+      end if
+   end function slope_of
+
+   !> The stress that a plan speaks of: net, sigma' - S_w p_c on the normal components, or effective [kPa].
+   pure function controlled_stress(soil, plan, point) result(stress)
+      type(soil_t), intent(in) :: soil
+      type(plan_t), intent(in) :: plan
       type(point_t), intent(in) :: point
       real(wp) :: stress(6)
 
-      stress = 0.0_wp
-      stress(1:3) = state_value(point, soil%i_saturation)*point%suction
-   end function bishop
+      stress = point%stress
+      if (.not. plan%effective) stress = stress - state_value(point, soil%i_saturation)*point%suction*IDENTITY
+   end function controlled_stress
 
-   !> Slope of the net stresses that are held by the strains that are free; an identity elsewhere.
-   pure function held_slope(plan, tangent, suction) result(slope)
-      type(plan_t), intent(in) :: plan
-      type(tangent_t), intent(in) :: tangent
-      real(wp), intent(in) :: suction
-      real(wp) :: slope(6, 6)
-      integer :: i, j
+   !> Volume of water per volume of solids, S_w e [-].
+   pure real(wp) function water(soil, point)
+      type(soil_t), intent(in) :: soil
+      type(point_t), intent(in) :: point
 
-      slope = 0.0_wp
-      do j = 1, 6
-         do i = 1, 6
-            if (plan%held(i) .and. plan%held(j)) then
-               slope(i, j) = tangent%dsig_deps(i, j)
-               if (i <= 3) slope(i, j) = slope(i, j) - suction*tangent%dsw_deps(j)
-            else if (i == j) then
-               slope(i, j) = 1.0_wp
-            end if
-         end do
-      end do
-   end function held_slope
-
-   pure function outer(a, b) result(product)
-      real(wp), intent(in) :: a(6), b(6)
-      real(wp) :: product(6, 6)
-      integer :: j
-
-      do j = 1, 6
-         product(:, j) = a*b(j)
-      end do
-   end function outer
-
-   !> Gauss elimination with column pivots; `good` is false for a singular matrix.
-   pure subroutine solve(matrix, right, x, good)
-      real(wp), intent(in) :: matrix(6, 6), right(6)
-      real(wp), intent(out) :: x(6)
-      logical, intent(out) :: good
-      real(wp) :: a(6, 7), row(7)
-      integer :: i, j, pivot
-
-      a(:, :6) = matrix
-      a(:, 7) = right
-      x = 0.0_wp
-      do j = 1, 6
-         pivot = j - 1 + maxloc(abs(a(j:, j)), dim=1)
-         good = abs(a(pivot, j)) > epsilon(1.0_wp)*maxval(abs(matrix))
-         if (.not. good) return
-         row = a(pivot, :)
-         a(pivot, :) = a(j, :)
-         a(j, :) = row/row(j)
-         do i = j + 1, 6
-            a(i, :) = a(i, :) - a(i, j)*a(j, :)
-         end do
-      end do
-      do i = 6, 1, -1
-         x(i) = a(i, 7) - dot_product(a(i, i + 1:6), x(i + 1:))
-      end do
-   end subroutine solve
+      water = state_value(point, soil%i_saturation)*state_value(point, soil%i_void_ratio)
+   end function water
 
    subroutine count_guards(report, tally)
       type(mud_report), intent(in) :: report

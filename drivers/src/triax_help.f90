@@ -2,7 +2,8 @@
 module triax_help
    use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit
    use triax_text, only: short
-   use triax_case, only: print_keys
+   use triax_keys, only: print_keys
+   use triax_stage, only: CONTROL_NAMES, QUANTITIES, leads_of, LINEAR
    use triax_point, only: property_count, property_name, property_unit, property_origin, property_meaning, &
       property_range
    implicit none (type, external)
@@ -11,15 +12,18 @@ module triax_help
 
 contains
    subroutine print_help()
+      integer :: i
+
       write (output_unit, '(a)') &
-         'usage: mud_triax CASE.nml [--output FILE.csv] [--quiet] [--residuals] [--save-failed FILE]', &
+         'usage: mud_triax CASE.nml [--output FILE.csv|.h5] [--quiet] [--residuals] [--save-failed FILE]', &
          '       mud_triax --template > my_case.nml', &
          '       mud_triax --help | --version', &
          '', &
-         'Runs a laboratory test on the MUD soil model at a point and writes a CSV file.', &
+         'Runs a laboratory test on the MUD soil model at a point and writes a CSV or HDF5 file.', &
          'Compression is positive, stresses are effective, q = sigma_a - sigma_r is negative in extension.', &
          '', &
-         '   --output FILE   where to write; default: NAME.csv in the present folder; "-" is the screen', &
+         '   --output FILE   where to write; default: NAME.csv in the present folder; "-" is the screen;', &
+         '                   a name that ends in .h5 or .hdf5 is written as HDF5', &
          '   --quiet         no summary, no progress', &
          '   --residuals     print the error of every iteration of a held stress', &
          '   --save-failed FILE   write the first update that the library refuses to a new file for mud_replay', &
@@ -34,7 +38,27 @@ contains
          '      name, reference  texts', &
          '      (parameters)     by name, see --template; they replace those of the file'
       call print_keys(output_unit)
+      write (output_unit, '(a)') '   Controls, and what may lead each of them:'
+      do i = 1, size(CONTROL_NAMES)
+         write (output_unit, '(3a)') '      ', CONTROL_NAMES(i), leads_text(i)
+      end do
    end subroutine print_help
+
+   !> "eps_a_end or q_end"
+   pure function leads_text(control) result(text)
+      integer, intent(in) :: control
+      character(:), allocatable :: text
+      integer, allocatable :: leads(:)
+      integer :: i
+
+      allocate (leads(0))   ! or gfortran believes the assignment to read it
+      leads = leads_of(control)
+      text = trim(QUANTITIES(leads(1))%key)
+      do i = 2, size(leads)
+         text = text//' or '//trim(QUANTITIES(leads(i))%key)
+      end do
+      if (control == LINEAR) text = 'strain_i, stress_i and change_i of six constraints'
+   end function leads_text
 
    subroutine print_template()
       real(wp) :: lower, upper, preset

@@ -1,33 +1,64 @@
-!> Results: rows of a CSV file, progress of long runs, and the summary at the end.
+!> Results: rows of a CSV or HDF5 file, progress of long runs, and the summary at the end.
 module triax_output
    use, intrinsic :: iso_fortran_env, only: wp => real64, int64, output_unit, error_unit
    use triax_fault, only: fault_t, raise, EXIT_OUTPUT
-   use triax_text, only: short, whole
+   use triax_text, only: short, whole, lower_case
    use triax_case, only: case_t
+   use triax_stage, only: general_control
    use triax_control, only: tally_t, CONTROL_TOLERANCE
+   use triax_course, only: course_t
+   use triax_hdf5, only: column_t, attribute_t, write_hdf5, TEXT_LENGTH
    use triax_point, only: soil_t, point_t, library_version, property_count, property_name, property_range, &
-      state_value, &
-                          mean_stress, deviator_stress, radial_stress, axial_strain, radial_strain, volumetric_strain, &
-                          AXIAL
+                          state_value, mean_stress, deviator_stress, radial_stress, axial_strain, radial_strain, &
+                          volumetric_strain, AXIAL
    implicit none (type, external)
    private
-   public :: table_t, clock_t, open_table, write_row, close_table, start_clock, show_progress, show_summary
+   public :: table_t, clock_t, open_table, write_row, add_note, close_table, start_clock, show_progress, show_summary
 
-   character(*), &
-      parameter :: COLUMNS = 'eps_a,eps_v,p_eff,q,e,s_w,n_substep,n_reseat,sigma_a,sigma_r,eps_r,suction,u,psi,'// &
-                              'n_rate,n_reject,n_guard,control_error,stage'
-   character(*), parameter :: TENSOR_COLUMNS = ',sig_11,sig_22,sig_33,sig_12,sig_13,sig_23,eps_11,eps_22,eps_33,'// &
-                              'gamma_12,gamma_13,gamma_23'
+   integer, parameter :: PLAIN = 21   !< Columns of every table; the others are components of tensors.
+   type(column_t), parameter :: COLUMNS(*) = [ &
+      column_t('eps_a', '1', 'axial strain, natural'), &
+      column_t('eps_v', '1', 'volumetric strain, natural'), &
+      column_t('p_eff', 'kPa', 'mean effective stress'), &
+      column_t('q', 'kPa', 'sigma_a - sigma_r, negative in extension'), &
+      column_t('e', '1', 'void ratio'), &
+      column_t('s_w', '1', 'degree of saturation'), &
+      column_t('n_substep', '1', 'accepted substeps since the start', .true.), &
+      column_t('n_reseat', '1', 're-seats of the memory since the start', .true.), &
+      column_t('sigma_a', 'kPa', 'axial effective stress'), &
+      column_t('sigma_r', 'kPa', 'radial effective stress'), &
+      column_t('eps_r', '1', 'radial strain, natural'), &
+      column_t('suction', 'kPa', 'p_a - p_w'), &
+      column_t('u', 'kPa', &
+               'excess pore pressure, saturated sample of constant volume, total radial stress held (shear: axial)'), &
+      column_t('psi', '1', 'state parameter'), &
+      column_t('n_rate', '1', 'rate evaluations since the start', .true.), &
+      column_t('n_reject', '1', 'rejected substeps since the start', .true.), &
+      column_t('n_guard', '1', 'rates in which a guard acted, since the start', .true.), &
+      column_t('control_error', '1', 'largest error of what is held since the row before, relative'), &
+      column_t('stage', '1', 'stage, 0 is the start', .true.), &
+      column_t('cycle', '1', 'cycle of the stage, 0: none', .true.), &
+      column_t('r_u', '1', 'pore pressure of the stage over the effective confining stress at its start'), &
+      column_t('sig_11', 'kPa', 'effective stress'), column_t('sig_22', 'kPa', 'effective stress'), &
+      column_t('sig_33', 'kPa', 'effective stress'), column_t('sig_12', 'kPa', 'effective stress'), &
+      column_t('sig_13', 'kPa', 'effective stress'), column_t('sig_23', 'kPa', 'effective stress'), &
+      column_t('eps_11', '1', 'strain, natural'), column_t('eps_22', '1', 'strain, natural'), &
+      column_t('eps_33', '1', 'strain, natural'), column_t('gamma_12', '1', 'engineering shear strain'), &
+      column_t('gamma_13', '1', 'engineering shear strain'), column_t('gamma_23', '1', 'engineering shear strain')]
    real(wp), parameter :: FIRST_PROGRESS = 2.0_wp   !< Runs shorter than this show none [s].
 
    !> An output file; `to_screen` if it is the standard output.
    type :: table_t
       integer :: unit = -1
       logical :: to_screen = .false.
-      logical :: tensors = .false.   !< Six components of stress and strain in every row.
+      logical :: hdf5 = .false.      !< Rows are kept and written when the table is closed.
+      logical :: closed = .true.
+      integer :: columns = PLAIN     !< More where components of stress and strain are wanted.
       integer :: rows = 0
       integer(int64) :: bytes = 0
       character(256) :: path = ''
+      real(wp), allocatable :: kept(:, :)
+      type(attribute_t), allocatable :: attributes(:)
    end type table_t
 
    !> Wall-clock time of a run.
@@ -38,32 +69,42 @@ module triax_output
 
 contains
    !> Opens the file and writes its header.
-   subroutine open_table(path, test, tensors, table, fault)
+   subroutine open_table(path, test, table, fault)
       character(*), intent(in) :: path   !< '-' is the standard output.
       type(case_t), intent(in) :: test
-      logical, intent(in) :: tensors
       type(table_t), intent(out) :: table
       type(fault_t), intent(inout) :: fault
       character(256) :: problem
       integer :: status
 
       table%path = path
-      table%tensors = tensors
+      if (any(general_control(test%stages%control))) table%columns = size(COLUMNS)
       table%to_screen = path == '-'
+      table%hdf5 = ends_in(path, '.h5') .or. ends_in(path, '.hdf5')
+      allocate (table%kept(table%columns, 0), table%attributes(0))
       if (table%to_screen) then
          table%unit = output_unit
       else
+         ! An HDF5 file is written at the end; this says now whether it can be.
          open (newunit=table%unit, file=path, status='replace', action='write', form='formatted', iostat=status, &
                iomsg=problem)
+         if (status == 0 .and. table%hdf5) close (table%unit, iostat=status, iomsg=problem)
          if (status /= 0) then
-            table%unit = -1
             call raise(fault, EXIT_OUTPUT, trim(path)//': cannot be written ('//trim(problem)// &
                        '); choose another place with --output.')
             return
          end if
       end if
+      table%closed = .false.
       call header(test, table, fault)
    end subroutine open_table
+
+   pure logical function ends_in(path, ending)
+      character(*), intent(in) :: path, ending
+
+      ends_in = .false.
+      if (len(path) > len(ending)) ends_in = lower_case(path(len(path) - len(ending) + 1:)) == ending
+   end function ends_in
 
    subroutine header(test, table, fault)
       type(case_t), intent(in) :: test
@@ -73,80 +114,111 @@ contains
       character(:), allocatable :: names
       integer :: i
 
-      call line(table, '# case: '//trim(test%name), fault)
-      if (len_trim(test%title) > 0) call line(table, '# title: '//trim(test%title), fault)
-      call line(table, '# material: '//trim(test%material), fault)
+      call remark(table, 'case', trim(test%name), fault)
+      if (len_trim(test%title) > 0) call remark(table, 'title', trim(test%title), fault)
+      call remark(table, 'material', trim(test%material), fault)
       do i = 1, property_count()
          call property_range(i, lower, upper, preset)
          if (abs(test%soil%props(i) - preset) > 0.0_wp) then
-            call line(table, '# not the default: '//property_name(i)//' = '//short(test%soil%props(i))//' (default '// &
-                      short(preset)//')', fault)
+            call remark(table, 'not the default: '//property_name(i), short(test%soil%props(i))//' (default '// &
+                        short(preset)//')', fault)
          end if
       end do
-      call line(table, '# library: MUD '//library_version(), fault)
-      call line(table, '# conventions: compression positive; stresses are effective [kPa], suction and u [kPa], '// &
-                'strains and the rest [-]', fault)
-      call line(table, '# u: excess pore pressure at constant total radial stress; n_...: totals since the start; '// &
-                'control_error: of the held stress, largest since the row before, relative, allowed '// &
-                short(CONTROL_TOLERANCE), fault)
-      names = COLUMNS
-      if (table%tensors) names = names//TENSOR_COLUMNS
-      call line(table, names, fault)
+      call remark(table, 'library', 'MUD '//library_version(), fault)
+      call remark(table, 'conventions', 'compression positive; stresses are effective [kPa], suction and u [kPa], '// &
+                  'strains and the rest [-]; control_error may be up to '//short(CONTROL_TOLERANCE), fault)
+      names = trim(COLUMNS(1)%name)
+      do i = 2, table%columns
+         names = names//','//trim(COLUMNS(i)%name)
+      end do
+      if (.not. table%hdf5) call line(table, names, fault)
    end subroutine header
 
-   subroutine write_row(table, soil, point, pressure, error, stage, fault)
+   !> A fact about the run: a comment line, or an attribute of the HDF5 file.
+   subroutine remark(table, name, text, fault)
+      type(table_t), intent(inout) :: table
+      character(*), intent(in) :: name, text
+      type(fault_t), intent(inout) :: fault
+      type(attribute_t) :: attribute
+
+      if (table%hdf5) then
+         attribute%name = name
+         attribute%text = text
+         table%attributes = [table%attributes, attribute]
+      else
+         call line(table, '# '//name//': '//text, fault)
+      end if
+   end subroutine remark
+
+   !> How a stage ended, behind its rows.
+   subroutine add_note(table, text, fault)
+      type(table_t), intent(inout) :: table
+      character(*), intent(in) :: text
+      type(fault_t), intent(inout) :: fault
+
+      call remark(table, text(:index(text, ':') - 1), text(index(text, ':') + 2:), fault)
+   end subroutine add_note
+
+   subroutine write_row(table, soil, point, course, error, stage, fault)
       type(table_t), intent(inout) :: table
       type(soil_t), intent(in) :: soil
       type(point_t), intent(in) :: point
-      real(wp), intent(in) :: pressure   !< Excess pore pressure [kPa].
-      real(wp), intent(in) :: error      !< Largest of a held stress since the row before, relative.
+      type(course_t), intent(in) :: course
+      real(wp), intent(in) :: error      !< Largest of what is held since the row before, relative.
       integer, intent(in) :: stage
       type(fault_t), intent(inout) :: fault
+      real(wp) :: values(size(COLUMNS))
       character(:), allocatable :: text
+      integer :: i
 
-      text = real_text(axial_strain(point))//real_text(volumetric_strain(point))//real_text(mean_stress(point))// &
-             real_text(deviator_stress(point))//real_text(state_value(point, soil%i_void_ratio))// &
-             real_text(state_value(point, soil%i_saturation))//count_text(soil%i_n_substep)// &
-                count_text(soil%i_n_reseat)// &
-             real_text(point%stress(AXIAL))//real_text(radial_stress(point))//real_text(radial_strain(point))// &
-             real_text(point%suction)//real_text(pressure)//real_text(state_value(point, soil%i_state_parameter))// &
-             count_text(soil%i_n_rate)//count_text(soil%i_n_reject)//count_text(soil%i_n_guard)//real_text(error)// &
-             whole(stage)
-      if (table%tensors) text = text//tensor_text(point%stress)//tensor_text(point%strain)
-      call line(table, text, fault)
+      values = [axial_strain(point), volumetric_strain(point), mean_stress(point), deviator_stress(point), &
+                state_value(point, soil%i_void_ratio), state_value(point, soil%i_saturation), &
+                state_value(point, soil%i_n_substep), state_value(point, soil%i_n_reseat), point%stress(AXIAL), &
+                radial_stress(point), radial_strain(point), point%suction, course%pressure, &
+                state_value(point, soil%i_state_parameter), state_value(point, soil%i_n_rate), &
+                state_value(point, soil%i_n_reject), state_value(point, soil%i_n_guard), error, real(stage, wp), &
+                real(course%cycle, wp), course%r_u, point%stress, point%strain]
       table%rows = table%rows + 1
-   contains
-      function count_text(place) result(word)
-         integer, intent(in) :: place
-         character(:), allocatable :: word
-         character(24) :: digits
-
-         write (digits, '(i0)') nint(state_value(point, place), int64)
-         word = trim(digits)//','
-      end function count_text
+      if (table%hdf5) then
+         call keep(table, values)
+         return
+      end if
+      text = ''
+      do i = 1, table%columns
+         text = text//value_text(values(i), COLUMNS(i)%whole)
+         if (i < table%columns) text = text//','
+      end do
+      call line(table, text, fault)
    end subroutine write_row
 
-   !> All 16 digits, and the comma behind.
-   pure function real_text(value) result(text)
+   !> Adds a row to those that are kept; their room doubles when it is full.
+   subroutine keep(table, values)
+      type(table_t), intent(inout) :: table
+      real(wp), intent(in) :: values(:)
+      real(wp), allocatable :: more(:, :)
+
+      if (table%rows > size(table%kept, 2)) then
+         allocate (more(table%columns, max(256, 2*table%rows)), source=0.0_wp)
+         more(:, :table%rows - 1) = table%kept(:, :table%rows - 1)
+         call move_alloc(more, table%kept)
+      end if
+      table%kept(:, table%rows) = values(:table%columns)
+   end subroutine keep
+
+   !> All 16 digits, or a count.
+   pure function value_text(value, whole_number) result(text)
       real(wp), intent(in) :: value
+      logical, intent(in) :: whole_number
       character(:), allocatable :: text
       character(24) :: digits
 
-      write (digits, '(es23.15e3)') value
-      text = trim(adjustl(digits))//','
-   end function real_text
-
-   pure function tensor_text(tensor) result(text)
-      real(wp), intent(in) :: tensor(6)
-      character(:), allocatable :: text, word
-      integer :: i
-
-      text = ''
-      do i = 1, 6
-         word = real_text(tensor(i))
-         text = text//','//word(:len(word) - 1)
-      end do
-   end function tensor_text
+      if (whole_number) then
+         write (digits, '(i0)') nint(value, int64)
+      else
+         write (digits, '(es23.15e3)') value
+      end if
+      text = trim(adjustl(digits))
+   end function value_text
 
    subroutine line(table, text, fault)
       type(table_t), intent(inout) :: table
@@ -170,12 +242,20 @@ contains
       character(*), intent(in) :: stopped   !< Why, empty if it did not.
       type(fault_t), intent(inout) :: fault
       type(fault_t) :: last
+      character(TEXT_LENGTH) :: problem
       integer(int64) :: size_on_disk
       integer :: status
 
-      if (table%unit == -1) return
-      if (len(stopped) > 0) call line(table, '# stopped: '//stopped, last)
-      if (.not. table%to_screen) then
+      if (table%closed) return
+      table%closed = .true.
+      if (len(stopped) > 0) call remark(table, 'stopped', stopped, last)
+      if (table%hdf5) then
+         call write_hdf5(trim(table%path), COLUMNS(:table%columns), table%kept(:, :table%rows), table%attributes, &
+                         problem)
+         if (len_trim(problem) > 0 .and. fault%code == 0) then
+            call raise(fault, EXIT_OUTPUT, trim(table%path)//': '//trim(problem))
+         end if
+      else if (.not. table%to_screen) then
          close (table%unit, iostat=status)
          ! gfortran's buffered output does not report a full disk: compare what should be there with what is.
          inquire (file=table%path, size=size_on_disk)
@@ -184,7 +264,6 @@ contains
             call raise(fault, EXIT_OUTPUT, trim(table%path)//': is incomplete; is the disk full?')
          end if
       end if
-      table%unit = -1
    end subroutine close_table
 
    subroutine start_clock(clock)
@@ -243,7 +322,7 @@ contains
             ', minimum step '//whole(tally%n_min_step)//', cut-off '//whole(tally%n_open)//', tensile '// &
             whole(tally%n_tensile)
          if (tally%solved > 0) then
-            write (output_unit, '(a)') '   control    held stress within '//short(tally%worst)// &
+            write (output_unit, '(a)') '   control    what is held is met within '//short(tally%worst)// &
                ' of its value (allowed '// &
                short(CONTROL_TOLERANCE)//')'
          end if

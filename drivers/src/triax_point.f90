@@ -43,7 +43,9 @@ module triax_point
    !> Slopes of an update, in the driver's conventions.
    type :: tangent_t
       real(wp) :: dsig_deps(6, 6) = 0.0_wp   !< Effective stress by strain [kPa].
+      real(wp) :: dsig_dpc(6) = 0.0_wp       !< Effective stress by suction [-].
       real(wp) :: dsw_deps(6) = 0.0_wp       !< Degree of saturation by strain [-].
+      real(wp) :: dsw_dpc = 0.0_wp           !< Degree of saturation by suction [1/kPa].
    end type tangent_t
 
 contains
@@ -196,19 +198,18 @@ contains
       type(point_t), intent(inout) :: after
       type(tangent_t), intent(out) :: tangent
       type(mud_report), intent(out) :: report
-      real(wp) :: tension0(6), tension1(6), dsig_dpc(6), dsw_dpc
+      real(wp) :: tension0(6), tension1(6)
       integer(c_int) :: code
 
       if (.not. allocated(after%statev)) allocate (after%statev(soil%n_statev), source=0.0_wp)
       tension0 = -before%stress
       tension1 = tension0
-      dsig_dpc = 0.0_wp
-      dsw_dpc = 0.0_wp
       code = mud_update(soil%props, size(soil%props), tension0, before%statev, soil%n_statev, -strain, before%suction, &
-                        suction, tangent_kind(soil), tension1, after%statev, tangent%dsig_deps, dsig_dpc, &
-                        tangent%dsw_deps, dsw_dpc, report)
+                        suction, tangent_kind(soil), tension1, after%statev, tangent%dsig_deps, tangent%dsig_dpc, &
+                        tangent%dsw_deps, tangent%dsw_dpc, report)
       report%status = code
       if (code /= 0) return
+      tangent%dsig_dpc = -tangent%dsig_dpc
       tangent%dsw_deps = -tangent%dsw_deps
       after%stress = -tension1
       after%strain = before%strain + strain

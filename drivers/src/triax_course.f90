@@ -1,0 +1,239 @@
+!> The course of a stage: one way, or the ways between the reversals of its cycles, and what ends it early.
+!>
+!> Strain cycles reverse at given strains. Stress cycles drive the strain until the stress is reached, which is found
+!> within the increment: a liquefied sample has no stiffness to solve with, but a strain can always be driven.
+module triax_course
+   use, intrinsic :: iso_fortran_env, only: wp => real64
+   use triax_fault, only: fault_t, raise, EXIT_RUN
+   use triax_text, only: short, whole
+   use triax_stage, only: stage_t, sealed_control, shear_control, CONTROL_NAMES, QUANTITIES
+   use triax_control, only: plan_t, tally_t, plan_way, advance, lead, quantity
+   use triax_point, only: soil_t, point_t, AXIAL, RADIAL
+   implicit none (type, external)
+   private
+   public :: course_t, begin_stage, next_increment, share_done
+
+   !> A reversal stress is met to this share of the amplitude; the library's own tolerance is 1e-5 of the stress.
+   real(wp), parameter :: REVERSAL_TOLERANCE = 1.0e-7_wp
+   integer, parameter :: MAX_SEARCH = 50                   !< Bisection alone would come to 1e-15 of an increment.
+   real(wp), parameter :: MAX_WAY = 0.5_wp                 !< Strain between two reversals of a stress cycle [-].
+   real(wp), parameter :: ON_GRID = 1.0e-6_wp              !< Share of an output interval that counts as none: rounding.
+
+   !> Where a stage is.
+   type :: course_t
+      type(plan_t) :: plan
+      logical :: finished = .false.
+      logical :: row = .false.             !< The last increment calls for a row of the output.
+      integer :: k = 0                     !< Increments of the present way.
+      integer :: way = 0, ways = 1         !< Present way, number of ways.
+      integer :: cycle = 0                 !< Present cycle, from 1; 0: none.
+      logical :: open = .false.            !< The way ends where a stress is reached.
+      real(wp) :: centre = 0.0_wp, goal = 0.0_wp, direction = 1.0_wp
+      logical :: sealed = .false.          !< Undrained and saturated: pore pressure is what changes.
+      real(wp) :: confining = 0.0_wp       !< Effective stress under constant total stress, at the start [kPa].
+      real(wp) :: pressure = 0.0_wp        !< Excess pore pressure [kPa].
+      real(wp) :: pressure_start = 0.0_wp
+      real(wp) :: r_u = 0.0_wp             !< Pore pressure that has built up in this stage over `confining` [-].
+      character(200) :: note = ''          !< How it ended, where that is not plain.
+   end type course_t
+
+contains
+   !> Lays out a stage from where the sample is.
+   subroutine begin_stage(soil, stage, point, pressure, course, fault)
+      type(soil_t), intent(in) :: soil
+      type(stage_t), intent(in) :: stage
+      type(point_t), intent(in) :: point
+      real(wp), intent(in) :: pressure   !< Excess pore pressure so far [kPa].
+      type(course_t), intent(out) :: course
+      type(fault_t), intent(inout) :: fault
+
+      course%pressure = pressure
+      course%pressure_start = pressure
+      course%confining = confining_stress(stage, point)
+      course%sealed = sealed_control(stage%control) .and. point%suction <= 0.0_wp .and. &
+                      .not. (stage%moves_suction .and. stage%suction_end > 0.0_wp)
+      if (stage%stop_r_u > 0.0_wp .and. .not. course%sealed) then
+         call raise(fault, EXIT_RUN, 'stop_r_u needs a saturated sample; the suction is '//short(point%suction)// &
+                    ' kPa.')
+      else if (stage%keeps_water .and. point%suction <= 0.0_wp) then
+         call raise(fault, EXIT_RUN, 'water = ''constant'' needs a suction to follow; the sample is saturated. '// &
+                    'A saturated sample keeps its water where its volume is held (undrained).')
+      end if
+      if (stage%cycles > 0) then
+         course%centre = quantity(soil, stage, stage%cycle_by, point)
+         if (stage%has_centre) course%centre = stage%centre
+         course%ways = 2*stage%cycles + 1
+         course%open = stage%cycle_by /= stage%lead
+      end if
+      call next_way(soil, stage, point, course)
+   end subroutine begin_stage
+
+   !> One increment; at its end the course knows whether it calls for a row and whether the stage is over.
+   subroutine next_increment(soil, stage, course, point, tally, fault)
+      type(soil_t), intent(in) :: soil
+      type(stage_t), intent(in) :: stage
+      type(course_t), intent(inout) :: course
+      type(point_t), intent(inout) :: point
+      type(tally_t), intent(inout) :: tally
+      type(fault_t), intent(inout) :: fault
+      type(point_t) :: before
+      logical :: arrived
+
+      course%k = course%k + 1
+      if (course%open) then
+         before = point
+         call advance(soil, course%plan, course%k, 1.0_wp, point, tally, fault)
+         if (fault%code /= 0) return
+         arrived = missing(soil, stage, course, point) <= 0.0_wp
+         if (arrived) call find_goal(soil, stage, course, before, point, tally, fault)
+         if (fault%code /= 0) return
+         if (.not. arrived .and. course%k*stage%increment >= MAX_WAY) then
+            call raise(fault, EXIT_RUN, trim(QUANTITIES(stage%cycle_by)%name)//' does not reach '// &
+                       short(course%goal)//' kPa in cycle '//whole(course%cycle)// &
+                       ': after a strain of '//short(MAX_WAY)//' it is '// &
+                       short(quantity(soil, stage, stage%cycle_by, point))// &
+                       ' kPa. Lower the amplitude, or end the stage with stop_r_u or stop_double_amplitude.')
+            return
+         end if
+      else
+         call advance(soil, course%plan, course%k, 1.0_wp, point, tally, fault)
+         if (fault%code /= 0) return
+         arrived = course%k >= course%plan%increments
+      end if
+      course%row = arrived .or. passes(lead(course%plan, course%k - 1), lead(course%plan, course%k), stage%interval)
+      if (course%sealed) then
+         course%pressure = course%pressure_start + course%confining - confining_stress(stage, point)
+         course%r_u = (course%pressure - course%pressure_start)/course%confining
+      end if
+      if (arrived) call next_way(soil, stage, point, course)
+      if (course%sealed .and. stage%stop_r_u > 0.0_wp .and. course%r_u >= stage%stop_r_u) then
+         call stop_early('pore pressure ratio '//short(stage%stop_r_u))
+      else if (stage%stop_double_amplitude > 0.0_wp .and. .not. arrived .and. &
+               abs(quantity(soil, stage, stage%lead, point) - course%plan%lead_start) >= &
+               stage%stop_double_amplitude) then
+         call stop_early('double amplitude '//short(stage%stop_double_amplitude))
+      else if (course%finished .and. stage%stop_r_u + stage%stop_double_amplitude > 0.0_wp) then
+         course%note = 'went to its end without being stopped'
+      end if
+   contains
+      subroutine stop_early(what)
+         character(*), intent(in) :: what
+
+         course%finished = .true.
+         course%row = .true.
+         course%note = what//' reached'
+         if (course%cycle > 0) course%note = what//' reached in cycle '//whole(course%cycle)
+      end subroutine stop_early
+   end subroutine next_increment
+
+   !> Begins the next way, or finishes the stage after the last one.
+   subroutine next_way(soil, stage, point, course)
+      type(soil_t), intent(in) :: soil
+      type(stage_t), intent(in) :: stage
+      type(point_t), intent(in) :: point
+      type(course_t), intent(inout) :: course
+
+      if (course%way == course%ways) then
+         course%finished = .true.
+         return
+      end if
+      course%way = course%way + 1
+      course%k = 0
+      course%goal = stage%target
+      if (stage%cycles > 0) then
+         ! Ways 1, 2, 3, ...: to +A, -A, +A, ...; the last one to the centre.
+         course%cycle = (course%way + 1)/2
+         course%goal = course%centre + merge(stage%amplitude, -stage%amplitude, mod(course%way, 2) == 1)
+         if (course%way == course%ways) then
+            course%goal = course%centre
+            course%cycle = stage%cycles
+         end if
+      end if
+      if (course%open) then
+         course%direction = sign(1.0_wp, course%goal - quantity(soil, stage, stage%cycle_by, point))
+         call plan_way(soil, stage, quantity(soil, stage, stage%lead, point) + course%direction*stage%increment, &
+                       point, course%plan)
+         course%plan%increments = 1
+      else
+         call plan_way(soil, stage, course%goal, point, course%plan)
+         course%finished = course%plan%increments == 0
+      end if
+   end subroutine next_way
+
+   !> How far the stress of a cycle still has to go [kPa].
+   pure real(wp) function missing(soil, stage, course, point)
+      type(soil_t), intent(in) :: soil
+      type(stage_t), intent(in) :: stage
+      type(course_t), intent(in) :: course
+      type(point_t), intent(in) :: point
+
+      missing = course%direction*(course%goal - quantity(soil, stage, stage%cycle_by, point))
+   end function missing
+
+   !> The part of an increment after which the stress of a cycle is reached: regula falsi with bisection (Illinois).
+   subroutine find_goal(soil, stage, course, before, point, tally, fault)
+      type(soil_t), intent(in) :: soil
+      type(stage_t), intent(in) :: stage
+      type(course_t), intent(inout) :: course
+      type(point_t), intent(in) :: before
+      type(point_t), intent(inout) :: point
+      type(tally_t), intent(inout) :: tally
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: low, high, at_low, at_high, here, share
+      integer :: i, last
+
+      low = 0.0_wp
+      at_low = missing(soil, stage, course, before)
+      high = 1.0_wp
+      at_high = missing(soil, stage, course, point)
+      last = 0
+      if (abs(at_high) <= REVERSAL_TOLERANCE*abs(stage%amplitude)) return
+      do i = 1, MAX_SEARCH
+         share = low + (high - low)*at_low/max(at_low - at_high, tiny(at_low))
+         if (.not. (share > low .and. share < high)) share = 0.5_wp*(low + high)
+         point = before
+         call advance(soil, course%plan, course%k, share, point, tally, fault)
+         if (fault%code /= 0) return
+         here = missing(soil, stage, course, point)
+         if (abs(here) <= REVERSAL_TOLERANCE*abs(stage%amplitude)) exit
+         if (here > 0.0_wp) then
+            low = share
+            at_low = here
+            if (last == -1) at_high = 0.5_wp*at_high
+            last = -1
+         else
+            high = share
+            at_high = here
+            if (last == 1) at_low = 0.5_wp*at_low
+            last = 1
+         end if
+      end do
+   end subroutine find_goal
+
+   !> Effective stress whose total is constant in an undrained test: radial, or vertical in simple shear [kPa].
+   pure real(wp) function confining_stress(stage, point)
+      type(stage_t), intent(in) :: stage
+      type(point_t), intent(in) :: point
+
+      confining_stress = 0.5_wp*sum(point%stress(RADIAL))
+      if (shear_control(stage%control)) confining_stress = point%stress(AXIAL)
+   end function confining_stress
+
+   !> Share of the stage that is done, for the progress report.
+   pure real(wp) function share_done(course)
+      type(course_t), intent(in) :: course
+
+      share_done = real(course%way - 1, wp)
+      if (.not. course%open) share_done = share_done + real(course%k, wp)/real(max(course%plan%increments, 1), wp)
+      share_done = min(share_done/real(course%ways, wp), 1.0_wp)
+   end function share_done
+
+   !> True if a multiple of the interval lies after `before` and not after `now`, whichever way the lead goes.
+   pure logical function passes(before, now, interval)
+      real(wp), intent(in) :: before, now, interval
+      real(wp) :: way
+
+      way = sign(1.0_wp, now - before)
+      passes = floor(way*now/interval + ON_GRID) > floor(way*before/interval + ON_GRID)
+   end function passes
+end module triax_course
