@@ -27,6 +27,7 @@ missing_packages() {
    [ -n "${CC:-}" ] || command -v cc >/dev/null || echo gcc libc6-dev
    command -v cmake >/dev/null || echo cmake
    command -v ninja >/dev/null || echo ninja-build
+   command -v h5fc >/dev/null || echo libhdf5-dev
    local python
    python=$(find_python)
    if [ -z "$python" ]; then
