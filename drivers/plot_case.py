@@ -98,8 +98,8 @@ def draw(results, output):
         axis.set_ylabel(y_label)
         if log:
             axis.set_xscale("log")
-            axis.xaxis.set_major_formatter(matplotlib.ticker.LogFormatter(labelOnlyBase=False, minor_thresholds=(2, 0.6)))
-            axis.xaxis.set_minor_formatter(matplotlib.ticker.LogFormatter(labelOnlyBase=False, minor_thresholds=(2, 0.6)))
+            for which in (axis.xaxis.set_major_formatter, axis.xaxis.set_minor_formatter):
+                which(matplotlib.ticker.LogFormatter(labelOnlyBase=False, minor_thresholds=(2, 0.6)))
     for axis in axes.flat[len(pages):]:
         axis.axis("off")
     facts = results[0][0]

@@ -1,5 +1,5 @@
-"""Verification of the model with element tests: every page runs its cases through mud_triax and holds the results against
-an independent reference.
+"""Verification of the model with element tests: every page runs its cases through mud_triax and holds the results
+against an independent reference.
 
     pages.py [--build DIR] [--output DIR] [--check] [PAGE ...]
 
@@ -412,8 +412,8 @@ def draw_fig1(bench, plt):
     for i, rule in enumerate(RULES):
         run = bench.run(f"fig1_{rule}")
         for axis in axes[:2]:
-            axis.plot([100 * v for v in run["eps_a"]], run["q"], color=("black", *COLOURS)[i], label=rule.replace("_", " "),
-                      ls=("-", "--", "-", "-.", ":", "--")[i], lw=(1.8, 1, 1.2, 1.4, 1.8, 1.4)[i])
+            axis.plot([100 * v for v in run["eps_a"]], run["q"], color=("black", *COLOURS)[i],
+                      label=rule.replace("_", " "), ls=("-", "--", "-", "-.", ":", "--")[i], lw=(1.8, 1, 1.2, 1.4, 1.8, 1.4)[i])
     axes[0].set(xlabel="axial strain [%]", ylabel="q [kPa]", xlim=(0, 15), ylim=(0, 3600), title="the whole test")
     axes[1].set(xlabel="axial strain [%]", ylabel="q [kPa]", xlim=(9.97, 10.6), ylim=(2820, 3040),
                 title="the reversal of 0.015 % at 10 %")

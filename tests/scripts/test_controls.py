@@ -1,4 +1,4 @@
-"""Controls of mud_triax: what each one holds is held, what leads it arrives, cycles turn where they should, stops stop."""
+"""Controls of mud_triax: what is held is held, what leads arrives, cycles turn where they should, stops stop."""
 import csv
 import math
 import os
@@ -54,7 +54,6 @@ def net(row, name):
 
 
 # What is held, what leads, where it should arrive.
-AXIAL, LATERAL = "sigma_a", "sigma_r"
 CASES = [
     ("drained, q_end = 150.0", lambda r: r["sigma_r"], lambda r: r["q"], 150),
     ("undrained, q_end = 30.0, increment = 0.5", lambda r: 100*r["e"], lambda r: r["q"], 30),
@@ -120,7 +119,8 @@ check("stress cycles turn at centre and amplitude, the first way backwards",
       abs(min(turns) + 20) < 30e-7 and abs(max(turns) - 40) < 30e-7
       and [q for q in turns if abs(q - 10) > 29.9][0] < 0, f"{min(turns)} {max(turns)}")
 check("they end at the centre", abs(turns[-1] - 10) < 30e-7, turns[-1])
-rows, notes = run("control = 'undrained', cycle_by = 'q', amplitude = 25, cycles = 50, stop_r_u = 0.6, increment = 2e-5")
+rows, notes = run("control = 'undrained', cycle_by = 'q', amplitude = 25, cycles = 50, stop_r_u = 0.6, "
+                  "increment = 2e-5")
 check("r_u stops a stage", 0.6 <= rows[-1]["r_u"] < 0.65 and rows[-1]["cycle"] < 50, rows[-1])
 check("and says so", any("pore pressure ratio 0.6 reached in cycle" in note for note in notes), notes)
 check("r_u is u over the confining stress", abs(rows[-1]["u"]/100 - rows[-1]["r_u"]) < 1e-12, rows[-1])
@@ -138,7 +138,8 @@ done = call("control = 'drained', q_end = 800.0")
 check("a stress that cannot be reached ends with code 3", done.returncode == 3, done.returncode)
 check("and says where", "halved 20 times" in done.stderr and "eps_a" in done.stderr, done.stderr)
 check("and keeps its rows", (work / "case.csv").read_text().count("\n") > 20)
-done = call("control = 'undrained', cycle_by = 'q', amplitude = 500.0, cycles = 2", initial="p_eff = 100.0, void_ratio = 0.95")
+done = call("control = 'undrained', cycle_by = 'q', amplitude = 500.0, cycles = 2",
+            initial="p_eff = 100.0, void_ratio = 0.95")
 check("a stress cycle beyond the strength is explained", done.returncode == 3 and "does not reach 500" in done.stderr,
       done.stderr)
 done = call("control = 'drained', water = 'constant', eps_a_end = 0.01")
@@ -165,7 +166,7 @@ for stage, words in MISTAKES.items():
     check(f"refused: {stage}", done.returncode == 2 and all(word in done.stderr for word in words)
           and not (work / "case.csv").exists(), f"{done.returncode} {done.stderr}")
 help_text = subprocess.run([triax, "--help"], capture_output=True, text=True).stdout
-check("--help lists the new keys", all(word in help_text for word in ("stop_r_u", "constant_q", "cycle_by", "strain_6")))
+check("--help lists keys and controls", all(w in help_text for w in ("stop_r_u", "constant_q", "cycle_by", "strain_6")))
 
 # HDF5 holds what the CSV file holds.
 stage = "control = 'simple_shear_constant_volume', cycle_by = 'tau', amplitude = 15, cycles = 2"
@@ -194,9 +195,10 @@ except ImportError:
     matplotlib = None
 if matplotlib is not None:
     run("control = 'undrained', eps_a_end = 0.01")
-    done = subprocess.run([sys.executable, root / "drivers/plot_case.py", work / "case.csv"], capture_output=True, text=True)
+    plot = [sys.executable, root / "drivers/plot_case.py"]
+    done = subprocess.run([*plot, work / "case.csv"], capture_output=True, text=True)
     check("plot_case draws a page", done.returncode == 0 and (work / "case.png").stat().st_size > 20000, done.stderr)
-    done = subprocess.run([sys.executable, root / "drivers/plot_case.py", work / "case.nml"], capture_output=True, text=True)
+    done = subprocess.run([*plot, work / "case.nml"], capture_output=True, text=True)
     check("plot_case refuses what is no result", done.returncode == 1 and "cannot be read" in done.stderr, done.stderr)
 
 print(f"{passed} passed, {failed} failed")

@@ -69,7 +69,7 @@ def main():
         axes[1, column].set_xlabel(f"{parameter} over its published value")
     axes[0, 0].set_ylabel("misfit of q [%]")
     axes[1, 0].set_ylabel("misfit of the volumetric strain [points]")
-    axes[0, 1].legend(fontsize=7)
+    axes[1, 1].legend(*axes[0, 1].get_legend_handles_labels(), fontsize=7, loc="upper right")
     options.output.mkdir(parents=True, exist_ok=True)
     figure.savefig(options.output / "sensitivity.png", dpi=130)
     print(options.output / "sensitivity.png")
