@@ -460,7 +460,7 @@ def main():
             import matplotlib
             matplotlib.use("Agg")
             import matplotlib.pyplot as plt
-            plt.rcParams.update({"savefig.dpi": 130, "font.size": 9, "axes.titlesize": 10, "axes.grid": True,
+            plt.rcParams.update({"savefig.dpi": 90, "font.size": 9, "axes.titlesize": 10, "axes.grid": True,
                                  "grid.color": "#dddddd", "grid.linewidth": 0.6, "axes.axisbelow": True,
                                  "legend.frameon": False, "figure.constrained_layout.use": True})
             options.output.mkdir(parents=True, exist_ok=True)
