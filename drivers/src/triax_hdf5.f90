@@ -7,25 +7,12 @@ module triax_hdf5
                    h5screate_f, h5screate_simple_f, h5sclose_f, h5dcreate_f, h5dwrite_f, h5dclose_f, h5tcopy_f, &
                    h5tset_size_f, h5tclose_f, h5acreate_f, h5awrite_f, h5aclose_f, H5F_ACC_TRUNC_F, H5S_SCALAR_F, &
                    H5T_NATIVE_DOUBLE, H5T_NATIVE_INTEGER, H5T_FORTRAN_S1
+   use triax_table, only: column_t, attribute_t, TEXT_LENGTH
    implicit none (type, external)
    private
-   public :: column_t, attribute_t, write_hdf5, TEXT_LENGTH
+   public :: write_hdf5, HAS_HDF5
 
-   integer, parameter :: TEXT_LENGTH = 1000
-
-   !> A column of the results.
-   type :: column_t
-      character(16) :: name
-      character(8) :: unit
-      character(120) :: meaning
-      logical :: whole = .false.   !< Counts.
-   end type column_t
-
-   !> A fact about the run.
-   type :: attribute_t
-      character(64) :: name = ''
-      character(TEXT_LENGTH) :: text = ''
-   end type attribute_t
+   logical, parameter :: HAS_HDF5 = .true.
 
 contains
    subroutine write_hdf5(path, columns, values, attributes, problem)

@@ -65,10 +65,10 @@ contains
       integer :: i
 
       write (output_unit, '(a)') &
-         '! A case for mud_triax: undrained compression, then drained extension. All keys: mud_triax --help', &
+         '! A case for mud_triax: undrained compression, drained extension, cycles. All keys: mud_triax --help', &
          '&case', &
          '   name = ''my_case''', &
-         '   title = ''undrained compression, then drained extension''', &
+         '   title = ''undrained compression, drained extension, undrained cycles''', &
          '/', &
          '&material   ! or file = ''path'', with the values to change after it; a parameter left out has its default', &
          '   name = ''my sand'''
@@ -94,6 +94,13 @@ contains
          '&stage', &
          '   control = ''drained''', &
          '   eps_a_end = -0.02', &
+         '/', &
+         '&stage                      ! ten cycles of deviator stress, or fewer', &
+         '   control = ''undrained''', &
+         '   cycle_by = ''q''            ! or eps_a; gamma and tau in simple shear', &
+         '   amplitude = 5.0           ! [kPa]', &
+         '   cycles = 10', &
+         '   stop_r_u = 0.95           ! pore pressure ratio', &
          '/'
    end subroutine print_template
 

@@ -7,7 +7,8 @@ module triax_output
    use triax_stage, only: general_control
    use triax_control, only: tally_t, CONTROL_TOLERANCE
    use triax_course, only: course_t
-   use triax_hdf5, only: column_t, attribute_t, write_hdf5, TEXT_LENGTH
+   use triax_table, only: column_t, attribute_t, TEXT_LENGTH
+   use triax_hdf5, only: write_hdf5, HAS_HDF5
    use triax_point, only: soil_t, point_t, library_version, property_count, property_name, property_range, &
                           state_value, mean_stress, deviator_stress, radial_stress, axial_strain, radial_strain, &
                           volumetric_strain, AXIAL
@@ -82,6 +83,11 @@ contains
       table%to_screen = path == '-'
       table%hdf5 = ends_in(path, '.h5') .or. ends_in(path, '.hdf5')
       allocate (table%kept(table%columns, 0), table%attributes(0))
+      if (table%hdf5 .and. .not. HAS_HDF5) then
+         call raise(fault, EXIT_OUTPUT, trim(path)//': this mud_triax was built without HDF5; choose a .csv file, or '// &
+                    'install libhdf5-dev and build again.')
+         return
+      end if
       if (table%to_screen) then
          table%unit = output_unit
       else

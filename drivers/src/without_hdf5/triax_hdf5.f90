@@ -1,25 +1,12 @@
-!> Stands in for the HDF5 output where the HDF5 library is not installed: it says so.
+!> Stands in for the HDF5 output where the HDF5 library is not installed: nothing asks it to write.
 module triax_hdf5
    use, intrinsic :: iso_fortran_env, only: wp => real64
+   use triax_table, only: column_t, attribute_t, TEXT_LENGTH
    implicit none (type, external)
    private
-   public :: column_t, attribute_t, write_hdf5, TEXT_LENGTH
+   public :: write_hdf5, HAS_HDF5
 
-   integer, parameter :: TEXT_LENGTH = 1000
-
-   !> A column of the results.
-   type :: column_t
-      character(16) :: name
-      character(8) :: unit
-      character(120) :: meaning
-      logical :: whole = .false.   !< Counts.
-   end type column_t
-
-   !> A fact about the run.
-   type :: attribute_t
-      character(64) :: name = ''
-      character(TEXT_LENGTH) :: text = ''
-   end type attribute_t
+   logical, parameter :: HAS_HDF5 = .false.
 
 contains
    subroutine write_hdf5(path, columns, values, attributes, problem)
@@ -29,8 +16,7 @@ contains
       type(attribute_t), intent(in) :: attributes(:)
       character(TEXT_LENGTH), intent(out) :: problem   !< Blank on success.
 
-      problem = 'this mud_triax was built without HDF5 (install libhdf5-dev and build again), so '//trim(path)// &
-                ' stays empty; choose a .csv file.'
-      if (size(columns) /= size(values, 1) .or. size(attributes) < 0) problem = 'rows do not fit their columns.'
+      write (problem, '(a, i0, a)') 'this mud_triax was built without HDF5: '//trim(path)//' lacks its ', &
+         size(columns) + size(values) + size(attributes), ' entries.'
    end subroutine write_hdf5
 end module triax_hdf5
