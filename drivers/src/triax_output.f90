@@ -84,8 +84,8 @@ contains
       table%hdf5 = ends_in(path, '.h5') .or. ends_in(path, '.hdf5')
       allocate (table%kept(table%columns, 0), table%attributes(0))
       if (table%hdf5 .and. .not. HAS_HDF5) then
-         call raise(fault, EXIT_OUTPUT, trim(path)//': this mud_triax was built without HDF5; choose a .csv file, or '// &
-                    'install libhdf5-dev and build again.')
+         call raise(fault, EXIT_OUTPUT, trim(path)//': this mud_triax was built without HDF5; choose a .csv '// &
+                    'file, or install libhdf5-dev and build again.')
          return
       end if
       if (table%to_screen) then
