@@ -1,0 +1,194 @@
+!> Load vectors and prescribed values of a moment.
+module host_loads
+   use host_kinds, only: wp, PI
+   use host_scene, only: scene_t, stage_t, factor_at, acts_in, P_A
+   use fe_dofs, only: dofs_t, tie
+   use fe_shape, only: edge_quadratic, edge_rule
+   use newton, only: constraint_t
+   use time_galpha, only: STATIC
+   implicit none (type, external)
+   private
+   public :: shape_loads, ties_of, load_at, constrain_step, new_constraint
+contains
+   !> Nodes that rigid bodies make move together.
+   function ties_of(scene) result(ties)
+      type(scene_t), intent(in) :: scene
+      integer, allocatable :: ties(:, :)
+      integer :: i
+
+      allocate (ties(4, size(scene%model%mesh%x, 2)), source=0)
+      do i = 1, size(scene%rigids)
+         call tie(scene%model%mesh%groups(scene%rigids(i)%group)%nodes, 2, ties)
+      end do
+   end function ties_of
+
+   !> Vectors of unit loads.
+   subroutine shape_loads(scene, dofs)
+      type(scene_t), intent(inout) :: scene
+      type(dofs_t), intent(in) :: dofs
+      integer :: i, e, k, f
+
+      do i = 1, size(scene%loads)
+         associate (load => scene%loads(i), group => scene%model%mesh%groups(scene%loads(i)%group))
+            allocate (load%shape(dofs%n), source=0.0_wp)
+            if (load%kind <= 5) then
+               do e = 1, size(group%edges, 2)
+                  call add_edge(scene, dofs, group%edges(:, e), load%kind, load%shape)
+               end do
+            else
+               f = load%kind - 5
+               do k = 1, size(group%nodes)
+                  associate (at => dofs%of(f, group%nodes(k)))
+                     load%shape(at) = load%shape(at) + 1.0_wp
+                  end associate
+               end do
+            end if
+         end associate
+      end do
+   end subroutine shape_loads
+
+   !> A unit load on an edge; its body lies on the left, so that the outward normal is the tangent turned right.
+   subroutine add_edge(scene, dofs, edge, kind, shape)
+      type(scene_t), intent(in) :: scene
+      type(dofs_t), intent(in) :: dofs
+      integer, intent(in) :: edge(3), kind
+      real(wp), intent(inout) :: shape(:)
+      real(wp) :: points(3), weights(3), n(3), dn(3), m(3), x(2, 3), at(2), tangent(2), weight
+      integer :: g, i
+
+      x = scene%model%mesh%x(:, edge)
+      call edge_rule(points, weights)
+      do g = 1, 3
+         call edge_quadratic(points(g), n, dn)
+         m = n
+         if (scene%model%n_p == 3) m = [0.5_wp*(1 - points(g)), 0.5_wp*(1 + points(g)), 0.0_wp]
+         at = matmul(x, n)
+         tangent = matmul(x, dn)
+         weight = weights(g)
+         if (scene%model%axisymmetric) weight = weight*2*PI*at(1)
+         do i = 1, 3
+            select case (kind)
+            case (1)
+               call add(1, i, -n(i)*tangent(2)*weight)
+               call add(2, i, n(i)*tangent(1)*weight)
+            case (2, 3)
+               call add(kind - 1, i, n(i)*norm2(tangent)*weight)
+            case (4)
+               call add(3, i, m(i)*norm2(tangent)*weight)
+            case (5)
+               call add(3, i, m(i)*norm2(tangent)*weight)
+               call add(4, i, m(i)*norm2(tangent)*weight)
+            end select
+         end do
+      end do
+   contains
+      subroutine add(field, i, value)
+         integer, intent(in) :: field, i
+         real(wp), intent(in) :: value
+
+         associate (place => dofs%of(field, edge(i)))
+            if (place > 0) shape(place) = shape(place) + value
+         end associate
+      end subroutine add
+   end subroutine add_edge
+
+   !> Loads of a stage at a time.
+   function load_at(scene, stage, dofs, time) result(load)
+      type(scene_t), intent(in) :: scene
+      type(stage_t), intent(in) :: stage
+      type(dofs_t), intent(in) :: dofs
+      real(wp), intent(in) :: time
+      real(wp), allocatable :: load(:)
+      integer :: i, at
+
+      allocate (load(dofs%n), source=0.0_wp)
+      do i = 1, size(scene%loads)
+         associate (one => scene%loads(i))
+            if (acts_in(one%stages, stage%name)) load = load + factor_at(scene, one%history, time)*one%value*one%shape
+         end associate
+      end do
+      do i = 1, size(scene%rigids)
+         associate (one => scene%rigids(i))
+            at = dofs%of(2, scene%model%mesh%groups(one%group)%nodes(1))
+            load(at) = load(at) + factor_at(scene, one%history, time)*one%force
+         end associate
+      end do
+   end function load_at
+
+   !> Nothing prescribed, nothing loaded; rigid bodies have their mass.
+   function new_constraint(scene, dofs) result(constraint)
+      type(scene_t), intent(in) :: scene
+      type(dofs_t), intent(in) :: dofs
+      type(constraint_t) :: constraint
+      integer :: i, nodes, at
+
+      nodes = size(scene%model%mesh%x, 2)
+      allocate (constraint%fixed(dofs%n), source=.false.)
+      allocate (constraint%air(nodes), source=.false.)
+      allocate (constraint%target(dofs%n), constraint%load_0(dofs%n), constraint%load_1(dofs%n), &
+                constraint%offset(dofs%n), constraint%mass(dofs%n), source=0.0_wp)
+      allocate (constraint%air_target(nodes), source=0.0_wp)
+      do i = 1, size(scene%rigids)
+         at = dofs%of(2, scene%model%mesh%groups(scene%rigids(i)%group)%nodes(1))
+         constraint%mass(at) = scene%rigids(i)%mass
+      end do
+   end function new_constraint
+
+   !> Prescribed values at the end of a step; x_start: unknowns at the start of the stage, which some are held at.
+   subroutine constrain_step(scene, stage, dofs, time, x_start, constraint)
+      type(scene_t), intent(in) :: scene
+      type(stage_t), intent(in) :: stage
+      type(dofs_t), intent(in) :: dofs
+      real(wp), intent(in) :: time, x_start(:, :)
+      type(constraint_t), intent(inout) :: constraint
+      real(wp) :: value
+      integer :: i, k, node, at
+
+      constraint%fixed = .false.
+      constraint%air = .false.
+      do i = 1, size(scene%fixes)
+         associate (fix => scene%fixes(i))
+            if (.not. acts_in(fix%stages, stage%name)) cycle
+            if (time <= fix%from .or. time > fix%until*(1 + 1.0e-12_wp)) cycle
+            value = fix%value*factor_at(scene, fix%history, time)
+            do k = 1, size(scene%model%mesh%groups(fix%group)%nodes)
+               node = scene%model%mesh%groups(fix%group)%nodes(k)
+               if (fix%field == P_A) then
+                  if (dofs%of(4, node) == 0) cycle
+                  constraint%air(node) = .true.
+                  constraint%air_target(node) = value
+                  if (fix%hold) constraint%air_target(node) = x_start(3, node) + x_start(4, node)
+               else
+                  at = dofs%of(fix%field, node)
+                  if (at == 0) cycle
+                  constraint%fixed(at) = .true.
+                  constraint%target(at) = value
+                  if (fix%hold) constraint%target(at) = x_start(fix%field, node)
+               end if
+            end do
+         end associate
+      end do
+      ! Air pressure and one of the others: then the third is known too.
+      do node = 1, size(constraint%air)
+         if (.not. constraint%air(node)) cycle
+         associate (w => dofs%of(3, node), c => dofs%of(4, node))
+            if (constraint%fixed(c)) then
+               constraint%target(w) = constraint%air_target(node) - constraint%target(c)
+            else if (constraint%fixed(w)) then
+               constraint%target(c) = constraint%air_target(node) - constraint%target(w)
+            else
+               cycle
+            end if
+            constraint%fixed([w, c]) = .true.
+            constraint%air(node) = .false.
+         end associate
+      end do
+      if (stage%kind /= STATIC) return
+      do i = 1, dofs%n
+         if (dofs%field(i) < 3) cycle
+         constraint%fixed(i) = .true.
+         constraint%target(i) = x_start(dofs%field(i), dofs%node(i))
+      end do
+      constraint%air = .false.
+   end subroutine constrain_step
+end module host_loads

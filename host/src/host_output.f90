@@ -1,0 +1,137 @@
+!> Text output: histories at points, the ledger, and the fields at the end of every stage.
+module host_output
+   use host_kinds, only: wp
+   use host_energy, only: ledger_t, imbalance
+   use host_scene, only: scene_t
+   use fe_model, only: state_t, model_t
+   use newton, only: log_t
+   use triax_fault, only: fault_t, raise, EXIT_OUTPUT
+   implicit none (type, external)
+   private
+   public :: output_t, open_output, write_history, write_ledger, write_fields, close_output
+
+   character(*), parameter :: NUMBER = '(*(es24.16e3,:,","))'
+
+   character(4), parameter :: COLUMNS(13) = [character(4) :: 'u_r', 'u_z', 'p_w', 'p_c', 'v_r', 'v_z', 'a_z', 's_rr', &
+      's_zz', 's_tt', 's_rz', 'e', 'S_w']
+
+   type :: output_t
+      character(:), allocatable :: folder
+      integer :: history = 0, ledger = 0   !< Units.
+   end type output_t
+contains
+   subroutine open_output(folder, scene, output, fault)
+      character(*), intent(in) :: folder
+      type(scene_t), intent(in) :: scene
+      type(output_t), intent(out) :: output
+      type(fault_t), intent(inout) :: fault
+      character(:), allocatable :: head
+      integer :: i, k, status
+
+      output%folder = folder
+      call execute_command_line('mkdir -p '''//folder//'''', exitstat=status)
+      head = 'time'
+      do i = 1, size(scene%points)
+         do k = 1, size(COLUMNS)
+            head = head//','//trim(scene%points(i)%name)//'.'//trim(COLUMNS(k))
+         end do
+      end do
+      call open_file(folder//'/histories.csv', head, output%history, fault)
+      if (fault%code == 0) call open_file(folder//'/ledger.csv', 'time,dt,stage,iterations,error_u_r,error_u_z,error_p_w,'// &
+                'error_p_c,first_u_r,first_u_z,first_p_w,first_p_c,reduction,correction,rates,kinetic,skeleton,pores,'// &
+                   'gravity,loads,supports,seepage,imbalance,outflow,outflow_air,step_error', output%ledger, fault)
+   end subroutine open_output
+
+   subroutine open_file(path, head, unit, fault)
+      character(*), intent(in) :: path, head
+      integer, intent(out) :: unit
+      type(fault_t), intent(inout) :: fault
+      integer :: status
+
+      open (newunit=unit, file=path, status='replace', action='write', recl=100000, iostat=status)
+      if (status == 0) write (unit, '(a)', iostat=status) head
+      if (status /= 0) call raise(fault, EXIT_OUTPUT, path//' cannot be written; does the folder exist, is there space?')
+   end subroutine open_file
+
+   subroutine write_history(output, scene, state, fault)
+      type(output_t), intent(in) :: output
+      type(scene_t), intent(in) :: scene
+      type(state_t), intent(in) :: state
+      type(fault_t), intent(inout) :: fault
+      integer :: i, status
+
+      if (size(scene%points) == 0) return
+      write (output%history, NUMBER, iostat=status) state%time, (values(scene%points(i)%node, scene%points(i)%gauss), &
+                                                                 i=1, size(scene%points))
+      if (status /= 0) call raise(fault, EXIT_OUTPUT, 'histories.csv cannot be written; is the disk full?')
+   contains
+      pure function values(k, p)
+         integer, intent(in) :: k, p
+         real(wp) :: values(size(COLUMNS))
+
+         values = [state%x(:, k), state%v(1:2, k), state%a(2, k), state%stress(1:4, p), state%e(p), state%s(p)]
+      end function values
+   end subroutine write_history
+
+   subroutine write_ledger(output, time, dt, stage, log, ledger, step_error, fault)
+      type(output_t), intent(in) :: output
+      real(wp), intent(in) :: time, dt, step_error
+      integer, intent(in) :: stage
+      type(log_t), intent(in) :: log
+      type(ledger_t), intent(in) :: ledger
+      type(fault_t), intent(inout) :: fault
+      integer :: status
+
+      write (output%ledger, '(2(es24.16e3,","),i0,",",i0,",",*(es14.6e3,:,","))', iostat=status) time, dt, stage, &
+         log%iterations, log%error, log%first_error, log%reduction, log%correction, real(log%effort, wp), &
+         ledger%kinetic, ledger%skeleton, ledger%pores, ledger%gravity, ledger%loads, ledger%supports, ledger%seepage, &
+         imbalance(ledger), ledger%outflow, ledger%outflow_air, step_error
+      if (status /= 0) call raise(fault, EXIT_OUTPUT, 'ledger.csv cannot be written; is the disk full?')
+   end subroutine write_ledger
+
+   !> nodes_STAGE.csv and points_STAGE.csv.
+   subroutine write_fields(output, model, stage, state, fault)
+      type(output_t), intent(in) :: output
+      type(model_t), intent(in) :: model
+      character(*), intent(in) :: stage
+      type(state_t), intent(in) :: state
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: x(4, size(state%x, 2))
+      integer :: unit, i, e, g, p, status
+
+      x = state%x
+      if (model%n_p == 3) then
+         do e = 1, size(model%mesh%t6, 2)
+            do i = 1, 3
+               x(3:4, model%mesh%t6(3 + i, e)) = 0.5_wp*(state%x(3:4, model%mesh%t6(i, e)) &
+                                                         + state%x(3:4, model%mesh%t6(mod(i, 3) + 1, e)))
+            end do
+         end do
+      end if
+      status = 0
+      call open_file(output%folder//'/nodes_'//stage//'.csv', 'r,z,u_r,u_z,p_w,p_c,v_r,v_z', unit, fault)
+      if (fault%code /= 0) return
+      do i = 1, size(state%x, 2)
+         if (status == 0) write (unit, NUMBER, iostat=status) model%mesh%x(:, i), x(:, i), state%v(1:2, i)
+      end do
+      close (unit)
+      call open_file(output%folder//'/points_'//stage//'.csv', 'r,z,weight,s_rr,s_zz,s_tt,s_rz,e,S_w', unit, fault)
+      if (fault%code /= 0) return
+      do e = 1, size(model%mesh%t6, 2)
+         do g = 1, model%rule
+            p = (e - 1)*model%rule + g
+            if (status == 0) write (unit, NUMBER, iostat=status) model%gauss(g, e)%x, model%gauss(g, e)%weight, &
+               state%stress(1:4, p), state%e(p), state%s(p)
+         end do
+      end do
+      close (unit)
+      if (status /= 0) call raise(fault, EXIT_OUTPUT, 'The fields cannot be written; is the disk full?')
+   end subroutine write_fields
+
+   subroutine close_output(output)
+      type(output_t), intent(inout) :: output
+
+      close (output%history)
+      close (output%ledger)
+   end subroutine close_output
+end module host_output

@@ -1,0 +1,507 @@
+!> Reads a scene: groups in any order, names resolved, everything checked before anything is computed.
+module host_read
+   use host_kinds, only: wp, EXIT_GROUP, EXIT_MESH
+   use host_keys, only: check_keys, number_of, numbers_of, text_of, texts_of, word_is, given
+   use host_laws, only: read_mud, read_elastic, read_retention, read_permeability, retention_of_mud
+   use host_scene, only: scene_t, stage_t, fix_t, load_t, rigid_t, history_t, initial_t, point_t, P_A, LOAD_KINDS
+   use fe_model, only: region_t, prepare_model
+   use fe_mud, only: mud_t
+   use fe_permeability, only: permeability_t
+   use fe_shape, only: RULES
+   use mesh_gmsh, only: read_gmsh
+   use mesh_graded, only: graded_mesh
+   use mesh_types, only: find_group
+   use time_galpha, only: STATIC, QUASI_STATIC, DYNAMIC
+   use triax_fault, only: fault_t, raise, at_line, EXIT_INPUT
+   use triax_namelist, only: group_t, read_groups
+   use triax_text, only: lower_case, whole, read_number
+   implicit none (type, external)
+   private
+   public :: read_scene
+contains
+   subroutine read_scene(file, scene, fault)
+      character(*), intent(in) :: file
+      type(scene_t), intent(out) :: scene
+      type(fault_t), intent(inout) :: fault
+      type(group_t), allocatable :: groups(:)
+      integer :: i
+
+      call read_groups(file, groups, fault)
+      if (fault%code == 0) call check_keys(groups, fault)
+      if (fault%code == 0) call check_single(file, groups, fault)
+      allocate (scene%histories(0), scene%initials(0), scene%stages(0), scene%fixes(0), scene%loads(0), &
+                scene%rigids(0), scene%points(0))
+      ! Lists of different laws get their size at once: they cannot grow by array constructors.
+      allocate (scene%model%materials(count([(groups(i)%name == 'mud' .or. groups(i)%name == 'elastic', &
+                                              i=1, size(groups))])))
+      allocate (scene%model%retentions(count([(groups(i)%name == 'retention' .or. groups(i)%name == 'region', &
+                                               i=1, size(groups))])))
+      allocate (scene%model%permeabilities(0), scene%model%regions(0))
+      ! What others name comes first.
+      do i = 1, size(groups)
+         if (fault%code /= 0) return
+         select case (groups(i)%name)
+         case ('scene')
+            call take_scene(groups(i), scene, fault)
+         case ('mesh')
+            call take_mesh(groups(i), scene, fault)
+         case ('fluids')
+            call take_fluids(groups(i), scene)
+         case ('mud', 'elastic', 'retention', 'permeability')
+            call take_law(groups(i), scene, fault)
+         case ('history')
+            call take_history(groups(i), scene, fault)
+         case ('stage')
+            call take_stage(groups(i), scene)
+         end select
+      end do
+      if (fault%code /= 0) return
+      allocate (scene%model%region_of(size(scene%model%mesh%t6, 2)), source=0)
+      do i = 1, size(groups)
+         if (fault%code /= 0) return
+         select case (groups(i)%name)
+         case ('region')
+            call take_region(groups(i), scene, fault)
+         case ('initial')
+            call take_initial(groups(i), scene, fault)
+         case ('fix')
+            call take_fix(groups(i), scene, fault)
+         case ('load')
+            call take_load(groups(i), scene, fault)
+         case ('rigid')
+            call take_rigid(groups(i), scene, fault)
+         end select
+      end do
+      if (fault%code /= 0) return
+      if (any(scene%model%region_of == 0)) then
+         call raise(fault, EXIT_GROUP, trim(file)//': element '//whole(findloc(scene%model%region_of, 0, dim=1))// &
+                    ' belongs to no &region; add one with its group, or with group = ''all''.')
+         return
+      end if
+      call prepare_model(scene%model, fault)
+      if (fault%code /= 0) return
+      do i = 1, size(groups)
+         if (groups(i)%name == 'point') call take_point(groups(i), scene)
+      end do
+   end subroutine read_scene
+
+   !> Groups that occur once, and those without which there is nothing to do.
+   subroutine check_single(file, groups, fault)
+      character(*), intent(in) :: file
+      type(group_t), intent(in) :: groups(:)
+      type(fault_t), intent(inout) :: fault
+      character(6), parameter :: ONCE(3) = ['scene ', 'mesh  ', 'fluids'], NEEDED(4) = ['scene ', 'mesh  ', 'region', &
+                                                                                        'stage ']
+      integer :: i, k
+
+      do k = 1, size(ONCE)
+         if (count([(groups(i)%name == ONCE(k), i=1, size(groups))]) > 1) call raise(fault, EXIT_INPUT, trim(file)// &
+            ': &'//trim(ONCE(k))//' is given more than once; keep one.')
+      end do
+      do k = 1, size(NEEDED)
+         if (.not. any([(groups(i)%name == NEEDED(k), i=1, size(groups))])) call raise(fault, EXIT_INPUT, trim(file)// &
+            ': there is no &'//trim(NEEDED(k))//'; mud_host --template prints every group.')
+      end do
+   end subroutine check_single
+
+   subroutine take_scene(group, scene, fault)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+
+      scene%name = text_of(group, 'name')
+      associate (m => scene%model)
+         m%axisymmetric = word_is(group, 'geometry', 'axisymmetric')
+         m%with_c = word_is(group, 'fields', 'u-p_w-p_c')
+         m%with_w = m%with_c .or. word_is(group, 'fields', 'u-p_w')
+         m%n_p = merge(6, 3, word_is(group, 'pressures', 'quadratic'))
+         m%rule = nint(number_of(group, 'quadrature'))
+         m%gravity = number_of(group, 'gravity')
+         m%seepage_inertia = word_is(group, 'seepage_inertia', 'yes')
+         m%full_rate = word_is(group, 'saturation_rate', 'full')
+         m%threads = nint(number_of(group, 'threads'))
+         scene%subtract_flow = word_is(group, 'initial_flow', 'subtract')
+         if (.not. any(RULES == m%rule)) call raise(fault, EXIT_INPUT, at_line(group%file, group%line)// &
+            'quadrature = '//whole(m%rule)//': there are rules of 3, 6, 7 and 12 points.')
+      end associate
+   end subroutine take_scene
+
+   subroutine take_mesh(group, scene, fault)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+      character(:), allocatable :: path
+      real(wp), allocatable :: r(:), z(:), r_ratio(:), z_ratio(:)
+      integer, allocatable :: r_cells(:), z_cells(:)
+
+      if (given(group, 'file')) then
+         path = text_of(group, 'file')
+         if (path(1:1) /= '/') path = group%file(:index(group%file, '/', back=.true.))//path
+         call read_gmsh(path, scene%model%mesh, fault)
+         return
+      end if
+      r = numbers_of(group, 'r')
+      z = numbers_of(group, 'z')
+      r_cells = nint(numbers_of(group, 'r_cells'))
+      z_cells = nint(numbers_of(group, 'z_cells'))
+      r_ratio = numbers_of(group, 'r_ratio')
+      z_ratio = numbers_of(group, 'z_ratio')
+      if (size(r_ratio) == 0) r_ratio = spread(1.0_wp, 1, size(r_cells))
+      if (size(z_ratio) == 0) z_ratio = spread(1.0_wp, 1, size(z_cells))
+      if (size(r) < 2 .or. size(z) < 2) then
+         call raise(fault, EXIT_MESH, at_line(group%file, group%line)//'&mesh needs a file, or r and z with at least '// &
+                    'two breaks each.')
+      else if (size(r_cells) /= size(r) - 1 .or. size(z_cells) /= size(z) - 1 .or. size(r_ratio) /= size(r) - 1 .or. &
+               size(z_ratio) /= size(z) - 1) then
+         call raise(fault, EXIT_MESH, at_line(group%file, group%line)//'between n breaks there are n - 1 pieces: give '// &
+                    'r_cells, z_cells (and ratios) one value a piece.')
+      else if (any(r(2:) <= r(:size(r) - 1)) .or. any(z(2:) <= z(:size(z) - 1))) then
+         call raise(fault, EXIT_MESH, at_line(group%file, group%line)//'breaks of r and z must ascend.')
+      else
+         call graded_mesh(r, r_cells, r_ratio, z, z_cells, z_ratio, scene%model%mesh)
+      end if
+   end subroutine take_mesh
+
+   subroutine take_fluids(group, scene)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(inout) :: scene
+
+      associate (f => scene%model%fluids)
+         f%k_w = number_of(group, 'k_w')
+         f%rho_w = number_of(group, 'rho_w')
+         f%eta_w = number_of(group, 'eta_w')
+         f%k_a = number_of(group, 'k_a')
+         f%rho_a = number_of(group, 'rho_a')
+         f%eta_a = number_of(group, 'eta_a')
+         f%p_ref = number_of(group, 'p_ref')
+         f%ideal_gas = word_is(group, 'gas', 'ideal')
+      end associate
+   end subroutine take_fluids
+
+   subroutine take_law(group, scene, fault)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+      type(permeability_t) :: law
+      integer :: i
+
+      select case (group%name)
+      case ('mud', 'elastic')
+         do i = 1, size(scene%model%materials)
+            if (.not. allocated(scene%model%materials(i)%law)) exit
+         end do
+         if (group%name == 'mud') then
+            call read_mud(group, scene%model%materials(i), fault)
+         else
+            call read_elastic(group, scene%model%materials(i))
+         end if
+      case ('retention')
+         call read_retention(group, scene%model%retentions(free_curve(scene)), fault)
+      case default
+         call read_permeability(group, law, fault)
+         scene%model%permeabilities = [scene%model%permeabilities, law]
+      end select
+   end subroutine take_law
+
+   !> First unused place for a retention curve.
+   pure integer function free_curve(scene) result(place)
+      type(scene_t), intent(in) :: scene
+
+      do place = 1, size(scene%model%retentions)
+         if (.not. allocated(scene%model%retentions(place)%law)) return
+      end do
+   end function free_curve
+
+   subroutine take_history(group, scene, fault)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+      type(history_t) :: history
+
+      history%name = text_of(group, 'name')
+      if (given(group, 'file')) then
+         call read_table(group, history, fault)
+      else
+         history%times = numbers_of(group, 'times')
+         history%values = numbers_of(group, 'values')
+      end if
+      if (fault%code /= 0) return
+      if (size(history%times) == 0 .or. size(history%times) /= size(history%values)) then
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'history '//trim(history%name)// &
+                    ' needs as many values as times.')
+      else if (any(history%times(2:) <= history%times(:size(history%times) - 1))) then
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'the times of history '//trim(history%name)// &
+                    ' must ascend.')
+      end if
+      scene%histories = [scene%histories, history]
+   end subroutine take_history
+
+   subroutine read_table(group, history, fault)
+      type(group_t), intent(in) :: group
+      type(history_t), intent(inout) :: history
+      type(fault_t), intent(inout) :: fault
+      character(:), allocatable :: path
+      character(256) :: line
+      real(wp) :: pair(2)
+      integer :: unit, status
+
+      path = text_of(group, 'file')
+      if (path(1:1) /= '/') path = group%file(:index(group%file, '/', back=.true.))//path
+      history%times = [real(wp) ::]
+      history%values = [real(wp) ::]
+      open (newunit=unit, file=path, status='old', action='read', iostat=status)
+      if (status /= 0) then
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//path//' cannot be read.')
+         return
+      end if
+      do
+         read (unit, '(a)', iostat=status) line
+         if (status /= 0) exit
+         if (len_trim(line) == 0 .or. index('#!', line(1:1)) > 0) cycle
+         read (line, *, iostat=status) pair
+         if (status /= 0) then
+            call raise(fault, EXIT_INPUT, path//': "'//trim(line)//'" is not a time and a factor.')
+            exit
+         end if
+         history%times = [history%times, pair(1)]
+         history%values = [history%values, pair(2)]
+      end do
+      close (unit)
+   end subroutine read_table
+
+   subroutine take_stage(group, scene)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(inout) :: scene
+      type(stage_t) :: stage
+
+      stage%name = text_of(group, 'name')
+      select case (lower_case(text_of(group, 'analysis')))
+      case ('static')
+         stage%kind = STATIC
+      case ('quasi_static')
+         stage%kind = QUASI_STATIC
+      case default
+         stage%kind = DYNAMIC
+      end select
+      stage%duration = number_of(group, 'duration')
+      stage%dt = number_of(group, 'dt')
+      stage%dt_growth = number_of(group, 'dt_growth')
+      stage%dt_max = huge(1.0_wp)
+      if (given(group, 'dt_max')) stage%dt_max = number_of(group, 'dt_max')
+      stage%cuts = nint(number_of(group, 'cuts'))
+      stage%rho_inf = number_of(group, 'rho_inf')
+      stage%tolerance = number_of(group, 'tolerance')
+      stage%max_iterations = nint(number_of(group, 'max_iterations'))
+      stage%every = nint(number_of(group, 'every'))
+      stage%still = word_is(group, 'predictor', 'none')
+      stage%solve_start = word_is(group, 'start', 'solve')
+      stage%zero_displacements = word_is(group, 'zero_displacements', 'yes')
+      scene%stages = [scene%stages, stage]
+   end subroutine take_stage
+
+   subroutine take_region(group, scene, fault)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+      type(region_t) :: region
+      integer :: place, i
+
+      place = group_named(group, scene, fault)
+      if (fault%code /= 0) return
+      associate (m => scene%model)
+         region%material = named(group, 'material', [(m%materials(i)%name, i=1, size(m%materials))], fault)
+         if (fault%code /= 0) return
+         region%rho_s = number_of(group, 'rho_s')
+         region%void_ratio = m%materials(region%material)%law%initial_void_ratio()
+         if (given(group, 'void_ratio')) region%void_ratio = number_of(group, 'void_ratio')
+         if (m%with_w .and. .not. region%void_ratio > 0.0_wp) call raise(fault, EXIT_INPUT, &
+            at_line(group%file, group%line)//'the region needs a void_ratio: its pores hold the fluids.')
+         if (m%with_w .and. fault%code == 0) region%permeability = named(group, 'permeability', &
+            [(m%permeabilities(i)%name, i=1, size(m%permeabilities))], fault)
+         if (m%with_c .and. fault%code == 0) then
+            if (text_of(group, 'retention') == 'mud') then
+               select type (law => m%materials(region%material)%law)
+               type is (mud_t)
+                  region%retention = free_curve(scene)
+                  call retention_of_mud(law, m%retentions(region%retention))
+               class default
+                  call raise(fault, EXIT_INPUT, at_line(group%file, group%line)// &
+                             'retention = ''mud'' needs a &mud material.')
+               end select
+            else
+               region%retention = named(group, 'retention', [(m%retentions(i)%name, i=1, size(m%retentions))], fault)
+            end if
+         end if
+         if (fault%code /= 0) return
+         m%regions = [m%regions, region]
+         m%region_of(m%mesh%groups(place)%elements) = size(m%regions)
+      end associate
+   end subroutine take_region
+
+   !> Place of the group of the mesh that a group of the scene names.
+   integer function group_named(group, scene, fault) result(place)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(in) :: scene
+      type(fault_t), intent(inout) :: fault
+      character(:), allocatable :: list
+      integer :: i
+
+      place = find_group(scene%model%mesh, text_of(group, 'group'))
+      if (place > 0) return
+      list = ''
+      do i = 1, size(scene%model%mesh%groups)
+         list = list//' '//trim(scene%model%mesh%groups(i)%name)
+      end do
+      call raise(fault, EXIT_GROUP, at_line(group%file, group%line)//'the mesh has no group '''// &
+                 text_of(group, 'group')//'''; it has'//list//'.')
+   end function group_named
+
+   !> Place of a name in a list of definitions.
+   integer function named(group, key, names, fault) result(place)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: key, names(:)
+      type(fault_t), intent(inout) :: fault
+      character(:), allocatable :: list
+      integer :: i
+
+      place = findloc(names == text_of(group, key), .true., dim=1)
+      if (place > 0) return
+      list = ''
+      do i = 1, size(names)
+         list = list//' '//trim(names(i))
+      end do
+      if (list == '') list = ' nothing'
+      call raise(fault, EXIT_GROUP, at_line(group%file, group%line)//key//' = '''//text_of(group, key)// &
+                 ''' is defined nowhere; there is'//list//'.')
+   end function named
+
+   integer function history_named(group, scene, fault) result(place)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(in) :: scene
+      type(fault_t), intent(inout) :: fault
+      integer :: i
+
+      place = 0
+      if (given(group, 'history')) place = named(group, 'history', &
+         [(scene%histories(i)%name, i=1, size(scene%histories))], fault)
+   end function history_named
+
+   subroutine check_stages(group, scene, fault)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(in) :: scene
+      type(fault_t), intent(inout) :: fault
+      integer :: i, k
+
+      associate (names => texts_of(group, 'stages'))
+         do i = 1, size(names)
+            if (any([(scene%stages(k)%name == names(i), k=1, size(scene%stages))])) cycle
+            call raise(fault, EXIT_GROUP, at_line(group%file, group%line)//'there is no stage '''//trim(names(i))//'''.')
+         end do
+      end associate
+   end subroutine check_stages
+
+   subroutine take_initial(group, scene, fault)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+      type(initial_t) :: initial
+      real(wp), allocatable :: sigma(:)
+
+      initial%group = group_named(group, scene, fault)
+      if (fault%code /= 0) return
+      initial%p_w = number_of(group, 'p_w')
+      initial%p_w_slope = number_of(group, 'p_w_slope')
+      initial%p_c = number_of(group, 'p_c')
+      initial%p_c_slope = number_of(group, 'p_c_slope')
+      initial%datum = number_of(group, 'datum')
+      initial%uniform = word_is(group, 'stress', 'uniform')
+      initial%geostatic = word_is(group, 'stress', 'geostatic')
+      sigma = numbers_of(group, 'sigma')
+      if (initial%uniform .and. size(sigma) /= 3) then
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'a uniform stress needs sigma = rr, zz, tt.')
+         return
+      end if
+      if (initial%uniform) initial%sigma = sigma
+      initial%surface = number_of(group, 'surface')
+      initial%surcharge = number_of(group, 'surcharge')
+      initial%k_0 = number_of(group, 'k_0')
+      initial%net = word_is(group, 'k_0_of', 'net')
+      scene%initials = [scene%initials, initial]
+   end subroutine take_initial
+
+   subroutine take_fix(group, scene, fault)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+      character(3), parameter :: WORDS(5) = ['u_r', 'u_z', 'p_w', 'p_c', 'p_a']
+      type(fix_t) :: fix
+
+      fix%group = group_named(group, scene, fault)
+      if (fault%code == 0) fix%history = history_named(group, scene, fault)
+      if (fault%code == 0) call check_stages(group, scene, fault)
+      if (fault%code /= 0) return
+      fix%field = findloc(WORDS, lower_case(text_of(group, 'field')), dim=1)
+      if ((fix%field == 3 .and. .not. scene%model%with_w) .or. (fix%field >= 4 .and. .not. scene%model%with_c)) then
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'the scene has no field '// &
+                    text_of(group, 'field')//'; see fields in &scene.')
+         return
+      end if
+      fix%value = number_of(group, 'value')
+      fix%hold = word_is(group, 'hold', 'yes')
+      fix%stages = texts_of(group, 'stages')
+      if (given(group, 'from')) fix%from = number_of(group, 'from')
+      if (given(group, 'until')) fix%until = number_of(group, 'until')
+      scene%fixes = [scene%fixes, fix]
+   end subroutine take_fix
+
+   subroutine take_load(group, scene, fault)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+      type(load_t) :: load
+
+      load%group = group_named(group, scene, fault)
+      if (fault%code == 0) load%history = history_named(group, scene, fault)
+      if (fault%code == 0) call check_stages(group, scene, fault)
+      if (fault%code /= 0) return
+      load%kind = findloc(LOAD_KINDS, lower_case(text_of(group, 'kind')), dim=1)
+      load%value = number_of(group, 'value')
+      load%stages = texts_of(group, 'stages')
+      if (load%kind <= 5 .and. size(scene%model%mesh%groups(load%group)%edges, 2) == 0) call raise(fault, EXIT_GROUP, &
+         at_line(group%file, group%line)//'group '''//text_of(group, 'group')//''' has no edges to load.')
+      if ((load%kind == 4 .and. .not. scene%model%with_w) .or. (load%kind == 5 .and. .not. scene%model%with_c)) &
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'the scene has no field for a load of '// &
+                    text_of(group, 'kind')//'; see fields in &scene.')
+      scene%loads = [scene%loads, load]
+   end subroutine take_load
+
+   subroutine take_rigid(group, scene, fault)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+      type(rigid_t) :: rigid
+
+      rigid%group = group_named(group, scene, fault)
+      if (fault%code == 0) rigid%history = history_named(group, scene, fault)
+      if (fault%code /= 0) return
+      rigid%mass = number_of(group, 'mass')
+      rigid%force = number_of(group, 'force')
+      scene%rigids = [scene%rigids, rigid]
+   end subroutine take_rigid
+
+   subroutine take_point(group, scene)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(inout) :: scene
+      type(point_t) :: point
+      real(wp) :: x(2)
+      integer :: e, g, i
+
+      x = [number_of(group, 'r'), number_of(group, 'z')]
+      point%name = text_of(group, 'name')
+      associate (m => scene%model)
+         point%node = minloc([(norm2(m%mesh%x(:, i) - x), i=1, size(m%mesh%x, 2))], 1)
+         point%gauss = minloc([((norm2(m%gauss(g, e)%x - x), g=1, m%rule), e=1, size(m%mesh%t6, 2))], 1)
+      end associate
+      scene%points = [scene%points, point]
+   end subroutine take_point
+end module host_read

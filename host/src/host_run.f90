@@ -1,0 +1,235 @@
+!> Runs the stages of a scene: steps, cuts with exact restoration, ledger, output.
+module host_run
+   use host_kinds, only: wp, FIELD_NAMES, EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
+   use host_energy, only: ledger_t, book_step, kinetic_energy
+   use host_initial, only: initial_state
+   use host_loads, only: shape_loads, ties_of, load_at, constrain_step, new_constraint
+   use host_output, only: output_t, open_output, write_history, write_ledger, write_fields, close_output
+   use host_scene, only: scene_t, stage_t
+   use fe_assembly, only: assembly_t, make_assembly, assemble
+   use fe_dofs, only: dofs_t, number_unknowns
+   use fe_model, only: state_t, copy_state
+   use fe_pattern, only: pattern_t, make_pattern
+   use newton, only: constraint_t, control_t, log_t, system_t, take_step, start_accelerations, &
+                     CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
+   use solve_sparse, only: release
+   use time_galpha, only: scheme_t, make_scheme, DYNAMIC
+   use triax_fault, only: fault_t, raise
+   use triax_text, only: short, whole
+   !$ use omp_lib, only: omp_get_max_threads
+   implicit none (type, external)
+   private
+   public :: run_t, prepare_run, run_scene
+
+   real(wp), parameter :: LAST_STEP = 1.0e-9_wp   !< A rest of a stage below this share of a step is rounding.
+   integer, parameter :: GOOD_STEPS = 2           !< Accepted steps in a row after which a cut step grows back.
+
+   !> A scene ready to run, and what it has come to.
+   type :: run_t
+      type(dofs_t) :: dofs
+      type(pattern_t) :: pattern
+      type(assembly_t) :: assembly
+      type(system_t) :: system
+      type(constraint_t) :: constraint
+      type(state_t) :: state, next
+      type(ledger_t) :: ledger
+      integer :: steps = 0, iterations = 0, cuts = 0, effort = 0
+   end type run_t
+contains
+   !> Unknowns, pattern, loads and initial state.
+   subroutine prepare_run(scene, run, fault)
+      type(scene_t), intent(inout) :: scene
+      type(run_t), intent(out) :: run
+      type(fault_t), intent(inout) :: fault
+
+      if (scene%model%threads == 0) then
+         scene%model%threads = 1
+         !$ scene%model%threads = omp_get_max_threads()
+      end if
+      call number_unknowns(scene%model, ties_of(scene), run%dofs)
+      call make_pattern(run%dofs%n, run%dofs%element, reshape([integer ::], [2, 0]), run%pattern)
+      call make_assembly(scene%model, run%dofs, run%pattern, run%assembly)
+      call shape_loads(scene, run%dofs)
+      run%constraint = new_constraint(scene, run%dofs)
+      call initial_state(scene, run%state, fault)
+      run%next = run%state
+      if (fault%code == 0 .and. scene%subtract_flow) call keep_flow(scene, run, fault)
+   end subroutine prepare_run
+
+   !> The flow of the initial state, to be subtracted from then on.
+   subroutine keep_flow(scene, run, fault)
+      type(scene_t), intent(in) :: scene
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+      type(scheme_t) :: scheme
+
+      scheme = make_scheme(DYNAMIC, 1.0_wp, 1.0_wp)
+      call assemble(scene%model, run%dofs, run%pattern, scheme, run%state, run%next, .false., run%assembly)
+      if (run%assembly%bad_element > 0) then
+         call raise(fault, EXIT_MATERIAL, 'The initial state is refused by the material of element '// &
+                    whole(run%assembly%bad_element)//'.')
+         return
+      end if
+      where (run%dofs%field >= 3) run%constraint%offset = -run%assembly%residual
+      call copy_state(run%state, run%next)
+   end subroutine keep_flow
+
+   !> All stages; what was computed before a failure is on disk.
+   subroutine run_scene(scene, folder, quiet, run, fault)
+      type(scene_t), intent(inout) :: scene
+      character(*), intent(in) :: folder   !< Empty: no files.
+      logical, intent(in) :: quiet
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+      type(output_t) :: output
+      integer :: i
+
+      if (folder /= '') call open_output(folder, scene, output, fault)
+      if (fault%code /= 0) return
+      if (folder /= '') call write_history(output, scene, run%state, fault)
+      do i = 1, size(scene%stages)
+         call run_stage(scene, i, folder /= '', quiet, output, run, fault)
+         if (folder /= '') call write_fields(output, scene%model, trim(scene%stages(i)%name), run%state, fault)
+         if (fault%code /= 0) exit
+      end do
+      if (folder /= '') call close_output(output)
+      call release(run%system%sparse)
+      run%system%analysed = .false.
+   end subroutine run_scene
+
+   subroutine run_stage(scene, number, with_files, quiet, output, run, fault)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: number
+      logical, intent(in) :: with_files, quiet
+      type(output_t), intent(in) :: output
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+      type(control_t) :: control
+      type(scheme_t) :: scheme
+      type(log_t) :: log
+      real(wp), allocatable :: x_start(:, :)
+      real(wp) :: t_start, dt, nominal, left, factor
+      integer :: cuts, good, step
+
+      associate (stage => scene%stages(number))
+         control = control_t(stage%tolerance, stage%max_iterations, stage%still)
+         allocate (x_start, source=run%state%x)
+         t_start = run%state%time
+         call constrain_step(scene, stage, run%dofs, t_start, x_start, run%constraint)
+         if (stage%kind == DYNAMIC .and. stage%solve_start) call first_accelerations(scene, stage, run, fault)
+         if (fault%code /= 0) return
+         run%ledger%kinetic_0 = run%ledger%kinetic_0 + kinetic_energy(scene%model, run%dofs, run%constraint%mass, &
+                                                                      run%state) - run%ledger%kinetic
+         nominal = stage%dt
+         factor = 1.0_wp
+         cuts = 0
+         good = 0
+         step = 0
+         do
+            left = t_start + stage%duration - run%state%time
+            dt = nominal*factor
+            if (left <= LAST_STEP*dt) exit
+            if (dt > left*(1 - LAST_STEP)) dt = left
+            scheme = make_scheme(stage%kind, stage%rho_inf, dt)
+            run%constraint%load_0 = load_at(scene, stage, run%dofs, run%state%time)
+            run%constraint%load_1 = load_at(scene, stage, run%dofs, run%state%time + dt)
+            call constrain_step(scene, stage, run%dofs, run%state%time + dt, x_start, run%constraint)
+            call take_step(scene%model, run%dofs, run%pattern, scheme, run%constraint, control, run%state, run%next, &
+                           run%assembly, run%system, log)
+            run%iterations = run%iterations + log%iterations
+            run%effort = run%effort + log%effort
+            if (log%outcome /= CONVERGED) then
+               run%cuts = run%cuts + 1
+               cuts = cuts + 1
+               good = 0
+               if (cuts > stage%cuts .or. log%outcome == BODY_FREE .or. log%outcome == SOLVER_FAILED) then
+                  call explain(scene, stage, run, log, run%state%time + dt, dt, fault)
+                  return
+               end if
+               ! Nothing of the failed step is kept: the next attempt starts from run%state alone.
+               factor = factor*merge(min(run%assembly%bad%factor, 0.5_wp), 0.5_wp, log%outcome == MATERIAL_FAILED)
+               cycle
+            end if
+            step = step + 1
+            run%steps = run%steps + 1
+            call book_step(scene%model, run%dofs, scheme, run%constraint, run%system%reaction, run%state, run%next, &
+                           run%ledger)
+            call copy_state(run%next, run%state)
+            if (with_files) then
+               call write_ledger(output, run%state%time, dt, number, log, run%ledger, 0.0_wp, fault)
+               if (mod(step, stage%every) == 0 .or. t_start + stage%duration - run%state%time <= LAST_STEP*dt) &
+                  call write_history(output, scene, run%state, fault)
+               if (fault%code /= 0) return
+            end if
+            nominal = min(nominal*stage%dt_growth, max(stage%dt_max, stage%dt))
+            good = good + 1
+            if (good >= GOOD_STEPS .and. factor < 1.0_wp) then
+               factor = min(1.0_wp, 2*factor)
+               cuts = max(0, cuts - 1)
+               good = 0
+            end if
+         end do
+         if (stage%zero_displacements) then
+            run%state%x(1:2, :) = 0.0_wp
+            run%state%v = 0.0_wp
+            run%state%a = 0.0_wp
+            run%state%s_rate = 0.0_wp
+         end if
+         call copy_state(run%state, run%next)
+         if (.not. quiet) write (*, '(a)') 'Stage '//trim(stage%name)//': '//whole(step)//' steps, time '// &
+            short(run%state%time)//' s, '//whole(run%iterations)//' linear solves and '//whole(run%cuts)//' cuts so far.'
+      end associate
+   end subroutine run_stage
+
+   subroutine first_accelerations(scene, stage, run, fault)
+      type(scene_t), intent(in) :: scene
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+      type(log_t) :: log
+
+      run%constraint%load_0 = load_at(scene, stage, run%dofs, run%state%time)
+      call start_accelerations(scene%model, run%dofs, run%pattern, run%constraint, run%state, run%next, run%assembly, &
+                               run%system, log)
+      if (log%outcome /= CONVERGED) call explain(scene, stage, run, log, run%state%time, 0.0_wp, fault)
+   end subroutine first_accelerations
+
+   !> Why a step failed for good.
+   subroutine explain(scene, stage, run, log, time, dt, fault)
+      type(scene_t), intent(in) :: scene
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(in) :: run
+      type(log_t), intent(in) :: log
+      real(wp), intent(in) :: time, dt
+      type(fault_t), intent(inout) :: fault
+      character(600) :: text
+      character(:), allocatable :: place
+      integer :: e, node
+
+      place = 'Stage '//trim(stage%name)//', time '//short(time)//' s, step '//short(dt)//' s: '
+      associate (m => scene%model)
+         select case (log%outcome)
+         case (MATERIAL_FAILED)
+            e = run%assembly%bad_element
+            call m%materials(m%regions(m%region_of(e))%material)%law%explain(run%assembly%bad, text)
+            call raise(fault, EXIT_MATERIAL, place//'the material of element '//whole(e)//', point '// &
+                       whole(run%assembly%bad_point)//', refuses: '//trim(text))
+         case (BODY_FREE)
+            call raise(fault, EXIT_FREE_BODY, place//'the equations are singular: a body can move or a pressure is '// &
+                       'undetermined; add a &fix, or look for a region without stiffness.')
+         case (SOLVER_FAILED)
+            call raise(fault, EXIT_SOLVER, place//'the linear solver failed; is there enough memory for '// &
+                       whole(run%dofs%n)//' unknowns?')
+         case default
+            node = 1
+            if (log%worst_unknown > 0) node = run%dofs%node(log%worst_unknown)
+            e = findloc(any(m%mesh%t6 == node, dim=1), .true., dim=1)
+            call raise(fault, EXIT_CONVERGENCE, place//'no convergence after '//whole(log%iterations)// &
+                       ' iterations; error of '//FIELD_NAMES(max(1, log%worst_field))//' '// &
+                       short(log%error(max(1, log%worst_field)))//' (allowed '//short(stage%tolerance)// &
+                       '), worst at node '//whole(node)//' of element '//whole(e)//', ('//short(m%mesh%x(1, node))// &
+                       ', '//short(m%mesh%x(2, node))//') m; use a smaller dt, more cuts or a better tangent.')
+         end select
+      end associate
+   end subroutine explain
+end module host_run

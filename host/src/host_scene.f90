@@ -1,0 +1,105 @@
+!> A scene in memory: the model and everything that acts on it in the course of its stages.
+module host_scene
+   use host_kinds, only: wp
+   use fe_model, only: model_t
+   use mesh_types, only: NAME_LENGTH
+   use triax_namelist, only: LENGTH
+   implicit none (type, external)
+   private
+   public :: scene_t, stage_t, fix_t, load_t, rigid_t, history_t, initial_t, point_t, factor_at, acts_in
+   public :: P_A, LOAD_KINDS
+
+   integer, parameter :: P_A = 5   !< "Field" of a prescribed air pressure.
+   character(8), parameter :: LOAD_KINDS(7) = [character(8) :: 'pressure', 'shear_r', 'shear_z', 'water', 'air', &
+      'force_r', 'force_z']
+
+   type :: history_t
+      character(NAME_LENGTH) :: name = ''
+      real(wp), allocatable :: times(:), values(:)
+   end type history_t
+
+   type :: initial_t
+      integer :: group = 0
+      real(wp) :: p_w = 0.0_wp, p_w_slope = 0.0_wp, p_c = 0.0_wp, p_c_slope = 0.0_wp, datum = 0.0_wp
+      logical :: uniform = .false., geostatic = .false.
+      real(wp) :: sigma(3) = 0.0_wp
+      real(wp) :: surface = 0.0_wp, surcharge = 0.0_wp, k_0 = 0.5_wp
+      logical :: net = .true.
+   end type initial_t
+
+   type :: stage_t
+      character(NAME_LENGTH) :: name = ''
+      integer :: kind = 0
+      real(wp) :: duration = 0.0_wp, dt = 0.0_wp, dt_growth = 1.0_wp, dt_max = 0.0_wp
+      integer :: cuts = 10
+      real(wp) :: rho_inf = 0.8_wp, tolerance = 1.0e-3_wp
+      integer :: max_iterations = 12, every = 1
+      logical :: still = .false., solve_start = .true., zero_displacements = .false.
+   end type stage_t
+
+   type :: fix_t
+      integer :: group = 0, field = 0, history = 0
+      real(wp) :: value = 0.0_wp
+      logical :: hold = .false.
+      character(LENGTH), allocatable :: stages(:)
+      real(wp) :: from = -huge(1.0_wp), until = huge(1.0_wp)
+   end type fix_t
+
+   type :: load_t
+      integer :: group = 0, kind = 0, history = 0
+      real(wp) :: value = 0.0_wp
+      character(LENGTH), allocatable :: stages(:)
+      real(wp), allocatable :: shape(:)   !< Vector of a unit value.
+   end type load_t
+
+   type :: rigid_t
+      integer :: group = 0, history = 0
+      real(wp) :: mass = 0.0_wp, force = 0.0_wp
+   end type rigid_t
+
+   type :: point_t
+      character(NAME_LENGTH) :: name = ''
+      integer :: node = 0, gauss = 0      !< Nearest ones.
+   end type point_t
+
+   type :: scene_t
+      character(NAME_LENGTH) :: name = ''
+      type(model_t) :: model
+      logical :: subtract_flow = .false.
+      type(history_t), allocatable :: histories(:)
+      type(initial_t), allocatable :: initials(:)
+      type(stage_t), allocatable :: stages(:)
+      type(fix_t), allocatable :: fixes(:)
+      type(load_t), allocatable :: loads(:)
+      type(rigid_t), allocatable :: rigids(:)
+      type(point_t), allocatable :: points(:)
+   end type scene_t
+contains
+   !> Factor of a history at a time; history 0 is 1 throughout.
+   pure real(wp) function factor_at(scene, history, time) result(factor)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: history
+      real(wp), intent(in) :: time
+      integer :: i
+
+      factor = 1.0_wp
+      if (history == 0) return
+      associate (t => scene%histories(history)%times, v => scene%histories(history)%values)
+         factor = v(1)
+         if (time <= t(1)) return
+         do i = 2, size(t)
+            if (time > t(i)) cycle
+            factor = v(i - 1) + (v(i) - v(i - 1))*(time - t(i - 1))/(t(i) - t(i - 1))
+            return
+         end do
+         factor = v(size(v))
+      end associate
+   end function factor_at
+
+   !> An empty list means every stage.
+   pure logical function acts_in(stages, name)
+      character(*), intent(in) :: stages(:), name
+
+      acts_in = size(stages) == 0 .or. any(stages == name)
+   end function acts_in
+end module host_scene

@@ -1,0 +1,348 @@
+!> One time step by Newton-Raphson with the exact tangent. One linear solve is one iteration; the error of a field is
+!> |R_f| over the largest of |sum of the magnitudes of the elements' contributions|, 1e-6 of its largest value so far, and
+!> an absolute floor, over the free unknowns.
+module newton
+   use host_kinds, only: wp, FIELDS
+   use fe_assembly, only: assembly_t, assemble
+   use fe_dofs, only: dofs_t
+   use fe_model, only: model_t, state_t
+   use fe_pattern, only: pattern_t, place_of
+   use solve_sparse, only: sparse_t, analyse, factorise, solve, SOLVED, SINGULAR
+   use time_galpha, only: scheme_t, predict, advance_rates, DYNAMIC
+   implicit none (type, external)
+   private
+   public :: constraint_t, control_t, log_t, system_t, take_step, start_accelerations, clock
+   public :: CONVERGED, NOT_CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
+
+   integer, parameter :: CONVERGED = 0, NOT_CONVERGED = 1, MATERIAL_FAILED = 2, BODY_FREE = 3, SOLVER_FAILED = 4
+   real(wp), parameter :: HISTORY_SHARE = 1.0e-6_wp   !< Share of the largest scale so far that still counts.
+   real(wp), parameter :: ABSOLUTE_FLOOR = 1.0e-12_wp   !< [kN] or [m3/s]: nothing smaller is a force.
+   real(wp), parameter :: HOPELESS = 1.0e10_wp        !< Error beyond which no further iteration helps.
+
+   !> Prescribed unknowns and loads of a step.
+   type :: constraint_t
+      logical, allocatable :: fixed(:)        !< Unknowns
+      real(wp), allocatable :: target(:)      !< their values at the end of the step
+      logical, allocatable :: air(:)          !< Nodes with a prescribed air pressure
+      real(wp), allocatable :: air_target(:)
+      real(wp), allocatable :: load_0(:), load_1(:)   !< Loads before and after.
+      real(wp), allocatable :: offset(:)      !< Flow of the initial state that is subtracted.
+      real(wp), allocatable :: mass(:)        !< Of rigid bodies [Mg].
+   end type constraint_t
+
+   type :: control_t
+      real(wp) :: tolerance = 1.0e-3_wp
+      integer :: max_iterations = 12
+      logical :: still = .false.              !< Predict no change.
+   end type control_t
+
+   !> What a step did.
+   type :: log_t
+      integer :: outcome = CONVERGED
+      integer :: iterations = 0
+      real(wp) :: error(FIELDS) = 0.0_wp, first_error(FIELDS) = 0.0_wp
+      real(wp) :: reduction = 0.0_wp          !< |R|/|R_0|
+      real(wp) :: correction = 0.0_wp         !< |dx|/|x|, the worst field.
+      integer :: worst_field = 0, worst_unknown = 0
+      integer :: effort = 0                   !< Rate evaluations of the material.
+   end type log_t
+
+   type :: system_t
+      type(sparse_t) :: sparse
+      logical :: analysed = .false.
+      logical :: eager = .false.              !< The last step needed several iterations: slopes at every pass.
+      real(wp) :: largest(FIELDS) = 0.0_wp    !< Largest scale of every field so far.
+      real(wp), allocatable :: reaction(:)    !< Residual with the constrained rows kept.
+      real(wp) :: seconds(4) = 0.0_wp         !< Elements, factorisation, solution, the rest.
+      integer :: n_pass = 0
+   end type system_t
+contains
+   !> From `old` to `new` over scheme%dt; `new` is of use only after CONVERGED.
+   subroutine take_step(model, dofs, pattern, scheme, constraint, control, old, new, assembly, system, log)
+      type(model_t), intent(in) :: model
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(in) :: pattern
+      type(scheme_t), intent(in) :: scheme
+      type(constraint_t), intent(in) :: constraint
+      type(control_t), intent(in) :: control
+      type(state_t), intent(in) :: old
+      type(state_t), intent(inout) :: new
+      type(assembly_t), intent(inout) :: assembly
+      type(system_t), intent(inout) :: system
+      type(log_t), intent(out) :: log
+      real(wp), allocatable :: rhs(:), dx(:)
+      real(wp) :: norm_0, t0
+      integer :: status
+      logical :: with_slope
+
+      t0 = clock()
+      allocate (rhs(dofs%n), dx(dofs%n))
+      new%time = old%time + scheme%dt
+      assembly%air = constraint%air
+      call predict(scheme, control%still, old%x, old%v, old%a, new%x)
+      call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
+      norm_0 = -1.0_wp
+      with_slope = .true.
+      do
+         if (.not. pass(with_slope)) return
+         if (log%iterations > 0) then
+            call measure(dofs, constraint, assembly, rhs, system%largest, log)
+            if (log%iterations == 1) log%first_error = log%error
+            log%reduction = norm2(pack(rhs, .not. constraint%fixed))/max(norm_0, tiny(1.0_wp))
+            if (all(log%error < control%tolerance)) exit
+            if (log%iterations >= control%max_iterations .or. .not. all(log%error < HOPELESS)) then
+               log%outcome = NOT_CONVERGED
+               system%eager = .true.
+               return
+            end if
+            ! The slopes at the present values, where the last pass left them out.
+            if (.not. with_slope) then
+               if (.not. pass(.true.)) return
+            end if
+         else
+            norm_0 = norm2(pack(rhs, .not. constraint%fixed))
+         end if
+         call constrain(dofs, pattern, constraint, new%x, assembly%values, rhs)
+         call lap(system%seconds(4), t0)
+         if (.not. system%analysed) then
+            call analyse(system%sparse, pattern%row, pattern%col, assembly%values, status)
+            system%analysed = .true.
+         end if
+         call factorise(system%sparse, assembly%values, status)
+         call lap(system%seconds(2), t0)
+         if (status /= SOLVED) then
+            log%outcome = merge(BODY_FREE, SOLVER_FAILED, status == SINGULAR)
+            return
+         end if
+         call solve(system%sparse, assembly%values, rhs, dx, status)
+         if (status /= SOLVED) then
+            log%outcome = SOLVER_FAILED
+            return
+         end if
+         call lap(system%seconds(3), t0)
+         log%iterations = log%iterations + 1
+         call add_correction(dofs, dx, new%x, log%correction)
+         call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
+         with_slope = system%eager
+      end do
+      system%eager = log%iterations > 1
+      call lap(system%seconds(4), t0)
+   contains
+      !> Residual, with minus sign in rhs, and slopes; false if the material refuses.
+      logical function pass(slopes)
+         logical, intent(in) :: slopes
+
+         call lap(system%seconds(4), t0)
+         call assemble(model, dofs, pattern, scheme, old, new, slopes, assembly)
+         system%n_pass = system%n_pass + 1
+         log%effort = log%effort + assembly%effort
+         pass = assembly%bad_element == 0
+         call lap(system%seconds(1), t0)
+         if (.not. pass) then
+            log%outcome = MATERIAL_FAILED
+            return
+         end if
+         call add_bodies(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
+         rhs = constraint%load_0 + scheme%l_f*(constraint%load_1 - constraint%load_0) - constraint%offset
+         call loads_of_water(dofs, constraint%air, rhs)
+         assembly%scale = assembly%scale + abs(rhs)
+         rhs = rhs - assembly%residual
+         system%reaction = -rhs
+      end function pass
+   end subroutine take_step
+
+   !> Accelerations that the loads and stresses of a state ask for, its displacements, velocities and pressures held.
+   subroutine start_accelerations(model, dofs, pattern, constraint, state, work, assembly, system, log)
+      type(model_t), intent(in) :: model
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(in) :: pattern
+      type(constraint_t), intent(in) :: constraint
+      type(state_t), intent(inout) :: state
+      type(state_t), intent(inout) :: work       !< Equal to state.
+      type(assembly_t), intent(inout) :: assembly
+      type(system_t), intent(inout) :: system
+      type(log_t), intent(out) :: log
+      type(constraint_t) :: held
+      type(scheme_t) :: scheme
+      real(wp), allocatable :: rhs(:), dx(:)
+      integer :: status, i, f
+
+      ! Values and velocities at the old level, accelerations at the new one, of which the residual is a linear function.
+      scheme = scheme_t(kind=DYNAMIC, l_f=0.0_wp, l_v=0.0_wp, l_a=1.0_wp, l_p=0.0_wp, c_v=0.0_wp, c_a=1.0_wp, c_p=0.0_wp)
+      held = constraint
+      held%fixed = constraint%fixed .or. dofs%field >= 3
+      held%target = 0.0_wp
+      held%air = .false.
+      assembly%air = .false.
+      state%a = 0.0_wp
+      work%a = 0.0_wp
+      allocate (rhs(dofs%n), dx(dofs%n))
+      call assemble(model, dofs, pattern, scheme, state, work, .true., assembly)
+      if (assembly%bad_element > 0) then
+         log%outcome = MATERIAL_FAILED
+         return
+      end if
+      call add_bodies(dofs, pattern, scheme, held, state, work, .true., assembly)
+      rhs = held%load_0 - held%offset - assembly%residual
+      call constrain(dofs, pattern, held, 0.0_wp*state%x, assembly%values, rhs)
+      if (.not. system%analysed) call analyse(system%sparse, pattern%row, pattern%col, assembly%values, status)
+      system%analysed = .true.
+      call factorise(system%sparse, assembly%values, status)
+      if (status == SOLVED) call solve(system%sparse, assembly%values, rhs, dx, status)
+      if (status /= SOLVED) then
+         log%outcome = merge(BODY_FREE, SOLVER_FAILED, status == SINGULAR)
+         return
+      end if
+      do i = 1, size(state%a, 2)
+         do f = 1, 2
+            if (dofs%of(f, i) > 0) state%a(f, i) = dx(dofs%of(f, i))
+         end do
+      end do
+      work%a = state%a
+   end subroutine start_accelerations
+
+   !> Inertia of rigid bodies.
+   subroutine add_bodies(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(in) :: pattern
+      type(scheme_t), intent(in) :: scheme
+      type(constraint_t), intent(in) :: constraint
+      type(state_t), intent(in) :: old, new
+      logical, intent(in) :: slopes
+      type(assembly_t), intent(inout) :: assembly
+      integer :: i, f, k, place
+      real(wp) :: force
+
+      do i = 1, dofs%n
+         if (.not. constraint%mass(i) > 0.0_wp) cycle
+         f = dofs%field(i)
+         k = dofs%node(i)
+         force = constraint%mass(i)*(old%a(f, k) + scheme%l_a*(new%a(f, k) - old%a(f, k)))
+         assembly%residual(i) = assembly%residual(i) + force
+         assembly%scale(i) = assembly%scale(i) + abs(force)
+         place = place_of(pattern, i, i)
+         if (slopes) assembly%values(place) = assembly%values(place) + constraint%mass(i)*scheme%c_a
+      end do
+   end subroutine add_bodies
+
+   !> Where the air pressure is prescribed the first balance is that of the water: so are its loads.
+   pure subroutine loads_of_water(dofs, air, load)
+      type(dofs_t), intent(in) :: dofs
+      logical, intent(in) :: air(:)
+      real(wp), intent(inout) :: load(:)
+      integer :: i
+
+      do i = 1, size(air)
+         if (air(i)) load(dofs%of(3, i)) = load(dofs%of(3, i)) - load(dofs%of(4, i))
+      end do
+   end subroutine loads_of_water
+
+   !> Errors of the fields; rows of prescribed unknowns do not count.
+   pure subroutine measure(dofs, constraint, assembly, rhs, largest, log)
+      type(dofs_t), intent(in) :: dofs
+      type(constraint_t), intent(in) :: constraint
+      type(assembly_t), intent(in) :: assembly
+      real(wp), intent(in) :: rhs(:)
+      real(wp), intent(inout) :: largest(FIELDS)
+      type(log_t), intent(inout) :: log
+      real(wp) :: r(FIELDS), s(FIELDS), worst
+      integer :: i, f
+
+      r = 0.0_wp
+      s = 0.0_wp
+      do i = 1, dofs%n
+         f = dofs%field(i)
+         if (constraint%fixed(i)) cycle
+         if (f == 4 .and. constraint%air(dofs%node(i))) cycle
+         r(f) = r(f) + rhs(i)**2
+         s(f) = s(f) + assembly%scale(i)**2
+      end do
+      largest = max(largest, sqrt(s))
+      log%error = sqrt(r)/max(sqrt(s), HISTORY_SHARE*largest, ABSOLUTE_FLOOR)
+      log%worst_field = maxloc(log%error, 1)
+      log%worst_unknown = 0
+      worst = -1.0_wp
+      do i = 1, dofs%n
+         if (dofs%field(i) /= log%worst_field .or. constraint%fixed(i)) cycle
+         if (abs(rhs(i)) > worst) then
+            worst = abs(rhs(i))
+            log%worst_unknown = i
+         end if
+      end do
+   end subroutine measure
+
+   !> Rows of prescribed unknowns say what is missing of their value; the diagonal keeps its size.
+   subroutine constrain(dofs, pattern, constraint, x, values, rhs)
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(in) :: pattern
+      type(constraint_t), intent(in) :: constraint
+      real(wp), intent(in) :: x(:, :)
+      real(wp), intent(inout) :: values(:), rhs(:)
+      real(wp) :: size_of
+      integer :: i, k
+
+      do i = 1, dofs%n
+         if (.not. constraint%fixed(i)) cycle
+         call clear(i, size_of)
+         values(place_of(pattern, i, i)) = size_of
+         rhs(i) = size_of*(constraint%target(i) - x(dofs%field(i), dofs%node(i)))
+      end do
+      do k = 1, size(constraint%air)
+         if (.not. constraint%air(k)) cycle
+         i = dofs%of(4, k)
+         if (constraint%fixed(i)) cycle
+         call clear(i, size_of)
+         values(place_of(pattern, i, i)) = size_of
+         values(place_of(pattern, i, dofs%of(3, k))) = size_of
+         rhs(i) = size_of*(constraint%air_target(k) - x(3, k) - x(4, k))
+      end do
+   contains
+      !> Empties a row; its diagonal is returned, or 1 if there is nothing on it.
+      subroutine clear(row, diagonal)
+         integer, intent(in) :: row
+         real(wp), intent(out) :: diagonal
+
+         diagonal = abs(values(place_of(pattern, row, row)))
+         if (.not. diagonal > 0.0_wp) diagonal = 1.0_wp
+         values(pattern%row(row):pattern%row(row + 1) - 1) = 0.0_wp
+      end subroutine clear
+   end subroutine constrain
+
+   pure subroutine add_correction(dofs, dx, x, share)
+      type(dofs_t), intent(in) :: dofs
+      real(wp), intent(in) :: dx(:)
+      real(wp), intent(inout) :: x(:, :)
+      real(wp), intent(out) :: share
+      real(wp) :: change(FIELDS), total(FIELDS)
+      integer :: f, i
+
+      change = 0.0_wp
+      do i = 1, size(x, 2)
+         do f = 1, FIELDS
+            if (dofs%of(f, i) == 0) cycle
+            x(f, i) = x(f, i) + dx(dofs%of(f, i))
+            change(f) = change(f) + dx(dofs%of(f, i))**2
+         end do
+      end do
+      total = norm2(x, dim=2)
+      share = maxval(sqrt(change)/max(total, tiny(1.0_wp)), mask=total > 0.0_wp)
+      if (.not. any(total > 0.0_wp)) share = 0.0_wp
+   end subroutine add_correction
+
+   real(wp) function clock()
+      integer(selected_int_kind(18)) :: ticks, rate
+
+      call system_clock(ticks, rate)
+      clock = real(ticks, wp)/real(rate, wp)
+   end function clock
+
+   !> Adds the time since t0 and starts anew.
+   subroutine lap(total, t0)
+      real(wp), intent(inout) :: total, t0
+      real(wp) :: now
+
+      now = clock()
+      total = total + now - t0
+      t0 = now
+   end subroutine lap
+end module newton

@@ -1,0 +1,72 @@
+!> Small scenes for the tests of the host, written as text so that the reader of scenes takes part.
+module host_problems
+   use host_kinds, only: wp
+   use host_read, only: read_scene
+   use host_run, only: run_t, prepare_run
+   use host_scene, only: scene_t
+   use triax_fault, only: fault_t
+   implicit none (type, external)
+   private
+   public :: build, ask, sand, soil_laws, square
+
+   character(*), parameter, public :: NL = new_line('a')
+contains
+   !> A scene from its text; stops the test program if it is refused.
+   subroutine build(text, scene, run)
+      character(*), intent(in) :: text
+      type(scene_t), intent(out) :: scene
+      type(run_t), intent(out) :: run
+      type(fault_t) :: fault
+
+      call ask(text, scene, run, fault)
+      if (fault%code /= 0) error stop 'a test scene was refused'
+   end subroutine build
+
+   !> The same, with the fault for the caller.
+   subroutine ask(text, scene, run, fault)
+      character(*), intent(in) :: text
+      type(scene_t), intent(out) :: scene
+      type(run_t), intent(out) :: run
+      type(fault_t), intent(inout) :: fault
+      character(64) :: file
+      integer :: unit, tick
+
+      call system_clock(tick)
+      write (file, '(a,i0,a)') '/tmp/mud_host_test_', tick, '.nml'
+      open (newunit=unit, file=file, status='replace', action='write')
+      write (unit, '(a)') text
+      close (unit)
+      call read_scene(trim(file), scene, fault)
+      if (fault%code == 0) call prepare_run(scene, run, fault)
+      if (fault%code /= 0) write (*, '(a)') trim(fault%text)
+      open (newunit=unit, file=file, status='old')
+      close (unit, status='delete')
+   end subroutine ask
+
+   !> The library's default sand, with more keys.
+   pure function sand(keys) result(text)
+      character(*), intent(in) :: keys
+      character(:), allocatable :: text
+
+      text = '&mud name = ''sand'' tangent = 3 '//keys//' /'//NL
+   end function sand
+
+   !> Retention and permeability of the paper's soil.
+   pure function soil_laws(law) result(text)
+      character(*), intent(in) :: law
+      character(:), allocatable :: text
+
+      text = '&retention name = ''curve'' /'//NL//'&permeability name = ''k'' intrinsic = 5e-10 law = '''//law//''' /'//NL
+   end function soil_laws
+
+   !> A built-in mesh of n by n cells on a square of side 1 m beginning at r.
+   pure function square(r, n) result(text)
+      real(wp), intent(in) :: r
+      integer, intent(in) :: n
+      character(:), allocatable :: text
+      character(100) :: line
+
+      write (line, '(a,2(f6.2,","),a,i0,a,i0,a)') '&mesh r = ', r, r + 1, ' r_cells = ', n, ' z = 0, 1 z_cells = ', n, ' /'
+      text = trim(line)//NL
+   end function square
+end module host_problems
