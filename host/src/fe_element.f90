@@ -1,7 +1,7 @@
 !> Residual and exact tangent of one element: B^T response and B^T slope B over its quadrature points.
 module fe_element
    use host_kinds, only: wp, FIELDS
-   use fe_material, only: answer_t
+   use fe_material, only: answer_t, TOO_LARGE
    use fe_model, only: model_t, state_t, gauss_t
    use fe_point, only: kinematics_t, pore_t, point_response, PLACES
    use time_galpha, only: scheme_t
@@ -63,6 +63,12 @@ contains
             if (associated(model%source)) &
                k%source = model%source(gp%x, old%time + scheme%l_f*(new%time - old%time))
             strain(1:4) = k%strain
+            ! Also where it is not a number.
+            if (.not. all(abs(k%strain) <= 1.0_wp)) then
+               out%bad = answer_t(code=TOO_LARGE)
+               out%bad_point = g
+               return
+            end if
             associate (law => model%materials(region%material)%law)
                call law%update(old%stress(:, p), old%state(:law%n_state, p), strain, k%c0, k%c1 - k%c0, with_slope, &
                                answer, new%state(:law%n_state, p))

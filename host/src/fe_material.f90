@@ -5,7 +5,9 @@ module fe_material
    use host_kinds, only: wp
    implicit none (type, external)
    private
-   public :: material_t, slot_t, answer_t
+   public :: material_t, slot_t, answer_t, TOO_LARGE
+
+   integer, parameter :: TOO_LARGE = 1000   !< Code of a strain beyond 1 in a step: no law is asked.
 
    !> Answer to one increment. On failure (code /= 0) only code, factor and text are of use.
    type :: answer_t

@@ -493,13 +493,19 @@ contains
       type(group_t), intent(in) :: group
       type(scene_t), intent(inout) :: scene
       type(point_t) :: point
+      logical, allocatable :: vertex(:)
       real(wp) :: x(2)
       integer :: e, g, i
 
       x = [number_of(group, 'r'), number_of(group, 'z')]
       point%name = text_of(group, 'name')
       associate (m => scene%model)
-         point%node = minloc([(norm2(m%mesh%x(:, i) - x), i=1, size(m%mesh%x, 2))], 1)
+         ! Where pressures are linear only vertices have them.
+         allocate (vertex(size(m%mesh%x, 2)), source=m%n_p == 6)
+         do e = 1, size(m%mesh%t6, 2)
+            vertex(m%mesh%t6(1:3, e)) = .true.
+         end do
+         point%node = minloc([(norm2(m%mesh%x(:, i) - x), i=1, size(m%mesh%x, 2))], 1, mask=vertex)
          point%gauss = minloc([((norm2(m%gauss(g, e)%x - x), g=1, m%rule), e=1, size(m%mesh%t6, 2))], 1)
       end associate
       scene%points = [scene%points, point]

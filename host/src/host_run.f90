@@ -8,6 +8,7 @@ module host_run
    use host_scene, only: scene_t, stage_t
    use fe_assembly, only: assembly_t, make_assembly, assemble
    use fe_dofs, only: dofs_t, number_unknowns
+   use fe_material, only: TOO_LARGE
    use fe_model, only: state_t, copy_state
    use fe_pattern, only: pattern_t, make_pattern
    use newton, only: constraint_t, control_t, log_t, system_t, take_step, start_accelerations, &
@@ -211,7 +212,11 @@ contains
          select case (log%outcome)
          case (MATERIAL_FAILED)
             e = run%assembly%bad_element
-            call m%materials(m%regions(m%region_of(e))%material)%law%explain(run%assembly%bad, text)
+            if (run%assembly%bad%code == TOO_LARGE) then
+               text = 'a strain of the step is beyond 1; the iteration went astray or the step is far too long.'
+            else
+               call m%materials(m%regions(m%region_of(e))%material)%law%explain(run%assembly%bad, text)
+            end if
             call raise(fault, EXIT_MATERIAL, place//'the material of element '//whole(e)//', point '// &
                        whole(run%assembly%bad_point)//', refuses: '//trim(text))
          case (BODY_FREE)
