@@ -10,10 +10,13 @@ module fe_assembly
    use time_galpha, only: scheme_t
    implicit none (type, external)
    private
+   integer, parameter :: WORTH_THREADS = 64   !< Elements below which waking threads costs more than it saves.
    public :: assembly_t, make_assembly, assemble
 
    type :: assembly_t
       real(wp), allocatable :: r(:, :), k(:, :, :)   !< Of every element.
+      real(wp), allocatable :: stretch(:, :)         !< See element_t.
+      real(wp), allocatable :: floor(:)              !< Its sum: what a volume balance is small against.
       real(wp), allocatable :: residual(:)
       real(wp), allocatable :: scale(:)              !< Sum of the magnitudes of the elements' contributions.
       real(wp), allocatable :: values(:)             !< The matrix, in the order of the pattern.
@@ -33,7 +36,8 @@ contains
 
       m = size(dofs%element, 1)
       allocate (assembly%r(m, size(dofs%element, 2)), assembly%k(m, m, size(dofs%element, 2)), source=0.0_wp)
-      allocate (assembly%residual(dofs%n), assembly%scale(dofs%n), source=0.0_wp)
+      allocate (assembly%stretch(m, size(dofs%element, 2)), source=0.0_wp)
+      allocate (assembly%residual(dofs%n), assembly%scale(dofs%n), assembly%floor(dofs%n), source=0.0_wp)
       allocate (assembly%values(size(pattern%col)), source=0.0_wp)
       allocate (assembly%air(size(model%mesh%x, 2)), source=.false.)
    end subroutine make_assembly
@@ -50,18 +54,20 @@ contains
       type(assembly_t), intent(inout) :: assembly
       integer, allocatable :: bad_point(:), effort(:)
       type(element_t) :: out
-      integer :: e, m, ne
+      integer :: e, m, ne, threads
 
       m = size(dofs%element, 1)
       ne = size(dofs%element, 2)
       allocate (bad_point(ne), effort(ne), source=0)
-      !$omp parallel do num_threads(model%threads) schedule(dynamic, 8) default(shared) private(e) firstprivate(out)
+      threads = merge(model%threads, 1, ne >= WORTH_THREADS)
+      !$omp parallel do num_threads(threads) schedule(dynamic, 8) default(shared) private(e) firstprivate(out)
       do e = 1, ne
          call compute_element(model, e, scheme, old, new, with_slope, out)
          bad_point(e) = out%bad_point
          effort(e) = out%effort
          if (model%with_c) call balance_of_water(model, assembly%air, e, m, with_slope, out)
          assembly%r(:, e) = out%r(:m)
+         assembly%stretch(:, e) = out%stretch(:m)
          if (with_slope) assembly%k(:, :, e) = out%k(:m, :m)
       end do
       !$omp end parallel do
@@ -74,7 +80,7 @@ contains
          assembly%bad = out%bad
          return
       end if
-      call add_up(model%threads, pattern, with_slope, assembly)
+      call add_up(threads, pattern, with_slope, assembly)
    end subroutine assemble
 
    !> Where the air pressure is prescribed the flow of air is unknown, so that the sum of the balances is replaced by its
@@ -101,16 +107,18 @@ contains
       type(pattern_t), intent(in) :: pattern
       logical, intent(in) :: with_slope
       type(assembly_t), intent(inout), target :: assembly
-      real(wp), pointer, contiguous :: k(:), r(:)
+      real(wp), pointer, contiguous :: k(:), r(:), s(:)
       real(wp) :: total
       integer :: i, j
 
       r(1:size(assembly%r)) => assembly%r
+      s(1:size(assembly%r)) => assembly%stretch
       k(1:size(assembly%k)) => assembly%k
       !$omp parallel num_threads(threads) default(shared) private(i, j, total)
       !$omp do schedule(static)
       do i = 1, pattern%n
          assembly%residual(i) = sum(r(pattern%r_source(pattern%r_first(i):pattern%r_first(i + 1) - 1)))
+         assembly%floor(i) = sum(s(pattern%r_source(pattern%r_first(i):pattern%r_first(i + 1) - 1)))
          assembly%scale(i) = sum(abs(r(pattern%r_source(pattern%r_first(i):pattern%r_first(i + 1) - 1))))
       end do
       !$omp end do

@@ -15,6 +15,7 @@ module fe_element
    type :: element_t
       real(wp) :: r(MAX_DOF) = 0.0_wp            !< Residual.
       real(wp) :: k(MAX_DOF, MAX_DOF) = 0.0_wp   !< d r / d new values.
+      real(wp) :: stretch(MAX_DOF) = 0.0_wp      !< Volume balances: what the strain rates add up to by magnitude.
       type(answer_t) :: bad                      !< Answer of the first point that failed.
       integer :: bad_point = 0                   !< Its number, 0: none.
       integer :: effort = 0
@@ -40,7 +41,7 @@ contains
       type(kinematics_t) :: k
       type(pore_t) :: pore
       real(wp) :: x0(FIELDS, 6), x1(FIELDS, 6), v(FIELDS, 6), a(2, 6), strain(6), response(PLACES)
-      real(wp) :: slope(PLACES, PLACES), part(PLACES, MAX_DOF)
+      real(wp) :: slope(PLACES, PLACES), part(PLACES, MAX_DOF), rate
       integer :: g, p, n, node(6)
 
       node = model%mesh%t6(:, element)
@@ -51,6 +52,7 @@ contains
       v(1:2, :) = old%v(1:2, node) + scheme%l_v*(new%v(1:2, node) - old%v(1:2, node))
       v(3:4, :) = old%v(3:4, node) + scheme%l_p*(new%v(3:4, node) - old%v(3:4, node))
       out%r = 0.0_wp
+      out%stretch = 0.0_wp
       out%k = 0.0_wp
       out%bad_point = 0
       out%effort = 0
@@ -86,11 +88,15 @@ contains
             new%s(p) = pore%s
             new%s_rate(p) = pore%s_rate
             call gather(gp, model%n_p, n, gp%weight, response, out%r)
+            rate = sum(abs(scheme%c_v*k%strain(1:3)))*gp%weight
+            out%stretch(LAST_U + 1:LAST_U + model%n_p) = out%stretch(LAST_U + 1:LAST_U + model%n_p) &
+                                                         + rate*abs(gp%m(:model%n_p))
             if (.not. with_slope) cycle
             call times_b(gp, model%n_p, n, slope, part)
             call add_transposed(gp, model%n_p, n, part, out%k)
          end associate
       end do
+      if (n > LAST_U + model%n_p) out%stretch(LAST_U + model%n_p + 1:n) = out%stretch(LAST_U + 1:LAST_U + model%n_p)
    end subroutine compute_element
 
    !> What the nodes say about a point.

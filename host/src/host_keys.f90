@@ -93,6 +93,8 @@ module host_keys
       key_t('initial', 'p_c', 'n', '0', -BIG, BIG, 'suction at the datum [kPa]'), &
       key_t('initial', 'p_c_slope', 'n', '0', -BIG, BIG, 'its change with z [kPa/m]'), &
       key_t('initial', 'datum', 'n', '0', -BIG, BIG, 'z of the datum [m]'), &
+      key_t('initial', 'wave', 'n', '0', -BIG, BIG, 'v_z = wave sin(wave_number (z - datum)) at the start [m/s]'), &
+      key_t('initial', 'wave_number', 'n', '0', 0, BIG, 'see wave [1/m]'), &
       key_t('initial', 'stress', 'w', 'none', 0, 0, 'none|uniform|geostatic: effective stress at the start'), &
       key_t('initial', 'sigma', 'N', NONE, -BIG, BIG, 'uniform: rr, zz, tt, tension positive [kPa]'), &
       key_t('initial', 'surface', 'n', '0', -BIG, BIG, 'geostatic: z of the surface [m]'), &

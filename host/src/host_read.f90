@@ -414,6 +414,8 @@ contains
       initial%p_c = number_of(group, 'p_c')
       initial%p_c_slope = number_of(group, 'p_c_slope')
       initial%datum = number_of(group, 'datum')
+      initial%wave = number_of(group, 'wave')
+      initial%wave_number = number_of(group, 'wave_number')
       initial%uniform = word_is(group, 'stress', 'uniform')
       initial%geostatic = word_is(group, 'stress', 'geostatic')
       sigma = numbers_of(group, 'sigma')

@@ -21,6 +21,7 @@ module host_scene
    type :: initial_t
       integer :: group = 0
       real(wp) :: p_w = 0.0_wp, p_w_slope = 0.0_wp, p_c = 0.0_wp, p_c_slope = 0.0_wp, datum = 0.0_wp
+      real(wp) :: wave = 0.0_wp, wave_number = 0.0_wp
       logical :: uniform = .false., geostatic = .false.
       real(wp) :: sigma(3) = 0.0_wp
       real(wp) :: surface = 0.0_wp, surcharge = 0.0_wp, k_0 = 0.5_wp

@@ -1,6 +1,7 @@
 !> One time step by Newton-Raphson with the exact tangent. One linear solve is one iteration; the error of a field is
 !> |R_f| over the largest of |sum of the magnitudes of the elements' contributions|, 1e-6 of its largest value so far, and
-!> an absolute floor, over the free unknowns.
+!> a floor, over the free unknowns. The floor of a volume balance is 1e-4 of its strain rates: where nothing can flow, the
+!> balance of every element is nothing but rounding.
 module newton
    use host_kinds, only: wp, FIELDS
    use fe_assembly, only: assembly_t, assemble
@@ -16,6 +17,7 @@ module newton
 
    integer, parameter :: CONVERGED = 0, NOT_CONVERGED = 1, MATERIAL_FAILED = 2, BODY_FREE = 3, SOLVER_FAILED = 4
    real(wp), parameter :: HISTORY_SHARE = 1.0e-6_wp   !< Share of the largest scale so far that still counts.
+   real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Share of the strain rates that a volume is small against.
    real(wp), parameter :: ABSOLUTE_FLOOR = 1.0e-12_wp   !< [kN] or [m3/s]: nothing smaller is a force.
    real(wp), parameter :: HOPELESS = 1.0e10_wp        !< Error beyond which no further iteration helps.
 
@@ -245,20 +247,22 @@ contains
       real(wp), intent(in) :: rhs(:)
       real(wp), intent(inout) :: largest(FIELDS)
       type(log_t), intent(inout) :: log
-      real(wp) :: r(FIELDS), s(FIELDS), worst
+      real(wp) :: r(FIELDS), s(FIELDS), floor(FIELDS), worst
       integer :: i, f
 
       r = 0.0_wp
       s = 0.0_wp
+      floor = 0.0_wp
       do i = 1, dofs%n
          f = dofs%field(i)
          if (constraint%fixed(i)) cycle
          if (f == 4 .and. constraint%air(dofs%node(i))) cycle
          r(f) = r(f) + rhs(i)**2
          s(f) = s(f) + assembly%scale(i)**2
+         floor(f) = floor(f) + (RATE_SHARE*assembly%floor(i))**2
       end do
       largest = max(largest, sqrt(s))
-      log%error = sqrt(r)/max(sqrt(s), HISTORY_SHARE*largest, ABSOLUTE_FLOOR)
+      log%error = sqrt(r)/max(sqrt(s), HISTORY_SHARE*largest, sqrt(floor), ABSOLUTE_FLOOR)
       log%worst_field = maxloc(log%error, 1)
       log%worst_unknown = 0
       worst = -1.0_wp
