@@ -15,7 +15,7 @@ module fe_element
    type :: element_t
       real(wp) :: r(MAX_DOF) = 0.0_wp            !< Residual.
       real(wp) :: k(MAX_DOF, MAX_DOF) = 0.0_wp   !< d r / d new values.
-      real(wp) :: stretch(MAX_DOF) = 0.0_wp      !< Volume balances: what the strain rates add up to by magnitude.
+      real(wp) :: stretch(MAX_DOF) = 0.0_wp      !< Volume balances: strain rates and fluxes, added up by magnitude.
       type(answer_t) :: bad                      !< Answer of the first point that failed.
       integer :: bad_point = 0                   !< Its number, 0: none.
       integer :: effort = 0
@@ -41,7 +41,7 @@ contains
       type(kinematics_t) :: k
       type(pore_t) :: pore
       real(wp) :: x0(FIELDS, 6), x1(FIELDS, 6), v(FIELDS, 6), a(2, 6), strain(6), response(PLACES)
-      real(wp) :: slope(PLACES, PLACES), part(PLACES, MAX_DOF), rate
+      real(wp) :: slope(PLACES, PLACES), part(PLACES, MAX_DOF), rate, drift(2)
       integer :: g, p, n, node(6)
 
       node = model%mesh%t6(:, element)
@@ -82,7 +82,8 @@ contains
                return
             end if
             call point_response(model, region, scheme, k, old%stress(:, p), answer, &
-                                pore_t(old%e(p), old%s(p), old%s_rate(p)), pore, with_slope, response, slope)
+                                pore_t(old%e(p), old%s(p), old%s_rate(p)), pore, with_slope, response, slope, &
+                                drift)
             new%stress(:, p) = answer%stress
             new%e(p) = pore%e
             new%s(p) = pore%s
@@ -90,7 +91,7 @@ contains
             call gather(gp, model%n_p, n, gp%weight, response, out%r)
             rate = sum(abs(scheme%c_v*k%strain(1:3)))*gp%weight
             out%stretch(LAST_U + 1:LAST_U + model%n_p) = out%stretch(LAST_U + 1:LAST_U + model%n_p) &
-                                                         + rate*abs(gp%m(:model%n_p))
+               + rate*abs(gp%m(:model%n_p)) + gp%weight*matmul(drift, abs(gp%dm(:, :model%n_p)))
             if (.not. with_slope) cycle
             call times_b(gp, model%n_p, n, slope, part)
             call add_transposed(gp, model%n_p, n, part, out%k)

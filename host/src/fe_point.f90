@@ -32,7 +32,8 @@ module fe_point
       real(wp) :: e, s, s_rate
    end type pore_t
 contains
-   subroutine point_response(model, region, scheme, k, stress0, answer, old, new, with_slope, response, slope)
+   subroutine point_response(model, region, scheme, k, stress0, answer, old, new, with_slope, response, slope, &
+                             drift)
       type(model_t), intent(in) :: model
       type(region_t), intent(in) :: region
       type(scheme_t), intent(in) :: scheme
@@ -43,6 +44,7 @@ contains
       type(pore_t), intent(out) :: new
       logical, intent(in) :: with_slope
       real(wp), intent(out) :: response(PLACES), slope(PLACES, PLACES)
+      real(wp), intent(out) :: drift(2)      !< What the fluxes are made of, by magnitude [m/s].
       type(saturation_t) :: sat, before, after
       real(wp) :: n1, n, s, s_dot, s_ev, s_pc, rate_ev, rate_pc, p_c, p_w, pressure, l
       real(wp) :: rho, rho_n, rho_s, rho_a, d_rho_a, k_a, d_k_a, pull(2)
@@ -94,6 +96,7 @@ contains
       pull = k%accel
       pull(2) = pull(2) + model%gravity
       response = 0.0_wp
+      drift = 0.0_wp
       response(1:4) = stress0(1:4) + l*(answer%stress(1:4) - stress0(1:4))
       response(1:3) = response(1:3) - pressure
       response(U + 1:U + 2) = rho*pull - k%source(1:2)
@@ -128,6 +131,7 @@ contains
          kappa = kappa*rel%w
          drive = k%grad_w + model%fluids%rho_w*body_force()
          response(GW + 1:GW + 2) = kappa*drive
+         drift = kappa*(abs(k%grad_w) + model%fluids%rho_w*abs(body_force()))
          if (.not. with_slope) return
          slope(PW, 1:3) = s*inverse*k%w_dot*l*(1 - n1) + n*inverse*k%w_dot*s_ev + scheme%c_v
          slope(PW, PW) = n*s*inverse*scheme%c_p
@@ -153,6 +157,7 @@ contains
          kappa = kappa*rel%a
          drive = k%grad_w + k%grad_c + rho_a*body_force()
          response(GA + 1:GA + 2) = kappa*drive
+         drift = drift + kappa*(abs(k%grad_w) + abs(k%grad_c) + rho_a*abs(body_force()))
          response(GW + 1:GW + 2) = response(GW + 1:GW + 2) + kappa*drive
          if (.not. with_slope) return
          d_stored = n*(1 - s)/k_a*(scheme%c_p - a_dot*d_k_a*l/k_a)

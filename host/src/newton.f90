@@ -1,7 +1,7 @@
 !> One time step by Newton-Raphson with the exact tangent. One linear solve is one iteration; the error of a field is
 !> |R_f| over the largest of |sum of the magnitudes of the elements' contributions|, 1e-6 of its largest value so far, and
-!> a floor, over the free unknowns. The floor of a volume balance is 1e-4 of its strain rates: where nothing can flow, the
-!> balance of every element is nothing but rounding.
+!> a floor, over the free unknowns. The floor of a volume balance is 1e-4 of the strain rates and of the parts of the
+!> fluxes in it: where nothing flows, or nothing can, the balance of every element is nothing but rounding.
 module newton
    use host_kinds, only: wp, FIELDS
    use fe_assembly, only: assembly_t, assemble
@@ -17,7 +17,7 @@ module newton
 
    integer, parameter :: CONVERGED = 0, NOT_CONVERGED = 1, MATERIAL_FAILED = 2, BODY_FREE = 3, SOLVER_FAILED = 4
    real(wp), parameter :: HISTORY_SHARE = 1.0e-6_wp   !< Share of the largest scale so far that still counts.
-   real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Share of the strain rates that a volume is small against.
+   real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Of strain rates and parts of fluxes, see above.
    real(wp), parameter :: ABSOLUTE_FLOOR = 1.0e-12_wp   !< [kN] or [m3/s]: nothing smaller is a force.
    real(wp), parameter :: HOPELESS = 1.0e10_wp        !< Error beyond which no further iteration helps.
 
