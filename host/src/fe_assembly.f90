@@ -83,8 +83,8 @@ contains
       call add_up(threads, pattern, with_slope, assembly)
    end subroutine assemble
 
-   !> Where the air pressure is prescribed the flow of air is unknown, so that the sum of the balances is replaced by its
-   !> difference from that of the air: the balance of water.
+   !> Where the air pressure is prescribed the flow of air is unknown, so that the sum of the balances is replaced by
+   !> its difference from that of the air: the balance of water.
    pure subroutine balance_of_water(model, air, e, m, with_slope, out)
       type(model_t), intent(in) :: model
       logical, intent(in) :: air(:)

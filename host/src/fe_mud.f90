@@ -30,9 +30,9 @@ module fe_mud
                       temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, coords, drot, &
                       pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, kstep, kinc) bind(c, name='umat_')
          import :: c_ptr
-         type(c_ptr), value :: stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, time, &
-                               dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, &
-                               coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, kstep, kinc
+         type(c_ptr), value :: stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, &
+                               dstran, time, dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, &
+                               nprops, coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, kstep, kinc
       end subroutine umat
    end interface
 contains
@@ -84,14 +84,14 @@ contains
       if (with_slope) then
          slope = 0.0_wp
          slope_suction = 0.0_wp
-         answer%code = mud_update(self%props, size(self%props), stress, state, size(state), strain, suction, d_suction, &
-                                  self%tangent, answer%stress, new_state, dsig_deps=slope, &
+         answer%code = mud_update(self%props, size(self%props), stress, state, size(state), strain, suction, &
+                                  d_suction, self%tangent, answer%stress, new_state, dsig_deps=slope, &
                                   dsig_dpc=slope_suction, report=report)
          answer%slope = slope(PLANE, PLANE)
          answer%slope_suction = slope_suction(PLANE)
       else
-         answer%code = mud_update(self%props, size(self%props), stress, state, size(state), strain, suction, d_suction, &
-                                  MUD_TANGENT_NONE, answer%stress, new_state, report=report)
+         answer%code = mud_update(self%props, size(self%props), stress, state, size(state), strain, suction, &
+                                  d_suction, MUD_TANGENT_NONE, answer%stress, new_state, report=report)
       end if
       answer%factor = report%pnewdt
       answer%effort = report%n_rate

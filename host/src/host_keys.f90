@@ -21,8 +21,8 @@ module host_keys
       character(72) :: meaning      !< For kind w it begins with the words, divided by |, and ends them with a colon.
    end type key_t
 
-   character(12), parameter :: GROUPS(15) = [character(12) :: 'scene', 'mesh', 'fluids', 'mud', 'elastic', 'retention', &
-      'permeability', 'region', 'initial', 'history', 'stage', 'fix', 'load', 'rigid', 'point']
+   character(12), parameter :: GROUPS(15) = [character(12) :: 'scene', 'mesh', 'fluids', 'mud', 'elastic', &
+      'retention', 'permeability', 'region', 'initial', 'history', 'stage', 'fix', 'load', 'rigid', 'point']
    real(wp), parameter :: BIG = 1.0e30_wp, TINY_ = 1.0e-30_wp
 
    type(key_t), parameter :: KEYS(*) = [ &
@@ -46,7 +46,7 @@ module host_keys
       key_t('fluids', 'k_w', 'n', '2.2e6', TINY_, BIG, 'bulk modulus of water [kPa]'), &
       key_t('fluids', 'rho_w', 'n', '1.0', 0, 1000, 'density of water [Mg/m3]'), &
       key_t('fluids', 'eta_w', 'n', '1.0e-6', TINY_, BIG, 'viscosity of water [kPa s]'), &
-      key_t('fluids', 'gas', 'w', 'constant', 0, 0, 'constant|ideal: ideal: K_a = p_ref + p_a, density in proportion'), &
+      key_t('fluids', 'gas', 'w', 'constant', 0, 0, 'constant|ideal: ideal: K_a = p_ref + p_a, density as well'), &
       key_t('fluids', 'k_a', 'n', '101.325', TINY_, BIG, 'bulk modulus of a constant gas [kPa]'), &
       key_t('fluids', 'rho_a', 'n', '1.2e-3', 0, 1000, 'density of air (ideal: at p_ref) [Mg/m3]'), &
       key_t('fluids', 'eta_a', 'n', '1.8e-8', TINY_, BIG, 'viscosity of air [kPa s]'), &
@@ -86,7 +86,7 @@ module host_keys
       key_t('region', 'retention', 't', NONE, 0, 0, 'name of a &retention, or "mud": that of the material'), &
       key_t('region', 'permeability', 't', NONE, 0, 0, 'name of a &permeability'), &
       key_t('region', 'rho_s', 'n', '2.65', 0, 1000, 'density of the grains [Mg/m3]'), &
-      key_t('region', 'void_ratio', 'n', NONE, 0, 10, 'initial void ratio [-]; 0: no pores; default: the material''s'), &
+      key_t('region', 'void_ratio', 'n', NONE, 0, 10, 'initial void ratio [-]; default: the material''s'), &
       key_t('initial', 'group', 't', 'all', 0, 0, 'group of elements or nodes'), &
       key_t('initial', 'p_w', 'n', '0', -BIG, BIG, 'pore water pressure at the datum [kPa]'), &
       key_t('initial', 'p_w_slope', 'n', '0', -BIG, BIG, 'its change with z [kPa/m]'), &
@@ -326,7 +326,7 @@ contains
       character(:), allocatable :: value
       integer :: g, k
 
-      write (unit, '(a)') '! Every group and key of a scene. A line that begins with "!" is a default or may be left out.'
+      write (unit, '(a)') '! Every group and key of a scene. Lines that begin with "!" may be left out.'
       write (unit, '(a,i0,a)') '! Groups but &scene, &mesh and &fluids may occur several times; lists hold up to ', &
          MAX_VALUES, ' values.'
       do g = 1, size(GROUPS)

@@ -37,9 +37,10 @@ contains
          end do
       end do
       call open_file(folder//'/histories.csv', head, output%history, fault)
-      if (fault%code == 0) call open_file(folder//'/ledger.csv', 'time,dt,stage,iterations,error_u_r,error_u_z,error_p_w,'// &
-                'error_p_c,first_u_r,first_u_z,first_p_w,first_p_c,reduction,correction,rates,kinetic,skeleton,pores,'// &
-                   'gravity,loads,supports,seepage,imbalance,outflow,outflow_air,step_error', output%ledger, fault)
+      if (fault%code == 0) call open_file(folder//'/ledger.csv', 'time,dt,stage,iterations,'// &
+         'error_u_r,error_u_z,error_p_w,error_p_c,first_u_r,first_u_z,first_p_w,first_p_c,reduction,correction,'// &
+            'rates,kinetic,skeleton,pores,gravity,'// &
+            'loads,supports,seepage,imbalance,outflow,outflow_air,step_error', output%ledger, fault)
    end subroutine open_output
 
    subroutine open_file(path, head, unit, fault)
@@ -50,7 +51,8 @@ contains
 
       open (newunit=unit, file=path, status='replace', action='write', recl=100000, iostat=status)
       if (status == 0) write (unit, '(a)', iostat=status) head
-      if (status /= 0) call raise(fault, EXIT_OUTPUT, path//' cannot be written; does the folder exist, is there space?')
+      if (status /= 0) call raise(fault, EXIT_OUTPUT, path//' cannot be written; does the folder exist, '// &
+                                  'is there space?')
    end subroutine open_file
 
    subroutine write_history(output, scene, state, fault)

@@ -149,12 +149,12 @@ contains
       if (size(r_ratio) == 0) r_ratio = spread(1.0_wp, 1, size(r_cells))
       if (size(z_ratio) == 0) z_ratio = spread(1.0_wp, 1, size(z_cells))
       if (size(r) < 2 .or. size(z) < 2) then
-         call raise(fault, EXIT_MESH, at_line(group%file, group%line)//'&mesh needs a file, or r and z with at least '// &
-                    'two breaks each.')
+         call raise(fault, EXIT_MESH, at_line(group%file, group%line)//'&mesh needs a file, or r and z with '// &
+                    'at least two breaks each.')
       else if (size(r_cells) /= size(r) - 1 .or. size(z_cells) /= size(z) - 1 .or. size(r_ratio) /= size(r) - 1 .or. &
                size(z_ratio) /= size(z) - 1) then
-         call raise(fault, EXIT_MESH, at_line(group%file, group%line)//'between n breaks there are n - 1 pieces: give '// &
-                    'r_cells, z_cells (and ratios) one value a piece.')
+         call raise(fault, EXIT_MESH, at_line(group%file, group%line)//'between n breaks there are n - 1 pieces: '// &
+                    'give r_cells, z_cells (and ratios) one value a piece.')
       else if (any(r(2:) <= r(:size(r) - 1)) .or. any(z(2:) <= z(:size(z) - 1))) then
          call raise(fault, EXIT_MESH, at_line(group%file, group%line)//'breaks of r and z must ascend.')
       else
@@ -395,7 +395,8 @@ contains
       associate (names => texts_of(group, 'stages'))
          do i = 1, size(names)
             if (any([(scene%stages(k)%name == names(i), k=1, size(scene%stages))])) cycle
-            call raise(fault, EXIT_GROUP, at_line(group%file, group%line)//'there is no stage '''//trim(names(i))//'''.')
+            call raise(fault, EXIT_GROUP, at_line(group%file, group%line)//'there is no stage '''// &
+                       trim(names(i))//'''.')
          end do
       end associate
    end subroutine check_stages

@@ -14,7 +14,7 @@ module host_run
    use newton, only: constraint_t, control_t, log_t, system_t, take_step, start_accelerations, &
                      CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
    use solve_sparse, only: release
-   use time_galpha, only: scheme_t, make_scheme, DYNAMIC
+   use time_galpha, only: scheme_t, make_scheme, step_error, DYNAMIC
    use triax_fault, only: fault_t, raise
    use triax_text, only: short, whole
    !$ use omp_lib, only: omp_get_max_threads
@@ -109,7 +109,7 @@ contains
       type(scheme_t) :: scheme
       type(log_t) :: log
       real(wp), allocatable :: x_start(:, :)
-      real(wp) :: t_start, dt, nominal, left, factor
+      real(wp) :: t_start, dt, nominal, left, factor, estimate
       integer :: cuts, good, step
 
       associate (stage => scene%stages(number))
@@ -155,9 +155,10 @@ contains
             run%steps = run%steps + 1
             call book_step(scene%model, run%dofs, scheme, run%constraint, run%system%reaction, run%state, run%next, &
                            run%ledger)
+            estimate = step_error(scheme, run%state%x, run%state%a, run%next%x, run%next%a)
             call copy_state(run%next, run%state)
             if (with_files) then
-               call write_ledger(output, run%state%time, dt, number, log, run%ledger, 0.0_wp, fault)
+               call write_ledger(output, run%state%time, dt, number, log, run%ledger, estimate, fault)
                if (mod(step, stage%every) == 0 .or. t_start + stage%duration - run%state%time <= LAST_STEP*dt) &
                   call write_history(output, scene, run%state, fault)
                if (fault%code /= 0) return
@@ -178,7 +179,8 @@ contains
          end if
          call copy_state(run%state, run%next)
          if (.not. quiet) write (*, '(a)') 'Stage '//trim(stage%name)//': '//whole(step)//' steps, time '// &
-            short(run%state%time)//' s, '//whole(run%iterations)//' linear solves and '//whole(run%cuts)//' cuts so far.'
+            short(run%state%time)//' s, '//whole(run%iterations)//' linear solves and '// &
+            whole(run%cuts)//' cuts so far.'
       end associate
    end subroutine run_stage
 

@@ -186,15 +186,16 @@ contains
       do b = 1, head(1)
          call next(reader, fault)
          call integers(reader, block_head, fault)
-         if (fault%code == 0 .and. used + block_head(4) > head(2)) call wrong(reader, 'more nodes than announced', fault)
+         if (fault%code == 0 .and. used + block_head(4) > head(2)) &
+            call wrong(reader, 'more nodes than announced', fault)
          if (fault%code /= 0) return
          if (allocated(tags)) deallocate (tags)
          allocate (tags(block_head(4)))
          do i = 1, size(tags)
             call next(reader, fault)
             call integers(reader, tags(i:i), fault)
-            if (fault%code == 0 .and. (tags(i) < 1 .or. tags(i) > head(4))) call wrong(reader, 'a node tag is outside ' &
-                                                                                       //'the announced range', fault)
+            if (fault%code == 0 .and. (tags(i) < 1 .or. tags(i) > head(4))) &
+               call wrong(reader, 'a node tag is outside the announced range', fault)
          end do
          if (fault%code /= 0) return
          do i = 1, size(tags)
@@ -280,7 +281,8 @@ contains
       allocate (mesh%t6(6, total))
       do b = 1, size(blocks)
          do i = 1, size(blocks(b)%nodes, 2)
-            if (blocks(b)%kind == TRIANGLE6) mesh%t6(:, first(b) + i - 1) = counter_clockwise(mesh, blocks(b)%nodes(:, i))
+            if (blocks(b)%kind == TRIANGLE6) &
+               mesh%t6(:, first(b) + i - 1) = counter_clockwise(mesh, blocks(b)%nodes(:, i))
          end do
       end do
       allocate (edges(3, 0))

@@ -115,11 +115,12 @@ contains
       subroutine add_sides()
          integer :: c
 
-         call add_side('bottom', reshape([(node(2*c - 2, 0), node(2*c, 0), node(2*c - 1, 0), c=1, nr)], [3, nr]), r_piece)
+         call add_side('bottom', reshape([(node(2*c - 2, 0), node(2*c, 0), node(2*c - 1, 0), c=1, nr)], &
+                                         [3, nr]), r_piece)
          call add_side('right', reshape([(node(2*nr, 2*c - 2), node(2*nr, 2*c), node(2*nr, 2*c - 1), c=1, nz)], &
                                         [3, nz]), z_piece)
-         call add_side('top', reshape([(node(2*c, 2*nz), node(2*c - 2, 2*nz), node(2*c - 1, 2*nz), c=1, nr)], [3, nr]), &
-                       r_piece)
+         call add_side('top', reshape([(node(2*c, 2*nz), node(2*c - 2, 2*nz), node(2*c - 1, 2*nz), c=1, nr)], &
+                                      [3, nr]), r_piece)
          call add_side('left', reshape([(node(0, 2*c), node(0, 2*c - 2), node(0, 2*c - 1), c=1, nz)], [3, nz]), z_piece)
       end subroutine add_sides
 

@@ -1,7 +1,7 @@
 !> One time step by Newton-Raphson with the exact tangent. One linear solve is one iteration; the error of a field is
-!> |R_f| over the largest of |sum of the magnitudes of the elements' contributions|, 1e-6 of its largest value so far, and
-!> a floor, over the free unknowns. The floor of a volume balance is 1e-4 of the strain rates and of the parts of the
-!> fluxes in it: where nothing flows, or nothing can, the balance of every element is nothing but rounding.
+!> |R_f| over the largest of |sum of the magnitudes of the elements' contributions|, 1e-6 of its largest value so far,
+!> and a floor, over the free unknowns. The floor of a volume balance is 1e-4 of the strain rates and of the parts of
+!> the fluxes in it: where nothing flows, or nothing can, the balance of every element is nothing but rounding.
 module newton
    use host_kinds, only: wp, FIELDS
    use fe_assembly, only: assembly_t, assemble
@@ -169,8 +169,9 @@ contains
       real(wp), allocatable :: rhs(:), dx(:)
       integer :: status, i, f
 
-      ! Values and velocities at the old level, accelerations at the new one, of which the residual is a linear function.
-      scheme = scheme_t(kind=DYNAMIC, l_f=0.0_wp, l_v=0.0_wp, l_a=1.0_wp, l_p=0.0_wp, c_v=0.0_wp, c_a=1.0_wp, c_p=0.0_wp)
+      ! Values and velocities at the old level, accelerations at the new one: the residual is linear in them.
+      scheme = scheme_t(kind=DYNAMIC, l_f=0.0_wp, l_v=0.0_wp, l_a=1.0_wp, l_p=0.0_wp, c_v=0.0_wp, c_a=1.0_wp, &
+                        c_p=0.0_wp)
       held = constraint
       held%fixed = constraint%fixed .or. dofs%field >= 3
       held%target = 0.0_wp

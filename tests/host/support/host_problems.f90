@@ -56,7 +56,8 @@ contains
       character(*), intent(in) :: law
       character(:), allocatable :: text
 
-      text = '&retention name = ''curve'' /'//NL//'&permeability name = ''k'' intrinsic = 5e-10 law = '''//law//''' /'//NL
+      text = '&retention name = ''curve'' /'//NL//'&permeability name = ''k'' intrinsic = 5e-10 law = '''// &
+             law//''' /'//NL
    end function soil_laws
 
    !> A built-in mesh of n by n cells on a square of side 1 m beginning at r.
@@ -66,7 +67,8 @@ contains
       character(:), allocatable :: text
       character(100) :: line
 
-      write (line, '(a,2(f6.2,","),a,i0,a,i0,a)') '&mesh r = ', r, r + 1, ' r_cells = ', n, ' z = 0, 1 z_cells = ', n, ' /'
+      write (line, '(a,2(f6.2,","),a,i0,a,i0,a)') '&mesh r = ', r, r + 1, ' r_cells = ', n, &
+         ' z = 0, 1 z_cells = ', n, ' /'
       text = trim(line)//NL
    end function square
 end module host_problems

@@ -1,0 +1,98 @@
+"""mud_host as a user meets it: known answers (short versions), mistakes with their own sentence and exit code."""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2])
+build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
+host = build / "host/mud_host"
+light = os.environ.get("MUD_PRESET", "release") != "release"
+work = pathlib.Path(tempfile.mkdtemp())
+environment = {**os.environ, "OMP_NUM_THREADS": "1", "MUD_BUILD_DIR": str(build)}
+passed = failed = 0
+
+
+def check(name, good, told=""):
+    global passed, failed
+    passed, failed = passed + bool(good), failed + (not good)
+    if not good:
+        print(f"FAILED {name}: {told}")
+
+
+# Known answers: every folder counts its own comparisons. The checking builds take those that are quick.
+QUICK = ("patch", "cylinder", "vibration")
+if host.exists():
+    for folder in sorted((root / "verification").glob("host_*/")):
+        name = folder.name.removeprefix("host_")
+        if light and name not in QUICK:
+            continue
+        done = subprocess.run([sys.executable, folder / "check.py", "--quick"], capture_output=True, text=True,
+                              env=environment)
+        last = re.fullmatch(r"(\d+) passed, (\d+) failed", (done.stdout.splitlines() or [""])[-1])
+        if last:
+            passed, failed = passed + int(last[1]), failed + int(last[2])
+        if not last or done.returncode:
+            check(f"known answer {name}", last, "it ended without its closing line")
+            print(done.stdout[-2000:] + done.stderr[-2000:])
+
+SCENE = (root / "verification/host_cylinder/scene.nml").read_text()
+FLOW = (root / "verification/host_terzaghi/scene.nml").read_text()
+# what, scene, old text, new text, exit code, words of the sentence
+MISTAKES = [
+    ("unknown key", SCENE, "young = 1.0e4", "yuong = 1.0e4", 2, ("yuong", "nearest is young")),
+    ("unknown group", SCENE, "&elastic", "&elastc", 2, ("elastc", "&elastic")),
+    ("missing key", SCENE, "   poisson = 0.3\n", "", 2, ("needs poisson",)),
+    ("value out of range", SCENE, "poisson = 0.3", "poisson = 0.5", 2, ("poisson", "outside")),
+    ("not a number", SCENE, "young = 1.0e4", "young = stiff", 2, ("stiff", "no number")),
+    ("unknown word", SCENE, "'axisymmetric'", "'spherical'", 2, ("spherical", "plane_strain")),
+    ("key given twice", SCENE, "poisson = 0.3", "poisson = 0.3\n   poisson = 0.2", 2, ("given twice",)),
+    ("field the scene has not", SCENE, "field = 'u_z'", "field = 'p_w'", 2, ("no field p_w",)),
+    ("no stage", SCENE, "&stage", "&point name = 'p' r = 0 z = 0 /\n&stage", 0, ()),
+    ("bad mesh piece", SCENE, "r_cells = 8", "r_cells = 8, 8", 10, ("n - 1 pieces",)),
+    ("mesh file missing", SCENE, "r = 1, 2", "file = 'nowhere.msh'", 10, ("nowhere.msh", "cannot be read")),
+    ("missing group", SCENE, "group = 'left'", "group = 'lefft'", 11, ("lefft", "left")),
+    ("missing material", SCENE, "material = 'wall'", "material = 'wal'", 11, ("wal", "there is wall")),
+    ("missing stage", SCENE, "kind = 'pressure'", "kind = 'pressure'\n   stages = 'lode'", 11, ("lode",)),
+    ("inverted element", SCENE, "r = 1, 2", "r = -1, 2", 12, ("r >= 0",)),
+    ("unconstrained body", SCENE, "   field = 'u_z'", "   field = 'u_r'", 13, ("singular", "&fix")),
+    ("no convergence", FLOW, "tolerance = 1.0e-8", "tolerance = 1.0e-14\n   cuts = 2\n   max_iterations = 1", 14,
+     ("no convergence", "element", "time")),
+    ("absurd strain", SCENE, "value = 100", "value = 1.0e8", 15, ("beyond 1",)),
+]
+for what, text, old, new, code, words in MISTAKES:
+    assert old in text, what
+    scene = work / "scene.nml"
+    scene.write_text(text.replace(old, new))
+    done = subprocess.run([host, scene, "--output", work / "out"], capture_output=True, text=True, env=environment)
+    check(f"{what}: exit code", done.returncode == code, f"{done.returncode} instead of {code}: {done.stderr}")
+    for word in words:
+        check(f"{what}: says {word}", word in done.stderr, done.stderr)
+    if code:
+        check(f"{what}: one sentence", len(done.stderr.splitlines()) == 1, done.stderr)
+done = subprocess.run([host], capture_output=True, text=True)
+check("no scene: usage", done.returncode == 2 and "usage" in done.stderr, done.stderr)
+done = subprocess.run([host, work / "scene.nml", "--output", "/proc/nowhere"], capture_output=True, text=True,
+                      env=environment)
+check("output that cannot be written", done.returncode == 4, f"{done.returncode}: {done.stderr}")
+
+# Results do not depend on the number of threads: the files are the same, byte for byte.
+answers = []
+for threads in ("1", "2"):
+    out = work / f"threads{threads}"
+    subprocess.run([host, root / "verification/host_terzaghi/scene.nml", "--output", out, "--quiet"], check=True,
+                   env={**environment, "OMP_NUM_THREADS": threads, "OMP_WAIT_POLICY": "passive"})
+    answers.append((out / "histories.csv").read_bytes() + (out / "ledger.csv").read_bytes())
+check("threads: same bytes", answers[0] == answers[1])
+
+# The template names every key of the code and is refused for nothing but its question marks.
+template = subprocess.run([host, "--template"], capture_output=True, text=True).stdout
+keys = re.findall(r"key_t\('(\w+)', '(\w+)'", (root / "host/src/host_keys.f90").read_text())
+for group, key in keys:
+    part = re.search(rf"^&{group}$(.*?)^/$", template, re.MULTILINE | re.DOTALL)
+    check(f"template: {group} {key}", part and re.search(rf"^[ !]+{key} = ", part[1], re.MULTILINE))
+
+print(f"{passed} passed, {failed} failed")
+sys.exit(failed > 0)
