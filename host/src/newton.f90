@@ -262,6 +262,9 @@ contains
          s(f) = s(f) + assembly%scale(i)**2
          floor(f) = floor(f) + (RATE_SHARE*assembly%floor(i))**2
       end do
+      ! The displacements are one field: a component without forces is no measure of its own.
+      r(1:2) = sum(r(1:2))
+      s(1:2) = sum(s(1:2))
       largest = max(largest, sqrt(s))
       log%error = sqrt(r)/max(sqrt(s), HISTORY_SHARE*largest, sqrt(floor), ABSOLUTE_FLOOR)
       log%worst_field = maxloc(log%error, 1)

@@ -78,6 +78,17 @@ done = subprocess.run([host, work / "scene.nml", "--output", "/proc/nowhere"], c
                       env=environment)
 check("output that cannot be written", done.returncode == 4, f"{done.returncode}: {done.stderr}")
 
+# The first scene of the manual: a column under 10 kPa, E = 1e4 kPa, free to spread: 1 mm.
+manual = (root / "host/README.md").read_text()
+scene.write_text(manual.split("<!-- first scene -->")[1].split("```")[1])
+done = subprocess.run([host, scene, "--output", work / "first"], capture_output=True, text=True, env=environment)
+check("first scene of the manual runs", done.returncode == 0, done.stderr)
+if done.returncode == 0:
+    u_z = float((work / "first/histories.csv").read_text().splitlines()[-1].split(",")[2])
+    check("first scene: 1 mm", abs(u_z + 1e-3) < 1e-12, u_z)
+for code in re.findall(r"EXIT_\w+ = (\d+)", (root / "host/src/host_kinds.f90").read_text()):
+    check(f"the manual names exit code {code}", f"| {code} |" in manual)
+
 # Results do not depend on the number of threads: the files are the same, byte for byte.
 answers = []
 for threads in ("1", "2"):
