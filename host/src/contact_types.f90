@@ -1,0 +1,114 @@
+!> Options and status of the contact kernels, and what a status says in words.
+module contact_types
+   use, intrinsic :: iso_fortran_env, only: int64
+   use host_kinds, only: wp, PI
+   implicit none (type, external)
+   private
+   public :: wp, TWO_PI, NODAL_GAP, POINTWISE_GAP, PRESSURE_WORK, ENERGY_SLOPE
+   public :: contact_options_t, contact_status_t, contact_fail, contact_message, is_finite
+   public :: CONTACT_OK, CONTACT_BAD_OPTION, CONTACT_BAD_EDGE, CONTACT_BAD_SIZE, CONTACT_NOT_FINITE, &
+             CONTACT_BAD_RADIUS, CONTACT_DISTORTED_EDGE, CONTACT_NO_PROJECTION
+
+   real(wp), parameter :: TWO_PI = 2.0_wp*PI
+
+   ! Which gap is penalised.
+   integer, parameter :: NODAL_GAP = 1        !< The mean gap under each hat.
+   integer, parameter :: POINTWISE_GAP = 2    !< The gap itself, paper eq. (18).
+   ! What is varied.
+   integer, parameter :: PRESSURE_WORK = 1    !< The work of the pressure along the slave's normal: area not varied.
+   integer, parameter :: ENERGY_SLOPE = 2     !< The energy with everything in it: the force is its exact derivative.
+
+   integer, parameter :: CONTACT_OK = 0
+   ! Negative: the caller's mistake.
+   integer, parameter :: CONTACT_BAD_OPTION = -1      !< Penalty, reach or a kind is out of its range.
+   integer, parameter :: CONTACT_BAD_EDGE = -2        !< An edge names a node that is not there or is used too often.
+   integer, parameter :: CONTACT_BAD_SIZE = -3        !< Coordinates of another number of nodes than prepared.
+   ! Positive: a configuration that a smaller step may avoid.
+   integer, parameter :: CONTACT_NOT_FINITE = 1       !< A coordinate is NaN or infinite.
+   integer, parameter :: CONTACT_BAD_RADIUS = 2       !< A slave node lies at a negative radius.
+   integer, parameter :: CONTACT_DISTORTED_EDGE = 3   !< An edge folds back on itself or has no length.
+   integer, parameter :: CONTACT_NO_PROJECTION = 4    !< A normal of the slave misses the master edge opposite.
+
+   type :: contact_options_t
+      real(wp) :: penalty = 1.0e8_wp          !< eps [kN/m3], > 0
+      real(wp) :: reach = 0.0_wp              !< Edges farther apart do not meet [m]; 0: the longest slave edge
+      logical :: axisymmetric = .true.        !< 2 pi r, otherwise plane strain of unit thickness
+      integer :: gap = NODAL_GAP              !< NODAL_GAP or POINTWISE_GAP
+      integer :: variation = PRESSURE_WORK    !< PRESSURE_WORK or ENERGY_SLOPE
+   end type contact_options_t
+
+   type :: contact_status_t
+      integer :: code = CONTACT_OK    !< One of the codes above.
+      integer :: index = 0            !< Edge or node concerned, from 1; 0 if there is none.
+      logical :: master = .false.     !< It is one of the master's.
+      real(wp) :: value = 0.0_wp      !< What was found.
+   end type contact_status_t
+
+   integer(int64), parameter :: EXPONENT_BITS = int(z'7FF0000000000000', int64)   !< All set: NaN or infinity.
+contains
+   pure function contact_fail(code, index, master, value) result(status)
+      integer, intent(in) :: code
+      integer, intent(in), optional :: index
+      logical, intent(in), optional :: master
+      real(wp), intent(in), optional :: value
+      type(contact_status_t) :: status
+
+      status%code = code
+      if (present(index)) status%index = index
+      if (present(master)) status%master = master
+      if (present(value)) status%value = value
+   end function contact_fail
+
+   !> A status in words: what, where, the value, what is allowed and what to do.
+   pure subroutine contact_message(status, text)
+      type(contact_status_t), intent(in) :: status
+      character(*), intent(out) :: text
+      character(24) :: value
+      character(6) :: side
+      character(12) :: number
+
+      side = merge('master', 'slave ', status%master)
+      write (number, '(i0)') status%index
+      if (is_finite(status%value)) then
+         write (value, '(es13.6)') status%value
+      else
+         value = 'not finite'
+      end if
+      select case (status%code)
+      case (CONTACT_OK)
+         text = 'contact: no fault'
+      case (CONTACT_BAD_OPTION)
+         text = 'contact: an option has the value '//trim(adjustl(value))//': the penalty must be finite and > 0, '// &
+                'the reach finite and >= 0, gap and variation one of the named kinds'
+      case (CONTACT_BAD_EDGE)
+         text = 'contact: edge '//trim(number)//' of the '//trim(side)//' surface names node '//trim(adjustl(value))// &
+                ': it must be one of the surface, in at most two edges, and a middle node in one'
+      case (CONTACT_BAD_SIZE)
+         text = 'contact: '//trim(adjustl(value))//' nodes of the '//trim(side)//' surface were given, '// &
+                trim(number)//' were prepared: prepare the contact again after a change of mesh'
+      case (CONTACT_NOT_FINITE)
+         text = 'contact: node '//trim(number)//' of the '//trim(side)//' surface has a coordinate that is not '// &
+                'finite: cut the step'
+      case (CONTACT_BAD_RADIUS)
+         text = 'contact: node '//trim(number)//' of the '//trim(side)//' surface lies at radius '// &
+                trim(adjustl(value))//' m, it must be >= 0: hold the nodes on the axis, or cut the step'
+      case (CONTACT_DISTORTED_EDGE)
+         text = 'contact: edge '//trim(number)//' of the '//trim(side)//' surface is folded or has no '// &
+                'length (least stretch '//trim(adjustl(value))//', must be > 0): keep the middle node within the '// &
+                'middle half, or cut the step'
+      case (CONTACT_NO_PROJECTION)
+         text = 'contact: a normal of slave edge '//trim(number)//' misses the master edge opposite by '// &
+                trim(adjustl(value))//' of its length: the surfaces are too strongly curved for their distance; '// &
+                'refine the edges, lower the reach or cut the step'
+      case default
+         text = 'contact: unknown status'
+      end select
+   end subroutine contact_message
+
+   !> True if x is neither NaN nor infinite; by the bits, which neither traps nor costs anything.
+   pure elemental logical function is_finite(x)
+      real(wp), intent(in) :: x
+
+      is_finite = iand(transfer(x, EXPONENT_BITS), EXPONENT_BITS) /= EXPONENT_BITS
+   end function is_finite
+end module contact_types
