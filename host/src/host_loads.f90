@@ -149,7 +149,7 @@ contains
       do i = 1, size(scene%fixes)
          associate (fix => scene%fixes(i))
             if (.not. acts_in(fix%stages, stage%name)) cycle
-            if (time <= fix%from .or. time > fix%until*(1 + 1.0e-12_wp)) cycle
+            if (time <= fix%from .or. time > fix%until + 1.0e-12_wp*abs(time)) cycle
             value = fix%value*factor_at(scene, fix%history, time)
             do k = 1, size(scene%model%mesh%groups(fix%group)%nodes)
                node = scene%model%mesh%groups(fix%group)%nodes(k)
