@@ -26,7 +26,7 @@ def growth(k, p_c, modulus=1.3e4, inertia=True):
     a1 = np.array([[0, 0, 0], [1, n * s / K_W + air, air], [(1 - s) - n * s_v, air, air - n * s_p]])
     a0 = k * k * np.array([[modulus + p_c * s_v, -1, -(1 - s) + p_c * s_p], [0, kw + ka, ka], [0, ka, ka]])
     # The determinant has degree 4 in s: interpolated on a circle of the expected size and solved.
-    size = 1e3
+    size = 80.0 * k   # about the elastic wave's frequency
     points = size * np.exp(2j * np.pi * np.arange(8) / 8)
     values = np.array([np.linalg.det(a2 * p * p + a1 * p + a0) for p in points])
     coefficients = np.real(np.fft.fft(values) / 8)[:5]
@@ -79,6 +79,7 @@ if args.plot:
         axes.semilogx(ks, [growth(k, p).real for k in ks], color=colour, label=f"suction {p:g} kPa, linearised")
     axes.semilogx(list(measured), [r.real for r in measured.values()], "ko", ms=5, label="host, 3 kPa")
     axes.set(xlabel="wave number [1/m]", ylabel="growth rate [1/s]")
+    axes.set_ylim(-500, 3500)
     axes.legend(fontsize=7)
     fig.savefig(here / "seepage_inertia.png", dpi=130)
 checks.end()

@@ -1,4 +1,5 @@
 """Terzaghi's series against the column: pressures and settlement."""
+import csv
 import pathlib
 import sys
 
@@ -36,6 +37,22 @@ for pressures in ("linear",) if args.quick else ("linear", "quadratic"):
     checks.near(f"{pressures} pressure half-way / load", h["middle.p_w"][late] / LOAD, pressure(0.5, t[late]) / LOAD, allowed[pressures])
     checks.near(f"{pressures} settlement / final", -h["top.u_z"][late] / (LOAD / M), settlement(t[late]) / (LOAD / M), allowed[pressures])
     results[pressures] = h
+# Compressible water, against terzaghi.csv (1 kPa, the load at once).
+with open(here / "terzaghi.csv", encoding="utf-8") as lines:
+    rows = [r for r in csv.DictReader(line.lstrip("# ") for line in lines if not line.startswith(("# T", "# m")))
+            if r["ramped"] == "0"]
+for case in ("stiff_water", "soft_water"):
+    mine = [r for r in rows if r["case"] == case]
+    modulus = mine[0]["K_w"]
+    h = read(run(here / "scene.nml", [("k_w = 1.0e12", f"k_w = {modulus}"), ("value = 100", "value = 1"),
+                                     ("'linear'", "'quadratic'")]) / "histories.csv")
+    for place, depth in (("base", 1.0), ("middle", 0.5)):
+        at = [r for r in mine if abs(float(r["depth"]) - depth) < 1e-9 and float(r["t"]) < 100]
+        value = np.interp([float(r["t"]) for r in at], h["time"], h[place + ".p_w"])
+        checks.near(f"{case}: pressure, {place}, {len(at)} times / load", value, [float(r["p_w"]) for r in at], 1e-3)
+    at = [r for r in mine if float(r["depth"]) == 0 and float(r["t"]) < 100]
+    value = np.interp([float(r["t"]) for r in at], h["time"], -h["top.u_z"])
+    checks.near(f"{case}: settlement / final", value * M, [float(r["settlement"]) * M for r in at], 1e-3)
 if args.plot:
     fig, axes = figure(2)
     t = results["linear"]["time"][1:]

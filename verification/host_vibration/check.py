@@ -64,6 +64,6 @@ if args.plot:
     t = np.linspace(0, 0.5, 500)
     axes.plot(t, U0 * 1e3 * np.cos(OMEGA * t), "k-", lw=0.6, label="exact")
     axes.set(xlabel="time [s]", ylabel="displacement [mm]")
-    axes.legend(ncols=2, loc="upper center", bbox_to_anchor=(0.5, 1.25))
+    fig.legend(ncols=3, loc="outside upper center", fontsize=7)
     fig.savefig(here / "vibration.png", dpi=130)
 checks.end()
