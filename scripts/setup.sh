@@ -28,7 +28,7 @@ missing_packages() {
    command -v cmake >/dev/null || echo cmake
    command -v ninja >/dev/null || echo ninja-build
    command -v h5fc >/dev/null || echo libhdf5-dev
-   # The sparse solver of the host, with a BLAS that is worth having.
+   # The sparse solver of the host.
    [ -e /usr/include/suitesparse/umfpack.h ] || [ -e /usr/include/umfpack.h ] || echo libsuitesparse-dev
    local python
    python=$(find_python)

@@ -1,5 +1,6 @@
 !> Small scenes for the tests of the host, written as text so that the reader of scenes takes part.
 module host_problems
+   use, intrinsic :: iso_fortran_env, only: int64
    use host_kinds, only: wp
    use host_read, only: read_scene
    use host_run, only: run_t, prepare_run
@@ -29,8 +30,10 @@ contains
       type(run_t), intent(out) :: run
       type(fault_t), intent(inout) :: fault
       character(64) :: file
-      integer :: unit, tick
+      integer(int64) :: tick
+      integer :: unit
 
+      ! Nanoseconds: suites run at the same time.
       call system_clock(tick)
       write (file, '(a,i0,a)') '/tmp/mud_host_test_', tick, '.nml'
       open (newunit=unit, file=file, status='replace', action='write')
