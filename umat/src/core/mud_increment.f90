@@ -3,25 +3,31 @@ module mud_increment
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_state, only: counters_t
-   use mud_tensor, only: IDENTITY, deviator, norm
+   use mud_tensor, only: IDENTITY, ddot, trace, deviator, norm
    use mud_elastic, only: shear_modulus
    use mud_bonding, only: bonding_t, bonding, UNBONDED
    use mud_critical_state, only: critical_void_ratio, bounding_ratio
-   use mud_rates, only: rate_t, rate_at, bounding_norm
+   use mud_rates, only: rate_t, rate_at, bounding_norm, MODE_ORDINARY, MODE_ELASTIC
+   use mud_nucleus, only: loading_direction, change_of_direction
    use mud_substep, only: scheme_t, MAX_STAGES, stage_point, solution, error_vector
    implicit none (type, external)
    private
    public :: increment_t, trial_t, void_ratio_at, suction_at, rate_of, take_step, error_norm, limited, state_parameter
-   public :: NY, MODE_HELD
+   public :: loading_strain, change_of_loading_strain, has_aside, beyond_bounding, NY, MODE_HELD, MODE_NUCLEUS
 
    integer, parameter :: MODE_HELD = 2   !< A substep held at p_min by the tension cut-off; see MODE_* of mud_rates.
+   integer, parameter :: MODE_NUCLEUS = 3   !< A substep inside the elastic nucleus: MODE_ELASTIC, memory at rest.
    integer, parameter :: NY = 13         !< Length of the integrated vector: sigma'(6), z(6), plastic shear.
    real(wp), parameter :: PLASTIC_SHEAR_SCALE = 0.01_wp   !< Of the error norm [-].
 
-   !> What stays the same through an update.
+   !> What stays the same through an update; with an elastic nucleus, through one of its phases.
    type :: increment_t
       real(wp) :: d_strain(6), d_pc, p_c0, e0, d_v
       logical :: bonded             !< Bonding is on and there is suction: decided once.
+      logical :: inside             !< The phase inside the elastic nucleus.
+      real(wp) :: rho               !< Radius of the nucleus, 0: none [-].
+      real(wp) :: from, length      !< The phase's place in the update [-].
+      real(wp) :: nucleus(6)        !< Strain from its centre at the start [-].
       type(scheme_t) :: scheme
    end type increment_t
 
@@ -31,6 +37,7 @@ module mud_increment
       real(wp) :: y0(NY), y(NY)
       type(rate_t) :: w(MAX_STAGES) !< What each stage's rate went through; the first is that of the memory as it is.
       integer :: mode
+      logical :: pressed            !< Inside the nucleus the bounding surface was met: ordinary rates from there on.
       real(wp) :: r_in(6)
       real(wp) :: time              !< Pseudo-time of y0 [-].
       real(wp) :: held_error        !< Error of a held substep's stress ratio [-].
@@ -44,9 +51,18 @@ contains
       integer, intent(in) :: mode
       type(rate_t), intent(inout) :: w
       type(counters_t), intent(inout) :: counters
+      real(wp) :: loading(6), aside(6)
 
-      call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), suction_at(inc, time), y(7:12), r_in, &
-                   inc%d_strain, inc%d_pc, mode, w)
+      if (has_aside(inc, mode)) then
+         call loading_strain(inc, mode, time, loading, aside)
+         call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), suction_at(inc, time), y(7:12), r_in, &
+                      loading, inc%d_pc, merge(MODE_ELASTIC, mode, mode == MODE_NUCLEUS), w)
+         w%d_p = w%d_p + w%k*trace(aside)
+         w%d_sigma = w%d_sigma + 2.0_wp*w%g*deviator(aside) + (w%k*trace(aside))*IDENTITY
+      else
+         call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), suction_at(inc, time), y(7:12), r_in, &
+                      inc%d_strain, inc%d_pc, mode, w)
+      end if
       counters%rate = counters%rate + 1
       if (w%floored .and. par%floored) counters%floor = counters%floor + 1
       if (w%capped_d) counters%cap_d = counters%cap_d + 1
@@ -54,6 +70,59 @@ contains
       if (w%iso_kept) counters%iso_kept = counters%iso_kept + 1
       if (w%no_root) counters%no_root = counters%no_root + 1
    end subroutine rate_of
+
+   !> True if a part of the strain is elastic: all of it inside the nucleus, some where the nucleus is pulled along.
+   pure logical function has_aside(inc, mode)
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: mode
+
+      has_aside = mode == MODE_NUCLEUS .or. (inc%rho > 0.0_wp .and. .not. inc%inside .and. mode == MODE_ORDINARY)
+   end function has_aside
+
+   !> The part of the strain rate that loads, along nu, and the elastic rest.
+   pure subroutine loading_strain(inc, mode, time, loading, aside)
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: mode
+      real(wp), intent(in) :: time
+      real(wp), intent(out) :: loading(6), aside(6)
+      real(wp) :: nu(6)
+
+      loading = 0.0_wp
+      if (mode /= MODE_NUCLEUS) then
+         nu = loading_direction(inc%rho, inc%nucleus, inc%d_strain, time)
+         loading = ddot(nu, inc%d_strain)*nu
+      end if
+      aside = inc%d_strain - loading
+   end subroutine loading_strain
+
+   !> Change of both parts with the strain rate and the nucleus at the start.
+   pure subroutine change_of_loading_strain(inc, mode, time, strain_change, nucleus_change, loading, aside)
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: mode
+      real(wp), intent(in) :: time, strain_change(6), nucleus_change(6)
+      real(wp), intent(out) :: loading(6), aside(6)
+      real(wp) :: nu(6), change(6)
+
+      loading = 0.0_wp
+      if (mode /= MODE_NUCLEUS) then
+         nu = loading_direction(inc%rho, inc%nucleus, inc%d_strain, time)
+         change = change_of_direction(inc%rho, inc%nucleus, inc%d_strain, time, nucleus_change, strain_change)
+         loading = (ddot(change, inc%d_strain) + ddot(nu, strain_change))*nu + ddot(nu, inc%d_strain)*change
+      end if
+      aside = strain_change - loading
+   end subroutine change_of_loading_strain
+
+   !> |r| over that of the bounding surface, minus 1.
+   pure real(wp) function beyond_bounding(par, inc, time, p, r)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time, p, r(6)
+      real(wp) :: r_norm, psi
+
+      r_norm = norm(r)
+      psi = state_parameter(par, inc%bonded, void_ratio_at(inc, time), suction_at(inc, time), p)
+      beyond_bounding = r_norm/bounding_norm(par, r, r_norm, bounding_ratio(par, psi)) - 1.0_wp
+   end function beyond_bounding
 
    !> One trial substep from the first rate that the trial holds.
    pure subroutine take_step(par, inc, h, trial, counters)

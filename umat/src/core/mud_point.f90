@@ -6,7 +6,7 @@ module mud_point
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_INPUT, MUD_BAD_VOID_RATIO, MUD_MINIMUM_STEP, &
       MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, MUD_VOID_RATIO_LIMIT, MUD_NOT_FINITE, MUD_INCREMENT_TOO_LARGE, &
       ON_STRESS, ON_STRAIN, ON_SUCTION, ON_VOID_RATIO
-   use mud_tensor, only: IDENTITY, trace, deviator, norm, is_finite
+   use mud_tensor, only: IDENTITY, SHEAR_WEIGHT, ddot, trace, deviator, norm, outer_add, is_finite
    use mud_bonding, only: is_bonded
    use mud_elastic, only: bulk_modulus, shear_modulus
    use mud_retention, only: saturation_t, saturation
@@ -14,12 +14,12 @@ module mud_point
    use mud_reversal, only: new_memory, reseat, accept_process, turns_back, begin_way_back, leave_way_back, &
       way_back_distance, resume_process
    use mud_state, only: memory_t, state_t, counters_t, E_LOWER, E_UPPER
+   use mud_nucleus, only: exit_share, loading_direction
    use mud_substep, only: SCHEMES, step_factor
    use mud_increment, only: increment_t, trial_t, void_ratio_at, suction_at, rate_of, take_step, error_norm, limited, &
-      state_parameter, NY, MODE_HELD
-   use mud_consistent, only: sensitivity_t, no_sensitivity, propagate, jump_of_memory, JUMP_NONE, JUMP_RESEAT, &
-      JUMP_RESUME, &
-      JUMP_NEW
+      state_parameter, has_aside, beyond_bounding, NY, MODE_HELD, MODE_NUCLEUS
+   use mud_consistent, only: sensitivity_t, no_sensitivity, enter_nucleus, leave_nucleus, propagate, jump_of_memory, &
+      JUMP_NONE, JUMP_RESEAT, JUMP_RESUME, JUMP_NEW
    use mud_tangent, only: continuum_tangent, elastic_tangent
    use mud_trace, only: trace_t, record_substep, SUBSTEP_REJECTED, SUBSTEP_ACCEPTED, SUBSTEP_FAILED
    implicit none (type, external)
@@ -34,6 +34,10 @@ module mud_point
    real(wp), parameter :: LARGEST_STRESS = 1.0e9_wp          !< A stress or suction beyond it is an input error [kPa].
    real(wp), parameter :: LAST_SLIVER = 1.0e-9_wp            !< A rest of this share joins the substep before it [-].
    real(wp), parameter :: AT_LIMIT = 1.0e-9_wp               !< p' this close (relative) to p_min is at p_min [-].
+   !> At a low stress an elastic strain of rho_e may be more than the whole strength: r may exceed the bounding surface
+   !> by this share. Softening sand is some per cent beyond it and must be able to return where it came from [-].
+   real(wp), parameter :: EXCESS = 0.2_wp
+   real(wp), parameter :: WHOLE_PHASE = 1.0e-9_wp            !< A phase shorter than this share is left out [-].
    !> Width of the bracket of an event, share of increment [-].
    real(wp), parameter :: EVENT_TOLERANCE = 1.0e-13_wp
    integer, parameter :: MAX_EVENT_ITERATIONS = 100          !< Bisection alone needs about 45.
@@ -44,6 +48,7 @@ module mud_point
    integer, parameter :: EVENT_OPENS = 1     !< p' falls to p_min.
    integer, parameter :: EVENT_ARRIVES = 2   !< An elastic way back reaches the turning point.
    integer, parameter :: EVENT_CLOSES = 3    !< p' would rise from p_min.
+   integer, parameter :: EVENT_BOUNDS = 4    !< r exceeds the bounding surface inside the elastic nucleus.
    real(wp), parameter :: EVENT_RESIDUAL = 1.0e-13_wp        !< An event's function this small is zero [-].
 
    !> Tangent blocks, compression positive, with engineering shear strain.
@@ -78,6 +83,7 @@ contains
       state%e = e
       state%p_c = p_c
       state%z = 0.0_wp
+      state%nucleus = 0.0_wp
       state%eps_q_total = 0.0_wp
       state%last_step = 0.0_wp
       state%open = .false.
@@ -105,6 +111,7 @@ contains
       type(trial_t) :: trial
       type(sensitivity_t) :: sens
       real(wp) :: size, k, g, p, r(6)
+      logical :: consistent
 
       reached = 0.0_wp
       call check_increment(state0, d_strain, d_pc, status)
@@ -116,6 +123,10 @@ contains
       inc%d_v = trace(d_strain)
       inc%bonded = is_bonded(par, max(state0%p_c, state0%p_c + d_pc))
       inc%scheme = SCHEMES(par%scheme)
+      inc%rho = par%rho_e
+      inc%inside = .false.
+      inc%from = 0.0_wp
+      inc%length = 1.0_wp
       if (void_ratio_at(inc, 1.0_wp) <= E_LOWER .or. void_ratio_at(inc, 1.0_wp) >= E_UPPER) then
          status = fail(MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO, 0, void_ratio_at(inc, 1.0_wp), E_LOWER, E_UPPER)
          return
@@ -126,9 +137,14 @@ contains
       call stress_ratio(par, state1%sigma, p, r)
       k = bulk_modulus(par, state1%e, p)
       size = norm(d_strain) + abs(d_pc)/k
+      consistent = tangent == TANGENT_CONSISTENT .and. size > 0.0_wp
+      if (consistent) sens = no_sensitivity()
       if (size > 0.0_wp) then
-         call integrate(par, inc, size, tangent == TANGENT_CONSISTENT, state1, trial, sens, counters, reached, status, &
-                        record)
+         if (par%rho_e > 0.0_wp) then
+            call integrate_phases(par, inc, size, consistent, state1, trial, sens, counters, reached, status, record)
+         else
+            call integrate(par, inc, size, consistent, state1, trial, sens, counters, reached, status, record)
+         end if
       end if
       if (status%code /= MUD_OK) return
       reached = 1.0_wp
@@ -141,7 +157,7 @@ contains
       case (TANGENT_NONE)
          continue
       case (TANGENT_CONTINUUM, TANGENT_CONSISTENT)
-         if (size > 0.0_wp .and. tangent == TANGENT_CONSISTENT) then
+         if (consistent) then
             blocks%dsig_deps = sens%y(1:6, 1:6)
             blocks%dsig_dpc = sens%y(1:6, 7)
             return
@@ -149,8 +165,12 @@ contains
          if (size > 0.0_wp) then
             blocks%dsig_deps = 0.0_wp   ! an open point has no stiffness
             blocks%dsig_dpc = 0.0_wp
-            if (trial%mode /= MODE_HELD) call continuum_tangent(par, trial%w(inc%scheme%stages), blocks%dsig_deps, &
-               blocks%dsig_dpc)
+            if (trial%mode /= MODE_HELD) then
+               call continuum_tangent(par, trial%w(inc%scheme%stages), blocks%dsig_deps, blocks%dsig_dpc)
+               if (has_aside(inc, trial%mode)) then
+                  call project(inc, trial%mode, trial%w(inc%scheme%stages), blocks%dsig_deps)
+               end if
+            end if
             return
          end if
          blocks%dsig_deps = elastic_tangent(k, shear_modulus(par, state1%e, p))
@@ -163,6 +183,85 @@ contains
          blocks%dsig_dpc = 0.0_wp
       end select
    end subroutine update_point
+
+   !> An increment with an elastic nucleus: a phase inside it, then one that pulls it along; either may be empty. On
+   !> return inc is the phase that ended the increment.
+   pure subroutine integrate_phases(par, inc, size, consistent, state, trial, sens, counters, reached, status, record)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(inout) :: inc
+      real(wp), intent(in) :: size
+      logical, intent(in) :: consistent
+      type(state_t), intent(inout) :: state
+      type(trial_t), intent(inout) :: trial
+      type(sensitivity_t), intent(inout) :: sens
+      type(counters_t), intent(inout) :: counters
+      real(wp), intent(out) :: reached
+      type(mud_status_t), intent(out) :: status
+      type(trace_t), intent(inout), optional :: record
+      type(increment_t) :: whole
+      real(wp) :: share
+
+      whole = inc
+      whole%nucleus = state%nucleus
+      if (norm(state%nucleus) > inc%rho) whole%nucleus = (inc%rho/norm(state%nucleus))*state%nucleus
+      share = exit_share(inc%rho, whole%nucleus, inc%d_strain)
+      if (share < WHOLE_PHASE) share = 0.0_wp
+      if (1.0_wp - share < WHOLE_PHASE) share = 1.0_wp
+
+      if (share > 0.0_wp) then
+         inc = phase(whole, 0.0_wp, share)
+         inc%inside = .true.
+         if (consistent) call enter_nucleus(whole, share, sens)
+         call integrate(par, inc, share*size, consistent, state, trial, sens, counters, reached, status, record)
+         reached = share*reached
+         if (status%code /= MUD_OK) return
+      end if
+      state%nucleus = whole%nucleus + share*whole%d_strain
+      if (share < 1.0_wp) then
+         inc = phase(whole, share, 1.0_wp)
+         inc%nucleus = (inc%rho/norm(state%nucleus))*state%nucleus
+         if (consistent) call leave_nucleus(whole, share, sens)
+         call integrate(par, inc, (1.0_wp - share)*size, consistent, state, trial, sens, counters, reached, status, &
+                        record)
+         reached = share + (1.0_wp - share)*reached
+         state%nucleus = inc%rho*loading_direction(inc%rho, inc%nucleus, inc%d_strain, 1.0_wp)
+      end if
+   end subroutine integrate_phases
+
+   !> The part of an increment between two pseudo-times as an increment of its own.
+   pure function phase(whole, from, to) result(inc)
+      type(increment_t), intent(in) :: whole
+      real(wp), intent(in) :: from, to
+      type(increment_t) :: inc
+
+      inc = whole
+      inc%from = from
+      inc%length = to - from
+      inc%d_strain = (to - from)*whole%d_strain
+      inc%d_v = (to - from)*whole%d_v
+      inc%d_pc = (to - from)*whole%d_pc
+      inc%e0 = void_ratio_at(whole, from)
+      inc%p_c0 = suction_at(whole, from)
+   end function phase
+
+   !> Tangent of a rate of which only the strain along nu loads (inside the nucleus none does), the rest being elastic.
+   pure subroutine project(inc, mode, w, c)
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: mode
+      type(rate_t), intent(in) :: w
+      real(wp), intent(inout) :: c(6, 6)
+      real(wp) :: nu(6), along(6), elastic(6, 6)
+
+      elastic = elastic_tangent(w%k, w%g)
+      along = 0.0_wp
+      nu = 0.0_wp
+      if (mode /= MODE_NUCLEUS) then
+         nu = loading_direction(inc%rho, inc%nucleus, inc%d_strain, 1.0_wp)
+         along = matmul(c - elastic, SHEAR_WEIGHT*nu)
+      end if
+      c = elastic
+      call outer_add(along, nu, c)
+   end subroutine project
 
    !> The loop over substeps.
    pure subroutine integrate(par, inc, size, consistent, state, trial, sens, counters, reached, status, record)
@@ -185,11 +284,12 @@ contains
 
       time = 0.0_wp
       h = 1.0_wp
-      if (state%last_step > 0.0_wp .and. state%last_step < size) h = state%last_step/size
+      ! an elastic phase goes in one step if it can, and leaves the remembered step to the next plastic one
+      if (state%last_step > 0.0_wp .and. state%last_step < size .and. .not. inc%inside) h = state%last_step/size
       may_grow = .true.
       elastic_substeps = 0
       known = .false.
-      if (consistent) sens = no_sensitivity()
+      trial%pressed = .false.
       substeps: do while (time < 1.0_wp)
          reached = time
          trial%time = time
@@ -264,7 +364,7 @@ contains
             end if
          end if
       end do substeps
-      state%last_step = h*size
+      if (.not. inc%inside) state%last_step = h*size
       reached = 1.0_wp
    end subroutine integrate
 
@@ -279,7 +379,7 @@ contains
       type(rate_t), intent(inout) :: trigger   !< The rate that made the memory jump.
       integer, intent(out) :: jump             !< JUMP_*
       type(counters_t), intent(inout) :: counters
-      real(wp) :: p, r(6)
+      real(wp) :: p, r(6), outwards
 
       jump = JUMP_NONE
       call stress_ratio(par, state%sigma, p, r)
@@ -291,7 +391,15 @@ contains
          return
       end if
 
-      if (state%memory%suspended) then
+      if (inc%inside .and. .not. trial%pressed) then
+         trial%mode = MODE_NUCLEUS
+         call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
+         outwards = (2.0_wp*trial%w(1)%g)*ddot(inc%d_strain, r) - (trial%w(1)%k*inc%d_v)*ddot(r, r)
+         if (outwards > 0.0_wp) trial%pressed = beyond_bounding(par, inc, trial%time, p, r) >= EXCESS
+         if (trial%pressed) trial%mode = MODE_ORDINARY
+      end if
+
+      if (state%memory%suspended .and. trial%mode == MODE_ORDINARY) then
          trial%mode = MODE_ELASTIC
          call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
          if (turns_back(state%memory, trial%w(1)%t)) then
@@ -387,7 +495,7 @@ contains
       if (trial%mode == MODE_ELASTIC) then
          call stress_ratio(par, state%sigma, p, r)
          call leave_way_back(state%memory, r)
-      else
+      else if (trial%mode /= MODE_NUCLEUS) then
          call accept_process(par, trial%w(1)%loading, trial%w(1)%x, trial%w(1)%n, trial%y(13), state%memory)
       end if
    end subroutine accept_substep
@@ -410,6 +518,9 @@ contains
       case (MODE_ELASTIC)
          if (par%cutoff) call land_on(par, inc, EVENT_OPENS, memory, h, trial, counters, crossed)
          call land_on(par, inc, EVENT_ARRIVES, memory, h, trial, counters, crossed)
+      case (MODE_NUCLEUS)
+         if (par%cutoff) call land_on(par, inc, EVENT_OPENS, memory, h, trial, counters, crossed)
+         call land_on(par, inc, EVENT_BOUNDS, memory, h, trial, counters, crossed)
       case default
          if (par%cutoff) call land_on(par, inc, EVENT_OPENS, memory, h, trial, counters, crossed)
       end select
@@ -429,10 +540,10 @@ contains
       real(wp) :: low, high, f_low, f_high, f, h_trial
       integer :: iteration
 
-      call event_function(par, inc, event, memory, trial%time + h, trial%y, counters, f_high)
+      call event_function(par, inc, event, memory, trial, trial%time + h, trial%y, counters, f_high)
       crossed = f_high < 0.0_wp
       if (.not. crossed) return
-      call event_function(par, inc, event, memory, trial%time, trial%y0, counters, f_low)
+      call event_function(par, inc, event, memory, trial, trial%time, trial%y0, counters, f_low)
       low = 0.0_wp
       high = h
       h_trial = h
@@ -445,7 +556,7 @@ contains
             h_trial = 0.5_wp*(low + high)
          end if
          call take_step(par, inc, h_trial, trial, counters)
-         call event_function(par, inc, event, memory, trial%time + h_trial, trial%y, counters, f)
+         call event_function(par, inc, event, memory, trial, trial%time + h_trial, trial%y, counters, f)
          if (f < 0.0_wp) then
             if (f_low > 0.0_wp .and. high < h) f_low = 0.5_wp*f_low
             high = h_trial
@@ -462,11 +573,12 @@ contains
    end subroutine land_on
 
    !> Function of an event, dimensionless, negative beyond it.
-   pure subroutine event_function(par, inc, event, memory, time, y, counters, f)
+   pure subroutine event_function(par, inc, event, memory, trial, time, y, counters, f)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: event
       type(memory_t), intent(in) :: memory
+      type(trial_t), intent(in) :: trial       !< where the substep began
       real(wp), intent(in) :: time, y(NY)
       type(counters_t), intent(inout) :: counters
       real(wp), intent(out) :: f
@@ -479,6 +591,12 @@ contains
       case (EVENT_ARRIVES)
          call stress_ratio(par, y(1:6), p, r)
          f = -way_back_distance(memory, r)
+      case (EVENT_BOUNDS)
+         ! from farther outside it is the ratio at the start that must not be exceeded
+         call stress_ratio(par, trial%y0(1:6), p, r)
+         f = max(beyond_bounding(par, inc, trial%time, p, r), EXCESS)
+         call stress_ratio(par, y(1:6), p, r)
+         f = f - beyond_bounding(par, inc, time, p, r)
       case default
          call stress_ratio(par, y(1:6), p, r)
          call rate_of(par, inc, time, y, r, MODE_ORDINARY, w, counters)

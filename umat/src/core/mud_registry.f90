@@ -13,11 +13,11 @@ module mud_registry
              P_H_0, P_C_H, P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, &
              P_P_ATM, P_P_MIN, P_BONDING, P_FABRIC, P_ISOTROPIC, P_LODE, P_MEMORY_RULE, P_EPS_HAT, P_J_EXP, &
              P_X_0, P_X_REV, P_CAP_D, P_CAP_H, P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, &
-             P_TANGENT
+             P_TANGENT, P_RHO_E
    public :: S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION, S_STATE_PARAMETER, S_EPS_Q_P, S_EPS_Q_P_TOTAL, &
              S_X_BEFORE, S_X_RUNNING, S_WAY_BACK, S_SUSPENDED, S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, &
              S_MEMORY_BEFORE, S_TURNING_POINT, S_DIRECTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, S_N_RATE, &
-             S_N_SUBSTEP, S_N_REJECT, S_N_RESEAT, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE
+             S_N_SUBSTEP, S_N_REJECT, S_N_RESEAT, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, S_NUCLEUS
 
    integer, parameter :: STATE_LAYOUT = 1   !< Layout number that an initialised STATEV carries.
    integer, parameter :: KIND_REAL = 0, KIND_SWITCH = 1, KIND_OPTION = 2, KIND_COUNT = 3
@@ -97,7 +97,8 @@ module mud_registry
    integer, parameter :: P_H_MIN = 42
    integer, parameter :: P_MAX_SUBSTEPS = 43
    integer, parameter :: P_TANGENT = 44
-   integer, parameter :: NPROPS = 44
+   integer, parameter :: P_RHO_E = 45
+   integer, parameter :: NPROPS = 45
 
    integer, parameter :: S_LAYOUT = 1
    integer, parameter :: S_VOID_RATIO = 2
@@ -129,8 +130,9 @@ module mud_registry
    integer, parameter :: S_N_MIN_STEP = 58
    integer, parameter :: S_N_OPEN = 59
    integer, parameter :: S_N_TENSILE = 60
-   integer, parameter :: NVARIABLES = 30
-   integer, parameter :: NSTATV = 60
+   integer, parameter :: S_NUCLEUS = 61
+   integer, parameter :: NVARIABLES = 31
+   integer, parameter :: NSTATV = 66
 
    type(property_t), parameter :: PROPERTIES(NPROPS) = [ &
       property_t(P_K_0, 'K_0', 'K_0', '1', KIND_REAL, 0.001_wp, 1.0e5_wp, 150.0_wp, 'paper', &
@@ -220,7 +222,9 @@ module mud_registry
       property_t(P_MAX_SUBSTEPS, 'max_substeps', 'n_max', '1', KIND_COUNT, 1.0_wp, 1.0e8_wp, 1.0e5_wp, 'numerical', &
          'largest number of attempted substeps in an update'), &
       property_t(P_TANGENT, 'tangent', 'tangent', '1', KIND_OPTION, 0.0_wp, 3.0_wp, 2.0_wp, 'ours', &
-         'tangent that umat_ returns: 0 none, 1 elastic, 2 continuum, 3 consistent')]
+         'tangent that umat_ returns: 0 none, 1 elastic, 2 continuum, 3 consistent'), &
+      property_t(P_RHO_E, 'rho_e', 'rho_e', '1', KIND_REAL, 0.0_wp, 0.01_wp, 0.0_wp, 'ours', &
+         'radius of the elastic nucleus, a norm of the strain tensor; 0: none, as in the paper')]
 
    type(variable_t), parameter :: VARIABLES(NVARIABLES) = [ &
       variable_t(S_LAYOUT, 1, 'layout', '-', '1', .false., 'ours', &
@@ -288,7 +292,10 @@ module mud_registry
       variable_t(S_N_OPEN, 1, 'n_open', '-', '1', .false., 'ours', &
          'total: substeps held by the tension cut-off', '0', 'adds up'), &
       variable_t(S_N_TENSILE, 1, 'n_tensile', '-', '1', .false., 'ours', &
-         'total: increments that ended with a tensile principal effective stress', '0', 'adds up')]
+         'total: increments that ended with a tensile principal effective stress', '0', 'adds up'), &
+      variable_t(S_NUCLEUS, 6, 'nucleus', 'd', '1', .true., 'ours', &
+         'strain from the centre of the elastic nucleus (rho_e > 0), compression positive', '0', &
+         'follows the strain, |d| <= rho_e')]
 contains
    !> Place of a parameter in PROPS, 0 if there is none of that name. Case does not matter, as in a namelist.
    pure integer function property_index(name) result(index)

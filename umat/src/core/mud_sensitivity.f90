@@ -18,13 +18,15 @@ module mud_sensitivity
    type :: change_t
       real(wp) :: sigma(6), z(6), r_in(6)   !< [kPa, -, -]
       real(wp) :: e, p_c                    !< [-, kPa]
-      real(wp) :: d_strain(6), d_pc         !< of the strain rate and the suction rate [-, kPa]
+      real(wp) :: d_strain(6), d_pc         !< of the strain rate that loads and the suction rate [-, kPa]
+      real(wp) :: d_aside(6)                !< of the strain rate beside it that is elastic (nucleus) [-]
    end type change_t
 
    !> What all directions share.
    type :: linearised_t
       logical :: held_p                     !< p' is at its lower bound: it does not follow the stress.
-      real(wp) :: e, p_c, d_v, d_pc, d_e(6)
+      real(wp) :: e, p_c, d_v, d_pc, d_e(6), d_aside(6)
+      logical :: beside                     !< There is an elastic strain rate beside (nucleus).
       type(bonding_t) :: bond
       real(wp) :: curvature(3)              !< of f [1/kPa2, 1/kPa, -]
       real(wp) :: e_c, kappa, r_norm
@@ -37,13 +39,15 @@ module mud_sensitivity
       real(wp) :: inverse(3, 3)
    end type linearised_t
 contains
-   !> Prepares the derivative of a rate w that was evaluated at (sigma, e, p_c) for (d_strain, d_pc).
-   pure subroutine linearise(par, bonded, w, sigma, e, p_c, d_strain, d_pc, lin)
+   !> Prepares the derivative of a rate w that was evaluated at (sigma, e, p_c) for (d_strain, d_pc), with an elastic
+   !> strain rate d_aside beside it.
+   pure subroutine linearise(par, bonded, w, sigma, e, p_c, d_strain, d_pc, lin, d_aside)
       type(params_t), intent(in) :: par
       logical, intent(in) :: bonded
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: sigma(6), e, p_c, d_strain(6), d_pc
       type(linearised_t), intent(inout) :: lin
+      real(wp), intent(in), optional :: d_aside(6)
       real(wp) :: m(3, 3), r2(6), cube
 
       lin%held_p = trace(sigma) < 3.0_wp*par%p_min
@@ -52,6 +56,8 @@ contains
       lin%d_v = trace(d_strain)
       lin%d_pc = d_pc
       lin%d_e = deviator(d_strain)
+      lin%beside = present(d_aside)
+      if (present(d_aside)) lin%d_aside = d_aside
       lin%bond = UNBONDED
       lin%curvature = 0.0_wp
       if (bonded) then
@@ -129,6 +135,7 @@ contains
          d_z = 0.0_wp
          d_eps_q = 0.0_wp
          d_sigma = 2.0_wp*d_e + dvolumetric*IDENTITY
+         if (lin%beside) call add_aside(w, lin, change, dk, dg, d_sigma)
          return
       end if
 
@@ -167,12 +174,25 @@ contains
 
       d_sigma = 2.0_wp*(d_e - (dg*w%l + w%g*dl)*w%n - (w%g*w%l)*dn) &
                 + (dvolumetric - dk_e*w%l*w%d - w%k_e*(dl*w%d + w%l*dd))*IDENTITY
+      if (lin%beside) call add_aside(w, lin, change, dk, dg, d_sigma)
       d_eps_q = SQRT_2_3*dl
       d_z = 0.0_wp
       if (par%fabric .and. w%d < 0.0_wp) then
          d_z = par%c_z*((dl*w%d + w%l*dd)*(par%z_max*w%n + w%z) + w%l*w%d*(par%z_max*dn + change%z))
       end if
    end subroutine change_of_rate
+
+   !> Adds the change of what the elastic strain beside gives.
+   pure subroutine add_aside(w, lin, change, dk, dg, d_sigma)
+      type(rate_t), intent(in) :: w
+      type(linearised_t), intent(in) :: lin
+      type(change_t), intent(in) :: change
+      real(wp), intent(in) :: dk, dg
+      real(wp), intent(inout) :: d_sigma(6)
+
+      d_sigma = d_sigma + 2.0_wp*(dg*deviator(lin%d_aside) + w%g*deviator(change%d_aside)) &
+                + (dk*trace(lin%d_aside) + w%k*trace(change%d_aside))*IDENTITY
+   end subroutine add_aside
 
    !> Change of K_e and of B while the isotropic mechanism acts.
    pure subroutine change_of_mechanism(par, w, lin, change, dp, dr, dk, df, dm_b, dk_e, db)

@@ -4,7 +4,7 @@ module mud_state
    use mud_registry, only: NSTATV, STATE_LAYOUT, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION, S_STATE_PARAMETER, &
       S_EPS_Q_P, S_EPS_Q_P_TOTAL, S_X_BEFORE, S_X_RUNNING, S_WAY_BACK, S_SUSPENDED, S_OPEN, S_LAST_STEP, S_FABRIC, &
       S_MEMORY, S_MEMORY_BEFORE, S_TURNING_POINT, S_DIRECTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, S_N_RATE, &
-      S_N_SUBSTEP, S_N_REJECT, S_N_RESEAT, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE
+      S_N_SUBSTEP, S_N_REJECT, S_N_RESEAT, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, S_NUCLEUS
    use mud_status, only: mud_status_t, fail, MUD_BAD_STATE, MUD_BAD_NSTATV, ON_STATEV
    use mud_tensor, only: is_finite
    implicit none (type, external)
@@ -15,6 +15,7 @@ module mud_state
 
    real(wp), parameter :: LARGEST_RATIO = 1.0e12_wp       !< A stress ratio beyond it is no state [-].
    real(wp), parameter :: LARGEST_FABRIC = 1.0e6_wp       !< Likewise; z_max is at most 1e3 [-].
+   real(wp), parameter :: LARGEST_NUCLEUS = 1.0_wp        !< Strain from the nucleus' centre; rho_e is at most 0.01 [-].
    real(wp), parameter :: LARGEST_DIRECTION = 1.01_wp     !< Components of a unit tensor [-].
 
    !> What the point remembers of its loading processes.
@@ -39,6 +40,7 @@ module mud_state
       real(wp) :: psi          !< state parameter [-]
       real(wp) :: eps_q_total  !< plastic shear of all processes [-]
       real(wp) :: last_step    !< size of the substep proposed last, in units of strain [-]
+      real(wp) :: nucleus(6)   !< strain from the centre of the elastic nucleus [-]
       logical :: open          !< held by the tension cut-off
       type(memory_t) :: memory
    end type state_t
@@ -80,6 +82,7 @@ contains
          call require(statev, S_MEMORY_BEFORE + i, -LARGEST_RATIO, LARGEST_RATIO, status)
          call require(statev, S_TURNING_POINT + i, -LARGEST_RATIO, LARGEST_RATIO, status)
          call require(statev, S_DIRECTION + i, -LARGEST_DIRECTION, LARGEST_DIRECTION, status)
+         call require(statev, S_NUCLEUS + i, -LARGEST_NUCLEUS, LARGEST_NUCLEUS, status)
       end do
       if (status%code /= 0) return
 
@@ -91,6 +94,7 @@ contains
       state%last_step = statev(S_LAST_STEP)
       state%open = statev(S_OPEN) > 0.5_wp
       state%z = statev(S_FABRIC:S_FABRIC + 5)
+      state%nucleus = statev(S_NUCLEUS:S_NUCLEUS + 5)
       state%memory%r_in = statev(S_MEMORY:S_MEMORY + 5)
       state%memory%r_before = statev(S_MEMORY_BEFORE:S_MEMORY_BEFORE + 5)
       state%memory%r_turn = statev(S_TURNING_POINT:S_TURNING_POINT + 5)
@@ -129,6 +133,7 @@ contains
       statev(S_LAST_STEP) = state%last_step
       statev(S_OPEN) = merge(1.0_wp, 0.0_wp, state%open)
       statev(S_FABRIC:S_FABRIC + 5) = state%z
+      statev(S_NUCLEUS:S_NUCLEUS + 5) = state%nucleus
       statev(S_MEMORY:S_MEMORY + 5) = state%memory%r_in
       statev(S_MEMORY_BEFORE:S_MEMORY_BEFORE + 5) = state%memory%r_before
       statev(S_TURNING_POINT:S_TURNING_POINT + 5) = state%memory%r_turn

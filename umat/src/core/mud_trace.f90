@@ -50,6 +50,7 @@ contains
       p_c = suction_at(inc, trial%time + h)
       sat = saturation(par, p_c, e)
       trace%rows(row) = substep_t(outcome, trial%mode, jump, merge(1, 0, landed), counters%rate, counters%reseat, &
-                                  guard_count(counters), counters%no_root, trial%time, h, error, e, sat%s_w, p_c, sigma)
+                                  guard_count(counters), counters%no_root, &
+                                  inc%from + inc%length*trial%time, inc%length*h, error, e, sat%s_w, p_c, sigma)
    end subroutine record_substep
 end module mud_trace
