@@ -4,7 +4,8 @@ program mud_replay
    use, intrinsic :: iso_c_binding, only: c_int, c_null_char
    use mud_interface, only: mud_report, mud_substep, mud_version, mud_update, mud_trace_increment, &
       mud_save_increment, mud_status_text, mud_message, mud_index, MUD_STATEV, MUD_SUBSTEP_ACCEPTED, &
-      MUD_SUBSTEP_REJECTED, MUD_MODE_ELASTIC, MUD_MODE_HELD, MUD_JUMP_RESEAT, MUD_JUMP_RESUME, MUD_JUMP_NEW
+      MUD_SUBSTEP_REJECTED, MUD_MODE_ELASTIC, MUD_MODE_HELD, MUD_MODE_NUCLEUS, MUD_JUMP_RESEAT, MUD_JUMP_RESUME, &
+      MUD_JUMP_NEW
    use replay_file, only: increment_t, read_increment
    use triax_fault, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
    use triax_text, only: from_c, read_number, short, whole
@@ -180,6 +181,7 @@ contains
             if (step%jump == MUD_JUMP_NEW) notes = trim(notes)//' new'
             if (step%mode == MUD_MODE_ELASTIC) notes = trim(notes)//' way back'
             if (step%mode == MUD_MODE_HELD) notes = trim(notes)//' held'
+            if (step%mode == MUD_MODE_NUCLEUS) notes = trim(notes)//' nucleus'
             if (step%landed /= 0) notes = trim(notes)//' event'
             if (step%n_no_root > 0) notes = trim(notes)//' no direction: '//whole(int(step%n_no_root))
             write (output_unit, '(i8, 2es10.3, 2x, a, es10.2, 2es13.5, 2f9.5, i9, i9, i7, a)') first + i - 1, &

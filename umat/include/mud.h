@@ -104,7 +104,10 @@ int mud_update_batch(const double *props, int nprops, int n, const double *stres
 /* --- failed increments ---------------------------------------------------------------------------------- */
 /* One substep that an update tried. */
 enum mud_outcome { MUD_SUBSTEP_REJECTED = 0, MUD_SUBSTEP_ACCEPTED = 1, MUD_SUBSTEP_FAILED = 2 /* the update ended */ };
-enum mud_mode { MUD_MODE_ORDINARY = 0, MUD_MODE_ELASTIC = 1 /* way back */, MUD_MODE_HELD = 2 /* by the cut-off */ };
+enum mud_mode {
+   MUD_MODE_ORDINARY = 0, MUD_MODE_ELASTIC = 1 /* way back */, MUD_MODE_HELD = 2 /* by the cut-off */,
+   MUD_MODE_NUCLEUS = 3   /* inside the elastic nucleus */
+};
 enum mud_jump {   /* of the memory, where the substep begins */
    MUD_JUMP_NONE = 0, MUD_JUMP_RESEAT = 1, MUD_JUMP_RESUME = 2, MUD_JUMP_NEW = 3 /* the cut-off let go */
 };

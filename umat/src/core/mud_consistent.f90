@@ -169,8 +169,8 @@ contains
       e = void_ratio_at(inc, time)
       call linearise_stage(par, inc, mode, w, point, time, e, lin)
       do j = 1, DIRECTIONS
-         call change_of_rate(par, w, lin, direction(inc, mode, j, time, e, y(:, j), r_in(:, j), driving), rates(1:6, j), &
-                             rates(7:12, j), rates(13, j), dn)
+         call change_of_rate(par, w, lin, direction(inc, mode, j, time, e, y(:, j), r_in(:, j), driving), &
+                             rates(1:6, j), rates(7:12, j), rates(13, j), dn)
       end do
    end subroutine change_of_stage
 
