@@ -1,0 +1,168 @@
+"""Noise on element-test paths: how far each memory rule is led away from the clean path, and at what cost.
+
+study.py [--program mud_oscillation] [--only tables]: runs the cases (about ten minutes on two cores), writes the CSV
+files, the pictures and the tables of README.md. With `--only tables` the CSV files are taken as they are.
+"""
+import argparse
+import concurrent.futures
+import csv
+import itertools
+import math
+import pathlib
+import subprocess
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+RULES = {"classic": (0, 0.0), "threshold": (1, 0.0), "repositioning": (2, 0.0), "resume": (3, 0.0),
+         "as_published": (4, 0.0), "nucleus": (1, 5e-5)}   # name: memory_rule, rho_e
+SIZES = [10.0 ** k for k in range(-9, -2)]
+SETTINGS = [dict(e=e, drained=drained, path=path, suction=suction) for e, drained, path, suction in itertools.product(
+    (0.735, 0.907), (False, True), ("straight", "turning"), (0.0, 100.0))]
+DEFAULT = dict(e=0.735, drained=False, path="straight", suction=0.0, noise="back", events=0, random_events=False,
+               size=0.0, growth=1.0, to=0.05, last=0.05, top=0.05, increment=1e-5, tolerance=1e-5, **{"from": 0.01})
+FIELDS = ["group", "rule", "rho_e", *DEFAULT, "failed", "distance", "eps_v", "substeps", "rejects", "rates", "reseats",
+          "halvings"]
+
+
+def case(group, name, rho_e=None, **values):
+    rule, radius = RULES[name]
+    return dict(DEFAULT, group=group, rule=name, memory=rule, rho_e=radius if rho_e is None else rho_e, **values)
+
+
+def single():
+    """One reversal at 0.01, 0.05 and 0.10; the answer is looked at 0.005 later."""
+    for name, setting, place, size in itertools.product(RULES, SETTINGS, (0.01, 0.05, 0.10), SIZES):
+        yield case("single", name, **setting, events=1, size=size, to=place, last=place + 0.005, top=0.105,
+                   **{"from": place})
+
+
+def many():
+    """40, 300 and 1000 reversals between 0.01 and 0.05, equally spaced and sized or at random."""
+    for name, setting, events, at_random, size in itertools.product(
+            RULES, SETTINGS, (40, 300, 1000), (False, True), (1e-7, 1e-6, 1e-5, 1e-4)):
+        # turning paths and suction with 300 only
+        if events != 300 and (setting["path"] == "turning" or setting["suction"] > 0.0):
+            continue
+        yield case("many", name, **setting, events=events, random_events=at_random, size=size)
+
+
+def transverse():
+    """Perturbations across the path and their return: shear, and six components at once (at constant volume only)."""
+    radii = (1e-5, 2e-5, 5e-5, 1e-4)
+    for e, drained, noise, size in itertools.product((0.735, 0.907), (False, True), ("shear", "six"),
+                                                     (1e-7, 1e-6, 1e-5, 1e-4)):
+        if drained and noise == "six":
+            continue
+        values = dict(e=e, drained=drained, noise=noise, size=size, events=300, random_events=True)
+        for name in ("classic", "threshold", "repositioning", "resume"):
+            yield case("transverse", name, **values)
+        for radius in radii:
+            yield case("transverse", "nucleus", radius, **values)
+
+
+def numerics():
+    """The same noise over increments and tolerances."""
+    tolerances = [10.0 ** -k for k in range(3, 9)]
+    numbers = [(h, tolerance) for h in (1e-5, 1e-3) for tolerance in tolerances] + [(1e-6, 1e-5), (1e-4, 1e-5)]
+    for name, e, drained, (increment, tolerance) in itertools.product(RULES, (0.735, 0.907), (False, True), numbers):
+        yield case("numerics", name, e=e, drained=drained, events=300, random_events=True, size=1e-6,
+                   increment=increment, tolerance=tolerance)
+
+
+def hard():
+    """Made to break the rule resume: reversals inside reversals, noise while unloading, cycles that grow."""
+    for name, e, drained in itertools.product(RULES, (0.735, 0.907), (False, True)):
+        for size in (1e-6, 1e-5, 1e-4):
+            yield case("nested", name, e=e, drained=drained, noise="nested", events=40, size=size)
+            yield case("unloading", name, e=e, drained=drained, path="unloading", events=40, size=size, to=0.025,
+                       last=0.025, top=0.02, **{"from": 0.02})
+        # 12 cycles back by 1e-6 to 2e-3 and forward again, 1e-3 of strain apart
+        yield case("growing", name, e=e, drained=drained, events=12, size=1e-6, growth=2.0, to=0.022, last=0.022)
+
+
+def clean_key(values, own_rule):
+    key = tuple(values[k] for k in ("e", "drained", "path", "suction", "last", "top")) + (values["increment"]
+                                                                                       * (values["path"] == "turning"),)
+    return key + ((values["memory"], values["rho_e"]) if own_rule else ())
+
+
+def namelist(name, values, **changed):
+    text = [f"&run id='{name}' rule={values['memory']} rho_e={values['rho_e']}"]
+    for key in DEFAULT:
+        value = changed.get(key, values[key])
+        text.append(f"{key}={value!r}" if isinstance(value, str) else
+                    f"{key}={'T' if value else 'F'}" if isinstance(value, bool) else f"{key}={value:.17g}")
+    return " ".join(text + [f"scheme={changed.get('scheme', 1)} /"])
+
+
+def run_all(program, lines):
+    """The answers by their number; two programs side by side."""
+    half = [subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) for _ in range(2)]
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        texts = pool.map(lambda i: half[i].communicate("\n".join(lines[i::2]) + "\n")[0], range(2))
+        answers = {int(row["id"]): row for text in texts for row in csv.DictReader(text.splitlines())}
+    if len(answers) != len(lines):
+        raise SystemExit(f"{len(lines)} cases, {len(answers)} answers")
+    return answers
+
+
+def stress(row):
+    return [float(row[f"s{ij}"]) for ij in ("11", "22", "33", "12", "13", "23")]
+
+
+def length(s):
+    return math.sqrt(sum(x * x for x in s[:3]) + 2.0 * sum(x * x for x in s[3:]))
+
+
+def compute(program, commit):
+    cases = [*single(), *many(), *transverse(), *numerics(), *hard()]
+    own = [c["group"] in ("unloading", "growing") for c in cases]
+    keys = {}
+    for c, o in zip(cases, own):
+        keys.setdefault(clean_key(c, o), c)
+    lines = [namelist(i, c) for i, c in enumerate(cases)]
+    # the clean path: the same without events, Dormand-Prince at 1e-9, no nucleus
+    for i, (key, c) in enumerate(keys.items()):
+        lines.append(namelist(len(cases) + i, dict(c, rho_e=0.0), events=0, noise="back", tolerance=1e-9, scheme=3,
+                              increment=c["increment"] if c["path"] == "turning" else 1e-4))
+    start = time.time()
+    answers = run_all(program, lines)
+    print(f"{len(cases)} cases and {len(keys)} clean paths, {time.time() - start:.0f} s")
+    clean = {key: answers[len(cases) + i] for i, key in enumerate(keys)}
+    rows = []
+    for i, (c, o) in enumerate(zip(cases, own)):
+        a, b = answers[i], clean[clean_key(c, o)]
+        difference = [x - y for x, y in zip(stress(a), stress(b))]
+        row = {k: c[k] for k in FIELDS if k in c}
+        row.update(failed=a["status"], distance=f"{length(difference) / length(stress(b)):.3g}",
+                   eps_v=f"{(float(b['e']) - float(a['e'])) / (1.0 + float(b['e'])):.3g}",
+                   **{k: a[k] for k in ("substeps", "rejects", "rates", "reseats", "halvings")})
+        rows.append(row)
+    for group in dict.fromkeys(c["group"] for c in cases):
+        chosen = [r for r in rows if r["group"] == group]
+        varied = [f for f in FIELDS[1:] if len({str(r[f]) for r in chosen}) > 1 or f in ("rule", "failed", "distance")]
+        fixed = {f: chosen[0][f] for f in FIELDS[1:] if f not in varied}
+        with open(HERE / f"{group}.csv", "w", encoding="utf-8", newline="") as file:
+            file.write(f"# made at commit {commit}\n# the same in every row: "
+                       + ", ".join(f"{k} {v}" for k, v in fixed.items()) + "\n")
+            writer = csv.DictWriter(file, varied, extrasaction="ignore", lineterminator="\n")
+            writer.writeheader()
+            writer.writerows({k: f"{v:g}" if isinstance(v, float) else int(v) if isinstance(v, bool) else v
+                              for k, v in r.items()} for r in chosen)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", default=ROOT / "build/release/verification/oscillation/mud_oscillation")
+    parser.add_argument("--only", choices=["tables"])
+    arguments = parser.parse_args()
+    if arguments.only is None:
+        commit = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True, text=True)
+        compute(arguments.program, commit.stdout.strip() or "unknown")
+    import report
+    report.write(HERE)
+
+
+if __name__ == "__main__":
+    main()
