@@ -6,7 +6,7 @@ module oscillation_path
    private
    public :: strain_at, direction_at, random_t, uniform, noise_steps, MAX_STEPS
 
-   integer, parameter :: MAX_STEPS = 8   !< Of one event.
+   integer, parameter :: MAX_STEPS = 64   !< Of one event.
    real(wp), parameter :: PI = 3.14159265358979324_wp
    real(wp), parameter :: TRIAXIAL(6) = [1.0_wp, -0.5_wp, -0.5_wp, 0.0_wp, 0.0_wp, 0.0_wp]   !< of axial strain 1
    real(wp), parameter :: SHEAR(6) = [0.0_wp, 0.0_wp, 0.0_wp, sqrt(0.75_wp), 0.0_wp, 0.0_wp] !< of the same length
@@ -80,6 +80,13 @@ contains
          steps(:, 3) = -0.5_wp*size*along
          steps(:, 4) = 0.25_wp*size*along
          steps(:, 5) = -0.25_wp*size*along
+      case ('inner')
+         ! back; thirty times a quarter forward and back again
+         n = 62
+         steps(:, 1) = -size*along
+         do i = 2, n - 1
+            steps(:, i) = (-1)**i*0.25_wp*size*along
+         end do
       case default
          error stop 'oscillation_path: no such noise'
       end select

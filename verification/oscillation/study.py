@@ -1,7 +1,7 @@
 """Noise on element-test paths: how far each memory rule is led away from the clean path, and at what cost.
 
-study.py [--program mud_oscillation] [--only tables]: runs the cases (about ten minutes on two cores), writes the CSV
-files, the pictures and the tables of README.md. With `--only tables` the CSV files are taken as they are.
+study.py [--groups ...]: runs the cases (about ten minutes on two cores) of the release build, writes the CSV files, the
+pictures and the tables of README.md. `--groups` alone takes the CSV files as they are.
 """
 import argparse
 import concurrent.futures
@@ -10,10 +10,15 @@ import itertools
 import math
 import pathlib
 import subprocess
+import sys
+import tempfile
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
+sys.path += [str(HERE), str(ROOT / "scripts")]
+import report  # noqa: E402
+import run_demo  # noqa: E402
 RULES = {"classic": (0, 0.0), "threshold": (1, 0.0), "repositioning": (2, 0.0), "resume": (3, 0.0),
          "as_published": (4, 0.0), "nucleus": (1, 5e-5)}   # name: memory_rule, rho_e
 SIZES = [10.0 ** k for k in range(-9, -2)]
@@ -21,13 +26,17 @@ SETTINGS = [dict(e=e, drained=drained, path=path, suction=suction) for e, draine
     (0.735, 0.907), (False, True), ("straight", "turning"), (0.0, 100.0))]
 DEFAULT = dict(e=0.735, drained=False, path="straight", suction=0.0, noise="back", events=0, random_events=False,
                size=0.0, growth=1.0, to=0.05, last=0.05, top=0.05, increment=1e-5, tolerance=1e-5, **{"from": 0.01})
+DRAINED_INCREMENT = 5e-5   # held stresses cost iterations
 FIELDS = ["group", "rule", "rho_e", *DEFAULT, "failed", "distance", "eps_v", "substeps", "rejects", "rates", "reseats",
           "halvings"]
 
 
 def case(group, name, rho_e=None, **values):
     rule, radius = RULES[name]
-    return dict(DEFAULT, group=group, rule=name, memory=rule, rho_e=radius if rho_e is None else rho_e, **values)
+    row = dict(DEFAULT, group=group, rule=name, memory=rule, rho_e=radius if rho_e is None else rho_e)
+    if values.get("drained"):
+        row["increment"] = DRAINED_INCREMENT
+    return row | values
 
 
 def single():
@@ -66,19 +75,32 @@ def numerics():
     tolerances = [10.0 ** -k for k in range(3, 9)]
     numbers = [(h, tolerance) for h in (1e-5, 1e-3) for tolerance in tolerances] + [(1e-6, 1e-5), (1e-4, 1e-5)]
     for name, e, drained, (increment, tolerance) in itertools.product(RULES, (0.735, 0.907), (False, True), numbers):
+        if drained and increment < 1e-4:
+            continue
         yield case("numerics", name, e=e, drained=drained, events=300, random_events=True, size=1e-6,
                    increment=increment, tolerance=tolerance)
 
 
 def hard():
-    """Made to break the rule resume: reversals inside reversals, noise while unloading, cycles that grow."""
+    """Made to break the rule resume: reversals inside reversals, few and many; noise while unloading; growing cycles."""
     for name, e, drained in itertools.product(RULES, (0.735, 0.907), (False, True)):
         for size in (1e-6, 1e-5, 1e-4):
             yield case("nested", name, e=e, drained=drained, noise="nested", events=40, size=size)
+            yield case("inner", name, e=e, drained=drained, noise="inner", events=10, size=size)
             yield case("unloading", name, e=e, drained=drained, path="unloading", events=40, size=size, to=0.025,
                        last=0.025, top=0.02, **{"from": 0.02})
         # 12 cycles back by 1e-6 to 2e-3 and forward again, 1e-3 of strain apart
         yield case("growing", name, e=e, drained=drained, events=12, size=1e-6, growth=2.0, to=0.022, last=0.022)
+
+
+def clean():
+    """No noise: what the rule and the nucleus do by themselves."""
+    for name, setting in itertools.product(RULES, SETTINGS):
+        for radius in (1e-5, 5e-5, 1e-4) if name == "nucleus" else (0.0,):
+            yield case("clean", name, radius, **setting)
+
+
+GROUPS = {f.__name__: f for f in (clean, single, many, transverse, numerics, hard)}
 
 
 def clean_key(values, own_rule):
@@ -115,8 +137,8 @@ def length(s):
     return math.sqrt(sum(x * x for x in s[:3]) + 2.0 * sum(x * x for x in s[3:]))
 
 
-def compute(program, commit):
-    cases = [*single(), *many(), *transverse(), *numerics(), *hard()]
+def compute(program, commit, groups):
+    cases = [c for name in groups for c in GROUPS[name]()]
     own = [c["group"] in ("unloading", "growing") for c in cases]
     keys = {}
     for c, o in zip(cases, own):
@@ -152,15 +174,34 @@ def compute(program, commit):
                               for k, v in r.items()} for r in chosen)
 
 
+def laboratory(program, commit):
+    """The drained tests of Verdugo & Ishihara with the elastic nucleus: misfit against the rows from 1 to 25 %."""
+    tests = run_demo.read_laboratory()
+    with tempfile.TemporaryDirectory() as folder, open(HERE / "laboratory.csv", "w", encoding="utf-8") as file:
+        file.write(f"# made at commit {commit}\n# misfit of q [%], of volumetric strain [points]\n")
+        file.write("test,rho_e,q,eps_v\n")
+        for name, radius in itertools.product(sorted(tests), (0.0, 1e-5, 5e-5, 1e-4)):
+            text = (ROOT / f"drivers/cases/vi_drained_{name}.nml").read_text(encoding="utf-8")
+            copy = pathlib.Path(folder) / f"{name}.nml"
+            copy.write_text(text.replace("'../materials/toyoura.nml'",
+                                         f"'{run_demo.MATERIAL}'\n   rho_e = {radius}"), encoding="utf-8")
+            run = run_demo.run_case(program, copy, pathlib.Path(folder) / "out.csv")
+            q, volume = run_demo.misfit(run, tests[name])
+            file.write(f"{name},{radius:g},{q:.3f},{volume:.4f}\n")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", default=ROOT / "build/release/verification/oscillation/mud_oscillation")
-    parser.add_argument("--only", choices=["tables"])
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    parser.add_argument("--groups", nargs="*", choices=[*GROUPS, "laboratory"], default=[*GROUPS, "laboratory"],
+                        help="what to run again; nothing: only the tables and the pictures")
     arguments = parser.parse_args()
-    if arguments.only is None:
-        commit = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True, text=True)
-        compute(arguments.program, commit.stdout.strip() or "unknown")
-    import report
+    commit = subprocess.run(["git", "describe", "--always"], cwd=ROOT, capture_output=True, text=True).stdout.strip()
+    groups = [g for g in arguments.groups if g != "laboratory"]
+    if groups:
+        compute(arguments.build / "verification/oscillation/mud_oscillation", commit or "unknown", groups)
+    if "laboratory" in arguments.groups:
+        laboratory(arguments.build / "drivers/mud_triax", commit or "unknown")
     report.write(HERE)
 
 
