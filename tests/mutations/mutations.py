@@ -5,6 +5,7 @@ INCREMENT, REVERSAL, SUBSTEP = "core/mud_increment.f90", "core/mud_reversal.f90"
 FLOW, HARDENING, CRITICAL = "core/mud_flow.f90", "core/mud_hardening.f90", "core/mud_critical_state.f90"
 RETENTION, BONDING, ELASTIC = "core/mud_retention.f90", "core/mud_bonding.f90", "core/mud_elastic.f90"
 PARAMS, REGISTRY, STATE = "core/mud_params.f90", "core/mud_registry.f90", "core/mud_state.f90"
+CONSISTENT = "core/mud_consistent.f90"
 
 MUTATIONS = [
     # those the issue names
@@ -102,6 +103,13 @@ MUTATIONS = [
      (POINT, "state%open = rise(inc, trial%w(1)) <= CLOSING",
       "state%open = rise(inc, trial%w(1)) <= huge(1.0_wp) + CLOSING")),
     ("tension is not reported", (POINT, "if (has_tension(state1%sigma)) counters%tensile = 1", "continue")),
+    # elastic nucleus
+    ("the nucleus forgets the strain inside", (POINT, "whole%nucleus + share*whole%d_strain", "whole%nucleus + 0.0_wp*share")),
+    ("strain beside the loading direction is lost",
+     (INCREMENT, "aside = inc%d_strain - loading", "aside = 0.0_wp*loading")),
+    ("no bounding surface inside the nucleus", (POINT, "EXCESS = 0.2_wp", "EXCESS = 1.0e9_wp")),
+    ("the tangent does not know where the nucleus ends",
+     (CONSISTENT, "change = side*change_of_exit", "change = 0.0_wp*side*change_of_exit")),
     # tables
     ("two parameters swapped", (PARAMS, "params%n_b = props(P_N_B)", "params%n_b = props(P_N_D)")),
     ("a default mistyped", (REGISTRY, "3370.0_wp", "3730.0_wp")),

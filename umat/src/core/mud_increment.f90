@@ -18,6 +18,9 @@ module mud_increment
    integer, parameter :: MODE_HELD = 2   !< A substep held at p_min by the tension cut-off; see MODE_* of mud_rates.
    integer, parameter :: MODE_NUCLEUS = 3   !< A substep inside the elastic nucleus: MODE_ELASTIC, memory at rest.
    integer, parameter :: NY = 13         !< Length of the integrated vector: sigma'(6), z(6), plastic shear.
+   !> A strain across the nucleus, whose part along nu is rounding of either sign, does not load: it would look like a
+   !> reversal [-].
+   real(wp), parameter :: ACROSS = 1.0e-12_wp
    real(wp), parameter :: PLASTIC_SHEAR_SCALE = 0.01_wp   !< Of the error norm [-].
 
    !> What stays the same through an update; with an elastic nucleus, through one of its phases.
@@ -85,12 +88,13 @@ contains
       integer, intent(in) :: mode
       real(wp), intent(in) :: time
       real(wp), intent(out) :: loading(6), aside(6)
-      real(wp) :: nu(6)
+      real(wp) :: nu(6), along
 
       loading = 0.0_wp
       if (mode /= MODE_NUCLEUS) then
          nu = loading_direction(inc%rho, inc%nucleus, inc%d_strain, time)
-         loading = ddot(nu, inc%d_strain)*nu
+         along = ddot(nu, inc%d_strain)
+         if (along > ACROSS*norm(inc%d_strain)) loading = along*nu
       end if
       aside = inc%d_strain - loading
    end subroutine loading_strain

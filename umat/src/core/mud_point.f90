@@ -500,8 +500,8 @@ contains
       end if
    end subroutine accept_substep
 
-   !> Shortens an accepted substep so that it lands where p' reaches p_min, where an elastic way back arrives, or where
-   !> a held point would close.
+   !> Shortens an accepted substep so that it lands where p' reaches p_min, where an elastic way back arrives, where a
+   !> held point would close, or where r would go too far inside the nucleus.
    pure subroutine stop_at_event(par, inc, memory, h, trial, counters, crossed)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -515,12 +515,10 @@ contains
       select case (trial%mode)
       case (MODE_HELD)
          call land_on(par, inc, EVENT_CLOSES, memory, h, trial, counters, crossed)
-      case (MODE_ELASTIC)
+      case (MODE_ELASTIC, MODE_NUCLEUS)
          if (par%cutoff) call land_on(par, inc, EVENT_OPENS, memory, h, trial, counters, crossed)
-         call land_on(par, inc, EVENT_ARRIVES, memory, h, trial, counters, crossed)
-      case (MODE_NUCLEUS)
-         if (par%cutoff) call land_on(par, inc, EVENT_OPENS, memory, h, trial, counters, crossed)
-         call land_on(par, inc, EVENT_BOUNDS, memory, h, trial, counters, crossed)
+         call land_on(par, inc, merge(EVENT_ARRIVES, EVENT_BOUNDS, trial%mode == MODE_ELASTIC), memory, h, trial, &
+                      counters, crossed)
       case default
          if (par%cutoff) call land_on(par, inc, EVENT_OPENS, memory, h, trial, counters, crossed)
       end select

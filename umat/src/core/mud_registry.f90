@@ -197,7 +197,7 @@ module mud_registry
          '1: isotropic mechanism, eq. (4); 0: none'), &
       property_t(P_LODE, 'lode', 'lode', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 1.0_wp, 'rebuilt', &
          '1: strength depends on the Lode angle; 0: circle of M_c'), &
-      property_t(P_MEMORY_RULE, 'memory_rule', 'rule', '1', KIND_OPTION, 0.0_wp, 4.0_wp, 1.0_wp, 'paper', &
+      property_t(P_MEMORY_RULE, 'memory_rule', 'rule', '1', KIND_OPTION, 0.0_wp, 4.0_wp, 3.0_wp, 'ours', &
          '0 classic, 1 threshold, 2 repositioning, 3 resume, 4 as_published'), &
       property_t(P_EPS_HAT, 'eps_hat', 'eps_hat', '1', KIND_REAL, 1e-12_wp, 1.0_wp, 0.0001_wp, 'paper', &
          'plastic shear below which a process counts as an oscillation, eq. (16); value of Dafalias & Taiebat 2016'), &
