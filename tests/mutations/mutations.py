@@ -104,7 +104,8 @@ MUTATIONS = [
       "state%open = rise(inc, trial%w(1)) <= huge(1.0_wp) + CLOSING")),
     ("tension is not reported", (POINT, "if (has_tension(state1%sigma)) counters%tensile = 1", "continue")),
     # elastic nucleus
-    ("the nucleus forgets the strain inside", (POINT, "whole%nucleus + share*whole%d_strain", "whole%nucleus + 0.0_wp*share")),
+    ("the nucleus forgets the strain inside",
+     (POINT, "whole%nucleus + share*whole%d_strain", "whole%nucleus + 0.0_wp*share")),
     ("strain beside the loading direction is lost",
      (INCREMENT, "aside = inc%d_strain - loading", "aside = 0.0_wp*loading")),
     ("no bounding surface inside the nucleus", (POINT, "EXCESS = 0.2_wp", "EXCESS = 1.0e9_wp")),

@@ -9,6 +9,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 
 RULES = ("classic", "threshold", "repositioning", "resume", "as_published", "nucleus")
 COLOURS = dict(zip(RULES, ("#555555", "#0b3c6f", "#3a8f6a", "#c8553d", "#b0b0b0", "#8a5a9e")))
+WIDTHS = {"classic": 5.0, "threshold": 3.2}   # drawn first: curves that others hide stay visible
 FLOOR = 1e-5   # % of distance that is drawn as "none": below the integration's own error
 TRUE = {"1": "drained", "0": "undrained"}
 
@@ -16,7 +17,7 @@ TRUE = {"1": "drained", "0": "undrained"}
 def read(folder, name):
     with open(folder / f"{name}.csv", encoding="utf-8") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    return [{k: v if re.search("[a-z]{3}", v) else float(v) for k, v in row.items()} for row in rows]
+    return [{k: v if re.search("[A-Za-z]{3}", v) else float(v) for k, v in row.items()} for row in rows]
 
 
 def short(value):
@@ -114,7 +115,7 @@ def numerics_table(rows):
             same = chosen(rows, increment=increment, tolerance=tolerance)
             if same:
                 lines.append([size_text(increment), size_text(tolerance)] + [
-                    f"{worst(part)}, {statistics.median(r['substeps'] for r in part):.0f}"
+                    f"{worst(part)}, {statistics.median(r['substeps'] for r in part):.0f}" if part else "not run"
                     for rule in rules for part in [chosen(same, rule=rule)]])
     return table(["increment", "tolerance", *rules], lines)
 
@@ -144,7 +145,7 @@ def clean_table(rows):
 def laboratory_table(rows):
     radii = values_of(rows, "rho_e")
     return table(["test", *(f"rho_e {size_text(r) if r else 0}" for r in radii)], [
-        [f"TMD{int(test)}" if isinstance(test, float) else test]
+        [test]
         + [f"{r['q']:.2f} / {r['eps_v']:.3f}" for radius in radii for r in chosen(rows, test=test, rho_e=radius)]
         for test in dict.fromkeys(r["test"] for r in rows)])
 
@@ -157,7 +158,7 @@ def draw(folder, name, panels, label, legend_columns):
     for axis, (title, curves) in zip(axes.flat, panels.items()):
         for curve, (colour, style, points) in curves.items():
             axis.loglog([p[0] for p in points], [max(100 * p[1], FLOOR) for p in points], style, color=colour,
-                        label=curve, marker="o", ms=3.5)
+                        label=curve, marker="o", ms=3.5, lw=WIDTHS.get(curve, 1.5))
         axis.axhline(0.1, color="#999999", lw=0.7)
         axis.set_title(title)
     for axis in axes[1]:

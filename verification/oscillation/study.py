@@ -9,6 +9,7 @@ import csv
 import itertools
 import math
 import pathlib
+import random
 import subprocess
 import sys
 import tempfile
@@ -75,7 +76,8 @@ def numerics():
     tolerances = [10.0 ** -k for k in range(3, 9)]
     numbers = [(h, tolerance) for h in (1e-5, 1e-3) for tolerance in tolerances] + [(1e-6, 1e-5), (1e-4, 1e-5)]
     for name, e, drained, (increment, tolerance) in itertools.product(RULES, (0.735, 0.907), (False, True), numbers):
-        if drained and increment < 1e-4:
+        # held stresses in few and large increments only; as_published goes on at its minimum substep for ever
+        if drained and increment < 1e-4 or name == "as_published" and tolerance < 1e-6 * 0.99:
             continue
         yield case("numerics", name, e=e, drained=drained, events=300, random_events=True, size=1e-6,
                    increment=increment, tolerance=tolerance)
@@ -100,7 +102,7 @@ def clean():
             yield case("clean", name, radius, **setting)
 
 
-GROUPS = {f.__name__: f for f in (clean, single, many, transverse, numerics, hard)}
+GROUPS = {f.__name__: f for f in (clean, transverse, hard, single, many, numerics)}
 
 
 def clean_key(values, own_rule):
@@ -120,9 +122,10 @@ def namelist(name, values, **changed):
 
 def run_all(program, lines):
     """The answers by their number; two programs side by side."""
+    order = random.Random(1).sample(lines, len(lines))   # shares the heavy ones out
     half = [subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) for _ in range(2)]
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        texts = pool.map(lambda i: half[i].communicate("\n".join(lines[i::2]) + "\n")[0], range(2))
+        texts = pool.map(lambda i: half[i].communicate("\n".join(order[i::2]) + "\n")[0], range(2))
         answers = {int(row["id"]): row for text in texts for row in csv.DictReader(text.splitlines())}
     if len(answers) != len(lines):
         raise SystemExit(f"{len(lines)} cases, {len(answers)} answers")
@@ -137,8 +140,8 @@ def length(s):
     return math.sqrt(sum(x * x for x in s[:3]) + 2.0 * sum(x * x for x in s[3:]))
 
 
-def compute(program, commit, groups):
-    cases = [c for name in groups for c in GROUPS[name]()]
+def compute(program, commit, name):
+    cases = [*GROUPS[name]()]
     own = [c["group"] in ("unloading", "growing") for c in cases]
     keys = {}
     for c, o in zip(cases, own):
@@ -150,7 +153,7 @@ def compute(program, commit, groups):
                               increment=c["increment"] if c["path"] == "turning" else 1e-4))
     start = time.time()
     answers = run_all(program, lines)
-    print(f"{len(cases)} cases and {len(keys)} clean paths, {time.time() - start:.0f} s")
+    print(f"{name}: {len(cases)} cases and {len(keys)} clean paths, {time.time() - start:.0f} s", flush=True)
     clean = {key: answers[len(cases) + i] for i, key in enumerate(keys)}
     rows = []
     for i, (c, o) in enumerate(zip(cases, own)):
@@ -197,9 +200,9 @@ def main():
                         help="what to run again; nothing: only the tables and the pictures")
     arguments = parser.parse_args()
     commit = subprocess.run(["git", "describe", "--always"], cwd=ROOT, capture_output=True, text=True).stdout.strip()
-    groups = [g for g in arguments.groups if g != "laboratory"]
-    if groups:
-        compute(arguments.build / "verification/oscillation/mud_oscillation", commit or "unknown", groups)
+    for group in arguments.groups:
+        if group in GROUPS:
+            compute(arguments.build / "verification/oscillation/mud_oscillation", commit or "unknown", group)
     if "laboratory" in arguments.groups:
         laboratory(arguments.build / "drivers/mud_triax", commit or "unknown")
     report.write(HERE)
