@@ -175,7 +175,7 @@ def panels_of(rows, curves, **fixed):
     """Dense and loose, undrained and drained."""
     return {f"e {e:.3f}, {TRUE[f'{drained:.0f}']}": {
         name: (colour, style, [(s, max(r["distance"] for r in part)) for s in values_of(rows, "size")
-                               if (part := chosen(rows, e=e, drained=drained, size=s, **which, **fixed))])
+                               if (part := chosen(rows, e=e, drained=drained, size=s, failed=0, **which, **fixed))])
         for name, (colour, style, which) in curves.items()} for e in (0.735, 0.907) for drained in (0.0, 1.0)}
 
 
