@@ -24,8 +24,9 @@ module mud_consistent
    !> Derivatives of what drives the increment, or one of its phases, along the seven directions.
    type :: driving_t
       real(wp) :: d_strain(6, DIRECTIONS)    !< of its strain
+      real(wp) :: d_v(DIRECTIONS)            !< of its volume
       real(wp) :: d_pc(DIRECTIONS)           !< of its suction step
-      real(wp) :: e0(DIRECTIONS)             !< of its first void ratio
+      real(wp) :: e0(DIRECTIONS)             !< of ln(1 + e) at its start
       real(wp) :: p_c0(DIRECTIONS)           !< of its first suction
       real(wp) :: nucleus(6, DIRECTIONS)     !< of the strain from the nucleus' centre at its start
    end type driving_t
@@ -56,6 +57,7 @@ contains
       do j = 1, 6
          driving%d_strain(j, j) = merge(1.0_wp, 0.5_wp, j <= 3)
       end do
+      driving%d_v = [1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
       driving%d_pc = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp]
       driving%e0 = 0.0_wp
       driving%p_c0 = 0.0_wp
@@ -85,7 +87,7 @@ contains
       call scale_driving(whole, share, -1.0_wp, sens%driving)
       do j = 1, DIRECTIONS
          sens%driving%nucleus(:, j) = inside%d_strain(:, j)
-         sens%driving%e0(j) = -(1.0_wp + void_ratio_at(whole, share))*trace(inside%d_strain(:, j))
+         sens%driving%e0(j) = -inside%d_v(j)
          sens%driving%p_c0(j) = inside%d_pc(j)
       end do
    end subroutine leave_nucleus
@@ -106,6 +108,7 @@ contains
             change = side*change_of_exit(whole%nucleus, whole%d_strain, share, AT_REST, driving%d_strain(:, j))
          end if
          driving%d_strain(:, j) = length*driving%d_strain(:, j) + change*whole%d_strain
+         driving%d_v(j) = length*driving%d_v(j) + change*whole%d_v
          driving%d_pc(j) = length*driving%d_pc(j) + change*whole%d_pc
       end do
    end subroutine scale_driving
@@ -203,14 +206,13 @@ contains
       change%z = y(7:12)
       change%r_in = r_in
       change%d_strain = driving%d_strain(:, j)
-      change%d_aside = 0.0_wp
+      change%e = (1.0_wp + e)*(driving%e0(j) - time*driving%d_v(j))
+      change%d_pc = driving%d_pc(j)
+      change%p_c = driving%p_c0(j) + time*driving%d_pc(j)
       if (has_aside(inc, mode)) then
          call change_of_loading_strain(inc, mode, time, driving%d_strain(:, j), driving%nucleus(:, j), &
                                        change%d_strain, change%d_aside)
       end if
-      change%e = (1.0_wp + e)*(driving%e0(j)/(1.0_wp + inc%e0) - time*trace(driving%d_strain(:, j)))
-      change%d_pc = driving%d_pc(j)
-      change%p_c = driving%p_c0(j) + time*driving%d_pc(j)
    end function direction
 
    !> Derivatives of the memory across its jump at the start of a substep; `before` is the memory ahead of it and
