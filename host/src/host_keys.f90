@@ -52,7 +52,7 @@ module host_keys
       key_t('fluids', 'eta_a', 'n', '1.8e-8', TINY_, BIG, 'viscosity of air [kPa s]'), &
       key_t('fluids', 'p_ref', 'n', '101.325', TINY_, BIG, 'absolute pressure where p_a = 0 [kPa]'), &
       key_t('mud', 'name', 't', REQUIRED, 0, 0, 'name that regions call the material by'), &
-      key_t('mud', 'call', 'w', 'mud_update', 0, 0, 'mud_update|umat: door to the library'), &
+      key_t('mud', 'material_call', 'w', 'mud_update', 0, 0, 'mud_update|umat: door to the library'), &
       key_t('mud', 'file', 't', NONE, 0, 0, 'material file; every parameter of the library is a key too'), &
       key_t('elastic', 'name', 't', REQUIRED, 0, 0, 'name that regions call the material by'), &
       key_t('elastic', 'young', 'n', REQUIRED, TINY_, BIG, 'Young''s modulus [kPa]'), &

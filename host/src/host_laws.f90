@@ -42,11 +42,12 @@ contains
       integer :: i
 
       rest = group
-      rest%entries = pack(group%entries(:group%count), [(lower_case(group%entries(i)%key) /= 'call', i=1, group%count)])
+      rest%entries = pack(group%entries(:group%count), &
+                          [(lower_case(group%entries(i)%key) /= 'material_call', i=1, group%count)])
       rest%count = size(rest%entries)
       call read_material(rest, soil, title, fault)
       if (fault%code /= 0) return
-      call make_mud(soil%props, soil%n_statev, word_is(group, 'call', 'umat'), law)
+      call make_mud(soil%props, soil%n_statev, word_is(group, 'material_call', 'umat'), law)
       slot%name = text_of(group, 'name')
       allocate (slot%law, source=law)
       if (law%tangent == 0) call raise(fault, EXIT_INPUT, at_line(group%file, group%line)// &

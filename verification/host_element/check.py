@@ -26,7 +26,7 @@ for name, case in (("saturated", root / "drivers/cases/undrained_e735_p100.nml")
     for call in ("mud_update", "umat"):
         if args.quick and call == "umat" and name == "saturated":
             continue
-        steps = [("call = 'mud_update'", f"call = '{call}'")]
+        steps = [("material_call = 'mud_update'", f"material_call = '{call}'")]
         h = read(run(here / f"{name}.nml", steps) / "histories.csv")
         strain = 0.1 * h["time"] / h["time"][-1]
         at = [int(np.argmin(abs(d["eps_a"] - e))) for e in strain]
