@@ -166,14 +166,15 @@ contains
       type(driving_t), intent(in) :: driving
       real(wp), intent(out) :: rates(NY, DIRECTIONS)
       type(linearised_t) :: lin
+      type(change_t) :: change
       real(wp) :: dn(6), e
       integer :: j
 
       e = void_ratio_at(inc, time)
       call linearise_stage(par, inc, mode, w, point, time, e, lin)
       do j = 1, DIRECTIONS
-         call change_of_rate(par, w, lin, direction(inc, mode, j, time, e, y(:, j), r_in(:, j), driving), &
-                             rates(1:6, j), rates(7:12, j), rates(13, j), dn)
+         call direction(inc, mode, j, time, e, y(:, j), r_in(:, j), driving, change)
+         call change_of_rate(par, w, lin, change, rates(1:6, j), rates(7:12, j), rates(13, j), dn)
       end do
    end subroutine change_of_stage
 
@@ -195,12 +196,12 @@ contains
    end subroutine linearise_stage
 
    !> How the arguments of a rate change along a direction.
-   pure function direction(inc, mode, j, time, e, y, r_in, driving) result(change)
+   pure subroutine direction(inc, mode, j, time, e, y, r_in, driving, change)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode, j
       real(wp), intent(in) :: time, e, y(NY), r_in(6)
       type(driving_t), intent(in) :: driving
-      type(change_t) :: change
+      type(change_t), intent(inout) :: change
 
       change%sigma = y(1:6)
       change%z = y(7:12)
@@ -213,7 +214,7 @@ contains
          call change_of_loading_strain(inc, mode, time, driving%d_strain(:, j), driving%nucleus(:, j), &
                                        change%d_strain, change%d_aside)
       end if
-   end function direction
+   end subroutine direction
 
    !> Derivatives of the memory across its jump at the start of a substep; `before` is the memory ahead of it and
    !> `trigger` the rate that made it jump.
@@ -226,6 +227,7 @@ contains
       type(trial_t), intent(in) :: trial
       type(sensitivity_t), intent(inout) :: sens
       type(linearised_t) :: lin
+      type(change_t) :: change
       real(wp) :: p, r(6), dr(6), dn(6), d_sigma(6), d_z(6), d_eps_q, m, dm, e, old_r_in(6), new_r_in(6)
       integer :: j
       logical :: held_p, inner
@@ -259,9 +261,8 @@ contains
                   new_r_in = (1.0_wp - m)*dr + m*sens%r_before(:, j) + dm*(before%r_before - r)
                end if
             case (RULE_REPOSITIONING)
-               call change_of_rate(par, trigger, lin, &
-                                   direction(inc, MODE_ORDINARY, j, trial%time, e, sens%y(:, j), old_r_in, &
-                                             sens%driving), d_sigma, d_z, d_eps_q, dn)
+               call direction(inc, MODE_ORDINARY, j, trial%time, e, sens%y(:, j), old_r_in, sens%driving, change)
+               call change_of_rate(par, trigger, lin, change, d_sigma, d_z, d_eps_q, dn)
                new_r_in = dr - before%x_before*(m*dn + dm*trigger%n)
             end select
          end if
