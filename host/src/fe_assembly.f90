@@ -1,6 +1,7 @@
 !> Residual, its scale and its tangent for the whole mesh. Elements are computed in parallel and summed in a fixed
 !> order, so that the result does not depend on the number of threads.
 module fe_assembly
+   use host_clock, only: clock
    use host_kinds, only: wp
    use fe_dofs, only: dofs_t
    use fe_element, only: element_t, compute_element
@@ -25,6 +26,7 @@ module fe_assembly
       integer :: bad_element = 0, bad_point = 0
       type(answer_t) :: bad
       integer :: effort = 0
+      real(wp) :: material = 0.0_wp                  !< Share of the material in the time of the last pass.
    end type assembly_t
 contains
    subroutine make_assembly(model, dofs, pattern, assembly)
@@ -53,18 +55,23 @@ contains
       logical, intent(in) :: with_slope
       type(assembly_t), intent(inout) :: assembly
       integer, allocatable :: bad_point(:), effort(:)
+      real(wp) :: seconds, t0
       type(element_t) :: out
       integer :: e, m, ne, threads
 
       m = size(dofs%element, 1)
       ne = size(dofs%element, 2)
       allocate (bad_point(ne), effort(ne), source=0)
+      seconds = 0.0_wp
+      t0 = clock()
       threads = merge(model%threads, 1, ne >= WORTH_THREADS)
-      !$omp parallel do num_threads(threads) schedule(dynamic, 8) default(shared) private(e) firstprivate(out)
+      !$omp parallel do num_threads(threads) schedule(dynamic, 8) default(shared) private(e) firstprivate(out) &
+      !$omp reduction(+:seconds)
       do e = 1, ne
          call compute_element(model, e, scheme, old, new, with_slope, out)
          bad_point(e) = out%bad_point
          effort(e) = out%effort
+         seconds = seconds + out%seconds
          if (model%with_c) call balance_of_water(model, assembly%air, e, m, with_slope, out)
          assembly%r(:, e) = out%r(:m)
          assembly%stretch(:, e) = out%stretch(:m)
@@ -81,6 +88,8 @@ contains
          return
       end if
       call add_up(threads, pattern, with_slope, assembly)
+      ! The threads share the loop evenly.
+      assembly%material = min(1.0_wp, seconds/threads/max(clock() - t0, tiny(1.0_wp)))
    end subroutine assemble
 
    !> Where the air pressure is prescribed the flow of air is unknown, so that the sum of the balances is replaced by

@@ -1,5 +1,6 @@
 !> Residual and exact tangent of one element: B^T response and B^T slope B over its quadrature points.
 module fe_element
+   use host_clock, only: clock, lap
    use host_kinds, only: wp, FIELDS
    use fe_material, only: answer_t, TOO_LARGE
    use fe_model, only: model_t, state_t, gauss_t
@@ -19,6 +20,7 @@ module fe_element
       type(answer_t) :: bad                      !< Answer of the first point that failed.
       integer :: bad_point = 0                   !< Its number, 0: none.
       integer :: effort = 0
+      real(wp) :: seconds = 0.0_wp               !< In the material.
    end type element_t
 contains
    !> Unknowns of an element.
@@ -40,7 +42,7 @@ contains
       type(answer_t) :: answer
       type(kinematics_t) :: k
       type(pore_t) :: pore
-      real(wp) :: x0(FIELDS, 6), x1(FIELDS, 6), v(FIELDS, 6), a(2, 6), strain(6), response(PLACES)
+      real(wp) :: x0(FIELDS, 6), x1(FIELDS, 6), v(FIELDS, 6), a(2, 6), strain(6), response(PLACES), t0
       real(wp) :: slope(PLACES, PLACES), part(PLACES, MAX_DOF), rate, drift(2)
       integer :: g, p, n, node(6)
 
@@ -56,6 +58,7 @@ contains
       out%k = 0.0_wp
       out%bad_point = 0
       out%effort = 0
+      out%seconds = 0.0_wp
       strain = 0.0_wp
       do g = 1, model%rule
          p = (element - 1)*model%rule + g
@@ -72,8 +75,10 @@ contains
                return
             end if
             associate (law => model%materials(region%material)%law)
+               t0 = clock()
                call law%update(old%stress(:, p), old%state(:law%n_state, p), strain, k%c0, k%c1 - k%c0, with_slope, &
                                answer, new%state(:law%n_state, p))
+               call lap(out%seconds, t0)
             end associate
             out%effort = out%effort + answer%effort
             if (answer%code /= 0) then

@@ -36,6 +36,8 @@ module host_keys
       key_t('scene', 'saturation_rate', 'w', 'full', 0, 0, 'full|suction: with dS_w/de, or by suction alone'), &
       key_t('scene', 'initial_flow', 'w', 'drain', 0, 0, 'drain|subtract: subtract: flow at the start is kept up'), &
       key_t('scene', 'threads', 'i', '0', 0, 1024, 'threads of the element loop; 0: OMP_NUM_THREADS'), &
+      key_t('scene', 'checkpoint_steps', 'i', '0', 0, 1000000000, 'checkpoint.h5 after every so many steps; 0: none'), &
+      key_t('scene', 'checkpoint_seconds', 'n', '0', 0, BIG, 'and after so much wall time [s]; 0: none'), &
       key_t('mesh', 'file', 't', NONE, 0, 0, 'Gmsh 4.1 text mesh, seen from the scene; or a built-in one:'), &
       key_t('mesh', 'r', 'N', NONE, -BIG, BIG, 'breaks along r [m], ascending'), &
       key_t('mesh', 'r_cells', 'I', NONE, 1, 100000, 'cells between two breaks'), &
@@ -119,6 +121,7 @@ module host_keys
       key_t('stage', 'start', 'w', 'solve', 0, 0, 'solve|zero: accelerations at the start of a dynamic stage'), &
       key_t('stage', 'zero_displacements', 'w', 'no', 0, 0, 'no|yes: at the end of the stage'), &
       key_t('stage', 'every', 'i', '1', 1, 1000000, 'histories are written every so many steps'), &
+      key_t('stage', 'fields', 'i', '0', 0, 1000000, 'fields too; 0: at the end of the stage alone'), &
       key_t('fix', 'group', 't', REQUIRED, 0, 0, 'boundary, region or node group'), &
       key_t('fix', 'field', 'w', REQUIRED, 0, 0, 'u_r|u_z|p_w|p_c|p_a: what is prescribed'), &
       key_t('fix', 'value', 'n', '0', -BIG, BIG, 'its value [m, kPa]'), &

@@ -4,7 +4,8 @@ module host_kinds
    implicit none (type, external)
    private
    public :: wp, PI, FIELDS, FIELD_NAMES
-   public :: EXIT_MESH, EXIT_GROUP, EXIT_ELEMENT, EXIT_FREE_BODY, EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_SOLVER
+   public :: EXIT_MESH, EXIT_GROUP, EXIT_ELEMENT, EXIT_FREE_BODY, EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_SOLVER, &
+             EXIT_RESTART
 
    real(wp), parameter :: PI = 3.14159265358979323846_wp
    integer, parameter :: FIELDS = 4   !< u_r, u_z, p_w, p_c
@@ -18,4 +19,5 @@ module host_kinds
    integer, parameter :: EXIT_CONVERGENCE = 14  !< No convergence with the smallest step.
    integer, parameter :: EXIT_MATERIAL = 15     !< The material refuses the smallest step.
    integer, parameter :: EXIT_SOLVER = 16       !< The linear solver ran out of memory.
+   integer, parameter :: EXIT_RESTART = 17      !< A checkpoint that is damaged, foreign, or of another scene or version.
 end module host_kinds

@@ -1,14 +1,16 @@
-!> Text output: histories at points, the ledger, and the fields at the end of every stage.
+!> Output: histories at points, the ledger, and the fields at the end of every stage and in between.
 module host_output
-   use host_kinds, only: wp
+   use host_kinds, only: wp, EXIT_RESTART
    use host_energy, only: ledger_t, imbalance
+   use host_results, only: frames_t, write_mesh, write_frame, all_pressures
    use host_scene, only: scene_t
    use fe_model, only: state_t, model_t
+   use io_files, only: cut_file, settle_file
    use newton, only: log_t
    use triax_fault, only: fault_t, raise, EXIT_OUTPUT
    implicit none (type, external)
    private
-   public :: output_t, open_output, write_history, write_ledger, write_fields, close_output
+   public :: output_t, open_output, write_history, write_ledger, write_fields, close_output, settle_output, write_frame
 
    character(*), parameter :: NUMBER = '(*(es24.16e3,:,","))'
 
@@ -18,18 +20,28 @@ module host_output
    type :: output_t
       character(:), allocatable :: folder
       integer :: history = 0, ledger = 0   !< Units.
+      integer :: history_bytes = 0, ledger_bytes = 0   !< Lengths of their files at the last checkpoint.
+      type(frames_t) :: frames
    end type output_t
 contains
-   subroutine open_output(folder, scene, output, fault)
+   !> New files; or, after a restart, those of the run as they were at its checkpoint.
+   subroutine open_output(folder, scene, resume, output, fault)
       character(*), intent(in) :: folder
       type(scene_t), intent(in) :: scene
-      type(output_t), intent(out) :: output
+      logical, intent(in) :: resume
+      type(output_t), intent(inout) :: output
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: head
       integer :: i, k, status
 
       output%folder = folder
+      if (resume) then
+         call reopen(folder//'/histories.csv', output%history_bytes, output%history, fault)
+         if (fault%code == 0) call reopen(folder//'/ledger.csv', output%ledger_bytes, output%ledger, fault)
+         return
+      end if
       call execute_command_line('mkdir -p '''//folder//'''', exitstat=status)
+      output%frames = frames_t([real(wp) ::])
       head = 'time'
       do i = 1, size(scene%points)
          do k = 1, size(COLUMNS)
@@ -41,7 +53,46 @@ contains
          'error_u_r,error_u_z,error_p_w,error_p_c,first_u_r,first_u_z,first_p_w,first_p_c,reduction,correction,'// &
             'rates,kinetic,skeleton,pores,gravity,'// &
             'loads,supports,seepage,imbalance,outflow,outflow_air,step_error', output%ledger, fault)
+      if (fault%code == 0) call write_mesh(folder, trim(scene%name), scene%model, fault)
    end subroutine open_output
+
+   !> A table of the interrupted run, without the rows after the checkpoint.
+   subroutine reopen(path, bytes, unit, fault)
+      character(*), intent(in) :: path
+      integer, intent(in) :: bytes
+      integer, intent(out) :: unit
+      type(fault_t), intent(inout) :: fault
+      integer :: status
+
+      unit = 0
+      status = 1
+      if (cut_file(path, bytes)) open (newunit=unit, file=path, status='old', position='append', action='write', &
+                                       recl=100000, iostat=status)
+      if (status /= 0) call raise(fault, EXIT_RESTART, path//' is not there, shorter than it was at the checkpoint, '// &
+                                  'or cannot be written; --output must name the folder of the interrupted run.')
+   end subroutine reopen
+
+   !> Brings the tables to the disk and notes how long they are.
+   subroutine settle_output(output, fault)
+      type(output_t), intent(inout) :: output
+      type(fault_t), intent(inout) :: fault
+
+      call settle(output%folder//'/histories.csv', output%history, output%history_bytes, fault)
+      if (fault%code == 0) call settle(output%folder//'/ledger.csv', output%ledger, output%ledger_bytes, fault)
+   end subroutine settle_output
+
+   subroutine settle(path, unit, bytes, fault)
+      character(*), intent(in) :: path
+      integer, intent(in) :: unit
+      integer, intent(out) :: bytes
+      type(fault_t), intent(inout) :: fault
+      integer :: status
+
+      flush (unit, iostat=status)
+      if (status /= 0) call raise(fault, EXIT_OUTPUT, path//' cannot be written; is the disk full?')
+      call settle_file(path)
+      inquire (unit=unit, size=bytes)
+   end subroutine settle
 
    subroutine open_file(path, head, unit, fault)
       character(*), intent(in) :: path, head
@@ -101,15 +152,7 @@ contains
       real(wp) :: x(4, size(state%x, 2))
       integer :: unit, i, e, g, p, status
 
-      x = state%x
-      if (model%n_p == 3) then
-         do e = 1, size(model%mesh%t6, 2)
-            do i = 1, 3
-               x(3:4, model%mesh%t6(3 + i, e)) = 0.5_wp*(state%x(3:4, model%mesh%t6(i, e)) &
-                                                         + state%x(3:4, model%mesh%t6(mod(i, 3) + 1, e)))
-            end do
-         end do
-      end if
+      call all_pressures(model, state, x)
       status = 0
       call open_file(output%folder//'/nodes_'//stage//'.csv', 'r,z,u_r,u_z,p_w,p_c,v_r,v_z', unit, fault)
       if (fault%code /= 0) return

@@ -1,6 +1,7 @@
 !> Reads a scene: groups in any order, names resolved, everything checked before anything is computed.
 module host_read
    use host_kinds, only: wp, EXIT_GROUP, EXIT_MESH
+   use host_fingerprint, only: fingerprint_of
    use host_keys, only: check_keys, number_of, numbers_of, text_of, texts_of, word_is, given
    use host_laws, only: read_mud, read_elastic, read_retention, read_permeability, retention_of_mud
    use host_scene, only: scene_t, stage_t, fix_t, load_t, rigid_t, history_t, initial_t, point_t, P_A, LOAD_KINDS
@@ -29,6 +30,7 @@ contains
       call read_groups(file, groups, fault)
       if (fault%code == 0) call check_keys(groups, fault)
       if (fault%code == 0) call check_single(file, groups, fault)
+      if (fault%code == 0) scene%fingerprint = fingerprint_of(groups)
       allocate (scene%histories(0), scene%initials(0), scene%stages(0), scene%fixes(0), scene%loads(0), &
                 scene%rigids(0), scene%points(0))
       ! Lists of different laws get their size at once: they cannot grow by array constructors.
@@ -120,6 +122,8 @@ contains
          m%seepage_inertia = word_is(group, 'seepage_inertia', 'yes')
          m%full_rate = word_is(group, 'saturation_rate', 'full')
          m%threads = nint(number_of(group, 'threads'))
+         scene%checkpoint_steps = nint(number_of(group, 'checkpoint_steps'))
+         scene%checkpoint_seconds = number_of(group, 'checkpoint_seconds')
          scene%subtract_flow = word_is(group, 'initial_flow', 'subtract')
          if (.not. any(RULES == m%rule)) call raise(fault, EXIT_INPUT, at_line(group%file, group%line)// &
             'quadrature = '//whole(m%rule)//': there are rules of 3, 6, 7 and 12 points.')
@@ -293,6 +297,7 @@ contains
       stage%tolerance = number_of(group, 'tolerance')
       stage%max_iterations = nint(number_of(group, 'max_iterations'))
       stage%every = nint(number_of(group, 'every'))
+      stage%fields = nint(number_of(group, 'fields'))
       stage%still = word_is(group, 'predictor', 'none')
       stage%solve_start = word_is(group, 'start', 'solve')
       stage%zero_displacements = word_is(group, 'zero_displacements', 'yes')

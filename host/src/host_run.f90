@@ -1,17 +1,22 @@
 !> Runs the stages of a scene: steps, cuts with exact restoration, ledger, output.
 module host_run
    use host_kinds, only: wp, FIELD_NAMES, EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
-   use host_energy, only: ledger_t, book_step, kinetic_energy
+   use host_checkpoint, only: write_checkpoint, read_checkpoint
+   use host_clock, only: clock, lap
+   use host_course, only: run_t, course_t
+   use host_energy, only: book_step, kinetic_energy
    use host_initial, only: initial_state
    use host_loads, only: shape_loads, ties_of, load_at, constrain_step, new_constraint
-   use host_output, only: output_t, open_output, write_history, write_ledger, write_fields, close_output
+   use host_output, only: output_t, open_output, write_history, write_ledger, write_fields, write_frame, &
+                          close_output
+   use host_progress, only: progress_t, show_progress, clear_progress
    use host_scene, only: scene_t, stage_t
-   use fe_assembly, only: assembly_t, make_assembly, assemble
-   use fe_dofs, only: dofs_t, number_unknowns
+   use fe_assembly, only: make_assembly, assemble
+   use fe_dofs, only: number_unknowns
    use fe_material, only: TOO_LARGE
-   use fe_model, only: state_t, copy_state
-   use fe_pattern, only: pattern_t, make_pattern
-   use newton, only: constraint_t, control_t, log_t, system_t, take_step, start_accelerations, &
+   use fe_model, only: copy_state
+   use fe_pattern, only: make_pattern
+   use newton, only: control_t, log_t, take_step, start_accelerations, &
                      CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
    use solve_sparse, only: release
    use time_galpha, only: scheme_t, make_scheme, step_error, DYNAMIC
@@ -24,18 +29,6 @@ module host_run
 
    real(wp), parameter :: LAST_STEP = 1.0e-9_wp   !< A rest of a stage below this share of a step is rounding.
    integer, parameter :: GOOD_STEPS = 2           !< Accepted steps in a row after which a cut step grows back.
-
-   !> A scene ready to run, and what it has come to.
-   type :: run_t
-      type(dofs_t) :: dofs
-      type(pattern_t) :: pattern
-      type(assembly_t) :: assembly
-      type(system_t) :: system
-      type(constraint_t) :: constraint
-      type(state_t) :: state, next
-      type(ledger_t) :: ledger
-      integer :: steps = 0, iterations = 0, cuts = 0, effort = 0
-   end type run_t
 contains
    !> Unknowns, pattern, loads and initial state.
    subroutine prepare_run(scene, run, fault)
@@ -76,21 +69,42 @@ contains
    end subroutine keep_flow
 
    !> All stages; what was computed before a failure is on disk.
-   subroutine run_scene(scene, folder, quiet, run, fault)
+   subroutine run_scene(scene, folder, quiet, run, fault, restart)
       type(scene_t), intent(inout) :: scene
       character(*), intent(in) :: folder   !< Empty: no files.
       logical, intent(in) :: quiet
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
+      character(*), intent(in), optional :: restart   !< A checkpoint to go on from.
       type(output_t) :: output
+      type(progress_t) :: progress
+      type(fault_t) :: last
+      real(wp) :: t0
       integer :: i
 
-      if (folder /= '') call open_output(folder, scene, output, fault)
+      t0 = clock()
+      if (present(restart)) call read_checkpoint(restart, scene, run, output, fault)
+      if (fault%code == 0 .and. folder /= '') call open_output(folder, scene, present(restart), output, fault)
       if (fault%code /= 0) return
-      if (folder /= '') call write_history(output, scene, run%state, fault)
-      do i = 1, size(scene%stages)
-         call run_stage(scene, i, folder /= '', quiet, output, run, fault)
-         if (folder /= '') call write_fields(output, scene%model, trim(scene%stages(i)%name), run%state, fault)
+      if (folder /= '' .and. run%steps == 0) then
+         call write_history(output, scene, run%state, fault)
+         call write_frame(folder, scene%model, run%state, output%frames, fault)
+         if (fault%code /= 0) return
+      end if
+      call lap(run%seconds_output, t0)
+      progress%quiet = quiet
+      progress%last_checkpoint = t0
+      do i = max(1, run%course%stage), size(scene%stages)
+         call run_stage(scene, i, folder /= '', quiet, output, progress, run, fault)
+         call clear_progress(progress)
+         t0 = clock()
+         ! Also after a failure, which is reported, not what its last output may meet.
+         last = fault
+         if (folder /= '') call write_fields(output, scene%model, trim(scene%stages(i)%name), run%state, last)
+         if (folder /= '' .and. last%code == fault%code) &
+            call write_frame(folder, scene%model, run%state, output%frames, last)
+         if (fault%code == 0) fault = last
+         call lap(run%seconds_output, t0)
          if (fault%code /= 0) exit
       end do
       if (folder /= '') call close_output(output)
@@ -98,78 +112,68 @@ contains
       run%system%analysed = .false.
    end subroutine run_scene
 
-   subroutine run_stage(scene, number, with_files, quiet, output, run, fault)
+   subroutine run_stage(scene, number, with_files, quiet, output, progress, run, fault)
       type(scene_t), intent(in) :: scene
       integer, intent(in) :: number
       logical, intent(in) :: with_files, quiet
-      type(output_t), intent(in) :: output
+      type(output_t), intent(inout) :: output
+      type(progress_t), intent(inout) :: progress
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       type(control_t) :: control
       type(scheme_t) :: scheme
       type(log_t) :: log
-      real(wp), allocatable :: x_start(:, :)
-      real(wp) :: t_start, dt, nominal, left, factor, estimate
-      integer :: cuts, good, step
+      real(wp) :: dt, left, estimate, t0
 
-      associate (stage => scene%stages(number))
+      associate (stage => scene%stages(number), course => run%course)
          control = control_t(stage%tolerance, stage%max_iterations, stage%still)
-         allocate (x_start, source=run%state%x)
-         t_start = run%state%time
-         call constrain_step(scene, stage, run%dofs, t_start, x_start, run%constraint)
-         if (stage%kind == DYNAMIC .and. stage%solve_start) call first_accelerations(scene, stage, run, fault)
+         ! A run that is taken up again is in the middle of its stage.
+         if (course%stage /= number) call begin_stage(scene, number, run, fault)
          if (fault%code /= 0) return
-         run%ledger%kinetic_0 = run%ledger%kinetic_0 + kinetic_energy(scene%model, run%dofs, run%constraint%mass, &
-                                                                      run%state) - run%ledger%kinetic
-         nominal = stage%dt
-         factor = 1.0_wp
-         cuts = 0
-         good = 0
-         step = 0
          do
-            left = t_start + stage%duration - run%state%time
-            dt = nominal*factor
+            left = course%t_start + stage%duration - run%state%time
+            dt = course%nominal*course%factor
             if (left <= LAST_STEP*dt) exit
             if (dt > left*(1 - LAST_STEP)) dt = left
             scheme = make_scheme(stage%kind, stage%rho_inf, dt)
             run%constraint%load_0 = load_at(scene, stage, run%dofs, run%state%time)
             run%constraint%load_1 = load_at(scene, stage, run%dofs, run%state%time + dt)
-            call constrain_step(scene, stage, run%dofs, run%state%time + dt, x_start, run%constraint)
+            call constrain_step(scene, stage, run%dofs, run%state%time + dt, course%x_start, run%constraint)
             call take_step(scene%model, run%dofs, run%pattern, scheme, run%constraint, control, run%state, run%next, &
                            run%assembly, run%system, log)
             run%iterations = run%iterations + log%iterations
             run%effort = run%effort + log%effort
             if (log%outcome /= CONVERGED) then
                run%cuts = run%cuts + 1
-               cuts = cuts + 1
-               good = 0
-               if (cuts > stage%cuts .or. log%outcome == BODY_FREE .or. log%outcome == SOLVER_FAILED) then
+               course%cuts = course%cuts + 1
+               course%good = 0
+               if (course%cuts > stage%cuts .or. log%outcome == BODY_FREE .or. log%outcome == SOLVER_FAILED) then
                   call explain(scene, stage, run, log, run%state%time + dt, dt, fault)
                   return
                end if
                ! Nothing of the failed step is kept: the next attempt starts from run%state alone.
-               factor = factor*merge(min(run%assembly%bad%factor, 0.5_wp), 0.5_wp, log%outcome == MATERIAL_FAILED)
+               course%factor = course%factor*merge(min(run%assembly%bad%factor, 0.5_wp), 0.5_wp, &
+                                                   log%outcome == MATERIAL_FAILED)
                cycle
             end if
-            step = step + 1
+            course%step = course%step + 1
             run%steps = run%steps + 1
             call book_step(scene%model, run%dofs, scheme, run%constraint, run%system%reaction, run%state, run%next, &
                            run%ledger)
             estimate = step_error(scheme, run%state%x, run%state%a, run%next%x, run%next%a)
             call copy_state(run%next, run%state)
-            if (with_files) then
-               call write_ledger(output, run%state%time, dt, number, log, run%ledger, estimate, fault)
-               if (mod(step, stage%every) == 0 .or. t_start + stage%duration - run%state%time <= LAST_STEP*dt) &
-                  call write_history(output, scene, run%state, fault)
-               if (fault%code /= 0) return
+            course%nominal = min(course%nominal*stage%dt_growth, max(stage%dt_max, stage%dt))
+            course%good = course%good + 1
+            if (course%good >= GOOD_STEPS .and. course%factor < 1.0_wp) then
+               course%factor = min(1.0_wp, 2*course%factor)
+               course%cuts = max(0, course%cuts - 1)
+               course%good = 0
             end if
-            nominal = min(nominal*stage%dt_growth, max(stage%dt_max, stage%dt))
-            good = good + 1
-            if (good >= GOOD_STEPS .and. factor < 1.0_wp) then
-               factor = min(1.0_wp, 2*factor)
-               cuts = max(0, cuts - 1)
-               good = 0
-            end if
+            t0 = clock()
+            if (with_files) call write_step(scene, number, dt, log, estimate, output, progress, run, fault)
+            call lap(run%seconds_output, t0)
+            if (fault%code /= 0) return
+            call show_progress(scene, run, progress)
          end do
          if (stage%zero_displacements) then
             run%state%x(1:2, :) = 0.0_wp
@@ -178,11 +182,59 @@ contains
             run%state%s_rate = 0.0_wp
          end if
          call copy_state(run%state, run%next)
-         if (.not. quiet) write (*, '(a)') 'Stage '//trim(stage%name)//': '//whole(step)//' steps, time '// &
+         call clear_progress(progress)
+         if (.not. quiet) write (*, '(a)') 'Stage '//trim(stage%name)//': '//whole(course%step)//' steps, time '// &
             short(run%state%time)//' s, '//whole(run%iterations)//' linear solves and '// &
             whole(run%cuts)//' cuts so far.'
       end associate
    end subroutine run_stage
+
+   subroutine begin_stage(scene, number, run, fault)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: number
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+
+      associate (stage => scene%stages(number))
+         run%course = course_t(stage=number, t_start=run%state%time, nominal=stage%dt, x_start=run%state%x)
+         call constrain_step(scene, stage, run%dofs, run%state%time, run%course%x_start, run%constraint)
+         if (stage%kind == DYNAMIC .and. stage%solve_start) call first_accelerations(scene, stage, run, fault)
+         if (fault%code /= 0) return
+         run%ledger%kinetic_0 = run%ledger%kinetic_0 + kinetic_energy(scene%model, run%dofs, run%constraint%mass, &
+                                                                      run%state) - run%ledger%kinetic
+      end associate
+   end subroutine begin_stage
+
+   !> What is written after an accepted step.
+   subroutine write_step(scene, number, dt, log, estimate, output, progress, run, fault)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: number
+      real(wp), intent(in) :: dt, estimate
+      type(log_t), intent(in) :: log
+      type(output_t), intent(inout) :: output
+      type(progress_t), intent(inout) :: progress
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+      logical :: last, due
+
+      associate (stage => scene%stages(number), course => run%course)
+         last = course%t_start + stage%duration - run%state%time <= LAST_STEP*dt
+         call write_ledger(output, run%state%time, dt, number, log, run%ledger, estimate, fault)
+         if (mod(course%step, stage%every) == 0 .or. last) call write_history(output, scene, run%state, fault)
+         if (fault%code /= 0) return
+         if (stage%fields > 0 .and. .not. last) then
+            if (mod(course%step, stage%fields) == 0) &
+               call write_frame(output%folder, scene%model, run%state, output%frames, fault)
+         end if
+         due = .false.
+         if (scene%checkpoint_steps > 0) due = mod(run%steps, scene%checkpoint_steps) == 0
+         if (scene%checkpoint_seconds > 0.0_wp) &
+            due = clock() - progress%last_checkpoint >= scene%checkpoint_seconds .or. due
+         if (.not. due .or. fault%code /= 0) return
+         call write_checkpoint(scene, run, output, fault)
+         progress%last_checkpoint = clock()
+      end associate
+   end subroutine write_step
 
    subroutine first_accelerations(scene, stage, run, fault)
       type(scene_t), intent(in) :: scene

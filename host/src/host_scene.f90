@@ -2,6 +2,7 @@
 module host_scene
    use host_kinds, only: wp
    use fe_model, only: model_t
+   use host_fingerprint, only: FINGERPRINT_LENGTH
    use mesh_types, only: NAME_LENGTH
    use triax_namelist, only: LENGTH
    implicit none (type, external)
@@ -34,7 +35,7 @@ module host_scene
       real(wp) :: duration = 0.0_wp, dt = 0.0_wp, dt_growth = 1.0_wp, dt_max = 0.0_wp
       integer :: cuts = 10
       real(wp) :: rho_inf = 0.8_wp, tolerance = 1.0e-3_wp
-      integer :: max_iterations = 12, every = 1
+      integer :: max_iterations = 12, every = 1, fields = 0
       logical :: still = .false., solve_start = .true., zero_displacements = .false.
    end type stage_t
 
@@ -67,6 +68,9 @@ module host_scene
       character(NAME_LENGTH) :: name = ''
       type(model_t) :: model
       logical :: subtract_flow = .false.
+      integer :: checkpoint_steps = 0
+      real(wp) :: checkpoint_seconds = 0.0_wp
+      character(FINGERPRINT_LENGTH) :: fingerprint = ''
       type(history_t), allocatable :: histories(:)
       type(initial_t), allocatable :: initials(:)
       type(stage_t), allocatable :: stages(:)

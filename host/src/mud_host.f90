@@ -1,16 +1,18 @@
 !> mud_host SCENE.nml: coupled finite elements of unsaturated soil.
 program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use host_clock, only: clock
    use host_keys, only: print_template
    use host_read, only: read_scene
    use host_run, only: run_t, prepare_run, run_scene
    use host_scene, only: scene_t
-   use newton, only: clock
+   use io_files, only: limits_are_errors
    use triax_fault, only: fault_t, raise, EXIT_INPUT
    use triax_text, only: whole
    implicit none (type, external)
-   character(*), parameter :: USAGE = 'usage: mud_host SCENE.nml [--output FOLDER] [--quiet] [--check] | --template'
-   character(1024) :: word, file, folder
+   character(*), parameter :: USAGE = 'usage: mud_host SCENE.nml [--output FOLDER] [--restart CHECKPOINT] '// &
+                              '[--quiet] [--check] | --template'
+   character(1024) :: word, file, folder, restart
    type(scene_t) :: scene
    type(run_t) :: run
    type(fault_t) :: fault
@@ -18,8 +20,10 @@ program mud_host
    double precision :: t0
    integer :: i
 
+   call limits_are_errors()
    file = ''
    folder = ''
+   restart = ''
    quiet = .false.
    only_check = .false.
    i = 1
@@ -40,6 +44,10 @@ program mud_host
          i = i + 1
          call get_command_argument(i, folder)
          if (folder == '') call raise(fault, EXIT_INPUT, '--output needs a folder; '//USAGE)
+      case ('--restart')
+         i = i + 1
+         call get_command_argument(i, restart)
+         if (restart == '') call raise(fault, EXIT_INPUT, '--restart needs a checkpoint; '//USAGE)
       case default
          if (word(1:1) == '-' .or. file /= '') call raise(fault, EXIT_INPUT, trim(word)//' is not understood; '//USAGE)
          file = word
@@ -52,7 +60,13 @@ program mud_host
    if (fault%code == 0) call read_scene(trim(file), scene, fault)
    if (fault%code == 0) call prepare_run(scene, run, fault)
    if (fault%code == 0 .and. .not. quiet) call announce()
-   if (fault%code == 0 .and. .not. only_check) call run_scene(scene, trim(folder), quiet, run, fault)
+   if (fault%code == 0 .and. .not. only_check) then
+      if (restart == '') then
+         call run_scene(scene, trim(folder), quiet, run, fault)
+      else
+         call run_scene(scene, trim(folder), quiet, run, fault, trim(restart))
+      end if
+   end if
    if (.not. quiet .and. run%steps > 0) call account()
    if (fault%code /= 0) then
       write (error_unit, '(a)') trim(fault%text)
@@ -67,10 +81,21 @@ contains
 
    !> Where the time went.
    subroutine account()
+      character(14), parameter :: PHASES(7) = [character(14) :: 'material', 'assembly', 'factorisation', 'solution', &
+                                               'rest of Newton', 'output', 'all else']
+      double precision :: seconds(7), total
+      integer :: k
+
+      total = clock() - t0
+      seconds(1:6) = [run%system%seconds([5, 1, 2, 3, 4]), run%seconds_output]
+      seconds(7) = total - sum(seconds(1:6))
       write (output_unit, '(a)') whole(run%steps)//' steps, '//whole(run%iterations)//' iterations, '// &
-         whole(run%cuts)//' cuts, '//whole(run%system%n_pass)//' passes over the elements.'
-      write (output_unit, '(a,5(f9.3,a))') 'Seconds: elements', run%system%seconds(1), ', factorisation', &
-         run%system%seconds(2), ', solution', run%system%seconds(3), ', rest of Newton', run%system%seconds(4), &
-         ', in all', clock() - t0, '.'
+         whole(run%cuts)//' cuts, '//whole(run%effort)//' rate evaluations of the material; in this run '// &
+         whole(run%system%n_pass)//' passes over the elements, '//whole(run%system%sparse%n_numeric)// &
+         ' factorisations ('//whole(nint(run%system%sparse%entries))//' entries).'
+      do k = 1, size(PHASES)
+         write (output_unit, '(3x,a,f12.3,a,f6.1,a)') PHASES(k), seconds(k), ' s', 100*seconds(k)/total, ' %'
+      end do
+      write (output_unit, '(3x,a,f12.3,a)') 'in all        ', total, ' s'
    end subroutine account
 end program mud_host

@@ -3,6 +3,7 @@
 !> and a floor, over the free unknowns. The floor of a volume balance is 1e-4 of the strain rates and of the parts of
 !> the fluxes in it: where nothing flows, or nothing can, the balance of every element is nothing but rounding.
 module newton
+   use host_clock, only: clock, lap
    use host_kinds, only: wp, FIELDS
    use fe_assembly, only: assembly_t, assemble
    use fe_dofs, only: dofs_t
@@ -12,7 +13,7 @@ module newton
    use time_galpha, only: scheme_t, predict, advance_rates, DYNAMIC
    implicit none (type, external)
    private
-   public :: constraint_t, control_t, log_t, system_t, take_step, start_accelerations, clock
+   public :: constraint_t, control_t, log_t, system_t, take_step, start_accelerations
    public :: CONVERGED, NOT_CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
 
    integer, parameter :: CONVERGED = 0, NOT_CONVERGED = 1, MATERIAL_FAILED = 2, BODY_FREE = 3, SOLVER_FAILED = 4
@@ -55,7 +56,7 @@ module newton
       logical :: eager = .false.              !< The last step needed several iterations: slopes at every pass.
       real(wp) :: largest(FIELDS) = 0.0_wp    !< Largest scale of every field so far.
       real(wp), allocatable :: reaction(:)    !< Residual with the constrained rows kept.
-      real(wp) :: seconds(4) = 0.0_wp         !< Elements, factorisation, solution, the rest.
+      real(wp) :: seconds(5) = 0.0_wp         !< Assembly, factorisation, solution, the rest, material.
       integer :: n_pass = 0
    end type system_t
 contains
@@ -107,7 +108,7 @@ contains
          call constrain(dofs, pattern, constraint, new%x, assembly%values, rhs)
          call lap(system%seconds(4), t0)
          if (.not. system%analysed) then
-            call analyse(system%sparse, pattern%row, pattern%col, assembly%values, status)
+            call analyse(system%sparse, pattern%row, pattern%col, status)
             system%analysed = .true.
          end if
          call factorise(system%sparse, assembly%values, status)
@@ -133,13 +134,17 @@ contains
       !> Residual, with minus sign in rhs, and slopes; false if the material refuses.
       logical function pass(slopes)
          logical, intent(in) :: slopes
+         real(wp) :: spent
 
+         spent = 0.0_wp
          call lap(system%seconds(4), t0)
          call assemble(model, dofs, pattern, scheme, old, new, slopes, assembly)
          system%n_pass = system%n_pass + 1
          log%effort = log%effort + assembly%effort
          pass = assembly%bad_element == 0
-         call lap(system%seconds(1), t0)
+         call lap(spent, t0)
+         system%seconds(5) = system%seconds(5) + spent*assembly%material
+         system%seconds(1) = system%seconds(1) + spent*(1 - assembly%material)
          if (.not. pass) then
             log%outcome = MATERIAL_FAILED
             return
@@ -188,7 +193,7 @@ contains
       call add_bodies(dofs, pattern, scheme, held, state, work, .true., assembly)
       rhs = held%load_0 - held%offset - assembly%residual
       call constrain(dofs, pattern, held, 0.0_wp*state%x, assembly%values, rhs)
-      if (.not. system%analysed) call analyse(system%sparse, pattern%row, pattern%col, assembly%values, status)
+      if (.not. system%analysed) call analyse(system%sparse, pattern%row, pattern%col, status)
       system%analysed = .true.
       call factorise(system%sparse, assembly%values, status)
       if (status == SOLVED) call solve(system%sparse, assembly%values, rhs, dx, status)
@@ -336,21 +341,4 @@ contains
       share = maxval(sqrt(change)/max(total, tiny(1.0_wp)), mask=total > 0.0_wp)
       if (.not. any(total > 0.0_wp)) share = 0.0_wp
    end subroutine add_correction
-
-   real(wp) function clock()
-      integer(selected_int_kind(18)) :: ticks, rate
-
-      call system_clock(ticks, rate)
-      clock = real(ticks, wp)/real(rate, wp)
-   end function clock
-
-   !> Adds the time since t0 and starts anew.
-   subroutine lap(total, t0)
-      real(wp), intent(inout) :: total, t0
-      real(wp) :: now
-
-      now = clock()
-      total = total + now - t0
-      t0 = now
-   end subroutine lap
 end module newton

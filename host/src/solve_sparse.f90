@@ -34,7 +34,7 @@ module solve_sparse
          import :: c_int, c_double, c_ptr
          integer(c_int), value :: n_row, n_col
          integer(c_int), intent(in) :: ap(*), ai(*)
-         real(c_double), intent(in) :: ax(*)
+         type(c_ptr), value :: ax
          type(c_ptr), intent(out) :: symbolic
          real(c_double), intent(in) :: control(*)
          real(c_double), intent(out) :: info(*)
@@ -72,11 +72,10 @@ module solve_sparse
       end subroutine umfpack_di_free_numeric
    end interface
 contains
-   !> Ordering, once per pattern.
-   subroutine analyse(sparse, row, col, values, status)
+   !> Ordering, once per pattern and by the pattern alone: a run that is taken up again finds the same one.
+   subroutine analyse(sparse, row, col, status)
       type(sparse_t), intent(inout) :: sparse
       integer, intent(in) :: row(:), col(:)   !< From 1.
-      real(wp), intent(in) :: values(:)
       integer, intent(out) :: status
 
       call release(sparse)
@@ -86,7 +85,7 @@ contains
       sparse%control(CONTROL_STRATEGY) = STRATEGY_SYMMETRIC
       sparse%control(CONTROL_REFINEMENT) = 1.0_c_double
       status = merge(SOLVED, FAILED, umfpack_di_symbolic(size(row) - 1, size(row) - 1, sparse%start, sparse%index, &
-                                                         values, sparse%symbolic, sparse%control, sparse%info) == 0)
+                                                         c_null_ptr, sparse%symbolic, sparse%control, sparse%info) == 0)
       sparse%n_symbolic = sparse%n_symbolic + 1
    end subroutine analyse
 

@@ -1,0 +1,193 @@
+"""Pictures of a run of mud_host: plot_run.py FOLDER [--fields NAME ...] [--times T ...] [--histories NAME ...]
+
+Writes fields.png (a row for every time, a column for every field) and histories.png (a panel for every quantity, a line
+for every point) into the folder. Without options: the last moment, and of everything what changes.
+"""
+import argparse
+import csv
+import pathlib
+import sys
+
+import h5py
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.tri  # noqa: E402
+import numpy as np  # noqa: E402
+
+COLOURS = ("#0b3c6f", "#c8553d", "#3a8f6a", "#8a5a9e", "#b58900", "#555555")
+# Components of vectors by the names of histories.csv.
+COMPONENTS = {"u_r": ("displacement", 0), "u_z": ("displacement", 1), "v_r": ("velocity", 0), "v_z": ("velocity", 1),
+              "a_r": ("acceleration", 0), "a_z": ("acceleration", 1)}
+USUAL = ("u_z", "u_r", "p_w", "p_c", "S_w", "p", "q", "e")   # in this order, as many as a page holds
+UNITS = {"u": "m", "v": "m/s", "a": "m/s2", "p": "kPa", "s": "kPa", "e": "-", "S": "-"}   # of histories, by their letter
+PAGE = 6            # panels without being asked
+SMALL = 1e-9        # a range below this share of its size is constant
+SPLIT = ([0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5])   # a 6-node triangle as four of three nodes
+plt.rcParams.update({"savefig.dpi": 130, "font.size": 9, "axes.titlesize": 10, "axes.spines.top": False,
+                     "axes.spines.right": False, "legend.frameon": False, "lines.linewidth": 1.3})
+
+
+class Run:
+    """The files of a folder."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        with h5py.File(folder / "mesh.h5") as file:
+            self.nodes, self.elements = file["nodes"][...], file["elements"][...]
+            self.scene, self.axes = file.attrs["scene"].decode(), file.attrs["axes"].decode()
+        self.files = sorted(folder.glob("fields_*.h5"))
+        self.times = []
+        for path in self.files:
+            with h5py.File(path) as file:
+                self.times.append(float(file["time"][0]))
+        with h5py.File(self.files[-1]) as file:
+            names = [*file["nodes"], *file["cells"]]
+        self.names = [n for n in names if n not in ("displacement", "velocity", "acceleration")] + list(COMPONENTS)
+
+    def field(self, frame, name):
+        """(values, unit, description, whether they belong to nodes)"""
+        with h5py.File(self.files[frame]) as file:
+            if name in COMPONENTS:
+                vector, component = COMPONENTS[name]
+                item = file["nodes"][vector]
+                return item[:, component], item.attrs["unit"].decode(), vector, True
+            place = "nodes" if name in file["nodes"] else "cells"
+            item = file[place][name]
+            return item[...], item.attrs["unit"].decode(), item.attrs["description"].decode(), place == "nodes"
+
+
+def moves(values):
+    return np.ptp(values) > SMALL*max(1e-30, np.max(np.abs(values)))
+
+
+def tells(run, frame, name):
+    """Whether a field is worth a panel: a component of a vector must not be next to nothing beside the other."""
+    values = run.field(frame, name)[0]
+    if name not in COMPONENTS:
+        return moves(values)
+    other = run.field(frame, name[:2] + "rz".replace(name[2], ""))[0]
+    return moves(values) and np.ptp(values) > 1e-3*np.ptp(other)
+
+
+def choose(names, known, what):
+    for name in names:
+        if name not in known:
+            sys.exit(f"plot_run: there is no {what} {name}; there are {', '.join(sorted(known))}")
+    return list(names)
+
+
+def levels_of(low, high):
+    """Few round levels; a constant gets a band of its own."""
+    if not high - low > SMALL*max(abs(low), abs(high)):
+        margin = max(abs(low), 1e-12)*1e-3
+        return np.array([low - margin, high + margin])
+    levels = matplotlib.ticker.MaxNLocator(12).tick_values(low, high)
+    # A contour plot leaves out what lies on its last level.
+    levels[[0, -1]] += np.array([-1, 1])*SMALL*(high - low)
+    return levels
+
+
+def draw_fields(run, frames, names, factor, output):
+    wide, high = np.ptp(run.nodes, axis=0)
+    # Panels with the shape of the mesh, within what a page can bear.
+    scale = min(2.9/wide, 5.5/high)
+    width, height = max(scale*wide, 0.5) + 1.2, max(scale*high, 0.8)
+    figure, grid = plt.subplots(len(frames), len(names), figsize=(width*len(names), (height + 0.6)*len(frames) + 0.4),
+                                squeeze=False, layout="constrained")
+    triangles = np.concatenate([run.elements[:, corners] for corners in SPLIT])
+    for column, name in enumerate(names):
+        shown = [run.field(frame, name) for frame in frames]
+        levels = levels_of(min(v.min() for v, *_ in shown), max(v.max() for v, *_ in shown))
+        for row, (frame, (values, unit, meaning, of_nodes)) in enumerate(zip(frames, shown)):
+            axis = grid[row, column]
+            moved = run.nodes + factor*np.stack([run.field(frame, "u_r")[0], run.field(frame, "u_z")[0]], axis=1)
+            mesh = matplotlib.tri.Triangulation(*moved.T, triangles)
+            if of_nodes:
+                picture = axis.tricontourf(mesh, values, levels=levels, cmap="viridis")
+            else:
+                picture = axis.tripcolor(mesh, facecolors=np.tile(values, len(SPLIT)), cmap="viridis", vmin=levels[0],
+                                         vmax=levels[-1], rasterized=True)
+            bar = figure.colorbar(picture, ax=axis, shrink=0.9, pad=0.02, format="%.4g")
+            bar.outline.set_visible(False)
+            # The mesh itself, unless its lines would cover it.
+            if len(run.elements) < 3000:
+                axis.triplot(*moved.T, run.elements[:, :3], color="white", lw=0.25, alpha=0.6)
+            axis.set_title(f"{name} [{unit}]")
+            axis.margins(0)
+            axis.set_aspect("equal")
+            first, second = run.axes[0], run.axes[3]
+            axis.set_xlabel(f"{first} [m]" if row == len(frames) - 1 else "")
+            axis.set_ylabel(f"t = {run.times[frame]:.4g} s\n{second} [m]" if column == 0 else "")
+    figure.suptitle(run.scene + (f" (displacements x {factor:g})" if factor else ""), fontsize=11)
+    figure.savefig(output)
+    plt.close(figure)
+    print(output)
+
+
+def read_histories(folder):
+    with open(folder / "histories.csv", newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    values = np.array([[float(v) for v in row] for row in rows[1:]]).T
+    return values[0] if len(values) else np.array([]), dict(zip(rows[0][1:], values[1:]))
+
+
+def draw_histories(run, time, table, names, output):
+    points = list(dict.fromkeys(name.rpartition(".")[0] for name in table))
+    columns = min(3, len(names))
+    rows = -(-len(names)//columns)
+    figure, grid = plt.subplots(rows, columns, figsize=(3.9*columns, 2.7*rows + 0.5), squeeze=False,
+                                layout="constrained", sharex=True)
+    for axis, name in zip(grid.flat, names):
+        for i, point in enumerate(points):
+            axis.plot(time, table[f"{point}.{name}"], color=COLOURS[i % len(COLOURS)], label=point,
+                      ls="-" if i < len(COLOURS) else "--")
+        axis.set_title(f"{name} [{UNITS[name[0]]}]")
+        axis.grid(color="#dddddd", lw=0.6)
+        axis.ticklabel_format(axis="y", style="sci", scilimits=(-3, 4), useMathText=True)
+    for axis in grid.flat[len(names):]:
+        axis.axis("off")
+    for column in range(columns):
+        lowest = [grid[row, column] for row in range(rows) if row*columns + column < len(names)][-1]
+        lowest.set_xlabel("time [s]")
+        lowest.tick_params(labelbottom=True)
+    if len(points) > 1:
+        grid[0, 0].legend()
+    figure.suptitle(run.scene if len(points) > 1 else f"{run.scene}, {points[0]}", fontsize=11)
+    figure.savefig(output)
+    plt.close(figure)
+    print(output)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=pathlib.Path, help="output folder of a run")
+    parser.add_argument("--fields", nargs="+", help="u_r u_z v_r v_z a_r a_z p_w p_c p_a s_rr s_zz s_tt s_rz p q e S_w")
+    parser.add_argument("--times", nargs="+", type=float, help="[s]; the nearest moments that were written are taken")
+    parser.add_argument("--histories", nargs="+", help="columns of histories.csv without the name of the point")
+    parser.add_argument("--deformed", type=float, default=0.0, metavar="FACTOR", help="draw displacements so many fold")
+    parser.add_argument("--output", type=pathlib.Path, help="folder of the pictures; default: that of the run")
+    options = parser.parse_args()
+    try:
+        run = Run(options.folder)
+    except (OSError, KeyError, IndexError) as problem:
+        sys.exit(f"plot_run: {options.folder} holds no fields of mud_host ({problem}); name the folder of --output")
+    output = options.output or options.folder
+    output.mkdir(parents=True, exist_ok=True)
+
+    last = len(run.times) - 1
+    frames = [int(np.argmin(np.abs(np.array(run.times) - t))) for t in options.times] if options.times else [last]
+    names = options.fields and choose(options.fields, run.names, "field")
+    names = names or [n for n in USUAL if n in run.names and tells(run, last, n)][:PAGE] or ["u_z"]
+    draw_fields(run, list(dict.fromkeys(frames)), names, options.deformed, output / "fields.png")
+
+    time, table = read_histories(options.folder)
+    known = list(dict.fromkeys(name.rpartition(".")[2] for name in table))
+    names = options.histories and choose(options.histories, known, "history")
+    names = names or [n for n in known if any(moves(table[c]) for c in table if c.rpartition(".")[2] == n)]
+    if names:
+        draw_histories(run, time, table, names, output / "histories.png")
+
+
+if __name__ == "__main__":
+    main()

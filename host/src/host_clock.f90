@@ -1,0 +1,26 @@
+!> Wall time.
+module host_clock
+   use, intrinsic :: iso_fortran_env, only: int64
+   use host_kinds, only: wp
+   implicit none (type, external)
+   private
+   public :: clock, lap
+contains
+   !> Seconds since some moment.
+   real(wp) function clock()
+      integer(int64) :: ticks, rate
+
+      call system_clock(ticks, rate)
+      clock = real(ticks, wp)/real(rate, wp)
+   end function clock
+
+   !> Adds the time since t0 and starts anew.
+   subroutine lap(total, t0)
+      real(wp), intent(inout) :: total, t0
+      real(wp) :: now
+
+      now = clock()
+      total = total + now - t0
+      t0 = now
+   end subroutine lap
+end module host_clock

@@ -1,0 +1,38 @@
+!> A scene on its way: everything that one step hands to the next, and the place in its stages.
+module host_course
+   use host_kinds, only: wp
+   use host_energy, only: ledger_t
+   use fe_assembly, only: assembly_t
+   use fe_dofs, only: dofs_t
+   use fe_model, only: state_t
+   use fe_pattern, only: pattern_t
+   use newton, only: constraint_t, system_t
+   implicit none (type, external)
+   private
+   public :: run_t, course_t
+
+   !> Place in the stages, and the step size.
+   type :: course_t
+      integer :: stage = 0                     !< Number of the stage under way; 0: before the first.
+      integer :: step = 0                      !< Steps done in it.
+      integer :: cuts = 0, good = 0            !< Cuts in force; accepted steps since the last cut or growth.
+      real(wp) :: t_start = 0.0_wp             !< Time at its start [s].
+      real(wp) :: nominal = 0.0_wp             !< Step without cuts [s].
+      real(wp) :: factor = 1.0_wp              !< Share of it after cuts.
+      real(wp), allocatable :: x_start(:, :)   !< Unknowns at its start, which some boundaries hold.
+   end type course_t
+
+   !> A scene ready to run, and what it has come to.
+   type :: run_t
+      type(dofs_t) :: dofs
+      type(pattern_t) :: pattern
+      type(assembly_t) :: assembly
+      type(system_t) :: system
+      type(constraint_t) :: constraint
+      type(state_t) :: state, next
+      type(ledger_t) :: ledger
+      type(course_t) :: course
+      integer :: steps = 0, iterations = 0, cuts = 0, effort = 0
+      real(wp) :: seconds_output = 0.0_wp   !< Wall time.
+   end type run_t
+end module host_course

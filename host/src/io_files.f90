@@ -1,0 +1,148 @@
+!> Files that are either whole or not there, and what else Fortran cannot ask the system for (POSIX).
+module io_files
+   use, intrinsic :: iso_c_binding, only: c_int, c_int8_t, c_size_t, c_long, c_char, c_ptr, c_null_char, c_associated, &
+                                          c_funptr, c_null_funptr, c_intptr_t
+   implicit none (type, external)
+   private
+   public :: write_whole, bytes_of, cut_file, settle_file, to_terminal, limits_are_errors
+
+   character(*), parameter :: PART = '.part'   !< Ends the name of a file that is being written.
+
+   interface
+      type(c_ptr) function fopen(path, mode) bind(c)
+         import :: c_ptr, c_char
+         character(kind=c_char), intent(in) :: path(*), mode(*)
+      end function fopen
+
+      integer(c_size_t) function fwrite(data, size, count, file) bind(c)
+         import :: c_ptr, c_size_t, c_int8_t
+         integer(c_int8_t), intent(in) :: data(*)
+         integer(c_size_t), value :: size, count
+         type(c_ptr), value :: file
+      end function fwrite
+
+      integer(c_int) function fflush(file) bind(c)
+         import :: c_ptr, c_int
+         type(c_ptr), value :: file
+      end function fflush
+
+      integer(c_int) function fileno(file) bind(c)
+         import :: c_ptr, c_int
+         type(c_ptr), value :: file
+      end function fileno
+
+      integer(c_int) function fclose(file) bind(c)
+         import :: c_ptr, c_int
+         type(c_ptr), value :: file
+      end function fclose
+
+      integer(c_int) function fsync(descriptor) bind(c)
+         import :: c_int
+         integer(c_int), value :: descriptor
+      end function fsync
+
+      integer(c_int) function c_rename(from, to) bind(c, name='rename')
+         import :: c_int, c_char
+         character(kind=c_char), intent(in) :: from(*), to(*)
+      end function c_rename
+
+      integer(c_int) function c_remove(path) bind(c, name='remove')
+         import :: c_int, c_char
+         character(kind=c_char), intent(in) :: path(*)
+      end function c_remove
+
+      integer(c_int) function truncate(path, length) bind(c)
+         import :: c_int, c_char, c_long
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_long), value :: length
+      end function truncate
+
+      type(c_funptr) function signal(number, action) bind(c)
+         import :: c_int, c_funptr
+         integer(c_int), value :: number
+         type(c_funptr), value :: action
+      end function signal
+
+      integer(c_int) function isatty(descriptor) bind(c)
+         import :: c_int
+         integer(c_int), value :: descriptor
+      end function isatty
+   end interface
+contains
+   !> Replaces a file at one stroke: whoever opens it, at whatever moment, finds all of the old one or all of the new.
+   !> Not before the data are on the disk does the new one get the name. On failure the old one stays.
+   subroutine write_whole(path, bytes, good)
+      character(*), intent(in) :: path
+      integer(c_int8_t), intent(in) :: bytes(:)
+      logical, intent(out) :: good
+      character(:), allocatable :: temporary
+      type(c_ptr) :: file
+
+      temporary = path//PART//c_null_char
+      file = fopen(temporary, 'wb'//c_null_char)
+      good = c_associated(file)
+      if (.not. good) return
+      good = fwrite(bytes, 1_c_size_t, size(bytes, kind=c_size_t), file) == size(bytes, kind=c_size_t)
+      if (good) good = fflush(file) == 0
+      if (good) good = fsync(fileno(file)) == 0
+      if (fclose(file) /= 0) good = .false.
+      if (good) good = c_rename(temporary, path//c_null_char) == 0
+      if (good) then
+         call settle_file(folder_of(path))
+      else if (c_remove(temporary) /= 0) then
+         good = .false.
+      end if
+   end subroutine write_whole
+
+   pure function folder_of(path) result(folder)
+      character(*), intent(in) :: path
+      character(:), allocatable :: folder
+
+      folder = '.'
+      if (index(path, '/') > 0) folder = path(:index(path, '/', back=.true.))
+   end function folder_of
+
+   !> Asks the system to bring a file or a folder to the disk; where it cannot, nothing is lost but that.
+   subroutine settle_file(path)
+      character(*), intent(in) :: path
+      type(c_ptr) :: file
+      integer(c_int) :: status
+
+      file = fopen(path//c_null_char, 'r'//c_null_char)
+      if (.not. c_associated(file)) return
+      status = fsync(fileno(file))
+      status = fclose(file)
+   end subroutine settle_file
+
+   !> Cuts a file to its first bytes; false if it has not as many.
+   logical function cut_file(path, length) result(good)
+      character(*), intent(in) :: path
+      integer, intent(in) :: length
+      integer :: now
+
+      inquire (file=path, size=now)
+      good = now >= length
+      if (good) good = truncate(path//c_null_char, int(length, c_long)) == 0
+   end function cut_file
+
+   pure function bytes_of(text) result(bytes)
+      character(*), intent(in) :: text
+      integer(c_int8_t) :: bytes(len(text))
+
+      bytes = transfer(text, bytes)
+   end function bytes_of
+
+   !> A file that reaches the limit of its size (ulimit) shall be an error like a full disk, not the end of the program.
+   subroutine limits_are_errors()
+      integer(c_int), parameter :: SIGXFSZ = 25                 ! Linux, BSD, macOS
+      integer(c_intptr_t), parameter :: IGNORE = 1_c_intptr_t   ! SIG_IGN
+      type(c_funptr) :: before
+
+      before = signal(SIGXFSZ, transfer(IGNORE, c_null_funptr))
+   end subroutine limits_are_errors
+
+   !> Whether standard output is a terminal.
+   logical function to_terminal()
+      to_terminal = isatty(1_c_int) == 1
+   end function to_terminal
+end module io_files

@@ -1,0 +1,319 @@
+!> HDF5 files of the host, the only module that knows the HDF5 library: datasets with the attributes `unit` and
+!> `description` and a checksum, texts as attributes of the file. A file is built in memory and written as a whole, so
+!> that a full disk or a killed run leaves no half of one. Without HDF5 the file of the same name beside it is built.
+module io_hdf5
+   use, intrinsic :: iso_c_binding, only: c_int8_t, c_ptr, c_loc, c_null_ptr
+   use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5eset_auto_f, h5fcreate_f, h5fopen_f, h5fclose_f, h5fflush_f, &
+                   h5fget_file_image_f, h5pcreate_f, h5pclose_f, h5pset_fapl_core_f, h5pset_chunk_f, &
+                   h5pset_fletcher32_f, h5pset_obj_track_times_f, h5pset_create_inter_group_f, h5screate_f, &
+                   h5screate_simple_f, h5sclose_f, h5dcreate_f, h5dopen_f, h5dwrite_f, h5dread_f, h5dclose_f, &
+                   h5dget_space_f, h5sget_simple_extent_ndims_f, h5sget_simple_extent_dims_f, h5tcopy_f, &
+                   h5tset_size_f, h5tclose_f, h5acreate_f, h5aopen_f, h5awrite_f, h5aread_f, h5aclose_f, &
+                   H5F_ACC_TRUNC_F, H5F_ACC_RDONLY_F, H5F_SCOPE_GLOBAL_F, H5P_FILE_ACCESS_F, H5P_DATASET_CREATE_F, &
+                   H5P_LINK_CREATE_F, H5S_SCALAR_F, H5T_NATIVE_DOUBLE, H5T_NATIVE_INTEGER, H5T_FORTRAN_S1
+   use host_kinds, only: wp
+   use io_files, only: write_whole
+   implicit none (type, external)
+   private
+   public :: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, get_text, extent_of
+
+   logical, parameter :: HAS_HDF5 = .true.
+   integer(size_t), parameter :: GROWTH = 1048576   !< By which a file in memory grows [bytes].
+   integer, parameter :: TEXT_LENGTH = 64           !< Of a text that is read back.
+
+   type :: h5_t
+      integer(hid_t) :: id = -1
+      logical :: good = .true.   !< False after the first call that failed.
+   end type h5_t
+
+   !> An array as a dataset; its folders are made.
+   interface put
+      module procedure put_real, put_real_2, put_integer, put_integer_2
+   end interface put
+
+   !> A dataset into an array, which must have its extent.
+   interface get
+      module procedure get_real, get_real_2, get_integer
+   end interface get
+contains
+   !> An empty file in memory.
+   subroutine new_file(file)
+      type(h5_t), intent(out) :: file
+      integer(hid_t) :: access
+      integer :: status
+
+      call begin(file)
+      call h5pcreate_f(H5P_FILE_ACCESS_F, access, status)
+      call note(file, status)
+      call h5pset_fapl_core_f(access, GROWTH, .false., status)
+      call note(file, status)
+      call h5fcreate_f('memory', H5F_ACC_TRUNC_F, file%id, status, access_prp=access)
+      call note(file, status)
+      call h5pclose_f(access, status)
+   end subroutine new_file
+
+   !> From memory to the disk; the file is closed.
+   subroutine write_file(file, path, good)
+      type(h5_t), intent(inout) :: file
+      character(*), intent(in) :: path
+      logical, intent(out) :: good
+      integer(c_int8_t), allocatable, target :: image(:)
+      integer(size_t), parameter :: NOTHING = 0
+      integer(size_t) :: length
+      integer :: status
+      type(c_ptr) :: place
+
+      place = c_null_ptr
+      call h5fflush_f(file%id, H5F_SCOPE_GLOBAL_F, status)
+      call note(file, status)
+      call h5fget_file_image_f(file%id, place, NOTHING, status, buf_size=length)
+      call note(file, status)
+      allocate (image(length))
+      place = c_loc(image)
+      call h5fget_file_image_f(file%id, place, length, status)
+      call note(file, status)
+      good = file%good
+      call close_file(file)
+      if (good) call write_whole(path, image, good)
+   end subroutine write_file
+
+   !> An existing file, to be read; not good if it is not there, no HDF5 file or cut off.
+   subroutine open_file(path, file)
+      character(*), intent(in) :: path
+      type(h5_t), intent(out) :: file
+      integer :: status
+
+      call begin(file)
+      call h5fopen_f(path, H5F_ACC_RDONLY_F, file%id, status)
+      call note(file, status)
+   end subroutine open_file
+
+   subroutine close_file(file)
+      type(h5_t), intent(inout) :: file
+      integer :: status
+
+      call h5fclose_f(file%id, status)
+      file%id = -1
+   end subroutine close_file
+
+   subroutine begin(file)
+      type(h5_t), intent(inout) :: file
+      integer :: status
+
+      call h5open_f(status)
+      call note(file, status)
+      call h5eset_auto_f(0, status)   ! no printing: faults come back as codes
+   end subroutine begin
+
+   subroutine note(file, status)
+      type(h5_t), intent(inout) :: file
+      integer, intent(in) :: status
+
+      if (status < 0) file%good = .false.
+   end subroutine note
+
+   subroutine put_real(file, name, values, unit, meaning)
+      type(h5_t), intent(inout) :: file
+      character(*), intent(in) :: name, unit, meaning
+      real(wp), intent(in), contiguous, target :: values(:)
+
+      if (size(values) > 0) call put_raw(file, name, H5T_NATIVE_DOUBLE, shape(values), c_loc(values), unit, meaning)
+   end subroutine put_real
+
+   subroutine put_real_2(file, name, values, unit, meaning)
+      type(h5_t), intent(inout) :: file
+      character(*), intent(in) :: name, unit, meaning
+      real(wp), intent(in), contiguous, target :: values(:, :)
+
+      if (size(values) > 0) call put_raw(file, name, H5T_NATIVE_DOUBLE, shape(values), c_loc(values), unit, meaning)
+   end subroutine put_real_2
+
+   subroutine put_integer(file, name, values, unit, meaning)
+      type(h5_t), intent(inout) :: file
+      character(*), intent(in) :: name, unit, meaning
+      integer, intent(in), contiguous, target :: values(:)
+
+      if (size(values) > 0) call put_raw(file, name, H5T_NATIVE_INTEGER, shape(values), c_loc(values), unit, meaning)
+   end subroutine put_integer
+
+   subroutine put_integer_2(file, name, values, unit, meaning)
+      type(h5_t), intent(inout) :: file
+      character(*), intent(in) :: name, unit, meaning
+      integer, intent(in), contiguous, target :: values(:, :)
+
+      if (size(values) > 0) call put_raw(file, name, H5T_NATIVE_INTEGER, shape(values), c_loc(values), unit, meaning)
+   end subroutine put_integer_2
+
+   !> One chunk with a checksum; no time stamps, so that equal results are equal files.
+   subroutine put_raw(file, name, kind, extent, values, unit, meaning)
+      type(h5_t), intent(inout) :: file
+      character(*), intent(in) :: name, unit, meaning
+      integer(hid_t), intent(in) :: kind
+      integer, intent(in) :: extent(:)
+      type(c_ptr), intent(in) :: values
+      integer(hid_t) :: space, layout, links, set
+      integer(hsize_t) :: dims(size(extent))
+      integer :: status
+
+      dims = extent
+      call h5screate_simple_f(size(extent), dims, space, status)
+      call note(file, status)
+      call h5pcreate_f(H5P_DATASET_CREATE_F, layout, status)
+      call h5pset_obj_track_times_f(layout, .false., status)
+      call note(file, status)
+      call h5pset_chunk_f(layout, size(extent), dims, status)
+      call h5pset_fletcher32_f(layout, status)
+      call note(file, status)
+      call h5pcreate_f(H5P_LINK_CREATE_F, links, status)
+      call h5pset_create_inter_group_f(links, 1, status)
+      call note(file, status)
+      call h5dcreate_f(file%id, name, kind, space, set, status, dcpl_id=layout, lcpl_id=links)
+      call note(file, status)
+      call h5dwrite_f(set, kind, values, status)
+      call note(file, status)
+      call put_attribute(file, set, 'unit', unit)
+      call put_attribute(file, set, 'description', meaning)
+      call h5dclose_f(set, status)
+      call note(file, status)
+      call h5pclose_f(links, status)
+      call h5pclose_f(layout, status)
+      call h5sclose_f(space, status)
+   end subroutine put_raw
+
+   !> A fact about the whole file.
+   subroutine put_text(file, name, text)
+      type(h5_t), intent(inout) :: file
+      character(*), intent(in) :: name, text
+
+      call put_attribute(file, file%id, name, text)
+   end subroutine put_text
+
+   subroutine put_attribute(file, owner, name, text)
+      type(h5_t), intent(inout) :: file
+      integer(hid_t), intent(in) :: owner
+      character(*), intent(in) :: name, text
+      integer(hid_t) :: kind, space, attribute
+      integer(hsize_t) :: extent(1)
+      integer :: status
+
+      extent = 1
+      call h5tcopy_f(H5T_FORTRAN_S1, kind, status)
+      call h5tset_size_f(kind, int(max(len(text), 1), size_t), status)
+      call h5screate_f(H5S_SCALAR_F, space, status)
+      call note(file, status)
+      call h5acreate_f(owner, name, kind, space, attribute, status)
+      call note(file, status)
+      call h5awrite_f(attribute, kind, text, extent, status)
+      call note(file, status)
+      call h5aclose_f(attribute, status)
+      call h5sclose_f(space, status)
+      call h5tclose_f(kind, status)
+   end subroutine put_attribute
+
+   !> A text of the file, blank if it has none of that name.
+   function get_text(file, name) result(text)
+      type(h5_t), intent(in) :: file
+      character(*), intent(in) :: name
+      character(TEXT_LENGTH) :: text
+      integer(hid_t) :: kind, attribute
+      integer(hsize_t) :: extent(1)
+      integer :: status
+
+      text = ''
+      extent = 1
+      call h5aopen_f(file%id, name, attribute, status)
+      if (status < 0) return
+      call h5tcopy_f(H5T_FORTRAN_S1, kind, status)
+      call h5tset_size_f(kind, int(TEXT_LENGTH, size_t), status)
+      call h5aread_f(attribute, kind, text, extent, status)
+      if (status < 0) text = ''
+      call h5tclose_f(kind, status)
+      call h5aclose_f(attribute, status)
+   end function get_text
+
+   !> Length of a list, 0 if it is not there.
+   integer function extent_of(file, name) result(length)
+      type(h5_t), intent(in) :: file
+      character(*), intent(in) :: name
+      integer(hid_t) :: set
+      integer(hsize_t) :: dims(2)
+      integer :: status, rank
+
+      length = 0
+      call h5dopen_f(file%id, name, set, status)
+      if (status < 0) return
+      call extent_of_set(set, rank, dims)
+      if (rank == 1) length = int(dims(1))
+      call h5dclose_f(set, status)
+   end function extent_of
+
+   subroutine extent_of_set(set, rank, dims)
+      integer(hid_t), intent(in) :: set
+      integer, intent(out) :: rank
+      integer(hsize_t), intent(out) :: dims(2)
+      integer(hid_t) :: space
+      integer(hsize_t) :: found(2), largest(2)
+      integer :: status
+
+      dims = 0
+      found = 0
+      call h5dget_space_f(set, space, status)
+      call h5sget_simple_extent_ndims_f(space, rank, status)
+      if (rank == 1 .or. rank == 2) then
+         call h5sget_simple_extent_dims_f(space, found(:rank), largest(:rank), status)
+         dims(:rank) = found(:rank)
+      end if
+      call h5sclose_f(space, status)
+   end subroutine extent_of_set
+
+   subroutine get_real(file, name, values)
+      type(h5_t), intent(inout) :: file
+      character(*), intent(in) :: name
+      real(wp), intent(inout), contiguous, target :: values(:)
+
+      if (size(values) > 0) call get_raw(file, name, H5T_NATIVE_DOUBLE, shape(values), c_loc(values))
+   end subroutine get_real
+
+   subroutine get_real_2(file, name, values)
+      type(h5_t), intent(inout) :: file
+      character(*), intent(in) :: name
+      real(wp), intent(inout), contiguous, target :: values(:, :)
+
+      if (size(values) > 0) call get_raw(file, name, H5T_NATIVE_DOUBLE, shape(values), c_loc(values))
+   end subroutine get_real_2
+
+   subroutine get_integer(file, name, values)
+      type(h5_t), intent(inout) :: file
+      character(*), intent(in) :: name
+      integer, intent(inout), contiguous, target :: values(:)
+
+      if (size(values) > 0) call get_raw(file, name, H5T_NATIVE_INTEGER, shape(values), c_loc(values))
+   end subroutine get_integer
+
+   subroutine get_raw(file, name, kind, extent, values)
+      type(h5_t), intent(inout) :: file
+      character(*), intent(in) :: name
+      integer(hid_t), intent(in) :: kind
+      integer, intent(in) :: extent(:)
+      type(c_ptr), intent(in) :: values
+      integer(hid_t) :: set
+      integer(hsize_t) :: dims(2)
+      integer :: status, rank
+      type(c_ptr) :: place
+
+      call h5dopen_f(file%id, name, set, status)
+      call note(file, status)
+      if (status < 0) return
+      call extent_of_set(set, rank, dims)
+      if (rank /= size(extent)) then
+         file%good = .false.
+      else if (any(dims(:rank) /= extent)) then
+         file%good = .false.
+      else
+         place = values
+         call h5dread_f(set, kind, place, status)
+         call note(file, status)
+      end if
+      call h5dclose_f(set, status)
+   end subroutine get_raw
+end module io_hdf5

@@ -1,0 +1,247 @@
+"""Output of mud_host: restarts after SIGKILL at random moments, refused checkpoints, full disks, files and pictures."""
+import os
+import pathlib
+import random
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import h5py
+import meshio
+import numpy as np
+
+root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2])
+build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
+host = build / "host/mud_host"
+light = os.environ.get("MUD_PRESET", "release") != "release"
+work = pathlib.Path(tempfile.mkdtemp())
+environment = {**os.environ, "OMP_NUM_THREADS": "1"}
+passed = failed = 0
+
+
+def check(name, good, told=""):
+    global passed, failed
+    passed, failed = passed + bool(good), failed + (not good)
+    if not good:
+        print(f"FAILED {name}: {told}")
+
+
+def run(scene, out, *more, **how):
+    return subprocess.run([host, scene, "--output", out, *more], capture_output=True, text=True, env=environment, **how)
+
+
+def differences(one, other):
+    """Names of files that are not the same in two folders of output."""
+    names = {p.name for p in [*one.iterdir(), *other.iterdir()]}
+    return [name for name in sorted(names) if not (one / name).exists() or not (other / name).exists()
+            or (one / name).read_bytes() != (other / name).read_bytes()]
+
+
+# The scene of the restarts: MUD, three fields, growing and cut steps, a checkpoint after every step. The checking builds
+# take a shorter one.
+scene = work / "scene.nml"
+text = (root / "tests/host/scenes/restart.nml").read_text().replace("../../..", str(root))
+if light:
+    text = text.replace("duration = 1\n", "duration = 0.03\n").replace("duration = 0.04", "duration = 0.01")
+scene.write_text(text)
+t0 = time.monotonic()
+done = run(scene, work / "whole", "--quiet")
+duration = time.monotonic() - t0
+check("uninterrupted run", done.returncode == 0, done.stderr)
+whole = work / "whole"
+
+# SIGKILL at ten random moments; at least two of them in a checkpoint's write, which is seen by the unfinished file that
+# stays behind. Those are aimed at: the kill follows as soon as the unfinished file shows up.
+dice = random.Random(1)
+out = work / "killed"
+kills = in_write = starts = 0
+while kills < 10 and starts < 100:
+    starts += 1
+    part, last = out / "checkpoint.h5.part", out / "checkpoint.h5"
+    part.unlink(missing_ok=True)
+    more = ("--restart", last) if last.exists() else ()
+    child = subprocess.Popen([host, scene, "--output", out, "--quiet", *more], env=environment, stderr=subprocess.PIPE)
+    aimed = kills % 2 == 1
+    end = time.monotonic() + dice.uniform(0.02, 0.25)*duration
+    while child.poll() is None and (time.monotonic() < end or aimed and not part.exists()):
+        pass
+    if child.poll() is not None:
+        check("restarted run goes on", child.returncode == 0, child.stderr.read().decode())
+        if child.returncode:
+            break
+        shutil.rmtree(out)  # it came to its end: once more from the start, the moments are not all used up
+        continue
+    child.send_signal(signal.SIGKILL)
+    child.wait()
+    kills += 1
+    in_write += part.exists()
+check("ten kills", kills == 10, kills)
+check("two kills in a write", in_write >= 2, in_write)
+(out / "checkpoint.h5.part").unlink(missing_ok=True)
+for left_over in out.glob("*.part"):
+    left_over.unlink()
+done = run(scene, out, "--quiet", *(("--restart", out / "checkpoint.h5") if (out / "checkpoint.h5").exists() else ()))
+check("last restart ends well", done.returncode == 0, done.stderr)
+check("restarted after kills: same bytes", not differences(whole, out), differences(whole, out))
+
+# From a checkpoint in the middle: only so a second comparison is sure to cover most of the run.
+half = work / "half"
+child = subprocess.Popen([host, scene, "--output", half, "--quiet"], env=environment)
+while child.poll() is None and not ((half / "ledger.csv").exists()
+                                    and len((half / "ledger.csv").read_bytes().splitlines()) > 12):
+    time.sleep(0.002)
+killed = child.poll() is None
+child.send_signal(signal.SIGKILL)
+child.wait()
+check("killed on the way", killed)
+with h5py.File(half / "checkpoint.h5") as file:
+    step = int(file["counters"][4])
+check("checkpoint on the way", 0 < step < len((whole / "ledger.csv").read_bytes().splitlines()) - 1, step)
+keep = work / "kept.h5"
+shutil.copy(half / "checkpoint.h5", keep)
+shutil.copytree(half, work / "full")
+done = run(scene, half, "--quiet", "--restart", half / "checkpoint.h5")
+for left_over in half.glob("*.part"):
+    left_over.unlink()
+check("restart on the way: same bytes", done.returncode == 0 and not differences(whole, half),
+      done.stderr + str(differences(whole, half)))
+
+# Comments and threads belong to nobody's fingerprint; a value does.
+scene.write_text("! another comment\n" + text.replace("checkpoint_steps = 1", "threads = 2\n   checkpoint_steps = 0"))
+done = run(scene, half, "--quiet", "--restart", half / "checkpoint.h5")
+check("same scene with a comment and other threads", done.returncode == 0, done.stderr)
+scene.write_text(text)
+
+# Checkpoints that are refused.
+raw = keep.read_bytes()
+bad = work / "bad.h5"
+
+
+def altered(change):
+    bad.write_bytes(raw)
+    with h5py.File(bad, "r+") as file:
+        change(file)
+
+
+def flip():
+    """One bit of the data of the displacements."""
+    with h5py.File(keep) as file:
+        place = file["x"].id.get_chunk_info(0).byte_offset
+    data = bytearray(raw)
+    data[place + 100] ^= 1
+    bad.write_bytes(data)
+
+
+def drop(file):
+    del file["stress"]
+
+
+def shorten(file):
+    del file["s"]
+    file["s"] = np.ones(3)
+
+
+other = text.replace("void_ratio = 0.8", "void_ratio = 0.81")
+REFUSED = [
+    ("missing", lambda: bad.unlink(missing_ok=True), text, "is not there"),
+    ("empty", lambda: bad.write_bytes(b""), text, "cut off"),
+    ("truncated", lambda: bad.write_bytes(raw[:len(raw)//2]), text, "cut off"),
+    ("one byte short", lambda: bad.write_bytes(raw[:-1]), text, "cut off"),
+    ("no HDF5", lambda: bad.write_bytes(b"checkpoint"*1000), text, "no HDF5"),
+    ("foreign HDF5", lambda: shutil.copy(whole / "mesh.h5", bad), text, "no checkpoint"),
+    ("other format", lambda: altered(lambda f: f.attrs.modify("format", np.bytes_("0"))), text, "another version"),
+    ("other library", lambda: altered(lambda f: f.attrs.modify("library", np.bytes_("9.9"))), text, "another version"),
+    ("damaged bit", flip, text, "damaged"),
+    ("missing entry", lambda: altered(drop), text, "damaged"),
+    ("other extent", lambda: altered(shorten), text, "damaged"),
+    ("other scene", lambda: bad.write_bytes(raw), other, "another scene"),
+]
+for what, make, scene_text, words in REFUSED:
+    make()
+    scene.write_text(scene_text)
+    done = run(scene, half, "--quiet", "--restart", bad)
+    check(f"checkpoint {what}: exit code", done.returncode == 17, f"{done.returncode}: {done.stderr}")
+    check(f"checkpoint {what}: one sentence", words in done.stderr and len(done.stderr.splitlines()) == 1, done.stderr)
+scene.write_text(text)
+done = run(scene, work / "elsewhere", "--quiet", "--restart", keep)
+check("restart into another folder", done.returncode == 17 and "interrupted run" in done.stderr, done.stderr)
+# A file that the scene names counts as much as the scene.
+copy = work / "sand.nml"
+copy.write_text((root / "drivers/materials/toyoura.nml").read_text())
+scene.write_text(re.sub(r"file = '.*toyoura.nml'", "file = 'sand.nml'", text))
+done = run(scene, half, "--quiet", "--restart", keep)
+check("other material file", done.returncode == 17 and "another scene" in done.stderr, done.stderr)
+scene.write_text(text)
+
+
+# A full disk, as a limit on the size of a file that the next checkpoint does not fit under: the last good one is kept.
+def small_disk():
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+
+
+full = work / "full"
+for left_over in full.glob("*.part"):
+    left_over.unlink()
+assert len(raw) > 20000
+done = run(scene, full, "--quiet", "--restart", full / "checkpoint.h5", preexec_fn=small_disk)
+check("full disk: exit code", done.returncode == 4, f"{done.returncode}: {done.stderr}")
+check("full disk: sentence", "checkpoint.h5 cannot be written" in done.stderr and len(done.stderr.splitlines()) == 1,
+      done.stderr)
+check("full disk: last good one kept", (full / "checkpoint.h5").read_bytes() == raw)
+check("full disk: no rest", not list(full.glob("*.part")))
+done = run(scene, full, "--quiet", "--restart", full / "checkpoint.h5")
+check("after a full disk: same bytes", done.returncode == 0 and not differences(whole, full),
+      done.stderr + str(differences(whole, full)))
+# A folder that nothing can be written to, from the first file on.
+done = run(scene, "/proc/nowhere", "--quiet")
+check("no folder", done.returncode == 4, done.stderr)
+
+# results.xdmf as a reader of that format sees it: times, connections and coordinates, fields by name and unit.
+with meshio.xdmf.TimeSeriesReader(whole / "results.xdmf") as series:
+    points, cells = series.read_points_cells()
+    frames = [series.read_data(k) for k in range(series.num_steps)]
+check("xdmf: 6-node triangles", [c.type for c in cells] == ["triangle6"] and cells[0].data.shape == (4, 6))
+nodes = np.loadtxt(whole / "nodes_pulse.csv", delimiter=",", skiprows=1)
+check("xdmf: coordinates", np.array_equal(points, nodes[:, :2]))
+corner = points[cells[0].data]
+check("xdmf: middles of sides", np.allclose(corner[:, 3:], (corner[:, :3] + corner[:, [1, 2, 0]])/2, atol=1e-15))
+last_time, at_nodes, in_cells = frames[-1]
+for name, columns in (("displacement [m]", nodes[:, 2:4]), ("velocity [m/s]", nodes[:, 6:8])):
+    check(f"xdmf: {name}", np.array_equal(at_nodes[name][:, :2], columns) and not at_nodes[name][:, 2].any())
+for name, column in (("p_w [kPa]", 4), ("p_c [kPa]", 5)):
+    check(f"xdmf: {name}", np.array_equal(at_nodes[name], nodes[:, column]))
+check("xdmf: p_a", np.array_equal(at_nodes["p_a [kPa]"], at_nodes["p_w [kPa]"] + at_nodes["p_c [kPa]"]))
+gauss = np.loadtxt(whole / "points_pulse.csv", delimiter=",", skiprows=1).reshape(4, 3, 9)
+mean = (gauss*gauss[:, :, 2:3]).sum(1)/gauss[:, :, 2].sum(1)[:, None]
+# A mean of three numbers of one sign: a few roundings.
+for name, values in (("s_rr [kPa]", mean[:, 3]), ("s_zz [kPa]", mean[:, 4]), ("s_tt [kPa]", mean[:, 5]),
+                     ("e [-]", mean[:, 7]), ("S_w [-]", mean[:, 8]), ("p [kPa]", -mean[:, 3:6].sum(1)/3)):
+    check(f"xdmf: {name}", np.allclose(in_cells[name][0], values, rtol=1e-14, atol=0), in_cells[name][0] - values)
+deviator = mean[:, 3:6] - mean[:, 3:6].mean(1)[:, None]
+q = np.sqrt(1.5*(deviator**2).sum(1) + 3*mean[:, 6]**2)
+check("xdmf: q", np.allclose(in_cells["q [kPa]"][0], q, rtol=1e-13, atol=0), in_cells["q [kPa]"][0] - q)
+
+# The frames are those that the stages ask for: the start, every so many steps, and the ends.
+ledger = np.genfromtxt(whole / "ledger.csv", delimiter=",", names=True)
+wanted = [0.0]
+for number, every in ((1, 7), (2, 10)):
+    times = ledger["time"][ledger["stage"] == number]
+    wanted += [t for i, t in enumerate(times, 1) if i % every == 0 and i < len(times)] + [times[-1]]
+check("xdmf: times", [t for t, _, _ in frames] == wanted, f"{[t for t, _, _ in frames]} {wanted}")
+
+# Every dataset says its unit and what it is.
+for path in sorted(whole.glob("*.h5")):
+    with h5py.File(path) as file:
+        sets = []
+        file.visititems(lambda name, item: sets.append(item) if isinstance(item, h5py.Dataset) else None)
+        check(f"{path.name}: units and descriptions", sets and all(item.attrs.get("unit") and item.attrs.get("description")
+                                                                   for item in sets))
+
+shutil.rmtree(work)
+print(f"{passed} passed, {failed} failed")
+sys.exit(failed > 0)
