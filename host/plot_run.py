@@ -78,14 +78,15 @@ def choose(names, known, what):
 
 
 def levels_of(low, high):
-    """Few round levels; a constant gets a band of its own."""
+    """(levels, ticks): few and round; a constant gets a band of its own."""
     if not high - low > SMALL*max(abs(low), abs(high)):
         margin = max(abs(low), 1e-12)*1e-3
-        return np.array([low - margin, high + margin])
-    levels = matplotlib.ticker.MaxNLocator(12).tick_values(low, high)
+        return np.array([low - margin, high + margin]), [low]
+    ticks = matplotlib.ticker.MaxNLocator(12).tick_values(low, high)
+    levels = ticks.copy()
     # A contour plot leaves out what lies on its last level.
     levels[[0, -1]] += np.array([-1, 1])*SMALL*(high - low)
-    return levels
+    return levels, ticks[::2]
 
 
 def draw_fields(run, frames, names, factor, output):
@@ -98,7 +99,7 @@ def draw_fields(run, frames, names, factor, output):
     triangles = np.concatenate([run.elements[:, corners] for corners in SPLIT])
     for column, name in enumerate(names):
         shown = [run.field(frame, name) for frame in frames]
-        levels = levels_of(min(v.min() for v, *_ in shown), max(v.max() for v, *_ in shown))
+        levels, ticks = levels_of(min(v.min() for v, *_ in shown), max(v.max() for v, *_ in shown))
         for row, (frame, (values, unit, meaning, of_nodes)) in enumerate(zip(frames, shown)):
             axis = grid[row, column]
             moved = run.nodes + factor*np.stack([run.field(frame, "u_r")[0], run.field(frame, "u_z")[0]], axis=1)
@@ -108,7 +109,7 @@ def draw_fields(run, frames, names, factor, output):
             else:
                 picture = axis.tripcolor(mesh, facecolors=np.tile(values, len(SPLIT)), cmap="viridis", vmin=levels[0],
                                          vmax=levels[-1], rasterized=True)
-            bar = figure.colorbar(picture, ax=axis, shrink=0.9, pad=0.02, format="%.4g")
+            bar = figure.colorbar(picture, ax=axis, shrink=0.9, pad=0.02, format="%.4g", ticks=ticks)
             bar.outline.set_visible(False)
             # The mesh itself, unless its lines would cover it.
             if len(run.elements) < 3000:

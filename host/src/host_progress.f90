@@ -18,7 +18,7 @@ module host_progress
    type :: progress_t
       logical :: quiet = .true.
       logical :: standing = .false.         !< A line stands on the terminal.
-      real(wp) :: last_line = -1.0_wp       !< When it was written, -1: not yet.
+      real(wp) :: last_line = -huge(1.0_wp) !< When it was written.
       real(wp) :: last_step = -1.0_wp
       real(wp) :: pace = 0.0_wp             !< Seconds a step, the last ones counting most.
       real(wp) :: last_checkpoint = 0.0_wp
@@ -36,18 +36,19 @@ contains
 
       if (progress%quiet) return
       now = clock()
+      terminal = to_terminal()
       if (progress%last_step >= 0.0_wp) then
          if (progress%pace > 0.0_wp) then
             progress%pace = MEMORY*progress%pace + (1 - MEMORY)*(now - progress%last_step)
          else
             progress%pace = now - progress%last_step
          end if
-      else
+      else if (.not. terminal) then
          progress%last_line = now
       end if
       progress%last_step = now
-      terminal = to_terminal()
-      if (now - progress%last_line < PERIODS(merge(1, 2, terminal))) return
+      ! The first step has no pace yet.
+      if (.not. progress%pace > 0.0_wp .or. now - progress%last_line < PERIODS(merge(1, 2, terminal))) return
       progress%last_line = now
       associate (stage => scene%stages(run%course%stage), course => run%course)
          left = steps_left(stage, course%nominal*course%factor, course%t_start + stage%duration - run%state%time)

@@ -47,7 +47,7 @@ def differences(one, other):
 scene = work / "scene.nml"
 text = (root / "tests/host/scenes/restart.nml").read_text().replace("../../..", str(root))
 if light:
-    text = text.replace("duration = 1\n", "duration = 0.03\n").replace("duration = 0.04", "duration = 0.01")
+    text = text.replace("duration = 0.03\n", "duration = 0.01\n").replace("duration = 0.3\n", "duration = 0.03\n")
 scene.write_text(text)
 t0 = time.monotonic()
 done = run(scene, work / "whole", "--quiet")
@@ -241,6 +241,43 @@ for path in sorted(whole.glob("*.h5")):
         file.visititems(lambda name, item: sets.append(item) if isinstance(item, h5py.Dataset) else None)
         check(f"{path.name}: units and descriptions", sets and all(item.attrs.get("unit") and item.attrs.get("description")
                                                                    for item in sets))
+
+# Pictures without writing code; what there is not is named.
+plot = [sys.executable, root / "host/plot_run.py", whole]
+done = subprocess.run([*plot, "--times", "0", "1e9", "--deformed", "10", "--output", work / "pictures"],
+                      capture_output=True, text=True)
+for name in ("fields.png", "histories.png"):
+    path = work / "pictures" / name
+    check(f"picture {name}", path.exists() and path.read_bytes().startswith(b"\x89PNG") and path.stat().st_size > 10000,
+          done.stderr)
+done = subprocess.run([*plot, "--fields", "p_x"], capture_output=True, text=True)
+check("picture of no field", done.returncode == 1 and "no field p_x" in done.stderr and "p_w" in done.stderr, done.stderr)
+done = subprocess.run([*plot[:2], work], capture_output=True, text=True)
+check("picture of no run", done.returncode == 1 and "no fields of mud_host" in done.stderr, done.stderr)
+
+# What a run tells at its end: phases that add up, counters of the ledger.
+done = run(scene, work / "told")
+seconds = [float(s) for s in re.findall(r"^ +\D+? +(\d+\.\d+) s", done.stdout, re.MULTILINE)]
+check("account: phases add up", len(seconds) == 8 and abs(sum(seconds[:-1]) - seconds[-1]) < 8*0.0005 + 1e-9, seconds)
+check("account: counters", f"{len(ledger)} steps" in done.stdout, done.stdout)
+for phase in ("material", "assembly", "factorisation", "solution", "output"):
+    check(f"account: {phase}", re.search(rf"^ +{phase} ", done.stdout, re.MULTILINE), done.stdout)
+# On a terminal a line in place says how far the run is.
+near, far = os.openpty()
+child = subprocess.Popen([host, scene, "--output", work / "told"], env=environment, stdout=far)
+os.close(far)
+shown = b""
+while True:
+    try:
+        piece = os.read(near, 4096)
+    except OSError:  # the other end is closed
+        break
+    if not piece:
+        break
+    shown += piece
+child.wait()
+line = re.search(rb"\rStage \w+: step \d+, time \S+ s, \d+ %; about \d+ s left", shown)
+check("progress line", line, shown)
 
 shutil.rmtree(work)
 print(f"{passed} passed, {failed} failed")
