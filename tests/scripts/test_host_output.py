@@ -71,8 +71,8 @@ while kills < 10 and starts < 100:
     while child.poll() is None and (time.monotonic() < end or aimed and not part.exists()):
         pass
     if child.poll() is not None:
-        check("restarted run goes on", child.returncode == 0, child.stderr.read().decode())
         if child.returncode:
+            check("restarted run goes on", False, child.stderr.read().decode())
             break
         shutil.rmtree(out)  # it came to its end: once more from the start, the moments are not all used up
         continue
