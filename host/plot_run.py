@@ -20,7 +20,7 @@ COLOURS = ("#0b3c6f", "#c8553d", "#3a8f6a", "#8a5a9e", "#b58900", "#555555")
 COMPONENTS = {"u_r": ("displacement", 0), "u_z": ("displacement", 1), "v_r": ("velocity", 0), "v_z": ("velocity", 1),
               "a_r": ("acceleration", 0), "a_z": ("acceleration", 1)}
 USUAL = ("u_z", "u_r", "p_w", "p_c", "S_w", "p", "q", "e")   # in this order, as many as a page holds
-UNITS = {"u": "m", "v": "m/s", "a": "m/s2", "p": "kPa", "s": "kPa", "e": "-", "S": "-"}   # of histories, by their letter
+UNITS = {"u": "m", "v": "m/s", "a": "m/s2", "p": "kPa", "s": "kPa", "e": "-", "S": "-"}  # by the letter
 PAGE = 6            # panels without being asked
 SMALL = 1e-9        # a range below this share of its size is constant
 SPLIT = ([0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5])   # a 6-node triangle as four of three nodes

@@ -1,5 +1,5 @@
-!> Checkpoints: the complete state of a run in one HDF5 file, and a run from one. Loads, boundary conditions and the flow
-!> that is subtracted follow from the scene; the ordering of the equations from their pattern. All the rest is here.
+!> Checkpoints: the complete state of a run in one HDF5 file, and a run from one. Loads, boundary conditions and the
+!> flow that is subtracted follow from the scene; the ordering of the equations from their pattern. The rest is here.
 module host_checkpoint
    use, intrinsic :: iso_c_binding, only: c_char, c_null_char
    use mud_interface, only: mud_version
@@ -9,7 +9,8 @@ module host_checkpoint
    use host_output, only: output_t, settle_output
    use host_scene, only: scene_t
    use fe_model, only: copy_state
-   use io_hdf5, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, get_text, extent_of
+   use io_hdf5, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, &
+                      get_text, extent_of
    use triax_fault, only: fault_t, raise, EXIT_OUTPUT
    use triax_text, only: from_c
    implicit none (type, external)
@@ -20,8 +21,8 @@ module host_checkpoint
    character(*), parameter :: KIND_OF_FILE = 'checkpoint of mud_host'
    character(*), parameter :: FORMAT = '1'      !< Grows with every change of what is stored.
    integer, parameter :: N_COUNTERS = 11
-   character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, seepage [kJ], '// &
-                                        'outflow, outflow_air [m3]'
+   character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
+                                        'seepage [kJ], outflow, outflow_air [m3]'
 contains
    subroutine write_checkpoint(scene, run, output, fault)
       type(scene_t), intent(in) :: scene
@@ -60,7 +61,7 @@ contains
       end associate
       call write_file(file, output%folder//'/'//CHECKPOINT, good)
       if (.not. good) call raise(fault, EXIT_OUTPUT, output%folder//'/'//CHECKPOINT//' cannot be written; is the '// &
-                                 'disk full? The one before, if there is any, is untouched: make room and use --restart.')
+                                 'disk full? The one before is untouched: make room and use --restart.')
    end subroutine write_checkpoint
 
    !> Puts a prepared run where the checkpoint was written.
@@ -132,8 +133,8 @@ contains
       library_of = get_text(file, 'library')
       here = library()
       if (kind /= KIND_OF_FILE) then
-         call raise(fault, EXIT_RESTART, path//' is an HDF5 file, but no checkpoint of mud_host; name the '//CHECKPOINT// &
-                    ' of a run.')
+         call raise(fault, EXIT_RESTART, path//' is an HDF5 file, but no checkpoint of mud_host; name the '// &
+                    CHECKPOINT//' of a run.')
       else if (format_of /= FORMAT .or. library_of /= here) then
          call raise(fault, EXIT_RESTART, path//' was written by another version: format '//trim(format_of)// &
                     ', library '//trim(library_of)//'; this one has format '//FORMAT//', library '//trim(here)// &
@@ -141,7 +142,7 @@ contains
       else if (get_text(file, 'fingerprint') /= scene%fingerprint) then
          call raise(fault, EXIT_RESTART, path//' belongs to another scene ('//trim(get_text(file, 'scene'))// &
                     ', fingerprint '//trim(get_text(file, 'fingerprint'))//', here '//scene%fingerprint// &
-                    '): groups, keys, values and files must be those of the run; only threads and checkpoint_* may differ.')
+                    '): groups, keys, values and files must be those of the run, but for threads and checkpoint_*.')
       end if
    end subroutine check_origin
 

@@ -19,5 +19,5 @@ module host_kinds
    integer, parameter :: EXIT_CONVERGENCE = 14  !< No convergence with the smallest step.
    integer, parameter :: EXIT_MATERIAL = 15     !< The material refuses the smallest step.
    integer, parameter :: EXIT_SOLVER = 16       !< The linear solver ran out of memory.
-   integer, parameter :: EXIT_RESTART = 17      !< A checkpoint that is damaged, foreign, or of another scene or version.
+   integer, parameter :: EXIT_RESTART = 17      !< A checkpoint: damaged, foreign, of another scene or version.
 end module host_kinds

@@ -68,7 +68,7 @@ contains
       status = 1
       if (cut_file(path, bytes)) open (newunit=unit, file=path, status='old', position='append', action='write', &
                                        recl=100000, iostat=status)
-      if (status /= 0) call raise(fault, EXIT_RESTART, path//' is not there, shorter than it was at the checkpoint, '// &
+      if (status /= 0) call raise(fault, EXIT_RESTART, path//' is not there, shorter than at the checkpoint, '// &
                                   'or cannot be written; --output must name the folder of the interrupted run.')
    end subroutine reopen
 

@@ -57,9 +57,9 @@ contains
       call put_text(file, 'scene', scene)
       call put_text(file, 'axes', merge('r, z; axisymmetric', 'x, y; plane strain', model%axisymmetric))
       call put(file, 'nodes', model%mesh%x, 'm', 'coordinates r, z of every node')
-      call put(file, 'elements', model%mesh%t6 - 1, '-', 'nodes of every element from 0: vertices, then the middles '// &
-               'of the sides 1-2, 2-3, 3-1')
-      call put(file, 'regions', model%region_of, '-', 'number of the region of every element, in the order of the scene')
+      call put(file, 'elements', model%mesh%t6 - 1, '-', 'nodes of every element from 0: vertices, then the '// &
+               'middles of the sides 1-2, 2-3, 3-1')
+      call put(file, 'regions', model%region_of, '-', 'number of the region of every element, as in the scene')
       call put(file, 'points/position', reshape([((model%gauss(g, e)%x, g=1, model%rule), &
                e=1, size(model%mesh%t6, 2))], [2, size(model%gauss)]), 'm', 'r, z of every quadrature point')
       call put(file, 'points/weight', [((model%gauss(g, e)%weight, g=1, model%rule), e=1, size(model%mesh%t6, 2))], &
@@ -216,7 +216,8 @@ contains
       elements = size(model%mesh%t6, 2)
       mesh = '    <Topology TopologyType="Triangle_6" NumberOfElements="'//whole(elements)//'">'// &
              item(whole(elements)//' 6', 'Int', 'mesh.h5', 'elements')//'</Topology>'//LF// &
-             '    <Geometry GeometryType="XY">'//item(whole(nodes)//' 2', 'Float', 'mesh.h5', 'nodes')//'</Geometry>'//LF
+             '    <Geometry GeometryType="XY">'//item(whole(nodes)//' 2', 'Float', 'mesh.h5', 'nodes')// &
+             '</Geometry>'//LF
       text = '<?xml version="1.0"?>'//LF//'<Xdmf Version="3.0"><Domain>'//LF// &
              '<Grid Name="results" GridType="Collection" CollectionType="Temporal">'//LF
       do k = 1, size(frames%times)
@@ -224,14 +225,14 @@ contains
          do i = 1, size(LIST)
             if (.not. has(model, i)) cycle
             attributes = attributes//'    <Attribute Name="'//trim(LIST(i)%name)//' ['//trim(LIST(i)%unit)// &
-                         ']" AttributeType="'//trim(merge('Vector', 'Scalar', LIST(i)%components == 3))//'" Center="'// &
-                         merge('Node', 'Cell', LIST(i)%of_nodes)//'">'// &
+                         ']" AttributeType="'//merge('Vector', 'Scalar', LIST(i)%components == 3)// &
+                         '" Center="'//merge('Node', 'Cell', LIST(i)%of_nodes)//'">'// &
                          item(whole(merge(nodes, elements, LIST(i)%of_nodes))//trim(merge(' 3', '  ', &
                               LIST(i)%components == 3)), 'Float', trim(file_of(k)), place_of(i))//'</Attribute>'//LF
          end do
          write (time, '(es24.16e3)') frames%times(k)
-         text = text//'  <Grid Name="results" GridType="Uniform"><Time Value="'//trim(adjustl(time))//'"/>'//LF//mesh// &
-                attributes//'  </Grid>'//LF
+         text = text//'  <Grid Name="results" GridType="Uniform"><Time Value="'//trim(adjustl(time))//'"/>'//LF// &
+                mesh//attributes//'  </Grid>'//LF
       end do
       text = text//'</Grid>'//LF//'</Domain></Xdmf>'//LF
       call write_whole(folder//'/results.xdmf', bytes_of(text), good)

@@ -16,11 +16,12 @@ module host_run
    use fe_material, only: TOO_LARGE
    use fe_model, only: copy_state
    use fe_pattern, only: make_pattern
+   use io_hdf5, only: HAS_HDF5
    use newton, only: control_t, log_t, take_step, start_accelerations, &
                      CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
    use solve_sparse, only: release
    use time_galpha, only: scheme_t, make_scheme, step_error, DYNAMIC
-   use triax_fault, only: fault_t, raise
+   use triax_fault, only: fault_t, raise, EXIT_INPUT
    use triax_text, only: short, whole
    !$ use omp_lib, only: omp_get_max_threads
    implicit none (type, external)
@@ -82,6 +83,11 @@ contains
       real(wp) :: t0
       integer :: i
 
+      if (.not. HAS_HDF5 .and. (scene%checkpoint_steps > 0 .or. scene%checkpoint_seconds > 0.0_wp)) then
+         call raise(fault, EXIT_INPUT, 'This mud_host was built without HDF5: it writes no checkpoints; leave '// &
+                    'checkpoint_steps and checkpoint_seconds out, or install HDF5 and build anew.')
+         return
+      end if
       t0 = clock()
       if (present(restart)) call read_checkpoint(restart, scene, run, output, fault)
       if (fault%code == 0 .and. folder /= '') call open_output(folder, scene, present(restart), output, fault)

