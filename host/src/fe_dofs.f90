@@ -30,6 +30,7 @@ contains
          has(3, model%mesh%t6(1:model%n_p, e)) = model%with_w
          has(4, model%mesh%t6(1:model%n_p, e)) = model%with_c
       end do
+      if (allocated(model%bodies)) has(2, model%bodies) = .true.
       allocate (dofs%of(FIELDS, size(has, 2)), source=0)
       do i = 1, size(has, 2)
          do f = 1, FIELDS

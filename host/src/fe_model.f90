@@ -64,6 +64,7 @@ module fe_model
       type(gauss_t), allocatable :: gauss(:, :)       !< (rule, elements)
       integer :: n_state = 0                          !< State variables a point.
       integer :: threads = 1
+      integer, allocatable :: bodies(:)               !< Nodes of rigid plates: the last ones, in no element, u_z alone.
       procedure(source_i), pointer, nopass :: source => null()
    end type model_t
 

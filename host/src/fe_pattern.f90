@@ -20,13 +20,14 @@ contains
       integer, intent(in) :: element(:, :)
       integer, intent(in) :: extra(:, :)   !< (2, pairs), each listed both ways round.
       type(pattern_t), intent(out) :: pattern
-      integer, allocatable :: mark(:), where_is(:), users(:), start(:), list(:), count_of(:)
+      integer, allocatable :: mark(:), where_is(:), users(:), start(:), list(:), count_of(:), more(:), partner(:)
       integer :: m, e, i, j, k, pass, used, a
 
       m = size(element, 1)
       pattern%n = n
       ! Elements of every unknown.
       call invert(n, element, start, list)
+      call invert(n, extra(1:1, :), more, partner)
       allocate (mark(n), source=0)
       allocate (where_is(n), source=0)
       allocate (pattern%row(n + 1), source=1)
@@ -45,9 +46,14 @@ contains
                   if (pass == 2) pattern%col(used) = j
                end do
             end do
-            do k = 1, size(extra, 2)
-               if (extra(1, k) /= i) cycle
-               j = extra(2, k)
+            ! What no element knows still has a diagonal.
+            if (mark(i) /= i) then
+               mark(i) = i
+               used = used + 1
+               if (pass == 2) pattern%col(used) = i
+            end if
+            do k = more(i), more(i + 1) - 1
+               j = extra(2, partner(k))
                if (mark(j) == i) cycle
                mark(j) = i
                used = used + 1

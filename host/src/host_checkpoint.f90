@@ -9,6 +9,7 @@ module host_checkpoint
    use host_output, only: output_t, settle_output
    use host_scene, only: scene_t
    use fe_model, only: copy_state
+   use fe_pattern, only: make_pattern
    use io_hdf5, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, &
                       get_text, extent_of
    use triax_fault, only: fault_t, raise, EXIT_OUTPUT
@@ -20,9 +21,9 @@ module host_checkpoint
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
    character(*), parameter :: KIND_OF_FILE = 'checkpoint of mud_host'
    character(*), parameter :: FORMAT = '1'      !< Grows with every change of what is stored.
-   integer, parameter :: N_COUNTERS = 11
+   integer, parameter :: N_COUNTERS = 13
    character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
-                                        'seepage [kJ], outflow, outflow_air [m3]'
+                                        'contact, seepage [kJ], outflow, outflow_air [m3]'
 contains
    subroutine write_checkpoint(scene, run, output, fault)
       type(scene_t), intent(in) :: scene
@@ -43,7 +44,8 @@ contains
       call put_text(file, 'fingerprint', scene%fingerprint)
       associate (s => run%state, c => run%course)
          call put(file, 'counters', counters_of(run, output), '-', 'stage, step of it, cuts in force, good steps, '// &
-                  'steps, iterations, cuts, rate evaluations, eager, bytes of histories.csv, bytes of ledger.csv')
+                  'steps, iterations, cuts, rate evaluations, eager, bytes of histories.csv, bytes of ledger.csv, '// &
+                  'bytes of contact.csv, pairs of unknowns brought together by contacts')
          call put(file, 'course', [s%time, c%t_start, c%nominal, c%factor], 's', &
                   'time, start of the stage, step without cuts, share of it [-]')
          call put(file, 'ledger', transfer(run%ledger, [0.0_wp]), 'kJ', BALANCE)
@@ -59,6 +61,8 @@ contains
          call put(file, 's', s%s, '-', 'degree of saturation')
          call put(file, 's_rate', s%s_rate, '1/s', 'its rate')
       end associate
+      if (pairs_of(run) > 0) call put(file, 'pairs', reshape(run%system%contacts%extra, [2*pairs_of(run)]), '-', &
+                                      'pairs of unknowns that contacts brought into the matrix')
       call write_file(file, output%folder//'/'//CHECKPOINT, good)
       if (.not. good) call raise(fault, EXIT_OUTPUT, output%folder//'/'//CHECKPOINT//' cannot be written; is the '// &
                                  'disk full? The one before is untouched: make room and use --restart.')
@@ -104,6 +108,7 @@ contains
          call get(file, 'e', run%state%e)
          call get(file, 's', run%state%s)
          call get(file, 's_rate', run%state%s_rate)
+         if (file%good .and. counters(N_COUNTERS) > 0) call take_pairs(file, counters(N_COUNTERS), run)
          if (file%good) then
             run%state%time = course(1)
             run%course%t_start = course(2)
@@ -119,6 +124,21 @@ contains
       end if
       call close_file(file)
    end subroutine read_checkpoint
+
+   !> The matrix with all the room that contacts have asked for: its ordering, and so every digit, depends on it.
+   subroutine take_pairs(file, pairs, run)
+      type(h5_t), intent(inout) :: file
+      integer, intent(in) :: pairs
+      type(run_t), intent(inout) :: run
+      integer :: flat(2*pairs)
+
+      call get(file, 'pairs', flat)
+      if (.not. file%good) return
+      run%system%contacts%extra = reshape(flat, [2, pairs])
+      call make_pattern(run%dofs%n, run%dofs%element, run%system%contacts%extra, run%pattern)
+      deallocate (run%assembly%values)
+      allocate (run%assembly%values(size(run%pattern%col)), source=0.0_wp)
+   end subroutine take_pairs
 
    !> Refuses files of others, of another program and of another scene.
    subroutine check_origin(path, scene, file, fault)
@@ -155,13 +175,21 @@ contains
       if (mud_version(raw, len(raw)) >= 0) text = from_c(raw)
    end function library
 
+   pure integer function pairs_of(run) result(pairs)
+      type(run_t), intent(in) :: run
+
+      pairs = 0
+      if (allocated(run%system%contacts%extra)) pairs = size(run%system%contacts%extra, 2)
+   end function pairs_of
+
    pure function counters_of(run, output) result(counters)
       type(run_t), intent(in) :: run
       type(output_t), intent(in) :: output
       integer :: counters(N_COUNTERS)
 
       counters = [run%course%stage, run%course%step, run%course%cuts, run%course%good, run%steps, run%iterations, &
-                  run%cuts, run%effort, merge(1, 0, run%system%eager), output%history_bytes, output%ledger_bytes]
+                  run%cuts, run%effort, merge(1, 0, run%system%eager), output%history_bytes, &
+                  output%ledger_bytes, output%contact_bytes, pairs_of(run)]
    end function counters_of
 
    pure subroutine take_counters(counters, run, output)
@@ -180,5 +208,6 @@ contains
       run%system%eager = counters(9) == 1
       output%history_bytes = counters(10)
       output%ledger_bytes = counters(11)
+      output%contact_bytes = counters(12)
    end subroutine take_counters
 end module host_checkpoint

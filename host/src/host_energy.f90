@@ -1,5 +1,6 @@
 !> Ledger of a run: energies, work and flow through the boundary, summed step by step.
-!> Mechanical balance: loads + supports + gravity = change of kinetic + skeleton + pores (+ algorithmic damping).
+!> Mechanical balance: loads + supports + gravity = change of kinetic + skeleton + pores + contact (+ algorithmic
+!> damping).
 module host_energy
    use host_kinds, only: wp
    use fe_dofs, only: dofs_t
@@ -17,6 +18,7 @@ module host_energy
       real(wp) :: pores = 0.0_wp      !< Work of pore pressures against the change of volume [kJ].
       real(wp) :: gravity = 0.0_wp    !< Work of weight [kJ].
       real(wp) :: loads = 0.0_wp, supports = 0.0_wp      !< Work of loads and of prescribed displacements [kJ].
+      real(wp) :: contact = 0.0_wp    !< Work done on the penalty of contacts [kJ].
       real(wp) :: seepage = 0.0_wp    !< Dissipated by seepage [kJ].
       real(wp) :: outflow = 0.0_wp, outflow_air = 0.0_wp !< Through prescribed pressures: both fluids, air [m3].
    end type ledger_t
@@ -133,6 +135,6 @@ contains
       type(ledger_t), intent(in) :: ledger
 
       imbalance = ledger%loads + ledger%supports + ledger%gravity &
-                  - (ledger%kinetic - ledger%kinetic_0) - ledger%skeleton - ledger%pores
+                  - (ledger%kinetic - ledger%kinetic_0) - ledger%skeleton - ledger%pores - ledger%contact
    end function imbalance
 end module host_energy

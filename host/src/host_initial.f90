@@ -27,8 +27,9 @@ contains
       do i = 1, size(scene%initials)
          associate (one => scene%initials(i), group => scene%model%mesh%groups(scene%initials(i)%group))
             do n = 1, size(group%nodes)
-               state%v(2, group%nodes(n)) = one%wave*sin(one%wave_number &
+               state%v(2, group%nodes(n)) = one%v_z + one%wave*sin(one%wave_number &
                                                *(scene%model%mesh%x(2, group%nodes(n)) - one%datum))
+               if (any(scene%model%bodies == group%nodes(n))) cycle
                if (scene%model%with_w) state%x(3, group%nodes(n)) = water(one, scene%model%mesh%x(2, group%nodes(n)))
                if (scene%model%with_c) state%x(4, group%nodes(n)) = suction(one, scene%model%mesh%x(2, group%nodes(n)))
             end do

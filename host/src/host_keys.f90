@@ -21,8 +21,9 @@ module host_keys
       character(72) :: meaning      !< For kind w it begins with the words, divided by |, and ends them with a colon.
    end type key_t
 
-   character(12), parameter :: GROUPS(15) = [character(12) :: 'scene', 'mesh', 'fluids', 'mud', 'elastic', &
-      'retention', 'permeability', 'region', 'initial', 'history', 'stage', 'fix', 'load', 'rigid', 'point']
+   character(12), parameter :: GROUPS(17) = [character(12) :: 'scene', 'mesh', 'fluids', 'mud', 'elastic', &
+      'retention', 'permeability', 'region', 'initial', 'history', 'stage', 'fix', 'load', 'rigid', 'plate', 'contact', &
+      'point']
    real(wp), parameter :: BIG = 1.0e30_wp, TINY_ = 1.0e-30_wp
 
    type(key_t), parameter :: KEYS(*) = [ &
@@ -95,6 +96,7 @@ module host_keys
       key_t('initial', 'p_c', 'n', '0', -BIG, BIG, 'suction at the datum [kPa]'), &
       key_t('initial', 'p_c_slope', 'n', '0', -BIG, BIG, 'its change with z [kPa/m]'), &
       key_t('initial', 'datum', 'n', '0', -BIG, BIG, 'z of the datum [m]'), &
+      key_t('initial', 'v_z', 'n', '0', -BIG, BIG, 'vertical velocity at the start [m/s]'), &
       key_t('initial', 'wave', 'n', '0', -BIG, BIG, 'v_z = wave sin(wave_number (z - datum)) at the start [m/s]'), &
       key_t('initial', 'wave_number', 'n', '0', 0, BIG, 'see wave [1/m]'), &
       key_t('initial', 'stress', 'w', 'none', 0, 0, 'none|uniform|geostatic: effective stress at the start'), &
@@ -139,6 +141,22 @@ module host_keys
       key_t('rigid', 'mass', 'n', '0', 0, BIG, 'its mass [Mg]'), &
       key_t('rigid', 'force', 'n', '0', -BIG, BIG, 'force on it, upwards [kN]'), &
       key_t('rigid', 'history', 't', NONE, 0, 0, 'factor on the force'), &
+      key_t('plate', 'name', 't', REQUIRED, 0, 0, 'rigid plate, vertical; also a group for &fix and &load'), &
+      key_t('plate', 'r', 'N', REQUIRED, -BIG, BIG, 'where its flat face begins and ends [m]'), &
+      key_t('plate', 'z', 'n', '0', -BIG, BIG, 'height of the face at the start [m]'), &
+      key_t('plate', 'face', 'w', 'down', 0, 0, 'down|up: where the face looks'), &
+      key_t('plate', 'mass', 'n', REQUIRED, TINY_, BIG, 'its mass [Mg]'), &
+      key_t('plate', 'weight', 'w', 'no', 0, 0, 'no|yes: yes: its weight acts; it starts where the penalty carries it'), &
+      key_t('plate', 'force', 'n', '0', -BIG, BIG, 'force on it, upwards [kN]'), &
+      key_t('plate', 'history', 't', NONE, 0, 0, 'factor on the force'), &
+      key_t('contact', 'name', 't', REQUIRED, 0, 0, 'name in contact.csv'), &
+      key_t('contact', 'slave', 't', REQUIRED, 0, 0, 'boundary that is integrated over: the softer or finer one'), &
+      key_t('contact', 'master', 't', REQUIRED, 0, 0, 'boundary opposite, or name of a &plate'), &
+      key_t('contact', 'penalty', 'n', '1.0e8', TINY_, BIG, 'pressure of a unit of penetration [kN/m3]'), &
+      key_t('contact', 'gap', 'w', 'nodal', 0, 0, 'nodal|pointwise: gap that is penalised, see CONTACT.md'), &
+      key_t('contact', 'variation', 'w', 'pressure', 0, 0, 'pressure|energy: force, see CONTACT.md'), &
+      key_t('contact', 'reach', 'n', '0', 0, BIG, 'edges farther apart do not meet [m]; 0: the longest slave edge'), &
+      key_t('contact', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
       key_t('point', 'name', 't', REQUIRED, 0, 0, 'name in histories.csv'), &
       key_t('point', 'r', 'n', REQUIRED, -BIG, BIG, 'the nearest node is taken [m]'), &
       key_t('point', 'z', 'n', REQUIRED, -BIG, BIG, 'the nearest node is taken [m]')]

@@ -1,14 +1,14 @@
 !> Load vectors and prescribed values of a moment.
 module host_loads
    use host_kinds, only: wp, PI
-   use host_scene, only: scene_t, stage_t, factor_at, acts_in, P_A
+   use host_scene, only: scene_t, stage_t, plate_t, factor_at, acts_in, P_A
    use fe_dofs, only: dofs_t, tie
    use fe_shape, only: edge_quadratic, edge_rule
    use newton, only: constraint_t
    use time_galpha, only: STATIC
    implicit none (type, external)
    private
-   public :: shape_loads, ties_of, load_at, constrain_step, new_constraint
+   public :: shape_loads, ties_of, load_at, constrain_step, new_constraint, plate_load
 contains
    !> Nodes that rigid bodies make move together.
    function ties_of(scene) result(ties)
@@ -39,7 +39,7 @@ contains
                f = load%kind - 5
                do k = 1, size(group%nodes)
                   associate (at => dofs%of(f, group%nodes(k)))
-                     load%shape(at) = load%shape(at) + 1.0_wp
+                     if (at > 0) load%shape(at) = load%shape(at) + 1.0_wp
                   end associate
                end do
             end if
@@ -113,7 +113,22 @@ contains
             load(at) = load(at) + factor_at(scene, one%history, time)*one%force
          end associate
       end do
+      do i = 1, size(scene%plates)
+         associate (one => scene%plates(i))
+            load(dofs%of(2, one%node)) = load(dofs%of(2, one%node)) + plate_load(scene, one, time)
+         end associate
+      end do
    end function load_at
+
+   !> Force on a plate and its weight, upwards [kN].
+   pure real(wp) function plate_load(scene, plate, time)
+      type(scene_t), intent(in) :: scene
+      type(plate_t), intent(in) :: plate
+      real(wp), intent(in) :: time
+
+      plate_load = factor_at(scene, plate%history, time)*plate%force
+      if (plate%heavy) plate_load = plate_load - plate%mass*scene%model%gravity
+   end function plate_load
 
    !> Nothing prescribed, nothing loaded; rigid bodies have their mass.
    function new_constraint(scene, dofs) result(constraint)
@@ -131,6 +146,9 @@ contains
       do i = 1, size(scene%rigids)
          at = dofs%of(2, scene%model%mesh%groups(scene%rigids(i)%group)%nodes(1))
          constraint%mass(at) = scene%rigids(i)%mass
+      end do
+      do i = 1, size(scene%plates)
+         constraint%mass(dofs%of(2, scene%plates(i)%node)) = scene%plates(i)%mass
       end do
    end function new_constraint
 

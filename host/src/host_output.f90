@@ -1,16 +1,19 @@
 !> Output: histories at points, the ledger, and the fields at the end of every stage and in between.
 module host_output
    use host_kinds, only: wp, EXIT_RESTART
+   use host_contact, only: contact_columns, contact_row
    use host_energy, only: ledger_t, imbalance
    use host_results, only: frames_t, write_mesh, write_frame, all_pressures
    use host_scene, only: scene_t
+   use fe_contact, only: contacts_t
    use fe_model, only: state_t, model_t
    use io_files, only: cut_file, settle_file
    use newton, only: log_t
    use triax_fault, only: fault_t, raise, EXIT_OUTPUT
    implicit none (type, external)
    private
-   public :: output_t, open_output, write_history, write_ledger, write_fields, close_output, settle_output, write_frame
+   public :: output_t, open_output, write_history, write_ledger, write_contacts, write_fields
+   public :: close_output, settle_output, write_frame
 
    character(*), parameter :: NUMBER = '(*(es24.16e3,:,","))'
 
@@ -19,8 +22,8 @@ module host_output
 
    type :: output_t
       character(:), allocatable :: folder
-      integer :: history = 0, ledger = 0   !< Units.
-      integer :: history_bytes = 0, ledger_bytes = 0   !< Lengths of their files at the last checkpoint.
+      integer :: history = 0, ledger = 0, contact = 0   !< Units; 0: no such file.
+      integer :: history_bytes = 0, ledger_bytes = 0, contact_bytes = 0   !< Lengths at the last checkpoint.
       type(frames_t) :: frames
    end type output_t
 contains
@@ -38,6 +41,8 @@ contains
       if (resume) then
          call reopen(folder//'/histories.csv', output%history_bytes, output%history, fault)
          if (fault%code == 0) call reopen(folder//'/ledger.csv', output%ledger_bytes, output%ledger, fault)
+         if (fault%code == 0 .and. touches(scene)) &
+            call reopen(folder//'/contact.csv', output%contact_bytes, output%contact, fault)
          return
       end if
       call execute_command_line('mkdir -p '''//folder//'''', exitstat=status)
@@ -53,8 +58,16 @@ contains
          'error_u_r,error_u_z,error_p_w,error_p_c,first_u_r,first_u_z,first_p_w,first_p_c,reduction,correction,'// &
             'rates,kinetic,skeleton,pores,gravity,'// &
             'loads,supports,seepage,imbalance,outflow,outflow_air,step_error', output%ledger, fault)
+      if (fault%code == 0 .and. touches(scene)) &
+         call open_file(folder//'/contact.csv', contact_columns(scene), output%contact, fault)
       if (fault%code == 0) call write_mesh(folder, trim(scene%name), scene%model, fault)
    end subroutine open_output
+
+   pure logical function touches(scene)
+      type(scene_t), intent(in) :: scene
+
+      touches = size(scene%contacts) + size(scene%plates) > 0
+   end function touches
 
    !> A table of the interrupted run, without the rows after the checkpoint.
    subroutine reopen(path, bytes, unit, fault)
@@ -79,6 +92,8 @@ contains
 
       call settle(output%folder//'/histories.csv', output%history, output%history_bytes, fault)
       if (fault%code == 0) call settle(output%folder//'/ledger.csv', output%ledger, output%ledger_bytes, fault)
+      if (fault%code == 0 .and. output%contact /= 0) &
+         call settle(output%folder//'/contact.csv', output%contact, output%contact_bytes, fault)
    end subroutine settle_output
 
    subroutine settle(path, unit, bytes, fault)
@@ -142,6 +157,20 @@ contains
       if (status /= 0) call raise(fault, EXIT_OUTPUT, 'ledger.csv cannot be written; is the disk full?')
    end subroutine write_ledger
 
+   subroutine write_contacts(output, scene, contacts, dt, state, work, fault)
+      type(output_t), intent(in) :: output
+      type(scene_t), intent(in) :: scene
+      type(contacts_t), intent(in) :: contacts
+      real(wp), intent(in) :: dt, work   !< Step, and work done on the penalty so far [s, kJ].
+      type(state_t), intent(in) :: state
+      type(fault_t), intent(inout) :: fault
+      integer :: status
+
+      if (output%contact == 0) return
+      write (output%contact, NUMBER, iostat=status) contact_row(scene, contacts, dt, state, work)
+      if (status /= 0) call raise(fault, EXIT_OUTPUT, 'contact.csv cannot be written; is the disk full?')
+   end subroutine write_contacts
+
    !> nodes_STAGE.csv and points_STAGE.csv.
    subroutine write_fields(output, model, stage, state, fault)
       type(output_t), intent(in) :: output
@@ -178,5 +207,6 @@ contains
 
       close (output%history)
       close (output%ledger)
+      if (output%contact /= 0) close (output%contact)
    end subroutine close_output
 end module host_output

@@ -4,14 +4,16 @@ module host_read
    use host_fingerprint, only: fingerprint_of
    use host_keys, only: check_keys, number_of, numbers_of, text_of, texts_of, word_is, given
    use host_laws, only: read_mud, read_elastic, read_retention, read_permeability, retention_of_mud
-   use host_scene, only: scene_t, stage_t, fix_t, load_t, rigid_t, history_t, initial_t, point_t, P_A, LOAD_KINDS
+   use host_scene, only: scene_t, stage_t, fix_t, load_t, rigid_t, history_t, initial_t, point_t, plate_t, touching_t, &
+                         acts_in, P_A, LOAD_KINDS
+   use contact_types, only: NODAL_GAP, POINTWISE_GAP, PRESSURE_WORK, ENERGY_SLOPE
    use fe_model, only: region_t, prepare_model
    use fe_mud, only: mud_t
    use fe_permeability, only: permeability_t
    use fe_shape, only: RULES
    use mesh_gmsh, only: read_gmsh
    use mesh_graded, only: graded_mesh
-   use mesh_types, only: find_group
+   use mesh_types, only: find_group, add_group
    use time_galpha, only: STATIC, QUASI_STATIC, DYNAMIC
    use triax_fault, only: fault_t, raise, at_line, EXIT_INPUT
    use triax_namelist, only: group_t, read_groups
@@ -32,7 +34,7 @@ contains
       if (fault%code == 0) call check_single(file, groups, fault)
       if (fault%code == 0) scene%fingerprint = fingerprint_of(groups)
       allocate (scene%histories(0), scene%initials(0), scene%stages(0), scene%fixes(0), scene%loads(0), &
-                scene%rigids(0), scene%points(0))
+                scene%rigids(0), scene%points(0), scene%plates(0), scene%contacts(0))
       ! Lists of different laws get their size at once: they cannot grow by array constructors.
       allocate (scene%model%materials(count([(groups(i)%name == 'mud' .or. groups(i)%name == 'elastic', &
                                               i=1, size(groups))])))
@@ -58,6 +60,11 @@ contains
          end select
       end do
       if (fault%code /= 0) return
+      allocate (scene%model%bodies(0))
+      do i = 1, size(groups)
+         if (groups(i)%name == 'plate' .and. fault%code == 0) call take_plate(groups(i), scene, fault)
+      end do
+      if (fault%code /= 0) return
       allocate (scene%model%region_of(size(scene%model%mesh%t6, 2)), source=0)
       do i = 1, size(groups)
          if (fault%code /= 0) return
@@ -72,6 +79,8 @@ contains
             call take_load(groups(i), scene, fault)
          case ('rigid')
             call take_rigid(groups(i), scene, fault)
+         case ('contact')
+            call take_contact(groups(i), scene, fault)
          end select
       end do
       if (fault%code /= 0) return
@@ -343,22 +352,28 @@ contains
       end associate
    end subroutine take_region
 
-   !> Place of the group of the mesh that a group of the scene names.
-   integer function group_named(group, scene, fault) result(place)
+   !> Place of the group of the mesh that a group of the scene names, under `group` or another key.
+   integer function group_named(group, scene, fault, key) result(place)
       type(group_t), intent(in) :: group
       type(scene_t), intent(in) :: scene
       type(fault_t), intent(inout) :: fault
-      character(:), allocatable :: list
+      character(*), intent(in), optional :: key
+      character(:), allocatable :: list, name
       integer :: i
 
-      place = find_group(scene%model%mesh, text_of(group, 'group'))
+      if (present(key)) then
+         name = text_of(group, key)
+      else
+         name = text_of(group, 'group')
+      end if
+      place = find_group(scene%model%mesh, name)
       if (place > 0) return
       list = ''
       do i = 1, size(scene%model%mesh%groups)
          list = list//' '//trim(scene%model%mesh%groups(i)%name)
       end do
       call raise(fault, EXIT_GROUP, at_line(group%file, group%line)//'the mesh has no group '''// &
-                 text_of(group, 'group')//'''; it has'//list//'.')
+                 name//'''; it has'//list//'.')
    end function group_named
 
    !> Place of a name in a list of definitions.
@@ -420,6 +435,7 @@ contains
       initial%p_c = number_of(group, 'p_c')
       initial%p_c_slope = number_of(group, 'p_c_slope')
       initial%datum = number_of(group, 'datum')
+      initial%v_z = number_of(group, 'v_z')
       initial%wave = number_of(group, 'wave')
       initial%wave_number = number_of(group, 'wave_number')
       initial%uniform = word_is(group, 'stress', 'uniform')
@@ -497,6 +513,87 @@ contains
       scene%rigids = [scene%rigids, rigid]
    end subroutine take_rigid
 
+   !> A plate becomes a node of the mesh, and a group of that one node.
+   subroutine take_plate(group, scene, fault)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+      type(plate_t) :: plate
+      real(wp), allocatable :: r(:)
+      integer :: none(3, 0)
+
+      plate%name = text_of(group, 'name')
+      plate%history = history_named(group, scene, fault)
+      if (fault%code /= 0) return
+      r = numbers_of(group, 'r')
+      associate (mesh => scene%model%mesh)
+         if (find_group(mesh, trim(plate%name)) > 0) then
+            call raise(fault, EXIT_GROUP, at_line(group%file, group%line)//'the mesh has a group '''// &
+                       trim(plate%name)//''' already; give the plate another name.')
+            return
+         end if
+         if (size(r) /= 2) then
+            call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'a plate needs r = begin, end, ascending.')
+            return
+         end if
+         plate%r = r
+         plate%z = number_of(group, 'z')
+         if (.not. plate%r(2) > plate%r(1) .or. (scene%model%axisymmetric .and. plate%r(1) < 0.0_wp)) then
+            call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'a plate needs r = begin, end, ascending'// &
+                       ' and, in axial symmetry, not negative.')
+            return
+         end if
+         mesh%x = reshape([mesh%x, plate%r(1), plate%z], [2, size(mesh%x, 2) + 1])
+         plate%node = size(mesh%x, 2)
+         call add_group(mesh, trim(plate%name), [integer ::], none, [plate%node])
+      end associate
+      plate%up = word_is(group, 'face', 'up')
+      plate%mass = number_of(group, 'mass')
+      plate%heavy = word_is(group, 'weight', 'yes')
+      plate%force = number_of(group, 'force')
+      scene%plates = [scene%plates, plate]
+      scene%model%bodies = [scene%model%bodies, plate%node]
+   end subroutine take_plate
+
+   subroutine take_contact(group, scene, fault)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+      type(touching_t) :: contact
+      integer :: i
+
+      contact%name = text_of(group, 'name')
+      contact%slave = group_named(group, scene, fault, 'slave')
+      if (fault%code == 0) contact%master = group_named(group, scene, fault, 'master')
+      if (fault%code == 0) call check_stages(group, scene, fault)
+      if (fault%code /= 0) return
+      do i = 1, size(scene%plates)
+         if (scene%plates(i)%name == text_of(group, 'master')) contact%plate = i
+      end do
+      associate (groups => scene%model%mesh%groups)
+         if (size(groups(contact%slave)%edges, 2) == 0 .or. &
+             (contact%plate == 0 .and. size(groups(contact%master)%edges, 2) == 0)) then
+            call raise(fault, EXIT_GROUP, at_line(group%file, group%line)//'slave and master need edges: a boundary '// &
+                       'of the mesh (the master may be a plate).')
+            return
+         end if
+      end associate
+      contact%stages = texts_of(group, 'stages')
+      do i = 1, size(scene%stages)
+         if (scene%stages(i)%zero_displacements .and. acts_in(contact%stages, scene%stages(i)%name)) then
+            call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'stage '''//trim(scene%stages(i)%name)// &
+                       ''' zeroes its displacements, which would undo the contact; name the stages of the contact.')
+            return
+         end if
+      end do
+      contact%options%penalty = number_of(group, 'penalty')
+      contact%options%reach = number_of(group, 'reach')
+      contact%options%axisymmetric = scene%model%axisymmetric
+      contact%options%gap = merge(NODAL_GAP, POINTWISE_GAP, word_is(group, 'gap', 'nodal'))
+      contact%options%variation = merge(PRESSURE_WORK, ENERGY_SLOPE, word_is(group, 'variation', 'pressure'))
+      scene%contacts = [scene%contacts, contact]
+   end subroutine take_contact
+
    subroutine take_point(group, scene)
       type(group_t), intent(in) :: group
       type(scene_t), intent(inout) :: scene
@@ -509,9 +606,9 @@ contains
       point%name = text_of(group, 'name')
       associate (m => scene%model)
          ! Where pressures are linear only vertices have them.
-         allocate (vertex(size(m%mesh%x, 2)), source=m%n_p == 6)
+         allocate (vertex(size(m%mesh%x, 2)), source=.false.)
          do e = 1, size(m%mesh%t6, 2)
-            vertex(m%mesh%t6(1:3, e)) = .true.
+            vertex(m%mesh%t6(1:m%n_p, e)) = .true.
          end do
          point%node = minloc([(norm2(m%mesh%x(:, i) - x), i=1, size(m%mesh%x, 2))], 1, mask=vertex)
          point%gauss = minloc([((norm2(m%gauss(g, e)%x - x), g=1, m%rule), e=1, size(m%mesh%t6, 2))], 1)

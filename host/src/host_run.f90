@@ -3,22 +3,25 @@ module host_run
    use host_kinds, only: wp, FIELD_NAMES, EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
    use host_checkpoint, only: write_checkpoint, read_checkpoint
    use host_clock, only: clock, lap
+   use host_contact, only: prepare_contacts, seat_plates, contacts_act
    use host_course, only: run_t, course_t
    use host_energy, only: book_step, kinetic_energy
    use host_initial, only: initial_state
    use host_loads, only: shape_loads, ties_of, load_at, constrain_step, new_constraint
-   use host_output, only: output_t, open_output, write_history, write_ledger, write_fields, write_frame, &
+   use host_output, only: output_t, open_output, write_history, write_ledger, write_contacts, write_fields, write_frame, &
                           close_output
    use host_progress, only: progress_t, show_progress, clear_progress
    use host_scene, only: scene_t, stage_t
+   use contact_types, only: contact_message
    use fe_assembly, only: make_assembly, assemble
+   use fe_contact, only: work_of_contacts
    use fe_dofs, only: number_unknowns
    use fe_material, only: TOO_LARGE
    use fe_model, only: copy_state
    use fe_pattern, only: make_pattern
    use io_hdf5, only: HAS_HDF5
    use newton, only: control_t, log_t, take_step, start_accelerations, &
-                     CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
+                     CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
    use solve_sparse, only: release
    use time_galpha, only: scheme_t, make_scheme, step_error, DYNAMIC
    use triax_fault, only: fault_t, raise, EXIT_INPUT
@@ -47,6 +50,8 @@ contains
       call shape_loads(scene, run%dofs)
       run%constraint = new_constraint(scene, run%dofs)
       call initial_state(scene, run%state, fault)
+      if (fault%code == 0) call prepare_contacts(scene, run%dofs, run%system%contacts, fault)
+      if (fault%code == 0) call seat_plates(scene, run%system%contacts, run%state)
       run%next = run%state
       if (fault%code == 0 .and. scene%subtract_flow) call keep_flow(scene, run, fault)
    end subroutine prepare_run
@@ -134,6 +139,7 @@ contains
       associate (stage => scene%stages(number), course => run%course)
          control = control_t(stage%tolerance, stage%max_iterations, stage%still)
          ! A run that is taken up again is in the middle of its stage.
+         call contacts_act(scene, stage, run%system%contacts)
          if (course%stage /= number) call begin_stage(scene, number, run, fault)
          if (fault%code /= 0) return
          do
@@ -166,6 +172,8 @@ contains
             run%steps = run%steps + 1
             call book_step(scene%model, run%dofs, scheme, run%constraint, run%system%reaction, run%state, run%next, &
                            run%ledger)
+            if (allocated(run%system%contacts%touch)) run%ledger%contact = run%ledger%contact &
+               + work_of_contacts(run%system%contacts, run%dofs, run%state%x, run%next%x)
             estimate = step_error(scheme, run%state%x, run%state%a, run%next%x, run%next%a)
             call copy_state(run%next, run%state)
             course%nominal = min(course%nominal*stage%dt_growth, max(stage%dt_max, stage%dt))
@@ -182,7 +190,7 @@ contains
             call show_progress(scene, run, progress)
          end do
          if (stage%zero_displacements) then
-            run%state%x(1:2, :) = 0.0_wp
+            run%state%x(1:2, :size(run%state%x, 2) - size(scene%model%bodies)) = 0.0_wp   ! Plates stay where they are.
             run%state%v = 0.0_wp
             run%state%a = 0.0_wp
             run%state%s_rate = 0.0_wp
@@ -226,6 +234,7 @@ contains
       associate (stage => scene%stages(number), course => run%course)
          last = course%t_start + stage%duration - run%state%time <= LAST_STEP*dt
          call write_ledger(output, run%state%time, dt, number, log, run%ledger, estimate, fault)
+         call write_contacts(output, scene, run%system%contacts, dt, run%state, run%ledger%contact, fault)
          if (mod(course%step, stage%every) == 0 .or. last) call write_history(output, scene, run%state, fault)
          if (fault%code /= 0) return
          if (stage%fields > 0 .and. .not. last) then
@@ -279,9 +288,12 @@ contains
             end if
             call raise(fault, EXIT_MATERIAL, place//'the material of element '//whole(e)//', point '// &
                        whole(run%assembly%bad_point)//', refuses: '//trim(text))
+         case (CONTACT_FAILED)
+            call contact_message(run%system%contacts%status, text)
+            call raise(fault, EXIT_CONVERGENCE, place//trim(text)//'.')
          case (BODY_FREE)
             call raise(fault, EXIT_FREE_BODY, place//'the equations are singular: a body can move or a pressure is '// &
-                       'undetermined; add a &fix, or look for a region without stiffness.')
+                       'undetermined; add a &fix, or look for a region without stiffness or a plate without contact.')
          case (SOLVER_FAILED)
             call raise(fault, EXIT_SOLVER, place//'the linear solver failed; is there enough memory for '// &
                        whole(run%dofs%n)//' unknowns?')

@@ -1,13 +1,14 @@
 !> A scene in memory: the model and everything that acts on it in the course of its stages.
 module host_scene
    use host_kinds, only: wp
+   use contact_types, only: contact_options_t
    use fe_model, only: model_t
    use host_fingerprint, only: FINGERPRINT_LENGTH
    use mesh_types, only: NAME_LENGTH
    use triax_namelist, only: LENGTH
    implicit none (type, external)
    private
-   public :: scene_t, stage_t, fix_t, load_t, rigid_t, history_t, initial_t, point_t, factor_at, acts_in
+   public :: scene_t, stage_t, fix_t, load_t, rigid_t, history_t, initial_t, point_t, plate_t, touching_t, factor_at, acts_in
    public :: P_A, LOAD_KINDS
 
    integer, parameter :: P_A = 5   !< "Field" of a prescribed air pressure.
@@ -22,7 +23,7 @@ module host_scene
    type :: initial_t
       integer :: group = 0
       real(wp) :: p_w = 0.0_wp, p_w_slope = 0.0_wp, p_c = 0.0_wp, p_c_slope = 0.0_wp, datum = 0.0_wp
-      real(wp) :: wave = 0.0_wp, wave_number = 0.0_wp
+      real(wp) :: v_z = 0.0_wp, wave = 0.0_wp, wave_number = 0.0_wp
       logical :: uniform = .false., geostatic = .false.
       real(wp) :: sigma(3) = 0.0_wp
       real(wp) :: surface = 0.0_wp, surcharge = 0.0_wp, k_0 = 0.5_wp
@@ -59,6 +60,24 @@ module host_scene
       real(wp) :: mass = 0.0_wp, force = 0.0_wp
    end type rigid_t
 
+   !> A rigid plate: a node of its own (group `name` of the mesh) that moves vertically.
+   type :: plate_t
+      character(NAME_LENGTH) :: name = ''
+      integer :: node = 0, history = 0
+      real(wp) :: r(2) = 0.0_wp, z = 0.0_wp       !< Where its face begins and ends, and how high [m].
+      logical :: up = .false.                     !< The face looks upwards.
+      real(wp) :: mass = 0.0_wp, force = 0.0_wp   !< [Mg], upwards [kN]
+      logical :: heavy = .false.                  !< Its weight acts.
+   end type plate_t
+
+   !> Two surfaces that may touch: groups of the mesh, or a group and a plate.
+   type :: touching_t
+      character(NAME_LENGTH) :: name = ''
+      integer :: slave = 0, master = 0, plate = 0
+      type(contact_options_t) :: options
+      character(LENGTH), allocatable :: stages(:)
+   end type touching_t
+
    type :: point_t
       character(NAME_LENGTH) :: name = ''
       integer :: node = 0, gauss = 0      !< Nearest ones.
@@ -78,6 +97,8 @@ module host_scene
       type(load_t), allocatable :: loads(:)
       type(rigid_t), allocatable :: rigids(:)
       type(point_t), allocatable :: points(:)
+      type(plate_t), allocatable :: plates(:)
+      type(touching_t), allocatable :: contacts(:)
    end type scene_t
 contains
    !> Factor of a history at a time; history 0 is 1 throughout.

@@ -6,6 +6,7 @@ module newton
    use host_clock, only: clock, lap
    use host_kinds, only: wp, FIELDS
    use fe_assembly, only: assembly_t, assemble
+   use fe_contact, only: contacts_t, evaluate_contacts, fit_pattern, add_contacts
    use fe_dofs, only: dofs_t
    use fe_model, only: model_t, state_t
    use fe_pattern, only: pattern_t, place_of
@@ -14,9 +15,10 @@ module newton
    implicit none (type, external)
    private
    public :: constraint_t, control_t, log_t, system_t, take_step, start_accelerations
-   public :: CONVERGED, NOT_CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
+   public :: CONVERGED, NOT_CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
 
-   integer, parameter :: CONVERGED = 0, NOT_CONVERGED = 1, MATERIAL_FAILED = 2, BODY_FREE = 3, SOLVER_FAILED = 4
+   integer, parameter :: CONVERGED = 0, NOT_CONVERGED = 1, MATERIAL_FAILED = 2, BODY_FREE = 3, SOLVER_FAILED = 4, &
+                         CONTACT_FAILED = 5
    real(wp), parameter :: HISTORY_SHARE = 1.0e-6_wp   !< Share of the largest scale so far that still counts.
    real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Of strain rates and parts of fluxes, see above.
    real(wp), parameter :: ABSOLUTE_FLOOR = 1.0e-12_wp   !< [kN] or [m3/s]: nothing smaller is a force.
@@ -52,6 +54,7 @@ module newton
 
    type :: system_t
       type(sparse_t) :: sparse
+      type(contacts_t) :: contacts
       logical :: analysed = .false.
       logical :: eager = .false.              !< The last step needed several iterations: slopes at every pass.
       real(wp) :: largest(FIELDS) = 0.0_wp    !< Largest scale of every field so far.
@@ -64,7 +67,7 @@ contains
    subroutine take_step(model, dofs, pattern, scheme, constraint, control, old, new, assembly, system, log)
       type(model_t), intent(in) :: model
       type(dofs_t), intent(in) :: dofs
-      type(pattern_t), intent(in) :: pattern
+      type(pattern_t), intent(inout) :: pattern   !< Grows with the contacts.
       type(scheme_t), intent(in) :: scheme
       type(constraint_t), intent(in) :: constraint
       type(control_t), intent(in) :: control
@@ -137,6 +140,9 @@ contains
          real(wp) :: spent
 
          spent = 0.0_wp
+         pass = look_at_contacts(system, dofs, pattern, old%x + scheme%l_f*(new%x - old%x), slopes, assembly)
+         if (.not. pass) log%outcome = CONTACT_FAILED
+         if (.not. pass) return
          call lap(system%seconds(4), t0)
          call assemble(model, dofs, pattern, scheme, old, new, slopes, assembly)
          system%n_pass = system%n_pass + 1
@@ -150,6 +156,8 @@ contains
             return
          end if
          call add_bodies(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
+         if (allocated(system%contacts%touch)) call add_contacts(system%contacts, pattern, scheme%l_f, slopes, &
+                                                    assembly%residual, assembly%scale, assembly%values)
          rhs = constraint%load_0 + scheme%l_f*(constraint%load_1 - constraint%load_0) - constraint%offset
          call loads_of_water(dofs, constraint%air, rhs)
          assembly%scale = assembly%scale + abs(rhs)
@@ -162,7 +170,7 @@ contains
    subroutine start_accelerations(model, dofs, pattern, constraint, state, work, assembly, system, log)
       type(model_t), intent(in) :: model
       type(dofs_t), intent(in) :: dofs
-      type(pattern_t), intent(in) :: pattern
+      type(pattern_t), intent(inout) :: pattern
       type(constraint_t), intent(in) :: constraint
       type(state_t), intent(inout) :: state
       type(state_t), intent(inout) :: work       !< Equal to state.
@@ -185,12 +193,18 @@ contains
       state%a = 0.0_wp
       work%a = 0.0_wp
       allocate (rhs(dofs%n), dx(dofs%n))
+      if (.not. look_at_contacts(system, dofs, pattern, state%x, .false., assembly)) then
+         log%outcome = CONTACT_FAILED
+         return
+      end if
       call assemble(model, dofs, pattern, scheme, state, work, .true., assembly)
       if (assembly%bad_element > 0) then
          log%outcome = MATERIAL_FAILED
          return
       end if
       call add_bodies(dofs, pattern, scheme, held, state, work, .true., assembly)
+      if (allocated(system%contacts%touch)) call add_contacts(system%contacts, pattern, 0.0_wp, .false., &
+                                                    assembly%residual, assembly%scale, assembly%values)
       rhs = held%load_0 - held%offset - assembly%residual
       call constrain(dofs, pattern, held, 0.0_wp*state%x, assembly%values, rhs)
       if (.not. system%analysed) call analyse(system%sparse, pattern%row, pattern%col, status)
@@ -208,6 +222,27 @@ contains
       end do
       work%a = state%a
    end subroutine start_accelerations
+
+   !> Contacts at given displacements, and room for them in the matrix; false if their kernels refuse.
+   logical function look_at_contacts(system, dofs, pattern, x, slopes, assembly) result(good)
+      type(system_t), intent(inout) :: system
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(inout) :: pattern
+      real(wp), intent(in) :: x(:, :)
+      logical, intent(in) :: slopes
+      type(assembly_t), intent(inout) :: assembly
+      logical :: changed
+
+      good = .true.
+      if (.not. allocated(system%contacts%touch)) return
+      good = evaluate_contacts(system%contacts, x, slopes)
+      if (.not. good .or. .not. slopes) return
+      call fit_pattern(system%contacts, dofs, pattern, changed)
+      if (.not. changed) return
+      deallocate (assembly%values)
+      allocate (assembly%values(size(pattern%col)), source=0.0_wp)
+      system%analysed = .false.
+   end function look_at_contacts
 
    !> Inertia of rigid bodies.
    subroutine add_bodies(dofs, pattern, scheme, constraint, old, new, slopes, assembly)

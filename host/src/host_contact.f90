@@ -1,0 +1,124 @@
+!> Contacts of a scene: set up, seated, switched by stages, and their row of contact.csv.
+module host_contact
+   use host_kinds, only: wp
+   use host_loads, only: plate_load
+   use host_scene, only: scene_t, stage_t, acts_in
+   use contact_types, only: contact_status_t, contact_message, CONTACT_OK, TWO_PI
+   use fe_contact, only: contacts_t, touch_t, surface_t, surface_of, new_touch, plate_surface
+   use fe_dofs, only: dofs_t
+   use fe_model, only: state_t
+   use triax_fault, only: fault_t, raise, EXIT_INPUT
+   implicit none (type, external)
+   private
+   public :: prepare_contacts, seat_plates, contacts_act, contact_columns, contact_row
+contains
+   subroutine prepare_contacts(scene, dofs, contacts, fault)
+      type(scene_t), intent(in) :: scene
+      type(dofs_t), intent(in) :: dofs
+      type(contacts_t), intent(out) :: contacts
+      type(fault_t), intent(inout) :: fault
+      type(contact_status_t) :: status
+      type(surface_t) :: master
+      character(400) :: text
+      integer :: i, node
+
+      if (size(scene%contacts) == 0) return
+      allocate (contacts%touch(size(scene%contacts)))
+      associate (mesh => scene%model%mesh)
+         do i = 1, size(scene%contacts)
+            associate (one => scene%contacts(i))
+               node = 0
+               if (one%plate > 0) then
+                  associate (plate => scene%plates(one%plate))
+                     master = plate_surface(plate%r, plate%z, plate%up)
+                     node = plate%node
+                  end associate
+               else
+                  master = surface_of(mesh%groups(one%master)%edges, mesh%x)
+               end if
+               call new_touch(dofs, surface_of(mesh%groups(one%slave)%edges, mesh%x), master, node, one%options, &
+                              contacts%touch(i), status)
+               if (status%code == CONTACT_OK) cycle
+               call contact_message(status, text)
+               call raise(fault, EXIT_INPUT, 'Contact '//trim(one%name)//': '//trim(text)//'.')
+               return
+            end associate
+         end do
+      end associate
+   end subroutine prepare_contacts
+
+   !> A heavy plate starts where the penalty alone carries what acts on it downwards: so it is held from the first
+   !> iteration on.
+   subroutine seat_plates(scene, contacts, state)
+      type(scene_t), intent(in) :: scene
+      type(contacts_t), intent(in) :: contacts
+      type(state_t), intent(inout) :: state
+      real(wp) :: area, load
+      integer :: i
+
+      if (.not. allocated(contacts%touch)) return
+      do i = 1, size(scene%contacts)
+         if (scene%contacts(i)%plate == 0) cycle
+         associate (plate => scene%plates(scene%contacts(i)%plate))
+            load = -plate_load(scene, plate, state%time)
+            if (.not. plate%heavy .or. load <= 0.0_wp .or. plate%up) cycle
+            area = plate%r(2) - plate%r(1)
+            if (scene%model%axisymmetric) area = area*0.5_wp*TWO_PI*sum(plate%r)
+            state%x(2, plate%node) = -load/(scene%contacts(i)%options%penalty*area)
+         end associate
+      end do
+   end subroutine seat_plates
+
+   !> Which contacts take part in a stage.
+   subroutine contacts_act(scene, stage, contacts)
+      type(scene_t), intent(in) :: scene
+      type(stage_t), intent(in) :: stage
+      type(contacts_t), intent(inout) :: contacts
+      integer :: i
+
+      if (.not. allocated(contacts%touch)) return
+      do i = 1, size(scene%contacts)
+         contacts%touch(i)%acts = acts_in(scene%contacts(i)%stages, stage%name)
+      end do
+   end subroutine contacts_act
+
+   !> Columns of contact.csv.
+   function contact_columns(scene) result(head)
+      type(scene_t), intent(in) :: scene
+      character(:), allocatable :: head
+      integer :: i
+
+      head = 'time,dt,work'
+      do i = 1, size(scene%contacts)
+         associate (name => trim(scene%contacts(i)%name))
+            head = head//','//name//'.thrust,'//name//'.energy,'//name//'.area,'//name//'.active'
+         end associate
+      end do
+      do i = 1, size(scene%plates)
+         associate (name => trim(scene%plates(i)%name))
+            head = head//','//name//'.u_z,'//name//'.v_z,'//name//'.a_z,'//name//'.load'
+         end associate
+      end do
+   end function contact_columns
+
+   !> Its row after a step: contacts at the level of values within the step, plates at its end.
+   function contact_row(scene, contacts, dt, state, work) result(row)
+      type(scene_t), intent(in) :: scene
+      type(contacts_t), intent(in) :: contacts
+      real(wp), intent(in) :: dt, work
+      type(state_t), intent(in) :: state
+      real(wp), allocatable :: row(:)
+      integer :: i
+
+      row = [state%time, dt, work, (values(contacts%touch(i)), i=1, size(scene%contacts)), &
+             (state%x(2, scene%plates(i)%node), state%v(2, scene%plates(i)%node), state%a(2, scene%plates(i)%node), &
+              plate_load(scene, scene%plates(i), state%time), i=1, size(scene%plates))]
+   contains
+      pure function values(t) result(list)
+         type(touch_t), intent(in) :: t
+         real(wp) :: list(4)
+
+         list = [t%thrust, t%energy, t%area, real(t%active, wp)]
+      end function values
+   end function contact_row
+end module host_contact
