@@ -86,18 +86,17 @@ contains
    function contact_columns(scene) result(head)
       type(scene_t), intent(in) :: scene
       character(:), allocatable :: head
+      character(1 + len(scene%contacts%name)) :: name
       integer :: i
 
       head = 'time,dt,work'
       do i = 1, size(scene%contacts)
-         associate (name => trim(scene%contacts(i)%name))
-            head = head//','//name//'.thrust,'//name//'.energy,'//name//'.area,'//name//'.active'
-         end associate
+         name = ','//scene%contacts(i)%name
+         head = head//trim(name)//'.thrust'//trim(name)//'.energy'//trim(name)//'.area'//trim(name)//'.active'
       end do
       do i = 1, size(scene%plates)
-         associate (name => trim(scene%plates(i)%name))
-            head = head//','//name//'.u_z,'//name//'.v_z,'//name//'.a_z,'//name//'.load'
-         end associate
+         name = ','//scene%plates(i)%name
+         head = head//trim(name)//'.u_z'//trim(name)//'.v_z'//trim(name)//'.a_z'//trim(name)//'.load'
       end do
    end function contact_columns
 
