@@ -151,7 +151,8 @@ contains
       changed = n > 0
       if (.not. changed) return
       if (.not. allocated(contacts%extra)) allocate (contacts%extra(2, 0))
-      contacts%extra = reshape([contacts%extra, missing(:, :n), missing(2:1:-1, :n)], [2, size(contacts%extra, 2) + 2*n])
+      contacts%extra = reshape([contacts%extra, missing(:, :n), missing(2:1:-1, :n)], &
+                               [2, size(contacts%extra, 2) + 2*n])
       call make_pattern(dofs%n, dofs%element, contacts%extra, pattern)
    contains
       pure integer function room(t)

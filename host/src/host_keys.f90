@@ -22,8 +22,8 @@ module host_keys
    end type key_t
 
    character(12), parameter :: GROUPS(17) = [character(12) :: 'scene', 'mesh', 'fluids', 'mud', 'elastic', &
-      'retention', 'permeability', 'region', 'initial', 'history', 'stage', 'fix', 'load', 'rigid', 'plate', 'contact', &
-      'point']
+      'retention', 'permeability', 'region', 'initial', 'history', 'stage', 'fix', 'load', 'rigid', 'plate', &
+      'contact', 'point']
    real(wp), parameter :: BIG = 1.0e30_wp, TINY_ = 1.0e-30_wp
 
    type(key_t), parameter :: KEYS(*) = [ &
@@ -37,6 +37,7 @@ module host_keys
       key_t('scene', 'saturation_rate', 'w', 'full', 0, 0, 'full|suction: with dS_w/de, or by suction alone'), &
       key_t('scene', 'initial_flow', 'w', 'drain', 0, 0, 'drain|subtract: subtract: flow at the start is kept up'), &
       key_t('scene', 'threads', 'i', '0', 0, 1024, 'threads of the element loop; 0: OMP_NUM_THREADS'), &
+      key_t('scene', 'factors', 'w', 'reuse', 0, 0, 'reuse|fresh: of the matrix: while they serve, or always new'), &
       key_t('scene', 'checkpoint_steps', 'i', '0', 0, 1000000000, 'checkpoint.h5 after every so many steps; 0: none'), &
       key_t('scene', 'checkpoint_seconds', 'n', '0', 0, BIG, 'and after so much wall time [s]; 0: none'), &
       key_t('mesh', 'file', 't', NONE, 0, 0, 'Gmsh 4.1 text mesh, seen from the scene; or a built-in one:'), &
@@ -146,7 +147,7 @@ module host_keys
       key_t('plate', 'z', 'n', '0', -BIG, BIG, 'height of the face at the start [m]'), &
       key_t('plate', 'face', 'w', 'down', 0, 0, 'down|up: where the face looks'), &
       key_t('plate', 'mass', 'n', REQUIRED, TINY_, BIG, 'its mass [Mg]'), &
-      key_t('plate', 'weight', 'w', 'no', 0, 0, 'no|yes: yes: its weight acts; it starts where the penalty carries it'), &
+      key_t('plate', 'weight', 'w', 'no', 0, 0, 'no|yes: its weight acts; it starts seated on the penalty'), &
       key_t('plate', 'force', 'n', '0', -BIG, BIG, 'force on it, upwards [kN]'), &
       key_t('plate', 'history', 't', NONE, 0, 0, 'factor on the force'), &
       key_t('contact', 'name', 't', REQUIRED, 0, 0, 'name in contact.csv'), &

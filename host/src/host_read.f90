@@ -131,6 +131,7 @@ contains
          m%seepage_inertia = word_is(group, 'seepage_inertia', 'yes')
          m%full_rate = word_is(group, 'saturation_rate', 'full')
          m%threads = nint(number_of(group, 'threads'))
+         scene%reuse_factors = word_is(group, 'factors', 'reuse')
          scene%checkpoint_steps = nint(number_of(group, 'checkpoint_steps'))
          scene%checkpoint_seconds = number_of(group, 'checkpoint_seconds')
          scene%subtract_flow = word_is(group, 'initial_flow', 'subtract')
@@ -573,8 +574,8 @@ contains
       associate (groups => scene%model%mesh%groups)
          if (size(groups(contact%slave)%edges, 2) == 0 .or. &
              (contact%plate == 0 .and. size(groups(contact%master)%edges, 2) == 0)) then
-            call raise(fault, EXIT_GROUP, at_line(group%file, group%line)//'slave and master need edges: a boundary '// &
-                       'of the mesh (the master may be a plate).')
+            call raise(fault, EXIT_GROUP, at_line(group%file, group%line)//'slave and master need edges: a '// &
+                       'boundary of the mesh (the master may be a plate).')
             return
          end if
       end associate

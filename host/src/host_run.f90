@@ -8,8 +8,8 @@ module host_run
    use host_energy, only: book_step, kinetic_energy
    use host_initial, only: initial_state
    use host_loads, only: shape_loads, ties_of, load_at, constrain_step, new_constraint
-   use host_output, only: output_t, open_output, write_history, write_ledger, write_contacts, write_fields, write_frame, &
-                          close_output
+   use host_output, only: output_t, open_output, write_history, write_ledger, write_contacts, write_fields, &
+                          write_frame, close_output
    use host_progress, only: progress_t, show_progress, clear_progress
    use host_scene, only: scene_t, stage_t
    use contact_types, only: contact_message
@@ -44,6 +44,7 @@ contains
          scene%model%threads = 1
          !$ scene%model%threads = omp_get_max_threads()
       end if
+      run%system%reuse = scene%reuse_factors
       call number_unknowns(scene%model, ties_of(scene), run%dofs)
       call make_pattern(run%dofs%n, run%dofs%element, reshape([integer ::], [2, 0]), run%pattern)
       call make_assembly(scene%model, run%dofs, run%pattern, run%assembly)
@@ -159,6 +160,7 @@ contains
                run%cuts = run%cuts + 1
                course%cuts = course%cuts + 1
                course%good = 0
+               run%system%factored = .false.
                if (course%cuts > stage%cuts .or. log%outcome == BODY_FREE .or. log%outcome == SOLVER_FAILED) then
                   call explain(scene, stage, run, log, run%state%time + dt, dt, fault)
                   return
@@ -212,6 +214,7 @@ contains
       associate (stage => scene%stages(number))
          run%course = course_t(stage=number, t_start=run%state%time, nominal=stage%dt, x_start=run%state%x)
          call constrain_step(scene, stage, run%dofs, run%state%time, run%course%x_start, run%constraint)
+         run%system%factored = .false.
          if (stage%kind == DYNAMIC .and. stage%solve_start) call first_accelerations(scene, stage, run, fault)
          if (fault%code /= 0) return
          run%ledger%kinetic_0 = run%ledger%kinetic_0 + kinetic_energy(scene%model, run%dofs, run%constraint%mass, &
@@ -248,6 +251,8 @@ contains
          if (.not. due .or. fault%code /= 0) return
          call write_checkpoint(scene, run, output, fault)
          progress%last_checkpoint = clock()
+         ! A run that is taken up here has no factors.
+         run%system%factored = .false.
       end associate
    end subroutine write_step
 

@@ -8,8 +8,8 @@ module host_scene
    use triax_namelist, only: LENGTH
    implicit none (type, external)
    private
-   public :: scene_t, stage_t, fix_t, load_t, rigid_t, history_t, initial_t, point_t, plate_t, touching_t, factor_at, acts_in
-   public :: P_A, LOAD_KINDS
+   public :: scene_t, stage_t, fix_t, load_t, rigid_t, history_t, initial_t, point_t, plate_t, touching_t
+   public :: factor_at, acts_in, P_A, LOAD_KINDS
 
    integer, parameter :: P_A = 5   !< "Field" of a prescribed air pressure.
    character(8), parameter :: LOAD_KINDS(7) = [character(8) :: 'pressure', 'shear_r', 'shear_z', 'water', 'air', &
@@ -87,6 +87,7 @@ module host_scene
       character(NAME_LENGTH) :: name = ''
       type(model_t) :: model
       logical :: subtract_flow = .false.
+      logical :: reuse_factors = .true.
       integer :: checkpoint_steps = 0
       real(wp) :: checkpoint_seconds = 0.0_wp
       character(FINGERPRINT_LENGTH) :: fingerprint = ''

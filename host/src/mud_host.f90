@@ -3,6 +3,7 @@ program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use host_clock, only: clock
    use host_keys, only: print_template
+   use host_process, only: settle_process
    use host_read, only: read_scene
    use host_run, only: run_t, prepare_run, run_scene
    use host_scene, only: scene_t
@@ -21,6 +22,7 @@ program mud_host
    integer :: i
 
    call limits_are_errors()
+   call settle_process()
    file = ''
    folder = ''
    restart = ''
@@ -92,7 +94,8 @@ contains
       write (output_unit, '(a)') whole(run%steps)//' steps, '//whole(run%iterations)//' iterations, '// &
          whole(run%cuts)//' cuts, '//whole(run%effort)//' rate evaluations of the material; in this run '// &
          whole(run%system%n_pass)//' passes over the elements, '//whole(run%system%sparse%n_numeric)// &
-         ' factorisations ('//whole(nint(run%system%sparse%entries))//' entries).'
+         ' factorisations ('//whole(nint(run%system%sparse%entries))//' entries), '// &
+         whole(run%system%sparse%n_solve)//' solutions by factors.'
       do k = 1, size(PHASES)
          write (output_unit, '(3x,a,f12.3,a,f6.1,a)') PHASES(k), seconds(k), ' s', 100*seconds(k)/total, ' %'
       end do

@@ -10,7 +10,8 @@ module newton
    use fe_dofs, only: dofs_t
    use fe_model, only: model_t, state_t
    use fe_pattern, only: pattern_t, place_of
-   use solve_sparse, only: sparse_t, analyse, factorise, solve, SOLVED, SINGULAR
+   use solve_linear, only: solve_by_factors, INACCURATE
+   use solve_sparse, only: sparse_t, analyse, factorise, SOLVED, SINGULAR
    use time_galpha, only: scheme_t, predict, advance_rates, DYNAMIC
    implicit none (type, external)
    private
@@ -22,6 +23,9 @@ module newton
    real(wp), parameter :: HISTORY_SHARE = 1.0e-6_wp   !< Share of the largest scale so far that still counts.
    real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Of strain rates and parts of fluxes, see above.
    real(wp), parameter :: ABSOLUTE_FLOOR = 1.0e-12_wp   !< [kN] or [m3/s]: nothing smaller is a force.
+   real(wp), parameter :: LINEAR_SHARE = 1.0e-3_wp    !< Share of Newton's tolerance left to the linear solution.
+   integer, parameter :: MOST_STEPS = 6               !< Of the linear solution with factors of an earlier matrix;
+   integer, parameter :: WORN_STEPS = 5               !< after so many the next matrix is factorised again.
    real(wp), parameter :: HOPELESS = 1.0e10_wp        !< Error beyond which no further iteration helps.
 
    !> Prescribed unknowns and loads of a step.
@@ -56,6 +60,10 @@ module newton
       type(sparse_t) :: sparse
       type(contacts_t) :: contacts
       logical :: analysed = .false.
+      logical :: reuse = .true.               !< Factors may serve later matrices.
+      logical :: factored = .false.           !< There are factors worth trying.
+      logical, allocatable :: fixed(:)        !< What was fixed when they were made,
+      integer :: active = 0                   !< and how many nodes were in contact.
       logical :: eager = .false.              !< The last step needed several iterations: slopes at every pass.
       real(wp) :: largest(FIELDS) = 0.0_wp    !< Largest scale of every field so far.
       real(wp), allocatable :: reaction(:)    !< Residual with the constrained rows kept.
@@ -109,23 +117,12 @@ contains
             norm_0 = norm2(pack(rhs, .not. constraint%fixed))
          end if
          call constrain(dofs, pattern, constraint, new%x, assembly%values, rhs)
-         call lap(system%seconds(4), t0)
-         if (.not. system%analysed) then
-            call analyse(system%sparse, pattern%row, pattern%col, status)
-            system%analysed = .true.
-         end if
-         call factorise(system%sparse, assembly%values, status)
-         call lap(system%seconds(2), t0)
+         call solve_step(dofs, pattern, constraint, assembly, control%tolerance, rhs, system, dx, status)
          if (status /= SOLVED) then
             log%outcome = merge(BODY_FREE, SOLVER_FAILED, status == SINGULAR)
             return
          end if
-         call solve(system%sparse, assembly%values, rhs, dx, status)
-         if (status /= SOLVED) then
-            log%outcome = SOLVER_FAILED
-            return
-         end if
-         call lap(system%seconds(3), t0)
+         t0 = clock()
          log%iterations = log%iterations + 1
          call add_correction(dofs, dx, new%x, log%correction)
          call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
@@ -166,6 +163,53 @@ contains
       end function pass
    end subroutine take_step
 
+   !> Solution to a small share of Newton's tolerance: by the factors of an earlier matrix as long as these serve and
+   !> nothing has come to be fixed, let go or touched, else by new ones.
+   subroutine solve_step(dofs, pattern, constraint, assembly, tolerance, rhs, system, dx, status)
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(in) :: pattern
+      type(constraint_t), intent(in) :: constraint
+      type(assembly_t), intent(in) :: assembly
+      real(wp), intent(in) :: tolerance
+      real(wp), intent(in) :: rhs(:)
+      type(system_t), intent(inout) :: system
+      real(wp), intent(out) :: dx(:)
+      integer, intent(out) :: status
+      real(wp) :: weight(dofs%n), scales(FIELDS), t0
+      integer :: steps, active
+
+      t0 = clock()
+      scales = field_scales(dofs, constraint, assembly, system%largest)
+      weight = 1/scales(dofs%field)
+      active = 0
+      if (allocated(system%contacts%touch)) active = sum(system%contacts%touch%active)
+      if (.not. allocated(system%fixed)) allocate (system%fixed(dofs%n), source=.false.)
+      if (active /= system%active .or. any(constraint%fixed .neqv. system%fixed)) system%factored = .false.
+      if (.not. system%reuse) system%factored = .false.
+      if (system%factored) then
+         call solve_by_factors(system%sparse, assembly%values, rhs, weight, LINEAR_SHARE*tolerance, MOST_STEPS, dx, &
+                               steps, status)
+         call lap(system%seconds(3), t0)
+         system%factored = status == SOLVED .and. steps < WORN_STEPS
+         if (status == SOLVED) return
+      end if
+      if (.not. system%analysed) then
+         call analyse(system%sparse, pattern%row, pattern%col, status)
+         system%analysed = .true.
+      end if
+      call factorise(system%sparse, assembly%values, status)
+      call lap(system%seconds(2), t0)
+      system%factored = status == SOLVED
+      if (status /= SOLVED) return
+      system%fixed = constraint%fixed
+      system%active = active
+      call solve_by_factors(system%sparse, assembly%values, rhs, weight, LINEAR_SHARE*tolerance, MOST_STEPS, dx, &
+                            steps, status)
+      ! What rounding leaves is Newton's to judge.
+      if (status == INACCURATE) status = SOLVED
+      call lap(system%seconds(3), t0)
+   end subroutine solve_step
+
    !> Accelerations that the loads and stresses of a state ask for, its displacements, velocities and pressures held.
    subroutine start_accelerations(model, dofs, pattern, constraint, state, work, assembly, system, log)
       type(model_t), intent(in) :: model
@@ -180,7 +224,7 @@ contains
       type(constraint_t) :: held
       type(scheme_t) :: scheme
       real(wp), allocatable :: rhs(:), dx(:)
-      integer :: status, i, f
+      integer :: status, i, f, steps
 
       ! Values and velocities at the old level, accelerations at the new one: the residual is linear in them.
       scheme = scheme_t(kind=DYNAMIC, l_f=0.0_wp, l_v=0.0_wp, l_a=1.0_wp, l_p=0.0_wp, c_v=0.0_wp, c_a=1.0_wp, &
@@ -210,7 +254,10 @@ contains
       if (.not. system%analysed) call analyse(system%sparse, pattern%row, pattern%col, status)
       system%analysed = .true.
       call factorise(system%sparse, assembly%values, status)
-      if (status == SOLVED) call solve(system%sparse, assembly%values, rhs, dx, status)
+      system%factored = .false.
+      if (status == SOLVED) call solve_by_factors(system%sparse, assembly%values, rhs, 1 + 0*rhs, 0.0_wp, MOST_STEPS, &
+                                                  dx, steps, status)
+      if (status == INACCURATE) status = SOLVED
       if (status /= SOLVED) then
          log%outcome = merge(BODY_FREE, SOLVER_FAILED, status == SINGULAR)
          return
@@ -242,6 +289,7 @@ contains
       deallocate (assembly%values)
       allocate (assembly%values(size(pattern%col)), source=0.0_wp)
       system%analysed = .false.
+      system%factored = .false.
    end function look_at_contacts
 
    !> Inertia of rigid bodies.
@@ -280,7 +328,48 @@ contains
       end do
    end subroutine loads_of_water
 
-   !> Errors of the fields; rows of prescribed unknowns do not count.
+   !> What a residual of a field is small against; rows of prescribed unknowns do not count.
+   pure function field_scales(dofs, constraint, assembly, largest) result(scales)
+      type(dofs_t), intent(in) :: dofs
+      type(constraint_t), intent(in) :: constraint
+      type(assembly_t), intent(in) :: assembly
+      real(wp), intent(in) :: largest(FIELDS)   !< That of every field so far.
+      real(wp) :: scales(FIELDS)
+      real(wp) :: s(FIELDS), floor(FIELDS)
+
+      call add_scales(dofs, constraint, assembly, s, floor)
+      scales = max(sqrt(s), HISTORY_SHARE*largest, sqrt(floor), ABSOLUTE_FLOOR)
+   end function field_scales
+
+   pure subroutine add_scales(dofs, constraint, assembly, s, floor)
+      type(dofs_t), intent(in) :: dofs
+      type(constraint_t), intent(in) :: constraint
+      type(assembly_t), intent(in) :: assembly
+      real(wp), intent(out) :: s(FIELDS), floor(FIELDS)
+      integer :: i, f
+
+      s = 0.0_wp
+      floor = 0.0_wp
+      do i = 1, dofs%n
+         f = dofs%field(i)
+         if (.not. counts(dofs, constraint, i)) cycle
+         s(f) = s(f) + assembly%scale(i)**2
+         floor(f) = floor(f) + (RATE_SHARE*assembly%floor(i))**2
+      end do
+      ! The displacements are one field: a component without forces is no measure of its own.
+      s(1:2) = sum(s(1:2))
+   end subroutine add_scales
+
+   pure logical function counts(dofs, constraint, i)
+      type(dofs_t), intent(in) :: dofs
+      type(constraint_t), intent(in) :: constraint
+      integer, intent(in) :: i
+
+      counts = .not. constraint%fixed(i)
+      if (counts .and. dofs%field(i) == 4) counts = .not. constraint%air(dofs%node(i))
+   end function counts
+
+   !> Errors of the fields.
    pure subroutine measure(dofs, constraint, assembly, rhs, largest, log)
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint
@@ -289,24 +378,16 @@ contains
       real(wp), intent(inout) :: largest(FIELDS)
       type(log_t), intent(inout) :: log
       real(wp) :: r(FIELDS), s(FIELDS), floor(FIELDS), worst
-      integer :: i, f
+      integer :: i
 
       r = 0.0_wp
-      s = 0.0_wp
-      floor = 0.0_wp
       do i = 1, dofs%n
-         f = dofs%field(i)
-         if (constraint%fixed(i)) cycle
-         if (f == 4 .and. constraint%air(dofs%node(i))) cycle
-         r(f) = r(f) + rhs(i)**2
-         s(f) = s(f) + assembly%scale(i)**2
-         floor(f) = floor(f) + (RATE_SHARE*assembly%floor(i))**2
+         if (counts(dofs, constraint, i)) r(dofs%field(i)) = r(dofs%field(i)) + rhs(i)**2
       end do
-      ! The displacements are one field: a component without forces is no measure of its own.
       r(1:2) = sum(r(1:2))
-      s(1:2) = sum(s(1:2))
+      call add_scales(dofs, constraint, assembly, s, floor)
       largest = max(largest, sqrt(s))
-      log%error = sqrt(r)/max(sqrt(s), HISTORY_SHARE*largest, sqrt(floor), ABSOLUTE_FLOOR)
+      log%error = sqrt(r)/field_scales(dofs, constraint, assembly, largest)
       log%worst_field = maxloc(log%error, 1)
       log%worst_unknown = 0
       worst = -1.0_wp
@@ -352,6 +433,7 @@ contains
 
          diagonal = abs(values(place_of(pattern, row, row)))
          if (.not. diagonal > 0.0_wp) diagonal = 1.0_wp
+         diagonal = set_exponent(1.0_wp, exponent(diagonal))   ! Steady, for the sake of factors that are used again.
          values(pattern%row(row):pattern%row(row + 1) - 1) = 0.0_wp
       end subroutine clear
    end subroutine constrain

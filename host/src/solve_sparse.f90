@@ -4,7 +4,7 @@ module solve_sparse
    use host_kinds, only: wp
    implicit none (type, external)
    private
-   public :: sparse_t, analyse, factorise, solve, release, SOLVED, SINGULAR, FAILED
+   public :: sparse_t, analyse, factorise, backsolve, times, release, SOLVED, SINGULAR, FAILED
 
    integer, parameter :: SOLVED = 0, SINGULAR = 1, FAILED = 2
    ! Places in UMFPACK's arrays (umfpack.h), from 1 here.
@@ -83,7 +83,7 @@ contains
       sparse%index = col - 1
       call umfpack_di_defaults(sparse%control)
       sparse%control(CONTROL_STRATEGY) = STRATEGY_SYMMETRIC
-      sparse%control(CONTROL_REFINEMENT) = 1.0_c_double
+      sparse%control(CONTROL_REFINEMENT) = 0.0_c_double
       status = merge(SOLVED, FAILED, umfpack_di_symbolic(size(row) - 1, size(row) - 1, sparse%start, sparse%index, &
                                                          c_null_ptr, sparse%symbolic, sparse%control, sparse%info) == 0)
       sparse%n_symbolic = sparse%n_symbolic + 1
@@ -110,7 +110,8 @@ contains
       sparse%n_numeric = sparse%n_numeric + 1
    end subroutine factorise
 
-   subroutine solve(sparse, values, b, x, status)
+   !> By the factors as they are; `values` is not looked at.
+   subroutine backsolve(sparse, values, b, x, status)
       type(sparse_t), intent(inout) :: sparse
       real(wp), intent(in) :: values(:), b(:)
       real(wp), intent(out) :: x(:)
@@ -119,7 +120,24 @@ contains
       status = merge(SOLVED, FAILED, umfpack_di_solve(TRANSPOSED, sparse%start, sparse%index, values, x, b, &
                                                       sparse%numeric, sparse%control, sparse%info) == 0)
       sparse%n_solve = sparse%n_solve + 1
-   end subroutine solve
+   end subroutine backsolve
+
+   !> y = A x.
+   pure subroutine times(sparse, values, x, y)
+      type(sparse_t), intent(in) :: sparse
+      real(wp), intent(in) :: values(:), x(:)
+      real(wp), intent(out) :: y(:)
+      real(wp) :: total
+      integer :: i, k
+
+      do i = 1, size(y)
+         total = 0.0_wp
+         do k = sparse%start(i) + 1, sparse%start(i + 1)
+            total = total + values(k)*x(sparse%index(k) + 1)
+         end do
+         y(i) = total
+      end do
+   end subroutine times
 
    subroutine release(sparse)
       type(sparse_t), intent(inout) :: sparse
