@@ -38,6 +38,7 @@ module host_keys
       key_t('scene', 'initial_flow', 'w', 'drain', 0, 0, 'drain|subtract: subtract: flow at the start is kept up'), &
       key_t('scene', 'threads', 'i', '0', 0, 1024, 'threads of the element loop; 0: OMP_NUM_THREADS'), &
       key_t('scene', 'factors', 'w', 'reuse', 0, 0, 'reuse|fresh: of the matrix: while they serve, or always new'), &
+      key_t('scene', 'ordering', 'w', 'amd', 0, 0, 'amd|metis|best: of the unknowns; best tries several'), &
       key_t('scene', 'checkpoint_steps', 'i', '0', 0, 1000000000, 'checkpoint.h5 after every so many steps; 0: none'), &
       key_t('scene', 'checkpoint_seconds', 'n', '0', 0, BIG, 'and after so much wall time [s]; 0: none'), &
       key_t('mesh', 'file', 't', NONE, 0, 0, 'Gmsh 4.1 text mesh, seen from the scene; or a built-in one:'), &

@@ -132,6 +132,7 @@ contains
          m%full_rate = word_is(group, 'saturation_rate', 'full')
          m%threads = nint(number_of(group, 'threads'))
          scene%reuse_factors = word_is(group, 'factors', 'reuse')
+         scene%ordering = findloc([character(5) :: 'amd', 'metis', 'best'], lower_case(text_of(group, 'ordering')), 1)
          scene%checkpoint_steps = nint(number_of(group, 'checkpoint_steps'))
          scene%checkpoint_seconds = number_of(group, 'checkpoint_seconds')
          scene%subtract_flow = word_is(group, 'initial_flow', 'subtract')

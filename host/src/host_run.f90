@@ -45,6 +45,7 @@ contains
          !$ scene%model%threads = omp_get_max_threads()
       end if
       run%system%reuse = scene%reuse_factors
+      run%system%sparse%ordering = scene%ordering
       call number_unknowns(scene%model, ties_of(scene), run%dofs)
       call make_pattern(run%dofs%n, run%dofs%element, reshape([integer ::], [2, 0]), run%pattern)
       call make_assembly(scene%model, run%dofs, run%pattern, run%assembly)

@@ -88,6 +88,7 @@ module host_scene
       type(model_t) :: model
       logical :: subtract_flow = .false.
       logical :: reuse_factors = .true.
+      integer :: ordering = 1                !< See solve_sparse.
       integer :: checkpoint_steps = 0
       real(wp) :: checkpoint_seconds = 0.0_wp
       character(FINGERPRINT_LENGTH) :: fingerprint = ''
