@@ -15,7 +15,7 @@ import tempfile
 
 here = pathlib.Path(__file__).resolve().parent
 root = here.parent
-PHASES = ("material", "assembly", "factorisation", "solution", "rest of Newton", "output", "all else", "in all")
+PHASES = ("material", "assembly", "contact", "factorisation", "solution", "rest of Newton", "output", "all else", "in all")
 # Cells of the mesh: along r to 0.15 m and beyond, along z; ratios so that the smallest cells shrink with the mesh.
 MESHES = [(2, 5, 8), (4, 9, 16), (6, 13, 24), (8, 18, 32), (11, 26, 46), (16, 36, 64)]
 

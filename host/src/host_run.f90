@@ -175,8 +175,12 @@ contains
             run%steps = run%steps + 1
             call book_step(scene%model, run%dofs, scheme, run%constraint, run%system%reaction, run%state, run%next, &
                            run%ledger)
-            if (allocated(run%system%contacts%touch)) run%ledger%contact = run%ledger%contact &
-               + work_of_contacts(run%system%contacts, run%dofs, run%state%x, run%next%x)
+            if (allocated(run%system%contacts%touch)) then
+               t0 = clock()
+               run%ledger%contact = run%ledger%contact &
+                  + work_of_contacts(run%system%contacts, run%dofs, run%state%x, run%next%x)
+               call lap(run%system%seconds(6), t0)
+            end if
             estimate = step_error(scheme, run%state%x, run%state%a, run%next%x, run%next%a)
             call copy_state(run%next, run%state)
             course%nominal = min(course%nominal*stage%dt_growth, max(stage%dt_max, stage%dt))

@@ -83,14 +83,14 @@ contains
 
    !> Where the time went.
    subroutine account()
-      character(14), parameter :: PHASES(7) = [character(14) :: 'material', 'assembly', 'factorisation', 'solution', &
-                                               'rest of Newton', 'output', 'all else']
-      double precision :: seconds(7), total
+      character(14), parameter :: PHASES(8) = [character(14) :: 'material', 'assembly', 'contact', 'factorisation', &
+                                               'solution', 'rest of Newton', 'output', 'all else']
+      double precision :: seconds(8), total
       integer :: k
 
       total = clock() - t0
-      seconds(1:6) = [run%system%seconds([5, 1, 2, 3, 4]), run%seconds_output]
-      seconds(7) = total - sum(seconds(1:6))
+      seconds(:7) = [run%system%seconds([5, 1, 6, 2, 3, 4]), run%seconds_output]
+      seconds(8) = total - sum(seconds(:7))
       write (output_unit, '(a)') whole(run%steps)//' steps, '//whole(run%iterations)//' iterations, '// &
          whole(run%cuts)//' cuts, '//whole(run%effort)//' rate evaluations of the material; in this run '// &
          whole(run%system%n_pass)//' passes over the elements, '//whole(run%system%sparse%n_numeric)// &

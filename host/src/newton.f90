@@ -67,7 +67,7 @@ module newton
       logical :: eager = .false.              !< The last step needed several iterations: slopes at every pass.
       real(wp) :: largest(FIELDS) = 0.0_wp    !< Largest scale of every field so far.
       real(wp), allocatable :: reaction(:)    !< Residual with the constrained rows kept.
-      real(wp) :: seconds(5) = 0.0_wp         !< Assembly, factorisation, solution, the rest, material.
+      real(wp) :: seconds(6) = 0.0_wp         !< Assembly, factorisation, solution, the rest, material, contact.
       integer :: n_pass = 0
    end type system_t
 contains
@@ -137,10 +137,11 @@ contains
          real(wp) :: spent
 
          spent = 0.0_wp
+         call lap(system%seconds(4), t0)
          pass = look_at_contacts(system, dofs, pattern, old%x + scheme%l_f*(new%x - old%x), slopes, assembly)
          if (.not. pass) log%outcome = CONTACT_FAILED
          if (.not. pass) return
-         call lap(system%seconds(4), t0)
+         call lap(system%seconds(6), t0)
          call assemble(model, dofs, pattern, scheme, old, new, slopes, assembly)
          system%n_pass = system%n_pass + 1
          log%effort = log%effort + assembly%effort
@@ -153,8 +154,12 @@ contains
             return
          end if
          call add_bodies(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
-         if (allocated(system%contacts%touch)) call add_contacts(system%contacts, pattern, scheme%l_f, slopes, &
-                                                    assembly%residual, assembly%scale, assembly%values)
+         if (allocated(system%contacts%touch)) then
+            call lap(system%seconds(4), t0)
+            call add_contacts(system%contacts, pattern, scheme%l_f, slopes, assembly%residual, assembly%scale, &
+                              assembly%values)
+            call lap(system%seconds(6), t0)
+         end if
          rhs = constraint%load_0 + scheme%l_f*(constraint%load_1 - constraint%load_0) - constraint%offset
          call loads_of_water(dofs, constraint%air, rhs)
          assembly%scale = assembly%scale + abs(rhs)

@@ -42,8 +42,8 @@ def differences(one, other):
             or (one / name).read_bytes() != (other / name).read_bytes()]
 
 
-# The scene of the restarts: MUD, three fields, growing and cut steps, a checkpoint after every step. The checking
-# builds take a shorter one.
+# The scene of the restarts: MUD, three fields, growing and cut steps, a checkpoint after every other
+# step, so that factors serve again. The checking builds take a shorter one.
 scene = work / "scene.nml"
 text = (root / "tests/host/scenes/restart.nml").read_text().replace("../../..", str(root))
 if light:
@@ -93,7 +93,7 @@ check("restarted after kills: same bytes", not differences(whole, out), differen
 half = work / "half"
 child = subprocess.Popen([host, scene, "--output", half, "--quiet"], env=environment)
 while child.poll() is None and not ((half / "ledger.csv").exists()
-                                    and len((half / "ledger.csv").read_bytes().splitlines()) > 12):
+                                    and len((half / "ledger.csv").read_bytes().splitlines()) > 13):
     time.sleep(0.002)
 killed = child.poll() is None
 child.send_signal(signal.SIGKILL)
@@ -111,8 +111,29 @@ for left_over in half.glob("*.part"):
 check("restart on the way: same bytes", done.returncode == 0 and not differences(whole, half),
       done.stderr + str(differences(whole, half)))
 
+# A plate in contact: its tables and the matrix that grew with it come back too.
+touch = work / "touch.nml"
+plate = (root / "verification/host_indentation/indent_s030.nml").read_text().replace("../..", str(root))
+touch.write_text(plate.replace("duration = 0.03999", f"duration = {6.0e-4 if light else 1.5e-3}")
+                 .replace("gravity = 9.81", "gravity = 9.81\n   checkpoint_steps = 4"))
+one, two = work / "touch_one", work / "touch_two"
+done = run(touch, one, "--quiet")
+check("contact: uninterrupted run", done.returncode == 0, done.stderr)
+child = subprocess.Popen([host, touch, "--output", two, "--quiet"], env=environment)
+while child.poll() is None and not ((two / "ledger.csv").exists() and (two / "checkpoint.h5").exists()
+                                    and len((two / "ledger.csv").read_bytes().splitlines()) > 10):
+    time.sleep(0.002)
+check("contact: killed on the way", child.poll() is None)
+child.send_signal(signal.SIGKILL)
+child.wait()
+done = run(touch, two, "--quiet", "--restart", two / "checkpoint.h5")
+for left_over in two.glob("*.part"):
+    left_over.unlink()
+check("contact: same bytes", done.returncode == 0 and not differences(one, two), done.stderr + str(differences(one, two)))
+check("contact: rows", len((one / "contact.csv").read_text().splitlines()) > (20 if light else 50))
+
 # Comments and threads belong to nobody's fingerprint; a value does.
-scene.write_text("! another comment\n" + text.replace("checkpoint_steps = 1", "threads = 2\n   checkpoint_steps = 0"))
+scene.write_text("! another comment\n" + text.replace("checkpoint_steps = 2", "threads = 2\n   checkpoint_steps = 0"))
 done = run(scene, half, "--quiet", "--restart", half / "checkpoint.h5")
 check("same scene with a comment and other threads", done.returncode == 0, done.stderr)
 scene.write_text(text)
@@ -188,7 +209,9 @@ full = work / "full"
 for left_over in full.glob("*.part"):
     left_over.unlink()
 assert len(raw) > 20000
+scene.write_text(text.replace("checkpoint_steps = 2", "checkpoint_steps = 1"))   # before the next fields are due
 done = run(scene, full, "--quiet", "--restart", full / "checkpoint.h5", preexec_fn=small_disk)
+scene.write_text(text)
 check("full disk: exit code", done.returncode == 4, f"{done.returncode}: {done.stderr}")
 check("full disk: sentence", "checkpoint.h5 cannot be written" in done.stderr and len(done.stderr.splitlines()) == 1,
       done.stderr)
@@ -258,9 +281,9 @@ check("picture of no run", done.returncode == 1 and "no fields of mud_host" in d
 # What a run tells at its end: phases that add up, counters of the ledger.
 done = run(scene, work / "told")
 seconds = [float(s) for s in re.findall(r"^ +\D+? +(\d+\.\d+) s", done.stdout, re.MULTILINE)]
-check("account: phases add up", len(seconds) == 8 and abs(sum(seconds[:-1]) - seconds[-1]) < 8*0.0005 + 1e-9, seconds)
+check("account: phases add up", len(seconds) == 9 and abs(sum(seconds[:-1]) - seconds[-1]) < 9*0.0005 + 1e-9, seconds)
 check("account: counters", f"{len(ledger)} steps" in done.stdout, done.stdout)
-for phase in ("material", "assembly", "factorisation", "solution", "output"):
+for phase in ("material", "assembly", "contact", "factorisation", "solution", "output"):
     check(f"account: {phase}", re.search(rf"^ +{phase} ", done.stdout, re.MULTILINE), done.stdout)
 # On a terminal a line in place says how far the run is.
 near, far = os.openpty()
