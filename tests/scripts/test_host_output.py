@@ -129,7 +129,8 @@ child.wait()
 done = run(touch, two, "--quiet", "--restart", two / "checkpoint.h5")
 for left_over in two.glob("*.part"):
     left_over.unlink()
-check("contact: same bytes", done.returncode == 0 and not differences(one, two), done.stderr + str(differences(one, two)))
+check("contact: same bytes", done.returncode == 0 and not differences(one, two),
+      done.stderr + str(differences(one, two)))
 check("contact: rows", len((one / "contact.csv").read_text().splitlines()) > (20 if light else 50))
 
 # Comments and threads belong to nobody's fingerprint; a value does.
