@@ -32,6 +32,7 @@ module fe_contact
       real(wp) :: energy = 0.0_wp           !< Of the penalty [kJ].
       real(wp) :: area = 0.0_wp             !< Of the active nodes [m2].
       integer :: active = 0
+      integer :: sealed = 0                 !< Slave nodes that are impervious in the step under way.
    end type touch_t
 
    type :: contacts_t

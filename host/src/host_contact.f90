@@ -4,13 +4,13 @@ module host_contact
    use host_loads, only: plate_load
    use host_scene, only: scene_t, stage_t, acts_in
    use contact_types, only: contact_status_t, contact_message, CONTACT_OK, TWO_PI
-   use fe_contact, only: contacts_t, touch_t, surface_t, surface_of, new_touch, plate_surface
+   use fe_contact, only: contacts_t, touch_t, surface_t, surface_of, new_touch, plate_surface, evaluate_contacts
    use fe_dofs, only: dofs_t
    use fe_model, only: state_t
    use triax_fault, only: fault_t, raise, EXIT_INPUT
    implicit none (type, external)
    private
-   public :: prepare_contacts, seat_plates, contacts_act, contact_columns, contact_row
+   public :: prepare_contacts, seat_plates, contacts_act, contact_columns, contact_row, contact_nodes
 contains
    subroutine prepare_contacts(scene, dofs, contacts, fault)
       type(scene_t), intent(in) :: scene
@@ -92,7 +92,8 @@ contains
       head = 'time,dt,work'
       do i = 1, size(scene%contacts)
          name = ','//scene%contacts(i)%name
-         head = head//trim(name)//'.thrust'//trim(name)//'.energy'//trim(name)//'.area'//trim(name)//'.active'
+         head = head//trim(name)//'.thrust'//trim(name)//'.energy'//trim(name)//'.area'//trim(name)//'.active'// &
+                trim(name)//'.sealed'
       end do
       do i = 1, size(scene%plates)
          name = ','//scene%plates(i)%name
@@ -115,9 +116,31 @@ contains
    contains
       pure function values(t) result(list)
          type(touch_t), intent(in) :: t
-         real(wp) :: list(4)
+         real(wp) :: list(5)
 
-         list = [t%thrust, t%energy, t%area, real(t%active, wp)]
+         list = [t%thrust, t%energy, t%area, real(t%active, wp), real(t%sealed, wp)]
       end function values
    end function contact_row
+
+   !> Slave nodes of the contacts that act, at the displacements of a state: number of the contact, coordinates at the
+   !> start, weight, share of it that is covered, gap, pressure. A state that a kernel refuses has none.
+   subroutine contact_nodes(scene, contacts, state, table)
+      type(scene_t), intent(in) :: scene
+      type(contacts_t), intent(in) :: contacts
+      type(state_t), intent(in) :: state
+      real(wp), allocatable, intent(out) :: table(:, :)
+      type(contacts_t) :: probe
+      integer :: c, i
+
+      allocate (table(7, 0))
+      probe = contacts
+      if (.not. evaluate_contacts(probe, state%x, .false.)) return
+      do c = 1, size(scene%contacts)
+         if (.not. probe%touch(c)%acts) cycle
+         associate (k => probe%touch(c)%kernel, slave => probe%touch(c)%slave)
+            table = reshape([table, (real(c, wp), slave%x0(:, i), k%weight(i), k%weight(i)/k%whole(i), k%gap(i), &
+                                     k%pressure(i), i=1, size(slave%node))], [7, size(table, 2) + size(slave%node)])
+         end associate
+      end do
+   end subroutine contact_nodes
 end module host_contact

@@ -1,6 +1,7 @@
 !> A scene on its way: everything that one step hands to the next, and the place in its stages.
 module host_course
    use host_kinds, only: wp
+   use host_drainage, only: drainage_t
    use host_energy, only: ledger_t
    use fe_assembly, only: assembly_t
    use fe_dofs, only: dofs_t
@@ -29,6 +30,8 @@ module host_course
       type(assembly_t) :: assembly
       type(system_t) :: system
       type(constraint_t) :: constraint
+      type(drainage_t) :: drainage
+      logical :: set_changed = .false.      !< Other unknowns are prescribed than in the last attempt of a step.
       type(state_t) :: state, next
       type(ledger_t) :: ledger
       type(course_t) :: course

@@ -1,6 +1,7 @@
 !> Load vectors and prescribed values of a moment.
 module host_loads
    use host_kinds, only: wp, PI
+   use host_drainage, only: drainage_t, is_released
    use host_scene, only: scene_t, stage_t, plate_t, factor_at, acts_in, P_A
    use fe_dofs, only: dofs_t, tie
    use fe_shape, only: edge_quadratic, edge_rule
@@ -153,15 +154,20 @@ contains
    end function new_constraint
 
    !> Prescribed values at the end of a step; x_start: unknowns at the start of the stage, which some are held at.
-   subroutine constrain_step(scene, stage, dofs, time, x_start, constraint)
+   subroutine constrain_step(scene, stage, dofs, drainage, time, x_start, constraint, changed)
       type(scene_t), intent(in) :: scene
       type(stage_t), intent(in) :: stage
       type(dofs_t), intent(in) :: dofs
+      type(drainage_t), intent(in) :: drainage
       real(wp), intent(in) :: time, x_start(:, :)
       type(constraint_t), intent(inout) :: constraint
+      logical, intent(out) :: changed   !< Other unknowns are prescribed than before.
+      logical :: fixed(size(constraint%fixed)), air(size(constraint%air))
       real(wp) :: value
       integer :: i, k, node, at
 
+      fixed = constraint%fixed
+      air = constraint%air
       constraint%fixed = .false.
       constraint%air = .false.
       do i = 1, size(scene%fixes)
@@ -171,6 +177,7 @@ contains
             value = fix%value*factor_at(scene, fix%history, time)
             do k = 1, size(scene%model%mesh%groups(fix%group)%nodes)
                node = scene%model%mesh%groups(fix%group)%nodes(k)
+               if (is_released(drainage, i, node)) cycle
                if (fix%field == P_A) then
                   if (dofs%of(4, node) == 0) cycle
                   constraint%air(node) = .true.
@@ -201,12 +208,14 @@ contains
             constraint%air(node) = .false.
          end associate
       end do
-      if (stage%kind /= STATIC) return
-      do i = 1, dofs%n
-         if (dofs%field(i) < 3) cycle
-         constraint%fixed(i) = .true.
-         constraint%target(i) = x_start(dofs%field(i), dofs%node(i))
-      end do
-      constraint%air = .false.
+      if (stage%kind == STATIC) then
+         do i = 1, dofs%n
+            if (dofs%field(i) < 3) cycle
+            constraint%fixed(i) = .true.
+            constraint%target(i) = x_start(dofs%field(i), dofs%node(i))
+         end do
+         constraint%air = .false.
+      end if
+      changed = any(constraint%fixed .neqv. fixed) .or. any(constraint%air .neqv. air)
    end subroutine constrain_step
 end module host_loads

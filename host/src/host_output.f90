@@ -1,7 +1,7 @@
 !> Output: histories at points, the ledger, and the fields at the end of every stage and in between.
 module host_output
    use host_kinds, only: wp, EXIT_RESTART
-   use host_contact, only: contact_columns, contact_row
+   use host_contact, only: contact_columns, contact_row, contact_nodes
    use host_energy, only: ledger_t, imbalance
    use host_results, only: frames_t, write_mesh, write_frame, all_pressures
    use host_scene, only: scene_t
@@ -12,7 +12,7 @@ module host_output
    use triax_fault, only: fault_t, raise, EXIT_OUTPUT
    implicit none (type, external)
    private
-   public :: output_t, open_output, write_history, write_ledger, write_contacts, write_fields
+   public :: output_t, open_output, write_history, write_ledger, write_contacts, write_fields, write_touching
    public :: close_output, settle_output, write_frame
 
    character(*), parameter :: NUMBER = '(*(es24.16e3,:,","))'
@@ -201,6 +201,29 @@ contains
       close (unit)
       if (status /= 0) call raise(fault, EXIT_OUTPUT, 'The fields cannot be written; is the disk full?')
    end subroutine write_fields
+
+   !> contact_STAGE.csv: slave nodes of the contacts that act in the stage.
+   subroutine write_touching(output, scene, contacts, stage, state, fault)
+      type(output_t), intent(in) :: output
+      type(scene_t), intent(in) :: scene
+      type(contacts_t), intent(in) :: contacts
+      character(*), intent(in) :: stage
+      type(state_t), intent(in) :: state
+      type(fault_t), intent(inout) :: fault
+      real(wp), allocatable :: table(:, :)
+      integer :: unit, i, status
+
+      if (.not. allocated(contacts%touch)) return
+      call contact_nodes(scene, contacts, state, table)
+      call open_file(output%folder//'/contact_'//stage//'.csv', 'contact,r,z,weight,coverage,gap,pressure', unit, fault)
+      if (fault%code /= 0) return
+      status = 0
+      do i = 1, size(table, 2)
+         if (status == 0) write (unit, NUMBER, iostat=status) table(:, i)
+      end do
+      close (unit)
+      if (status /= 0) call raise(fault, EXIT_OUTPUT, 'contact_'//stage//'.csv cannot be written; is the disk full?')
+   end subroutine write_touching
 
    subroutine close_output(output)
       type(output_t), intent(inout) :: output

@@ -588,6 +588,12 @@ contains
             return
          end if
       end do
+      contact%drains_by_state = word_is(group, 'drainage', 'state')
+      if (contact%drains_by_state .and. .not. scene%model%with_w) then
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'drainage = ''state'' needs pressures; see '// &
+                    'fields in &scene.')
+         return
+      end if
       contact%options%penalty = number_of(group, 'penalty')
       contact%options%reach = number_of(group, 'reach')
       contact%options%axisymmetric = scene%model%axisymmetric

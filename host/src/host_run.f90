@@ -5,11 +5,12 @@ module host_run
    use host_clock, only: clock, lap
    use host_contact, only: prepare_contacts, seat_plates, contacts_act
    use host_course, only: run_t, course_t
+   use host_drainage, only: prepare_drainage, freeze_drainage
    use host_energy, only: book_step, kinetic_energy
    use host_initial, only: initial_state
    use host_loads, only: shape_loads, ties_of, load_at, constrain_step, new_constraint
    use host_output, only: output_t, open_output, write_history, write_ledger, write_contacts, write_fields, &
-                          write_frame, close_output
+                          write_touching, write_frame, close_output
    use host_progress, only: progress_t, show_progress, clear_progress
    use host_scene, only: scene_t, stage_t
    use contact_types, only: contact_message
@@ -53,6 +54,7 @@ contains
       run%constraint = new_constraint(scene, run%dofs)
       call initial_state(scene, run%state, fault)
       if (fault%code == 0) call prepare_contacts(scene, run%dofs, run%system%contacts, fault)
+      if (fault%code == 0) call prepare_drainage(scene, run%drainage, fault)
       if (fault%code == 0) call seat_plates(scene, run%system%contacts, run%state)
       run%next = run%state
       if (fault%code == 0 .and. scene%subtract_flow) call keep_flow(scene, run, fault)
@@ -115,6 +117,8 @@ contains
          last = fault
          if (folder /= '') call write_fields(output, scene%model, trim(scene%stages(i)%name), run%state, last)
          if (folder /= '' .and. last%code == fault%code) &
+            call write_touching(output, scene, run%system%contacts, trim(scene%stages(i)%name), run%state, last)
+         if (folder /= '' .and. last%code == fault%code) &
             call write_frame(folder, scene%model, run%state, output%frames, last)
          if (fault%code == 0) fault = last
          call lap(run%seconds_output, t0)
@@ -152,9 +156,11 @@ contains
             scheme = make_scheme(stage%kind, stage%rho_inf, dt)
             run%constraint%load_0 = load_at(scene, stage, run%dofs, run%state%time)
             run%constraint%load_1 = load_at(scene, stage, run%dofs, run%state%time + dt)
-            call constrain_step(scene, stage, run%dofs, run%state%time + dt, course%x_start, run%constraint)
+            call prescribe(scene, stage, run%state%time + dt, run, fault)
+            if (fault%code /= 0) return
             call take_step(scene%model, run%dofs, run%pattern, scheme, run%constraint, control, run%state, run%next, &
                            run%assembly, run%system, log)
+            run%set_changed = .false.
             run%iterations = run%iterations + log%iterations
             run%effort = run%effort + log%effort
             if (log%outcome /= CONVERGED) then
@@ -218,7 +224,8 @@ contains
 
       associate (stage => scene%stages(number))
          run%course = course_t(stage=number, t_start=run%state%time, nominal=stage%dt, x_start=run%state%x)
-         call constrain_step(scene, stage, run%dofs, run%state%time, run%course%x_start, run%constraint)
+         call prescribe(scene, stage, run%state%time, run, fault)
+         if (fault%code /= 0) return
          run%system%factored = .false.
          if (stage%kind == DYNAMIC .and. stage%solve_start) call first_accelerations(scene, stage, run, fault)
          if (fault%code /= 0) return
@@ -226,6 +233,21 @@ contains
                                                                       run%state) - run%ledger%kinetic
       end associate
    end subroutine begin_stage
+
+   !> Prescribed unknowns of a step that ends at a time, from the state that it starts from.
+   subroutine prescribe(scene, stage, time, run, fault)
+      type(scene_t), intent(in) :: scene
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: time
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+      logical :: changed
+
+      call freeze_drainage(scene, run%drainage, run%system%contacts, run%state%x, fault)
+      if (fault%code /= 0) return
+      call constrain_step(scene, stage, run%dofs, run%drainage, time, run%course%x_start, run%constraint, changed)
+      run%set_changed = run%set_changed .or. changed
+   end subroutine prescribe
 
    !> What is written after an accepted step.
    subroutine write_step(scene, number, dt, log, estimate, output, progress, run, fault)

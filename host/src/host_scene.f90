@@ -75,6 +75,7 @@ module host_scene
       character(NAME_LENGTH) :: name = ''
       integer :: slave = 0, master = 0, plate = 0
       type(contact_options_t) :: options
+      logical :: drains_by_state = .false.        !< Covered nodes are impervious, see host_drainage.
       character(LENGTH), allocatable :: stages(:)
    end type touching_t
 
