@@ -23,20 +23,20 @@ def read(path):
     return dict(zip(rows[0], values.T))
 
 
-def run(scene, changes=(), expect=0):
-    """Runs a scene with pieces of its text replaced; the folder of its output (or what it said, if it should fail)."""
+def run(scene, changes=(), expect=0, more=(), folder=None):
+    """Runs a scene with pieces of its text replaced, and more arguments; the folder of its output."""
     scene = pathlib.Path(scene)
     text = scene.read_text(encoding="utf-8")
     for old, new in changes:
         if old not in text:
             raise ValueError(f"{scene.name} has no text {old!r} to replace")
         text = text.replace(old, new)
-    folder = pathlib.Path(tempfile.mkdtemp())
+    folder = folder or pathlib.Path(tempfile.mkdtemp())
     # Beside the original, so that relative paths hold.
     copy = scene.with_name(f".{scene.stem}_{folder.name}.nml")
     copy.write_text(text, encoding="utf-8")
     try:
-        done = subprocess.run([host, copy, "--output", folder], capture_output=True, text=True,
+        done = subprocess.run([host, copy, "--output", folder, *more], capture_output=True, text=True,
                               env={**os.environ, "OMP_NUM_THREADS": "1"})
     finally:
         copy.unlink()
