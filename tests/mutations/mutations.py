@@ -115,3 +115,42 @@ MUTATIONS = [
     ("two parameters swapped", (PARAMS, "params%n_b = props(P_N_B)", "params%n_b = props(P_N_D)")),
     ("a default mistyped", (REGISTRY, "3370.0_wp", "3730.0_wp")),
 ]
+
+MORTAR, RESPONSE, PENALTY, RIGID = "contact_mortar.f90", "contact_response.f90", "contact_penalty.f90", "contact_rigid.f90"
+SEARCH, JOINED, DRAINAGE = "contact_search.f90", "fe_contact.f90", "host_drainage.f90"
+
+# Of the host's contact, below host/src.
+CONTACT = [
+    ("no segments: whole halves of slave edges, points beside the master left out",
+     (MORTAR, "lower = foot(2)\n      upper = foot(1)", "lower = -1.0_wp\n      upper = 1.0_wp"),
+     (MORTAR, "if (where_it_is(3) == INSIDE .and. between", "if (where_it_is(3) > huge(1) .and. between"),
+     (MORTAR, "merge(2, 0, where_it_is(2)", "merge(0, 0, where_it_is(2)"),
+     (MORTAR, "merge(1, 0, where_it_is(1)", "merge(0, 0, where_it_is(1)"),
+     (MORTAR, "if (missed > 0.0_wp) return\n            m = hats", "if (missed > 0.0_wp) cycle\n            m = hats"),
+     (RESPONSE, "if (missed > 0.0_wp) return\n", "if (missed > 0.0_wp) then\n missed = 0.0_wp\n cycle\n end if\n")),
+    ("segments do not end at the master's middle node",
+     (MORTAR, "if (where_it_is(3) == INSIDE .and. between", "if (where_it_is(3) > huge(1) .and. between")),
+    ("quadratic multipliers", (MORTAR, "m = [max(-s, 0.0_wp), max(s, 0.0_wp), 1.0_wp - abs(s)]",
+                               "m = [-0.5_wp*s*(1.0_wp - s), 0.5_wp*s*(1.0_wp + s), 1.0_wp - s*s]")),
+    ("no radius in the integrals", (MORTAR, "p%ring = TWO_PI*p%x(1)", "p%ring = TWO_PI")),
+    ("the tangent forgets that segments move",
+     (MORTAR, "d_s = d_s/(dot_product(t, t)", "d_s = 0.0_wp*d_s/(dot_product(t, t)")),
+    ("the tangent forgets that normals turn",
+     (MORTAR, "+ p%y(1)*p%d_t(2, :) - p%y(2)*p%d_t(1, :)", "+ 0.0_wp*p%y(1)*p%d_t(2, :)")),
+    ("the tangent forgets the radius", (MORTAR, "p%d_ring = TWO_PI*p%d_xs(1, :)", "p%d_ring = 0.0_wp")),
+    ("the tangent forgets the nodal pressures",
+     (PENALTY, "if (contact%pressure(i) > 0.0_wp) call add_node", "if (contact%pressure(i) > huge(1.0_wp)) call add_node")),
+    ("nothing pushes the master", (RESPONSE, "push(2*i + 5:2*i + 6) = -p%nm(i)*nu", "push(2*i + 5:2*i + 6) = 0.0_wp*nu")),
+    ("an open gap pulls", (PENALTY, "penalty*max(-contact%gap, 0.0_wp)", "penalty*(-contact%gap)")),
+    ("the search does not sort", (SEARCH, "grid%side = max(mean, ", "grid%side = max(1.0e6_wp*mean, ")),
+    ("the search forgets the reach", (SEARCH, "search%slave_box(1:2, :) - reach", "search%slave_box(1:2, :) - 0.0_wp*reach")),
+    ("a plate feels nothing", (RIGID, "+ contact%force(n + i)*by_row(:m)", "+ 0.0_wp*contact%force(n + i)*by_row(:m)")),
+    ("slopes against the values within the step", (JOINED, "values(place) + share*value(k)", "values(place) + value(k)")),
+    ("a contact acts in every stage", (JOINED, "if (.not. t%acts) cycle\n            allocate", "allocate")),
+    ("drainage without coverage", (DRAINAGE, "kernel%weight >= HALF*kernel%whole", "kernel%weight > 0.0_wp")),
+    ("drainage without pressure", (DRAINAGE, "kernel%pressure > 0.0_wp .and. ", "")),
+    ("a released node stays so", (DRAINAGE, "drainage%released = .false.\n      do c", "do c")),
+    ("a boundary that touches the slave gives way too",
+     (DRAINAGE, "shared .or. all(in_group(edges(:, e)))", "shared .or. any(in_group(edges(:, e)))")),
+    ("drainage in every stage", (DRAINAGE, " .or. .not. contacts%touch(c)%acts) cycle", ") cycle")),
+]

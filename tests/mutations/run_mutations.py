@@ -1,10 +1,11 @@
 """Change the library in one place at a time and see which tests notice.
 
-Usage: run_mutations.py [-k WORD] [--readme] [--keep] [-j N]. Works on a copy of the source tree in a temporary
-folder; builds release with our own runner. A mutation that no test notices survives: exit code 1. A mutation that does
-not apply or does not compile is an error of mutations.py: exit code 2.
+Usage: run_mutations.py [--contact] [-k WORD] [--readme] [--keep] [-j N]. Works on a copy of the source tree in a
+temporary folder; builds release with our own runner. A mutation that no test notices survives: exit code 1. A mutation
+that does not apply or does not compile is an error of mutations.py: exit code 2.
+  --contact  mutations of the host's contact instead: its suites and the page verification/host_contact
   -k WORD    only mutations whose title contains it
-  --readme   write the table to README.md beside this file
+  --readme   write the table to README.md (CONTACT.md) beside this file
   --keep     keep the temporary folder
 """
 import argparse
@@ -18,7 +19,7 @@ import sys
 import tempfile
 import time
 
-from mutations import MUTATIONS
+from mutations import CONTACT, MUTATIONS
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -32,14 +33,34 @@ def run(command, folder, **more):
                           stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, **more)
 
 
+class Library:
+    """The library and its suites."""
+    mutations, sources, table = MUTATIONS, "umat/src", "README.md"
+    command = "python3 tests/mutations/run_mutations.py --readme"
+    judges = "the suites of `tests/unit` and `tests/contract`"
+    patterns, programs, pages = ("tests/unit/*.pf", "tests/contract/*.pf"), [], []
+
+
+class Contact:
+    """The host's contact, its suites and its page of known answers."""
+    mutations, sources, table = CONTACT, "host/src", "CONTACT.md"
+    command = "python3 tests/mutations/run_mutations.py --contact --readme"
+    judges = "the suites of contact and drainage in `tests/host` and `verification/host_contact/check.py --quick`"
+    patterns = ("tests/host/test_contact_*.pf", "tests/host/test_host_contact.pf", "tests/host/test_host_drainage.pf")
+    programs, pages = ["mud_host"], ["host_contact"]
+
+
+subject = Library
+
+
 def suites_of(tree):
-    files = sorted(tree.glob("tests/unit/*.pf")) + sorted(tree.glob("tests/contract/*.pf"))
+    files = sum((sorted(tree.glob(pattern)) for pattern in subject.patterns), [])
     return [file.stem for file in files if file.stem not in LEFT_OUT]
 
 
 def build(tree, jobs):
     """Output if the build fails, else None."""
-    done = run(["cmake", "--build", "build", "-j", str(jobs), "--target", *suites_of(tree)], tree)
+    done = run(["cmake", "--build", "build", "-j", str(jobs), "--target", *suites_of(tree), *subject.programs], tree)
     return done.stdout if done.returncode else None
 
 
@@ -57,16 +78,32 @@ def failures_of(tree, suite):
     return names
 
 
+def failures_of_page(tree, page):
+    """Whether a page of known answers fails, as page (k claims)."""
+    venv = ROOT / "build/venv/bin/python3"
+    environment = dict(os.environ, MUD_BUILD_DIR=str(tree / "build"))
+    try:
+        done = run([venv if venv.exists() else sys.executable, tree / "verification" / page / "check.py", "--quick"],
+                   tree, env=environment, timeout=TIMEOUT)
+    except subprocess.TimeoutExpired:
+        return [f"{page} (hangs)"]
+    missed = len(re.findall("^FAILED ", done.stdout, re.MULTILINE))
+    if not done.returncode and not missed:
+        return []
+    return [f"{page} ({missed} claims)" if re.search(r"^\d+ passed", done.stdout, re.MULTILINE) else f"{page} (stops)"]
+
+
 def all_failures(tree, jobs):
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        return sorted(set(sum(pool.map(lambda suite: failures_of(tree, suite), suites_of(tree)), [])))
+        found = list(pool.map(lambda suite: failures_of(tree, suite), suites_of(tree)))
+    return sorted(set(sum(found + [failures_of_page(tree, page) for page in subject.pages], [])))
 
 
 def mutate(tree, changes):
     """Apply (file, old, new) ...; the originals by file."""
     originals = {}
     for file, old, new in changes:
-        path = tree / "umat" / "src" / file
+        path = tree / subject.sources / file
         text = path.read_text(encoding="utf-8")
         originals.setdefault(path, text)
         if text.count(old) != 1:
@@ -82,29 +119,32 @@ def restore(originals):
 
 def write_readme(table, suites, seconds):
     survived = sum(not caught for _, caught in table)
-    lines = ["# Mutations", "",
-             "`python3 tests/mutations/run_mutations.py --readme` changes the library in one place at a time "
-             "(`mutations.py`), builds it and runs the suites of `tests/unit` and `tests/contract`. It is not part of "
+    lines = [f"# Mutations{' of the contact' if subject is Contact else ''}", "",
+             f"`{subject.command}` changes `{subject.sources}` in one place at a time "
+             f"(`mutations.py`), builds it and runs {subject.judges}. It is not part of "
              "`./check`. \"(hangs)\" and \"(stops)\" mean that the suite's program did so.", "",
              f"Measured: {len(table)} mutations, {len(table) - survived} noticed, {survived} survived; {suites} "
-             f"suites, {seconds / 60:.0f} minutes on {os.cpu_count()} cores. Left out: "
-             f"{', '.join(sorted(LEFT_OUT))}.", "",
+             f"suites, {seconds / 60:.0f} minutes on {os.cpu_count()} cores."
+             + (f" Left out: {', '.join(sorted(LEFT_OUT))}." if subject is Library else ""), "",
              "| mutation | tests | noticed by |", "|---|---|---|"]
     for title, caught in table:
         shown = ", ".join(f"`{name}`" for name in caught[:4])
         if len(caught) > 4:
             shown += f" and {len(caught) - 4} more"
         lines.append(f"| {title} | {len(caught)} | {shown or '**none**'} |")
-    (HERE / "README.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    (HERE / subject.table).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def main():
+    global subject
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments.add_argument("--contact", action="store_true")
     arguments.add_argument("-k", default="", metavar="WORD")
     arguments.add_argument("--readme", action="store_true")
     arguments.add_argument("--keep", action="store_true")
     arguments.add_argument("-j", type=int, default=os.cpu_count())
     arguments = arguments.parse_args()
+    subject = Contact if arguments.contact else Library
     start = time.monotonic()
     folder = pathlib.Path(tempfile.mkdtemp(prefix="mud-mutations-"))
     tree = folder / "mud"
@@ -112,15 +152,18 @@ def main():
         shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns("build", ".git", "__pycache__"))
         configured = run(["cmake", "-S", ".", "-B", "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                           "-DMUD_PRESET=release", "-DMUD_USE_PFUNIT=OFF", "-DMUD_WERROR=OFF",
-                          "-DMUD_BUILD_DRIVERS=OFF"], tree)
+                          "-DMUD_BUILD_DRIVERS=OFF", f"-DMUD_BUILD_HOST={'ON' if subject is Contact else 'OFF'}"], tree)
         problem = configured.stdout if configured.returncode else build(tree, arguments.j)
         if problem:
             print(problem)
             return 2
         before = all_failures(tree, arguments.j)
         print(f"unchanged: {len(suites_of(tree))} suites, failing {before or 'none'}", flush=True)
+        if any(name.split()[0] in subject.pages for name in before):
+            print("the page fails unchanged: does build/venv exist (./check makes it)?")
+            return 2
         table, broken = [], 0
-        for title, *changes in MUTATIONS:
+        for title, *changes in subject.mutations:
             if arguments.k not in title:
                 continue
             originals = {}
