@@ -31,7 +31,6 @@ module host_course
       type(system_t) :: system
       type(constraint_t) :: constraint
       type(drainage_t) :: drainage
-      logical :: set_changed = .false.      !< Other unknowns are prescribed than in the last attempt of a step.
       type(state_t) :: state, next
       type(ledger_t) :: ledger
       type(course_t) :: course

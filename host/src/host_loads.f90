@@ -154,20 +154,16 @@ contains
    end function new_constraint
 
    !> Prescribed values at the end of a step; x_start: unknowns at the start of the stage, which some are held at.
-   subroutine constrain_step(scene, stage, dofs, drainage, time, x_start, constraint, changed)
+   subroutine constrain_step(scene, stage, dofs, drainage, time, x_start, constraint)
       type(scene_t), intent(in) :: scene
       type(stage_t), intent(in) :: stage
       type(dofs_t), intent(in) :: dofs
       type(drainage_t), intent(in) :: drainage
       real(wp), intent(in) :: time, x_start(:, :)
       type(constraint_t), intent(inout) :: constraint
-      logical, intent(out) :: changed   !< Other unknowns are prescribed than before.
-      logical :: fixed(size(constraint%fixed)), air(size(constraint%air))
       real(wp) :: value
       integer :: i, k, node, at
 
-      fixed = constraint%fixed
-      air = constraint%air
       constraint%fixed = .false.
       constraint%air = .false.
       do i = 1, size(scene%fixes)
@@ -208,14 +204,12 @@ contains
             constraint%air(node) = .false.
          end associate
       end do
-      if (stage%kind == STATIC) then
-         do i = 1, dofs%n
-            if (dofs%field(i) < 3) cycle
-            constraint%fixed(i) = .true.
-            constraint%target(i) = x_start(dofs%field(i), dofs%node(i))
-         end do
-         constraint%air = .false.
-      end if
-      changed = any(constraint%fixed .neqv. fixed) .or. any(constraint%air .neqv. air)
+      if (stage%kind /= STATIC) return
+      do i = 1, dofs%n
+         if (dofs%field(i) < 3) cycle
+         constraint%fixed(i) = .true.
+         constraint%target(i) = x_start(dofs%field(i), dofs%node(i))
+      end do
+      constraint%air = .false.
    end subroutine constrain_step
 end module host_loads

@@ -160,7 +160,6 @@ contains
             if (fault%code /= 0) return
             call take_step(scene%model, run%dofs, run%pattern, scheme, run%constraint, control, run%state, run%next, &
                            run%assembly, run%system, log)
-            run%set_changed = .false.
             run%iterations = run%iterations + log%iterations
             run%effort = run%effort + log%effort
             if (log%outcome /= CONVERGED) then
@@ -241,12 +240,10 @@ contains
       real(wp), intent(in) :: time
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
-      logical :: changed
 
       call freeze_drainage(scene, run%drainage, run%system%contacts, run%state%x, fault)
       if (fault%code /= 0) return
-      call constrain_step(scene, stage, run%dofs, run%drainage, time, run%course%x_start, run%constraint, changed)
-      run%set_changed = run%set_changed .or. changed
+      call constrain_step(scene, stage, run%dofs, run%drainage, time, run%course%x_start, run%constraint)
    end subroutine prescribe
 
    !> What is written after an accepted step.

@@ -62,7 +62,7 @@ module newton
       logical :: analysed = .false.
       logical :: reuse = .true.               !< Factors may serve later matrices.
       logical :: factored = .false.           !< There are factors worth trying.
-      logical, allocatable :: fixed(:)        !< What was fixed when they were made,
+      logical, allocatable :: fixed(:), air(:)   !< What was fixed when they were made,
       integer :: active = 0                   !< and how many nodes were in contact.
       logical :: eager = .false.              !< The last step needed several iterations: slopes at every pass.
       real(wp) :: largest(FIELDS) = 0.0_wp    !< Largest scale of every field so far.
@@ -188,9 +188,8 @@ contains
       weight = 1/scales(dofs%field)
       active = 0
       if (allocated(system%contacts%touch)) active = sum(system%contacts%touch%active)
-      if (.not. allocated(system%fixed)) allocate (system%fixed(dofs%n), source=.false.)
-      if (active /= system%active .or. any(constraint%fixed .neqv. system%fixed)) system%factored = .false.
-      if (.not. system%reuse) system%factored = .false.
+      if (system%factored) system%factored = system%reuse .and. active == system%active &
+         .and. all(constraint%fixed .eqv. system%fixed) .and. all(constraint%air .eqv. system%air)
       if (system%factored) then
          call solve_by_factors(system%sparse, assembly%values, rhs, weight, LINEAR_SHARE*tolerance, MOST_STEPS, dx, &
                                steps, status)
@@ -207,6 +206,7 @@ contains
       system%factored = status == SOLVED
       if (status /= SOLVED) return
       system%fixed = constraint%fixed
+      system%air = constraint%air
       system%active = active
       call solve_by_factors(system%sparse, assembly%values, rhs, weight, LINEAR_SHARE*tolerance, MOST_STEPS, dx, &
                             steps, status)
