@@ -32,7 +32,7 @@ module host_run
    private
    public :: run_t, prepare_run, run_scene
 
-   real(wp), parameter :: LAST_STEP = 1.0e-9_wp   !< A rest of a stage below this share of a step is rounding.
+   real(wp), parameter :: LAST_STEP = 1.0e-6_wp   !< A rest of a stage below this share of a step is rounding.
    integer, parameter :: GOOD_STEPS = 2           !< Accepted steps in a row after which a cut step grows back.
 contains
    !> Unknowns, pattern, loads and initial state.

@@ -1,7 +1,8 @@
 !> One time step by Newton-Raphson with the exact tangent. One linear solve is one iteration; the error of a field is
 !> |R_f| over the largest of |sum of the magnitudes of the elements' contributions|, 1e-6 of its largest value so far,
-!> and a floor, over the free unknowns. The floor of a volume balance is 1e-4 of the strain rates and of the parts of
-!> the fluxes in it: where nothing flows, or nothing can, the balance of every element is nothing but rounding.
+!> and a floor, over the free unknowns; a rigid body counts by itself too. The floor of a volume balance is 1e-4 of the
+!> strain rates and of the parts of the fluxes in it: where nothing flows, or nothing can, the balance of every element
+!> is nothing but rounding.
 module newton
    use host_clock, only: clock, lap
    use host_kinds, only: wp, FIELDS
@@ -181,11 +182,14 @@ contains
       real(wp), intent(out) :: dx(:)
       integer, intent(out) :: status
       real(wp) :: weight(dofs%n), scales(FIELDS), t0
-      integer :: steps, active
+      integer :: steps, active, i
 
       t0 = clock()
       scales = field_scales(dofs, constraint, assembly, system%largest)
       weight = 1/scales(dofs%field)
+      do i = 1, dofs%n
+         if (is_body(constraint, i)) weight(i) = 1/body_scale(assembly, system%largest, i)
+      end do
       active = 0
       if (allocated(system%contacts%touch)) active = sum(system%contacts%touch%active)
       if (system%factored) system%factored = system%reuse .and. active == system%active &
@@ -365,6 +369,22 @@ contains
       s(1:2) = sum(s(1:2))
    end subroutine add_scales
 
+   !> A rigid body that moves is measured by the forces on it: in the sum of its field it would be lost.
+   pure logical function is_body(constraint, i)
+      type(constraint_t), intent(in) :: constraint
+      integer, intent(in) :: i
+
+      is_body = constraint%mass(i) > 0.0_wp .and. .not. constraint%fixed(i)
+   end function is_body
+
+   pure real(wp) function body_scale(assembly, largest, i)
+      type(assembly_t), intent(in) :: assembly
+      real(wp), intent(in) :: largest(FIELDS)
+      integer, intent(in) :: i
+
+      body_scale = max(assembly%scale(i), HISTORY_SHARE*largest(2), ABSOLUTE_FLOOR)
+   end function body_scale
+
    pure logical function counts(dofs, constraint, i)
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint
@@ -393,6 +413,9 @@ contains
       call add_scales(dofs, constraint, assembly, s, floor)
       largest = max(largest, sqrt(s))
       log%error = sqrt(r)/field_scales(dofs, constraint, assembly, largest)
+      do i = 1, dofs%n
+         if (is_body(constraint, i)) log%error(2) = max(log%error(2), abs(rhs(i))/body_scale(assembly, largest, i))
+      end do
       log%worst_field = maxloc(log%error, 1)
       log%worst_unknown = 0
       worst = -1.0_wp
