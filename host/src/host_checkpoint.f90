@@ -8,6 +8,7 @@ module host_checkpoint
    use host_energy, only: ledger_t
    use host_output, only: output_t, settle_output
    use host_scene, only: scene_t
+   use host_watch, only: MEMORIES
    use fe_model, only: copy_state
    use fe_pattern, only: make_pattern
    use io_hdf5, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, &
@@ -20,7 +21,7 @@ module host_checkpoint
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
    character(*), parameter :: KIND_OF_FILE = 'checkpoint of mud_host'
-   character(*), parameter :: FORMAT = '1'      !< Grows with every change of what is stored.
+   character(*), parameter :: FORMAT = '2'      !< Grows with every change of what is stored.
    integer, parameter :: N_COUNTERS = 13
    character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
                                         'contact, seepage [kJ], outflow, outflow_air [m3]'
@@ -61,6 +62,8 @@ contains
          call put(file, 's', s%s, '-', 'degree of saturation')
          call put(file, 's_rate', s%s_rate, '1/s', 'its rate')
       end associate
+      if (scene%effects%auto) call put(file, 'watch', [run%watch%table%largest, run%watch%table%crossed, &
+         run%watch%memory], '-', 'indicators of the effects that are off, when they crossed [s], extremes')
       if (pairs_of(run) > 0) call put(file, 'pairs', reshape(run%system%contacts%extra, [2*pairs_of(run)]), '-', &
                                       'pairs of unknowns that contacts brought into the matrix')
       call write_file(file, output%folder//'/'//CHECKPOINT, good)
@@ -108,6 +111,7 @@ contains
          call get(file, 'e', run%state%e)
          call get(file, 's', run%state%s)
          call get(file, 's_rate', run%state%s_rate)
+         if (file%good .and. scene%effects%auto) call take_watch(file, run)
          if (file%good .and. counters(N_COUNTERS) > 0) call take_pairs(file, counters(N_COUNTERS), run)
          if (file%good) then
             run%state%time = course(1)
@@ -124,6 +128,20 @@ contains
       end if
       call close_file(file)
    end subroutine read_checkpoint
+
+   !> What was seen of the effects that are off.
+   subroutine take_watch(file, run)
+      type(h5_t), intent(inout) :: file
+      type(run_t), intent(inout) :: run
+      real(wp) :: seen(2*size(run%watch%table) + MEMORIES)
+      integer :: n
+
+      n = size(run%watch%table)
+      call get(file, 'watch', seen)
+      run%watch%table%largest = seen(:n)
+      run%watch%table%crossed = seen(n + 1:2*n)
+      run%watch%memory = seen(2*n + 1:)
+   end subroutine take_watch
 
    !> The matrix with all the room that contacts have asked for: its ordering, and so every digit, depends on it.
    subroutine take_pairs(file, pairs, run)

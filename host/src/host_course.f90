@@ -3,6 +3,7 @@ module host_course
    use host_kinds, only: wp
    use host_drainage, only: drainage_t
    use host_energy, only: ledger_t
+   use host_watch, only: watch_t
    use fe_assembly, only: assembly_t
    use fe_dofs, only: dofs_t
    use fe_model, only: state_t
@@ -34,6 +35,7 @@ module host_course
       type(state_t) :: state, next
       type(ledger_t) :: ledger
       type(course_t) :: course
+      type(watch_t) :: watch                !< Of effects that are off; with effects = 'auto' alone.
       integer :: steps = 0, iterations = 0, cuts = 0, effort = 0
       real(wp) :: seconds_output = 0.0_wp   !< Wall time.
    end type run_t

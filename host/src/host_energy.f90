@@ -10,7 +10,7 @@ module host_energy
    use time_galpha, only: scheme_t, STATIC
    implicit none (type, external)
    private
-   public :: ledger_t, book_step, kinetic_energy, imbalance
+   public :: ledger_t, book_step, kinetic_energy, density, imbalance
 
    type :: ledger_t
       real(wp) :: kinetic = 0.0_wp, kinetic_0 = 0.0_wp   !< Now, and at the start [kJ].

@@ -33,6 +33,8 @@ module host_keys
       key_t('scene', 'pressures', 'w', 'quadratic', 0, 0, 'quadratic|linear: interpolation (linear: Taylor-Hood)'), &
       key_t('scene', 'quadrature', 'i', '6', 3, 12, 'points of an element: 3, 6, 7 or 12'), &
       key_t('scene', 'gravity', 'n', '0', 0, 1000, 'acceleration towards -z [m/s2]'), &
+      key_t('scene', 'effects', 'w', 'given', 0, 0, 'given|auto: auto derives what keys leave out, see README'), &
+      key_t('scene', 'effects_tolerance', 'n', '0.01', 1.0e-6_wp, 1, 'share that an effect left out may have [-]'), &
       key_t('scene', 'seepage_inertia', 'w', 'no', 0, 0, 'no|yes: acceleration of the skeleton in Darcy''s law'), &
       key_t('scene', 'saturation_rate', 'w', 'full', 0, 0, 'full|suction: with dS_w/de, or by suction alone'), &
       key_t('scene', 'initial_flow', 'w', 'drain', 0, 0, 'drain|subtract: subtract: flow at the start is kept up'), &
@@ -112,7 +114,7 @@ module host_keys
       key_t('history', 'values', 'N', NONE, -BIG, BIG, 'factors at these times [-]'), &
       key_t('history', 'file', 't', NONE, 0, 0, 'instead: text file with a time and a factor a line'), &
       key_t('stage', 'name', 't', REQUIRED, 0, 0, 'name of the stage'), &
-      key_t('stage', 'analysis', 'w', REQUIRED, 0, 0, 'static|quasi_static|dynamic: static holds the pressures'), &
+      key_t('stage', 'analysis', 'w', NONE, 0, 0, 'static|quasi_static|dynamic: needed unless effects = ''auto'''), &
       key_t('stage', 'duration', 'n', REQUIRED, TINY_, BIG, 'duration [s]'), &
       key_t('stage', 'dt', 'n', REQUIRED, TINY_, BIG, 'time step [s]'), &
       key_t('stage', 'dt_growth', 'n', '1', 1, 10, 'factor on the step after every accepted one'), &

@@ -33,6 +33,9 @@ contains
       if (fault%code == 0) call check_keys(groups, fault)
       if (fault%code == 0) call check_single(file, groups, fault)
       if (fault%code == 0) scene%fingerprint = fingerprint_of(groups)
+      do i = 1, size(groups)
+         if (groups(i)%name == 'scene') scene%effects%auto = word_is(groups(i), 'effects', 'auto')
+      end do
       allocate (scene%histories(0), scene%initials(0), scene%stages(0), scene%fixes(0), scene%loads(0), &
                 scene%rigids(0), scene%points(0), scene%plates(0), scene%contacts(0))
       ! Lists of different laws get their size at once: they cannot grow by array constructors.
@@ -46,7 +49,7 @@ contains
          if (fault%code /= 0) return
          select case (groups(i)%name)
          case ('scene')
-            call take_scene(groups(i), scene, fault)
+            call take_scene(groups(i), groups, scene, fault)
          case ('mesh')
             call take_mesh(groups(i), scene, fault)
          case ('fluids')
@@ -56,7 +59,7 @@ contains
          case ('history')
             call take_history(groups(i), scene, fault)
          case ('stage')
-            call take_stage(groups(i), scene)
+            call take_stage(groups(i), scene, fault)
          end select
       end do
       if (fault%code /= 0) return
@@ -115,19 +118,32 @@ contains
       end do
    end subroutine check_single
 
-   subroutine take_scene(group, scene, fault)
-      type(group_t), intent(in) :: group
+   subroutine take_scene(group, groups, scene, fault)
+      type(group_t), intent(in) :: group, groups(:)
       type(scene_t), intent(inout) :: scene
       type(fault_t), intent(inout) :: fault
+      real(wp), parameter :: EARTH = 9.81_wp   !< [m/s2] Where gravity is to be derived.
 
       scene%name = text_of(group, 'name')
       associate (m => scene%model)
          m%axisymmetric = word_is(group, 'geometry', 'axisymmetric')
          m%with_c = word_is(group, 'fields', 'u-p_w-p_c')
          m%with_w = m%with_c .or. word_is(group, 'fields', 'u-p_w')
+         associate (effects => scene%effects)
+            effects%tolerance = number_of(group, 'effects_tolerance')
+            effects%fields_by_hand = given(group, 'fields') .or. .not. effects%auto
+            effects%gravity_by_hand = given(group, 'gravity') .or. .not. effects%auto
+            effects%seepage_by_hand = given(group, 'seepage_inertia') .or. .not. effects%auto
+            ! All that the regions have laws for; what of it matters is derived later.
+            if (.not. effects%fields_by_hand) then
+               m%with_c = any_region(groups, 'retention')
+               m%with_w = m%with_c .or. any_region(groups, 'permeability')
+            end if
+         end associate
          m%n_p = merge(6, 3, word_is(group, 'pressures', 'quadratic'))
          m%rule = nint(number_of(group, 'quadrature'))
          m%gravity = number_of(group, 'gravity')
+         if (.not. scene%effects%gravity_by_hand) m%gravity = EARTH
          m%seepage_inertia = word_is(group, 'seepage_inertia', 'yes')
          m%full_rate = word_is(group, 'saturation_rate', 'full')
          m%threads = nint(number_of(group, 'threads'))
@@ -140,6 +156,14 @@ contains
             'quadrature = '//whole(m%rule)//': there are rules of 3, 6, 7 and 12 points.')
       end associate
    end subroutine take_scene
+
+   logical function any_region(groups, key)
+      type(group_t), intent(in) :: groups(:)
+      character(*), intent(in) :: key
+      integer :: i
+
+      any_region = any([(groups(i)%name == 'region' .and. given(groups(i), key), i=1, size(groups))])
+   end function any_region
 
    subroutine take_mesh(group, scene, fault)
       type(group_t), intent(in) :: group
@@ -284,12 +308,16 @@ contains
       close (unit)
    end subroutine read_table
 
-   subroutine take_stage(group, scene)
+   subroutine take_stage(group, scene, fault)
       type(group_t), intent(in) :: group
       type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
       type(stage_t) :: stage
 
       stage%name = text_of(group, 'name')
+      stage%derived = .not. given(group, 'analysis')
+      if (stage%derived .and. .not. scene%effects%auto) call raise(fault, EXIT_INPUT, at_line(group%file, group%line)// &
+         '&stage needs analysis (static, quasi_static or dynamic); effects = ''auto'' in &scene would derive it.')
       select case (lower_case(text_of(group, 'analysis')))
       case ('static')
          stage%kind = STATIC

@@ -6,13 +6,15 @@ module host_run
    use host_contact, only: prepare_contacts, seat_plates, contacts_act
    use host_course, only: run_t, course_t
    use host_drainage, only: prepare_drainage, freeze_drainage
+   use host_effects, only: derive_effects, write_effects
    use host_energy, only: book_step, kinetic_energy
    use host_initial, only: initial_state
    use host_loads, only: shape_loads, ties_of, load_at, constrain_step, new_constraint
    use host_output, only: output_t, open_output, write_history, write_ledger, write_contacts, write_fields, &
                           write_touching, write_frame, close_output
    use host_progress, only: progress_t, show_progress, clear_progress
-   use host_scene, only: scene_t, stage_t
+   use host_scene, only: scene_t, stage_t, effect_t, NEVER
+   use host_watch, only: begin_watch, begin_swing, watch_step, warning_of
    use contact_types, only: contact_message
    use fe_assembly, only: make_assembly, assemble
    use fe_contact, only: work_of_contacts
@@ -40,11 +42,14 @@ contains
       type(scene_t), intent(inout) :: scene
       type(run_t), intent(out) :: run
       type(fault_t), intent(inout) :: fault
+      type(effect_t), allocatable :: table(:)
 
       if (scene%model%threads == 0) then
          scene%model%threads = 1
          !$ scene%model%threads = omp_get_max_threads()
       end if
+      if (scene%effects%auto) call derive_effects(scene, table, fault)
+      if (fault%code /= 0) return
       run%system%reuse = scene%reuse_factors
       run%system%sparse%ordering = scene%ordering
       call number_unknowns(scene%model, ties_of(scene), run%dofs)
@@ -57,6 +62,7 @@ contains
       if (fault%code == 0) call prepare_drainage(scene, run%drainage, fault)
       if (fault%code == 0) call seat_plates(scene, run%system%contacts, run%state)
       run%next = run%state
+      if (fault%code == 0 .and. scene%effects%auto) call begin_watch(scene, table, run%state, run%watch)
       if (fault%code == 0 .and. scene%subtract_flow) call keep_flow(scene, run, fault)
    end subroutine prepare_run
 
@@ -101,6 +107,7 @@ contains
       if (present(restart)) call read_checkpoint(restart, scene, run, output, fault)
       if (fault%code == 0 .and. folder /= '') call open_output(folder, scene, present(restart), output, fault)
       if (fault%code /= 0) return
+      if (folder /= '' .and. scene%effects%auto) call write_effects(folder, run%watch%table, fault)
       if (folder /= '' .and. run%steps == 0) then
          call write_history(output, scene, run%state, fault)
          call write_frame(folder, scene%model, run%state, output%frames, fault)
@@ -125,9 +132,51 @@ contains
          if (fault%code /= 0) exit
       end do
       if (folder /= '') call close_output(output)
+      if (scene%effects%auto) call end_watch(scene, folder, quiet, run, fault)
       call release(run%system%sparse)
       run%system%analysed = .false.
    end subroutine run_scene
+
+   !> What was seen of the effects that are off.
+   subroutine end_watch(scene, folder, quiet, run, fault)
+      type(scene_t), intent(in) :: scene
+      character(*), intent(in) :: folder
+      logical, intent(in) :: quiet
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+      type(fault_t) :: last
+      integer :: i
+
+      last = fault
+      if (folder /= '') call write_effects(folder, run%watch%table, last)
+      if (fault%code == 0) fault = last
+      if (quiet .or. .not. any(run%watch%table%crossed > NEVER)) return
+      write (*, '(a)') 'Effects that are off and crossed their thresholds in this run:'
+      do i = 1, size(run%watch%table)
+         if (run%watch%table(i)%crossed > NEVER) write (*, '(a)') '   '//warning_of(scene, run%watch%table(i))
+      end do
+   end subroutine end_watch
+
+   !> Watches a step that is accepted but not yet taken over, and warns.
+   subroutine look_at_effects(scene, number, dt, quiet, progress, run)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: number
+      real(wp), intent(in) :: dt
+      logical, intent(in) :: quiet
+      type(progress_t), intent(inout) :: progress
+      type(run_t), intent(inout) :: run
+      logical :: news(size(run%watch%table))
+      integer :: i
+
+      call watch_step(scene, number, run%dofs, dt, run%course%t_start + scene%stages(number)%duration - run%next%time &
+                      <= LAST_STEP*dt, run%ledger, run%state, run%next, run%watch, news)
+      if (quiet) return
+      do i = 1, size(news)
+         if (.not. news(i)) cycle
+         call clear_progress(progress)
+         write (*, '(a)') warning_of(scene, run%watch%table(i))
+      end do
+   end subroutine look_at_effects
 
    subroutine run_stage(scene, number, with_files, quiet, output, progress, run, fault)
       type(scene_t), intent(in) :: scene
@@ -187,6 +236,7 @@ contains
                call lap(run%system%seconds(6), t0)
             end if
             estimate = step_error(scheme, run%state%x, run%state%a, run%next%x, run%next%a)
+            if (scene%effects%auto) call look_at_effects(scene, number, dt, quiet, progress, run)
             call copy_state(run%next, run%state)
             course%nominal = min(course%nominal*stage%dt_growth, max(stage%dt_max, stage%dt))
             course%good = course%good + 1
@@ -226,6 +276,7 @@ contains
          call prescribe(scene, stage, run%state%time, run, fault)
          if (fault%code /= 0) return
          run%system%factored = .false.
+         call begin_swing(run%watch)
          if (stage%kind == DYNAMIC .and. stage%solve_start) call first_accelerations(scene, stage, run, fault)
          if (fault%code /= 0) return
          run%ledger%kinetic_0 = run%ledger%kinetic_0 + kinetic_energy(scene%model, run%dofs, run%constraint%mass, &

@@ -9,11 +9,42 @@ module host_scene
    implicit none (type, external)
    private
    public :: scene_t, stage_t, fix_t, load_t, rigid_t, history_t, initial_t, point_t, plate_t, touching_t
+   public :: effect_t, effects_t
    public :: factor_at, acts_in, P_A, LOAD_KINDS
+   public :: OF_P_W, OF_P_C, OF_INERTIA, OF_SEEPAGE, OF_GRAVITY, UNBOUNDED, UNKNOWN, NEVER
 
    integer, parameter :: P_A = 5   !< "Field" of a prescribed air pressure.
    character(8), parameter :: LOAD_KINDS(7) = [character(8) :: 'pressure', 'shear_r', 'shear_z', 'water', 'air', &
       'force_r', 'force_z']
+
+   ! Effects that a scene may or may not call for.
+   integer, parameter :: OF_P_W = 1, OF_P_C = 2, OF_INERTIA = 3, OF_SEEPAGE = 4, OF_GRAVITY = 5
+   real(wp), parameter :: UNBOUNDED = 1.0e30_wp   !< An estimate without a bound.
+   real(wp), parameter :: UNKNOWN = -1.0_wp       !< No estimate: it has no meaning here.
+   real(wp), parameter :: NEVER = -1.0e30_wp      !< A time.
+
+   !> A row of the table of effects.
+   type :: effect_t
+      integer :: kind = 0
+      integer :: stage = 0                       !< Number of the stage, of the inertia.
+      character(NAME_LENGTH + 16) :: name = ''
+      logical :: on = .false., by_hand = .false.
+      real(wp) :: estimate = UNKNOWN, threshold = 0.0_wp
+      character(8) :: unit = '-'
+      integer :: unknowns = 0, entries = 0       !< It costs so many, also of the matrix.
+      character(128) :: why = ''
+      ! Watched during the run where it is off.
+      logical :: watched = .false.
+      real(wp) :: scale = 1.0_wp                 !< What the indicator is measured with, see host_watch.
+      real(wp) :: largest = 0.0_wp               !< Indicator so far,
+      real(wp) :: crossed = NEVER                !< time when it crossed the threshold [s].
+   end type effect_t
+
+   type :: effects_t
+      logical :: auto = .false.
+      logical :: fields_by_hand = .true., gravity_by_hand = .true., seepage_by_hand = .true.
+      real(wp) :: tolerance = 0.01_wp
+   end type effects_t
 
    type :: history_t
       character(NAME_LENGTH) :: name = ''
@@ -38,6 +69,7 @@ module host_scene
       real(wp) :: rho_inf = 0.8_wp, tolerance = 1.0e-3_wp
       integer :: max_iterations = 12, every = 1, fields = 0
       logical :: still = .false., solve_start = .true., zero_displacements = .false.
+      logical :: derived = .false.   !< Its kind is not given but derived.
    end type stage_t
 
    type :: fix_t
@@ -87,6 +119,7 @@ module host_scene
    type :: scene_t
       character(NAME_LENGTH) :: name = ''
       type(model_t) :: model
+      type(effects_t) :: effects
       logical :: subtract_flow = .false.
       logical :: reuse_factors = .true.
       integer :: ordering = 1                !< See solve_sparse.

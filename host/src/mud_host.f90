@@ -2,6 +2,7 @@
 program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use host_clock, only: clock
+   use host_effects, only: print_effects
    use host_keys, only: print_template
    use host_process, only: settle_process
    use host_read, only: read_scene
@@ -79,6 +80,7 @@ contains
       write (output_unit, '(a)') trim(scene%name)//': '//whole(size(scene%model%mesh%t6, 2))//' elements, '// &
          whole(size(scene%model%mesh%x, 2))//' nodes, '//whole(run%dofs%n)//' unknowns, '// &
          whole(size(run%pattern%col))//' entries, '//whole(scene%model%threads)//' threads.'
+      if (scene%effects%auto) call print_effects(output_unit, run%watch%table)
    end subroutine announce
 
    !> Where the time went.

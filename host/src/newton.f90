@@ -103,7 +103,8 @@ contains
          if (log%iterations > 0) then
             call measure(dofs, constraint, assembly, rhs, system%largest, log)
             if (log%iterations == 1) log%first_error = log%error
-            log%reduction = norm2(pack(rhs, .not. constraint%fixed))/max(norm_0, tiny(1.0_wp))
+            ! Driven by prescribed values alone, a step begins without any.
+            if (norm_0 > 0.0_wp) log%reduction = norm2(pack(rhs, .not. constraint%fixed))/norm_0
             if (all(log%error < control%tolerance)) exit
             if (log%iterations >= control%max_iterations .or. .not. all(log%error < HOPELESS)) then
                log%outcome = NOT_CONVERGED

@@ -1,0 +1,205 @@
+!> What acts on a scene, and how fast: jumps, slopes and their changes in every stage.
+module host_actions
+   use host_kinds, only: wp, PI
+   use host_scene, only: scene_t, factor_at, acts_in, P_A, UNBOUNDED
+   use fe_model, only: state_t
+   use time_galpha, only: STATIC
+   use triax_namelist, only: LENGTH
+   implicit none (type, external)
+   private
+   public :: action_t, pace_t, actions_of, pace_of, start_of, FORCE, MOTION, PRESSURE, FLOW
+
+   integer, parameter :: FORCE = 1, MOTION = 2, PRESSURE = 3, FLOW = 4
+
+   !> A load, a prescribed displacement or pressure, a force on a rigid body, an inflow.
+   type :: action_t
+      integer :: kind = FORCE
+      integer :: field = 0             !< Of what is prescribed: u_r, u_z, p_w, p_c, p_a.
+      integer :: group = 0, history = 0
+      integer :: load = 0              !< Number of the load, of the rigid body or plate below zero, 0: neither.
+      real(wp) :: value = 0.0_wp
+      character(LENGTH), allocatable :: stages(:)
+      logical :: held = .false.        !< At what it is when a stage begins.
+      logical :: lasting = .true.      !< It does not come or go within a stage.
+      real(wp) :: start = 0.0_wp       !< Before the first stage.
+      real(wp) :: offset = 0.0_wp      !< Largest departure of a prescribed pressure from the initial one [kPa].
+      real(wp) :: change = 0.0_wp      !< Largest departure from the start.
+      real(wp) :: stress = 0.0_wp      !< That comes with a unit of it [kPa]; 0: not known.
+   end type action_t
+
+   !> An action in a stage.
+   type :: pace_t
+      real(wp) :: jump = 0.0_wp        !< At the beginning.
+      real(wp) :: bends = 0.0_wp       !< Sum of the changes of slope [1/s].
+      real(wp) :: slope = 0.0_wp       !< The steepest [1/s].
+   end type pace_t
+contains
+   !> All of them, with the largest change of each.
+   function actions_of(scene, state) result(actions)
+      type(scene_t), intent(in) :: scene
+      type(state_t), intent(in) :: state   !< The initial one.
+      type(action_t), allocatable :: actions(:)
+      character(LENGTH) :: every(0)
+      integer :: i
+
+      allocate (actions(0))
+      do i = 1, size(scene%loads)
+         associate (one => scene%loads(i))
+            select case (one%kind)
+            case (4, 5)
+               actions = [actions, action_t(FLOW, group=one%group, history=one%history, load=i, value=one%value, &
+                                            stages=one%stages)]
+            case default
+               actions = [actions, action_t(FORCE, group=one%group, history=one%history, load=i, value=one%value, &
+                                            stages=one%stages, stress=merge(1.0_wp, 0.0_wp, one%kind <= 3))]
+            end select
+         end associate
+      end do
+      do i = 1, size(scene%rigids)
+         associate (one => scene%rigids(i))
+            actions = [actions, action_t(FORCE, group=one%group, history=one%history, load=-i, value=one%force, &
+                                         stages=every, stress=1/area_of(scene, one%group))]
+         end associate
+      end do
+      do i = 1, size(scene%plates)
+         associate (one => scene%plates(i))
+            actions = [actions, action_t(FORCE, history=one%history, load=-size(scene%rigids) - i, value=one%force, &
+                                         stages=every, stress=1/face_of(scene, one%r))]
+         end associate
+      end do
+      do i = 1, size(scene%fixes)
+         associate (one => scene%fixes(i))
+            actions = [actions, action_t(merge(MOTION, PRESSURE, one%field <= 2), field=one%field, group=one%group, &
+                                         history=one%history, value=one%value, stages=one%stages, held=one%hold, &
+                                         lasting=one%from <= -huge(1.0_wp) .and. one%until >= huge(1.0_wp), &
+                                         stress=merge(0.0_wp, 1.0_wp, one%field <= 2))]
+         end associate
+      end do
+      do i = 1, size(actions)
+         call measure(scene, state, actions(i))
+      end do
+   end function actions_of
+
+   !> Start, offset and change.
+   subroutine measure(scene, state, action)
+      type(scene_t), intent(in) :: scene
+      type(state_t), intent(in) :: state
+      type(action_t), intent(inout) :: action
+      real(wp), allocatable :: times(:)
+      real(wp) :: there
+      integer :: i, k, node
+
+      if (action%held) return
+      if (action%kind == FORCE .or. action%kind == PRESSURE) action%start = value_at(scene, action, 1, 0.0_wp)
+      do i = 1, size(scene%stages)
+         times = breaks_of(scene, action, i)
+         do k = 1, size(times)
+            action%change = max(action%change, abs(value_at(scene, action, i, times(k)) - action%start))
+         end do
+      end do
+      if (action%kind /= PRESSURE) return
+      do k = 1, size(scene%model%mesh%groups(action%group)%nodes)
+         node = scene%model%mesh%groups(action%group)%nodes(k)
+         there = state%x(min(action%field, 4), node)
+         if (action%field == P_A) there = state%x(3, node) + state%x(4, node)
+         action%offset = max(action%offset, abs(action%start - there))
+      end do
+      action%change = action%change + action%offset
+   end subroutine measure
+
+   !> Jump, bends and slope of an action in a stage. A support that comes or goes cannot be bounded.
+   function pace_of(scene, action, stage) result(pace)
+      type(scene_t), intent(in) :: scene
+      type(action_t), intent(in) :: action
+      integer, intent(in) :: stage
+      type(pace_t) :: pace
+      real(wp), allocatable :: times(:)
+      real(wp) :: slope, last, first
+      logical :: acts, acted
+      integer :: k
+
+      acts = acts_in(action%stages, scene%stages(stage)%name)
+      acted = acts
+      if (stage > 1) acted = acts_in(action%stages, scene%stages(stage - 1)%name)
+      if (action%kind == MOTION .or. action%kind == PRESSURE) then
+         if (.not. action%lasting .or. (acted .neqv. acts)) pace%jump = UNBOUNDED
+         if (.not. acts .or. .not. action%lasting .or. .not. acted .or. action%held) return
+      end if
+      times = breaks_of(scene, action, stage)
+      last = action%start
+      if (stage > 1) then
+         last = value_at(scene, action, stage - 1, times(1))
+         if (action%kind == MOTION .and. scene%stages(stage - 1)%zero_displacements) last = 0.0_wp
+      end if
+      pace%jump = abs(value_at(scene, action, stage, times(1)) - last)
+      ! Prescribed pressures take hold where the pressures are free for the first time.
+      if (action%kind == PRESSURE .and. all(scene%stages(:stage - 1)%kind == STATIC)) &
+         pace%jump = pace%jump + action%offset
+      slope = 0.0_wp
+      do k = 1, size(times) - 1
+         first = slope
+         slope = (value_at(scene, action, stage, times(k + 1)) - value_at(scene, action, stage, times(k))) &
+                 /(times(k + 1) - times(k))
+         pace%bends = pace%bends + abs(slope - first)
+         pace%slope = max(pace%slope, abs(slope))
+      end do
+   end function pace_of
+
+   !> Beginning and end of a stage, and the moments between them where the history bends.
+   function breaks_of(scene, action, stage) result(times)
+      type(scene_t), intent(in) :: scene
+      type(action_t), intent(in) :: action
+      integer, intent(in) :: stage
+      real(wp), allocatable :: times(:)
+      real(wp) :: t0, t1
+
+      t0 = start_of(scene, stage)
+      t1 = t0 + scene%stages(stage)%duration
+      times = [t0, t1]
+      if (action%history == 0) return
+      associate (t => scene%histories(action%history)%times)
+         times = [t0, pack(t, t > t0 .and. t < t1), t1]
+      end associate
+   end function breaks_of
+
+   pure real(wp) function value_at(scene, action, stage, time) result(value)
+      type(scene_t), intent(in) :: scene
+      type(action_t), intent(in) :: action
+      integer, intent(in) :: stage
+      real(wp), intent(in) :: time
+
+      value = 0.0_wp
+      if (acts_in(action%stages, scene%stages(stage)%name)) value = action%value*factor_at(scene, action%history, time)
+   end function value_at
+
+   pure real(wp) function start_of(scene, stage)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: stage
+
+      start_of = sum(scene%stages(:stage - 1)%duration)
+   end function start_of
+
+   !> Area of a boundary [m2].
+   pure real(wp) function area_of(scene, group) result(area)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: group
+      integer :: e
+
+      area = 0.0_wp
+      associate (x => scene%model%mesh%x, edges => scene%model%mesh%groups(group)%edges)
+         do e = 1, size(edges, 2)
+            area = area + norm2(x(:, edges(2, e)) - x(:, edges(1, e))) &
+                   *merge(PI*(x(1, edges(1, e)) + x(1, edges(2, e))), 1.0_wp, scene%model%axisymmetric)
+         end do
+      end associate
+      ! A body without edges: a force of no known stress.
+      if (.not. area > 0.0_wp) area = huge(1.0_wp)
+   end function area_of
+
+   pure real(wp) function face_of(scene, r)
+      type(scene_t), intent(in) :: scene
+      real(wp), intent(in) :: r(2)
+
+      face_of = (r(2) - r(1))*merge(PI*(r(1) + r(2)), 1.0_wp, scene%model%axisymmetric)
+   end function face_of
+end module host_actions
