@@ -1,5 +1,5 @@
-"""Effects that mud_host derives from a scene: each on and off, by hand, the table, the watch, restarts, and whether what
-is dropped is as small as promised."""
+"""Effects that mud_host derives from a scene: each on and off, by hand, the table, the watch, restarts, and whether
+what is dropped is as small as promised."""
 import csv
 import math
 import os
@@ -57,7 +57,8 @@ def column(keys="gravity = 0", stage="duration = 10 dt = 0.1", times="0, 10", va
 def start(text, name, *more):
     scene = work / f"{name}.nml"
     scene.write_text(text)
-    return subprocess.run([host, scene, "--output", work / name, *more], capture_output=True, text=True, env=environment)
+    return subprocess.run([host, scene, "--output", work / name, *more], capture_output=True, text=True,
+                          env=environment)
 
 
 def run(text, name="run", *more):
@@ -118,18 +119,18 @@ _, table = run(column(stage="duration = 1 dt = 0.1", more="&initial v_z = -1.0e-
 is_on("initial velocity", table, "inertia in load", True)
 check("initial velocity: not bounded", table["inertia in load"]["estimate"] == "not bounded")
 
-# What dropping inertia changes is no more than its estimate says, and not a tenth of it: 2 s of ramp and 1 s of rest;
-# the mesh is one of 10 cells, so 16 steps to a free period are enough (their error is below 2 % of the vibration).
+# What dropping inertia changes is no more than its estimate says, and more than a tenth of it: 1 s of ramp and half a
+# second of rest, 18 steps to a slowest period (their error is below 2 % of the vibration).
 ramp = dict(times="0, 1", load=10)
 step = 0.0025
-run(column(stage=f"duration = 1.5 dt = {step}", **ramp), "still")
-_, table = run(column(stage=f"analysis = 'dynamic' duration = 1.5 dt = {step} rho_inf = 1", **ramp), "waves")
-_, still = run(column(stage=f"duration = 1.5 dt = {step}", **ramp), "still")
-estimate = float(still["inertia in load"]["estimate"])
-is_on("ramp of 1 s", still, "inertia in load", estimate > TOLERANCE)
-run(column("gravity = 0 effects_tolerance = 0.03", f"duration = 1.5 dt = {step}", **ramp), "still")
+_, table = run(column("gravity = 0 effects_tolerance = 0.03", f"duration = 1.5 dt = {step}", **ramp), "still")
+is_on("a tolerance of 3 %", table, "inertia in load", False)
+estimate = float(table["inertia in load"]["estimate"])
+_, table = run(column(stage=f"duration = 1.5 dt = {step} rho_inf = 1", **ramp), "waves")
+is_on("a tolerance of 1 %", table, "inertia in load", True)
 difference = apart("still", "waves", "top.u_z")
-check("inertia dropped: no more than the estimate", estimate / 10 < difference <= estimate * 1.02, (difference, estimate))
+check("inertia dropped: no more than the estimate", estimate / 10 < difference <= estimate * 1.02,
+      (difference, estimate))
 
 # p_c. A column under 300 kPa of water cannot lose its saturation by 10 kPa of load; without that water it may.
 deep = ("&initial p_w = 300 p_c = -300 /\n&fix group = 'top' field = 'p_w' value = 300 /\n"
@@ -145,17 +146,20 @@ run(column("fields = 'u-p_w' seepage_inertia = 'yes'", more=deep, region=POROUS,
            laws=wet["laws"]), "deep_hand")
 same_run("deep", "deep", "deep_hand")
 is_on("deep", table, "relative acceleration", True)
-_, table = run(column("fields = 'u-p_w-p_c' seepage_inertia = 'no'", more=deep + atmosphere, **pulse, **wet), "deep_three")
+no = "gravity = 0 seepage_inertia = 'no'"
+_, table = run(column(no, more=deep + atmosphere, **pulse, **wet), "deep_two")
+is_on("deep without seepage inertia", table, "field p_c", False)
+_, table = run(column(no + " fields = 'u-p_w-p_c'", more=deep + atmosphere, **pulse, **wet), "deep_three")
 is_on("deep, three fields", table, "field p_c", True, "hand")
-run(column("seepage_inertia = 'no'", more=deep + atmosphere, **pulse, **wet), "deep_two")
 for name in ("top.u_z", "base.p_w"):
     difference = apart("deep_two", "deep_three", name)
-    check(f"p_c dropped: {name} changes by less than the tolerance", difference < TOLERANCE, difference)
+    check(f"p_c dropped: {name} changes by less than the tolerance", 0 < difference < TOLERANCE, difference)
 shallow = "&fix group = 'top' field = 'p_w' /\n"
 said = start(column(more=shallow, **pulse, **wet), "shallow", "--check").stdout
 check("shallow: p_c is on", re.search(r"^ *field p_c +on +scene", said, re.MULTILINE), said)
 check("shallow: the estimate is twice the load", re.search(r"field p_c +on +scene 20 kPa", said), said)
-said = start(column(more=deep.replace("value = 300", "value = 200") + atmosphere, **pulse, **wet), "loose", "--check").stdout
+said = start(column(more=deep.replace("value = 300", "value = 200") + atmosphere, **pulse, **wet), "loose",
+             "--check").stdout
 check("without balance: p_c is on", re.search(r"field p_c +on +scene not bounded .* without balance", said), said)
 said = start(column("gravity = 0", more=shallow, laws=WATER + "\n&retention name = 'c' law = 'saturated' /",
                     region=UNSATURATED, **pulse), "shallow", "--check").stdout
@@ -169,7 +173,8 @@ is_on("drained", table, "field p_w", False)
 is_on("drained", table, "inertia in load", False)
 time = 1e-6 / 1e-10 * (1 / MODULUS + 1 / 2.2e6)
 estimate = float(table["field p_w"]["estimate"])
-check("drained: time of consolidation over that of the load", math.isclose(estimate, time / 1000, rel_tol=1e-5), estimate)
+check("drained: time of consolidation over that of the load", math.isclose(estimate, time / 1000, rel_tol=1e-5),
+      estimate)
 run(column("fields = 'u'", "analysis = 'static' duration = 1000 dt = 20", times="0, 1000", effects=""), "drained_hand")
 same_run("drained", "drained", "drained_hand")
 _, table = run(column("gravity = 0 fields = 'u-p_w'", **slow, **porous), "draining")
@@ -182,8 +187,8 @@ check("p_w dropped: the settlement changes by less than the estimate", differenc
 for what, keys in {"faster": dict(times="0, 10", stage="duration = 10 dt = 1"),
                    "sealed": dict(slow, more=""), "suddenly": dict(slow, values="1, 1"),
                    "pressed": dict(slow, more="&fix group = 'top' field = 'p_w' value = 5 /"),
-                   "filled": dict(slow, more="&fix group = 'top' field = 'p_w' /\n&load group = 'bottom' kind = 'water' "
-                                             "value = 1.0e-9 /")}.items():
+                   "filled": dict(slow, more="&fix group = 'top' field = 'p_w' /\n"
+                                             "&load group = 'bottom' kind = 'water' value = 1.0e-9 /")}.items():
     said = start(column(**{**porous, **keys}), "kept", "--check").stdout
     check(f"{what}: p_w is on", re.search(r"^ *field p_w +on +scene", said, re.MULTILINE), said)
 
@@ -207,7 +212,8 @@ quick = dict(times="0, 0.001, 0.002", values="0, 1, 0", stage="duration = 0.002 
 _, table = run(column(laws=WATER, region=POROUS, **quick), "quick")
 is_on("quick", table, "relative acceleration", True)
 row = table["relative acceleration"]
-check("quick: bends of 1/ms at the start, twice that at the peak", math.isclose(float(row["estimate"]), 3e3, rel_tol=1e-5), row)
+check("quick: bends of 1/ms at the start, twice that at the peak",
+      math.isclose(float(row["estimate"]), 3e3, rel_tol=1e-5), row)
 check("quick: a hundredth of the limit", math.isclose(float(row["threshold"]), LIMIT / 100, rel_tol=1e-5), row)
 _, table = run(column(laws=WATER.replace("e-10", "e-13"), region=POROUS, **quick), "tight")
 is_on("tight", table, "relative acceleration", False)
@@ -251,13 +257,14 @@ said, table = run(column(**crossing), "sucks")
 warnings = [line for line in said.splitlines() if line.startswith("Warning: field p_c")]
 check("suction: one warning", len(warnings) == 1, said)
 check("suction: repeated at the end", said.count("Warning: field p_c") == 2, said)
-check("suction: time, threshold, what to set", re.search(r"at 0\.11 s .* above 0\.1 kPa.* fields = 'u-p_w-p_c'", warnings[0]),
-      warnings)
+check("suction: time, threshold, what to set",
+      re.search(r"at 0\.11 s .* above 0\.1 kPa.* fields = 'u-p_w-p_c'", warnings[0]), warnings)
 row = table["field p_c"]
 check("suction: the largest is noted", math.isclose(float(row["largest_seen"]), 4, rel_tol=1e-6), row)
 check("suction: when it crossed", math.isclose(float(row["crossed_at"]), 0.11, rel_tol=1e-6), row)
 check("suction: quiet says nothing", not run(column(**crossing), "quiet", "--quiet")[0])
-check("suction: but the table does", (work / "quiet/effects.csv").read_bytes() == (work / "sucks/effects.csv").read_bytes())
+check("suction: but the table does",
+      (work / "quiet/effects.csv").read_bytes() == (work / "sucks/effects.csv").read_bytes())
 
 # A fast ramp by hand without inertia: the speed of the motion is seen, u/t against u omega.
 ramp = dict(times="0, 0.02", stage="analysis = 'quasi_static' duration = 0.02 dt = 0.001 rho_inf = 0")
@@ -266,18 +273,28 @@ row = table["inertia in load"]
 check("speed: warned of", "Warning: inertia in load" in said and "analysis = 'dynamic'" in said, said)
 # The speed u z/L of a column against the strain energy: sqrt(rho L/3)/sqrt(M/L)/t; nodes of equal mass are 6 % off.
 speed = math.sqrt(rho / 3 / MODULUS) / 0.02
-check("speed: as large as that of the column", math.isclose(float(row["largest_seen"]), speed, rel_tol=0.1), (row, speed))
+check("speed: as large as that of the column", math.isclose(float(row["largest_seen"]), speed, rel_tol=0.1),
+      (row, speed))
 said, table = run(column(), "slow")
 check("slow: no warning", "Warning" not in said and not table["inertia in load"]["crossed_at"], said)
 seen = float(table["inertia in load"]["largest_seen"])
 check("slow: seen, and below the estimate", 0 < seen < float(table["inertia in load"]["estimate"]), table)
 
-# The frequency of a free vibration of the drained column is seen: a sudden load that stays.
-said, table = run(column("gravity = 0 seepage_inertia = 'no'", "analysis = 'dynamic' duration = 0.1 dt = 0.001 rho_inf = 1",
-                         times="0, 1", values="1, 1", laws=WATER.replace("e-10", "e-7"), region=POROUS, more=shallow), "ring")
+# A sudden load on a freely drained column: after a quarter of the slowest period all of the expected strain energy is
+# kinetic, whatever the modes, so that its frequency is seen; the time step damps less than 1 %.
+said, table = run(column(no, "analysis = 'dynamic' duration = 0.1 dt = 0.001 rho_inf = 1", times="0, 1",
+                         values="1, 1", laws=WATER.replace("e-10", "e-7"), region=POROUS, more=shallow), "ring")
 row = table["relative acceleration"]
-check("frequency: above the limit", row["crossed_at"] and "Warning: relative acceleration" in said, row)
-check("frequency: of the order of the slowest", omega / 3 < float(row["largest_seen"]) < 30 * omega, (row, omega))
+slowest = math.pi / 2 * math.sqrt(MODULUS / (3.45 / 1.8))
+check("frequency: warned of", row["crossed_at"] and "Warning: relative acceleration" in said, row)
+check("frequency: the slowest", math.isclose(float(row["largest_seen"]), slowest, rel_tol=0.02), (row, slowest))
+# Half full soil: the largest acceleration over the largest speed, once a wave has passed; here above the limit.
+said, table = run(column(laws=WATER.replace("e-10", "e-8") + "\n" + half, region=UNSATURATED,
+                         **{**quick, "more": state}), "waving")
+row = table["relative acceleration"]
+check("frequency of unsaturated soil: warned of", row["crossed_at"] and "Warning: relative acceleration" in said, row)
+check("frequency of unsaturated soil: of the order of the load's",
+      0.3e3 < float(row["largest_seen"]) < 10e3, row)
 
 # Pore pressure by drainage where p_w was dropped: that of a slab, the strain rate times L**2 eta/(2 k).
 _, table = run(column(**slow, **porous), "drained")
@@ -296,7 +313,7 @@ if (work / "sucks/checkpoint.h5").exists():
           " effects_tolerance = 0.02"}), "sucks", "--restart", work / "sucks/checkpoint.h5").returncode == 17)
 
 # Mistakes.
-for what, text, words in [("no analysis", column("gravity = 0", effects=""), ("needs analysis", "quasi_static", "auto")),
+for what, text, words in [("no analysis", column("gravity = 0", effects=""), ("needs analysis", "quasi_static")),
                           ("unknown word", column(effects="effects = 'all'"), ("given|auto",)),
                           ("tolerance", column("effects_tolerance = 2"), ("outside",))]:
     done = start(text, "mistake")
