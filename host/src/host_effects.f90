@@ -122,8 +122,9 @@ contains
                   p = (e - 1)*m%rule + g
                   n = s%e(p)/(1 + s%e(p))
                   facts%rho = max(facts%rho, (1 - n)*region%rho_s + merge(n*m%fluids%rho_w, 0.0_wp, m%with_w))
-                  call law%update(s%stress(:, p), s%state(:law%n_state, p), still, dot_product(m%gauss(g, e)%m(:m%n_p), &
-                                  s%x(4, m%mesh%t6(:m%n_p, e))), 0.0_wp, .true., answer, new(:law%n_state))
+                  call law%update(s%stress(:, p), s%state(:law%n_state, p), still, &
+                                  dot_product(m%gauss(g, e)%m(:m%n_p), s%x(4, m%mesh%t6(:m%n_p, e))), 0.0_wp, .true., &
+                                  answer, new(:law%n_state))
                   if (answer%code /= 0) answer%slope = 0.0_wp
                   facts%m_min = min(facts%m_min, minval([(answer%slope(i, i), i=1, 3)]))
                   facts%m_max = max(facts%m_max, maxval([(answer%slope(i, i), i=1, 3)]))
@@ -151,8 +152,8 @@ contains
       allocate (facts%jump(i), facts%pace(i), facts%bends(i), facts%omega(i), facts%slow(i), source=0.0_wp)
    end subroutine gather
 
-   !> Weight against the smallest stress that matters: that of the loads, the mean stress a plastic material begins with,
-   !> the suction.
+   !> Weight against the smallest stress that matters: that of the loads, the mean stress a plastic material begins
+   !> with, the suction.
    subroutine judge_gravity(scene, trial, facts, effect)
       type(scene_t), intent(in) :: scene
       type(trial_t), intent(in) :: trial
@@ -522,10 +523,10 @@ contains
       end do
    end function least_conductivity
 
-   !> What moves with omega it changes by the share omega k rho_w/(n eta_w), and of what the loads move at omega there is
-   !> no more than the share bends/omega: together bends k rho_w/(n eta_w), whatever omega. In unsaturated soil, and
-   !> where the water is not stiff enough, it would make waves grow: it stays off, and the frequency of the loads is held
-   !> against the limit of the u-p form itself.
+   !> What moves with omega it changes by the share omega k rho_w/(n eta_w), and of what the loads move at omega there
+   !> is no more than the share bends/omega: together bends k rho_w/(n eta_w), whatever omega. In unsaturated soil, and
+   !> where the water is not stiff enough, it would make waves grow: it stays off, and the frequency of the loads is
+   !> held against the limit of the u-p form itself.
    subroutine judge_seepage(scene, facts, effect)
       type(scene_t), intent(in) :: scene
       type(facts_t), intent(in) :: facts
@@ -605,7 +606,8 @@ contains
       integer :: i
 
       doubtful = .false.
-      write (unit, '(a)') 'effect                       is   by    estimate         threshold        unknowns entries because'
+      write (unit, '(2a)') 'effect                       is   by    estimate         threshold        ', &
+         'unknowns entries because'
       do i = 1, size(table)
          associate (t => table(i))
             doubtful = doubtful .or. exceeds(t)
@@ -681,7 +683,7 @@ contains
          end associate
       end do
       if (status == 0) close (unit, iostat=status)
-      if (status /= 0) call raise(fault, EXIT_OUTPUT, folder//'/effects.csv cannot be written; does the folder exist, '// &
-                                  'is there space?')
+      if (status /= 0) call raise(fault, EXIT_OUTPUT, folder//'/effects.csv cannot be written; does the folder '// &
+                                  'exist, is there space?')
    end subroutine write_effects
 end module host_effects
