@@ -3,8 +3,8 @@
 module host_modes
    use host_kinds, only: wp
    use host_actions, only: action_t, start_of, FORCE, MOTION
-   use host_energy, only: density
    use host_drainage, only: drainage_t
+   use host_energy, only: density
    use host_initial, only: initial_state
    use host_loads, only: shape_loads, ties_of, load_at, constrain_step, new_constraint
    use host_scene, only: scene_t, stage_t, UNBOUNDED
@@ -70,6 +70,7 @@ contains
       integer, intent(in) :: stage
       type(trial_t), intent(inout) :: trial
       type(stage_t) :: still
+      type(drainage_t) :: fixed   ! It follows no contact.
       real(wp) :: x(trial%dofs%n), y(trial%dofs%n), square, last, work
       integer :: i, k, status
 
@@ -77,7 +78,7 @@ contains
       if (trial%refused) return
       still = scene%stages(stage)
       still%kind = STATIC   ! Pressures held: the skeleton alone.
-      call constrain_step(scene, still, trial%dofs, drainage_t(), start_of(scene, stage) + still%dt, trial%state%x, &
+      call constrain_step(scene, still, trial%dofs, fixed, start_of(scene, stage) + still%dt, trial%state%x, &
                           trial%constraint)
       trial%free = .not. trial%constraint%fixed
       trial%held = trial%matrix

@@ -316,9 +316,9 @@ contains
 
       stage%name = text_of(group, 'name')
       stage%derived = .not. given(group, 'analysis')
-      if (stage%derived .and. .not. scene%effects%auto) &
-         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&stage needs analysis '// &
-                    '(static, quasi_static or dynamic); effects = ''auto'' in &scene would derive it.')
+      if (stage%derived .and. .not. scene%effects%auto) call raise(fault, EXIT_INPUT, &
+         at_line(group%file, group%line)//'&stage needs analysis (static, quasi_static or dynamic); '// &
+         'effects = ''auto'' in &scene would derive it.')
       select case (lower_case(text_of(group, 'analysis')))
       case ('static')
          stage%kind = STATIC

@@ -6,7 +6,8 @@ module host_run
    use host_contact, only: prepare_contacts, seat_plates, contacts_act
    use host_course, only: run_t, course_t
    use host_drainage, only: prepare_drainage, freeze_drainage
-   use host_effects, only: derive_effects, write_effects
+   use host_effects, only: derive_effects
+   use host_effects_table, only: write_effects
    use host_energy, only: book_step, kinetic_energy
    use host_initial, only: initial_state
    use host_loads, only: shape_loads, ties_of, load_at, constrain_step, new_constraint

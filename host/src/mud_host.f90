@@ -2,7 +2,7 @@
 program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use host_clock, only: clock
-   use host_effects, only: print_effects
+   use host_effects_table, only: print_effects
    use host_keys, only: print_template
    use host_process, only: settle_process
    use host_read, only: read_scene

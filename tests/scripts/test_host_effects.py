@@ -165,6 +165,20 @@ said = start(column("gravity = 0", more=shallow, laws=WATER + "\n&retention name
                     region=UNSATURATED, **pulse), "shallow", "--check").stdout
 check("saturated by its law: p_c is off", re.search(r"^ *field p_c +off +scene", said, re.MULTILINE), said)
 
+for what, more, why in [
+        ("driven", "&fix group = 'top' field = 'u_z' value = -1.0e-3 history = 'h' /", "boundaries that move"),
+        ("pumped", "&load group = 'bottom' kind = 'water' value = -1.0e-6 history = 'h' /", "outflow of water"),
+        ("blown", "&load group = 'bottom' kind = 'air' value = 1.0e-6 history = 'h' /", "inflow of air"),
+        ("pushed", "&load group = 'bottom' kind = 'force_r' value = 1 history = 'h' /", "forces on nodes"),
+        ("thrown", "&initial group = 'all' p_w = 300 p_c = -300 v_z = 1.0e-3 /", "it moves at the start"),
+        ("tied", "&fix group = 'bottom' field = 'p_c' value = -300 /", "p_c and p_a prescribe p_w")]:
+    said = start(column(more=deep + atmosphere + more, **pulse, **wet), "kept", "--check").stdout
+    check(f"{what}: p_c is on", re.search(rf"field p_c +on +scene not bounded .*{why}", said), said)
+full = WATER + "\n&retention name = 'c' law = 'saturated' /"
+said = start(column(more=shallow + "&load group = 'bottom' kind = 'air' value = 1.0e-6 /", laws=full, region=UNSATURATED,
+                    **pulse), "blown", "--check").stdout
+check("blown, saturated by its law: p_c is on", re.search(r"field p_c +on +scene", said), said)
+
 # p_w. Consolidation takes L**2 eta/(k M): drained within seconds under a load that takes a thousand.
 porous = dict(laws=WATER, region=POROUS, more="&fix group = 'top' field = 'p_w' /")
 slow = dict(times="0, 1000", stage="duration = 1000 dt = 20 rho_inf = 0")
@@ -185,7 +199,10 @@ check("p_w dropped: the pressure is half the estimate, as for a slab", math.iscl
 difference = apart("drained", "draining", "top.u_z")
 check("p_w dropped: the settlement changes by less than the estimate", difference < estimate, (difference, estimate))
 for what, keys in {"faster": dict(times="0, 10", stage="duration = 10 dt = 1"),
-                   "sealed": dict(slow, more=""), "suddenly": dict(slow, values="1, 1"),
+                   "sealed": dict(slow, more=""),
+                   "squeezed": dict(slow, more="&fix group = 'top' field = 'p_w' /\n"
+                                               "&fix group = 'right' field = 'u_r' value = -0.001 history = 'h' /"),
+                   "suddenly": dict(slow, values="1, 1"),
                    "pressed": dict(slow, more="&fix group = 'top' field = 'p_w' value = 5 /"),
                    "filled": dict(slow, more="&fix group = 'top' field = 'p_w' /\n"
                                              "&load group = 'bottom' kind = 'water' value = 1.0e-9 /")}.items():
@@ -227,6 +244,17 @@ row = table["relative acceleration"]
 check("unsaturated: quarter waves of 1 ms", math.isclose(float(row["estimate"]), math.pi / 2 / 1e-3, rel_tol=1e-5), row)
 check("unsaturated: the limit itself", math.isclose(float(row["threshold"]), LIMIT / 10, rel_tol=1e-5), row)
 check("unsaturated: marked, and called unstable", row["on"] == "off!" and "unstable" in row["because"], row)
+
+# MUD: a tenth of the frequency, for a stiffness of a hundredth; its dilatancy leaves suction without a bound. The
+# initial stress of 100 kPa carries the load, which then rises to 110 kPa.
+sand = dict(soil="&mud name = 'soil' tangent = 3 /", values="1, 1.1", load=100, laws=WATER + "\n" + CURVE,
+            region=UNSATURATED, more="&initial stress = 'uniform' sigma = -100, -100, -100 /\n" + shallow)
+said = start(column(**sand), "sand", "--check").stdout
+slowest, bound = map(float, re.search(r"free vibrations from (\S+) rad/s, bound with (\S+)", said).groups())
+check("sand: a tenth of the frequency", math.isclose(bound, slowest / 10, rel_tol=1e-5), said)
+estimate = float(re.search(r"inertia in load +off +scene (\S+)", said)[1])
+check("sand: the bend over it", math.isclose(estimate, 0.1 / bound, rel_tol=1e-5), said)
+check("sand: suction has no bound", re.search(r"field p_c +on +scene not bounded .*dilatancy", said), said)
 
 # By hand wins, and the table says so.
 said, table = run(column("gravity = 9.81 fields = 'u-p_w' seepage_inertia = 'yes'",
