@@ -175,8 +175,8 @@ for what, more, why in [
     said = start(column(more=deep + atmosphere + more, **pulse, **wet), "kept", "--check").stdout
     check(f"{what}: p_c is on", re.search(rf"field p_c +on +scene not bounded .*{why}", said), said)
 full = WATER + "\n&retention name = 'c' law = 'saturated' /"
-said = start(column(more=shallow + "&load group = 'bottom' kind = 'air' value = 1.0e-6 /", laws=full, region=UNSATURATED,
-                    **pulse), "blown", "--check").stdout
+said = start(column(more=shallow + "&load group = 'bottom' kind = 'air' value = 1.0e-6 /", laws=full,
+                    region=UNSATURATED, **pulse), "blown", "--check").stdout
 check("blown, saturated by its law: p_c is on", re.search(r"field p_c +on +scene", said), said)
 
 # p_w. Consolidation takes L**2 eta/(k M): drained within seconds under a load that takes a thousand.
