@@ -124,7 +124,7 @@ if "measures" in parts:
     found = {}
     for _ in range(args.rounds):
         for name, changes in variants.items():
-            found.setdefault(name, []).append(run("measures", name, changes, 2, min(args.steps, 600)))
+            found.setdefault(name, []).append(run("measures", name, changes, 2, min(args.steps, 300)))
     usual = found["as it is"]
     lines = []
     for name, group in found.items():
@@ -133,7 +133,7 @@ if "measures" in parts:
                       str(int(middle(group, "solutions"))), str(int(middle(group, "entries"))),
                       *(f"{middle(group, p):.2f}" for p in ("material", "assembly", "factorisation", "solution", "in all")),
                       f"{ratio:.2f}", f"{100 * (group[0]['settlement'] / usual[0]['settlement'] - 1):+.3f}"])
-    text += [f"## Measures\nThe same scene, {min(args.steps, 600)} steps, two threads; seconds; the last columns are the "
+    text += [f"## Measures\nThe same scene, {min(args.steps, 300)} steps, two threads; seconds; the last columns are the "
              "time over that of the first line, and how far the settlement under the centre is from its.\n",
              table(["variant", "iterations", "factorisations", "solutions", "entries in factors", "material", "assembly",
                     "factorisation", "solution", "in all", "ratio", "settlement [%]"], lines)]

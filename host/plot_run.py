@@ -34,7 +34,9 @@ class Run:
     def __init__(self, folder):
         self.folder = folder
         with h5py.File(folder / "mesh.h5") as file:
-            self.nodes, self.elements = file["nodes"][...], file["elements"][...]
+            # The node of a plate is in no element: it has no place in a picture.
+            self.kept, elements = np.unique(file["elements"][...], return_inverse=True)
+            self.nodes, self.elements = file["nodes"][...][self.kept], elements.reshape(-1, 6)
             self.scene, self.axes = file.attrs["scene"].decode(), file.attrs["axes"].decode()
         self.files = sorted(folder.glob("fields_*.h5"))
         self.times = []
@@ -51,10 +53,11 @@ class Run:
             if name in COMPONENTS:
                 vector, component = COMPONENTS[name]
                 item = file["nodes"][vector]
-                return item[:, component], item.attrs["unit"].decode(), vector, True
+                return item[:, component][self.kept], item.attrs["unit"].decode(), vector, True
             place = "nodes" if name in file["nodes"] else "cells"
             item = file[place][name]
-            return item[...], item.attrs["unit"].decode(), item.attrs["description"].decode(), place == "nodes"
+            values = item[...][self.kept] if place == "nodes" else item[...]
+            return values, item.attrs["unit"].decode(), item.attrs["description"].decode(), place == "nodes"
 
 
 def moves(values):
@@ -109,7 +112,7 @@ def draw_fields(run, frames, names, factor, output):
             else:
                 picture = axis.tripcolor(mesh, facecolors=np.tile(values, len(SPLIT)), cmap="viridis", vmin=levels[0],
                                          vmax=levels[-1], rasterized=True)
-            bar = figure.colorbar(picture, ax=axis, shrink=0.9, pad=0.02, format="%.4g", ticks=ticks)
+            bar = figure.colorbar(picture, ax=axis, shrink=0.9, pad=0.02, format="%.6g", ticks=ticks)
             bar.outline.set_visible(False)
             # The mesh itself, unless its lines would cover it.
             if len(run.elements) < 3000:
@@ -166,6 +169,8 @@ def main():
     parser.add_argument("--fields", nargs="+", help="u_r u_z v_r v_z a_r a_z p_w p_c p_a s_rr s_zz s_tt s_rz p q e S_w")
     parser.add_argument("--times", nargs="+", type=float, help="[s]; the nearest moments that were written are taken")
     parser.add_argument("--histories", nargs="+", help="columns of histories.csv without the name of the point")
+    parser.add_argument("--window", nargs=2, type=float, metavar=("FROM", "TO"),
+                        help="histories of this time alone [s]")
     parser.add_argument("--deformed", type=float, default=0.0, metavar="FACTOR", help="draw displacements so many fold")
     parser.add_argument("--output", type=pathlib.Path, help="folder of the pictures; default: that of the run")
     options = parser.parse_args()
@@ -183,6 +188,11 @@ def main():
     draw_fields(run, list(dict.fromkeys(frames)), names, options.deformed, output / "fields.png")
 
     time, table = read_histories(options.folder)
+    if options.window:
+        inside = (time >= options.window[0]) & (time <= options.window[1])
+        time, table = time[inside], {name: values[inside] for name, values in table.items()}
+        if not inside.any():
+            sys.exit(f"plot_run: no history between {options.window[0]:g} and {options.window[1]:g} s")
     known = list(dict.fromkeys(name.rpartition(".")[2] for name in table))
     names = options.histories and choose(options.histories, known, "history")
     names = names or [n for n in known if any(moves(table[c]) for c in table if c.rpartition(".")[2] == n)]

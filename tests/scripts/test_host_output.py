@@ -276,6 +276,10 @@ for name in ("fields.png", "histories.png"):
           done.stderr)
 done = subprocess.run([*plot, "--fields", "p_x"], capture_output=True, text=True)
 check("picture of no field", done.returncode == 1 and "no field p_x" in done.stderr, done.stderr)
+done = subprocess.run([*plot, "--window", "7", "8"], capture_output=True, text=True)
+check("picture of no time", done.returncode == 1 and "no history between" in done.stderr, done.stderr)
+done = subprocess.run([*plot[:2], one, "--window", "2", "3", "--fields", "p_w"], capture_output=True, text=True)
+check("picture beside a plate", done.returncode == 0 and (one / "fields.png").exists(), done.stderr)
 done = subprocess.run([*plot[:2], work], capture_output=True, text=True)
 check("picture of no run", done.returncode == 1 and "no fields of mud_host" in done.stderr, done.stderr)
 
