@@ -39,40 +39,47 @@ contains
       type(scene_t), intent(in) :: scene
       type(state_t), intent(in) :: state   !< The initial one.
       type(action_t), allocatable :: actions(:)
-      character(LENGTH) :: every(0)
-      integer :: i
+      integer :: i, n
 
-      allocate (actions(0))
+      allocate (actions(size(scene%loads) + size(scene%rigids) + size(scene%plates) + size(scene%fixes)))
+      n = 0
       do i = 1, size(scene%loads)
+         n = n + 1
          associate (one => scene%loads(i))
             select case (one%kind)
             case (4, 5)
-               actions = [actions, action_t(FLOW, group=one%group, history=one%history, load=i, value=one%value, &
-                                            stages=one%stages)]
+               actions(n) = action_t(FLOW, group=one%group, history=one%history, load=i, value=one%value)
             case default
-               actions = [actions, action_t(FORCE, group=one%group, history=one%history, load=i, value=one%value, &
-                                            stages=one%stages, stress=merge(1.0_wp, 0.0_wp, one%kind <= 3))]
+               actions(n) = action_t(FORCE, group=one%group, history=one%history, load=i, value=one%value, &
+                                     stress=merge(1.0_wp, 0.0_wp, one%kind <= 3))
             end select
+            actions(n)%stages = one%stages
          end associate
       end do
       do i = 1, size(scene%rigids)
+         n = n + 1
          associate (one => scene%rigids(i))
-            actions = [actions, action_t(FORCE, group=one%group, history=one%history, load=-i, value=one%force, &
-                                         stages=every, stress=1/area_of(scene, one%group))]
+            actions(n) = action_t(FORCE, group=one%group, history=one%history, load=-i, value=one%force, &
+                                  stress=1/area_of(scene, one%group))
+            allocate (actions(n)%stages(0))
          end associate
       end do
       do i = 1, size(scene%plates)
+         n = n + 1
          associate (one => scene%plates(i))
-            actions = [actions, action_t(FORCE, history=one%history, load=-size(scene%rigids) - i, value=one%force, &
-                                         stages=every, stress=1/face_of(scene, one%r))]
+            actions(n) = action_t(FORCE, history=one%history, load=-size(scene%rigids) - i, value=one%force, &
+                                  stress=1/face_of(scene, one%r))
+            allocate (actions(n)%stages(0))
          end associate
       end do
       do i = 1, size(scene%fixes)
+         n = n + 1
          associate (one => scene%fixes(i))
-            actions = [actions, action_t(merge(MOTION, PRESSURE, one%field <= 2), field=one%field, group=one%group, &
-                                         history=one%history, value=one%value, stages=one%stages, held=one%hold, &
-                                         lasting=one%from <= -huge(1.0_wp) .and. one%until >= huge(1.0_wp), &
-                                         stress=merge(0.0_wp, 1.0_wp, one%field <= 2))]
+            actions(n) = action_t(merge(MOTION, PRESSURE, one%field <= 2), field=one%field, group=one%group, &
+                                  history=one%history, value=one%value, held=one%hold, &
+                                  lasting=one%from <= -huge(1.0_wp) .and. one%until >= huge(1.0_wp), &
+                                  stress=merge(0.0_wp, 1.0_wp, one%field <= 2))
+            actions(n)%stages = one%stages
          end associate
       end do
       do i = 1, size(actions)
