@@ -1,7 +1,8 @@
-"""Runs the model against Verdugo & Ishihara's triaxial tests on Toyoura sand: figures and tables.
+"""Runs the model against Verdugo & Ishihara's triaxial tests on Toyoura sand, then one impact on unsaturated soil.
 
-Six drained tests beside their laboratory points, twelve undrained tests beside the closed-form steady state.
-Everything goes through the driver mud_triax; this file only starts it, compares and draws.
+Six drained tests beside their laboratory points, twelve undrained tests beside the closed-form steady state, through the
+driver mud_triax; the paper's indentation at a suction of 30 kPa through mud_host (its Fig. 3). This file only starts
+them, compares and draws.
 """
 import argparse
 import csv
@@ -252,6 +253,22 @@ def report_undrained(runs, further, material, folder):
                                         "q_off_continued_pct"), lines)
 
 
+def indentation(host, folder):
+    """The paper's section 4 at a suction of 30 kPa; its answer is shown as the paper's Fig. 3."""
+    sys.path.insert(0, str(ROOT / "verification" / "host_indentation"))
+    import analysis
+    import figures
+    print("\nImpact of a rigid plate on soil at a suction of 30 kPa (about half a minute)", flush=True)
+    output = folder / "indentation"
+    if subprocess.run([host, analysis.TEMPLATE, "--output", output]).returncode != 0:
+        sys.exit("run_demo: the indentation did not come to its end.")
+    columns = analysis.histories(output, 1)
+    deepest = int(np.argmax(columns["u_mm"]))
+    print(f"   largest indentation {columns['u_mm'][deepest]:.3f} mm at {columns['t_ms'][deepest]:.2f} ms, "
+          f"{columns['u_mm'][-1]:.3f} mm at the end; p_w {columns['p_w_kPa'].max() - columns['p_w_kPa'][0]:+.2f} kPa under the centre")
+    print(f"figure {figures.interface({'remedy': columns}, folder / 'indentation.png')}")
+
+
 def write(path, header, lines):
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
@@ -300,6 +317,11 @@ def main():
                  draw_states(drained, undrained, tests, material, folder)):
         print(f"figure {path}")
     print(f"tables {folder / 'misfit.csv'}, {folder / 'steady_state.csv'}; every test as CSV beside them")
+    host = options.build.resolve() / "host" / "mud_host"
+    if host.exists():
+        indentation(host, folder)
+    else:
+        print("mud_host was not built (it needs UMFPACK and LAPACK): no indentation")
 
 
 if __name__ == "__main__":

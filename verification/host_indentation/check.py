@@ -5,7 +5,9 @@ import sys
 here = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(here.parent))
 import numpy as np  # noqa: E402
-from host_tools import Checks, arguments, figure, number, read, run  # noqa: E402
+import figures  # noqa: E402
+from analysis import histories  # noqa: E402
+from host_tools import Checks, arguments, number, read, root, run  # noqa: E402
 
 args = arguments(__doc__)
 checks = Checks("indentation")
@@ -44,12 +46,7 @@ if not args.quick:
         print(f"  {name} under the centre: {value[0]:.5g}, {value.min():.5g} to {value.max():.5g}")
     print("  " + (folder / "log.txt").read_text(encoding="utf-8").strip().splitlines()[-1])
 if args.plot:
-    fig, axes = figure(4, 2.8)
-    for axis, (value, name) in zip(axes, ((depth, "indentation [mm]"), (h["centre.p_w"][-len(t):], "$p_w$ [kPa]"),
-                                          (h["centre.p_c"][-len(t):], "$p_c$ [kPa]"), (h["centre.S_w"][-len(t):], "$S_w$"))):
-        axis.plot(1e3 * t, value)
-        axis.set(xlabel="time [ms]", ylabel=name)
-        axis.ticklabel_format(useOffset=False)
-    axes[0].invert_yaxis()
-    fig.savefig(here / "indent_s030.png", dpi=110)
+    picture = root / "build/verification/indentation.png"
+    picture.parent.mkdir(parents=True, exist_ok=True)
+    print(f"figure {figures.interface({'remedy': histories(folder, 1)}, picture)}")
 checks.end()
