@@ -3,11 +3,13 @@
 Writes results/host.csv (every run) and results/host.md (tables). Runs of one comparison take turns; medians count.
 """
 import argparse
+import atexit
 import csv
 import os
 import pathlib
 import platform
 import re
+import shutil
 import statistics
 import subprocess
 import sys
@@ -28,6 +30,7 @@ options.add_argument("--steps", type=int, default=1333, help="steps of the pulse
 args = options.parse_args()
 parts = args.part or ["phases", "measures", "growth"]
 work = pathlib.Path(tempfile.mkdtemp())
+atexit.register(shutil.rmtree, work, ignore_errors=True)
 scene = (here / "host.nml").read_text(encoding="utf-8").replace("'../", f"'{root}/")
 rows = []
 

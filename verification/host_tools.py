@@ -1,9 +1,11 @@
 """Shared by the verification of the host: runs a scene, reads its files, compares, draws."""
 import argparse
+import atexit
 import csv
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -23,6 +25,13 @@ def read(path):
     return dict(zip(rows[0], values.T))
 
 
+def scratch():
+    """A folder that is gone when the script ends."""
+    folder = pathlib.Path(tempfile.mkdtemp())
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
+
+
 def run(scene, changes=(), expect=0, more=(), folder=None):
     """Runs a scene with pieces of its text replaced, and more arguments; the folder of its output."""
     scene = pathlib.Path(scene)
@@ -31,7 +40,7 @@ def run(scene, changes=(), expect=0, more=(), folder=None):
         if old not in text:
             raise ValueError(f"{scene.name} has no text {old!r} to replace")
         text = text.replace(old, new)
-    folder = folder or pathlib.Path(tempfile.mkdtemp())
+    folder = folder or scratch()
     # Beside the original, so that relative paths hold.
     copy = scene.with_name(f".{scene.stem}_{folder.name}.nml")
     copy.write_text(text, encoding="utf-8")

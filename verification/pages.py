@@ -7,10 +7,12 @@ prints one line a claim (value, reference, tolerance) and draws a picture of eac
 What is claimed, and why the tolerance is what it is, stands in the README.md of the folder named like the page.
 """
 import argparse
+import atexit
 import csv
 import math
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -31,6 +33,7 @@ class Bench:
     def __init__(self, build):
         self.driver = build / "drivers" / "mud_triax"
         self.folder = pathlib.Path(tempfile.mkdtemp())
+        atexit.register(shutil.rmtree, self.folder, ignore_errors=True)
         self.results = {}
 
     def run(self, name, changes=()):

@@ -5,7 +5,7 @@ module fe_element
    use fe_material, only: answer_t, TOO_LARGE
    use fe_model, only: model_t, state_t, gauss_t
    use fe_point, only: kinematics_t, pore_t, point_response, PLACES
-   use time_galpha, only: scheme_t
+   use time_galpha, only: scheme_t, DYNAMIC
    implicit none (type, external)
    private
    public :: element_t, compute_element, element_size, MAX_DOF
@@ -121,6 +121,8 @@ contains
       k%div_v = dot_product(gp%dn(1, :), v(1, :)) + dot_product(gp%dn(2, :), v(2, :)) &
                 + dot_product(gp%n_over_r, v(1, :))
       k%accel = matmul(a, gp%n)
+      k%speed = 0.0_wp
+      if (scheme%kind == DYNAMIC) k%speed = matmul(v(1:2, :), gp%n)
       x = x0(3:4, :) + scheme%l_f*(x1(3:4, :) - x0(3:4, :))
       k%w0 = dot_product(gp%m(:n_p), x0(3, :n_p))
       k%w1 = dot_product(gp%m(:n_p), x1(3, :n_p))

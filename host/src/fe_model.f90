@@ -25,6 +25,7 @@ module fe_model
       integer :: material = 0, retention = 0, permeability = 0
       real(wp) :: rho_s = 0.0_wp        !< Density of the grains [Mg/m3]
       real(wp) :: void_ratio = 0.0_wp   !< Initially [-].
+      real(wp) :: damping = 0.0_wp      !< Force against the velocity over mass, in dynamic stages [1/s].
    end type region_t
 
    !> Geometry at a quadrature point. Pressures use the first n_p of the shape functions m.

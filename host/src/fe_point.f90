@@ -20,6 +20,7 @@ module fe_point
    type :: kinematics_t
       real(wp) :: strain(4)                     !< Increment of the step.
       real(wp) :: accel(2)                      !< At its level [m/s2].
+      real(wp) :: speed(2)                      !< At its level, where it may be damped [m/s].
       real(wp) :: div_v                         !< Rate of volume at its level [1/s].
       real(wp) :: w0, w1, c0, c1                !< p_w, p_c before and after [kPa].
       real(wp) :: w_dot, c_dot                  !< Their rates at their level [kPa/s].
@@ -93,7 +94,7 @@ contains
          if (model%with_c) rho_s = n*(model%fluids%rho_w - rho_a)
       end if
       rho = region%rho_s + n*rho_n
-      pull = k%accel
+      pull = k%accel + region%damping*k%speed
       pull(2) = pull(2) + model%gravity
       response = 0.0_wp
       drift = 0.0_wp
@@ -107,8 +108,8 @@ contains
          slope(1:4, PC) = l*answer%slope_suction
          slope(1:3, PC) = slope(1:3, PC) - (1 - s)*l + p_c*s_pc
          slope(1:3, PW) = -l
-         slope(U + 1, U + 1) = rho*scheme%c_a
-         slope(U + 2, U + 2) = rho*scheme%c_a
+         slope(U + 1, U + 1) = rho*(scheme%c_a + region%damping*scheme%c_v)
+         slope(U + 2, U + 2) = slope(U + 1, U + 1)
          slope(U + 1:U + 2, 1:3) = spread(pull*(rho_n*l*(1 - n1) + rho_s*s_ev), 2, 3)
          slope(U + 1:U + 2, PC) = pull*(rho_s*s_pc + n*(1 - s)*d_rho_a*l)
          slope(U + 1:U + 2, PW) = pull*n*(1 - s)*d_rho_a*l

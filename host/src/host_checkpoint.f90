@@ -21,10 +21,10 @@ module host_checkpoint
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
    character(*), parameter :: KIND_OF_FILE = 'checkpoint of mud_host'
-   character(*), parameter :: FORMAT = '2'      !< Grows with every change of what is stored.
+   character(*), parameter :: FORMAT = '3'      !< Grows with every change of what is stored.
    integer, parameter :: N_COUNTERS = 13
    character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
-                                        'contact, seepage [kJ], outflow, outflow_air [m3]'
+                                        'contact, seepage, damping [kJ], outflow, outflow_air [m3]'
 contains
    subroutine write_checkpoint(scene, run, output, fault)
       type(scene_t), intent(in) :: scene

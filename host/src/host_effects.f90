@@ -153,6 +153,9 @@ contains
          if (any([(acts_in(scene%contacts(i)%stages, now%name), i=1, size(scene%contacts))])) then
             why = 'not bounded: contact'
             share = UNBOUNDED
+         else if (any(scene%model%regions%damping > 0.0_wp)) then
+            why = 'not bounded: a damping is given'
+            share = UNBOUNDED
          else if (.not. omega > 0.0_wp) then
             why = 'not bounded: nothing holds the body, or it has no stiffness'
             share = UNBOUNDED

@@ -1,13 +1,13 @@
 !> Ledger of a run: energies, work and flow through the boundary, summed step by step.
-!> Mechanical balance: loads + supports + gravity = change of kinetic + skeleton + pores + contact (+ algorithmic
-!> damping).
+!> Mechanical balance: loads + supports + gravity = change of kinetic + skeleton + pores + contact + damping
+!> (+ algorithmic damping).
 module host_energy
    use host_kinds, only: wp
    use fe_dofs, only: dofs_t
    use fe_model, only: model_t, state_t
    use fe_permeability, only: relative_t, relative_permeability
    use newton, only: constraint_t
-   use time_galpha, only: scheme_t, STATIC
+   use time_galpha, only: scheme_t, STATIC, DYNAMIC
    implicit none (type, external)
    private
    public :: ledger_t, book_step, kinetic_energy, density, imbalance
@@ -20,6 +20,7 @@ module host_energy
       real(wp) :: loads = 0.0_wp, supports = 0.0_wp      !< Work of loads and of prescribed displacements [kJ].
       real(wp) :: contact = 0.0_wp    !< Work done on the penalty of contacts [kJ].
       real(wp) :: seepage = 0.0_wp    !< Dissipated by seepage [kJ].
+      real(wp) :: damping = 0.0_wp    !< Dissipated by the damping of regions [kJ].
       real(wp) :: outflow = 0.0_wp, outflow_air = 0.0_wp !< Through prescribed pressures: both fluids, air [m3].
    end type ledger_t
 contains
@@ -85,6 +86,8 @@ contains
             ledger%pores = ledger%pores - gp%weight*(p_w + (1 - s)*p_c)*sum(strain(1:3))
             rho = density(model, region%rho_s, n, s)
             ledger%gravity = ledger%gravity - gp%weight*rho*model%gravity*dot_product(gp%n, du(2, :))
+            if (scheme%kind == DYNAMIC) ledger%damping = ledger%damping + gp%weight*rho*region%damping &
+               *dot_product(matmul(du, gp%n), 0.5_wp*matmul(old%v(1:2, node) + new%v(1:2, node), gp%n))
             if (.not. model%with_w .or. scheme%kind == STATIC) cycle
             rel = relative_permeability(model%permeabilities(region%permeability), s)
             kappa = model%permeabilities(region%permeability)%intrinsic*rel%w/f%eta_w
@@ -135,6 +138,7 @@ contains
       type(ledger_t), intent(in) :: ledger
 
       imbalance = ledger%loads + ledger%supports + ledger%gravity &
-                  - (ledger%kinetic - ledger%kinetic_0) - ledger%skeleton - ledger%pores - ledger%contact
+                  - (ledger%kinetic - ledger%kinetic_0) - ledger%skeleton - ledger%pores - ledger%contact &
+                  - ledger%damping
    end function imbalance
 end module host_energy

@@ -94,6 +94,7 @@ module host_keys
       key_t('region', 'permeability', 't', NONE, 0, 0, 'name of a &permeability'), &
       key_t('region', 'rho_s', 'n', '2.65', 0, 1000, 'density of the grains [Mg/m3]'), &
       key_t('region', 'void_ratio', 'n', NONE, 0, 10, 'initial void ratio [-]; default: the material''s'), &
+      key_t('region', 'damping', 'n', '0', 0, BIG, 'force against the velocity over mass, dynamic stages [1/s]'), &
       key_t('initial', 'group', 't', 'all', 0, 0, 'group of elements or nodes'), &
       key_t('initial', 'p_w', 'n', '0', -BIG, BIG, 'pore water pressure at the datum [kPa]'), &
       key_t('initial', 'p_w_slope', 'n', '0', -BIG, BIG, 'its change with z [kPa/m]'), &
@@ -121,7 +122,8 @@ module host_keys
       key_t('stage', 'dt_max', 'n', NONE, TINY_, BIG, 'largest step with dt_growth [s]'), &
       key_t('stage', 'cuts', 'i', '10', 0, 40, 'how often a step may be halved'), &
       key_t('stage', 'rho_inf', 'n', '0.8', 0, 1, 'spectral radius of generalised-alpha [-]'), &
-      key_t('stage', 'tolerance', 'n', '1.0e-3', 1.0e-14_wp, 0.1_wp, 'Newton: error of every field [-]'), &
+      key_t('stage', 'tolerance', 'n', '1.0e-3', 1.0e-14_wp, 0.1_wp, 'Newton: error that ends the iteration [-]'), &
+      key_t('stage', 'measure', 'w', 'forces', 0, 0, 'forces|residual|correction: that error, see README'), &
       key_t('stage', 'max_iterations', 'i', '12', 1, 1000, 'Newton: linear solves before the step is cut'), &
       key_t('stage', 'predictor', 'w', 'rates', 0, 0, 'rates|none: start of the iteration'), &
       key_t('stage', 'start', 'w', 'solve', 0, 0, 'solve|zero: accelerations at the start of a dynamic stage'), &

@@ -57,7 +57,7 @@ contains
       if (fault%code == 0) call open_file(folder//'/ledger.csv', 'time,dt,stage,iterations,'// &
          'error_u_r,error_u_z,error_p_w,error_p_c,first_u_r,first_u_z,first_p_w,first_p_c,reduction,correction,'// &
             'rates,kinetic,skeleton,pores,gravity,'// &
-            'loads,supports,seepage,imbalance,outflow,outflow_air,step_error', output%ledger, fault)
+            'loads,supports,seepage,damping,imbalance,outflow,outflow_air,step_error', output%ledger, fault)
       if (fault%code == 0 .and. touches(scene)) &
          call open_file(folder//'/contact.csv', contact_columns(scene), output%contact, fault)
       if (fault%code == 0) call write_mesh(folder, trim(scene%name), scene%model, fault)
@@ -153,7 +153,7 @@ contains
       write (output%ledger, '(2(es24.16e3,","),i0,",",i0,",",*(es14.6e3,:,","))', iostat=status) time, dt, stage, &
          log%iterations, log%error, log%first_error, log%reduction, log%correction, real(log%effort, wp), &
          ledger%kinetic, ledger%skeleton, ledger%pores, ledger%gravity, ledger%loads, ledger%supports, ledger%seepage, &
-         imbalance(ledger), ledger%outflow, ledger%outflow_air, step_error
+         ledger%damping, imbalance(ledger), ledger%outflow, ledger%outflow_air, step_error
       if (status /= 0) call raise(fault, EXIT_OUTPUT, 'ledger.csv cannot be written; is the disk full?')
    end subroutine write_ledger
 

@@ -14,6 +14,7 @@ module host_read
    use mesh_gmsh, only: read_gmsh
    use mesh_graded, only: graded_mesh
    use mesh_types, only: find_group, add_group
+   use newton, only: MEASURES
    use time_galpha, only: STATIC, QUASI_STATIC, DYNAMIC
    use triax_fault, only: fault_t, raise, at_line, EXIT_INPUT
    use triax_namelist, only: group_t, read_groups
@@ -335,6 +336,7 @@ contains
       stage%cuts = nint(number_of(group, 'cuts'))
       stage%rho_inf = number_of(group, 'rho_inf')
       stage%tolerance = number_of(group, 'tolerance')
+      stage%measure = findloc(MEASURES, lower_case(text_of(group, 'measure')), 1)
       stage%max_iterations = nint(number_of(group, 'max_iterations'))
       stage%every = nint(number_of(group, 'every'))
       stage%fields = nint(number_of(group, 'fields'))
@@ -357,6 +359,7 @@ contains
          region%material = named(group, 'material', [(m%materials(i)%name, i=1, size(m%materials))], fault)
          if (fault%code /= 0) return
          region%rho_s = number_of(group, 'rho_s')
+         region%damping = number_of(group, 'damping')
          region%void_ratio = m%materials(region%material)%law%initial_void_ratio()
          if (given(group, 'void_ratio')) region%void_ratio = number_of(group, 'void_ratio')
          if (m%with_w .and. .not. region%void_ratio > 0.0_wp) call raise(fault, EXIT_INPUT, &

@@ -24,7 +24,7 @@ module host_run
    use fe_model, only: copy_state
    use fe_pattern, only: make_pattern
    use io_hdf5, only: HAS_HDF5
-   use newton, only: control_t, log_t, take_step, start_accelerations, &
+   use newton, only: control_t, log_t, take_step, start_accelerations, BY_RESIDUAL, BY_CORRECTION, &
                      CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
    use solve_sparse, only: release
    use time_galpha, only: scheme_t, make_scheme, step_error, DYNAMIC
@@ -193,7 +193,7 @@ contains
       real(wp) :: dt, left, estimate, t0
 
       associate (stage => scene%stages(number), course => run%course)
-         control = control_t(stage%tolerance, stage%max_iterations, stage%still)
+         control = control_t(stage%tolerance, stage%max_iterations, stage%still, stage%measure)
          ! A run that is taken up again is in the middle of its stage.
          call contacts_act(scene, stage, run%system%contacts)
          if (course%stage /= number) call begin_stage(scene, number, run, fault)
@@ -383,11 +383,26 @@ contains
             if (log%worst_unknown > 0) node = run%dofs%node(log%worst_unknown)
             e = findloc(any(m%mesh%t6 == node, dim=1), .true., dim=1)
             call raise(fault, EXIT_CONVERGENCE, place//'no convergence after '//whole(log%iterations)// &
-                       ' iterations; error of '//FIELD_NAMES(max(1, log%worst_field))//' '// &
-                       short(log%error(max(1, log%worst_field)))//' (allowed '//short(stage%tolerance)// &
+                       ' iterations; '//what_is_left(stage, log)//' (allowed '//short(stage%tolerance)// &
                        '), worst at node '//whole(node)//' of element '//whole(e)//', ('//short(m%mesh%x(1, node))// &
                        ', '//short(m%mesh%x(2, node))//') m; use a smaller dt, more cuts or a better tangent.')
          end select
       end associate
    end subroutine explain
+
+   !> What was to fall below the tolerance, and where it stands.
+   function what_is_left(stage, log) result(text)
+      type(stage_t), intent(in) :: stage
+      type(log_t), intent(in) :: log
+      character(:), allocatable :: text
+
+      select case (stage%measure)
+      case (BY_RESIDUAL)
+         text = '|R|/|R_0| '//short(log%reduction)
+      case (BY_CORRECTION)
+         text = '|dx|/|x| '//short(log%correction)
+      case default
+         text = 'error of '//FIELD_NAMES(max(1, log%worst_field))//' '//short(log%error(max(1, log%worst_field)))
+      end select
+   end function what_is_left
 end module host_run

@@ -67,7 +67,7 @@ module host_scene
       real(wp) :: duration = 0.0_wp, dt = 0.0_wp, dt_growth = 1.0_wp, dt_max = 0.0_wp
       integer :: cuts = 10
       real(wp) :: rho_inf = 0.8_wp, tolerance = 1.0e-3_wp
-      integer :: max_iterations = 12, every = 1, fields = 0
+      integer :: measure = 0, max_iterations = 12, every = 1, fields = 0
       logical :: still = .false., solve_start = .true., zero_displacements = .false.
       logical :: derived = .false.   !< Its kind is not given but derived.
    end type stage_t

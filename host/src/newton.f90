@@ -17,10 +17,16 @@ module newton
    implicit none (type, external)
    private
    public :: constraint_t, control_t, log_t, system_t, take_step, start_accelerations
+   public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, MEASURES
    public :: CONVERGED, NOT_CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
 
    integer, parameter :: CONVERGED = 0, NOT_CONVERGED = 1, MATERIAL_FAILED = 2, BODY_FREE = 3, SOLVER_FAILED = 4, &
                          CONTACT_FAILED = 5
+   integer, parameter :: BY_FORCES = 1       !< The errors of the fields, see above;
+   integer, parameter :: BY_RESIDUAL = 2     !< |R|/|R_0| of all unknowns together, whatever their units,
+                                             !< or |R|/|R_1| where R_1 is larger;
+   integer, parameter :: BY_CORRECTION = 3   !< |dx|/|x| of the worst field.
+   character(10), parameter :: MEASURES(3) = [character(10) :: 'forces', 'residual', 'correction']   !< Their names.
    real(wp), parameter :: HISTORY_SHARE = 1.0e-6_wp   !< Share of the largest scale so far that still counts.
    real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Of strain rates and parts of fluxes, see above.
    real(wp), parameter :: ABSOLUTE_FLOOR = 1.0e-12_wp   !< [kN] or [m3/s]: nothing smaller is a force.
@@ -44,6 +50,7 @@ module newton
       real(wp) :: tolerance = 1.0e-3_wp
       integer :: max_iterations = 12
       logical :: still = .false.              !< Predict no change.
+      integer :: measure = BY_FORCES          !< What has to fall below the tolerance.
    end type control_t
 
    !> What a step did.
@@ -51,7 +58,7 @@ module newton
       integer :: outcome = CONVERGED
       integer :: iterations = 0
       real(wp) :: error(FIELDS) = 0.0_wp, first_error(FIELDS) = 0.0_wp
-      real(wp) :: reduction = 0.0_wp          !< |R|/|R_0|
+      real(wp) :: reduction = 0.0_wp          !< |R| over the larger of |R_0| and |R_1|.
       real(wp) :: correction = 0.0_wp         !< |dx|/|x|, the worst field.
       integer :: worst_field = 0, worst_unknown = 0
       integer :: effort = 0                   !< Rate evaluations of the material.
@@ -86,7 +93,7 @@ contains
       type(system_t), intent(inout) :: system
       type(log_t), intent(out) :: log
       real(wp), allocatable :: rhs(:), dx(:)
-      real(wp) :: norm_0, t0
+      real(wp) :: norm, norm_0, t0
       integer :: status
       logical :: with_slope
 
@@ -103,9 +110,11 @@ contains
          if (log%iterations > 0) then
             call measure(dofs, constraint, assembly, rhs, system%largest, log)
             if (log%iterations == 1) log%first_error = log%error
-            ! Driven by prescribed values alone, a step begins without any.
-            if (norm_0 > 0.0_wp) log%reduction = norm2(pack(rhs, .not. constraint%fixed))/norm_0
-            if (all(log%error < control%tolerance)) exit
+            norm = norm2(pack(rhs, .not. constraint%fixed))
+            ! Driven by prescribed values alone, a step begins without any to speak of.
+            if (log%iterations == 1) norm_0 = max(norm_0, norm)
+            log%reduction = norm/max(norm_0, tiny(1.0_wp))
+            if (good_enough(control, log)) exit
             if (log%iterations >= control%max_iterations .or. .not. all(log%error < HOPELESS)) then
                log%outcome = NOT_CONVERGED
                system%eager = .true.
@@ -119,6 +128,8 @@ contains
             norm_0 = norm2(pack(rhs, .not. constraint%fixed))
          end if
          call constrain(dofs, pattern, constraint, new%x, assembly%values, rhs)
+         ! Other measures may ask for more than a linear solution that is exact to a share of the forces.
+         if (control%measure /= BY_FORCES) system%factored = .false.
          call solve_step(dofs, pattern, constraint, assembly, control%tolerance, rhs, system, dx, status)
          if (status /= SOLVED) then
             log%outcome = merge(BODY_FREE, SOLVER_FAILED, status == SINGULAR)
@@ -169,6 +180,21 @@ contains
          system%reaction = -rhs
       end function pass
    end subroutine take_step
+
+   !> Whether the iteration may end.
+   pure logical function good_enough(control, log)
+      type(control_t), intent(in) :: control
+      type(log_t), intent(in) :: log
+
+      select case (control%measure)
+      case (BY_RESIDUAL)
+         good_enough = log%reduction < control%tolerance
+      case (BY_CORRECTION)
+         good_enough = log%correction < control%tolerance
+      case default
+         good_enough = all(log%error < control%tolerance)
+      end select
+   end function good_enough
 
    !> Solution to a small share of Newton's tolerance: by the factors of an earlier matrix as long as these serve and
    !> nothing has come to be fixed, let go or touched, else by new ones.

@@ -1,8 +1,10 @@
 """Controls of mud_triax: what is held is held, what leads arrives, cycles turn where they should, stops stop."""
+import atexit
 import csv
 import math
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -11,6 +13,7 @@ root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).p
 build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
 triax = build / "drivers/mud_triax"
 work = pathlib.Path(tempfile.mkdtemp())
+atexit.register(shutil.rmtree, work, ignore_errors=True)
 passed = failed = 0
 HELD = 2e-10    # the driver promises 1e-10 of each increment's stress; compared over a whole stage here
 LANDED = 1e-12  # given strains land on their values

@@ -1,7 +1,9 @@
 """mud_host as a user meets it: known answers (short versions), mistakes with their own sentence and exit code."""
+import atexit
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -11,6 +13,7 @@ build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
 host = build / "host/mud_host"
 light = os.environ.get("MUD_PRESET", "release") != "release"
 work = pathlib.Path(tempfile.mkdtemp())
+atexit.register(shutil.rmtree, work, ignore_errors=True)
 environment = {**os.environ, "OMP_NUM_THREADS": "1", "MUD_BUILD_DIR": str(build)}
 passed = failed = 0
 

@@ -1,5 +1,6 @@
 """Effects that mud_host derives from a scene: each on and off, by hand, the table, the watch, restarts, and whether
 what is dropped is as small as promised."""
+import atexit
 import csv
 import math
 import os
@@ -15,6 +16,7 @@ build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
 host = build / "host/mud_host"
 light = os.environ.get("MUD_PRESET", "release") != "release"
 work = pathlib.Path(tempfile.mkdtemp())
+atexit.register(shutil.rmtree, work, ignore_errors=True)
 environment = {**os.environ, "OMP_NUM_THREADS": "1"}
 passed = failed = 0
 
@@ -118,6 +120,9 @@ is_on("sudden load", table, "inertia in load", True)
 _, table = run(column(stage="duration = 1 dt = 0.1", more="&initial v_z = -1.0e-3 /"), "moving")
 is_on("initial velocity", table, "inertia in load", True)
 check("initial velocity: not bounded", table["inertia in load"]["estimate"] == "not bounded")
+_, table = run(column(region="damping = 1"), "damped")
+is_on("damped", table, "inertia in load", True)
+check("damped: says so", "a damping is given" in table["inertia in load"]["because"], table)
 
 # What dropping inertia changes is no more than its estimate says, and more than a tenth of it: 1 s of ramp and half a
 # second of rest, 18 steps to a slowest period (their error is below 2 % of the vibration).

@@ -1,4 +1,5 @@
 """Output of mud_host: restarts after SIGKILL at random moments, refused checkpoints, full disks, files and pictures."""
+import atexit
 import os
 import pathlib
 import random
@@ -20,6 +21,7 @@ build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
 host = build / "host/mud_host"
 light = os.environ.get("MUD_PRESET", "release") != "release"
 work = pathlib.Path(tempfile.mkdtemp())
+atexit.register(shutil.rmtree, work, ignore_errors=True)
 environment = {**os.environ, "OMP_NUM_THREADS": "1"}
 passed = failed = 0
 

@@ -1,8 +1,10 @@
 """Failed increments: saved by every door, replayed bit by bit, and every mistake on the way has its sentence."""
+import atexit
 import os
 import pathlib
 import re
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -13,6 +15,7 @@ build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release").
 cache = dict(re.findall(r"^(\w+):\w+=(.*)$", (build / "CMakeCache.txt").read_text(encoding="utf-8"), re.MULTILINE))
 replay, triax = build / "drivers/mud_replay", build / "drivers/mud_triax"
 work = pathlib.Path(tempfile.mkdtemp())
+atexit.register(shutil.rmtree, work, ignore_errors=True)
 MAX_SAVED = 20  # files of umat_, mud.h
 quiet = {name: value for name, value in os.environ.items() if name != "MUD_SAVE_FAILED"}
 passed = failed = 0

@@ -1,8 +1,10 @@
 """mud_triax as a user meets it: named cases give published numbers, held stresses are held, mistakes are explained."""
+import atexit
 import csv
 import math
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -12,6 +14,7 @@ build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
 triax = build / "drivers/mud_triax"
 cases = root / "drivers/cases"
 work = pathlib.Path(tempfile.mkdtemp())
+atexit.register(shutil.rmtree, work, ignore_errors=True)
 passed = failed = 0
 
 

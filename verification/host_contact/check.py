@@ -3,17 +3,16 @@ against a wall."""
 import pathlib
 import shutil
 import sys
-import tempfile
 
 here = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(here), str(here.parent)]
 import numpy as np  # noqa: E402
 import make_meshes  # noqa: E402
-from host_tools import Checks, arguments, figure, number, read, run  # noqa: E402
+from host_tools import Checks, arguments, figure, number, read, run, scratch  # noqa: E402
 
 args = arguments(__doc__)
 checks = Checks("contact")
-meshes = pathlib.Path(tempfile.mkdtemp())
+meshes = scratch()
 
 # Patch tests: 100 kPa in every point of all blocks; the penalty (1e6 kN/m3) alone lets them overlap by p/eps = 1e-4 m, of which
 # the mesh has 1e-6 m from the start. Direct solution of a well-posed problem: rounding, times 1e4 for E/eps and the mesh.
@@ -187,7 +186,7 @@ switched = np.flatnonzero(np.diff(drain["interface.sealed"])) + 1
 checks.near("drainage: impervious nodes in push, and after it", [drain["interface.sealed"][:60].min(), drain["interface.sealed"][-1]], [8, 0], 0)
 # A restart in the middle of the switching decides the same.
 checks.small("drainage: switches before and after the checkpoint that are missing", 2 - (switched.min() < 65) - (switched.max() >= 65), 0)
-again = pathlib.Path(tempfile.mkdtemp()) / "again"
+again = scratch() / "again"
 shutil.copytree(following, again)
 run(DRAIN, [("threads = 1", "threads = 1\n   checkpoint_steps = 65")], more=("--restart", again / "checkpoint.h5"), folder=again)
 checks.small("drainage: files that differ after a restart while nodes switch",

@@ -3,16 +3,15 @@ import csv
 import pathlib
 import subprocess
 import sys
-import tempfile
 
 here = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(here.parent))
 import numpy as np  # noqa: E402
-from host_tools import Checks, arguments, build, figure, read, root, run  # noqa: E402
+from host_tools import Checks, arguments, build, figure, read, root, run, scratch  # noqa: E402
 
 
 def driver(case):
-    out = pathlib.Path(tempfile.mkdtemp()) / "out.csv"
+    out = scratch() / "out.csv"
     subprocess.run([build / "drivers/mud_triax", case, "--output", out, "--quiet"], check=True)
     rows = list(csv.DictReader(line for line in out.read_text().splitlines() if not line.startswith("#")))
     return {k: np.array([float(r[k]) for r in rows]) for k in rows[0]}
