@@ -230,7 +230,7 @@ def cells(a, b):
 def report(rows, base):
     text = []
     for s in SUCTIONS:
-        paper = PUBLISHED[s]
+        paper, missing = PUBLISHED[s], []
         text += [f"## Suction {s} kPa", "", "| | relative CPU time | relative work | relative difference of displacement | iterations with "
                  "remedy | without | final displacement with [mm] | without [mm] |", "|" + 8 * "---|",
                  f"| **paper** (published) | {number(paper[0])} | | {number(paper[1])} | {paper[2]} | {paper[3]} | | |",
@@ -239,11 +239,20 @@ def report(rows, base):
             a, b = pair(rows, base, s, name)
             if same(s, name):
                 continue
-            text.append(f"| {what} | " + (" | ".join(cells(a, b)) if a or b else "not run" + 6 * " | ") + " |")
-        text.append("")
+            if ran(rows, s, name):
+                text.append(f"| {what} | {' | '.join(cells(a, b))} |")
+            else:
+                missing.append(what)
+        text += ["", f"Not run at {s} kPa: {'; '.join(missing)}.", ""] if missing else [""]
     text += ["## Noise", "", *noise(rows, base), "", "## Towards the paper", "", *towards(rows, base), "", "## Failures", "",
              *failures(rows)]
     return "\n".join(text)
+
+
+def ran(rows, suction, name):
+    """Whether a variation ran at that suction, with every series that it means something for."""
+    series = next(v[4] for v in VARIATIONS if v[0] == name)
+    return all(f"{label(suction, FIELDS)}_{one}_{name}" in rows for one in series)
 
 
 def same(suction, name):
@@ -294,7 +303,7 @@ def towards(rows, base):
             if not isinstance(paper, (int, float)):
                 continue
             limit = allowed * (paper if key in ("with", "without") else 1)
-            found = {v[0]: columns(*pair(rows, base, s, v[0]))[key] for v in VARIATIONS if v[5] and not same(s, v[0])}
+            found = {v[0]: columns(*pair(rows, base, s, v[0]))[key] for v in VARIATIONS if v[5] and ran(rows, s, v[0])}
             found = {k: v for k, v in found.items() if not math.isnan(v)}
             form = ".0f" if key in ("with", "without") else ".2f"
             if math.isnan(start[key]):
@@ -324,12 +333,13 @@ def failures(rows):
 def bars(rows, base):
     """For the picture: by suction, effect of the remedy and (what, change with, change without) of every variation [mm]."""
     answer = {}
+    used = [(v[0], v[1]) for v in VARIATIONS if any(ran(rows, s, v[0]) for s in SUCTIONS)]
     for s in SUCTIONS:
         a, b = pair(rows, base, s, "")
         if not (ended(a) and ended(b)):
             continue
         lines = []
-        for name, what, *_ in VARIATIONS:
+        for name, what in used:
             if not same(s, name):
                 c, d = pair(rows, base, s, name)
                 lines.append((what, *(x["final_mm"] - y["final_mm"] if ended(x) else math.nan for x, y in ((c, a), (d, b)))))
