@@ -29,6 +29,7 @@ module newton
    character(10), parameter :: MEASURES(3) = [character(10) :: 'forces', 'residual', 'correction']   !< Their names.
    real(wp), parameter :: HISTORY_SHARE = 1.0e-6_wp   !< Share of the largest scale so far that still counts.
    real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Of strain rates and parts of fluxes, see above.
+   real(wp), parameter :: ROUNDING = 1.0e-12_wp       !< Of all contributions: no residual to begin with is smaller.
    real(wp), parameter :: ABSOLUTE_FLOOR = 1.0e-12_wp   !< [kN] or [m3/s]: nothing smaller is a force.
    real(wp), parameter :: LINEAR_SHARE = 1.0e-3_wp    !< Share of Newton's tolerance left to the linear solution.
    integer, parameter :: MOST_STEPS = 6               !< Of the linear solution with factors of an earlier matrix;
@@ -112,7 +113,7 @@ contains
             if (log%iterations == 1) log%first_error = log%error
             norm = norm2(pack(rhs, .not. constraint%fixed))
             ! Driven by prescribed values alone, a step begins without any to speak of.
-            if (log%iterations == 1) norm_0 = max(norm_0, norm)
+            if (log%iterations == 1) norm_0 = max(norm_0, norm, ROUNDING*norm2(assembly%scale))
             log%reduction = norm/max(norm_0, tiny(1.0_wp))
             if (good_enough(control, log)) exit
             if (log%iterations >= control%max_iterations .or. .not. all(log%error < HOPELESS)) then
@@ -130,7 +131,8 @@ contains
          call constrain(dofs, pattern, constraint, new%x, assembly%values, rhs)
          ! Other measures may ask for more than a linear solution that is exact to a share of the forces.
          if (control%measure /= BY_FORCES) system%factored = .false.
-         call solve_step(dofs, pattern, constraint, assembly, control%tolerance, rhs, system, dx, status)
+         call solve_step(dofs, pattern, constraint, assembly, merge(control%tolerance, 0.0_wp, &
+                         control%measure == BY_FORCES), rhs, system, dx, status)
          if (status /= SOLVED) then
             log%outcome = merge(BODY_FREE, SOLVER_FAILED, status == SINGULAR)
             return

@@ -28,8 +28,9 @@ contains
       r = weight*b
       left = norm2(r)
       enough = max(target, ROUNDING*left)
-      status = SOLVED
       steps = 0
+      status = merge(SOLVED, FAILED, ieee_is_finite(left))
+      if (status /= SOLVED) return
       do while (left > enough .and. steps < most)
          steps = steps + 1
          associate (k => steps)

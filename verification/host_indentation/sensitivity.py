@@ -96,17 +96,17 @@ VARIATIONS = (
     ("penalty_1e9", "penalty 1e9 kN/m3", "1e8 stated", keys("contact", penalty=1e9), BOTH, STATED),
     ("gap_pointwise", "gap penalised point by point", "eq. (18); nodal", keys("contact", gap="'pointwise'"), BOTH, OPEN),
 )
-AGAIN = "again"   # The scene of the series itself, by another version of the program than the series'.
 
 
-FIRST = ("newton_1e-5", "damping_10", "norm_residual", "norm_correction", "mass_15", "eps_hat_1e-5", "eps_hat_1e-3", "rho_1", "mualem", "drainage_state", "k0_effective", "peak_12", "rate_suction",
-         "penalty_1e7", "quadrature_3", "tangent_3", "stress_1e-4", "theta_0.3", "e_0.75", "seepage_inertia", "weightless")
+FIRST = ("fresh_factors", "mass_15", "mualem", "eps_hat_1e-5", "eps_hat_1e-3", "rho_1", "damping_10", "stress_1e-4", "norm_residual", "norm_correction",
+         "tangent_3", "quadrature_3", "penalty_1e7", "e_0.75", "theta_0.3", "k0_effective", "seepage_inertia", "rate_suction", "drainage_state",
+         "peak_12", "weightless", "newton_1e-2")
 
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--suction", type=int, nargs="+", choices=SUCTIONS, default=SUCTIONS, metavar="KPA")
-    parser.add_argument("--only", nargs="+", choices=[v[0] for v in VARIATIONS] + [AGAIN], default=[], metavar="NAME")
+    parser.add_argument("--only", nargs="+", choices=[v[0] for v in VARIATIONS], default=[], metavar="NAME")
     parser.add_argument("--jobs", type=int, default=2, help="analyses at a time, one thread each (default: 2)")
     parser.add_argument("--limit", type=float, default=30, help="minutes after which an analysis is stopped (default: 30)")
     parser.add_argument("--list", action="store_true", help="say what would run")
@@ -126,19 +126,14 @@ def jobs_of(args, folder, steps):
                 if render(groups) != render(scene(s, FIELDS, one, steps=steps)):
                     jobs.append(Job(f"{label(s, FIELDS)}_{one}_{name}", groups, folder, steps, suction=s, fields=FIELDS,
                                     series=one, variation=name))
-    if AGAIN in args.only:
-        jobs += [Job(f"{label(s, FIELDS)}_{one}_{AGAIN}", scene(s, FIELDS, one, steps=steps), folder, steps, suction=s, fields=FIELDS,
-                     series=one, variation=AGAIN) for s in args.suction for one in BOTH]
     return sorted(jobs, key=urgency)
 
 
 def urgency(job):
     """Order of the runs, so that an early look tells most: mesh and step at two suctions, one variation of everything, the rest."""
-    if job.facts["variation"] == AGAIN:
-        return (0,)
     name, long = job.facts["variation"], job.facts["variation"] in ("dt_tenth", "mesh_half", "dt_half", "stress_1e-6")
     if name in ("dt_tenth", "mesh_half"):
-        return (0 if job.facts["suction"] in (30, 1000) else 2,)
+        return (0, job.facts["suction"] not in (30, 1000), job.facts["suction"])
     return (1, FIRST.index(name)) if name in FIRST else (4,) if long else (3,)
 
 
@@ -173,33 +168,12 @@ def main():
     figures.tornado(bars(rows, base), (folder if args.quick else here) / "sensitivity.png")
     expected = sum(len(v[4]) for v in VARIATIONS) * len(SUCTIONS)
     print(f"{len(rows)} variations of at most {expected}; {sum(ended(r) for r in rows.values())} to their end")
-    wrong = strangers(rows, base)
-    for line in wrong:
-        print("FAILED " + line)
-    return 1 if wrong else 0
-
-
-def strangers(rows, base):
-    """Rows of another version of the program than the series' count if that version gives the series' own numbers."""
-    wrong = []
-    own = {base.get(f"{label(s, FIELDS)}_{x}", {}).get("program", "missing") for s in SUCTIONS for x in BOTH}
-    if len(own) > 1:
-        return ["the series is not complete, or of several versions of the program"]
-    for version in sorted({r["program"] for r in rows.values()} - own):
-        proofs = [r for r in rows.values() if r["program"] == version and r["variation"] == AGAIN]
-        if not proofs:
-            wrong.append(f"rows of program {version}, which never ran a scene of the series: --only {AGAIN}")
-        wrong += [f"{r['name']}: not what the series has in {', '.join(different)}" for r in proofs
-                  if (different := [k for k, v in r.items() if k not in OF_THE_RUN and not equal(v, base[r["name"][:-len(AGAIN) - 1]].get(k))])]
-    return wrong
-
-
-# Columns that may differ between two runs of the same.
-OF_THE_RUN = ("name", "variation", "cpu_s", "wall_s", "attempts", "program", "commit")
-
-
-def equal(a, b):
-    return a == b or (isinstance(a, float) and isinstance(b, float) and math.isnan(a) and math.isnan(b))
+    versions = {r["program"] for r in (*rows.values(), *(base.get(f"{label(s, FIELDS)}_{x}", {"program": "none"})
+                                                        for s in SUCTIONS for x in BOTH))}
+    if len(versions) > 1:
+        print(f"FAILED rows and series come from {len(versions)} versions of the program, or the series is not complete")
+        return 1
+    return 0
 
 
 # ---- evaluation
