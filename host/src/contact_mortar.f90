@@ -13,14 +13,13 @@ module contact_mortar
    implicit none (type, external)
    private
    public :: overlap_t, point_t, find_overlap, end_slope, integration_point, pair_gaps, hats, hat_slopes
-   public :: POINTS, POSITION, SHARE, LARGEST_SEGMENTS, NODE_ON_EDGE
+   public :: POINTS, POSITION, SHARE, LARGEST_SEGMENTS
 
    integer, parameter :: POINTS = 4   !< Gauss points of a segment.
    real(wp), parameter :: POSITION(POINTS) = [-0.861136311594052575224_wp, -0.339981043584856264803_wp, &
                                               0.339981043584856264803_wp, 0.861136311594052575224_wp]
    real(wp), parameter :: SHARE(POINTS) = [0.347854845137453857373_wp, 0.652145154862546142627_wp, &
                                            0.652145154862546142627_wp, 0.347854845137453857373_wp]
-   real(wp), parameter :: NODE_ON_EDGE(3) = [-1.0_wp, 1.0_wp, 0.0_wp]   !< Parameter of start, end and middle.
    integer, parameter :: LARGEST_SEGMENTS = 3   !< Two ends, and the two middle nodes between them.
    !> Cosine of the steepest master edge that a slave edge sees: beyond 78 degrees nothing is pressed any more.
    real(wp), parameter :: LEAST_FACING = 0.2_wp

@@ -146,8 +146,6 @@ contains
       real(wp), intent(in) :: slave_x(:, :), master_x(:, :)   !< (2, nodes): r and z, or x and y [m]
       logical, intent(in) :: with_tangent
       type(contact_status_t), intent(out) :: status
-      real(wp) :: reach
-      integer :: i
 
       contact%force = 0.0_wp
       contact%triplets = 0
@@ -157,13 +155,8 @@ contains
       if (status%code /= CONTACT_OK) return
       if (size(contact%slave_edges) == 0 .or. size(contact%master_edges) == 0) return
 
-      reach = contact%options%reach
-      if (.not. reach > 0.0_wp) then
-         do i = 1, size(contact%slave_edges, 2)
-            reach = max(reach, norm2(slave_x(:, contact%slave_edges(2, i)) - slave_x(:, contact%slave_edges(1, i))))
-         end do
-      end if
-      call find_candidates(contact%search, slave_x, contact%slave_edges, master_x, contact%master_edges, reach)
+      call find_candidates(contact%search, slave_x, contact%slave_edges, master_x, contact%master_edges, &
+                           contact%options%reach)
       contact%checks = contact%search%checks
       call find_whole(contact, slave_x)
       call find_gaps(contact, slave_x, master_x, status)

@@ -31,7 +31,7 @@ module contact_types
 
    type :: contact_options_t
       real(wp) :: penalty = 1.0e8_wp          !< eps [kN/m3], > 0
-      real(wp) :: reach = 0.0_wp              !< Edges farther apart do not meet [m]; 0: the longest slave edge
+      real(wp) :: reach = 0.0_wp              !< Edges farther apart do not meet [m]; 0: the length of each slave edge
       logical :: axisymmetric = .true.        !< 2 pi r, otherwise plane strain of unit thickness
       integer :: gap = NODAL_GAP              !< NODAL_GAP or POINTWISE_GAP
       integer :: variation = PRESSURE_WORK    !< PRESSURE_WORK or ENERGY_SLOPE

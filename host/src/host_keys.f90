@@ -161,7 +161,7 @@ module host_keys
       key_t('contact', 'penalty', 'n', '1.0e8', TINY_, BIG, 'pressure of a unit of penetration [kN/m3]'), &
       key_t('contact', 'gap', 'w', 'nodal', 0, 0, 'nodal|pointwise: gap that is penalised, see CONTACT.md'), &
       key_t('contact', 'variation', 'w', 'pressure', 0, 0, 'pressure|energy: force, see CONTACT.md'), &
-      key_t('contact', 'reach', 'n', '0', 0, BIG, 'edges farther apart do not meet [m]; 0: the longest slave edge'), &
+      key_t('contact', 'reach', 'n', '0', 0, BIG, 'edges farther apart do not meet [m]; 0: an edge''s own length'), &
       key_t('contact', 'drainage', 'w', 'fixed', 0, 0, 'fixed|state: state: &fix of pressures let touching nodes go'), &
       key_t('contact', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
       key_t('point', 'name', 't', REQUIRED, 0, 0, 'name in histories.csv'), &

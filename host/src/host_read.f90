@@ -604,6 +604,11 @@ contains
       do i = 1, size(scene%plates)
          if (scene%plates(i)%name == text_of(group, 'master')) contact%plate = i
       end do
+      if (contact%slave == contact%master) then
+         call raise(fault, EXIT_GROUP, at_line(group%file, group%line)//'slave and master are one boundary, '''// &
+                    text_of(group, 'slave')//'''; name the two that meet.')
+         return
+      end if
       associate (groups => scene%model%mesh%groups)
          if (size(groups(contact%slave)%edges, 2) == 0 .or. &
              (contact%plate == 0 .and. size(groups(contact%master)%edges, 2) == 0)) then

@@ -143,7 +143,7 @@ CONTACT = [
     ("nothing pushes the master", (RESPONSE, "push(2*i + 5:2*i + 6) = -p%nm(i)*nu", "push(2*i + 5:2*i + 6) = 0.0_wp*nu")),
     ("an open gap pulls", (PENALTY, "penalty*max(-contact%gap, 0.0_wp)", "penalty*(-contact%gap)")),
     ("the search does not sort", (SEARCH, "grid%side = max(mean, ", "grid%side = max(1.0e6_wp*mean, ")),
-    ("the search forgets the reach", (SEARCH, "search%slave_box(1:2, :) - reach", "search%slave_box(1:2, :) - 0.0_wp*reach")),
+    ("the search forgets the reach", (SEARCH, "search%slave_box(1:2, e) - near", "search%slave_box(1:2, e) - 0.0_wp*near")),
     ("a plate feels nothing", (RIGID, "+ contact%force(n + i)*by_row(:m)", "+ 0.0_wp*contact%force(n + i)*by_row(:m)")),
     ("slopes against the values within the step", (JOINED, "values(place) + share*value(k)", "values(place) + value(k)")),
     ("a contact acts in every stage", (JOINED, "if (.not. t%acts) cycle\n            allocate", "allocate")),
