@@ -122,7 +122,7 @@ class Job:
         self.name, self.groups, self.folder, self.facts = name, groups, folder / name, facts
         self.duration = steps * DT
         self.text = render(groups)
-        self.mark = digest(self.text.encode(), MATERIAL.read_bytes(), host.read_bytes())
+        self.mark = digest(self.text.encode(), MATERIAL.read_bytes(), host.read_bytes() if host.exists() else b"")
         self.process = None
         try:
             self.state = json.loads((self.folder / "state.json").read_text(encoding="utf-8"))
@@ -133,7 +133,7 @@ class Job:
 
     @property
     def finished(self):
-        return self.state["outcome"] is not None
+        return self.state["outcome"] not in (None, "limit")
 
     def save(self):
         (self.folder / "state.json").write_text(json.dumps(self.state), encoding="utf-8")
@@ -216,7 +216,7 @@ def run_all(jobs, parallel, limit, done):
             time.sleep(0.2)
             for job in [j for j in running if j.poll(limit)]:
                 running.remove(job)
-                if not job.finished:
+                if job.state["outcome"] is None:
                     print(f"\r{job.name}: interrupted; the next start of this command goes on with it", flush=True)
                     continue
                 spent.append(job.state["wall"])
@@ -250,7 +250,7 @@ def span(seconds):
 
 def outcome_of(job):
     outcome = job.state["outcome"]
-    return {0: "done", "limit": "stopped at the limit of time"}.get(outcome, f"exit code {outcome}")
+    return {0: "done", "limit": "stopped at the limit of time; the next start goes on with it"}.get(outcome, f"exit code {outcome}")
 
 
 # ---- what a run tells

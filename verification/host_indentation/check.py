@@ -5,8 +5,9 @@ import sys
 here = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(here.parent))
 import numpy as np  # noqa: E402
+import analysis  # noqa: E402
 import figures  # noqa: E402
-from analysis import histories  # noqa: E402
+import series  # noqa: E402
 from host_tools import Checks, arguments, number, read, root, run  # noqa: E402
 
 args = arguments(__doc__)
@@ -36,6 +37,18 @@ entries = ("kinetic", "skeleton", "pores", "gravity", "loads", "supports")
 largest = max(np.abs(ledger[name][impact] - ledger[name][seated]).max() for name in entries)
 left = np.abs(ledger["imbalance"][impact] - ledger["imbalance"][seated]).max()
 checks.small("energy left open / largest entry of the ledger", left / largest, 1e-3)
+# The committed series is of this program: the history of its analysis at 30 kPa, written with six digits. Loading is smooth; rounding does
+# not grow before the first unloading.
+kept = read(analysis.RESULTS / "histories/s0030_remedy.csv")
+common = kept["t_ms"] <= min(1e3 * t[-1], 14) + 1e-6
+place = np.rint(kept["t_ms"][common] / (1e3 * analysis.DT)).astype(int)
+now = -1e3 * (h["centre.u_z"][-len(t) - 1:] - h["centre.u_z"][-len(t) - 1])
+checks.near("displacement / that of the committed series", now[place] / now[place].max(), kept["u_mm"][common] / now[place].max(), 1e-4)
+# The page says what the committed results say.
+rows = analysis.read_rows(analysis.RESULTS / "series.csv")
+page = (here / "README.md").read_text(encoding="utf-8")
+checks.small("tables of the page that are not those of results/", sum(text.rstrip() not in page for text in (
+    series.table_1(rows) + "\n" + series.statements(rows, analysis.RESULTS), series.details(rows))), 0)
 if not args.quick:
     depth = -1e3 * (h["centre.u_z"][-len(t):] - h["centre.u_z"][-len(t) - 1])
     gone = t[(c["interface.thrust"][impact] <= 0) & (t > 0.014)]
@@ -48,5 +61,5 @@ if not args.quick:
 if args.plot:
     picture = root / "build/verification/indentation.png"
     picture.parent.mkdir(parents=True, exist_ok=True)
-    print(f"figure {figures.interface({'remedy': histories(folder, 1)}, picture)}")
+    print(f"figure {figures.interface({'remedy': analysis.histories(folder, 1)}, picture)}")
 checks.end()
