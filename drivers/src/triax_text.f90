@@ -1,13 +1,16 @@
 !> Words and numbers: reading, writing, and the nearest name to a misspelt one.
 module triax_text
-   use, intrinsic :: iso_fortran_env, only: wp => real64
+   use, intrinsic :: iso_fortran_env, only: wp => real64, int32, int64
    use, intrinsic :: iso_c_binding, only: c_null_char
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    implicit none (type, external)
    private
    public :: lower_case, distance, short, whole, read_number, from_c, word_place
 
-
+   !> A whole number as text.
+   interface whole
+      module procedure whole_32, whole_64
+   end interface whole
 contains
    pure function lower_case(text) result(lower)
       character(*), intent(in) :: text
@@ -114,14 +117,21 @@ contains
       text = digits(:last)
    end function without_zeros
 
-   pure function whole(value) result(text)
-      integer, intent(in) :: value
+   pure function whole_32(value) result(text)
+      integer(int32), intent(in) :: value
       character(:), allocatable :: text
-      character(12) :: digits
+
+      text = whole_64(int(value, int64))
+   end function whole_32
+
+   pure function whole_64(value) result(text)
+      integer(int64), intent(in) :: value
+      character(:), allocatable :: text
+      character(20) :: digits
 
       write (digits, '(i0)') value
       text = trim(digits)
-   end function whole
+   end function whole_64
 
    !> Reads a decimal number; anything that is not entirely one ('1.2.3', '1e999', 'nan') is refused.
    subroutine read_number(text, value, good)

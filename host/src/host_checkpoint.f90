@@ -2,6 +2,7 @@
 !> flow that is subtracted follow from the scene; the ordering of the equations from their pattern. The rest is here.
 module host_checkpoint
    use, intrinsic :: iso_c_binding, only: c_char, c_null_char
+   use, intrinsic :: iso_fortran_env, only: int64
    use mud_interface, only: mud_version
    use host_kinds, only: wp, EXIT_RESTART
    use host_course, only: run_t
@@ -21,7 +22,7 @@ module host_checkpoint
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
    character(*), parameter :: KIND_OF_FILE = 'checkpoint of mud_host'
-   character(*), parameter :: FORMAT = '3'      !< Grows with every change of what is stored.
+   character(*), parameter :: FORMAT = '4'      !< Grows with every change of what is stored.
    integer, parameter :: N_COUNTERS = 13
    character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
                                         'contact, seepage, damping [kJ], outflow, outflow_air [m3]'
@@ -79,7 +80,7 @@ contains
       type(output_t), intent(inout) :: output
       type(fault_t), intent(inout) :: fault
       type(h5_t) :: file
-      integer :: counters(N_COUNTERS)
+      real(wp) :: counters(N_COUNTERS)
       real(wp) :: course(4), ledger(storage_size(run%ledger)/storage_size(0.0_wp))
 
       if (.not. HAS_HDF5) then
@@ -112,7 +113,7 @@ contains
          call get(file, 's', run%state%s)
          call get(file, 's_rate', run%state%s_rate)
          if (file%good .and. scene%effects%auto) call take_watch(file, run)
-         if (file%good .and. counters(N_COUNTERS) > 0) call take_pairs(file, counters(N_COUNTERS), run)
+         if (file%good .and. counters(N_COUNTERS) > 0.5_wp) call take_pairs(file, nint(counters(N_COUNTERS)), run)
          if (file%good) then
             run%state%time = course(1)
             run%course%t_start = course(2)
@@ -200,32 +201,35 @@ contains
       if (allocated(run%system%contacts%extra)) pairs = size(run%system%contacts%extra, 2)
    end function pairs_of
 
+   !> As real numbers, which are exact up to 2**53.
    pure function counters_of(run, output) result(counters)
       type(run_t), intent(in) :: run
       type(output_t), intent(in) :: output
-      integer :: counters(N_COUNTERS)
+      real(wp) :: counters(N_COUNTERS)
 
-      counters = [run%course%stage, run%course%step, run%course%cuts, run%course%good, run%steps, run%iterations, &
-                  run%cuts, run%effort, merge(1, 0, run%system%eager), output%history_bytes, &
-                  output%ledger_bytes, output%contact_bytes, pairs_of(run)]
+      associate (c => run%course)
+         counters = real([integer(int64) :: c%stage, c%step, c%cuts, c%good, run%steps, run%iterations, run%cuts, &
+                          run%effort, merge(1, 0, run%system%eager), output%history%bytes, output%ledger%bytes, &
+                          output%contact%bytes, pairs_of(run)], wp)
+      end associate
    end function counters_of
 
    pure subroutine take_counters(counters, run, output)
-      integer, intent(in) :: counters(N_COUNTERS)
+      real(wp), intent(in) :: counters(N_COUNTERS)
       type(run_t), intent(inout) :: run
       type(output_t), intent(inout) :: output
 
-      run%course%stage = counters(1)
-      run%course%step = counters(2)
-      run%course%cuts = counters(3)
-      run%course%good = counters(4)
-      run%steps = counters(5)
-      run%iterations = counters(6)
-      run%cuts = counters(7)
-      run%effort = counters(8)
-      run%system%eager = counters(9) == 1
-      output%history_bytes = counters(10)
-      output%ledger_bytes = counters(11)
-      output%contact_bytes = counters(12)
+      run%course%stage = nint(counters(1))
+      run%course%step = nint(counters(2))
+      run%course%cuts = nint(counters(3))
+      run%course%good = nint(counters(4))
+      run%steps = nint(counters(5))
+      run%iterations = nint(counters(6))
+      run%cuts = nint(counters(7))
+      run%effort = nint(counters(8), int64)
+      run%system%eager = nint(counters(9)) == 1
+      output%history%bytes = nint(counters(10), int64)
+      output%ledger%bytes = nint(counters(11), int64)
+      output%contact%bytes = nint(counters(12), int64)
    end subroutine take_counters
 end module host_checkpoint

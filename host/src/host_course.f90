@@ -1,5 +1,6 @@
 !> A scene on its way: everything that one step hands to the next, and the place in its stages.
 module host_course
+   use, intrinsic :: iso_fortran_env, only: int64
    use host_kinds, only: wp
    use host_drainage, only: drainage_t
    use host_energy, only: ledger_t
@@ -36,7 +37,8 @@ module host_course
       type(ledger_t) :: ledger
       type(course_t) :: course
       type(watch_t) :: watch                !< Of effects that are off; with effects = 'auto' alone.
-      integer :: steps = 0, iterations = 0, cuts = 0, effort = 0
+      integer :: steps = 0, iterations = 0, cuts = 0
+      integer(int64) :: effort = 0          !< Rate evaluations of the material.
       real(wp) :: seconds_output = 0.0_wp   !< Wall time.
    end type run_t
 end module host_course

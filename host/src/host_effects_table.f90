@@ -2,7 +2,8 @@
 module host_effects_table
    use host_kinds, only: wp
    use host_scene, only: effect_t, UNBOUNDED, UNKNOWN, NEVER
-   use triax_fault, only: fault_t, raise, EXIT_OUTPUT
+   use io_table, only: table_t, new_table, write_line, close_table
+   use triax_fault, only: fault_t
    use triax_text, only: short, whole
    implicit none (type, external)
    private
@@ -78,23 +79,21 @@ contains
       type(effect_t), intent(in) :: table(:)
       type(fault_t), intent(inout) :: fault
       character(32) :: seen
-      integer :: unit, i, status
+      type(table_t) :: file
+      integer :: i
 
-      open (newunit=unit, file=folder//'/effects.csv', status='replace', action='write', recl=100000, iostat=status)
-      if (status == 0) write (unit, '(a)', iostat=status) &
-         'effect,on,by,estimate,unit,threshold,unknowns,entries,largest_seen,crossed_at,because'
+      call new_table(folder//'/effects.csv', 'effect,on,by,estimate,unit,threshold,unknowns,entries,largest_seen,'// &
+                     'crossed_at,because', file, fault)
       do i = 1, size(table)
          associate (t => table(i))
             seen = ','
             if (t%watched) seen = short(t%largest)//','
             if (t%crossed > NEVER) seen = trim(seen)//short(t%crossed)
-            if (status == 0) write (unit, '(a)', iostat=status) trim(t%name)//','//trim(state_of(t))//','// &
-               trim(by(t))//','//trim(number(t%estimate))//','//trim(t%unit)//','//trim(number(t%threshold))//','// &
-               whole(t%unknowns)//','//whole(t%entries)//','//trim(seen)//',"'//trim(t%why)//'"'
+            if (fault%code == 0) call write_line(file, trim(t%name)//','//trim(state_of(t))//','//trim(by(t))//','// &
+               trim(number(t%estimate))//','//trim(t%unit)//','//trim(number(t%threshold))//','// &
+               whole(t%unknowns)//','//whole(t%entries)//','//trim(seen)//',"'//trim(t%why)//'"', fault)
          end associate
       end do
-      if (status == 0) close (unit, iostat=status)
-      if (status /= 0) call raise(fault, EXIT_OUTPUT, folder//'/effects.csv cannot be written; does the folder '// &
-                                  'exist, is there space?')
+      call close_table(file, fault)
    end subroutine write_effects
 end module host_effects_table

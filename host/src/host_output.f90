@@ -1,29 +1,31 @@
 !> Output: histories at points, the ledger, and the fields at the end of every stage and in between.
 module host_output
-   use host_kinds, only: wp, EXIT_RESTART
+   use host_kinds, only: wp
    use host_contact, only: contact_columns, contact_row, contact_nodes
    use host_energy, only: ledger_t, imbalance
-   use host_results, only: frames_t, write_mesh, write_frame, all_pressures
+   use host_results, only: frames_t, write_mesh, check_mesh, write_frame, all_pressures
    use host_scene, only: scene_t
    use fe_contact, only: contacts_t
    use fe_model, only: state_t, model_t
-   use io_files, only: cut_file, settle_file
+   use io_files, only: make_folder
+   use io_table, only: table_t, new_table, check_table, resume_table, write_row, settle_table, close_table, is_open, &
+                       NUMBERS
    use newton, only: log_t
-   use triax_fault, only: fault_t, raise, EXIT_OUTPUT
+   use triax_fault, only: fault_t
    implicit none (type, external)
    private
-   public :: output_t, open_output, write_history, write_ledger, write_contacts, write_fields, write_touching
-   public :: close_output, settle_output, write_frame
-
-   character(*), parameter :: NUMBER = '(*(es24.16e3,:,","))'
+   public :: output_t, open_output, check_output, write_history, write_ledger, write_contacts, write_fields
+   public :: write_touching, close_output, settle_output, write_frame
 
    character(4), parameter :: COLUMNS(13) = [character(4) :: 'u_r', 'u_z', 'p_w', 'p_c', 'v_r', 'v_z', 'a_z', 's_rr', &
       's_zz', 's_tt', 's_rz', 'e', 'S_w']
+   character(*), parameter :: LEDGER_COLUMNS = 'time,dt,stage,iterations,'// &
+      'error_u_r,error_u_z,error_p_w,error_p_c,first_u_r,first_u_z,first_p_w,first_p_c,reduction,correction,'// &
+      'rates,kinetic,skeleton,pores,gravity,loads,supports,seepage,damping,imbalance,outflow,outflow_air,step_error'
 
    type :: output_t
       character(:), allocatable :: folder
-      integer :: history = 0, ledger = 0, contact = 0   !< Units; 0: no such file.
-      integer :: history_bytes = 0, ledger_bytes = 0, contact_bytes = 0   !< Lengths at the last checkpoint.
+      type(table_t) :: history, ledger, contact   !< The last is open if the scene has contacts or plates.
       type(frames_t) :: frames
    end type output_t
 contains
@@ -34,34 +36,46 @@ contains
       logical, intent(in) :: resume
       type(output_t), intent(inout) :: output
       type(fault_t), intent(inout) :: fault
-      character(:), allocatable :: head
-      integer :: i, k, status
 
       output%folder = folder
       if (resume) then
-         call reopen(folder//'/histories.csv', output%history_bytes, output%history, fault)
-         if (fault%code == 0) call reopen(folder//'/ledger.csv', output%ledger_bytes, output%ledger, fault)
-         if (fault%code == 0 .and. touches(scene)) &
-            call reopen(folder//'/contact.csv', output%contact_bytes, output%contact, fault)
-         return
+         call check_output(folder, scene, output, fault)
+      else
+         call make_folder(folder)
+         output%frames = frames_t([real(wp) ::])
       end if
-      call execute_command_line('mkdir -p '''//folder//'''', exitstat=status)
-      output%frames = frames_t([real(wp) ::])
-      head = 'time'
-      do i = 1, size(scene%points)
-         do k = 1, size(COLUMNS)
-            head = head//','//trim(scene%points(i)%name)//'.'//trim(COLUMNS(k))
-         end do
-      end do
-      call open_file(folder//'/histories.csv', head, output%history, fault)
-      if (fault%code == 0) call open_file(folder//'/ledger.csv', 'time,dt,stage,iterations,'// &
-         'error_u_r,error_u_z,error_p_w,error_p_c,first_u_r,first_u_z,first_p_w,first_p_c,reduction,correction,'// &
-            'rates,kinetic,skeleton,pores,gravity,'// &
-            'loads,supports,seepage,damping,imbalance,outflow,outflow_air,step_error', output%ledger, fault)
-      if (fault%code == 0 .and. touches(scene)) &
-         call open_file(folder//'/contact.csv', contact_columns(scene), output%contact, fault)
-      if (fault%code == 0) call write_mesh(folder, trim(scene%name), scene%model, fault)
+      call open_one('histories.csv', history_columns(scene), output%history)
+      call open_one('ledger.csv', LEDGER_COLUMNS, output%ledger)
+      if (touches(scene)) call open_one('contact.csv', contact_columns(scene), output%contact)
+      if (fault%code == 0 .and. .not. resume) &
+         call write_mesh(folder, trim(scene%name), scene%fingerprint, scene%model, fault)
+   contains
+      subroutine open_one(name, head, table)
+         character(*), intent(in) :: name, head
+         type(table_t), intent(inout) :: table
+
+         if (fault%code /= 0) return
+         if (resume) then
+            call resume_table(folder//'/'//name, head, table, fault)
+         else
+            call new_table(folder//'/'//name, head, table, fault)
+         end if
+      end subroutine open_one
    end subroutine open_output
+
+   !> Refuses a folder that does not hold the run of a checkpoint; changes nothing.
+   subroutine check_output(folder, scene, output, fault)
+      character(*), intent(in) :: folder
+      type(scene_t), intent(in) :: scene
+      type(output_t), intent(in) :: output
+      type(fault_t), intent(inout) :: fault
+
+      call check_mesh(folder, scene%fingerprint, fault)
+      if (fault%code == 0) call check_table(folder//'/histories.csv', output%history%bytes, fault)
+      if (fault%code == 0) call check_table(folder//'/ledger.csv', output%ledger%bytes, fault)
+      if (fault%code == 0 .and. touches(scene)) &
+         call check_table(folder//'/contact.csv', output%contact%bytes, fault)
+   end subroutine check_output
 
    pure logical function touches(scene)
       type(scene_t), intent(in) :: scene
@@ -69,69 +83,40 @@ contains
       touches = size(scene%contacts) + size(scene%plates) > 0
    end function touches
 
-   !> A table of the interrupted run, without the rows after the checkpoint.
-   subroutine reopen(path, bytes, unit, fault)
-      character(*), intent(in) :: path
-      integer, intent(in) :: bytes
-      integer, intent(out) :: unit
-      type(fault_t), intent(inout) :: fault
-      integer :: status
+   pure function history_columns(scene) result(head)
+      type(scene_t), intent(in) :: scene
+      character(:), allocatable :: head
+      integer :: i, k
 
-      unit = 0
-      status = 1
-      if (cut_file(path, bytes)) open (newunit=unit, file=path, status='old', position='append', action='write', &
-                                       recl=100000, iostat=status)
-      if (status /= 0) call raise(fault, EXIT_RESTART, path//' is not there, shorter than at the checkpoint, '// &
-                                  'or cannot be written; --output must name the folder of the interrupted run.')
-   end subroutine reopen
+      head = 'time'
+      do i = 1, size(scene%points)
+         do k = 1, size(COLUMNS)
+            head = head//','//trim(scene%points(i)%name)//'.'//trim(COLUMNS(k))
+         end do
+      end do
+   end function history_columns
 
-   !> Brings the tables to the disk and notes how long they are.
+   !> Brings the tables to the disk.
    subroutine settle_output(output, fault)
       type(output_t), intent(inout) :: output
       type(fault_t), intent(inout) :: fault
 
-      call settle(output%folder//'/histories.csv', output%history, output%history_bytes, fault)
-      if (fault%code == 0) call settle(output%folder//'/ledger.csv', output%ledger, output%ledger_bytes, fault)
-      if (fault%code == 0 .and. output%contact /= 0) &
-         call settle(output%folder//'/contact.csv', output%contact, output%contact_bytes, fault)
+      call settle_table(output%history, fault)
+      if (fault%code == 0) call settle_table(output%ledger, fault)
+      if (fault%code == 0 .and. is_open(output%contact)) call settle_table(output%contact, fault)
    end subroutine settle_output
 
-   subroutine settle(path, unit, bytes, fault)
-      character(*), intent(in) :: path
-      integer, intent(in) :: unit
-      integer, intent(out) :: bytes
-      type(fault_t), intent(inout) :: fault
-      integer :: status
-
-      flush (unit, iostat=status)
-      if (status /= 0) call raise(fault, EXIT_OUTPUT, path//' cannot be written; is the disk full?')
-      call settle_file(path)
-      inquire (unit=unit, size=bytes)
-   end subroutine settle
-
-   subroutine open_file(path, head, unit, fault)
-      character(*), intent(in) :: path, head
-      integer, intent(out) :: unit
-      type(fault_t), intent(inout) :: fault
-      integer :: status
-
-      open (newunit=unit, file=path, status='replace', action='write', recl=100000, iostat=status)
-      if (status == 0) write (unit, '(a)', iostat=status) head
-      if (status /= 0) call raise(fault, EXIT_OUTPUT, path//' cannot be written; does the folder exist, '// &
-                                  'is there space?')
-   end subroutine open_file
-
    subroutine write_history(output, scene, state, fault)
-      type(output_t), intent(in) :: output
+      type(output_t), intent(inout) :: output
       type(scene_t), intent(in) :: scene
       type(state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
-      integer :: i, status
+      integer :: i
 
       if (size(scene%points) == 0) return
-      write (output%history, NUMBER, iostat=status) state%time, (values(scene%points(i)%node, scene%points(i)%gauss), &
-                                                                 i=1, size(scene%points))
-      if (status /= 0) call raise(fault, EXIT_OUTPUT, 'histories.csv cannot be written; is the disk full?')
+      write (output%history%row, NUMBERS) state%time, (values(scene%points(i)%node, scene%points(i)%gauss), &
+                                                       i=1, size(scene%points))
+      call write_row(output%history, fault)
    contains
       pure function values(k, p)
          integer, intent(in) :: k, p
@@ -142,33 +127,31 @@ contains
    end subroutine write_history
 
    subroutine write_ledger(output, time, dt, stage, log, ledger, step_error, fault)
-      type(output_t), intent(in) :: output
+      type(output_t), intent(inout) :: output
       real(wp), intent(in) :: time, dt, step_error
       integer, intent(in) :: stage
       type(log_t), intent(in) :: log
       type(ledger_t), intent(in) :: ledger
       type(fault_t), intent(inout) :: fault
-      integer :: status
 
-      write (output%ledger, '(2(es24.16e3,","),i0,",",i0,",",*(es14.6e3,:,","))', iostat=status) time, dt, stage, &
+      write (output%ledger%row, '(2(es24.16e3,","),i0,",",i0,",",*(es14.6e3,:,","))') time, dt, stage, &
          log%iterations, log%error, log%first_error, log%reduction, log%correction, real(log%effort, wp), &
          ledger%kinetic, ledger%skeleton, ledger%pores, ledger%gravity, ledger%loads, ledger%supports, ledger%seepage, &
          ledger%damping, imbalance(ledger), ledger%outflow, ledger%outflow_air, step_error
-      if (status /= 0) call raise(fault, EXIT_OUTPUT, 'ledger.csv cannot be written; is the disk full?')
+      call write_row(output%ledger, fault)
    end subroutine write_ledger
 
    subroutine write_contacts(output, scene, contacts, dt, state, work, fault)
-      type(output_t), intent(in) :: output
+      type(output_t), intent(inout) :: output
       type(scene_t), intent(in) :: scene
       type(contacts_t), intent(in) :: contacts
       real(wp), intent(in) :: dt, work   !< Step, and work done on the penalty so far [s, kJ].
       type(state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
-      integer :: status
 
-      if (output%contact == 0) return
-      write (output%contact, NUMBER, iostat=status) contact_row(scene, contacts, dt, state, work)
-      if (status /= 0) call raise(fault, EXIT_OUTPUT, 'contact.csv cannot be written; is the disk full?')
+      if (.not. is_open(output%contact)) return
+      write (output%contact%row, NUMBERS) contact_row(scene, contacts, dt, state, work)
+      call write_row(output%contact, fault)
    end subroutine write_contacts
 
    !> nodes_STAGE.csv and points_STAGE.csv.
@@ -179,27 +162,29 @@ contains
       type(state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
       real(wp) :: x(4, size(state%x, 2))
-      integer :: unit, i, e, g, p, status
+      type(table_t) :: table
+      integer :: i, e, g, p
 
       call all_pressures(model, state, x)
-      status = 0
-      call open_file(output%folder//'/nodes_'//stage//'.csv', 'r,z,u_r,u_z,p_w,p_c,v_r,v_z', unit, fault)
-      if (fault%code /= 0) return
+      call new_table(output%folder//'/nodes_'//stage//'.csv', 'r,z,u_r,u_z,p_w,p_c,v_r,v_z', table, fault)
       do i = 1, size(state%x, 2)
-         if (status == 0) write (unit, NUMBER, iostat=status) model%mesh%x(:, i), x(:, i), state%v(1:2, i)
+         if (fault%code /= 0) exit
+         write (table%row, NUMBERS) model%mesh%x(:, i), x(:, i), state%v(1:2, i)
+         call write_row(table, fault)
       end do
-      close (unit)
-      call open_file(output%folder//'/points_'//stage//'.csv', 'r,z,weight,s_rr,s_zz,s_tt,s_rz,e,S_w', unit, fault)
+      call close_table(table, fault)
       if (fault%code /= 0) return
+      call new_table(output%folder//'/points_'//stage//'.csv', 'r,z,weight,s_rr,s_zz,s_tt,s_rz,e,S_w', table, fault)
       do e = 1, size(model%mesh%t6, 2)
          do g = 1, model%rule
+            if (fault%code /= 0) exit
             p = (e - 1)*model%rule + g
-            if (status == 0) write (unit, NUMBER, iostat=status) model%gauss(g, e)%x, model%gauss(g, e)%weight, &
-               state%stress(1:4, p), state%e(p), state%s(p)
+            write (table%row, NUMBERS) model%gauss(g, e)%x, model%gauss(g, e)%weight, state%stress(1:4, p), &
+               state%e(p), state%s(p)
+            call write_row(table, fault)
          end do
       end do
-      close (unit)
-      if (status /= 0) call raise(fault, EXIT_OUTPUT, 'The fields cannot be written; is the disk full?')
+      call close_table(table, fault)
    end subroutine write_fields
 
    !> contact_STAGE.csv: slave nodes of the contacts that act in the stage.
@@ -210,26 +195,29 @@ contains
       character(*), intent(in) :: stage
       type(state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
-      real(wp), allocatable :: table(:, :)
-      integer :: unit, i, status
+      real(wp), allocatable :: values(:, :)
+      type(table_t) :: table
+      integer :: i
 
       if (.not. allocated(contacts%touch)) return
-      call contact_nodes(scene, contacts, state, table)
-      call open_file(output%folder//'/contact_'//stage//'.csv', 'contact,r,z,weight,coverage,gap,pressure', unit, fault)
-      if (fault%code /= 0) return
-      status = 0
-      do i = 1, size(table, 2)
-         if (status == 0) write (unit, NUMBER, iostat=status) table(:, i)
+      call contact_nodes(scene, contacts, state, values)
+      call new_table(output%folder//'/contact_'//stage//'.csv', 'contact,r,z,weight,coverage,gap,pressure', table, &
+                     fault)
+      do i = 1, size(values, 2)
+         if (fault%code /= 0) exit
+         write (table%row, NUMBERS) values(:, i)
+         call write_row(table, fault)
       end do
-      close (unit)
-      if (status /= 0) call raise(fault, EXIT_OUTPUT, 'contact_'//stage//'.csv cannot be written; is the disk full?')
+      call close_table(table, fault)
    end subroutine write_touching
 
-   subroutine close_output(output)
+   !> Closes all tables; the first that fails is reported.
+   subroutine close_output(output, fault)
       type(output_t), intent(inout) :: output
+      type(fault_t), intent(inout) :: fault
 
-      close (output%history)
-      close (output%ledger)
-      if (output%contact /= 0) close (output%contact)
+      call close_table(output%history, fault)
+      call close_table(output%ledger, fault)
+      call close_table(output%contact, fault)
    end subroutine close_output
 end module host_output

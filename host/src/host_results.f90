@@ -1,15 +1,15 @@
 !> Fields in HDF5, one file for the mesh and one for every moment, and results.xdmf, which ParaView opens. Every file is
 !> written as a whole: a run that is killed leaves whole files, and a restart writes the same ones again.
 module host_results
-   use host_kinds, only: wp
+   use host_kinds, only: wp, EXIT_RESTART
    use fe_model, only: model_t, state_t
    use io_files, only: write_whole, bytes_of
-   use io_hdf5, only: HAS_HDF5, h5_t, new_file, write_file, put, put_text
+   use io_hdf5, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get_text
    use triax_fault, only: fault_t, raise, EXIT_OUTPUT
    use triax_text, only: whole
    implicit none (type, external)
    private
-   public :: frames_t, write_mesh, write_frame, all_pressures
+   public :: frames_t, write_mesh, check_mesh, write_frame, all_pressures
 
    type :: frames_t
       real(wp), allocatable :: times(:)   !< Of the frames written so far.
@@ -43,8 +43,8 @@ module host_results
       field_t('S_w', '-', 'degree of saturation', .false., 1)]
 contains
    !> mesh.h5: nodes, elements, quadrature points, region of every element.
-   subroutine write_mesh(folder, scene, model, fault)
-      character(*), intent(in) :: folder, scene
+   subroutine write_mesh(folder, scene, fingerprint, model, fault)
+      character(*), intent(in) :: folder, scene, fingerprint   !< Name and fingerprint of the scene.
       type(model_t), intent(in) :: model
       type(fault_t), intent(inout) :: fault
       type(h5_t) :: file
@@ -55,18 +55,41 @@ contains
       call new_file(file)
       call put_text(file, 'kind', 'mesh of mud_host')
       call put_text(file, 'scene', scene)
+      call put_text(file, 'fingerprint', fingerprint)
       call put_text(file, 'axes', merge('r, z; axisymmetric', 'x, y; plane strain', model%axisymmetric))
-      call put(file, 'nodes', model%mesh%x, 'm', 'coordinates r, z of every node')
+      call put(file, 'nodes', model%mesh%x, 'm', 'coordinates r, z (x, y in plane strain) of '// &
+               'every node')
       call put(file, 'elements', model%mesh%t6 - 1, '-', 'nodes of every element from 0: vertices, then the '// &
                'middles of the sides 1-2, 2-3, 3-1')
       call put(file, 'regions', model%region_of, '-', 'number of the region of every element, as in the scene')
       call put(file, 'points/position', reshape([((model%gauss(g, e)%x, g=1, model%rule), &
-               e=1, size(model%mesh%t6, 2))], [2, size(model%gauss)]), 'm', 'r, z of every quadrature point')
+               e=1, size(model%mesh%t6, 2))], [2, size(model%gauss)]), 'm', 'r, z (x, y in plane strain) of every '// &
+               'quadrature point')
       call put(file, 'points/weight', [((model%gauss(g, e)%weight, g=1, model%rule), e=1, size(model%mesh%t6, 2))], &
-               'm3', 'volume of every quadrature point')
+               'm3', 'volume of every quadrature point (per m of thickness in plane strain)')
       call write_file(file, folder//'/mesh.h5', good)
       if (.not. good) call complain(folder//'/mesh.h5', fault)
    end subroutine write_mesh
+
+   !> Refuses a folder whose mesh is not that of the scene's run.
+   subroutine check_mesh(folder, fingerprint, fault)
+      character(*), intent(in) :: folder, fingerprint
+      type(fault_t), intent(inout) :: fault
+      type(h5_t) :: file
+      character(64) :: found
+
+      call open_file(folder//'/mesh.h5', file)
+      if (.not. file%good) then
+         call raise(fault, EXIT_RESTART, folder//'/mesh.h5 is not there, or cut off; --output must name the folder '// &
+                    'of the interrupted run. Nothing was changed.')
+         return
+      end if
+      found = get_text(file, 'fingerprint')
+      if (found /= fingerprint) call raise(fault, EXIT_RESTART, folder//' holds another run (scene '// &
+         trim(get_text(file, 'scene'))//', fingerprint '//trim(found)//', here '//fingerprint//'); --output must '// &
+         'name the folder of the interrupted run. Nothing was changed.')
+      call close_file(file)
+   end subroutine check_mesh
 
    !> fields_NUMBER.h5 of a state, and results.xdmf up to it.
    subroutine write_frame(folder, model, state, frames, fault)

@@ -122,17 +122,19 @@ contains
          call clear_progress(progress)
          t0 = clock()
          ! Also after a failure, which is reported, not what its last output may meet.
-         last = fault
+         last = fault_t()
          if (folder /= '') call write_fields(output, scene%model, trim(scene%stages(i)%name), run%state, last)
-         if (folder /= '' .and. last%code == fault%code) &
+         if (folder /= '' .and. last%code == 0) &
             call write_touching(output, scene, run%system%contacts, trim(scene%stages(i)%name), run%state, last)
-         if (folder /= '' .and. last%code == fault%code) &
+         if (folder /= '' .and. last%code == 0) &
             call write_frame(folder, scene%model, run%state, output%frames, last)
          if (fault%code == 0) fault = last
          call lap(run%seconds_output, t0)
          if (fault%code /= 0) exit
       end do
-      if (folder /= '') call close_output(output)
+      last = fault_t()
+      if (folder /= '') call close_output(output, last)
+      if (fault%code == 0) fault = last
       if (scene%effects%auto) call end_watch(scene, folder, quiet, run, fault)
       call release(run%system%sparse)
       run%system%analysed = .false.
@@ -148,7 +150,6 @@ contains
       type(fault_t) :: last
       integer :: i
 
-      last = fault
       if (folder /= '') call write_effects(folder, run%watch%table, last)
       if (fault%code == 0) fault = last
       if (quiet .or. .not. any(run%watch%table%crossed > NEVER)) return

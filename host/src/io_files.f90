@@ -1,10 +1,11 @@
 !> Files that are either whole or not there, and what else Fortran cannot ask the system for (POSIX).
 module io_files
    use, intrinsic :: iso_c_binding, only: c_int, c_int8_t, c_size_t, c_long, c_char, c_ptr, c_null_char, c_associated, &
-                                          c_funptr, c_null_funptr, c_intptr_t
+                                          c_loc, c_funptr, c_null_funptr, c_intptr_t
    implicit none (type, external)
    private
-   public :: write_whole, bytes_of, cut_file, settle_file, to_terminal, limits_are_errors
+   public :: write_whole, bytes_of, make_folder, folder_of, to_terminal, limits_are_errors
+   public :: fopen, fwrite, fflush, fileno, fclose, fsync, truncate
 
    character(*), parameter :: PART = '.part'   !< Ends the name of a file that is being written.
 
@@ -15,10 +16,9 @@ module io_files
       end function fopen
 
       integer(c_size_t) function fwrite(data, size, count, file) bind(c)
-         import :: c_ptr, c_size_t, c_int8_t
-         integer(c_int8_t), intent(in) :: data(*)
+         import :: c_ptr, c_size_t
+         type(c_ptr), value :: data, file
          integer(c_size_t), value :: size, count
-         type(c_ptr), value :: file
       end function fwrite
 
       integer(c_int) function fflush(file) bind(c)
@@ -57,6 +57,12 @@ module io_files
          integer(c_long), value :: length
       end function truncate
 
+      integer(c_int) function mkdir(path, mode) bind(c)
+         import :: c_int, c_char
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int), value :: mode
+      end function mkdir
+
       type(c_funptr) function signal(number, action) bind(c)
          import :: c_int, c_funptr
          integer(c_int), value :: number
@@ -73,7 +79,7 @@ contains
    !> Not before the data are on the disk does the new one get the name. On failure the old one stays.
    subroutine write_whole(path, bytes, good)
       character(*), intent(in) :: path
-      integer(c_int8_t), intent(in) :: bytes(:)
+      integer(c_int8_t), intent(in), contiguous, target :: bytes(:)
       logical, intent(out) :: good
       character(:), allocatable :: temporary
       type(c_ptr) :: file
@@ -82,7 +88,7 @@ contains
       file = fopen(temporary, 'wb'//c_null_char)
       good = c_associated(file)
       if (.not. good) return
-      good = fwrite(bytes, 1_c_size_t, size(bytes, kind=c_size_t), file) == size(bytes, kind=c_size_t)
+      good = fwrite(c_loc(bytes), 1_c_size_t, size(bytes, kind=c_size_t), file) == size(bytes, kind=c_size_t)
       if (good) good = fflush(file) == 0
       if (good) good = fsync(fileno(file)) == 0
       if (fclose(file) /= 0) good = .false.
@@ -98,9 +104,25 @@ contains
       character(*), intent(in) :: path
       character(:), allocatable :: folder
 
+      integer :: slash
+
       folder = '.'
-      if (index(path, '/') > 0) folder = path(:index(path, '/', back=.true.))
+      slash = index(path, '/', back=.true.)
+      if (slash > 0) folder = path(:max(1, slash - 1))
    end function folder_of
+
+   !> Makes a folder and those above it; whether it is there then shows with the first file.
+   subroutine make_folder(path)
+      character(*), intent(in) :: path
+      integer(c_int), parameter :: OPEN_TO_ALL = int(o'777', c_int)   ! less the umask
+      integer(c_int) :: status
+      integer :: i
+
+      do i = 2, len(path)
+         if (path(i:i) == '/') status = mkdir(path(:i - 1)//c_null_char, OPEN_TO_ALL)
+      end do
+      status = mkdir(path//c_null_char, OPEN_TO_ALL)
+   end subroutine make_folder
 
    !> Asks the system to bring a file or a folder to the disk; where it cannot, nothing is lost but that.
    subroutine settle_file(path)
@@ -113,17 +135,6 @@ contains
       status = fsync(fileno(file))
       status = fclose(file)
    end subroutine settle_file
-
-   !> Cuts a file to its first bytes; false if it has not as many.
-   logical function cut_file(path, length) result(good)
-      character(*), intent(in) :: path
-      integer, intent(in) :: length
-      integer :: now
-
-      inquire (file=path, size=now)
-      good = now >= length
-      if (good) good = truncate(path//c_null_char, int(length, c_long)) == 0
-   end function cut_file
 
    pure function bytes_of(text) result(bytes)
       character(*), intent(in) :: text

@@ -1,6 +1,6 @@
 !> mud_host SCENE.nml: coupled finite elements of unsaturated soil.
 program mud_host
-   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit, int64
    use host_clock, only: clock
    use host_effects_table, only: print_effects
    use host_keys, only: print_template
@@ -96,7 +96,7 @@ contains
       write (output_unit, '(a)') whole(run%steps)//' steps, '//whole(run%iterations)//' iterations, '// &
          whole(run%cuts)//' cuts, '//whole(run%effort)//' rate evaluations of the material; in this run '// &
          whole(run%system%n_pass)//' passes over the elements, '//whole(run%system%sparse%n_numeric)// &
-         ' factorisations ('//whole(nint(run%system%sparse%entries))//' entries), '// &
+         ' factorisations ('//whole(nint(run%system%sparse%entries, int64))//' entries), '// &
          whole(run%system%sparse%n_solve)//' solutions by factors.'
       do k = 1, size(PHASES)
          write (output_unit, '(3x,a,f12.3,a,f6.1,a)') PHASES(k), seconds(k), ' s', 100*seconds(k)/total, ' %'

@@ -194,6 +194,50 @@ for what, make, scene_text, words in REFUSED:
 scene.write_text(text)
 done = run(scene, work / "elsewhere", "--quiet", "--restart", keep)
 check("restart into another folder", done.returncode == 17 and "interrupted run" in done.stderr, done.stderr)
+
+# A restart that is refused changes nothing in the folder, nor does one make it.
+check("refused restart: no folder", not (work / "elsewhere").exists())
+
+
+def contents(folder):
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def refused(what, folder, words, *more, **how):
+    before = contents(folder)
+    done = subprocess.run([host, scene, "--restart", keep, "--quiet", *more], capture_output=True, text=True,
+                          env=environment, **how)
+    check(f"restart {what}", done.returncode == 17 and words in done.stderr and len(done.stderr.splitlines()) == 1,
+          f"{done.returncode}: {done.stderr}")
+    check(f"restart {what}: nothing changed", contents(folder) == before)
+
+
+stranger = work / "stranger"
+scene.write_text(other)
+done = run(scene, stranger, "--quiet")
+scene.write_text(text)
+check("run of another scene", done.returncode == 0, done.stderr)
+refused("over another run", stranger, "holds another run", "--output", stranger)
+for name in ("histories.csv", "ledger.csv"):
+    lost = work / f"without_{name}"
+    shutil.copytree(whole, lost)
+    (lost / name).unlink()
+    refused(f"without {name}", lost, name, "--output", lost)
+    (lost / name).write_bytes((whole / name).read_bytes()[:100])
+    refused(f"with a short {name}", lost, name, "--output", lost)
+(lost / "mesh.h5").unlink()
+refused("without a mesh", lost, "mesh.h5", "--output", lost)
+# Without --output it goes on where the checkpoint lies, whatever the default folder holds.
+shutil.copytree(half, work / "home")
+shutil.copy(keep, work / "home/checkpoint.h5")
+elsewhere = work / "start/output"
+shutil.copytree(stranger, elsewhere)
+before = contents(elsewhere)
+done = subprocess.run([host, scene, "--restart", work / "home/checkpoint.h5", "--quiet"], capture_output=True, text=True,
+                      env=environment, cwd=work / "start")
+check("restart without --output", done.returncode == 0 and not differences(whole, work / "home"),
+      done.stderr + str(differences(whole, work / "home")))
+check("restart without --output: default folder untouched", contents(elsewhere) == before)
 # A file that the scene names counts as much as the scene.
 copy = work / "sand.nml"
 copy.write_text((root / "drivers/materials/toyoura.nml").read_text())
@@ -226,6 +270,39 @@ check("after a full disk: same bytes", done.returncode == 0 and not differences(
 # A folder that nothing can be written to, from the first file on.
 done = run(scene, "/proc/nowhere", "--quiet")
 check("no folder", done.returncode == 4, done.stderr)
+
+# A table on a device that is always full, and nothing else: the run says which. All effects are derived, so that their
+# table is written too.
+short = re.sub(r"duration = .*", "duration = 2.0e-3", text.replace("checkpoint_steps = 2\n", "effects = 'auto'\n"))
+scene.write_text(short)
+touch_short = work / "touch_short.nml"
+touch_short.write_text(re.sub(r"duration = .*", "duration = 1.0e-4", plate))
+for name, which in (("histories.csv", scene), ("ledger.csv", scene), ("effects.csv", scene), ("nodes_rest.csv", scene),
+                    ("points_rest.csv", scene), ("contact.csv", touch_short), ("contact_impact.csv", touch_short)):
+    out = work / f"full_{name}"
+    out.mkdir()
+    (out / name).symlink_to("/dev/full")
+    done = run(which, out, "--quiet")
+    told = f"{name} cannot be written; is the disk full?" in done.stderr and len(done.stderr.splitlines()) == 1
+    check(f"full disk under {name}", done.returncode == 4 and told, f"{done.returncode}: {done.stderr}")
+# At a checkpoint it shows at once, not at the end.
+scene.write_text(text)
+out = work / "full_at_checkpoint"
+out.mkdir()
+(out / "ledger.csv").symlink_to("/dev/full")
+done = run(scene, out, "--quiet")
+check("full disk at a checkpoint", done.returncode == 4 and "ledger.csv cannot" in done.stderr
+      and not (out / "checkpoint.h5").exists(), done.stderr)
+
+# A row is as long as it must be: 400 points.
+block = (root / "host/README.md").read_text().split("<!-- first scene -->")[1].split("```")[1]
+many = work / "many.nml"
+many.write_text(block + "".join(f"&point name = 'p{k}' r = {k/400} z = {k/800} /\n" for k in range(400)))
+done = run(many, work / "many", "--quiet")
+check("400 points", done.returncode == 0, done.stderr)
+if done.returncode == 0:
+    rows = [line.split(",") for line in (work / "many/histories.csv").read_text().splitlines()]
+    check("400 points: columns", [len(row) for row in rows] == [1 + 13*401]*len(rows) and len(rows) == 3)
 
 # results.xdmf as a reader of that format sees it: times, connections and coordinates, fields by name and unit.
 with meshio.xdmf.TimeSeriesReader(whole / "results.xdmf") as series:

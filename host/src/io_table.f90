@@ -1,0 +1,149 @@
+!> Tables of text whose every byte is accounted for: rows go through the C library, which tells of a full disk, whereas
+!> the Fortran runtime buffers formatted records and loses its refusal.
+module io_table
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_null_char, c_associated, c_size_t, c_long, c_loc
+   use, intrinsic :: iso_fortran_env, only: int64
+   use host_kinds, only: EXIT_RESTART
+   use io_files, only: fopen, fwrite, fflush, fclose, fsync, fileno, truncate
+   use triax_fault, only: fault_t, raise, EXIT_OUTPUT
+   implicit none (type, external)
+   private
+   public :: table_t, new_table, check_table, resume_table, write_row, write_line, settle_table, close_table, is_open
+   public :: NUMBERS
+
+   character(*), parameter :: NUMBERS = '(*(es24.16e3,:,","))'   !< A row of numbers,
+   integer, parameter :: CELL = 25                               !< and the room that each takes.
+
+   type :: table_t
+      character(:), allocatable :: path
+      character(:), allocatable :: row    !< The next row is composed here: room for every column.
+      integer(int64) :: bytes = 0         !< Length so far; before `resume_table`: what is to be kept.
+      type(c_ptr) :: file = c_null_ptr
+   end type table_t
+contains
+   !> A new file; its columns are named in `head`.
+   subroutine new_table(path, head, table, fault)
+      character(*), intent(in) :: path, head
+      type(table_t), intent(out) :: table
+      type(fault_t), intent(inout) :: fault
+
+      table%path = path
+      call make_room(head, table)
+      table%file = fopen(path//c_null_char, 'wb'//c_null_char)
+      if (.not. is_open(table)) then
+         call raise(fault, EXIT_OUTPUT, path//' cannot be written; does the folder exist, is there space?')
+         return
+      end if
+      call write_line(table, head, fault)
+   end subroutine new_table
+
+   subroutine make_room(head, table)
+      character(*), intent(in) :: head
+      type(table_t), intent(inout) :: table
+      integer :: i
+
+      if (allocated(table%row)) deallocate (table%row)
+      allocate (character(CELL*(1 + count([(head(i:i) == ',', i=1, len(head))]))) :: table%row)
+   end subroutine make_room
+
+   pure logical function is_open(table)
+      type(table_t), intent(in) :: table
+
+      is_open = c_associated(table%file)
+   end function is_open
+
+   !> Whether a table of an interrupted run is there, as long as at its checkpoint, and can be written; changes nothing.
+   subroutine check_table(path, bytes, fault)
+      character(*), intent(in) :: path
+      integer(int64), intent(in) :: bytes
+      type(fault_t), intent(inout) :: fault
+      type(c_ptr) :: file
+      logical :: good
+
+      file = fopen(path//c_null_char, 'r+b'//c_null_char)
+      good = c_associated(file)
+      if (good) good = fclose(file) == 0
+      if (good) good = size_of(path) >= bytes
+      if (.not. good) call raise(fault, EXIT_RESTART, path//' is not there, shorter than at the checkpoint, '// &
+                                 'or cannot be written; --output must name the folder of the interrupted run.')
+   end subroutine check_table
+
+   !> Opens a table that was checked and cuts off what follows its first `table%bytes`.
+   subroutine resume_table(path, head, table, fault)
+      character(*), intent(in) :: path, head
+      type(table_t), intent(inout) :: table
+      type(fault_t), intent(inout) :: fault
+      logical :: good
+
+      table%path = path
+      call make_room(head, table)
+      good = truncate(path//c_null_char, int(table%bytes, c_long)) == 0
+      if (good) table%file = fopen(path//c_null_char, 'ab'//c_null_char)
+      if (good) good = is_open(table)
+      if (.not. good) call complain(table, fault)
+   end subroutine resume_table
+
+   integer(int64) function size_of(path) result(bytes)
+      character(*), intent(in) :: path
+
+      inquire (file=path, size=bytes)
+   end function size_of
+
+   !> The row that was composed in `table%row`, without the blanks at its end.
+   subroutine write_row(table, fault)
+      type(table_t), intent(inout) :: table
+      type(fault_t), intent(inout) :: fault
+
+      call put_text(table, table%row(:len_trim(table%row))//new_line('a'), fault)
+   end subroutine write_row
+
+   subroutine write_line(table, text, fault)
+      type(table_t), intent(inout) :: table
+      character(*), intent(in) :: text
+      type(fault_t), intent(inout) :: fault
+
+      call put_text(table, text//new_line('a'), fault)
+   end subroutine write_line
+
+   subroutine put_text(table, text, fault)
+      type(table_t), intent(inout) :: table
+      character(*), intent(in), target :: text
+      type(fault_t), intent(inout) :: fault
+
+      if (fwrite(c_loc(text), 1_c_size_t, len(text, kind=c_size_t), table%file) == len(text, kind=c_size_t)) then
+         table%bytes = table%bytes + len(text)
+      else
+         call complain(table, fault)
+      end if
+   end subroutine put_text
+
+   !> Brings what was written to the disk.
+   subroutine settle_table(table, fault)
+      type(table_t), intent(inout) :: table
+      type(fault_t), intent(inout) :: fault
+
+      if (fflush(table%file) /= 0) then
+         call complain(table, fault)
+      else if (fsync(fileno(table%file)) /= 0) then
+         ! What is no regular file, as a pipe, has no size and no place on a disk.
+         if (size_of(table%path) >= table%bytes) call complain(table, fault)
+      end if
+   end subroutine settle_table
+
+   !> The last rows may meet a full disk as late as here.
+   subroutine close_table(table, fault)
+      type(table_t), intent(inout) :: table
+      type(fault_t), intent(inout) :: fault
+
+      if (.not. is_open(table)) return
+      if (fclose(table%file) /= 0 .and. fault%code == 0) call complain(table, fault)
+      table%file = c_null_ptr
+   end subroutine close_table
+
+   subroutine complain(table, fault)
+      type(table_t), intent(in) :: table
+      type(fault_t), intent(inout) :: fault
+
+      call raise(fault, EXIT_OUTPUT, table%path//' cannot be written; is the disk full?')
+   end subroutine complain
+end module io_table
