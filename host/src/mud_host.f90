@@ -1,22 +1,25 @@
 !> mud_host SCENE.nml: coupled finite elements of unsaturated soil.
 program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit, int64
+   use host_checkpoint, only: read_checkpoint
    use host_clock, only: clock
    use host_effects_table, only: print_effects
    use host_keys, only: print_template
+   use host_output, only: output_t, check_output
    use host_process, only: settle_process
    use host_read, only: read_scene
    use host_run, only: run_t, prepare_run, run_scene
    use host_scene, only: scene_t
-   use io_files, only: limits_are_errors
+   use io_files, only: limits_are_errors, folder_of
    use triax_fault, only: fault_t, raise, EXIT_INPUT
-   use triax_text, only: whole
+   use triax_text, only: short, whole
    implicit none (type, external)
    character(*), parameter :: USAGE = 'usage: mud_host SCENE.nml [--output FOLDER] [--restart CHECKPOINT] '// &
                               '[--quiet] [--check] | --template'
    character(1024) :: word, file, folder, restart
    type(scene_t) :: scene
    type(run_t) :: run
+   type(output_t) :: output
    type(fault_t) :: fault
    logical :: quiet, only_check
    double precision :: t0
@@ -30,27 +33,23 @@ program mud_host
    quiet = .false.
    only_check = .false.
    i = 1
-   do while (i <= command_argument_count())
+   do while (i <= command_argument_count() .and. fault%code == 0)
       call get_command_argument(i, word)
       select case (word)
       case ('--template')
          call print_template(output_unit)
          stop
       case ('--help', '-h')
-         write (output_unit, '(a)') USAGE
+         call print_help()
          stop
       case ('--quiet')
          quiet = .true.
       case ('--check')
          only_check = .true.
       case ('--output')
-         i = i + 1
-         call get_command_argument(i, folder)
-         if (folder == '') call raise(fault, EXIT_INPUT, '--output needs a folder; '//USAGE)
+         call take_value('a folder', folder)
       case ('--restart')
-         i = i + 1
-         call get_command_argument(i, restart)
-         if (restart == '') call raise(fault, EXIT_INPUT, '--restart needs a checkpoint; '//USAGE)
+         call take_value('a checkpoint', restart)
       case default
          if (word(1:1) == '-' .or. file /= '') call raise(fault, EXIT_INPUT, trim(word)//' is not understood; '//USAGE)
          file = word
@@ -58,24 +57,64 @@ program mud_host
       i = i + 1
    end do
    if (file == '' .and. fault%code == 0) call raise(fault, EXIT_INPUT, 'No scene is given; '//USAGE)
-   if (folder == '') folder = 'output'
+   if (folder == '') then
+      folder = 'output'
+      if (restart /= '') folder = folder_of(trim(restart))
+   end if
    t0 = clock()
    if (fault%code == 0) call read_scene(trim(file), scene, fault)
    if (fault%code == 0) call prepare_run(scene, run, fault)
    if (fault%code == 0 .and. .not. quiet) call announce()
-   if (fault%code == 0 .and. .not. only_check) then
+   if (fault%code == 0 .and. only_check .and. restart /= '') then
+      call check_restart()
+   else if (fault%code == 0 .and. .not. only_check) then
       if (restart == '') then
          call run_scene(scene, trim(folder), quiet, run, fault)
       else
          call run_scene(scene, trim(folder), quiet, run, fault, trim(restart))
       end if
    end if
-   if (.not. quiet .and. run%steps > 0) call account()
+   if (.not. (quiet .or. only_check) .and. run%steps > 0) call account()
    if (fault%code /= 0) then
       write (error_unit, '(a)') trim(fault%text)
       stop fault%code, quiet=.true.
    end if
 contains
+   !> The word after an option. One that looks like an option is none: the value was forgotten.
+   subroutine take_value(what, value)
+      character(*), intent(in) :: what
+      character(*), intent(out) :: value
+      integer :: status
+
+      i = i + 1
+      call get_command_argument(i, value, status=status)
+      if (status < 0) call raise(fault, EXIT_INPUT, trim(word)//' is longer than '//whole(len(value))//' characters.')
+      if (value == '' .or. value(1:1) == '-') call raise(fault, EXIT_INPUT, trim(word)//' needs '//what//'; '//USAGE)
+   end subroutine take_value
+
+   subroutine print_help()
+      character(*), parameter :: LINES(6) = [character(100) :: &
+         '  --output FOLDER       where files go, made if missing; default: output, with --restart that of the', &
+         '                        checkpoint', &
+         '  --restart CHECKPOINT  goes on from a checkpoint of the same scene', &
+         '  --check               reads and checks scene and checkpoint, runs nothing', &
+         '  --quiet               prints errors only', &
+         '  --template            prints every group and key of a scene']
+      integer :: k
+
+      write (output_unit, '(a)') USAGE, (trim(LINES(k)), k=1, size(LINES))
+      write (output_unit, '(a)') 'Exit codes: host/README.md, "Exit codes".'
+   end subroutine print_help
+
+   !> Whether the run could go on from the checkpoint, in its folder.
+   subroutine check_restart()
+      call read_checkpoint(trim(restart), scene, run, output, fault)
+      if (fault%code == 0) call check_output(trim(folder), scene, output, fault)
+      if (fault%code /= 0 .or. quiet) return
+      write (output_unit, '(a)') trim(restart)//' fits: stage '//trim(scene%stages(run%course%stage)%name)// &
+         ', step '//whole(run%course%step)//', time '//short(run%state%time)//' s; the run would go on in '//trim(folder)//'.'
+   end subroutine check_restart
+
    subroutine announce()
       write (output_unit, '(a)') trim(scene%name)//': '//whole(size(scene%model%mesh%t6, 2))//' elements, '// &
          whole(size(scene%model%mesh%x, 2))//' nodes, '//whole(run%dofs%n)//' unknowns, '// &

@@ -233,8 +233,14 @@ shutil.copy(keep, work / "home/checkpoint.h5")
 elsewhere = work / "start/output"
 shutil.copytree(stranger, elsewhere)
 before = contents(elsewhere)
-done = subprocess.run([host, scene, "--restart", work / "home/checkpoint.h5", "--quiet"], capture_output=True, text=True,
-                      env=environment, cwd=work / "start")
+home = contents(work / "home")
+start = [host, scene, "--restart", work / "home/checkpoint.h5"]
+how = {"capture_output": True, "text": True, "env": environment, "cwd": work / "start"}
+done = subprocess.run([*start, "--check"], **how)
+check("check of a checkpoint", done.returncode == 0 and "checkpoint.h5 fits: stage" in done.stdout
+      and len(done.stdout.splitlines()) == 2 and contents(work / "home") == home, done.stdout + done.stderr)
+refused("of a strange folder, to be checked", stranger, "holds another run", "--output", stranger, "--check")
+done = subprocess.run([*start, "--quiet"], **how)
 check("restart without --output", done.returncode == 0 and not differences(whole, work / "home"),
       done.stderr + str(differences(whole, work / "home")))
 check("restart without --output: default folder untouched", contents(elsewhere) == before)
@@ -267,10 +273,6 @@ check("full disk: no rest", not list(full.glob("*.part")))
 done = run(scene, full, "--quiet", "--restart", full / "checkpoint.h5")
 check("after a full disk: same bytes", done.returncode == 0 and not differences(whole, full),
       done.stderr + str(differences(whole, full)))
-# A folder that nothing can be written to, from the first file on.
-done = run(scene, "/proc/nowhere", "--quiet")
-check("no folder", done.returncode == 4, done.stderr)
-
 # A table on a device that is always full, and nothing else: the run says which. All effects are derived, so that their
 # table is written too.
 short = re.sub(r"duration = .*", "duration = 2.0e-3", text.replace("checkpoint_steps = 2\n", "effects = 'auto'\n"))
@@ -303,6 +305,14 @@ check("400 points", done.returncode == 0, done.stderr)
 if done.returncode == 0:
     rows = [line.split(",") for line in (work / "many/histories.csv").read_text().splitlines()]
     check("400 points: columns", [len(row) for row in rows] == [1 + 13*401]*len(rows) and len(rows) == 3)
+
+# A folder that nothing can be written to, from the first file on.
+done = run(scene, "/proc/nowhere", "--quiet")
+check("no folder", done.returncode == 4, done.stderr)
+# A folder is made with those above it, whatever its name holds.
+odd = work / "it's; a $HOME/of `results`/"
+done = run(many, odd, "--quiet")
+check("odd folder", done.returncode == 0 and (odd / "ledger.csv").exists(), done.stderr)
 
 # results.xdmf as a reader of that format sees it: times, connections and coordinates, fields by name and unit.
 with meshio.xdmf.TimeSeriesReader(whole / "results.xdmf") as series:
