@@ -4,6 +4,7 @@ module host_read
    use host_fingerprint, only: fingerprint_of
    use host_keys, only: check_keys, number_of, numbers_of, text_of, texts_of, word_is, given
    use host_laws, only: read_mud, read_elastic, read_retention, read_permeability, retention_of_mud
+   use host_names, only: check_names
    use host_scene, only: scene_t, stage_t, fix_t, load_t, rigid_t, history_t, initial_t, point_t, plate_t, touching_t, &
                          acts_in, P_A, LOAD_KINDS
    use contact_types, only: NODAL_GAP, POINTWISE_GAP, PRESSURE_WORK, ENERGY_SLOPE
@@ -18,7 +19,7 @@ module host_read
    use time_galpha, only: STATIC, QUASI_STATIC, DYNAMIC
    use triax_fault, only: fault_t, raise, at_line, EXIT_INPUT
    use triax_namelist, only: group_t, read_groups
-   use triax_text, only: lower_case, whole, read_number
+   use triax_text, only: lower_case, short, whole, read_number
    implicit none (type, external)
    private
    public :: read_scene
@@ -32,6 +33,7 @@ contains
 
       call read_groups(file, groups, fault)
       if (fault%code == 0) call check_keys(groups, fault)
+      if (fault%code == 0) call check_names(groups, fault)
       if (fault%code == 0) call check_single(file, groups, fault)
       if (fault%code == 0) scene%fingerprint = fingerprint_of(groups)
       do i = 1, size(groups)
@@ -170,6 +172,7 @@ contains
       type(group_t), intent(in) :: group
       type(scene_t), intent(inout) :: scene
       type(fault_t), intent(inout) :: fault
+      real(wp), parameter :: MOST_ELEMENTS = 5.0e6_wp   !< Of a built-in mesh: entries of the matrix stay countable.
       character(:), allocatable :: path
       real(wp), allocatable :: r(:), z(:), r_ratio(:), z_ratio(:)
       integer, allocatable :: r_cells(:), z_cells(:)
@@ -197,6 +200,10 @@ contains
                     'give r_cells, z_cells (and ratios) one value a piece.')
       else if (any(r(2:) <= r(:size(r) - 1)) .or. any(z(2:) <= z(:size(z) - 1))) then
          call raise(fault, EXIT_MESH, at_line(group%file, group%line)//'breaks of r and z must ascend.')
+      else if (2*sum(real(r_cells, wp))*sum(real(z_cells, wp)) > MOST_ELEMENTS) then
+         call raise(fault, EXIT_MESH, at_line(group%file, group%line)//'r_cells, z_cells: '// &
+                    short(2*sum(real(r_cells, wp))*sum(real(z_cells, wp)))//' elements; at most '// &
+                    short(MOST_ELEMENTS)//'.')
       else
          call graded_mesh(r, r_cells, r_ratio, z, z_cells, z_ratio, scene%model%mesh)
       end if
@@ -276,14 +283,17 @@ contains
       scene%histories = [scene%histories, history]
    end subroutine take_history
 
+   !> A file of times and factors, two a line; comments as in a scene.
    subroutine read_table(group, history, fault)
       type(group_t), intent(in) :: group
       type(history_t), intent(inout) :: history
       type(fault_t), intent(inout) :: fault
+      integer, parameter :: LINE_LENGTH = 1024
       character(:), allocatable :: path
-      character(256) :: line
+      character(LINE_LENGTH) :: line
       real(wp) :: pair(2)
-      integer :: unit, status
+      logical :: good(2)
+      integer :: unit, status, n, last
 
       path = text_of(group, 'file')
       if (path(1:1) /= '/') path = group%file(:index(group%file, '/', back=.true.))//path
@@ -294,19 +304,45 @@ contains
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//path//' cannot be read.')
          return
       end if
+      n = 0
       do
          read (unit, '(a)', iostat=status) line
-         if (status /= 0) exit
-         if (len_trim(line) == 0 .or. index('#!', line(1:1)) > 0) cycle
-         read (line, *, iostat=status) pair
+         if (is_iostat_end(status)) exit
+         n = n + 1
          if (status /= 0) then
-            call raise(fault, EXIT_INPUT, path//': "'//trim(line)//'" is not a time and a factor.')
+            call raise(fault, EXIT_INPUT, at_line(path, n)//'cannot be read.')
+            exit
+         else if (len_trim(line) == LINE_LENGTH) then
+            call raise(fault, EXIT_INPUT, at_line(path, n)//'the line is longer than '//whole(LINE_LENGTH - 1)// &
+                       ' characters.')
+            exit
+         end if
+         line = adjustl(blank(line(:scan(line//'!', '!#') - 1)))
+         if (line == '') cycle
+         last = index(line, ' ')
+         call read_number(line(:last), pair(1), good(1))
+         call read_number(adjustl(line(last:)), pair(2), good(2))
+         if (.not. all(good)) then
+            call raise(fault, EXIT_INPUT, at_line(path, n)//'"'//trim(line(:min(60, len(line))))// &
+                       '" is not a time and a factor, two finite numbers.')
             exit
          end if
          history%times = [history%times, pair(1)]
          history%values = [history%values, pair(2)]
       end do
       close (unit)
+   contains
+      !> Commas, tabs and returns divide as blanks do.
+      pure function blank(text)
+         character(*), intent(in) :: text
+         character(len(text)) :: blank
+         integer :: i
+
+         blank = text
+         do i = 1, len(text)
+            if (scan(text(i:i), ','//achar(9)//achar(13)) > 0) blank(i:i) = ' '
+         end do
+      end function blank
    end subroutine read_table
 
    subroutine take_stage(group, scene, fault)

@@ -43,6 +43,7 @@ for folder in sorted((root / "verification").glob("host_*/check.py")):
 
 SCENE = (root / "verification/host_cylinder/scene.nml").read_text()
 FLOW = (root / "verification/host_terzaghi/scene.nml").read_text()
+STAGE = "&stage name = 'load' analysis = 'static' duration = 1 dt = 1 /\n"
 # what, scene, old text, new text, exit code, words of the sentence
 MISTAKES = [
     ("unknown key", SCENE, "young = 1.0e4", "yuong = 1.0e4", 2, ("yuong", "nearest is young")),
@@ -63,6 +64,19 @@ MISTAKES = [
     ("unconstrained body", SCENE, "   field = 'u_z'", "   field = 'u_r'", 13, ("singular", "&fix")),
     ("no convergence", FLOW, "tolerance = 1.0e-8", "tolerance = 1.0e-14\n   cuts = 2\n   max_iterations = 1", 14,
      ("no convergence", "element", "time")),
+    ("stage named twice", SCENE, "&fix\n   group = 'bottom'", f"{STAGE}&fix\n   group = 'bottom'", 2,
+     ("name = 'load' is given twice, first in line 24",)),
+    ("material named twice", SCENE, "&region", "&mud\n   name = 'wall'\n/\n&region", 2, ("'wall' is given twice",)),
+    ("point named twice", SCENE, "&region", "&point name = 'inner' r = 2 z = 0 /\n&region", 2,
+     ("'inner' is given twice",)),
+    ("names of two lists", SCENE, "&region", "&point name = 'load' r = 2 z = 0 /\n&region", 0, ()),
+    ("comma in a point", SCENE, "'inner'", "'in,ner'", 2, ("'in,ner' becomes a file or a column", "letters")),
+    ("slash in a stage", SCENE, "'load'", "'lo/ad'", 2, ("'lo/ad' becomes a file or a column",)),
+    ("odd but harmless name", SCENE, "'wall'", "'a wall, thick'", 0, ()),
+    ("nameless stage", SCENE, "'load'", "''", 2, ("a name has 1 to 64",)),
+    ("long name", SCENE, "'load'", f"'{'l'*65}'", 2, ("a name has 1 to 64",)),
+    ("huge mesh", SCENE, "r_cells = 8\n   z = 0, 0.25\n   z_cells = 2",
+     "r_cells = 100000\n   z = 0, 0.25\n   z_cells = 100000", 10, ("r_cells, z_cells: 2e10 elements", "at most 5e6")),
     ("absurd strain", SCENE, "value = 100", "value = 1.0e8", 15, ("beyond 1",)),
 ]
 for what, text, old, new, code, words in MISTAKES:
@@ -75,8 +89,40 @@ for what, text, old, new, code, words in MISTAKES:
         check(f"{what}: says {word}", word in done.stderr, done.stderr)
     if code:
         check(f"{what}: one sentence", len(done.stderr.splitlines()) == 1, done.stderr)
+# Histories from a file: what a line holds, what is said, and where.
+TABLES = [
+    ("plain", "0 0\n1 1\n", ()),
+    ("commas, tabs, returns, comments", "# t, f\r\n  ! indented\n0,\t0 ! start\r\n\n1.0d0 , 1\r\n", ()),
+    ("no number", "0 0\n1 nan\n", (":2:", "1 nan", "two finite numbers")),
+    ("infinity", "0 0\n1 inf\n", (":2:", "1 inf")),
+    ("too large", "0 0\n# more\n1 1e999\n", (":3:", "1 1e999")),
+    ("more words", "0 0\n1 1 junk 7\n", (":2:", "1 1 junk 7")),
+    ("one word", "0 0\n1\n", (":2:",)),
+    ("a slash", "0 0\n1 /\n", (":2:",)),
+    ("a repetition", "0 0\n2*1\n", (":2:",)),
+    ("a long line", "0 0\n1 1" + "0"*1100 + "\n", (":2:", "longer than 1023")),
+    ("no order", "0 0\n0 1\n", ("must ascend",)),
+    ("nothing", "# nothing\n", ("as many values as times",)),
+]
+scene.write_text(SCENE.replace("value = 100\n", "value = 100\n   history = 'rise'\n")
+                 + "&history name = 'rise' file = 'rise.txt' /\n")
+for what, table, words in TABLES:
+    (work / "rise.txt").write_bytes(table.encode())
+    done = subprocess.run([host, scene, "--output", work / "out"], capture_output=True, text=True, env=environment)
+    check(f"history, {what}: exit code", done.returncode == (2 if words else 0), f"{done.returncode}: {done.stderr}")
+    for word in words:
+        check(f"history, {what}: says {word}", word in done.stderr and len(done.stderr.splitlines()) == 1, done.stderr)
+scene.write_text(SCENE)
+
 done = subprocess.run([host], capture_output=True, text=True)
 check("no scene: usage", done.returncode == 2 and "usage" in done.stderr, done.stderr)
+for words in (("--output", "--quiet"), ("--restart", "--check"), ("--output",), ("--outptu", "out")):
+    done = subprocess.run([host, scene, *words], capture_output=True, text=True, cwd=work)
+    check(f"{' '.join(words)}: usage", done.returncode == 2 and words[0] in done.stderr and "usage" in done.stderr
+          and len(done.stderr.splitlines()) == 1 and not (work / "--quiet").exists(), done.stderr)
+done = subprocess.run([host, "--help"], capture_output=True, text=True)
+check("help", done.returncode == 0 and "default: output" in done.stdout and "Exit codes: host/README.md" in done.stdout
+      and "--restart" in done.stdout and max(map(len, done.stdout.splitlines())) <= 120, done.stdout)
 done = subprocess.run([host, work / "scene.nml", "--output", "/proc/nowhere"], capture_output=True, text=True,
                       env=environment)
 check("output that cannot be written", done.returncode == 4, f"{done.returncode}: {done.stderr}")
