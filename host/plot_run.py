@@ -6,6 +6,7 @@ for every point) into the folder. Without options: the last moment, and of every
 import argparse
 import csv
 import pathlib
+import re
 import sys
 
 import h5py
@@ -38,7 +39,9 @@ class Run:
             self.kept, elements = np.unique(file["elements"][...], return_inverse=True)
             self.nodes, self.elements = file["nodes"][...][self.kept], elements.reshape(-1, 6)
             self.scene, self.axes = file.attrs["scene"].decode(), file.attrs["axes"].decode()
-        self.files = sorted(folder.glob("fields_*.h5"))
+        # Not whatever lies in the folder: an earlier run may have written more.
+        names = re.findall(r">(fields_\d+\.h5):/", (folder / "results.xdmf").read_text(encoding="utf-8"))
+        self.files = [folder / name for name in dict.fromkeys(names)]
         self.times = []
         for path in self.files:
             with h5py.File(path) as file:

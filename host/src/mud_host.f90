@@ -112,7 +112,8 @@ contains
       if (fault%code == 0) call check_output(trim(folder), scene, output, fault)
       if (fault%code /= 0 .or. quiet) return
       write (output_unit, '(a)') trim(restart)//' fits: stage '//trim(scene%stages(run%course%stage)%name)// &
-         ', step '//whole(run%course%step)//', time '//short(run%state%time)//' s; the run would go on in '//trim(folder)//'.'
+         ', step '//whole(run%course%step)//', time '//short(run%state%time)// &
+         ' s; the run would go on in '//trim(folder)//'.'
    end subroutine check_restart
 
    subroutine announce()

@@ -239,6 +239,27 @@ how = {"capture_output": True, "text": True, "env": environment, "cwd": work / "
 done = subprocess.run([*start, "--check"], **how)
 check("check of a checkpoint", done.returncode == 0 and "checkpoint.h5 fits: stage" in done.stdout
       and len(done.stdout.splitlines()) == 2 and contents(work / "home") == home, done.stdout + done.stderr)
+# Counters and lengths beyond 32 bits: a file with a hole is long and takes no room.
+long = work / "long"
+shutil.copytree(half, long)
+FAR = 3*10**9
+altered(lambda f: f["counters"].__setitem__(7, 2.0*FAR))
+done = run(scene, long, "--restart", bad)
+told = re.search(r" (\d+) rate evaluations", done.stdout)
+check("counter beyond 32 bits", done.returncode == 0 and told and int(told[1]) > 2*FAR, done.stdout + done.stderr)
+altered(lambda f: f["counters"].__setitem__(9, float(FAR)))
+done = run(scene, long, "--check", "--restart", bad)
+check("length beyond 32 bits: too short", done.returncode == 17
+      and "histories.csv is not there, shorter" in done.stderr, done.stderr)
+os.truncate(long / "histories.csv", FAR + 100)
+done = run(scene, long, "--check", "--restart", bad)
+check("length beyond 32 bits: long enough", done.returncode == 0 and " fits: stage" in done.stdout, done.stderr)
+# Rows follow what is kept.
+done = run(scene, long, "--quiet", "--restart", bad)
+rows = len((half / "histories.csv").read_bytes())
+check("length beyond 32 bits: rows follow", done.returncode == 0 and 0 < (long / "histories.csv").stat().st_size - FAR
+      < rows, done.stderr)
+shutil.rmtree(long)
 refused("of a strange folder, to be checked", stranger, "holds another run", "--output", stranger, "--check")
 done = subprocess.run([*start, "--quiet"], **how)
 check("restart without --output", done.returncode == 0 and not differences(whole, work / "home"),
@@ -363,6 +384,11 @@ for name in ("fields.png", "histories.png"):
     path = work / "pictures" / name
     check(f"picture {name}", path.exists() and path.read_bytes().startswith(b"\x89PNG") and path.stat().st_size > 10000,
           done.stderr)
+# Fields that an earlier, longer run left behind are not of this one.
+(whole / "fields_999999.h5").write_bytes(b"of another run")
+done = subprocess.run([*plot, "--output", work / "pictures"], capture_output=True, text=True)
+check("picture without the fields of an earlier run", done.returncode == 0, done.stderr)
+(whole / "fields_999999.h5").unlink()
 done = subprocess.run([*plot, "--fields", "p_x"], capture_output=True, text=True)
 check("picture of no field", done.returncode == 1 and "no field p_x" in done.stderr, done.stderr)
 done = subprocess.run([*plot, "--window", "7", "8"], capture_output=True, text=True)
