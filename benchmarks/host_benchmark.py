@@ -5,6 +5,7 @@ Writes results/host.csv (every run) and results/host.md (tables). Runs of one co
 import argparse
 import atexit
 import csv
+import math
 import os
 import pathlib
 import platform
@@ -17,7 +18,8 @@ import tempfile
 
 here = pathlib.Path(__file__).resolve().parent
 root = here.parent
-PHASES = ("material", "assembly", "contact", "factorisation", "solution", "rest of Newton", "output", "all else", "in all")
+PHASES = ("material", "assembly", "contact", "factorisation", "solution", "rest of Newton", "output", "all else",
+          "in all")
 # Cells of the mesh: along r to 0.15 m and beyond, along z; ratios so that the smallest cells shrink with the mesh.
 MESHES = [(2, 5, 8), (4, 9, 16), (6, 13, 24), (8, 18, 32), (11, 26, 46), (16, 36, 64)]
 
@@ -28,6 +30,8 @@ options.add_argument("--rounds", type=int, default=3, help="runs of every varian
 options.add_argument("--part", choices=("phases", "measures", "growth"), action="append", help="only this part")
 options.add_argument("--steps", type=int, default=1333, help="steps of the pulse (1333)")
 args = options.parse_args()
+if args.part and args.results.resolve() == here / "results":
+    options.error("the committed results hold all parts: leave --part out, or name another --results")
 parts = args.part or ["phases", "measures", "growth"]
 work = pathlib.Path(tempfile.mkdtemp())
 atexit.register(shutil.rmtree, work, ignore_errors=True)
@@ -75,7 +79,21 @@ def run(part, name, changes=(), threads=1, steps=None):
 
 
 def middle(found, key):
-    return statistics.median(row[key] for row in found)
+    """Median over the runs that came to their end; nan if none did."""
+    values = [row[key] for row in found if row["completed"]]
+    return statistics.median(values) if values else math.nan
+
+
+def each(found, key, per):
+    """Median of one figure over that of another [ms]."""
+    count = middle(found, per)
+    return 1e3 * middle(found, key) / count if count else math.nan
+
+
+def paired(found, others):
+    """Median ratio of the times of runs that took turns."""
+    ratios = [a["in all"] / b["in all"] for a, b in zip(found, others) if a["completed"] and b["completed"]]
+    return statistics.median(ratios) if ratios else math.nan
 
 
 def table(head, lines):
@@ -83,103 +101,55 @@ def table(head, lines):
                       *("| " + " | ".join(line) + " |" for line in lines)]) + "\n"
 
 
-text = []
+VARIANTS = {
+    "as it is": [],
+    "factors fresh": ["factors = 'fresh'"],
+    "ordering METIS": ["ordering = 'metis'"],
+    "ordering best": ["ordering = 'best'"],
+    "factors fresh, METIS": ["factors = 'fresh'", "ordering = 'metis'"],
+    "factors fresh, best": ["factors = 'fresh'", "ordering = 'best'"],
+    "linear pressures (Taylor-Hood)": ["pressures = 'linear'"],
+    "linear pressures, factors fresh": ["pressures = 'linear'", "factors = 'fresh'"],
+    "quadrature 3": ["quadrature = 3"],
+    "quadrature 7": ["quadrature = 7"],
+}
+TANGENTS = {"tangent consistent": 3, "tangent elastic": 1}
+
+
+def of_scene(*keys):
+    """Change of the scene: keys of its first group."""
+    return ("   gravity = 9.81", "\n   ".join(["   gravity = 9.81", *keys]))
+
+
+# All runs come first and are on the disk before the tables are made of them.
+phases, measures, growth = {}, {}, {}
 if "phases" in parts:
-    found = {}
     for _ in range(args.rounds):
         for threads in (1, 2):
             for factors in ("fresh", "reuse"):
-                change = [("   gravity = 9.81", f"   gravity = 9.81\n   factors = '{factors}'")]
-                found.setdefault((threads, factors), []).append(run("phases", f"factors {factors}", change, threads))
-    lines = []
-    for (threads, factors), group in found.items():
-        lines.append([str(threads), factors, str(int(middle(group, "iterations"))),
-                      *(f"{1e3 * middle(group, p) / middle(group, 'iterations'):.2f}" for p in PHASES),
-                      f"{middle(group, 'in all'):.1f}"])
-    first = next(iter(found.values()))[0]
-    numeric = {t: 1e3 * middle(found[t, "fresh"], "factorisation") / middle(found[t, "fresh"], "factorisations")
-               for t in (1, 2)}
-    besides = {t: 1e3 * (middle(found[t, "reuse"], "in all") - middle(found[t, "reuse"], "factorisation")
-                         - middle(found[t, "reuse"], "solution")) / middle(found[t, "reuse"], "iterations")
-               for t in (1, 2)}
-    text += [f"## Phases\n{first['nodes']} nodes, {first['unknowns']} unknowns, {args.steps} steps of 3e-5 s; milliseconds "
-             "per iteration (a linear solve), the whole run in seconds.\n",
-             table(["threads", "factors", "iterations", *PHASES, "whole run [s]"], lines),
-             "One numeric factorisation: " + ", ".join(f"{v:.1f} ms with {t} thread(s)" for t, v in numeric.items())
-             + "; everything outside the linear solver, per iteration: "
-             + ", ".join(f"{v:.1f} ms with {t}" for t, v in besides.items()) + ".\n"]
+                row = run("phases", f"factors {factors}", [of_scene(f"factors = '{factors}'")], threads)
+                phases.setdefault((threads, factors), []).append(row)
 if "measures" in parts:
-    key = "   gravity = 9.81"
-    variants = {
-        "as it is": [],
-        "factors fresh": [(key, key + "\n   factors = 'fresh'")],
-        "ordering METIS": [(key, key + "\n   ordering = 'metis'")],
-        "ordering best": [(key, key + "\n   ordering = 'best'")],
-        "factors fresh, METIS": [(key, key + "\n   factors = 'fresh'\n   ordering = 'metis'")],
-        "factors fresh, best": [(key, key + "\n   factors = 'fresh'\n   ordering = 'best'")],
-        "linear pressures (Taylor-Hood)": [(key, key + "\n   pressures = 'linear'")],
-        "linear pressures, factors fresh": [(key, key + "\n   pressures = 'linear'\n   factors = 'fresh'")],
-        "quadrature 3": [(key, key + "\n   quadrature = 3")],
-        "quadrature 7": [(key, key + "\n   quadrature = 7")],
-        "tangent consistent": [("   name = 'sand'", "   name = 'sand'\n   tangent = 3")],
-        "tangent elastic": [("   name = 'sand'", "   name = 'sand'\n   tangent = 1")],
-    }
-    found = {}
+    variants = {name: [of_scene(*keys)] for name, keys in VARIANTS.items()}
+    variants |= {name: [("   name = 'sand'", f"   name = 'sand'\n   tangent = {k}")] for name, k in TANGENTS.items()}
     for _ in range(args.rounds):
         for name, changes in variants.items():
-            found.setdefault(name, []).append(run("measures", name, changes, 2, min(args.steps, 300)))
-    usual = found["as it is"]
-    lines = []
-    for name, group in found.items():
-        ratio = statistics.median(a["in all"] / b["in all"] for a, b in zip(group, usual))
-        lines.append([name, str(int(middle(group, "iterations"))), str(int(middle(group, "factorisations"))),
-                      str(int(middle(group, "solutions"))), str(int(middle(group, "entries"))),
-                      *(f"{middle(group, p):.2f}" for p in ("material", "assembly", "factorisation", "solution", "in all")),
-                      f"{ratio:.2f}", f"{100 * (group[0]['settlement'] / usual[0]['settlement'] - 1):+.3f}"])
-    text += [f"## Measures\nThe same scene, {min(args.steps, 300)} steps, two threads; seconds; the last columns are the "
-             "time over that of the first line, and how far the settlement under the centre is from its.\n",
-             table(["variant", "iterations", "factorisations", "solutions", "entries in factors", "material", "assembly",
-                    "factorisation", "solution", "in all", "ratio", "settlement [%]"], lines)]
+            measures.setdefault(name, []).append(run("measures", name, changes, 2, min(args.steps, 300)))
 if "growth" in parts:
-    lines, sizes, fresh_times, memories = [], [], [], []
     for near, far, down in MESHES:
         mesh = [("r_cells = 4, 9", f"r_cells = {near}, {far}"), ("z_cells = 16", f"z_cells = {down}"),
                 ("r_ratio = 1, 1.3", f"r_ratio = 1, {1.3 ** (9 / far):.6f}"),
                 ("z_ratio = 0.85", f"z_ratio = {0.85 ** (16 / down):.6f}")]
         for ordering in ("amd", "metis"):
-            key = "   gravity = 9.81"
-            fresh, again = (run("growth", f"{ordering}, factors {factors}",
-                                [*mesh, (key, f"{key}\n   factors = '{factors}'\n   ordering = '{ordering}'")], 2, 40)
-                            for factors in ("fresh", "reuse"))
-            numeric = 1e3 * fresh["factorisation"] / fresh["factorisations"]
-            if ordering == "amd":
-                sizes.append(fresh["unknowns"])
-            lines.append([str(fresh["unknowns"]), ordering, f"{fresh['entries'] / 1e6:.2f}", f"{numeric:.0f}",
-                          f"{1e3 * fresh['solution'] / fresh['solutions']:.1f}",
-                          f"{1e3 * (fresh['material'] + fresh['assembly']) / fresh['iterations']:.0f}",
-                          f"{fresh['memory']:.0f}", f"{1e3 * fresh['in all'] / fresh['iterations']:.0f}",
-                          f"{1e3 * again['in all'] / again['iterations']:.0f}",
-                          f"{again['factorisations']}"])
-    text += ["## Growth\n40 steps, two threads; milliseconds; memory is the process's peak [MiB], factors reused in the "
-             "last two columns only.\n",
-             table(["unknowns", "ordering", "entries in factors [1e6]", "numeric factorisation", "solution by factors",
-                    "material and assembly per iteration", "memory", "iteration, factors fresh",
-                    "iteration, factors reused", "factorisations"], lines)]
-    import math
+            for factors in ("fresh", "reuse"):
+                change = of_scene(f"factors = '{factors}'", f"ordering = '{ordering}'")
+                row = run("growth", f"{ordering}, factors {factors}", [*mesh, change], 2, 40)
+                growth.setdefault((near, ordering), []).append(row)
 
-    def exponents(column, ordering):
-        own = [line for line in lines if line[1] == ordering]
-        pairs = [(math.log(float(line[0])), math.log(float(line[column]))) for line in own if float(line[column]) > 0]
-        return (pairs[-1][1] - pairs[-3][1]) / (pairs[-1][0] - pairs[-3][0])
-
-    named = {"entries in factors": 2, "numeric factorisation": 3, "solution": 4, "material and assembly": 5, "memory": 6}
-    text += ["Exponents over the last three sizes: " + "; ".join(
-        f"{name} " + ", ".join(f"{exponents(column, o):.2f} ({o})" for o in ("amd", "metis"))
-        for name, column in named.items()) + ".\n"]
-
-model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo", encoding="utf-8") if line.startswith("model name")),
-             platform.processor())
-commit = subprocess.run(["git", "-C", root, "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
+model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo", encoding="utf-8")
+              if line.startswith("model name")), platform.processor())
+commit = subprocess.run(["git", "-C", root, "rev-parse", "--short", "HEAD"], capture_output=True,
+                        text=True).stdout.strip()
 origin = f"commit {commit or 'unknown'}; {model}, {os.cpu_count()} cores; {args.rounds} rounds"
 args.results.mkdir(parents=True, exist_ok=True)
 with open(args.results / "host.csv", "w", newline="", encoding="utf-8") as file:
@@ -188,5 +158,65 @@ with open(args.results / "host.csv", "w", newline="", encoding="utf-8") as file:
     writer = csv.DictWriter(file, keys, restval="")
     writer.writeheader()
     writer.writerows(rows)
+
+text = []
+if phases:
+    lines = [[str(threads), factors, f"{middle(group, 'iterations'):.0f}",
+              *(f"{each(group, p, 'iterations'):.2f}" for p in PHASES), f"{middle(group, 'in all'):.1f}"]
+             for (threads, factors), group in phases.items()]
+    numeric = {t: each(phases[t, "fresh"], "factorisation", "factorisations") for t in (1, 2)}
+    besides = {}
+    for t in (1, 2):
+        total, *solver = (each(phases[t, "reuse"], p, "iterations") for p in ("in all", "factorisation", "solution"))
+        besides[t] = total - sum(solver)
+    every = [row for group in phases.values() for row in group]
+    text += [f"## Phases\n{middle(every, 'nodes'):.0f} nodes, {middle(every, 'unknowns'):.0f} unknowns, {args.steps} "
+             "steps of 3e-5 s; milliseconds per iteration (a linear solve), the whole run in seconds.\n",
+             table(["threads", "factors", "iterations", *PHASES, "whole run [s]"], lines),
+             "One numeric factorisation: " + ", ".join(f"{v:.1f} ms with {t} thread(s)" for t, v in numeric.items())
+             + "; everything outside the linear solver, per iteration: "
+             + ", ".join(f"{v:.1f} ms with {t}" for t, v in besides.items()) + ".\n"]
+if measures:
+    usual = measures["as it is"]
+    lines = [[name, *(f"{middle(group, p):.0f}" for p in ("iterations", "factorisations", "solutions", "entries")),
+              *(f"{middle(group, p):.2f}" for p in ("material", "assembly", "factorisation", "solution", "in all")),
+              f"{paired(group, usual):.2f}",
+              f"{100 * (middle(group, 'settlement') / middle(usual, 'settlement') - 1):+.3f}"]
+             for name, group in measures.items()]
+    text += [f"## Measures\nThe same scene, {min(args.steps, 300)} steps, two threads; seconds; the last columns are "
+             "the time over that of the first line, and how far the settlement under the centre is from its.\n",
+             table(["variant", "iterations", "factorisations", "solutions", "entries in factors", "material",
+                    "assembly", "factorisation", "solution", "in all", "ratio", "settlement [%]"], lines)]
+if growth:
+    # Figures of every size and ordering by name of the column.
+    columns = {(size, ordering): {
+        "unknowns": middle([fresh], "unknowns"), "entries in factors [1e6]": middle([fresh], "entries") / 1e6,
+        "numeric factorisation": each([fresh], "factorisation", "factorisations"),
+        "solution by factors": each([fresh], "solution", "solutions"),
+        "material and assembly per iteration": each([fresh], "material", "iterations")
+        + each([fresh], "assembly", "iterations"),
+        "memory": middle([fresh], "memory"), "iteration, factors fresh": each([fresh], "in all", "iterations"),
+        "iteration, factors reused": each([again], "in all", "iterations"),
+        "factorisations": middle([again], "factorisations")} for (size, ordering), (fresh, again) in growth.items()}
+    digits = {"entries in factors [1e6]": 2, "solution by factors": 1}
+    lines = [[f"{row['unknowns']:.0f}", ordering, *(f"{v:.{digits.get(k, 0)}f}" for k, v in list(row.items())[1:])]
+             for (_, ordering), row in columns.items()]
+    names = list(next(iter(columns.values())))
+    text += ["## Growth\n40 steps, two threads; milliseconds; memory is the process's peak [MiB], factors reused in "
+             "the last two columns only.\n", table([names[0], "ordering", *names[1:]], lines)]
+
+    def exponent(column, ordering):
+        """Over the last three sizes that came to their end."""
+        pairs = [(math.log(row["unknowns"]), math.log(row[column])) for (_, own), row in columns.items()
+                 if own == ordering and row[column] > 0]
+        return (pairs[-1][1] - pairs[-3][1]) / (pairs[-1][0] - pairs[-3][0]) if len(pairs) > 2 else math.nan
+
+    named = {"entries in factors": names[1], "numeric factorisation": names[2], "solution": names[3],
+             "material and assembly": names[4], "memory": names[5]}
+    text += ["Exponents over the last three sizes: " + "; ".join(
+        f"{name} " + ", ".join(f"{exponent(column, o):.2f} ({o})" for o in ("amd", "metis"))
+        for name, column in named.items()) + ".\n"]
 (args.results / "host.md").write_text(f"# The host\n{origin}\n\n" + "\n".join(text), encoding="utf-8")
 print("\n".join(text))
+if not all(row["completed"] for row in rows):
+    sys.exit("Some runs failed: their rows of host.csv have completed = False.")
