@@ -2,7 +2,8 @@
 module triax_text
    use, intrinsic :: iso_fortran_env, only: wp => real64, int32, int64
    use, intrinsic :: iso_c_binding, only: c_null_char
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_overflow, ieee_get_halting_mode, &
+                                             ieee_set_halting_mode, ieee_set_flag
    implicit none (type, external)
    private
    public :: lower_case, distance, short, whole, read_number, from_c, word_place
@@ -138,12 +139,18 @@ contains
       character(*), intent(in) :: text
       real(wp), intent(out) :: value
       logical, intent(out) :: good
+      logical :: halting
       integer :: problem
 
       value = 0.0_wp
       good = looks_like_number(trim(text))
       if (.not. good) return
+      ! A number too large is refused here; builds that stop at an overflow shall not stop in the runtime's reader.
+      call ieee_get_halting_mode(ieee_overflow, halting)
+      call ieee_set_halting_mode(ieee_overflow, .false.)
       read (text, *, iostat=problem) value
+      call ieee_set_flag(ieee_overflow, .false.)
+      call ieee_set_halting_mode(ieee_overflow, halting)
       good = problem == 0
       if (good) good = ieee_is_finite(value)
       if (.not. good) value = 0.0_wp
