@@ -89,7 +89,7 @@ contains
             seen = ','
             if (t%watched) seen = short(t%largest)//','
             if (t%crossed > NEVER) seen = trim(seen)//short(t%crossed)
-            if (fault%code == 0) call write_line(file, trim(t%name)//','//trim(state_of(t))//','//trim(by(t))//','// &
+            call write_line(file, trim(t%name)//','//trim(state_of(t))//','//trim(by(t))//','// &
                trim(number(t%estimate))//','//trim(t%unit)//','//trim(number(t%threshold))//','// &
                whole(t%unknowns)//','//whole(t%entries)//','//trim(seen)//',"'//trim(t%why)//'"', fault)
          end associate

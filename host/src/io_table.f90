@@ -110,6 +110,7 @@ contains
       character(*), intent(in), target :: text
       type(fault_t), intent(inout) :: fault
 
+      if (fault%code /= 0) return   ! the first fault is the one that is told
       if (fwrite(c_loc(text), 1_c_size_t, len(text, kind=c_size_t), table%file) == len(text, kind=c_size_t)) then
          table%bytes = table%bytes + len(text)
       else
