@@ -1,30 +1,14 @@
 """Controls of mud_triax: what is held is held, what leads arrives, cycles turn where they should, stops stop."""
-import atexit
 import csv
 import math
-import os
-import pathlib
-import shutil
 import subprocess
 import sys
-import tempfile
 
-root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2])
-build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
+from checking import build, check, finish, root, work
+
 triax = build / "drivers/mud_triax"
-work = pathlib.Path(tempfile.mkdtemp())
-atexit.register(shutil.rmtree, work, ignore_errors=True)
-passed = failed = 0
 HELD = 2e-10    # the driver promises 1e-10 of each increment's stress; compared over a whole stage here
 LANDED = 1e-12  # given strains land on their values
-
-
-def check(name, good, told=""):
-    global passed, failed
-    passed += bool(good)
-    failed += not good
-    if not good:
-        print(f"FAILED {name}: {told}")
 
 
 def call(*stages, initial="p_eff = 100.0, void_ratio = 0.833", output="case.csv", material="", words=()):
@@ -204,5 +188,4 @@ if matplotlib is not None:
     done = subprocess.run([*plot, work / "case.nml"], capture_output=True, text=True)
     check("plot_case refuses what is no result", done.returncode == 1 and "cannot be read" in done.stderr, done.stderr)
 
-print(f"{passed} passed, {failed} failed")
-sys.exit(failed > 0)
+finish()

@@ -1,29 +1,13 @@
 """mud_host as a user meets it: known answers (short versions), mistakes with their own sentence and exit code."""
-import atexit
 import os
-import pathlib
 import re
-import shutil
 import subprocess
 import sys
-import tempfile
 
-root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2])
-build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
+from checking import add, build, check, finish, light, root, work
+
 host = build / "host/mud_host"
-light = os.environ.get("MUD_PRESET", "release") != "release"
-work = pathlib.Path(tempfile.mkdtemp())
-atexit.register(shutil.rmtree, work, ignore_errors=True)
 environment = {**os.environ, "OMP_NUM_THREADS": "1", "MUD_BUILD_DIR": str(build)}
-passed = failed = 0
-
-
-def check(name, good, told=""):
-    global passed, failed
-    passed, failed = passed + bool(good), failed + (not good)
-    if not good:
-        print(f"FAILED {name}: {told}")
-
 
 # Known answers: every folder counts its own comparisons. The checking builds take those that are quick.
 QUICK = ("patch", "cylinder", "vibration")
@@ -36,7 +20,7 @@ for folder in sorted((root / "verification").glob("host_*/check.py")):
                           env=environment)
     last = re.fullmatch(r"(\d+) passed, (\d+) failed", (done.stdout.splitlines() or [""])[-1])
     if last:
-        passed, failed = passed + int(last[1]), failed + int(last[2])
+        add(int(last[1]), int(last[2]))
     if not last or done.returncode:
         check(f"known answer {name}", last, "it ended without its closing line")
         print(done.stdout[-2000:] + done.stderr[-2000:])
@@ -154,5 +138,4 @@ for group, key in keys:
     part = re.search(rf"^&{group}$(.*?)^/$", template, re.MULTILINE | re.DOTALL)
     check(f"template: {group} {key}", part and re.search(rf"^[ !]+{key} = ", part[1], re.MULTILINE))
 
-print(f"{passed} passed, {failed} failed")
-sys.exit(failed > 0)
+finish()

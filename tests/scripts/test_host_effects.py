@@ -1,24 +1,16 @@
 """Effects that mud_host derives from a scene: each on and off, by hand, the table, the watch, restarts, and whether
 what is dropped is as small as promised."""
-import atexit
 import csv
 import math
 import os
-import pathlib
 import re
 import shutil
 import subprocess
-import sys
-import tempfile
 
-root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2])
-build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
+from checking import build, check, finish, work
+
 host = build / "host/mud_host"
-light = os.environ.get("MUD_PRESET", "release") != "release"
-work = pathlib.Path(tempfile.mkdtemp())
-atexit.register(shutil.rmtree, work, ignore_errors=True)
 environment = {**os.environ, "OMP_NUM_THREADS": "1"}
-passed = failed = 0
 
 ELASTIC = "&elastic name = 'soil' young = 1.0e4 poisson = 0.25 /"
 WATER = "&permeability name = 'k' intrinsic = 1.0e-10 law = 'constant' /"
@@ -27,13 +19,6 @@ POROUS = "permeability = 'k'"
 UNSATURATED = "permeability = 'k' retention = 'c'"
 MODULUS = 1.0e4 * 0.75 / (1.25 * 0.5)     # E (1 - nu)/((1 + nu)(1 - 2 nu)): 12000 kPa
 TOLERANCE = 0.01                          # the default
-
-
-def check(name, good, told=""):
-    global passed, failed
-    passed, failed = passed + bool(good), failed + (not good)
-    if not good:
-        print(f"FAILED {name}: {told}")
 
 
 def column(keys="gravity = 0", stage="duration = 10 dt = 0.1", times="0, 10", values="0, 1", load=10, height=1, laws="",
@@ -354,5 +339,4 @@ for what, text, words in [("no analysis", column("gravity = 0", effects=""), ("n
     for word in words:
         check(f"{what}: says {word}", word in done.stderr, done.stderr)
 
-print(f"{passed} passed, {failed} failed")
-sys.exit(failed > 0)
+finish()

@@ -1,7 +1,5 @@
 """Output of mud_host: restarts after SIGKILL at random moments, refused checkpoints, full disks, files and pictures."""
-import atexit
 import os
-import pathlib
 import random
 import re
 import resource
@@ -9,28 +7,15 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 
 import h5py
 import meshio
 import numpy as np
+from checking import build, check, finish, light, root, work
 
-root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2])
-build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
 host = build / "host/mud_host"
-light = os.environ.get("MUD_PRESET", "release") != "release"
-work = pathlib.Path(tempfile.mkdtemp())
-atexit.register(shutil.rmtree, work, ignore_errors=True)
 environment = {**os.environ, "OMP_NUM_THREADS": "1"}
-passed = failed = 0
-
-
-def check(name, good, told=""):
-    global passed, failed
-    passed, failed = passed + bool(good), failed + (not good)
-    if not good:
-        print(f"FAILED {name}: {told}")
 
 
 def run(scene, out, *more, **how):
@@ -422,6 +407,4 @@ child.wait()
 line = re.search(rb"\rStage \w+: step \d+, time \S+ s, \d+ %; about \d+ s left", shown)
 check("progress line", line, shown)
 
-shutil.rmtree(work)
-print(f"{passed} passed, {failed} failed")
-sys.exit(failed > 0)
+finish()

@@ -1,33 +1,16 @@
 """Failed increments: saved by every door, replayed bit by bit, and every mistake on the way has its sentence."""
-import atexit
 import os
-import pathlib
 import re
 import resource
-import shutil
 import signal
 import subprocess
-import sys
-import tempfile
 
-root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2]).resolve()
-build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release").resolve()
+from checking import build, check, finish, root, work
+
 cache = dict(re.findall(r"^(\w+):\w+=(.*)$", (build / "CMakeCache.txt").read_text(encoding="utf-8"), re.MULTILINE))
 replay, triax = build / "drivers/mud_replay", build / "drivers/mud_triax"
-work = pathlib.Path(tempfile.mkdtemp())
-atexit.register(shutil.rmtree, work, ignore_errors=True)
 MAX_SAVED = 20  # files of umat_, mud.h
 quiet = {name: value for name, value in os.environ.items() if name != "MUD_SAVE_FAILED"}
-passed = failed = 0
-
-
-def check(name, good, told=""):
-    global passed, failed
-    if good:
-        passed += 1
-    else:
-        failed += 1
-        print(f"FAILED {name}: {told}")
 
 
 def run(*words, folder=work, **more):
@@ -223,5 +206,4 @@ done = run(replay, "--version")
 check("--version tells the library's", re.fullmatch(r"mud_replay, MUD library \d+\.\d+\.\d+\n", done.stdout),
       done.stdout)
 
-print(f"{passed} passed, {failed} failed")
-sys.exit(failed > 0)
+finish()

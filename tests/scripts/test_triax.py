@@ -1,30 +1,12 @@
 """mud_triax as a user meets it: named cases give published numbers, held stresses are held, mistakes are explained."""
-import atexit
 import csv
 import math
-import os
-import pathlib
-import shutil
 import subprocess
-import sys
-import tempfile
 
-root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2])
-build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
+from checking import build, check, finish, root, work
+
 triax = build / "drivers/mud_triax"
 cases = root / "drivers/cases"
-work = pathlib.Path(tempfile.mkdtemp())
-atexit.register(shutil.rmtree, work, ignore_errors=True)
-passed = failed = 0
-
-
-def check(name, good, told=""):
-    global passed, failed
-    if good:
-        passed += 1
-    else:
-        failed += 1
-        print(f"FAILED {name}: {told}")
 
 
 def call(*words):
@@ -134,5 +116,4 @@ template.write_text(call("--template").stdout)
 done = call(template, "--output", work / "template.csv", "--quiet")
 check("the template runs unchanged", done.returncode == 0, done.stderr)
 
-print(f"{passed} passed, {failed} failed")
-sys.exit(failed > 0)
+finish()
