@@ -7,6 +7,7 @@ them, compares and draws.
 import argparse
 import csv
 import math
+import os
 import pathlib
 import re
 import subprocess
@@ -260,7 +261,9 @@ def indentation(host, folder):
     import figures
     print("\nImpact of a rigid plate on soil at a suction of 30 kPa (about half a minute)", flush=True)
     output = folder / "indentation"
-    if subprocess.run([host, analysis.TEMPLATE, "--output", output]).returncode != 0:
+    # Threads that wait without spinning: the machine may have other work.
+    environment = {**os.environ, "OMP_WAIT_POLICY": "passive"}
+    if subprocess.run([host, analysis.TEMPLATE, "--output", output], env=environment).returncode != 0:
         sys.exit("run_demo: the indentation did not come to its end.")
     columns = analysis.histories(output, 1)
     deepest = int(np.argmax(columns["u_mm"]))
