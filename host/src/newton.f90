@@ -31,7 +31,7 @@ module newton
    real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Of strain rates and parts of fluxes, see above.
    real(wp), parameter :: ROUNDING = 1.0e-12_wp       !< Of all contributions: no residual to begin with is smaller.
    real(wp), parameter :: ABSOLUTE_FLOOR = 1.0e-12_wp   !< [kN] or [m3/s]: nothing smaller is a force.
-   real(wp), parameter :: LINEAR_SHARE = 1.0e-3_wp    !< Share of Newton's tolerance left to the linear solution.
+   real(wp), parameter :: LINEAR_SHARE = 1.0e-5_wp    !< Share of Newton's tolerance left to the linear solution.
    integer, parameter :: MOST_STEPS = 6               !< Of the linear solution with factors of an earlier matrix;
    integer, parameter :: WORN_STEPS = 5               !< after so many the next matrix is factorised again.
    real(wp), parameter :: HOPELESS = 1.0e10_wp        !< Error beyond which no further iteration helps.

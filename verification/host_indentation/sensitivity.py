@@ -104,8 +104,8 @@ VARIATIONS = (
 
 
 TIGHT = "newton_1e-5"   # Runs with the series.
-SCATTER = "fresh_factors"   # The same equations to the same tolerances: what it changes is what rounding does.
-FIRST = (SCATTER, "mass_15", "mualem", "eps_hat_1e-5", "eps_hat_1e-3", "rho_1", "damping_10", "stress_1e-4", "norm_residual", "norm_correction",
+EXACT = "fresh_factors"   # The same equations; what it changes is the residual of linear solutions by reused factors.
+FIRST = (EXACT, "mass_15", "mualem", "eps_hat_1e-5", "eps_hat_1e-3", "rho_1", "damping_10", "stress_1e-4", "norm_residual", "norm_correction",
          "tangent_3", "quadrature_3", "penalty_1e7", "e_0.75", "theta_0.3", "k0_effective", "seepage_inertia", "rate_suction", "drainage_state",
          "peak_12", "weightless", "newton_1e-2")
 
@@ -251,7 +251,7 @@ def same(suction, name):
     return render(scene(suction, FIELDS, series[0], adapt)) == render(scene(suction, FIELDS, series[0]))
 
 
-NUMERICS = (("dt_tenth", "a tenth of the time step"), ("mesh_half", "half the size of the elements"), (SCATTER, "every matrix factorised anew"))
+NUMERICS = (("dt_tenth", "a tenth of the time step"), ("mesh_half", "half the size of the elements"), (EXACT, "every matrix factorised anew"))
 
 
 def moves(rows, base, suction):
@@ -271,8 +271,8 @@ def is_noise(rows, base, suction):
 
 def noise(rows, base):
     """A column that the step or the mesh moves by more than the remedy does, says nothing about the remedy."""
-    text = ["If a tenth of the time step, half the size of the elements or mere rounding (another way to the same linear solution) moves the final "
-            "displacement by more than the remedy does, its relative difference says nothing about the remedy: noise. Two numbers: with and "
+    text = ["If a tenth of the time step, half the size of the elements or a linear solution exact to rounding instead of 1e-3 of Newton's tolerance "
+            "moves the final displacement by more than the remedy does, its relative difference says nothing about the remedy: noise. Two numbers: with and "
             "without the remedy [mm].", "",
             "| suction | the remedy moves it by | " + " | ".join(what for _, what in NUMERICS) + " | the column is |", "|" + 6 * "---|"]
     for s in SUCTIONS:
@@ -290,7 +290,7 @@ COLUMN_NAMES = {"work": (0, "relative CPU time (ours: work)", 0.05), "difference
 def towards(rows, base):
     """Which variation brings a column closest to the paper's figure; what none brings there is unexplained."""
     text = ["Met: within 0.05 of the paper's ratios, within 2 % of its iterations. Explained: something that the paper leaves open, varied "
-            "alone, meets the figure, the series does not, and rounding alone moves it less. Else unexplained. CPU times depend on what else the machine did: work stands for them.", "",
+            "alone, meets the figure, the series does not, and an exact linear solution moves it less. Else unexplained. CPU times depend on what else the machine did: work stands for them.", "",
             "| suction | column | paper | series | closest variation | its value | |", "|" + 7 * "---|"]
     for s in SUCTIONS:
         start = columns(*pair(rows, base, s, ""))
@@ -312,11 +312,11 @@ def towards(rows, base):
             met = best and abs(found[best] - paper) <= limit
             what = next(v[1] for v in VARIATIONS if v[0] == best) if best else "none run yet"
             word = "explained by it" if met else "unexplained" if best else ""
-            # A hit among so many tries counts only where the column says something, and beyond what rounding does to it.
+            # A hit among so many tries counts only where the column says something, and beyond what the linear solution does to it.
             if met and key == "difference" and is_noise(rows, base, s):
                 word = "unexplained: by chance, the column is noise"
-            elif met and not abs(found[best] - start[key]) > abs(found.get(SCATTER, math.nan) - start[key]):
-                word = "unexplained: within what rounding does"
+            elif met and not abs(found[best] - start[key]) > abs(found.get(EXACT, math.nan) - start[key]):
+                word = "unexplained: within what the linear solution does"
             text.append(f"| {s} | {title} | {paper} | {start[key]:{form}} | {what} | {number(found[best], form) if best else ''} | {word} |")
     return text
 
