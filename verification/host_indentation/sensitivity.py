@@ -234,7 +234,8 @@ def report(rows, base):
             else:
                 missing.append(what)
         text += ["", f"Not run at {s} kPa: {'; '.join(missing)}.", ""] if missing else [""]
-    text += ["## Noise", "", *noise(rows, base), "", "## Towards the paper", "", *towards(rows, base), "", "## Failures", "",
+    made = sorted({f"{r['commit']} (program {r['program']})" for r in rows.values()})
+    text += [f"Made by commit {', '.join(made)}, like the series.", "", "## Noise", "", *noise(rows, base), "", "## Towards the paper", "", *towards(rows, base), "", "## Failures", "",
              *failures(rows)]
     return "\n".join(text)
 
