@@ -278,7 +278,9 @@ def measure(job):
     log = (job.folder / "log.txt").read_text(encoding="utf-8", errors="replace")
     lines = [line for line in log.splitlines() if line.strip() and line.strip() != "Terminated"]
     if job.state["outcome"] != 0:
-        row["message"] = lines[-1].strip() if lines and job.state["outcome"] != "limit" else ""
+        # The sentence of the fault, which begins with stage and time; not the account of the time after it.
+        said = [line for line in lines if re.match(r"Stage \S+, time", line)]
+        row["message"] = (said or lines or [""])[-1].strip() if job.state["outcome"] != "limit" else ""
     try:
         t = tables(job.folder)
     except (OSError, IndexError):

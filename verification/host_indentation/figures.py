@@ -111,7 +111,11 @@ def tornado(parts, path):
                 if a != a and b != b:
                     axis.annotate("-", (0, place), va="center", ha="center", color="#555555")
             axis.set_title(f"{suction} kPa (final {final:.3g} mm)")
-            axis.set_xscale("symlog", linthresh=max(effect, 1e-3))
+            linear = max(effect, 2e-3)
+            axis.set_xscale("symlog", linthresh=linear, linscale=0.6)
+            left, right = axis.get_xlim()
+            powers = [10.0**k for k in range(-3, 2) if 10.0**k > 1.5 * linear]
+            axis.set_xticks([x for x in (*(-v for v in powers), 0, *powers) if left <= x <= right])
             axis.set_xlabel("change [mm]")
             axis.grid(axis="y", visible=False)
             axis.tick_params(axis="x", labelrotation=45, labelsize=7)
@@ -119,6 +123,6 @@ def tornado(parts, path):
         axes[0, 0].set_ylim(0.3, len(names) + 0.7)
         handles = [plt.Rectangle((0, 0), 1, 1, color="#c8553d"), plt.Line2D([], [], color="#0b3c6f", marker="d", ls="", ms=4),
                    plt.Rectangle((0, 0), 1, 1, color="#c8553d", alpha=0.15)]
-        figure.legend(handles, ["with the remedy", "without", "size of the remedy's effect"], loc="outside upper center", ncols=3)
+        figure.legend(handles, ["with the remedy", "without", "size of the remedy's effect"], loc="outside lower center", ncols=3)
         figure.suptitle("Change of the final displacement of the centre", fontsize=10)
         return save(figure, path)
