@@ -64,6 +64,8 @@ contains
          p = (element - 1)*model%rule + g
          associate (gp => model%gauss(g, element), region => model%regions(model%region_of(element)))
             call look(gp, model%n_p, scheme, x0, x1, v, a, k)
+            k%speed = 0.0_wp
+            if (region%damping > 0.0_wp .and. scheme%kind == DYNAMIC) k%speed = matmul(v(1:2, :), gp%n)
             k%source = 0.0_wp
             if (associated(model%source)) &
                k%source = model%source(gp%x, old%time + scheme%l_f*(new%time - old%time))
@@ -121,8 +123,6 @@ contains
       k%div_v = dot_product(gp%dn(1, :), v(1, :)) + dot_product(gp%dn(2, :), v(2, :)) &
                 + dot_product(gp%n_over_r, v(1, :))
       k%accel = matmul(a, gp%n)
-      k%speed = 0.0_wp
-      if (scheme%kind == DYNAMIC) k%speed = matmul(v(1:2, :), gp%n)
       x = x0(3:4, :) + scheme%l_f*(x1(3:4, :) - x0(3:4, :))
       k%w0 = dot_product(gp%m(:n_p), x0(3, :n_p))
       k%w1 = dot_product(gp%m(:n_p), x1(3, :n_p))

@@ -86,8 +86,9 @@ contains
             ledger%pores = ledger%pores - gp%weight*(p_w + (1 - s)*p_c)*sum(strain(1:3))
             rho = density(model, region%rho_s, n, s)
             ledger%gravity = ledger%gravity - gp%weight*rho*model%gravity*dot_product(gp%n, du(2, :))
-            if (scheme%kind == DYNAMIC) ledger%damping = ledger%damping + gp%weight*rho*region%damping &
-               *dot_product(matmul(du, gp%n), 0.5_wp*matmul(old%v(1:2, node) + new%v(1:2, node), gp%n))
+            if (region%damping > 0.0_wp .and. scheme%kind == DYNAMIC) &
+               ledger%damping = ledger%damping + gp%weight*rho*region%damping &
+                                *dot_product(matmul(du, gp%n), 0.5_wp*matmul(old%v(1:2, node) + new%v(1:2, node), gp%n))
             if (.not. model%with_w .or. scheme%kind == STATIC) cycle
             rel = relative_permeability(model%permeabilities(region%permeability), s)
             kappa = model%permeabilities(region%permeability)%intrinsic*rel%w/f%eta_w

@@ -1,6 +1,8 @@
 """The indentation benchmark as a function: scenes from indent_s030.nml, a queue that runs them, what a run tells."""
+import argparse
 import csv
 import ctypes
+import functools
 import hashlib
 import json
 import math
@@ -104,16 +106,39 @@ def digest(*pieces):
     return hashlib.sha256(b"\0".join(pieces)).hexdigest()[:12]
 
 
+@functools.cache
+def program_bytes():
+    """The executable; nothing where it is not built, as for a report."""
+    return host.read_bytes() if host.exists() else b""
+
+
 def program():
     """(digest of the executable, commit of its sources; + where they differ from it)."""
     def git(*words):
         return subprocess.run(["git", "-C", root, *words], capture_output=True, text=True).stdout.strip()
     sources = ("umat/src", "umat/include", "host/src", "drivers/src", "cmake", "CMakePresets.json", ":(glob)**/CMakeLists.txt")
     commit = git("log", "-1", "--format=%h", "--", *sources) or "unknown"
-    return digest(host.read_bytes()), commit + ("+" if git("status", "--porcelain", "--", *sources) else "")
+    return digest(program_bytes()), commit + ("+" if git("status", "--porcelain", "--", *sources) else "")
 
 
 # ---- queue
+
+def parser_of(text, suctions, limit):
+    """Options that every set of analyses has."""
+    parser = argparse.ArgumentParser(description=text, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--suction", type=int, nargs="+", choices=suctions, default=suctions, metavar="KPA")
+    parser.add_argument("--jobs", type=int, default=2, help="analyses at a time, one thread each (default: 2)")
+    parser.add_argument("--limit", type=float, default=limit, help=f"minutes after which an analysis is stopped (default: {limit})")
+    parser.add_argument("--quick", action="store_true", help="50 steps; results and pictures into build/indentation_quick")
+    parser.add_argument("--list", action="store_true", help="say what would run")
+    parser.add_argument("--report", action="store_true", help="tables and pictures from results/, without running anything")
+    return parser
+
+
+def show(jobs):
+    for job in jobs:
+        print(f"{job.name}: {'finished' if job.finished else 'to run'}")
+
 
 class Job:
     """One analysis in its own folder of the build; finished, interrupted or new, as the folder says."""
@@ -122,7 +147,7 @@ class Job:
         self.name, self.groups, self.folder, self.facts = name, groups, folder / name, facts
         self.duration = steps * DT
         self.text = render(groups)
-        self.mark = digest(self.text.encode(), MATERIAL.read_bytes(), host.read_bytes() if host.exists() else b"")
+        self.mark = digest(self.text.encode(), MATERIAL.read_bytes(), program_bytes())
         self.process = None
         try:
             self.state = json.loads((self.folder / "state.json").read_text(encoding="utf-8"))

@@ -5,14 +5,13 @@ run first. Resumable as series.py is (which must have run before: its analyses a
 is there: results/sensitivity.csv, SENSITIVITY.md, sensitivity.png. Exit code 1 if the balance of momentum is violated or rows are of another
 program than the series'.
 """
-import argparse
 import math
 import sys
 
 import figures
-from analysis import (DT, RESULTS, STEPS, Job, balances, change, here, label, measure, page, program, read_rows, render, root,
-                      run_all, scene, write_rows)
-from series import PUBLISHED, ended, iterations, number
+from analysis import (DT, RESULTS, STEPS, Job, balances, change, here, label, measure, page, parser_of, program, read_rows, render,
+                      root, run_all, scene, show, write_rows)
+from series import PUBLISHED, ended, iterations, number, ratios
 
 SUCTIONS = (0, 30, 100, 1000)
 BOTH = ("remedy", "as_published")
@@ -111,14 +110,8 @@ FIRST = (EXACT, "mass_15", "mualem", "eps_hat_1e-5", "eps_hat_1e-3", "rho_1", "d
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--suction", type=int, nargs="+", choices=SUCTIONS, default=SUCTIONS, metavar="KPA")
+    parser = parser_of(__doc__, SUCTIONS, 30)
     parser.add_argument("--only", nargs="+", choices=[v[0] for v in VARIATIONS], default=[], metavar="NAME")
-    parser.add_argument("--jobs", type=int, default=2, help="analyses at a time, one thread each (default: 2)")
-    parser.add_argument("--limit", type=float, default=30, help="minutes after which an analysis is stopped (default: 30)")
-    parser.add_argument("--list", action="store_true", help="say what would run")
-    parser.add_argument("--quick", action="store_true", help="50 steps; results and pictures into build/indentation_quick")
-    parser.add_argument("--report", action="store_true", help="evaluate results/ without running anything")
     return parser.parse_args()
 
 
@@ -150,8 +143,7 @@ def main():
     results = folder / "results" if args.quick else RESULTS
     jobs = jobs_of(args, folder / "sensitivity", 50 if args.quick else STEPS)
     if args.list:
-        for job in jobs:
-            print(f"{job.name}: {'finished' if job.finished else 'to run'}")
+        show(jobs)
         return 0
     path = results / "sensitivity.csv"
     if not args.report:
@@ -190,11 +182,7 @@ def main():
 
 def columns(a, b):
     """Columns of Table 1 and the final displacements of a pair of rows (None: not there)."""
-    both = ended(a) and ended(b)
-    one_go = both and a["attempts"] == b["attempts"] == 1
-    return {"cpu": a["cpu_s"] / b["cpu_s"] if one_go else math.nan,
-            "work": a["rates"] / b["rates"] if both else math.nan,
-            "difference": abs((a["final_mm"] - b["final_mm"]) / b["final_mm"]) if both else math.nan,
+    return {**dict(zip(("cpu", "work", "difference"), ratios(a, b))),
             "with": a["iterations"] if ended(a) else math.nan, "without": b["iterations"] if ended(b) else math.nan,
             "final": a["final_mm"] if ended(a) else math.nan, "final_b": b["final_mm"] if ended(b) else math.nan}
 
@@ -278,7 +266,7 @@ def is_noise(rows, base, suction):
 
 def noise(rows, base):
     """A column that the step or the mesh moves by more than the remedy does, says nothing about the remedy."""
-    text = ["If a tenth of the time step, half the size of the elements or a linear solution exact to rounding instead of 1e-3 of Newton's tolerance "
+    text = ["If a tenth of the time step, half the size of the elements or a linear solution by fresh instead of earlier factors "
             "moves the final displacement by more than the remedy does, its relative difference says nothing about the remedy: noise. Two numbers: with and "
             "without the remedy [mm].", "",
             "| suction | the remedy moves it by | " + " | ".join(what for _, what in NUMERICS) + " | the column is |", "|" + 6 * "---|"]

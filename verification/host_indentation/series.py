@@ -5,7 +5,6 @@ pictures, and puts the tables into README.md. An interrupted analysis goes on fr
 kept until its scene or the program changes. Its folder, in build/indentation, holds everything, also of a failed one.
 Exit code 1 if a balance is violated or the rows come from several versions of the program.
 """
-import argparse
 import math
 import sys
 
@@ -25,15 +24,9 @@ CASES = [(0, "u-p_w")] + [(s, "u-p_w-p_c") for s in SUCTIONS]
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--suction", type=int, nargs="+", choices=SUCTIONS, default=SUCTIONS, metavar="KPA")
+    parser = analysis.parser_of(__doc__, SUCTIONS, 60)
     parser.add_argument("--series", nargs="+", choices=[*SERIES, "all"], default=["remedy", "as_published"])
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="analyses by name, for example s0030_remedy")
-    parser.add_argument("--jobs", type=int, default=2, help="analyses at a time, one thread each (default: 2)")
-    parser.add_argument("--limit", type=float, default=60, help="minutes after which an analysis is stopped (default: 60)")
-    parser.add_argument("--quick", action="store_true", help="50 steps; results and pictures into build/indentation_quick")
-    parser.add_argument("--list", action="store_true", help="say what would run")
-    parser.add_argument("--report", action="store_true", help="tables and pictures from results/, without running anything")
     return parser.parse_args()
 
 
@@ -58,8 +51,7 @@ def main():
     results = folder / "results" if quick else RESULTS
     jobs = jobs_of(args, folder, 50 if quick else analysis.STEPS)
     if args.list:
-        for job in jobs:
-            print(f"{job.name}: {'finished' if job.finished else 'to run'}")
+        analysis.show(jobs)
         return 0
     rows = read_rows(results / "series.csv")
     if not args.report:
@@ -112,7 +104,11 @@ def ended(row):
 
 def relative(rows, suction, fields, ending=""):
     """CPU time and work with the remedy over those without, and the difference of the final displacement, eq. (22)."""
-    a, b = pair(rows, suction, fields, ending)
+    return ratios(*pair(rows, suction, fields, ending))
+
+
+def ratios(a, b):
+    """The same of two rows (None: not there)."""
     if not (ended(a) and ended(b)):
         return math.nan, math.nan, math.nan
     cpu = a["cpu_s"] / b["cpu_s"] if a["attempts"] == b["attempts"] == 1 else math.nan
