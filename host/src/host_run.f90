@@ -382,14 +382,31 @@ contains
          case default
             node = 1
             if (log%worst_unknown > 0) node = run%dofs%node(log%worst_unknown)
-            e = findloc(any(m%mesh%t6 == node, dim=1), .true., dim=1)
             call raise(fault, EXIT_CONVERGENCE, place//'no convergence after '//whole(log%iterations)// &
                        ' iterations; '//what_is_left(stage, log)//' (allowed '//short(stage%tolerance)// &
-                       '), worst at node '//whole(node)//' of element '//whole(e)//', ('//short(m%mesh%x(1, node))// &
-                       ', '//short(m%mesh%x(2, node))//') m; use a smaller dt, more cuts or a better tangent.')
+                       '), worst at '//place_of(scene, node)//'; use a smaller dt, more cuts or a better tangent.')
          end select
       end associate
    end subroutine explain
+
+   !> Where a node is: the plate that it stands for, or an element and the point [m].
+   function place_of(scene, node) result(text)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: node
+      character(:), allocatable :: text
+      integer :: e, i
+
+      associate (mesh => scene%model%mesh)
+         i = findloc(scene%plates%node, node, dim=1)
+         if (i > 0) then
+            text = 'plate '//trim(scene%plates(i)%name)
+         else
+            e = findloc(any(mesh%t6 == node, dim=1), .true., dim=1)
+            text = 'node '//whole(node)//' of element '//whole(e)//', ('//short(mesh%x(1, node))//', '// &
+                   short(mesh%x(2, node))//') m'
+         end if
+      end associate
+   end function place_of
 
    !> What was to fall below the tolerance, and where it stands.
    function what_is_left(stage, log) result(text)

@@ -27,6 +27,7 @@ for folder in sorted((root / "verification").glob("host_*/check.py")):
 
 SCENE = (root / "verification/host_cylinder/scene.nml").read_text()
 FLOW = (root / "verification/host_terzaghi/scene.nml").read_text()
+FALL = (root / "verification/host_contact/fall.nml").read_text()
 STAGE = "&stage name = 'load' analysis = 'static' duration = 1 dt = 1 /\n"
 # what, scene, old text, new text, exit code, words of the sentence
 MISTAKES = [
@@ -48,6 +49,8 @@ MISTAKES = [
     ("unconstrained body", SCENE, "   field = 'u_z'", "   field = 'u_r'", 13, ("singular", "&fix")),
     ("no convergence", FLOW, "tolerance = 1.0e-8", "tolerance = 1.0e-14\n   cuts = 2\n   max_iterations = 1", 14,
      ("no convergence", "element", "time")),
+    ("no convergence of a plate", FALL, "tolerance = 1.0e-6",
+     "tolerance = 1.0e-14\n   cuts = 1\n   max_iterations = 1", 14, ("worst at plate plate;", "more cuts")),
     ("stage named twice", SCENE, "&fix\n   group = 'bottom'", f"{STAGE}&fix\n   group = 'bottom'", 2,
      ("name = 'load' is given twice, first in line 24",)),
     ("material named twice", SCENE, "&region", "&mud\n   name = 'wall'\n/\n&region", 2, ("'wall' is given twice",)),

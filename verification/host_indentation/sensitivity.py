@@ -102,6 +102,7 @@ VARIATIONS = (
 )
 
 
+CONTROL = "classic"   # Guards as with the remedy, no remedy.
 TIGHT = "newton_1e-5"   # Runs with the series.
 EXACT = "fresh_factors"   # The same equations; what it changes is the residual of linear solutions by reused factors.
 # What runs unless --only names others, in this order: mesh and step tell most, the slowest come last.
@@ -127,17 +128,30 @@ def jobs_of(args, folder, steps):
             for one in series:
                 groups = scene(s, FIELDS, one, adapt, steps=steps)
                 if render(groups) != render(scene(s, FIELDS, one, steps=steps)):
-                    jobs.append(Job(f"{label(s, FIELDS)}_{one}_{name}", groups, folder, steps, suction=s, fields=FIELDS,
-                                    series=one, variation=name))
+                    jobs.append(job_of(s, one, name, groups, folder, steps))
     order = [*STANDARD, *(v[0] for v in VARIATIONS)]
     return sorted(jobs, key=lambda job: order.index(job.facts["variation"]))
+
+
+def job_of(suction, series, name, groups, folder, steps):
+    return Job(f"{label(suction, FIELDS)}_{series}_{name}", groups, folder, steps, suction=suction, fields=FIELDS, series=series,
+               variation=name)
+
+
+def controls(rows, args, folder, steps):
+    """What failed without the remedy and without guards, by the same rule with guards: do these alone save it?"""
+    failed = [(int(r["suction"]), r["variation"]) for r in rows.values() if r["series"] == "as_published" and not ended(r)]
+    adapt = {v[0]: v[3] for v in VARIATIONS}
+    return [job_of(s, CONTROL, name, scene(s, FIELDS, CONTROL, adapt[name], steps=steps), folder, steps) for s, name in failed
+            if s in args.suction and name in args.only]
 
 
 def main():
     args = arguments()
     folder = root / ("build/indentation_quick" if args.quick else "build/indentation")
     results = folder / "results" if args.quick else RESULTS
-    jobs = jobs_of(args, folder / "sensitivity", 50 if args.quick else STEPS)
+    scenes, steps = folder / "sensitivity", 50 if args.quick else STEPS
+    jobs = jobs_of(args, scenes, steps)
     if args.list:
         show(jobs)
         return 0
@@ -151,6 +165,7 @@ def main():
             rows[job.name].update(program=digest, commit=commit)
             write_rows(path, dict(sorted(rows.items())))
         run_all(jobs, args.jobs, 60 * args.limit, done)
+        run_all(controls(read_rows(path), args, scenes, steps), args.jobs, 60 * args.limit, done)
     names = [v[0] for v in VARIATIONS]
     rows = {k: r for k, r in read_rows(path).items() if r["variation"] in names}
     base = read_rows(results / "series.csv")
@@ -352,7 +367,11 @@ def failures(rows):
     text = []
     for row in rows.values():
         if not ended(row):
-            text.append(f"- `{row['name']}`: ended at {number(row.get('last_ms', math.nan))} ms: {row['message'] or row['outcome']}")
+            text.append(f"- `{row['name']}`: ended at {number(row.get('last_ms', math.nan))} ms: {(row['message'] or row['outcome']).rstrip('.')}.")
+            control = rows.get(row["name"].replace("as_published", CONTROL))
+            if control and control is not row:
+                text[-1] += f" With guards, without the remedy (`{control['name']}`): " + (
+                    f"runs to the end, {control['final_mm']:.4f} mm." if ended(control) else "fails too.")
     broken = [w for row in rows.values() if ended(row) for w in balances(row) if "S_w" not in w]
     text += ["", "Balances outside their limits: " + ("; ".join(broken) if broken else "none") + "."]
     return text
