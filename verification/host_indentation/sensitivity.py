@@ -316,8 +316,11 @@ def noise(rows, base):
     return text
 
 
-COLUMN_NAMES = {"work": (0, "relative CPU time (ours: work, CPU)", 0.05), "difference": (1, "relative difference of displacement", 0.05),
-                "with": (2, "iterations with the remedy", 0.02), "without": (3, "iterations without", 0.02)}
+# Of a column of Table 1: place in PUBLISHED, title, allowed distance (of iterations: of the paper's), what must be that close, format.
+COLUMN_NAMES = {"work": (0, "relative CPU time (ours: work, CPU)", 0.05, ("work", "cpu"), ".2f"),
+                "difference": (1, "relative difference of displacement", 0.05, ("difference",), ".2f"),
+                "with": (2, "iterations with the remedy", 0.02, ("with",), ".0f"),
+                "without": (3, "iterations without", 0.02, ("without",), ".0f")}
 
 
 def towards(rows, base):
@@ -327,40 +330,44 @@ def towards(rows, base):
             "else the machine did: work chooses the closest, and both must meet the paper's.", "",
             "| suction | column | paper | series | closest variation | its value | |", "|" + 7 * "---|"]
     for s in SUCTIONS:
-        start = columns(*pair(rows, base, s, ""))
-        for key, (place, title, allowed) in COLUMN_NAMES.items():
-            paper = PUBLISHED[s][place]
-            if not isinstance(paper, (int, float)):
-                continue
-            limit = allowed * (paper if key in ("with", "without") else 1)
-            found = {v[0]: columns(*pair(rows, base, s, v[0])) for v in VARIATIONS if v[5] and ran(rows, s, v[0])}
-            found = {name: c for name, c in found.items() if not math.isnan(c[key])}
-            if math.isnan(start[key]):
-                text.append(f"| {s} | {title} | {paper} | not known | | | |")
-                continue
-
-            def meets(c):
-                return all(abs(c[k] - paper) <= limit for k in (("work", "cpu") if key == "work" else (key,)))
-
-            def shown(c):
-                return f"{c[key]:.2f}, {number(c['cpu'])}" if key == "work" else f"{c[key]:.2f}" if key == "difference" else f"{c[key]:.0f}"
-            if meets(start):
-                text.append(f"| {s} | {title} | {paper} | {shown(start)} | | | met |")
-                continue
-            best = min(found, key=lambda name: abs(found[name][key] - paper)) if found else None
-            what = cell(next(v[1] for v in VARIATIONS if v[0] == best)) if best else "none run yet"
-            exact = abs(found[EXACT][key] - start[key]) if EXACT in found else math.nan
-            word = "" if not best else "unexplained"
-            # A hit among so many tries counts only where the column says something, and beyond what the linear solution does to it.
-            if best and meets(found[best]):
-                if key == "difference" and is_noise(rows, base, s):
-                    word = "unexplained: by chance, the column is noise"
-                elif not abs(found[best][key] - start[key]) > exact:
-                    word = "unexplained: within what the linear solution does"
-                else:
-                    word = "explained by it"
-            text.append(f"| {s} | {title} | {paper} | {shown(start)} | {what} | {shown(found[best]) if best else ''} | {word} |")
+        for key, (place, title, *_) in COLUMN_NAMES.items():
+            if isinstance(PUBLISHED[s][place], (int, float)):
+                text.append(f"| {s} | {title} | {PUBLISHED[s][place]} | {' | '.join(closest(rows, base, s, key))} |")
     return text
+
+
+def closest(rows, base, s, key):
+    """Of a column at a suction: the series' value, the variation closest to the paper, its value, and what that says."""
+    place, _, allowed, keys, form = COLUMN_NAMES[key]
+    paper, start = PUBLISHED[s][place], columns(*pair(rows, base, s, ""))
+    limit = allowed * (paper if key in ("with", "without") else 1)
+
+    def shown(c):
+        return ", ".join(number(c[k], form) for k in keys)
+
+    def meets(c):
+        return all(abs(c[k] - paper) <= limit for k in keys)
+
+    if math.isnan(start[key]):
+        return "not known", "", "", ""
+    if meets(start):
+        return shown(start), "", "", "met"
+    found = {v[0]: columns(*pair(rows, base, s, v[0])) for v in VARIATIONS if v[5] and ran(rows, s, v[0])}
+    found = {name: c for name, c in found.items() if not math.isnan(c[key])}
+    if not found:
+        return shown(start), "none run yet", "", ""
+    best = min(found, key=lambda name: abs(found[name][key] - paper))
+    by_exact = abs(found[EXACT][key] - start[key]) if EXACT in found else math.nan
+    # A hit among so many tries counts only where the column says something, and beyond what the linear solution does to it.
+    if not meets(found[best]):
+        word = "unexplained"
+    elif key == "difference" and is_noise(rows, base, s):
+        word = "unexplained: by chance, the column is noise"
+    elif not abs(found[best][key] - start[key]) > by_exact:
+        word = "unexplained: within what the linear solution does"
+    else:
+        word = "explained by it"
+    return shown(start), cell(next(v[1] for v in VARIATIONS if v[0] == best)), shown(found[best]), word
 
 
 def failures(rows):
