@@ -7,11 +7,13 @@ is violated or rows are of another program than the series'.
 """
 import math
 import sys
+from collections.abc import Callable
+from typing import NamedTuple
 
 import figures
 from analysis import (DT, RESULTS, STEPS, Job, balances, change, here, label, measure, page, parser_of, program, read_rows, render,
                       root, run_all, scene, show, write_rows)
-from series import PUBLISHED, ended, iterations, number, ratios
+from series import PUBLISHED, ended, iterations, made_by, number, ratios
 
 SUCTIONS = (0, 30, 100, 1000)
 BOTH = ("remedy", "as_published")
@@ -51,9 +53,16 @@ def default_floor(groups):
 
 FINE = keys("mesh", r_cells="12, 16", r_ratio=f"1, {1.35**0.5:.8g}", z_cells="14, 14", z_ratio=f"{0.76**0.5:.8g}, {0.9**0.5:.8g}")
 
-# Name, what, what is known of it and what the series uses, scene; the series it means something for; whether the paper leaves it
-# open: only such a one can be a reason for a difference from the paper.
-VARIATIONS = (
+class Variation(NamedTuple):
+    name: str
+    what: str
+    known: str       # What is known of it, and what the series uses.
+    adapt: Callable  # Makes a scene of it.
+    series: tuple    # That it means something for.
+    open: bool       # The paper leaves it open: only such a one can be a reason for a difference from the paper.
+
+
+VARIATIONS = {v[0]: Variation(*v) for v in (
     ("mass_15", "plate of 15 kg", "not stated; 11.1 kg", keys("plate", mass=0.015), BOTH, OPEN),
     ("mass_5.6", "plate of 5.6 kg", "not stated; 11.1 kg", keys("plate", mass=0.0056), BOTH, OPEN),
     ("weightless", "plate without weight", "not stated; with", without_weight, BOTH, OPEN),
@@ -99,7 +108,7 @@ VARIATIONS = (
     ("penalty_1e7", "penalty 1e7 kN/m3", "1e8 stated", keys("contact", penalty=1e7), BOTH, STATED),
     ("penalty_1e9", "penalty 1e9 kN/m3", "1e8 stated", keys("contact", penalty=1e9), BOTH, STATED),
     ("gap_pointwise", "gap penalised point by point", "eq. (18); nodal", keys("contact", gap="'pointwise'"), BOTH, OPEN),
-)
+)}
 
 
 CONTROL = "classic"   # Guards as with the remedy, no remedy.
@@ -113,7 +122,7 @@ STANDARD = ("mesh_half", "dt_tenth", EXACT, "mass_15", "weightless", "peak_12", 
 
 def arguments():
     parser = parser_of(__doc__, SUCTIONS, 30)
-    names = [v[0] for v in VARIATIONS if v[0] != TIGHT]
+    names = [name for name in VARIATIONS if name != TIGHT]
     parser.add_argument("--only", nargs="+", choices=names, default=STANDARD, metavar="NAME",
                         help=f"the standard set by default; {', '.join(names)}")
     return parser.parse_args()
@@ -121,19 +130,14 @@ def arguments():
 
 def jobs_of(args, folder, steps):
     jobs = []
-    for name, _, _, adapt, series, _ in VARIATIONS:
-        if name not in args.only:
-            continue
-        for s in args.suction:
-            for one in series:
-                groups = scene(s, FIELDS, one, adapt, steps=steps)
-                if render(groups) != render(scene(s, FIELDS, one, steps=steps)):
-                    jobs.append(job_of(s, one, name, groups, folder, steps))
-    order = [*STANDARD, *(v[0] for v in VARIATIONS)]
-    return sorted(jobs, key=lambda job: order.index(job.facts["variation"]))
+    for name in dict.fromkeys((*STANDARD, *VARIATIONS)):
+        if name in args.only:
+            jobs += [job_of(s, one, name, folder, steps) for s in args.suction if not same(s, name) for one in VARIATIONS[name].series]
+    return jobs
 
 
-def job_of(suction, series, name, groups, folder, steps):
+def job_of(suction, series, name, folder, steps):
+    groups = scene(suction, FIELDS, series, VARIATIONS[name].adapt, steps=steps)
     return Job(f"{label(suction, FIELDS)}_{series}_{name}", groups, folder, steps, suction=suction, fields=FIELDS, series=series,
                variation=name)
 
@@ -141,9 +145,7 @@ def job_of(suction, series, name, groups, folder, steps):
 def controls(rows, args, folder, steps):
     """What failed without the remedy and without guards, by the same rule with guards: do these alone save it?"""
     failed = [(int(r["suction"]), r["variation"]) for r in rows.values() if r["series"] == "as_published" and not ended(r)]
-    adapt = {v[0]: v[3] for v in VARIATIONS}
-    return [job_of(s, CONTROL, name, scene(s, FIELDS, CONTROL, adapt[name], steps=steps), folder, steps) for s, name in failed
-            if s in args.suction and name in args.only]
+    return [job_of(s, CONTROL, name, folder, steps) for s, name in failed if s in args.suction and name in args.only]
 
 
 def main():
@@ -166,8 +168,7 @@ def main():
             write_rows(path, dict(sorted(rows.items())))
         run_all(jobs, args.jobs, 60 * args.limit, done)
         run_all(controls(read_rows(path), args, scenes, steps), args.jobs, 60 * args.limit, done)
-    names = [v[0] for v in VARIATIONS]
-    rows = {k: r for k, r in read_rows(path).items() if r["variation"] in names}
+    rows = {k: r for k, r in read_rows(path).items() if r["variation"] in VARIATIONS}
     base = read_rows(results / "series.csv")
     rows = with_tight(rows, base)
     text = report(rows, base)
@@ -199,8 +200,13 @@ def columns(a, b):
 
 def pair(rows, base, suction, name):
     """Rows with and without the remedy; where the variation means nothing for one, that of the series."""
-    head, series = label(suction, FIELDS), next((v[4] for v in VARIATIONS if v[0] == name), BOTH)
-    return [(rows.get(f"{head}_{one}_{name}") if name and one in series else base.get(f"{head}_{one}")) for one in BOTH]
+    head, series = label(suction, FIELDS), VARIATIONS[name].series if name else ()
+    return [(rows.get(f"{head}_{one}_{name}") if one in series else base.get(f"{head}_{one}")) for one in BOTH]
+
+
+def tried(rows, base, suction):
+    """Columns of every variation that ran at a suction, by its name."""
+    return {name: columns(*pair(rows, base, suction, name)) for name in VARIATIONS if ran(rows, suction, name)}
 
 
 def with_tight(rows, base):
@@ -224,20 +230,16 @@ def report(rows, base):
                  "remedy | without | final displacement with [mm] | without [mm] |", "|" + 8 * "---|",
                  f"| **paper** (published) | {number(paper[0])} | | {number(paper[1])} | {paper[2]} | {paper[3]} | | |",
                  "| **series** (measured) | " + " | ".join(cells(*pair(rows, base, s, ""))) + " |"]
-        for name, what, *_ in VARIATIONS:
-            a, b = pair(rows, base, s, name)
-            if same(s, name):
-                continue
+        for name, variation in VARIATIONS.items():
             if ran(rows, s, name):
-                text.append(f"| {cell(what)} | {' | '.join(cells(a, b))} |")
-            elif name in STANDARD:
-                missing.append(what)
+                text.append(f"| {cell(variation.what)} | {' | '.join(cells(*pair(rows, base, s, name)))} |")
+            elif name in STANDARD and not same(s, name):
+                missing.append(variation.what)
         text += ["", f"Not run at {s} kPa: {'; '.join(missing)}.", ""] if missing else [""]
-    made = sorted({f"{r['commit']} (program {r['program']})" for r in rows.values()})
-    further = [what for name, what, *_ in VARIATIONS if not any(ran(rows, s, name) for s in SUCTIONS) and name not in STANDARD]
+    further = [v.what for name, v in VARIATIONS.items() if not any(ran(rows, s, name) for s in SUCTIONS) and name not in STANDARD]
     if further:
         text += [f"Not run, but there for `--only`: {'; '.join(further)}.", ""]
-    text += [f"Made by commit {', '.join(made)}, like the series.", "", "## Noise", "", *noise(rows, base), "", "## Towards the paper", "",
+    text += [f"Made by commit {made_by(rows)}, like the series.", "", "## Noise", "", *noise(rows, base), "", "## Towards the paper", "",
              *towards(rows, base), "", "## Failures", "",
              *failures(rows)]
     return "\n".join(text)
@@ -254,11 +256,10 @@ def strongest(rows, base):
             "of its value (displacement: by more than the remedy does).", "",
             "| suction [kPa] | " + " | ".join(title for _, title, _ in MOVED) + " |", "|" + (len(MOVED) + 1) * "---|"]
     for s in SUCTIONS:
-        start, line = columns(*pair(rows, base, s, "")), []
+        start, found_here, line = columns(*pair(rows, base, s, "")), tried(rows, base, s), []
         for key, _, form in MOVED:
-            found = {v[1]: columns(*pair(rows, base, s, v[0]))[key] - start[key] for v in VARIATIONS
-                     if ran(rows, s, v[0]) and not same(s, v[0]) and not (key in ("with", "without") and v[0] in OTHER_STEPS)}
-            found = {what: by for what, by in found.items() if not math.isnan(by)}
+            found = {VARIATIONS[name].what: c[key] - start[key] for name, c in found_here.items()
+                     if not math.isnan(c[key] - start[key]) and not (key in ("with", "without") and name in OTHER_STEPS)}
             limit = abs(start["final"] - start["final_b"]) if key == "final" else 0.1 * abs(start[key])
             largest = sorted(found, key=lambda what: -abs(found[what]))[:3]
             line.append("; ".join(f"{cell(what)} {found[what]:{form}}" for what in largest)
@@ -274,14 +275,13 @@ def cell(text):
 
 def ran(rows, suction, name):
     """Whether a variation ran at that suction, with every series that it means something for."""
-    series = next(v[4] for v in VARIATIONS if v[0] == name)
-    return all(f"{label(suction, FIELDS)}_{one}_{name}" in rows for one in series)
+    return all(f"{label(suction, FIELDS)}_{one}_{name}" in rows for one in VARIATIONS[name].series)
 
 
 def same(suction, name):
     """Whether a variation is what the series does at that suction anyway."""
-    adapt, series = next((v[3], v[4]) for v in VARIATIONS if v[0] == name)
-    return render(scene(suction, FIELDS, series[0], adapt)) == render(scene(suction, FIELDS, series[0]))
+    one = VARIATIONS[name].series[0]
+    return render(scene(suction, FIELDS, one, VARIATIONS[name].adapt)) == render(scene(suction, FIELDS, one))
 
 
 NUMERICS = (("dt_tenth", "a tenth of the time step"), ("mesh_half", "half the size of the elements"), (EXACT, "every matrix factorised anew"))
@@ -330,13 +330,14 @@ def towards(rows, base):
             "else the machine did: work chooses the closest, and both must meet the paper's.", "",
             "| suction | column | paper | series | closest variation | its value | |", "|" + 7 * "---|"]
     for s in SUCTIONS:
+        found = {name: c for name, c in tried(rows, base, s).items() if VARIATIONS[name].open}
         for key, (place, title, *_) in COLUMN_NAMES.items():
             if isinstance(PUBLISHED[s][place], (int, float)):
-                text.append(f"| {s} | {title} | {PUBLISHED[s][place]} | {' | '.join(closest(rows, base, s, key))} |")
+                text.append(f"| {s} | {title} | {PUBLISHED[s][place]} | {' | '.join(closest(rows, base, s, key, found))} |")
     return text
 
 
-def closest(rows, base, s, key):
+def closest(rows, base, s, key, found):
     """Of a column at a suction: the series' value, the variation closest to the paper, its value, and what that says."""
     place, _, allowed, keys, form = COLUMN_NAMES[key]
     paper, start = PUBLISHED[s][place], columns(*pair(rows, base, s, ""))
@@ -352,7 +353,6 @@ def closest(rows, base, s, key):
         return "not known", "", "", ""
     if meets(start):
         return shown(start), "", "", "met"
-    found = {v[0]: columns(*pair(rows, base, s, v[0])) for v in VARIATIONS if v[5] and ran(rows, s, v[0])}
     found = {name: c for name, c in found.items() if not math.isnan(c[key])}
     if not found:
         return shown(start), "none run yet", "", ""
@@ -367,7 +367,7 @@ def closest(rows, base, s, key):
         word = "unexplained: within what the linear solution does"
     else:
         word = "explained by it"
-    return shown(start), cell(next(v[1] for v in VARIATIONS if v[0] == best)), shown(found[best]), word
+    return shown(start), cell(VARIATIONS[best].what), shown(found[best]), word
 
 
 def failures(rows):
@@ -387,16 +387,16 @@ def failures(rows):
 def bars(rows, base):
     """For the picture: by suction, effect of the remedy and (what, change with, change without) of every variation [mm]."""
     answer = {}
-    used = [(v[0], v[1]) for v in VARIATIONS if any(ran(rows, s, v[0]) for s in SUCTIONS)]
+    used = [name for name in VARIATIONS if any(ran(rows, s, name) for s in SUCTIONS)]
     for s in SUCTIONS:
         a, b = pair(rows, base, s, "")
         if not (ended(a) and ended(b)):
             continue
         lines = []
-        for name, what in used:
+        for name in used:
             if not same(s, name):
                 c, d = pair(rows, base, s, name)
-                lines.append((what, *(x["final_mm"] - y["final_mm"] if ended(x) else math.nan for x, y in ((c, a), (d, b)))))
+                lines.append((VARIATIONS[name].what, *(x["final_mm"] - y["final_mm"] if ended(x) else math.nan for x, y in ((c, a), (d, b)))))
         answer[s] = (a["final_mm"], abs(a["final_mm"] - b["final_mm"]), lines)
     return answer
 

@@ -132,7 +132,7 @@ def iterations(row):
 
 def table_1(rows):
     """Published | measured, by column."""
-    ratios = ["| suction [kPa] | relative CPU time: **paper** | measured | relative work | relative difference of displacement: **paper** "
+    times = ["| suction [kPa] | relative CPU time: **paper** | measured | relative work | relative difference of displacement: **paper** "
               "| measured | measured, Newton 1e-5 |", "|" + 7 * "---|"]
     solves = ["| suction [kPa] | iterations with the remedy: **paper** | measured | measured, Newton 1e-5 | without: **paper** | measured "
               "| measured, Newton 1e-5 |", "|" + 7 * "---|"]
@@ -141,19 +141,22 @@ def table_1(rows):
         own, tight = relative(rows, s, fields), relative(rows, s, fields, "_tight")
         (a, b), (c, d) = pair(rows, s, fields), pair(rows, s, fields, "_tight")
         name = f"{s} (u-p_w)" if fields == "u-p_w" else str(s)
-        for text, cells in ((ratios, (paper[0], own[0], own[1], paper[1], own[2], tight[2])),
+        for text, cells in ((times, (paper[0], own[0], own[1], paper[1], own[2], tight[2])),
                             (solves, (str(paper[2]), iterations(a), iterations(c), str(paper[3]), iterations(b), iterations(d)))):
             text.append("| " + " | ".join([name, *(number(c) for c in cells)]) + " |")
-    text = ratios + [""] + solves + ["", "**Paper**: published in its Table 1. Measured: here, with the paper's Newton tolerance 1e-3 and with 1e-5. "
+    text = times + [""] + solves + ["", "**Paper**: published in its Table 1. Measured: here, with the paper's Newton tolerance 1e-3 and with 1e-5. "
                                      "Relative work: rate evaluations of the material with the remedy over those without; unlike CPU "
                                      "times, which are single runs (-: not in one go), it does not depend on what else the machine does. "
                                      "Iterations include those of rejected steps."]
     for r in ordered(rows):
         if r["outcome"] != "0":
             text.append(f"- `{r['name']}` ended at {number(r.get('last_ms', math.nan), '.2f')} ms: {r['message'] or r['outcome']}")
-    commits = sorted({f"{r['commit']} (program {r['program']})" for r in rows.values()})
-    text.append(f"\nMade by commit {', '.join(commits)}.\n")
+    text.append(f"\nMade by commit {made_by(rows)}.\n")
     return "\n".join(text)
+
+
+def made_by(rows):
+    return ", ".join(sorted({f"{r['commit']} (program {r['program']})" for r in rows.values()}))
 
 
 def ordered(rows):
