@@ -53,6 +53,7 @@ def default_floor(groups):
 
 FINE = keys("mesh", r_cells="12, 16", r_ratio=f"1, {1.35**0.5:.8g}", z_cells="14, 14", z_ratio=f"{0.76**0.5:.8g}, {0.9**0.5:.8g}")
 
+
 class Variation(NamedTuple):
     name: str
     what: str
