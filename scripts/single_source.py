@@ -12,7 +12,7 @@ USE = re.compile(r"^\s*use\s+(mud_\w+)", re.MULTILINE | re.IGNORECASE)
 
 HEADER = """\
 MUD {version}: bounding-surface model for unsaturated soil dynamics, the whole library in one file.
-Written by scripts/single_source.py from umat/src: change it there, not here.
+Written by scripts/single_source.py from umat/core and umat/abi: change it there, not here.
 
 It defines the UMAT (symbol umat_) and the functions of mud.h. PROPS, STATEV, conventions and status codes:
 umat/README.md. Free form, Fortran 2018; gfortran 12 or later. Compiling leaves .mod files in the working folder, which
@@ -36,7 +36,8 @@ def cmake_order():
     files = []
     for folder in ("core", "abi"):
         names = re.search(rf"^set\({folder}\s+([^)]*)\)", text, re.MULTILINE)[1].split()
-        files += [root / f"umat/src/{folder}/mud_{name}.f90" for name in names]
+        paths = [pathlib.PurePosixPath(folder, name) for name in names]
+        files += [root / "umat" / path.with_name(f"mud_{path.name}.f90") for path in paths]
     return files
 
 

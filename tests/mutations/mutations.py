@@ -1,11 +1,11 @@
-"""The mutations: (title, (file below umat/src, text that stands there once, its replacement), ...)."""
+"""The mutations: (title, (file below umat, text that stands there once, its replacement), ...)."""
 
-TENSOR, RATES, POINT = "core/mud_tensor.f90", "core/mud_rates.f90", "core/mud_point.f90"
-INCREMENT, REVERSAL, SUBSTEP = "core/mud_increment.f90", "core/mud_reversal.f90", "core/mud_substep.f90"
-FLOW, HARDENING, CRITICAL = "core/mud_flow.f90", "core/mud_hardening.f90", "core/mud_critical_state.f90"
-RETENTION, BONDING, ELASTIC = "core/mud_retention.f90", "core/mud_bonding.f90", "core/mud_elastic.f90"
-PARAMS, REGISTRY, STATE = "core/mud_params.f90", "core/mud_registry.f90", "core/mud_state.f90"
-CONSISTENT = "core/mud_consistent.f90"
+TENSOR, RATES, POINT = "core/base/mud_tensor.f90", "core/rates/mud_rates.f90", "core/integration/mud_point.f90"
+INCREMENT, REVERSAL, SUBSTEP = "core/integration/mud_increment.f90", "core/integration/mud_reversal.f90", "core/integration/mud_substep.f90"
+FLOW, HARDENING, CRITICAL = "core/laws/mud_flow.f90", "core/laws/mud_hardening.f90", "core/laws/mud_critical_state.f90"
+RETENTION, BONDING, ELASTIC = "core/laws/mud_retention.f90", "core/laws/mud_bonding.f90", "core/laws/mud_elastic.f90"
+PARAMS, REGISTRY, STATE = "core/base/mud_params.f90", "core/base/mud_registry.f90", "core/base/mud_state.f90"
+CONSISTENT = "core/integration/mud_consistent.f90"
 
 MUTATIONS = [
     # those the issue names

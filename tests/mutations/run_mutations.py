@@ -35,7 +35,7 @@ def run(command, folder, **more):
 
 class Library:
     """The library and its suites."""
-    mutations, sources, table = MUTATIONS, "umat/src", "README.md"
+    mutations, sources, table = MUTATIONS, "umat", "README.md"
     command = "python3 tests/mutations/run_mutations.py --readme"
     judges = "the suites of `tests/unit` and `tests/contract`"
     patterns, programs, pages = ("tests/unit/*.pf", "tests/contract/*.pf"), [], []

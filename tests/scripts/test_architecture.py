@@ -7,9 +7,7 @@ import sys
 root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2])
 COLUMNS = 120
 SHOWN = 30  # findings that are printed of one rule
-# Layers of the core, lowest first (conventions); what is not listed belongs to the last group.
-GROUPS = [["kinds", "status", "tensor"], ["registry", "params", "state"],
-          ["elastic", "critical_state", "retention", "bonding", "flow", "hardening"]]
+LAYERS = ["base", "laws", "rates", "integration"]  # folders of the core, lowest first
 
 USE = re.compile(r"^\s*use\b\s*(,\s*(non_)?intrinsic\s*)?(::)?\s*(\w+)\s*(,\s*only\s*:)?", re.IGNORECASE)
 HEAD = re.compile(r"^\s*((?:(?:\w+\s*\([^()]*\)|[\w*]+)\s+)*?)(function|subroutine)\s+(\w+)\s*\(", re.IGNORECASE)
@@ -126,20 +124,16 @@ def sources(*patterns):
 def cmake_order():
     """Modules of the library in the order of umat/CMakeLists.txt: (core, abi)."""
     text = (root / "umat/CMakeLists.txt").read_text(encoding="utf-8")
-    return [["mud_" + name for name in re.search(rf"set\({list_name}\s+([^)]*)\)", text)[1].split()]
+    return [["mud_" + name.rpartition("/")[2] for name in re.search(rf"set\({list_name}\s+([^)]*)\)", text)[1].split()]
             for list_name in ("core", "abi")]
 
 
-def group_order(core):
-    """The groups of the conventions stand one after the other in the CMake list, and their members exist."""
-    wrong, rest = [], [name.removeprefix("mud_") for name in core]
-    for group in GROUPS:
-        if sorted(rest[:len(group)]) != sorted(group):
-            wrong.append(f"expected the layer {group}, found {rest[:len(group)]}")
-        rest = rest[len(group):]
-    if rest[:2] != ["rates", "reversal"] or rest[-1:] != ["point"]:
-        wrong.append(f"expected rates, reversal .. point, found {rest}")
-    return wrong
+def layer_order(core_files, core):
+    """The modules of a lower folder stand before those of a higher one in the CMake list."""
+    folder = {file.stem: file.parent.name for file in core_files}
+    order = [LAYERS.index(folder[name]) for name in core if name in folder]
+    return [f"{core[i + 1]} ({LAYERS[b]}) stands after {core[i]} ({LAYERS[a]})"
+            for i, (a, b) in enumerate(zip(order, order[1:])) if b < a]
 
 
 def planted_offences():
@@ -174,7 +168,7 @@ def planted_offences():
 def main():
     core, abi = cmake_order()
     inside = core + abi
-    core_files, abi_files = sources("umat/src/core/*.f90"), sources("umat/src/abi/*.f90")
+    core_files, abi_files = sources("umat/core/*/*.f90"), sources("umat/abi/*.f90")
     library = core_files + abi_files
     clients = sources("host/**/*.f90", "drivers/**/*.f90")
     helpers = sources("tests/**/*.f90")
@@ -197,7 +191,7 @@ def main():
         ("the sources of the library are those of umat/CMakeLists.txt",
          sorted(set(inside) ^ {file.stem for file in library})),
         ("there are drivers, helpers and suites to look at", [] if clients and helpers and suites else ["none found"]),
-        ("the layers stand in the order of the conventions", group_order(core)),
+        ("the layers of the core stand one after the other", layer_order(core_files, core)),
         ("core uses only what is below", over(core_files, lambda t, n: upward_use(t, n, core), True)),
         ("abi uses the core and what is below in abi", over(abi_files, lambda t, n: upward_use(t, n, inside), True)),
         ("drivers and host see mud_interface only", over(clients, lambda t: inner_use(t, set(inside)))),

@@ -46,15 +46,19 @@ def near(text):
     return bool(found) and all(abs(float(value) - known) <= WITHIN*known for value, known in zip(found.groups(), KNOWN))
 
 
+def library_files():
+    return [*root.glob("umat/core/*/*.f90"), *root.glob("umat/abi/*.f90")]
+
+
 def refusal(folder):
     """What the program says where a module stands before one that it uses."""
     copy = folder / "disordered"
     for name in ("CMakeLists.txt", "LICENSE", "umat/CMakeLists.txt", "scripts/single_source.py",
-                 *(file.relative_to(root) for file in root.glob("umat/src/*/*.f90"))):
+                 *(file.relative_to(root) for file in library_files())):
         (copy / name).parent.mkdir(parents=True, exist_ok=True)
         text = (root / name).read_text(encoding="utf-8")
         if name == "umat/CMakeLists.txt":
-            text = text.replace("set(core kinds status", "set(core status kinds")
+            text = text.replace("set(core base/kinds base/status", "set(core base/status base/kinds")
         (copy / name).write_text(text, encoding="utf-8")
     done = run(sys.executable, copy / "scripts/single_source.py", copy / "out.f90", folder=folder)
     return done.stderr if done.returncode and not (copy / "out.f90").exists() else ""
@@ -84,8 +88,8 @@ def main():
             ("the file of the build tree is what the program writes now",
              built.exists() and built.read_text(encoding="utf-8") == text,
              f"rebuild the target mud_single_source: {built}"),
-            ("every module of umat/src is in it, once",
-             sorted(modules) == sorted(file.stem for file in root.glob("umat/src/*/*.f90")), str(modules)),
+            ("every module of the library is in it, once",
+             sorted(modules) == sorted(file.stem for file in library_files()), str(modules)),
             ("the header says the version that the library says", bool(version) and f"MUD {version[1]}:" in header,
              header[:80]),
             ("the header says the licence and how to link",
