@@ -1,0 +1,111 @@
+"""Paths of one point for mud_walk, and the program itself. Compression positive, engineering shear, kPa."""
+import concurrent.futures
+import csv
+import dataclasses
+import pathlib
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+RULES = {"classic": 0, "threshold": 1, "repositioning": 2, "return_point": 3, "as_published": 4}
+ALIASES = {"resume": 3}   # the rule that return_point replaces under the same number
+
+
+@dataclasses.dataclass(frozen=True)
+class Soil:
+    """The default material with a memory rule (its number) and an elastic domain of radius rho_e."""
+    rule: int
+    rho_e: float
+    properties: tuple = ()   # further (name, value)
+
+    def having(self, **properties):
+        return dataclasses.replace(self, properties=self.properties + tuple(properties.items()))
+
+
+class Path:
+    """A path, written down step by step."""
+
+    def __init__(self, soil, e, p=100.0, stress=None, suction=0.0):
+        """Starts from an isotropic effective stress p, or from six components."""
+        stress = stress or (p, p, p, 0.0, 0.0, 0.0)
+        self.lines = [f"set memory_rule {soil.rule}", f"set rho_e {soil.rho_e!r}"]
+        self.lines += [f"set {name} {value!r}" for name, value in soil.properties]
+        self.lines.append("start " + " ".join(map(repr, (*stress, suction, e))))
+
+    def lead(self, letters):
+        """'s' or 'e' for each component: led by its stress or by its strain."""
+        self.lines.append("lead " + " ".join("T" if letter == "s" else "F" for letter in letters))
+        return self
+
+    def lead_q(self):
+        """Triaxial: led by q, eps_v, eps_22 - eps_33 and the shear strains."""
+        self.lines.append("lead_q")
+        return self
+
+    def go(self, n, change, suction=0.0):
+        """n equal increments of the led quantities, `change` in all."""
+        self.lines.append(f"go {n} " + " ".join(repr(float(x)) for x in (*change, suction)))
+        return self
+
+    def turn(self, rotation):
+        """A rigid rotation by a matrix (rows)."""
+        self.lines.append("turn " + " ".join(repr(float(rotation[i][j])) for j in range(3) for i in range(3)))
+        return self
+
+    def row(self, label="end"):
+        self.lines.append(f"row {label}")
+        return self
+
+
+class Row(dict):
+    """A state: stress, strain (lists), e, suction, counters, label, failed."""
+
+    def __init__(self, cells):
+        super().__init__()
+        self["label"] = cells["label"]
+        self["failed"] = cells["status"] != "0"
+        self["stress"] = [float(cells[k]) for k in ("s11", "s22", "s33", "s12", "s13", "s23")]
+        self["strain"] = [float(cells[k]) for k in ("e11", "e22", "e33", "g12", "g13", "g23")]
+        for key in ("e", "suction"):
+            self[key] = float(cells[key])
+        for key in ("rates", "substeps", "resets", "cuts", "iterations"):
+            self[key] = int(cells[key])
+
+    @property
+    def p(self):
+        return sum(self["stress"][:3]) / 3
+
+    @property
+    def q(self):
+        """Axial minus mean lateral stress (axis 1)."""
+        s = self["stress"]
+        return s[0] - (s[1] + s[2]) / 2
+
+
+class Walker:
+    """Runs paths with the program of a build, at most `jobs` at a time."""
+
+    def __init__(self, build=ROOT / "build/release", jobs=2):
+        self.program = pathlib.Path(build) / "verification/material/memory_rules/mud_walk"
+        if not self.program.exists():
+            raise SystemExit(f"there is no {self.program}: build the target mud_walk first")
+        self.pool = concurrent.futures.ThreadPoolExecutor(jobs)
+
+    def start(self, path):
+        """A future of the path's rows."""
+        return self.pool.submit(self._run, path)
+
+    def run(self, path):
+        return self.start(path).result()
+
+    def run_all(self, paths):
+        """Rows of every path of a list or a dictionary."""
+        if isinstance(paths, dict):
+            return dict(zip(paths, self.run_all(list(paths.values()))))
+        return [future.result() for future in [self.start(path) for path in paths]]
+
+    def _run(self, path):
+        text = "\n".join(["case walk", *path.lines]) + "\n"
+        done = subprocess.run([self.program], input=text, capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise SystemExit(f"mud_walk: {done.stdout.splitlines()[-1:]} {done.stderr}")
+        return [Row(cells) for cells in csv.DictReader(done.stdout.splitlines())]
