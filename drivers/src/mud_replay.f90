@@ -7,8 +7,8 @@ program mud_replay
       MUD_SUBSTEP_REJECTED, MUD_MODE_ELASTIC, MUD_MODE_HELD, MUD_MODE_NUCLEUS, MUD_JUMP_RESEAT, MUD_JUMP_RESUME, &
       MUD_JUMP_NEW
    use replay_file, only: increment_t, read_increment
-   use triax_fault, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
-   use triax_text, only: from_c, read_number, short, whole
+   use faults, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
+   use texts, only: from_c, read_number, short, whole
    implicit none (type, external)
 
    integer, parameter :: PATH_LENGTH = 1024, BUFFER = 1600

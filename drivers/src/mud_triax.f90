@@ -1,8 +1,8 @@
 !> Element tests on the MUD model: drained and undrained triaxial tests, compression, strain and suction paths.
 program mud_triax
    use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit, error_unit
-   use triax_fault, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
-   use triax_text, only: whole
+   use faults, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
+   use texts, only: whole
    use triax_case, only: case_t, read_case
    use triax_stage, only: CONTROL_NAMES
    use triax_point, only: point_t, library_version

@@ -4,8 +4,8 @@ module replay_file
    use, intrinsic :: iso_c_binding, only: c_int, c_null_char
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf, ieee_negative_inf
    use mud_interface, only: mud_abi_version, mud_count, mud_text, MUD_PROPS, MUD_STATEV, MUD_NAME
-   use triax_fault, only: fault_t, raise, at_line, EXIT_INPUT
-   use triax_text, only: from_c, lower_case, read_number, whole
+   use faults, only: fault_t, raise, at_line, EXIT_INPUT
+   use texts, only: from_c, lower_case, read_number, whole
    implicit none (type, external)
    private
    public :: increment_t, read_increment

@@ -2,8 +2,8 @@
 !> library's tangent blocks. An increment that fails is cut and retried.
 module triax_control
    use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit
-   use triax_fault, only: fault_t, raise, EXIT_RUN, EXIT_OUTPUT
-   use triax_text, only: short, whole
+   use faults, only: fault_t, raise, EXIT_RUN, EXIT_OUTPUT
+   use texts, only: short, whole
    use triax_linear, only: solve, outer
    use triax_stage, only: stage_t, quantity_rows, CONTROL_NAMES, ROWS, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
    use triax_point, only: soil_t, point_t, tangent_t, mud_report, update_point, save_update, update_sentence, &

@@ -4,8 +4,8 @@
 !> within the increment: a liquefied sample has no stiffness to solve with, but a strain can always be driven.
 module triax_course
    use, intrinsic :: iso_fortran_env, only: wp => real64
-   use triax_fault, only: fault_t, raise, EXIT_RUN
-   use triax_text, only: short, whole
+   use faults, only: fault_t, raise, EXIT_RUN
+   use texts, only: short, whole
    use triax_stage, only: stage_t, sealed_control, shear_control, CONTROL_NAMES, QUANTITIES
    use triax_control, only: plan_t, tally_t, plan_way, advance, lead, quantity
    use triax_point, only: soil_t, point_t, AXIAL, RADIAL

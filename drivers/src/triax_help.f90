@@ -1,7 +1,7 @@
 !> Texts on request: how to call the driver, and a case file that runs unchanged.
 module triax_help
    use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit
-   use triax_text, only: short
+   use texts, only: short
    use triax_keys, only: print_keys
    use triax_stage, only: CONTROL_NAMES, QUANTITIES, leads_of, LINEAR
    use triax_point, only: property_count, property_name, property_unit, property_origin, property_meaning, &

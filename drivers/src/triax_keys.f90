@@ -1,9 +1,9 @@
 !> Keys of case files: their groups, sizes, ranges and meanings, and the check of a group against them.
 module triax_keys
    use, intrinsic :: iso_fortran_env, only: wp => real64
-   use triax_fault, only: fault_t, raise, at_line, EXIT_INPUT
-   use triax_text, only: lower_case, distance, short, whole, read_number
-   use triax_namelist, only: group_t, entry_t, find_entry, LENGTH
+   use faults, only: fault_t, raise, at_line, EXIT_INPUT
+   use texts, only: lower_case, distance, short, whole, read_number
+   use namelists, only: group_t, entry_t, find_entry, LENGTH
    implicit none (type, external)
    private
    public :: check_keys, print_keys, describe_key, nearest_name, get_text, get_number, get_numbers, line_of, has_key

@@ -1,9 +1,9 @@
 !> Materials by name: an &material group, checked against the library's registry, fills PROPS.
 module triax_material
    use, intrinsic :: iso_fortran_env, only: wp => real64
-   use triax_fault, only: fault_t, raise, at_line, EXIT_INPUT
-   use triax_text, only: lower_case, distance, short, whole, read_number, word_place
-   use triax_namelist, only: group_t, entry_t, read_groups, find_entry, LENGTH
+   use faults, only: fault_t, raise, at_line, EXIT_INPUT
+   use texts, only: lower_case, distance, short, whole, read_number, word_place
+   use namelists, only: group_t, entry_t, read_groups, find_entry, LENGTH
    use triax_point, only: soil_t, default_soil, check_soil, property_count, property_index, property_name, &
                           property_unit, property_meaning, property_range
    implicit none (type, external)

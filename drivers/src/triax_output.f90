@@ -1,8 +1,8 @@
 !> Results: rows of a CSV or HDF5 file, progress of long runs, and the summary at the end.
 module triax_output
    use, intrinsic :: iso_fortran_env, only: wp => real64, int64, output_unit, error_unit
-   use triax_fault, only: fault_t, raise, EXIT_OUTPUT
-   use triax_text, only: short, whole, lower_case
+   use faults, only: fault_t, raise, EXIT_OUTPUT
+   use texts, only: short, whole, lower_case
    use triax_case, only: case_t
    use triax_stage, only: general_control
    use triax_control, only: tally_t, CONTROL_TOLERANCE

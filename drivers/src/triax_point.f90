@@ -8,8 +8,8 @@ module triax_point
                             mud_validate_props, mud_init_state, mud_update, mud_save_increment, mud_message, &
                             MUD_PROPS, MUD_STATEV, &
                             MUD_NAME, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONSISTENT
-   use triax_fault, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
-   use triax_text, only: from_c, whole
+   use faults, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
+   use texts, only: from_c, whole
    implicit none (type, external)
    private
    public :: soil_t, point_t, tangent_t, mud_report

@@ -1,7 +1,7 @@
 !> Options and status of the contact kernels, and what a status says in words.
 module contact_types
    use, intrinsic :: iso_fortran_env, only: int64
-   use host_kinds, only: wp, PI
+   use kinds, only: wp, PI
    implicit none (type, external)
    private
    public :: wp, TWO_PI, NODAL_GAP, POINTWISE_GAP, PRESSURE_WORK, ENERGY_SLOPE

@@ -1,8 +1,8 @@
 !> Residual, its scale and its tangent for the whole mesh. Elements are computed in parallel and summed in a fixed
 !> order, so that the result does not depend on the number of threads.
 module fe_assembly
-   use host_clock, only: clock
-   use host_kinds, only: wp
+   use wall_clock, only: clock
+   use kinds, only: wp
    use fe_dofs, only: dofs_t
    use fe_element, only: element_t, compute_element
    use fe_material, only: answer_t

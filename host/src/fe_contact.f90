@@ -1,7 +1,7 @@
 !> Contacts in the equations: current coordinates go to the kernels, their forces and slopes to the unknowns. Without
 !> contacts nothing is allocated and nothing is done.
 module fe_contact
-   use host_kinds, only: wp
+   use kinds, only: wp
    use contact_penalty, only: contact_t, contact_prepare, contact_evaluate
    use contact_rigid, only: rigid_t, rigid_prepare, rigid_positions, rigid_gather
    use contact_types, only: contact_options_t, contact_status_t, CONTACT_OK

@@ -1,6 +1,6 @@
 !> Isotropic linear elasticity of the effective stress.
 module fe_elastic
-   use host_kinds, only: wp
+   use kinds, only: wp
    use fe_material, only: material_t, answer_t
    implicit none (type, external)
    private

@@ -1,7 +1,8 @@
 !> Residual and exact tangent of one element: B^T response and B^T slope B over its quadrature points.
 module fe_element
-   use host_clock, only: clock, lap
-   use host_kinds, only: wp, FIELDS
+   use wall_clock, only: clock, lap
+   use host_kinds, only: FIELDS
+   use kinds, only: wp
    use fe_material, only: answer_t, TOO_LARGE
    use fe_model, only: model_t, state_t, gauss_t
    use fe_point, only: kinematics_t, pore_t, point_response, PLACES

@@ -2,7 +2,7 @@
 !> Conventions are those of mud.h: tension positive, components 11, 22, 33, 12, 13, 23 = rr, zz, tt, rz, 0, 0,
 !> engineering shear, suction p_c = p_a - p_w. A new law extends material_t; the element code does not change.
 module fe_material
-   use host_kinds, only: wp
+   use kinds, only: wp
    implicit none (type, external)
    private
    public :: material_t, slot_t, answer_t, TOO_LARGE

@@ -1,13 +1,14 @@
 !> The discrete problem: mesh, geometry at the quadrature points, laws of every region, and what a state consists of.
 module fe_model
-   use host_kinds, only: wp, PI, FIELDS, EXIT_ELEMENT
+   use host_kinds, only: FIELDS, EXIT_ELEMENT
+   use kinds, only: wp, PI
    use fe_shape, only: quadratic, linear, triangle_rule
    use fe_material, only: slot_t
    use fe_retention, only: retention_slot_t
    use fe_permeability, only: permeability_t
    use mesh_types, only: mesh_t
-   use triax_fault, only: fault_t, raise
-   use triax_text, only: short, whole
+   use faults, only: fault_t, raise
+   use texts, only: short, whole
    implicit none (type, external)
    private
    public :: model_t, region_t, fluids_t, gauss_t, state_t, source_i, prepare_model, new_state_of, copy_state

@@ -3,9 +3,9 @@ module fe_mud
    use, intrinsic :: iso_c_binding, only: c_int, c_double, c_char, c_null_char, c_ptr, c_loc
    use mud_interface, only: mud_report, mud_init_state, mud_update, mud_status_text, mud_index, MUD_STATEV, &
                             MUD_TANGENT_NONE, MUD_PROPS
-   use host_kinds, only: wp
+   use kinds, only: wp
    use fe_material, only: material_t, answer_t
-   use triax_text, only: from_c
+   use texts, only: from_c
    implicit none (type, external)
    private
    public :: mud_t, make_mud

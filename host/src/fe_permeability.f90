@@ -1,7 +1,7 @@
 !> Relative permeabilities to water and air as functions of the degree of saturation, with floors so that no balance
 !> equation vanishes.
 module fe_permeability
-   use host_kinds, only: wp
+   use kinds, only: wp
    implicit none (type, external)
    private
    public :: permeability_t, relative_t, relative_permeability, &

@@ -3,7 +3,7 @@
 !> gradient of p_w | gradient of p_c, so that an element adds B^T response and B^T slope B and knows no soil.
 !> Signs: tension positive stress and strain, pressures positive in compression, outflow positive.
 module fe_point
-   use host_kinds, only: wp
+   use kinds, only: wp
    use fe_material, only: answer_t
    use fe_model, only: model_t, region_t
    use fe_permeability, only: relative_t, relative_permeability

@@ -1,6 +1,6 @@
 !> Water retention: degree of saturation at a suction and a void ratio, with its slopes.
 module fe_retention
-   use host_kinds, only: wp
+   use kinds, only: wp
    implicit none (type, external)
    private
    public :: retention_t, saturation_t, saturated_t, bilogarithmic_t, power_t, table_t, retention_slot_t

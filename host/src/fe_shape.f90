@@ -1,7 +1,7 @@
 !> Shape functions of 6-node and 3-node triangles and of 3-node edges, and quadrature rules.
 !> Nodes as in Gmsh: vertices 1, 2, 3, then the middles of 1-2, 2-3, 3-1; an edge is vertex, vertex, middle.
 module fe_shape
-   use host_kinds, only: wp
+   use kinds, only: wp
    implicit none (type, external)
    private
    public :: quadratic, linear, edge_quadratic, triangle_rule, edge_rule, RULES

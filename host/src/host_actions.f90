@@ -1,10 +1,10 @@
 !> What acts on a scene, and how fast: jumps, slopes and their changes in every stage.
 module host_actions
-   use host_kinds, only: wp, PI
+   use kinds, only: wp, PI
    use host_scene, only: scene_t, factor_at, acts_in, P_A, UNBOUNDED
    use fe_model, only: state_t
    use time_galpha, only: STATIC
-   use triax_namelist, only: LENGTH
+   use namelists, only: LENGTH
    implicit none (type, external)
    private
    public :: action_t, pace_t, actions_of, pace_of, start_of, FORCE, MOTION, PRESSURE, FLOW

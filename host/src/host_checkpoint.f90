@@ -4,7 +4,8 @@ module host_checkpoint
    use, intrinsic :: iso_c_binding, only: c_char, c_null_char
    use, intrinsic :: iso_fortran_env, only: int64
    use mud_interface, only: mud_version
-   use host_kinds, only: wp, EXIT_RESTART
+   use host_kinds, only: EXIT_RESTART
+   use kinds, only: wp
    use host_course, only: run_t
    use host_energy, only: ledger_t
    use host_output, only: output_t, settle_output
@@ -12,10 +13,10 @@ module host_checkpoint
    use host_watch, only: MEMORIES
    use fe_model, only: copy_state
    use fe_pattern, only: make_pattern
-   use io_hdf5, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, &
+   use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, &
                       get_text, extent_of
-   use triax_fault, only: fault_t, raise, EXIT_OUTPUT
-   use triax_text, only: from_c
+   use faults, only: fault_t, raise, EXIT_OUTPUT
+   use texts, only: from_c
    implicit none (type, external)
    private
    public :: write_checkpoint, read_checkpoint, CHECKPOINT

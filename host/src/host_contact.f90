@@ -1,13 +1,13 @@
 !> Contacts of a scene: set up, seated, switched by stages, and their row of contact.csv.
 module host_contact
-   use host_kinds, only: wp
+   use kinds, only: wp
    use host_loads, only: plate_load
    use host_scene, only: scene_t, stage_t, acts_in
    use contact_types, only: contact_status_t, contact_message, CONTACT_OK, TWO_PI
    use fe_contact, only: contacts_t, touch_t, surface_t, surface_of, new_touch, plate_surface, evaluate_contacts
    use fe_dofs, only: dofs_t
    use fe_model, only: state_t
-   use triax_fault, only: fault_t, raise, EXIT_INPUT
+   use faults, only: fault_t, raise, EXIT_INPUT
    implicit none (type, external)
    private
    public :: prepare_contacts, seat_plates, contacts_act, contact_columns, contact_row, contact_nodes

@@ -1,7 +1,7 @@
 !> A scene on its way: everything that one step hands to the next, and the place in its stages.
 module host_course
    use, intrinsic :: iso_fortran_env, only: int64
-   use host_kinds, only: wp
+   use kinds, only: wp
    use host_drainage, only: drainage_t
    use host_energy, only: ledger_t
    use host_watch, only: watch_t

@@ -2,11 +2,12 @@
 !> impervious, and the &fix of pressures along the slave let go of it. Decided at the start of a step from the
 !> displacements there, so that a step is smooth and a restart decides the same.
 module host_drainage
-   use host_kinds, only: wp, EXIT_CONVERGENCE
+   use host_kinds, only: EXIT_CONVERGENCE
+   use kinds, only: wp
    use host_scene, only: scene_t
    use contact_types, only: contact_message
    use fe_contact, only: contacts_t, evaluate_contacts
-   use triax_fault, only: fault_t, raise, EXIT_INPUT
+   use faults, only: fault_t, raise, EXIT_INPUT
    implicit none (type, external)
    private
    public :: drainage_t, prepare_drainage, freeze_drainage, is_released

@@ -2,7 +2,7 @@
 !> derived: an effect is off only where a bound of what it does is below the scene's tolerance. Bounds use the stiffness
 !> at the start; of a plastic material they keep a reserve (PLASTIC).
 module host_effects
-   use host_kinds, only: wp, PI
+   use kinds, only: wp, PI
    use host_actions, only: pace_t, pace_of
    use host_facts, only: facts_t, gather, judge, PLASTIC, ROUNDING
    use host_modes, only: trial_t, prepare_trial, support, response_of, imbalance_of, mass_of_nodes, end_trial
@@ -11,8 +11,8 @@ module host_effects
                          UNKNOWN
    use fe_permeability, only: relative_permeability, relative_t
    use time_galpha, only: STATIC, QUASI_STATIC, DYNAMIC
-   use triax_fault, only: fault_t
-   use triax_text, only: short
+   use faults, only: fault_t
+   use texts, only: short
    implicit none (type, external)
    private
    public :: derive_effects

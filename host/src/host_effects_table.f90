@@ -1,10 +1,10 @@
 !> The table of effects, printed and as a file.
 module host_effects_table
-   use host_kinds, only: wp
+   use kinds, only: wp
    use host_scene, only: effect_t, UNBOUNDED, UNKNOWN, NEVER
-   use io_table, only: table_t, new_table, write_line, close_table
-   use triax_fault, only: fault_t
-   use triax_text, only: short, whole
+   use csv, only: csv_t, new_csv, write_line, close_csv
+   use faults, only: fault_t
+   use texts, only: short, whole
    implicit none (type, external)
    private
    public :: print_effects, write_effects
@@ -79,10 +79,10 @@ contains
       type(effect_t), intent(in) :: table(:)
       type(fault_t), intent(inout) :: fault
       character(32) :: seen
-      type(table_t) :: file
+      type(csv_t) :: file
       integer :: i
 
-      call new_table(folder//'/effects.csv', 'effect,on,by,estimate,unit,threshold,unknowns,entries,largest_seen,'// &
+      call new_csv(folder//'/effects.csv', 'effect,on,by,estimate,unit,threshold,unknowns,entries,largest_seen,'// &
                      'crossed_at,because', file, fault)
       do i = 1, size(table)
          associate (t => table(i))
@@ -94,6 +94,6 @@ contains
                whole(t%unknowns)//','//whole(t%entries)//','//trim(seen)//',"'//trim(t%why)//'"', fault)
          end associate
       end do
-      call close_table(file, fault)
+      call close_csv(file, fault)
    end subroutine write_effects
 end module host_effects_table

@@ -2,7 +2,7 @@
 !> Mechanical balance: loads + supports + gravity = change of kinetic + skeleton + pores + contact + damping
 !> (+ algorithmic damping).
 module host_energy
-   use host_kinds, only: wp
+   use kinds, only: wp
    use fe_dofs, only: dofs_t
    use fe_model, only: model_t, state_t
    use fe_permeability, only: relative_t, relative_permeability

@@ -1,6 +1,6 @@
 !> What the decisions about the effects of a scene share: stiffness, extent, weight, what acts, and how fast.
 module host_facts
-   use host_kinds, only: wp
+   use kinds, only: wp
    use host_actions, only: action_t, actions_of, FORCE, MOTION
    use host_modes, only: trial_t
    use host_scene, only: scene_t, effect_t, UNBOUNDED

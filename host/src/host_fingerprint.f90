@@ -2,8 +2,8 @@
 !> Comments, spaces and what changes no result take no part.
 module host_fingerprint
    use, intrinsic :: iso_fortran_env, only: int64
-   use triax_namelist, only: group_t
-   use triax_text, only: lower_case
+   use namelists, only: group_t
+   use texts, only: lower_case
    implicit none (type, external)
    private
    public :: fingerprint_of, FINGERPRINT_LENGTH

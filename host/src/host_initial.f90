@@ -1,11 +1,12 @@
 !> The state at the start of a scene: pressures, degree of saturation, effective stress.
 module host_initial
-   use host_kinds, only: wp, EXIT_MATERIAL
+   use host_kinds, only: EXIT_MATERIAL
+   use kinds, only: wp
    use host_scene, only: scene_t, initial_t
    use fe_model, only: state_t, new_state_of
    use fe_retention, only: saturation_t
-   use triax_fault, only: fault_t, raise
-   use triax_text, only: short, whole
+   use faults, only: fault_t, raise
+   use texts, only: short, whole
    implicit none (type, external)
    private
    public :: initial_state

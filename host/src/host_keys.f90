@@ -1,10 +1,10 @@
 !> Every key of a scene: kind, default, range or words, meaning. Checks, the template and the tables of the manual all
 !> come from this list.
 module host_keys
-   use host_kinds, only: wp
-   use triax_fault, only: fault_t, raise, at_line, EXIT_INPUT
-   use triax_namelist, only: group_t, entry_t, find_entry, MAX_VALUES, LENGTH
-   use triax_text, only: lower_case, distance, short, whole, read_number
+   use kinds, only: wp
+   use faults, only: fault_t, raise, at_line, EXIT_INPUT
+   use namelists, only: group_t, entry_t, find_entry, MAX_VALUES, LENGTH
+   use texts, only: lower_case, distance, short, whole, read_number
    implicit none (type, external)
    private
    public :: check_keys, number_of, numbers_of, text_of, texts_of, word_is, given, print_template, GROUPS

@@ -2,18 +2,18 @@
 module host_laws
    use, intrinsic :: iso_c_binding, only: c_null_char
    use mud_interface, only: mud_index, MUD_PROPS
-   use host_kinds, only: wp
+   use kinds, only: wp
    use host_keys, only: number_of, numbers_of, text_of, word_is
    use fe_elastic, only: elastic_t
    use fe_material, only: slot_t
    use fe_mud, only: mud_t, make_mud
    use fe_permeability, only: permeability_t, LAW_CONSTANT, LAW_COREY, LAW_MUALEM, LAW_POWER
    use fe_retention, only: retention_slot_t, bilogarithmic_t, power_t, table_t, saturated_t
-   use triax_fault, only: fault_t, raise, at_line, EXIT_INPUT
+   use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use triax_material, only: read_material
-   use triax_namelist, only: group_t, LENGTH
+   use namelists, only: group_t, LENGTH
    use triax_point, only: soil_t
-   use triax_text, only: lower_case
+   use texts, only: lower_case
    implicit none (type, external)
    private
    public :: read_mud, read_elastic, read_retention, read_permeability, retention_of_mud

@@ -1,6 +1,6 @@
 !> Load vectors and prescribed values of a moment.
 module host_loads
-   use host_kinds, only: wp, PI
+   use kinds, only: wp, PI
    use host_drainage, only: drainage_t, is_released
    use host_scene, only: scene_t, stage_t, plate_t, factor_at, acts_in, P_A
    use fe_dofs, only: dofs_t, tie

@@ -1,7 +1,7 @@
 !> The body at the start of a scene, taken as linear with its drained stiffness and its supports of a stage: the
 !> slowest free vibration, and the strain energy of what acts on it.
 module host_modes
-   use host_kinds, only: wp
+   use kinds, only: wp
    use host_actions, only: action_t, start_of, FORCE, MOTION
    use host_drainage, only: drainage_t
    use host_energy, only: density
@@ -15,7 +15,7 @@ module host_modes
    use newton, only: constraint_t
    use solve_sparse, only: sparse_t, analyse, factorise, backsolve, times, release, SOLVED
    use time_galpha, only: make_scheme, STATIC
-   use triax_fault, only: fault_t
+   use faults, only: fault_t
    implicit none (type, external)
    private
    public :: trial_t, prepare_trial, support, mass_of_nodes, response_of, imbalance_of, end_trial

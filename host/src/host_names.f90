@@ -1,9 +1,9 @@
 !> Names of a scene: what others name is there once, and what becomes a file or a column has a name fit for it.
 module host_names
    use mesh_types, only: NAME_LENGTH
-   use triax_fault, only: fault_t, raise, at_line, EXIT_INPUT
-   use triax_namelist, only: group_t, find_entry
-   use triax_text, only: whole
+   use faults, only: fault_t, raise, at_line, EXIT_INPUT
+   use namelists, only: group_t, find_entry
+   use texts, only: whole
    implicit none (type, external)
    private
    public :: check_names

@@ -1,17 +1,17 @@
 !> Output: histories at points, the ledger, and the fields at the end of every stage and in between.
 module host_output
-   use host_kinds, only: wp
+   use kinds, only: wp
    use host_contact, only: contact_columns, contact_row, contact_nodes
    use host_energy, only: ledger_t, imbalance
    use host_results, only: frames_t, write_mesh, check_mesh, write_frame, all_pressures
    use host_scene, only: scene_t
    use fe_contact, only: contacts_t
    use fe_model, only: state_t, model_t
-   use io_files, only: make_folder
-   use io_table, only: table_t, new_table, check_table, resume_table, write_row, settle_table, close_table, is_open, &
+   use files, only: make_folder
+   use csv, only: csv_t, new_csv, check_csv, resume_csv, write_row, settle_csv, close_csv, is_open, &
                        NUMBERS
    use newton, only: log_t
-   use triax_fault, only: fault_t
+   use faults, only: fault_t
    implicit none (type, external)
    private
    public :: output_t, open_output, check_output, write_history, write_ledger, write_contacts, write_fields
@@ -25,7 +25,7 @@ module host_output
 
    type :: output_t
       character(:), allocatable :: folder
-      type(table_t) :: history, ledger, contact   !< The last is open if the scene has contacts or plates.
+      type(csv_t) :: history, ledger, contact   !< The last is open if the scene has contacts or plates.
       type(frames_t) :: frames
    end type output_t
 contains
@@ -52,13 +52,13 @@ contains
    contains
       subroutine open_one(name, head, table)
          character(*), intent(in) :: name, head
-         type(table_t), intent(inout) :: table
+         type(csv_t), intent(inout) :: table
 
          if (fault%code /= 0) return
          if (resume) then
-            call resume_table(folder//'/'//name, head, table, fault)
+            call resume_csv(folder//'/'//name, head, table, fault)
          else
-            call new_table(folder//'/'//name, head, table, fault)
+            call new_csv(folder//'/'//name, head, table, fault)
          end if
       end subroutine open_one
    end subroutine open_output
@@ -71,10 +71,10 @@ contains
       type(fault_t), intent(inout) :: fault
 
       call check_mesh(folder, scene%fingerprint, fault)
-      if (fault%code == 0) call check_table(folder//'/histories.csv', output%history%bytes, fault)
-      if (fault%code == 0) call check_table(folder//'/ledger.csv', output%ledger%bytes, fault)
+      if (fault%code == 0) call check_csv(folder//'/histories.csv', output%history%bytes, fault)
+      if (fault%code == 0) call check_csv(folder//'/ledger.csv', output%ledger%bytes, fault)
       if (fault%code == 0 .and. touches(scene)) &
-         call check_table(folder//'/contact.csv', output%contact%bytes, fault)
+         call check_csv(folder//'/contact.csv', output%contact%bytes, fault)
    end subroutine check_output
 
    pure logical function touches(scene)
@@ -101,9 +101,9 @@ contains
       type(output_t), intent(inout) :: output
       type(fault_t), intent(inout) :: fault
 
-      call settle_table(output%history, fault)
-      if (fault%code == 0) call settle_table(output%ledger, fault)
-      if (fault%code == 0 .and. is_open(output%contact)) call settle_table(output%contact, fault)
+      call settle_csv(output%history, fault)
+      if (fault%code == 0) call settle_csv(output%ledger, fault)
+      if (fault%code == 0 .and. is_open(output%contact)) call settle_csv(output%contact, fault)
    end subroutine settle_output
 
    subroutine write_history(output, scene, state, fault)
@@ -162,19 +162,19 @@ contains
       type(state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
       real(wp) :: x(4, size(state%x, 2))
-      type(table_t) :: table
+      type(csv_t) :: table
       integer :: i, e, g, p
 
       call all_pressures(model, state, x)
-      call new_table(output%folder//'/nodes_'//stage//'.csv', 'r,z,u_r,u_z,p_w,p_c,v_r,v_z', table, fault)
+      call new_csv(output%folder//'/nodes_'//stage//'.csv', 'r,z,u_r,u_z,p_w,p_c,v_r,v_z', table, fault)
       do i = 1, size(state%x, 2)
          if (fault%code /= 0) exit
          write (table%row, NUMBERS) model%mesh%x(:, i), x(:, i), state%v(1:2, i)
          call write_row(table, fault)
       end do
-      call close_table(table, fault)
+      call close_csv(table, fault)
       if (fault%code /= 0) return
-      call new_table(output%folder//'/points_'//stage//'.csv', 'r,z,weight,s_rr,s_zz,s_tt,s_rz,e,S_w', table, fault)
+      call new_csv(output%folder//'/points_'//stage//'.csv', 'r,z,weight,s_rr,s_zz,s_tt,s_rz,e,S_w', table, fault)
       do e = 1, size(model%mesh%t6, 2)
          do g = 1, model%rule
             if (fault%code /= 0) exit
@@ -184,7 +184,7 @@ contains
             call write_row(table, fault)
          end do
       end do
-      call close_table(table, fault)
+      call close_csv(table, fault)
    end subroutine write_fields
 
    !> contact_STAGE.csv: slave nodes of the contacts that act in the stage.
@@ -196,19 +196,19 @@ contains
       type(state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
       real(wp), allocatable :: values(:, :)
-      type(table_t) :: table
+      type(csv_t) :: table
       integer :: i
 
       if (.not. allocated(contacts%touch)) return
       call contact_nodes(scene, contacts, state, values)
-      call new_table(output%folder//'/contact_'//stage//'.csv', 'contact,r,z,weight,coverage,gap,pressure', table, &
+      call new_csv(output%folder//'/contact_'//stage//'.csv', 'contact,r,z,weight,coverage,gap,pressure', table, &
                      fault)
       do i = 1, size(values, 2)
          if (fault%code /= 0) exit
          write (table%row, NUMBERS) values(:, i)
          call write_row(table, fault)
       end do
-      call close_table(table, fault)
+      call close_csv(table, fault)
    end subroutine write_touching
 
    !> Closes all tables; the first that fails is reported.
@@ -216,8 +216,8 @@ contains
       type(output_t), intent(inout) :: output
       type(fault_t), intent(inout) :: fault
 
-      call close_table(output%history, fault)
-      call close_table(output%ledger, fault)
-      call close_table(output%contact, fault)
+      call close_csv(output%history, fault)
+      call close_csv(output%ledger, fault)
+      call close_csv(output%contact, fault)
    end subroutine close_output
 end module host_output

@@ -1,6 +1,6 @@
 !> Whether a scene calls for the fields of the pores: suction and pore water pressure.
 module host_pore_effects
-   use host_kinds, only: wp, PI
+   use kinds, only: wp, PI
    use host_actions, only: FORCE, MOTION, PRESSURE, FLOW
    use host_facts, only: facts_t, judge, ROUNDING
    use host_modes, only: trial_t
@@ -8,7 +8,7 @@ module host_pore_effects
    use fe_permeability, only: relative_permeability, relative_t
    use fe_retention, only: saturated_t, saturation_t
    use time_galpha, only: DYNAMIC
-   use triax_text, only: short
+   use texts, only: short
    implicit none (type, external)
    private
    public :: judge_suction, judge_water

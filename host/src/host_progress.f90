@@ -1,12 +1,12 @@
 !> The line that says how far a run is: rewritten in place on a terminal, now and then a line of its own elsewhere.
 module host_progress
    use, intrinsic :: iso_fortran_env, only: output_unit
-   use host_clock, only: clock
+   use wall_clock, only: clock
    use host_course, only: run_t
-   use host_kinds, only: wp
+   use kinds, only: wp
    use host_scene, only: scene_t, stage_t
-   use io_files, only: to_terminal
-   use triax_text, only: short, whole
+   use files, only: to_terminal
+   use texts, only: short, whole
    implicit none (type, external)
    private
    public :: progress_t, show_progress, clear_progress, steps_left, span_of

@@ -1,6 +1,7 @@
 !> Reads a scene: groups in any order, names resolved, everything checked before anything is computed.
 module host_read
-   use host_kinds, only: wp, EXIT_GROUP, EXIT_MESH
+   use host_kinds, only: EXIT_GROUP, EXIT_MESH
+   use kinds, only: wp
    use host_fingerprint, only: fingerprint_of
    use host_keys, only: check_keys, number_of, numbers_of, text_of, texts_of, word_is, given
    use host_laws, only: read_mud, read_elastic, read_retention, read_permeability, retention_of_mud
@@ -17,9 +18,9 @@ module host_read
    use mesh_types, only: find_group, add_group
    use newton, only: MEASURES
    use time_galpha, only: STATIC, QUASI_STATIC, DYNAMIC
-   use triax_fault, only: fault_t, raise, at_line, EXIT_INPUT
-   use triax_namelist, only: group_t, read_groups
-   use triax_text, only: lower_case, short, whole, read_number
+   use faults, only: fault_t, raise, at_line, EXIT_INPUT
+   use namelists, only: group_t, read_groups
+   use texts, only: lower_case, short, whole, read_number
    implicit none (type, external)
    private
    public :: read_scene

@@ -1,12 +1,13 @@
 !> Fields in HDF5, one file for the mesh and one for every moment, and results.xdmf, which ParaView opens. Every file is
 !> written as a whole: a run that is killed leaves whole files, and a restart writes the same ones again.
 module host_results
-   use host_kinds, only: wp, EXIT_RESTART
+   use host_kinds, only: EXIT_RESTART
+   use kinds, only: wp
    use fe_model, only: model_t, state_t
-   use io_files, only: write_whole, bytes_of
-   use io_hdf5, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get_text
-   use triax_fault, only: fault_t, raise, EXIT_OUTPUT
-   use triax_text, only: whole
+   use files, only: write_whole, bytes_of
+   use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get_text
+   use faults, only: fault_t, raise, EXIT_OUTPUT
+   use texts, only: whole
    implicit none (type, external)
    private
    public :: frames_t, write_mesh, check_mesh, write_frame, all_pressures

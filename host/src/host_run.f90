@@ -1,8 +1,9 @@
 !> Runs the stages of a scene: steps, cuts with exact restoration, ledger, output.
 module host_run
-   use host_kinds, only: wp, FIELD_NAMES, EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
+   use host_kinds, only: FIELD_NAMES, EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
+   use kinds, only: wp
    use host_checkpoint, only: write_checkpoint, read_checkpoint
-   use host_clock, only: clock, lap
+   use wall_clock, only: clock, lap
    use host_contact, only: prepare_contacts, seat_plates, contacts_act
    use host_course, only: run_t, course_t
    use host_drainage, only: prepare_drainage, freeze_drainage
@@ -23,13 +24,13 @@ module host_run
    use fe_material, only: TOO_LARGE
    use fe_model, only: copy_state
    use fe_pattern, only: make_pattern
-   use io_hdf5, only: HAS_HDF5
+   use hdf5_file, only: HAS_HDF5
    use newton, only: control_t, log_t, take_step, start_accelerations, BY_RESIDUAL, BY_CORRECTION, &
                      CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
    use solve_sparse, only: release
    use time_galpha, only: scheme_t, make_scheme, step_error, DYNAMIC
-   use triax_fault, only: fault_t, raise, EXIT_INPUT
-   use triax_text, only: short, whole
+   use faults, only: fault_t, raise, EXIT_INPUT
+   use texts, only: short, whole
    !$ use omp_lib, only: omp_get_max_threads
    implicit none (type, external)
    private

@@ -1,11 +1,11 @@
 !> A scene in memory: the model and everything that acts on it in the course of its stages.
 module host_scene
-   use host_kinds, only: wp
+   use kinds, only: wp
    use contact_types, only: contact_options_t
    use fe_model, only: model_t
    use host_fingerprint, only: FINGERPRINT_LENGTH
    use mesh_types, only: NAME_LENGTH
-   use triax_namelist, only: LENGTH
+   use namelists, only: LENGTH
    implicit none (type, external)
    private
    public :: scene_t, stage_t, fix_t, load_t, rigid_t, history_t, initial_t, point_t, plate_t, touching_t

@@ -1,14 +1,14 @@
 !> Watches, after every accepted step, what the effects that are off would do, and says once when that crosses the
 !> threshold. A few sums over nodes and points; nothing is asked of the material.
 module host_watch
-   use host_kinds, only: wp
+   use kinds, only: wp
    use host_energy, only: ledger_t
    use host_modes, only: mass_of_nodes
    use host_scene, only: scene_t, effect_t, OF_P_W, OF_P_C, OF_INERTIA, OF_SEEPAGE, OF_GRAVITY, UNBOUNDED, NEVER
    use fe_dofs, only: dofs_t
    use fe_model, only: state_t
    use time_galpha, only: DYNAMIC
-   use triax_text, only: short
+   use texts, only: short
    implicit none (type, external)
    private
    public :: watch_t, begin_watch, begin_swing, watch_step, warning_of, MEMORIES

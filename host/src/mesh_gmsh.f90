@@ -1,9 +1,10 @@
 !> Reads Gmsh 4.1 text meshes of 6-node triangles; physical groups become groups of the mesh.
 module mesh_gmsh
-   use host_kinds, only: wp, EXIT_MESH
+   use host_kinds, only: EXIT_MESH
+   use kinds, only: wp
    use mesh_types, only: mesh_t, add_group, NAME_LENGTH
-   use triax_fault, only: fault_t, raise, at_line
-   use triax_text, only: whole
+   use faults, only: fault_t, raise, at_line
+   use texts, only: whole
    implicit none (type, external)
    private
    public :: read_gmsh

@@ -2,7 +2,7 @@
 !> Boundaries left, right, bottom, top; the pieces between two breaks are top_1, top_2, ... (right_1 from the bottom).
 !> Regions: all, and block_I_J (I along r, J along z).
 module mesh_graded
-   use host_kinds, only: wp
+   use kinds, only: wp
    use mesh_types, only: mesh_t, add_group
    implicit none (type, external)
    private

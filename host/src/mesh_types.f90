@@ -1,6 +1,6 @@
 !> Mesh of 6-node triangles with named regions and boundaries.
 module mesh_types
-   use host_kinds, only: wp
+   use kinds, only: wp
    implicit none (type, external)
    private
    public :: mesh_t, group_of_t, NAME_LENGTH, find_group, add_group

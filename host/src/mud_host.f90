@@ -2,7 +2,7 @@
 program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit, int64
    use host_checkpoint, only: read_checkpoint
-   use host_clock, only: clock
+   use wall_clock, only: clock
    use host_effects_table, only: print_effects
    use host_keys, only: print_template
    use host_output, only: output_t, check_output
@@ -10,9 +10,9 @@ program mud_host
    use host_read, only: read_scene
    use host_run, only: run_t, prepare_run, run_scene
    use host_scene, only: scene_t
-   use io_files, only: limits_are_errors, folder_of
-   use triax_fault, only: fault_t, raise, EXIT_INPUT
-   use triax_text, only: short, whole
+   use files, only: limits_are_errors, folder_of
+   use faults, only: fault_t, raise, EXIT_INPUT
+   use texts, only: short, whole
    implicit none (type, external)
    character(*), parameter :: USAGE = 'usage: mud_host SCENE.nml [--output FOLDER] [--restart CHECKPOINT] '// &
                               '[--quiet] [--check] | --template'

@@ -4,8 +4,9 @@
 !> strain rates and of the parts of the fluxes in it: where nothing flows, or nothing can, the balance of every element
 !> is nothing but rounding.
 module newton
-   use host_clock, only: clock, lap
-   use host_kinds, only: wp, FIELDS
+   use wall_clock, only: clock, lap
+   use host_kinds, only: FIELDS
+   use kinds, only: wp
    use fe_assembly, only: assembly_t, assemble
    use fe_contact, only: contacts_t, evaluate_contacts, fit_pattern, add_contacts
    use fe_dofs, only: dofs_t

@@ -3,7 +3,7 @@
 !> itself the first step is the direct solution, the second an iterative refinement.
 module solve_linear
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use host_kinds, only: wp
+   use kinds, only: wp
    use solve_sparse, only: sparse_t, backsolve, times, SOLVED, FAILED
    implicit none (type, external)
    private

@@ -1,7 +1,7 @@
 !> Sparse direct solution by UMFPACK, the only module that knows it. Rows are given to it as columns of the transpose.
 module solve_sparse
    use, intrinsic :: iso_c_binding, only: c_int, c_double, c_ptr, c_null_ptr, c_associated
-   use host_kinds, only: wp
+   use kinds, only: wp
    implicit none (type, external)
    private
    public :: sparse_t, analyse, factorise, backsolve, times, release, SOLVED, SINGULAR, FAILED

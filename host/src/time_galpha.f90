@@ -2,7 +2,7 @@
 !> (2000) for first-order rates. Residuals are formed from values, displacement rates and pressures at 1 - alpha_f,
 !> accelerations and first-order rates at their own levels.
 module time_galpha
-   use host_kinds, only: wp
+   use kinds, only: wp
    implicit none (type, external)
    private
    public :: scheme_t, make_scheme, predict, advance_rates, rate_of, step_error

@@ -1,11 +1,11 @@
 !> Small scenes for the tests of the host, written as text so that the reader of scenes takes part.
 module host_problems
    use, intrinsic :: iso_fortran_env, only: int64
-   use host_kinds, only: wp
+   use kinds, only: wp
    use host_read, only: read_scene
    use host_run, only: run_t, prepare_run
    use host_scene, only: scene_t
-   use triax_fault, only: fault_t
+   use faults, only: fault_t
    implicit none (type, external)
    private
    public :: build, ask, sand, soil_laws, square

@@ -1,5 +1,5 @@
 !> What went wrong: an exit code and a sentence that says what, where, the value, the allowed range and the remedy.
-module triax_fault
+module faults
    implicit none (type, external)
    private
    public :: fault_t, raise, at_line
@@ -35,4 +35,4 @@ contains
       write (digits, '(i0)') line
       place = trim(file)//':'//trim(digits)//': '
    end function at_line
-end module triax_fault
+end module faults

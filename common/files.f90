@@ -1,5 +1,5 @@
 !> Files that are either whole or not there, and what else Fortran cannot ask the system for (POSIX).
-module io_files
+module files
    use, intrinsic :: iso_c_binding, only: c_int, c_int8_t, c_size_t, c_long, c_char, c_ptr, c_null_char, c_associated, &
                                           c_loc, c_funptr, c_null_funptr, c_intptr_t
    implicit none (type, external)
@@ -156,4 +156,4 @@ contains
    logical function to_terminal()
       to_terminal = isatty(1_c_int) == 1
    end function to_terminal
-end module io_files
+end module files

@@ -1,30 +1,30 @@
 !> Tables of text whose every byte is accounted for: rows go through the C library, which tells of a full disk, whereas
 !> the Fortran runtime buffers formatted records and loses its refusal.
-module io_table
+module csv
    use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_null_char, c_associated, c_size_t, c_long, c_loc
    use, intrinsic :: iso_fortran_env, only: int64
    use host_kinds, only: EXIT_RESTART
-   use io_files, only: fopen, fwrite, fflush, fclose, fsync, fileno, truncate
-   use triax_fault, only: fault_t, raise, EXIT_OUTPUT
+   use files, only: fopen, fwrite, fflush, fclose, fsync, fileno, truncate
+   use faults, only: fault_t, raise, EXIT_OUTPUT
    implicit none (type, external)
    private
-   public :: table_t, new_table, check_table, resume_table, write_row, write_line, settle_table, close_table, is_open
+   public :: csv_t, new_csv, check_csv, resume_csv, write_row, write_line, settle_csv, close_csv, is_open
    public :: NUMBERS
 
    character(*), parameter :: NUMBERS = '(*(es24.16e3,:,","))'   !< A row of numbers,
    integer, parameter :: CELL = 25                               !< and the room that each takes.
 
-   type :: table_t
+   type :: csv_t
       character(:), allocatable :: path
       character(:), allocatable :: row    !< The next row is composed here: room for every column.
-      integer(int64) :: bytes = 0         !< Length so far; before `resume_table`: what is to be kept.
+      integer(int64) :: bytes = 0         !< Length so far; before `resume_csv`: what is to be kept.
       type(c_ptr) :: file = c_null_ptr
-   end type table_t
+   end type csv_t
 contains
    !> A new file; its columns are named in `head`.
-   subroutine new_table(path, head, table, fault)
+   subroutine new_csv(path, head, table, fault)
       character(*), intent(in) :: path, head
-      type(table_t), intent(out) :: table
+      type(csv_t), intent(out) :: table
       type(fault_t), intent(inout) :: fault
 
       table%path = path
@@ -35,11 +35,11 @@ contains
          return
       end if
       call write_line(table, head, fault)
-   end subroutine new_table
+   end subroutine new_csv
 
    subroutine make_room(head, table)
       character(*), intent(in) :: head
-      type(table_t), intent(inout) :: table
+      type(csv_t), intent(inout) :: table
       integer :: i
 
       if (allocated(table%row)) deallocate (table%row)
@@ -47,13 +47,13 @@ contains
    end subroutine make_room
 
    pure logical function is_open(table)
-      type(table_t), intent(in) :: table
+      type(csv_t), intent(in) :: table
 
       is_open = c_associated(table%file)
    end function is_open
 
    !> Whether a table of an interrupted run is there, as long as at its checkpoint, and can be written; changes nothing.
-   subroutine check_table(path, bytes, fault)
+   subroutine check_csv(path, bytes, fault)
       character(*), intent(in) :: path
       integer(int64), intent(in) :: bytes
       type(fault_t), intent(inout) :: fault
@@ -66,12 +66,12 @@ contains
       if (good) good = size_of(path) >= bytes
       if (.not. good) call raise(fault, EXIT_RESTART, path//' is not there, shorter than at the checkpoint, '// &
                                  'or cannot be written; --output must name the folder of the interrupted run.')
-   end subroutine check_table
+   end subroutine check_csv
 
    !> Opens a table that was checked and cuts off what follows its first `table%bytes`.
-   subroutine resume_table(path, head, table, fault)
+   subroutine resume_csv(path, head, table, fault)
       character(*), intent(in) :: path, head
-      type(table_t), intent(inout) :: table
+      type(csv_t), intent(inout) :: table
       type(fault_t), intent(inout) :: fault
       logical :: good
 
@@ -81,7 +81,7 @@ contains
       if (good) table%file = fopen(path//c_null_char, 'ab'//c_null_char)
       if (good) good = is_open(table)
       if (.not. good) call complain(table, fault)
-   end subroutine resume_table
+   end subroutine resume_csv
 
    integer(int64) function size_of(path) result(bytes)
       character(*), intent(in) :: path
@@ -91,14 +91,14 @@ contains
 
    !> The row that was composed in `table%row`, without the blanks at its end.
    subroutine write_row(table, fault)
-      type(table_t), intent(inout) :: table
+      type(csv_t), intent(inout) :: table
       type(fault_t), intent(inout) :: fault
 
       call put_text(table, table%row(:len_trim(table%row))//new_line('a'), fault)
    end subroutine write_row
 
    subroutine write_line(table, text, fault)
-      type(table_t), intent(inout) :: table
+      type(csv_t), intent(inout) :: table
       character(*), intent(in) :: text
       type(fault_t), intent(inout) :: fault
 
@@ -106,7 +106,7 @@ contains
    end subroutine write_line
 
    subroutine put_text(table, text, fault)
-      type(table_t), intent(inout) :: table
+      type(csv_t), intent(inout) :: table
       character(*), intent(in), target :: text
       type(fault_t), intent(inout) :: fault
 
@@ -119,8 +119,8 @@ contains
    end subroutine put_text
 
    !> Brings what was written to the disk.
-   subroutine settle_table(table, fault)
-      type(table_t), intent(inout) :: table
+   subroutine settle_csv(table, fault)
+      type(csv_t), intent(inout) :: table
       type(fault_t), intent(inout) :: fault
 
       if (fflush(table%file) /= 0) then
@@ -129,22 +129,22 @@ contains
          ! What is no regular file, as a pipe, has no size and no place on a disk.
          if (size_of(table%path) >= table%bytes) call complain(table, fault)
       end if
-   end subroutine settle_table
+   end subroutine settle_csv
 
    !> The last rows may meet a full disk as late as here.
-   subroutine close_table(table, fault)
-      type(table_t), intent(inout) :: table
+   subroutine close_csv(table, fault)
+      type(csv_t), intent(inout) :: table
       type(fault_t), intent(inout) :: fault
 
       if (.not. is_open(table)) return
       if (fclose(table%file) /= 0 .and. fault%code == 0) call complain(table, fault)
       table%file = c_null_ptr
-   end subroutine close_table
+   end subroutine close_csv
 
    subroutine complain(table, fault)
-      type(table_t), intent(in) :: table
+      type(csv_t), intent(in) :: table
       type(fault_t), intent(inout) :: fault
 
       call raise(fault, EXIT_OUTPUT, table%path//' cannot be written; is the disk full?')
    end subroutine complain
-end module io_table
+end module csv

@@ -1,9 +1,9 @@
 !> Reads files of namelist groups: `&name`, then `key = value` as often as needed, then `/`.
 !> A plain reader of its own instead of Fortran's namelist input, because the names of materials come from the
 !> library's registry and because every refusal has to say the file, the line and the nearest name.
-module triax_namelist
-   use triax_fault, only: fault_t, raise, at_line, EXIT_INPUT
-   use triax_text, only: lower_case, whole
+module namelists
+   use faults, only: fault_t, raise, at_line, EXIT_INPUT
+   use texts, only: lower_case, whole
    implicit none (type, external)
    private
    public :: entry_t, group_t, read_groups, find_entry, MAX_VALUES, LENGTH
@@ -271,4 +271,4 @@ contains
       end do
       place = 0
    end function find_entry
-end module triax_namelist
+end module namelists

@@ -1,5 +1,5 @@
 !> Words and numbers: reading, writing, and the nearest name to a misspelt one.
-module triax_text
+module texts
    use, intrinsic :: iso_fortran_env, only: wp => real64, int32, int64
    use, intrinsic :: iso_c_binding, only: c_null_char
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_overflow, ieee_get_halting_mode, &
@@ -190,4 +190,4 @@ contains
       if (last < 0) last = len_trim(buffer)
       text = buffer(:last)
    end function from_c
-end module triax_text
+end module texts

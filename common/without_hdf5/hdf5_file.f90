@@ -1,6 +1,6 @@
 !> Stands in for ../io_hdf5.f90 where HDF5 is not installed: nothing is good, and who asks HAS_HDF5 first knows why.
-module io_hdf5
-   use host_kinds, only: wp
+module hdf5_file
+   use kinds, only: wp
    implicit none (type, external)
    private
    public :: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, get_text, extent_of
@@ -127,4 +127,4 @@ contains
       values = 0
       file%good = len(name) < 0
    end subroutine get_integer
-end module io_hdf5
+end module hdf5_file

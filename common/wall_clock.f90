@@ -1,7 +1,7 @@
 !> Wall time.
-module host_clock
+module wall_clock
    use, intrinsic :: iso_fortran_env, only: int64
-   use host_kinds, only: wp
+   use kinds, only: wp
    implicit none (type, external)
    private
    public :: clock, lap
@@ -23,4 +23,4 @@ contains
       total = total + now - t0
       t0 = now
    end subroutine lap
-end module host_clock
+end module wall_clock

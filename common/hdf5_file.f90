@@ -1,7 +1,7 @@
 !> HDF5 files of the host, the only module that knows the HDF5 library: datasets with the attributes `unit` and
 !> `description` and a checksum, texts as attributes of the file. A file is built in memory and written as a whole, so
 !> that a full disk or a killed run leaves no half of one. Without HDF5 the file of the same name beside it is built.
-module io_hdf5
+module hdf5_file
    use, intrinsic :: iso_c_binding, only: c_int8_t, c_ptr, c_loc, c_null_ptr
    use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5eset_auto_f, h5fcreate_f, h5fopen_f, h5fclose_f, h5fflush_f, &
                    h5fget_file_image_f, h5pcreate_f, h5pclose_f, h5pset_fapl_core_f, h5pset_chunk_f, &
@@ -11,8 +11,8 @@ module io_hdf5
                    h5tset_size_f, h5tclose_f, h5acreate_f, h5aopen_f, h5awrite_f, h5aread_f, h5aclose_f, &
                    H5F_ACC_TRUNC_F, H5F_ACC_RDONLY_F, H5F_SCOPE_GLOBAL_F, H5P_FILE_ACCESS_F, H5P_DATASET_CREATE_F, &
                    H5P_LINK_CREATE_F, H5S_SCALAR_F, H5T_NATIVE_DOUBLE, H5T_NATIVE_INTEGER, H5T_FORTRAN_S1
-   use host_kinds, only: wp
-   use io_files, only: write_whole
+   use kinds, only: wp
+   use files, only: write_whole
    implicit none (type, external)
    private
    public :: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, get_text, extent_of
@@ -316,4 +316,4 @@ contains
       end if
       call h5dclose_f(set, status)
    end subroutine get_raw
-end module io_hdf5
+end module hdf5_file
