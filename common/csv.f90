@@ -3,9 +3,8 @@
 module csv
    use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_null_char, c_associated, c_size_t, c_long, c_loc
    use, intrinsic :: iso_fortran_env, only: int64
-   use host_kinds, only: EXIT_RESTART
    use files, only: fopen, fwrite, fflush, fclose, fsync, fileno, truncate
-   use faults, only: fault_t, raise, EXIT_OUTPUT
+   use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
    implicit none (type, external)
    private
    public :: csv_t, new_csv, check_csv, resume_csv, write_row, write_line, settle_csv, close_csv, is_open

@@ -1,12 +1,13 @@
-!> Words and numbers: reading, writing, and the nearest name to a misspelt one.
+!> Words and numbers: reading and writing.
 module texts
-   use, intrinsic :: iso_fortran_env, only: wp => real64, int32, int64
+   use, intrinsic :: iso_fortran_env, only: int32, int64
    use, intrinsic :: iso_c_binding, only: c_null_char
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_overflow, ieee_get_halting_mode, &
                                              ieee_set_halting_mode, ieee_set_flag
+   use kinds, only: wp
    implicit none (type, external)
    private
-   public :: lower_case, distance, short, whole, read_number, from_c, word_place
+   public :: lower_case, short, whole, read_number, from_c, word_place
 
    !> A whole number as text.
    interface whole
@@ -23,41 +24,6 @@ contains
          if (lge(text(i:i), 'A') .and. lle(text(i:i), 'Z')) lower(i:i) = achar(iachar(text(i:i)) + 32)
       end do
    end function lower_case
-
-   !> Edit distance between two names, case ignored: 2 for each letter to insert, delete or replace, 1 where the two
-   !> letters look alike (O and 0, l and 1).
-   pure integer function distance(first, second)
-      character(*), intent(in) :: first, second
-      character(len_trim(first)) :: a
-      character(len_trim(second)) :: b
-      integer :: row(0:len_trim(second)), diagonal, above, i, j
-
-      a = lower_case(first(:len(a)))
-      b = lower_case(second(:len(b)))
-      row = [(2*j, j=0, len(b))]
-      do i = 1, len(a)
-         diagonal = row(0)
-         row(0) = 2*i
-         do j = 1, len(b)
-            above = row(j)
-            row(j) = min(above + 2, row(j - 1) + 2, diagonal + replacement(a(i:i), b(j:j)))
-            diagonal = above
-         end do
-      end do
-      distance = row(len(b))
-   end function distance
-
-   pure integer function replacement(a, b)
-      character, intent(in) :: a, b
-
-      if (a == b) then
-         replacement = 0
-      else if (index('o0 0o l1 1l', a//b) > 0) then
-         replacement = 1
-      else
-         replacement = 2
-      end if
-   end function replacement
 
    !> Where a text first has a word that no letter, digit or underscore continues, 0 if nowhere; case ignored.
    pure integer function word_place(text, word)

@@ -4,7 +4,8 @@ module triax_case
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use texts, only: lower_case, short, whole
    use namelists, only: group_t, read_groups, LENGTH
-   use triax_keys, only: check_keys, describe_key, nearest_name, get_text, get_number, get_numbers, line_of, has_key
+   use spelling, only: nearest_name
+   use triax_keys, only: check_keys, describe_key, get_text, get_number, get_numbers, line_of, has_key
    use triax_stage, only: stage_t, set_constraints, leads_of, sealed_control, CONTROL_NAMES, QUANTITIES, LINEAR, &
                           BY_EPS_A, BY_GAMMA, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES, PER_PRESSURE, ROWS
    use triax_material, only: read_material

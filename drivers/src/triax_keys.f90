@@ -2,11 +2,12 @@
 module triax_keys
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use texts, only: lower_case, distance, short, whole, read_number
+   use texts, only: lower_case, short, whole, read_number
+   use spelling, only: nearest_name
    use namelists, only: group_t, entry_t, find_entry, LENGTH
    implicit none (type, external)
    private
-   public :: check_keys, print_keys, describe_key, nearest_name, get_text, get_number, get_numbers, line_of, has_key
+   public :: check_keys, print_keys, describe_key, get_text, get_number, get_numbers, line_of, has_key
 
    integer, parameter :: LENGTH_OF_KEY = 21
 
@@ -83,7 +84,7 @@ contains
       do i = 1, group%count
          associate (item => group%entries(i))
             if (find_key(group%name, item%key) == 0) then
-               near = nearest_key(group%name, item%key)
+               near = nearest_name(item%key, KEYS%name, KEYS%group == group%name)
                call raise(fault, EXIT_INPUT, at_line(group%file, item%line)//'&'//trim(group%name)//' has no '// &
                           trim(item%key)//'; the nearest is '//trim(KEYS(near)%name)//' ('//described(near)//').')
             else
@@ -182,29 +183,6 @@ contains
       end do
       place = 0
    end function find_key
-
-   pure integer function nearest_key(group, word) result(best)
-      character(*), intent(in) :: group, word
-      integer :: i
-
-      best = 0
-      do i = 1, size(KEYS)
-         if (KEYS(i)%group /= group) cycle
-         if (best == 0) best = i
-         if (distance(word, KEYS(i)%name) < distance(word, KEYS(best)%name)) best = i
-      end do
-   end function nearest_key
-
-   !> Place of the name that looks most like a word.
-   pure integer function nearest_name(word, names) result(best)
-      character(*), intent(in) :: word, names(:)
-      integer :: i
-
-      best = 1
-      do i = 2, size(names)
-         if (distance(word, names(i)) < distance(word, names(best))) best = i
-      end do
-   end function nearest_name
 
    !> A text that check_keys has passed; `value` stays where the group has none.
    subroutine get_text(group, key, value)

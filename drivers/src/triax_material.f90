@@ -2,8 +2,9 @@
 module triax_material
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use texts, only: lower_case, distance, short, whole, read_number, word_place
+   use texts, only: lower_case, short, whole, read_number, word_place
    use namelists, only: group_t, entry_t, read_groups, find_entry, LENGTH
+   use spelling, only: nearest_name
    use triax_point, only: soil_t, default_soil, check_soil, property_count, property_index, property_name, &
                           property_unit, property_meaning, property_range
    implicit none (type, external)
@@ -171,13 +172,16 @@ contains
       text = text//', default '//short(preset)//': '//property_meaning(place)
    end function described_range
 
-   integer function nearest_property(key) result(best)
-      character(*), intent(in) :: key
+   !> Place of the parameter whose name looks most like a word.
+   integer function nearest_property(word) result(best)
+      character(*), intent(in) :: word
+      character(LENGTH), allocatable :: names(:)
       integer :: i
 
-      best = 1
-      do i = 2, property_count()
-         if (distance(key, property_name(i)) < distance(key, property_name(best))) best = i
+      allocate (names(property_count()))
+      do i = 1, size(names)
+         names(i) = property_name(i)
       end do
+      best = nearest_name(word, names)
    end function nearest_property
 end module triax_material

@@ -4,7 +4,6 @@ module host_checkpoint
    use, intrinsic :: iso_c_binding, only: c_char, c_null_char
    use, intrinsic :: iso_fortran_env, only: int64
    use mud_interface, only: mud_version
-   use host_kinds, only: EXIT_RESTART
    use kinds, only: wp
    use host_course, only: run_t
    use host_energy, only: ledger_t
@@ -15,7 +14,7 @@ module host_checkpoint
    use fe_pattern, only: make_pattern
    use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, &
                       get_text, extent_of
-   use faults, only: fault_t, raise, EXIT_OUTPUT
+   use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
    use texts, only: from_c
    implicit none (type, external)
    private

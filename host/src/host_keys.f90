@@ -4,7 +4,8 @@ module host_keys
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use namelists, only: group_t, entry_t, find_entry, MAX_VALUES, LENGTH
-   use texts, only: lower_case, distance, short, whole, read_number
+   use spelling, only: nearest_name
+   use texts, only: lower_case, short, whole, read_number
    implicit none (type, external)
    private
    public :: check_keys, number_of, numbers_of, text_of, texts_of, word_is, given, print_template, GROUPS
@@ -177,10 +178,7 @@ contains
       do g = 1, size(groups_read)
          associate (group => groups_read(g))
             if (.not. any(GROUPS == group%name)) then
-               best = 1
-               do i = 2, size(GROUPS)
-                  if (distance(group%name, GROUPS(i)) < distance(group%name, GROUPS(best))) best = i
-               end do
+               best = nearest_name(group%name, GROUPS)
                call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'there is no group &'// &
                           trim(group%name)//'; the nearest is &'//trim(GROUPS(best))//'.')
                return
@@ -208,16 +206,11 @@ contains
       type(group_t), intent(in) :: group
       type(entry_t), intent(in) :: item
       type(fault_t), intent(inout) :: fault
-      integer :: k, best
+      integer :: k
 
-      best = 0
-      do k = 1, size(KEYS)
-         if (KEYS(k)%group /= group%name) cycle
-         if (best == 0) best = k
-         if (distance(item%key, KEYS(k)%name) < distance(item%key, KEYS(best)%name)) best = k
-      end do
+      k = nearest_name(item%key, KEYS%name, KEYS%group == group%name)
       call raise(fault, EXIT_INPUT, at_line(group%file, item%line)//'&'//trim(group%name)//' has no key '// &
-                 trim(item%key)//'; the nearest is '//trim(KEYS(best)%name)//' ('//trim(KEYS(best)%meaning)//').')
+                 trim(item%key)//'; the nearest is '//trim(KEYS(k)%name)//' ('//trim(KEYS(k)%meaning)//').')
    end subroutine refuse_key
 
    subroutine check_entry(group, item, key, fault)

@@ -1,17 +1,14 @@
-!> Precision, constants and exit codes of the host.
+!> Fields and exit codes of the host.
 module host_kinds
-   use, intrinsic :: iso_fortran_env, only: wp => real64
    implicit none (type, external)
    private
-   public :: wp, PI, FIELDS, FIELD_NAMES
-   public :: EXIT_MESH, EXIT_GROUP, EXIT_ELEMENT, EXIT_FREE_BODY, EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_SOLVER, &
-             EXIT_RESTART
+   public :: FIELDS, FIELD_NAMES
+   public :: EXIT_MESH, EXIT_GROUP, EXIT_ELEMENT, EXIT_FREE_BODY, EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_SOLVER
 
-   real(wp), parameter :: PI = 3.14159265358979323846_wp
    integer, parameter :: FIELDS = 4   !< u_r, u_z, p_w, p_c
    character(3), parameter :: FIELD_NAMES(FIELDS) = ['u_r', 'u_z', 'p_w', 'p_c']
 
-   ! 2, 3 and 4 are those of the namelist reader: bad input, run given up, output not written.
+   ! Beside those of `faults`.
    integer, parameter :: EXIT_MESH = 10         !< A mesh that cannot be read or built.
    integer, parameter :: EXIT_GROUP = 11        !< A group, material, history or stage that nobody defines.
    integer, parameter :: EXIT_ELEMENT = 12      !< An inverted element.
@@ -19,5 +16,4 @@ module host_kinds
    integer, parameter :: EXIT_CONVERGENCE = 14  !< No convergence with the smallest step.
    integer, parameter :: EXIT_MATERIAL = 15     !< The material refuses the smallest step.
    integer, parameter :: EXIT_SOLVER = 16       !< The linear solver ran out of memory.
-   integer, parameter :: EXIT_RESTART = 17      !< A checkpoint: damaged, foreign, of another scene or version.
 end module host_kinds

@@ -1,12 +1,11 @@
 !> Fields in HDF5, one file for the mesh and one for every moment, and results.xdmf, which ParaView opens. Every file is
 !> written as a whole: a run that is killed leaves whole files, and a restart writes the same ones again.
 module host_results
-   use host_kinds, only: EXIT_RESTART
    use kinds, only: wp
    use fe_model, only: model_t, state_t
    use files, only: write_whole, bytes_of
    use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get_text
-   use faults, only: fault_t, raise, EXIT_OUTPUT
+   use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
    use texts, only: whole
    implicit none (type, external)
    private
