@@ -199,54 +199,6 @@ def draw_compression(bench, plt):
 
 
 # ---------------------------------------------------------------------------------------------------------------------
-def lode_dependence(bench):
-    claims = []
-    for name, cos3t, tolerance in (("lode_compression", 1, 2e-3), ("lode_extension", -1, 2e-3),
-                                   ("lode_simple_shear", 0, 1e-4)):
-        run = bench.run(name)
-        if cos3t:
-            eta = abs(run["q"][-1]) / run["p_eff"][-1]
-        else:
-            normal = [run[f"sig_{i}"][-1] - run["p_eff"][-1] for i in ("11", "22", "33")]
-            shear = run["sig_13"][-1]
-            eta = math.sqrt(1.5 * (sum(v * v for v in normal) + 2 * shear * shear)) / run["p_eff"][-1]
-            claims.append(claim("simple shear: stress and strain rate share their axes, max s_ii/tau",
-                                max(map(abs, normal)) / shear, 0, 1e-4))
-            p = steady_pressure(0.833)
-            claims.append(claim("simple shear: p' [kPa]", run["p_eff"][-1], p, 1e-4 * p))
-        reference = P["M_c"] * lode(cos3t)
-        claims.append(claim(f"{name}: q/p'", eta, reference, tolerance * reference))
-    return claims
-
-
-def draw_lode_dependence(bench, plt):
-    figure, axes = plt.subplots(1, 2, figsize=(10, 4.4))
-    for i, (name, cos3t) in enumerate((("lode_compression", 1), ("lode_simple_shear", 0), ("lode_extension", -1))):
-        run = bench.run(name)
-        if cos3t:
-            eta = [abs(q) / p for q, p in zip(run["q"], run["p_eff"])]
-            strain = [abs(v) for v in run["eps_a"]]
-        else:
-            eta = [math.sqrt(1.5 * (sum((run[f"sig_{k}"][j] - p) ** 2 for k in ("11", "22", "33"))
-                                    + 2 * run["sig_13"][j] ** 2)) / p for j, p in enumerate(run["p_eff"])]
-            strain = run["gamma_13"]
-        axes[0].plot(strain, eta, color=COLOURS[i], label=name[5:].replace("_", " "))
-        axes[0].axhline(P["M_c"] * lode(cos3t), color=COLOURS[i], ls=":", lw=1)
-    axes[0].legend(loc="lower right")
-    axes[0].set(xlabel="axial strain or shear strain [-]", ylabel="q/p' [-]", title="dotted: M g")
-    axes[1].remove()
-    polar = figure.add_subplot(1, 2, 2, projection="polar")
-    angles = [2 * math.pi * i / 360 for i in range(361)]
-    polar.plot(angles, [P["M_c"] * lode(math.cos(3 * a)) for a in angles], "k-", lw=1)
-    for i, (name, angle, cos3t) in enumerate((("lode_compression", 0, 1), ("lode_simple_shear", math.pi / 6, 0),
-                                              ("lode_extension", math.pi / 3, -1))):
-        value = next(c[1] for c in lode_dependence(bench) if c[0] == f"{name}: q/p'")
-        polar.plot([angle], [value], "o", color=COLOURS[i], label=name[5:].replace("_", " "))
-    polar.set_title("deviatoric plane: M g and the ends of the tests")
-    return figure
-
-
-# ---------------------------------------------------------------------------------------------------------------------
 def cycle_of(run):
     return int(run["cycle"][-1])
 
@@ -435,7 +387,7 @@ def draw_fig1(bench, plt):
 
 # ---------------------------------------------------------------------------------------------------------------------
 PAGES = {"fig1": (fig1, draw_fig1), "steady_states": (steady_states, draw_steady_states),
-         "compression": (compression, draw_compression), "lode": (lode_dependence, draw_lode_dependence),
+         "compression": (compression, draw_compression),
          "liquefaction": (liquefaction, draw_liquefaction), "bonding": (bonding_only, draw_bonding_only),
          "retention": (retention, draw_retention)}
 COLOURS = ("#0b3c6f", "#c8553d", "#3a8f6a", "#8a5a9e", "#b58900")

@@ -1,11 +1,10 @@
 """Lame: thick cylinder in plane strain under internal pressure; and the same wall filled with water at steady flow."""
 import csv
-import pathlib
 
 import numpy as np
 from scipy.integrate import solve_bvp
+from tools.results import folder
 
-here = pathlib.Path(__file__).parent
 # kPa, m
 INNER, OUTER, PRESSURE = 1.0, 2.0, 10.0
 YOUNG = 10000.0
@@ -80,7 +79,7 @@ def check():
 
 
 if __name__ == "__main__":
-    with open(here/"cylinder.csv", "w", newline="") as file:
+    with open(folder(__file__)/"cylinder.csv", "w", newline="") as file:
         file.write("# thick cylinder in plane strain, internal pressure 10 kPa, made by cylinder.py\n"
                    "# kPa, m; stress total, compression positive; u_r outwards positive\n"
                    "# poisson,p_w_inner,r,u_r,sigma_rr,sigma_tt,sigma_zz,p_w\n")

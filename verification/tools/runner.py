@@ -1,0 +1,257 @@
+"""Runs pages of the verification.
+
+    verification/run                          all pages
+    verification/run material host/cylinder   a section, a page; the name alone does where there is one of it
+    verification/run --list                   what there is
+    verification/run --quick                  short versions of what the check run takes, without pictures
+
+Every page prints its checks, each with what it is off by, what is allowed, value and reference; the last line is `N passed, M failed`,
+the exit code 1 if a check failed. Pictures go to build/verification/PAGE and nothing is written into the source tree but with
+    --update   puts declarations, tables of checks, pictures and the index of verification/README.md into the tree (with --list: without
+               running anything, what does not depend on results)
+    --make     runs the programs that made the committed data of the pages instead, some of them for hours, and says what has changed;
+               with --update the files are taken into the tree
+"""
+import argparse
+import concurrent.futures
+import importlib.util
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+import traceback
+from dataclasses import dataclass, field
+
+HERE = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(HERE))
+sys.dont_write_bytecode = True
+from tools import pictures, readme  # noqa: E402
+from tools.bench import ROOT, Bench  # noqa: E402
+from tools.page import Tolerance  # noqa: E402
+
+SECTIONS = {"material": "element tests with mud_triax", "host": "scenes with mud_host",
+            "studies": "what the program says of itself, and of published results"}
+SAME = Tolerance("generated from the committed files")
+
+
+@dataclass
+class Outcome:
+    """What running a page gave."""
+    name: str
+    checks: list = field(default_factory=list)
+    notes: list = field(default_factory=list)
+    pictures: list = field(default_factory=list)
+    error: str = ""
+    seconds: float = 0.0
+
+    @property
+    def passed(self):
+        return sum(c.passed for c in self.checks)
+
+    @property
+    def failed(self):
+        return len(self.checks) - self.passed + bool(self.error)
+
+
+def names():
+    """All pages in the order of the sections."""
+    return [f"{section}/{path.parent.name}" for section in SECTIONS for path in sorted((HERE / section).glob("*/page.py"))]
+
+
+def load(name):
+    """The module of a page; its folder and its section's are searched for what it imports."""
+    folder = HERE / name
+    for path in (folder.parent, folder):
+        if str(path) not in sys.path:
+            sys.path.insert(1, str(path))
+    spec = importlib.util.spec_from_file_location("page_" + name.replace("/", "_"), folder / "page.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def declared():
+    return {name: load(name).PAGE for name in names()}
+
+
+def run_page(name, build, output, quick=False):
+    """Runs the checks of a page and, unless quick, draws its pictures."""
+    outcome, start = Outcome(name), time.monotonic()
+    bench = Bench(HERE / name, build, pathlib.Path(output) / name, quick)
+    try:
+        module = load(name)
+        results = module.check(bench)
+        for file, blocks in (module.texts(bench) if hasattr(module, "texts") else {}).items():
+            text = (bench.here / file).read_text(encoding="utf-8")
+            for mark, content in blocks.items():
+                bench.near(f"{file}, {mark}: texts that are not what the committed files say", (readme.block(text, mark) or "").strip()
+                           != content.strip(), 0, SAME)
+        if not quick and hasattr(module, "draw"):
+            plt = pictures.pyplot()
+            module.draw(bench, results, plt)
+            plt.close("all")
+        if not bench.checks:
+            raise RuntimeError("the page compared nothing")
+        if not quick and set(bench.pictures) != set(module.PAGE.pictures):
+            raise RuntimeError(f"the page declares the pictures {module.PAGE.pictures} and drew {tuple(bench.pictures)}")
+    except (RuntimeError, ValueError, OSError) as problem:
+        outcome.error = f"{type(problem).__name__}: {problem}"
+    except Exception:   # a mistake in the page itself: where
+        outcome.error = traceback.format_exc()
+    outcome.checks, outcome.notes, outcome.pictures = bench.checks, bench.notes, bench.pictures
+    outcome.seconds = time.monotonic() - start
+    return outcome
+
+
+def run_pages(chosen, build, output, quick=False, jobs=1):
+    """Outcomes as they come."""
+    if jobs == 1:
+        for name in chosen:
+            yield run_page(name, build, output, quick)
+        return
+    with concurrent.futures.ProcessPoolExecutor(jobs) as pool:
+        waiting = [pool.submit(run_page, name, build, output, quick) for name in chosen]
+        for done in concurrent.futures.as_completed(waiting):
+            yield done.result()
+
+
+def report(outcome, place=""):
+    print(f"{outcome.name}{place}: {outcome.passed} passed, {outcome.failed} failed, {outcome.seconds:.1f} s")
+    for line in outcome.notes:
+        print("   " + line)
+    if outcome.error:
+        print(f"   FAILED {outcome.error}")
+    for name in outcome.pictures:
+        print(f"   picture {name}")
+    sys.stdout.flush()
+
+
+# ---- --update
+
+def write(path, text):
+    if path.read_text(encoding="utf-8") != text:
+        path.write_text(text, encoding="utf-8")
+        print(f"   written {path.relative_to(ROOT)}")
+
+
+def update_index():
+    path = HERE / "README.md"
+    write(path, readme.replaced(path.read_text(encoding="utf-8"), "index", readme.index(declared(), SECTIONS)))
+
+
+def update_declaration(name):
+    path = HERE / name / "README.md"
+    write(path, readme.replaced(path.read_text(encoding="utf-8"), "page", readme.declaration(name, load(name).PAGE)))
+
+
+def update_page(outcome, output):
+    """Table of checks, texts from committed files, pictures."""
+    folder, module = HERE / outcome.name, load(outcome.name)
+    path = folder / "README.md"
+    write(path, readme.replaced(path.read_text(encoding="utf-8"), "checks", readme.measured(outcome.checks)))
+    if hasattr(module, "texts"):
+        for file, blocks in module.texts(Bench(folder, ".", output / outcome.name)).items():
+            text = (folder / file).read_text(encoding="utf-8")
+            for mark, content in blocks.items():
+                text = readme.replaced(text, mark, content)
+            write(folder / file, text)
+    for picture in outcome.pictures:
+        shutil.copyfile(output / outcome.name / picture, folder / picture)
+
+
+# ---- --make
+
+def make(name, build, output, update, only):
+    """Runs the scripts of a page in its folder of the output; True if all ended well."""
+    good = True
+    for script in getattr(load(name), "MAKES", ()):
+        if only and script.name not in only:
+            continue
+        print(f"{name}: {script.name}, about {script.seconds:g} s" + (f", needs {script.needs}" if script.needs else ""), flush=True)
+        results = output / name / "made"
+        results.mkdir(parents=True, exist_ok=True)
+        code = subprocess.run([sys.executable, HERE / name / script.name], cwd=results,
+                              env={**os.environ, "MUD_BUILD_DIR": str(build), "MUD_VERIFICATION_OUTPUT": str(results),
+                                   "PYTHONPATH": str(HERE)}).returncode
+        good = good and code == 0
+        if code:
+            print(f"   FAILED {script.name}: exit code {code}")
+            continue
+        for pattern in script.files:
+            for made in sorted(results.glob(pattern)):
+                file = made.relative_to(results)
+                kept = HERE / name / file
+                same = kept.exists() and kept.read_bytes() == made.read_bytes()
+                print(f"   {'same   ' if same else 'changed'} {file}")
+                if update and not same:
+                    kept.parent.mkdir(parents=True, exist_ok=True)
+                    shutil.copyfile(made, kept)
+    return good
+
+
+def chosen_of(words, parser):
+    """Names of pages from the words of the command line."""
+    every, chosen = names(), []
+    for word in words:
+        word = word.strip("/")
+        found = [n for n in every if word in (n, n.split("/")[0])] or [n for n in every if n.split("/")[1] == word]
+        if not found:
+            parser.error(f"there is no page {word}; there are {', '.join(every)}")
+        chosen += [n for n in found if n not in chosen]
+    return chosen or every
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="verification/run", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("pages", nargs="*", metavar="PAGE")
+    parser.add_argument("--list", action="store_true", help="name the pages and run nothing")
+    parser.add_argument("--quick", action="store_true", help="as the check run does")
+    parser.add_argument("--update", action="store_true", help="write into the source tree what was found")
+    parser.add_argument("--make", action="store_true", help="make the committed data of the pages again")
+    parser.add_argument("--only", nargs="+", metavar="SCRIPT", help="with --make: only these scripts")
+    parser.add_argument("-j", type=int, default=1, metavar="N", help="pages at the same time (1)")
+    parser.add_argument("--build", type=pathlib.Path, default=pathlib.Path(os.environ.get("MUD_BUILD_DIR") or ROOT / "build/release"),
+                        help="build folder with the programs (build/release)")
+    parser.add_argument("--output", type=pathlib.Path, default=ROOT / "build/verification", help="where results go (build/verification)")
+    options = parser.parse_args()
+    if options.update and options.quick:
+        parser.error("--update takes whole pages: leave out --quick")
+    build, output = options.build.resolve(), options.output.resolve()
+    chosen = chosen_of(options.pages, parser)
+    if options.list:
+        for name in chosen:
+            page = load(name).PAGE
+            print(f"{name:32s} {page.seconds:6g} s  {', '.join(page.kind)}: {page.claim}")
+            if options.update:
+                update_declaration(name)
+        if options.update:
+            update_index()
+        return 0
+    if options.make:
+        good = [make(name, build, output, options.update, options.only) for name in chosen]
+        return 0 if all(good) else 1
+    if options.quick:
+        chosen = [name for name in chosen if load(name).PAGE.quick]
+    print(f"{len(chosen)} pages, about {sum(page.quick if options.quick else page.seconds for page in (load(n).PAGE for n in chosen)):.0f} s "
+          f"of one core", flush=True)
+    outcomes = []
+    for outcome in run_pages(chosen, build, output, options.quick, options.j):
+        outcomes.append(outcome)
+        report(outcome, f" ({len(outcomes)} of {len(chosen)})")
+        if options.update and not outcome.error:
+            update_declaration(outcome.name)
+            update_page(outcome, output)
+    if options.update:
+        update_index()
+    failed = sum(o.failed for o in outcomes)
+    for outcome in outcomes:
+        if outcome.failed:
+            print(f"FAILED {outcome.name}: {outcome.failed} of {len(outcome.checks) + bool(outcome.error)}")
+    print(f"{sum(o.passed for o in outcomes)} passed, {failed} failed")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,47 @@
+"""The one reader of CSV tables: results of the programs, committed results, data from elsewhere. Lines that begin with # are comments."""
+import csv
+import pathlib
+
+import numpy as np
+
+
+def rows(path, header_in_comment=False):
+    """Rows as dictionaries of text. With `header_in_comment` the names of the columns are the last comment before the rows."""
+    lines = pathlib.Path(path).read_text(encoding="utf-8").splitlines()
+    body = [line for line in lines if not line.startswith("#")]
+    if header_in_comment:
+        first = next((i for i, line in enumerate(lines) if not line.startswith("#")), 0)
+        if first == 0:
+            raise ValueError(f"{path} has no comment with the names of its columns before the first row")
+        body.insert(0, lines[first - 1].lstrip("# "))
+    return list(csv.DictReader(body))
+
+
+def columns(path, header_in_comment=False):
+    """Columns of numbers as a dictionary of arrays."""
+    found = rows(path, header_in_comment)
+    if not found:
+        raise ValueError(f"{path} has no rows")
+    return {name: np.array([float(row[name]) for row in found]) for name in found[0]}
+
+
+def comments(path):
+    """The comment lines without their mark."""
+    return [line.lstrip("# ") for line in pathlib.Path(path).read_text(encoding="utf-8").splitlines() if line.startswith("#")]
+
+
+def write(path, header, lines, comment=()):
+    """Writes rows under the names of their columns, after lines of comment."""
+    path = pathlib.Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        file.writelines(f"# {line}\n" for line in comment)
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(header)
+        writer.writerows(lines)
+
+
+def markdown(head, lines):
+    """A table of a README."""
+    return "\n".join(["| " + " | ".join(head) + " |", "|" + "---|" * len(head),
+                      *("| " + " | ".join(map(str, line)) + " |" for line in lines)]) + "\n"
