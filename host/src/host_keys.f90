@@ -2,46 +2,31 @@
 !> come from this list.
 module host_keys
    use kinds, only: wp
-   use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use namelists, only: group_t, entry_t, find_entry, MAX_VALUES, LENGTH
-   use spelling, only: nearest_name
-   use texts, only: lower_case, short, whole, read_number
+   use faults, only: fault_t
+   use key_schema, only: key_t, REQUIRED, NONE, UNBOUNDED, check_group, given, texts_of, numbers_of, &
+                         schema_number_of => number_of, schema_text_of => text_of, schema_word_is => word_is
+   use namelists, only: group_t, MAX_VALUES
    implicit none (type, external)
    private
-   public :: check_keys, number_of, numbers_of, text_of, texts_of, word_is, given, print_template, GROUPS
+   public :: check_keys, number_of, numbers_of, text_of, texts_of, word_is, given, print_template
 
-   character(*), parameter :: NONE = '', REQUIRED = '*'
-
-   !> One key. kind: n number, i whole number, t text, w one of the words; capital: a list.
-   type :: key_t
-      character(12) :: group
-      character(20) :: name
-      character :: kind
-      character(14) :: preset       !< '*': must be given; '': may be left out.
-      real(wp) :: lower, upper      !< Range of a number.
-      character(72) :: meaning      !< For kind w it begins with the words, divided by |, and ends them with a colon.
-   end type key_t
-
-   character(12), parameter :: GROUPS(17) = [character(12) :: 'scene', 'mesh', 'fluids', 'mud', 'elastic', &
-      'retention', 'permeability', 'region', 'initial', 'history', 'stage', 'fix', 'load', 'rigid', 'plate', &
-      'contact', 'point']
-   real(wp), parameter :: BIG = 1.0e30_wp, TINY_ = 1.0e-30_wp
+   real(wp), parameter :: BIG = UNBOUNDED, TINY_ = 1.0e-30_wp
 
    type(key_t), parameter :: KEYS(*) = [ &
       key_t('scene', 'name', 't', REQUIRED, 0, 0, 'name of the scene'), &
-      key_t('scene', 'geometry', 'w', 'axisymmetric', 0, 0, 'axisymmetric|plane_strain: r, z or x, y'), &
-      key_t('scene', 'fields', 'w', 'u', 0, 0, 'u|u-p_w|u-p_w-p_c: unknowns; absent ones cost nothing'), &
-      key_t('scene', 'pressures', 'w', 'quadratic', 0, 0, 'quadratic|linear: interpolation (linear: Taylor-Hood)'), &
+      key_t('scene', 'geometry', 'w', 'axisymmetric', 0, 0, 'r, z or x, y', 'axisymmetric|plane_strain'), &
+      key_t('scene', 'fields', 'w', 'u', 0, 0, 'unknowns; absent ones cost nothing', 'u|u-p_w|u-p_w-p_c'), &
+      key_t('scene', 'pressures', 'w', 'quadratic', 0, 0, 'interpolation (linear: Taylor-Hood)', 'quadratic|linear'), &
       key_t('scene', 'quadrature', 'i', '6', 3, 12, 'points of an element: 3, 6, 7 or 12'), &
       key_t('scene', 'gravity', 'n', '0', 0, 1000, 'acceleration towards -z [m/s2]'), &
-      key_t('scene', 'effects', 'w', 'given', 0, 0, 'given|auto: auto derives what keys leave out, see README'), &
+      key_t('scene', 'effects', 'w', 'given', 0, 0, 'auto derives what keys leave out, see README', 'given|auto'), &
       key_t('scene', 'effects_tolerance', 'n', '0.01', 1.0e-6_wp, 1, 'share that an effect left out may have [-]'), &
-      key_t('scene', 'seepage_inertia', 'w', 'no', 0, 0, 'no|yes: acceleration of the skeleton in Darcy''s law'), &
-      key_t('scene', 'saturation_rate', 'w', 'full', 0, 0, 'full|suction: with dS_w/de, or by suction alone'), &
-      key_t('scene', 'initial_flow', 'w', 'drain', 0, 0, 'drain|subtract: subtract: flow at the start is kept up'), &
+      key_t('scene', 'seepage_inertia', 'w', 'no', 0, 0, 'acceleration of the skeleton in Darcy''s law', 'no|yes'), &
+      key_t('scene', 'saturation_rate', 'w', 'full', 0, 0, 'with dS_w/de, or by suction alone', 'full|suction'), &
+      key_t('scene', 'initial_flow', 'w', 'drain', 0, 0, 'subtract: flow at the start is kept up', 'drain|subtract'), &
       key_t('scene', 'threads', 'i', '0', 0, 1024, 'threads of the element loop; 0: OMP_NUM_THREADS'), &
-      key_t('scene', 'factors', 'w', 'reuse', 0, 0, 'reuse|fresh: of the matrix: while they serve, or always new'), &
-      key_t('scene', 'ordering', 'w', 'amd', 0, 0, 'amd|metis|best: of the unknowns; best tries several'), &
+      key_t('scene', 'factors', 'w', 'reuse', 0, 0, 'of the matrix: while they serve, or always new', 'reuse|fresh'), &
+      key_t('scene', 'ordering', 'w', 'amd', 0, 0, 'of the unknowns; best tries several', 'amd|metis|best'), &
       key_t('scene', 'checkpoint_steps', 'i', '0', 0, 1000000000, 'checkpoint.h5 after every so many steps; 0: none'), &
       key_t('scene', 'checkpoint_seconds', 'n', '0', 0, BIG, 'and after so much wall time [s]; 0: none'), &
       key_t('mesh', 'file', 't', NONE, 0, 0, 'Gmsh 4.1 text mesh, seen from the scene; or a built-in one:'), &
@@ -54,19 +39,19 @@ module host_keys
       key_t('fluids', 'k_w', 'n', '2.2e6', TINY_, BIG, 'bulk modulus of water [kPa]'), &
       key_t('fluids', 'rho_w', 'n', '1.0', 0, 1000, 'density of water [Mg/m3]'), &
       key_t('fluids', 'eta_w', 'n', '1.0e-6', TINY_, BIG, 'viscosity of water [kPa s]'), &
-      key_t('fluids', 'gas', 'w', 'constant', 0, 0, 'constant|ideal: ideal: K_a = p_ref + p_a, density as well'), &
+      key_t('fluids', 'gas', 'w', 'constant', 0, 0, 'ideal: K_a = p_ref + p_a, density as well', 'constant|ideal'), &
       key_t('fluids', 'k_a', 'n', '101.325', TINY_, BIG, 'bulk modulus of a constant gas [kPa]'), &
       key_t('fluids', 'rho_a', 'n', '1.2e-3', 0, 1000, 'density of air (ideal: at p_ref) [Mg/m3]'), &
       key_t('fluids', 'eta_a', 'n', '1.8e-8', TINY_, BIG, 'viscosity of air [kPa s]'), &
       key_t('fluids', 'p_ref', 'n', '101.325', TINY_, BIG, 'absolute pressure where p_a = 0 [kPa]'), &
       key_t('mud', 'name', 't', REQUIRED, 0, 0, 'name that regions call the material by'), &
-      key_t('mud', 'material_call', 'w', 'mud_update', 0, 0, 'mud_update|umat: door to the library'), &
+      key_t('mud', 'material_call', 'w', 'mud_update', 0, 0, 'door to the library', 'mud_update|umat'), &
       key_t('mud', 'file', 't', NONE, 0, 0, 'material file; every parameter of the library is a key too'), &
       key_t('elastic', 'name', 't', REQUIRED, 0, 0, 'name that regions call the material by'), &
       key_t('elastic', 'young', 'n', REQUIRED, TINY_, BIG, 'Young''s modulus [kPa]'), &
       key_t('elastic', 'poisson', 'n', REQUIRED, -0.99_wp, 0.4999_wp, 'Poisson''s ratio [-]'), &
       key_t('retention', 'name', 't', REQUIRED, 0, 0, 'name that regions call it by'), &
-      key_t('retention', 'law', 'w', 'bilogarithmic', 0, 0, 'bilogarithmic|power|table|saturated: see README'), &
+      key_t('retention', 'law', 'w', 'bilogarithmic', 0, 0, 'see README', 'bilogarithmic|power|table|saturated'), &
       key_t('retention', 'p_a', 'n', '5.0', TINY_, BIG, 'air entry of the bilogarithmic law [kPa]'), &
       key_t('retention', 'n', 'n', '2.0', 0.01_wp, 100, 'its exponent n [-]'), &
       key_t('retention', 'm', 'n', '1.0', 0.001_wp, 100, 'its exponent m [-]'), &
@@ -79,7 +64,7 @@ module host_keys
       key_t('retention', 'saturation', 'N', NONE, 0, 1, 'table: degrees of saturation [-]'), &
       key_t('permeability', 'name', 't', REQUIRED, 0, 0, 'name that regions call it by'), &
       key_t('permeability', 'intrinsic', 'n', REQUIRED, TINY_, 1, 'intrinsic permeability [m2]'), &
-      key_t('permeability', 'law', 'w', 'corey', 0, 0, 'corey|mualem|power|constant: relative permeabilities'), &
+      key_t('permeability', 'law', 'w', 'corey', 0, 0, 'relative permeabilities', 'corey|mualem|power|constant'), &
       key_t('permeability', 's_min', 'n', '0.0', 0, 0.999_wp, 'S_w at which S_e = 0 [-]'), &
       key_t('permeability', 's_max', 'n', '1.0', 0.001_wp, 1, 'S_w at which S_e = 1 [-]'), &
       key_t('permeability', 'a', 'n', '0.0', 0, BIG, 'power: k_rw = 1 - a (1 - S_w)**b'), &
@@ -105,18 +90,18 @@ module host_keys
       key_t('initial', 'v_z', 'n', '0', -BIG, BIG, 'vertical velocity at the start [m/s]'), &
       key_t('initial', 'wave', 'n', '0', -BIG, BIG, 'v_z = wave sin(wave_number (z - datum)) at the start [m/s]'), &
       key_t('initial', 'wave_number', 'n', '0', 0, BIG, 'see wave [1/m]'), &
-      key_t('initial', 'stress', 'w', 'none', 0, 0, 'none|uniform|geostatic: effective stress at the start'), &
+      key_t('initial', 'stress', 'w', 'none', 0, 0, 'effective stress at the start', 'none|uniform|geostatic'), &
       key_t('initial', 'sigma', 'N', NONE, -BIG, BIG, 'uniform: rr, zz, tt, tension positive [kPa]'), &
       key_t('initial', 'surface', 'n', '0', -BIG, BIG, 'geostatic: z of the surface [m]'), &
       key_t('initial', 'surcharge', 'n', '0', 0, BIG, 'geostatic: pressure on it [kPa]'), &
       key_t('initial', 'k_0', 'n', '0.5', 0, 10, 'geostatic: horizontal over vertical stress'), &
-      key_t('initial', 'k_0_of', 'w', 'net', 0, 0, 'net|effective: stress that K_0 acts on where p_c > 0'), &
+      key_t('initial', 'k_0_of', 'w', 'net', 0, 0, 'stress that K_0 acts on where p_c > 0', 'net|effective'), &
       key_t('history', 'name', 't', REQUIRED, 0, 0, 'name that loads call it by'), &
       key_t('history', 'times', 'N', NONE, -BIG, BIG, 'ascending [s]; straight lines between, constant outside'), &
       key_t('history', 'values', 'N', NONE, -BIG, BIG, 'factors at these times [-]'), &
       key_t('history', 'file', 't', NONE, 0, 0, 'instead: text file with a time and a factor a line'), &
       key_t('stage', 'name', 't', REQUIRED, 0, 0, 'name of the stage'), &
-      key_t('stage', 'analysis', 'w', NONE, 0, 0, 'static|quasi_static|dynamic: needed unless effects = ''auto'''), &
+      key_t('stage', 'analysis', 'w', NONE, 0, 0, 'needed unless effects = ''auto''', 'static|quasi_static|dynamic'), &
       key_t('stage', 'duration', 'n', REQUIRED, TINY_, BIG, 'duration [s]'), &
       key_t('stage', 'dt', 'n', REQUIRED, TINY_, BIG, 'time step [s]'), &
       key_t('stage', 'dt_growth', 'n', '1', 1, 10, 'factor on the step after every accepted one'), &
@@ -124,23 +109,23 @@ module host_keys
       key_t('stage', 'cuts', 'i', '10', 0, 40, 'how often a step may be halved'), &
       key_t('stage', 'rho_inf', 'n', '0.8', 0, 1, 'spectral radius of generalised-alpha [-]'), &
       key_t('stage', 'tolerance', 'n', '1.0e-3', 1.0e-14_wp, 0.1_wp, 'Newton: error that ends the iteration [-]'), &
-      key_t('stage', 'measure', 'w', 'forces', 0, 0, 'forces|residual|correction: that error, see README'), &
+      key_t('stage', 'measure', 'w', 'forces', 0, 0, 'that error, see README', 'forces|residual|correction'), &
       key_t('stage', 'max_iterations', 'i', '12', 1, 1000, 'Newton: linear solves before the step is cut'), &
-      key_t('stage', 'predictor', 'w', 'rates', 0, 0, 'rates|none: start of the iteration'), &
-      key_t('stage', 'start', 'w', 'solve', 0, 0, 'solve|zero: accelerations at the start of a dynamic stage'), &
-      key_t('stage', 'zero_displacements', 'w', 'no', 0, 0, 'no|yes: at the end of the stage'), &
+      key_t('stage', 'predictor', 'w', 'rates', 0, 0, 'start of the iteration', 'rates|none'), &
+      key_t('stage', 'start', 'w', 'solve', 0, 0, 'accelerations at the start of a dynamic stage', 'solve|zero'), &
+      key_t('stage', 'zero_displacements', 'w', 'no', 0, 0, 'at the end of the stage', 'no|yes'), &
       key_t('stage', 'every', 'i', '1', 1, 1000000, 'histories are written every so many steps'), &
       key_t('stage', 'fields', 'i', '0', 0, 1000000, 'fields too; 0: at the end of the stage alone'), &
       key_t('fix', 'group', 't', REQUIRED, 0, 0, 'boundary, region or node group'), &
-      key_t('fix', 'field', 'w', REQUIRED, 0, 0, 'u_r|u_z|p_w|p_c|p_a: what is prescribed'), &
+      key_t('fix', 'field', 'w', REQUIRED, 0, 0, 'what is prescribed', 'u_r|u_z|p_w|p_c|p_a'), &
       key_t('fix', 'value', 'n', '0', -BIG, BIG, 'its value [m, kPa]'), &
       key_t('fix', 'history', 't', NONE, 0, 0, 'factor on the value'), &
-      key_t('fix', 'hold', 'w', 'no', 0, 0, 'no|yes: yes: at its value at the start of the stage'), &
+      key_t('fix', 'hold', 'w', 'no', 0, 0, 'yes: at its value at the start of the stage', 'no|yes'), &
       key_t('fix', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
       key_t('fix', 'from', 'n', NONE, -BIG, BIG, 'acts after this time [s]'), &
       key_t('fix', 'until', 'n', NONE, -BIG, BIG, 'and up to this one [s]'), &
       key_t('load', 'group', 't', REQUIRED, 0, 0, 'boundary (for force: node group)'), &
-      key_t('load', 'kind', 'w', REQUIRED, 0, 0, 'pressure|shear_r|shear_z|water|air|force_r|force_z: see README'), &
+      key_t('load', 'kind', 'w', REQUIRED, 0, 0, 'see README', 'pressure|shear_r|shear_z|water|air|force_r|force_z'), &
       key_t('load', 'value', 'n', REQUIRED, -BIG, BIG, 'its value [kPa, m/s, kN]'), &
       key_t('load', 'history', 't', NONE, 0, 0, 'factor on the value'), &
       key_t('load', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
@@ -151,214 +136,84 @@ module host_keys
       key_t('plate', 'name', 't', REQUIRED, 0, 0, 'rigid plate, vertical; also a group for &fix and &load'), &
       key_t('plate', 'r', 'N', REQUIRED, -BIG, BIG, 'where its flat face begins and ends [m]'), &
       key_t('plate', 'z', 'n', '0', -BIG, BIG, 'height of the face at the start [m]'), &
-      key_t('plate', 'face', 'w', 'down', 0, 0, 'down|up: where the face looks'), &
+      key_t('plate', 'face', 'w', 'down', 0, 0, 'where the face looks', 'down|up'), &
       key_t('plate', 'mass', 'n', REQUIRED, TINY_, BIG, 'its mass [Mg]'), &
-      key_t('plate', 'weight', 'w', 'no', 0, 0, 'no|yes: its weight acts; it starts seated on the penalty'), &
+      key_t('plate', 'weight', 'w', 'no', 0, 0, 'its weight acts; it starts seated on the penalty', 'no|yes'), &
       key_t('plate', 'force', 'n', '0', -BIG, BIG, 'force on it, upwards [kN]'), &
       key_t('plate', 'history', 't', NONE, 0, 0, 'factor on the force'), &
       key_t('contact', 'name', 't', REQUIRED, 0, 0, 'name in contact.csv'), &
       key_t('contact', 'slave', 't', REQUIRED, 0, 0, 'boundary that is integrated over: the softer or finer one'), &
       key_t('contact', 'master', 't', REQUIRED, 0, 0, 'boundary opposite, or name of a &plate'), &
       key_t('contact', 'penalty', 'n', '1.0e8', TINY_, BIG, 'pressure of a unit of penetration [kN/m3]'), &
-      key_t('contact', 'gap', 'w', 'nodal', 0, 0, 'nodal|pointwise: gap that is penalised, see CONTACT.md'), &
-      key_t('contact', 'variation', 'w', 'pressure', 0, 0, 'pressure|energy: force, see CONTACT.md'), &
+      key_t('contact', 'gap', 'w', 'nodal', 0, 0, 'gap that is penalised, see CONTACT.md', 'nodal|pointwise'), &
+      key_t('contact', 'variation', 'w', 'pressure', 0, 0, 'force, see CONTACT.md', 'pressure|energy'), &
       key_t('contact', 'reach', 'n', '0', 0, BIG, 'edges farther apart do not meet [m]; 0: an edge''s own length'), &
-      key_t('contact', 'drainage', 'w', 'fixed', 0, 0, 'fixed|state: state: &fix of pressures let touching nodes go'), &
+      key_t('contact', 'drainage', 'w', 'fixed', 0, 0, &
+            'state: &fix of pressures let touching nodes go', 'fixed|state'), &
       key_t('contact', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
       key_t('point', 'name', 't', REQUIRED, 0, 0, 'name in histories.csv'), &
       key_t('point', 'r', 'n', REQUIRED, -BIG, BIG, 'the nearest node is taken [m]'), &
       key_t('point', 'z', 'n', REQUIRED, -BIG, BIG, 'the nearest node is taken [m]')]
 contains
    !> Refuses unknown groups and keys, missing ones, and values of the wrong kind or outside their range.
-   subroutine check_keys(groups_read, fault)
-      type(group_t), intent(in) :: groups_read(:)
+   subroutine check_keys(groups, fault)
+      type(group_t), intent(in) :: groups(:)
       type(fault_t), intent(inout) :: fault
-      integer :: g, i, k, best
+      integer :: g
 
-      do g = 1, size(groups_read)
-         associate (group => groups_read(g))
-            if (.not. any(GROUPS == group%name)) then
-               best = nearest_name(group%name, GROUPS)
-               call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'there is no group &'// &
-                          trim(group%name)//'; the nearest is &'//trim(GROUPS(best))//'.')
-               return
-            end if
-            do i = 1, group%count
-               k = place_of(group%name, group%entries(i)%key)
-               ! The library knows the parameters of &mud.
-               if (k == 0 .and. group%name == 'mud') cycle
-               if (k == 0) call refuse_key(group, group%entries(i), fault)
-               if (fault%code == 0) call check_entry(group, group%entries(i), KEYS(k), fault)
-               if (fault%code /= 0) return
-            end do
-            do k = 1, size(KEYS)
-               if (KEYS(k)%group /= group%name .or. KEYS(k)%preset /= REQUIRED) cycle
-               if (find_entry(group, KEYS(k)%name) > 0) cycle
-               call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&'//trim(group%name)//' needs '// &
-                          trim(KEYS(k)%name)//' ('//trim(KEYS(k)%meaning)//').')
-               return
-            end do
-         end associate
-      end do
-   end subroutine check_keys
-
-   subroutine refuse_key(group, item, fault)
-      type(group_t), intent(in) :: group
-      type(entry_t), intent(in) :: item
-      type(fault_t), intent(inout) :: fault
-      integer :: k
-
-      k = nearest_name(item%key, KEYS%name, KEYS%group == group%name)
-      call raise(fault, EXIT_INPUT, at_line(group%file, item%line)//'&'//trim(group%name)//' has no key '// &
-                 trim(item%key)//'; the nearest is '//trim(KEYS(k)%name)//' ('//trim(KEYS(k)%meaning)//').')
-   end subroutine refuse_key
-
-   subroutine check_entry(group, item, key, fault)
-      type(group_t), intent(in) :: group
-      type(entry_t), intent(in) :: item
-      type(key_t), intent(in) :: key
-      type(fault_t), intent(inout) :: fault
-      character(:), allocatable :: place
-      real(wp) :: value
-      logical :: good
-      integer :: i
-
-      place = at_line(group%file, item%line)//trim(key%name)//' = '//trim(item%values(1))
-      if (item%count > 1 .and. index('niwt', key%kind) > 0) then
-         call raise(fault, EXIT_INPUT, place//' ... has '//whole(item%count)//' values, it takes one ('// &
-                    trim(key%meaning)//').')
-         return
-      end if
-      do i = 1, item%count
-         place = at_line(group%file, item%line)//trim(key%name)//' = '//trim(item%values(i))
-         select case (key%kind)
-         case ('n', 'N', 'i', 'I')
-            call read_number(item%values(i), value, good)
-            if (good .and. index('iI', key%kind) > 0) good = abs(value - anint(value)) <= 0.0_wp
-            if (.not. good) then
-               call raise(fault, EXIT_INPUT, place//' is no '//trim(merge('whole number', 'number      ', &
-                          index('iI', key%kind) > 0))//' ('//trim(key%meaning)//').')
-            else if (value < key%lower .or. value > key%upper) then
-               call raise(fault, EXIT_INPUT, place//' is outside '//short(key%lower)//' to '//short(key%upper)//' ('// &
-                          trim(key%meaning)//').')
-            end if
-         case ('w')
-            if (.not. is_word(key, lower_case(trim(item%values(i))))) &
-               call raise(fault, EXIT_INPUT, place//' is not one of '//trim(key%meaning)//'.')
-         end select
+      do g = 1, size(groups)
+         ! The library knows the parameters of &mud.
+         call check_group(KEYS, groups(g), groups(g)%name == 'mud', fault)
          if (fault%code /= 0) return
       end do
-   end subroutine check_entry
-
-   pure logical function is_word(key, word)
-      type(key_t), intent(in) :: key
-      character(*), intent(in) :: word
-
-      is_word = index('|'//key%meaning(:index(key%meaning, ':') - 1)//'|', '|'//word//'|') > 0
-   end function is_word
-
-   pure integer function place_of(group, name) result(k)
-      character(*), intent(in) :: group, name
-
-      do k = 1, size(KEYS)
-         if (KEYS(k)%group == group .and. KEYS(k)%name == lower_case(name)) return
-      end do
-      k = 0
-   end function place_of
-
-   pure logical function given(group, name)
-      type(group_t), intent(in) :: group
-      character(*), intent(in) :: name
-
-      given = find_entry(group, name) > 0
-   end function given
+   end subroutine check_keys
 
    !> Value of a number, or its default (0 if it has none).
    real(wp) function number_of(group, name)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: name
-      logical :: good
 
-      call read_number(text_of(group, name), number_of, good)
+      number_of = schema_number_of(KEYS, group, name)
    end function number_of
-
-   !> Values of a list; empty if it is not given.
-   function numbers_of(group, name) result(values)
-      type(group_t), intent(in) :: group
-      character(*), intent(in) :: name
-      real(wp), allocatable :: values(:)
-      integer :: i, place
-      logical :: good
-
-      place = find_entry(group, name)
-      if (place == 0) then
-         values = [real(wp) ::]
-         return
-      end if
-      allocate (values(group%entries(place)%count))
-      do i = 1, size(values)
-         call read_number(group%entries(place)%values(i), values(i), good)
-      end do
-   end function numbers_of
 
    !> A text, or its default.
    function text_of(group, name) result(text)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: name
       character(:), allocatable :: text
-      integer :: place
 
-      place = find_entry(group, name)
-      if (place > 0) then
-         text = trim(group%entries(place)%values(1))
-      else
-         text = trim(KEYS(place_of(group%name, name))%preset)
-      end if
+      text = schema_text_of(KEYS, group, name)
    end function text_of
-
-   !> Texts of a list; empty if it is not given.
-   function texts_of(group, name) result(texts)
-      type(group_t), intent(in) :: group
-      character(*), intent(in) :: name
-      character(LENGTH), allocatable :: texts(:)
-      integer :: i, place
-
-      place = find_entry(group, name)
-      if (place == 0) then
-         allocate (texts(0))
-         return
-      end if
-      allocate (texts(group%entries(place)%count))
-      do i = 1, size(texts)
-         texts(i) = group%entries(place)%values(i)
-      end do
-   end function texts_of
 
    logical function word_is(group, name, word)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: name, word
 
-      word_is = lower_case(text_of(group, name)) == word
+      word_is = schema_word_is(KEYS, group, name, word)
    end function word_is
 
    !> Every key with its default and meaning, as a scene to start from.
    subroutine print_template(unit)
       integer, intent(in) :: unit
       character(:), allocatable :: value
+      character(:), allocatable :: meaning
       integer :: g, k
 
       write (unit, '(a)') '! Every group and key of a scene. Lines that begin with "!" may be left out.'
       write (unit, '(a,i0,a)') '! Groups but &scene, &mesh and &fluids may occur several times; lists hold up to ', &
          MAX_VALUES, ' values.'
-      do g = 1, size(GROUPS)
-         write (unit, '(2a)') '&', trim(GROUPS(g))
-         do k = 1, size(KEYS)
-            if (KEYS(k)%group /= GROUPS(g)) cycle
+      do g = 1, size(KEYS)
+         if (any(KEYS(:g - 1)%group == KEYS(g)%group)) cycle
+         write (unit, '(2a)') '&', trim(KEYS(g)%group)
+         do k = g, size(KEYS)
+            if (KEYS(k)%group /= KEYS(g)%group) cycle
             value = trim(KEYS(k)%preset)
             if (value == REQUIRED) value = '?'
             if (index('twT', KEYS(k)%kind) > 0) value = ''''//value//''''
+            meaning = trim(KEYS(k)%meaning)
+            if (KEYS(k)%words /= '') meaning = trim(KEYS(k)%words)//': '//meaning
             write (unit, '(a,a,a)') merge('     ', '   ! ', KEYS(k)%preset == REQUIRED), &
-               padded(trim(KEYS(k)%name)//' = '//value, 34), '! '//trim(KEYS(k)%meaning)
+               padded(trim(KEYS(k)%name)//' = '//value, 34), '! '//meaning
          end do
          write (unit, '(a)') '/'
       end do

@@ -1,0 +1,302 @@
+!> Keys of input files: a program lists its keys once, with kind, default, range or words, and meaning; checks, readers,
+!> templates and help texts come from that list.
+module key_schema
+   use kinds, only: wp
+   use faults, only: fault_t, raise, at_line, EXIT_INPUT
+   use texts, only: lower_case, short, whole, read_number
+   use spelling, only: nearest_name
+   use namelists, only: group_t, entry_t, find_entry, LENGTH
+   implicit none (type, external)
+   private
+   public :: key_t, REQUIRED, NONE, UNBOUNDED
+   public :: check_group, check_entries, place_of, describe_key, described, words_of
+   public :: given, line_of, text_of, texts_of, number_of, numbers_of, word_is, get_text, get_number, get_numbers
+
+   character(*), parameter :: NONE = '', REQUIRED = '*'   !< Defaults of a key that may be left out, or must be given.
+   real(wp), parameter :: UNBOUNDED = 1.0e30_wp           !< A bound of this size is none.
+   character, parameter :: BETWEEN = '|'                  !< Divides words.
+   integer, parameter :: LONGEST_WORD = 32
+
+   !> A key of a group.
+   type :: key_t
+      character(12) :: group
+      character(21) :: name
+      character :: kind                  !< n number, i integer, t text, w one of the words; capital: a list of them
+      character(14) :: preset            !< Its default, or REQUIRED or NONE.
+      real(wp) :: lower, upper           !< Range of a number.
+      character(120) :: meaning
+      character(72) :: words = ''        !< Kind w: the words, divided by |.
+      character(8) :: unit = ''          !< Shown behind the range, where the meaning does not say it.
+      integer :: values = 0              !< How many values a list has, 0: any number.
+   end type key_t
+contains
+   !> Refuses a group that is not among the keys; and, of one that is, what check_entries refuses, and a missing key.
+   subroutine check_group(keys, group, open, fault)
+      type(key_t), intent(in) :: keys(:)
+      type(group_t), intent(in) :: group
+      logical, intent(in) :: open         !< Unknown keys are left to somebody else.
+      type(fault_t), intent(inout) :: fault
+      integer :: k
+
+      if (.not. any(keys%group == group%name)) then
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'there is no group &'//trim(group%name)// &
+                    '; the nearest is &'//trim(keys(nearest_name(group%name, keys%group))%group)//'.')
+         return
+      end if
+      call check_entries(keys, group, open, fault)
+      if (fault%code /= 0) return
+      do k = 1, size(keys)
+         if (keys(k)%group /= group%name .or. keys(k)%preset /= REQUIRED) cycle
+         if (given(group, keys(k)%name)) cycle
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&'//trim(group%name)//' needs '// &
+                    trim(keys(k)%name)//' ('//described(keys(k))//').')
+         return
+      end do
+   end subroutine check_group
+
+   !> Refuses unknown keys, and values of the wrong kind, number or range.
+   subroutine check_entries(keys, group, open, fault)
+      type(key_t), intent(in) :: keys(:)
+      type(group_t), intent(in) :: group
+      logical, intent(in) :: open
+      type(fault_t), intent(inout) :: fault
+      integer :: i, k
+
+      do i = 1, group%count
+         associate (item => group%entries(i))
+            k = place_of(keys, group%name, item%key)
+            if (k > 0) then
+               call check_values(group%file, item, keys(k), fault)
+            else if (.not. open) then
+               k = nearest_name(item%key, keys%name, keys%group == group%name)
+               call raise(fault, EXIT_INPUT, at_line(group%file, item%line)//'&'//trim(group%name)//' has no key '// &
+                          trim(item%key)//'; the nearest is '//trim(keys(k)%name)//' ('//described(keys(k))//').')
+            end if
+         end associate
+         if (fault%code /= 0) return
+      end do
+   end subroutine check_entries
+
+   subroutine check_values(file, item, key, fault)
+      character(*), intent(in) :: file
+      type(entry_t), intent(in) :: item
+      type(key_t), intent(in) :: key
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: value
+      integer :: wanted, i
+      logical :: good, integral
+
+      wanted = key%values
+      if (scan(key%kind, 'nitw') > 0) wanted = 1
+      if (wanted > 0 .and. item%count /= wanted) then
+         call raise(fault, EXIT_INPUT, at_line(file, item%line)//trim(key%name)//' takes '//whole(wanted)// &
+                    trim(merge(' value ', ' values', wanted == 1))//', '//whole(item%count)// &
+                    trim(merge(' is ', ' are', item%count == 1))//' given ('//described(key)//').')
+         return
+      end if
+      integral = scan(key%kind, 'iI') > 0
+      do i = 1, item%count
+         select case (key%kind)
+         case ('n', 'N', 'i', 'I')
+            call read_number(item%values(i), value, good)
+            if (good .and. integral) good = abs(value - anint(value)) <= 0.0_wp
+            if (.not. good) then
+               call refuse('is not '//trim(merge('an integer', 'a number  ', integral)))
+            else if (value < key%lower .or. value > key%upper) then
+               call refuse('is outside its range')
+            end if
+         case ('w')
+            if (.not. is_word(key%words, item%values(i))) call refuse('is not one of its words')
+         end select
+         if (fault%code /= 0) return
+      end do
+   contains
+      subroutine refuse(why)
+         character(*), intent(in) :: why
+
+         call raise(fault, EXIT_INPUT, at_line(file, item%line)//trim(key%name)//' = '//trim(item%values(i))//' '// &
+                    why//' ('//described(key)//').')
+      end subroutine refuse
+   end subroutine check_values
+
+   !> Whether a word, case ignored, is one of those that | divides.
+   pure logical function is_word(words, word)
+      character(*), intent(in) :: words, word
+
+      is_word = index(BETWEEN//trim(words)//BETWEEN, BETWEEN//lower_case(trim(word))//BETWEEN) > 0
+   end function is_word
+
+   !> The words of a key, one by one.
+   pure function words_of(key) result(words)
+      type(key_t), intent(in) :: key
+      character(LONGEST_WORD), allocatable :: words(:)
+      integer :: first, last
+
+      allocate (words(0))
+      if (key%words == '') return
+      first = 1
+      do
+         last = first + index(trim(key%words(first:))//BETWEEN, BETWEEN) - 2
+         words = [character(LONGEST_WORD) :: words, key%words(first:last)]
+         first = last + 2
+         if (first > len_trim(key%words)) exit
+      end do
+   end function words_of
+
+   !> Place of a key among the keys, case ignored, 0 if there is none of that name.
+   pure integer function place_of(keys, group, name) result(place)
+      type(key_t), intent(in) :: keys(:)
+      character(*), intent(in) :: group, name
+
+      do place = 1, size(keys)
+         if (keys(place)%group == group .and. keys(place)%name == lower_case(name)) return
+      end do
+      place = 0
+   end function place_of
+
+   !> Range and meaning of a key, by its name.
+   pure function describe_key(keys, group, name) result(text)
+      type(key_t), intent(in) :: keys(:)
+      character(*), intent(in) :: group, name
+      character(:), allocatable :: text
+
+      text = described(keys(place_of(keys, group, name)))
+   end function describe_key
+
+   !> "from 0.01 to 5: void ratio"
+   pure function described(key) result(text)
+      type(key_t), intent(in) :: key
+      character(:), allocatable :: text
+
+      text = ''
+      if (scan(key%kind, 'nNiI') > 0) then
+         if (key%lower > -UNBOUNDED) text = 'from '//short(key%lower)//' '
+         if (key%upper < UNBOUNDED) text = text//trim(merge('to   ', 'up to', key%lower > -UNBOUNDED))//' '// &
+                                           short(key%upper)//' '
+         if (key%unit /= '') text = text//trim(key%unit)//' '
+      end if
+      if (key%words /= '') text = trim(key%words)//' '
+      if (text /= '') text = trim(text)//': '
+      text = text//trim(key%meaning)
+   end function described
+
+   pure logical function given(group, name)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: name
+
+      given = find_entry(group, name) > 0
+   end function given
+
+   !> Line of a key, or of its group where the key is not given.
+   pure integer function line_of(group, name) result(line)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: name
+
+      line = group%line
+      if (given(group, name)) line = group%entries(find_entry(group, name))%line
+   end function line_of
+
+   !> A text, or its default.
+   function text_of(keys, group, name) result(text)
+      type(key_t), intent(in) :: keys(:)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: name
+      character(:), allocatable :: text
+      integer :: place
+
+      place = find_entry(group, name)
+      if (place > 0) then
+         text = trim(group%entries(place)%values(1))
+      else
+         text = trim(keys(place_of(keys, group%name, name))%preset)
+      end if
+   end function text_of
+
+   !> Texts of a list; empty if it is not given.
+   function texts_of(group, name) result(texts)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: name
+      character(LENGTH), allocatable :: texts(:)
+      integer :: place
+
+      allocate (texts(0))
+      place = find_entry(group, name)
+      if (place > 0) texts = group%entries(place)%values(:group%entries(place)%count)
+   end function texts_of
+
+   logical function word_is(keys, group, name, word)
+      type(key_t), intent(in) :: keys(:)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: name, word
+
+      word_is = lower_case(text_of(keys, group, name)) == word
+   end function word_is
+
+   !> A number that was checked, or its default; 0 if it has none.
+   real(wp) function number_of(keys, group, name)
+      type(key_t), intent(in) :: keys(:)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: name
+      logical :: good
+
+      call read_number(text_of(keys, group, name), number_of, good)
+   end function number_of
+
+   !> Numbers of a list; empty if it is not given.
+   function numbers_of(group, name) result(values)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: name
+      real(wp), allocatable :: values(:)
+      integer :: i, place
+      logical :: good
+
+      place = find_entry(group, name)
+      if (place == 0) then
+         allocate (values(0))
+         return
+      end if
+      allocate (values(group%entries(place)%count))
+      do i = 1, size(values)
+         call read_number(group%entries(place)%values(i), values(i), good)
+      end do
+   end function numbers_of
+
+   !> A text; `value` stays where the group has none.
+   subroutine get_text(group, name, value)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: name
+      character(LENGTH), intent(inout) :: value
+      integer :: place
+
+      place = find_entry(group, name)
+      if (place > 0) value = group%entries(place)%values(1)
+   end subroutine get_text
+
+   !> A number that was checked; `value` stays where the group has none.
+   subroutine get_number(group, name, value, found)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: name
+      real(wp), intent(inout) :: value
+      logical, intent(out) :: found
+      integer :: place
+
+      place = find_entry(group, name)
+      found = place > 0
+      if (found) call read_number(group%entries(place)%values(1), value, found)
+   end subroutine get_number
+
+   !> Numbers that were checked, as many as there is room for; `values` stays where the group has none.
+   subroutine get_numbers(group, name, values)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: name
+      real(wp), intent(inout) :: values(:)
+      integer :: place, i
+      logical :: good
+
+      place = find_entry(group, name)
+      if (place == 0) return
+      do i = 1, min(size(values), group%entries(place)%count)
+         call read_number(group%entries(place)%values(i), values(i), good)
+      end do
+   end subroutine get_numbers
+end module key_schema
