@@ -35,7 +35,7 @@ MISTAKES = [
     ("unknown group", SCENE, "&elastic", "&elastc", 2, ("elastc", "&elastic")),
     ("missing key", SCENE, "   poisson = 0.3\n", "", 2, ("needs poisson",)),
     ("value out of range", SCENE, "poisson = 0.3", "poisson = 0.5", 2, ("poisson", "outside")),
-    ("not a number", SCENE, "young = 1.0e4", "young = stiff", 2, ("stiff", "no number")),
+    ("not a number", SCENE, "young = 1.0e4", "young = stiff", 2, ("stiff", "not a number")),
     ("unknown word", SCENE, "'axisymmetric'", "'spherical'", 2, ("spherical", "plane_strain")),
     ("key given twice", SCENE, "poisson = 0.3", "poisson = 0.3\n   poisson = 0.2", 2, ("given twice",)),
     ("field the scene has not", SCENE, "field = 'u_z'", "field = 'p_w'", 2, ("no field p_w",)),
@@ -80,7 +80,7 @@ for what, text, old, new, code, words in MISTAKES:
 TABLES = [
     ("plain", "0 0\n1 1\n", ()),
     ("commas, tabs, returns, comments", "# t, f\r\n  ! indented\n0,\t0 ! start\r\n\n1.0d0 , 1\r\n", ()),
-    ("no number", "0 0\n1 nan\n", (":2:", "1 nan", "two finite numbers")),
+    ("not a number", "0 0\n1 nan\n", (":2:", "1 nan", "two finite numbers")),
     ("infinity", "0 0\n1 inf\n", (":2:", "1 inf")),
     ("too large", "0 0\n# more\n1 1e999\n", (":3:", "1 1e999")),
     ("more words", "0 0\n1 1 junk 7\n", (":2:", "1 1 junk 7")),
