@@ -116,10 +116,11 @@ MUTATIONS = [
     ("a default mistyped", (REGISTRY, "3370.0_wp", "3730.0_wp")),
 ]
 
-MORTAR, RESPONSE, PENALTY, RIGID = "contact_mortar.f90", "contact_response.f90", "contact_penalty.f90", "contact_rigid.f90"
-SEARCH, JOINED, DRAINAGE = "contact_search.f90", "fe_contact.f90", "host_drainage.f90"
+MORTAR, RESPONSE, PENALTY = "contact/contact_mortar.f90", "contact/contact_response.f90", "contact/contact_penalty.f90"
+SEARCH, RIGID, JOINED = "contact/contact_search.f90", "contact/contact_rigid.f90", "contact/contact_interfaces.f90"
+DRAINAGE = "model/contact_drainage.f90"
 
-# Of the host's contact, below host/src.
+# Of the host's contact, below host.
 CONTACT = [
     ("no segments: whole halves of slave edges, points beside the master left out",
      (MORTAR, "lower = foot(2)\n      upper = foot(1)", "lower = -1.0_wp\n      upper = 1.0_wp"),

@@ -7,6 +7,7 @@ that does not apply or does not compile is an error of mutations.py: exit code 2
   -k WORD    only mutations whose title contains it
   --readme   write the table to README.md (CONTACT.md) beside this file
   --keep     keep the temporary folder
+  --apply    only see whether every mutation applies: nothing is built or run
 """
 import argparse
 import concurrent.futures
@@ -43,10 +44,10 @@ class Library:
 
 class Contact:
     """The host's contact, its suites and its page of known answers."""
-    mutations, sources, table = CONTACT, "host/src", "CONTACT.md"
+    mutations, sources, table = CONTACT, "host", "CONTACT.md"
     command = "python3 tests/mutations/run_mutations.py --contact --readme"
     judges = "the suites of contact and drainage in `tests/host` and `verification/host_contact/check.py --quick`"
-    patterns = ("tests/host/test_contact_*.pf", "tests/host/test_host_contact.pf", "tests/host/test_host_drainage.pf")
+    patterns = ("tests/host/contact/*.pf", "tests/host/model/test_contact_drainage.pf")
     programs, pages = ["mud_host"], ["host_contact"]
 
 
@@ -117,6 +118,19 @@ def restore(originals):
         path.write_text(text, encoding="utf-8")
 
 
+def apply_all(tree):
+    """Whether every mutation finds its lines: exit code 2 where one does not."""
+    broken = 0
+    for title, *changes in subject.mutations:
+        try:
+            restore(mutate(tree, changes))
+        except (ValueError, OSError) as error:
+            broken += 1
+            print(f"ERROR {title}: {error}")
+    print(f"{len(subject.mutations)} mutations, {broken} not applicable")
+    return 2 if broken else 0
+
+
 def write_readme(table, suites, seconds):
     survived = sum(not caught for _, caught in table)
     lines = [f"# Mutations{' of the contact' if subject is Contact else ''}", "",
@@ -142,6 +156,7 @@ def main():
     arguments.add_argument("-k", default="", metavar="WORD")
     arguments.add_argument("--readme", action="store_true")
     arguments.add_argument("--keep", action="store_true")
+    arguments.add_argument("--apply", action="store_true")
     arguments.add_argument("-j", type=int, default=os.cpu_count())
     arguments = arguments.parse_args()
     subject = Contact if arguments.contact else Library
@@ -150,6 +165,8 @@ def main():
     tree = folder / "mud"
     try:
         shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns("build", ".git", "__pycache__"))
+        if arguments.apply:
+            return apply_all(tree)
         configured = run(["cmake", "-S", ".", "-B", "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                           "-DMUD_PRESET=release", "-DMUD_USE_PFUNIT=OFF", "-DMUD_WERROR=OFF",
                           "-DMUD_BUILD_DRIVERS=OFF", f"-DMUD_BUILD_HOST={'ON' if subject is Contact else 'OFF'}"], tree)

@@ -122,7 +122,7 @@ check("first scene of the manual runs", done.returncode == 0, done.stderr)
 if done.returncode == 0:
     u_z = float((work / "first/histories.csv").read_text().splitlines()[-1].split(",")[2])
     check("first scene: 1 mm", abs(u_z + 1e-3) < 1e-12, u_z)
-for code in re.findall(r"EXIT_\w+ = (\d+)", (root / "host/src/host_kinds.f90").read_text()):
+for code in re.findall(r"EXIT_\w+ = (\d+)", (root / "host/exit_codes.f90").read_text()):
     check(f"the manual names exit code {code}", f"| {code} |" in manual)
 
 # Results do not depend on the number of threads: the files are the same, byte for byte.
@@ -136,7 +136,7 @@ check("threads: same bytes", answers[0] == answers[1])
 
 # The template names every key of the code and is refused for nothing but its question marks.
 template = subprocess.run([host, "--template"], capture_output=True, text=True).stdout
-keys = re.findall(r"key_t\('(\w+)', '(\w+)'", (root / "host/src/host_keys.f90").read_text())
+keys = re.findall(r"key_t\('(\w+)', '(\w+)'", (root / "host/scene/scene_keys.f90").read_text())
 for group, key in keys:
     part = re.search(rf"^&{group}$(.*?)^/$", template, re.MULTILINE | re.DOTALL)
     check(f"template: {group} {key}", part and re.search(rf"^[ !]+{key} = ", part[1], re.MULTILINE))

@@ -116,7 +116,7 @@ def program():
     """(digest of the executable, commit of its sources; + where they differ from it)."""
     def git(*words):
         return subprocess.run(["git", "-C", root, *words], capture_output=True, text=True).stdout.strip()
-    sources = ("umat/core", "umat/abi", "umat/include", "host/src", "drivers/src", "cmake", "CMakePresets.json", ":(glob)**/CMakeLists.txt")
+    sources = ("umat/core", "umat/abi", "umat/include", "host", "drivers/src", "cmake", "CMakePresets.json", ":(glob)**/CMakeLists.txt")
     commit = git("log", "-1", "--format=%h", "--", *sources) or "unknown"
     return digest(program_bytes()), commit + ("+" if git("status", "--porcelain", "--", *sources) else "")
 

@@ -3,8 +3,8 @@ module host_problems
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
    use host_read, only: read_scene
-   use host_run, only: run_t, prepare_run
-   use host_scene, only: scene_t
+   use time_stepping, only: run_t, prepare_run
+   use model_types, only: model_t
    use faults, only: fault_t
    implicit none (type, external)
    private
@@ -13,20 +13,20 @@ module host_problems
    character(*), parameter, public :: NL = new_line('a')
 contains
    !> A scene from its text; stops the test program if it is refused.
-   subroutine build(text, scene, run)
+   subroutine build(text, model, run)
       character(*), intent(in) :: text
-      type(scene_t), intent(out) :: scene
+      type(model_t), intent(out) :: model
       type(run_t), intent(out) :: run
       type(fault_t) :: fault
 
-      call ask(text, scene, run, fault)
+      call ask(text, model, run, fault)
       if (fault%code /= 0) error stop 'a test scene was refused'
    end subroutine build
 
    !> The same, with the fault for the caller.
-   subroutine ask(text, scene, run, fault)
+   subroutine ask(text, model, run, fault)
       character(*), intent(in) :: text
-      type(scene_t), intent(out) :: scene
+      type(model_t), intent(out) :: model
       type(run_t), intent(out) :: run
       type(fault_t), intent(inout) :: fault
       character(64) :: file
@@ -39,8 +39,8 @@ contains
       open (newunit=unit, file=file, status='replace', action='write')
       write (unit, '(a)') text
       close (unit)
-      call read_scene(trim(file), scene, fault)
-      if (fault%code == 0) call prepare_run(scene, run, fault)
+      call read_scene(trim(file), model, fault)
+      if (fault%code == 0) call prepare_run(model, run, fault)
       if (fault%code /= 0) write (*, '(a)') trim(fault%text)
       open (newunit=unit, file=file, status='old')
       close (unit, status='delete')

@@ -1,0 +1,76 @@
+!> Numbers of the unknowns: one per node and field that the scene has, shared where nodes move as one rigid body, and
+!> room for unknowns that belong to no node.
+module degrees_of_freedom
+   use unknown_fields, only: FIELDS
+   use element_equations, only: element_size
+   use porous_domain, only: domain_t
+   implicit none (type, external)
+   private
+   public :: dofs_t, number_unknowns, tie
+
+   type :: dofs_t
+      integer :: n = 0                        !< Unknowns.
+      integer, allocatable :: of(:, :)        !< (FIELDS, nodes), 0: no such unknown.
+      integer, allocatable :: element(:, :)   !< (unknowns of an element, elements)
+      integer, allocatable :: field(:)        !< Field of every unknown.
+      integer, allocatable :: node(:)         !< A node of every unknown.
+   end type dofs_t
+contains
+   !> Node by node, which keeps the fields of a node together.
+   subroutine number_unknowns(domain, ties, dofs)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: ties(:, :)   !< (FIELDS, nodes): node whose unknown this node shares, 0 or itself: its own.
+      type(dofs_t), intent(out) :: dofs
+      logical :: has(FIELDS, size(domain%mesh%x, 2))
+      integer :: e, f, i, leader
+
+      has = .false.
+      has(1:2, reshape(domain%mesh%t6, [size(domain%mesh%t6)])) = .true.
+      do e = 1, size(domain%mesh%t6, 2)
+         has(3, domain%mesh%t6(1:domain%n_p, e)) = domain%with_w
+         has(4, domain%mesh%t6(1:domain%n_p, e)) = domain%with_c
+      end do
+      if (allocated(domain%bodies)) has(2, domain%bodies) = .true.
+      allocate (dofs%of(FIELDS, size(has, 2)), source=0)
+      do i = 1, size(has, 2)
+         do f = 1, FIELDS
+            if (.not. has(f, i)) cycle
+            leader = ties(f, i)
+            if (leader /= 0 .and. leader /= i) cycle
+            dofs%n = dofs%n + 1
+            dofs%of(f, i) = dofs%n
+         end do
+      end do
+      do i = 1, size(has, 2)
+         do f = 1, FIELDS
+            if (has(f, i) .and. dofs%of(f, i) == 0) dofs%of(f, i) = dofs%of(f, ties(f, i))
+         end do
+      end do
+      allocate (dofs%field(dofs%n), dofs%node(dofs%n))
+      do i = size(has, 2), 1, -1
+         do f = 1, FIELDS
+            if (dofs%of(f, i) == 0) cycle
+            dofs%field(dofs%of(f, i)) = f
+            dofs%node(dofs%of(f, i)) = i
+         end do
+      end do
+      allocate (dofs%element(element_size(domain), size(domain%mesh%t6, 2)))
+      do e = 1, size(domain%mesh%t6, 2)
+         associate (node => domain%mesh%t6(:, e), n_p => domain%n_p)
+            do i = 1, 6
+               dofs%element(2*i - 1:2*i, e) = dofs%of(1:2, node(i))
+            end do
+            if (domain%with_w) dofs%element(13:12 + n_p, e) = dofs%of(3, node(:n_p))
+            if (domain%with_c) dofs%element(13 + n_p:12 + 2*n_p, e) = dofs%of(4, node(:n_p))
+         end associate
+      end do
+   end subroutine number_unknowns
+
+   !> Makes nodes share one unknown of a field.
+   pure subroutine tie(nodes, field, ties)
+      integer, intent(in) :: nodes(:), field
+      integer, intent(inout) :: ties(:, :)
+
+      if (size(nodes) > 0) ties(field, nodes) = minval(nodes)
+   end subroutine tie
+end module degrees_of_freedom

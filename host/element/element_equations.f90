@@ -1,0 +1,193 @@
+!> Residual and exact tangent of one element: B^T response and B^T slope B over its quadrature points.
+module element_equations
+   use wall_clock, only: clock, lap
+   use unknown_fields, only: FIELDS
+   use kinds, only: wp
+   use fe_material, only: answer_t, TOO_LARGE
+   use porous_domain, only: domain_t, state_t, gauss_t
+   use porous_balance, only: kinematics_t, pore_t, point_response, PLACES
+   use generalised_alpha, only: scheme_t, DYNAMIC
+   implicit none (type, external)
+   private
+   public :: element_t, compute_element, element_size, MAX_DOF
+
+   integer, parameter :: MAX_DOF = 24   !< 12 displacements (node by node), then p_w, then p_c.
+   integer, parameter :: LAST_U = 12
+
+   type :: element_t
+      real(wp) :: r(MAX_DOF) = 0.0_wp            !< Residual.
+      real(wp) :: k(MAX_DOF, MAX_DOF) = 0.0_wp   !< d r / d new values.
+      real(wp) :: stretch(MAX_DOF) = 0.0_wp      !< Volume balances: strain rates and fluxes, added up by magnitude.
+      type(answer_t) :: bad                      !< Answer of the first point that failed.
+      integer :: bad_point = 0                   !< Its number, 0: none.
+      integer :: effort = 0
+      real(wp) :: seconds = 0.0_wp               !< In the material.
+   end type element_t
+contains
+   !> Unknowns of an element.
+   pure integer function element_size(domain)
+      type(domain_t), intent(in) :: domain
+
+      element_size = LAST_U + domain%n_p*count([domain%with_w, domain%with_c])
+   end function element_size
+
+   !> Writes r (and k where `with_slope`), and the point data of `new`.
+   subroutine compute_element(domain, element, scheme, old, new, with_slope, out)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: element
+      type(scheme_t), intent(in) :: scheme
+      type(state_t), intent(in) :: old
+      type(state_t), intent(inout) :: new
+      logical, intent(in) :: with_slope
+      type(element_t), intent(inout) :: out
+      type(answer_t) :: answer
+      type(kinematics_t) :: k
+      type(pore_t) :: pore
+      real(wp) :: x0(FIELDS, 6), x1(FIELDS, 6), v(FIELDS, 6), a(2, 6), strain(6), response(PLACES), t0
+      real(wp) :: slope(PLACES, PLACES), part(PLACES, MAX_DOF), rate, drift(2)
+      integer :: g, p, n, node(6)
+
+      node = domain%mesh%t6(:, element)
+      n = element_size(domain)
+      x0 = old%x(:, node)
+      x1 = new%x(:, node)
+      a = old%a(:, node) + scheme%l_a*(new%a(:, node) - old%a(:, node))
+      v(1:2, :) = old%v(1:2, node) + scheme%l_v*(new%v(1:2, node) - old%v(1:2, node))
+      v(3:4, :) = old%v(3:4, node) + scheme%l_p*(new%v(3:4, node) - old%v(3:4, node))
+      out%r = 0.0_wp
+      out%stretch = 0.0_wp
+      out%k = 0.0_wp
+      out%bad_point = 0
+      out%effort = 0
+      out%seconds = 0.0_wp
+      strain = 0.0_wp
+      do g = 1, domain%rule
+         p = (element - 1)*domain%rule + g
+         associate (gp => domain%gauss(g, element), region => domain%regions(domain%region_of(element)))
+            call look(gp, domain%n_p, scheme, x0, x1, v, a, k)
+            k%speed = 0.0_wp
+            if (region%damping > 0.0_wp .and. scheme%kind == DYNAMIC) k%speed = matmul(v(1:2, :), gp%n)
+            k%source = 0.0_wp
+            if (associated(domain%source)) &
+               k%source = domain%source(gp%x, old%time + scheme%l_f*(new%time - old%time))
+            strain(1:4) = k%strain
+            ! Also where it is not a number.
+            if (.not. all(abs(k%strain) <= 1.0_wp)) then
+               out%bad = answer_t(code=TOO_LARGE)
+               out%bad_point = g
+               return
+            end if
+            associate (law => domain%materials(region%material)%law)
+               t0 = clock()
+               call law%update(old%stress(:, p), old%state(:law%n_state, p), strain, k%c0, k%c1 - k%c0, with_slope, &
+                               answer, new%state(:law%n_state, p))
+               call lap(out%seconds, t0)
+            end associate
+            out%effort = out%effort + answer%effort
+            if (answer%code /= 0) then
+               out%bad = answer
+               out%bad_point = g
+               return
+            end if
+            call point_response(domain, region, scheme, k, old%stress(:, p), answer, &
+                                pore_t(old%e(p), old%s(p), old%s_rate(p)), pore, with_slope, response, slope, &
+                                drift)
+            new%stress(:, p) = answer%stress
+            new%e(p) = pore%e
+            new%s(p) = pore%s
+            new%s_rate(p) = pore%s_rate
+            call gather(gp, domain%n_p, n, gp%weight, response, out%r)
+            rate = sum(abs(scheme%c_v*k%strain(1:3)))*gp%weight
+            out%stretch(LAST_U + 1:LAST_U + domain%n_p) = out%stretch(LAST_U + 1:LAST_U + domain%n_p) &
+               + rate*abs(gp%m(:domain%n_p)) + gp%weight*matmul(drift, abs(gp%dm(:, :domain%n_p)))
+            if (.not. with_slope) cycle
+            call times_b(gp, domain%n_p, n, slope, part)
+            call add_transposed(gp, domain%n_p, n, part, out%k)
+         end associate
+      end do
+      if (n > LAST_U + domain%n_p) out%stretch(LAST_U + domain%n_p + 1:n) = out%stretch(LAST_U + 1:LAST_U + domain%n_p)
+   end subroutine compute_element
+
+   !> What the nodes say about a point.
+   pure subroutine look(gp, n_p, scheme, x0, x1, v, a, k)
+      type(gauss_t), intent(in) :: gp
+      integer, intent(in) :: n_p
+      type(scheme_t), intent(in) :: scheme
+      real(wp), intent(in) :: x0(FIELDS, 6), x1(FIELDS, 6), v(FIELDS, 6), a(2, 6)
+      type(kinematics_t), intent(inout) :: k
+      real(wp) :: du(2, 6), x(2, 6)
+
+      du = x1(1:2, :) - x0(1:2, :)
+      k%strain = [dot_product(gp%dn(1, :), du(1, :)), dot_product(gp%dn(2, :), du(2, :)), &
+                  dot_product(gp%n_over_r, du(1, :)), &
+                  dot_product(gp%dn(2, :), du(1, :)) + dot_product(gp%dn(1, :), du(2, :))]
+      k%div_v = dot_product(gp%dn(1, :), v(1, :)) + dot_product(gp%dn(2, :), v(2, :)) &
+                + dot_product(gp%n_over_r, v(1, :))
+      k%accel = matmul(a, gp%n)
+      x = x0(3:4, :) + scheme%l_f*(x1(3:4, :) - x0(3:4, :))
+      k%w0 = dot_product(gp%m(:n_p), x0(3, :n_p))
+      k%w1 = dot_product(gp%m(:n_p), x1(3, :n_p))
+      k%c0 = dot_product(gp%m(:n_p), x0(4, :n_p))
+      k%c1 = dot_product(gp%m(:n_p), x1(4, :n_p))
+      k%w_dot = dot_product(gp%m(:n_p), v(3, :n_p))
+      k%c_dot = dot_product(gp%m(:n_p), v(4, :n_p))
+      k%grad_w = matmul(gp%dm(:, :n_p), x(1, :n_p))
+      k%grad_c = matmul(gp%dm(:, :n_p), x(2, :n_p))
+   end subroutine look
+
+   !> r = r + weight B^T response.
+   pure subroutine gather(gp, n_p, n, weight, response, r)
+      type(gauss_t), intent(in) :: gp
+      integer, intent(in) :: n_p, n
+      real(wp), intent(in) :: weight, response(PLACES)
+      real(wp), intent(inout) :: r(MAX_DOF)
+      integer :: i, at
+
+      do i = 1, 6
+         r(2*i - 1) = r(2*i - 1) + weight*(gp%dn(1, i)*response(1) + gp%n_over_r(i)*response(3) &
+                                           + gp%dn(2, i)*response(4) + gp%n(i)*response(5))
+         r(2*i) = r(2*i) + weight*(gp%dn(2, i)*response(2) + gp%dn(1, i)*response(4) + gp%n(i)*response(6))
+      end do
+      do i = 1, n_p
+         at = LAST_U + i
+         if (at <= n) r(at) = r(at) + weight*(gp%m(i)*response(7) + gp%dm(1, i)*response(9) + gp%dm(2, i)*response(10))
+         at = at + n_p
+         if (at <= n) r(at) = r(at) + weight*(gp%m(i)*response(8) + gp%dm(1, i)*response(11) &
+                                              + gp%dm(2, i)*response(12))
+      end do
+   end subroutine gather
+
+   !> part = slope B.
+   pure subroutine times_b(gp, n_p, n, slope, part)
+      type(gauss_t), intent(in) :: gp
+      integer, intent(in) :: n_p, n
+      real(wp), intent(in) :: slope(PLACES, PLACES)
+      real(wp), intent(out) :: part(PLACES, MAX_DOF)
+      integer :: i, at
+
+      do i = 1, 6
+         part(:, 2*i - 1) = gp%dn(1, i)*slope(:, 1) + gp%n_over_r(i)*slope(:, 3) + gp%dn(2, i)*slope(:, 4) &
+                            + gp%n(i)*slope(:, 5)
+         part(:, 2*i) = gp%dn(2, i)*slope(:, 2) + gp%dn(1, i)*slope(:, 4) + gp%n(i)*slope(:, 6)
+      end do
+      do i = 1, n_p
+         at = LAST_U + i
+         if (at <= n) part(:, at) = gp%m(i)*slope(:, 7) + gp%dm(1, i)*slope(:, 9) + gp%dm(2, i)*slope(:, 10)
+         at = at + n_p
+         if (at <= n) part(:, at) = gp%m(i)*slope(:, 8) + gp%dm(1, i)*slope(:, 11) + gp%dm(2, i)*slope(:, 12)
+      end do
+   end subroutine times_b
+
+   !> k = k + weight B^T part.
+   pure subroutine add_transposed(gp, n_p, n, part, k)
+      type(gauss_t), intent(in) :: gp
+      integer, intent(in) :: n_p, n
+      real(wp), intent(in) :: part(PLACES, MAX_DOF)
+      real(wp), intent(inout) :: k(MAX_DOF, MAX_DOF)
+      integer :: j
+
+      do j = 1, n
+         call gather(gp, n_p, n, gp%weight, part(:, j), k(:, j))
+      end do
+   end subroutine add_transposed
+end module element_equations

@@ -1,0 +1,147 @@
+!> Residual, its scale and its tangent for the whole mesh. Elements are computed in parallel and summed in a fixed
+!> order, so that the result does not depend on the number of threads.
+module equation_assembly
+   use wall_clock, only: clock
+   use kinds, only: wp
+   use degrees_of_freedom, only: dofs_t
+   use element_equations, only: element_t, compute_element
+   use fe_material, only: answer_t
+   use porous_domain, only: domain_t, state_t
+   use sparsity_pattern, only: pattern_t
+   use generalised_alpha, only: scheme_t
+   implicit none (type, external)
+   private
+   integer, parameter :: WORTH_THREADS = 64   !< Elements below which waking threads costs more than it saves.
+   public :: assembly_t, make_assembly, assemble
+
+   type :: assembly_t
+      real(wp), allocatable :: r(:, :), k(:, :, :)   !< Of every element.
+      real(wp), allocatable :: stretch(:, :)         !< See element_t.
+      real(wp), allocatable :: floor(:)              !< Its sum: what a volume balance is small against.
+      real(wp), allocatable :: residual(:)
+      real(wp), allocatable :: scale(:)              !< Sum of the magnitudes of the elements' contributions.
+      real(wp), allocatable :: values(:)             !< The matrix, in the order of the pattern.
+      logical, allocatable :: air(:)                 !< Nodes whose air pressure is prescribed.
+      ! Outcome.
+      integer :: bad_element = 0, bad_point = 0
+      type(answer_t) :: bad
+      integer :: effort = 0
+      real(wp) :: material = 0.0_wp                  !< Share of the material in the time of the last pass.
+   end type assembly_t
+contains
+   subroutine make_assembly(domain, dofs, pattern, assembly)
+      type(domain_t), intent(in) :: domain
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(in) :: pattern
+      type(assembly_t), intent(out) :: assembly
+      integer :: m
+
+      m = size(dofs%element, 1)
+      allocate (assembly%r(m, size(dofs%element, 2)), assembly%k(m, m, size(dofs%element, 2)), source=0.0_wp)
+      allocate (assembly%stretch(m, size(dofs%element, 2)), source=0.0_wp)
+      allocate (assembly%residual(dofs%n), assembly%scale(dofs%n), assembly%floor(dofs%n), source=0.0_wp)
+      allocate (assembly%values(size(pattern%col)), source=0.0_wp)
+      allocate (assembly%air(size(domain%mesh%x, 2)), source=.false.)
+   end subroutine make_assembly
+
+   !> Internal forces of the state `new`; loads are not in it.
+   subroutine assemble(domain, dofs, pattern, scheme, old, new, with_slope, assembly)
+      type(domain_t), intent(in) :: domain
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(in) :: pattern
+      type(scheme_t), intent(in) :: scheme
+      type(state_t), intent(in) :: old
+      type(state_t), intent(inout) :: new
+      logical, intent(in) :: with_slope
+      type(assembly_t), intent(inout) :: assembly
+      integer, allocatable :: bad_point(:), effort(:)
+      real(wp) :: seconds, t0
+      type(element_t) :: out
+      integer :: e, m, ne, threads
+
+      m = size(dofs%element, 1)
+      ne = size(dofs%element, 2)
+      allocate (bad_point(ne), effort(ne), source=0)
+      seconds = 0.0_wp
+      t0 = clock()
+      threads = merge(domain%threads, 1, ne >= WORTH_THREADS)
+      !$omp parallel do num_threads(threads) schedule(dynamic, 8) default(shared) private(e) firstprivate(out) &
+      !$omp reduction(+:seconds)
+      do e = 1, ne
+         call compute_element(domain, e, scheme, old, new, with_slope, out)
+         bad_point(e) = out%bad_point
+         effort(e) = out%effort
+         seconds = seconds + out%seconds
+         if (domain%with_c) call balance_of_water(domain, assembly%air, e, m, with_slope, out)
+         assembly%r(:, e) = out%r(:m)
+         assembly%stretch(:, e) = out%stretch(:m)
+         if (with_slope) assembly%k(:, :, e) = out%k(:m, :m)
+      end do
+      !$omp end parallel do
+      assembly%effort = sum(effort)
+      assembly%bad_element = findloc(bad_point > 0, .true., dim=1)
+      if (assembly%bad_element > 0) then
+         ! Once more, for the answer of the first that failed: which is first does not depend on the threads.
+         call compute_element(domain, assembly%bad_element, scheme, old, new, with_slope, out)
+         assembly%bad_point = out%bad_point
+         assembly%bad = out%bad
+         return
+      end if
+      call add_up(threads, pattern, with_slope, assembly)
+      ! The threads share the loop evenly.
+      assembly%material = min(1.0_wp, seconds/threads/max(clock() - t0, tiny(1.0_wp)))
+   end subroutine assemble
+
+   !> Where the air pressure is prescribed the flow of air is unknown, so that the sum of the balances is replaced by
+   !> its difference from that of the air: the balance of water.
+   pure subroutine balance_of_water(domain, air, e, m, with_slope, out)
+      type(domain_t), intent(in) :: domain
+      logical, intent(in) :: air(:)
+      integer, intent(in) :: e, m
+      logical, intent(in) :: with_slope
+      type(element_t), intent(inout) :: out
+      integer :: i, w, c
+
+      do i = 1, domain%n_p
+         if (.not. air(domain%mesh%t6(i, e))) cycle
+         w = 12 + i
+         c = w + domain%n_p
+         out%r(w) = out%r(w) - out%r(c)
+         if (with_slope) out%k(w, :m) = out%k(w, :m) - out%k(c, :m)
+      end do
+   end subroutine balance_of_water
+
+   subroutine add_up(threads, pattern, with_slope, assembly)
+      integer, intent(in) :: threads
+      type(pattern_t), intent(in) :: pattern
+      logical, intent(in) :: with_slope
+      type(assembly_t), intent(inout), target :: assembly
+      real(wp), pointer, contiguous :: k(:), r(:), s(:)
+      real(wp) :: total
+      integer :: i, j
+
+      r(1:size(assembly%r)) => assembly%r
+      s(1:size(assembly%r)) => assembly%stretch
+      k(1:size(assembly%k)) => assembly%k
+      !$omp parallel num_threads(threads) default(shared) private(i, j, total)
+      !$omp do schedule(static)
+      do i = 1, pattern%n
+         assembly%residual(i) = sum(r(pattern%r_source(pattern%r_first(i):pattern%r_first(i + 1) - 1)))
+         assembly%floor(i) = sum(s(pattern%r_source(pattern%r_first(i):pattern%r_first(i + 1) - 1)))
+         assembly%scale(i) = sum(abs(r(pattern%r_source(pattern%r_first(i):pattern%r_first(i + 1) - 1))))
+      end do
+      !$omp end do
+      if (with_slope) then
+         !$omp do schedule(static)
+         do i = 1, size(pattern%col)
+            total = 0.0_wp
+            do j = pattern%first(i), pattern%first(i + 1) - 1
+               total = total + k(pattern%source(j))
+            end do
+            assembly%values(i) = total
+         end do
+         !$omp end do
+      end if
+      !$omp end parallel
+   end subroutine add_up
+end module equation_assembly

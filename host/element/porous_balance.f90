@@ -1,0 +1,219 @@
+!> The physics at one quadrature point: what the balances of momentum, water plus air, and air need, and its exact
+!> derivative. Both are arrays over the same twelve places: strain rr, zz, tt, rz | displacement | p_w | p_c |
+!> gradient of p_w | gradient of p_c, so that an element adds B^T response and B^T slope B and knows no soil.
+!> Signs: tension positive stress and strain, pressures positive in compression, outflow positive.
+module porous_balance
+   use kinds, only: wp
+   use fe_material, only: answer_t
+   use porous_domain, only: domain_t, region_t
+   use permeability_laws, only: relative_t, relative_permeability
+   use retention_curves, only: saturation_t
+   use generalised_alpha, only: scheme_t, rate_of, STATIC
+   implicit none (type, external)
+   private
+   public :: kinematics_t, pore_t, point_response, PLACES
+
+   integer, parameter :: PLACES = 12
+   integer, parameter :: U = 4, PW = 7, PC = 8, GW = 8, GA = 10   !< Places, or places before the first.
+
+   !> What the nodes say about a point.
+   type :: kinematics_t
+      real(wp) :: strain(4)                     !< Increment of the step.
+      real(wp) :: accel(2)                      !< At its level [m/s2].
+      real(wp) :: speed(2)                      !< At its level, where it may be damped [m/s].
+      real(wp) :: div_v                         !< Rate of volume at its level [1/s].
+      real(wp) :: w0, w1, c0, c1                !< p_w, p_c before and after [kPa].
+      real(wp) :: w_dot, c_dot                  !< Their rates at their level [kPa/s].
+      real(wp) :: grad_w(2), grad_c(2)          !< Gradients at the level of values [kPa/m].
+      real(wp) :: source(4)
+   end type kinematics_t
+
+   !> The pores of a point: void ratio, saturation and its rate.
+   type :: pore_t
+      real(wp) :: e, s, s_rate
+   end type pore_t
+contains
+   subroutine point_response(domain, region, scheme, k, stress0, answer, old, new, with_slope, response, slope, &
+                             drift)
+      type(domain_t), intent(in) :: domain
+      type(region_t), intent(in) :: region
+      type(scheme_t), intent(in) :: scheme
+      type(kinematics_t), intent(in) :: k
+      real(wp), intent(in) :: stress0(6)     !< Effective stress before the step.
+      type(answer_t), intent(in) :: answer   !< The material's answer.
+      type(pore_t), intent(in) :: old
+      type(pore_t), intent(out) :: new
+      logical, intent(in) :: with_slope
+      real(wp), intent(out) :: response(PLACES), slope(PLACES, PLACES)
+      real(wp), intent(out) :: drift(2)      !< What the fluxes are made of, by magnitude [m/s].
+      type(saturation_t) :: sat, before, after
+      real(wp) :: n1, n, s, s_dot, s_ev, s_pc, rate_ev, rate_pc, p_c, p_w, pressure, l
+      real(wp) :: rho, rho_n, rho_s, rho_a, d_rho_a, k_a, d_k_a, pull(2)
+
+      l = scheme%l_f
+      new%e = (1 + old%e)*exp(sum(k%strain(1:3))) - 1
+      n1 = new%e/(1 + new%e)
+      n = old%e/(1 + old%e)
+      n = n + l*(n1 - n)
+
+      ! How much of the pores is water; its slopes against volume strain and suction.
+      rate_ev = 0.0_wp
+      rate_pc = 0.0_wp
+      new%s_rate = 0.0_wp
+      if (domain%with_c) then
+         associate (curve => domain%retentions(region%retention)%law)
+            sat = curve%at(k%c1, new%e)
+            if (domain%full_rate) then
+               new%s_rate = rate_of(scheme, old%s, old%s_rate, sat%s)
+               rate_pc = sat%ds_dpc
+               rate_ev = sat%ds_de*(1 + new%e)
+            else
+               before = curve%at(k%c0, old%e)
+               after = curve%at(k%c1, old%e)
+               new%s_rate = rate_of(scheme, before%s, old%s_rate, after%s)
+               rate_pc = after%ds_dpc
+            end if
+         end associate
+      end if
+      s_pc = l*sat%ds_dpc
+      s_ev = l*sat%ds_de*(1 + new%e)
+      new%s = sat%s
+      s = old%s + l*(sat%s - old%s)
+      s_dot = old%s_rate + scheme%l_p*(new%s_rate - old%s_rate)
+
+      ! Momentum of the mixture.
+      p_w = k%w0 + l*(k%w1 - k%w0)
+      p_c = k%c0 + l*(k%c1 - k%c0)
+      pressure = p_w + (1 - s)*p_c
+      call air(domain, p_w + p_c, k_a, d_k_a, rho_a, d_rho_a)
+      rho_n = -region%rho_s
+      rho_s = 0.0_wp
+      if (domain%with_w) then
+         rho_n = rho_n + s*domain%fluids%rho_w
+         if (domain%with_c) rho_n = rho_n + (1 - s)*rho_a
+         if (domain%with_c) rho_s = n*(domain%fluids%rho_w - rho_a)
+      end if
+      rho = region%rho_s + n*rho_n
+      pull = k%accel + region%damping*k%speed
+      pull(2) = pull(2) + domain%gravity
+      response = 0.0_wp
+      drift = 0.0_wp
+      response(1:4) = stress0(1:4) + l*(answer%stress(1:4) - stress0(1:4))
+      response(1:3) = response(1:3) - pressure
+      response(U + 1:U + 2) = rho*pull - k%source(1:2)
+      if (with_slope) then
+         slope = 0.0_wp
+         slope(1:4, 1:4) = l*answer%slope
+         slope(1:3, 1:3) = slope(1:3, 1:3) + p_c*s_ev
+         slope(1:4, PC) = l*answer%slope_suction
+         slope(1:3, PC) = slope(1:3, PC) - (1 - s)*l + p_c*s_pc
+         slope(1:3, PW) = -l
+         slope(U + 1, U + 1) = rho*(scheme%c_a + region%damping*scheme%c_v)
+         slope(U + 2, U + 2) = slope(U + 1, U + 1)
+         slope(U + 1:U + 2, 1:3) = spread(pull*(rho_n*l*(1 - n1) + rho_s*s_ev), 2, 3)
+         slope(U + 1:U + 2, PC) = pull*(rho_s*s_pc + n*(1 - s)*d_rho_a*l)
+         slope(U + 1:U + 2, PW) = pull*n*(1 - s)*d_rho_a*l
+      end if
+      if (.not. domain%with_w .or. scheme%kind == STATIC) return
+      call add_water()
+      if (domain%with_c) call add_air()
+      response(PW) = response(PW) - k%source(3)
+   contains
+      !> Water, in the sum of the balances.
+      subroutine add_water()
+         type(relative_t) :: rel
+         real(wp) :: drive(2), kappa, d_kappa, inverse
+
+         inverse = 1/domain%fluids%k_w
+         response(PW) = n*s*inverse*k%w_dot + k%div_v
+         rel = relative_permeability(domain%permeabilities(region%permeability), s)
+         kappa = domain%permeabilities(region%permeability)%intrinsic/domain%fluids%eta_w
+         d_kappa = kappa*rel%dw
+         kappa = kappa*rel%w
+         drive = k%grad_w + domain%fluids%rho_w*body_force()
+         response(GW + 1:GW + 2) = kappa*drive
+         drift = kappa*(abs(k%grad_w) + domain%fluids%rho_w*abs(body_force()))
+         if (.not. with_slope) return
+         slope(PW, 1:3) = s*inverse*k%w_dot*l*(1 - n1) + n*inverse*k%w_dot*s_ev + scheme%c_v
+         slope(PW, PW) = n*s*inverse*scheme%c_p
+         slope(PW, PC) = n*inverse*k%w_dot*s_pc
+         call flux_slope(GW, kappa, d_kappa, domain%fluids%rho_w, drive)
+         slope(GW + 1, GW + 1) = kappa*l
+         slope(GW + 2, GW + 2) = kappa*l
+      end subroutine add_water
+
+      !> Air, in both sums.
+      subroutine add_air()
+         type(relative_t) :: rel
+         real(wp) :: drive(2), kappa, d_kappa, a_dot, stored, d_stored
+         integer :: i
+
+         a_dot = k%w_dot + k%c_dot
+         stored = n*(1 - s)/k_a*a_dot
+         response(PW) = response(PW) + stored
+         response(PC) = stored - n*s_dot + (1 - s)*k%div_v - k%source(4)
+         rel = relative_permeability(domain%permeabilities(region%permeability), s)
+         kappa = domain%permeabilities(region%permeability)%intrinsic/domain%fluids%eta_a
+         d_kappa = kappa*rel%da
+         kappa = kappa*rel%a
+         drive = k%grad_w + k%grad_c + rho_a*body_force()
+         response(GA + 1:GA + 2) = kappa*drive
+         drift = drift + kappa*(abs(k%grad_w) + abs(k%grad_c) + rho_a*abs(body_force()))
+         response(GW + 1:GW + 2) = response(GW + 1:GW + 2) + kappa*drive
+         if (.not. with_slope) return
+         d_stored = n*(1 - s)/k_a*(scheme%c_p - a_dot*d_k_a*l/k_a)
+         slope(PC, 1:3) = (1 - s)/k_a*a_dot*l*(1 - n1) - n/k_a*a_dot*s_ev
+         slope(PC, PW) = d_stored
+         slope(PC, PC) = d_stored - n/k_a*a_dot*s_pc
+         slope(PW, 1:8) = slope(PW, 1:8) + slope(PC, 1:8)
+         slope(PC, 1:3) = slope(PC, 1:3) - s_dot*l*(1 - n1) - n*scheme%c_p*rate_ev - k%div_v*s_ev + (1 - s)*scheme%c_v
+         slope(PC, PC) = slope(PC, PC) - n*scheme%c_p*rate_pc - k%div_v*s_pc
+         call flux_slope(GA, kappa, d_kappa, rho_a, drive)
+         do i = 1, 2
+            slope(GA + i, [GW + i, GA + i]) = kappa*l
+         end do
+         slope(GA + 1:GA + 2, PW) = slope(GA + 1:GA + 2, PW) + kappa*d_rho_a*l*body_force()
+         slope(GA + 1:GA + 2, PC) = slope(GA + 1:GA + 2, PC) + kappa*d_rho_a*l*body_force()
+         slope(GW + 1:GW + 2, :) = slope(GW + 1:GW + 2, :) + slope(GA + 1:GA + 2, :)
+      end subroutine add_air
+
+      !> What drives seepage besides the gradient: weight, and inertia if the scene wants it [m/s2].
+      pure function body_force() result(b)
+         real(wp) :: b(2)
+
+         b = 0.0_wp
+         if (domain%seepage_inertia) b = k%accel
+         b(2) = b(2) + domain%gravity
+      end function body_force
+
+      !> Slopes of a flux against saturation and displacement.
+      subroutine flux_slope(place, kappa, d_kappa, density, drive)
+         integer, intent(in) :: place
+         real(wp), intent(in) :: kappa, d_kappa, density, drive(2)
+         integer :: i
+
+         do i = 1, 2
+            slope(place + i, 1:3) = d_kappa*drive(i)*s_ev
+            slope(place + i, PC) = d_kappa*drive(i)*s_pc
+            if (domain%seepage_inertia) slope(place + i, U + i) = kappa*density*scheme%c_a
+         end do
+      end subroutine flux_slope
+   end subroutine point_response
+
+   !> Bulk modulus and density of the air and their slopes against p_a.
+   pure subroutine air(domain, p_a, k_a, d_k_a, rho_a, d_rho_a)
+      type(domain_t), intent(in) :: domain
+      real(wp), intent(in) :: p_a
+      real(wp), intent(out) :: k_a, d_k_a, rho_a, d_rho_a
+
+      k_a = domain%fluids%k_a
+      rho_a = domain%fluids%rho_a
+      d_k_a = 0.0_wp
+      d_rho_a = 0.0_wp
+      if (.not. domain%fluids%ideal_gas) return
+      k_a = domain%fluids%p_ref + p_a
+      d_k_a = 1.0_wp
+      d_rho_a = domain%fluids%rho_a/domain%fluids%p_ref
+      rho_a = d_rho_a*k_a
+   end subroutine air
+end module porous_balance

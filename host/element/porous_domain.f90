@@ -1,0 +1,178 @@
+!> The discrete problem: mesh, geometry at the quadrature points, laws of every region, and what a state consists of.
+module porous_domain
+   use exit_codes, only: EXIT_ELEMENT
+   use unknown_fields, only: FIELDS
+   use kinds, only: wp, PI
+   use shape_functions, only: quadratic, linear, triangle_rule
+   use fe_material, only: slot_t
+   use retention_curves, only: retention_slot_t
+   use permeability_laws, only: permeability_t
+   use triangle_mesh, only: mesh_t
+   use faults, only: fault_t, raise
+   use texts, only: short, whole
+   implicit none (type, external)
+   private
+   public :: domain_t, region_t, fluids_t, gauss_t, state_t, source_i, prepare_domain, new_state_of, copy_state
+
+   !> Pore fluids.
+   type :: fluids_t
+      real(wp) :: k_w = 2.2e6_wp, rho_w = 1.0_wp, eta_w = 1.0e-6_wp        !< [kPa, Mg/m3, kPa s]
+      real(wp) :: k_a = 101.325_wp, rho_a = 1.2e-3_wp, eta_a = 1.8e-8_wp   !< The same of air.
+      logical :: ideal_gas = .false.    !< K_a = absolute pressure, rho_a in proportion to it.
+      real(wp) :: p_ref = 101.325_wp    !< Absolute pressure where p_a = 0 [kPa].
+   end type fluids_t
+
+   !> What a region is made of: places in the lists of laws, and numbers.
+   type :: region_t
+      integer :: material = 0, retention = 0, permeability = 0
+      real(wp) :: rho_s = 0.0_wp        !< Density of the grains [Mg/m3]
+      real(wp) :: void_ratio = 0.0_wp   !< Initially [-].
+      real(wp) :: damping = 0.0_wp      !< Force against the velocity over mass, in dynamic stages [1/s].
+   end type region_t
+
+   !> Geometry at a quadrature point. Pressures use the first n_p of the shape functions m.
+   type :: gauss_t
+      real(wp) :: x(2)
+      real(wp) :: weight            !< Volume: 2 pi r dA, or dA [m3]
+      real(wp) :: n(6), dn(2, 6)    !< Of the displacements.
+      real(wp) :: m(6), dm(2, 6)    !< Of the pressures.
+      real(wp) :: n_over_r(6)       !< Hoop strain; 0 in plane strain.
+   end type gauss_t
+
+   abstract interface
+      !> Body force [kN/m3] in the momentum balance, and volume supplied in the sum of the balances and in that of the
+      !> air [1/s], at a place and time: for manufactured solutions.
+      pure function source_i(x, t) result(value)
+         import :: wp
+         real(wp), intent(in) :: x(2), t
+         real(wp) :: value(4)
+      end function source_i
+   end interface
+
+   type :: domain_t
+      type(mesh_t) :: mesh
+      logical :: axisymmetric = .true.
+      logical :: with_w = .false., with_c = .false.   !< Fields besides the displacements.
+      integer :: n_p = 6                              !< Pressure nodes of an element: 6, or 3 (Taylor-Hood).
+      integer :: rule = 6                             !< Quadrature points of an element.
+      real(wp) :: gravity = 0.0_wp                    !< Towards -z [m/s2].
+      logical :: seepage_inertia = .false.
+      logical :: full_rate = .true.                   !< dS_w/de takes part in the rate of saturation.
+      type(fluids_t) :: fluids
+      type(slot_t), allocatable :: materials(:)
+      type(retention_slot_t), allocatable :: retentions(:)
+      type(permeability_t), allocatable :: permeabilities(:)
+      type(region_t), allocatable :: regions(:)
+      integer, allocatable :: region_of(:)            !< Of every element.
+      type(gauss_t), allocatable :: gauss(:, :)       !< (rule, elements)
+      integer :: n_state = 0                          !< State variables a point.
+      integer :: threads = 1
+      integer, allocatable :: bodies(:)               !< Nodes of rigid plates: the last ones, in no element, u_z alone.
+      procedure(source_i), pointer, nopass :: source => null()
+   end type domain_t
+
+   !> Everything that one time step carries to the next.
+   type :: state_t
+      real(wp) :: time = 0.0_wp
+      real(wp), allocatable :: x(:, :)        !< (FIELDS, nodes) unknowns
+      real(wp), allocatable :: v(:, :)        !< their rates
+      real(wp), allocatable :: a(:, :)        !< (2, nodes) accelerations
+      real(wp), allocatable :: stress(:, :)   !< (6, points) effective, tension positive [kPa]
+      real(wp), allocatable :: state(:, :)    !< (n_state, points)
+      real(wp), allocatable :: e(:)           !< void ratio
+      real(wp), allocatable :: s(:)           !< degree of saturation
+      real(wp), allocatable :: s_rate(:)      !< its rate [1/s]
+   end type state_t
+contains
+   !> Geometry of every quadrature point; the regions must be known.
+   subroutine prepare_domain(domain, fault)
+      type(domain_t), intent(inout) :: domain
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: points(2, domain%rule), weights(domain%rule), jacobian(2, 2), inverse(2, 2), det, x(2, 6), d(2, 6)
+      real(wp) :: n3(3), d3(2, 3)
+      integer :: e, g, i
+
+      call triangle_rule(domain%rule, points, weights)
+      if (allocated(domain%gauss)) deallocate (domain%gauss)
+      allocate (domain%gauss(domain%rule, size(domain%mesh%t6, 2)))
+      do e = 1, size(domain%mesh%t6, 2)
+         x = domain%mesh%x(:, domain%mesh%t6(:, e))
+         do g = 1, domain%rule
+            associate (point => domain%gauss(g, e))
+               call quadratic(points(1, g), points(2, g), point%n, d)
+               jacobian = matmul(d, transpose(x))
+               det = jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1)
+               if (.not. det > 0.0_wp) then
+                  call raise(fault, EXIT_ELEMENT, 'Element '//whole(e)//' near ('//short(sum(x(1, :))/6)//', '// &
+                             short(sum(x(2, :))/6)//') m is inverted: its Jacobian is '//short(det)// &
+                             '; move its mid-side nodes or number its corners counter-clockwise.')
+                  return
+               end if
+               inverse = reshape([jacobian(2, 2), -jacobian(2, 1), -jacobian(1, 2), jacobian(1, 1)], [2, 2])/det
+               point%dn = matmul(inverse, d)
+               point%x = matmul(x, point%n)
+               point%weight = weights(g)*det
+               point%n_over_r = 0.0_wp
+               if (domain%axisymmetric) then
+                  if (.not. point%x(1) > 0.0_wp) then
+                     call raise(fault, EXIT_ELEMENT, 'Element '//whole(e)//' reaches to r = '//short(point%x(1))// &
+                                ' m; an axisymmetric mesh needs r >= 0 everywhere.')
+                     return
+                  end if
+                  point%weight = point%weight*2*PI*point%x(1)
+                  point%n_over_r = point%n/point%x(1)
+               end if
+               point%m = point%n
+               point%dm = point%dn
+               if (domain%n_p == 3) then
+                  call linear(points(1, g), points(2, g), n3, d3)
+                  point%m = [n3, 0.0_wp, 0.0_wp, 0.0_wp]
+                  point%dm(:, 1:3) = matmul(inverse, d3)
+                  point%dm(:, 4:6) = 0.0_wp
+               end if
+            end associate
+         end do
+      end do
+      domain%n_state = 0
+      do i = 1, size(domain%regions)
+         domain%n_state = max(domain%n_state, domain%materials(domain%regions(i)%material)%law%n_state)
+      end do
+   end subroutine prepare_domain
+
+   !> A state of the right size, everything zero and saturated.
+   function new_state_of(domain) result(state)
+      type(domain_t), intent(in) :: domain
+      type(state_t) :: state
+      integer :: nodes, points, e
+
+      nodes = size(domain%mesh%x, 2)
+      points = domain%rule*size(domain%mesh%t6, 2)
+      allocate (state%x(FIELDS, nodes), source=0.0_wp)
+      allocate (state%v(FIELDS, nodes), source=0.0_wp)
+      allocate (state%a(2, nodes), source=0.0_wp)
+      allocate (state%stress(6, points), source=0.0_wp)
+      allocate (state%state(domain%n_state, points), source=0.0_wp)
+      allocate (state%e(points), source=0.0_wp)
+      allocate (state%s(points), source=1.0_wp)
+      allocate (state%s_rate(points), source=0.0_wp)
+      do e = 1, size(domain%mesh%t6, 2)
+         state%e((e - 1)*domain%rule + 1:e*domain%rule) = domain%regions(domain%region_of(e))%void_ratio
+      end do
+   end function new_state_of
+
+   !> Copies without allocating anew.
+   subroutine copy_state(from, to)
+      type(state_t), intent(in) :: from
+      type(state_t), intent(inout) :: to
+
+      to%time = from%time
+      to%x(:, :) = from%x
+      to%v(:, :) = from%v
+      to%a(:, :) = from%a
+      to%stress(:, :) = from%stress
+      to%state(:, :) = from%state
+      to%e(:) = from%e
+      to%s(:) = from%s
+      to%s_rate(:) = from%s_rate
+   end subroutine copy_state
+end module porous_domain

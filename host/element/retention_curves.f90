@@ -1,0 +1,131 @@
+!> Water retention: degree of saturation at a suction and a void ratio, with its slopes.
+module retention_curves
+   use kinds, only: wp
+   implicit none (type, external)
+   private
+   public :: retention_t, saturation_t, saturated_t, bilogarithmic_t, power_t, table_t, retention_slot_t
+
+   type :: saturation_t
+      real(wp) :: s = 1.0_wp        !< S_w [-]
+      real(wp) :: ds_dpc = 0.0_wp   !< at constant void ratio [1/kPa]
+      real(wp) :: ds_de = 0.0_wp    !< at constant suction [-]
+   end type saturation_t
+
+   type, abstract :: retention_t
+   contains
+      procedure(at_i), deferred :: at
+   end type retention_t
+
+   type :: retention_slot_t
+      character(64) :: name = ''
+      class(retention_t), allocatable :: law
+   end type retention_slot_t
+
+   abstract interface
+      pure function at_i(self, p_c, e) result(sat)
+         import :: retention_t, saturation_t, wp
+         class(retention_t), intent(in) :: self
+         real(wp), intent(in) :: p_c   !< [kPa]
+         real(wp), intent(in) :: e     !< [-]
+         type(saturation_t) :: sat
+      end function at_i
+   end interface
+
+   !> Always full.
+   type, extends(retention_t) :: saturated_t
+   contains
+      procedure :: at => saturated_at
+   end type saturated_t
+
+   !> Paper eqs (23), (24): S = S_min + (S_max - S_min) ln(exp(1) + (p_c e**Omega/P_a)**n)**(-m).
+   type, extends(retention_t) :: bilogarithmic_t
+      real(wp) :: p_a = 5.0_wp, n = 2.0_wp, m = 1.0_wp, omega = 2.0_wp, s_max = 1.0_wp, s_min = 0.0_wp
+   contains
+      procedure :: at => bilogarithmic_at
+   end type bilogarithmic_t
+
+   !> S = 1 - a p_c**b, not below s_min.
+   type, extends(retention_t) :: power_t
+      real(wp) :: a = 0.0_wp, b = 1.0_wp, s_min = 0.0_wp
+   contains
+      procedure :: at => power_at
+   end type power_t
+
+   !> Straight lines between given pairs; constant outside.
+   type, extends(retention_t) :: table_t
+      real(wp), allocatable :: p_c(:), s(:)
+   contains
+      procedure :: at => table_at
+   end type table_t
+contains
+   pure function saturated_at(self, p_c, e) result(sat)
+      class(saturated_t), intent(in) :: self
+      real(wp), intent(in) :: p_c, e
+      type(saturation_t) :: sat
+
+      associate (unused => p_c + e, same => self)
+      end associate
+      sat = saturation_t()
+   end function saturated_at
+
+   pure function bilogarithmic_at(self, p_c, e) result(sat)
+      class(bilogarithmic_t), intent(in) :: self
+      real(wp), intent(in) :: p_c, e
+      type(saturation_t) :: sat
+      real(wp), parameter :: EULER = 2.7182818284590452_wp, LOG_LARGE = 200.0_wp
+      real(wp) :: log_a, a, share, log_sum, s_e, slope
+
+      sat%s = self%s_max
+      if (p_c <= 0.0_wp) return
+      log_a = self%n*(log(p_c/self%p_a) + self%omega*log(e))
+      if (log_a < -LOG_LARGE) return
+      ! Beyond it exp(1) is lost in the sum, and the power might overflow.
+      if (log_a > LOG_LARGE) then
+         log_sum = log_a
+         share = 1.0_wp
+      else
+         a = exp(log_a)
+         log_sum = log(EULER + a)
+         share = a/(EULER + a)
+      end if
+      s_e = (self%s_max - self%s_min)*log_sum**(-self%m)
+      sat%s = self%s_min + s_e
+      slope = -self%m*s_e/log_sum*share*self%n
+      sat%ds_dpc = slope/p_c
+      sat%ds_de = slope*self%omega/e
+   end function bilogarithmic_at
+
+   pure function power_at(self, p_c, e) result(sat)
+      class(power_t), intent(in) :: self
+      real(wp), intent(in) :: p_c, e
+      type(saturation_t) :: sat
+
+      associate (unused => e)
+      end associate
+      if (p_c <= 0.0_wp) return
+      sat%s = 1.0_wp - self%a*p_c**self%b
+      sat%ds_dpc = -self%a*self%b*p_c**(self%b - 1.0_wp)
+      if (sat%s > self%s_min) return
+      sat%s = self%s_min
+      sat%ds_dpc = 0.0_wp
+   end function power_at
+
+   pure function table_at(self, p_c, e) result(sat)
+      class(table_t), intent(in) :: self
+      real(wp), intent(in) :: p_c, e
+      type(saturation_t) :: sat
+      integer :: i
+
+      associate (unused => e)
+      end associate
+      sat%s = self%s(1)
+      if (p_c <= self%p_c(1)) return
+      do i = 2, size(self%s)
+         if (p_c > self%p_c(i)) cycle
+         sat%ds_dpc = (self%s(i) - self%s(i - 1))/(self%p_c(i) - self%p_c(i - 1))
+         sat%s = self%s(i - 1) + sat%ds_dpc*(p_c - self%p_c(i - 1))
+         return
+      end do
+      sat%s = self%s(size(self%s))
+   end function table_at
+end module retention_curves

@@ -1,0 +1,355 @@
+!> Reads Gmsh 4.1 text meshes of 6-node triangles; physical groups become groups of the mesh.
+module gmsh_reader
+   use exit_codes, only: EXIT_MESH
+   use kinds, only: wp
+   use triangle_mesh, only: mesh_t, add_group, NAME_LENGTH
+   use faults, only: fault_t, raise, at_line
+   use texts, only: whole
+   implicit none (type, external)
+   private
+   public :: read_gmsh
+
+   integer, parameter :: LINE3 = 8, TRIANGLE6 = 9, POINT = 15   !< Gmsh's element types.
+   integer, parameter :: LONGEST = 4096
+
+   !> Name of a physical group.
+   type :: physical_t
+      integer :: dimension = 0, tag = 0
+      character(NAME_LENGTH) :: name = ''
+   end type physical_t
+
+   !> Physical tags of a geometric entity.
+   type :: entity_t
+      integer :: dimension = 0, tag = 0
+      integer, allocatable :: physical(:)
+   end type entity_t
+
+   !> The elements of one block of $Elements.
+   type :: block_t
+      integer :: dimension = 0, entity = 0, kind = 0
+      integer, allocatable :: nodes(:, :)
+   end type block_t
+
+   type :: reader_t
+      character(:), allocatable :: file
+      integer :: unit = 0, line = 0
+      character(LONGEST) :: text = ''
+   end type reader_t
+contains
+   subroutine read_gmsh(file, mesh, fault)
+      character(*), intent(in) :: file
+      type(mesh_t), intent(out) :: mesh
+      type(fault_t), intent(inout) :: fault
+      type(reader_t) :: reader
+      type(physical_t), allocatable :: names(:)
+      type(entity_t), allocatable :: entities(:)
+      type(block_t), allocatable :: blocks(:)
+      integer, allocatable :: number_of(:)
+      integer :: status
+
+      reader%file = file
+      allocate (names(0), entities(0), blocks(0), number_of(0))
+      open (newunit=reader%unit, file=file, status='old', action='read', iostat=status)
+      if (status /= 0) then
+         call raise(fault, EXIT_MESH, trim(file)//': the mesh cannot be read; is the path right, seen from the scene?')
+         return
+      end if
+      do while (fault%code == 0)
+         read (reader%unit, '(a)', iostat=status) reader%text
+         if (status /= 0) exit
+         reader%line = reader%line + 1
+         select case (trim(reader%text))
+         case ('$MeshFormat')
+            call read_format(reader, fault)
+         case ('$PhysicalNames')
+            call read_names(reader, names, fault)
+         case ('$Entities')
+            call read_entities(reader, entities, fault)
+         case ('$Nodes')
+            call read_nodes(reader, mesh, number_of, fault)
+         case ('$Elements')
+            call read_elements(reader, number_of, blocks, fault)
+         end select
+      end do
+      close (reader%unit)
+      if (fault%code == 0 .and. .not. allocated(mesh%x)) call wrong(reader, 'there is no section $Nodes', fault)
+      if (fault%code == 0) call sort_out(reader, names, entities, blocks, mesh, fault)
+   end subroutine read_gmsh
+
+   subroutine wrong(reader, what, fault)
+      type(reader_t), intent(in) :: reader
+      character(*), intent(in) :: what
+      type(fault_t), intent(inout) :: fault
+
+      if (fault%code == 0) call raise(fault, EXIT_MESH, at_line(reader%file, reader%line)//what// &
+                                      '; write the mesh with gmsh -2 -order 2 -format msh41.')
+   end subroutine wrong
+
+   subroutine next(reader, fault)
+      type(reader_t), intent(inout) :: reader
+      type(fault_t), intent(inout) :: fault
+      integer :: status
+
+      read (reader%unit, '(a)', iostat=status) reader%text
+      reader%line = reader%line + 1
+      if (status /= 0) call wrong(reader, 'the file ends early', fault)
+   end subroutine next
+
+   !> The integers of the present line.
+   subroutine integers(reader, values, fault)
+      type(reader_t), intent(in) :: reader
+      integer, intent(out) :: values(:)
+      type(fault_t), intent(inout) :: fault
+      integer :: status
+
+      values = 0
+      if (fault%code /= 0) return
+      read (reader%text, *, iostat=status) values
+      if (status /= 0) call wrong(reader, 'expected '//whole(size(values))//' whole numbers', fault)
+   end subroutine integers
+
+   subroutine read_format(reader, fault)
+      type(reader_t), intent(inout) :: reader
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: version
+      integer :: kind, status
+
+      call next(reader, fault)
+      read (reader%text, *, iostat=status) version, kind
+      if (status /= 0) then
+         call wrong(reader, 'the format cannot be read', fault)
+      else if (abs(version - 4.1_wp) > 1.0e-6_wp .or. kind /= 0) then
+         call wrong(reader, 'only text files of version 4.1 are understood', fault)
+      end if
+   end subroutine read_format
+
+   subroutine read_names(reader, names, fault)
+      type(reader_t), intent(inout) :: reader
+      type(physical_t), allocatable, intent(inout) :: names(:)
+      type(fault_t), intent(inout) :: fault
+      type(physical_t) :: one
+      integer :: head(1), i, status
+
+      call next(reader, fault)
+      call integers(reader, head, fault)
+      do i = 1, head(1)
+         call next(reader, fault)
+         if (fault%code /= 0) return
+         read (reader%text, *, iostat=status) one%dimension, one%tag, one%name
+         if (status /= 0) call wrong(reader, 'expected dimension, tag and "name"', fault)
+         names = [names, one]
+      end do
+   end subroutine read_names
+
+   subroutine read_entities(reader, entities, fault)
+      type(reader_t), intent(inout) :: reader
+      type(entity_t), allocatable, intent(inout) :: entities(:)
+      type(fault_t), intent(inout) :: fault
+      type(entity_t) :: one
+      real(wp) :: box(6)
+      integer :: counts(4), dimension, i, skip, tags, status
+
+      call next(reader, fault)
+      call integers(reader, counts, fault)
+      do dimension = 0, 3
+         skip = merge(3, 6, dimension == 0)
+         do i = 1, counts(dimension + 1)
+            call next(reader, fault)
+            if (fault%code /= 0) return
+            one%dimension = dimension
+            read (reader%text, *, iostat=status) one%tag, box(:skip), tags
+            if (status == 0) then
+               if (allocated(one%physical)) deallocate (one%physical)
+               allocate (one%physical(tags))
+               read (reader%text, *, iostat=status) one%tag, box(:skip), tags, one%physical
+            end if
+            if (status /= 0) call wrong(reader, 'an entity cannot be read', fault)
+            entities = [entities, one]
+         end do
+      end do
+   end subroutine read_entities
+
+   subroutine read_nodes(reader, mesh, number_of, fault)
+      type(reader_t), intent(inout) :: reader
+      type(mesh_t), intent(inout) :: mesh
+      integer, allocatable, intent(inout) :: number_of(:)   !< Tag to number.
+      type(fault_t), intent(inout) :: fault
+      integer :: head(4), block_head(4), b, i, used, status
+      integer, allocatable :: tags(:)
+
+      call next(reader, fault)
+      call integers(reader, head, fault)
+      if (fault%code /= 0) return
+      allocate (mesh%x(2, head(2)), source=0.0_wp)
+      deallocate (number_of)
+      allocate (number_of(head(4)), source=0)
+      used = 0
+      do b = 1, head(1)
+         call next(reader, fault)
+         call integers(reader, block_head, fault)
+         if (fault%code == 0 .and. used + block_head(4) > head(2)) &
+            call wrong(reader, 'more nodes than announced', fault)
+         if (fault%code /= 0) return
+         if (allocated(tags)) deallocate (tags)
+         allocate (tags(block_head(4)))
+         do i = 1, size(tags)
+            call next(reader, fault)
+            call integers(reader, tags(i:i), fault)
+            if (fault%code == 0 .and. (tags(i) < 1 .or. tags(i) > head(4))) &
+               call wrong(reader, 'a node tag is outside the announced range', fault)
+         end do
+         if (fault%code /= 0) return
+         do i = 1, size(tags)
+            call next(reader, fault)
+            if (fault%code /= 0) return
+            used = used + 1
+            number_of(tags(i)) = used
+            read (reader%text, *, iostat=status) mesh%x(:, used)
+            if (status /= 0) call wrong(reader, 'expected coordinates', fault)
+         end do
+      end do
+      if (used /= head(2)) call wrong(reader, 'fewer nodes than announced', fault)
+   end subroutine read_nodes
+
+   subroutine read_elements(reader, number_of, blocks, fault)
+      type(reader_t), intent(inout) :: reader
+      integer, intent(in) :: number_of(:)
+      type(block_t), allocatable, intent(inout) :: blocks(:)
+      type(fault_t), intent(inout) :: fault
+      type(block_t) :: one
+      integer :: head(4), block_head(4), b, i, n
+      integer :: row(7)
+
+      call next(reader, fault)
+      call integers(reader, head, fault)
+      do b = 1, head(1)
+         call next(reader, fault)
+         call integers(reader, block_head, fault)
+         if (fault%code /= 0) return
+         select case (block_head(3))
+         case (POINT)
+            n = 1
+         case (LINE3)
+            n = 3
+         case (TRIANGLE6)
+            n = 6
+         case default
+            call wrong(reader, 'elements of type '//whole(block_head(3))//' cannot be used: 6-node triangles and '// &
+                       '3-node edges are', fault)
+            return
+         end select
+         one%dimension = block_head(1)
+         one%entity = block_head(2)
+         one%kind = block_head(3)
+         if (allocated(one%nodes)) deallocate (one%nodes)
+         allocate (one%nodes(n, block_head(4)))
+         do i = 1, block_head(4)
+            call next(reader, fault)
+            call integers(reader, row(:n + 1), fault)
+            if (fault%code /= 0) return
+            if (any(row(2:n + 1) < 1 .or. row(2:n + 1) > size(number_of))) then
+               call wrong(reader, 'an element names a node that is not there', fault)
+               return
+            end if
+            one%nodes(:, i) = number_of(row(2:n + 1))
+         end do
+         blocks = [blocks, one]
+      end do
+   end subroutine read_elements
+
+   !> Collects triangles, turns clockwise ones, and makes a group of every physical name.
+   subroutine sort_out(reader, names, entities, blocks, mesh, fault)
+      type(reader_t), intent(in) :: reader
+      type(physical_t), intent(in) :: names(:)
+      type(entity_t), intent(in) :: entities(:)
+      type(block_t), intent(in) :: blocks(:)
+      type(mesh_t), intent(inout) :: mesh
+      type(fault_t), intent(inout) :: fault
+      integer, allocatable :: first(:), elements(:), edges(:, :), nodes(:)
+      integer :: b, i, k, total
+
+      total = 0
+      allocate (first(size(blocks)), source=0)
+      do b = 1, size(blocks)
+         if (blocks(b)%kind /= TRIANGLE6) cycle
+         first(b) = total + 1
+         total = total + size(blocks(b)%nodes, 2)
+      end do
+      if (total == 0) then
+         call wrong(reader, 'the mesh has no 6-node triangles', fault)
+         return
+      end if
+      allocate (mesh%t6(6, total))
+      do b = 1, size(blocks)
+         do i = 1, size(blocks(b)%nodes, 2)
+            if (blocks(b)%kind == TRIANGLE6) &
+               mesh%t6(:, first(b) + i - 1) = counter_clockwise(mesh, blocks(b)%nodes(:, i))
+         end do
+      end do
+      allocate (edges(3, 0))
+      call add_group(mesh, 'all', [(i, i=1, total)], edges, [integer ::])
+      do k = 1, size(names)
+         elements = [integer ::]
+         nodes = [integer ::]
+         edges = reshape([integer ::], [3, 0])
+         do b = 1, size(blocks)
+            if (.not. has_tag(blocks(b), names(k))) cycle
+            select case (blocks(b)%kind)
+            case (TRIANGLE6)
+               elements = [elements, [(first(b) + i - 1, i=1, size(blocks(b)%nodes, 2))]]
+            case (LINE3)
+               edges = reshape([edges, blocks(b)%nodes], [3, size(edges, 2) + size(blocks(b)%nodes, 2)])
+            case default
+               nodes = [nodes, blocks(b)%nodes(1, :)]
+            end select
+         end do
+         call orient(mesh, edges)
+         if (names(k)%name /= 'all') call add_group(mesh, trim(names(k)%name), elements, edges, nodes)
+      end do
+   contains
+      pure logical function has_tag(one, name)
+         type(block_t), intent(in) :: one
+         type(physical_t), intent(in) :: name
+         integer :: e
+
+         has_tag = .false.
+         if (one%dimension /= name%dimension) return
+         do e = 1, size(entities)
+            if (entities(e)%dimension == one%dimension .and. entities(e)%tag == one%entity) &
+               has_tag = any(abs(entities(e)%physical) == name%tag)
+         end do
+      end function has_tag
+   end subroutine sort_out
+
+   pure function counter_clockwise(mesh, nodes) result(turned)
+      type(mesh_t), intent(in) :: mesh
+      integer, intent(in) :: nodes(6)
+      integer :: turned(6)
+      real(wp) :: a(2), b(2)
+
+      a = mesh%x(:, nodes(2)) - mesh%x(:, nodes(1))
+      b = mesh%x(:, nodes(3)) - mesh%x(:, nodes(1))
+      turned = nodes
+      if (a(1)*b(2) - a(2)*b(1) < 0.0_wp) turned = nodes([1, 3, 2, 6, 5, 4])
+   end function counter_clockwise
+
+   !> Turns edges so that their triangle lies on the left.
+   subroutine orient(mesh, edges)
+      type(mesh_t), intent(in) :: mesh
+      integer, intent(inout) :: edges(:, :)
+      integer, allocatable :: forward(:)
+      integer :: e, k, side(3)
+
+      ! forward(m): first vertex of the triangle side with middle node m, counter-clockwise.
+      allocate (forward(size(mesh%x, 2)), source=0)
+      do e = 1, size(mesh%t6, 2)
+         do k = 1, 3
+            side = mesh%t6([k, mod(k, 3) + 1, k + 3], e)
+            if (forward(side(3)) == 0) forward(side(3)) = side(1)
+         end do
+      end do
+      do k = 1, size(edges, 2)
+         if (forward(edges(3, k)) == edges(2, k)) edges(1:2, k) = edges([2, 1], k)
+      end do
+   end subroutine orient
+end module gmsh_reader

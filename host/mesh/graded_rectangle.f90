@@ -1,0 +1,141 @@
+!> Built-in mesh: a rectangle of blocks, each cut into cells whose size grows in a constant ratio, two triangles a cell.
+!> Boundaries left, right, bottom, top; the pieces between two breaks are top_1, top_2, ... (right_1 from the bottom).
+!> Regions: all, and block_I_J (I along r, J along z).
+module graded_rectangle
+   use kinds, only: wp
+   use triangle_mesh, only: mesh_t, add_group
+   implicit none (type, external)
+   private
+   public :: graded_mesh, graded_axis
+contains
+   !> Coordinates of the cell ends between breaks; `ratio` is the size of a cell over that of the one before it.
+   pure function graded_axis(breaks, cells, ratio) result(x)
+      real(wp), intent(in) :: breaks(:)        !< Ascending [m].
+      integer, intent(in) :: cells(:)          !< Per piece, size(breaks) - 1 of them.
+      real(wp), intent(in) :: ratio(:)         !< Per piece, > 0.
+      real(wp), allocatable :: x(:)
+      real(wp) :: total, sum_so_far
+      integer :: i, k, at
+
+      allocate (x(sum(cells) + 1))
+      x(1) = breaks(1)
+      at = 1
+      do i = 1, size(cells)
+         total = 0.0_wp
+         do k = 1, cells(i)
+            total = total + ratio(i)**(k - 1)
+         end do
+         sum_so_far = 0.0_wp
+         do k = 1, cells(i)
+            sum_so_far = sum_so_far + ratio(i)**(k - 1)
+            x(at + k) = breaks(i) + (breaks(i + 1) - breaks(i))*sum_so_far/total
+         end do
+         at = at + cells(i)
+         x(at) = breaks(i + 1)
+      end do
+   end function graded_axis
+
+   subroutine graded_mesh(r_breaks, r_cells, r_ratio, z_breaks, z_cells, z_ratio, mesh)
+      real(wp), intent(in) :: r_breaks(:), r_ratio(:), z_breaks(:), z_ratio(:)
+      integer, intent(in) :: r_cells(:), z_cells(:)
+      type(mesh_t), intent(out) :: mesh
+      real(wp), allocatable :: r(:), z(:)
+      integer, allocatable :: r_piece(:), z_piece(:)
+      integer :: nr, nz, i, j, k
+
+      r = graded_axis(r_breaks, r_cells, r_ratio)
+      z = graded_axis(z_breaks, z_cells, z_ratio)
+      nr = size(r) - 1
+      nz = size(z) - 1
+      r_piece = [((i, k=1, r_cells(i)), i=1, size(r_cells))]
+      z_piece = [((i, k=1, z_cells(i)), i=1, size(z_cells))]
+      allocate (mesh%x(2, (2*nr + 1)*(2*nz + 1)), mesh%t6(6, 2*nr*nz))
+      do j = 0, 2*nz
+         do i = 0, 2*nr
+            mesh%x(:, node(i, j)) = [middle(r, i), middle(z, j)]
+         end do
+      end do
+      do j = 1, nz
+         do i = 1, nr
+            k = 2*((j - 1)*nr + i) - 1
+            associate (a => 2*i - 2, b => 2*j - 2)
+               ! Diagonals alternate, so that the mesh prefers no direction; both corners of a body get two triangles.
+               if (mod(i + j, 2) == 0) then
+                  mesh%t6(:, k) = [node(a, b), node(a + 2, b), node(a + 2, b + 2), &
+                                   node(a + 1, b), node(a + 2, b + 1), node(a + 1, b + 1)]
+                  mesh%t6(:, k + 1) = [node(a, b), node(a + 2, b + 2), node(a, b + 2), &
+                                       node(a + 1, b + 1), node(a + 1, b + 2), node(a, b + 1)]
+               else
+                  mesh%t6(:, k) = [node(a, b), node(a + 2, b), node(a, b + 2), &
+                                   node(a + 1, b), node(a + 1, b + 1), node(a, b + 1)]
+                  mesh%t6(:, k + 1) = [node(a + 2, b), node(a + 2, b + 2), node(a, b + 2), &
+                                       node(a + 2, b + 1), node(a + 1, b + 2), node(a + 1, b + 1)]
+               end if
+            end associate
+         end do
+      end do
+      call add_regions()
+      call add_sides()
+   contains
+      pure integer function node(i, j)
+         integer, intent(in) :: i, j
+
+         node = j*(2*nr + 1) + i + 1
+      end function node
+
+      !> Coordinate number i of an axis with its middles, from 0.
+      pure real(wp) function middle(ends, i)
+         real(wp), intent(in) :: ends(:)
+         integer, intent(in) :: i
+
+         if (mod(i, 2) == 0) then
+            middle = ends(i/2 + 1)
+         else
+            middle = 0.5_wp*(ends(i/2 + 1) + ends(i/2 + 2))
+         end if
+      end function middle
+
+      subroutine add_regions()
+         integer :: cell(2*nr*nz), none(3, 0)
+         logical :: inside(2*nr*nz)
+         integer :: p, q, c
+         character(24) :: name
+
+         cell = [(c, c=1, 2*nr*nz)]
+         call add_group(mesh, 'all', cell, none, [integer ::])
+         do q = 1, size(z_cells)
+            do p = 1, size(r_cells)
+               inside = [(r_piece(mod((c - 1)/2, nr) + 1) == p .and. z_piece((c - 1)/2/nr + 1) == q, c=1, 2*nr*nz)]
+               write (name, '(a,i0,a,i0)') 'block_', p, '_', q
+               call add_group(mesh, trim(name), pack(cell, inside), none, [integer ::])
+            end do
+         end do
+      end subroutine add_regions
+
+      subroutine add_sides()
+         integer :: c
+
+         call add_side('bottom', reshape([(node(2*c - 2, 0), node(2*c, 0), node(2*c - 1, 0), c=1, nr)], &
+                                         [3, nr]), r_piece)
+         call add_side('right', reshape([(node(2*nr, 2*c - 2), node(2*nr, 2*c), node(2*nr, 2*c - 1), c=1, nz)], &
+                                        [3, nz]), z_piece)
+         call add_side('top', reshape([(node(2*c, 2*nz), node(2*c - 2, 2*nz), node(2*c - 1, 2*nz), c=1, nr)], &
+                                      [3, nr]), r_piece)
+         call add_side('left', reshape([(node(0, 2*c), node(0, 2*c - 2), node(0, 2*c - 1), c=1, nz)], [3, nz]), z_piece)
+      end subroutine add_sides
+
+      subroutine add_side(name, edges, piece)
+         character(*), intent(in) :: name
+         integer, intent(in) :: edges(:, :), piece(:)
+         character(24) :: part
+         integer :: p, c
+
+         call add_group(mesh, name, [integer ::], edges, [integer ::])
+         do p = 1, maxval(piece)
+            write (part, '(a,a,i0)') name, '_', p
+            call add_group(mesh, trim(part), [integer ::], &
+                           edges(:, pack([(c, c=1, size(piece))], piece == p)), [integer ::])
+         end do
+      end subroutine add_side
+   end subroutine graded_mesh
+end module graded_rectangle

@@ -1,0 +1,134 @@
+!> The state at the start of a scene: pressures, degree of saturation, effective stress.
+module initial_conditions
+   use exit_codes, only: EXIT_MATERIAL
+   use kinds, only: wp
+   use model_types, only: model_t, initial_t
+   use porous_domain, only: state_t, new_state_of
+   use retention_curves, only: saturation_t
+   use faults, only: fault_t, raise
+   use texts, only: short, whole
+   implicit none (type, external)
+   private
+   public :: initial_state
+
+   integer, parameter :: SLICES = 400   !< Of a column, for its weight: relative error 1/(24 SLICES**2) of its bend.
+contains
+   subroutine initial_state(model, state, fault)
+      type(model_t), intent(in) :: model
+      type(state_t), intent(out) :: state
+      type(fault_t), intent(inout) :: fault
+      type(initial_t), allocatable :: of_point(:)
+      type(saturation_t) :: sat
+      character(600) :: text
+      real(wp) :: p_c
+      integer :: e, g, p, i, n
+
+      state = new_state_of(model%domain)
+      allocate (of_point(size(state%s)))
+      do i = 1, size(model%initials)
+         associate (one => model%initials(i), group => model%domain%mesh%groups(model%initials(i)%group))
+            do n = 1, size(group%nodes)
+               state%v(2, group%nodes(n)) = one%v_z + one%wave*sin(one%wave_number &
+                                               *(model%domain%mesh%x(2, group%nodes(n)) - one%datum))
+               if (any(model%domain%bodies == group%nodes(n))) cycle
+               if (model%domain%with_w) state%x(3, group%nodes(n)) = water(one, model%domain%mesh%x(2, group%nodes(n)))
+               if (model%domain%with_c) &
+                  state%x(4, group%nodes(n)) = suction(one, model%domain%mesh%x(2, group%nodes(n)))
+            end do
+            do n = 1, size(group%elements)
+               of_point((group%elements(n) - 1)*model%domain%rule + 1:group%elements(n)*model%domain%rule) = one
+            end do
+         end associate
+      end do
+      ! Pressures live on the vertices alone where they are linear.
+      if (model%domain%n_p == 3) then
+         do e = 1, size(model%domain%mesh%t6, 2)
+            state%x(3:4, model%domain%mesh%t6(4:6, e)) = 0.0_wp
+         end do
+      end if
+      do e = 1, size(model%domain%mesh%t6, 2)
+         associate (region => model%domain%regions(model%domain%region_of(e)))
+            do g = 1, model%domain%rule
+               p = (e - 1)*model%domain%rule + g
+               associate (gp => model%domain%gauss(g, e), n_p => model%domain%n_p)
+                  p_c = dot_product(gp%m(:n_p), state%x(4, model%domain%mesh%t6(:n_p, e)))
+                  if (model%domain%with_c) then
+                     sat = model%domain%retentions(region%retention)%law%at(p_c, state%e(p))
+                     state%s(p) = sat%s
+                  end if
+                  call set_stress(model, e, of_point(p), gp%x(2), state%s(p), state%stress(:, p))
+               end associate
+               associate (law => model%domain%materials(region%material)%law)
+                  call law%start(state%stress(:, p), p_c, state%e(p), state%state(:law%n_state, p), text)
+               end associate
+               if (text == '') cycle
+               call raise(fault, EXIT_MATERIAL, 'Element '//whole(e)//', point '//whole(g)//' at z = '// &
+                          short(model%domain%gauss(g, e)%x(2))//' m: '//trim(text))
+               return
+            end do
+         end associate
+      end do
+   end subroutine initial_state
+
+   pure real(wp) function water(initial, z)
+      type(initial_t), intent(in) :: initial
+      real(wp), intent(in) :: z
+
+      water = initial%p_w + initial%p_w_slope*(z - initial%datum)
+   end function water
+
+   pure real(wp) function suction(initial, z)
+      type(initial_t), intent(in) :: initial
+      real(wp), intent(in) :: z
+
+      suction = initial%p_c + initial%p_c_slope*(z - initial%datum)
+   end function suction
+
+   !> Effective stress, tension positive.
+   subroutine set_stress(model, element, initial, z, s, stress)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: element
+      type(initial_t), intent(in) :: initial
+      real(wp), intent(in) :: z, s
+      real(wp), intent(inout) :: stress(6)
+      real(wp) :: vertical, p_w, p_c, chi, shift
+
+      if (initial%uniform) stress(1:3) = initial%sigma
+      if (.not. initial%geostatic) return
+      p_w = merge(water(initial, z), 0.0_wp, model%domain%with_w)
+      p_c = merge(suction(initial, z), 0.0_wp, model%domain%with_c)
+      vertical = initial%surcharge + weight_above(model, element, initial, z)
+      chi = s*max(p_c, 0.0_wp)
+      vertical = vertical - (p_w + (1 - s)*p_c)   ! effective, compression positive
+      shift = merge(chi, 0.0_wp, initial%net)
+      stress(2) = -vertical
+      stress([1, 3]) = -(initial%k_0*(vertical - shift) + shift)
+   end subroutine set_stress
+
+   !> Weight of a column of this region from z to the surface [kPa].
+   real(wp) function weight_above(model, element, initial, z) result(weight)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: element
+      type(initial_t), intent(in) :: initial
+      real(wp), intent(in) :: z
+      type(saturation_t) :: sat
+      real(wp) :: at, step, n, p_a, rho_a
+      integer :: i
+
+      weight = 0.0_wp
+      step = (initial%surface - z)/SLICES
+      associate (m => model%domain, region => model%domain%regions(model%domain%region_of(element)))
+         n = region%void_ratio/(1 + region%void_ratio)
+         do i = 1, SLICES
+            at = z + (i - 0.5_wp)*step
+            weight = weight + (1 - n)*region%rho_s
+            if (m%with_c) sat = m%retentions(region%retention)%law%at(suction(initial, at), region%void_ratio)
+            rho_a = m%fluids%rho_a
+            p_a = water(initial, at) + suction(initial, at)
+            if (m%fluids%ideal_gas) rho_a = rho_a*(1 + p_a/m%fluids%p_ref)
+            if (m%with_w) weight = weight + n*(sat%s*m%fluids%rho_w + (1 - sat%s)*rho_a)
+         end do
+      end associate
+      weight = weight*step*model%domain%gravity
+   end function weight_above
+end module initial_conditions

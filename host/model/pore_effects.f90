@@ -1,0 +1,248 @@
+!> Whether a scene calls for the fields of the pores: suction and pore water pressure.
+module pore_effects
+   use kinds, only: wp, PI
+   use load_histories, only: FORCE, MOTION, PRESSURE, FLOW
+   use effect_facts, only: facts_t, judge, ROUNDING
+   use linearised_body, only: trial_t
+   use model_types, only: model_t, effect_t, acts_in, P_A, UNBOUNDED, UNKNOWN
+   use permeability_laws, only: relative_permeability, relative_t
+   use retention_curves, only: saturated_t, saturation_t
+   use generalised_alpha, only: DYNAMIC
+   use texts, only: short
+   implicit none (type, external)
+   private
+   public :: judge_suction, judge_water
+
+   real(wp), parameter :: OVERSHOOT = 2.0_wp    !< A pore pressure may fall by so many times the loads' changes.
+contains
+   !> The largest suction that may arise against that at which the air in the pores begins to count: where it adds
+   !> a share `tolerance` to the compressibility of soil and water.
+   subroutine judge_suction(model, trial, facts, effect)
+      type(model_t), intent(in) :: model
+      type(trial_t), intent(in) :: trial
+      type(facts_t), intent(in) :: facts
+      type(effect_t), intent(inout) :: effect
+      character(64) :: why
+      real(wp) :: suction
+      logical :: full
+      integer :: i
+
+      if (.not. model%domain%with_c) then
+         effect%threshold = facts%tolerance*facts%acting
+         effect%why = 'no region has a retention law'
+         if (effect%by_hand) effect%why = 'no such field'
+         effect%watched = model%domain%with_w
+         return
+      end if
+      effect%threshold = harmless_suction(model, facts)
+      ! What would be lost with p_c even in saturated soil: air that flows in, and p_w as a difference of two others.
+      full = .not. (facts%plastic .or. any(model%loads%kind == 5) .or. prescribe_water())
+      do i = 1, size(model%domain%regions)
+         select type (law => model%domain%retentions(model%domain%regions(i)%retention)%law)
+         type is (saturated_t)
+         class default
+            full = .false.
+         end select
+      end do
+      if (full) then
+         call judge(effect, 0.0_wp, 'saturated by its law, and no stiffness depends on suction', .true.)
+         return
+      end if
+      call look_for_bound()
+      if (why /= '') then
+         call judge(effect, UNBOUNDED, 'not bounded: '//why, .true.)
+      else
+         suction = largest_suction(model, trial, facts)
+         call judge(effect, max(suction, 0.0_wp), 'largest suction from pressures, weight and loads', .true.)
+      end if
+      effect%watched = .not. effect%on
+   contains
+      pure logical function prescribe_water()
+         prescribe_water = any(facts%actions%field == 4) .and. any(facts%actions%field == P_A)
+      end function prescribe_water
+
+      !> Why nothing says how far the water pressure may fall; empty if something does.
+      subroutine look_for_bound()
+         integer :: k
+
+         why = ''
+         associate (a => facts%actions)
+            if (any(a%kind == FORCE .and. a%change > 0.0_wp .and. .not. a%stress > 0.0_wp)) why = 'forces on nodes'
+            if (any(a%kind == MOTION .and. (a%change > 0.0_wp .or. .not. a%lasting))) why = 'boundaries that move'
+            if (any(abs(trial%state%v(1:2, :)) > 0.0_wp)) why = 'it moves at the start'
+            if (prescribe_water()) why = 'p_c and p_a prescribe p_w'
+            do k = 1, size(model%loads)
+               if (model%loads(k)%kind == 5) why = 'inflow of air'
+               if (model%loads(k)%kind == 4 .and. model%loads(k)%value < 0.0_wp) why = 'outflow of water'
+               if (model%loads(k)%kind /= 4 .or. model%loads(k)%history == 0) cycle
+               if (any(model%histories(model%loads(k)%history)%values < 0.0_wp)) why = 'outflow of water'
+            end do
+            if (facts%loose > facts%tolerance) why = 'forces without balance'
+            if (.not. facts%held) why = 'nothing holds the body, or it has no stiffness'
+            if (size(model%contacts) > 0) why = 'contact'
+            if (facts%plastic) why = 'dilatancy of a plastic material'
+         end associate
+      end subroutine look_for_bound
+   end subroutine judge_suction
+
+   !> p_a at its highest less p_w at its lowest. Flow alone leaves the potential of the water within its initial and
+   !> prescribed values; loads may lower p_w by OVERSHOOT times their changes.
+   real(wp) function largest_suction(model, trial, facts) result(suction)
+      type(model_t), intent(in) :: model
+      type(trial_t), intent(in) :: trial
+      type(facts_t), intent(in) :: facts
+      real(wp) :: lowest, air, fall, unit_weight
+      integer :: i
+      logical :: told
+
+      associate (m => model%domain, x => trial%state%x, has => trial%dofs%of(3, :) > 0)
+         unit_weight = m%fluids%rho_w*m%gravity
+         lowest = minval(x(3, :) + unit_weight*m%mesh%x(2, :), mask=has)
+         suction = maxval(x(4, :), mask=has)
+         ! A scene that says nothing of suction has its air at the atmosphere.
+         told = any(abs(model%initials%p_c) > 0.0_wp .or. abs(model%initials%p_c_slope) > 0.0_wp) .or. &
+                any(facts%actions%kind == PRESSURE .and. facts%actions%field >= 4)
+         air = 0.0_wp
+         if (told) air = maxval(x(3, :) + x(4, :), mask=has)
+         fall = 0.0_wp
+         do i = 1, size(facts%actions)
+            associate (a => facts%actions(i))
+               if (a%kind == FORCE) then
+                  fall = fall + a%stress*a%change
+               else if (a%kind == PRESSURE .and. .not. a%held) then
+                  if (a%field == 3) lowest = min(lowest, a%start - a%change + unit_weight* &
+                                                 minval(m%mesh%x(2, m%mesh%groups(a%group)%nodes)))
+                  if (a%field == 4) suction = max(suction, a%start + a%change)
+                  if (a%field == P_A) air = max(air, a%start + a%change)
+               end if
+            end associate
+         end do
+         suction = max(suction, air - (lowest - unit_weight*facts%high(2) - OVERSHOOT*fall))
+      end associate
+   end function largest_suction
+
+   !> Up to it n |dS/dp_c| + n (1 - S)/K_a stays below tolerance (1/M + n/K_w) in every region.
+   real(wp) function harmless_suction(model, facts) result(suction)
+      type(model_t), intent(in) :: model
+      type(facts_t), intent(in) :: facts
+      real(wp), parameter :: FINEST = 1.0e-6_wp, RATIO = 1.1_wp
+      integer, parameter :: STEPS = 200
+      type(saturation_t) :: sat
+      real(wp) :: p_c, n, k_a
+      integer :: i, k
+
+      suction = huge(1.0_wp)
+      associate (m => model%domain)
+         k_a = merge(m%fluids%p_ref, m%fluids%k_a, m%fluids%ideal_gas)
+         do i = 1, size(m%regions)
+            n = m%regions(i)%void_ratio/(1 + m%regions(i)%void_ratio)
+            do k = 0, STEPS
+               p_c = FINEST*RATIO**k
+               sat = m%retentions(m%regions(i)%retention)%law%at(p_c, m%regions(i)%void_ratio)
+               if (n*abs(sat%ds_dpc) + n*(1 - sat%s)/k_a > facts%tolerance*(1/max(facts%m_max, ROUNDING) &
+                                                                            + n/m%fluids%k_w)) exit
+            end do
+            suction = min(suction, merge(p_c/RATIO, 0.0_wp, k > 0))
+         end do
+      end associate
+   end function harmless_suction
+
+   !> The pore pressure that loads raise before it drains, as a share of them: the jumps, and the fastest slope times
+   !> the time of consolidation. Only a rectangle with a whole side at p_w = 0 has a bound on the drainage path; the
+   !> water must matter neither by its weight nor by its inertia.
+   subroutine judge_water(model, trial, facts, suction, effect)
+      type(model_t), intent(in) :: model
+      type(trial_t), intent(in) :: trial
+      type(facts_t), intent(in) :: facts
+      logical, intent(in) :: suction   !< p_c is on.
+      type(effect_t), intent(inout) :: effect
+      real(wp) :: path, time, share, conductivity
+
+      if (.not. model%domain%with_w) then
+         effect%why = 'no region has a permeability'
+         effect%threshold = UNKNOWN
+         if (effect%by_hand) effect%why = 'no such field'
+         return
+      end if
+      path = drainage_path(model, trial, facts)
+      conductivity = least_conductivity(model)
+      share = UNBOUNDED
+      if (suction .and. .not. effect%by_hand) then
+         effect%why = 'p_c needs it'
+      else if (model%domain%gravity > 0.0_wp .or. any(model%stages%kind == DYNAMIC)) then
+         effect%why = 'not bounded: weight or inertia of the water'
+      else if (any(abs(trial%state%x(3, :)) > 0.0_wp) .or. &
+               any(facts%actions%kind == PRESSURE .and. facts%actions%field == 3 .and. &
+                   (facts%actions%change > 0.0_wp .or. abs(facts%actions%start) > 0.0_wp)) .or. &
+               any(facts%actions%kind == FLOW)) then
+         effect%why = 'pore pressures or flows are given'
+      else if (size(model%contacts) > 0 .or. &
+               any(facts%actions%kind == MOTION .and. facts%actions%change > 0.0_wp)) then
+         effect%why = 'not bounded: contact, or boundaries that move'
+      else if (path >= UNBOUNDED) then
+         effect%why = 'not bounded: no rectangle with a whole side at p_w = 0'
+      else if (.not. (facts%m_min > 0.0_wp .and. facts%held)) then
+         effect%why = 'not bounded: nothing holds the body, or it has no stiffness'
+      else
+         time = path**2/conductivity*(1/facts%m_min + 1/model%domain%fluids%k_w)
+         share = max(maxval(facts%jump), facts%loose) + maxval(facts%pace)*time
+         effect%why = 'undrained share; consolidation takes '//short(time)//' s'
+         effect%scale = path**2/(2*conductivity)/max(facts%acting, ROUNDING)
+      end if
+      call judge(effect, share, trim(effect%why), .true.)
+      effect%watched = .not. effect%on
+   end subroutine judge_water
+
+   !> Distance from a wholly drained side to the opposite one.
+   real(wp) function drainage_path(model, trial, facts) result(path)
+      type(model_t), intent(in) :: model
+      type(trial_t), intent(in) :: trial
+      type(facts_t), intent(in) :: facts
+      logical :: open(size(model%domain%mesh%x, 2))
+      real(wp) :: area, wide(2)
+      integer :: i, k, e, g
+
+      path = UNBOUNDED
+      wide = facts%high - facts%low
+      associate (m => model%domain)
+         area = 0.0_wp
+         do e = 1, size(m%mesh%t6, 2)
+            do g = 1, m%rule
+               area = area + m%gauss(g, e)%weight/merge(2*PI*m%gauss(g, e)%x(1), 1.0_wp, m%axisymmetric)
+            end do
+         end do
+         if (abs(area - product(wide)) > ROUNDING*area) return
+         open = .false.
+         do i = 1, size(facts%actions)
+            associate (a => facts%actions(i))
+               if (a%kind /= PRESSURE .or. .not. a%lasting .or. a%held) cycle
+               if (a%field == 3 .and. all([(acts_in(a%stages, model%stages(k)%name), k=1, size(model%stages))])) &
+                  open(m%mesh%groups(a%group)%nodes) = .true.
+            end associate
+         end do
+         do i = 1, 2
+            if (all(open .or. trial%dofs%of(3, :) == 0 .or. m%mesh%x(i, :) < facts%high(i) - ROUNDING*wide(i))) &
+               path = min(path, wide(i))
+            ! Towards a hole on the axis the flow converges.
+            if (i == 1 .and. m%axisymmetric) cycle
+            if (all(open .or. trial%dofs%of(3, :) == 0 .or. m%mesh%x(i, :) > facts%low(i) + ROUNDING*wide(i))) &
+               path = min(path, wide(i))
+         end do
+      end associate
+   end function drainage_path
+
+   !> Permeability over viscosity of the tightest region, saturated [m2/(kPa s)].
+   real(wp) function least_conductivity(model) result(least)
+      type(model_t), intent(in) :: model
+      type(relative_t) :: rel
+      integer :: i
+
+      least = huge(1.0_wp)
+      do i = 1, size(model%domain%regions)
+         associate (law => model%domain%permeabilities(model%domain%regions(i)%permeability))
+            rel = relative_permeability(law, 1.0_wp)
+            least = min(least, law%intrinsic*rel%w/model%domain%fluids%eta_w)
+         end associate
+      end do
+   end function least_conductivity
+end module pore_effects

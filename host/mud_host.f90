@@ -1,0 +1,146 @@
+!> mud_host SCENE.nml: coupled finite elements of unsaturated soil.
+program mud_host
+   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit, int64
+   use checkpoints, only: read_checkpoint
+   use wall_clock, only: clock
+   use effects_table, only: print_effects
+   use scene_keys, only: print_template
+   use output_tables, only: output_t, check_output
+   use process_settings, only: settle_process
+   use host_read, only: read_scene
+   use time_stepping, only: run_t, prepare_run, run_scene
+   use model_types, only: model_t
+   use files, only: limits_are_errors, folder_of
+   use faults, only: fault_t, raise, EXIT_INPUT
+   use texts, only: short, whole
+   implicit none (type, external)
+   character(*), parameter :: USAGE = 'usage: mud_host SCENE.nml [--output FOLDER] [--restart CHECKPOINT] '// &
+                              '[--quiet] [--check] | --template'
+   character(1024) :: word, file, folder, restart
+   type(model_t) :: model
+   type(run_t) :: run
+   type(output_t) :: output
+   type(fault_t) :: fault
+   logical :: quiet, only_check
+   double precision :: t0
+   integer :: i
+
+   call limits_are_errors()
+   call settle_process()
+   file = ''
+   folder = ''
+   restart = ''
+   quiet = .false.
+   only_check = .false.
+   i = 1
+   do while (i <= command_argument_count() .and. fault%code == 0)
+      call get_command_argument(i, word)
+      select case (word)
+      case ('--template')
+         call print_template(output_unit)
+         stop
+      case ('--help', '-h')
+         call print_help()
+         stop
+      case ('--quiet')
+         quiet = .true.
+      case ('--check')
+         only_check = .true.
+      case ('--output')
+         call take_value('a folder', folder)
+      case ('--restart')
+         call take_value('a checkpoint', restart)
+      case default
+         if (word(1:1) == '-' .or. file /= '') call raise(fault, EXIT_INPUT, trim(word)//' is not understood; '//USAGE)
+         file = word
+      end select
+      i = i + 1
+   end do
+   if (file == '' .and. fault%code == 0) call raise(fault, EXIT_INPUT, 'No scene is given; '//USAGE)
+   if (folder == '') then
+      folder = 'output'
+      if (restart /= '') folder = folder_of(trim(restart))
+   end if
+   t0 = clock()
+   if (fault%code == 0) call read_scene(trim(file), model, fault)
+   if (fault%code == 0) call prepare_run(model, run, fault)
+   if (fault%code == 0 .and. .not. quiet) call announce()
+   if (fault%code == 0 .and. only_check .and. restart /= '') then
+      call check_restart()
+   else if (fault%code == 0 .and. .not. only_check) then
+      if (restart == '') then
+         call run_scene(model, trim(folder), quiet, run, fault)
+      else
+         call run_scene(model, trim(folder), quiet, run, fault, trim(restart))
+      end if
+   end if
+   if (.not. (quiet .or. only_check) .and. run%steps > 0) call account()
+   if (fault%code /= 0) then
+      write (error_unit, '(a)') trim(fault%text)
+      stop fault%code, quiet=.true.
+   end if
+contains
+   !> The word after an option. One that looks like an option is none: the value was forgotten.
+   subroutine take_value(what, value)
+      character(*), intent(in) :: what
+      character(*), intent(out) :: value
+      integer :: status
+
+      i = i + 1
+      call get_command_argument(i, value, status=status)
+      if (status < 0) call raise(fault, EXIT_INPUT, trim(word)//' is longer than '//whole(len(value))//' characters.')
+      if (value == '' .or. value(1:1) == '-') call raise(fault, EXIT_INPUT, trim(word)//' needs '//what//'; '//USAGE)
+   end subroutine take_value
+
+   subroutine print_help()
+      character(*), parameter :: LINES(6) = [character(100) :: &
+         '  --output FOLDER       where files go, made if missing; default: output, with --restart that of the', &
+         '                        checkpoint', &
+         '  --restart CHECKPOINT  goes on from a checkpoint of the same scene', &
+         '  --check               reads and checks scene and checkpoint, runs nothing', &
+         '  --quiet               prints errors only', &
+         '  --template            prints every group and key of a scene']
+      integer :: k
+
+      write (output_unit, '(a)') USAGE, (trim(LINES(k)), k=1, size(LINES))
+      write (output_unit, '(a)') 'Exit codes: host/README.md, "Exit codes".'
+   end subroutine print_help
+
+   !> Whether the run could go on from the checkpoint, in its folder.
+   subroutine check_restart()
+      call read_checkpoint(trim(restart), model, run, output, fault)
+      if (fault%code == 0) call check_output(trim(folder), model, output, fault)
+      if (fault%code /= 0 .or. quiet) return
+      write (output_unit, '(a)') trim(restart)//' fits: stage '//trim(model%stages(run%course%stage)%name)// &
+         ', step '//whole(run%course%step)//', time '//short(run%state%time)// &
+         ' s; the run would go on in '//trim(folder)//'.'
+   end subroutine check_restart
+
+   subroutine announce()
+      write (output_unit, '(a)') trim(model%name)//': '//whole(size(model%domain%mesh%t6, 2))//' elements, '// &
+         whole(size(model%domain%mesh%x, 2))//' nodes, '//whole(run%dofs%n)//' unknowns, '// &
+         whole(size(run%pattern%col))//' entries, '//whole(model%domain%threads)//' threads.'
+      if (model%effects%auto) call print_effects(output_unit, run%watch%table)
+   end subroutine announce
+
+   !> Where the time went.
+   subroutine account()
+      character(14), parameter :: PHASES(8) = [character(14) :: 'material', 'assembly', 'contact', 'factorisation', &
+                                               'solution', 'rest of Newton', 'output', 'all else']
+      double precision :: seconds(8), total
+      integer :: k
+
+      total = clock() - t0
+      seconds(:7) = [run%system%seconds([5, 1, 6, 2, 3, 4]), run%seconds_output]
+      seconds(8) = total - sum(seconds(:7))
+      write (output_unit, '(a)') whole(run%steps)//' steps, '//whole(run%iterations)//' iterations, '// &
+         whole(run%cuts)//' cuts, '//whole(run%effort)//' rate evaluations of the material; in this run '// &
+         whole(run%system%n_pass)//' passes over the elements, '//whole(run%system%sparse%n_numeric)// &
+         ' factorisations ('//whole(nint(run%system%sparse%entries, int64))//' entries), '// &
+         whole(run%system%sparse%n_solve)//' solutions by factors.'
+      do k = 1, size(PHASES)
+         write (output_unit, '(3x,a,f12.3,a,f6.1,a)') PHASES(k), seconds(k), ' s', 100*seconds(k)/total, ' %'
+      end do
+      write (output_unit, '(3x,a,f12.3,a)') 'in all        ', total, ' s'
+   end subroutine account
+end program mud_host

@@ -1,0 +1,235 @@
+!> Checkpoints: the complete state of a run in one HDF5 file, and a run from one. Loads, boundary conditions and the
+!> flow that is subtracted follow from the scene; the ordering of the equations from their pattern. The rest is here.
+module checkpoints
+   use, intrinsic :: iso_c_binding, only: c_char, c_null_char
+   use, intrinsic :: iso_fortran_env, only: int64
+   use mud_interface, only: mud_version
+   use kinds, only: wp
+   use run_state, only: run_t
+   use energy_ledger, only: ledger_t
+   use output_tables, only: output_t, settle_output
+   use model_types, only: model_t
+   use effect_monitor, only: MEMORIES
+   use porous_domain, only: copy_state
+   use sparsity_pattern, only: make_pattern
+   use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, &
+                      get_text, extent_of
+   use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
+   use texts, only: from_c
+   implicit none (type, external)
+   private
+   public :: write_checkpoint, read_checkpoint, CHECKPOINT
+
+   character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
+   character(*), parameter :: KIND_OF_FILE = 'checkpoint of mud_host'
+   character(*), parameter :: FORMAT = '4'      !< Grows with every change of what is stored.
+   integer, parameter :: N_COUNTERS = 13
+   character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
+                                        'contact, seepage, damping [kJ], outflow, outflow_air [m3]'
+contains
+   subroutine write_checkpoint(model, run, output, fault)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(output_t), intent(inout) :: output
+      type(fault_t), intent(inout) :: fault
+      type(h5_t) :: file
+      logical :: good
+
+      ! What the checkpoint counts on comes first.
+      call settle_output(output, fault)
+      if (fault%code /= 0) return
+      call new_file(file)
+      call put_text(file, 'kind', KIND_OF_FILE)
+      call put_text(file, 'format', FORMAT)
+      call put_text(file, 'library', library())
+      call put_text(file, 'scene', trim(model%name))
+      call put_text(file, 'fingerprint', model%fingerprint)
+      associate (s => run%state, c => run%course)
+         call put(file, 'counters', counters_of(run, output), '-', 'stage, step of it, cuts in force, good steps, '// &
+                  'steps, iterations, cuts, rate evaluations, eager, bytes of histories.csv, bytes of ledger.csv, '// &
+                  'bytes of contact.csv, pairs of unknowns brought together by contacts')
+         call put(file, 'course', [s%time, c%t_start, c%nominal, c%factor], 's', &
+                  'time, start of the stage, step without cuts, share of it [-]')
+         call put(file, 'ledger', transfer(run%ledger, [0.0_wp]), 'kJ', BALANCE)
+         call put(file, 'largest', run%system%largest, 'kN', 'largest scale of every field')
+         call put(file, 'frames', output%frames%times, 's', 'times of the fields written so far')
+         call put(file, 'x_start', c%x_start, 'm, kPa', 'unknowns at the start of the stage')
+         call put(file, 'x', s%x, 'm, kPa', 'unknowns u_r, u_z, p_w, p_c of every node')
+         call put(file, 'v', s%v, 'm/s, kPa/s', 'their rates')
+         call put(file, 'a', s%a, 'm/s2', 'accelerations')
+         call put(file, 'stress', s%stress, 'kPa', 'effective stress of every quadrature point, tension positive')
+         call put(file, 'state', s%state, 'of the material', 'state variables of every quadrature point')
+         call put(file, 'e', s%e, '-', 'void ratio')
+         call put(file, 's', s%s, '-', 'degree of saturation')
+         call put(file, 's_rate', s%s_rate, '1/s', 'its rate')
+      end associate
+      if (model%effects%auto) call put(file, 'watch', [run%watch%table%largest, run%watch%table%crossed, &
+         run%watch%memory], '-', 'indicators of the effects that are off, when they crossed [s], extremes')
+      if (pairs_of(run) > 0) call put(file, 'pairs', reshape(run%system%contacts%extra, [2*pairs_of(run)]), '-', &
+                                      'pairs of unknowns that contacts brought into the matrix')
+      call write_file(file, output%folder//'/'//CHECKPOINT, good)
+      if (.not. good) call raise(fault, EXIT_OUTPUT, output%folder//'/'//CHECKPOINT//' cannot be written; is the '// &
+                                 'disk full? The one before is untouched: make room and use --restart.')
+   end subroutine write_checkpoint
+
+   !> Puts a prepared run where the checkpoint was written.
+   subroutine read_checkpoint(path, model, run, output, fault)
+      character(*), intent(in) :: path
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(output_t), intent(inout) :: output
+      type(fault_t), intent(inout) :: fault
+      type(h5_t) :: file
+      real(wp) :: counters(N_COUNTERS)
+      real(wp) :: course(4), ledger(storage_size(run%ledger)/storage_size(0.0_wp))
+
+      if (.not. HAS_HDF5) then
+         call raise(fault, EXIT_RESTART, 'This mud_host was built without HDF5: it cannot restart from '//path//'.')
+         return
+      end if
+      call open_file(path, file)
+      if (.not. file%good) then
+         call raise(fault, EXIT_RESTART, path//' is not there, no HDF5 file, or cut off; name the '//CHECKPOINT// &
+                    ' of a run.')
+         return
+      end if
+      call check_origin(path, model, file, fault)
+      if (fault%code == 0) then
+         call get(file, 'counters', counters)
+         call get(file, 'course', course)
+         call get(file, 'ledger', ledger)
+         call get(file, 'largest', run%system%largest)
+         allocate (run%course%x_start, mold=run%state%x)
+         if (allocated(output%frames%times)) deallocate (output%frames%times)
+         allocate (output%frames%times(extent_of(file, 'frames')))
+         call get(file, 'frames', output%frames%times)
+         call get(file, 'x_start', run%course%x_start)
+         call get(file, 'x', run%state%x)
+         call get(file, 'v', run%state%v)
+         call get(file, 'a', run%state%a)
+         call get(file, 'stress', run%state%stress)
+         call get(file, 'state', run%state%state)
+         call get(file, 'e', run%state%e)
+         call get(file, 's', run%state%s)
+         call get(file, 's_rate', run%state%s_rate)
+         if (file%good .and. model%effects%auto) call take_watch(file, run)
+         if (file%good .and. counters(N_COUNTERS) > 0.5_wp) call take_pairs(file, nint(counters(N_COUNTERS)), run)
+         if (file%good) then
+            run%state%time = course(1)
+            run%course%t_start = course(2)
+            run%course%nominal = course(3)
+            run%course%factor = course(4)
+            run%ledger = transfer(ledger, run%ledger)
+            call take_counters(counters, run, output)
+            call copy_state(run%state, run%next)
+         else
+            call raise(fault, EXIT_RESTART, path//' is damaged: an entry is missing, has another extent or a wrong '// &
+                       'checksum; use an older copy, or start anew.')
+         end if
+      end if
+      call close_file(file)
+   end subroutine read_checkpoint
+
+   !> What was seen of the effects that are off.
+   subroutine take_watch(file, run)
+      type(h5_t), intent(inout) :: file
+      type(run_t), intent(inout) :: run
+      real(wp) :: seen(2*size(run%watch%table) + MEMORIES)
+      integer :: n
+
+      n = size(run%watch%table)
+      call get(file, 'watch', seen)
+      run%watch%table%largest = seen(:n)
+      run%watch%table%crossed = seen(n + 1:2*n)
+      run%watch%memory = seen(2*n + 1:)
+   end subroutine take_watch
+
+   !> The matrix with all the room that contacts have asked for: its ordering, and so every digit, depends on it.
+   subroutine take_pairs(file, pairs, run)
+      type(h5_t), intent(inout) :: file
+      integer, intent(in) :: pairs
+      type(run_t), intent(inout) :: run
+      integer :: flat(2*pairs)
+
+      call get(file, 'pairs', flat)
+      if (.not. file%good) return
+      run%system%contacts%extra = reshape(flat, [2, pairs])
+      call make_pattern(run%dofs%n, run%dofs%element, run%system%contacts%extra, run%pattern)
+      deallocate (run%assembly%values)
+      allocate (run%assembly%values(size(run%pattern%col)), source=0.0_wp)
+   end subroutine take_pairs
+
+   !> Refuses files of others, of another program and of another scene.
+   subroutine check_origin(path, model, file, fault)
+      character(*), intent(in) :: path
+      type(model_t), intent(in) :: model
+      type(h5_t), intent(in) :: file
+      type(fault_t), intent(inout) :: fault
+      character(64) :: kind, format_of, library_of, here
+
+      kind = get_text(file, 'kind')
+      format_of = get_text(file, 'format')
+      library_of = get_text(file, 'library')
+      here = library()
+      if (kind /= KIND_OF_FILE) then
+         call raise(fault, EXIT_RESTART, path//' is an HDF5 file, but no checkpoint of mud_host; name the '// &
+                    CHECKPOINT//' of a run.')
+      else if (format_of /= FORMAT .or. library_of /= here) then
+         call raise(fault, EXIT_RESTART, path//' was written by another version: format '//trim(format_of)// &
+                    ', library '//trim(library_of)//'; this one has format '//FORMAT//', library '//trim(here)// &
+                    '. Finish the run with the program that began it.')
+      else if (get_text(file, 'fingerprint') /= model%fingerprint) then
+         call raise(fault, EXIT_RESTART, path//' belongs to another scene ('//trim(get_text(file, 'scene'))// &
+                    ', fingerprint '//trim(get_text(file, 'fingerprint'))//', here '//model%fingerprint// &
+                    '): groups, keys, values and files must be those of the run, but for threads and checkpoint_*.')
+      end if
+   end subroutine check_origin
+
+   function library() result(text)
+      character(64) :: text
+      character(kind=c_char, len=64) :: raw
+
+      raw = c_null_char
+      text = ''
+      if (mud_version(raw, len(raw)) >= 0) text = from_c(raw)
+   end function library
+
+   pure integer function pairs_of(run) result(pairs)
+      type(run_t), intent(in) :: run
+
+      pairs = 0
+      if (allocated(run%system%contacts%extra)) pairs = size(run%system%contacts%extra, 2)
+   end function pairs_of
+
+   !> As real numbers, which are exact up to 2**53.
+   pure function counters_of(run, output) result(counters)
+      type(run_t), intent(in) :: run
+      type(output_t), intent(in) :: output
+      real(wp) :: counters(N_COUNTERS)
+
+      associate (c => run%course)
+         counters = real([integer(int64) :: c%stage, c%step, c%cuts, c%good, run%steps, run%iterations, run%cuts, &
+                          run%effort, merge(1, 0, run%system%eager), output%history%bytes, output%ledger%bytes, &
+                          output%contact%bytes, pairs_of(run)], wp)
+      end associate
+   end function counters_of
+
+   pure subroutine take_counters(counters, run, output)
+      real(wp), intent(in) :: counters(N_COUNTERS)
+      type(run_t), intent(inout) :: run
+      type(output_t), intent(inout) :: output
+
+      run%course%stage = nint(counters(1))
+      run%course%step = nint(counters(2))
+      run%course%cuts = nint(counters(3))
+      run%course%good = nint(counters(4))
+      run%steps = nint(counters(5))
+      run%iterations = nint(counters(6))
+      run%cuts = nint(counters(7))
+      run%effort = nint(counters(8), int64)
+      run%system%eager = nint(counters(9)) == 1
+      output%history%bytes = nint(counters(10), int64)
+      output%ledger%bytes = nint(counters(11), int64)
+      output%contact%bytes = nint(counters(12), int64)
+   end subroutine take_counters
+end module checkpoints

@@ -1,0 +1,279 @@
+!> Fields in HDF5, one file for the mesh and one for every moment, and results.xdmf, which ParaView opens. Every file is
+!> written as a whole: a run that is killed leaves whole files, and a restart writes the same ones again.
+module field_files
+   use kinds, only: wp
+   use porous_domain, only: domain_t, state_t
+   use files, only: write_whole, bytes_of
+   use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get_text
+   use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
+   use texts, only: whole
+   implicit none (type, external)
+   private
+   public :: frames_t, write_mesh, check_mesh, write_frame, all_pressures
+
+   type :: frames_t
+      real(wp), allocatable :: times(:)   !< Of the frames written so far.
+   end type frames_t
+
+   !> A field of the files: at nodes, or the mean over the volume of an element.
+   type :: field_t
+      character(16) :: name
+      character(8) :: unit
+      character(72) :: meaning
+      logical :: of_nodes
+      integer :: components
+   end type field_t
+
+   integer, parameter :: N_DISPLACEMENT = 1, N_VELOCITY = 2, N_ACCELERATION = 3, N_P_W = 4, N_P_C = 5, N_P_A = 6, &
+                         N_FIRST_CELL = 7, N_S_W = 14
+   type(field_t), parameter :: LIST(14) = [ &
+      field_t('displacement', 'm', 'u_r, u_z, 0', .true., 3), &
+      field_t('velocity', 'm/s', 'v_r, v_z, 0', .true., 3), &
+      field_t('acceleration', 'm/s2', 'a_r, a_z, 0', .true., 3), &
+      field_t('p_w', 'kPa', 'pore water pressure, compression positive', .true., 1), &
+      field_t('p_c', 'kPa', 'suction p_a - p_w', .true., 1), &
+      field_t('p_a', 'kPa', 'pore air pressure, compression positive', .true., 1), &
+      field_t('s_rr', 'kPa', 'effective stress, tension positive', .false., 1), &
+      field_t('s_zz', 'kPa', 'effective stress, tension positive', .false., 1), &
+      field_t('s_tt', 'kPa', 'effective stress, tension positive', .false., 1), &
+      field_t('s_rz', 'kPa', 'effective stress', .false., 1), &
+      field_t('p', 'kPa', 'mean effective stress, compression positive', .false., 1), &
+      field_t('q', 'kPa', 'deviator stress: square root of 3 J_2', .false., 1), &
+      field_t('e', '-', 'void ratio', .false., 1), &
+      field_t('S_w', '-', 'degree of saturation', .false., 1)]
+contains
+   !> mesh.h5: nodes, elements, quadrature points, region of every element.
+   subroutine write_mesh(folder, model, fingerprint, domain, fault)
+      character(*), intent(in) :: folder, model, fingerprint   !< Name and fingerprint of the scene.
+      type(domain_t), intent(in) :: domain
+      type(fault_t), intent(inout) :: fault
+      type(h5_t) :: file
+      integer :: e, g
+      logical :: good
+
+      if (.not. HAS_HDF5) return
+      call new_file(file)
+      call put_text(file, 'kind', 'mesh of mud_host')
+      call put_text(file, 'scene', model)
+      call put_text(file, 'fingerprint', fingerprint)
+      call put_text(file, 'axes', merge('r, z; axisymmetric', 'x, y; plane strain', domain%axisymmetric))
+      call put(file, 'nodes', domain%mesh%x, 'm', 'coordinates r, z (x, y in plane strain) of '// &
+               'every node')
+      call put(file, 'elements', domain%mesh%t6 - 1, '-', 'nodes of every element from 0: vertices, then the '// &
+               'middles of the sides 1-2, 2-3, 3-1')
+      call put(file, 'regions', domain%region_of, '-', 'number of the region of every element, as in the scene')
+      call put(file, 'points/position', reshape([((domain%gauss(g, e)%x, g=1, domain%rule), &
+               e=1, size(domain%mesh%t6, 2))], [2, size(domain%gauss)]), 'm', 'r, z (x, y in plane strain) of '// &
+               'every quadrature point')
+      call put(file, 'points/weight', [((domain%gauss(g, e)%weight, g=1, domain%rule), e=1, size(domain%mesh%t6, 2))], &
+               'm3', 'volume of every quadrature point (per m of thickness in plane strain)')
+      call write_file(file, folder//'/mesh.h5', good)
+      if (.not. good) call complain(folder//'/mesh.h5', fault)
+   end subroutine write_mesh
+
+   !> Refuses a folder whose mesh is not that of the scene's run.
+   subroutine check_mesh(folder, fingerprint, fault)
+      character(*), intent(in) :: folder, fingerprint
+      type(fault_t), intent(inout) :: fault
+      type(h5_t) :: file
+      character(64) :: found
+
+      call open_file(folder//'/mesh.h5', file)
+      if (.not. file%good) then
+         call raise(fault, EXIT_RESTART, folder//'/mesh.h5 is not there, or cut off; --output must name the folder '// &
+                    'of the interrupted run. Nothing was changed.')
+         return
+      end if
+      found = get_text(file, 'fingerprint')
+      if (found /= fingerprint) call raise(fault, EXIT_RESTART, folder//' holds another run (scene '// &
+         trim(get_text(file, 'scene'))//', fingerprint '//trim(found)//', here '//fingerprint//'); --output must '// &
+         'name the folder of the interrupted run. Nothing was changed.')
+      call close_file(file)
+   end subroutine check_mesh
+
+   !> fields_NUMBER.h5 of a state, and results.xdmf up to it.
+   subroutine write_frame(folder, domain, state, frames, fault)
+      character(*), intent(in) :: folder
+      type(domain_t), intent(in) :: domain
+      type(state_t), intent(in) :: state
+      type(frames_t), intent(inout) :: frames
+      type(fault_t), intent(inout) :: fault
+      type(h5_t) :: file
+      real(wp) :: x(4, size(state%x, 2)), cells(8, size(domain%mesh%t6, 2))
+      character(:), allocatable :: path
+      integer :: i
+      logical :: good
+
+      if (.not. HAS_HDF5) return
+      frames%times = [frames%times, state%time]
+      path = folder//'/'//file_of(size(frames%times))
+      call all_pressures(domain, state, x)
+      call new_file(file)
+      call put_text(file, 'kind', 'fields of mud_host')
+      call put(file, 'time', [state%time], 's', 'time')
+      do i = 1, size(LIST)
+         if (.not. has(domain, i)) cycle
+         select case (i)
+         case (N_DISPLACEMENT)
+            call put_vector(state%x(1:2, :))
+         case (N_VELOCITY)
+            call put_vector(state%v(1:2, :))
+         case (N_ACCELERATION)
+            call put_vector(state%a)
+         case (N_P_W)
+            call put_list(x(3, :))
+         case (N_P_C)
+            call put_list(x(4, :))
+         case (N_P_A)
+            call put_list(x(3, :) + x(4, :))
+         case default
+            if (i == N_FIRST_CELL) call means(domain, state, cells)
+            call put_list(cells(i - N_FIRST_CELL + 1, :))
+         end select
+      end do
+      call put(file, 'points/stress', state%stress(1:4, :), 'kPa', 'effective stress rr, zz, tt, rz of every '// &
+               'quadrature point, tension positive')
+      call put(file, 'points/e', state%e, '-', 'void ratio of every quadrature point')
+      call put(file, 'points/S_w', state%s, '-', 'degree of saturation of every quadrature point')
+      call write_file(file, path, good)
+      if (.not. good) call complain(path, fault)
+      if (good) call write_xdmf(folder, domain, frames, fault)
+   contains
+      subroutine put_list(values)
+         real(wp), intent(in) :: values(:)
+
+         call put(file, place_of(i), values, trim(LIST(i)%unit), trim(LIST(i)%meaning))
+      end subroutine put_list
+
+      subroutine put_vector(values)
+         real(wp), intent(in) :: values(:, :)
+         real(wp) :: three(3, size(values, 2))
+
+         three(1:2, :) = values
+         three(3, :) = 0.0_wp
+         call put(file, place_of(i), three, trim(LIST(i)%unit), trim(LIST(i)%meaning))
+      end subroutine put_vector
+   end subroutine write_frame
+
+   !> Whether the scene has the field.
+   pure logical function has(domain, i)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: i
+
+      select case (i)
+      case (N_P_W)
+         has = domain%with_w
+      case (N_P_C, N_P_A, N_S_W)
+         has = domain%with_c
+      case default
+         has = .true.
+      end select
+   end function has
+
+   pure function place_of(i) result(place)
+      integer, intent(in) :: i
+      character(:), allocatable :: place
+
+      place = trim(merge('nodes', 'cells', LIST(i)%of_nodes))//'/'//trim(LIST(i)%name)
+   end function place_of
+
+   pure function file_of(number) result(name)
+      integer, intent(in) :: number
+      character(16) :: name
+
+      write (name, '(a,i6.6,a)') 'fields_', number, '.h5'
+   end function file_of
+
+   !> Unknowns of every node: pressures of the middles of sides too where only vertices have their own.
+   pure subroutine all_pressures(domain, state, x)
+      type(domain_t), intent(in) :: domain
+      type(state_t), intent(in) :: state
+      real(wp), intent(out) :: x(:, :)
+      integer :: e, i
+
+      x = state%x
+      if (domain%n_p == 6) return
+      do e = 1, size(domain%mesh%t6, 2)
+         associate (node => domain%mesh%t6(:, e))
+            do i = 1, 3
+               x(3:4, node(3 + i)) = 0.5_wp*(state%x(3:4, node(i)) + state%x(3:4, node(mod(i, 3) + 1)))
+            end do
+         end associate
+      end do
+   end subroutine all_pressures
+
+   !> Means over the elements, in the order of the list.
+   pure subroutine means(domain, state, cells)
+      type(domain_t), intent(in) :: domain
+      type(state_t), intent(in) :: state
+      real(wp), intent(out) :: cells(:, :)
+      real(wp) :: weight(domain%rule), s(4), p
+      integer :: e, first, last, i
+
+      do e = 1, size(cells, 2)
+         first = (e - 1)*domain%rule + 1
+         last = e*domain%rule
+         weight = domain%gauss(:, e)%weight/sum(domain%gauss(:, e)%weight)
+         s = matmul(state%stress(1:4, first:last), weight)
+         p = -sum(s(1:3))/3
+         cells(1:4, e) = s
+         cells(5, e) = p
+         cells(6, e) = sqrt(1.5_wp*sum([((s(i) + p)**2, i=1, 3)]) + 3*s(4)**2)
+         cells(7, e) = dot_product(state%e(first:last), weight)
+         cells(8, e) = dot_product(state%s(first:last), weight)
+      end do
+   end subroutine means
+
+   subroutine write_xdmf(folder, domain, frames, fault)
+      character(*), intent(in) :: folder
+      type(domain_t), intent(in) :: domain
+      type(frames_t), intent(in) :: frames
+      type(fault_t), intent(inout) :: fault
+      character(*), parameter :: LF = new_line('a')
+      character(:), allocatable :: text, mesh, attributes
+      character(26) :: time
+      integer :: i, k, nodes, elements
+      logical :: good
+
+      nodes = size(domain%mesh%x, 2)
+      elements = size(domain%mesh%t6, 2)
+      mesh = '    <Topology TopologyType="Triangle_6" NumberOfElements="'//whole(elements)//'">'// &
+             item(whole(elements)//' 6', 'Int', 'mesh.h5', 'elements')//'</Topology>'//LF// &
+             '    <Geometry GeometryType="XY">'//item(whole(nodes)//' 2', 'Float', 'mesh.h5', 'nodes')// &
+             '</Geometry>'//LF
+      text = '<?xml version="1.0"?>'//LF//'<Xdmf Version="3.0"><Domain>'//LF// &
+             '<Grid Name="results" GridType="Collection" CollectionType="Temporal">'//LF
+      do k = 1, size(frames%times)
+         attributes = ''
+         do i = 1, size(LIST)
+            if (.not. has(domain, i)) cycle
+            attributes = attributes//'    <Attribute Name="'//trim(LIST(i)%name)//' ['//trim(LIST(i)%unit)// &
+                         ']" AttributeType="'//merge('Vector', 'Scalar', LIST(i)%components == 3)// &
+                         '" Center="'//merge('Node', 'Cell', LIST(i)%of_nodes)//'">'// &
+                         item(whole(merge(nodes, elements, LIST(i)%of_nodes))//trim(merge(' 3', '  ', &
+                              LIST(i)%components == 3)), 'Float', trim(file_of(k)), place_of(i))//'</Attribute>'//LF
+         end do
+         write (time, '(es24.16e3)') frames%times(k)
+         text = text//'  <Grid Name="results" GridType="Uniform"><Time Value="'//trim(adjustl(time))//'"/>'//LF// &
+                mesh//attributes//'  </Grid>'//LF
+      end do
+      text = text//'</Grid>'//LF//'</Domain></Xdmf>'//LF
+      call write_whole(folder//'/results.xdmf', bytes_of(text), good)
+      if (.not. good) call complain(folder//'/results.xdmf', fault)
+   end subroutine write_xdmf
+
+   pure function item(dimensions, number, file, place) result(text)
+      character(*), intent(in) :: dimensions, number, file, place
+      character(:), allocatable :: text
+
+      text = '<DataItem Dimensions="'//dimensions//'" NumberType="'//number//'" Precision="'// &
+             merge('8', '4', number == 'Float')//'" Format="HDF">'//file//':/'//place//'</DataItem>'
+   end function item
+
+   subroutine complain(path, fault)
+      character(*), intent(in) :: path
+      type(fault_t), intent(inout) :: fault
+
+      call raise(fault, EXIT_OUTPUT, path//' cannot be written; is there space?')
+   end subroutine complain
+end module field_files

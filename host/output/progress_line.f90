@@ -1,0 +1,122 @@
+!> The line that says how far a run is: rewritten in place on a terminal, now and then a line of its own elsewhere.
+module progress_line
+   use, intrinsic :: iso_fortran_env, only: output_unit
+   use wall_clock, only: clock
+   use run_state, only: run_t
+   use kinds, only: wp
+   use model_types, only: model_t, stage_t
+   use files, only: to_terminal
+   use texts, only: short, whole
+   implicit none (type, external)
+   private
+   public :: progress_t, show_progress, clear_progress, steps_left, span_of
+
+   real(wp), parameter :: PERIODS(2) = [0.5_wp, 30.0_wp]   !< Between two lines: on a terminal, elsewhere [s].
+   real(wp), parameter :: MEMORY = 0.9_wp                  !< Share of the past in the mean time of a step.
+   integer, parameter :: WIDTH = 79
+
+   type :: progress_t
+      logical :: quiet = .true.
+      logical :: standing = .false.         !< A line stands on the terminal.
+      real(wp) :: last_line = -huge(1.0_wp) !< When it was written.
+      real(wp) :: last_step = -1.0_wp
+      real(wp) :: pace = 0.0_wp             !< Seconds a step, the last ones counting most.
+      real(wp) :: last_checkpoint = 0.0_wp
+   end type progress_t
+contains
+   !> After every accepted step.
+   subroutine show_progress(model, run, progress)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(progress_t), intent(inout) :: progress
+      character(:), allocatable :: line
+      real(wp) :: now, left
+      logical :: terminal
+      integer :: i
+
+      if (progress%quiet) return
+      now = clock()
+      terminal = to_terminal()
+      if (progress%last_step >= 0.0_wp) then
+         if (progress%pace > 0.0_wp) then
+            progress%pace = MEMORY*progress%pace + (1 - MEMORY)*(now - progress%last_step)
+         else
+            progress%pace = now - progress%last_step
+         end if
+      else if (.not. terminal) then
+         progress%last_line = now
+      end if
+      progress%last_step = now
+      ! The first step has no pace yet.
+      if (.not. progress%pace > 0.0_wp .or. now - progress%last_line < PERIODS(merge(1, 2, terminal))) return
+      progress%last_line = now
+      associate (stage => model%stages(run%course%stage), course => run%course)
+         left = steps_left(stage, course%nominal*course%factor, course%t_start + stage%duration - run%state%time)
+         do i = course%stage + 1, size(model%stages)
+            left = left + steps_left(model%stages(i), model%stages(i)%dt, model%stages(i)%duration)
+         end do
+         line = 'Stage '//trim(stage%name)//': step '//whole(course%step)//', time '//short(run%state%time)//' s, '// &
+                whole(nint(100*(run%state%time - course%t_start)/stage%duration))//' %; about '// &
+                span_of(left*progress%pace)//' left for all stages'
+      end associate
+      line = line(:min(len(line), WIDTH))
+      if (terminal) then
+         write (output_unit, '(a)', advance='no') achar(13)//line//repeat(' ', WIDTH - len(line))
+         progress%standing = .true.
+      else
+         write (output_unit, '(a)') line
+      end if
+      flush (output_unit)
+   end subroutine show_progress
+
+   !> Empties the line on the terminal, so that another can be written.
+   subroutine clear_progress(progress)
+      type(progress_t), intent(inout) :: progress
+
+      if (progress%standing) write (output_unit, '(a)', advance='no') achar(13)//repeat(' ', WIDTH)//achar(13)
+      progress%standing = .false.
+   end subroutine clear_progress
+
+   !> Steps that the rest of a stage takes if none is cut: a geometric series up to the largest step.
+   pure real(wp) function steps_left(stage, dt, time) result(steps)
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: dt, time   !< The next step; what is left [s].
+      real(wp) :: largest, growing, covered
+
+      if (time <= 0.0_wp) then
+         steps = 0.0_wp
+         return
+      end if
+      ! The second: as far as it could grow in the time that is left.
+      largest = min(max(stage%dt_max, stage%dt), dt + stage%dt_growth*time)
+      if (.not. stage%dt_growth > 1.0_wp .or. dt >= largest) then
+         steps = time/dt
+         return
+      end if
+      associate (g => stage%dt_growth)
+         growing = log(largest/dt)/log(g)
+         covered = dt*(largest/dt - 1)/(g - 1)
+         if (covered < time) then
+            steps = growing + (time - covered)/largest
+         else
+            steps = log(1 + time*(g - 1)/dt)/log(g)
+         end if
+      end associate
+   end function steps_left
+
+   !> A span of time as one reads it.
+   pure function span_of(seconds) result(text)
+      real(wp), intent(in) :: seconds
+      character(:), allocatable :: text
+      integer :: s
+
+      s = nint(min(seconds, 1.0e9_wp))
+      if (s < 100) then
+         text = whole(s)//' s'
+      else if (s < 6000) then
+         text = whole(s/60)//' min '//whole(mod(s, 60))//' s'
+      else
+         text = whole(s/3600)//' h '//whole(mod(s, 3600)/60)//' min'
+      end if
+   end function span_of
+end module progress_line

@@ -1,0 +1,72 @@
+!> Fingerprint of a scene: its groups, keys and values in their order, and the contents of the files that it names.
+!> Comments, spaces and what changes no result take no part.
+module scene_fingerprint
+   use, intrinsic :: iso_fortran_env, only: int64
+   use namelists, only: group_t
+   use texts, only: lower_case
+   implicit none (type, external)
+   private
+   public :: fingerprint_of, FINGERPRINT_LENGTH
+
+   integer, parameter :: FINGERPRINT_LENGTH = 16
+   integer, parameter :: BLOCK = 65536
+   ! Two polynomial hashes modulo primes below 2**31: products stay below 2**63.
+   integer(int64), parameter :: PRIMES(2) = [2147483647_int64, 2147483629_int64], BASES(2) = [65599_int64, 31337_int64]
+   character(*), parameter :: FREE(*) = [character(18) :: 'threads', 'checkpoint_steps', 'checkpoint_seconds']
+contains
+   function fingerprint_of(groups) result(text)
+      type(group_t), intent(in) :: groups(:)
+      character(FINGERPRINT_LENGTH) :: text
+      integer(int64) :: hash(2)
+      integer :: g, i, k
+
+      hash = 1
+      do g = 1, size(groups)
+         call add('&'//trim(groups(g)%name), hash)
+         do i = 1, groups(g)%count
+            associate (item => groups(g)%entries(i))
+               if (any(FREE == lower_case(item%key))) cycle
+               call add(' '//lower_case(trim(item%key)), hash)
+               do k = 1, item%count
+                  call add('='//trim(item%values(k)), hash)
+               end do
+               if (lower_case(item%key) == 'file') call add_file(trim(groups(g)%file), trim(item%values(1)), hash)
+            end associate
+         end do
+      end do
+      write (text, '(2z8.8)') hash
+   end function fingerprint_of
+
+   pure subroutine add(text, hash)
+      character(*), intent(in) :: text
+      integer(int64), intent(inout) :: hash(2)
+      integer :: i
+
+      do i = 1, len(text)
+         hash = mod(hash*BASES + iachar(text(i:i)) + 1, PRIMES)
+      end do
+   end subroutine add
+
+   !> Contents of a file, its path seen from the scene. One that cannot be read is refused elsewhere.
+   subroutine add_file(scene, path, hash)
+      character(*), intent(in) :: scene, path
+      integer(int64), intent(inout) :: hash(2)
+      character(:), allocatable :: whole_path
+      character(BLOCK) :: block_of
+      integer :: unit, status, length, left
+
+      whole_path = path
+      if (path(1:1) /= '/') whole_path = scene(:index(scene, '/', back=.true.))//path
+      open (newunit=unit, file=whole_path, access='stream', form='unformatted', status='old', action='read', &
+            iostat=status)
+      if (status /= 0) return
+      inquire (unit=unit, size=length)
+      left = length
+      do while (left > 0 .and. status == 0)
+         read (unit, iostat=status) block_of(:min(left, BLOCK))
+         if (status == 0) call add(block_of(:min(left, BLOCK)), hash)
+         left = left - BLOCK
+      end do
+      close (unit)
+   end subroutine add_file
+end module scene_fingerprint

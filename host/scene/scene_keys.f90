@@ -1,0 +1,229 @@
+!> Every key of a scene: kind, default, range or words, meaning. Checks, the template and the tables of the manual all
+!> come from this list.
+module scene_keys
+   use kinds, only: wp
+   use faults, only: fault_t
+   use key_schema, only: key_t, REQUIRED, NONE, UNBOUNDED, check_group, given, texts_of, numbers_of, &
+                         schema_number_of => number_of, schema_text_of => text_of, schema_word_is => word_is
+   use namelists, only: group_t, MAX_VALUES
+   implicit none (type, external)
+   private
+   public :: check_keys, number_of, numbers_of, text_of, texts_of, word_is, given, print_template
+
+   real(wp), parameter :: BIG = UNBOUNDED, TINY_ = 1.0e-30_wp
+
+   type(key_t), parameter :: KEYS(*) = [ &
+      key_t('scene', 'name', 't', REQUIRED, 0, 0, 'name of the scene'), &
+      key_t('scene', 'geometry', 'w', 'axisymmetric', 0, 0, 'r, z or x, y', 'axisymmetric|plane_strain'), &
+      key_t('scene', 'fields', 'w', 'u', 0, 0, 'unknowns; absent ones cost nothing', 'u|u-p_w|u-p_w-p_c'), &
+      key_t('scene', 'pressures', 'w', 'quadratic', 0, 0, 'interpolation (linear: Taylor-Hood)', 'quadratic|linear'), &
+      key_t('scene', 'quadrature', 'i', '6', 3, 12, 'points of an element: 3, 6, 7 or 12'), &
+      key_t('scene', 'gravity', 'n', '0', 0, 1000, 'acceleration towards -z [m/s2]'), &
+      key_t('scene', 'effects', 'w', 'given', 0, 0, 'auto derives what keys leave out, see README', 'given|auto'), &
+      key_t('scene', 'effects_tolerance', 'n', '0.01', 1.0e-6_wp, 1, 'share that an effect left out may have [-]'), &
+      key_t('scene', 'seepage_inertia', 'w', 'no', 0, 0, 'acceleration of the skeleton in Darcy''s law', 'no|yes'), &
+      key_t('scene', 'saturation_rate', 'w', 'full', 0, 0, 'with dS_w/de, or by suction alone', 'full|suction'), &
+      key_t('scene', 'initial_flow', 'w', 'drain', 0, 0, 'subtract: flow at the start is kept up', 'drain|subtract'), &
+      key_t('scene', 'threads', 'i', '0', 0, 1024, 'threads of the element loop; 0: OMP_NUM_THREADS'), &
+      key_t('scene', 'factors', 'w', 'reuse', 0, 0, 'of the matrix: while they serve, or always new', 'reuse|fresh'), &
+      key_t('scene', 'ordering', 'w', 'amd', 0, 0, 'of the unknowns; best tries several', 'amd|metis|best'), &
+      key_t('scene', 'checkpoint_steps', 'i', '0', 0, 1000000000, 'checkpoint.h5 after every so many steps; 0: none'), &
+      key_t('scene', 'checkpoint_seconds', 'n', '0', 0, BIG, 'and after so much wall time [s]; 0: none'), &
+      key_t('mesh', 'file', 't', NONE, 0, 0, 'Gmsh 4.1 text mesh, seen from the scene; or a built-in one:'), &
+      key_t('mesh', 'r', 'N', NONE, -BIG, BIG, 'breaks along r [m], ascending'), &
+      key_t('mesh', 'r_cells', 'I', NONE, 1, 100000, 'cells between two breaks'), &
+      key_t('mesh', 'r_ratio', 'N', NONE, 0.01_wp, 100, 'size of a cell over that before it; default 1'), &
+      key_t('mesh', 'z', 'N', NONE, -BIG, BIG, 'breaks along z [m], ascending'), &
+      key_t('mesh', 'z_cells', 'I', NONE, 1, 100000, 'cells between two breaks'), &
+      key_t('mesh', 'z_ratio', 'N', NONE, 0.01_wp, 100, 'size of a cell over that before it; default 1'), &
+      key_t('fluids', 'k_w', 'n', '2.2e6', TINY_, BIG, 'bulk modulus of water [kPa]'), &
+      key_t('fluids', 'rho_w', 'n', '1.0', 0, 1000, 'density of water [Mg/m3]'), &
+      key_t('fluids', 'eta_w', 'n', '1.0e-6', TINY_, BIG, 'viscosity of water [kPa s]'), &
+      key_t('fluids', 'gas', 'w', 'constant', 0, 0, 'ideal: K_a = p_ref + p_a, density as well', 'constant|ideal'), &
+      key_t('fluids', 'k_a', 'n', '101.325', TINY_, BIG, 'bulk modulus of a constant gas [kPa]'), &
+      key_t('fluids', 'rho_a', 'n', '1.2e-3', 0, 1000, 'density of air (ideal: at p_ref) [Mg/m3]'), &
+      key_t('fluids', 'eta_a', 'n', '1.8e-8', TINY_, BIG, 'viscosity of air [kPa s]'), &
+      key_t('fluids', 'p_ref', 'n', '101.325', TINY_, BIG, 'absolute pressure where p_a = 0 [kPa]'), &
+      key_t('mud', 'name', 't', REQUIRED, 0, 0, 'name that regions call the material by'), &
+      key_t('mud', 'material_call', 'w', 'mud_update', 0, 0, 'door to the library', 'mud_update|umat'), &
+      key_t('mud', 'file', 't', NONE, 0, 0, 'material file; every parameter of the library is a key too'), &
+      key_t('elastic', 'name', 't', REQUIRED, 0, 0, 'name that regions call the material by'), &
+      key_t('elastic', 'young', 'n', REQUIRED, TINY_, BIG, 'Young''s modulus [kPa]'), &
+      key_t('elastic', 'poisson', 'n', REQUIRED, -0.99_wp, 0.4999_wp, 'Poisson''s ratio [-]'), &
+      key_t('retention', 'name', 't', REQUIRED, 0, 0, 'name that regions call it by'), &
+      key_t('retention', 'law', 'w', 'bilogarithmic', 0, 0, 'see README', 'bilogarithmic|power|table|saturated'), &
+      key_t('retention', 'p_a', 'n', '5.0', TINY_, BIG, 'air entry of the bilogarithmic law [kPa]'), &
+      key_t('retention', 'n', 'n', '2.0', 0.01_wp, 100, 'its exponent n [-]'), &
+      key_t('retention', 'm', 'n', '1.0', 0.001_wp, 100, 'its exponent m [-]'), &
+      key_t('retention', 'omega', 'n', '2.0', 0, 100, 'its exponent of the void ratio [-]'), &
+      key_t('retention', 's_max', 'n', '1.0', 0, 1, 'its largest degree of saturation [-]'), &
+      key_t('retention', 's_min', 'n', '0.0', 0, 1, 'least degree of saturation [-]'), &
+      key_t('retention', 'a', 'n', '0.0', 0, BIG, 'factor of the power law S = 1 - a p_c**b'), &
+      key_t('retention', 'b', 'n', '1.0', 1, 100, 'its exponent [-]'), &
+      key_t('retention', 'suction', 'N', NONE, -BIG, BIG, 'table: suctions [kPa], ascending'), &
+      key_t('retention', 'saturation', 'N', NONE, 0, 1, 'table: degrees of saturation [-]'), &
+      key_t('permeability', 'name', 't', REQUIRED, 0, 0, 'name that regions call it by'), &
+      key_t('permeability', 'intrinsic', 'n', REQUIRED, TINY_, 1, 'intrinsic permeability [m2]'), &
+      key_t('permeability', 'law', 'w', 'corey', 0, 0, 'relative permeabilities', 'corey|mualem|power|constant'), &
+      key_t('permeability', 's_min', 'n', '0.0', 0, 0.999_wp, 'S_w at which S_e = 0 [-]'), &
+      key_t('permeability', 's_max', 'n', '1.0', 0.001_wp, 1, 'S_w at which S_e = 1 [-]'), &
+      key_t('permeability', 'a', 'n', '0.0', 0, BIG, 'power: k_rw = 1 - a (1 - S_w)**b'), &
+      key_t('permeability', 'b', 'n', '3.0', 1, 100, 'corey: k_rw = S_e**b; power: see a'), &
+      key_t('permeability', 'c', 'n', '2.0', 1, 100, 'corey, power: k_ra = (1 - S_e)**2 (1 - S_e**c)'), &
+      key_t('permeability', 'm', 'n', '0.5', 0.01_wp, 0.99_wp, 'exponent of Mualem-van Genuchten [-]'), &
+      key_t('permeability', 'k_rw', 'n', '1.0', 0, 1, 'constant: relative permeability to water [-]'), &
+      key_t('permeability', 'k_ra', 'n', '1.0', 0, 1, 'constant: relative permeability to air [-]'), &
+      key_t('permeability', 'floor', 'n', '1.0e-4', 0, 1, 'least relative permeability [-]'), &
+      key_t('region', 'group', 't', 'all', 0, 0, 'group of elements'), &
+      key_t('region', 'material', 't', REQUIRED, 0, 0, 'name of a &mud or &elastic'), &
+      key_t('region', 'retention', 't', NONE, 0, 0, 'name of a &retention, or "mud": that of the material'), &
+      key_t('region', 'permeability', 't', NONE, 0, 0, 'name of a &permeability'), &
+      key_t('region', 'rho_s', 'n', '2.65', 0, 1000, 'density of the grains [Mg/m3]'), &
+      key_t('region', 'void_ratio', 'n', NONE, 0, 10, 'initial void ratio [-]; default: the material''s'), &
+      key_t('region', 'damping', 'n', '0', 0, BIG, 'force against the velocity over mass, dynamic stages [1/s]'), &
+      key_t('initial', 'group', 't', 'all', 0, 0, 'group of elements or nodes'), &
+      key_t('initial', 'p_w', 'n', '0', -BIG, BIG, 'pore water pressure at the datum [kPa]'), &
+      key_t('initial', 'p_w_slope', 'n', '0', -BIG, BIG, 'its change with z [kPa/m]'), &
+      key_t('initial', 'p_c', 'n', '0', -BIG, BIG, 'suction at the datum [kPa]'), &
+      key_t('initial', 'p_c_slope', 'n', '0', -BIG, BIG, 'its change with z [kPa/m]'), &
+      key_t('initial', 'datum', 'n', '0', -BIG, BIG, 'z of the datum [m]'), &
+      key_t('initial', 'v_z', 'n', '0', -BIG, BIG, 'vertical velocity at the start [m/s]'), &
+      key_t('initial', 'wave', 'n', '0', -BIG, BIG, 'v_z = wave sin(wave_number (z - datum)) at the start [m/s]'), &
+      key_t('initial', 'wave_number', 'n', '0', 0, BIG, 'see wave [1/m]'), &
+      key_t('initial', 'stress', 'w', 'none', 0, 0, 'effective stress at the start', 'none|uniform|geostatic'), &
+      key_t('initial', 'sigma', 'N', NONE, -BIG, BIG, 'uniform: rr, zz, tt, tension positive [kPa]'), &
+      key_t('initial', 'surface', 'n', '0', -BIG, BIG, 'geostatic: z of the surface [m]'), &
+      key_t('initial', 'surcharge', 'n', '0', 0, BIG, 'geostatic: pressure on it [kPa]'), &
+      key_t('initial', 'k_0', 'n', '0.5', 0, 10, 'geostatic: horizontal over vertical stress'), &
+      key_t('initial', 'k_0_of', 'w', 'net', 0, 0, 'stress that K_0 acts on where p_c > 0', 'net|effective'), &
+      key_t('history', 'name', 't', REQUIRED, 0, 0, 'name that loads call it by'), &
+      key_t('history', 'times', 'N', NONE, -BIG, BIG, 'ascending [s]; straight lines between, constant outside'), &
+      key_t('history', 'values', 'N', NONE, -BIG, BIG, 'factors at these times [-]'), &
+      key_t('history', 'file', 't', NONE, 0, 0, 'instead: text file with a time and a factor a line'), &
+      key_t('stage', 'name', 't', REQUIRED, 0, 0, 'name of the stage'), &
+      key_t('stage', 'analysis', 'w', NONE, 0, 0, 'needed unless effects = ''auto''', 'static|quasi_static|dynamic'), &
+      key_t('stage', 'duration', 'n', REQUIRED, TINY_, BIG, 'duration [s]'), &
+      key_t('stage', 'dt', 'n', REQUIRED, TINY_, BIG, 'time step [s]'), &
+      key_t('stage', 'dt_growth', 'n', '1', 1, 10, 'factor on the step after every accepted one'), &
+      key_t('stage', 'dt_max', 'n', NONE, TINY_, BIG, 'largest step with dt_growth [s]'), &
+      key_t('stage', 'cuts', 'i', '10', 0, 40, 'how often a step may be halved'), &
+      key_t('stage', 'rho_inf', 'n', '0.8', 0, 1, 'spectral radius of generalised-alpha [-]'), &
+      key_t('stage', 'tolerance', 'n', '1.0e-3', 1.0e-14_wp, 0.1_wp, 'Newton: error that ends the iteration [-]'), &
+      key_t('stage', 'measure', 'w', 'forces', 0, 0, 'that error, see README', 'forces|residual|correction'), &
+      key_t('stage', 'max_iterations', 'i', '12', 1, 1000, 'Newton: linear solves before the step is cut'), &
+      key_t('stage', 'predictor', 'w', 'rates', 0, 0, 'start of the iteration', 'rates|none'), &
+      key_t('stage', 'start', 'w', 'solve', 0, 0, 'accelerations at the start of a dynamic stage', 'solve|zero'), &
+      key_t('stage', 'zero_displacements', 'w', 'no', 0, 0, 'at the end of the stage', 'no|yes'), &
+      key_t('stage', 'every', 'i', '1', 1, 1000000, 'histories are written every so many steps'), &
+      key_t('stage', 'fields', 'i', '0', 0, 1000000, 'fields too; 0: at the end of the stage alone'), &
+      key_t('fix', 'group', 't', REQUIRED, 0, 0, 'boundary, region or node group'), &
+      key_t('fix', 'field', 'w', REQUIRED, 0, 0, 'what is prescribed', 'u_r|u_z|p_w|p_c|p_a'), &
+      key_t('fix', 'value', 'n', '0', -BIG, BIG, 'its value [m, kPa]'), &
+      key_t('fix', 'history', 't', NONE, 0, 0, 'factor on the value'), &
+      key_t('fix', 'hold', 'w', 'no', 0, 0, 'yes: at its value at the start of the stage', 'no|yes'), &
+      key_t('fix', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
+      key_t('fix', 'from', 'n', NONE, -BIG, BIG, 'acts after this time [s]'), &
+      key_t('fix', 'until', 'n', NONE, -BIG, BIG, 'and up to this one [s]'), &
+      key_t('load', 'group', 't', REQUIRED, 0, 0, 'boundary (for force: node group)'), &
+      key_t('load', 'kind', 'w', REQUIRED, 0, 0, 'see README', 'pressure|shear_r|shear_z|water|air|force_r|force_z'), &
+      key_t('load', 'value', 'n', REQUIRED, -BIG, BIG, 'its value [kPa, m/s, kN]'), &
+      key_t('load', 'history', 't', NONE, 0, 0, 'factor on the value'), &
+      key_t('load', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
+      key_t('rigid', 'group', 't', REQUIRED, 0, 0, 'boundary that moves vertically as one body'), &
+      key_t('rigid', 'mass', 'n', '0', 0, BIG, 'its mass [Mg]'), &
+      key_t('rigid', 'force', 'n', '0', -BIG, BIG, 'force on it, upwards [kN]'), &
+      key_t('rigid', 'history', 't', NONE, 0, 0, 'factor on the force'), &
+      key_t('plate', 'name', 't', REQUIRED, 0, 0, 'rigid plate, vertical; also a group for &fix and &load'), &
+      key_t('plate', 'r', 'N', REQUIRED, -BIG, BIG, 'where its flat face begins and ends [m]'), &
+      key_t('plate', 'z', 'n', '0', -BIG, BIG, 'height of the face at the start [m]'), &
+      key_t('plate', 'face', 'w', 'down', 0, 0, 'where the face looks', 'down|up'), &
+      key_t('plate', 'mass', 'n', REQUIRED, TINY_, BIG, 'its mass [Mg]'), &
+      key_t('plate', 'weight', 'w', 'no', 0, 0, 'its weight acts; it starts seated on the penalty', 'no|yes'), &
+      key_t('plate', 'force', 'n', '0', -BIG, BIG, 'force on it, upwards [kN]'), &
+      key_t('plate', 'history', 't', NONE, 0, 0, 'factor on the force'), &
+      key_t('contact', 'name', 't', REQUIRED, 0, 0, 'name in contact.csv'), &
+      key_t('contact', 'slave', 't', REQUIRED, 0, 0, 'boundary that is integrated over: the softer or finer one'), &
+      key_t('contact', 'master', 't', REQUIRED, 0, 0, 'boundary opposite, or name of a &plate'), &
+      key_t('contact', 'penalty', 'n', '1.0e8', TINY_, BIG, 'pressure of a unit of penetration [kN/m3]'), &
+      key_t('contact', 'gap', 'w', 'nodal', 0, 0, 'gap that is penalised, see CONTACT.md', 'nodal|pointwise'), &
+      key_t('contact', 'variation', 'w', 'pressure', 0, 0, 'force, see CONTACT.md', 'pressure|energy'), &
+      key_t('contact', 'reach', 'n', '0', 0, BIG, 'edges farther apart do not meet [m]; 0: an edge''s own length'), &
+      key_t('contact', 'drainage', 'w', 'fixed', 0, 0, &
+            'state: &fix of pressures let touching nodes go', 'fixed|state'), &
+      key_t('contact', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
+      key_t('point', 'name', 't', REQUIRED, 0, 0, 'name in histories.csv'), &
+      key_t('point', 'r', 'n', REQUIRED, -BIG, BIG, 'the nearest node is taken [m]'), &
+      key_t('point', 'z', 'n', REQUIRED, -BIG, BIG, 'the nearest node is taken [m]')]
+contains
+   !> Refuses unknown groups and keys, missing ones, and values of the wrong kind or outside their range.
+   subroutine check_keys(groups, fault)
+      type(group_t), intent(in) :: groups(:)
+      type(fault_t), intent(inout) :: fault
+      integer :: g
+
+      do g = 1, size(groups)
+         ! The library knows the parameters of &mud.
+         call check_group(KEYS, groups(g), groups(g)%name == 'mud', fault)
+         if (fault%code /= 0) return
+      end do
+   end subroutine check_keys
+
+   !> Value of a number, or its default (0 if it has none).
+   real(wp) function number_of(group, name)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: name
+
+      number_of = schema_number_of(KEYS, group, name)
+   end function number_of
+
+   !> A text, or its default.
+   function text_of(group, name) result(text)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: name
+      character(:), allocatable :: text
+
+      text = schema_text_of(KEYS, group, name)
+   end function text_of
+
+   logical function word_is(group, name, word)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: name, word
+
+      word_is = schema_word_is(KEYS, group, name, word)
+   end function word_is
+
+   !> Every key with its default and meaning, as a scene to start from.
+   subroutine print_template(unit)
+      integer, intent(in) :: unit
+      character(:), allocatable :: value
+      character(:), allocatable :: meaning
+      integer :: g, k
+
+      write (unit, '(a)') '! Every group and key of a scene. Lines that begin with "!" may be left out.'
+      write (unit, '(a,i0,a)') '! Groups but &scene, &mesh and &fluids may occur several times; lists hold up to ', &
+         MAX_VALUES, ' values.'
+      do g = 1, size(KEYS)
+         if (any(KEYS(:g - 1)%group == KEYS(g)%group)) cycle
+         write (unit, '(2a)') '&', trim(KEYS(g)%group)
+         do k = g, size(KEYS)
+            if (KEYS(k)%group /= KEYS(g)%group) cycle
+            value = trim(KEYS(k)%preset)
+            if (value == REQUIRED) value = '?'
+            if (index('twT', KEYS(k)%kind) > 0) value = ''''//value//''''
+            meaning = trim(KEYS(k)%meaning)
+            if (KEYS(k)%words /= '') meaning = trim(KEYS(k)%words)//': '//meaning
+            write (unit, '(a,a,a)') merge('     ', '   ! ', KEYS(k)%preset == REQUIRED), &
+               padded(trim(KEYS(k)%name)//' = '//value, 34), '! '//meaning
+         end do
+         write (unit, '(a)') '/'
+      end do
+   contains
+      pure function padded(text, width) result(wide)
+         character(*), intent(in) :: text
+         integer, intent(in) :: width
+         character(:), allocatable :: wide
+
+         wide = text//repeat(' ', max(1, width - len(text)))
+      end function padded
+   end subroutine print_template
+end module scene_keys

@@ -1,0 +1,59 @@
+!> Names of a scene: what others name is there once, and what becomes a file or a column has a name fit for it.
+module scene_names
+   use triangle_mesh, only: NAME_LENGTH
+   use faults, only: fault_t, raise, at_line, EXIT_INPUT
+   use namelists, only: group_t, find_entry
+   use texts, only: whole
+   implicit none (type, external)
+   private
+   public :: check_names
+
+   !> Groups with names; those of one list share them.
+   character(12), parameter :: NAMED(9) = [character(12) :: 'mud', 'elastic', 'retention', 'permeability', 'history', &
+      'stage', 'point', 'plate', 'contact']
+   integer, parameter :: LIST(9) = [1, 1, 2, 3, 4, 5, 6, 7, 8]
+   character(12), parameter :: WRITTEN(4) = [character(12) :: 'stage', 'point', 'plate', 'contact']
+   character(*), parameter :: LETTERS = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ'
+   character(*), parameter :: FIT = LETTERS//'0123456789_-.'
+contains
+   !> Of groups whose keys are those of the list.
+   subroutine check_names(groups, fault)
+      type(group_t), intent(in) :: groups(:)
+      type(fault_t), intent(inout) :: fault
+      character(:), allocatable :: name, place
+      integer :: g, i, of
+
+      do g = 1, size(groups)
+         of = list_of(groups(g))
+         if (of == 0) cycle
+         associate (item => groups(g)%entries(find_entry(groups(g), 'name')))
+            name = trim(item%values(1))
+            place = at_line(groups(g)%file, item%line)//'name = '''//name//''''
+         end associate
+         if (name == '' .or. len(name) > NAME_LENGTH) then
+            call raise(fault, EXIT_INPUT, place//': a name has 1 to '//whole(NAME_LENGTH)//' characters.')
+         else if (any(WRITTEN == groups(g)%name) .and. verify(name, FIT) > 0) then
+            call raise(fault, EXIT_INPUT, place//' becomes a file or a column: use letters, digits, "_", "-" and '// &
+                       '"." alone.')
+         end if
+         do i = 1, g - 1
+            if (list_of(groups(i)) /= of .or. fault%code /= 0) cycle
+            associate (item => groups(i)%entries(find_entry(groups(i), 'name')))
+               if (item%values(1) == name) call raise(fault, EXIT_INPUT, place//' is given twice, first in line '// &
+                                                      whole(item%line)//'; names must differ.')
+            end associate
+         end do
+         if (fault%code /= 0) return
+      end do
+   end subroutine check_names
+
+   !> Number of the list that a group's name belongs to, 0 if it has none.
+   pure integer function list_of(group) result(number)
+      type(group_t), intent(in) :: group
+      integer :: k
+
+      number = 0
+      k = findloc(NAMED, group%name, dim=1)
+      if (k > 0) number = LIST(k)
+   end function list_of
+end module scene_names

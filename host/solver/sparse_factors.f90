@@ -1,0 +1,153 @@
+!> Sparse direct solution by UMFPACK, the only module that knows it. Rows are given to it as columns of the transpose.
+module sparse_factors
+   use, intrinsic :: iso_c_binding, only: c_int, c_double, c_ptr, c_null_ptr, c_associated
+   use kinds, only: wp
+   implicit none (type, external)
+   private
+   public :: sparse_t, analyse, factorise, backsolve, times, release, SOLVED, SINGULAR, FAILED
+
+   integer, parameter :: SOLVED = 0, SINGULAR = 1, FAILED = 2
+   ! Places in UMFPACK's arrays (umfpack.h), from 1 here.
+   integer, parameter :: CONTROLS = 20, INFOS = 90, CONTROL_STRATEGY = 6, CONTROL_REFINEMENT = 8, &
+                         CONTROL_ORDERING = 11, INFO_RCOND = 68, INFO_LNZ = 44, INFO_UNZ = 45
+   real(c_double), parameter :: ORDERINGS(3) = [1.0_c_double, 3.0_c_double, 4.0_c_double]   !< AMD, METIS, the best.
+   real(c_double), parameter :: STRATEGY_SYMMETRIC = 3.0_c_double
+   integer(c_int), parameter :: TRANSPOSED = 1, WARNING_SINGULAR = 1
+   !> Ratio of the smallest to the largest pivot below which a pivot is rounding: a body that nothing holds gives 1e-15,
+   !> the scenes of the verification 1e-8 and more [-].
+   real(wp), parameter :: RCOND_SINGULAR = 1.0e-13_wp
+
+   type :: sparse_t
+      integer :: ordering = 1                             !< 1 AMD, 2 METIS, 3 the best of several.
+      real(c_double) :: control(CONTROLS) = 0.0_c_double, info(INFOS) = 0.0_c_double
+      integer(c_int), allocatable :: start(:), index(:)   !< The pattern, from 0.
+      type(c_ptr) :: symbolic = c_null_ptr, numeric = c_null_ptr
+      integer :: n_symbolic = 0, n_numeric = 0, n_solve = 0
+      real(wp) :: entries = 0.0_wp                        !< In the factors.
+   end type sparse_t
+
+   interface
+      subroutine umfpack_di_defaults(control) bind(c)
+         import :: c_double
+         real(c_double), intent(out) :: control(*)
+      end subroutine umfpack_di_defaults
+
+      integer(c_int) function umfpack_di_symbolic(n_row, n_col, ap, ai, ax, symbolic, control, info) bind(c)
+         import :: c_int, c_double, c_ptr
+         integer(c_int), value :: n_row, n_col
+         integer(c_int), intent(in) :: ap(*), ai(*)
+         type(c_ptr), value :: ax
+         type(c_ptr), intent(out) :: symbolic
+         real(c_double), intent(in) :: control(*)
+         real(c_double), intent(out) :: info(*)
+      end function umfpack_di_symbolic
+
+      integer(c_int) function umfpack_di_numeric(ap, ai, ax, symbolic, numeric, control, info) bind(c)
+         import :: c_int, c_double, c_ptr
+         integer(c_int), intent(in) :: ap(*), ai(*)
+         real(c_double), intent(in) :: ax(*)
+         type(c_ptr), value :: symbolic
+         type(c_ptr), intent(out) :: numeric
+         real(c_double), intent(in) :: control(*)
+         real(c_double), intent(out) :: info(*)
+      end function umfpack_di_numeric
+
+      integer(c_int) function umfpack_di_solve(sys, ap, ai, ax, x, b, numeric, control, info) bind(c)
+         import :: c_int, c_double, c_ptr
+         integer(c_int), value :: sys
+         integer(c_int), intent(in) :: ap(*), ai(*)
+         real(c_double), intent(in) :: ax(*), b(*)
+         real(c_double), intent(out) :: x(*)
+         type(c_ptr), value :: numeric
+         real(c_double), intent(in) :: control(*)
+         real(c_double), intent(out) :: info(*)
+      end function umfpack_di_solve
+
+      subroutine umfpack_di_free_symbolic(symbolic) bind(c)
+         import :: c_ptr
+         type(c_ptr), intent(inout) :: symbolic
+      end subroutine umfpack_di_free_symbolic
+
+      subroutine umfpack_di_free_numeric(numeric) bind(c)
+         import :: c_ptr
+         type(c_ptr), intent(inout) :: numeric
+      end subroutine umfpack_di_free_numeric
+   end interface
+contains
+   !> Ordering, once per pattern and by the pattern alone: a run that is taken up again finds the same one.
+   subroutine analyse(sparse, row, col, status)
+      type(sparse_t), intent(inout) :: sparse
+      integer, intent(in) :: row(:), col(:)   !< From 1.
+      integer, intent(out) :: status
+
+      call release(sparse)
+      sparse%start = row - 1
+      sparse%index = col - 1
+      call umfpack_di_defaults(sparse%control)
+      sparse%control(CONTROL_STRATEGY) = STRATEGY_SYMMETRIC
+      sparse%control(CONTROL_REFINEMENT) = 0.0_c_double
+      sparse%control(CONTROL_ORDERING) = ORDERINGS(sparse%ordering)
+      status = merge(SOLVED, FAILED, umfpack_di_symbolic(size(row) - 1, size(row) - 1, sparse%start, sparse%index, &
+                                                         c_null_ptr, sparse%symbolic, sparse%control, sparse%info) == 0)
+      sparse%n_symbolic = sparse%n_symbolic + 1
+   end subroutine analyse
+
+   subroutine factorise(sparse, values, status)
+      type(sparse_t), intent(inout) :: sparse
+      real(wp), intent(in) :: values(:)
+      integer, intent(out) :: status
+      integer(c_int) :: code
+
+      if (c_associated(sparse%numeric)) call umfpack_di_free_numeric(sparse%numeric)
+      code = umfpack_di_numeric(sparse%start, sparse%index, values, sparse%symbolic, sparse%numeric, &
+                                sparse%control, sparse%info)
+      status = SOLVED
+      if (code == WARNING_SINGULAR) then
+         status = SINGULAR
+      else if (code /= 0) then
+         status = FAILED
+      else if (sparse%info(INFO_RCOND) < RCOND_SINGULAR) then
+         status = SINGULAR
+      end if
+      sparse%entries = sparse%info(INFO_LNZ) + sparse%info(INFO_UNZ)
+      sparse%n_numeric = sparse%n_numeric + 1
+   end subroutine factorise
+
+   !> By the factors as they are; `values` is not looked at.
+   subroutine backsolve(sparse, values, b, x, status)
+      type(sparse_t), intent(inout) :: sparse
+      real(wp), intent(in) :: values(:), b(:)
+      real(wp), intent(out) :: x(:)
+      integer, intent(out) :: status
+
+      status = merge(SOLVED, FAILED, umfpack_di_solve(TRANSPOSED, sparse%start, sparse%index, values, x, b, &
+                                                      sparse%numeric, sparse%control, sparse%info) == 0)
+      sparse%n_solve = sparse%n_solve + 1
+   end subroutine backsolve
+
+   !> y = A x.
+   pure subroutine times(sparse, values, x, y)
+      type(sparse_t), intent(in) :: sparse
+      real(wp), intent(in) :: values(:), x(:)
+      real(wp), intent(out) :: y(:)
+      real(wp) :: total
+      integer :: i, k
+
+      do i = 1, size(y)
+         total = 0.0_wp
+         do k = sparse%start(i) + 1, sparse%start(i + 1)
+            total = total + values(k)*x(sparse%index(k) + 1)
+         end do
+         y(i) = total
+      end do
+   end subroutine times
+
+   subroutine release(sparse)
+      type(sparse_t), intent(inout) :: sparse
+
+      if (c_associated(sparse%numeric)) call umfpack_di_free_numeric(sparse%numeric)
+      if (c_associated(sparse%symbolic)) call umfpack_di_free_symbolic(sparse%symbolic)
+      sparse%numeric = c_null_ptr
+      sparse%symbolic = c_null_ptr
+   end subroutine release
+end module sparse_factors

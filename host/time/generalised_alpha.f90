@@ -1,0 +1,105 @@
+!> Generalised-alpha with one spectral radius: Chung & Hulbert (1993) for accelerations, Jansen, Whiting & Hulbert
+!> (2000) for first-order rates. Residuals are formed from values, displacement rates and pressures at 1 - alpha_f,
+!> accelerations and first-order rates at their own levels.
+module generalised_alpha
+   use kinds, only: wp
+   implicit none (type, external)
+   private
+   public :: scheme_t, make_scheme, predict, advance_rates, rate_of, step_error
+   public :: STATIC, QUASI_STATIC, DYNAMIC
+
+   integer, parameter :: STATIC = 1         !< Equilibrium alone: no rates, pressures held.
+   integer, parameter :: QUASI_STATIC = 2   !< Flow and equilibrium: no accelerations.
+   integer, parameter :: DYNAMIC = 3
+
+   type :: scheme_t
+      integer :: kind = STATIC
+      real(wp) :: dt = 1.0_wp
+      real(wp) :: beta = 0.25_wp, gamma = 0.5_wp   !< Newmark's, for displacements of dynamic steps.
+      real(wp) :: gamma_1 = 1.0_wp                 !< Of first-order rates.
+      real(wp) :: l_f = 1.0_wp                     !< Level of values.
+      real(wp) :: l_v = 1.0_wp                     !< Level of displacement rates.
+      real(wp) :: l_a = 1.0_wp                     !< Level of accelerations.
+      real(wp) :: l_p = 1.0_wp                     !< Level of pressure and saturation rates.
+      real(wp) :: c_v = 0.0_wp, c_a = 0.0_wp, c_p = 0.0_wp   !< Slopes of those at their level against the new values.
+   end type scheme_t
+contains
+   pure function make_scheme(kind, rho_inf, dt) result(scheme)
+      integer, intent(in) :: kind
+      real(wp), intent(in) :: rho_inf   !< 0 to 1
+      real(wp), intent(in) :: dt        !< [s]
+      type(scheme_t) :: scheme
+
+      scheme%kind = kind
+      scheme%dt = dt
+      if (kind == STATIC) return
+      scheme%l_f = 1/(1 + rho_inf)
+      scheme%l_p = (3 - rho_inf)/(2*(1 + rho_inf))
+      scheme%gamma_1 = 1/(1 + rho_inf)
+      scheme%c_p = scheme%l_p/(scheme%gamma_1*dt)
+      if (kind == QUASI_STATIC) then
+         scheme%l_v = scheme%l_p
+         scheme%c_v = scheme%c_p
+         return
+      end if
+      scheme%l_v = scheme%l_f
+      scheme%l_a = (2 - rho_inf)/(1 + rho_inf)
+      scheme%gamma = 0.5_wp + scheme%l_a - scheme%l_f
+      scheme%beta = 0.25_wp*(1 + scheme%l_a - scheme%l_f)**2
+      scheme%c_v = scheme%l_v*scheme%gamma/(scheme%beta*dt)
+      scheme%c_a = scheme%l_a/(scheme%beta*dt**2)
+   end function make_scheme
+
+   !> First guess of the new values: constant acceleration, constant pressure rates; or, with `still`, no change.
+   pure subroutine predict(scheme, still, x0, v0, a0, x1)
+      type(scheme_t), intent(in) :: scheme
+      logical, intent(in) :: still
+      real(wp), intent(in) :: x0(:, :), v0(:, :), a0(:, :)
+      real(wp), intent(out) :: x1(:, :)
+
+      x1 = x0
+      if (still .or. scheme%kind == STATIC) return
+      x1 = x0 + scheme%dt*v0
+      if (scheme%kind == DYNAMIC) x1(1:2, :) = x1(1:2, :) + 0.5_wp*scheme%dt**2*a0
+   end subroutine predict
+
+   !> New rates and accelerations that belong to new values.
+   pure subroutine advance_rates(scheme, x0, v0, a0, x1, v1, a1)
+      type(scheme_t), intent(in) :: scheme
+      real(wp), intent(in) :: x0(:, :), v0(:, :), a0(:, :), x1(:, :)
+      real(wp), intent(out) :: v1(:, :), a1(:, :)
+
+      v1 = 0.0_wp
+      a1 = 0.0_wp
+      if (scheme%kind == STATIC) return
+      v1 = rate_of(scheme, x0, v0, x1)
+      if (scheme%kind == QUASI_STATIC) return
+      associate (b => scheme%beta, g => scheme%gamma, dt => scheme%dt)
+         a1 = (x1(1:2, :) - x0(1:2, :))/(b*dt**2) - v0(1:2, :)/(b*dt) - (0.5_wp/b - 1)*a0
+         v1(1:2, :) = v0(1:2, :) + dt*((1 - g)*a0 + g*a1)
+      end associate
+   end subroutine advance_rates
+
+   !> First-order rate at the end of the step.
+   elemental real(wp) function rate_of(scheme, x0, v0, x1)
+      type(scheme_t), intent(in) :: scheme
+      real(wp), intent(in) :: x0, v0, x1
+
+      rate_of = 0.0_wp
+      if (scheme%kind == STATIC) return
+      rate_of = (x1 - x0)/(scheme%gamma_1*scheme%dt) - (1 - scheme%gamma_1)/scheme%gamma_1*v0
+   end function rate_of
+
+   !> Estimate of a dynamic step's own error as a share of its change (Zienkiewicz & Xie 1991): what linear
+   !> accelerations would have given besides. A hook for a step control; it is written to the ledger.
+   pure real(wp) function step_error(scheme, x0, a0, x1, a1)
+      type(scheme_t), intent(in) :: scheme
+      real(wp), intent(in) :: x0(:, :), a0(:, :), x1(:, :), a1(:, :)
+      real(wp) :: change
+
+      step_error = 0.0_wp
+      change = norm2(x1(1:2, :) - x0(1:2, :))
+      if (scheme%kind /= DYNAMIC .or. .not. change > 0.0_wp) return
+      step_error = scheme%dt**2*abs(scheme%beta - 1.0_wp/6)*norm2(a1 - a0)/change
+   end function step_error
+end module generalised_alpha
