@@ -131,7 +131,7 @@ if "phases" in parts:
                 phases.setdefault((threads, factors), []).append(row)
 if "measures" in parts:
     variants = {name: [of_scene(*keys)] for name, keys in VARIANTS.items()}
-    variants |= {name: [("   name = 'sand'", f"   name = 'sand'\n   tangent = {k}")] for name, k in TANGENTS.items()}
+    variants |= {name: [("   tangent = 2", f"   tangent = {k}")] for name, k in TANGENTS.items()}
     for _ in range(args.rounds):
         for name, changes in variants.items():
             measures.setdefault(name, []).append(run("measures", name, changes, 2, min(args.steps, 300)))

@@ -2,7 +2,9 @@
  *    failing_host api FILE        saves the increment with mud_save_increment, FILE `NULL` stands for no name
  *    failing_host umat TIMES      lets umat_ fail so many times; the environment says whether that is saved
  *    failing_host threads FILE    eight threads save to one FILE: prints how many did
+ *    failing_host several         lets umat_ fail in five other ways, each twice
  *    failing_host crowd           eight threads let umat_ fail five times each */
+#include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,6 +29,7 @@ static int set_up(double props[MAX], double statev[MAX])
    if (mud_default_props(props, mud_count(MUD_PROPS)) != MUD_OK)
       return 0;
    props[mud_index(MUD_PROPS, "max_substeps")] = 12.0;
+   props[mud_index(MUD_PROPS, "tangent")] = MUD_TANGENT_CONTINUUM;   /* as `save` asks for */
    return 1;
 }
 
@@ -39,7 +42,10 @@ static int save(const char *path, char *text, int len)
                              DSTRAIN, SUCTION, DSUCTION, MUD_TANGENT_CONTINUUM, text, len);
 }
 
-static int fail_as_umat(int element)
+/* What is wrong with a call; NOTHING_ELSE: too few substeps are allowed, as with the others. */
+enum fault { NOTHING_ELSE, PROPS_H_0, PROPS_N_B, STRAIN_13, MEMORY_22, STRESS_11, FAULTS };
+
+static int fail_as_umat(int element, enum fault fault)
 {
    double props[MAX], statev[MAX], stress[6], dstrain[6], suction = SUCTION, dsuction = DSUCTION;
    double scd = 0.0, pnewdt = 1.0;
@@ -49,10 +55,25 @@ static int fail_as_umat(int element)
       return 1;
    memcpy(stress, STRESS, sizeof stress);
    memcpy(dstrain, DSTRAIN, sizeof dstrain);
+   if (fault == PROPS_H_0)
+      props[mud_index(MUD_PROPS, "h_0")] = -1.0;
+   if (fault == PROPS_N_B)
+      props[mud_index(MUD_PROPS, "n_b")] = 100.0;
+   if (fault == STRAIN_13)
+      dstrain[4] = 3.0;
+   if (fault == MEMORY_22) {
+      statev[mud_index(MUD_STATEV, "layout")] = 1.0;
+      statev[mud_index(MUD_STATEV, "void_ratio")] = 0.8;
+      statev[mud_index(MUD_STATEV, "memory_22")] = NAN;
+   }
+   if (fault == STRESS_11)
+      stress[0] = INFINITY;
    umat_(stress, statev, NULL, NULL, NULL, &scd, NULL, NULL, NULL, NULL, NULL, dstrain, NULL, NULL, NULL, NULL,
          &suction, &dsuction, NULL, NULL, NULL, &ntens, &nstatv, props, &nprops, NULL, NULL, &pnewdt, NULL, NULL, NULL,
          &element, &npt, NULL, NULL, &kstep, &kinc);
-   return memcmp(stress, STRESS, sizeof stress) == 0 && pnewdt < 1.0 ? (int)scd : 99;
+   if (memcmp(&stress[fault == STRESS_11], &STRESS[fault == STRESS_11], 5 * sizeof *stress) != 0 || pnewdt >= 1.0)
+      return 99;
+   return (int)scd;
 }
 
 static void *save_to_one(void *path)
@@ -63,7 +84,7 @@ static void *save_to_one(void *path)
 static void *fail_five_times(void *argument)
 {
    for (int i = 0; i < 5; i++)
-      if (fail_as_umat(i) != MUD_TOO_MANY_SUBSTEPS)
+      if (fail_as_umat(i, NOTHING_ELSE) != MUD_TOO_MANY_SUBSTEPS)
          return NULL;
    return argument;
 }
@@ -94,7 +115,10 @@ int main(int argc, char **argv)
       code = save(strcmp(word, "NULL") == 0 ? NULL : word, text, sizeof text);
    else if (strcmp(task, "umat") == 0)
       for (int i = 1; i <= atoi(word); i++)
-         code = fail_as_umat(i);
+         code = fail_as_umat(i, NOTHING_ELSE);
+   else if (strcmp(task, "several") == 0)
+      for (int i = 0; i < 2 * FAULTS - 2; i++)
+         code = fail_as_umat(i, (enum fault)(i / 2 + 1));
    else if (strcmp(task, "threads") == 0)
       code = crowd(save_to_one, argv[2]);
    else if (strcmp(task, "crowd") == 0)

@@ -9,8 +9,9 @@ from checking import build, check, finish, root, work
 
 cache = dict(re.findall(r"^(\w+):\w+=(.*)$", (build / "CMakeCache.txt").read_text(encoding="utf-8"), re.MULTILINE))
 replay, triax = build / "drivers/mud_replay", build / "drivers/mud_triax"
-MAX_SAVED = 20  # files of umat_, mud.h
-quiet = {name: value for name, value in os.environ.items() if name != "MUD_SAVE_FAILED"}
+SAVED = "mud_failed_too_many_substeps.txt"  # the one name that umat_ has for this failure
+quiet = {**{name: value for name, value in os.environ.items() if name != "MUD_SAVE_FAILED"}, "MUD_MESSAGES": "off"}
+heard = {name: value for name, value in quiet.items() if name != "MUD_MESSAGES"}
 
 
 def run(*words, folder=work, **more):
@@ -75,26 +76,32 @@ done = run(replay, saved, "--steps", 3)
 check("--steps shows the ends", re.findall(r"^ +(\d+) \d\.", done.stdout, re.MULTILINE) == ["1", "2", "12"]
       and "9 substeps not shown" in done.stdout, done.stdout)
 
-# By umat_, for a folder named in the environment: the same file but for the remark, and no flood.
+# By umat_, for a folder named in the environment: the same file but for the remark, and one of each failure.
 asked = folder("asked")
-done = run(host, "umat", MAX_SAVED + 5, env={**quiet, "MUD_SAVE_FAILED": str(asked)})
+done = run(host, "umat", 25, env={**quiet, "MUD_SAVE_FAILED": str(asked)})
 names = [path.name for path in sorted(asked.iterdir())]
-check("umat_ saves the first failures and no more", done.stdout.strip() == "2" and
-      names == [f"mud_failed_{i:02}.txt" for i in range(1, MAX_SAVED + 1)], f"{done.stdout} {names}")
+check("umat_ saves one file of a failure that comes again", done.stdout.strip() == "2" and names == [SAVED],
+      f"{done.stdout} {names}")
 check("umat_ saves what the C interface does", names and all(lines(path) == lines(saved) for path in asked.iterdir()))
-done = run(replay, asked / "mud_failed_03.txt")
-check("umat_'s file replays", "the same status" in done.stdout and "step 1, increment 9, element 3, point 4"
-      in done.stdout, done.stdout + done.stderr)
-(asked / "mud_failed_07.txt").write_text("precious", encoding="utf-8")
-(asked / f"mud_failed_{MAX_SAVED}.txt").unlink()
+done = run(replay, asked / SAVED)
+check("umat_'s file replays and names the place of the first", "the same status" in done.stdout and
+      "element 1, point 4, step 1, increment 9" in done.stdout, done.stdout + done.stderr)
+done = run(host, "several", env={**quiet, "MUD_SAVE_FAILED": str(asked)})
+names = sorted(path.name for path in asked.iterdir())
+check("umat_ saves each distinct failure under its name", done.stdout.strip() == "-6" and names == sorted([
+      SAVED, "mud_failed_bad_props_h_0.txt", "mud_failed_bad_props_n_b.txt", "mud_failed_bad_input_stress_11.txt",
+      "mud_failed_increment_too_large_strain_13.txt", "mud_failed_bad_state_memory_22.txt"]), f"{done.stdout} {names}")
+(asked / SAVED).write_text("precious", encoding="utf-8")
 run(host, "umat", 2, env={**quiet, "MUD_SAVE_FAILED": str(asked)})
-check("umat_ overwrites nothing", (asked / "mud_failed_07.txt").read_text(encoding="utf-8") == "precious" and
-      lines(asked / f"mud_failed_{MAX_SAVED}.txt") == lines(saved))
-for name, value in (("an absent folder", str(work / "absent")), ("no folder", ""), ("an endless name", "x"*5000)):
+check("umat_ overwrites nothing", (asked / SAVED).read_text(encoding="utf-8") == "precious")
+for name, value in (("an absent folder", str(work / "absent")), ("an endless name", "x"*5000)):
     before = sorted(work.iterdir())
-    done = run(host, "umat", 1, env={**quiet, "MUD_SAVE_FAILED": value})
-    check(f"umat_ survives {name}", done.stdout.strip() == "2" and done.stderr == "" and
-          sorted(work.iterdir()) == before, done.stdout + done.stderr)
+    done = run(host, "umat", 3, env={**heard, "MUD_SAVE_FAILED": value})
+    check(f"umat_ survives {name} and says so once", done.stdout.strip() == "2" and
+          done.stderr.count("could not save a failed increment") == 1 and sorted(work.iterdir()) == before,
+          done.stdout + done.stderr)
+done = run(host, "umat", 3, env={**quiet, "MUD_SAVE_FAILED": ""})
+check("no folder, nothing saved", done.stdout.strip() == "2" and done.stderr == "", done.stdout + done.stderr)
 
 # Threads: one name is given once, and every file is whole.
 done = run(host, "threads", work / "one.txt")
@@ -102,8 +109,9 @@ check("of eight threads one writes a file", done.stdout.strip() == "1" and lines
       done.stdout + done.stderr)
 busy = folder("busy")
 done = run(host, "crowd", env={**quiet, "MUD_SAVE_FAILED": str(busy)})
-check("eight failing threads fill the names", done.stdout.strip() == "8" and len(list(busy.iterdir())) == MAX_SAVED and
-      all(lines(path) == lines(saved) for path in busy.iterdir()), f"{done.stdout} {sorted(busy.iterdir())}")
+check("eight failing threads save one file", done.stdout.strip() == "8" and
+      [path.name for path in busy.iterdir()] == [SAVED] and lines(busy / SAVED) == lines(saved),
+      f"{done.stdout} {sorted(busy.iterdir())}")
 
 
 # Where nothing can be written: -10, a reason, and no remains.

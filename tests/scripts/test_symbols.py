@@ -1,4 +1,4 @@
-"""The archive keeps nothing between calls (no writable data of ours) and offers what mud.h promises."""
+"""The archive keeps nothing between calls but which sentences were said, and offers what mud.h promises."""
 import os
 import pathlib
 import re
@@ -12,6 +12,8 @@ preset = os.environ.get("MUD_PRESET") or build.name
 WRITABLE = "BbCcDdGgSs"  # nm's letters of .bss, common and .data, global or local
 # Descriptors that gfortran makes of every derived type. It never writes them, but does not mark them read-only either.
 DESCRIPTOR = re.compile(r"__\w+_MOD___(vtab|def_init)_\w+$")
+# The one exception: one bit for each sentence that umat_ has said in this process (umat/abi/mud_once.f90).
+SAID = "__mud_once_MOD_told"
 
 
 def symbols(archive):
@@ -49,9 +51,17 @@ if preset == "sanitize":
     print("note: writable data is not looked for here, because the sanitizers add their own (1 check fewer)")
 else:
     writable = [(member, letter, name) for member, letter, name in found
-                if letter in WRITABLE and not DESCRIPTOR.match(name)]
+                if letter in WRITABLE and not DESCRIPTOR.match(name) and name != SAID]
     for member, letter, name in writable:
         print(f"  {member}: {name} ({letter})")
+    checks.append((f"{SAID} is not there: the exception is for nothing", SAID not in {name for _, _, name in found}))
+    once = subprocess.run(["nm", "--undefined-only", archive], check=True, capture_output=True, text=True).stdout
+    once = once[once.index("mud_once.f90.o:"):].split("\n\n")[0]
+    checks.append(("mud_once needs a run-time library for its atomic operations",
+                   bool(re.search(r"GOMP|omp_|atomic", once))))
+    code = subprocess.run(["objdump", "-d", archive], check=True, capture_output=True, text=True).stdout
+    code = code[code.index("<__mud_once_MOD_first_time>:"):].split("\n\n")[0]
+    checks.append(("the exchange in mud_once is not atomic", os.uname().machine == "x86_64" and "lock " not in code))
     checks.append((f"{len(writable)} writable symbols: state between calls, and threads that share it", bool(writable)))
 
 for text, wrong in checks:

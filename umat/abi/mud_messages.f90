@@ -5,12 +5,12 @@ module mud_messages
    use mud_status, only: MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_BAD_NTENS, MUD_BAD_PROPS, MUD_BAD_STATE, &
       MUD_BAD_INPUT, MUD_NULL_ARGUMENT, MUD_BAD_VOID_RATIO, MUD_BAD_OPTION, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, &
       MUD_NO_DIRECTION, MUD_VOID_RATIO_LIMIT, MUD_NOT_FINITE, MUD_INCREMENT_TOO_LARGE, MUD_NOT_WRITTEN, &
-      ON_STRESS, ON_STRAIN, ON_SUCTION
+      ON_PROPS, ON_STATEV, ON_STRESS, ON_STRAIN, ON_SUCTION, ON_ROTATION
    use mud_kernel, only: report_t
    use mud_tensor, only: is_finite
    implicit none (type, external)
    private
-   public :: status_text, report_text, MESSAGE_LENGTH
+   public :: status_text, report_text, failure_name, number, MESSAGE_LENGTH
 
    integer, parameter :: MESSAGE_LENGTH = 320
    character(2), parameter :: COMPONENT(6) = ['11', '22', '33', '12', '13', '23']
@@ -82,14 +82,21 @@ contains
          text = 'state variable '//trim(statev_name(report%index))//' (STATEV '//trim(whole(report%index))//') is '// &
                 trim(number(report%value))//trim(span(lower, upper))// &
                 ': was STATEV zeroed before the first call and kept since?'
-      case (MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_BAD_NTENS)
+      case (MUD_BAD_NPROPS, MUD_BAD_NSTATV)
          text = trim(text)//'; given '//trim(number(report%value))//', needed '//trim(lower)
+      case (MUD_BAD_NTENS)
+         ! Its range is 4 to 6, that of NDI is 3 alone.
+         text = trim(merge('NDI  ', 'NTENS', report%upper <= report%lower))//' is '//trim(number(report%value))// &
+                ': '//text
       case (MUD_BAD_VOID_RATIO)
          text = 'void ratio '//trim(number(report%value))//trim(span(lower, upper))// &
                 ': mend e_0 of PROPS or the preset in STATEV'
       case (MUD_BAD_INPUT, MUD_INCREMENT_TOO_LARGE)
          if (report%subject == ON_STRESS .or. report%subject == ON_STRAIN .or. report%subject == ON_SUCTION) then
+            if (report%status == MUD_BAD_INPUT) text = 'look at the host, which gives it'
             text = trim(quantity(report))//' is '//trim(number(report%value))//trim(span(lower, upper))//': '//text
+         else if (report%subject == ON_ROTATION) then
+            text = rotation_text(report)
          end if
       case (MUD_VOID_RATIO_LIMIT)
          text = trim(text)//'; it would become '//trim(number(report%value))//span(lower, upper)
@@ -101,6 +108,79 @@ contains
                 ' % of the increment'
       end select
    end function report_text
+
+   !> What is wrong with DROT. Entries count by columns; 0 stands for all, 10 for the determinant.
+   pure function rotation_text(report) result(text)
+      type(report_t), intent(in) :: report
+      character(MESSAGE_LENGTH) :: text
+
+      select case (report%index)
+      case (1:9)
+         text = 'DROT('//trim(whole(mod(report%index - 1, 3) + 1))//', '//trim(whole((report%index + 2)/3))//') is '
+      case (10)
+         text = 'the determinant of DROT is'
+      case default
+         text = 'the largest entry of DROT times its transpose minus the unit matrix is'
+      end select
+      text = trim(text)//' '//trim(number(report%value))//trim(span(number(report%lower), number(report%upper)))// &
+             ': DROT must be the rotation of the increment, or NULL or zero for none'
+   end function rotation_text
+
+   !> A name for this kind of failure, fit for a file: the code in words, with the parameter, state variable or
+   !> component.
+   pure function failure_name(report) result(name)
+      type(report_t), intent(in) :: report
+      character(60) :: name
+
+      select case (report%status)
+      case (MUD_BAD_NPROPS)
+         name = 'bad_nprops'
+      case (MUD_BAD_NSTATV)
+         name = 'bad_nstatv'
+      case (MUD_BAD_PROPS)
+         name = 'bad_props'
+      case (MUD_BAD_STATE)
+         name = 'bad_state'
+      case (MUD_BAD_INPUT)
+         name = 'bad_input'
+      case (MUD_BAD_VOID_RATIO)
+         name = 'bad_void_ratio'
+      case (MUD_MINIMUM_STEP)
+         name = 'minimum_step'
+      case (MUD_TOO_MANY_SUBSTEPS)
+         name = 'too_many_substeps'
+      case (MUD_NO_DIRECTION)
+         name = 'no_direction'
+      case (MUD_VOID_RATIO_LIMIT)
+         name = 'void_ratio_limit'
+      case (MUD_NOT_FINITE)
+         name = 'not_finite'
+      case (MUD_INCREMENT_TOO_LARGE)
+         name = 'increment_too_large'
+      case default
+         name = 'status_'//whole(report%status)
+      end select
+      select case (report%subject)
+      case (ON_PROPS)
+         if (report%index >= 1 .and. report%index <= NPROPS) name = trim(name)//'_'//PROPERTIES(report%index)%name
+      case (ON_STATEV)
+         if (report%index >= 1 .and. report%index <= NSTATV) name = trim(name)//'_'//statev_name(report%index)
+      case (ON_STRESS)
+         name = trim(name)//'_stress'//component_suffix(report%index)
+      case (ON_STRAIN)
+         name = trim(name)//'_strain'//component_suffix(report%index)
+      case (ON_SUCTION)
+         name = trim(name)//'_suction'
+      end select
+   end function failure_name
+
+   pure function component_suffix(index) result(suffix)
+      integer, intent(in) :: index
+      character(3) :: suffix
+
+      suffix = ''
+      if (index >= 1 .and. index <= 6) suffix = '_'//COMPONENT(index)
+   end function component_suffix
 
    pure function quantity(report) result(text)
       type(report_t), intent(in) :: report
@@ -141,6 +221,9 @@ contains
          write (text, '(f0.6)') value
          if (text(1:1) == '.') text = '0'//text(:15)
          if (text(1:2) == '-.') text = '-0'//text(2:15)
+      else if (abs(value) >= 1.0e100_wp .or. (abs(value) < 1.0e-99_wp .and. abs(value) > 0.0_wp)) then
+         write (text, '(es13.5e3)') value   ! two digits of exponent would leave no room for its letter
+         text = adjustl(text)
       else
          write (text, '(es12.5)') value
          text = adjustl(text)

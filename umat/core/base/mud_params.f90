@@ -5,7 +5,7 @@ module mud_params
       P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, P_H_0, P_C_H, &
       P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, P_P_ATM, P_P_MIN, &
       P_BONDING, P_FABRIC, P_ISOTROPIC, P_LODE, P_MEMORY_RULE, P_EPS_HAT, P_J_EXP, P_X_0, P_X_REV, P_CAP_D, P_CAP_H, &
-      P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, P_TANGENT, P_RHO_E
+      P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, P_TANGENT, P_RHO_E, P_SHEAR_ORDER
    use mud_status, only: mud_status_t, fail, MUD_BAD_NPROPS, MUD_BAD_PROPS, ON_PROPS
    use mud_tensor, only: is_finite
    implicit none (type, external)
@@ -32,6 +32,7 @@ module mud_params
       real(wp) :: cap_h     !< Softening cap, 0 with the guard off [-].
       logical :: accept_minimum   !< Accept a substep at the minimum size (as_published).
       integer :: scheme, tangent, max_substeps
+      integer :: shear_order   !< Of umat_ alone: 0 as 12, 13, 23, 1 as 12, 23, 13.
       real(wp) :: tolerance, h_min
       real(wp) :: rho_e     !< Radius of the elastic nucleus, 0: none [-].
       real(wp) :: c4        !< c**4, for the Lode function [-].
@@ -107,6 +108,7 @@ contains
       params%max_substeps = nint(props(P_MAX_SUBSTEPS))
       params%tangent = nint(props(P_TANGENT))
       params%rho_e = props(P_RHO_E)
+      params%shear_order = nint(props(P_SHEAR_ORDER))
       params%c4 = params%c**4
       params%lode_bend = SQRT_6*(1.0_wp - params%c4)/(8.0_wp*params%c4)
 

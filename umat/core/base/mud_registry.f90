@@ -13,7 +13,7 @@ module mud_registry
              P_H_0, P_C_H, P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, &
              P_P_ATM, P_P_MIN, P_BONDING, P_FABRIC, P_ISOTROPIC, P_LODE, P_MEMORY_RULE, P_EPS_HAT, P_J_EXP, &
              P_X_0, P_X_REV, P_CAP_D, P_CAP_H, P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, &
-             P_TANGENT, P_RHO_E
+             P_TANGENT, P_RHO_E, P_SHEAR_ORDER
    public :: S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION, S_STATE_PARAMETER, S_EPS_Q_P, S_EPS_Q_P_TOTAL, &
              S_X_BEFORE, S_X_RUNNING, S_WAY_BACK, S_SUSPENDED, S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, &
              S_MEMORY_BEFORE, S_TURNING_POINT, S_DIRECTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, S_N_RATE, &
@@ -98,7 +98,8 @@ module mud_registry
    integer, parameter :: P_MAX_SUBSTEPS = 43
    integer, parameter :: P_TANGENT = 44
    integer, parameter :: P_RHO_E = 45
-   integer, parameter :: NPROPS = 45
+   integer, parameter :: P_SHEAR_ORDER = 46
+   integer, parameter :: NPROPS = 46
 
    integer, parameter :: S_LAYOUT = 1
    integer, parameter :: S_VOID_RATIO = 2
@@ -221,10 +222,12 @@ module mud_registry
          'smallest substep as a share of the increment'), &
       property_t(P_MAX_SUBSTEPS, 'max_substeps', 'n_max', '1', KIND_COUNT, 1.0_wp, 1.0e8_wp, 1.0e5_wp, 'numerical', &
          'largest number of attempted substeps in an update'), &
-      property_t(P_TANGENT, 'tangent', 'tangent', '1', KIND_OPTION, 0.0_wp, 3.0_wp, 2.0_wp, 'ours', &
+      property_t(P_TANGENT, 'tangent', 'tangent', '1', KIND_OPTION, 0.0_wp, 3.0_wp, 3.0_wp, 'ours', &
          'tangent that umat_ returns: 0 none, 1 elastic, 2 continuum, 3 consistent'), &
       property_t(P_RHO_E, 'rho_e', 'rho_e', '1', KIND_REAL, 0.0_wp, 0.01_wp, 0.0_wp, 'ours', &
-         'radius of the elastic nucleus, a norm of the strain tensor; 0: none, as in the paper')]
+         'radius of the elastic nucleus, a norm of the strain tensor; 0: none, as in the paper'), &
+      property_t(P_SHEAR_ORDER, 'shear_order', '-', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 0.0_wp, 'ours', &
+         'shear components of umat_: 0 as 12, 13, 23 (Abaqus, CalculiX), 1 as 12, 23, 13 (Kratos)')]
 
    type(variable_t), parameter :: VARIABLES(NVARIABLES) = [ &
       variable_t(S_LAYOUT, 1, 'layout', '-', '1', .false., 'ours', &
@@ -235,7 +238,7 @@ module mud_registry
       variable_t(S_SATURATION, 1, 'saturation', 'S_w', '1', .false., 'paper', &
          'degree of saturation, eq. (24)', 'eq. (24)', 'eq. (24) at the end of the increment'), &
       variable_t(S_SUCTION, 1, 'suction', 'p_c', 'kPa', .false., 'paper', &
-         'suction at the end of the last increment', 'PREDEF(1)', 'by DPRED(1)'), &
+         'suction at the end of the last increment', 'PREDEF(1) or preset', 'by DPRED(1)'), &
       variable_t(S_STATE_PARAMETER, 1, 'state_parameter', 'psi', '1', .false., 'paper', &
          'e - e_c, eq. (8)', 'from e, p'', p_c', 'computed at the end of the increment'), &
       variable_t(S_EPS_Q_P, 1, 'eps_q_p', 'eps_q^p', '1', .false., 'paper', &

@@ -7,7 +7,8 @@ module mud_status
    public :: MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_BAD_NTENS, MUD_BAD_PROPS, MUD_BAD_STATE, MUD_BAD_INPUT, &
              MUD_NULL_ARGUMENT, MUD_BAD_VOID_RATIO, MUD_BAD_OPTION, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, &
              MUD_NO_DIRECTION, MUD_VOID_RATIO_LIMIT, MUD_NOT_FINITE, MUD_INCREMENT_TOO_LARGE, MUD_NOT_WRITTEN
-   public :: ON_NOTHING, ON_PROPS, ON_STATEV, ON_STRESS, ON_STRAIN, ON_SUCTION, ON_VOID_RATIO, ON_ARGUMENT
+   public :: ON_NOTHING, ON_PROPS, ON_STATEV, ON_STRESS, ON_STRAIN, ON_SUCTION, ON_VOID_RATIO, ON_ARGUMENT, &
+             ON_ROTATION
 
    integer, parameter :: MUD_OK = 0
    integer, parameter :: MUD_BAD_NPROPS = -1          !< NPROPS is not the number of PROPS.
@@ -28,7 +29,7 @@ module mud_status
    integer, parameter :: MUD_INCREMENT_TOO_LARGE = 6  !< A strain component beyond 1 or a suction change beyond 1e7 kPa.
 
    integer, parameter :: ON_NOTHING = 0, ON_PROPS = 1, ON_STATEV = 2, ON_STRESS = 3, ON_STRAIN = 4, ON_SUCTION = 5, &
-                         ON_VOID_RATIO = 6, ON_ARGUMENT = 7
+                         ON_VOID_RATIO = 6, ON_ARGUMENT = 7, ON_ROTATION = 8
 
    !> A status with what a message needs: where, value and allowed range.
    type :: mud_status_t

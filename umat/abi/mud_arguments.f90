@@ -1,0 +1,219 @@
+!> What hosts hand to umat_: NULL pointers, memory that was never set, orders of their own.
+module mud_arguments
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
+   use mud_kinds, only: wp
+   use mud_registry, only: NPROPS, NSTATV, P_SHEAR_ORDER, S_LAYOUT, S_SUCTION
+   use mud_status, only: fail, mud_status_t, MUD_OK, MUD_BAD_NTENS, MUD_NULL_ARGUMENT, MUD_BAD_NPROPS, MUD_BAD_NSTATV, &
+      MUD_BAD_INPUT, ON_ARGUMENT, ON_PROPS, ON_STATEV, ON_ROTATION
+   use mud_tensor, only: is_finite
+   implicit none (type, external)
+   private
+   public :: check_arguments, has_past, rotates, read_rotation, suction_t, read_suction, component_order, integer_at, &
+             real_at, SUCTION_AS_GIVEN, SUCTION_CONTRADICTS, SUCTION_UNREADABLE, ARGUMENT_NAMES
+
+   !> DROT may differ from a rotation by this, rounding of single-precision hosts [-].
+   real(wp), parameter :: ORTHOGONAL = 1.0e-6_wp
+   !> Memory that was never set often reads as a number far below any physical one [-]: it counts as 0.
+   real(wp), parameter :: NOTHING = 1.0e-100_wp
+   !> PREDEF may differ from the suction of STATEV by this share, rounding of single-precision hosts [-].
+   real(wp), parameter :: SAME_SUCTION = 1.0e-6_wp
+   !> A suction beyond it is refused by the core, as an input error [kPa].
+   real(wp), parameter :: ABSURD_SUCTION = 1.0e9_wp
+   !> What CalculiX enters with in PNEWDT. It passes PREDEF and DPRED that it has never set.
+   real(wp), parameter :: PNEWDT_OF_CALCULIX = -1.0_wp
+
+   integer, parameter :: SUCTION_AS_GIVEN = 0, SUCTION_CONTRADICTS = 1, SUCTION_UNREADABLE = 2
+   !> Arguments that must be given, in the order in which status%index counts them.
+   character(6), parameter :: ARGUMENT_NAMES(7) = ['STRESS', 'STATEV', 'DSTRAN', 'NTENS ', 'NSTATV', 'PROPS ', 'NPROPS']
+
+   !> Suction at the start of an increment and its change [kPa], and whether the host's numbers were taken.
+   type :: suction_t
+      real(wp) :: start = 0.0_wp, change = 0.0_wp
+      integer :: reading = SUCTION_AS_GIVEN   !< One of SUCTION_*.
+      real(wp) :: predef = 0.0_wp             !< What PREDEF(1) says [kPa].
+   end type suction_t
+contains
+   !> NULL pointers, NTENS, and counts that would make the arrays unreadable.
+   subroutine check_arguments(stress, statev, dstran, ndi, ntens, nstatv_, props, nprops_, status)
+      type(c_ptr), intent(in) :: stress, statev, dstran, ndi, ntens, nstatv_, props, nprops_
+      type(mud_status_t), intent(out) :: status
+      logical :: given(7)
+      integer :: n
+
+      given = [c_associated(stress), c_associated(statev), c_associated(dstran), c_associated(ntens), &
+               c_associated(nstatv_), c_associated(props), c_associated(nprops_)]
+      if (.not. all(given)) then
+         status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT, findloc(given, .false., dim=1))
+         return
+      end if
+      n = integer_at(ntens)
+      if (n /= 6 .and. n /= 4) then
+         status = fail(MUD_BAD_NTENS, ON_ARGUMENT, 0, real(n, wp), 4.0_wp, 6.0_wp)
+         return
+      end if
+      if (c_associated(ndi)) then
+         if (integer_at(ndi) /= 3) then
+            status = fail(MUD_BAD_NTENS, ON_ARGUMENT, 0, real(integer_at(ndi), wp), 3.0_wp, 3.0_wp)
+            return
+         end if
+      end if
+      n = integer_at(nprops_)
+      if (n < 1) status = fail(MUD_BAD_NPROPS, ON_PROPS, 0, real(n, wp), real(NPROPS, wp), real(NPROPS, wp))
+      n = integer_at(nstatv_)
+      if (n < NSTATV) status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n, wp), real(NSTATV, wp), huge(1.0_wp))
+   end subroutine check_arguments
+
+   !> True of a STATEV that has been initialised, by whatever layout.
+   pure logical function has_past(statev)
+      real(wp), intent(in) :: statev(NSTATV)
+
+      has_past = is_finite(statev(S_LAYOUT))
+      if (has_past) has_past = abs(statev(S_LAYOUT)) > 0.0_wp
+   end function has_past
+
+   !> DROT as a matrix. None where it is NULL or zero, and where the point has no past that could be rotated: hosts
+   !> without finite rotations pass memory that was never set. Anything else that is no rotation is refused.
+   subroutine read_rotation(drot, past, rotation, status)
+      type(c_ptr), intent(in) :: drot
+      logical, intent(in) :: past
+      real(wp), intent(out) :: rotation(3, 3)
+      type(mud_status_t), intent(out) :: status
+      real(c_double), pointer, contiguous :: matrix(:)
+      real(wp) :: given(9), deviation
+      integer :: i
+
+      rotation = unit_matrix()
+      if (.not. (past .and. c_associated(drot))) return
+      call c_f_pointer(drot, matrix, [9])
+      do i = 1, 9
+         given(i) = matrix(i)
+         if (within(given(i), NOTHING)) given(i) = 0.0_wp
+         if (within(given(i), 1.0_wp + ORTHOGONAL)) cycle
+         status = fail(MUD_BAD_INPUT, ON_ROTATION, i, given(i), -1.0_wp, 1.0_wp)
+         return
+      end do
+      if (all(abs(given) <= 0.0_wp)) return
+      rotation = reshape(given, [3, 3])
+      deviation = maxval(abs(matmul(rotation, transpose(rotation)) - unit_matrix()))
+      if (deviation > ORTHOGONAL) then
+         status = fail(MUD_BAD_INPUT, ON_ROTATION, 0, deviation, 0.0_wp, ORTHOGONAL)
+      else if (determinant(rotation) < 0.0_wp) then
+         status = fail(MUD_BAD_INPUT, ON_ROTATION, 10, determinant(rotation), 1.0_wp, 1.0_wp)
+      end if
+   end subroutine read_rotation
+
+   pure real(wp) function determinant(a)
+      real(wp), intent(in) :: a(3, 3)
+
+      determinant = a(1, 1)*(a(2, 2)*a(3, 3) - a(2, 3)*a(3, 2)) - a(1, 2)*(a(2, 1)*a(3, 3) - a(2, 3)*a(3, 1)) &
+                    + a(1, 3)*(a(2, 1)*a(3, 2) - a(2, 2)*a(3, 1))
+   end function determinant
+
+   !> True if there is something to rotate: a rotation that is not exactly none, and numbers.
+   pure logical function rotates(rotation, statev)
+      real(wp), intent(in) :: rotation(3, 3), statev(NSTATV)
+
+      rotates = any(abs(rotation - unit_matrix()) > 0.0_wp)
+      if (rotates) rotates = all(is_finite(statev))
+   end function rotates
+
+   pure function unit_matrix() result(unit)
+      real(wp) :: unit(3, 3)
+      integer :: i
+
+      unit = 0.0_wp
+      do i = 1, 3
+         unit(i, i) = 1.0_wp
+      end do
+   end function unit_matrix
+
+   !> Suction and its change. The degree of saturation may not jump between two increments, so the suction that STATEV
+   !> holds is the start where PREDEF is NULL, where it was never set (CalculiX) and where it says otherwise.
+   type(suction_t) function read_suction(predef, dpred, pnewdt, statev, p_atm) result(suction)
+      type(c_ptr), intent(in) :: predef, dpred, pnewdt
+      real(wp), intent(in) :: statev(NSTATV)
+      real(wp), intent(in) :: p_atm   !< Scale of what counts as rounding [kPa].
+      real(wp) :: stored
+
+      suction = suction_t(something_at(predef), something_at(dpred))
+      suction%predef = suction%start
+      stored = statev(S_SUCTION)
+      if (enters_as_calculix(pnewdt)) then
+         if (something(suction%start) .or. something(suction%change)) suction%reading = SUCTION_UNREADABLE
+         suction%start = stored
+         suction%change = 0.0_wp
+      else if (.not. c_associated(predef)) then
+         suction%start = stored
+      else if (has_past(statev)) then
+         if (.not. (within(suction%start, ABSURD_SUCTION) .and. within(stored, ABSURD_SUCTION))) return
+         if (.not. is_finite(suction%change)) return
+         if (within(suction%start - stored, SAME_SUCTION*max(abs(suction%start), abs(stored), p_atm))) return
+         suction%change = suction%start + suction%change - stored
+         suction%start = stored
+         suction%reading = SUCTION_CONTRADICTS
+      end if
+   end function read_suction
+
+   logical function enters_as_calculix(pnewdt)
+      type(c_ptr), intent(in) :: pnewdt
+
+      enters_as_calculix = .false.
+      if (.not. is_finite(real_at(pnewdt))) return
+      enters_as_calculix = abs(real_at(pnewdt) - PNEWDT_OF_CALCULIX) <= 0.0_wp
+   end function enters_as_calculix
+
+   !> Order in which a host has the components that MUD has as 11, 22, 33, 12, 13, 23. It is its own inverse.
+   pure function component_order(props) result(order)
+      real(wp), intent(in) :: props(:)
+      integer :: order(6)
+
+      order = [1, 2, 3, 4, 5, 6]
+      if (size(props) /= NPROPS) return
+      if (.not. is_finite(props(P_SHEAR_ORDER))) return
+      if (nint(min(max(props(P_SHEAR_ORDER), 0.0_wp), 1.0_wp)) == 1) order = [1, 2, 3, 4, 6, 5]
+   end function component_order
+
+   !> First number of an optional array, 0 where the host gives none.
+   integer function integer_at(pointer)
+      type(c_ptr), intent(in) :: pointer
+      integer(c_int), pointer :: value
+
+      integer_at = 0
+      if (.not. c_associated(pointer)) return
+      call c_f_pointer(pointer, value)
+      integer_at = value
+   end function integer_at
+
+   !> The same of a real array.
+   real(wp) function real_at(pointer)
+      type(c_ptr), intent(in) :: pointer
+      real(c_double), pointer :: value
+
+      real_at = 0.0_wp
+      if (.not. c_associated(pointer)) return
+      call c_f_pointer(pointer, value)
+      real_at = value
+   end function real_at
+
+   !> The same, 0 where it is far below any physical number.
+   real(wp) function something_at(pointer)
+      type(c_ptr), intent(in) :: pointer
+
+      something_at = real_at(pointer)
+      if (.not. something(something_at)) something_at = 0.0_wp
+   end function something_at
+
+   pure logical function something(value)
+      real(wp), intent(in) :: value
+
+      something = .not. within(value, NOTHING)
+   end function something
+
+   !> Finite and of magnitude up to a limit. A NaN is not compared: a comparison would trap.
+   pure logical function within(value, limit)
+      real(wp), intent(in) :: value, limit
+
+      within = is_finite(value)
+      if (within) within = abs(value) <= limit
+   end function within
+end module mud_arguments

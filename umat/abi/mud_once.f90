@@ -1,0 +1,69 @@
+!> What umat_ has told the user already: the one thing that the library remembers between calls. A sentence of each
+!> kind goes to standard error once a process, whichever thread comes first. Nothing else reads the memory, so no answer
+!> depends on it. Compiled with OpenMP for its atomic operations alone, which need no run-time library; without OpenMP
+!> two threads that fail at the same instant may both speak. A forked process inherits what was said before; the ranks
+!> of MPI are processes of their own.
+module mud_once
+   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_size_t
+   use, intrinsic :: iso_fortran_env, only: int32
+   implicit none (type, external)
+   private
+   public :: first_time, speak, environment_is, KINDS
+
+   integer, parameter :: BITS = 31, WORDS = 700   !< Bits of a word in use (the sign is left alone), and words.
+   integer, parameter :: KINDS = WORDS*BITS       !< Sentences are numbered from 0 to KINDS - 1.
+   character(*), parameter :: SILENCER = 'MUD_MESSAGES'
+   integer(c_int), parameter :: STANDARD_ERROR = 2
+   integer(int32) :: told(0:WORDS - 1) = 0        !< One bit a kind; see the head of the module.
+
+   interface
+      !> The system's: one call for a whole line, so that the lines of threads and processes do not mix.
+      integer(c_size_t) function c_write(file, text, n) bind(c, name='write')
+         import :: c_char, c_int, c_size_t
+         integer(c_int), value :: file
+         character(kind=c_char), intent(in) :: text(*)
+         integer(c_size_t), value :: n
+      end function c_write
+   end interface
+contains
+   !> True for the first caller of a process that asks for this kind.
+   logical function first_time(kind)
+      integer, intent(in) :: kind
+      integer(int32) :: before
+      integer :: word, bit
+
+      first_time = .false.
+      if (kind < 0 .or. kind >= KINDS) return
+      word = kind/BITS
+      bit = mod(kind, BITS)
+      ! A look before the exchange: thousands of failures more do not fight for the word.
+      !$omp atomic read
+      before = told(word)
+      if (btest(before, bit)) return
+      !$omp atomic capture
+      before = told(word)
+      told(word) = ior(told(word), ishft(1_int32, bit))
+      !$omp end atomic
+      first_time = .not. btest(before, bit)
+   end function first_time
+
+   !> One line on standard error, unless the user has silenced the library. That it cannot be written is no failure.
+   subroutine speak(text)
+      character(*), intent(in) :: text
+      integer(c_size_t) :: length
+
+      if (environment_is(SILENCER, 'off')) return
+      length = len_trim(text) + 1
+      length = c_write(STANDARD_ERROR, trim(text)//new_line(text), length)
+   end subroutine speak
+
+   !> True if an environment variable has this value.
+   logical function environment_is(name, value)
+      character(*), intent(in) :: name, value
+      character(32) :: found
+      integer :: length, code
+
+      call get_environment_variable(name, found, length, code)
+      environment_is = code == 0 .and. length == len(value) .and. found == value
+   end function environment_is
+end module mud_once

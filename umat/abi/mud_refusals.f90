@@ -1,0 +1,195 @@
+!> A refusal of umat_ is heard: a sentence on standard error, once a process for each distinct failure, a request for a
+!> cut in PNEWDT or, where the host gives no PNEWDT, a STRESS that no solver takes for an answer.
+module mud_refusals
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_double, c_associated, c_f_pointer
+   use, intrinsic :: iso_fortran_env, only: int64
+   use mud_arguments, only: suction_t, integer_at, SUCTION_CONTRADICTS, ARGUMENT_NAMES
+   use mud_kernel, only: report_t
+   use mud_kinds, only: wp
+   use mud_messages, only: report_text, failure_name, number, MESSAGE_LENGTH
+   use mud_once, only: first_time, speak, environment_is
+   use mud_registry, only: NPROPS, NSTATV, P_TANGENT
+   use mud_save, only: write_increment, PATH_LENGTH
+   use mud_status, only: MUD_NULL_ARGUMENT, MUD_NOT_WRITTEN
+   use mud_tensor, only: is_finite
+   implicit none (type, external)
+   private
+   public :: place_t, refuse, remark_on_suction, save_if_asked
+
+   !> KSTEP, KINC, NOEL and NPT of the host; each may be NULL.
+   type :: place_t
+      type(c_ptr) :: step, increment, element, point
+   end type place_t
+
+   !> A failed increment is saved here, if the environment names a folder.
+   character(*), parameter :: SAVE_VARIABLE = 'MUD_SAVE_FAILED'
+   !> What a refusal does where PNEWDT is NULL; `keep` leaves STRESS as it is.
+   character(*), parameter :: KEEP_VARIABLE = 'MUD_NO_PNEWDT'
+   !> A PNEWDT below it is memory that was never set, no request of another point [-].
+   real(wp), parameter :: SMALLEST_REQUEST = 1.0e-6_wp
+   integer, parameter :: SENTENCE_LENGTH = 2*MESSAGE_LENGTH + 300
+   character(*), parameter :: CLOSING = ' (said once a process; MUD_MESSAGES=off silences)'
+   ! Kinds of sentences: a status code, what it is about, and the entry of that array.
+   integer, parameter :: SUBJECTS = 9, ENTRIES = 128, CODES = 17
+   integer, parameter :: FIRST_REMARK = CODES*SUBJECTS*ENTRIES   !< Remarks follow the failures.
+   integer, parameter :: NOT_SAVED = FIRST_REMARK
+contains
+   !> Answers a host whose increment is refused. STATEV and DDSDDE stay as they are.
+   subroutine refuse(report, place, stress, ntens, pnewdt, scd)
+      type(report_t), intent(in) :: report
+      type(place_t), intent(in) :: place
+      type(c_ptr), intent(in) :: stress, ntens, pnewdt, scd
+      real(c_double), pointer :: code
+      logical :: stops
+
+      stops = .false.
+      if (c_associated(pnewdt)) then
+         call ask_for_a_cut(report, pnewdt)
+      else if (c_associated(stress)) then
+         stops = .not. environment_is(KEEP_VARIABLE, 'keep')
+         if (stops) call spoil(stress, integer_at(ntens))
+      end if
+      if (c_associated(scd)) then
+         call c_f_pointer(scd, code)
+         code = real(report%status, c_double)
+      end if
+      if (first_time(kind_of(report))) call say_why(report, place, c_associated(pnewdt), stops)
+   end subroutine refuse
+
+   !> PNEWDT is written only to ask for a cut, and never raised: another point may have asked for a smaller one. Hosts
+   !> that enter with 0 or less, or with nothing, have no request yet.
+   subroutine ask_for_a_cut(report, pnewdt)
+      type(report_t), intent(in) :: report
+      type(c_ptr), intent(in) :: pnewdt
+      real(c_double), pointer :: factor
+
+      call c_f_pointer(pnewdt, factor)
+      if (is_finite(factor)) then
+         if (factor >= SMALLEST_REQUEST .and. factor <= report%pnewdt) return
+      end if
+      factor = report%pnewdt
+   end subroutine ask_for_a_cut
+
+   !> Without PNEWDT a host takes the old stress for the answer and goes on. A NaN it cannot take for anything.
+   subroutine spoil(stress, ntens)
+      type(c_ptr), intent(in) :: stress
+      integer, intent(in) :: ntens   !< As the host gives it: it may be what is wrong.
+      real(c_double), pointer, contiguous :: components(:)
+
+      call c_f_pointer(stress, components, [min(max(ntens, 1), 6)])
+      components = transfer(int(z'7FF8000000000000', int64), 1.0_wp)
+   end subroutine spoil
+
+   pure integer function kind_of(report)
+      type(report_t), intent(in) :: report
+
+      kind_of = (min(max(report%status - MUD_NOT_WRITTEN, 0), CODES - 1)*SUBJECTS &
+                 + min(max(report%subject, 0), SUBJECTS - 1))*ENTRIES + min(max(report%index, 0), ENTRIES - 1)
+   end function kind_of
+
+   subroutine say_why(report, place, cuts, stops)
+      type(report_t), intent(in) :: report
+      type(place_t), intent(in) :: place
+      logical, intent(in) :: cuts    !< PNEWDT asks for a cut.
+      logical, intent(in) :: stops   !< STRESS is NaN.
+      character(SENTENCE_LENGTH) :: text
+      character(12) :: code
+
+      write (code, '(i0)') report%status
+      text = 'MUD: umat_ refused the increment at '//trim(place_text(place))//', status '//trim(code)//': '// &
+             report_text(report)
+      if (report%status == MUD_NULL_ARGUMENT .and. report%index >= 1 .and. report%index <= size(ARGUMENT_NAMES)) then
+         text = trim(text)//': '//ARGUMENT_NAMES(report%index)
+      end if
+      if (stops) then
+         text = trim(text)//'. PNEWDT is NULL, so STRESS is NaN to stop the analysis (MUD_NO_PNEWDT=keep leaves it)'
+      else if (.not. cuts) then
+         text = trim(text)//'. PNEWDT is NULL: the host cannot know, and what it computes from here is wrong'
+      end if
+      call speak(trim(text)//CLOSING)
+   end subroutine say_why
+
+   !> Says that the suction of STATEV was taken instead of PREDEF.
+   subroutine remark_on_suction(suction, place)
+      type(suction_t), intent(in) :: suction
+      type(place_t), intent(in) :: place
+      character(SENTENCE_LENGTH) :: text
+
+      if (.not. first_time(FIRST_REMARK + suction%reading)) return
+      if (suction%reading == SUCTION_CONTRADICTS) then
+         text = 'the suction PREDEF(1) is '//trim(number(suction%predef))//' at the start of the increment, but '// &
+                'STATEV holds '//trim(number(suction%start))//' from the end of the one before: the increment runs '// &
+                'from there to PREDEF(1) + DPRED(1) = '//trim(number(suction%start + suction%change))// &
+                '. Does the host pass the suction at the end of the increment, or was STATEV not kept?'
+      else
+         text = 'PREDEF(1) is '//trim(number(suction%predef))//', but a host that enters with PNEWDT = -1, as '// &
+                'CalculiX does, leaves PREDEF and DPRED unset: they are not read, and the suction of STATEV, '// &
+                trim(number(suction%start))//', holds. Preset it there; a host that does set PREDEF must enter '// &
+                'with another PNEWDT, such as 1'
+      end if
+      call speak('MUD: remark of umat_ at '//trim(place_text(place))//': '//trim(text)//CLOSING)
+   end subroutine remark_on_suction
+
+   !> Where an increment is, as far as the host says.
+   function place_text(place) result(text)
+      type(place_t), intent(in) :: place
+      character(100) :: text
+
+      text = ''
+      call add('element', place%element)
+      call add('point', place%point)
+      call add('step', place%step)
+      call add('increment', place%increment)
+      if (text == '') text = 'a place that the host does not name'
+   contains
+      subroutine add(name, value)
+         character(*), intent(in) :: name
+         type(c_ptr), intent(in) :: value
+         character(12) :: digits
+
+         if (.not. c_associated(value)) return
+         write (digits, '(i0)') integer_at(value)
+         if (text /= '') text = trim(text)//','
+         text = trim(text)//' '//name//' '//digits
+         text = adjustl(text)
+      end subroutine add
+   end function place_text
+
+   !> Saves a failed increment, if the user has named a folder, under a name that belongs to this failure: one file of
+   !> each, whichever thread or process meets it first. That nothing could be written is said and changes nothing.
+   subroutine save_if_asked(props, stress, statev, d_strain, suction, d_suction, place, report)
+      real(wp), intent(in) :: props(NPROPS), stress(6), statev(NSTATV), d_strain(6), suction, d_suction
+      type(place_t), intent(in) :: place
+      type(report_t), intent(in) :: report
+      character(PATH_LENGTH) :: folder, path
+      character(200) :: problem
+      integer :: length, code, tangent
+      logical :: taken
+
+      call get_environment_variable(SAVE_VARIABLE, folder, length, code)
+      if (length == 0) return
+      if (code /= 0 .or. length > PATH_LENGTH - 80) then
+         call remark_on_saving('the name of the folder is too long')
+         return
+      end if
+      path = folder(:length)//'/mud_failed_'//trim(failure_name(report))//'.txt'
+      inquire (file=path, exist=taken)
+      if (taken) return
+      tangent = 0   ! where PROPS have none, they fail before it matters
+      if (is_finite(props(P_TANGENT))) tangent = nint(min(max(props(P_TANGENT), 0.0_wp), 3.0_wp))
+      call write_increment(path, 'umat_, '//place_text(place), props, stress, statev, d_strain, suction, d_suction, &
+                           tangent, report, problem)
+      if (problem == '') return
+      inquire (file=path, exist=taken)   ! by another thread or process, a moment ago
+      if (.not. taken) call remark_on_saving(trim(problem)//', '//path)
+   contains
+      subroutine remark_on_saving(text)
+         character(*), intent(in) :: text
+
+         if (first_time(NOT_SAVED)) then
+            call speak('MUD: umat_ could not save a failed increment in the folder that MUD_SAVE_FAILED names: '// &
+                       trim(text)//'. Name a folder that exists, on a disk with room'//CLOSING)
+         end if
+      end subroutine remark_on_saving
+   end subroutine save_if_asked
+end module mud_refusals
