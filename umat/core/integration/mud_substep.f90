@@ -1,4 +1,5 @@
-!> Embedded Runge-Kutta pairs and their step control. Knows no soil: vectors and rates only.
+!> Embedded Runge-Kutta pairs and their step control. Knows no soil: vectors and rates only;
+!> docs/theory/integration.md sections 2 and 3.
 module mud_substep
    use mud_kinds, only: wp
    implicit none (type, external)

@@ -1,4 +1,5 @@
-!> Critical state line, state parameter, stress ratios that depend on it, Lode dependence, compression line.
+!> Critical state line, state parameter, stress ratios that depend on it, Lode dependence, compression line;
+!> docs/theory/material.md sections 3.2 to 3.5.
 module mud_critical_state
    use mud_kinds, only: wp, SQRT_6
    use mud_params, only: params_t

@@ -1,4 +1,4 @@
-!> Elastic moduli.
+!> Elastic moduli; docs/theory/material.md section 3.1.
 module mud_elastic
    use mud_kinds, only: wp
    use mud_params, only: params_t

@@ -1,4 +1,4 @@
-!> Plastic flow: dilatancy and fabric.
+!> Plastic flow: dilatancy and fabric; docs/theory/material.md sections 4.2 and 4.3.
 module mud_flow
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t

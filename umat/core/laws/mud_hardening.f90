@@ -1,4 +1,5 @@
-!> Hardening: the kinematic mechanism's modulus and the isotropic mechanism's compliance.
+!> Hardening: the kinematic mechanism's modulus and the isotropic mechanism's compliance; docs/theory/material.md
+!> sections 3.5, 4.2 and 4.4.
 module mud_hardening
    use mud_kinds, only: wp
    use mud_params, only: params_t

@@ -1,4 +1,4 @@
-!> Water retention: how much of the pore space is water.
+!> Water retention: how much of the pore space is water; docs/theory/material.md section 2.1.
 module mud_retention
    use mud_kinds, only: wp
    use mud_params, only: params_t

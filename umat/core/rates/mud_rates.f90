@@ -1,7 +1,8 @@
 !> Continuous rates of the zero-elastic-range model at a frozen memory. Smooth: jumps live in mud_reversal.
 !>
 !> The stress ratio r is the back-stress. With t = 2G d e_dev - r K_e (d eps_v - B) the loading direction n obeys
-!> gamma n = t y + beta r, y = 1/(L h), so it lies in the plane of t and r and one angle decides it.
+!> gamma n = t y + beta r, y = 1/(L h), so it lies in the plane of t and r and one angle decides it:
+!> docs/theory/material.md section 4, guards section 5. The angle, phi there, is w here.
 module mud_rates
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t

@@ -1,5 +1,6 @@
 !> Derivative of one rate with respect to everything it depends on: state, memory, strain rate and suction rate.
-!> The consistent tangent carries it through the substeps; nothing is evaluated twice and nothing is perturbed.
+!> The consistent tangent carries it through the substeps; nothing is evaluated twice and nothing is perturbed;
+!> docs/theory/integration.md section 5.3.
 module mud_sensitivity
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t

@@ -1,4 +1,5 @@
-!> Continuum tangent: exact derivative of the rate with respect to the strain rate and the suction rate.
+!> Continuum tangent: exact derivative of the rate with respect to the strain rate and the suction rate;
+!> docs/theory/integration.md section 5.2.
 module mud_tangent
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
