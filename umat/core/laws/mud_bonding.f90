@@ -1,4 +1,5 @@
-!> Bonding: how far suction shifts the critical state line and the compression line; docs/theory/material.md section 2.2.
+!> Bonding: how far suction shifts the critical state line and the compression line.
+!> docs/theory/material.md section 2.2.
 module mud_bonding
    use mud_kinds, only: wp
    use mud_params, only: params_t
