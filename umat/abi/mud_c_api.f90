@@ -2,6 +2,7 @@
 module mud_c_api
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_associated, c_f_pointer
    use mud_kernel, only: report_t, output_t, kernel_init, kernel_update, failed_report
+   use mud_advice, only: advice_on, ADVICE_LENGTH
    use mud_kinds, only: wp
    use mud_messages, only: status_text, report_text
    use mud_params, only: params_t, read_params, default_props
@@ -9,12 +10,15 @@ module mud_c_api
       statev_variable
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, &
       MUD_BAD_OPTION, &
-      MUD_BAD_PROPS, ON_PROPS, ON_STATEV, ON_ARGUMENT
+      MUD_BAD_PROPS, MUD_BAD_INPUT, ON_PROPS, ON_STATEV, ON_ARGUMENT
+   use mud_tensor, only: is_finite
    use mud_trace, only: trace_t
+   use mud_units, only: bounds_for, convert_props
    implicit none (type, external)
    private
-   public :: mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_bounds, mud_default_props, &
-             mud_validate_props, mud_init_state, mud_update, mud_trace_increment, mud_status_text, mud_message
+   public :: mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_bounds, mud_bounds_for, &
+             mud_default_props, mud_convert_props, mud_validate_props, mud_init_state, mud_update, &
+             mud_trace_increment, mud_status_text, mud_message
    public :: put, ABI_VERSION, VERSION
 
    integer, parameter :: ABI_VERSION = 1
@@ -22,6 +26,7 @@ module mud_c_api
    integer, parameter :: LIST_PROPS = 1, LIST_STATEV = 2
    integer, parameter :: FIELD_NAME = 1, FIELD_SYMBOL = 2, FIELD_UNIT = 3, FIELD_ORIGIN = 4, FIELD_MEANING = 5, &
                          FIELD_INITIAL = 6, FIELD_ROTATION = 7, FIELD_EVOLUTION = 8
+   real(wp), parameter :: SMALLEST_FACTOR = 1.0e-12_wp   !< Between two units of stress [-].
 contains
    pure integer(c_int) function mud_abi_version() bind(c, name='mud_abi_version')
       mud_abi_version = ABI_VERSION
@@ -120,7 +125,7 @@ contains
       end if
    end function mud_text
 
-   !> Bounds and default of a parameter; state variables have none.
+   !> Bounds and default of a parameter where p_atm is an atmosphere in kPa; state variables have none.
    integer(c_int) function mud_bounds(list, index, lower, upper, preset) bind(c, name='mud_bounds')
       integer(c_int), value :: list, index
       type(c_ptr), value :: lower, upper, preset
@@ -132,6 +137,52 @@ contains
       call put_real(PROPERTIES(index + 1)%default, preset)
       mud_bounds = MUD_OK
    end function mud_bounds
+
+   !> The same in the unit of stress of a set of PROPS.
+   integer(c_int) function mud_bounds_for(props, n_props, index, lower, upper, preset) bind(c, name='mud_bounds_for')
+      type(c_ptr), value :: props, lower, upper, preset
+      integer(c_int), value :: n_props, index
+      real(c_double), pointer, contiguous :: values(:)
+      real(wp) :: low(NPROPS), high(NPROPS), default(NPROPS)
+
+      mud_bounds_for = MUD_NULL_ARGUMENT
+      if (.not. c_associated(props)) return
+      mud_bounds_for = MUD_BAD_NPROPS
+      if (n_props /= NPROPS) return
+      mud_bounds_for = MUD_BAD_OPTION
+      if (index < 0 .or. index >= NPROPS) return
+      call c_f_pointer(props, values, [NPROPS])
+      call bounds_for(values, low, high, default)
+      call put_real(low(index + 1), lower)
+      call put_real(high(index + 1), upper)
+      call put_real(default(index + 1), preset)
+      mud_bounds_for = MUD_OK
+   end function mud_bounds_for
+
+   !> The same material in another unit of stress. On an error PROPS are untouched.
+   integer(c_int) function mud_convert_props(props, n_props, factor) bind(c, name='mud_convert_props')
+      type(c_ptr), value :: props
+      integer(c_int), value :: n_props
+      real(c_double), value :: factor
+      real(c_double), pointer, contiguous :: values(:)
+      real(wp) :: converted(NPROPS)
+      type(params_t) :: par
+      type(mud_status_t) :: status
+
+      mud_convert_props = MUD_NULL_ARGUMENT
+      if (.not. c_associated(props)) return
+      mud_convert_props = MUD_BAD_INPUT
+      if (.not. is_finite(factor)) return
+      if (factor < SMALLEST_FACTOR .or. factor > 1.0_wp/SMALLEST_FACTOR) return
+      call c_f_pointer(props, values, [max(n_props, 0)])
+      call read_params(values, par, status)
+      if (status%code == MUD_OK) then
+         converted = convert_props(values, factor)
+         call read_params(converted, par, status)
+         if (status%code == MUD_OK) values = converted
+      end if
+      mud_convert_props = status%code
+   end function mud_convert_props
 
    integer(c_int) function mud_default_props(props, n_props) bind(c, name='mud_default_props')
       type(c_ptr), value :: props
@@ -153,6 +204,7 @@ contains
       real(c_double), pointer, contiguous :: values(:)
       type(params_t) :: par
       type(mud_status_t) :: status
+      character(ADVICE_LENGTH) :: advice
 
       if (c_associated(props)) then
          call c_f_pointer(props, values, [max(n_props, 0)])
@@ -161,7 +213,10 @@ contains
          status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
       end if
       mud_validate_props = status%code
-      call put(report_text(failed_report(status)), text, len)
+      advice = ''
+      if (status%code == MUD_OK) advice = advice_on(values)
+      if (advice == '') advice = report_text(failed_report(status))
+      call put(advice, text, len)
    end function mud_validate_props
 
    integer(c_int) function mud_init_state(props, n_props, stress, suction, void_ratio, statev, n_statev, text, len) &
@@ -245,7 +300,7 @@ contains
       type(c_ptr), value :: props, stress0, statev0, dstrain, rows, attempts, report_out
       integer(c_int), value :: n_props, n_statev, tangent, first, n_rows
       real(c_double), value :: suction0, dsuction
-      real(c_double), pointer :: props_in(:), stress_in(:), statev_in(:), dstrain_in(:)
+      real(c_double), pointer, contiguous :: props_in(:), stress_in(:), statev_in(:), dstrain_in(:)
       integer(c_int), pointer :: attempts_to
       type(report_t), pointer :: report_to
       type(report_t) :: report

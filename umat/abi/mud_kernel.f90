@@ -36,7 +36,7 @@ module mud_kernel
 contains
    !> Initialises a point. stress and statev are written on success only.
    pure subroutine kernel_init(props, stress, suction, void_ratio, statev, report)
-      real(wp), intent(in) :: props(:)
+      real(wp), intent(in), contiguous :: props(:)
       real(wp), intent(inout) :: stress(6)     !< Lifted to p_min if its mean is below [kPa].
       real(wp), intent(in) :: suction, void_ratio
       real(wp), intent(inout) :: statev(:)
@@ -57,7 +57,7 @@ contains
 
    !> One increment of a material as PROPS give it. On failure output is undefined.
    pure subroutine kernel_update(props, stress, statev, d_strain, suction, d_suction, tangent, output, report, trace)
-      real(wp), intent(in) :: props(:)
+      real(wp), intent(in), contiguous :: props(:)
       real(wp), intent(in) :: stress(6), statev(:), d_strain(6), suction, d_suction
       integer, intent(in) :: tangent
       type(output_t), intent(inout) :: output

@@ -75,8 +75,7 @@ contains
          text = 'parameter '//trim(PROPERTIES(report%index)%name)//' (PROPS '//trim(whole(report%index))//') is '// &
                 trim(number(report%value))//', allowed '//trim(lower)//' to '//trim(upper)
          if (PROPERTIES(report%index)%kind /= KIND_REAL) text = trim(text)//', whole numbers only'
-         text = trim(text)//' (default '//trim(number(PROPERTIES(report%index)%default))//'): '// &
-                PROPERTIES(report%index)%meaning
+         text = trim(text)//' (default '//trim(number(default_like(report)))//'): '//PROPERTIES(report%index)%meaning
       case (MUD_BAD_STATE)
          if (report%index < 1 .or. report%index > NSTATV) return
          text = 'state variable '//trim(statev_name(report%index))//' (STATEV '//trim(whole(report%index))//') is '// &
@@ -181,6 +180,16 @@ contains
       suffix = ''
       if (index >= 1 .and. index <= 6) suffix = '_'//COMPONENT(index)
    end function component_suffix
+
+   !> Default of a parameter in the unit of the bounds that the report carries.
+   pure real(wp) function default_like(report) result(default)
+      type(report_t), intent(in) :: report
+
+      associate (entry => PROPERTIES(report%index))
+         default = entry%default
+         if (entry%unit /= '1') default = default*(report%upper/entry%upper)
+      end associate
+   end function default_like
 
    pure function quantity(report) result(text)
       type(report_t), intent(in) :: report

@@ -67,9 +67,18 @@ int mud_version(char *text, int len);                       /* "0.1.0" */
 int mud_count(int list);                                    /* entries of PROPS or STATEV; MUD_BAD_OPTION */
 int mud_index(int list, const char *name);                  /* index from 0; -1: no such name (case is ignored) */
 int mud_text(int list, int index, int field, char *text, int len);
-int mud_bounds(int list, int index, double *lower, double *upper, double *preset);  /* of PROPS: bounds, default */
-int mud_default_props(double *props, int nprops);
-int mud_validate_props(const double *props, int nprops, char *text, int len);       /* a sentence for the first fault */
+/* Bounds and default of an entry of PROPS. Those whose MUD_UNIT is kPa or kPa^lambda are told for p_atm = 101.325 and
+ * scale with p_atm (and p_atm^lambda); only p_atm's own bounds do not. mud_bounds_for tells them for the p_atm and
+ * lambda of props. */
+int mud_bounds(int list, int index, double *lower, double *upper, double *preset);
+int mud_bounds_for(const double *props, int nprops, int index, double *lower, double *upper, double *preset);
+int mud_default_props(double *props, int nprops);           /* in kPa */
+/* The same material in another unit of stress, `factor` of which make one of the present unit (from kPa: 1000 Pa,
+ * 0.001 MPa, 0.1450377 psi). Changes p_atm, alpha_csl, P_a, p_min and, by factor^lambda, N_c and N_l. */
+int mud_convert_props(double *props, int nprops, double factor);
+/* Text: a sentence for the first fault; with MUD_OK "no error" or, where stresses of PROPS seem to have another unit
+ * than p_atm, a sentence that begins with "warning: ". */
+int mud_validate_props(const double *props, int nprops, char *text, int len);
 
 /* --- one integration point --------------------------------------------------------------------------- */
 /* Fills statev[nstatev] for a stress[6] (lifted in place to p_min if its mean is below), suction and void ratio

@@ -4,9 +4,10 @@ module mud_interface
    use, intrinsic :: iso_c_binding, only: c_int, c_double, c_char
    implicit none (type, external)
    private
-   public :: mud_report, mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_bounds, mud_default_props, &
-             mud_validate_props, mud_init_state, mud_update, mud_update_batch, mud_status_text, mud_message, &
-             mud_substep, mud_trace_increment, mud_save_increment
+   public :: mud_report, mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_bounds, mud_bounds_for, &
+             mud_default_props, mud_convert_props, mud_validate_props, mud_init_state, &
+             mud_update, mud_update_batch, mud_status_text, mud_message, mud_substep, mud_trace_increment, &
+             mud_save_increment
    public :: MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL, &
       MUD_ROTATION, MUD_EVOLUTION
    public :: MUD_SUBSTEP_REJECTED, MUD_SUBSTEP_ACCEPTED, MUD_SUBSTEP_FAILED, MUD_MODE_ORDINARY, MUD_MODE_ELASTIC, &
@@ -72,11 +73,25 @@ module mud_interface
          real(c_double), intent(out) :: lower, upper, preset
       end function mud_bounds
 
+      integer(c_int) function mud_bounds_for(props, nprops, index, lower, upper, preset) bind(c, name='mud_bounds_for')
+         import :: c_int, c_double
+         integer(c_int), value :: nprops, index
+         real(c_double), intent(in) :: props(nprops)
+         real(c_double), intent(out) :: lower, upper, preset
+      end function mud_bounds_for
+
       integer(c_int) function mud_default_props(props, nprops) bind(c, name='mud_default_props')
          import :: c_int, c_double
          integer(c_int), value :: nprops
          real(c_double), intent(out) :: props(nprops)
       end function mud_default_props
+
+      integer(c_int) function mud_convert_props(props, nprops, factor) bind(c, name='mud_convert_props')
+         import :: c_int, c_double
+         integer(c_int), value :: nprops
+         real(c_double), intent(inout) :: props(nprops)
+         real(c_double), value :: factor
+      end function mud_convert_props
 
       integer(c_int) function mud_validate_props(props, nprops, text, len) bind(c, name='mud_validate_props')
          import :: c_int, c_double, c_char

@@ -8,6 +8,7 @@ module mud_params
       P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, P_TANGENT, P_RHO_E, P_SHEAR_ORDER
    use mud_status, only: mud_status_t, fail, MUD_BAD_NPROPS, MUD_BAD_PROPS, ON_PROPS
    use mud_tensor, only: is_finite
+   use mud_units, only: stress_unit, bounds_for, minimum_stress, LARGEST_STRESS, LARGEST_SUCTION_STEP, SMALLEST_MINIMUM
    implicit none (type, external)
    private
    public :: params_t, read_params, default_props, FLOOR_AS_PUBLISHED
@@ -16,7 +17,9 @@ module mud_params
 
    ! Side by side: an update checks them every time, and entries of PROPERTIES are several hundred bytes apart.
    real(wp), parameter :: LOWER(NPROPS) = PROPERTIES%lower, UPPER(NPROPS) = PROPERTIES%upper
-   logical, parameter :: WHOLE(NPROPS) = PROPERTIES%kind /= KIND_REAL   !< Switches, options and counts.
+   !> Switches, options and counts.
+   integer, parameter :: WHOLE(*) = pack(PROPERTIES%index, PROPERTIES%kind /= KIND_REAL)
+   real(wp), parameter :: NEARLY_WHOLE = 1.0e-9_wp   !< A number this close to a whole one is it [-].
 
    !> Parameters of one material; names and units as in mud_registry.
    type :: params_t
@@ -37,6 +40,7 @@ module mud_params
       real(wp) :: rho_e     !< Radius of the elastic nucleus, 0: none [-].
       real(wp) :: c4        !< c**4, for the Lode function [-].
       real(wp) :: lode_bend !< sqrt(6) (1 - c**4)/(8 c**4), for its slope [-].
+      real(wp) :: largest_stress, largest_suction_step   !< Limits of input in the unit of p_atm.
    end type params_t
 contains
    !> The parameters of Tables 2 and 3 with every default of the registry.
@@ -48,25 +52,17 @@ contains
 
    !> Checks PROPS and names its values. On an error params is undefined and status names the first bad entry.
    pure subroutine read_params(props, params, status)
-      real(wp), intent(in) :: props(:)
+      real(wp), intent(in), contiguous :: props(:)
       type(params_t), intent(out) :: params
       type(mud_status_t), intent(out) :: status
-      integer :: i
       logical :: published
 
       if (size(props) /= NPROPS) then
          status = fail(MUD_BAD_NPROPS, ON_PROPS, 0, real(size(props), wp), real(NPROPS, wp), real(NPROPS, wp))
          return
       end if
-      do i = 1, NPROPS
-         if (acceptable(i, props(i))) cycle
-         status = fail(MUD_BAD_PROPS, ON_PROPS, i, props(i), LOWER(i), UPPER(i))
-         return
-      end do
-      if (props(P_S_MIN) >= props(P_S_MAX)) then
-         status = fail(MUD_BAD_PROPS, ON_PROPS, P_S_MIN, props(P_S_MIN), 0.0_wp, props(P_S_MAX))
-         return
-      end if
+      call check_props(props, status)
+      if (status%code /= 0) return
 
       params%k_0 = props(P_K_0)
       params%g_0 = props(P_G_0)
@@ -94,7 +90,9 @@ contains
       params%m_x = props(P_M_X)
       params%e_0 = props(P_E_0)
       params%p_atm = props(P_P_ATM)
-      params%p_min = props(P_P_MIN)
+      params%p_min = minimum_stress(props)
+      params%largest_stress = LARGEST_STRESS*stress_unit(props)
+      params%largest_suction_step = LARGEST_SUCTION_STEP*stress_unit(props)
       params%bonding = nint(props(P_BONDING)) == 1
       params%fabric = nint(props(P_FABRIC)) == 1
       params%isotropic = nint(props(P_ISOTROPIC)) == 1
@@ -123,15 +121,48 @@ contains
       params%cutoff = nint(props(P_CUTOFF)) == 1 .and. .not. published
    end subroutine read_params
 
+   !> Names the first entry that is not finite, out of its bounds or not the whole number it should be.
+   pure subroutine check_props(props, status)
+      real(wp), intent(in) :: props(NPROPS)
+      type(mud_status_t), intent(out) :: status
+      real(wp) :: low(NPROPS), high(NPROPS), unit
+      integer :: i
+
+      unit = stress_unit(props)
+      if (all(is_finite(props)) .and. abs(unit - 1.0_wp) <= 0.0_wp) then
+         if (no_fault(props)) return
+      end if
+      call bounds_for(props, low, high)
+      do i = 1, NPROPS
+         if (acceptable(i, props(i), low(i), high(i))) cycle
+         status = fail(MUD_BAD_PROPS, ON_PROPS, i, props(i), low(i), high(i))
+         return
+      end do
+      if (props(P_P_MIN) > 0.0_wp .and. props(P_P_MIN) < SMALLEST_MINIMUM*unit) then
+         status = fail(MUD_BAD_PROPS, ON_PROPS, P_P_MIN, props(P_P_MIN), SMALLEST_MINIMUM*unit, high(P_P_MIN))
+      else if (props(P_S_MIN) >= props(P_S_MAX)) then
+         status = fail(MUD_BAD_PROPS, ON_PROPS, P_S_MIN, props(P_S_MIN), 0.0_wp, props(P_S_MAX))
+      end if
+   end subroutine check_props
+
+   !> The same verdict on finite PROPS in kPa without a branch per entry: updates with good PROPS end here.
+   pure logical function no_fault(props)
+      real(wp), intent(in) :: props(NPROPS)
+
+      no_fault = .not. any(props < LOWER .or. props > UPPER)
+      if (no_fault) no_fault = all(abs(props(WHOLE) - anint(props(WHOLE))) < NEARLY_WHOLE) .and. &
+                               props(P_S_MIN) < props(P_S_MAX) .and. &
+                               (props(P_P_MIN) <= 0.0_wp .or. props(P_P_MIN) >= SMALLEST_MINIMUM)
+   end function no_fault
+
    !> Finite, within the bounds and, for switches, options and counts, a whole number.
-   pure logical function acceptable(i, value)
+   pure logical function acceptable(i, value, low, high)
       integer, intent(in) :: i
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value, low, high
 
       acceptable = is_finite(value)
       if (.not. acceptable) return
-      acceptable = value >= LOWER(i) .and. value <= UPPER(i)
-      if (.not. acceptable) return
-      if (WHOLE(i)) acceptable = abs(value - anint(value)) < 1.0e-9_wp
+      acceptable = value >= low .and. value <= high
+      if (acceptable .and. any(i == WHOLE)) acceptable = abs(value - anint(value)) < NEARLY_WHOLE
    end function acceptable
 end module mud_params

@@ -5,6 +5,7 @@ module mud_registry
    implicit none (type, external)
    private
    public :: property_t, variable_t, PROPERTIES, VARIABLES, NPROPS, NSTATV, NVARIABLES, STATE_LAYOUT
+   public :: UNIT_STRESS, UNIT_STRESS_TO_LAMBDA
    public :: KIND_REAL, KIND_SWITCH, KIND_OPTION, KIND_COUNT
    public :: property_index, statev_index, statev_name, statev_variable, COMPONENTS
    public :: RULE_CLASSIC, RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RESUME, RULE_AS_PUBLISHED
@@ -23,6 +24,9 @@ module mud_registry
    integer, parameter :: KIND_REAL = 0, KIND_SWITCH = 1, KIND_OPTION = 2, KIND_COUNT = 3
    integer, parameter :: RULE_CLASSIC = 0, RULE_THRESHOLD = 1, RULE_REPOSITIONING = 2, RULE_RESUME = 3, &
                          RULE_AS_PUBLISHED = 4
+   !> Units of the entries of PROPS that change with the unit of p_atm. Their bounds and defaults below are those for
+   !> the default p_atm; mud_units converts them.
+   character(10), parameter :: UNIT_STRESS = 'kPa', UNIT_STRESS_TO_LAMBDA = 'kPa^lambda'
    character(2), parameter :: COMPONENTS(6) = ['11', '22', '33', '12', '13', '23']   !< Order of tensor components.
 
    !> One material parameter.
@@ -30,11 +34,11 @@ module mud_registry
       integer :: index         !< Place in PROPS, from 1.
       character(16) :: name    !< Name in input files and in the C interface.
       character(12) :: symbol  !< Symbol in the theory.
-      character(8) :: unit     !< Unit, 1 if it has none.
+      character(10) :: unit    !< Unit, 1 if it has none.
       integer :: kind          !< KIND_REAL, KIND_SWITCH (0 or 1), KIND_OPTION or KIND_COUNT (whole numbers).
-      real(wp) :: lower        !< Smallest allowed value.
-      real(wp) :: upper        !< Largest allowed value.
-      real(wp) :: default      !< Value of the paper, or ours.
+      real(wp) :: lower        !< Smallest allowed value (kPa, kPa^lambda: at the default p_atm).
+      real(wp) :: upper        !< Largest allowed value, likewise.
+      real(wp) :: default      !< Value of the paper, or ours; likewise.
       character(12) :: origin  !< paper, mended, rebuilt, ours or numerical.
       character(112) :: meaning
    end type property_t
@@ -140,13 +144,13 @@ module mud_registry
          'bulk modulus number, eq. (2)'), &
       property_t(P_G_0, 'G_0', 'G_0', '1', KIND_REAL, 0.001_wp, 1.0e5_wp, 125.0_wp, 'paper', &
          'shear modulus number, eq. (3)'), &
-      property_t(P_N_C, 'N_c', 'N_c', '1', KIND_REAL, 0.001_wp, 10000.0_wp, 18.7_wp, 'paper', &
+      property_t(P_N_C, 'N_c', 'N_c', UNIT_STRESS_TO_LAMBDA, KIND_REAL, 0.001_wp, 10000.0_wp, 18.7_wp, 'paper', &
          'position of the critical state line in ln e - ln p'', eq. (8)'), &
       property_t(P_LAMBDA, 'lambda', 'lambda', '1', KIND_REAL, 0.001_wp, 5.0_wp, 0.37_wp, 'paper', &
          'slope of the critical state line and of the compression line, eqs (7), (8)'), &
-      property_t(P_ALPHA_CSL, 'alpha_csl', 'alpha_csl', 'kPa', KIND_REAL, 0.0_wp, 1000000.0_wp, 3370.0_wp, 'paper', &
+      property_t(P_ALPHA_CSL, 'alpha_csl', 'alpha_csl', UNIT_STRESS, KIND_REAL, 0.0_wp, 1.0e6_wp, 3370.0_wp, 'paper', &
          'shift of p'' in the critical state line, eq. (8)'), &
-      property_t(P_N_L, 'N_l', 'N_l', '1', KIND_REAL, 0.001_wp, 10000.0_wp, 25.0_wp, 'paper', &
+      property_t(P_N_L, 'N_l', 'N_l', UNIT_STRESS_TO_LAMBDA, KIND_REAL, 0.001_wp, 10000.0_wp, 25.0_wp, 'paper', &
          'position of the compression line in ln e - ln p'', eq. (7)'), &
       property_t(P_THETA, 'theta', 'theta', '1', KIND_REAL, 0.01_wp, 5.0_wp, 0.2_wp, 'mended', &
          'exponent of the distance to the compression line, eq. (4); missing in the paper''s Table 2'), &
@@ -176,7 +180,7 @@ module mud_registry
          'largest degree of saturation, eq. (24); S_i of Table 3'), &
       property_t(P_S_MIN, 'S_min', 'S_min', '1', KIND_REAL, 0.0_wp, 0.999_wp, 0.0_wp, 'paper', &
          'residual degree of saturation, eq. (24), below S_max; S_rw of Table 3'), &
-      property_t(P_P_A, 'P_a', 'P_a', 'kPa', KIND_REAL, 1e-06_wp, 1000000.0_wp, 5.0_wp, 'paper', &
+      property_t(P_P_A, 'P_a', 'P_a', UNIT_STRESS, KIND_REAL, 1e-06_wp, 1000000.0_wp, 5.0_wp, 'paper', &
          'air-entry value, eq. (24)'), &
       property_t(P_OMEGA, 'Omega', 'Omega', '1', KIND_REAL, 0.0_wp, 20.0_wp, 2.0_wp, 'paper', &
          'void ratio in the modified suction p_c e^Omega, eq. (23)'), &
@@ -186,10 +190,10 @@ module mud_registry
          'outer exponent of the retention curve, eq. (24)'), &
       property_t(P_E_0, 'e_0', 'e_0', '1', KIND_REAL, 0.01_wp, 5.0_wp, 0.8_wp, 'ours', &
          'initial void ratio, used where the host has not preset STATEV'), &
-      property_t(P_P_ATM, 'p_atm', 'p_atm', 'kPa', KIND_REAL, 1e-06_wp, 1000000000.0_wp, 101.325_wp, 'paper', &
-         'atmospheric pressure; its unit is the unit of all stresses'), &
-      property_t(P_P_MIN, 'p_min', 'p_min', 'kPa', KIND_REAL, 1e-09_wp, 1000000.0_wp, 0.101325_wp, 'numerical', &
-         'smallest mean effective stress, tension cut-off'), &
+      property_t(P_P_ATM, 'p_atm', 'p_atm', UNIT_STRESS, KIND_REAL, 1e-06_wp, 1000000000.0_wp, 101.325_wp, 'paper', &
+         'atmospheric pressure; its unit is the unit of all stresses, and the bounds in kPa scale with it'), &
+      property_t(P_P_MIN, 'p_min', 'p_min', UNIT_STRESS, KIND_REAL, 0.0_wp, 1000000.0_wp, 0.0_wp, 'numerical', &
+         'smallest mean effective stress, tension cut-off; 0: 1e-3 p_atm; otherwise at least 1e-11 p_atm'), &
       property_t(P_BONDING, 'bonding', 'bonding', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 1.0_wp, 'paper', &
          '1: suction bonding zeta acts on the lines of eqs (7), (8); 0: f = 1'), &
       property_t(P_FABRIC, 'fabric', 'fabric', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 1.0_wp, 'rebuilt', &

@@ -26,7 +26,7 @@ module mud_status
    integer, parameter :: MUD_NO_DIRECTION = 3         !< Again no admissible loading direction (guards off).
    integer, parameter :: MUD_VOID_RATIO_LIMIT = 4     !< The increment would drive e outside (0.01, 5).
    integer, parameter :: MUD_NOT_FINITE = 5           !< The result is not finite.
-   integer, parameter :: MUD_INCREMENT_TOO_LARGE = 6  !< A strain component beyond 1 or a suction change beyond 1e7 kPa.
+   integer, parameter :: MUD_INCREMENT_TOO_LARGE = 6  !< A strain component or a suction change beyond its limit.
 
    integer, parameter :: ON_NOTHING = 0, ON_PROPS = 1, ON_STATEV = 2, ON_STRESS = 3, ON_STRAIN = 4, ON_SUCTION = 5, &
                          ON_VOID_RATIO = 6, ON_ARGUMENT = 7, ON_ROTATION = 8

@@ -30,8 +30,6 @@ module mud_point
                          TANGENT_CONSISTENT = 3
 
    real(wp), parameter :: LARGEST_STRAIN = 1.0_wp            !< Larger increments are asked to be cut [-].
-   real(wp), parameter :: LARGEST_SUCTION_STEP = 1.0e7_wp    !< Likewise [kPa].
-   real(wp), parameter :: LARGEST_STRESS = 1.0e9_wp          !< A stress or suction beyond it is an input error [kPa].
    real(wp), parameter :: LAST_SLIVER = 1.0e-9_wp            !< A rest of this share joins the substep before it [-].
    real(wp), parameter :: AT_LIMIT = 1.0e-9_wp               !< p' this close (relative) to p_min is at p_min [-].
    !> At a low stress an elastic strain of rho_e may be more than the whole strength: r may exceed the bounding surface
@@ -69,7 +67,7 @@ contains
       type(mud_status_t), intent(out) :: status
       real(wp) :: p, r(6)
 
-      call check_stress(sigma, p_c, status)
+      call check_stress(par, sigma, p_c, status)
       if (status%code /= MUD_OK) return
       if (.not. is_finite(e)) then
          status = fail(MUD_BAD_VOID_RATIO, ON_VOID_RATIO, 0, e, E_LOWER, E_UPPER)
@@ -114,7 +112,7 @@ contains
       logical :: consistent
 
       reached = 0.0_wp
-      call check_increment(state0, d_strain, d_pc, status)
+      call check_increment(par, state0, d_strain, d_pc, status)
       if (status%code /= MUD_OK) return
       inc%d_strain = d_strain
       inc%d_pc = d_pc
@@ -639,28 +637,30 @@ contains
                     s(3)*minor + 2.0_wp*s(4)*s(5)*s(6) - s(1)*s(6)*s(6) - s(2)*s(5)*s(5) < 0.0_wp
    end function has_tension
 
-   pure subroutine check_stress(sigma, p_c, status)
+   pure subroutine check_stress(par, sigma, p_c, status)
+      type(params_t), intent(in) :: par
       real(wp), intent(in) :: sigma(6), p_c
       type(mud_status_t), intent(out) :: status
       integer :: i
 
       do i = 1, 6
-         if (within(sigma(i), LARGEST_STRESS)) cycle
-         status = fail(MUD_BAD_INPUT, ON_STRESS, i, sigma(i), -LARGEST_STRESS, LARGEST_STRESS)
+         if (within(sigma(i), par%largest_stress)) cycle
+         status = fail(MUD_BAD_INPUT, ON_STRESS, i, sigma(i), -par%largest_stress, par%largest_stress)
          return
       end do
-      if (.not. within(p_c, LARGEST_STRESS)) then
-         status = fail(MUD_BAD_INPUT, ON_SUCTION, 0, p_c, -LARGEST_STRESS, LARGEST_STRESS)
+      if (.not. within(p_c, par%largest_stress)) then
+         status = fail(MUD_BAD_INPUT, ON_SUCTION, 0, p_c, -par%largest_stress, par%largest_stress)
       end if
    end subroutine check_stress
 
-   pure subroutine check_increment(state, d_strain, d_pc, status)
+   pure subroutine check_increment(par, state, d_strain, d_pc, status)
+      type(params_t), intent(in) :: par
       type(state_t), intent(in) :: state
       real(wp), intent(in) :: d_strain(6), d_pc
       type(mud_status_t), intent(out) :: status
       integer :: i
 
-      call check_stress(state%sigma, state%p_c, status)
+      call check_stress(par, state%sigma, state%p_c, status)
       if (status%code /= MUD_OK) return
       do i = 1, 6
          if (within(d_strain(i), LARGEST_STRAIN)) cycle
@@ -668,9 +668,9 @@ contains
                        d_strain(i), -LARGEST_STRAIN, LARGEST_STRAIN)
          return
       end do
-      if (.not. within(d_pc, LARGEST_SUCTION_STEP)) then
+      if (.not. within(d_pc, par%largest_suction_step)) then
          status = fail(merge(MUD_INCREMENT_TOO_LARGE, MUD_BAD_INPUT, is_finite(d_pc)), ON_SUCTION, 0, d_pc, &
-                       -LARGEST_SUCTION_STEP, LARGEST_SUCTION_STEP)
+                       -par%largest_suction_step, par%largest_suction_step)
       end if
    end subroutine check_increment
 

@@ -1,0 +1,121 @@
+!> The unit of stress is the user's: PROPS that carry one, and every limit, follow p_atm. "Unit" below is the user's
+!> unit of stress, given as how many of it make 1 kPa: 1 for kPa, 1000 for Pa, 0.001 for MPa, 0.145 for psi.
+module mud_units
+   use mud_kinds, only: wp
+   use mud_registry, only: NPROPS, PROPERTIES, UNIT_STRESS, UNIT_STRESS_TO_LAMBDA, P_N_C, P_LAMBDA, P_ALPHA_CSL, &
+      P_N_L, P_P_A, P_P_ATM, P_P_MIN
+   use mud_tensor, only: is_finite
+   implicit none (type, external)
+   private
+   public :: stress_unit, bounds_for, convert_props, minimum_stress, doubt_t, NDOUBTS, unit_doubts
+   public :: LARGEST_STRESS, LARGEST_SUCTION_STEP, SMALLEST_MINIMUM
+
+   real(wp), parameter :: LARGEST_STRESS = 1.0e9_wp         !< A stress or suction beyond it is an input error [kPa].
+   real(wp), parameter :: LARGEST_SUCTION_STEP = 1.0e7_wp   !< Larger steps are asked to be cut [kPa].
+   real(wp), parameter :: SMALLEST_MINIMUM = 1.0e-9_wp      !< Least p_min that may be given [kPa].
+   real(wp), parameter :: MINIMUM_DIVISOR = 1000.0_wp       !< p_min = 0 means p_atm over this [-].
+
+   logical, parameter :: IS_STRESS(NPROPS) = PROPERTIES%unit == UNIT_STRESS
+   logical, parameter :: IS_STRESS_TO_LAMBDA(NPROPS) = PROPERTIES%unit == UNIT_STRESS_TO_LAMBDA
+   !> Bounds that do not follow p_atm: numbers without unit, and p_atm itself.
+   logical, parameter :: OWN_BOUNDS(NPROPS) = .not. (IS_STRESS .or. IS_STRESS_TO_LAMBDA) .or. &
+                                              PROPERTIES%index == P_P_ATM
+
+   !> Usual ranges as shares of p_atm. Each is a factor of 1000 wide (void ratios: of 1000**0.37, the default lambda),
+   !> so that a value in Pa, kPa or MPa beside a p_atm in another of them is outside, wherever in the range it belongs.
+   !> P_a: coarse sand (0.3 kPa) to clayey silt (300 kPa); alpha_csl: 100 kPa to 100 MPa; p_min: around its default.
+   real(wp), parameter :: USUAL_P_A(2) = [3.0e-3_wp, 3.0_wp], USUAL_ALPHA_CSL(2) = [1.0_wp, 1000.0_wp], &
+                          USUAL_P_MIN(2) = [3.0e-5_wp, 3.0e-2_wp]
+   !> Usual void ratios at p' = p_atm of the critical state line (silt and sand: 0.3 to 2.5) and the compression line.
+   real(wp), parameter :: USUAL_E_C(2) = [0.24_wp, 3.1_wp], USUAL_E_L(2) = [1.0_wp, 13.0_wp]
+   integer, parameter :: NDOUBTS = 5   !< How many entries are looked at.
+
+   !> An entry of PROPS that suggests another unit than that of p_atm.
+   type :: doubt_t
+      logical :: raised = .false.
+      integer :: index = 0               !< Place in PROPS.
+      logical :: void_ratio = .false.    !< The number is the void ratio at p' = p_atm, else a share of p_atm.
+      real(wp) :: value = 0.0_wp, usual(2) = 0.0_wp
+   end type doubt_t
+contains
+   !> The user's unit, from p_atm; 1 where p_atm itself is out of its bounds.
+   pure real(wp) function stress_unit(props) result(unit)
+      real(wp), intent(in) :: props(NPROPS)
+
+      unit = 1.0_wp
+      if (is_allowed(props, P_P_ATM)) unit = props(P_P_ATM)/PROPERTIES(P_P_ATM)%default
+   end function stress_unit
+
+   !> Bounds and defaults of every entry in the user's unit; p_atm has its own bounds, its default is an atmosphere.
+   pure subroutine bounds_for(props, lower, upper, default)
+      real(wp), intent(in) :: props(NPROPS)   !< Of which p_atm and lambda count.
+      real(wp), intent(out) :: lower(NPROPS), upper(NPROPS)
+      real(wp), intent(out), optional :: default(NPROPS)
+      real(wp) :: factors(NPROPS)
+
+      factors = factors_for(stress_unit(props), props)
+      if (present(default)) default = PROPERTIES%default*factors
+      where (OWN_BOUNDS) factors = 1.0_wp
+      lower = PROPERTIES%lower*factors
+      upper = PROPERTIES%upper*factors
+   end subroutine bounds_for
+
+   !> The same material in another unit of stress, of which `unit` make one of the present unit.
+   pure function convert_props(props, unit) result(converted)
+      real(wp), intent(in) :: props(NPROPS), unit
+      real(wp) :: converted(NPROPS)
+
+      converted = props*factors_for(unit, props)
+   end function convert_props
+
+   !> What each entry is multiplied by: N_c and N_l by unit**lambda, for e_c = N_c (p' + alpha_csl)**-lambda.
+   pure function factors_for(unit, props) result(factors)
+      real(wp), intent(in) :: unit, props(NPROPS)
+      real(wp) :: factors(NPROPS), power
+
+      factors = 1.0_wp
+      if (abs(unit - 1.0_wp) <= 0.0_wp) return
+      power = 1.0_wp
+      if (is_allowed(props, P_LAMBDA)) power = unit**props(P_LAMBDA)
+      where (IS_STRESS) factors = unit
+      where (IS_STRESS_TO_LAMBDA) factors = power
+   end function factors_for
+
+   !> Within its own bounds. A NaN is not compared: a comparison would trap.
+   pure logical function is_allowed(props, i)
+      real(wp), intent(in) :: props(NPROPS)
+      integer, intent(in) :: i
+
+      is_allowed = is_finite(props(i))
+      if (is_allowed) is_allowed = props(i) >= PROPERTIES(i)%lower .and. props(i) <= PROPERTIES(i)%upper
+   end function is_allowed
+
+   !> p_min [user's unit]: a forgotten one follows p_atm.
+   pure real(wp) function minimum_stress(props) result(p_min)
+      real(wp), intent(in) :: props(NPROPS)
+
+      p_min = props(P_P_MIN)
+      if (p_min <= 0.0_wp) p_min = props(P_P_ATM)/MINIMUM_DIVISOR
+   end function minimum_stress
+
+   !> Entries of allowed PROPS that look as if p_atm had another unit. Zeros (no shift, p_min by default) have no unit.
+   pure function unit_doubts(props) result(doubts)
+      real(wp), intent(in) :: props(NPROPS)
+      type(doubt_t) :: doubts(NDOUBTS)
+      real(wp) :: p_atm
+      integer :: i
+
+      p_atm = props(P_P_ATM)
+      doubts(1) = doubt_t(.true., P_P_A, .false., props(P_P_A)/p_atm, USUAL_P_A)
+      doubts(2) = doubt_t(props(P_ALPHA_CSL) > 0.0_wp, P_ALPHA_CSL, .false., props(P_ALPHA_CSL)/p_atm, &
+                          USUAL_ALPHA_CSL)
+      doubts(3) = doubt_t(props(P_P_MIN) > 0.0_wp, P_P_MIN, .false., props(P_P_MIN)/p_atm, USUAL_P_MIN)
+      doubts(4) = doubt_t(.true., P_N_C, .true., &
+                          props(P_N_C)*(p_atm + props(P_ALPHA_CSL))**(-props(P_LAMBDA)), USUAL_E_C)
+      doubts(5) = doubt_t(.true., P_N_L, .true., props(P_N_L)*p_atm**(-props(P_LAMBDA)), USUAL_E_L)
+      do i = 1, NDOUBTS
+         doubts(i)%raised = doubts(i)%raised .and. (doubts(i)%value < doubts(i)%usual(1) .or. &
+                                                    doubts(i)%value > doubts(i)%usual(2))
+      end do
+   end function unit_doubts
+end module mud_units
