@@ -21,7 +21,7 @@ STRICT = {"C": ["-std=c11", "-Wall", "-Wextra", "-Werror"], "Fortran": ["-std=f2
 # The Fortran run-time library with what comes with it (libquadmath, libgcc_s), OpenMP, C and mathematics.
 ALLOWED = {"libgfortran", "libquadmath", "libgcc_s", "libgomp", "libm", "libc"}
 # p' and q [kPa] at 1 % axial strain, undrained e 0.735 p' 100 (verification/reference/section7.py), their tolerance.
-KNOWN, WITHIN = (147.354, 219.588), 1e-4
+KNOWN, WITHIN = (147.354, 219.587), 1e-4
 ALL, OPTIMISED, PLAIN = ("release", "debug", "sanitize"), ("release",), ("release", "debug")
 WHY_FEWER = {
    "debug": "how the library is found does not depend on how it was compiled; the release does it in full",
