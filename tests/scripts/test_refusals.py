@@ -1,0 +1,105 @@
+"""Refusals of umat_ are heard, once a process, by hosts that behave as Kratos, CalculiX, incrementalDriver and Abaqus do."""
+import os
+import re
+import subprocess
+
+from checking import build, check, finish, root, work
+
+cache = dict(re.findall(r"^(\w+):\w+=(.*)$", (build / "CMakeCache.txt").read_text(encoding="utf-8"), re.MULTILINE))
+plain = {name: value for name, value in os.environ.items() if not name.startswith("MUD_")}
+# p' and q [kPa] at 1 % axial strain, undrained e 0.735 p' 100 (verification/reference/section7.py), their tolerance.
+KNOWN, WITHIN = (147.354, 219.588), 1e-4
+SENTENCE = re.compile(r"MUD: umat_ refused the increment at (.+?), status (-?\d+): (.+) \(said once a process; "
+                      r"MUD_MESSAGES=off silences\)")
+
+
+def run(*words, **environment):
+    return subprocess.run([str(word) for word in words], cwd=work, capture_output=True, text=True,
+                          env={**plain, **environment})
+
+
+def flags(language):
+    kind = cache["CMAKE_BUILD_TYPE"].upper()
+    return f"{cache.get(f'CMAKE_{language}_FLAGS', '')} {cache.get(f'CMAKE_{language}_FLAGS_{kind}', '')}".split()
+
+
+def sentences(done):
+    """(place, status, text) of every line on standard error; None where a line is something else."""
+    return [found.groups() if (found := SENTENCE.fullmatch(line)) else None for line in done.stderr.splitlines()]
+
+
+def known(done):
+    found = re.fullmatch(r"p' ([-\d.]+) kPa, q ([-\d.]+) kPa\n", done.stdout)
+    return bool(found) and all(abs(float(value) - is_) <= WITHIN*is_ for value, is_ in zip(found.groups(), KNOWN))
+
+
+done = run(cache["CMAKE_C_COMPILER"], *flags("C"), "-std=c11", "-Wall", "-Wextra", "-Werror", "-I", root / "umat/include",
+           "-c", root / "tests/consumers/refused_host.c", "-o", "refused_host.o")
+if done.returncode == 0:
+    done = run(cache["CMAKE_Fortran_COMPILER"], *flags("Fortran"), "refused_host.o", build / "umat/libmud.a", "-lgomp",
+               "-pthread", "-o", "refused_host")
+check("the host compiles", done.returncode == 0, done.stdout + done.stderr)
+host = work / "refused_host"
+
+# Nothing to refuse, nothing said, and the known answer, whatever the host leaves unset.
+for name in ("kratos", "incremental_driver"):
+    done = run(host, name)
+    check(f"{name} meets the known answer in silence", known(done) and done.stderr == "", done.stdout + done.stderr)
+done = run(host, "abaqus", 6)
+check("abaqus meets the known answer in silence", known(done) and done.stderr == "", done.stdout + done.stderr)
+
+# CalculiX: fields of 37.2, 74.4 and so on that it never set are not taken for a suction, and that is said once.
+done = run(host, "calculix")
+check("calculix meets the known answer", known(done), done.stdout + done.stderr)
+check("calculix is told that PREDEF is not read", done.stderr.count("\n") == 1 and "they are not read" in done.stderr and
+      "element 12, point 3, step 2, increment 1:" in done.stderr and "37.200000" in done.stderr, done.stderr)
+
+# A host without PNEWDT must not go on: NaN in STRESS never converges. Left as it was, the old stress does.
+done = run(host, "kratos_hard")
+told = sentences(done)
+check("kratos stops where an increment is refused", "step 50 did not converge" in done.stdout, done.stdout)
+check("and says once what, where and what to do", len(told) == 1 and told[0] and told[0][1] == "6" and
+      "element 0, point 0, step 2, increment" in told[0][0] and "strain increment 11 is -3, allowed -1 to 1" in told[0][2]
+      and "cut it" in told[0][2] and "PNEWDT is NULL, so STRESS is NaN" in told[0][2], done.stderr)
+done = run(host, "kratos_hard", MUD_NO_PNEWDT="keep")
+check("MUD_NO_PNEWDT=keep leaves the old stress, on which the host converges", re.match(r"p' ", done.stdout) and
+      not known(done) and "what it computes from here is wrong" in done.stderr, done.stdout + done.stderr)
+done = run(host, "kratos_hard", MUD_NO_PNEWDT="stop")
+check("any other value of it does not", "did not converge" in done.stdout, done.stdout)
+
+# The first thing that goes wrong: too few STATEV, an NTENS of another element.
+for name, number, status, words in (("kratos", 60, "-2", ("given 60, needed 66",)),
+                                    ("calculix", 60, "-2", ("given 60, needed 66",)),
+                                    ("abaqus", 3, "-3", ("NTENS is 3", "6 (solid) or 4"))):
+    done = run(host, name, number)
+    told = sentences(done)
+    check(f"{name} hears of {number}", len(told) == 1 and told[0] and told[0][1] == status and
+          all(word in told[0][2] for word in words), done.stderr)
+    check(f"{name} stops with {number}", done.returncode == 1 and re.search("step 1 (did not converge|cut by 0.1)",
+                                                                            done.stdout), done.stdout)
+
+# PREDEF of the end of the increment, growing by 1, 2 and so on: the suction runs to PREDEF + DPRED = 20 + 55 + 10 all the
+# same, and it is said where STATEV first holds something else, 22 = 21 + 1.
+done = run(host, "contradiction")
+check("a PREDEF that contradicts STATEV is obeyed from the stored suction", done.stdout == "suction 85.000000\n",
+      done.stdout)
+check("and that is said once", done.stderr.count("\n") == 1 and "PREDEF(1) is 23 " in done.stderr and
+      "STATEV holds 22 " in done.stderr and "PREDEF(1) + DPRED(1) = 25" in done.stderr and "increment 2:" in done.stderr,
+      done.stderr)
+
+# Once a process: eight threads with a thousand failures of two kinds each; a forked child knows what was said.
+done = run(host, "threads")
+told = sentences(done)
+check("of eight threads one says it", done.stdout == "8 threads\n" and None not in told and
+      sorted(found[1] for found in told) == ["-2", "6"], done.stderr)
+done = run(host, "fork")
+told = sentences(done)
+check("a forked process says what is new", done.returncode == 0 and [found and found[1] for found in told] == ["6", "-2"],
+      done.stderr)
+for name in ("kratos_hard", "threads", "contradiction", "calculix"):
+    done = run(host, name, MUD_MESSAGES="off")
+    check(f"MUD_MESSAGES=off silences {name}", done.stderr == "" and done.stdout != "", done.stderr)
+done = run(host, "kratos_hard", MUD_MESSAGES="on")
+check("any other value of it does not", done.stderr.count("\n") == 1, done.stderr)
+
+finish()
