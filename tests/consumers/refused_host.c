@@ -7,6 +7,7 @@
  *    refused_host incremental_driver    PNEWDT enters with 0, DROT was never set
  *    refused_host abaqus NTENS          PNEWDT enters with 1
  *    refused_host contradiction         PREDEF is the suction at the end of the increment
+ *    refused_host units                 p_atm in Pa, everything else in kPa
  *    refused_host threads               eight threads fail a thousand times each, in two ways
  *    refused_host fork                  fails, forks; the child fails in the same way, then in another one */
 #define _POSIX_C_SOURCE 200809L
@@ -132,12 +133,14 @@ static int contradiction(void)
    return 0;
 }
 
-static int fail(double strain, int nstatv)
+static int fail(double strain, int nstatv, double p_atm)
 {
    host_t h;
    double pnewdt = 1.0;
    set_up(&h);
    h.pnewdt = &pnewdt;
+   if (p_atm > 0.0)
+      h.props[mud_index(MUD_PROPS, "p_atm")] = p_atm;
    if (nstatv)
       h.nstatv = nstatv;
    call(&h, strain);
@@ -147,7 +150,7 @@ static int fail(double strain, int nstatv)
 static void *fail_often(void *argument)
 {
    for (int i = 0; i < 1000; i++)
-      if (fail(3.0, 0) != MUD_INCREMENT_TOO_LARGE || fail(1.0e-4, 10) != MUD_BAD_NSTATV)
+      if (fail(3.0, 0, 0.0) != MUD_INCREMENT_TOO_LARGE || fail(1.0e-4, 10, 0.0) != MUD_BAD_NSTATV)
          return NULL;
    return argument;
 }
@@ -171,11 +174,11 @@ static int threads(void)
 static int forks(void)
 {
    int status = 0;
-   fail(3.0, 0);
+   fail(3.0, 0, 0.0);
    pid_t child = fork();
    if (child == 0) {
-      fail(3.0, 0);
-      fail(1.0e-4, 10);
+      fail(3.0, 0, 0.0);
+      fail(1.0e-4, 10, 0.0);
       _exit(0);
    }
    return child < 0 || waitpid(child, &status, 0) != child || status != 0;
@@ -198,6 +201,8 @@ int main(int argc, char **argv)
       return abaqus_like(1.0, 0.0, 0.0, number, 0);
    if (strcmp(task, "contradiction") == 0)
       return contradiction();
+   if (strcmp(task, "units") == 0)
+      return fail(1.0e-6, 0, 101325.0) + fail(1.0e-6, 0, 101325.0);
    if (strcmp(task, "threads") == 0)
       return threads();
    if (strcmp(task, "fork") == 0)

@@ -87,6 +87,11 @@ check("and that is said once", done.stderr.count("\n") == 1 and "PREDEF(1) is 23
       "STATEV holds 22 " in done.stderr and "PREDEF(1) + DPRED(1) = 25" in done.stderr and "increment 2:" in done.stderr,
       done.stderr)
 
+# PROPS in mixed units: the warning of mud_validate_props, which no host of a UMAT calls.
+done = run(host, "units")
+check("PROPS in mixed units draw a warning", done.returncode == 0 and done.stderr.count("\n") == 1 and
+      "do all PROPS have the unit of stress of p_atm?" in done.stderr, f"{done.returncode} {done.stderr}")
+
 # Once a process: eight threads with a thousand failures of two kinds each; a forked child knows what was said.
 done = run(host, "threads")
 told = sentences(done)

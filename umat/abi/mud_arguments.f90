@@ -6,6 +6,7 @@ module mud_arguments
    use mud_status, only: fail, mud_status_t, MUD_OK, MUD_BAD_NTENS, MUD_NULL_ARGUMENT, MUD_BAD_NPROPS, MUD_BAD_NSTATV, &
       MUD_BAD_INPUT, ON_ARGUMENT, ON_PROPS, ON_STATEV, ON_ROTATION
    use mud_tensor, only: is_finite
+   use mud_units, only: stress_unit, LARGEST_STRESS
    implicit none (type, external)
    private
    public :: check_arguments, has_past, rotates, read_rotation, suction_t, read_suction, component_order, integer_at, &
@@ -15,10 +16,9 @@ module mud_arguments
    real(wp), parameter :: ORTHOGONAL = 1.0e-6_wp
    !> Memory that was never set often reads as a number far below any physical one [-]: it counts as 0.
    real(wp), parameter :: NOTHING = 1.0e-100_wp
-   !> PREDEF may differ from the suction of STATEV by this share, rounding of single-precision hosts [-].
-   real(wp), parameter :: SAME_SUCTION = 1.0e-6_wp
-   !> A suction beyond it is refused by the core, as an input error [kPa].
-   real(wp), parameter :: ABSURD_SUCTION = 1.0e9_wp
+   !> PREDEF may differ from the suction of STATEV by this share of the larger one, or of an atmosphere: rounding of
+   !> single-precision hosts, and of a suction that returns to zero [-, kPa].
+   real(wp), parameter :: SAME_SUCTION = 1.0e-6_wp, ATMOSPHERE = 100.0_wp
    !> What CalculiX enters with in PNEWDT. It passes PREDEF and DPRED that it has never set.
    real(wp), parameter :: PNEWDT_OF_CALCULIX = -1.0_wp
 
@@ -129,11 +129,10 @@ contains
 
    !> Suction and its change. The degree of saturation may not jump between two increments, so the suction that STATEV
    !> holds is the start where PREDEF is NULL, where it was never set (CalculiX) and where it says otherwise.
-   type(suction_t) function read_suction(predef, dpred, pnewdt, statev, p_atm) result(suction)
+   type(suction_t) function read_suction(predef, dpred, pnewdt, statev, props) result(suction)
       type(c_ptr), intent(in) :: predef, dpred, pnewdt
-      real(wp), intent(in) :: statev(NSTATV)
-      real(wp), intent(in) :: p_atm   !< Scale of what counts as rounding [kPa].
-      real(wp) :: stored
+      real(wp), intent(in) :: statev(NSTATV), props(:)
+      real(wp) :: stored, unit
 
       suction = suction_t(something_at(predef), something_at(dpred))
       suction%predef = suction%start
@@ -145,9 +144,12 @@ contains
       else if (.not. c_associated(predef)) then
          suction%start = stored
       else if (has_past(statev)) then
-         if (.not. (within(suction%start, ABSURD_SUCTION) .and. within(stored, ABSURD_SUCTION))) return
+         if (size(props) /= NPROPS) return
+         unit = stress_unit(props)
+         ! What is beyond the largest suction is refused as it is.
+         if (.not. (within(suction%start, LARGEST_STRESS*unit) .and. within(stored, LARGEST_STRESS*unit))) return
          if (.not. is_finite(suction%change)) return
-         if (within(suction%start - stored, SAME_SUCTION*max(abs(suction%start), abs(stored), p_atm))) return
+         if (within(suction%start - stored, SAME_SUCTION*max(abs(suction%start), abs(stored), ATMOSPHERE*unit))) return
          suction%change = suction%start + suction%change - stored
          suction%start = stored
          suction%reading = SUCTION_CONTRADICTS

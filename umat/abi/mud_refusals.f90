@@ -3,6 +3,7 @@
 module mud_refusals
    use, intrinsic :: iso_c_binding, only: c_ptr, c_double, c_associated, c_f_pointer
    use, intrinsic :: iso_fortran_env, only: int64
+   use mud_advice, only: advice_on, ADVICE_LENGTH
    use mud_arguments, only: suction_t, integer_at, SUCTION_CONTRADICTS, ARGUMENT_NAMES
    use mud_kernel, only: report_t
    use mud_kinds, only: wp
@@ -14,7 +15,7 @@ module mud_refusals
    use mud_tensor, only: is_finite
    implicit none (type, external)
    private
-   public :: place_t, refuse, remark_on_suction, save_if_asked
+   public :: place_t, refuse, remark_on_suction, remark_on_props, save_if_asked
 
    !> KSTEP, KINC, NOEL and NPT of the host; each may be NULL.
    type :: place_t
@@ -32,7 +33,7 @@ module mud_refusals
    ! Kinds of sentences: a status code, what it is about, and the entry of that array.
    integer, parameter :: SUBJECTS = 9, ENTRIES = 128, CODES = 17
    integer, parameter :: FIRST_REMARK = CODES*SUBJECTS*ENTRIES   !< Remarks follow the failures.
-   integer, parameter :: NOT_SAVED = FIRST_REMARK
+   integer, parameter :: NOT_SAVED = FIRST_REMARK, ON_PROPS_UNITS = FIRST_REMARK + 3
 contains
    !> Answers a host whose increment is refused. STATEV and DDSDDE stay as they are.
    subroutine refuse(report, place, stress, ntens, pnewdt, scd)
@@ -129,6 +130,19 @@ contains
       end if
       call speak('MUD: remark of umat_ at '//trim(place_text(place))//': '//trim(text)//CLOSING)
    end subroutine remark_on_suction
+
+   !> Passes the warning of mud_validate_props on: hosts of umat_ do not ask for it. Asked where a point begins.
+   subroutine remark_on_props(props, place)
+      real(wp), intent(in) :: props(NPROPS)
+      type(place_t), intent(in) :: place
+      character(ADVICE_LENGTH) :: advice
+
+      advice = advice_on(props)
+      if (advice == '') return
+      if (first_time(ON_PROPS_UNITS)) then
+         call speak('MUD: remark of umat_ at '//trim(place_text(place))//': '//trim(advice)//CLOSING)
+      end if
+   end subroutine remark_on_props
 
    !> Where an increment is, as far as the host says.
    function place_text(place) result(text)

@@ -5,11 +5,9 @@ module mud_umat
       component_order, integer_at, SUCTION_AS_GIVEN
    use mud_kernel, only: report_t, output_t, kernel_update, rotate_statev, failed_report, TANGENT_FROM_PROPS
    use mud_kinds, only: wp
-   use mud_params, only: default_props
-   use mud_refusals, only: place_t, refuse, remark_on_suction, save_if_asked
-   use mud_registry, only: NPROPS, NSTATV, P_P_ATM
+   use mud_refusals, only: place_t, refuse, remark_on_suction, remark_on_props, save_if_asked
+   use mud_registry, only: NPROPS, NSTATV
    use mud_status, only: mud_status_t, MUD_OK
-   use mud_tensor, only: is_finite
    implicit none (type, external)
    private
    public :: umat
@@ -79,7 +77,7 @@ contains
       end if
       if (rotates(rotation, statev0)) call rotate_statev(rotation, statev0)
 
-      suction = read_suction(predef, dpred, pnewdt, statev0, pressure_scale(props_in))
+      suction = read_suction(predef, dpred, pnewdt, statev0, props_in)
       if (suction%reading /= SUCTION_AS_GIVEN) call remark_on_suction(suction, place)
 
       call kernel_update(props_in, stress6, statev0, dstran6, suction%start, suction%change, TANGENT_FROM_PROPS, &
@@ -90,6 +88,7 @@ contains
          end if
          return
       end if
+      if (.not. has_past(statev0)) call remark_on_props(props_in, place)
       output%stress = output%stress(order)
       stress_in = output%stress(1:ntens)
       statev_in(1:NSTATV) = output%statev
@@ -98,15 +97,4 @@ contains
          tangent_out = output%dsig_deps(order(1:ntens), order(1:ntens))
       end if
    end subroutine update
-
-   !> p_atm where PROPS give one, else its default [kPa].
-   pure real(wp) function pressure_scale(props)
-      real(wp), intent(in) :: props(:)
-      real(wp) :: defaults(NPROPS)
-
-      defaults = default_props()
-      pressure_scale = defaults(P_P_ATM)
-      if (size(props) /= NPROPS) return
-      if (is_finite(props(P_P_ATM))) pressure_scale = props(P_P_ATM)
-   end function pressure_scale
 end module mud_umat
