@@ -2,6 +2,7 @@
 program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit, int64
    use checkpoints, only: read_checkpoint
+   use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
    use wall_clock, only: clock
    use effects_table, only: print_effects
    use scene_keys, only: print_template
@@ -11,55 +12,44 @@ program mud_host
    use time_stepping, only: run_t, prepare_run, run_scene
    use model_types, only: model_t
    use files, only: limits_are_errors, folder_of
-   use faults, only: fault_t, raise, EXIT_INPUT
+   use faults, only: fault_t
    use texts, only: short, whole
    implicit none (type, external)
    character(*), parameter :: USAGE = 'usage: mud_host SCENE.nml [--output FOLDER] [--restart CHECKPOINT] '// &
                               '[--quiet] [--check] | --template'
-   character(1024) :: word, file, folder, restart
+   type(option_t) :: options(6) = [ &
+      option_t('--help', letter='-h', answers=.true.), &
+      option_t('--template', answers=.true.), &
+      option_t('--quiet'), &
+      option_t('--check'), &
+      option_t('--output', 'a folder'), &
+      option_t('--restart', 'a checkpoint')]
+   character(WORD_LENGTH) :: file
+   character(:), allocatable :: folder, restart
    type(model_t) :: model
    type(run_t) :: run
    type(output_t) :: output
    type(fault_t) :: fault
    logical :: quiet, only_check
    double precision :: t0
-   integer :: i
 
    call limits_are_errors()
    call settle_process()
-   file = ''
-   folder = ''
-   restart = ''
-   quiet = .false.
-   only_check = .false.
-   i = 1
-   do while (i <= command_argument_count() .and. fault%code == 0)
-      call get_command_argument(i, word)
-      select case (word)
-      case ('--template')
-         call print_template(output_unit)
-         stop
-      case ('--help', '-h')
-         call print_help()
-         stop
-      case ('--quiet')
-         quiet = .true.
-      case ('--check')
-         only_check = .true.
-      case ('--output')
-         call take_value('a folder', folder)
-      case ('--restart')
-         call take_value('a checkpoint', restart)
-      case default
-         if (word(1:1) == '-' .or. file /= '') call raise(fault, EXIT_INPUT, trim(word)//' is not understood; '//USAGE)
-         file = word
-      end select
-      i = i + 1
-   end do
-   if (file == '' .and. fault%code == 0) call raise(fault, EXIT_INPUT, 'No scene is given; '//USAGE)
+   call read_command_line(options, 'scene', USAGE, file, fault)
+   if (fault%code == 0 .and. option_given(options, '--template')) then
+      call print_template(output_unit)
+      stop
+   else if (fault%code == 0 .and. option_given(options, '--help')) then
+      call print_help()
+      stop
+   end if
+   quiet = option_given(options, '--quiet')
+   only_check = option_given(options, '--check')
+   restart = option_value(options, '--restart')
+   folder = option_value(options, '--output')
    if (folder == '') then
       folder = 'output'
-      if (restart /= '') folder = folder_of(trim(restart))
+      if (restart /= '') folder = folder_of(restart)
    end if
    t0 = clock()
    if (fault%code == 0) call read_scene(trim(file), model, fault)
@@ -69,9 +59,9 @@ program mud_host
       call check_restart()
    else if (fault%code == 0 .and. .not. only_check) then
       if (restart == '') then
-         call run_scene(model, trim(folder), quiet, run, fault)
+         call run_scene(model, folder, quiet, run, fault)
       else
-         call run_scene(model, trim(folder), quiet, run, fault, trim(restart))
+         call run_scene(model, folder, quiet, run, fault, restart)
       end if
    end if
    if (.not. (quiet .or. only_check) .and. run%steps > 0) call account()
@@ -80,18 +70,6 @@ program mud_host
       stop fault%code, quiet=.true.
    end if
 contains
-   !> The word after an option. One that looks like an option is none: the value was forgotten.
-   subroutine take_value(what, value)
-      character(*), intent(in) :: what
-      character(*), intent(out) :: value
-      integer :: status
-
-      i = i + 1
-      call get_command_argument(i, value, status=status)
-      if (status < 0) call raise(fault, EXIT_INPUT, trim(word)//' is longer than '//whole(len(value))//' characters.')
-      if (value == '' .or. value(1:1) == '-') call raise(fault, EXIT_INPUT, trim(word)//' needs '//what//'; '//USAGE)
-   end subroutine take_value
-
    subroutine print_help()
       character(*), parameter :: LINES(6) = [character(100) :: &
          '  --output FOLDER       where files go, made if missing; default: output, with --restart that of the', &
@@ -108,12 +86,12 @@ contains
 
    !> Whether the run could go on from the checkpoint, in its folder.
    subroutine check_restart()
-      call read_checkpoint(trim(restart), model, run, output, fault)
-      if (fault%code == 0) call check_output(trim(folder), model, output, fault)
+      call read_checkpoint(restart, model, run, output, fault)
+      if (fault%code == 0) call check_output(folder, model, output, fault)
       if (fault%code /= 0 .or. quiet) return
-      write (output_unit, '(a)') trim(restart)//' fits: stage '//trim(model%stages(run%course%stage)%name)// &
+      write (output_unit, '(a)') restart//' fits: stage '//trim(model%stages(run%course%stage)%name)// &
          ', step '//whole(run%course%step)//', time '//short(run%state%time)// &
-         ' s; the run would go on in '//trim(folder)//'.'
+         ' s; the run would go on in '//folder//'.'
    end subroutine check_restart
 
    subroutine announce()

@@ -1,38 +1,48 @@
 !> Prints the library's tables: PROPS or STATEV as Markdown, the Abaqus blocks, a material namelist.
 program mud_describe
-   use, intrinsic :: iso_c_binding, only: c_int, c_double, c_char, c_null_char
-   use, intrinsic :: iso_fortran_env, only: error_unit
+   use, intrinsic :: iso_c_binding, only: c_int, c_double, c_null_char
+   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
    use mud_interface, only: mud_count, mud_text, mud_bounds, mud_version, MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, &
       MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL, MUD_ROTATION, MUD_EVOLUTION
+   use arguments, only: option_t, read_command_line, option_given, WORD_LENGTH
+   use faults, only: fault_t, raise, EXIT_INPUT
+   use texts, only: from_c
    implicit none (type, external)
-   character(16) :: what
+   character(*), parameter :: USAGE = 'usage: mud_describe props|statev|abaqus|namelist'
+   integer, parameter :: BUFFER = 256
 
-   what = ''
-   if (command_argument_count() > 0) call get_command_argument(1, what)
-   select case (what)
-   case ('props')
-      call print_props()
-   case ('statev')
-      call print_statev()
-   case ('abaqus')
-      call print_abaqus()
-   case ('namelist')
-      call print_namelist()
-   case ('-h', '--help')
-      call print_usage(6)
-   case default
-      call print_usage(error_unit)
-      stop 2, quiet=.true.
-   end select
+   type(option_t) :: options(1) = [option_t('--help', letter='-h', answers=.true.)]
+   character(WORD_LENGTH) :: table
+   type(fault_t) :: fault
+
+   call read_command_line(options, 'table', USAGE, table, fault)
+   if (fault%code == 0 .and. option_given(options, '--help')) then
+      call print_help()
+   else if (fault%code == 0) then
+      select case (table)
+      case ('props')
+         call print_props()
+      case ('statev')
+         call print_statev()
+      case ('abaqus')
+         call print_abaqus()
+      case ('namelist')
+         call print_namelist()
+      case default
+         call raise(fault, EXIT_INPUT, 'There is no table '//trim(table)//'; '//USAGE//'.')
+      end select
+   end if
+   if (fault%code /= 0) then
+      write (error_unit, '(a)') 'mud_describe: '//trim(fault%text)
+      stop fault%code, quiet=.true.
+   end if
 contains
-   subroutine print_usage(unit)
-      integer, intent(in) :: unit
-
-      write (unit, '(a)') 'usage: mud_describe props|statev|abaqus|namelist', &
+   subroutine print_help()
+      write (output_unit, '(a)') USAGE, &
          '   props, statev   the tables of umat/README.md', &
          '   abaqus          *User material and *Depvar with the default values', &
          '   namelist        a &material group with every parameter, for mud_triax'
-   end subroutine print_usage
+   end subroutine print_help
 
    subroutine print_props()
       integer(c_int) :: i
@@ -108,31 +118,21 @@ contains
    function text(list, index, field) result(string)
       integer(c_int), intent(in) :: list, index, field
       character(:), allocatable :: string
-      character(kind=c_char) :: buffer(256)
+      character(BUFFER) :: raw
 
-      string = ''
-      if (mud_text(list, index, field, buffer, size(buffer, kind=c_int)) == 0) string = until_null(buffer)
+      raw = c_null_char
+      if (mud_text(list, index, field, raw, BUFFER) < 0) raw = c_null_char
+      string = from_c(raw)
    end function text
 
    function version() result(string)
       character(:), allocatable :: string
-      character(kind=c_char) :: buffer(32)
+      character(BUFFER) :: raw
 
-      string = ''
-      if (mud_version(buffer, size(buffer, kind=c_int)) == 0) string = until_null(buffer)
+      raw = c_null_char
+      if (mud_version(raw, BUFFER) < 0) raw = c_null_char
+      string = from_c(raw)
    end function version
-
-   pure function until_null(buffer) result(string)
-      character(kind=c_char), intent(in) :: buffer(:)
-      character(:), allocatable :: string
-      integer :: i
-
-      string = ''
-      do i = 1, size(buffer)
-         if (buffer(i) == c_null_char) exit
-         string = string//buffer(i)
-      end do
-   end function until_null
 
    !> The shortest of the usual ways to write a number.
    pure function number(value) result(string)

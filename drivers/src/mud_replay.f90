@@ -8,88 +8,58 @@ program mud_replay
       MUD_JUMP_NEW
    use replay_file, only: increment_t, read_increment
    use faults, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
+   use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
    use texts, only: from_c, read_number, short, whole
    implicit none (type, external)
 
-   integer, parameter :: PATH_LENGTH = 1024, BUFFER = 1600
+   integer, parameter :: BUFFER = 1600
    integer, parameter :: DEFAULT_ROWS = 40
+   integer, parameter :: MOST_ROWS = 1000000
    integer, parameter :: MOST_PARTS = 1024   !< The increment is cut into 2, 4, 8 .. parts, at most so many.
 
-   character(PATH_LENGTH) :: file, copy
+   type(option_t) :: options(4) = [ &
+      option_t('--help', letter='-h', answers=.true.), &
+      option_t('--version', answers=.true.), &
+      option_t('--steps', 'an integer from 0 to 1000000'), &
+      option_t('--save', 'the name of a new file')]
+   character(WORD_LENGTH) :: file
    type(fault_t) :: fault
    type(increment_t) :: increment
    integer :: rows
-   logical :: answered
 
-   call read_arguments(answered)
-   if (fault%code == 0 .and. .not. answered) call read_increment(trim(file), increment, fault)
-   if (fault%code == 0 .and. .not. answered) call replay(increment)
-   if (fault%code == 0 .and. .not. answered .and. copy /= '') call save(increment)
+   call read_command_line(options, 'increment file', 'see mud_replay --help', file, fault)
+   if (fault%code == 0 .and. option_given(options, '--help')) then
+      call print_help()
+   else if (fault%code == 0 .and. option_given(options, '--version')) then
+      write (output_unit, '(a)') 'mud_replay, MUD library '//version()
+   else
+      if (fault%code == 0) call read_rows()
+      if (fault%code == 0) call read_increment(trim(file), increment, fault)
+      if (fault%code == 0) call replay(increment)
+      if (fault%code == 0 .and. option_given(options, '--save')) call save(increment, option_value(options, '--save'))
+   end if
    if (fault%code /= 0) then
       write (error_unit, '(a)') 'mud_replay: '//trim(fault%text)
       stop fault%code, quiet=.true.
    end if
 
 contains
-   !> Fills file, copy and rows; `done` if the call only asked for a text.
-   subroutine read_arguments(done)
-      logical, intent(out) :: done
-      character(PATH_LENGTH) :: word
+   !> How many substeps are shown.
+   subroutine read_rows()
       real(wp) :: value
-      integer :: i, status
       logical :: good
 
-      file = ''
-      copy = ''
       rows = DEFAULT_ROWS
-      done = .true.
-      i = 0
-      do while (i < command_argument_count())
-         i = i + 1
-         call get_command_argument(i, word, status=status)
-         if (status /= 0) then
-            call raise(fault, EXIT_INPUT, 'An argument is longer than '//whole(PATH_LENGTH)//' characters.')
-            return
-         end if
-         select case (word)
-         case ('--help', '-h')
-            call print_help()
-            return
-         case ('--version')
-            write (output_unit, '(a)') 'mud_replay, MUD library '//version()
-            return
-         case ('--steps')
-            i = i + 1
-            call get_command_argument(i, word, status=status)
-            call read_number(trim(word), value, good)
-            if (good) good = value >= 0.0_wp .and. value <= 1.0e6_wp .and. abs(value - anint(value)) <= 0.0_wp
-            if (status /= 0 .or. .not. good) then
-               call raise(fault, EXIT_INPUT, '--steps needs a whole number from 0 to 1000000, found `'// &
-                          trim(word)//'`.')
-               return
-            end if
-            rows = nint(value)
-         case ('--save')
-            i = i + 1
-            call get_command_argument(i, copy, status=status)
-            if (status /= 0 .or. copy == '') then
-               call raise(fault, EXIT_INPUT, '--save needs the name of a new file.')
-               return
-            end if
-         case default
-            if (word(1:1) == '-') then
-               call raise(fault, EXIT_INPUT, 'There is no option '//trim(word)//'; see mud_replay --help.')
-               return
-            else if (file /= '') then
-               call raise(fault, EXIT_INPUT, 'One increment at a time: '//trim(file)//' or '//trim(word)//'?')
-               return
-            end if
-            file = word
-         end select
-      end do
-      done = .false.
-      if (file == '') call raise(fault, EXIT_INPUT, 'No file is named; see mud_replay --help.')
-   end subroutine read_arguments
+      if (.not. option_given(options, '--steps')) return
+      call read_number(option_value(options, '--steps'), value, good)
+      if (good) good = value >= 0.0_wp .and. value <= MOST_ROWS .and. abs(value - anint(value)) <= 0.0_wp
+      if (good) then
+         rows = nint(value)
+      else
+         call raise(fault, EXIT_INPUT, '--steps needs an integer from 0 to '//whole(MOST_ROWS)//', found `'// &
+                    option_value(options, '--steps')//'`.')
+      end if
+   end subroutine read_rows
 
    subroutine print_help()
       write (output_unit, '(a)') &
@@ -245,15 +215,16 @@ contains
          ' fails with status '//whole(int(report%status))
    end subroutine try_parts
 
-   subroutine save(inc)
+   subroutine save(inc, copy)
       type(increment_t), intent(in) :: inc
+      character(*), intent(in) :: copy   !< Name of a new file.
       character(BUFFER) :: text
 
       text = c_null_char
-      if (mud_save_increment(trim(copy)//c_null_char, trim(inc%origin)//c_null_char, inc%props, size(inc%props), &
+      if (mud_save_increment(copy//c_null_char, trim(inc%origin)//c_null_char, inc%props, size(inc%props), &
                              inc%stress, inc%statev, size(inc%statev), inc%dstrain, inc%suction, inc%dsuction, &
                              inc%tangent, text, len(text)) /= 0) then
-         call raise(fault, EXIT_OUTPUT, trim(copy)//': '//from_c(text))
+         call raise(fault, EXIT_OUTPUT, copy//': '//from_c(text))
       end if
    end subroutine save
 

@@ -1,8 +1,9 @@
 !> Element tests on the MUD model: drained and undrained triaxial tests, compression, strain and suction paths.
 program mud_triax
    use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit, error_unit
-   use faults, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
+   use faults, only: fault_t, raise, EXIT_OUTPUT
    use texts, only: whole
+   use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
    use triax_case, only: case_t, read_case
    use triax_stage, only: CONTROL_NAMES
    use triax_point, only: point_t, library_version
@@ -13,85 +14,35 @@ program mud_triax
    use triax_help, only: print_help, print_template
    implicit none (type, external)
 
-   integer, parameter :: PATH_LENGTH = 256
-
-   character(PATH_LENGTH) :: case_file, output_file, save_file
+   type(option_t) :: options(7) = [ &
+      option_t('--help', letter='-h', answers=.true.), &
+      option_t('--version', answers=.true.), &
+      option_t('--template', answers=.true.), &
+      option_t('--quiet', letter='-q'), &
+      option_t('--residuals'), &
+      option_t('--output', 'the name of a file', '-o'), &
+      option_t('--save-failed', 'the name of a new file')]
+   character(WORD_LENGTH) :: case_file
    type(fault_t) :: fault
-   logical :: quiet, residuals, done
 
-   call read_arguments(done)
-   if (fault%code == 0 .and. .not. done) call run(trim(case_file))
+   call read_command_line(options, 'case file', 'see mud_triax --help', case_file, fault)
+   if (fault%code /= 0) then
+      continue
+   else if (option_given(options, '--help')) then
+      call print_help()
+   else if (option_given(options, '--version')) then
+      write (output_unit, '(a)') 'mud_triax, MUD library '//library_version()
+   else if (option_given(options, '--template')) then
+      call print_template()
+   else
+      call run(trim(case_file))
+   end if
    if (fault%code /= 0) then
       write (error_unit, '(a)') 'mud_triax: '//trim(fault%text)
       stop fault%code, quiet=.true.
    end if
 
 contains
-   !> Fills case_file, output_file, save_file and quiet; `answered` if the call only asked for a text.
-   subroutine read_arguments(answered)
-      logical, intent(out) :: answered
-      character(PATH_LENGTH) :: word
-      integer :: i, status
-
-      case_file = ''
-      output_file = ''
-      save_file = ''
-      quiet = .false.
-      residuals = .false.
-      answered = .true.
-      i = 0
-      do while (i < command_argument_count())
-         i = i + 1
-         call get_command_argument(i, word, status=status)
-         if (status /= 0) then
-            call raise(fault, EXIT_INPUT, 'An argument is longer than '//whole(PATH_LENGTH)//' characters.')
-            return
-         end if
-         select case (word)
-         case ('--help', '-h')
-            call print_help()
-            return
-         case ('--version')
-            write (output_unit, '(a)') 'mud_triax, MUD library '//library_version()
-            return
-         case ('--template')
-            call print_template()
-            return
-         case ('--quiet', '-q')
-            quiet = .true.
-         case ('--residuals')
-            residuals = .true.
-         case ('--output', '-o')
-            i = i + 1
-            call get_command_argument(i, output_file, status=status)
-            if (status /= 0 .or. len_trim(output_file) == 0) then
-               call raise(fault, EXIT_INPUT, '--output needs the name of a file (shorter than '//whole(PATH_LENGTH)// &
-                          ' characters).')
-               return
-            end if
-         case ('--save-failed')
-            i = i + 1
-            call get_command_argument(i, save_file, status=status)
-            if (status /= 0 .or. len_trim(save_file) == 0) then
-               call raise(fault, EXIT_INPUT, '--save-failed needs the name of a new file (shorter than '// &
-                          whole(PATH_LENGTH)//' characters).')
-               return
-            end if
-         case default
-            if (word(1:1) == '-') then
-               call raise(fault, EXIT_INPUT, 'There is no option '//trim(word)//'; see mud_triax --help.')
-               return
-            else if (len_trim(case_file) > 0) then
-               call raise(fault, EXIT_INPUT, 'One case at a time: '//trim(case_file)//' or '//trim(word)//'?')
-               return
-            end if
-            case_file = word
-         end select
-      end do
-      answered = .false.
-      if (len_trim(case_file) == 0) call raise(fault, EXIT_INPUT, 'No case file is named; see mud_triax --help.')
-   end subroutine read_arguments
-
    subroutine run(file)
       character(*), intent(in) :: file
       type(case_t) :: test
@@ -103,24 +54,28 @@ contains
       type(fault_t) :: ending
       real(wp) :: pressure
       integer :: i, increments
-      logical :: taken
+      character(:), allocatable :: output_file, save_file
+      logical :: taken, quiet
 
       call read_case(file, test, fault)
       if (fault%code /= 0) return
-      if (len_trim(output_file) == 0) output_file = trim(test%name)//'.csv'
+      quiet = option_given(options, '--quiet')
+      output_file = option_value(options, '--output')
+      if (output_file == '') output_file = trim(test%name)//'.csv'
+      save_file = option_value(options, '--save-failed')
       taken = .false.
-      if (len_trim(save_file) > 0) inquire (file=save_file, exist=taken)
+      if (save_file /= '') inquire (file=save_file, exist=taken)
       if (taken) then
-         call raise(fault, EXIT_OUTPUT, '--save-failed '//trim(save_file)//': there is a file of that name, and '// &
+         call raise(fault, EXIT_OUTPUT, '--save-failed '//save_file//': there is a file of that name, and '// &
                     'it is not overwritten; remove it or choose another name.')
          return
       end if
-      call open_table(trim(output_file), test, table, fault)
+      call open_table(output_file, test, table, fault)
       if (fault%code /= 0) return
 
-      tally%residuals = residuals
+      tally%residuals = option_given(options, '--residuals')
       tally%save_to = save_file
-      if (residuals) write (output_unit, '(a)') 'increment,iteration,error'
+      if (tally%residuals) write (output_unit, '(a)') 'increment,iteration,error'
       call start_clock(clock)
       point = test%start
       pressure = 0.0_wp

@@ -5,7 +5,8 @@ module triax_case
    use texts, only: lower_case, short, whole
    use namelists, only: group_t, read_groups, LENGTH
    use spelling, only: nearest_name
-   use triax_keys, only: check_keys, describe_key, get_text, get_number, get_numbers, line_of, has_key
+   use key_schema, only: check_entries, describe_key, get_text, get_number, get_numbers, line_of, given, word_is
+   use triax_keys, only: KEYS
    use triax_stage, only: stage_t, set_constraints, leads_of, sealed_control, CONTROL_NAMES, QUANTITIES, LINEAR, &
                           BY_EPS_A, BY_GAMMA, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES, PER_PRESSURE, ROWS
    use triax_material, only: read_material
@@ -59,7 +60,7 @@ contains
             call raise(fault, EXIT_INPUT, at_line(file, groups(i)%line)//'there is no group &'//trim(groups(i)%name)// &
                        '; a case has &case, &material, &initial and one &stage or more.')
          end select
-         if (fault%code == 0 .and. groups(i)%name /= 'material') call check_keys(groups(i), fault)
+         if (fault%code == 0 .and. groups(i)%name /= 'material') call check_entries(KEYS, groups(i), .false., fault)
          if (fault%code /= 0) return
       end do
       if (of_material == 0) then
@@ -127,7 +128,7 @@ contains
       call get_number(group, 'void_ratio', ratio, found)
       if (.not. found) then
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&initial lacks void_ratio ('// &
-                    describe_key('initial', 'void_ratio')//').')
+                    describe_key(KEYS, 'initial', 'void_ratio')//').')
       else if (has_p .eqv. (has_a .or. has_r)) then
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)// &
                     '&initial needs the stress once: either p_eff, or sigma_a and sigma_r.')
@@ -197,11 +198,10 @@ contains
       name = trim(CONTROL_NAMES(control))
    end function name_of
 
-   !> Place of the word that a key gives in a list, the preset where the key is absent.
-   subroutine read_word(group, key, words, preset, place, fault)
+   !> Place of the word that a key gives in a list; the key must be there.
+   subroutine read_word(group, key, words, place, fault)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: key, words(:)
-      integer, intent(in) :: preset   !< 0: the key must be there.
       integer, intent(out) :: place
       type(fault_t), intent(inout) :: fault
       character(LENGTH) :: word
@@ -212,10 +212,10 @@ contains
       do i = 2, size(words)
          list = list//', '//trim(words(i))
       end do
-      place = preset
-      if (.not. has_key(group, key)) then
-         if (preset == 0) call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&'//trim(group%name)// &
-                                     ' lacks '//key//': one of '//list//'.')
+      place = 0
+      if (.not. given(group, key)) then
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&'//trim(group%name)//' lacks '//key// &
+                    ': one of '//list//'.')
          return
       end if
       word = ''
@@ -223,7 +223,7 @@ contains
       do place = 1, size(words)
          if (lower_case(word) == words(place)) return
       end do
-      place = preset
+      place = 0
       call refuse(group, key, '= '//trim(word)//' is unknown; the nearest is '// &
                   trim(words(nearest_name(word, words)))//' (one of '//list//').', fault)
    end subroutine read_word
@@ -232,12 +232,9 @@ contains
       type(group_t), intent(in) :: group
       type(stage_t), intent(inout) :: stage
       type(fault_t), intent(inout) :: fault
-      integer :: kind
 
-      call read_word(group, 'control', CONTROL_NAMES, 0, stage%control, fault)
-      if (fault%code /= 0) return
-      call read_word(group, 'stress', ['net      ', 'effective'], 1, kind, fault)
-      stage%effective = kind == 2
+      call read_word(group, 'control', CONTROL_NAMES, stage%control, fault)
+      stage%effective = word_is(KEYS, group, 'stress', 'effective')
    end subroutine read_control
 
    !> Cycles: by what, how many, how far. The stage is then led by the strain that is driven.
@@ -252,10 +249,10 @@ contains
       integer :: kind, i
       logical :: has_cycles, has_amplitude, found
 
-      if (.not. has_key(group, 'cycle_by')) then
+      if (.not. given(group, 'cycle_by')) then
          do i = 1, size(OF_CYCLES)
-            if (has_key(group, trim(OF_CYCLES(i)))) then
-               call refuse(group, OF_CYCLES(i), 'needs cycle_by: '//describe_key('stage', 'cycle_by')//'.', fault)
+            if (given(group, trim(OF_CYCLES(i)))) then
+               call refuse(group, OF_CYCLES(i), 'needs cycle_by: '//describe_key(KEYS, 'stage', 'cycle_by')//'.', fault)
             end if
          end do
          return
@@ -267,7 +264,7 @@ contains
                      '; cycles run in drained, undrained, constant_p and in simple shear.', fault)
          return
       end if
-      call read_word(group, 'cycle_by', QUANTITIES(leads)%name, 0, kind, fault)
+      call read_word(group, 'cycle_by', QUANTITIES(leads)%name, kind, fault)
       if (fault%code /= 0) return
       stage%cycle_by = leads(kind)
       stage%lead = leads(1)
@@ -278,13 +275,11 @@ contains
       call get_number(group, 'stop_double_amplitude', stage%stop_double_amplitude, found)
       stage%cycles = nint(cycles)
       if (.not. has_cycles) then
-         call refuse(group, 'cycle_by', 'needs cycles: '//describe_key('stage', 'cycles')//'.', fault)
+         call refuse(group, 'cycle_by', 'needs cycles: '//describe_key(KEYS, 'stage', 'cycles')//'.', fault)
       else if (.not. has_amplitude) then
-         call refuse(group, 'cycle_by', 'needs amplitude: '//describe_key('stage', 'amplitude')//'.', fault)
+         call refuse(group, 'cycle_by', 'needs amplitude: '//describe_key(KEYS, 'stage', 'amplitude')//'.', fault)
       else if (abs(stage%amplitude) <= 0.0_wp) then
          call refuse(group, 'amplitude', '= 0: there is nothing to do.', fault)
-      else if (abs(cycles - stage%cycles) > 0.0_wp) then
-         call refuse(group, 'cycles', '= '//short(cycles)//' is not whole.', fault)
       end if
    end subroutine read_cycles
 
@@ -306,7 +301,7 @@ contains
       end do
       do i = 1, size(QUANTITIES)
          associate (key => QUANTITIES(i)%key)
-            if (.not. has_key(group, key) .or. (i == BY_SUCTION .and. .not. any(leads == i))) cycle
+            if (.not. given(group, key) .or. (i == BY_SUCTION .and. .not. any(leads == i))) cycle
             if (stage%cycles > 0) then
                call refuse(group, key, 'cannot go with cycles, which begin where the stage before ends; remove it.', &
                            fault)
@@ -325,7 +320,7 @@ contains
       if (stage%lead == 0) then
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'a stage of control '// &
                     name_of(stage%control)//' needs '//choice//': '// &
-                    describe_key('stage', QUANTITIES(leads(1))%key)//'.')
+                    describe_key(KEYS, 'stage', QUANTITIES(leads(1))%key)//'.')
          return
       end if
 
@@ -361,11 +356,8 @@ contains
       type(group_t), intent(in) :: group
       type(stage_t), intent(inout) :: stage
       type(fault_t), intent(inout) :: fault
-      integer :: kind
 
-      call read_word(group, 'water', ['free    ', 'constant'], 1, kind, fault)
-      if (fault%code /= 0) return
-      stage%keeps_water = kind == 2
+      stage%keeps_water = word_is(KEYS, group, 'water', 'constant')
       call get_number(group, 'suction_end', stage%suction_end, stage%moves_suction)
       if (stage%moves_suction .and. stage%keeps_water) then
          call refuse(group, 'suction_end', 'cannot go with a constant water content; remove one of them.', fault)

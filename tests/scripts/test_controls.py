@@ -139,7 +139,7 @@ MISTAKES = {
     "control = 'constant_q', eps_a_end = 0.1": ["eps_a_end", "p_end or eps_v_end"],
     "control = 'undrained', cycle_by = 'p', amplitude = 1, cycles = 2": ["cycle_by", "eps_a, q"],
     "control = 'undrained', cycle_by = 'q', amplitude = 1": ["cycles"],
-    "control = 'undrained', cycle_by = 'q', amplitude = 1, cycles = 2.5": ["2.5", "whole"],
+    "control = 'undrained', cycle_by = 'q', amplitude = 1, cycles = 2.5": ["2.5", "integer"],
     "control = 'undrained', amplitude = 1, eps_a_end = 0.1": ["amplitude", "cycle_by"],
     "control = 'drained', stop_r_u = 0.9, eps_a_end = 0.1": ["stop_r_u", "drained"],
     "control = 'undrained', stop_r_u = 1.9, eps_a_end = 0.1": ["stop_r_u", "0.001", "1"],

@@ -202,7 +202,7 @@ edited.write_bytes(bytes(range(256))*8)
 done = run(replay, edited)
 check("bytes are refused", done.returncode == 2 and "edited.txt:" in done.stderr, done.stderr)
 for name, words, code, told in (
-        ("an absent file", ["absent.txt"], 2, "absent.txt"), ("no file", [], 2, "No file"),
+        ("an absent file", ["absent.txt"], 2, "absent.txt"), ("no file", [], 2, "No increment file"),
         ("two files", ["a", "b"], 2, "One increment"), ("an unknown option", ["--frob"], 2, "--frob"),
         ("no number of steps", [saved, "--steps", "many"], 2, "many"),
         ("a copy onto a file", [saved, "--save", saved], 4, "a file of that name")):

@@ -1,0 +1,122 @@
+!> The command line of a program: a list of options, and words that are none.
+module arguments
+   use faults, only: fault_t, raise, EXIT_INPUT
+   use spelling, only: nearest_name
+   use texts, only: whole
+   implicit none (type, external)
+   private
+   public :: option_t, read_command_line, parse_words, option_given, option_value, WORD_LENGTH
+
+   integer, parameter :: WORD_LENGTH = 1024   !< Longest word of a command line.
+
+   !> An option, and what the command line says about it.
+   type :: option_t
+      character(20) :: name             !< With its dashes.
+      character(40) :: takes = ''       !< What its value is, for a message, as 'a folder'; blank: it takes none.
+      character(2) :: letter = ''       !< Short form.
+      logical :: answers = .false.      !< Only asks for a text, as --help: what follows is not read.
+      logical :: given = .false.
+      character(WORD_LENGTH) :: value = ''
+   end type option_t
+contains
+   !> The command line of this program; see parse_words.
+   subroutine read_command_line(options, subject, hint, operand, fault)
+      type(option_t), intent(inout) :: options(:)
+      character(*), intent(in) :: subject, hint
+      character(WORD_LENGTH), intent(out) :: operand
+      type(fault_t), intent(inout) :: fault
+      character(WORD_LENGTH) :: words(command_argument_count())
+      integer :: i, status
+
+      operand = ''
+      do i = 1, size(words)
+         call get_command_argument(i, words(i), status=status)
+         if (status /= 0) then
+            call raise(fault, EXIT_INPUT, 'Argument '//whole(i)//' is longer than '//whole(WORD_LENGTH)//' characters.')
+            return
+         end if
+      end do
+      call parse_words(words, options, subject, hint, operand, fault)
+   end subroutine read_command_line
+
+   !> Sorts words into options with their values and one operand, which is there unless an option asks for a text.
+   subroutine parse_words(words, options, subject, hint, operand, fault)
+      character(*), intent(in) :: words(:)
+      type(option_t), intent(inout) :: options(:)
+      character(*), intent(in) :: subject    !< What the operand is, as 'case'.
+      character(*), intent(in) :: hint       !< How to go on after a mistake, as 'see mud_triax --help'.
+      character(*), intent(out) :: operand
+      type(fault_t), intent(inout) :: fault
+      integer :: i, k
+
+      operand = ''
+      i = 0
+      do while (i < size(words))
+         i = i + 1
+         if (words(i) == '') then
+            call raise(fault, EXIT_INPUT, 'Argument '//whole(i)//' is empty; '//hint//'.')
+            return
+         else if (.not. looks_like_option(words(i))) then
+            if (operand /= '') then
+               call raise(fault, EXIT_INPUT, 'One '//subject//' at a time: '//trim(operand)//' or '//trim(words(i))// &
+                          '? ('//hint//')')
+               return
+            end if
+            operand = words(i)
+            cycle
+         end if
+         k = place_of(options, words(i))
+         if (k == 0) then
+            k = nearest_name(words(i), options%name)
+            call raise(fault, EXIT_INPUT, 'There is no option '//trim(words(i))//'; the nearest is '// &
+                       trim(options(k)%name)//'; '//hint//'.')
+            return
+         end if
+         options(k)%given = .true.
+         if (options(k)%answers) return
+         if (options(k)%takes == '') cycle
+         i = i + 1
+         if (i <= size(words)) options(k)%value = words(i)
+         ! A word that looks like an option is no value: the value was forgotten.
+         if (options(k)%value == '' .or. looks_like_option(options(k)%value)) then
+            call raise(fault, EXIT_INPUT, trim(options(k)%name)//' needs '//trim(options(k)%takes)//'; '//hint//'.')
+            return
+         end if
+      end do
+      if (operand == '') call raise(fault, EXIT_INPUT, 'No '//subject//' is named; '//hint//'.')
+   end subroutine parse_words
+
+   !> A dash and more; the dash alone is a name, that of the standard output.
+   pure logical function looks_like_option(word)
+      character(*), intent(in) :: word
+
+      looks_like_option = .false.
+      if (len_trim(word) > 1) looks_like_option = word(1:1) == '-'
+   end function looks_like_option
+
+   pure integer function place_of(options, word) result(place)
+      type(option_t), intent(in) :: options(:)
+      character(*), intent(in) :: word
+
+      do place = 1, size(options)
+         if (word == options(place)%name .or. (word == options(place)%letter .and. word /= '')) return
+      end do
+      place = 0
+   end function place_of
+
+   pure logical function option_given(options, name)
+      type(option_t), intent(in) :: options(:)
+      character(*), intent(in) :: name
+
+      option_given = options(place_of(options, name))%given
+   end function option_given
+
+   !> Value of an option, blank if it is not given.
+   pure function option_value(options, name) result(value)
+      type(option_t), intent(in) :: options(:)
+      character(*), intent(in) :: name
+      character(:), allocatable :: value
+
+      value = trim(options(place_of(options, name))%value)
+   end function option_value
+end module arguments
