@@ -3,11 +3,11 @@
 module csv
    use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_null_char, c_associated, c_size_t, c_long, c_loc
    use, intrinsic :: iso_fortran_env, only: int64
-   use files, only: fopen, fwrite, fflush, fclose, fsync, fileno, truncate
+   use files, only: fopen, open_output, fwrite, fflush, fclose, fsync, fileno, truncate
    use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
    implicit none (type, external)
    private
-   public :: csv_t, new_csv, check_csv, resume_csv, write_row, write_line, settle_csv, close_csv, is_open
+   public :: csv_t, open_csv, new_csv, check_csv, resume_csv, write_row, write_line, settle_csv, close_csv, is_open
    public :: NUMBERS
 
    character(*), parameter :: NUMBERS = '(*(es24.16e3,:,","))'   !< A row of numbers,
@@ -26,24 +26,36 @@ contains
       type(csv_t), intent(out) :: table
       type(fault_t), intent(inout) :: fault
 
-      table%path = path
-      call make_room(head, table)
-      table%file = fopen(path//c_null_char, 'wb'//c_null_char)
-      if (.not. is_open(table)) then
-         call raise(fault, EXIT_OUTPUT, path//' cannot be written; does the folder exist, is there space?')
-         return
-      end if
-      call write_line(table, head, fault)
+      call open_csv(path, columns_of(head), table, fault)
+      if (fault%code == 0) call write_line(table, head, fault)
    end subroutine new_csv
 
-   subroutine make_room(head, table)
+   !> A new, empty file; '-' is the standard output.
+   subroutine open_csv(path, columns, table, fault)
+      character(*), intent(in) :: path
+      integer, intent(in) :: columns   !< For which a row has room.
+      type(csv_t), intent(out) :: table
+      type(fault_t), intent(inout) :: fault
+
+      table%path = path
+      allocate (character(CELL*columns) :: table%row)
+      if (path == '-') then
+         table%path = 'the standard output'
+         table%file = open_output()
+      else
+         table%file = fopen(path//c_null_char, 'wb'//c_null_char)
+      end if
+      if (.not. is_open(table)) then
+         call raise(fault, EXIT_OUTPUT, table%path//' cannot be written; does the folder exist, is there space?')
+      end if
+   end subroutine open_csv
+
+   pure integer function columns_of(head)
       character(*), intent(in) :: head
-      type(csv_t), intent(inout) :: table
       integer :: i
 
-      if (allocated(table%row)) deallocate (table%row)
-      allocate (character(CELL*(1 + count([(head(i:i) == ',', i=1, len(head))]))) :: table%row)
-   end subroutine make_room
+      columns_of = 1 + count([(head(i:i) == ',', i=1, len(head))])
+   end function columns_of
 
    pure logical function is_open(table)
       type(csv_t), intent(in) :: table
@@ -75,7 +87,8 @@ contains
       logical :: good
 
       table%path = path
-      call make_room(head, table)
+      if (allocated(table%row)) deallocate (table%row)
+      allocate (character(CELL*columns_of(head)) :: table%row)
       good = truncate(path//c_null_char, int(table%bytes, c_long)) == 0
       if (good) table%file = fopen(path//c_null_char, 'ab'//c_null_char)
       if (good) good = is_open(table)

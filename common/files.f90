@@ -2,10 +2,11 @@
 module files
    use, intrinsic :: iso_c_binding, only: c_int, c_int8_t, c_size_t, c_long, c_char, c_ptr, c_null_char, c_associated, &
                                           c_loc, c_funptr, c_null_funptr, c_intptr_t
+   use, intrinsic :: iso_fortran_env, only: output_unit
    implicit none (type, external)
    private
-   public :: write_whole, bytes_of, make_folder, folder_of, to_terminal, limits_are_errors
-   public :: fopen, fwrite, fflush, fileno, fclose, fsync, truncate
+   public :: write_whole, can_be_written, bytes_of, make_folder, folder_of, to_terminal, limits_are_errors
+   public :: fopen, open_output, fwrite, fflush, fileno, fclose, fsync, truncate
 
    character(*), parameter :: PART = '.part'   !< Ends the name of a file that is being written.
 
@@ -69,6 +70,17 @@ module files
          type(c_funptr), value :: action
       end function signal
 
+      type(c_ptr) function fdopen(descriptor, mode) bind(c)
+         import :: c_ptr, c_int, c_char
+         integer(c_int), value :: descriptor
+         character(kind=c_char), intent(in) :: mode(*)
+      end function fdopen
+
+      integer(c_int) function dup(descriptor) bind(c)
+         import :: c_int
+         integer(c_int), value :: descriptor
+      end function dup
+
       integer(c_int) function isatty(descriptor) bind(c)
          import :: c_int
          integer(c_int), value :: descriptor
@@ -99,6 +111,26 @@ contains
          good = .false.
       end if
    end subroutine write_whole
+
+   !> Whether write_whole could write a file of that name now; one that is there stays as it is.
+   logical function can_be_written(path) result(good)
+      character(*), intent(in) :: path
+      character(:), allocatable :: temporary
+      type(c_ptr) :: file
+
+      temporary = path//PART//c_null_char
+      file = fopen(temporary, 'wb'//c_null_char)
+      good = c_associated(file)
+      if (.not. good) return
+      if (fclose(file) /= 0) good = .false.
+      if (c_remove(temporary) /= 0) good = .false.
+   end function can_be_written
+
+   !> The standard output as a file of its own: to close it leaves the standard output open.
+   type(c_ptr) function open_output()
+      flush (output_unit)
+      open_output = fdopen(dup(1_c_int), 'wb'//c_null_char)
+   end function open_output
 
    pure function folder_of(path) result(folder)
       character(*), intent(in) :: path

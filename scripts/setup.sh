@@ -21,6 +21,15 @@ find_python() {
    done
 }
 
+# Any LAPACK that the linker finds, as CMake does.
+has_lapack() {
+   local library
+   for library in lapack openblas mkl_rt; do
+      [ -e "$("${FC:-gfortran}" -print-file-name="lib$library.so" 2>/dev/null)" ] && return
+   done
+   return 1
+}
+
 # The one list of what is needed: each line prints a Debian package if what it brings is missing.
 missing_packages() {
    [ -n "${FC:-}" ] || command -v gfortran >/dev/null || echo gfortran
@@ -30,6 +39,8 @@ missing_packages() {
    command -v h5fc >/dev/null || echo libhdf5-dev
    # The sparse solver of the host.
    [ -e /usr/include/suitesparse/umfpack.h ] || [ -e /usr/include/umfpack.h ] || echo libsuitesparse-dev
+   # Small dense systems of the programs; OpenBLAS brings its own.
+   has_lapack || echo liblapack-dev
    local python
    python=$(find_python)
    if [ -z "$python" ]; then

@@ -4,7 +4,7 @@ module triax_control
    use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit
    use faults, only: fault_t, raise, EXIT_RUN, EXIT_OUTPUT
    use texts, only: short, whole
-   use triax_linear, only: solve, outer
+   use dense, only: solve, outer
    use triax_stage, only: stage_t, quantity_rows, CONTROL_NAMES, ROWS, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
    use triax_point, only: soil_t, point_t, tangent_t, mud_report, update_point, save_update, update_sentence, &
                           state_value, slope_is_exact, axial_strain, volumetric_strain, mean_stress, deviator_stress

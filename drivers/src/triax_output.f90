@@ -7,14 +7,23 @@ module triax_output
    use triax_stage, only: general_control
    use triax_control, only: tally_t, CONTROL_TOLERANCE
    use triax_course, only: course_t
-   use triax_table, only: column_t, attribute_t, TEXT_LENGTH
-   use triax_hdf5, only: write_hdf5, HAS_HDF5
+   use csv, only: csv_t, open_csv, write_line, close_csv
+   use files, only: can_be_written
+   use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, put, put_text
    use triax_point, only: soil_t, point_t, library_version, property_count, property_name, property_range, &
                           state_value, mean_stress, deviator_stress, radial_stress, axial_strain, radial_strain, &
                           volumetric_strain, AXIAL
    implicit none (type, external)
    private
    public :: table_t, clock_t, open_table, write_row, add_note, close_table, start_clock, show_progress, show_summary
+
+   !> A column of the results.
+   type :: column_t
+      character(16) :: name
+      character(8) :: unit
+      character(120) :: meaning
+      logical :: whole = .false.   !< Counts.
+   end type column_t
 
    integer, parameter :: PLAIN = 21   !< Columns of every table; the others are components of tensors.
    type(column_t), parameter :: COLUMNS(*) = [ &
@@ -50,16 +59,15 @@ module triax_output
 
    !> An output file; `to_screen` if it is the standard output.
    type :: table_t
-      integer :: unit = -1
+      type(csv_t) :: csv
+      type(h5_t) :: h5
       logical :: to_screen = .false.
       logical :: hdf5 = .false.      !< Rows are kept and written when the table is closed.
       logical :: closed = .true.
       integer :: columns = PLAIN     !< More where components of stress and strain are wanted.
       integer :: rows = 0
-      integer(int64) :: bytes = 0
-      character(256) :: path = ''
-      real(wp), allocatable :: kept(:, :)
-      type(attribute_t), allocatable :: attributes(:)
+      character(:), allocatable :: path
+      real(wp), allocatable :: kept(:, :)   !< rows, columns
    end type table_t
 
    !> Wall-clock time of a run.
@@ -75,32 +83,26 @@ contains
       type(case_t), intent(in) :: test
       type(table_t), intent(out) :: table
       type(fault_t), intent(inout) :: fault
-      character(256) :: problem
-      integer :: status
 
       table%path = path
       if (any(general_control(test%stages%control))) table%columns = size(COLUMNS)
       table%to_screen = path == '-'
       table%hdf5 = ends_in(path, '.h5') .or. ends_in(path, '.hdf5')
-      allocate (table%kept(table%columns, 0), table%attributes(0))
       if (table%hdf5 .and. .not. HAS_HDF5) then
-         call raise(fault, EXIT_OUTPUT, trim(path)//': this mud_triax was built without HDF5; choose a .csv '// &
+         call raise(fault, EXIT_OUTPUT, path//': this mud_triax was built without HDF5; choose a .csv '// &
                     'file, or install libhdf5-dev and build again.')
-         return
-      end if
-      if (table%to_screen) then
-         table%unit = output_unit
-      else
-         ! An HDF5 file is written at the end; this says now whether it can be.
-         open (newunit=table%unit, file=path, status='replace', action='write', form='formatted', iostat=status, &
-               iomsg=problem)
-         if (status == 0 .and. table%hdf5) close (table%unit, iostat=status, iomsg=problem)
-         if (status /= 0) then
-            call raise(fault, EXIT_OUTPUT, trim(path)//': cannot be written ('//trim(problem)// &
-                       '); choose another place with --output.')
-            return
+      else if (table%hdf5) then
+         ! The file is written at the end; this says now whether it can be.
+         if (can_be_written(path)) then
+            call new_file(table%h5)
+            allocate (table%kept(0, table%columns))
+         else
+            call raise(fault, EXIT_OUTPUT, path//' cannot be written; choose another place with --output.')
          end if
+      else
+         call open_csv(path, table%columns, table%csv, fault)
       end if
+      if (fault%code /= 0) return
       table%closed = .false.
       call header(test, table, fault)
    end subroutine open_table
@@ -137,7 +139,7 @@ contains
       do i = 2, table%columns
          names = names//','//trim(COLUMNS(i)%name)
       end do
-      if (.not. table%hdf5) call line(table, names, fault)
+      if (.not. table%hdf5) call write_line(table%csv, names, fault)
    end subroutine header
 
    !> A fact about the run: a comment line, or an attribute of the HDF5 file.
@@ -145,14 +147,11 @@ contains
       type(table_t), intent(inout) :: table
       character(*), intent(in) :: name, text
       type(fault_t), intent(inout) :: fault
-      type(attribute_t) :: attribute
 
       if (table%hdf5) then
-         attribute%name = name
-         attribute%text = text
-         table%attributes = [table%attributes, attribute]
+         call put_text(table%h5, name, text)
       else
-         call line(table, '# '//name//': '//text, fault)
+         call write_line(table%csv, '# '//name//': '//text, fault)
       end if
    end subroutine remark
 
@@ -194,7 +193,7 @@ contains
          text = text//value_text(values(i), COLUMNS(i)%whole)
          if (i < table%columns) text = text//','
       end do
-      call line(table, text, fault)
+      call write_line(table%csv, text, fault)
    end subroutine write_row
 
    !> Adds a row to those that are kept; their room doubles when it is full.
@@ -203,12 +202,12 @@ contains
       real(wp), intent(in) :: values(:)
       real(wp), allocatable :: more(:, :)
 
-      if (table%rows > size(table%kept, 2)) then
-         allocate (more(table%columns, max(256, 2*table%rows)), source=0.0_wp)
-         more(:, :table%rows - 1) = table%kept(:, :table%rows - 1)
+      if (table%rows > size(table%kept, 1)) then
+         allocate (more(max(256, 2*table%rows), table%columns), source=0.0_wp)
+         more(:table%rows - 1, :) = table%kept(:table%rows - 1, :)
          call move_alloc(more, table%kept)
       end if
-      table%kept(:, table%rows) = values(:table%columns)
+      table%kept(table%rows, :) = values(:table%columns)
    end subroutine keep
 
    !> All 16 digits, or a count.
@@ -226,51 +225,41 @@ contains
       text = trim(adjustl(digits))
    end function value_text
 
-   subroutine line(table, text, fault)
-      type(table_t), intent(inout) :: table
-      character(*), intent(in) :: text
-      type(fault_t), intent(inout) :: fault
-      character(256) :: problem
-      integer :: status
-
-      if (fault%code == EXIT_OUTPUT) return
-      write (table%unit, '(a)', iostat=status, iomsg=problem) text
-      table%bytes = table%bytes + len(text) + 1
-      if (status /= 0) then
-         call raise(fault, EXIT_OUTPUT, trim(table%path)//': cannot be written ('//trim(problem)// &
-                    '); is the disk full?')
-      end if
-   end subroutine line
-
    !> Closes the file; a run that stopped early says so in a last comment line, so that a short file explains itself.
    subroutine close_table(table, stopped, fault)
       type(table_t), intent(inout) :: table
       character(*), intent(in) :: stopped   !< Why, empty if it did not.
       type(fault_t), intent(inout) :: fault
       type(fault_t) :: last
-      character(TEXT_LENGTH) :: problem
-      integer(int64) :: size_on_disk
-      integer :: status
+      integer :: i
+      logical :: good
 
       if (table%closed) return
       table%closed = .true.
       if (len(stopped) > 0) call remark(table, 'stopped', stopped, last)
-      if (table%hdf5) then
-         call write_hdf5(trim(table%path), COLUMNS(:table%columns), table%kept(:, :table%rows), table%attributes, &
-                         problem)
-         if (len_trim(problem) > 0 .and. fault%code == 0) then
-            call raise(fault, EXIT_OUTPUT, trim(table%path)//': '//trim(problem))
-         end if
-      else if (.not. table%to_screen) then
-         close (table%unit, iostat=status)
-         ! gfortran's buffered output does not report a full disk: compare what should be there with what is.
-         inquire (file=table%path, size=size_on_disk)
-         if ((status /= 0 .or. size_on_disk < table%bytes) .and. index(table%path, '/dev/') /= 1 .and. &
-             fault%code == 0) then
-            call raise(fault, EXIT_OUTPUT, trim(table%path)//': is incomplete; is the disk full?')
-         end if
+      if (.not. table%hdf5) then
+         call close_csv(table%csv, last)
+      else
+         do i = 1, table%columns
+            call put_column(table%h5, COLUMNS(i), table%kept(:table%rows, i))
+         end do
+         call write_file(table%h5, table%path, good)
+         if (.not. good) call raise(last, EXIT_OUTPUT, table%path//' cannot be written; is the disk full?')
       end if
+      if (fault%code == 0) fault = last
    end subroutine close_table
+
+   subroutine put_column(file, column, values)
+      type(h5_t), intent(inout) :: file
+      type(column_t), intent(in) :: column
+      real(wp), intent(in) :: values(:)
+
+      if (column%whole) then
+         call put(file, trim(column%name), nint(values), trim(column%unit), trim(column%meaning))
+      else
+         call put(file, trim(column%name), values, trim(column%unit), trim(column%meaning))
+      end if
+   end subroutine put_column
 
    subroutine start_clock(clock)
       type(clock_t), intent(out) :: clock
@@ -334,7 +323,7 @@ contains
          end if
          if (tally%saved) write (output_unit, '(a)') '   saved      '//trim(tally%save_to)// &
             ', the first refused update, for mud_replay'
-         write (output_unit, '(a)') '   output     '//trim(table%path)//', '//whole(table%rows)//' rows'
+         write (output_unit, '(a)') '   output     '//table%path//', '//whole(table%rows)//' rows'
       end associate
    contains
       function count_of(place) result(word)
