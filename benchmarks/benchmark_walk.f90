@@ -3,7 +3,8 @@ module benchmark_walk
    use, intrinsic :: iso_c_binding, only: c_int, c_long, c_double, c_null_char
    use, intrinsic :: iso_fortran_env, only: int64
    use mud_bonding, only: is_bonded
-   use mud_interface, only: mud_default_props, mud_init_state, mud_update, mud_update_batch, mud_index, mud_count, &
+   use mud_interface, only: mud_default_props, mud_init_state, mud_update, mud_update_batch, &
+      mud_prepared_size, mud_prepare, mud_update_prepared, mud_index, mud_count, &
       mud_report, MUD_PROPS, MUD_STATEV, MUD_TANGENT_NONE
    use mud_params, only: params_t, read_params
    use mud_rates, only: rate_t, rate_at, MODE_ORDINARY
@@ -111,20 +112,26 @@ contains
    end subroutine start
 
    !> One point along a path, timed from its first update to its last.
-   subroutine walk(path, strain, scheme, tolerance, tangent, tally)
+   subroutine walk(path, strain, scheme, tolerance, tangent, tally, prepared)
       type(path_t), intent(in) :: path
       real(wp), intent(in) :: strain, tolerance
       integer, intent(in) :: scheme, tangent
       type(tally_t), intent(out) :: tally
+      logical, intent(in) :: prepared   !< PROPS are read once, not in every update.
       real(wp) :: props(WORDS), stress(6), statev(WORDS), suction, d_suction, d_strain(6)
       real(wp) :: c(6, 6), c_pc(6), sw_e(6), sw_pc
-      real(wp), allocatable :: steps(:, :)
+      real(wp), allocatable :: steps(:, :), material(:)
       type(mud_report) :: report
+      character :: text(1)
       integer(c_int) :: n_props, n_statev, code
       integer(int64) :: before, after
       integer :: i
 
       call start(path, scheme, tolerance, props, n_props, stress, statev, n_statev)
+      allocate (material(mud_prepared_size()))
+      if (mud_prepare(props, n_props, material, size(material, kind=c_int), text, 0_c_int) /= 0) then
+         error stop 'benchmark: a material is not accepted'
+      end if
       tally%updates = number_of_updates(strain)
       allocate (steps(6, tally%updates))
       do i = 1, tally%updates
@@ -135,8 +142,13 @@ contains
       before = now(OF_THIS_THREAD)
       do i = 1, tally%updates
          d_strain = steps(:, i)
-         code = mud_update(props, n_props, stress, statev, n_statev, d_strain, suction, d_suction, &
-                           int(tangent, c_int), stress, statev, c, c_pc, sw_e, sw_pc, report)
+         if (prepared) then
+            code = mud_update_prepared(material, stress, statev, n_statev, d_strain, suction, d_suction, &
+                                       int(tangent, c_int), stress, statev, c, c_pc, sw_e, sw_pc, report)
+         else
+            code = mud_update(props, n_props, stress, statev, n_statev, d_strain, suction, d_suction, &
+                              int(tangent, c_int), stress, statev, c, c_pc, sw_e, sw_pc, report)
+         end if
          if (code /= 0) error stop 'benchmark: an update failed'
          suction = suction + d_suction
          tally%rates = tally%rates + report%n_rate

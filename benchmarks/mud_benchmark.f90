@@ -1,7 +1,8 @@
 !> Nanoseconds and rate evaluations per update: scheme x tolerance x tangent x path x threads, as CSV on the screen.
 !>
 !> mud_benchmark [ROUNDS]                                    everything; medians of so many rounds
-!> mud_benchmark PATH STRAIN SCHEME TOLERANCE TANGENT WALKS  one variant, for a profiler; nothing is timed
+!> mud_benchmark PATH STRAIN SCHEME TOLERANCE TANGENT WALKS  one variant, for a profiler; nothing is timed; a further
+!>                                                           argument, prepared, reads PROPS once
 !>
 !> A round walks every variant once, one after the other, so that a disturbance of the machine falls on all alike; a
 !> ratio is the median of the rounds' own ratios. A batch is timed by the clock on the wall, which other programs on the
@@ -12,7 +13,7 @@ program mud_benchmark
 
    !> One row of the table and what its rounds took.
    type :: variant_t
-      character(8) :: door              !< update, batch, or rate
+      character(8) :: door              !< update, prepared, batch, or rate
       type(path_t) :: path
       real(wp) :: strain = 0.0_wp, tolerance = 0.0_wp
       integer :: scheme = 0, tangent = 0, threads = 1
@@ -28,7 +29,7 @@ program mud_benchmark
    integer :: rounds
 
    rounds = 21
-   if (command_argument_count() == 6) then
+   if (command_argument_count() >= 6) then
       call walk_one()
    else
       if (command_argument_count() == 1) rounds = nint(number(1))
@@ -44,7 +45,8 @@ contains
 
       call get_command_argument(1, name)
       do i = 1, nint(number(6))
-         call walk(path_named(name), number(2), nint(number(3)), number(4), nint(number(5)), tally)
+         call walk(path_named(name), number(2), nint(number(3)), number(4), nint(number(5)), tally, &
+                   command_argument_count() > 6)
       end do
       print '(i0, a, i0, a)', tally%updates, ' updates and ', tally%rates, ' rates a walk'
    end subroutine walk_one
@@ -83,6 +85,13 @@ contains
       end do
       do i = 1, size(PATHS)
          do tangent = 0, 3
+            variants = [variants, variant_t('prepared', PATHS(i), STRAINS(1), TOLERANCES(2), 1, tangent, &
+                                            reference=size(variants) + 1)]
+            variants(size(variants))%reference = update_like(variants(size(variants)))
+         end do
+      end do
+      do i = 1, size(PATHS)
+         do tangent = 0, 3
             first = size(variants) + 1
             do threads = 1, 2
                variants = [variants, variant_t('batch', PATHS(i), 1.0e-5_wp, 1.0e-5_wp, 1, tangent, threads, first)]
@@ -90,6 +99,19 @@ contains
          end do
       end do
    end subroutine list_variants
+
+   !> The row of the update that a prepared one is compared with.
+   integer function update_like(variant) result(row)
+      type(variant_t), intent(in) :: variant
+
+      do row = 1, size(variants)
+         if (variants(row)%door == 'update' .and. variants(row)%path%name == variant%path%name .and. &
+             abs(variants(row)%strain - variant%strain) <= 0.0_wp .and. variants(row)%scheme == variant%scheme .and. &
+             abs(variants(row)%tolerance - variant%tolerance) <= 0.0_wp .and. &
+             variants(row)%tangent == variant%tangent) return
+      end do
+      row = size(variants)
+   end function update_like
 
    subroutine run()
       integer :: i, round
@@ -106,7 +128,7 @@ contains
                case ('batch')
                   call walk_batch(v%path, v%strain, v%scheme, v%tolerance, v%tangent, v%threads, POINTS, v%tally)
                case default
-                  call walk(v%path, v%strain, v%scheme, v%tolerance, v%tangent, v%tally)
+                  call walk(v%path, v%strain, v%scheme, v%tolerance, v%tangent, v%tally, v%door == 'prepared')
                end select
                if (round > 0) v%ns(round) = real(v%tally%nanoseconds, wp)/v%tally%updates
             end associate

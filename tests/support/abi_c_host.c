@@ -30,12 +30,12 @@ void abi_fill_report(mud_report *r)
 }
 
 /* Constants of mud.h in the order in which it lists them. */
-void abi_status_codes(int codes[17])
+void abi_status_codes(int codes[18])
 {
-   const int all[17] = {
+   const int all[18] = {
       MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_BAD_NTENS, MUD_BAD_PROPS, MUD_BAD_STATE, MUD_BAD_INPUT,
       MUD_NULL_ARGUMENT, MUD_BAD_VOID_RATIO, MUD_BAD_OPTION, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION,
-      MUD_VOID_RATIO_LIMIT, MUD_NOT_FINITE, MUD_INCREMENT_TOO_LARGE, MUD_NOT_WRITTEN};
+      MUD_VOID_RATIO_LIMIT, MUD_NOT_FINITE, MUD_INCREMENT_TOO_LARGE, MUD_NOT_WRITTEN, MUD_NOT_PREPARED};
    memcpy(codes, all, sizeof all);
 }
 

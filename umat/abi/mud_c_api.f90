@@ -12,14 +12,15 @@ module mud_c_api
       MUD_BAD_OPTION, &
       MUD_BAD_PROPS, MUD_BAD_INPUT, ON_PROPS, ON_STATEV, ON_ARGUMENT
    use mud_tensor, only: is_finite
+   use mud_to_host, only: put, put_real
    use mud_trace, only: trace_t
    use mud_units, only: bounds_for, convert_props
    implicit none (type, external)
    private
    public :: mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_bounds, mud_bounds_for, &
-             mud_default_props, mud_convert_props, mud_validate_props, mud_init_state, mud_update, &
+             mud_default_props, mud_convert_props, mud_validate_props, mud_init_state, &
              mud_trace_increment, mud_status_text, mud_message
-   public :: put, ABI_VERSION, VERSION
+   public :: ABI_VERSION, VERSION
 
    integer, parameter :: ABI_VERSION = 1
    character(*), parameter :: VERSION = '0.1.0'
@@ -239,61 +240,6 @@ contains
       call put(report_text(report), text, len)
    end function mud_init_state
 
-   integer(c_int) function mud_update(props, n_props, stress0, statev0, n_statev, dstrain, suction0, dsuction, &
-           tangent, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, report_out) bind(c, name='mud_update')
-      type(c_ptr), value :: props, stress0, statev0, dstrain, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, &
-                            dsw_dpc, report_out
-      integer(c_int), value :: n_props, n_statev, tangent
-      real(c_double), value :: suction0, dsuction
-      real(c_double), pointer, contiguous :: props_in(:), stress_in(:), statev_in(:), dstrain_in(:)
-      real(c_double), pointer, contiguous :: array(:), matrix(:, :)
-      type(report_t), pointer :: report_to
-      type(report_t) :: report
-      type(output_t) :: output
-
-      if (c_associated(props) .and. c_associated(stress0) .and. c_associated(statev0) .and. c_associated(dstrain) &
-         .and. &
-          c_associated(stress1) .and. c_associated(statev1)) then
-         call c_f_pointer(props, props_in, [max(n_props, 0)])
-         call c_f_pointer(stress0, stress_in, [6])
-         call c_f_pointer(statev0, statev_in, [max(n_statev, 0)])
-         call c_f_pointer(dstrain, dstrain_in, [6])
-         if (tangent >= 0) then
-            call kernel_update(props_in, stress_in, statev_in, dstrain_in, suction0, dsuction, tangent, output, report)
-         else
-            report = failed_report(fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(tangent, wp)))
-         end if
-      else
-         report = failed_report(fail(MUD_NULL_ARGUMENT, ON_ARGUMENT))
-      end if
-      if (report%status == MUD_OK) then
-         call c_f_pointer(stress1, array, [6])
-         array = output%stress
-         call c_f_pointer(statev1, array, [NSTATV])
-         array = output%statev
-         if (output%has_tangent) then
-            if (c_associated(dsig_deps)) then
-               call c_f_pointer(dsig_deps, matrix, [6, 6])
-               matrix = output%dsig_deps
-            end if
-            if (c_associated(dsig_dpc)) then
-               call c_f_pointer(dsig_dpc, array, [6])
-               array = output%dsig_dpc
-            end if
-         end if
-         if (c_associated(dsw_deps)) then
-            call c_f_pointer(dsw_deps, array, [6])
-            array = output%dsw_deps
-         end if
-         call put_real(output%dsw_dpc, dsw_dpc)
-      end if
-      if (c_associated(report_out)) then
-         call c_f_pointer(report_out, report_to)
-         report_to = report
-      end if
-      mud_update = report%status
-   end function mud_update
-
    !> The update of mud_update told substep by substep; see mud.h.
    integer(c_int) function mud_trace_increment(props, n_props, stress0, statev0, n_statev, dstrain, suction0, &
            dsuction, tangent, first, rows, n_rows, attempts, report_out) bind(c, name='mud_trace_increment')
@@ -358,31 +304,4 @@ contains
       call put(report_text(report), text, len)
       mud_message = MUD_OK
    end function mud_message
-
-   !> Text into a C buffer of `length` bytes, cut to fit, terminated.
-   subroutine put(text, buffer, length)
-      character(*), intent(in) :: text
-      type(c_ptr), intent(in) :: buffer
-      integer(c_int), intent(in) :: length
-      character(kind=c_char), pointer :: letters(:)
-      integer :: i, n
-
-      if (.not. c_associated(buffer) .or. length < 1) return
-      call c_f_pointer(buffer, letters, [length])
-      n = min(len_trim(text), length - 1)
-      do i = 1, n
-         letters(i) = text(i:i)
-      end do
-      letters(n + 1) = c_null_char
-   end subroutine put
-
-   subroutine put_real(value, target_)
-      real(wp), intent(in) :: value
-      type(c_ptr), intent(in) :: target_
-      real(c_double), pointer :: place
-
-      if (.not. c_associated(target_)) return
-      call c_f_pointer(target_, place)
-      place = value
-   end subroutine put_real
 end module mud_c_api

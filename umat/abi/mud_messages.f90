@@ -5,7 +5,7 @@ module mud_messages
    use mud_status, only: MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_BAD_NTENS, MUD_BAD_PROPS, MUD_BAD_STATE, &
       MUD_BAD_INPUT, MUD_NULL_ARGUMENT, MUD_BAD_VOID_RATIO, MUD_BAD_OPTION, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, &
       MUD_NO_DIRECTION, MUD_VOID_RATIO_LIMIT, MUD_NOT_FINITE, MUD_INCREMENT_TOO_LARGE, MUD_NOT_WRITTEN, &
-      ON_PROPS, ON_STATEV, ON_STRESS, ON_STRAIN, ON_SUCTION, ON_ROTATION
+      MUD_NOT_PREPARED, ON_PROPS, ON_STATEV, ON_STRESS, ON_STRAIN, ON_SUCTION, ON_ROTATION
    use mud_kernel, only: report_t
    use mud_tensor, only: is_finite
    implicit none (type, external)
@@ -43,6 +43,8 @@ contains
          text = 'no such list, field, index or tangent kind'
       case (MUD_NOT_WRITTEN)
          text = 'the file could not be written: choose a new name in a folder that exists, on a disk with room'
+      case (MUD_NOT_PREPARED)
+         text = 'no prepared material: call mud_prepare of this library on mud_prepared_size() doubles'
       case (MUD_MINIMUM_STEP)
          text = 'the substep fell to its minimum: cut the increment, or loosen the tolerance'
       case (MUD_TOO_MANY_SUBSTEPS)

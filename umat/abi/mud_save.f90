@@ -3,12 +3,13 @@
 module mud_save
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_size_t, c_associated, &
       c_f_pointer
-   use mud_c_api, only: put, ABI_VERSION, VERSION
+   use mud_c_api, only: ABI_VERSION, VERSION
    use mud_kernel, only: report_t, output_t, kernel_update
    use mud_kinds, only: wp
    use mud_messages, only: status_text, report_text
    use mud_registry, only: NPROPS, NSTATV, PROPERTIES, statev_name
    use mud_status, only: MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_NOT_WRITTEN
+   use mud_to_host, only: put
    implicit none (type, external)
    private
    public :: mud_save_increment, write_increment, PATH_LENGTH

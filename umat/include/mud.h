@@ -23,7 +23,7 @@ enum mud_status {
    MUD_OK = 0,
    MUD_BAD_NPROPS = -1, MUD_BAD_NSTATV = -2, MUD_BAD_NTENS = -3, MUD_BAD_PROPS = -4, MUD_BAD_STATE = -5,
    MUD_BAD_INPUT = -6, MUD_NULL_ARGUMENT = -7, MUD_BAD_VOID_RATIO = -8, MUD_BAD_OPTION = -9,
-   MUD_NOT_WRITTEN = -10,
+   MUD_NOT_WRITTEN = -10, MUD_NOT_PREPARED = -11,
    MUD_MINIMUM_STEP = 1, MUD_TOO_MANY_SUBSTEPS = 2, MUD_NO_DIRECTION = 3, MUD_VOID_RATIO_LIMIT = 4,
    MUD_NOT_FINITE = 5, MUD_INCREMENT_TOO_LARGE = 6
 };
@@ -109,6 +109,22 @@ int mud_update_batch(const double *props, int nprops, int n, const double *stres
                      const double *dstrain, const double *suction0, const double *dsuction, int tangent, int threads,
                      double *stress1, double *statev1, double *dsig_deps, double *dsig_dpc, double *dsw_deps,
                      double *dsw_dpc, int *status, mud_report *reports);
+
+/* A material checked and named once, for any number of updates. Storage: mud_prepared_size() doubles of the caller, who
+ * passes their number as `size`; opaque, may be copied in memory, not to be kept in a file. mud_prepare refuses what
+ * mud_update would refuse; after an error the storage is no material. The updates are those without _prepared, bit by
+ * bit; they only read the storage, which threads may share. Storage that is no material of this library:
+ * MUD_NOT_PREPARED. */
+int mud_prepared_size(void);
+int mud_prepare(const double *props, int nprops, double *prepared, int size, char *text, int len);
+int mud_update_prepared(const double *prepared, const double *stress0, const double *statev0, int nstatev,
+                        const double *dstrain, double suction0, double dsuction, int tangent,
+                        double *stress1, double *statev1, double *dsig_deps, double *dsig_dpc, double *dsw_deps,
+                        double *dsw_dpc, mud_report *report);
+int mud_update_batch_prepared(const double *prepared, int n, const double *stress0, const double *statev0, int nstatev,
+                              const double *dstrain, const double *suction0, const double *dsuction, int tangent,
+                              int threads, double *stress1, double *statev1, double *dsig_deps, double *dsig_dpc,
+                              double *dsw_deps, double *dsw_dpc, int *status, mud_report *reports);
 
 /* --- failed increments ---------------------------------------------------------------------------------- */
 /* One substep that an update tried. */

@@ -7,7 +7,7 @@ module mud_interface
    public :: mud_report, mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_bounds, mud_bounds_for, &
              mud_default_props, mud_convert_props, mud_validate_props, mud_init_state, &
              mud_update, mud_update_batch, mud_status_text, mud_message, mud_substep, mud_trace_increment, &
-             mud_save_increment
+             mud_save_increment, mud_prepared_size, mud_prepare, mud_update_prepared, mud_update_batch_prepared
    public :: MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL, &
       MUD_ROTATION, MUD_EVOLUTION
    public :: MUD_SUBSTEP_REJECTED, MUD_SUBSTEP_ACCEPTED, MUD_SUBSTEP_FAILED, MUD_MODE_ORDINARY, MUD_MODE_ELASTIC, &
@@ -135,6 +135,44 @@ module mud_interface
          integer(c_int), intent(out) :: status(n)
          type(mud_report), intent(out), optional :: reports(n)
       end function mud_update_batch
+
+      !> Doubles of a prepared material.
+      pure integer(c_int) function mud_prepared_size() bind(c, name='mud_prepared_size')
+         import :: c_int
+      end function mud_prepared_size
+
+      integer(c_int) function mud_prepare(props, nprops, prepared, size_, text, len) bind(c, name='mud_prepare')
+         import :: c_int, c_double, c_char
+         integer(c_int), value :: nprops, size_, len
+         real(c_double), intent(in) :: props(nprops)
+         real(c_double), intent(inout) :: prepared(size_)
+         character(kind=c_char), intent(out) :: text(*)
+      end function mud_prepare
+
+      integer(c_int) function mud_update_prepared(prepared, stress0, statev0, nstatev, dstrain, suction0, dsuction, &
+              tangent, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, report) &
+              bind(c, name='mud_update_prepared')
+         import :: c_int, c_double, mud_report
+         integer(c_int), value :: nstatev, tangent
+         real(c_double), intent(in) :: prepared(*), stress0(6), statev0(nstatev), dstrain(6)
+         real(c_double), value :: suction0, dsuction
+         real(c_double), intent(inout) :: stress1(6), statev1(nstatev)
+         real(c_double), intent(inout), optional :: dsig_deps(6, 6), dsig_dpc(6), dsw_deps(6), dsw_dpc
+         type(mud_report), intent(out), optional :: report
+      end function mud_update_prepared
+
+      integer(c_int) function mud_update_batch_prepared(prepared, n, stress0, statev0, nstatev, dstrain, suction0, &
+              dsuction, tangent, threads, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status, &
+              reports) bind(c, name='mud_update_batch_prepared')
+         import :: c_int, c_double, mud_report
+         integer(c_int), value :: n, nstatev, tangent, threads
+         real(c_double), intent(in) :: prepared(*), stress0(6, n), statev0(nstatev, n), dstrain(6, n)
+         real(c_double), intent(in), optional :: suction0(n), dsuction(n)
+         real(c_double), intent(inout) :: stress1(6, n), statev1(nstatev, n)
+         real(c_double), intent(inout), optional :: dsig_deps(6, 6, n), dsig_dpc(6, n), dsw_deps(6, n), dsw_dpc(n)
+         integer(c_int), intent(out) :: status(n)
+         type(mud_report), intent(out), optional :: reports(n)
+      end function mud_update_batch_prepared
 
       integer(c_int) function mud_trace_increment(props, nprops, stress0, statev0, nstatev, dstrain, suction0, &
               dsuction, tangent, first, rows, nrows, attempts, report) bind(c, name='mud_trace_increment')

@@ -6,7 +6,8 @@ module mud_status
    public :: mud_status_t, fail
    public :: MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_BAD_NTENS, MUD_BAD_PROPS, MUD_BAD_STATE, MUD_BAD_INPUT, &
              MUD_NULL_ARGUMENT, MUD_BAD_VOID_RATIO, MUD_BAD_OPTION, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, &
-             MUD_NO_DIRECTION, MUD_VOID_RATIO_LIMIT, MUD_NOT_FINITE, MUD_INCREMENT_TOO_LARGE, MUD_NOT_WRITTEN
+             MUD_NO_DIRECTION, MUD_VOID_RATIO_LIMIT, MUD_NOT_FINITE, MUD_INCREMENT_TOO_LARGE, MUD_NOT_WRITTEN, &
+             MUD_NOT_PREPARED
    public :: ON_NOTHING, ON_PROPS, ON_STATEV, ON_STRESS, ON_STRAIN, ON_SUCTION, ON_VOID_RATIO, ON_ARGUMENT, &
              ON_ROTATION
 
@@ -21,6 +22,7 @@ module mud_status
    integer, parameter :: MUD_BAD_VOID_RATIO = -8      !< The void ratio given is outside (0.01, 5).
    integer, parameter :: MUD_BAD_OPTION = -9          !< An option (list, field, tangent kind) is unknown.
    integer, parameter :: MUD_NOT_WRITTEN = -10        !< A file that was asked for could not be written.
+   integer, parameter :: MUD_NOT_PREPARED = -11        !< Storage not filled by mud_prepare, or too small.
    integer, parameter :: MUD_MINIMUM_STEP = 1         !< The substep fell to its minimum.
    integer, parameter :: MUD_TOO_MANY_SUBSTEPS = 2    !< The limit of substeps is used up.
    integer, parameter :: MUD_NO_DIRECTION = 3         !< Again no admissible loading direction (guards off).

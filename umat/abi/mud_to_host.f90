@@ -1,0 +1,35 @@
+!> Texts and numbers into memory of a C host.
+module mud_to_host
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_associated, c_f_pointer
+   use mud_kinds, only: wp
+   implicit none (type, external)
+   private
+   public :: put, put_real
+contains
+   !> Text into a C buffer of `length` bytes, cut to fit, terminated.
+   subroutine put(text, buffer, length)
+      character(*), intent(in) :: text
+      type(c_ptr), intent(in) :: buffer
+      integer(c_int), intent(in) :: length
+      character(kind=c_char), pointer :: letters(:)
+      integer :: i, n
+
+      if (.not. c_associated(buffer) .or. length < 1) return
+      call c_f_pointer(buffer, letters, [length])
+      n = min(len_trim(text), length - 1)
+      do i = 1, n
+         letters(i) = text(i:i)
+      end do
+      letters(n + 1) = c_null_char
+   end subroutine put
+
+   subroutine put_real(value, target_)
+      real(wp), intent(in) :: value
+      type(c_ptr), intent(in) :: target_
+      real(c_double), pointer :: place
+
+      if (.not. c_associated(target_)) return
+      call c_f_pointer(target_, place)
+      place = value
+   end subroutine put_real
+end module mud_to_host
