@@ -16,15 +16,16 @@ Written by scripts/single_source.py from umat/core and umat/abi: change it there
 
 It defines the UMAT (symbol umat_) and the functions of mud.h. PROPS, STATEV, conventions and status codes:
 umat/README.md. Free form, Fortran 2018; gfortran 12 or later. Compiling leaves .mod files in the working folder, which
-nobody needs. With -fopenmp mud_update_batch uses several threads; everything else is the same without.
+nobody needs. With -fopenmp mud_update_batch uses several threads, and what umat_ says is said once even if two threads
+fail at the same instant; everything else is the same without.
 
    gfortran -O3 -fPIC -fno-semantic-interposition -c mud_umat_single.f90
 
 Abaqus:    abaqus job=JOB user=mud_umat_single.o     (add -lgfortran to link_sl of the environment file if it links with
            another compiler; user=mud_umat_single.f90 works where compile_fortran is gfortran with free form)
 CalculiX:  link mud_umat_single.o before ccx_VERSION.a, whose own umat is then left out; name the material ABAQUS...
-           (small strains). CalculiX passes PREDEF and DPRED uninitialised, and MUD reads the suction there:
-           first set predef=0.d0 and dpred=0.d0 in its umat_abaqus.f.
+           (small strains). CalculiX never sets PREDEF and DPRED: MUD does not read them where PNEWDT enters with -1,
+           the suction is that of STATEV.
 Others:    call umat_ with the arguments of Abaqus; the hidden length of CMNAME may be passed or left out.
 
 {licence}"""

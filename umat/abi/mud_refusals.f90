@@ -1,7 +1,7 @@
 !> A refusal of umat_ is heard: a sentence on standard error, once a process for each distinct failure, a request for a
 !> cut in PNEWDT or, where the host gives no PNEWDT, a STRESS that no solver takes for an answer.
 module mud_refusals
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_double, c_associated, c_f_pointer
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_double, c_null_ptr, c_associated, c_f_pointer
    use, intrinsic :: iso_fortran_env, only: int64
    use mud_advice, only: advice_on, ADVICE_LENGTH
    use mud_arguments, only: suction_t, integer_at, SUCTION_CONTRADICTS, ARGUMENT_NAMES
@@ -19,7 +19,7 @@ module mud_refusals
 
    !> KSTEP, KINC, NOEL and NPT of the host; each may be NULL.
    type :: place_t
-      type(c_ptr) :: step, increment, element, point
+      type(c_ptr) :: step = c_null_ptr, increment = c_null_ptr, element = c_null_ptr, point = c_null_ptr
    end type place_t
 
    !> A failed increment is saved here, if the environment names a folder.

@@ -7,6 +7,8 @@
  *
  * Every array is the caller's. Nothing is allocated, printed or kept between calls; calls are thread-safe. No file is
  * read or written, but for mud_save_increment and what MUD_SAVE_FAILED asks of umat_ (see "failed increments" below).
+ * umat_ alone prints: each distinct refusal once a process, on standard error (MUD_MESSAGES=off silences), and alone
+ * returns a NaN, in STRESS, where it refuses and PNEWDT is NULL (MUD_NO_PNEWDT=keep leaves STRESS).
  * Functions return MUD_OK (0), a negative code (the caller's mistake) or a positive one (a hard increment: cut it).
  * Text goes into the caller's buffer of `len` bytes, cut to fit and always terminated; a NULL buffer is allowed.
  */
@@ -58,7 +60,7 @@ typedef struct mud_report {
    double value;            /* offending value                                                         */
    double lower, upper;     /* its allowed range                                                       */
    double reached;          /* share of the increment that was integrated, 1 on success                */
-   double pnewdt;           /* suggested factor on the increment, below 1 on a positive code, else 1   */
+   double pnewdt;           /* suggested factor on the increment, below 1 on any failure, else 1       */
 } mud_report;
 
 /* --- the library and its tables --------------------------------------------------------------------- */
@@ -157,9 +159,9 @@ int mud_trace_increment(const double *props, int nprops, const double *stress0, 
  * bit by bit the same. `origin` is a remark for the reader (may be NULL). A file of that name is never overwritten, an
  * unfinished one is removed: MUD_NOT_WRITTEN, and text says why.
  *
- * umat_ does the same by itself where the environment variable MUD_SAVE_FAILED names a folder: each failed increment
- * takes the first free name of mud_failed_01.txt .. mud_failed_20.txt there. When all are taken, or the folder cannot
- * be written, nothing is saved. */
+ * umat_ does the same by itself where the environment variable MUD_SAVE_FAILED names a folder: the first increment of
+ * each distinct failure, under a name that says which, such as mud_failed_too_many_substeps.txt. A file that is there
+ * already stays; that the folder cannot be written is said once. */
 int mud_save_increment(const char *path, const char *origin, const double *props, int nprops, const double *stress0,
                        const double *statev0, int nstatev, const double *dstrain, double suction0, double dsuction,
                        int tangent, char *text, int len);

@@ -68,7 +68,9 @@ contains
       lin%e_c = e - w%psi
       lin%e_c_slope = par%lambda/(w%p + par%alpha_csl)
       lin%k_slope = 1.0_wp/(1.0_wp + e) - 1.0_wp/e
-      lin%g_slope = -2.0_wp/(2.97_wp - e) - 1.0_wp/(1.0_wp + e)
+      lin%g_slope = -1.0_wp/(1.0_wp + e)
+      ! At e = 2.97 the shear modulus and its slope are zero.
+      if (abs(2.97_wp - e) > epsilon(e)) lin%g_slope = lin%g_slope - 2.0_wp/(2.97_wp - e)
       lin%b_slope = 0.0_wp
       if (1.0_wp - par%c_h*e > SMALLEST_VOID_TERM) lin%b_slope = -par%c_h/(1.0_wp - par%c_h*e)
       lin%per_p = 1.0_wp/w%p
@@ -106,7 +108,7 @@ contains
       type(change_t), intent(in) :: change
       real(wp), intent(out) :: d_sigma(6), d_z(6), d_eps_q, dn(6)
       real(wp) :: dp, dr(6), dt(6), dk, dg, df, dpsi, dm_b, dm_d, db_0, dk_e, db, dv, volumetric, dvolumetric
-      real(wp) :: dx, drn, dr_b, da_d, dd, dh, dstiffness, stiffness, reach, dbeta, dgamma, dy, dl, s(3), a, b
+      real(wp) :: dx, drn, dr_b, dd, dh, dstiffness, stiffness, reach, dbeta, dgamma, dy, dl, s(3), a, b
       real(wp) :: d_e(6), share
 
       ! the point
@@ -146,9 +148,9 @@ contains
       if (w%capped_d) then
          dd = w%d*(dg/w%g - dk_e/w%k_e - drn/w%r_n)
       else
-         da_d = 0.0_wp
-         if (par%fabric .and. w%z_n > 0.0_wp) da_d = par%a_0*ddot(change%z, w%n)
-         dd = da_d*w%d/w%a_d + w%a_d*(SQRT_2_3*w%lode*dm_d - drn)
+         dd = w%a_d*(SQRT_2_3*w%lode*dm_d - drn)
+         ! With A_0 = 0 there is no dilatancy that fabric could change.
+         if (par%fabric .and. w%z_n > 0.0_wp .and. w%a_d > 0.0_wp) dd = dd + par%a_0*ddot(change%z, w%n)*w%d/w%a_d
       end if
       stiffness = 2.0_wp*w%g - w%k_e*w%d*w%r_n
       dstiffness = 2.0_wp*dg - dk_e*w%d*w%r_n - w%k_e*(dd*w%r_n + w%d*drn)
