@@ -13,13 +13,13 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-import rows_long  # noqa: E402
-import rows_published  # noqa: E402
-import rows_six  # noqa: E402
-from walk import ALIASES, ROOT, RULES, Soil, Walker  # noqa: E402
+import memory_long  # noqa: E402
+import memory_published  # noqa: E402
+import memory_six  # noqa: E402
+from point_walk import ALIASES, ROOT, RULES, Soil, Walker  # noqa: E402
 
-ROWS = {row.__name__: row for rows in (rows_published, rows_six, rows_long) for row in rows.ROWS}
-QUICK = [row.__name__ for row in rows_published.ROWS]
+ROWS = {row.__name__: row for rows in (memory_published, memory_six, memory_long) for row in rows.ROWS}
+QUICK = [row.__name__ for row in memory_published.ROWS]
 
 
 def parse_rule(text):

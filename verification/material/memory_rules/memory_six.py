@@ -2,9 +2,9 @@
 import math
 import random
 
-from steps import (ACROSS, AXIAL, DENSE, LOOSE, MIDDLE, clean_path, closed, deviation, distance, increments, last, plus,
+from point_steps import (ACROSS, AXIAL, DENSE, LOOSE, MIDDLE, clean_path, closed, deviation, distance, increments, last, plus,
                    straight, times)
-from walk import Path
+from point_walk import Path
 
 SIDE = times(math.sqrt(3), ACROSS)           # engineering shear 12 of the same tensor length as AXIAL
 OTHER = (0.0, 0.0, 0.0, 0.0, 1.0, 0.0)       # engineering shear 13

@@ -2,8 +2,8 @@
 import math
 import random
 
-from steps import ACROSS, AXIAL, DENSE, LOOSE, MIDDLE, clean_path, deviation, increments, plus, straight, times
-from walk import Path
+from point_steps import ACROSS, AXIAL, DENSE, LOOSE, MIDDLE, clean_path, deviation, increments, plus, straight, times
+from point_walk import Path
 
 
 def symmetric_path(soil, amplitude, cycles, write):

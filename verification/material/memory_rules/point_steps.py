@@ -1,7 +1,7 @@
 """Steps of strain paths and the comparison of their ends."""
 import math
 
-from walk import Path
+from point_walk import Path
 
 AXIAL = (1.0, -0.5, -0.5, 0.0, 0.0, 0.0)     # triaxial compression at constant volume
 ACROSS = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0)      # engineering shear 12

@@ -2,9 +2,9 @@
 import math
 import random
 
-from rows_published import biased_path, noise_path, strains_after, symmetric_path, turns
-from steps import (ACROSS, AXIAL, DENSE, LOOSE, MIDDLE, closed, distance, last, per_cent, plus, straight, times)
-from walk import Path
+from memory_published import biased_path, noise_path, strains_after, symmetric_path, turns
+from point_steps import (ACROSS, AXIAL, DENSE, LOOSE, MIDDLE, closed, distance, last, per_cent, plus, straight, times)
+from point_walk import Path
 
 AMPLITUDES = (1e-6, 1e-5, 3e-5, 1e-4, 3e-4)
 
