@@ -12,7 +12,8 @@ import pathlib
 import sys
 import time
 
-sys.path.insert(0, str(pathlib.Path(__file__).parent))
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent)]
 import memory_long  # noqa: E402
 import memory_published  # noqa: E402
 import memory_six  # noqa: E402
@@ -38,7 +39,8 @@ def question(row):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rules", nargs="+", default=["classic:0", "classic:2e-5", "return_point:0", "return_point:2e-5"])
+    parser.add_argument("--rules", nargs="+", default=["classic:0", "classic:2e-5", "return_point:0", "return_point:2e-5"],
+                        metavar="RULE:RHO_E")
     parser.add_argument("--rows", nargs="+", choices=ROWS)
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--list", action="store_true")

@@ -214,7 +214,8 @@ contains
       do iteration = 1, MAX_ITERATIONS
          point%iterations = point%iterations + 1
          if (mud_update(point%props, point%nprops, -point%stress, point%statev, point%nstatev, -trial, &
-                        point%suction, d_suction, MUD_TANGENT_CONSISTENT, stress, statev, dsig_deps=tangent) /= 0) return
+                        point%suction, d_suction, MUD_TANGENT_CONSISTENT, stress, statev, &
+                        dsig_deps=tangent) /= 0) return
          stress = -stress
          residual = values - matmul(control%strain, trial) - matmul(control%stress, stress)
          error = maxval(abs(residual), control%by_stress)

@@ -5,16 +5,16 @@ import dataclasses
 import pathlib
 import subprocess
 
-ROOT = pathlib.Path(__file__).resolve().parents[3]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 RULES = {"classic": 0, "threshold": 1, "repositioning": 2, "return_point": 3, "as_published": 4}
 ALIASES = {"resume": 3}   # the rule that return_point replaces under the same number
 
 
 @dataclasses.dataclass(frozen=True)
 class Soil:
-    """The default material with a memory rule (its number) and an elastic domain of radius rho_e."""
-    rule: int
-    rho_e: float
+    """The default material with a memory rule (its number) and an elastic domain of radius rho_e; None: the library's default."""
+    rule: int = None
+    rho_e: float = None
     properties: tuple = ()   # further (name, value)
 
     def having(self, **properties):
@@ -27,7 +27,7 @@ class Path:
     def __init__(self, soil, e, p=100.0, stress=None, suction=0.0):
         """Starts from an isotropic effective stress p, or from six components."""
         stress = stress or (p, p, p, 0.0, 0.0, 0.0)
-        self.lines = [f"set memory_rule {soil.rule}", f"set rho_e {soil.rho_e!r}"]
+        self.lines = [f"set {name} {value!r}" for name, value in (("memory_rule", soil.rule), ("rho_e", soil.rho_e)) if value is not None]
         self.lines += [f"set {name} {value!r}" for name, value in soil.properties]
         self.lines.append("start " + " ".join(map(repr, (*stress, suction, e))))
 

@@ -1,0 +1,64 @@
+"""Pages that state what the published parameter set gives: measured values are kept in results.csv with the commit that made them."""
+import math
+import os
+import pathlib
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent)]
+from tools import results, runner, tables  # noqa: E402
+from tools.bench import ROOT, Bench  # noqa: E402
+from tools.page import Tolerance  # noqa: E402
+
+# The published model has no elastic domain and forgets at every reversal; the default is what a user gets who sets nothing.
+PUBLISHED, DEFAULT = "published (classic, rho_e 0)", "default"
+PARAMETERS = {PUBLISHED: {"memory_rule": 0, "rho_e": 0.0}, DEFAULT: {}}
+DRIVER = {PUBLISHED: "   memory_rule = 'classic'\n   rho_e = 0.0\n", DEFAULT: ""}
+
+AGAIN = Tolerance("the recorded value has 5 digits; other compilers round otherwise and the integration is good to 1e-5 a substep", relative=2e-3,
+                  absolute=1e-6)
+
+
+def make(script):
+    """Writes results.csv from what the page of this folder measures."""
+    folder = pathlib.Path(script).resolve().parent
+    page = runner.load(str(folder.relative_to(HERE.parent)))
+    made = results.folder(script)
+    measured = page.measure(Bench(folder, os.environ.get("MUD_BUILD_DIR") or ROOT / "build/release", made / "scratch"))
+    commit = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=folder, capture_output=True, text=True).stdout.strip()
+    tables.write(made / "results.csv", ("quantity", "column", "value"),
+                 [(quantity, column, f"{value:.5g}") for (quantity, column), value in measured.items()],
+                 [f"made by make_results.py at commit {commit or 'unknown'}"])
+
+
+def read(bench):
+    return {(row["quantity"], row["column"]): float(row["value"]) for row in tables.rows(bench.here / "results.csv")}
+
+
+def compare(bench, measured, tolerance=AGAIN):
+    """Every measured value against the recorded one; a NaN (never reached) has to stay one."""
+    recorded = read(bench)
+    for key, value in measured.items():
+        reference = recorded[key]
+        name = f"{key[0]}, {key[1]}"
+        if math.isnan(reference) or math.isnan(value):
+            bench.near(f"{name}: reached or not", float(math.isnan(value)), float(math.isnan(reference)), tolerance)
+        else:
+            bench.near(name, value, reference, tolerance)
+
+
+def shown(value):
+    if value is None:
+        return ""
+    if math.isnan(value):
+        return "never"
+    return f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"
+
+
+def table(bench, columns, head=""):
+    """The recorded values as a table of a README, and the line that says which commit made them."""
+    values = read(bench)
+    lines = [(quantity, *(shown(values.get((quantity, column))) for column in columns)) for quantity in dict.fromkeys(q for q, _ in values)]
+    made = tables.comments(bench.here / "results.csv")[0]
+    return tables.markdown((head, *columns), lines) + f"\nresults.csv: {made}.\n"
