@@ -16,6 +16,7 @@ PUBLISHED, DEFAULT = "published (classic, rho_e 0)", "default"
 PARAMETERS = {PUBLISHED: {"memory_rule": 0, "rho_e": 0.0}, DEFAULT: {}}
 DRIVER = {PUBLISHED: "   memory_rule = 'classic'\n   rho_e = 0.0\n", DEFAULT: ""}
 
+NONE = Tolerance("recorded for the same paths", absolute=0.0)
 AGAIN = Tolerance("the recorded value has 5 digits; other compilers round otherwise and the integration is good to 1e-5 a substep", relative=2e-3,
                   absolute=1e-6)
 
@@ -36,16 +37,16 @@ def read(bench):
     return {(row["quantity"], row["column"]): float(row["value"]) for row in tables.rows(bench.here / "results.csv")}
 
 
-def compare(bench, measured, tolerance=AGAIN):
-    """Every measured value against the recorded one; a NaN (never reached) has to stay one."""
+def compare(bench, measured, tolerance=AGAIN, what="values"):
+    """Measured against recorded values, column by column; what was never reached (NaN) has to stay so."""
     recorded = read(bench)
-    for key, value in measured.items():
-        reference = recorded[key]
-        name = f"{key[0]}, {key[1]}"
-        if math.isnan(reference) or math.isnan(value):
-            bench.near(f"{name}: reached or not", float(math.isnan(value)), float(math.isnan(reference)), tolerance)
-        else:
-            bench.near(name, value, reference, tolerance)
+    for column in dict.fromkeys(column for _, column in measured):
+        pairs = [(value, recorded[key]) for key, value in measured.items() if key[1] == column]
+        bench.near(f"{what}, {column}: marks met now and not then, or the other way round", sum(math.isnan(a) != math.isnan(b) for a, b in pairs),
+                   0, NONE)
+        both = [pair for pair in pairs if not any(map(math.isnan, pair))]
+        if both:
+            bench.near(f"{what}, {column}", *zip(*both), tolerance)
 
 
 def shown(value):

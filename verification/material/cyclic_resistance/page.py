@@ -13,11 +13,12 @@ PAGE = Page(
     kind="regression",
     input="simple shear at constant volume, cycles of the shear stress of CSR times the vertical effective stress; sigma_v 100 kPa, K0 0.5, e 0.8",
     reference="none: no laboratory test is at hand for this state of Toyoura sand; the numbers are stated, and held against those that were recorded",
-    seconds=25, quick=8, pictures=("cyclic_resistance.png",))
+    seconds=20, pictures=("cyclic_resistance.png",))
 MAKES = (Script("make_results.py", ("results.csv",), 20),)
 
 RATIOS = (0.04, 0.08, 0.12, 0.16, 0.20, 0.30)
-CYCLES, VERTICAL = 150, 100.0
+CYCLES = {0.04: 100, 0.08: 40}   # else 20: the stress path then repeats itself
+VERTICAL = 100.0
 MARKS = {"r_u of the mean stress 0.8": ("p", 0.8), "r_u of the vertical stress 0.8": ("v", 0.8), "r_u of the vertical stress 0.95": ("v", 0.95),
          "double amplitude 7.5 %": ("d", 0.075)}
 HALF = Tolerance("a mark is met within a half cycle; where r_u only just reaches it, rounding may move it by one", absolute=1.0)
@@ -62,17 +63,17 @@ def measure(bench, ratios=RATIOS):
     found = {}
     for ratio in ratios:
         for name in recorded.PARAMETERS:
-            for mark, value in reached(bench.driver_text(case(name, ratio, CYCLES))).items():
+            for mark, value in reached(bench.driver_text(case(name, ratio, CYCLES.get(ratio, 20)))).items():
                 found[f"CSR {ratio:.2f}, {mark}", name] = value
     return found
 
 
 def check(bench):
-    measured = measure(bench, (0.08, 0.20) if bench.quick else RATIOS)
+    measured = measure(bench, (0.16,) if bench.quick else RATIOS)
     cycles = {key: value for key, value in measured.items() if "largest" not in key[0]}
-    recorded.compare(bench, cycles, HALF)
+    recorded.compare(bench, cycles, HALF, "cycles")
     recorded.compare(bench, {key: value for key, value in measured.items() if key not in cycles},
-                     Tolerance("read at rows 5e-5 of strain apart, where r_u moves by 1 %", relative=0.02))
+                     Tolerance("read at rows 5e-5 of strain apart, where r_u moves by 1 %", relative=0.02), "largest values")
     return measured
 
 
@@ -90,7 +91,7 @@ def draw(bench, measured, plt):
     axes[0].set(xlabel="cycles", ylabel="cyclic stress ratio [-]", title="cycles until r_u is 0.8")
     axes[0].legend(fontsize=7)
     for axis, ratio in zip(axes[1:], (0.08, 0.20)):
-        run = bench.driver_text(case(recorded.DEFAULT, ratio, 30))
+        run = bench.driver_text(case(recorded.DEFAULT, ratio, 20))
         axis.plot(run["sigma_a"], run["sig_13"], color=COLOURS[1], lw=0.7)
-        axis.set(xlabel="vertical effective stress [kPa]", ylabel="shear stress [kPa]", title=f"CSR {ratio:.2f}, default, 30 cycles")
+        axis.set(xlabel="vertical effective stress [kPa]", ylabel="shear stress [kPa]", title=f"CSR {ratio:.2f}, default, 20 cycles")
     bench.save(figure, "cyclic_resistance.png")
