@@ -179,7 +179,7 @@ def main():
     inside = core + abi
     core_files, abi_files = sources("umat/core/*/*.f90"), sources("umat/abi/*.f90")
     library = core_files + abi_files
-    clients = sources("common/**/*.f90", "host/**/*.f90", "drivers/**/*.f90")
+    clients = sources("common/**/*.f90", "materials/**/*.f90", "host/**/*.f90", "drivers/**/*.f90")
     helpers = sources("tests/**/*.f90")
     suites = sources("tests/**/*.pf")
     # mud_interface.f90 defines one module per file too; the helper that includes it has none of its own.
@@ -203,7 +203,7 @@ def main():
         ("the layers of the core stand one after the other", layer_order(core_files, core)),
         ("core uses only what is below", over(core_files, lambda t, n: upward_use(t, n, core), True)),
         ("abi uses the core and what is below in abi", over(abi_files, lambda t, n: upward_use(t, n, inside), True)),
-        ("common, drivers and host see mud_interface only", over(clients, lambda t: inner_use(t, set(inside)))),
+        ("common, materials, drivers and host see mud_interface only", over(clients, lambda t: inner_use(t, set(inside)))),
         ("the host's view of the library uses nothing of it",
          over(sources("umat/include/*.f90"), lambda t: inner_use(t, set(inside)))),
         ("every use says only", over(library + clients + helpers + suites, use_without_only)),

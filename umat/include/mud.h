@@ -128,6 +128,11 @@ int mud_update_batch_prepared(const double *prepared, int n, const double *stres
                               int threads, double *stress1, double *statev1, double *dsig_deps, double *dsig_dpc,
                               double *dsw_deps, double *dsw_dpc, int *status, mud_report *reports);
 
+/* Degree of saturation of a prepared material at a suction and a void ratio (above 0), and its slopes against either at
+ * constant other; each output may be NULL. The curve that updates use: their S_w is this one, bit by bit. */
+int mud_saturation(const double *prepared, double suction, double void_ratio, double *s_w, double *ds_dpc,
+                   double *ds_de);
+
 /* --- failed increments ---------------------------------------------------------------------------------- */
 /* One substep that an update tried. */
 enum mud_outcome { MUD_SUBSTEP_REJECTED = 0, MUD_SUBSTEP_ACCEPTED = 1, MUD_SUBSTEP_FAILED = 2 /* the update ended */ };

@@ -7,7 +7,8 @@ module mud_interface
    public :: mud_report, mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_bounds, mud_bounds_for, &
              mud_default_props, mud_convert_props, mud_validate_props, mud_init_state, &
              mud_update, mud_update_batch, mud_status_text, mud_message, mud_substep, mud_trace_increment, &
-             mud_save_increment, mud_prepared_size, mud_prepare, mud_update_prepared, mud_update_batch_prepared
+             mud_save_increment, mud_prepared_size, mud_prepare, mud_update_prepared, mud_update_batch_prepared, &
+             mud_saturation
    public :: MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL, &
       MUD_ROTATION, MUD_EVOLUTION
    public :: MUD_SUBSTEP_REJECTED, MUD_SUBSTEP_ACCEPTED, MUD_SUBSTEP_FAILED, MUD_MODE_ORDINARY, MUD_MODE_ELASTIC, &
@@ -173,6 +174,14 @@ module mud_interface
          integer(c_int), intent(out) :: status(n)
          type(mud_report), intent(out), optional :: reports(n)
       end function mud_update_batch_prepared
+
+      integer(c_int) function mud_saturation(prepared, suction, void_ratio, s_w, ds_dpc, ds_de) &
+         bind(c, name='mud_saturation')
+         import :: c_int, c_double
+         real(c_double), intent(in) :: prepared(*)
+         real(c_double), value :: suction, void_ratio
+         real(c_double), intent(inout), optional :: s_w, ds_dpc, ds_de
+      end function mud_saturation
 
       integer(c_int) function mud_trace_increment(props, nprops, stress0, statev0, nstatev, dstrain, suction0, &
               dsuction, tangent, first, rows, nrows, attempts, report) bind(c, name='mud_trace_increment')

@@ -1,0 +1,112 @@
+!> The tables of the MUD library: its parameters and state variables with their names, units and ranges.
+module library_tables
+   use, intrinsic :: iso_c_binding, only: c_int, c_null_char
+   use kinds, only: wp
+   use mud_interface, only: mud_version, mud_count, mud_index, mud_text, mud_bounds, MUD_PROPS, MUD_STATEV, MUD_NAME, &
+                            MUD_UNIT, MUD_ORIGIN, MUD_MEANING
+   use texts, only: from_c
+   implicit none (type, external)
+   private
+   public :: library_version, property_count, property_index, property_name, property_unit, property_origin, &
+             property_meaning, property_range, state_count, statev_index, statev_name, statev_unit
+
+   integer, parameter :: BUFFER = 600
+contains
+   function library_version() result(version)
+      character(:), allocatable :: version
+      character(BUFFER) :: text
+      integer(c_int) :: code
+
+      text = c_null_char
+      code = mud_version(text, BUFFER)
+      version = from_c(text)
+      if (code < 0) version = 'unknown'
+   end function library_version
+
+   integer function property_count()
+      property_count = mud_count(MUD_PROPS)
+   end function property_count
+
+   integer function state_count()
+      state_count = mud_count(MUD_STATEV)
+   end function state_count
+
+   !> Place of a parameter in PROPS, from 1; 0 if there is none of that name.
+   integer function property_index(name)
+      character(*), intent(in) :: name
+
+      property_index = mud_index(MUD_PROPS, trim(name)//c_null_char) + 1
+   end function property_index
+
+   !> Place of a state variable in STATEV, from 1; 0 if there is none of that name.
+   integer function statev_index(name)
+      character(*), intent(in) :: name
+
+      statev_index = mud_index(MUD_STATEV, trim(name)//c_null_char) + 1
+   end function statev_index
+
+   function property_name(place) result(text)
+      integer, intent(in) :: place
+      character(:), allocatable :: text
+
+      text = table_text(MUD_PROPS, place, MUD_NAME)
+   end function property_name
+
+   function property_unit(place) result(text)
+      integer, intent(in) :: place
+      character(:), allocatable :: text
+
+      text = table_text(MUD_PROPS, place, MUD_UNIT)
+   end function property_unit
+
+   function property_origin(place) result(text)
+      integer, intent(in) :: place
+      character(:), allocatable :: text
+
+      text = table_text(MUD_PROPS, place, MUD_ORIGIN)
+   end function property_origin
+
+   function property_meaning(place) result(text)
+      integer, intent(in) :: place
+      character(:), allocatable :: text
+
+      text = table_text(MUD_PROPS, place, MUD_MEANING)
+   end function property_meaning
+
+   function statev_name(place) result(text)
+      integer, intent(in) :: place
+      character(:), allocatable :: text
+
+      text = table_text(MUD_STATEV, place, MUD_NAME)
+   end function statev_name
+
+   function statev_unit(place) result(text)
+      integer, intent(in) :: place
+      character(:), allocatable :: text
+
+      text = table_text(MUD_STATEV, place, MUD_UNIT)
+   end function statev_unit
+
+   function table_text(list, place, field) result(text)
+      integer(c_int), intent(in) :: list, field
+      integer, intent(in) :: place
+      character(:), allocatable :: text
+      character(BUFFER) :: raw
+
+      raw = c_null_char
+      if (mud_text(list, place - 1, field, raw, BUFFER) < 0) raw = c_null_char
+      text = from_c(raw)
+   end function table_text
+
+   !> Bounds and default of a parameter, in kPa; zeros if there is none of that place.
+   subroutine property_range(place, lower, upper, preset)
+      integer, intent(in) :: place
+      real(wp), intent(out) :: lower, upper, preset
+
+      if (mud_bounds(MUD_PROPS, place - 1, lower, upper, preset) < 0) then
+         lower = 0.0_wp
+         upper = 0.0_wp
+         preset = 0.0_wp
+      end if
+   end subroutine property_range
+end module library_tables

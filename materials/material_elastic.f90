@@ -1,0 +1,139 @@
+!> Isotropic linear elasticity of the effective stress, beside a retention curve.
+module material_elastic
+   use kinds, only: wp
+   use key_schema, only: key_t, number_of, REQUIRED, UNBOUNDED
+   use faults, only: fault_t
+   use namelists, only: group_t
+   use material_point, only: material_t, response_t, report_t, saturation_t, swollen, NAME_LENGTH
+   implicit none (type, external)
+   private
+   public :: elastic_t, new_elastic, isotropic, ELASTIC_KEYS
+
+   integer, parameter :: PLACE_E = 1, PLACE_S_W = 2   !< Places in the state.
+
+   type(key_t), parameter :: ELASTIC_KEYS(*) = [ &
+      key_t('elastic', 'young', 'n', REQUIRED, 1.0e-30_wp, UNBOUNDED, 'Young''s modulus [kPa]'), &
+      key_t('elastic', 'poisson', 'n', REQUIRED, -0.99_wp, 0.4999_wp, 'Poisson''s ratio [-]')]
+
+   type, extends(material_t) :: elastic_t
+      real(wp) :: young = 0.0_wp     !< [kPa]
+      real(wp) :: poisson = 0.0_wp   !< [-]
+   contains
+      procedure :: initial_state
+      procedure :: update
+      procedure :: message
+      procedure :: default_void_ratio
+      procedure :: void_ratio
+      procedure :: saturation
+   end type elastic_t
+contains
+   !> The law of a group that was checked against ELASTIC_KEYS.
+   subroutine new_elastic(group, law, title, fault)
+      type(group_t), intent(in) :: group
+      class(material_t), allocatable, intent(out) :: law
+      character(*), intent(inout) :: title
+      type(fault_t), intent(inout) :: fault
+
+      associate (unused => title, never => fault)
+      end associate
+      allocate (law, source=isotropic(number_of(ELASTIC_KEYS, group, 'young'), &
+                                      number_of(ELASTIC_KEYS, group, 'poisson')))
+   end subroutine new_elastic
+
+   pure function isotropic(young, poisson) result(law)
+      real(wp), intent(in) :: young, poisson
+      type(elastic_t) :: law
+
+      law%young = young
+      law%poisson = poisson
+      law%has_energy = .true.
+      law%state_names = [character(NAME_LENGTH) :: 'void_ratio', 'saturation']
+      law%state_units = [character(NAME_LENGTH) :: '1', '1']
+      law%n_state = size(law%state_names)
+   end function isotropic
+
+   subroutine initial_state(self, stress, suction, void_ratio, state, text)
+      class(elastic_t), intent(in) :: self
+      real(wp), intent(inout) :: stress(6)
+      real(wp), intent(in) :: suction, void_ratio
+      real(wp), intent(inout) :: state(:)
+      character(*), intent(out) :: text
+      type(saturation_t) :: sat
+
+      text = ''
+      associate (unused => stress)   ! any stress will do
+      end associate
+      sat = self%retention(suction, void_ratio)
+      state(PLACE_E) = void_ratio
+      state(PLACE_S_W) = sat%s
+   end subroutine initial_state
+
+   subroutine update(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state)
+      class(elastic_t), intent(in) :: self
+      integer, intent(in) :: n
+      real(wp), intent(in), contiguous :: stress(:, :), state(:, :), strain(:, :), suction(:), d_suction(:)
+      logical, intent(in) :: with_tangent
+      type(response_t), intent(inout) :: response
+      real(wp), intent(inout), contiguous :: new_state(:, :)
+      type(saturation_t) :: sat
+      real(wp) :: lame, shear, slope(6, 6), e
+      integer :: i, g
+
+      response%report = report_t()
+      shear = self%young/(2*(1 + self%poisson))
+      lame = 2*shear*self%poisson/(1 - 2*self%poisson)
+      slope = 0.0_wp
+      slope(1:3, 1:3) = lame
+      do i = 1, 3
+         slope(i, i) = lame + 2*shear
+         slope(i + 3, i + 3) = shear
+      end do
+      do g = 1, n
+         response%stress(1:3, g) = stress(1:3, g) + lame*sum(strain(1:3, g)) + 2*shear*strain(1:3, g)
+         response%stress(4:6, g) = stress(4:6, g) + shear*strain(4:6, g)
+         e = swollen(state(PLACE_E, g), sum(strain(1:3, g)))
+         sat = self%retention(suction(g) + d_suction(g), e)
+         new_state(PLACE_E, g) = e
+         new_state(PLACE_S_W, g) = sat%s
+         response%void_ratio(g) = e
+         response%s_w(g) = sat%s
+         if (.not. with_tangent) cycle
+         response%dsig_deps(:, :, g) = slope
+         response%dsig_dpc(:, g) = 0.0_wp
+         response%dsw_dev(g) = sat%ds_de*(1 + e)
+         response%dsw_dpc(g) = sat%ds_dpc
+      end do
+   end subroutine update
+
+   subroutine message(self, report, text)
+      class(elastic_t), intent(in) :: self
+      type(report_t), intent(in) :: report
+      character(*), intent(out) :: text
+
+      write (text, '(a,i0,a,es9.2,a)') 'the elastic law never fails (code ', report%code, ', E = ', self%young, ' kPa)'
+   end subroutine message
+
+   pure real(wp) function default_void_ratio(self)
+      class(elastic_t), intent(in) :: self
+
+      default_void_ratio = 0.0_wp*self%young
+   end function default_void_ratio
+
+   pure real(wp) function void_ratio(self, state)
+      class(elastic_t), intent(in) :: self
+      real(wp), intent(in) :: state(:)
+
+      associate (unused => self)
+      end associate
+      void_ratio = state(PLACE_E)
+   end function void_ratio
+
+   pure real(wp) function saturation(self, state)
+      class(elastic_t), intent(in) :: self
+      real(wp), intent(in) :: state(:)
+
+      associate (unused => self)
+      end associate
+      saturation = state(PLACE_S_W)
+   end function saturation
+end module material_elastic

@@ -1,0 +1,225 @@
+!> MUD through its public interface, its parameters checked and prepared once.
+module material_mud
+   use, intrinsic :: iso_c_binding, only: c_int, c_null_char
+   use kinds, only: wp
+   use faults, only: fault_t, raise, at_line, EXIT_INPUT
+   use key_schema, only: key_t, NONE
+   use library_tables, only: property_index, state_count, statev_index, statev_name, statev_unit
+   use material_point, only: material_t, response_t, report_t, saturation_t, NAME_LENGTH
+   use mud_interface, only: mud_report, mud_prepared_size, mud_prepare, mud_init_state, mud_update_prepared, &
+                            mud_saturation, mud_save_increment, mud_message, MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, &
+                            MUD_TANGENT_CONSISTENT
+   use namelists, only: group_t
+   use parameter_groups, only: read_parameters
+   use texts, only: from_c
+   implicit none (type, external)
+   private
+   public :: mud_t, new_mud, MUD_KEYS
+
+   integer, parameter :: BUFFER = 1000
+   character(*), parameter :: GUARDS(9) = [character(NAME_LENGTH) :: 'floor', 'contraction cap', 'softening cap', &
+      'hysteresis', 'isotropic kept off', 'no direction', 'minimum step', 'cut-off', 'tensile']
+
+   !> Beside every parameter of the library.
+   type(key_t), parameter :: MUD_KEYS(*) = [ &
+      key_t('mud', 'file', 't', NONE, 0, 0, 'material file; every parameter of the library is a key too')]
+
+   type, extends(material_t) :: mud_t
+      real(wp), allocatable :: props(:)      !< As the registry of the library has them.
+      real(wp), allocatable :: prepared(:)   !< The same, checked: the library's own.
+      integer(c_int) :: given_tangent = 0               !< Of PROPS; 0: none.
+      integer(c_int) :: tangent = MUD_TANGENT_ELASTIC   !< Kind that updates return where one is asked for.
+      integer :: place_e = 0, place_s_w = 0   !< In the state.
+      real(wp) :: e_0 = 0.0_wp                !< Void ratio of PROPS [-].
+   contains
+      procedure :: initial_state
+      procedure :: update
+      procedure :: message
+      procedure :: default_void_ratio
+      procedure :: void_ratio
+      procedure :: saturation
+      procedure :: retention
+      procedure :: save_update
+   end type mud_t
+contains
+   !> The law of a group: `file`, and parameters of the library by name.
+   subroutine new_mud(group, law, title, fault)
+      type(group_t), intent(in) :: group
+      class(material_t), allocatable, intent(out) :: law
+      character(*), intent(inout) :: title
+      type(fault_t), intent(inout) :: fault
+      type(mud_t) :: mud
+
+      call fill_mud(group, mud, title, fault)
+      allocate (law, source=mud)
+   end subroutine new_mud
+
+   subroutine fill_mud(group, law, title, fault)
+      type(group_t), intent(in) :: group
+      type(mud_t), intent(out) :: law
+      character(*), intent(inout) :: title   !< Name of the material.
+      type(fault_t), intent(inout) :: fault
+      character(BUFFER) :: text
+      integer :: i
+
+      call read_parameters(group, law%props, title, fault)
+      if (fault%code /= 0) return
+      allocate (law%prepared(mud_prepared_size()), source=0.0_wp)
+      text = c_null_char
+      if (mud_prepare(law%props, size(law%props), law%prepared, size(law%prepared), text, BUFFER) /= 0) then
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//from_c(text))
+         return
+      end if
+      law%given_tangent = nint(law%props(property_index('tangent')), c_int)
+      law%tangent = max(law%given_tangent, MUD_TANGENT_ELASTIC)
+      law%exact_tangent = law%tangent == MUD_TANGENT_CONSISTENT
+      law%e_0 = law%props(property_index('e_0'))
+      law%n_guards = size(GUARDS)
+      law%guard_names(:size(GUARDS)) = GUARDS
+      law%n_state = state_count()
+      allocate (law%state_names(law%n_state), law%state_units(law%n_state))
+      do i = 1, law%n_state
+         law%state_names(i) = statev_name(i)
+         law%state_units(i) = statev_unit(i)
+      end do
+      law%place_e = statev_index('void_ratio')
+      law%place_s_w = statev_index('saturation')
+      if (min(law%place_e, law%place_s_w) < 1) call raise(fault, EXIT_INPUT, &
+         'The library keeps no void_ratio or no saturation; program and library do not match.')
+   end subroutine fill_mud
+
+   subroutine initial_state(self, stress, suction, void_ratio, state, text)
+      class(mud_t), intent(in) :: self
+      real(wp), intent(inout) :: stress(6)
+      real(wp), intent(in) :: suction, void_ratio
+      real(wp), intent(inout) :: state(:)
+      character(*), intent(out) :: text
+      character(BUFFER) :: raw
+
+      text = ''
+      raw = c_null_char
+      state = 0.0_wp
+      if (mud_init_state(self%props, size(self%props), stress, suction, void_ratio, state, self%n_state, raw, BUFFER) &
+          /= 0) text = from_c(raw)
+   end subroutine initial_state
+
+   !> Point by point: the library's batch would start a team of threads for every element, and programs have theirs.
+   subroutine update(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state)
+      class(mud_t), intent(in) :: self
+      integer, intent(in) :: n
+      real(wp), intent(in), contiguous :: stress(:, :), state(:, :), strain(:, :), suction(:), d_suction(:)
+      logical, intent(in) :: with_tangent
+      type(response_t), intent(inout) :: response
+      real(wp), intent(inout), contiguous :: new_state(:, :)
+      type(mud_report) :: report
+      real(wp) :: dsw_deps(6)
+      integer(c_int) :: code
+      integer :: g
+
+      response%report = report_t()
+      do g = 1, n
+         response%stress(:, g) = stress(:, g)
+         if (with_tangent) then
+            code = mud_update_prepared(self%prepared, stress(:, g), state(:, g), self%n_state, strain(:, g), &
+                                       suction(g), d_suction(g), self%tangent, response%stress(:, g), &
+                                       new_state(:, g), response%dsig_deps(:, :, g), response%dsig_dpc(:, g), &
+                                       dsw_deps, response%dsw_dpc(g), report)
+            response%dsw_dev(g) = dsw_deps(1)   ! the normal components are equal, those of shear are zero
+         else
+            code = mud_update_prepared(self%prepared, stress(:, g), state(:, g), self%n_state, strain(:, g), &
+                                       suction(g), d_suction(g), MUD_TANGENT_NONE, response%stress(:, g), &
+                                       new_state(:, g), report=report)
+         end if
+         call add_up(report, response%report)
+         if (code /= 0) then
+            response%report%code = code
+            response%report%point = g
+            return
+         end if
+         response%void_ratio(g) = new_state(self%place_e, g)
+         response%s_w(g) = new_state(self%place_s_w, g)
+      end do
+   end subroutine update
+
+   !> Adds the work of a point; what a failure is about is that of the last one.
+   pure subroutine add_up(report, sums)
+      type(mud_report), intent(in) :: report
+      type(report_t), intent(inout) :: sums
+
+      sums%n_rate = sums%n_rate + report%n_rate
+      sums%n_substep = sums%n_substep + report%n_substep
+      sums%n_reject = sums%n_reject + report%n_reject
+      sums%guards(:size(GUARDS)) = sums%guards(:size(GUARDS)) + [report%n_floor, report%n_cap_d, report%n_cap_h, &
+         report%n_hysteresis, report%n_iso_kept, report%n_no_root, report%n_min_step, report%n_open, report%n_tensile]
+      sums%factor = report%pnewdt
+      sums%subject = report%subject
+      sums%entry = report%index
+      sums%value = report%value
+      sums%lower = report%lower
+      sums%upper = report%upper
+      sums%reached = report%reached
+   end subroutine add_up
+
+   subroutine message(self, report, text)
+      class(mud_t), intent(in) :: self
+      type(report_t), intent(in) :: report
+      character(*), intent(out) :: text
+      type(mud_report) :: of_library
+      character(BUFFER) :: raw
+
+      associate (unused => self)
+      end associate
+      of_library = mud_report(status=report%code, subject=report%subject, index=report%entry, n_rate=report%n_rate, &
+                              n_substep=report%n_substep, n_reject=report%n_reject, n_reseat=0, n_floor=0, n_cap_d=0, &
+                              n_cap_h=0, n_hysteresis=0, n_iso_kept=0, n_no_root=0, n_min_step=0, n_open=0, &
+                              n_tensile=0, value=report%value, lower=report%lower, upper=report%upper, &
+                              reached=report%reached, pnewdt=report%factor)
+      raw = c_null_char
+      if (mud_message(of_library, raw, BUFFER) < 0) write (raw, '(a,i0,2a)') 'Status ', report%code, '.', c_null_char
+      text = from_c(raw)
+   end subroutine message
+
+   pure real(wp) function default_void_ratio(self)
+      class(mud_t), intent(in) :: self
+
+      default_void_ratio = self%e_0
+   end function default_void_ratio
+
+   pure real(wp) function void_ratio(self, state)
+      class(mud_t), intent(in) :: self
+      real(wp), intent(in) :: state(:)
+
+      void_ratio = state(self%place_e)
+   end function void_ratio
+
+   pure real(wp) function saturation(self, state)
+      class(mud_t), intent(in) :: self
+      real(wp), intent(in) :: state(:)
+
+      saturation = state(self%place_s_w)
+   end function saturation
+
+   !> By the library's own curve; that of a void ratio that is none is empty of meaning and full of water.
+   function retention(self, p_c, e) result(sat)
+      class(mud_t), intent(in) :: self
+      real(wp), intent(in) :: p_c, e
+      type(saturation_t) :: sat
+
+      sat = saturation_t()
+      if (mud_saturation(self%prepared, p_c, e, sat%s, sat%ds_dpc, sat%ds_de) /= 0) sat = saturation_t()
+   end function retention
+
+   subroutine save_update(self, path, origin, stress, state, strain, suction, d_suction, text)
+      class(mud_t), intent(in) :: self
+      character(*), intent(in) :: path, origin
+      real(wp), intent(in) :: stress(6), state(:), strain(6), suction, d_suction
+      character(*), intent(out) :: text
+      character(BUFFER) :: raw
+
+      raw = c_null_char
+      text = ''
+      if (mud_save_increment(trim(path)//c_null_char, origin//c_null_char, self%props, size(self%props), stress, state, &
+                             self%n_state, strain, suction, d_suction, self%tangent, raw, BUFFER) /= 0) &
+         text = from_c(raw)
+   end subroutine save_update
+end module material_mud

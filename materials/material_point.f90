@@ -1,0 +1,159 @@
+!> A material point, the seam between programs and laws: host and drivers know this type alone, a law extends it.
+!> Conventions are those of a UMAT: tension positive, components 11, 22, 33, 12, 13, 23, engineering shear; stress is
+!> effective; suction p_c = p_a - p_w is positive where unsaturated. Degree of saturation and void ratio come from the
+!> law alone.
+module material_point
+   use kinds, only: wp
+   use retention_curves, only: retention_t, saturation_t
+   implicit none (type, external)
+   private
+   public :: material_t, material_slot_t, response_t, report_t, saturation_t, state_index, swollen
+   public :: MOST_POINTS, MOST_GUARDS, NAME_LENGTH, WITHOUT_TANGENT, WITH_TANGENT
+
+   integer, parameter :: MOST_POINTS = 12   !< Of a batch: the quadrature points of an element.
+   integer, parameter :: MOST_GUARDS = 16   !< Counters of a law beside the three that every law has.
+   integer, parameter :: NAME_LENGTH = 24
+   logical, parameter :: WITHOUT_TANGENT = .false., WITH_TANGENT = .true.
+
+   !> What a batch of updates did.
+   type :: report_t
+      integer :: code = 0         !< 0: done; negative: the caller's mistake; positive: a hard increment.
+      integer :: point = 0        !< The point that failed; those behind it were not updated.
+      real(wp) :: factor = 1.0_wp !< Suggested factor on the increment, below 1 after a failure.
+      integer :: n_rate = 0       !< Rate evaluations, of all points.
+      integer :: n_substep = 0    !< Accepted substeps.
+      integer :: n_reject = 0     !< Rejected substeps.
+      integer :: guards(MOST_GUARDS) = 0   !< How often each of the law's guards acted; names in the law.
+      integer :: subject = 0, entry = 0    !< What a failure is about, by the law's own count.
+      real(wp) :: value = 0.0_wp, lower = 0.0_wp, upper = 0.0_wp   !< Offending value and its allowed range.
+      real(wp) :: reached = 1.0_wp         !< Share of the increment that was integrated.
+   end type report_t
+
+   !> Answers of a batch, as many columns as there are points. Tangent blocks only where they were asked for.
+   type :: response_t
+      real(wp) :: stress(6, MOST_POINTS)          !< sigma' [kPa]
+      real(wp) :: dsig_deps(6, 6, MOST_POINTS)    !< d sigma'/d strain [kPa]
+      real(wp) :: dsig_dpc(6, MOST_POINTS)        !< d sigma'/d p_c [-]
+      real(wp) :: s_w(MOST_POINTS)                !< Degree of saturation [-]
+      real(wp) :: dsw_dev(MOST_POINTS)            !< d S_w/d volumetric strain, expansion positive [-]
+      real(wp) :: dsw_dpc(MOST_POINTS)            !< d S_w/d p_c [1/kPa]
+      real(wp) :: void_ratio(MOST_POINTS)         !< [-]
+      type(report_t) :: report
+   end type response_t
+
+   type, abstract :: material_t
+      integer :: n_state = 0                !< State variables a point.
+      logical :: has_energy = .false.       !< The stress has a potential: an elastic law.
+      logical :: exact_tangent = .false.    !< d sigma'/d strain is the derivative of the update itself.
+      integer :: n_guards = 0
+      character(NAME_LENGTH) :: guard_names(MOST_GUARDS) = ''
+      character(NAME_LENGTH), allocatable :: state_names(:), state_units(:)
+      class(retention_t), allocatable :: curve   !< Of a law that has no retention of its own; without: saturated.
+   contains
+      procedure(initial_state_i), deferred :: initial_state
+      procedure(update_i), deferred :: update
+      procedure(message_i), deferred :: message
+      procedure(value_i), deferred :: default_void_ratio
+      procedure(of_state_i), deferred :: void_ratio
+      procedure(of_state_i), deferred :: saturation
+      procedure :: retention => retention_by_curve
+      procedure :: save_update => cannot_save
+   end type material_t
+
+   !> One law of a list of different ones.
+   type :: material_slot_t
+      character(64) :: name = ''
+      class(material_t), allocatable :: law
+   end type material_slot_t
+
+   abstract interface
+      !> State of a point at rest. The stress may be lifted to what the law can carry; a void ratio of 0 means that of
+      !> the law. `text` says why not, and is blank on success.
+      subroutine initial_state_i(self, stress, suction, void_ratio, state, text)
+         import :: material_t, wp
+         class(material_t), intent(in) :: self
+         real(wp), intent(inout) :: stress(6)
+         real(wp), intent(in) :: suction, void_ratio
+         real(wp), intent(inout) :: state(:)   !< n_state
+         character(*), intent(out) :: text
+      end subroutine initial_state_i
+
+      !> One increment at n points, from (stress, state, suction); thread safe, allocates nothing. Ends at the first
+      !> point that fails, whose new state and answers are of no use.
+      subroutine update_i(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state)
+         import :: material_t, response_t, wp
+         class(material_t), intent(in) :: self
+         integer, intent(in) :: n                                !< 1 .. MOST_POINTS
+         real(wp), intent(in), contiguous :: stress(:, :)        !< (6, n) [kPa]
+         real(wp), intent(in), contiguous :: state(:, :)         !< (n_state or more, n)
+         real(wp), intent(in), contiguous :: strain(:, :)        !< (6, n) increments [-]
+         real(wp), intent(in), contiguous :: suction(:)          !< (n) before the increment [kPa]
+         real(wp), intent(in), contiguous :: d_suction(:)        !< (n) increments [kPa]
+         logical, intent(in) :: with_tangent
+         type(response_t), intent(inout) :: response
+         real(wp), intent(inout), contiguous :: new_state(:, :)  !< As state.
+      end subroutine update_i
+
+      !> A sentence about a failed batch.
+      subroutine message_i(self, report, text)
+         import :: material_t, report_t
+         class(material_t), intent(in) :: self
+         type(report_t), intent(in) :: report
+         character(*), intent(out) :: text
+      end subroutine message_i
+
+      !> Void ratio that the law starts with where none is given, 0 if it has none [-].
+      pure real(wp) function value_i(self)
+         import :: material_t, wp
+         class(material_t), intent(in) :: self
+      end function value_i
+
+      !> A quantity that the state holds.
+      pure real(wp) function of_state_i(self, state)
+         import :: material_t, wp
+         class(material_t), intent(in) :: self
+         real(wp), intent(in) :: state(:)   !< n_state or more
+      end function of_state_i
+   end interface
+contains
+   !> Degree of saturation, and its slopes, at a suction [kPa] and a void ratio [-]; a law with a retention of its own
+   !> overrides it.
+   function retention_by_curve(self, p_c, e) result(sat)
+      class(material_t), intent(in) :: self
+      real(wp), intent(in) :: p_c, e
+      type(saturation_t) :: sat
+
+      sat = saturation_t()
+      if (allocated(self%curve)) sat = self%curve%at(p_c, e)
+   end function retention_by_curve
+
+   !> Writes an update to a new file that can be run alone; `text` says why not. Laws that can override it.
+   subroutine cannot_save(self, path, origin, stress, state, strain, suction, d_suction, text)
+      class(material_t), intent(in) :: self
+      character(*), intent(in) :: path, origin   !< Name of the file, and a remark for its reader.
+      real(wp), intent(in) :: stress(6), state(:), strain(6), suction, d_suction   !< As update has them.
+      character(*), intent(out) :: text
+
+      associate (u1 => self, u2 => path, u3 => origin, u4 => state, u5 => stress, u6 => strain, u7 => suction, u8 => d_suction)
+      end associate
+      text = 'this law cannot write its updates to a file; only those of MUD can be run alone'
+   end subroutine cannot_save
+
+   !> Place of a state variable, from 1; 0 if the law has none of that name.
+   pure integer function state_index(law, name) result(place)
+      class(material_t), intent(in) :: law
+      character(*), intent(in) :: name
+
+      do place = 1, size(law%state_names)
+         if (law%state_names(place) == name) return
+      end do
+      place = 0
+   end function state_index
+
+   !> Void ratio after a volumetric strain, expansion positive: grains keep their volume, strain is natural.
+   pure real(wp) function swollen(e, volumetric_strain)
+      real(wp), intent(in) :: e, volumetric_strain
+
+      swollen = (1.0_wp + e)*exp(volumetric_strain) - 1.0_wp
+   end function swollen
+end module material_point

@@ -1,0 +1,196 @@
+!> Parameters of MUD by name: a group, checked against the library's registry, fills PROPS.
+module parameter_groups
+   use, intrinsic :: iso_c_binding, only: c_null_char
+   use kinds, only: wp
+   use mud_interface, only: mud_default_props, mud_validate_props
+   use faults, only: fault_t, raise, at_line, EXIT_INPUT
+   use texts, only: lower_case, short, whole, read_number, word_place, from_c
+   use namelists, only: group_t, entry_t, read_groups, find_entry, LENGTH
+   use spelling, only: nearest_name
+   use library_tables, only: property_count, property_index, property_name, property_unit, property_meaning, &
+                             property_range
+   implicit none (type, external)
+   private
+   public :: read_parameters
+
+   integer, parameter :: BUFFER = 600
+   !> Keys that are not parameters.
+   character(9), parameter :: TEXT_KEYS(3) = [character(9) :: 'file', 'name', 'reference']
+
+contains
+   !> Fills PROPS from a group. Its `file`, if any, is read first; the group's own values replace those.
+   subroutine read_parameters(group, props, title, fault)
+      type(group_t), intent(in) :: group
+      real(wp), allocatable, intent(out) :: props(:)
+      character(*), intent(out) :: title   !< Name of the material.
+      type(fault_t), intent(inout) :: fault
+      type(group_t), allocatable :: groups(:)
+      character(:), allocatable :: path
+      integer :: place
+
+      title = 'defaults of the library'
+      allocate (props(property_count()))
+      if (mud_default_props(props, size(props)) /= 0) then
+         call raise(fault, EXIT_INPUT, 'The library refuses to fill its own defaults; program and library do not match.')
+         return
+      end if
+      place = find_entry(group, 'file')
+      if (place > 0) then
+         path = trim(group%entries(place)%values(1))
+         if (path(1:1) /= '/') path = folder_of(group%file)//path
+         call read_groups(path, groups, fault)
+         if (fault%code /= 0) then
+            if (size(groups) == 0) fault%text = at_line(group%file, group%entries(place)%line)//fault%text
+            return
+         end if
+         if (size(groups) /= 1) then
+            call raise(fault, EXIT_INPUT, path//': has '//whole(size(groups))// &
+                       ' groups; a material file holds exactly one, &material.')
+         else if (groups(1)%name /= 'material') then
+            call raise(fault, EXIT_INPUT, at_line(path, groups(1)%line)//'the group is &'//trim(groups(1)%name)// &
+                       '; a material file holds exactly one, &material.')
+         else if (find_entry(groups(1), 'file') > 0) then
+            call raise(fault, EXIT_INPUT, at_line(path, groups(1)%entries(find_entry(groups(1), 'file'))%line)// &
+                       'a material file cannot name another file; copy the values instead.')
+         else
+            call apply_group(groups(1), props, title, fault)
+         end if
+         if (fault%code /= 0) return
+      end if
+      call apply_group(group, props, title, fault)
+   end subroutine read_parameters
+
+   !> Folder of a file, with its closing slash; empty if the file is in the present one.
+   pure function folder_of(file) result(folder)
+      character(*), intent(in) :: file
+      character(:), allocatable :: folder
+
+      folder = file(:index(file, '/', back=.true.))
+   end function folder_of
+
+   subroutine apply_group(group, props, title, fault)
+      type(group_t), intent(in) :: group
+      real(wp), intent(inout) :: props(:)
+      character(*), intent(inout) :: title
+      type(fault_t), intent(inout) :: fault
+      character(:), allocatable :: sentence
+      character(BUFFER) :: text
+      integer :: i, line, first, at
+
+      do i = 1, group%count
+         associate (item => group%entries(i))
+            if (any(TEXT_KEYS == lower_case(item%key))) then
+               if (item%count /= 1) then
+                  call raise(fault, EXIT_INPUT, at_line(group%file, item%line)//trim(item%key)// &
+                             ' is one text; put it in quotes.')
+               else if (lower_case(item%key) == 'name') then
+                  title = item%values(1)
+               end if
+            else
+               call set_property(group%file, item, props, fault)
+            end if
+         end associate
+         if (fault%code /= 0) return
+      end do
+
+      text = c_null_char
+      if (mud_validate_props(props, size(props), text, BUFFER) == 0) text = c_null_char
+      sentence = from_c(text)
+      if (len(sentence) == 0) return
+      line = group%line
+      first = len(sentence) + 1
+      do i = 1, group%count
+         at = word_place(sentence, group%entries(i)%key)
+         if (at == 0 .or. at > first) cycle
+         first = at
+         line = group%entries(i)%line
+      end do
+      call raise(fault, EXIT_INPUT, at_line(group%file, line)//sentence)
+   end subroutine apply_group
+
+   subroutine set_property(file, item, props, fault)
+      character(*), intent(in) :: file
+      type(entry_t), intent(in) :: item
+      real(wp), intent(inout) :: props(:)
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: lower, upper, preset, value
+      integer :: place, near
+      logical :: good
+
+      place = property_index(item%key)
+      if (place < 1) then
+         near = nearest_property(item%key)
+         call raise(fault, EXIT_INPUT, at_line(file, item%line)//'there is no parameter '//trim(item%key)// &
+                    '; the nearest is '// &
+                    property_name(near)//' ('//described_range(near)//').')
+         return
+      end if
+      if (item%count /= 1) then
+         call raise(fault, EXIT_INPUT, at_line(file, item%line)//property_name(place)//' takes one value, '// &
+                    whole(item%count)//' are given ('//described_range(place)//').')
+         return
+      end if
+      call read_number(item%values(1), value, good)
+      if (.not. good) call read_option(property_meaning(place), item%values(1), value, good)
+      if (.not. good) then
+         call raise(fault, EXIT_INPUT, at_line(file, item%line)//property_name(place)//' = '//trim(item%values(1))// &
+                    ' is no number and no word it knows ('//described_range(place)//').')
+         return
+      end if
+      call property_range(place, lower, upper, preset)
+      if (value < lower .or. value > upper) then
+         call raise(fault, EXIT_INPUT, at_line(file, item%line)//property_name(place)//' = '//trim(item%values(1))// &
+                    ' is outside its range ('//described_range(place)//').')
+         return
+      end if
+      props(place) = value
+   end subroutine set_property
+
+   !> An option by its word: the meaning of such a parameter lists '0 classic, 1 threshold, ...'.
+   subroutine read_option(meaning, word, value, good)
+      character(*), intent(in) :: meaning, word
+      real(wp), intent(out) :: value
+      logical, intent(out) :: good
+      character(:), allocatable :: item
+      integer :: at, comma, blank
+
+      value = 0.0_wp
+      good = .false.
+      at = 1
+      do while (at <= len(meaning))
+         comma = index(meaning(at:)//',', ',')
+         item = trim(adjustl(meaning(at:min(at + comma - 2, len(meaning)))))
+         blank = index(item, ' ')
+         if (blank > 1) then
+            if (lower_case(item(blank + 1:)) == lower_case(trim(word))) call read_number(item(:blank - 1), value, good)
+            if (good) return
+         end if
+         at = at + comma
+      end do
+   end subroutine read_option
+
+   !> "from 0.001 to 10000, default 12: kinematic hardening constant, eq. (13)"
+   function described_range(place) result(text)
+      integer, intent(in) :: place
+      character(:), allocatable :: text
+      real(wp) :: lower, upper, preset
+
+      call property_range(place, lower, upper, preset)
+      text = 'from '//short(lower)//' to '//short(upper)
+      if (property_unit(place) /= '1') text = text//' '//property_unit(place)
+      text = text//', default '//short(preset)//': '//property_meaning(place)
+   end function described_range
+
+   !> Place of the parameter whose name looks most like a word.
+   integer function nearest_property(word) result(best)
+      character(*), intent(in) :: word
+      character(LENGTH), allocatable :: names(:)
+      integer :: i
+
+      allocate (names(property_count()))
+      do i = 1, size(names)
+         names(i) = property_name(i)
+      end do
+      best = nearest_name(word, names)
+   end function nearest_property
+end module parameter_groups
