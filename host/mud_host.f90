@@ -1,16 +1,22 @@
 !> mud_host SCENE.nml: coupled finite elements of unsaturated soil.
 program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit, int64
-   use checkpoints, only: read_checkpoint
    use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
+   use checkpoints, only: read_checkpoint
    use wall_clock, only: clock
    use effects_table, only: print_effects
-   use scene_keys, only: print_template
-   use output_tables, only: output_t, check_output
-   use process_settings, only: settle_process
-   use host_read, only: read_scene
-   use time_stepping, only: run_t, prepare_run, run_scene
+   use model_builder, only: build_model
    use model_types, only: model_t
+   use newton_step, only: T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST
+   use output_tables, only: check_tables
+   use process_settings, only: settle_process
+   use run_output, only: run_output_t
+   use run_setup, only: prepare_run
+   use run_state, only: run_t
+   use scene_keys, only: print_template
+   use scene_reader, only: read_scene
+   use scene_types, only: scene_t
+   use time_stepping, only: run_stages
    use files, only: limits_are_errors, folder_of
    use faults, only: fault_t
    use texts, only: short, whole
@@ -26,9 +32,10 @@ program mud_host
       option_t('--restart', 'a checkpoint')]
    character(WORD_LENGTH) :: file
    character(:), allocatable :: folder, restart
+   type(scene_t) :: scene
    type(model_t) :: model
    type(run_t) :: run
-   type(output_t) :: output
+   type(run_output_t) :: output
    type(fault_t) :: fault
    logical :: quiet, only_check
    double precision :: t0
@@ -52,17 +59,18 @@ program mud_host
       if (restart /= '') folder = folder_of(restart)
    end if
    t0 = clock()
-   if (fault%code == 0) call read_scene(trim(file), model, fault)
+   if (fault%code == 0) call read_scene(trim(file), scene, fault)
+   if (fault%code == 0) call build_model(scene, model, fault)
    if (fault%code == 0) call prepare_run(model, run, fault)
    if (fault%code == 0 .and. .not. quiet) call announce()
    if (fault%code == 0 .and. only_check .and. restart /= '') then
       call check_restart()
    else if (fault%code == 0 .and. .not. only_check) then
-      if (restart == '') then
-         call run_scene(model, folder, quiet, run, fault)
-      else
-         call run_scene(model, folder, quiet, run, fault, restart)
-      end if
+      output%folder = folder
+      output%quiet = quiet
+      output%resume = restart /= ''
+      if (output%resume) call read_checkpoint(restart, model, run, output%tables, fault)
+      if (fault%code == 0) call run_stages(model, run, fault, output)
    end if
    if (.not. (quiet .or. only_check) .and. run%steps > 0) call account()
    if (fault%code /= 0) then
@@ -86,19 +94,19 @@ contains
 
    !> Whether the run could go on from the checkpoint, in its folder.
    subroutine check_restart()
-      call read_checkpoint(restart, model, run, output, fault)
-      if (fault%code == 0) call check_output(folder, model, output, fault)
+      call read_checkpoint(restart, model, run, output%tables, fault)
+      if (fault%code == 0) call check_tables(folder, model, output%tables, fault)
       if (fault%code /= 0 .or. quiet) return
-      write (output_unit, '(a)') restart//' fits: stage '//trim(model%stages(run%course%stage)%name)// &
-         ', step '//whole(run%course%step)//', time '//short(run%state%time)// &
+      write (output_unit, '(a)') restart//' fits: stage '//trim(model%stages(run%at%stage)%name)// &
+         ', step '//whole(run%at%step)//', time '//short(run%state%time)// &
          ' s; the run would go on in '//folder//'.'
    end subroutine check_restart
 
    subroutine announce()
       write (output_unit, '(a)') trim(model%name)//': '//whole(size(model%domain%mesh%t6, 2))//' elements, '// &
-         whole(size(model%domain%mesh%x, 2))//' nodes, '//whole(run%dofs%n)//' unknowns, '// &
+         whole(size(model%domain%mesh%x, 2))//' nodes, '//whole(model%dofs%n)//' unknowns, '// &
          whole(size(run%pattern%col))//' entries, '//whole(model%domain%threads)//' threads.'
-      if (model%effects%auto) call print_effects(output_unit, run%watch%table)
+      if (model%effect_options%auto) call print_effects(output_unit, run%monitor%table)
    end subroutine announce
 
    !> Where the time went.
@@ -109,10 +117,11 @@ contains
       integer :: k
 
       total = clock() - t0
-      seconds(:7) = [run%system%seconds([5, 1, 6, 2, 3, 4]), run%seconds_output]
+      seconds(:7) = [run%system%seconds([T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST]), &
+                     run%seconds_output]
       seconds(8) = total - sum(seconds(:7))
       write (output_unit, '(a)') whole(run%steps)//' steps, '//whole(run%iterations)//' iterations, '// &
-         whole(run%cuts)//' cuts, '//whole(run%effort)//' rate evaluations of the material; in this run '// &
+         whole(run%cuts)//' cuts, '//whole(run%rate_evaluations)//' rate evaluations of the material; in this run '// &
          whole(run%system%n_pass)//' passes over the elements, '//whole(run%system%sparse%n_numeric)// &
          ' factorisations ('//whole(nint(run%system%sparse%entries, int64))//' entries), '// &
          whole(run%system%sparse%n_solve)//' solutions by factors.'

@@ -21,11 +21,20 @@ import numpy as np
 
 root = pathlib.Path(__file__).resolve().parents[1]
 build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
-INDENTATION, CONTACT = "verification/host_indentation/indent_s030.nml", "verification/host_contact/"
+
+
+def page(name):
+    """Folder of a page of the verification."""
+    places = [f"verification/{place}{name}/" for place in ("host/", "studies/", "host_")]
+    return next(place for place in places if (root / place).exists())
+
+
+INDENTATION, CONTACT = page("indentation") + "indent_s030.nml", page("contact")
 SHORT = ("duration = 0.03999", "duration = 0.0012\n   fields = 20")
 IMPACT = ("times = 2, 2.014, 2.028", "times = 2, 2.0004, 2.0008")   # so that contact is lost within the short run
 RULE = ("toyoura.nml'", "toyoura.nml'\n   memory_rule = 1")
-SATURATED = [("= 'u-p_w-p_c'", "= 'u-p_w'"), ("p_w = -30\n   p_c = 30", "p_w = 0\n   p_w_slope = -9.78057\n   surcharge = 0.5"),
+SATURATED = [("= 'u-p_w-p_c'", "= 'u-p_w'"),
+             ("p_w = -30\n   p_c = 30", "p_w = 0\n   p_w_slope = -9.78057\n   surcharge = 0.5"),
              ("   field = 'p_w'\n   value = -30", "   field = 'p_w'"),
              ("&fix\n   group = 'top_2'\n   field = 'p_c'\n   value = 30\n/\n",
               "&load\n   group = 'top'\n   kind = 'pressure'\n   value = 0.5\n/\n")]
@@ -48,23 +57,26 @@ COLUMN = """&scene name = 'column' geometry = 'plane_strain' effects = 'auto' gr
 # Name: scene and pieces of its text that are replaced.
 CASES = {
     "indentation_s0030": (INDENTATION, [SHORT, IMPACT]),
-    "indentation_s0200": (INDENTATION, [SHORT, IMPACT, ("-30\n   p_c = 30", "-200\n   p_c = 200"), ("value = -30", "value = -200"),
+    "indentation_s0200": (INDENTATION, [SHORT, IMPACT, ("-30\n   p_c = 30", "-200\n   p_c = 200"),
+                                        ("value = -30", "value = -200"),
                                         ("value = 30", "value = 200"), ("memory_rule = 1", "memory_rule = 0")]),
     "indentation_saturated": (INDENTATION, [SHORT, IMPACT, *SATURATED]),
-    "indentation_tangent": (INDENTATION, [("duration = 0.03999", "duration = 0.0003"), ("memory_rule = 1", "memory_rule = 1\n   tangent = 3"),
+    "indentation_tangent": (INDENTATION, [("duration = 0.03999", "duration = 0.0003"),
+                                          ("memory_rule = 1", "memory_rule = 1\n   tangent = 3"),
                                           ("gravity = 9.81", "gravity = 9.81\n   factors = 'fresh'"),
-                                          ("slave = 'top'", "slave = 'top'\n   drainage = 'state'\n   gap = 'pointwise'")]),
-    "terzaghi": ("verification/host_terzaghi/scene.nml", []),
-    "liakopoulos": ("verification/host_liakopoulos/scene.nml", []),
-    "cylinder": ("verification/host_cylinder/scene.nml", []),
-    "vibration": ("verification/host_vibration/scene.nml", []),
-    "seepage_inertia": ("verification/host_seepage_inertia/scene.nml", [("duration = 0.004", "duration = 0.0008")]),
-    "dynamic_consolidation": ("verification/host_dynamic_consolidation/scene.nml", []),
-    "patch_stress": ("verification/host_patch/stress.nml", []),
-    "patch_flow": ("verification/host_patch/flow.nml", []),
-    "geostatic": ("verification/host_patch/geostatic.nml", []),
-    "element_suction": ("verification/host_element/suction.nml", [RULE, ("duration = 1.0e7", "duration = 1.0e6")]),
-    "element_umat": ("verification/host_element/suction.nml", [RULE, ("duration = 1.0e7", "duration = 1.0e6"),
+                                          ("slave = 'top'",
+                                           "slave = 'top'\n   drainage = 'state'\n   gap = 'pointwise'")]),
+    "terzaghi": (page("terzaghi") + "scene.nml", []),
+    "liakopoulos": (page("liakopoulos") + "scene.nml", []),
+    "cylinder": (page("cylinder") + "scene.nml", []),
+    "vibration": (page("vibration") + "scene.nml", []),
+    "seepage_inertia": (page("seepage_inertia") + "scene.nml", [("duration = 0.004", "duration = 0.0008")]),
+    "dynamic_consolidation": (page("dynamic_consolidation") + "scene.nml", []),
+    "patch_stress": (page("patch") + "stress.nml", []),
+    "patch_flow": (page("patch") + "flow.nml", []),
+    "geostatic": (page("patch") + "geostatic.nml", []),
+    "element_suction": (page("element") + "suction.nml", [RULE, ("duration = 1.0e7", "duration = 1.0e6")]),
+    "element_umat": (page("element") + "suction.nml", [RULE, ("duration = 1.0e7", "duration = 1.0e6"),
                                                                ("= 'mud_update'", "= 'umat'")]),
     "contact_fall": (CONTACT + "fall.nml", []),
     "contact_patch": (CONTACT + "patch.nml", []),

@@ -9,7 +9,7 @@ module contact_interfaces
    use sparsity_pattern, only: pattern_t, make_pattern, place_of
    implicit none (type, external)
    private
-   public :: contacts_t, touch_t, surface_t, surface_of, new_touch, plate_surface
+   public :: contacts_t, contact_interface_t, surface_t, surface_of, new_interface, plate_surface
    public :: evaluate_contacts, fit_pattern, add_contacts, work_of_contacts
 
    !> A boundary with numbers of its own.
@@ -19,8 +19,8 @@ module contact_interfaces
       real(wp), allocatable :: x0(:, :)     !< (2, nodes) at the start [m]
    end type surface_t
 
-   !> Two surfaces that may touch.
-   type :: touch_t
+   !> The interface of two surfaces that may touch.
+   type :: contact_interface_t
       type(contact_t) :: kernel
       type(rigid_t) :: body                 !< Where the master is a plate,
       integer :: plate = 0                  !< whose node this is.
@@ -33,10 +33,10 @@ module contact_interfaces
       real(wp) :: area = 0.0_wp             !< Of the active nodes [m2].
       integer :: active = 0
       integer :: sealed = 0                 !< Slave nodes that are impervious in the step under way.
-   end type touch_t
+   end type contact_interface_t
 
    type :: contacts_t
-      type(touch_t), allocatable :: touch(:)
+      type(contact_interface_t), allocatable :: interfaces(:)
       integer, allocatable :: extra(:, :)   !< (2, pairs) unknowns that contacts have brought together so far.
       type(contact_status_t) :: status      !< Of the first that failed.
    end type contacts_t
@@ -71,27 +71,27 @@ contains
       if (up) surface%x0 = surface%x0(:, [2, 1, 3])
    end function plate_surface
 
-   subroutine new_touch(dofs, slave, master, plate, options, touch, status)
+   subroutine new_interface(dofs, slave, master, plate, options, interface_, status)
       type(dofs_t), intent(in) :: dofs
       type(surface_t), intent(in) :: slave, master
       integer, intent(in) :: plate   !< Node of the plate that the master is the face of, or 0.
       type(contact_options_t), intent(in) :: options
-      type(touch_t), intent(out) :: touch
+      type(contact_interface_t), intent(out) :: interface_
       type(contact_status_t), intent(out) :: status
       integer, allocatable :: nodes(:)
 
-      touch%slave = slave
-      touch%master = master
-      touch%plate = plate
-      call contact_prepare(touch%kernel, size(slave%x0, 2), slave%edges, size(master%x0, 2), master%edges, options, &
-                           status)
+      interface_%slave = slave
+      interface_%master = master
+      interface_%plate = plate
+      call contact_prepare(interface_%kernel, size(slave%x0, 2), slave%edges, size(master%x0, 2), master%edges, &
+                           options, status)
       if (status%code /= CONTACT_OK) return
       nodes = [slave%node, master%node]
-      touch%unknown = reshape(dofs%of(1:2, nodes), [2*size(nodes)])
+      interface_%unknown = reshape(dofs%of(1:2, nodes), [2*size(nodes)])
       if (plate == 0) return
-      call rigid_prepare(touch%body, size(slave%node), master%x0, [0.0_wp, 0.0_wp], 1)
-      touch%unknown = [touch%unknown, dofs%of(2, plate)]
-   end subroutine new_touch
+      call rigid_prepare(interface_%body, size(slave%node), master%x0, [0.0_wp, 0.0_wp], 1)
+      interface_%unknown = [interface_%unknown, dofs%of(2, plate)]
+   end subroutine new_interface
 
    !> Everything at given displacements; false if a kernel refuses them.
    logical function evaluate_contacts(contacts, x, with_slope) result(good)
@@ -102,8 +102,8 @@ contains
       integer :: i
 
       good = .true.
-      do i = 1, size(contacts%touch)
-         associate (t => contacts%touch(i))
+      do i = 1, size(contacts%interfaces)
+         associate (t => contacts%interfaces(i))
             t%active = 0
             t%thrust = 0.0_wp
             t%energy = 0.0_wp
@@ -137,10 +137,10 @@ contains
       integer, allocatable :: missing(:, :)
       integer :: n, i
 
-      allocate (missing(2, sum([(room(contacts%touch(i)), i=1, size(contacts%touch))])))
+      allocate (missing(2, sum([(room(contacts%interfaces(i)), i=1, size(contacts%interfaces))])))
       n = 0
-      do i = 1, size(contacts%touch)
-         associate (t => contacts%touch(i))
+      do i = 1, size(contacts%interfaces)
+         associate (t => contacts%interfaces(i))
             if (.not. t%acts) cycle
             if (t%plate > 0) then
                call list(t%body%row(:t%body%triplets), t%body%column(:t%body%triplets))
@@ -157,7 +157,7 @@ contains
       call make_pattern(dofs%n, dofs%element, contacts%extra, pattern)
    contains
       pure integer function room(t)
-         type(touch_t), intent(in) :: t
+         type(contact_interface_t), intent(in) :: t
 
          room = t%kernel%triplets + t%body%triplets
       end function room
@@ -166,7 +166,7 @@ contains
          integer, intent(in) :: row(:), column(:)
          integer :: k
 
-         associate (u => contacts%touch(i)%unknown)
+         associate (u => contacts%interfaces(i)%unknown)
             do k = 1, size(row)
                if (u(row(k)) == 0 .or. u(column(k)) == 0) cycle
                if (place_of(pattern, u(row(k)), u(column(k))) > 0) cycle
@@ -186,8 +186,8 @@ contains
       real(wp), intent(inout) :: residual(:), scale(:), values(:)
       integer :: i
 
-      do i = 1, size(contacts%touch)
-         associate (t => contacts%touch(i))
+      do i = 1, size(contacts%interfaces)
+         associate (t => contacts%interfaces(i))
             if (.not. t%acts) cycle
             if (t%plate > 0) then
                call add(t%unknown, t%body%force, t%body%row(:t%body%triplets), t%body%column, t%body%value)
@@ -235,12 +235,12 @@ contains
          else
             if (.not. evaluate_contacts(probe, x1, .false.)) return
          end if
-         do i = 1, size(probe%touch)
-            if (.not. probe%touch(i)%acts) cycle
-            if (probe%touch(i)%plate > 0) then
-               call gather(probe%touch(i)%unknown, probe%touch(i)%body%force)
+         do i = 1, size(probe%interfaces)
+            if (.not. probe%interfaces(i)%acts) cycle
+            if (probe%interfaces(i)%plate > 0) then
+               call gather(probe%interfaces(i)%unknown, probe%interfaces(i)%body%force)
             else
-               call gather(probe%touch(i)%unknown, probe%touch(i)%kernel%force)
+               call gather(probe%interfaces(i)%unknown, probe%interfaces(i)%kernel%force)
             end if
          end do
       end do

@@ -91,13 +91,13 @@ contains
       type(contact_options_t), intent(in) :: options
       type(contact_status_t), intent(out) :: status
 
-      if (.not. all(is_finite([options%penalty, options%reach]))) then
+      if (.not. all(is_finite([options%penalty, options%search_radius]))) then
          status = contact_fail(CONTACT_BAD_OPTION, &
-                               value=merge(options%reach, options%penalty, is_finite(options%penalty)))
+                               value=merge(options%search_radius, options%penalty, is_finite(options%penalty)))
       else if (options%penalty <= 0.0_wp) then
          status = contact_fail(CONTACT_BAD_OPTION, value=options%penalty)
-      else if (options%reach < 0.0_wp) then
-         status = contact_fail(CONTACT_BAD_OPTION, value=options%reach)
+      else if (options%search_radius < 0.0_wp) then
+         status = contact_fail(CONTACT_BAD_OPTION, value=options%search_radius)
       else if (all(options%gap /= [NODAL_GAP, POINTWISE_GAP])) then
          status = contact_fail(CONTACT_BAD_OPTION, value=real(options%gap, wp))
       else if (all(options%variation /= [PRESSURE_WORK, ENERGY_SLOPE])) then
@@ -156,7 +156,7 @@ contains
       if (size(contact%slave_edges) == 0 .or. size(contact%master_edges) == 0) return
 
       call find_candidates(contact%search, slave_x, contact%slave_edges, master_x, contact%master_edges, &
-                           contact%options%reach)
+                           contact%options%search_radius)
       contact%checks = contact%search%checks
       call find_whole(contact, slave_x)
       call find_gaps(contact, slave_x, master_x, status)

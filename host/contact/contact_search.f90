@@ -40,21 +40,21 @@ contains
       allocate (search%slave_box(4, slaves), search%master_box(4, masters))
    end subroutine prepare_search
 
-   !> Candidates of every slave edge: the master edges whose boxes come within `reach` of its own; with 0, within its
-   !> own length, so that a long edge elsewhere makes nothing of the others' neighbourhood.
-   pure subroutine find_candidates(search, slave_x, slave_edges, master_x, master_edges, reach)
+   !> Candidates of every slave edge: the master edges whose boxes come within `search_radius` of its own; with 0,
+   !> within its own length, so that a long edge elsewhere makes nothing of the others' neighbourhood.
+   pure subroutine find_candidates(search, slave_x, slave_edges, master_x, master_edges, search_radius)
       type(search_t), intent(inout) :: search
       real(wp), intent(in) :: slave_x(:, :), master_x(:, :)           !< (2, nodes) [m]
       integer, intent(in) :: slave_edges(:, :), master_edges(:, :)    !< (3, edges)
-      real(wp), intent(in) :: reach                                   !< [m], >= 0
+      real(wp), intent(in) :: search_radius                                   !< [m], >= 0
       type(grid_t) :: grid
       real(wp) :: near
       integer :: i, j, k, e, place, cells(4), found
 
       call edge_boxes(slave_x, slave_edges, search%slave_box)
-      near = reach
+      near = search_radius
       do e = 1, size(slave_edges, 2)
-         if (.not. reach > 0.0_wp) near = norm2(slave_x(:, slave_edges(2, e)) - slave_x(:, slave_edges(1, e)))
+         if (.not. search_radius > 0.0_wp) near = norm2(slave_x(:, slave_edges(2, e)) - slave_x(:, slave_edges(1, e)))
          search%slave_box(1:2, e) = search%slave_box(1:2, e) - near
          search%slave_box(3:4, e) = search%slave_box(3:4, e) + near
       end do

@@ -20,7 +20,7 @@ module contact_types
 
    integer, parameter :: CONTACT_OK = 0
    ! Negative: the caller's mistake.
-   integer, parameter :: CONTACT_BAD_OPTION = -1      !< Penalty, reach or a kind is out of its range.
+   integer, parameter :: CONTACT_BAD_OPTION = -1      !< Penalty, search radius or a kind is out of its range.
    integer, parameter :: CONTACT_BAD_EDGE = -2        !< An edge names a node that is not there or is used too often.
    integer, parameter :: CONTACT_BAD_SIZE = -3        !< Coordinates of another number of nodes than prepared.
    ! Positive: a configuration that a smaller step may avoid.
@@ -31,7 +31,7 @@ module contact_types
 
    type :: contact_options_t
       real(wp) :: penalty = 1.0e8_wp          !< eps [kN/m3], > 0
-      real(wp) :: reach = 0.0_wp              !< Edges farther apart do not meet [m]; 0: the length of each slave edge
+      real(wp) :: search_radius = 0.0_wp      !< Edges farther apart do not meet [m]; 0: length of each slave edge
       logical :: axisymmetric = .true.        !< 2 pi r, otherwise plane strain of unit thickness
       integer :: gap = NODAL_GAP              !< NODAL_GAP or POINTWISE_GAP
       integer :: variation = PRESSURE_WORK    !< PRESSURE_WORK or ENERGY_SLOPE
@@ -79,7 +79,7 @@ contains
          text = 'contact: no fault'
       case (CONTACT_BAD_OPTION)
          text = 'contact: an option has the value '//trim(adjustl(value))//': the penalty must be finite and > 0, '// &
-                'the reach finite and >= 0, gap and variation one of the named kinds'
+                'the search radius finite and >= 0, gap and variation one of the named kinds'
       case (CONTACT_BAD_EDGE)
          text = 'contact: edge '//trim(number)//' of the '//trim(side)//' surface names node '//trim(adjustl(value))// &
                 ': it must be one of the surface, in at most two edges, and a middle node in one'
@@ -99,7 +99,7 @@ contains
       case (CONTACT_NO_PROJECTION)
          text = 'contact: a normal of slave edge '//trim(number)//' misses the master edge opposite by '// &
                 trim(adjustl(value))//' of its length: the surfaces are too strongly curved for their distance; '// &
-                'refine the edges, lower the reach or cut the step'
+                'refine the edges, lower the search radius or cut the step'
       case default
          text = 'contact: unknown status'
       end select

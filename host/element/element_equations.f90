@@ -20,7 +20,7 @@ module element_equations
       real(wp) :: stretch(MAX_DOF) = 0.0_wp      !< Volume balances: strain rates and fluxes, added up by magnitude.
       type(answer_t) :: bad                      !< Answer of the first point that failed.
       integer :: bad_point = 0                   !< Its number, 0: none.
-      integer :: effort = 0
+      integer :: rate_evaluations = 0
       real(wp) :: seconds = 0.0_wp               !< In the material.
    end type element_t
 contains
@@ -58,7 +58,7 @@ contains
       out%stretch = 0.0_wp
       out%k = 0.0_wp
       out%bad_point = 0
-      out%effort = 0
+      out%rate_evaluations = 0
       out%seconds = 0.0_wp
       strain = 0.0_wp
       do g = 1, domain%rule
@@ -83,7 +83,7 @@ contains
                                answer, new%state(:law%n_state, p))
                call lap(out%seconds, t0)
             end associate
-            out%effort = out%effort + answer%effort
+            out%rate_evaluations = out%rate_evaluations + answer%rate_evaluations
             if (answer%code /= 0) then
                out%bad = answer
                out%bad_point = g

@@ -25,7 +25,7 @@ module equation_assembly
       ! Outcome.
       integer :: bad_element = 0, bad_point = 0
       type(answer_t) :: bad
-      integer :: effort = 0
+      integer :: rate_evaluations = 0
       real(wp) :: material = 0.0_wp                  !< Share of the material in the time of the last pass.
    end type assembly_t
 contains
@@ -54,14 +54,14 @@ contains
       type(state_t), intent(inout) :: new
       logical, intent(in) :: with_slope
       type(assembly_t), intent(inout) :: assembly
-      integer, allocatable :: bad_point(:), effort(:)
+      integer, allocatable :: bad_point(:), rate_evaluations(:)
       real(wp) :: seconds, t0
       type(element_t) :: out
       integer :: e, m, ne, threads
 
       m = size(dofs%element, 1)
       ne = size(dofs%element, 2)
-      allocate (bad_point(ne), effort(ne), source=0)
+      allocate (bad_point(ne), rate_evaluations(ne), source=0)
       seconds = 0.0_wp
       t0 = clock()
       threads = merge(domain%threads, 1, ne >= WORTH_THREADS)
@@ -70,7 +70,7 @@ contains
       do e = 1, ne
          call compute_element(domain, e, scheme, old, new, with_slope, out)
          bad_point(e) = out%bad_point
-         effort(e) = out%effort
+         rate_evaluations(e) = out%rate_evaluations
          seconds = seconds + out%seconds
          if (domain%with_c) call balance_of_water(domain, assembly%air, e, m, with_slope, out)
          assembly%r(:, e) = out%r(:m)
@@ -78,7 +78,7 @@ contains
          if (with_slope) assembly%k(:, :, e) = out%k(:m, :m)
       end do
       !$omp end parallel do
-      assembly%effort = sum(effort)
+      assembly%rate_evaluations = sum(rate_evaluations)
       assembly%bad_element = findloc(bad_point > 0, .true., dim=1)
       if (assembly%bad_element > 0) then
          ! Once more, for the answer of the first that failed: which is first does not depend on the threads.

@@ -16,7 +16,7 @@ module fe_material
       real(wp) :: slope_suction(4) = 0.0_wp   !< d stress/d suction [-].
       integer :: code = 0
       real(wp) :: factor = 0.5_wp             !< Suggested factor on the time step after a failure.
-      integer :: effort = 0                   !< Rate evaluations.
+      integer :: rate_evaluations = 0                   !< Rate evaluations.
    end type answer_t
 
    type, abstract :: material_t

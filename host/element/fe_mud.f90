@@ -94,7 +94,7 @@ contains
                                   d_suction, MUD_TANGENT_NONE, answer%stress, new_state, report=report)
       end if
       answer%factor = report%pnewdt
-      answer%effort = report%n_rate
+      answer%rate_evaluations = report%n_rate
    end subroutine update
 
    !> NTENS 4, as an axisymmetric element of a foreign code has it; the slope against suction comes in STATEV.
@@ -108,7 +108,7 @@ contains
                                 unit(3, 3), sse, spd, scd, rpl, ddsddt(4), drplde(4), drpldt, temp, dtemp
       integer(c_int), target :: ndi, nshr, ntens, nstatv, nprops, noel, npt, layer, kspt, kstep(4), kinc
       character(kind=c_char, len=80), target :: name
-      real(wp) :: effort
+      real(wp) :: rate_evaluations
 
       stress4 = stress(PLANE)
       statev = state
@@ -161,8 +161,8 @@ contains
       answer%stress(PLANE) = stress4
       answer%slope = ddsdde
       answer%slope_suction = statev(self%i_dsigma:self%i_dsigma + 3)
-      effort = statev(self%i_n_rate) - state(self%i_n_rate)
-      answer%effort = nint(effort)
+      rate_evaluations = statev(self%i_n_rate) - state(self%i_n_rate)
+      answer%rate_evaluations = nint(rate_evaluations)
       new_state = statev
    end subroutine update_by_umat
 

@@ -12,7 +12,8 @@ module porous_domain
    use texts, only: short, whole
    implicit none (type, external)
    private
-   public :: domain_t, region_t, fluids_t, gauss_t, state_t, source_i, prepare_domain, new_state_of, copy_state
+   public :: domain_t, region_t, fluids_t, gauss_t, state_t, source_i, prepare_domain, new_state_of, copy_state, &
+             mixture_density
 
    !> Pore fluids.
    type :: fluids_t
@@ -159,6 +160,16 @@ contains
          state%e((e - 1)*domain%rule + 1:e*domain%rule) = domain%regions(domain%region_of(e))%void_ratio
       end do
    end function new_state_of
+
+   !> Density of soil with its fluids at a porosity and a degree of saturation [Mg/m3].
+   pure real(wp) function mixture_density(domain, rho_s, n, s)
+      type(domain_t), intent(in) :: domain
+      real(wp), intent(in) :: rho_s, n, s
+
+      mixture_density = (1 - n)*rho_s
+      if (domain%with_w) mixture_density = mixture_density + n*s*domain%fluids%rho_w
+      if (domain%with_c) mixture_density = mixture_density + n*(1 - s)*domain%fluids%rho_a
+   end function mixture_density
 
    !> Copies without allocating anew.
    subroutine copy_state(from, to)

@@ -1,13 +1,13 @@
-!> The unknown fields and their places in arrays over the nodes.
+!> The unknown fields and their places in arrays over the nodes, as in x(AT_P_W, node).
 module unknown_fields
    implicit none (type, external)
    private
-   public :: FIELDS, FIELD_NAMES, U_R, U_Z, P_W, P_C, DISPLACEMENTS
+   public :: FIELDS, FIELD_NAMES, AT_U_R, AT_U_Z, AT_P_W, AT_P_C, DISPLACEMENTS
 
    integer, parameter :: FIELDS = 4
    character(3), parameter :: FIELD_NAMES(FIELDS) = ['u_r', 'u_z', 'p_w', 'p_c']
-   integer, parameter :: U_R = 1, U_Z = 2   !< Displacements [m]
-   integer, parameter :: P_W = 3            !< Pore water pressure [kPa]
-   integer, parameter :: P_C = 4            !< Suction [kPa]
+   integer, parameter :: AT_U_R = 1, AT_U_Z = 2   !< Displacements [m]
+   integer, parameter :: AT_P_W = 3            !< Pore water pressure [kPa]
+   integer, parameter :: AT_P_C = 4            !< Suction [kPa]
    integer, parameter :: DISPLACEMENTS = 2  !< How many of the fields are displacements; they come first.
 end module unknown_fields

@@ -8,6 +8,7 @@ module contact_drainage
    use contact_types, only: contact_message
    use contact_interfaces, only: contacts_t, evaluate_contacts
    use faults, only: fault_t, raise, EXIT_INPUT
+   use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
    public :: drainage_t, prepare_drainage, freeze_drainage, is_released
@@ -33,7 +34,7 @@ contains
       do c = 1, size(model%contacts)
          if (.not. model%contacts(c)%drains_by_state) cycle
          do f = 1, size(model%fixes)
-            if (model%fixes(f)%field < 3) cycle
+            if (model%fixes(f)%field <= DISPLACEMENTS) cycle
             drainage%gives_way(f, c) = share_an_edge(model, model%contacts(c)%slave, model%fixes(f)%group)
          end do
          if (.not. any(drainage%gives_way(:, c))) call raise(fault, EXIT_INPUT, 'Contact '// &
@@ -80,11 +81,11 @@ contains
       end if
       drainage%released = .false.
       do c = 1, size(model%contacts)
-         contacts%touch(c)%sealed = 0
-         if (.not. model%contacts(c)%drains_by_state .or. .not. contacts%touch(c)%acts) cycle
-         associate (kernel => probe%touch(c)%kernel, nodes => contacts%touch(c)%slave%node)
+         contacts%interfaces(c)%sealed = 0
+         if (.not. model%contacts(c)%drains_by_state .or. .not. contacts%interfaces(c)%acts) cycle
+         associate (kernel => probe%interfaces(c)%kernel, nodes => contacts%interfaces(c)%slave%node)
             sealed = kernel%pressure > 0.0_wp .and. kernel%weight >= HALF*kernel%whole
-            contacts%touch(c)%sealed = count(sealed)
+            contacts%interfaces(c)%sealed = count(sealed)
             do f = 1, size(model%fixes)
                if (.not. drainage%gives_way(f, c)) cycle
                drainage%released(f, nodes) = drainage%released(f, nodes) .or. sealed

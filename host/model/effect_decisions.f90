@@ -5,78 +5,83 @@ module effect_decisions
    use kinds, only: wp, PI
    use load_histories, only: pace_t, pace_of
    use effect_facts, only: facts_t, gather, judge, PLASTIC, ROUNDING
-   use linearised_body, only: trial_t, prepare_trial, support, response_of, imbalance_of, mass_of_nodes, end_trial
+   use linearised_body, only: linearised_body_t, prepare_body, support, response_of, imbalance_of, mass_of_nodes, &
+                              release_body
    use pore_effects, only: judge_suction, judge_water
-   use model_types, only: model_t, effect_t, acts_in, OF_P_W, OF_P_C, OF_INERTIA, OF_SEEPAGE, OF_GRAVITY, UNBOUNDED, &
+   use effect_types, only: effect_t, OF_P_W, OF_P_C, OF_INERTIA, OF_SEEPAGE, OF_GRAVITY, UNBOUNDED, &
                          UNKNOWN
    use permeability_laws, only: relative_permeability, relative_t
    use generalised_alpha, only: STATIC, QUASI_STATIC, DYNAMIC
    use faults, only: fault_t
+   use model_types, only: model_t
+   use scene_types, only: acts_in
+   use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
    use texts, only: short
    implicit none (type, external)
    private
    public :: derive_effects
 
 contains
-   !> Decides, and makes the scene what was decided.
-   subroutine derive_effects(model, table, fault)
+   !> Decides, makes the model what was decided, and keeps the table in it.
+   subroutine derive_effects(model, fault)
       type(model_t), intent(inout) :: model
-      type(effect_t), allocatable, intent(out) :: table(:)
       type(fault_t), intent(inout) :: fault
-      type(trial_t) :: trial
+      type(linearised_body_t) :: body
       type(facts_t) :: facts
-      type(effect_t) :: p_w, p_c, seepage, gravity
+      type(effect_t) :: water, suction, seepage, gravity
       type(effect_t), allocatable :: inertia(:)
       integer :: i
 
       allocate (inertia(size(model%stages)))
-      call prepare_trial(model, trial, fault)
+      call prepare_body(model, body, fault)
       if (fault%code == 0) then
-         call gather(model, trial, facts)
-         gravity = effect_t(OF_GRAVITY, name='gravity', by_hand=model%effects%gravity_by_hand, unit='kPa')
-         call judge_gravity(model, trial, facts, gravity)
+         call gather(model, body, facts)
+         gravity = effect_t(OF_GRAVITY, name='gravity', by_hand=model%effect_options%gravity_by_hand, unit='kPa')
+         call judge_gravity(model, body, facts, gravity)
          if (.not. gravity%on .and. model%domain%gravity > 0.0_wp) then
             model%domain%gravity = 0.0_wp
-            call end_trial(model, trial)
-            call prepare_trial(model, trial, fault)
+            call release_body(model, body)
+            call prepare_body(model, body, fault)
          end if
       end if
       if (fault%code /= 0) then
-         call end_trial(model, trial)
+         call release_body(model, body)
          return
       end if
       do i = 1, size(model%stages)
          inertia(i) = effect_t(OF_INERTIA, i, 'inertia in '//model%stages(i)%name, &
                                by_hand=.not. model%stages(i)%derived, threshold=facts%tolerance)
-         call judge_inertia(model, i, trial, facts, inertia(i))
+         call judge_inertia(model, i, body, facts, inertia(i))
          if (model%stages(i)%derived) model%stages(i)%kind = merge(DYNAMIC, QUASI_STATIC, inertia(i)%on)
       end do
-      p_c = effect_t(OF_P_C, name='field p_c', by_hand=model%effects%fields_by_hand, unit='kPa')
-      call cost_of(trial, 4, p_c)
-      call judge_suction(model, trial, facts, p_c)
-      p_w = effect_t(OF_P_W, name='field p_w', by_hand=model%effects%fields_by_hand, threshold=facts%tolerance)
-      call cost_of(trial, 3, p_w)
-      call judge_water(model, trial, facts, p_c%on, p_w)
-      call end_trial(model, trial)
-      call keep_fields(p_w%on, p_c%on, model)
-      seepage = effect_t(OF_SEEPAGE, name='relative acceleration', by_hand=model%effects%seepage_by_hand, unit='rad/s')
+      suction = effect_t(OF_P_C, name='field p_c', by_hand=model%effect_options%fields_by_hand, unit='kPa')
+      call cost_of(body, AT_P_C, suction)
+      call judge_suction(model, body, facts, suction)
+      water = effect_t(OF_P_W, name='field p_w', by_hand=model%effect_options%fields_by_hand, threshold=facts%tolerance)
+      call cost_of(body, AT_P_W, water)
+      call judge_water(model, body, facts, suction%on, water)
+      call release_body(model, body)
+      call keep_fields(water%on, suction%on, model)
+      seepage = effect_t(OF_SEEPAGE, name='relative acceleration', unit='rad/s', &
+                         by_hand=model%effect_options%seepage_by_hand)
       call judge_seepage(model, facts, seepage)
       model%domain%seepage_inertia = seepage%on
-      table = [p_w, p_c, inertia, seepage, gravity]
+      model%effects = [water, suction, inertia, seepage, gravity]
    end subroutine derive_effects
 
    !> Weight against the smallest stress that matters: that of the loads, the mean stress a plastic material begins
    !> with, the suction.
-   subroutine judge_gravity(model, trial, facts, effect)
+   subroutine judge_gravity(model, body, facts, effect)
       type(model_t), intent(in) :: model
-      type(trial_t), intent(in) :: trial
+      type(linearised_body_t), intent(in) :: body
       type(facts_t), intent(in) :: facts
       type(effect_t), intent(inout) :: effect
       real(wp) :: least
 
       least = facts%acting
       if (facts%plastic) least = merge(min(least, facts%p_min), facts%p_min, least > 0.0_wp)
-      if (model%domain%with_c) least = min(least, minval(abs(trial%state%x(4, :)), mask=trial%dofs%of(4, :) > 0))
+      if (model%domain%with_c) least = min(least, minval(abs(body%state%x(AT_P_C, :)), mask=body%dofs%of(AT_P_C, &
+         :) > 0))
       effect%threshold = facts%tolerance*least
       effect%scale = facts%weight
       call judge(effect, facts%weight, 'height rho g against '//short(least)//' kPa that act', &
@@ -93,10 +98,10 @@ contains
 
    !> The vibration that quasi-static steps leave out, as a share of the response: a jump leaves all of it, a bend of a
    !> load by ds leaves ds/omega of it, whatever comes after; omega is the slowest free vibration.
-   subroutine judge_inertia(model, stage, trial, facts, effect)
+   subroutine judge_inertia(model, stage, body, facts, effect)
       type(model_t), intent(in) :: model
       integer, intent(in) :: stage
-      type(trial_t), intent(inout) :: trial
+      type(linearised_body_t), intent(inout) :: body
       type(facts_t), intent(inout) :: facts
       type(effect_t), intent(inout) :: effect
       type(pace_t) :: pace
@@ -105,23 +110,23 @@ contains
       integer :: i
 
       seepage = 0.0_wp
-      if (all(model%stages(:stage - 1)%kind == STATIC)) seepage = seepage_at_start(model, trial)
+      if (all(model%stages(:stage - 1)%kind == STATIC)) seepage = seepage_at_start(model, body)
       associate (now => model%stages(stage))
          if (.not. now%derived .and. now%kind == STATIC) then
             effect%why = 'static: a way to equilibrium, given by hand'
             return
          end if
-         call support(model, stage, trial)
-         facts%held = facts%held .and. trial%omega > 0.0_wp
-         omega = trial%omega/merge(sqrt(PLASTIC), 1.0_wp, facts%plastic)
-         why = 'free vibrations from '//short(trial%omega)//' rad/s'
+         call support(model, stage, body)
+         facts%held = facts%held .and. body%omega > 0.0_wp
+         omega = body%omega/merge(sqrt(PLASTIC), 1.0_wp, facts%plastic)
+         why = 'free vibrations from '//short(body%omega)//' rad/s'
          if (facts%plastic) why = why//', bound with '//short(omega)
          squares = 0.0_wp
          share = 0.0_wp
-         do i = 1, size(facts%actions)
-            associate (a => facts%actions(i))
+         do i = 1, size(facts%histories)
+            associate (a => facts%histories(i))
                pace = pace_of(model, a, stage)
-               call response_of(model, a, trial, energy, carried)
+               call response_of(model, a, body, energy, carried)
                squares = squares + energy**2
                if (pace%jump >= UNBOUNDED) then
                   facts%jump(stage) = UNBOUNDED
@@ -135,7 +140,7 @@ contains
             end associate
          end do
          if (stage == 1) then
-            loose = imbalance_of(model, stage, trial)
+            loose = imbalance_of(model, stage, body)
             squares = squares + loose**2
             if (loose > 0.0_wp) facts%loose = loose/sqrt(squares)
             if (facts%loose > facts%tolerance) why = why//'; forces without balance'
@@ -145,7 +150,7 @@ contains
          share = max(share, facts%jump(stage))
          effect%scale = sqrt(squares)
          if (seepage > 0.0_wp) then
-            bend = 2*seepage*sqrt(sum(mass_of_nodes(model, trial%state)))
+            bend = 2*seepage*sqrt(sum(mass_of_nodes(model, body%state)))
             if (bend > facts%tolerance*effect%scale) why = why//'; fluids begin to flow'
             share = min(UNBOUNDED, share + min(UNBOUNDED, bend/max(effect%scale, bend/UNBOUNDED)))
          end if
@@ -159,7 +164,7 @@ contains
          else if (.not. omega > 0.0_wp) then
             why = 'not bounded: nothing holds the body, or it has no stiffness'
             share = UNBOUNDED
-         else if (stage == 1 .and. any(abs(trial%state%v(1:2, :)) > 0.0_wp)) then
+         else if (stage == 1 .and. any(abs(body%state%v(:DISPLACEMENTS, :)) > 0.0_wp)) then
             why = 'not bounded: it moves at the start'
             share = UNBOUNDED
          else if (stage > 1) then
@@ -175,30 +180,30 @@ contains
          if (facts%jump(stage) > facts%tolerance .or. (stage == 1 .and. facts%loose > facts%tolerance) &
              .or. share >= UNBOUNDED) facts%omega(stage) = PI/now%dt
          facts%bends(stage) = max(facts%bends(stage), facts%omega(stage))
-         if (omega > 0.0_wp) facts%slow(stage) = effect%scale/trial%omega
+         if (omega > 0.0_wp) facts%slow(stage) = effect%scale/body%omega
       end associate
    end subroutine judge_inertia
 
    !> How fast the pore fluids begin to flow by themselves [m/s]. The skeleton follows them no faster.
-   real(wp) function seepage_at_start(model, trial) result(fastest)
+   real(wp) function seepage_at_start(model, body) result(fastest)
       type(model_t), intent(in) :: model
-      type(trial_t), intent(in) :: trial
+      type(linearised_body_t), intent(in) :: body
       type(relative_t) :: rel
       real(wp) :: drive(2), weight(2), k
       integer :: e, g
 
       fastest = 0.0_wp
       if (.not. model%domain%with_w .or. model%subtract_flow) return
-      associate (m => model%domain, x => trial%state%x)
+      associate (m => model%domain, x => body%state%x)
          do e = 1, size(m%mesh%t6, 2)
             associate (law => m%permeabilities(m%regions(m%region_of(e))%permeability), node => m%mesh%t6(:m%n_p, e))
                do g = 1, m%rule
-                  rel = relative_permeability(law, trial%state%s((e - 1)*m%rule + g))
-                  drive = matmul(m%gauss(g, e)%dm(:, :m%n_p), x(3, node))
+                  rel = relative_permeability(law, body%state%s((e - 1)*m%rule + g))
+                  drive = matmul(m%gauss(g, e)%dm(:, :m%n_p), x(AT_P_W, node))
                   weight = [0.0_wp, m%fluids%rho_w*m%gravity]
                   k = beyond_rounding(drive, weight)*rel%w/m%fluids%eta_w
                   if (m%with_c) then
-                     drive = drive + matmul(m%gauss(g, e)%dm(:, :m%n_p), x(4, node))
+                     drive = drive + matmul(m%gauss(g, e)%dm(:, :m%n_p), x(AT_P_C, node))
                      weight = [0.0_wp, m%fluids%rho_a*m%gravity]
                      k = k + beyond_rounding(drive, weight)*rel%a/m%fluids%eta_a
                   end if
@@ -261,17 +266,17 @@ contains
    end subroutine judge_seepage
 
    !> Unknowns of a field, and entries of the matrix in their rows and columns.
-   pure subroutine cost_of(trial, field, effect)
-      type(trial_t), intent(in) :: trial
+   pure subroutine cost_of(body, field, effect)
+      type(linearised_body_t), intent(in) :: body
       integer, intent(in) :: field
       type(effect_t), intent(inout) :: effect
       integer :: i
 
-      effect%unknowns = count(trial%dofs%field == field)
-      do i = 1, trial%dofs%n
-         associate (columns => trial%pattern%col(trial%pattern%row(i):trial%pattern%row(i + 1) - 1))
-            effect%entries = effect%entries + merge(size(columns), count(trial%dofs%field(columns) == field), &
-                                                    trial%dofs%field(i) == field)
+      effect%unknowns = count(body%dofs%field == field)
+      do i = 1, body%dofs%n
+         associate (columns => body%pattern%col(body%pattern%row(i):body%pattern%row(i + 1) - 1))
+            effect%entries = effect%entries + merge(size(columns), count(body%dofs%field(columns) == field), &
+                                                    body%dofs%field(i) == field)
          end associate
       end do
    end subroutine cost_of
@@ -284,7 +289,8 @@ contains
 
       model%domain%with_w = water
       model%domain%with_c = suction
-      model%fixes = pack(model%fixes, model%fixes%field <= 2 .or. (model%fixes%field == 3 .and. water) .or. suction)
+      model%fixes = pack(model%fixes, &
+         model%fixes%field <= DISPLACEMENTS .or. (model%fixes%field == AT_P_W .and. water) .or. suction)
       if (.not. water) then
          where (model%stages%derived .and. model%stages%kind == QUASI_STATIC) model%stages%kind = STATIC
       end if

@@ -1,9 +1,11 @@
 !> What the decisions about the effects of a scene share: stiffness, extent, weight, what acts, and how fast.
 module effect_facts
    use kinds, only: wp
-   use load_histories, only: action_t, actions_of, FORCE, MOTION
-   use linearised_body, only: trial_t
-   use model_types, only: model_t, effect_t, UNBOUNDED
+   use load_histories, only: load_history_t, load_histories_of, FORCE, MOTION
+   use linearised_body, only: linearised_body_t
+   use effect_types, only: effect_t, UNBOUNDED
+   use model_types, only: model_t
+   use unknown_fields, only: AT_P_C
    use fe_material, only: answer_t
    implicit none (type, external)
    private
@@ -15,7 +17,7 @@ module effect_facts
 
    !> What the decisions share.
    type :: facts_t
-      type(action_t), allocatable :: actions(:)
+      type(load_history_t), allocatable :: histories(:)
       real(wp) :: tolerance = 0.01_wp
       logical :: plastic = .false.
       real(wp) :: m_min = 0.0_wp, m_max = 0.0_wp   !< Constrained modulus at the start [kPa]
@@ -32,19 +34,19 @@ module effect_facts
    end type facts_t
 contains
    !> Stiffness, extent, weight, stresses.
-   subroutine gather(model, trial, facts)
+   subroutine gather(model, body, facts)
       type(model_t), intent(in) :: model
-      type(trial_t), intent(in) :: trial
+      type(linearised_body_t), intent(in) :: body
       type(facts_t), intent(inout) :: facts
       type(answer_t) :: answer
       real(wp) :: n, p_c, still(6), new(model%domain%n_state)
       integer :: e, g, i, p
 
-      facts%tolerance = model%effects%tolerance
+      facts%tolerance = model%effect_options%tolerance
       facts%m_min = huge(1.0_wp)
       facts%p_min = huge(1.0_wp)
       still = 0.0_wp
-      associate (m => model%domain, s => trial%state)
+      associate (m => model%domain, s => body%state)
          facts%low = [(minval(m%mesh%x(i, reshape(m%mesh%t6, [size(m%mesh%t6)]))), i=1, 2)]
          facts%high = [(maxval(m%mesh%x(i, reshape(m%mesh%t6, [size(m%mesh%t6)]))), i=1, 2)]
          do e = 1, size(m%mesh%t6, 2)
@@ -53,7 +55,7 @@ contains
                   p = (e - 1)*m%rule + g
                   n = s%e(p)/(1 + s%e(p))
                   facts%rho = max(facts%rho, (1 - n)*region%rho_s + merge(n*m%fluids%rho_w, 0.0_wp, m%with_w))
-                  p_c = dot_product(m%gauss(g, e)%m(:m%n_p), s%x(4, m%mesh%t6(:m%n_p, e)))
+                  p_c = dot_product(m%gauss(g, e)%m(:m%n_p), s%x(AT_P_C, m%mesh%t6(:m%n_p, e)))
                   call law%update(s%stress(:, p), s%state(:law%n_state, p), still, p_c, 0.0_wp, .true., answer, &
                                   new(:law%n_state))
                   if (answer%code /= 0) answer%slope = 0.0_wp
@@ -69,16 +71,17 @@ contains
          if (facts%plastic) facts%m_min = facts%m_min/PLASTIC
          facts%weight = facts%rho*merge(m%gravity, EARTH, m%gravity > 0.0_wp)*(facts%high(2) - facts%low(2))
       end associate
-      facts%actions = actions_of(model, trial%state)
-      do i = 1, size(facts%actions)
-         associate (a => facts%actions(i))
+      facts%histories = load_histories_of(model, body%state)
+      do i = 1, size(facts%histories)
+         associate (a => facts%histories(i))
             ! A motion strains the body by no less on the average.
             if (a%kind == MOTION) a%stress = facts%m_min/maxval(facts%high - facts%low)
             facts%acting = max(facts%acting, a%stress*a%change)
          end associate
       end do
-      if (.not. facts%acting > 0.0_wp) facts%acting = maxval([0.0_wp, facts%actions%stress*abs(facts%actions%start)], &
-                                                             mask=[.true., facts%actions%kind == FORCE])
+      if (.not. facts%acting > 0.0_wp) &
+         facts%acting = maxval([0.0_wp, facts%histories%stress*abs(facts%histories%start)], &
+                                                             mask=[.true., facts%histories%kind == FORCE])
       i = size(model%stages)
       allocate (facts%jump(i), facts%pace(i), facts%bends(i), facts%omega(i), facts%slow(i), source=0.0_wp)
    end subroutine gather

@@ -7,6 +7,7 @@ module initial_conditions
    use retention_curves, only: saturation_t
    use faults, only: fault_t, raise
    use texts, only: short, whole
+   use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private
    public :: initial_state
@@ -28,12 +29,13 @@ contains
       do i = 1, size(model%initials)
          associate (one => model%initials(i), group => model%domain%mesh%groups(model%initials(i)%group))
             do n = 1, size(group%nodes)
-               state%v(2, group%nodes(n)) = one%v_z + one%wave*sin(one%wave_number &
+               state%v(AT_U_Z, group%nodes(n)) = one%v_z + one%wave*sin(one%wave_number &
                                                *(model%domain%mesh%x(2, group%nodes(n)) - one%datum))
                if (any(model%domain%bodies == group%nodes(n))) cycle
-               if (model%domain%with_w) state%x(3, group%nodes(n)) = water(one, model%domain%mesh%x(2, group%nodes(n)))
+               if (model%domain%with_w) state%x(AT_P_W, group%nodes(n)) = water(one, model%domain%mesh%x(2, &
+                  group%nodes(n)))
                if (model%domain%with_c) &
-                  state%x(4, group%nodes(n)) = suction(one, model%domain%mesh%x(2, group%nodes(n)))
+                  state%x(AT_P_C, group%nodes(n)) = suction(one, model%domain%mesh%x(2, group%nodes(n)))
             end do
             do n = 1, size(group%elements)
                of_point((group%elements(n) - 1)*model%domain%rule + 1:group%elements(n)*model%domain%rule) = one
@@ -43,7 +45,7 @@ contains
       ! Pressures live on the vertices alone where they are linear.
       if (model%domain%n_p == 3) then
          do e = 1, size(model%domain%mesh%t6, 2)
-            state%x(3:4, model%domain%mesh%t6(4:6, e)) = 0.0_wp
+            state%x(AT_P_W:AT_P_C, model%domain%mesh%t6(4:6, e)) = 0.0_wp
          end do
       end if
       do e = 1, size(model%domain%mesh%t6, 2)
@@ -51,7 +53,7 @@ contains
             do g = 1, model%domain%rule
                p = (e - 1)*model%domain%rule + g
                associate (gp => model%domain%gauss(g, e), n_p => model%domain%n_p)
-                  p_c = dot_product(gp%m(:n_p), state%x(4, model%domain%mesh%t6(:n_p, e)))
+                  p_c = dot_product(gp%m(:n_p), state%x(AT_P_C, model%domain%mesh%t6(:n_p, e)))
                   if (model%domain%with_c) then
                      sat = model%domain%retentions(region%retention)%law%at(p_c, state%e(p))
                      state%s(p) = sat%s

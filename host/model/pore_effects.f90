@@ -3,8 +3,11 @@ module pore_effects
    use kinds, only: wp, PI
    use load_histories, only: FORCE, MOTION, PRESSURE, FLOW
    use effect_facts, only: facts_t, judge, ROUNDING
-   use linearised_body, only: trial_t
-   use model_types, only: model_t, effect_t, acts_in, P_A, UNBOUNDED, UNKNOWN
+   use linearised_body, only: linearised_body_t
+   use effect_types, only: effect_t, UNBOUNDED, UNKNOWN
+   use model_types, only: model_t, PRESCRIBED_P_A
+   use scene_types, only: acts_in, LOAD_WATER, LOAD_AIR
+   use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
    use permeability_laws, only: relative_permeability, relative_t
    use retention_curves, only: saturated_t, saturation_t
    use generalised_alpha, only: DYNAMIC
@@ -17,9 +20,9 @@ module pore_effects
 contains
    !> The largest suction that may arise against that at which the air in the pores begins to count: where it adds
    !> a share `tolerance` to the compressibility of soil and water.
-   subroutine judge_suction(model, trial, facts, effect)
+   subroutine judge_suction(model, body, facts, effect)
       type(model_t), intent(in) :: model
-      type(trial_t), intent(in) :: trial
+      type(linearised_body_t), intent(in) :: body
       type(facts_t), intent(in) :: facts
       type(effect_t), intent(inout) :: effect
       character(64) :: why
@@ -36,7 +39,7 @@ contains
       end if
       effect%threshold = harmless_suction(model, facts)
       ! What would be lost with p_c even in saturated soil: air that flows in, and p_w as a difference of two others.
-      full = .not. (facts%plastic .or. any(model%loads%kind == 5) .or. prescribe_water())
+      full = .not. (facts%plastic .or. any(model%loads%kind == LOAD_AIR) .or. prescribe_water())
       do i = 1, size(model%domain%regions)
          select type (law => model%domain%retentions(model%domain%regions(i)%retention)%law)
          type is (saturated_t)
@@ -52,13 +55,13 @@ contains
       if (why /= '') then
          call judge(effect, UNBOUNDED, 'not bounded: '//why, .true.)
       else
-         suction = largest_suction(model, trial, facts)
+         suction = largest_suction(model, body, facts)
          call judge(effect, max(suction, 0.0_wp), 'largest suction from pressures, weight and loads', .true.)
       end if
       effect%watched = .not. effect%on
    contains
       pure logical function prescribe_water()
-         prescribe_water = any(facts%actions%field == 4) .and. any(facts%actions%field == P_A)
+         prescribe_water = any(facts%histories%field == AT_P_C) .and. any(facts%histories%field == PRESCRIBED_P_A)
       end function prescribe_water
 
       !> Why nothing says how far the water pressure may fall; empty if something does.
@@ -66,16 +69,16 @@ contains
          integer :: k
 
          why = ''
-         associate (a => facts%actions)
+         associate (a => facts%histories)
             if (any(a%kind == FORCE .and. a%change > 0.0_wp .and. .not. a%stress > 0.0_wp)) why = 'forces on nodes'
             if (any(a%kind == MOTION .and. (a%change > 0.0_wp .or. .not. a%lasting))) why = 'boundaries that move'
-            if (any(abs(trial%state%v(1:2, :)) > 0.0_wp)) why = 'it moves at the start'
+            if (any(abs(body%state%v(:DISPLACEMENTS, :)) > 0.0_wp)) why = 'it moves at the start'
             if (prescribe_water()) why = 'p_c and p_a prescribe p_w'
             do k = 1, size(model%loads)
-               if (model%loads(k)%kind == 5) why = 'inflow of air'
-               if (model%loads(k)%kind == 4 .and. model%loads(k)%value < 0.0_wp) why = 'outflow of water'
-               if (model%loads(k)%kind /= 4 .or. model%loads(k)%history == 0) cycle
-               if (any(model%histories(model%loads(k)%history)%values < 0.0_wp)) why = 'outflow of water'
+               if (model%loads(k)%kind == LOAD_AIR) why = 'inflow of air'
+               if (model%loads(k)%kind == LOAD_WATER .and. model%loads(k)%value < 0.0_wp) why = 'outflow of water'
+               if (model%loads(k)%kind /= LOAD_WATER .or. model%loads(k)%amplitude == 0) cycle
+               if (any(model%amplitudes(model%loads(k)%amplitude)%values < 0.0_wp)) why = 'outflow of water'
             end do
             if (facts%loose > facts%tolerance) why = 'forces without balance'
             if (.not. facts%held) why = 'nothing holds the body, or it has no stiffness'
@@ -87,33 +90,33 @@ contains
 
    !> p_a at its highest less p_w at its lowest. Flow alone leaves the potential of the water within its initial and
    !> prescribed values; loads may lower p_w by OVERSHOOT times their changes.
-   real(wp) function largest_suction(model, trial, facts) result(suction)
+   real(wp) function largest_suction(model, body, facts) result(suction)
       type(model_t), intent(in) :: model
-      type(trial_t), intent(in) :: trial
+      type(linearised_body_t), intent(in) :: body
       type(facts_t), intent(in) :: facts
       real(wp) :: lowest, air, fall, unit_weight
       integer :: i
       logical :: told
 
-      associate (m => model%domain, x => trial%state%x, has => trial%dofs%of(3, :) > 0)
+      associate (m => model%domain, x => body%state%x, has => body%dofs%of(AT_P_W, :) > 0)
          unit_weight = m%fluids%rho_w*m%gravity
-         lowest = minval(x(3, :) + unit_weight*m%mesh%x(2, :), mask=has)
-         suction = maxval(x(4, :), mask=has)
+         lowest = minval(x(AT_P_W, :) + unit_weight*m%mesh%x(2, :), mask=has)
+         suction = maxval(x(AT_P_C, :), mask=has)
          ! A scene that says nothing of suction has its air at the atmosphere.
          told = any(abs(model%initials%p_c) > 0.0_wp .or. abs(model%initials%p_c_slope) > 0.0_wp) .or. &
-                any(facts%actions%kind == PRESSURE .and. facts%actions%field >= 4)
+                any(facts%histories%kind == PRESSURE .and. facts%histories%field >= AT_P_C)
          air = 0.0_wp
-         if (told) air = maxval(x(3, :) + x(4, :), mask=has)
+         if (told) air = maxval(x(AT_P_W, :) + x(AT_P_C, :), mask=has)
          fall = 0.0_wp
-         do i = 1, size(facts%actions)
-            associate (a => facts%actions(i))
+         do i = 1, size(facts%histories)
+            associate (a => facts%histories(i))
                if (a%kind == FORCE) then
                   fall = fall + a%stress*a%change
                else if (a%kind == PRESSURE .and. .not. a%held) then
-                  if (a%field == 3) lowest = min(lowest, a%start - a%change + unit_weight* &
+                  if (a%field == AT_P_W) lowest = min(lowest, a%start - a%change + unit_weight* &
                                                  minval(m%mesh%x(2, m%mesh%groups(a%group)%nodes)))
-                  if (a%field == 4) suction = max(suction, a%start + a%change)
-                  if (a%field == P_A) air = max(air, a%start + a%change)
+                  if (a%field == AT_P_C) suction = max(suction, a%start + a%change)
+                  if (a%field == PRESCRIBED_P_A) air = max(air, a%start + a%change)
                end if
             end associate
          end do
@@ -150,9 +153,9 @@ contains
    !> The pore pressure that loads raise before it drains, as a share of them: the jumps, and the fastest slope times
    !> the time of consolidation. Only a rectangle with a whole side at p_w = 0 has a bound on the drainage path; the
    !> water must matter neither by its weight nor by its inertia.
-   subroutine judge_water(model, trial, facts, suction, effect)
+   subroutine judge_water(model, body, facts, suction, effect)
       type(model_t), intent(in) :: model
-      type(trial_t), intent(in) :: trial
+      type(linearised_body_t), intent(in) :: body
       type(facts_t), intent(in) :: facts
       logical, intent(in) :: suction   !< p_c is on.
       type(effect_t), intent(inout) :: effect
@@ -164,20 +167,20 @@ contains
          if (effect%by_hand) effect%why = 'no such field'
          return
       end if
-      path = drainage_path(model, trial, facts)
+      path = drainage_path(model, body, facts)
       conductivity = least_conductivity(model)
       share = UNBOUNDED
       if (suction .and. .not. effect%by_hand) then
          effect%why = 'p_c needs it'
       else if (model%domain%gravity > 0.0_wp .or. any(model%stages%kind == DYNAMIC)) then
          effect%why = 'not bounded: weight or inertia of the water'
-      else if (any(abs(trial%state%x(3, :)) > 0.0_wp) .or. &
-               any(facts%actions%kind == PRESSURE .and. facts%actions%field == 3 .and. &
-                   (facts%actions%change > 0.0_wp .or. abs(facts%actions%start) > 0.0_wp)) .or. &
-               any(facts%actions%kind == FLOW)) then
+      else if (any(abs(body%state%x(AT_P_W, :)) > 0.0_wp) .or. &
+               any(facts%histories%kind == PRESSURE .and. facts%histories%field == AT_P_W .and. &
+                   (facts%histories%change > 0.0_wp .or. abs(facts%histories%start) > 0.0_wp)) .or. &
+               any(facts%histories%kind == FLOW)) then
          effect%why = 'pore pressures or flows are given'
       else if (size(model%contacts) > 0 .or. &
-               any(facts%actions%kind == MOTION .and. facts%actions%change > 0.0_wp)) then
+               any(facts%histories%kind == MOTION .and. facts%histories%change > 0.0_wp)) then
          effect%why = 'not bounded: contact, or boundaries that move'
       else if (path >= UNBOUNDED) then
          effect%why = 'not bounded: no rectangle with a whole side at p_w = 0'
@@ -194,9 +197,9 @@ contains
    end subroutine judge_water
 
    !> Distance from a wholly drained side to the opposite one.
-   real(wp) function drainage_path(model, trial, facts) result(path)
+   real(wp) function drainage_path(model, body, facts) result(path)
       type(model_t), intent(in) :: model
-      type(trial_t), intent(in) :: trial
+      type(linearised_body_t), intent(in) :: body
       type(facts_t), intent(in) :: facts
       logical :: open(size(model%domain%mesh%x, 2))
       real(wp) :: area, wide(2)
@@ -213,19 +216,19 @@ contains
          end do
          if (abs(area - product(wide)) > ROUNDING*area) return
          open = .false.
-         do i = 1, size(facts%actions)
-            associate (a => facts%actions(i))
+         do i = 1, size(facts%histories)
+            associate (a => facts%histories(i))
                if (a%kind /= PRESSURE .or. .not. a%lasting .or. a%held) cycle
-               if (a%field == 3 .and. all([(acts_in(a%stages, model%stages(k)%name), k=1, size(model%stages))])) &
+               if (a%field == AT_P_W .and. all([(acts_in(a%stages, model%stages(k)%name), k=1, size(model%stages))])) &
                   open(m%mesh%groups(a%group)%nodes) = .true.
             end associate
          end do
          do i = 1, 2
-            if (all(open .or. trial%dofs%of(3, :) == 0 .or. m%mesh%x(i, :) < facts%high(i) - ROUNDING*wide(i))) &
+            if (all(open .or. body%dofs%of(AT_P_W, :) == 0 .or. m%mesh%x(i, :) < facts%high(i) - ROUNDING*wide(i))) &
                path = min(path, wide(i))
             ! Towards a hole on the axis the flow converges.
             if (i == 1 .and. m%axisymmetric) cycle
-            if (all(open .or. trial%dofs%of(3, :) == 0 .or. m%mesh%x(i, :) > facts%low(i) + ROUNDING*wide(i))) &
+            if (all(open .or. body%dofs%of(AT_P_W, :) == 0 .or. m%mesh%x(i, :) > facts%low(i) + ROUNDING*wide(i))) &
                path = min(path, wide(i))
          end do
       end associate

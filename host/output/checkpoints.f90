@@ -6,8 +6,9 @@ module checkpoints
    use mud_interface, only: mud_version
    use kinds, only: wp
    use run_state, only: run_t
+   use degrees_of_freedom, only: dofs_t
    use energy_ledger, only: ledger_t
-   use output_tables, only: output_t, settle_output
+   use output_tables, only: tables_t, settle_tables
    use model_types, only: model_t
    use effect_monitor, only: MEMORIES
    use porous_domain, only: copy_state
@@ -27,16 +28,16 @@ module checkpoints
    character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
                                         'contact, seepage, damping [kJ], outflow, outflow_air [m3]'
 contains
-   subroutine write_checkpoint(model, run, output, fault)
+   subroutine write_checkpoint(model, run, tables, fault)
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
-      type(output_t), intent(inout) :: output
+      type(tables_t), intent(inout) :: tables
       type(fault_t), intent(inout) :: fault
       type(h5_t) :: file
       logical :: good
 
       ! What the checkpoint counts on comes first.
-      call settle_output(output, fault)
+      call settle_tables(tables, fault)
       if (fault%code /= 0) return
       call new_file(file)
       call put_text(file, 'kind', KIND_OF_FILE)
@@ -44,15 +45,15 @@ contains
       call put_text(file, 'library', library())
       call put_text(file, 'scene', trim(model%name))
       call put_text(file, 'fingerprint', model%fingerprint)
-      associate (s => run%state, c => run%course)
-         call put(file, 'counters', counters_of(run, output), '-', 'stage, step of it, cuts in force, good steps, '// &
+      associate (s => run%state, c => run%at)
+         call put(file, 'counters', counters_of(run, tables), '-', 'stage, step of it, cuts in force, good steps, '// &
                   'steps, iterations, cuts, rate evaluations, eager, bytes of histories.csv, bytes of ledger.csv, '// &
                   'bytes of contact.csv, pairs of unknowns brought together by contacts')
          call put(file, 'course', [s%time, c%t_start, c%nominal, c%factor], 's', &
                   'time, start of the stage, step without cuts, share of it [-]')
          call put(file, 'ledger', transfer(run%ledger, [0.0_wp]), 'kJ', BALANCE)
          call put(file, 'largest', run%system%largest, 'kN', 'largest scale of every field')
-         call put(file, 'frames', output%frames%times, 's', 'times of the fields written so far')
+         call put(file, 'frames', tables%frames%times, 's', 'times of the fields written so far')
          call put(file, 'x_start', c%x_start, 'm, kPa', 'unknowns at the start of the stage')
          call put(file, 'x', s%x, 'm, kPa', 'unknowns u_r, u_z, p_w, p_c of every node')
          call put(file, 'v', s%v, 'm/s, kPa/s', 'their rates')
@@ -63,21 +64,21 @@ contains
          call put(file, 's', s%s, '-', 'degree of saturation')
          call put(file, 's_rate', s%s_rate, '1/s', 'its rate')
       end associate
-      if (model%effects%auto) call put(file, 'watch', [run%watch%table%largest, run%watch%table%crossed, &
-         run%watch%memory], '-', 'indicators of the effects that are off, when they crossed [s], extremes')
+      if (model%effect_options%auto) call put(file, 'watch', [run%monitor%table%largest, run%monitor%table%crossed, &
+         run%monitor%memory], '-', 'indicators of the effects that are off, when they crossed [s], extremes')
       if (pairs_of(run) > 0) call put(file, 'pairs', reshape(run%system%contacts%extra, [2*pairs_of(run)]), '-', &
                                       'pairs of unknowns that contacts brought into the matrix')
-      call write_file(file, output%folder//'/'//CHECKPOINT, good)
-      if (.not. good) call raise(fault, EXIT_OUTPUT, output%folder//'/'//CHECKPOINT//' cannot be written; is the '// &
+      call write_file(file, tables%folder//'/'//CHECKPOINT, good)
+      if (.not. good) call raise(fault, EXIT_OUTPUT, tables%folder//'/'//CHECKPOINT//' cannot be written; is the '// &
                                  'disk full? The one before is untouched: make room and use --restart.')
    end subroutine write_checkpoint
 
    !> Puts a prepared run where the checkpoint was written.
-   subroutine read_checkpoint(path, model, run, output, fault)
+   subroutine read_checkpoint(path, model, run, tables, fault)
       character(*), intent(in) :: path
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(output_t), intent(inout) :: output
+      type(tables_t), intent(inout) :: tables
       type(fault_t), intent(inout) :: fault
       type(h5_t) :: file
       real(wp) :: counters(N_COUNTERS)
@@ -99,11 +100,11 @@ contains
          call get(file, 'course', course)
          call get(file, 'ledger', ledger)
          call get(file, 'largest', run%system%largest)
-         allocate (run%course%x_start, mold=run%state%x)
-         if (allocated(output%frames%times)) deallocate (output%frames%times)
-         allocate (output%frames%times(extent_of(file, 'frames')))
-         call get(file, 'frames', output%frames%times)
-         call get(file, 'x_start', run%course%x_start)
+         allocate (run%at%x_start, mold=run%state%x)
+         if (allocated(tables%frames%times)) deallocate (tables%frames%times)
+         allocate (tables%frames%times(extent_of(file, 'frames')))
+         call get(file, 'frames', tables%frames%times)
+         call get(file, 'x_start', run%at%x_start)
          call get(file, 'x', run%state%x)
          call get(file, 'v', run%state%v)
          call get(file, 'a', run%state%a)
@@ -112,15 +113,16 @@ contains
          call get(file, 'e', run%state%e)
          call get(file, 's', run%state%s)
          call get(file, 's_rate', run%state%s_rate)
-         if (file%good .and. model%effects%auto) call take_watch(file, run)
-         if (file%good .and. counters(N_COUNTERS) > 0.5_wp) call take_pairs(file, nint(counters(N_COUNTERS)), run)
+         if (file%good .and. model%effect_options%auto) call take_monitor(file, run)
+         if (file%good .and. counters(N_COUNTERS) > 0.5_wp) &
+            call take_pairs(file, nint(counters(N_COUNTERS)), model%dofs, run)
          if (file%good) then
             run%state%time = course(1)
-            run%course%t_start = course(2)
-            run%course%nominal = course(3)
-            run%course%factor = course(4)
+            run%at%t_start = course(2)
+            run%at%nominal = course(3)
+            run%at%factor = course(4)
             run%ledger = transfer(ledger, run%ledger)
-            call take_counters(counters, run, output)
+            call take_counters(counters, run, tables)
             call copy_state(run%state, run%next)
          else
             call raise(fault, EXIT_RESTART, path//' is damaged: an entry is missing, has another extent or a wrong '// &
@@ -131,30 +133,31 @@ contains
    end subroutine read_checkpoint
 
    !> What was seen of the effects that are off.
-   subroutine take_watch(file, run)
+   subroutine take_monitor(file, run)
       type(h5_t), intent(inout) :: file
       type(run_t), intent(inout) :: run
-      real(wp) :: seen(2*size(run%watch%table) + MEMORIES)
+      real(wp) :: seen(2*size(run%monitor%table) + MEMORIES)
       integer :: n
 
-      n = size(run%watch%table)
+      n = size(run%monitor%table)
       call get(file, 'watch', seen)
-      run%watch%table%largest = seen(:n)
-      run%watch%table%crossed = seen(n + 1:2*n)
-      run%watch%memory = seen(2*n + 1:)
-   end subroutine take_watch
+      run%monitor%table%largest = seen(:n)
+      run%monitor%table%crossed = seen(n + 1:2*n)
+      run%monitor%memory = seen(2*n + 1:)
+   end subroutine take_monitor
 
    !> The matrix with all the room that contacts have asked for: its ordering, and so every digit, depends on it.
-   subroutine take_pairs(file, pairs, run)
+   subroutine take_pairs(file, pairs, dofs, run)
       type(h5_t), intent(inout) :: file
       integer, intent(in) :: pairs
+      type(dofs_t), intent(in) :: dofs
       type(run_t), intent(inout) :: run
       integer :: flat(2*pairs)
 
       call get(file, 'pairs', flat)
       if (.not. file%good) return
       run%system%contacts%extra = reshape(flat, [2, pairs])
-      call make_pattern(run%dofs%n, run%dofs%element, run%system%contacts%extra, run%pattern)
+      call make_pattern(dofs%n, dofs%element, run%system%contacts%extra, run%pattern)
       deallocate (run%assembly%values)
       allocate (run%assembly%values(size(run%pattern%col)), source=0.0_wp)
    end subroutine take_pairs
@@ -202,34 +205,35 @@ contains
    end function pairs_of
 
    !> As real numbers, which are exact up to 2**53.
-   pure function counters_of(run, output) result(counters)
+   pure function counters_of(run, tables) result(counters)
       type(run_t), intent(in) :: run
-      type(output_t), intent(in) :: output
+      type(tables_t), intent(in) :: tables
       real(wp) :: counters(N_COUNTERS)
 
-      associate (c => run%course)
+      associate (c => run%at)
          counters = real([integer(int64) :: c%stage, c%step, c%cuts, c%good, run%steps, run%iterations, run%cuts, &
-                          run%effort, merge(1, 0, run%system%eager), output%history%bytes, output%ledger%bytes, &
-                          output%contact%bytes, pairs_of(run)], wp)
+                          run%rate_evaluations, merge(1, 0, run%system%reassemble_tangent), tables%history%bytes, &
+                          tables%ledger%bytes, &
+                          tables%contact%bytes, pairs_of(run)], wp)
       end associate
    end function counters_of
 
-   pure subroutine take_counters(counters, run, output)
+   pure subroutine take_counters(counters, run, tables)
       real(wp), intent(in) :: counters(N_COUNTERS)
       type(run_t), intent(inout) :: run
-      type(output_t), intent(inout) :: output
+      type(tables_t), intent(inout) :: tables
 
-      run%course%stage = nint(counters(1))
-      run%course%step = nint(counters(2))
-      run%course%cuts = nint(counters(3))
-      run%course%good = nint(counters(4))
+      run%at%stage = nint(counters(1))
+      run%at%step = nint(counters(2))
+      run%at%cuts = nint(counters(3))
+      run%at%good = nint(counters(4))
       run%steps = nint(counters(5))
       run%iterations = nint(counters(6))
       run%cuts = nint(counters(7))
-      run%effort = nint(counters(8), int64)
-      run%system%eager = nint(counters(9)) == 1
-      output%history%bytes = nint(counters(10), int64)
-      output%ledger%bytes = nint(counters(11), int64)
-      output%contact%bytes = nint(counters(12), int64)
+      run%rate_evaluations = nint(counters(8), int64)
+      run%system%reassemble_tangent = nint(counters(9)) == 1
+      tables%history%bytes = nint(counters(10), int64)
+      tables%ledger%bytes = nint(counters(11), int64)
+      tables%contact%bytes = nint(counters(12), int64)
    end subroutine take_counters
 end module checkpoints

@@ -1,7 +1,7 @@
 !> The table of effects, printed and as a file.
 module effects_table
    use kinds, only: wp
-   use model_types, only: effect_t, UNBOUNDED, UNKNOWN, NEVER
+   use effect_types, only: effect_t, UNBOUNDED, UNKNOWN, NEVER
    use csv, only: csv_t, new_csv, write_line, close_csv
    use faults, only: fault_t
    use texts, only: short, whole

@@ -1,21 +1,21 @@
 !> Output: histories at points, the ledger, and the fields at the end of every stage and in between.
 module output_tables
    use kinds, only: wp
-   use host_contact, only: contact_columns, contact_row, contact_nodes
+   use contact_rows, only: contact_columns, contact_row, contact_nodes
    use energy_ledger, only: ledger_t, imbalance
-   use field_files, only: frames_t, write_mesh, check_mesh, write_frame, all_pressures
+   use field_files, only: frames_t, write_mesh, check_mesh, all_pressures
    use model_types, only: model_t
    use contact_interfaces, only: contacts_t
    use porous_domain, only: state_t, domain_t
    use files, only: make_folder
    use csv, only: csv_t, new_csv, check_csv, resume_csv, write_row, settle_csv, close_csv, is_open, &
                        NUMBERS
-   use newton_step, only: log_t
+   use run_observer, only: step_report_t
    use faults, only: fault_t
    implicit none (type, external)
    private
-   public :: output_t, open_output, check_output, write_history, write_ledger, write_contacts, write_fields
-   public :: write_touching, close_output, settle_output, write_frame
+   public :: tables_t, open_tables, check_tables, write_history, write_ledger, write_contacts, write_fields
+   public :: write_contact_nodes, close_tables, settle_tables
 
    character(4), parameter :: COLUMNS(13) = [character(4) :: 'u_r', 'u_z', 'p_w', 'p_c', 'v_r', 'v_z', 'a_z', 's_rr', &
       's_zz', 's_tt', 's_rz', 'e', 'S_w']
@@ -23,30 +23,30 @@ module output_tables
       'error_u_r,error_u_z,error_p_w,error_p_c,first_u_r,first_u_z,first_p_w,first_p_c,reduction,correction,'// &
       'rates,kinetic,skeleton,pores,gravity,loads,supports,seepage,damping,imbalance,outflow,outflow_air,step_error'
 
-   type :: output_t
+   type :: tables_t
       character(:), allocatable :: folder
       type(csv_t) :: history, ledger, contact   !< The last is open if the scene has contacts or plates.
       type(frames_t) :: frames
-   end type output_t
+   end type tables_t
 contains
    !> New files; or, after a restart, those of the run as they were at its checkpoint.
-   subroutine open_output(folder, model, resume, output, fault)
+   subroutine open_tables(folder, model, resume, tables, fault)
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model
       logical, intent(in) :: resume
-      type(output_t), intent(inout) :: output
+      type(tables_t), intent(inout) :: tables
       type(fault_t), intent(inout) :: fault
 
-      output%folder = folder
+      tables%folder = folder
       if (resume) then
-         call check_output(folder, model, output, fault)
+         call check_tables(folder, model, tables, fault)
       else
          call make_folder(folder)
-         output%frames = frames_t([real(wp) ::])
+         tables%frames = frames_t([real(wp) ::])
       end if
-      call open_one('histories.csv', history_columns(model), output%history)
-      call open_one('ledger.csv', LEDGER_COLUMNS, output%ledger)
-      if (touches(model)) call open_one('contact.csv', contact_columns(model), output%contact)
+      call open_one('histories.csv', history_columns(model), tables%history)
+      call open_one('ledger.csv', LEDGER_COLUMNS, tables%ledger)
+      if (has_contact_table(model)) call open_one('contact.csv', contact_columns(model), tables%contact)
       if (fault%code == 0 .and. .not. resume) &
          call write_mesh(folder, trim(model%name), model%fingerprint, model%domain, fault)
    contains
@@ -61,27 +61,27 @@ contains
             call new_csv(folder//'/'//name, head, table, fault)
          end if
       end subroutine open_one
-   end subroutine open_output
+   end subroutine open_tables
 
    !> Refuses a folder that does not hold the run of a checkpoint; changes nothing.
-   subroutine check_output(folder, model, output, fault)
+   subroutine check_tables(folder, model, tables, fault)
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model
-      type(output_t), intent(in) :: output
+      type(tables_t), intent(in) :: tables
       type(fault_t), intent(inout) :: fault
 
       call check_mesh(folder, model%fingerprint, fault)
-      if (fault%code == 0) call check_csv(folder//'/histories.csv', output%history%bytes, fault)
-      if (fault%code == 0) call check_csv(folder//'/ledger.csv', output%ledger%bytes, fault)
-      if (fault%code == 0 .and. touches(model)) &
-         call check_csv(folder//'/contact.csv', output%contact%bytes, fault)
-   end subroutine check_output
+      if (fault%code == 0) call check_csv(folder//'/histories.csv', tables%history%bytes, fault)
+      if (fault%code == 0) call check_csv(folder//'/ledger.csv', tables%ledger%bytes, fault)
+      if (fault%code == 0 .and. has_contact_table(model)) &
+         call check_csv(folder//'/contact.csv', tables%contact%bytes, fault)
+   end subroutine check_tables
 
-   pure logical function touches(model)
+   pure logical function has_contact_table(model)
       type(model_t), intent(in) :: model
 
-      touches = size(model%contacts) + size(model%plates) > 0
-   end function touches
+      has_contact_table = size(model%contacts) + size(model%plates) > 0
+   end function has_contact_table
 
    pure function history_columns(model) result(head)
       type(model_t), intent(in) :: model
@@ -97,26 +97,26 @@ contains
    end function history_columns
 
    !> Brings the tables to the disk.
-   subroutine settle_output(output, fault)
-      type(output_t), intent(inout) :: output
+   subroutine settle_tables(tables, fault)
+      type(tables_t), intent(inout) :: tables
       type(fault_t), intent(inout) :: fault
 
-      call settle_csv(output%history, fault)
-      if (fault%code == 0) call settle_csv(output%ledger, fault)
-      if (fault%code == 0 .and. is_open(output%contact)) call settle_csv(output%contact, fault)
-   end subroutine settle_output
+      call settle_csv(tables%history, fault)
+      if (fault%code == 0) call settle_csv(tables%ledger, fault)
+      if (fault%code == 0 .and. is_open(tables%contact)) call settle_csv(tables%contact, fault)
+   end subroutine settle_tables
 
-   subroutine write_history(output, model, state, fault)
-      type(output_t), intent(inout) :: output
+   subroutine write_history(tables, model, state, fault)
+      type(tables_t), intent(inout) :: tables
       type(model_t), intent(in) :: model
       type(state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
       integer :: i
 
       if (size(model%points) == 0) return
-      write (output%history%row, NUMBERS) state%time, (values(model%points(i)%node, model%points(i)%gauss), &
+      write (tables%history%row, NUMBERS) state%time, (values(model%points(i)%node, model%points(i)%gauss), &
                                                        i=1, size(model%points))
-      call write_row(output%history, fault)
+      call write_row(tables%history, fault)
    contains
       pure function values(k, p)
          integer, intent(in) :: k, p
@@ -126,37 +126,39 @@ contains
       end function values
    end subroutine write_history
 
-   subroutine write_ledger(output, time, dt, stage, log, ledger, step_error, fault)
-      type(output_t), intent(inout) :: output
-      real(wp), intent(in) :: time, dt, step_error
-      integer, intent(in) :: stage
-      type(log_t), intent(in) :: log
+   subroutine write_ledger(tables, time, report, ledger, fault)
+      type(tables_t), intent(inout) :: tables
+      real(wp), intent(in) :: time
+      type(step_report_t), intent(in) :: report
       type(ledger_t), intent(in) :: ledger
       type(fault_t), intent(inout) :: fault
 
-      write (output%ledger%row, '(2(es24.16e3,","),i0,",",i0,",",*(es14.6e3,:,","))') time, dt, stage, &
-         log%iterations, log%error, log%first_error, log%reduction, log%correction, real(log%effort, wp), &
-         ledger%kinetic, ledger%skeleton, ledger%pores, ledger%gravity, ledger%loads, ledger%supports, ledger%seepage, &
-         ledger%damping, imbalance(ledger), ledger%outflow, ledger%outflow_air, step_error
-      call write_row(output%ledger, fault)
+      associate (log => report%log)
+         write (tables%ledger%row, '(2(es24.16e3,","),i0,",",i0,",",*(es14.6e3,:,","))') time, report%dt, &
+            report%stage, log%iterations, log%error, log%first_error, log%reduction, log%correction, &
+            real(log%rate_evaluations, wp), ledger%kinetic, ledger%skeleton, ledger%pores, ledger%gravity, &
+            ledger%loads, ledger%supports, ledger%seepage, ledger%damping, imbalance(ledger), ledger%outflow, &
+            ledger%outflow_air, report%error
+      end associate
+      call write_row(tables%ledger, fault)
    end subroutine write_ledger
 
-   subroutine write_contacts(output, model, contacts, dt, state, work, fault)
-      type(output_t), intent(inout) :: output
+   subroutine write_contacts(tables, model, contacts, dt, state, work, fault)
+      type(tables_t), intent(inout) :: tables
       type(model_t), intent(in) :: model
       type(contacts_t), intent(in) :: contacts
       real(wp), intent(in) :: dt, work   !< Step, and work done on the penalty so far [s, kJ].
       type(state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
 
-      if (.not. is_open(output%contact)) return
-      write (output%contact%row, NUMBERS) contact_row(model, contacts, dt, state, work)
-      call write_row(output%contact, fault)
+      if (.not. is_open(tables%contact)) return
+      write (tables%contact%row, NUMBERS) contact_row(model, contacts, dt, state, work)
+      call write_row(tables%contact, fault)
    end subroutine write_contacts
 
    !> nodes_STAGE.csv and points_STAGE.csv.
-   subroutine write_fields(output, domain, stage, state, fault)
-      type(output_t), intent(in) :: output
+   subroutine write_fields(folder, domain, stage, state, fault)
+      character(*), intent(in) :: folder
       type(domain_t), intent(in) :: domain
       character(*), intent(in) :: stage
       type(state_t), intent(in) :: state
@@ -166,7 +168,7 @@ contains
       integer :: i, e, g, p
 
       call all_pressures(domain, state, x)
-      call new_csv(output%folder//'/nodes_'//stage//'.csv', 'r,z,u_r,u_z,p_w,p_c,v_r,v_z', table, fault)
+      call new_csv(folder//'/nodes_'//stage//'.csv', 'r,z,u_r,u_z,p_w,p_c,v_r,v_z', table, fault)
       do i = 1, size(state%x, 2)
          if (fault%code /= 0) exit
          write (table%row, NUMBERS) domain%mesh%x(:, i), x(:, i), state%v(1:2, i)
@@ -174,7 +176,7 @@ contains
       end do
       call close_csv(table, fault)
       if (fault%code /= 0) return
-      call new_csv(output%folder//'/points_'//stage//'.csv', 'r,z,weight,s_rr,s_zz,s_tt,s_rz,e,S_w', table, fault)
+      call new_csv(folder//'/points_'//stage//'.csv', 'r,z,weight,s_rr,s_zz,s_tt,s_rz,e,S_w', table, fault)
       do e = 1, size(domain%mesh%t6, 2)
          do g = 1, domain%rule
             if (fault%code /= 0) exit
@@ -188,8 +190,8 @@ contains
    end subroutine write_fields
 
    !> contact_STAGE.csv: slave nodes of the contacts that act in the stage.
-   subroutine write_touching(output, model, contacts, stage, state, fault)
-      type(output_t), intent(in) :: output
+   subroutine write_contact_nodes(folder, model, contacts, stage, state, fault)
+      character(*), intent(in) :: folder
       type(model_t), intent(in) :: model
       type(contacts_t), intent(in) :: contacts
       character(*), intent(in) :: stage
@@ -199,9 +201,9 @@ contains
       type(csv_t) :: table
       integer :: i
 
-      if (.not. allocated(contacts%touch)) return
+      if (.not. allocated(contacts%interfaces)) return
       call contact_nodes(model, contacts, state, values)
-      call new_csv(output%folder//'/contact_'//stage//'.csv', 'contact,r,z,weight,coverage,gap,pressure', table, &
+      call new_csv(folder//'/contact_'//stage//'.csv', 'contact,r,z,weight,coverage,gap,pressure', table, &
                      fault)
       do i = 1, size(values, 2)
          if (fault%code /= 0) exit
@@ -209,15 +211,15 @@ contains
          call write_row(table, fault)
       end do
       call close_csv(table, fault)
-   end subroutine write_touching
+   end subroutine write_contact_nodes
 
    !> Closes all tables; the first that fails is reported.
-   subroutine close_output(output, fault)
-      type(output_t), intent(inout) :: output
+   subroutine close_tables(tables, fault)
+      type(tables_t), intent(inout) :: tables
       type(fault_t), intent(inout) :: fault
 
-      call close_csv(output%history, fault)
-      call close_csv(output%ledger, fault)
-      call close_csv(output%contact, fault)
-   end subroutine close_output
+      call close_csv(tables%history, fault)
+      call close_csv(tables%ledger, fault)
+      call close_csv(tables%contact, fault)
+   end subroutine close_tables
 end module output_tables

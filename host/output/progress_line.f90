@@ -21,7 +21,6 @@ module progress_line
       real(wp) :: last_line = -huge(1.0_wp) !< When it was written.
       real(wp) :: last_step = -1.0_wp
       real(wp) :: pace = 0.0_wp             !< Seconds a step, the last ones counting most.
-      real(wp) :: last_checkpoint = 0.0_wp
    end type progress_t
 contains
    !> After every accepted step.
@@ -50,13 +49,13 @@ contains
       ! The first step has no pace yet.
       if (.not. progress%pace > 0.0_wp .or. now - progress%last_line < PERIODS(merge(1, 2, terminal))) return
       progress%last_line = now
-      associate (stage => model%stages(run%course%stage), course => run%course)
-         left = steps_left(stage, course%nominal*course%factor, course%t_start + stage%duration - run%state%time)
-         do i = course%stage + 1, size(model%stages)
+      associate (stage => model%stages(run%at%stage), at => run%at)
+         left = steps_left(stage, at%nominal*at%factor, at%t_start + stage%duration - run%state%time)
+         do i = at%stage + 1, size(model%stages)
             left = left + steps_left(model%stages(i), model%stages(i)%dt, model%stages(i)%duration)
          end do
-         line = 'Stage '//trim(stage%name)//': step '//whole(course%step)//', time '//short(run%state%time)//' s, '// &
-                whole(nint(100*(run%state%time - course%t_start)/stage%duration))//' %; about '// &
+         line = 'Stage '//trim(stage%name)//': step '//whole(at%step)//', time '//short(run%state%time)//' s, '// &
+                whole(nint(100*(run%state%time - at%t_start)/stage%duration))//' %; about '// &
                 span_of(left*progress%pace)//' left for all stages'
       end associate
       line = line(:min(len(line), WIDTH))

@@ -1,79 +1,75 @@
-!> Watches, after every accepted step, what the effects that are off would do, and says once when that crosses the
+!> Monitors, after every accepted step, what the effects that are off would do, and says once when that crosses the
 !> threshold. A few sums over nodes and points; nothing is asked of the material.
 module effect_monitor
    use kinds, only: wp
+   use effect_types, only: effect_t, OF_P_W, OF_P_C, OF_INERTIA, OF_SEEPAGE, OF_GRAVITY, UNBOUNDED, NEVER
    use energy_ledger, only: ledger_t
    use linearised_body, only: mass_of_nodes
-   use model_types, only: model_t, effect_t, OF_P_W, OF_P_C, OF_INERTIA, OF_SEEPAGE, OF_GRAVITY, UNBOUNDED, NEVER
-   use degrees_of_freedom, only: dofs_t
+   use model_types, only: model_t
+   use unknown_fields, only: AT_P_W
    use porous_domain, only: state_t
    use generalised_alpha, only: DYNAMIC
    use texts, only: short
    implicit none (type, external)
    private
-   public :: watch_t, begin_watch, begin_swing, watch_step, warning_of, MEMORIES
+   public :: monitor_t, begin_monitor, begin_stage_of_monitor, monitor_step, warning_of, MEMORIES
 
    integer, parameter :: MEMORIES = 4
    integer, parameter :: MOST_A = 1, MOST_V = 2, WORK = 3, LEAST_P = 4   !< Places in `memory`.
    real(wp), parameter :: UNDER_WAY = 0.1_wp   !< A step that brings less than this share of all work is well under way.
 
-   type :: watch_t
+   type :: monitor_t
       type(effect_t), allocatable :: table(:)
       real(wp), allocatable :: mass(:), stress(:, :)   !< Of nodes [Mg]; at the start [kPa].
       real(wp) :: memory(MEMORIES) = 0.0_wp            !< Extremes so far, and the work up to the last step.
-   end type watch_t
+   end type monitor_t
 contains
-   subroutine begin_watch(model, table, state, watch)
+   subroutine begin_monitor(model, state, monitor)
       type(model_t), intent(in) :: model
-      type(effect_t), intent(in) :: table(:)
       type(state_t), intent(in) :: state
-      type(watch_t), intent(out) :: watch
+      type(monitor_t), intent(out) :: monitor
       integer :: i
 
-      watch%table = table
-      watch%mass = mass_of_nodes(model, state)
-      do i = 1, size(model%rigids)
-         associate (node => model%domain%mesh%groups(model%rigids(i)%group)%nodes(1))
-            watch%mass(node) = watch%mass(node) + model%rigids(i)%mass
-         end associate
+      monitor%table = model%effects
+      monitor%mass = mass_of_nodes(model, state)
+      do i = 1, size(model%plates)
+         monitor%mass(model%plates(i)%node) = monitor%mass(model%plates(i)%node) + model%plates(i)%mass
       end do
-      watch%mass(model%plates%node) = model%plates%mass
-      watch%stress = state%stress
-      watch%memory(LEAST_P) = huge(1.0_wp)
-   end subroutine begin_watch
+      monitor%stress = state%stress
+      monitor%memory(LEAST_P) = huge(1.0_wp)
+   end subroutine begin_monitor
 
    !> A stage begins: its own extremes of motion.
-   pure subroutine begin_swing(watch)
-      type(watch_t), intent(inout) :: watch
+   pure subroutine begin_stage_of_monitor(monitor)
+      type(monitor_t), intent(inout) :: monitor
 
-      watch%memory([MOST_A, MOST_V]) = 0.0_wp
-   end subroutine begin_swing
+      monitor%memory([MOST_A, MOST_V]) = 0.0_wp
+   end subroutine begin_stage_of_monitor
 
    !> Indicators of a step; `news` marks those that cross their threshold with it.
-   subroutine watch_step(model, stage, dofs, dt, last, ledger, old, new, watch, news)
+   subroutine monitor_step(model, stage, dt, last, ledger, old, new, monitor, news)
       type(model_t), intent(in) :: model
       integer, intent(in) :: stage
-      type(dofs_t), intent(in) :: dofs
       real(wp), intent(in) :: dt
       logical, intent(in) :: last          !< The stage ends with it.
       type(ledger_t), intent(in) :: ledger
       type(state_t), intent(in) :: old, new
-      type(watch_t), intent(inout) :: watch
+      type(monitor_t), intent(inout) :: monitor
       logical, intent(out) :: news(:)
       real(wp) :: value, limit
       integer :: i
 
       news = .false.
-      do i = 1, size(watch%table)
-         associate (t => watch%table(i))
+      do i = 1, size(monitor%table)
+         associate (t => monitor%table(i))
             if (.not. t%watched .or. (t%kind == OF_INERTIA .and. t%stage /= stage)) cycle
             limit = t%threshold
             value = 0.0_wp
             select case (t%kind)
             case (OF_P_C)
-               value = maxval(-new%x(3, :), mask=dofs%of(3, :) > 0)
+               value = maxval(-new%x(AT_P_W, :), mask=model%dofs%of(AT_P_W, :) > 0)
                ! Newton's tolerance lets the pressures wander.
-               limit = max(limit, model%stages(stage)%tolerance*maxval(abs(new%x(3, :))))
+               limit = max(limit, model%stages(stage)%tolerance*maxval(abs(new%x(AT_P_W, :))))
             case (OF_P_W)
                value = t%scale*maxval(abs(new%e - old%e)/(1 + new%e))/dt
             case (OF_INERTIA)
@@ -89,7 +85,7 @@ contains
             news(i) = .true.
          end associate
       end do
-      watch%memory(WORK) = max(watch%memory(WORK), work_of(ledger))
+      monitor%memory(WORK) = max(monitor%memory(WORK), work_of(ledger))
    contains
       !> Speed of a motion without inertia, as the vibration that it would leave: its kinetic energy against the strain
       !> energy that the loads are expected to bring, or the work done where nothing can be expected.
@@ -98,9 +94,9 @@ contains
          real(wp) :: speed, all_work
 
          share = 0.0_wp
-         speed = sqrt(sum(watch%mass*sum(((new%x(1:2, :) - old%x(1:2, :))/dt)**2, dim=1)))
+         speed = sqrt(sum(monitor%mass*sum(((new%x(1:2, :) - old%x(1:2, :))/dt)**2, dim=1)))
          all_work = work_of(ledger)
-         if (all_work - watch%memory(WORK) > UNDER_WAY*all_work) all_work = 0.0_wp
+         if (all_work - monitor%memory(WORK) > UNDER_WAY*all_work) all_work = 0.0_wp
          all_work = max(expected, sqrt(2*all_work))
          if (all_work > 0.0_wp) share = min(speed/all_work, UNBOUNDED)
       end function motion_share
@@ -112,14 +108,14 @@ contains
          real(wp) :: v
 
          frequency = 0.0_wp
-         v = sqrt(sum(watch%mass*sum(new%v(1:2, :)**2, dim=1)))
-         watch%memory(MOST_A) = max(watch%memory(MOST_A), sqrt(sum(watch%mass*sum(new%a**2, dim=1))))
+         v = sqrt(sum(monitor%mass*sum(new%v(1:2, :)**2, dim=1)))
+         monitor%memory(MOST_A) = max(monitor%memory(MOST_A), sqrt(sum(monitor%mass*sum(new%a**2, dim=1))))
          if (slow > 0.0_wp) then
             frequency = min(v/slow, UNBOUNDED)
-         else if (v < watch%memory(MOST_V)) then
-            frequency = min(watch%memory(MOST_A)/watch%memory(MOST_V), UNBOUNDED)
+         else if (v < monitor%memory(MOST_V)) then
+            frequency = min(monitor%memory(MOST_A)/monitor%memory(MOST_V), UNBOUNDED)
          end if
-         watch%memory(MOST_V) = max(watch%memory(MOST_V), v)
+         monitor%memory(MOST_V) = max(monitor%memory(MOST_V), v)
       end function frequency
 
       !> The weight against the stresses that there are: at the end of a stage the largest change of stress, and always
@@ -133,17 +129,17 @@ contains
             do e = 1, size(m%mesh%t6, 2)
                if (m%materials(m%regions(m%region_of(e))%material)%law%stored) cycle
                associate (stress => new%stress(1:3, (e - 1)*m%rule + 1:e*m%rule))
-                  watch%memory(LEAST_P) = min(watch%memory(LEAST_P), max(0.0_wp, minval(-sum(stress, dim=1)/3)))
+                  monitor%memory(LEAST_P) = min(monitor%memory(LEAST_P), max(0.0_wp, minval(-sum(stress, dim=1)/3)))
                end associate
             end do
          end associate
-         seen = watch%memory(LEAST_P)
-         if (last) seen = min(seen, maxval(abs(new%stress - watch%stress)))
+         seen = monitor%memory(LEAST_P)
+         if (last) seen = min(seen, maxval(abs(new%stress - monitor%stress)))
          value = 0.0_wp
          if (seen < huge(1.0_wp)) value = min(effect%scale/max(seen, tiny(1.0_wp)*effect%scale), UNBOUNDED) &
-                                          *effect%threshold/model%effects%tolerance
+                                          *effect%threshold/model%effect_options%tolerance
       end function weight_share
-   end subroutine watch_step
+   end subroutine monitor_step
 
    pure real(wp) function work_of(ledger)
       type(ledger_t), intent(in) :: ledger

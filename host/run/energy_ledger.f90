@@ -3,14 +3,15 @@
 !> (+ algorithmic damping).
 module energy_ledger
    use kinds, only: wp
+   use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use degrees_of_freedom, only: dofs_t
-   use porous_domain, only: domain_t, state_t
+   use porous_domain, only: domain_t, state_t, mixture_density
    use permeability_laws, only: relative_t, relative_permeability
    use newton_step, only: constraint_t
    use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
    implicit none (type, external)
    private
-   public :: ledger_t, book_step, kinetic_energy, density, imbalance
+   public :: ledger_t, book_step, kinetic_energy, imbalance
 
    type :: ledger_t
       real(wp) :: kinetic = 0.0_wp, kinetic_0 = 0.0_wp   !< Now, and at the start [kJ].
@@ -40,16 +41,16 @@ contains
          call book_element(domain, e, scheme, old, new, ledger)
       end do
       do i = 1, dofs%n
-         if (dofs%field(i) <= 2) then
+         if (dofs%field(i) <= DISPLACEMENTS) then
             change = new%x(dofs%field(i), dofs%node(i)) - old%x(dofs%field(i), dofs%node(i))
             ledger%loads = ledger%loads + 0.5_wp*(constraint%load_0(i) + constraint%load_1(i))*change
             if (constraint%fixed(i)) ledger%supports = ledger%supports + reaction(i)*change
          else if (scheme%kind /= STATIC) then
-            if (dofs%field(i) == 3 .and. constraint%fixed(i)) &
+            if (dofs%field(i) == AT_P_W .and. constraint%fixed(i)) &
                ledger%outflow = ledger%outflow - scheme%dt*reaction(i)
-            if (dofs%field(i) == 4 .and. constraint%fixed(i)) &
+            if (dofs%field(i) == AT_P_C .and. constraint%fixed(i)) &
                ledger%outflow_air = ledger%outflow_air - scheme%dt*reaction(i)
-            if (dofs%field(i) == 4 .and. constraint%air(dofs%node(i))) then
+            if (dofs%field(i) == AT_P_C .and. constraint%air(dofs%node(i))) then
                ledger%outflow_air = ledger%outflow_air - scheme%dt*reaction(i)
                ledger%outflow = ledger%outflow - scheme%dt*reaction(i)
             end if
@@ -81,10 +82,10 @@ contains
                                                                               strain)
             s = 0.5_wp*(old%s(p) + new%s(p))
             n = 0.5_wp*(old%e(p)/(1 + old%e(p)) + new%e(p)/(1 + new%e(p)))
-            p_w = dot_product(gp%m(:n_p), middle(3, :n_p))
-            p_c = dot_product(gp%m(:n_p), middle(4, :n_p))
+            p_w = dot_product(gp%m(:n_p), middle(AT_P_W, :n_p))
+            p_c = dot_product(gp%m(:n_p), middle(AT_P_C, :n_p))
             ledger%pores = ledger%pores - gp%weight*(p_w + (1 - s)*p_c)*sum(strain(1:3))
-            rho = density(domain, region%rho_s, n, s)
+            rho = mixture_density(domain, region%rho_s, n, s)
             ledger%gravity = ledger%gravity - gp%weight*rho*domain%gravity*dot_product(gp%n, du(2, :))
             if (region%damping > 0.0_wp .and. scheme%kind == DYNAMIC) &
                ledger%damping = ledger%damping + gp%weight*rho*region%damping &
@@ -92,24 +93,16 @@ contains
             if (.not. domain%with_w .or. scheme%kind == STATIC) cycle
             rel = relative_permeability(domain%permeabilities(region%permeability), s)
             kappa = domain%permeabilities(region%permeability)%intrinsic*rel%w/f%eta_w
-            drive = matmul(gp%dm(:, :n_p), middle(3, :n_p)) + [0.0_wp, f%rho_w*domain%gravity]
+            drive = matmul(gp%dm(:, :n_p), middle(AT_P_W, :n_p)) + [0.0_wp, f%rho_w*domain%gravity]
             ledger%seepage = ledger%seepage + scheme%dt*gp%weight*kappa*dot_product(drive, drive)
             if (.not. domain%with_c) cycle
             kappa = domain%permeabilities(region%permeability)%intrinsic*rel%a/f%eta_a
-            drive = matmul(gp%dm(:, :n_p), middle(3, :n_p) + middle(4, :n_p)) + [0.0_wp, f%rho_a*domain%gravity]
+            drive = matmul(gp%dm(:, :n_p), middle(AT_P_W, :n_p) + middle(AT_P_C, :n_p)) + [0.0_wp, &
+               f%rho_a*domain%gravity]
             ledger%seepage = ledger%seepage + scheme%dt*gp%weight*kappa*dot_product(drive, drive)
          end associate
       end do
    end subroutine book_element
-
-   pure real(wp) function density(domain, rho_s, n, s)
-      type(domain_t), intent(in) :: domain
-      real(wp), intent(in) :: rho_s, n, s
-
-      density = (1 - n)*rho_s
-      if (domain%with_w) density = density + n*s*domain%fluids%rho_w
-      if (domain%with_c) density = density + n*(1 - s)*domain%fluids%rho_a
-   end function density
 
    real(wp) function kinetic_energy(domain, dofs, mass, state) result(energy)
       type(domain_t), intent(in) :: domain
@@ -126,7 +119,7 @@ contains
             v = matmul(state%v(1:2, domain%mesh%t6(:, e)), domain%gauss(g, e)%n)
             n = state%e(p)/(1 + state%e(p))
             energy = energy + 0.5_wp*domain%gauss(g, e)%weight*dot_product(v, v) &
-                     *density(domain, domain%regions(domain%region_of(e))%rho_s, n, state%s(p))
+                     *mixture_density(domain, domain%regions(domain%region_of(e))%rho_s, n, state%s(p))
          end do
       end do
       do i = 1, dofs%n

@@ -1,21 +1,20 @@
-!> A scene on its way: everything that one step hands to the next, and the place in its stages.
+!> State of a run: everything that one step hands to the next.
 module run_state
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
    use contact_drainage, only: drainage_t
+   use effect_monitor, only: monitor_t
    use energy_ledger, only: ledger_t
-   use effect_monitor, only: watch_t
    use equation_assembly, only: assembly_t
-   use degrees_of_freedom, only: dofs_t
+   use newton_step, only: constraint_t, system_t
    use porous_domain, only: state_t
    use sparsity_pattern, only: pattern_t
-   use newton_step, only: constraint_t, system_t
    implicit none (type, external)
    private
-   public :: run_t, course_t
+   public :: run_t, stage_state_t
 
    !> Place in the stages, and the step size.
-   type :: course_t
+   type :: stage_state_t
       integer :: stage = 0                     !< Number of the stage under way; 0: before the first.
       integer :: step = 0                      !< Steps done in it.
       integer :: cuts = 0, good = 0            !< Cuts in force; accepted steps since the last cut or growth.
@@ -23,22 +22,20 @@ module run_state
       real(wp) :: nominal = 0.0_wp             !< Step without cuts [s].
       real(wp) :: factor = 1.0_wp              !< Share of it after cuts.
       real(wp), allocatable :: x_start(:, :)   !< Unknowns at its start, which some boundaries hold.
-   end type course_t
+   end type stage_state_t
 
-   !> A scene ready to run, and what it has come to.
    type :: run_t
-      type(dofs_t) :: dofs
-      type(pattern_t) :: pattern
+      type(pattern_t) :: pattern               !< Of the matrix; it grows with the contacts.
       type(assembly_t) :: assembly
       type(system_t) :: system
       type(constraint_t) :: constraint
       type(drainage_t) :: drainage
-      type(state_t) :: state, next
+      type(state_t) :: state, next             !< Before and after the step under way.
       type(ledger_t) :: ledger
-      type(course_t) :: course
-      type(watch_t) :: watch                !< Of effects that are off; with effects = 'auto' alone.
+      type(stage_state_t) :: at
+      type(monitor_t) :: monitor               !< Of effects that are off; with effects = 'auto' alone.
       integer :: steps = 0, iterations = 0, cuts = 0
-      integer(int64) :: effort = 0          !< Rate evaluations of the material.
-      real(wp) :: seconds_output = 0.0_wp   !< Wall time.
+      integer(int64) :: rate_evaluations = 0   !< Of the material.
+      real(wp) :: seconds_output = 0.0_wp      !< Wall time.
    end type run_t
 end module run_state

@@ -3,12 +3,12 @@
 module scene_fingerprint
    use, intrinsic :: iso_fortran_env, only: int64
    use namelists, only: group_t
+   use scene_types, only: FINGERPRINT_LENGTH
    use texts, only: lower_case
    implicit none (type, external)
    private
-   public :: fingerprint_of, FINGERPRINT_LENGTH
+   public :: fingerprint_of
 
-   integer, parameter :: FINGERPRINT_LENGTH = 16
    integer, parameter :: BLOCK = 65536
    ! Two polynomial hashes modulo primes below 2**31: products stay below 2**63.
    integer(int64), parameter :: PRIMES(2) = [2147483647_int64, 2147483629_int64], BASES(2) = [65599_int64, 31337_int64]

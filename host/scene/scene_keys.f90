@@ -2,19 +2,22 @@
 !> come from this list.
 module scene_keys
    use kinds, only: wp
-   use faults, only: fault_t
+   use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use key_schema, only: key_t, REQUIRED, NONE, UNBOUNDED, check_group, given, texts_of, numbers_of, &
+                         line_of, words_of, place_of, &
                          schema_number_of => number_of, schema_text_of => text_of, schema_word_is => word_is
    use namelists, only: group_t, MAX_VALUES
+   use texts, only: lower_case
    implicit none (type, external)
    private
-   public :: check_keys, number_of, numbers_of, text_of, texts_of, word_is, given, print_template
+   public :: check_keys, number_of, numbers_of, text_of, texts_of, word_is, word_number, given, print_template
 
    real(wp), parameter :: BIG = UNBOUNDED, TINY_ = 1.0e-30_wp
 
    type(key_t), parameter :: KEYS(*) = [ &
       key_t('scene', 'name', 't', REQUIRED, 0, 0, 'name of the scene'), &
-      key_t('scene', 'geometry', 'w', 'axisymmetric', 0, 0, 'r, z or x, y', 'axisymmetric|plane_strain'), &
+      key_t('scene', 'geometry', 'w', 'axisymmetric', 0, 0, &
+            'axisymmetric in r, z or plane strain in x, y', 'axisymmetric|plane_strain'), &
       key_t('scene', 'fields', 'w', 'u', 0, 0, 'unknowns; absent ones cost nothing', 'u|u-p_w|u-p_w-p_c'), &
       key_t('scene', 'pressures', 'w', 'quadratic', 0, 0, 'interpolation (linear: Taylor-Hood)', 'quadratic|linear'), &
       key_t('scene', 'quadrature', 'i', '6', 3, 12, 'points of an element: 3, 6, 7 or 12'), &
@@ -22,13 +25,15 @@ module scene_keys
       key_t('scene', 'effects', 'w', 'given', 0, 0, 'auto derives what keys leave out, see README', 'given|auto'), &
       key_t('scene', 'effects_tolerance', 'n', '0.01', 1.0e-6_wp, 1, 'share that an effect left out may have [-]'), &
       key_t('scene', 'seepage_inertia', 'w', 'no', 0, 0, 'acceleration of the skeleton in Darcy''s law', 'no|yes'), &
-      key_t('scene', 'saturation_rate', 'w', 'full', 0, 0, 'with dS_w/de, or by suction alone', 'full|suction'), &
+      key_t('scene', 'saturation_rate', 'w', 'full', 0, 0, &
+            'rate of saturation with dS_w/de, or by suction alone', 'full|suction'), &
       key_t('scene', 'initial_flow', 'w', 'drain', 0, 0, 'subtract: flow at the start is kept up', 'drain|subtract'), &
       key_t('scene', 'threads', 'i', '0', 0, 1024, 'threads of the element loop; 0: OMP_NUM_THREADS'), &
-      key_t('scene', 'factors', 'w', 'reuse', 0, 0, 'of the matrix: while they serve, or always new', 'reuse|fresh'), &
-      key_t('scene', 'ordering', 'w', 'amd', 0, 0, 'of the unknowns; best tries several', 'amd|metis|best'), &
+      key_t('scene', 'factors', 'w', 'reuse', 0, 0, &
+            'factors of the matrix: reused while they serve, or new in every iteration', 'reuse|fresh'), &
+      key_t('scene', 'ordering', 'w', 'amd', 0, 0, 'ordering of the unknowns; best tries several', 'amd|metis|best'), &
       key_t('scene', 'checkpoint_steps', 'i', '0', 0, 1000000000, 'checkpoint.h5 after every so many steps; 0: none'), &
-      key_t('scene', 'checkpoint_seconds', 'n', '0', 0, BIG, 'and after so much wall time [s]; 0: none'), &
+      key_t('scene', 'checkpoint_seconds', 'n', '0', 0, BIG, 'checkpoint.h5 after so much wall time [s]; 0: none'), &
       key_t('mesh', 'file', 't', NONE, 0, 0, 'Gmsh 4.1 text mesh, seen from the scene; or a built-in one:'), &
       key_t('mesh', 'r', 'N', NONE, -BIG, BIG, 'breaks along r [m], ascending'), &
       key_t('mesh', 'r_cells', 'I', NONE, 1, 100000, 'cells between two breaks'), &
@@ -53,13 +58,13 @@ module scene_keys
       key_t('retention', 'name', 't', REQUIRED, 0, 0, 'name that regions call it by'), &
       key_t('retention', 'law', 'w', 'bilogarithmic', 0, 0, 'see README', 'bilogarithmic|power|table|saturated'), &
       key_t('retention', 'p_a', 'n', '5.0', TINY_, BIG, 'air entry of the bilogarithmic law [kPa]'), &
-      key_t('retention', 'n', 'n', '2.0', 0.01_wp, 100, 'its exponent n [-]'), &
-      key_t('retention', 'm', 'n', '1.0', 0.001_wp, 100, 'its exponent m [-]'), &
-      key_t('retention', 'omega', 'n', '2.0', 0, 100, 'its exponent of the void ratio [-]'), &
-      key_t('retention', 's_max', 'n', '1.0', 0, 1, 'its largest degree of saturation [-]'), &
+      key_t('retention', 'n', 'n', '2.0', 0.01_wp, 100, 'exponent n of the bilogarithmic law [-]'), &
+      key_t('retention', 'm', 'n', '1.0', 0.001_wp, 100, 'exponent m of the bilogarithmic law [-]'), &
+      key_t('retention', 'omega', 'n', '2.0', 0, 100, 'exponent of the void ratio in the bilogarithmic law [-]'), &
+      key_t('retention', 's_max', 'n', '1.0', 0, 1, 'largest degree of saturation [-]'), &
       key_t('retention', 's_min', 'n', '0.0', 0, 1, 'least degree of saturation [-]'), &
       key_t('retention', 'a', 'n', '0.0', 0, BIG, 'factor of the power law S = 1 - a p_c**b'), &
-      key_t('retention', 'b', 'n', '1.0', 1, 100, 'its exponent [-]'), &
+      key_t('retention', 'b', 'n', '1.0', 1, 100, 'exponent b of the power law [-]'), &
       key_t('retention', 'suction', 'N', NONE, -BIG, BIG, 'table: suctions [kPa], ascending'), &
       key_t('retention', 'saturation', 'N', NONE, 0, 1, 'table: degrees of saturation [-]'), &
       key_t('permeability', 'name', 't', REQUIRED, 0, 0, 'name that regions call it by'), &
@@ -83,9 +88,9 @@ module scene_keys
       key_t('region', 'damping', 'n', '0', 0, BIG, 'force against the velocity over mass, dynamic stages [1/s]'), &
       key_t('initial', 'group', 't', 'all', 0, 0, 'group of elements or nodes'), &
       key_t('initial', 'p_w', 'n', '0', -BIG, BIG, 'pore water pressure at the datum [kPa]'), &
-      key_t('initial', 'p_w_slope', 'n', '0', -BIG, BIG, 'its change with z [kPa/m]'), &
+      key_t('initial', 'p_w_slope', 'n', '0', -BIG, BIG, 'change of p_w with z [kPa/m]'), &
       key_t('initial', 'p_c', 'n', '0', -BIG, BIG, 'suction at the datum [kPa]'), &
-      key_t('initial', 'p_c_slope', 'n', '0', -BIG, BIG, 'its change with z [kPa/m]'), &
+      key_t('initial', 'p_c_slope', 'n', '0', -BIG, BIG, 'change of p_c with z [kPa/m]'), &
       key_t('initial', 'datum', 'n', '0', -BIG, BIG, 'z of the datum [m]'), &
       key_t('initial', 'v_z', 'n', '0', -BIG, BIG, 'vertical velocity at the start [m/s]'), &
       key_t('initial', 'wave', 'n', '0', -BIG, BIG, 'v_z = wave sin(wave_number (z - datum)) at the start [m/s]'), &
@@ -101,7 +106,8 @@ module scene_keys
       key_t('history', 'values', 'N', NONE, -BIG, BIG, 'factors at these times [-]'), &
       key_t('history', 'file', 't', NONE, 0, 0, 'instead: text file with a time and a factor a line'), &
       key_t('stage', 'name', 't', REQUIRED, 0, 0, 'name of the stage'), &
-      key_t('stage', 'analysis', 'w', NONE, 0, 0, 'needed unless effects = ''auto''', 'static|quasi_static|dynamic'), &
+      key_t('stage', 'analysis', 'w', NONE, 0, 0, &
+            'kind of the stage; needed unless effects = ''auto''', 'static|quasi_static|dynamic'), &
       key_t('stage', 'duration', 'n', REQUIRED, TINY_, BIG, 'duration [s]'), &
       key_t('stage', 'dt', 'n', REQUIRED, TINY_, BIG, 'time step [s]'), &
       key_t('stage', 'dt_growth', 'n', '1', 1, 10, 'factor on the step after every accepted one'), &
@@ -109,45 +115,49 @@ module scene_keys
       key_t('stage', 'cuts', 'i', '10', 0, 40, 'how often a step may be halved'), &
       key_t('stage', 'rho_inf', 'n', '0.8', 0, 1, 'spectral radius of generalised-alpha [-]'), &
       key_t('stage', 'tolerance', 'n', '1.0e-3', 1.0e-14_wp, 0.1_wp, 'Newton: error that ends the iteration [-]'), &
-      key_t('stage', 'measure', 'w', 'forces', 0, 0, 'that error, see README', 'forces|residual|correction'), &
+      key_t('stage', 'measure', 'w', 'forces', 0, 0, &
+            'measure of the error that ends the iteration, see README', 'forces|residual|correction'), &
       key_t('stage', 'max_iterations', 'i', '12', 1, 1000, 'Newton: linear solves before the step is cut'), &
       key_t('stage', 'predictor', 'w', 'rates', 0, 0, 'start of the iteration', 'rates|none'), &
       key_t('stage', 'start', 'w', 'solve', 0, 0, 'accelerations at the start of a dynamic stage', 'solve|zero'), &
-      key_t('stage', 'zero_displacements', 'w', 'no', 0, 0, 'at the end of the stage', 'no|yes'), &
+      key_t('stage', 'zero_displacements', 'w', 'no', 0, 0, &
+            'displacements are set to zero at the end of the stage', 'no|yes'), &
       key_t('stage', 'every', 'i', '1', 1, 1000000, 'histories are written every so many steps'), &
-      key_t('stage', 'fields', 'i', '0', 0, 1000000, 'fields too; 0: at the end of the stage alone'), &
+      key_t('stage', 'fields', 'i', '0', 0, 1000000, &
+            'fields are written every so many steps; 0: at the end of the stage'), &
       key_t('fix', 'group', 't', REQUIRED, 0, 0, 'boundary, region or node group'), &
       key_t('fix', 'field', 'w', REQUIRED, 0, 0, 'what is prescribed', 'u_r|u_z|p_w|p_c|p_a'), &
-      key_t('fix', 'value', 'n', '0', -BIG, BIG, 'its value [m, kPa]'), &
+      key_t('fix', 'value', 'n', '0', -BIG, BIG, 'prescribed value [m, kPa]'), &
       key_t('fix', 'history', 't', NONE, 0, 0, 'factor on the value'), &
       key_t('fix', 'hold', 'w', 'no', 0, 0, 'yes: at its value at the start of the stage', 'no|yes'), &
       key_t('fix', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
       key_t('fix', 'from', 'n', NONE, -BIG, BIG, 'acts after this time [s]'), &
-      key_t('fix', 'until', 'n', NONE, -BIG, BIG, 'and up to this one [s]'), &
+      key_t('fix', 'until', 'n', NONE, -BIG, BIG, 'acts up to this time [s]'), &
       key_t('load', 'group', 't', REQUIRED, 0, 0, 'boundary (for force: node group)'), &
-      key_t('load', 'kind', 'w', REQUIRED, 0, 0, 'see README', 'pressure|shear_r|shear_z|water|air|force_r|force_z'), &
-      key_t('load', 'value', 'n', REQUIRED, -BIG, BIG, 'its value [kPa, m/s, kN]'), &
+      key_t('load', 'kind', 'w', REQUIRED, 0, 0, &
+            'kind of load, see README', 'pressure|shear_r|shear_z|water|air|force_r|force_z'), &
+      key_t('load', 'value', 'n', REQUIRED, -BIG, BIG, 'value of the load [kPa, m/s, kN]'), &
       key_t('load', 'history', 't', NONE, 0, 0, 'factor on the value'), &
       key_t('load', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
-      key_t('rigid', 'group', 't', REQUIRED, 0, 0, 'boundary that moves vertically as one body'), &
-      key_t('rigid', 'mass', 'n', '0', 0, BIG, 'its mass [Mg]'), &
-      key_t('rigid', 'force', 'n', '0', -BIG, BIG, 'force on it, upwards [kN]'), &
-      key_t('rigid', 'history', 't', NONE, 0, 0, 'factor on the force'), &
       key_t('plate', 'name', 't', REQUIRED, 0, 0, 'rigid plate, vertical; also a group for &fix and &load'), &
-      key_t('plate', 'r', 'N', REQUIRED, -BIG, BIG, 'where its flat face begins and ends [m]'), &
-      key_t('plate', 'z', 'n', '0', -BIG, BIG, 'height of the face at the start [m]'), &
-      key_t('plate', 'face', 'w', 'down', 0, 0, 'where the face looks', 'down|up'), &
-      key_t('plate', 'mass', 'n', REQUIRED, TINY_, BIG, 'its mass [Mg]'), &
-      key_t('plate', 'weight', 'w', 'no', 0, 0, 'its weight acts; it starts seated on the penalty', 'no|yes'), &
-      key_t('plate', 'force', 'n', '0', -BIG, BIG, 'force on it, upwards [kN]'), &
+      key_t('plate', 'r', 'N', NONE, -BIG, BIG, 'where a flat face of its own begins and ends [m]; or:'), &
+      key_t('plate', 'group', 't', NONE, 0, 0, 'boundary of the mesh that is joined to it and moves with it'), &
+      key_t('plate', 'z', 'n', '0', -BIG, BIG, 'height of a face of its own at the start [m]'), &
+      key_t('plate', 'face', 'w', 'down', 0, 0, 'where a face of its own looks', 'down|up'), &
+      key_t('plate', 'mass', 'n', REQUIRED, TINY_, BIG, 'mass of the plate [Mg]'), &
+      key_t('plate', 'weight', 'w', 'no', 0, 0, &
+            'its weight acts, and it starts seated on the penalty of its contact', 'no|yes'), &
+      key_t('plate', 'force', 'n', '0', -BIG, BIG, 'force on the plate, upwards [kN]'), &
       key_t('plate', 'history', 't', NONE, 0, 0, 'factor on the force'), &
       key_t('contact', 'name', 't', REQUIRED, 0, 0, 'name in contact.csv'), &
       key_t('contact', 'slave', 't', REQUIRED, 0, 0, 'boundary that is integrated over: the softer or finer one'), &
       key_t('contact', 'master', 't', REQUIRED, 0, 0, 'boundary opposite, or name of a &plate'), &
       key_t('contact', 'penalty', 'n', '1.0e8', TINY_, BIG, 'pressure of a unit of penetration [kN/m3]'), &
       key_t('contact', 'gap', 'w', 'nodal', 0, 0, 'gap that is penalised, see CONTACT.md', 'nodal|pointwise'), &
-      key_t('contact', 'variation', 'w', 'pressure', 0, 0, 'force, see CONTACT.md', 'pressure|energy'), &
-      key_t('contact', 'reach', 'n', '0', 0, BIG, 'edges farther apart do not meet [m]; 0: an edge''s own length'), &
+      key_t('contact', 'variation', 'w', 'pressure', 0, 0, &
+            'what gives the contact force, see CONTACT.md', 'pressure|energy'), &
+      key_t('contact', 'search_radius', 'n', '0', 0, BIG, &
+            'edges farther apart do not meet [m]; 0: length of the slave edge'), &
       key_t('contact', 'drainage', 'w', 'fixed', 0, 0, &
             'state: &fix of pressures let touching nodes go', 'fixed|state'), &
       key_t('contact', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
@@ -162,11 +172,35 @@ contains
       integer :: g
 
       do g = 1, size(groups)
+         call check_renamed(groups(g), fault)
+         if (fault%code /= 0) return
          ! The library knows the parameters of &mud.
          call check_group(KEYS, groups(g), groups(g)%name == 'mud', fault)
          if (fault%code /= 0) return
       end do
    end subroutine check_keys
+
+   !> Groups and keys of older scenes: the fault names the new ones.
+   subroutine check_renamed(group, fault)
+      type(group_t), intent(in) :: group
+      type(fault_t), intent(inout) :: fault
+
+      if (group%name == 'rigid') then
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&rigid is &plate now: &plate name = ... '// &
+                    'group = ... mass = ... with the same force and history.')
+      else if (group%name == 'contact' .and. given(group, 'reach')) then
+         call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, 'reach'))//'the key reach of &contact is '// &
+                    'search_radius now.')
+      end if
+   end subroutine check_renamed
+
+   !> Number of a word among the words of its key, from 1; 0 where the key has no value.
+   integer function word_number(group, name) result(number)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: name
+
+      number = findloc(words_of(KEYS(place_of(KEYS, group%name, name))), lower_case(text_of(group, name)), dim=1)
+   end function word_number
 
    !> Value of a number, or its default (0 if it has none).
    real(wp) function number_of(group, name)

@@ -1,6 +1,6 @@
 !> Names of a scene: what others name is there once, and what becomes a file or a column has a name fit for it.
 module scene_names
-   use triangle_mesh, only: NAME_LENGTH
+   use scene_types, only: NAME_LENGTH
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use namelists, only: group_t, find_entry
    use texts, only: whole

@@ -18,7 +18,8 @@ module newton_step
    implicit none (type, external)
    private
    public :: constraint_t, control_t, log_t, system_t, take_step, start_accelerations
-   public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, MEASURES
+   public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION
+   public :: T_ASSEMBLY, T_FACTORISATION, T_SOLUTION, T_REST, T_MATERIAL, T_CONTACT
    public :: CONVERGED, NOT_CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
 
    integer, parameter :: CONVERGED = 0, NOT_CONVERGED = 1, MATERIAL_FAILED = 2, BODY_FREE = 3, SOLVER_FAILED = 4, &
@@ -27,7 +28,8 @@ module newton_step
    integer, parameter :: BY_RESIDUAL = 2     !< |R|/|R_0| of all unknowns together, whatever their units,
                                              !< or |R|/|R_1| where R_1 is larger;
    integer, parameter :: BY_CORRECTION = 3   !< |dx|/|x| of the worst field.
-   character(10), parameter :: MEASURES(3) = [character(10) :: 'forces', 'residual', 'correction']   !< Their names.
+   integer, parameter :: TIMERS = 6, T_ASSEMBLY = 1, T_FACTORISATION = 2, T_SOLUTION = 3, T_REST = 4, T_MATERIAL = 5, &
+                         T_CONTACT = 6
    real(wp), parameter :: HISTORY_SHARE = 1.0e-6_wp   !< Share of the largest scale so far that still counts.
    real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Of strain rates and parts of fluxes, see above.
    real(wp), parameter :: ROUNDING = 1.0e-12_wp       !< Of all contributions: no residual to begin with is smaller.
@@ -51,7 +53,7 @@ module newton_step
    type :: control_t
       real(wp) :: tolerance = 1.0e-3_wp
       integer :: max_iterations = 12
-      logical :: still = .false.              !< Predict no change.
+      logical :: no_predictor = .false.              !< Predict no change.
       integer :: measure = BY_FORCES          !< What has to fall below the tolerance.
    end type control_t
 
@@ -63,7 +65,7 @@ module newton_step
       real(wp) :: reduction = 0.0_wp          !< |R| over the larger of |R_0| and |R_1|.
       real(wp) :: correction = 0.0_wp         !< |dx|/|x|, the worst field.
       integer :: worst_field = 0, worst_unknown = 0
-      integer :: effort = 0                   !< Rate evaluations of the material.
+      integer :: rate_evaluations = 0                   !< Rate evaluations of the material.
    end type log_t
 
    type :: system_t
@@ -74,10 +76,10 @@ module newton_step
       logical :: factored = .false.           !< There are factors worth trying.
       logical, allocatable :: fixed(:), air(:)   !< What was fixed when they were made,
       integer :: active = 0                   !< and how many nodes were in contact.
-      logical :: eager = .false.              !< The last step needed several iterations: slopes at every pass.
+      logical :: reassemble_tangent = .false.    !< In every iteration: the last step needed several.
       real(wp) :: largest(FIELDS) = 0.0_wp    !< Largest scale of every field so far.
       real(wp), allocatable :: reaction(:)    !< Residual with the constrained rows kept.
-      real(wp) :: seconds(6) = 0.0_wp         !< Assembly, factorisation, solution, the rest, material, contact.
+      real(wp) :: seconds(TIMERS) = 0.0_wp    !< Wall time, by T_...
       integer :: n_pass = 0
    end type system_t
 contains
@@ -103,7 +105,7 @@ contains
       allocate (rhs(dofs%n), dx(dofs%n))
       new%time = old%time + scheme%dt
       assembly%air = constraint%air
-      call predict(scheme, control%still, old%x, old%v, old%a, new%x)
+      call predict(scheme, control%no_predictor, old%x, old%v, old%a, new%x)
       call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
       norm_0 = -1.0_wp
       with_slope = .true.
@@ -119,7 +121,7 @@ contains
             if (good_enough(control, log)) exit
             if (log%iterations >= control%max_iterations .or. .not. all(log%error < HOPELESS)) then
                log%outcome = NOT_CONVERGED
-               system%eager = .true.
+               system%reassemble_tangent = .true.
                return
             end if
             ! The slopes at the present values, where the last pass left them out.
@@ -142,10 +144,10 @@ contains
          log%iterations = log%iterations + 1
          call add_correction(dofs, dx, new%x, log%correction)
          call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
-         with_slope = system%eager
+         with_slope = system%reassemble_tangent
       end do
-      system%eager = log%iterations > 1
-      call lap(system%seconds(4), t0)
+      system%reassemble_tangent = log%iterations > 1
+      call lap(system%seconds(T_REST), t0)
    contains
       !> Residual, with minus sign in rhs, and slopes; false if the material refuses.
       logical function pass(slopes)
@@ -153,28 +155,28 @@ contains
          real(wp) :: spent
 
          spent = 0.0_wp
-         call lap(system%seconds(4), t0)
+         call lap(system%seconds(T_REST), t0)
          pass = look_at_contacts(system, dofs, pattern, old%x + scheme%l_f*(new%x - old%x), slopes, assembly)
          if (.not. pass) log%outcome = CONTACT_FAILED
          if (.not. pass) return
-         call lap(system%seconds(6), t0)
+         call lap(system%seconds(T_CONTACT), t0)
          call assemble(domain, dofs, pattern, scheme, old, new, slopes, assembly)
          system%n_pass = system%n_pass + 1
-         log%effort = log%effort + assembly%effort
+         log%rate_evaluations = log%rate_evaluations + assembly%rate_evaluations
          pass = assembly%bad_element == 0
          call lap(spent, t0)
-         system%seconds(5) = system%seconds(5) + spent*assembly%material
-         system%seconds(1) = system%seconds(1) + spent*(1 - assembly%material)
+         system%seconds(T_MATERIAL) = system%seconds(T_MATERIAL) + spent*assembly%material
+         system%seconds(T_ASSEMBLY) = system%seconds(T_ASSEMBLY) + spent*(1 - assembly%material)
          if (.not. pass) then
             log%outcome = MATERIAL_FAILED
             return
          end if
          call add_bodies(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
-         if (allocated(system%contacts%touch)) then
-            call lap(system%seconds(4), t0)
+         if (allocated(system%contacts%interfaces)) then
+            call lap(system%seconds(T_REST), t0)
             call add_contacts(system%contacts, pattern, scheme%l_f, slopes, assembly%residual, assembly%scale, &
                               assembly%values)
-            call lap(system%seconds(6), t0)
+            call lap(system%seconds(T_CONTACT), t0)
          end if
          rhs = constraint%load_0 + scheme%l_f*(constraint%load_1 - constraint%load_0) - constraint%offset
          call loads_of_water(dofs, constraint%air, rhs)
@@ -221,13 +223,13 @@ contains
          if (is_body(constraint, i)) weight(i) = 1/body_scale(assembly, system%largest, i)
       end do
       active = 0
-      if (allocated(system%contacts%touch)) active = sum(system%contacts%touch%active)
+      if (allocated(system%contacts%interfaces)) active = sum(system%contacts%interfaces%active)
       if (system%factored) system%factored = system%reuse .and. active == system%active &
          .and. all(constraint%fixed .eqv. system%fixed) .and. all(constraint%air .eqv. system%air)
       if (system%factored) then
          call solve_by_factors(system%sparse, assembly%values, rhs, weight, LINEAR_SHARE*tolerance, MOST_STEPS, dx, &
                                steps, status)
-         call lap(system%seconds(3), t0)
+         call lap(system%seconds(T_SOLUTION), t0)
          system%factored = status == SOLVED .and. steps < WORN_STEPS
          if (status == SOLVED) return
       end if
@@ -236,7 +238,7 @@ contains
          system%analysed = .true.
       end if
       call factorise(system%sparse, assembly%values, status)
-      call lap(system%seconds(2), t0)
+      call lap(system%seconds(T_FACTORISATION), t0)
       system%factored = status == SOLVED
       if (status /= SOLVED) return
       system%fixed = constraint%fixed
@@ -246,7 +248,7 @@ contains
                             steps, status)
       ! What rounding leaves is Newton's to judge.
       if (status == INACCURATE) status = SOLVED
-      call lap(system%seconds(3), t0)
+      call lap(system%seconds(T_SOLUTION), t0)
    end subroutine solve_step
 
    !> Accelerations that the loads and stresses of a state ask for, its displacements, velocities and pressures held.
@@ -286,7 +288,7 @@ contains
          return
       end if
       call add_bodies(dofs, pattern, scheme, held, state, work, .true., assembly)
-      if (allocated(system%contacts%touch)) call add_contacts(system%contacts, pattern, 0.0_wp, .false., &
+      if (allocated(system%contacts%interfaces)) call add_contacts(system%contacts, pattern, 0.0_wp, .false., &
                                                     assembly%residual, assembly%scale, assembly%values)
       rhs = held%load_0 - held%offset - assembly%residual
       call constrain(dofs, pattern, held, 0.0_wp*state%x, assembly%values, rhs)
@@ -320,7 +322,7 @@ contains
       logical :: changed
 
       good = .true.
-      if (.not. allocated(system%contacts%touch)) return
+      if (.not. allocated(system%contacts%interfaces)) return
       good = evaluate_contacts(system%contacts, x, slopes)
       if (.not. good .or. .not. slopes) return
       call fit_pattern(system%contacts, dofs, pattern, changed)

@@ -51,14 +51,14 @@ contains
    end function make_scheme
 
    !> First guess of the new values: constant acceleration, constant pressure rates; or, with `still`, no change.
-   pure subroutine predict(scheme, still, x0, v0, a0, x1)
+   pure subroutine predict(scheme, no_predictor, x0, v0, a0, x1)
       type(scheme_t), intent(in) :: scheme
-      logical, intent(in) :: still
+      logical, intent(in) :: no_predictor
       real(wp), intent(in) :: x0(:, :), v0(:, :), a0(:, :)
       real(wp), intent(out) :: x1(:, :)
 
       x1 = x0
-      if (still .or. scheme%kind == STATIC) return
+      if (no_predictor .or. scheme%kind == STATIC) return
       x1 = x0 + scheme%dt*v0
       if (scheme%kind == DYNAMIC) x1(1:2, :) = x1(1:2, :) + 0.5_wp*scheme%dt**2*a0
    end subroutine predict

@@ -153,5 +153,5 @@ CONTACT = [
     ("a released node stays so", (DRAINAGE, "drainage%released = .false.\n      do c", "do c")),
     ("a boundary that touches the slave gives way too",
      (DRAINAGE, "shared .or. all(in_group(edges(:, e)))", "shared .or. any(in_group(edges(:, e)))")),
-    ("drainage in every stage", (DRAINAGE, " .or. .not. contacts%touch(c)%acts) cycle", ") cycle")),
+    ("drainage in every stage", (DRAINAGE, " .or. .not. contacts%interfaces(c)%acts) cycle", ") cycle")),
 ]

@@ -2,8 +2,11 @@
 module host_problems
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use host_read, only: read_scene
-   use time_stepping, only: run_t, prepare_run
+   use model_builder, only: build_model
+   use scene_reader, only: read_scene
+   use scene_types, only: scene_t
+   use run_setup, only: prepare_run
+   use run_state, only: run_t
    use model_types, only: model_t
    use faults, only: fault_t
    implicit none (type, external)
@@ -29,6 +32,7 @@ contains
       type(model_t), intent(out) :: model
       type(run_t), intent(out) :: run
       type(fault_t), intent(inout) :: fault
+      type(scene_t) :: scene
       character(64) :: file
       integer(int64) :: tick
       integer :: unit
@@ -39,7 +43,8 @@ contains
       open (newunit=unit, file=file, status='replace', action='write')
       write (unit, '(a)') text
       close (unit)
-      call read_scene(trim(file), model, fault)
+      call read_scene(trim(file), scene, fault)
+      if (fault%code == 0) call build_model(scene, model, fault)
       if (fault%code == 0) call prepare_run(model, run, fault)
       if (fault%code /= 0) write (*, '(a)') trim(fault%text)
       open (newunit=unit, file=file, status='old')

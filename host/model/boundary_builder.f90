@@ -1,0 +1,183 @@
+!> Supports, loads, initial conditions, plates and contacts of a scene, with the groups of the mesh that they name.
+module boundary_builder
+   use kinds, only: wp
+   use faults, only: fault_t, raise, EXIT_INPUT
+   use contact_types, only: contact_options_t, NODAL_GAP, POINTWISE_GAP, PRESSURE_WORK, ENERGY_SLOPE
+   use exit_codes, only: EXIT_GROUP
+   use model_types, only: model_t, initial_t, fix_t, load_t, plate_t, contact_pair_t, PRESCRIBED_P_A
+   use name_search, only: mesh_group, defined_name
+   use scene_types, only: scene_t, scene_initial_t, scene_fix_t, scene_load_t, scene_plate_t, scene_contact_t, &
+                          acts_in, place_of, FIX_P_W, FIX_P_C, LOAD_WATER, LOAD_AIR, LOAD_FORCE_R
+   use triangle_mesh, only: find_group, add_group
+   use unknown_fields, only: FIELD_NAMES, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
+   implicit none (type, external)
+   private
+   public :: build_plates, build_boundaries
+
+   character(3), parameter :: WORD_OF(*) = [FIELD_NAMES, 'p_a']
+   integer, parameter :: FIELD_OF(*) = [AT_U_R, AT_U_Z, AT_P_W, AT_P_C, PRESCRIBED_P_A]   !< Of the words of &fix field.
+contains
+   !> Plates come first: those with a face of their own become nodes of the mesh, and all become groups of it.
+   subroutine build_plates(scene, model, fault)
+      type(scene_t), intent(in) :: scene
+      type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
+      integer :: i
+
+      allocate (model%plates(size(scene%plates)), model%domain%bodies(0))
+      do i = 1, size(scene%plates)
+         call build_plate(scene%plates(i), model, model%plates(i), fault)
+         if (fault%code /= 0) return
+      end do
+   end subroutine build_plates
+
+   subroutine build_plate(given, model, plate, fault)
+      type(scene_plate_t), intent(in) :: given
+      type(model_t), intent(inout) :: model
+      type(plate_t), intent(inout) :: plate
+      type(fault_t), intent(inout) :: fault
+      integer :: none(3, 0)
+
+      plate%scene_plate_t = given
+      plate%amplitude = amplitude_of(given%amplitude_name, place_of(given), model, fault)
+      if (fault%code /= 0) return
+      associate (mesh => model%domain%mesh)
+         if (find_group(mesh, trim(given%name)) > 0) then
+            call raise(fault, EXIT_GROUP, place_of(given)//'the mesh has a group '''//trim(given%name)// &
+                       ''' already; give the plate another name.')
+            return
+         end if
+         if (given%joined_name == '') then
+            mesh%x = reshape([mesh%x, given%r(1), given%z], [2, size(mesh%x, 2) + 1])
+            plate%node = size(mesh%x, 2)
+            call add_group(mesh, trim(given%name), [integer ::], none, [plate%node])
+            model%domain%bodies = [model%domain%bodies, plate%node]
+         else
+            plate%group = mesh_group(mesh, given%joined_name, place_of(given), fault)
+            if (fault%code /= 0) return
+            plate%node = mesh%groups(plate%group)%nodes(1)
+            call add_group(mesh, trim(given%name), [integer ::], none, mesh%groups(plate%group)%nodes)
+         end if
+      end associate
+   end subroutine build_plate
+
+   subroutine build_boundaries(scene, model, fault)
+      type(scene_t), intent(in) :: scene
+      type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
+      integer :: i
+
+      allocate (model%initials(size(scene%initials)), model%fixes(size(scene%fixes)), model%loads(size(scene%loads)), &
+                model%contacts(size(scene%contacts)))
+      do i = 1, size(scene%initials)
+         if (fault%code == 0) call build_initial(scene%initials(i), model, model%initials(i), fault)
+      end do
+      do i = 1, size(scene%fixes)
+         if (fault%code == 0) call build_fix(scene%fixes(i), model, model%fixes(i), fault)
+      end do
+      do i = 1, size(scene%loads)
+         if (fault%code == 0) call build_load(scene%loads(i), model, model%loads(i), fault)
+      end do
+      do i = 1, size(scene%contacts)
+         if (fault%code == 0) call build_contact(scene%contacts(i), model, model%contacts(i), fault)
+      end do
+   end subroutine build_boundaries
+
+   !> Place of an amplitude, 0 where none is named.
+   integer function amplitude_of(name, place, model, fault) result(amplitude)
+      character(*), intent(in) :: name, place
+      type(model_t), intent(in) :: model
+      type(fault_t), intent(inout) :: fault
+
+      amplitude = 0
+      if (name /= '') amplitude = defined_name('history', name, model%amplitudes%name, place, fault)
+   end function amplitude_of
+
+   subroutine build_initial(given, model, initial, fault)
+      type(scene_initial_t), intent(in) :: given
+      type(model_t), intent(in) :: model
+      type(initial_t), intent(inout) :: initial
+      type(fault_t), intent(inout) :: fault
+
+      initial%scene_initial_t = given
+      initial%group = mesh_group(model%domain%mesh, given%group_name, place_of(given), fault)
+   end subroutine build_initial
+
+   subroutine build_fix(given, model, fix, fault)
+      type(scene_fix_t), intent(in) :: given
+      type(model_t), intent(in) :: model
+      type(fix_t), intent(inout) :: fix
+      type(fault_t), intent(inout) :: fault
+
+      fix%scene_fix_t = given
+      fix%group = mesh_group(model%domain%mesh, given%group_name, place_of(given), fault)
+      if (fault%code == 0) fix%amplitude = amplitude_of(given%amplitude_name, place_of(given), model, fault)
+      if (fault%code /= 0) return
+      fix%field = FIELD_OF(given%field_number)
+      if ((given%field_number == FIX_P_W .and. .not. model%domain%with_w) .or. &
+          (given%field_number >= FIX_P_C .and. .not. model%domain%with_c)) call raise(fault, EXIT_INPUT, &
+         place_of(given)//'the scene has no field '//WORD_OF(given%field_number)//'; see fields in &scene.')
+   end subroutine build_fix
+
+   subroutine build_load(given, model, load, fault)
+      type(scene_load_t), intent(in) :: given
+      type(model_t), intent(in) :: model
+      type(load_t), intent(inout) :: load
+      type(fault_t), intent(inout) :: fault
+
+      load%scene_load_t = given
+      load%group = mesh_group(model%domain%mesh, given%group_name, place_of(given), fault)
+      if (fault%code == 0) load%amplitude = amplitude_of(given%amplitude_name, place_of(given), model, fault)
+      if (fault%code /= 0) return
+      if (given%kind < LOAD_FORCE_R .and. size(model%domain%mesh%groups(load%group)%edges, 2) == 0) then
+         call raise(fault, EXIT_GROUP, place_of(given)//'group '''//trim(given%group_name)//''' has no edges to load.')
+      else if ((given%kind == LOAD_WATER .and. .not. model%domain%with_w) .or. &
+               (given%kind == LOAD_AIR .and. .not. model%domain%with_c)) then
+         call raise(fault, EXIT_INPUT, place_of(given)//'the scene has no field for such an inflow; see '// &
+                    'fields in &scene.')
+      end if
+   end subroutine build_load
+
+   subroutine build_contact(given, model, contact, fault)
+      type(scene_contact_t), intent(in) :: given
+      type(model_t), intent(in) :: model
+      type(contact_pair_t), intent(inout) :: contact
+      type(fault_t), intent(inout) :: fault
+      integer :: i
+
+      contact%scene_contact_t = given
+      contact%slave = mesh_group(model%domain%mesh, given%slave_name, place_of(given), fault)
+      if (fault%code == 0) contact%master = mesh_group(model%domain%mesh, given%master_name, place_of(given), fault)
+      if (fault%code /= 0) return
+      do i = 1, size(model%plates)
+         if (model%plates(i)%name /= given%master_name) cycle
+         ! A plate that is joined to a boundary has no other surface than this.
+         if (model%plates(i)%group == 0) contact%plate = i
+         if (model%plates(i)%group > 0) contact%master = model%plates(i)%group
+      end do
+      associate (groups => model%domain%mesh%groups)
+         if (contact%slave == contact%master) then
+            call raise(fault, EXIT_GROUP, place_of(given)//'slave and master are one boundary, '''// &
+                       trim(given%slave_name)//'''; name the two that meet.')
+            return
+         else if (size(groups(contact%slave)%edges, 2) == 0 .or. &
+                  (contact%plate == 0 .and. size(groups(contact%master)%edges, 2) == 0)) then
+            call raise(fault, EXIT_GROUP, place_of(given)//'slave and master need edges: a boundary of the mesh '// &
+                       '(the master may be a plate).')
+            return
+         end if
+      end associate
+      do i = 1, size(model%stages)
+         if (model%stages(i)%zero_displacements .and. acts_in(given%stages, model%stages(i)%name)) then
+            call raise(fault, EXIT_INPUT, place_of(given)//'stage '''//trim(model%stages(i)%name)// &
+                       ''' zeroes its displacements, which would undo the contact; name the stages of the contact.')
+            return
+         end if
+      end do
+      if (given%drains_by_state .and. .not. model%domain%with_w) call raise(fault, EXIT_INPUT, place_of(given)// &
+         'drainage = ''state'' needs pressures; see fields in &scene.')
+      contact%options = contact_options_t(penalty=given%penalty, search_radius=given%search_radius, &
+         axisymmetric=model%domain%axisymmetric, gap=merge(NODAL_GAP, POINTWISE_GAP, given%nodal_gap), &
+         variation=merge(PRESSURE_WORK, ENERGY_SLOPE, given%pressure_work))
+   end subroutine build_contact
+end module boundary_builder

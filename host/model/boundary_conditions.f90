@@ -1,0 +1,94 @@
+!> What a step prescribes: displacements, pore pressures and air pressures at its end, and the masses of plates.
+module boundary_conditions
+   use kinds, only: wp
+   use contact_drainage, only: drainage_t, is_released
+   use degrees_of_freedom, only: dofs_t
+   use generalised_alpha, only: STATIC
+   use model_types, only: model_t, stage_t, factor_at, PRESCRIBED_P_A
+   use newton_step, only: constraint_t
+   use scene_types, only: acts_in
+   use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C, DISPLACEMENTS
+   implicit none (type, external)
+   private
+   public :: new_constraint, constrain_step
+
+   real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
+contains
+   !> Nothing prescribed, nothing loaded; plates have their mass.
+   function new_constraint(model, dofs) result(constraint)
+      type(model_t), intent(in) :: model
+      type(dofs_t), intent(in) :: dofs
+      type(constraint_t) :: constraint
+      integer :: i, nodes
+
+      nodes = size(model%domain%mesh%x, 2)
+      allocate (constraint%fixed(dofs%n), source=.false.)
+      allocate (constraint%air(nodes), source=.false.)
+      allocate (constraint%target(dofs%n), constraint%load_0(dofs%n), constraint%load_1(dofs%n), &
+                constraint%offset(dofs%n), constraint%mass(dofs%n), source=0.0_wp)
+      allocate (constraint%air_target(nodes), source=0.0_wp)
+      do i = 1, size(model%plates)
+         constraint%mass(dofs%of(AT_U_Z, model%plates(i)%node)) = model%plates(i)%mass
+      end do
+   end function new_constraint
+
+   !> Prescribed values at the end of a step; x_start: unknowns at the start of the stage, which some are held at.
+   subroutine constrain_step(model, stage, dofs, drainage, time, x_start, constraint)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(dofs_t), intent(in) :: dofs
+      type(drainage_t), intent(in) :: drainage
+      real(wp), intent(in) :: time, x_start(:, :)
+      type(constraint_t), intent(inout) :: constraint
+      real(wp) :: value
+      integer :: i, k, node, at
+
+      constraint%fixed = .false.
+      constraint%air = .false.
+      do i = 1, size(model%fixes)
+         associate (fix => model%fixes(i))
+            if (.not. acts_in(fix%stages, stage%name)) cycle
+            if (time <= fix%from .or. time > fix%until + ROUNDING*abs(time)) cycle
+            value = fix%value*factor_at(model, fix%amplitude, time)
+            do k = 1, size(model%domain%mesh%groups(fix%group)%nodes)
+               node = model%domain%mesh%groups(fix%group)%nodes(k)
+               if (is_released(drainage, i, node)) cycle
+               if (fix%field == PRESCRIBED_P_A) then
+                  if (dofs%of(AT_P_C, node) == 0) cycle
+                  constraint%air(node) = .true.
+                  constraint%air_target(node) = value
+                  if (fix%hold) constraint%air_target(node) = x_start(AT_P_W, node) + x_start(AT_P_C, node)
+               else
+                  at = dofs%of(fix%field, node)
+                  if (at == 0) cycle
+                  constraint%fixed(at) = .true.
+                  constraint%target(at) = value
+                  if (fix%hold) constraint%target(at) = x_start(fix%field, node)
+               end if
+            end do
+         end associate
+      end do
+      ! Air pressure and one of the others: then the third is known too.
+      do node = 1, size(constraint%air)
+         if (.not. constraint%air(node)) cycle
+         associate (w => dofs%of(AT_P_W, node), c => dofs%of(AT_P_C, node))
+            if (constraint%fixed(c)) then
+               constraint%target(w) = constraint%air_target(node) - constraint%target(c)
+            else if (constraint%fixed(w)) then
+               constraint%target(c) = constraint%air_target(node) - constraint%target(w)
+            else
+               cycle
+            end if
+            constraint%fixed([w, c]) = .true.
+            constraint%air(node) = .false.
+         end associate
+      end do
+      if (stage%kind /= STATIC) return
+      do i = 1, dofs%n
+         if (dofs%field(i) <= DISPLACEMENTS) cycle
+         constraint%fixed(i) = .true.
+         constraint%target(i) = x_start(dofs%field(i), dofs%node(i))
+      end do
+      constraint%air = .false.
+   end subroutine constrain_step
+end module boundary_conditions

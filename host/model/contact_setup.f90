@@ -1,0 +1,84 @@
+!> Contacts of a model at the start of a run and of a stage: set up, seated, switched.
+module contact_setup
+   use kinds, only: wp
+   use boundary_loads, only: plate_load
+   use model_types, only: model_t, stage_t
+   use scene_types, only: acts_in
+   use unknown_fields, only: AT_U_Z
+   use contact_types, only: contact_status_t, contact_message, CONTACT_OK, TWO_PI
+   use contact_interfaces, only: contacts_t, surface_t, surface_of, new_interface, plate_surface
+   use porous_domain, only: state_t
+   use faults, only: fault_t, raise, EXIT_INPUT
+   implicit none (type, external)
+   private
+   public :: prepare_contacts, seat_plates, contacts_act
+contains
+   subroutine prepare_contacts(model, contacts, fault)
+      type(model_t), intent(in) :: model
+      type(contacts_t), intent(out) :: contacts
+      type(fault_t), intent(inout) :: fault
+      type(contact_status_t) :: status
+      type(surface_t) :: master
+      character(400) :: text
+      integer :: i, node
+
+      if (size(model%contacts) == 0) return
+      allocate (contacts%interfaces(size(model%contacts)))
+      associate (mesh => model%domain%mesh)
+         do i = 1, size(model%contacts)
+            associate (one => model%contacts(i))
+               node = 0
+               if (one%plate > 0) then
+                  associate (plate => model%plates(one%plate))
+                     master = plate_surface(plate%r, plate%z, plate%up)
+                     node = plate%node
+                  end associate
+               else
+                  master = surface_of(mesh%groups(one%master)%edges, mesh%x)
+               end if
+               call new_interface(model%dofs, surface_of(mesh%groups(one%slave)%edges, mesh%x), master, node, &
+                                  one%options,  contacts%interfaces(i), status)
+               if (status%code == CONTACT_OK) cycle
+               call contact_message(status, text)
+               call raise(fault, EXIT_INPUT, 'Contact '//trim(one%name)//': '//trim(text)//'.')
+               return
+            end associate
+         end do
+      end associate
+   end subroutine prepare_contacts
+
+   !> A heavy plate starts where the penalty alone carries what acts on it downwards: so it is held from the first
+   !> iteration on.
+   subroutine seat_plates(model, contacts, state)
+      type(model_t), intent(in) :: model
+      type(contacts_t), intent(in) :: contacts
+      type(state_t), intent(inout) :: state
+      real(wp) :: area, load
+      integer :: i
+
+      if (.not. allocated(contacts%interfaces)) return
+      do i = 1, size(model%contacts)
+         if (model%contacts(i)%plate == 0) cycle
+         associate (plate => model%plates(model%contacts(i)%plate))
+            load = -plate_load(model, plate, state%time)
+            if (.not. plate%heavy .or. load <= 0.0_wp .or. plate%up) cycle
+            area = plate%r(2) - plate%r(1)
+            if (model%domain%axisymmetric) area = area*0.5_wp*TWO_PI*sum(plate%r)
+            state%x(AT_U_Z, plate%node) = -load/(model%contacts(i)%options%penalty*area)
+         end associate
+      end do
+   end subroutine seat_plates
+
+   !> Which contacts take part in a stage.
+   subroutine contacts_act(model, stage, contacts)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(contacts_t), intent(inout) :: contacts
+      integer :: i
+
+      if (.not. allocated(contacts%interfaces)) return
+      do i = 1, size(model%contacts)
+         contacts%interfaces(i)%acts = acts_in(model%contacts(i)%stages, stage%name)
+      end do
+   end subroutine contacts_act
+end module contact_setup

@@ -1,0 +1,125 @@
+!> Builds the model of a scene: mesh, materials, supports, loads and contacts with every name resolved, the effects
+!> that the scene leaves open decided, the unknowns numbered.
+module model_builder
+   use kinds, only: wp
+   use faults, only: fault_t, raise, EXIT_INPUT
+   use boundary_builder, only: build_plates, build_boundaries
+   use boundary_loads, only: shape_loads, ties_of
+   use degrees_of_freedom, only: number_unknowns
+   use effect_decisions, only: derive_effects
+   use effect_types, only: effect_options_t
+   use generalised_alpha, only: STATIC, QUASI_STATIC, DYNAMIC
+   use mesh_builder, only: build_mesh
+   use model_types, only: model_t, stage_t, point_t
+   use newton_step, only: BY_FORCES, BY_RESIDUAL, BY_CORRECTION
+   use porous_domain, only: fluids_t, prepare_domain
+   use region_builder, only: build_regions
+   use scene_types, only: scene_t, scene_stage_t, scene_point_t, WITH_P_W, WITH_P_C
+   use shape_functions, only: RULES
+   use texts, only: whole
+   !$ use omp_lib, only: omp_get_max_threads
+   implicit none (type, external)
+   private
+   public :: build_model
+
+   real(wp), parameter :: EARTH = 9.81_wp   !< [m/s2] Where gravity is to be derived.
+   ! Of the words of &stage analysis and measure.
+   integer, parameter :: KIND_OF(*) = [STATIC, QUASI_STATIC, DYNAMIC]
+   integer, parameter :: MEASURE_OF(*) = [BY_FORCES, BY_RESIDUAL, BY_CORRECTION]
+contains
+   subroutine build_model(scene, model, fault)
+      type(scene_t), intent(in) :: scene
+      type(model_t), intent(out) :: model
+      type(fault_t), intent(inout) :: fault
+      integer :: i
+
+      model%name = scene%name
+      model%fingerprint = scene%fingerprint
+      model%subtract_flow = scene%subtract_flow
+      model%reuse_factors = scene%reuse_factors
+      model%ordering = scene%ordering
+      model%checkpoint_steps = scene%checkpoint_steps
+      model%checkpoint_seconds = scene%checkpoint_seconds
+      model%effect_options = effect_options_t(scene%derive_effects, scene%fields_by_hand, scene%gravity_by_hand, &
+                                              scene%seepage_by_hand, scene%effects_tolerance)
+      model%amplitudes = scene%amplitudes
+      model%stages = [(stage_of(scene%stages(i)), i=1, size(scene%stages))]
+      call build_domain(scene, model, fault)
+      if (fault%code == 0) call build_plates(scene, model, fault)
+      if (fault%code == 0) call build_regions(scene, model%domain, fault)
+      if (fault%code == 0) call build_boundaries(scene, model, fault)
+      if (fault%code == 0) call prepare_domain(model%domain, fault)
+      if (fault%code /= 0) return
+      model%points = [(point_of(scene%points(i), model), i=1, size(scene%points))]
+      allocate (model%effects(0))
+      if (scene%derive_effects) call derive_effects(model, fault)
+      if (fault%code /= 0) return
+      call number_unknowns(model%domain, ties_of(model), model%dofs)
+      call shape_loads(model, model%dofs)
+   end subroutine build_model
+
+   !> Options of the domain, its mesh and its fluids.
+   subroutine build_domain(scene, model, fault)
+      type(scene_t), intent(in) :: scene
+      type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
+
+      associate (domain => model%domain, f => scene%fluids)
+         domain%axisymmetric = scene%axisymmetric
+         domain%with_c = scene%fields == WITH_P_C
+         domain%with_w = domain%with_c .or. scene%fields == WITH_P_W
+         ! All that the regions have laws for; what of it matters is derived later.
+         if (.not. scene%fields_by_hand) then
+            domain%with_c = any(scene%regions%retention_name /= '')
+            domain%with_w = domain%with_c .or. any(scene%regions%permeability_name /= '')
+         end if
+         domain%n_p = merge(3, 6, scene%linear_pressures)
+         domain%rule = scene%quadrature
+         domain%gravity = scene%gravity
+         if (.not. scene%gravity_by_hand) domain%gravity = EARTH
+         domain%seepage_inertia = scene%seepage_inertia
+         domain%full_rate = scene%full_saturation_rate
+         domain%threads = scene%threads
+         if (domain%threads == 0) then
+            domain%threads = 1
+            !$ domain%threads = omp_get_max_threads()
+         end if
+         domain%fluids = fluids_t(f%k_w, f%rho_w, f%eta_w, f%k_a, f%rho_a, f%eta_a, f%ideal_gas, f%p_ref)
+         if (.not. any(RULES == domain%rule)) call raise(fault, EXIT_INPUT, trim(scene%file)//': quadrature = '// &
+            whole(domain%rule)//': there are rules of 3, 6, 7 and 12 points.')
+         if (fault%code == 0) call build_mesh(scene%mesh, domain%mesh, fault)
+      end associate
+   end subroutine build_domain
+
+   pure function stage_of(given) result(stage)
+      type(scene_stage_t), intent(in) :: given
+      type(stage_t) :: stage
+
+      stage%scene_stage_t = given
+      stage%derived = given%analysis == 0
+      ! A derived stage begins as the general one.
+      stage%kind = DYNAMIC
+      if (.not. stage%derived) stage%kind = KIND_OF(given%analysis)
+      stage%measure = MEASURE_OF(given%measure_number)
+   end function stage_of
+
+   !> The node and the quadrature point nearest to a point.
+   function point_of(given, model) result(point)
+      type(scene_point_t), intent(in) :: given
+      type(model_t), intent(in) :: model
+      type(point_t) :: point
+      logical :: vertex(size(model%domain%mesh%x, 2))
+      integer :: e, g, i
+
+      point%scene_point_t = given
+      associate (m => model%domain)
+         ! Where pressures are linear only vertices have them.
+         vertex = .false.
+         do e = 1, size(m%mesh%t6, 2)
+            vertex(m%mesh%t6(1:m%n_p, e)) = .true.
+         end do
+         point%node = minloc([(norm2(m%mesh%x(:, i) - given%x), i=1, size(m%mesh%x, 2))], 1, mask=vertex)
+         point%gauss = minloc([((norm2(m%gauss(g, e)%x - given%x), g=1, m%rule), e=1, size(m%mesh%t6, 2))], 1)
+      end associate
+   end function point_of
+end module model_builder

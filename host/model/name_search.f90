@@ -1,0 +1,43 @@
+!> Names that a scene uses for what is defined elsewhere in it, or in its mesh.
+module name_search
+   use faults, only: fault_t, raise
+   use exit_codes, only: EXIT_GROUP
+   use triangle_mesh, only: mesh_t, find_group
+   implicit none (type, external)
+   private
+   public :: mesh_group, defined_name
+contains
+   !> Place of a group of the mesh; a fault names those that there are.
+   integer function mesh_group(mesh, name, place, fault) result(group)
+      type(mesh_t), intent(in) :: mesh
+      character(*), intent(in) :: name, place   !< Place: where the scene says it.
+      type(fault_t), intent(inout) :: fault
+      integer :: i
+
+      group = find_group(mesh, trim(name))
+      if (group == 0) call raise(fault, EXIT_GROUP, place//'the mesh has no group '''//trim(name)//'''; it has'// &
+                                 listed([(mesh%groups(i)%name, i=1, size(mesh%groups))])//'.')
+   end function mesh_group
+
+   !> Place of a name among definitions.
+   integer function defined_name(key, name, names, place, fault) result(found)
+      character(*), intent(in) :: key, name, names(:), place
+      type(fault_t), intent(inout) :: fault
+
+      found = findloc(names == name, .true., dim=1)
+      if (found == 0) call raise(fault, EXIT_GROUP, place//key//' = '''//trim(name)// &
+                                 ''' is defined nowhere; there is'//listed(names)//'.')
+   end function defined_name
+
+   pure function listed(names) result(list)
+      character(*), intent(in) :: names(:)
+      character(:), allocatable :: list
+      integer :: i
+
+      list = ''
+      do i = 1, size(names)
+         list = list//' '//trim(names(i))
+      end do
+      if (list == '') list = ' nothing'
+   end function listed
+end module name_search

@@ -1,0 +1,140 @@
+!> What a run leaves behind while it goes on: tables, fields, checkpoints, the line of progress and warnings.
+module run_output
+   use, intrinsic :: iso_fortran_env, only: output_unit
+   use kinds, only: wp
+   use wall_clock, only: clock
+   use faults, only: fault_t, raise, EXIT_INPUT
+   use hdf5_file, only: HAS_HDF5
+   use texts, only: short, whole
+   use checkpoints, only: write_checkpoint
+   use effect_monitor, only: warning_of
+   use effect_types, only: NEVER
+   use effects_table, only: write_effects
+   use field_files, only: write_frame
+   use model_types, only: model_t
+   use output_tables, only: tables_t, open_tables, write_history, write_ledger, write_contacts, write_fields, &
+                            write_contact_nodes, close_tables
+   use progress_line, only: progress_t, show_progress, clear_progress
+   use run_observer, only: run_observer_t, step_report_t
+   use run_state, only: run_t
+   implicit none (type, external)
+   private
+   public :: run_output_t
+
+   type, extends(run_observer_t) :: run_output_t
+      character(:), allocatable :: folder
+      logical :: quiet = .false.
+      logical :: resume = .false.               !< The run goes on from a checkpoint.
+      type(tables_t) :: tables
+      type(progress_t) :: progress
+      real(wp) :: last_checkpoint = 0.0_wp      !< When it was written.
+   contains
+      procedure :: run_begins
+      procedure :: step_done
+      procedure :: stage_done
+      procedure :: run_ends
+      procedure :: warn
+   end type run_output_t
+contains
+   !> Opens the files; a new run writes its start.
+   subroutine run_begins(self, model, run, fault)
+      class(run_output_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+
+      if (.not. HAS_HDF5 .and. (model%checkpoint_steps > 0 .or. model%checkpoint_seconds > 0.0_wp)) then
+         call raise(fault, EXIT_INPUT, 'This mud_host was built without HDF5: it writes no checkpoints; leave '// &
+                    'checkpoint_steps and checkpoint_seconds out, or install HDF5 and build anew.')
+         return
+      end if
+      self%progress%quiet = self%quiet
+      self%last_checkpoint = clock()
+      call open_tables(self%folder, model, self%resume, self%tables, fault)
+      if (fault%code == 0 .and. model%effect_options%auto) call write_effects(self%folder, run%monitor%table, fault)
+      if (fault%code /= 0 .or. run%steps > 0) return
+      call write_history(self%tables, model, run%state, fault)
+      call write_frame(self%folder, model%domain, run%state, self%tables%frames, fault)
+   end subroutine run_begins
+
+   subroutine step_done(self, model, run, report, checkpoint, fault)
+      class(run_output_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(step_report_t), intent(in) :: report
+      logical, intent(out) :: checkpoint
+      type(fault_t), intent(inout) :: fault
+
+      checkpoint = .false.
+      associate (stage => model%stages(report%stage), step => run%at%step)
+         call write_ledger(self%tables, run%state%time, report, run%ledger, fault)
+         call write_contacts(self%tables, model, run%system%contacts, report%dt, run%state, run%ledger%contact, fault)
+         if (mod(step, stage%every) == 0 .or. report%last) call write_history(self%tables, model, run%state, fault)
+         if (fault%code /= 0) return
+         if (stage%fields > 0 .and. .not. report%last) then
+            if (mod(step, stage%fields) == 0) &
+               call write_frame(self%folder, model%domain, run%state, self%tables%frames, fault)
+         end if
+      end associate
+      if (fault%code /= 0) return
+      if (model%checkpoint_steps > 0) checkpoint = mod(run%steps, model%checkpoint_steps) == 0
+      if (model%checkpoint_seconds > 0.0_wp) &
+         checkpoint = clock() - self%last_checkpoint >= model%checkpoint_seconds .or. checkpoint
+      if (checkpoint) then
+         call write_checkpoint(model, run, self%tables, fault)
+         self%last_checkpoint = clock()
+         if (fault%code /= 0) return
+      end if
+      call show_progress(model, run, self%progress)
+   end subroutine step_done
+
+   !> The end of a stage; after a failure too, for what was computed.
+   subroutine stage_done(self, model, run, stage, complete, fault)
+      class(run_output_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      integer, intent(in) :: stage
+      logical, intent(in) :: complete
+      type(fault_t), intent(inout) :: fault
+      character(:), allocatable :: name
+
+      call clear_progress(self%progress)
+      name = trim(model%stages(stage)%name)
+      if (complete .and. .not. self%quiet) write (output_unit, '(a)') 'Stage '//name//': '//whole(run%at%step)// &
+         ' steps, time '//short(run%state%time)//' s, '//whole(run%iterations)//' linear solves and '// &
+         whole(run%cuts)//' cuts so far.'
+      call write_fields(self%folder, model%domain, name, run%state, fault)
+      if (fault%code == 0) call write_contact_nodes(self%folder, model, run%system%contacts, name, run%state, fault)
+      if (fault%code == 0) call write_frame(self%folder, model%domain, run%state, self%tables%frames, fault)
+   end subroutine stage_done
+
+   !> Closes the files and repeats what was seen of the effects that are off.
+   subroutine run_ends(self, model, run, fault)
+      class(run_output_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+      type(fault_t) :: last
+      integer :: i
+
+      call close_tables(self%tables, fault)
+      if (.not. model%effect_options%auto) return
+      call write_effects(self%folder, run%monitor%table, last)
+      if (fault%code == 0) fault = last
+      if (self%quiet .or. .not. any(run%monitor%table%crossed > NEVER)) return
+      write (output_unit, '(a)') 'Effects that are off and crossed their thresholds in this run:'
+      do i = 1, size(run%monitor%table)
+         if (run%monitor%table(i)%crossed > NEVER) &
+            write (output_unit, '(a)') '   '//warning_of(model, run%monitor%table(i))
+      end do
+   end subroutine run_ends
+
+   subroutine warn(self, text)
+      class(run_output_t), intent(inout) :: self
+      character(*), intent(in) :: text
+
+      if (self%quiet) return
+      call clear_progress(self%progress)
+      write (output_unit, '(a)') text
+   end subroutine warn
+end module run_output

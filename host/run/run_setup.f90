@@ -1,0 +1,58 @@
+!> The start of a run: matrix pattern, initial state, contacts, and the flow that is to be subtracted.
+module run_setup
+   use kinds, only: wp
+   use faults, only: fault_t, raise
+   use texts, only: whole
+   use boundary_conditions, only: new_constraint
+   use contact_drainage, only: prepare_drainage
+   use contact_setup, only: prepare_contacts, seat_plates
+   use effect_monitor, only: begin_monitor
+   use equation_assembly, only: make_assembly, assemble
+   use exit_codes, only: EXIT_MATERIAL
+   use generalised_alpha, only: make_scheme, DYNAMIC
+   use initial_conditions, only: initial_state
+   use model_types, only: model_t
+   use porous_domain, only: copy_state
+   use run_state, only: run_t
+   use sparsity_pattern, only: make_pattern
+   use unknown_fields, only: DISPLACEMENTS
+   implicit none (type, external)
+   private
+   public :: prepare_run
+contains
+   subroutine prepare_run(model, run, fault)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(out) :: run
+      type(fault_t), intent(inout) :: fault
+
+      run%system%reuse = model%reuse_factors
+      run%system%sparse%ordering = model%ordering
+      call make_pattern(model%dofs%n, model%dofs%element, reshape([integer ::], [2, 0]), run%pattern)
+      call make_assembly(model%domain, model%dofs, run%pattern, run%assembly)
+      run%constraint = new_constraint(model, model%dofs)
+      call initial_state(model, run%state, fault)
+      if (fault%code == 0) call prepare_contacts(model, run%system%contacts, fault)
+      if (fault%code == 0) call prepare_drainage(model, run%drainage, fault)
+      if (fault%code == 0) call seat_plates(model, run%system%contacts, run%state)
+      run%next = run%state
+      if (fault%code == 0 .and. model%effect_options%auto) call begin_monitor(model, run%state, run%monitor)
+      if (fault%code == 0 .and. model%subtract_flow) call keep_flow(model, run, fault)
+   end subroutine prepare_run
+
+   !> The flow of the initial state, to be subtracted from then on.
+   subroutine keep_flow(model, run, fault)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+
+      call assemble(model%domain, model%dofs, run%pattern, make_scheme(DYNAMIC, 1.0_wp, 1.0_wp), run%state, run%next, &
+                    .false., run%assembly)
+      if (run%assembly%bad_element > 0) then
+         call raise(fault, EXIT_MATERIAL, 'The initial state is refused by the material of element '// &
+                    whole(run%assembly%bad_element)//'.')
+         return
+      end if
+      where (model%dofs%field > DISPLACEMENTS) run%constraint%offset = -run%assembly%residual
+      call copy_state(run%state, run%next)
+   end subroutine keep_flow
+end module run_setup

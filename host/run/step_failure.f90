@@ -1,0 +1,93 @@
+!> Why a step failed for good, in one sentence.
+module step_failure
+   use kinds, only: wp
+   use faults, only: fault_t, raise
+   use texts, only: short, whole
+   use contact_types, only: contact_message
+   use exit_codes, only: EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
+   use fe_material, only: TOO_LARGE
+   use model_types, only: model_t, stage_t
+   use newton_step, only: log_t, BY_RESIDUAL, BY_CORRECTION, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
+   use run_state, only: run_t
+   use unknown_fields, only: FIELD_NAMES
+   implicit none (type, external)
+   private
+   public :: explain_failure
+contains
+   subroutine explain_failure(model, stage, run, log, time, dt, fault)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(in) :: run
+      type(log_t), intent(in) :: log
+      real(wp), intent(in) :: time, dt   !< At the end of the step, and its length [s].
+      type(fault_t), intent(inout) :: fault
+      character(600) :: text
+      character(:), allocatable :: place
+      integer :: e, node
+
+      place = 'Stage '//trim(stage%name)//', time '//short(time)//' s, step '//short(dt)//' s: '
+      associate (m => model%domain)
+         select case (log%outcome)
+         case (MATERIAL_FAILED)
+            e = run%assembly%bad_element
+            if (run%assembly%bad%code == TOO_LARGE) then
+               text = 'a strain of the step is beyond 1; the iteration did not converge or the step is far too long.'
+            else
+               call m%materials(m%regions(m%region_of(e))%material)%law%explain(run%assembly%bad, text)
+            end if
+            call raise(fault, EXIT_MATERIAL, place//'the material of element '//whole(e)//', point '// &
+                       whole(run%assembly%bad_point)//', refuses: '//trim(text))
+         case (CONTACT_FAILED)
+            call contact_message(run%system%contacts%status, text)
+            call raise(fault, EXIT_CONVERGENCE, place//trim(text)//'.')
+         case (BODY_FREE)
+            call raise(fault, EXIT_FREE_BODY, place//'the equations are singular: a body can move or a pressure is '// &
+                       'undetermined; add a &fix, or look for a region without stiffness or a plate without contact.')
+         case (SOLVER_FAILED)
+            call raise(fault, EXIT_SOLVER, place//'the linear solver failed; is there enough memory for '// &
+                       whole(model%dofs%n)//' unknowns?')
+         case default
+            node = 1
+            if (log%worst_unknown > 0) node = model%dofs%node(log%worst_unknown)
+            call raise(fault, EXIT_CONVERGENCE, place//'no convergence after '//whole(log%iterations)// &
+                       ' iterations; '//what_is_left(stage, log)//' (allowed '//short(stage%tolerance)// &
+                       '), worst at '//place_of(model, node)//'; use a smaller dt, more cuts or a better tangent.')
+         end select
+      end associate
+   end subroutine explain_failure
+
+   !> Where a node is: the plate that it stands for, or an element and the point [m].
+   function place_of(model, node) result(text)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: node
+      character(:), allocatable :: text
+      integer :: e, i
+
+      associate (mesh => model%domain%mesh)
+         i = findloc(model%plates%node, node, dim=1)
+         if (i > 0) then
+            text = 'plate '//trim(model%plates(i)%name)
+         else
+            e = findloc(any(mesh%t6 == node, dim=1), .true., dim=1)
+            text = 'node '//whole(node)//' of element '//whole(e)//', ('//short(mesh%x(1, node))//', '// &
+                   short(mesh%x(2, node))//') m'
+         end if
+      end associate
+   end function place_of
+
+   !> What was to fall below the tolerance, and where it stands.
+   function what_is_left(stage, log) result(text)
+      type(stage_t), intent(in) :: stage
+      type(log_t), intent(in) :: log
+      character(:), allocatable :: text
+
+      select case (stage%measure)
+      case (BY_RESIDUAL)
+         text = '|R|/|R_0| '//short(log%reduction)
+      case (BY_CORRECTION)
+         text = '|dx|/|x| '//short(log%correction)
+      case default
+         text = 'error of '//FIELD_NAMES(max(1, log%worst_field))//' '//short(log%error(max(1, log%worst_field)))
+      end select
+   end function what_is_left
+end module step_failure
