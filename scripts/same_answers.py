@@ -62,7 +62,7 @@ CASES = {
                                         ("value = 30", "value = 200"), ("memory_rule = 1", "memory_rule = 0")]),
     "indentation_saturated": (INDENTATION, [SHORT, IMPACT, *SATURATED]),
     "indentation_tangent": (INDENTATION, [("duration = 0.03999", "duration = 0.0003"),
-                                          ("memory_rule = 1", "memory_rule = 1\n   tangent = 3"),
+                                          ("tangent = 2", "tangent = 3"),
                                           ("gravity = 9.81", "gravity = 9.81\n   factors = 'fresh'"),
                                           ("slave = 'top'",
                                            "slave = 'top'\n   drainage = 'state'\n   gap = 'pointwise'")]),
