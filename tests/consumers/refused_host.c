@@ -7,6 +7,7 @@
  *    refused_host incremental_driver    PNEWDT enters with 0, DROT was never set
  *    refused_host abaqus NTENS          PNEWDT enters with 1
  *    refused_host contradiction         PREDEF is the suction at the end of the increment
+ *    refused_host null                  DSTRAN and NPROPS are NULL, one after the other
  *    refused_host units                 p_atm in Pa, everything else in kPa
  *    refused_host threads               eight threads fail a thousand times each, in two ways
  *    refused_host fork                  fails, forks; the child fails in the same way, then in another one */
@@ -147,6 +148,19 @@ static int fail(double strain, int nstatv, double p_atm)
    return (int)h.scd;
 }
 
+/* Without these there is nothing to compute with; the library names them. */
+static int null(void)
+{
+   host_t h;
+   double pnewdt = 1.0;
+   set_up(&h);
+   for (int i = 0; i < 2; i++)
+      umat_(h.stress, h.statev, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, i == 0 ? NULL : h.dstrain, NULL,
+            NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, &h.ntens, &h.nstatv, h.props, i == 1 ? NULL : &h.nprops,
+            NULL, NULL, &pnewdt, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL);
+   return pnewdt < 1.0 ? 0 : 1;
+}
+
 static void *fail_often(void *argument)
 {
    for (int i = 0; i < 1000; i++)
@@ -201,6 +215,8 @@ int main(int argc, char **argv)
       return abaqus_like(1.0, 0.0, 0.0, number, 0);
    if (strcmp(task, "contradiction") == 0)
       return contradiction();
+   if (strcmp(task, "null") == 0)
+      return null();
    if (strcmp(task, "units") == 0)
       return fail(1.0e-6, 0, 101325.0) + fail(1.0e-6, 0, 101325.0);
    if (strcmp(task, "threads") == 0)

@@ -78,6 +78,12 @@ for name, number, status, words in (("kratos", 60, "-2", ("given 60, needed 66",
     check(f"{name} stops with {number}", done.returncode == 1 and re.search("step 1 (did not converge|cut by 0.1)",
                                                                             done.stdout), done.stdout)
 
+done = run(host, "null")
+told = sentences(done)
+check("a NULL that must be given is named, each once, where the host names no place", done.returncode == 0 and
+      [found and (found[0], found[1], found[2].rpartition(": ")[2]) for found in told] ==
+      [("a place that the host does not name", "-7", name) for name in ("DSTRAN", "NPROPS")], done.stderr)
+
 # PREDEF of the end of the increment, growing by 1, 2 and so on: the suction runs to PREDEF + DPRED = 20 + 55 + 10 all the
 # same, and it is said where STATEV first holds something else, 22 = 21 + 1.
 done = run(host, "contradiction")
@@ -106,5 +112,26 @@ for name in ("kratos_hard", "threads", "contradiction", "calculix"):
     check(f"MUD_MESSAGES=off silences {name}", done.stderr == "" and done.stdout != "", done.stderr)
 done = run(host, "kratos_hard", MUD_MESSAGES="on")
 check("any other value of it does not", done.stderr.count("\n") == 1, done.stderr)
+
+# A solver in an archive that has a umat_ of its own, as CalculiX does: of libmud.a nothing is taken unless it is asked for.
+(work / "solver.c").write_text("void umat_(void *);\nvoid solve(void) { double s[6] = {0}; umat_(s); }\n", encoding="utf-8")
+(work / "own.c").write_text("#include <stdio.h>\nvoid umat_(void *s) { (void)s; puts(\"the solver's own umat_\"); }\n",
+                            encoding="utf-8")
+(work / "main.c").write_text("void solve(void);\nint main(void) { solve(); return 0; }\n", encoding="utf-8")
+done = run(cache["CMAKE_C_COMPILER"], *flags("C"), "-c", "solver.c", "own.c", "main.c")
+if done.returncode == 0:
+    done = run("ar", "rcs", "solver.a", "solver.o", "own.o")
+check("a solver with a umat_ of its own compiles", done.returncode == 0, done.stdout + done.stderr)
+
+
+def linked(*options):
+    """Whether the program has the umat_ of the library."""
+    made = run(cache["CMAKE_Fortran_COMPILER"], *flags("Fortran"), *options, "main.o", build / "umat/libmud.a", "solver.a",
+               "-lgomp", "-o", "solver")
+    return made.returncode == 0 and "__mud_" in run("nm", "solver").stdout
+
+
+check("the order of the README, libmud.a before the solver's archive, keeps the solver's umat_", not linked())
+check("-Wl,-u,umat_ takes that of the library", linked("-Wl,-u,umat_"))
 
 finish()
