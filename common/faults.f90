@@ -8,7 +8,7 @@ module faults
    integer, parameter :: EXIT_INPUT = 2   !< Command line, case, scene or material refused; nothing was written.
    integer, parameter :: EXIT_RUN = 3     !< The material or the control gave up; what was computed is kept.
    integer, parameter :: EXIT_OUTPUT = 4  !< The output could not be written.
-   integer, parameter :: EXIT_RESTART = 17   !< A checkpoint or its files: damaged, foreign, of another scene or version.
+   integer, parameter :: EXIT_RESTART = 17   !< A checkpoint or its files: damaged, of another scene or version.
 
    !> Outcome of a step; `code` 0 is success.
    type :: fault_t

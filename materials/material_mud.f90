@@ -4,14 +4,15 @@ module material_mud
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use key_schema, only: key_t, NONE
-   use library_tables, only: property_index, state_count, statev_index, statev_name, statev_unit
-   use material_point, only: material_t, response_t, report_t, saturation_t, NAME_LENGTH
+   use library_tables, only: property_count, property_index, property_name, property_range, state_count, statev_index, &
+                             statev_name, statev_unit
+   use material_point, only: material_t, response_t, report_t, remark_t, saturation_t, NAME_LENGTH
    use mud_interface, only: mud_report, mud_prepared_size, mud_prepare, mud_init_state, mud_update_prepared, &
                             mud_saturation, mud_save_increment, mud_message, MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, &
                             MUD_TANGENT_CONSISTENT
    use namelists, only: group_t
    use parameter_groups, only: read_parameters
-   use texts, only: from_c
+   use texts, only: from_c, short
    implicit none (type, external)
    private
    public :: mud_t, new_mud, MUD_KEYS
@@ -40,6 +41,7 @@ module material_mud
       procedure :: saturation
       procedure :: retention
       procedure :: save_update
+      procedure :: remarks
    end type mud_t
 contains
    !> The law of a group: `file`, and parameters of the library by name.
@@ -175,7 +177,8 @@ contains
                               n_tensile=0, value=report%value, lower=report%lower, upper=report%upper, &
                               reached=report%reached, pnewdt=report%factor)
       raw = c_null_char
-      if (mud_message(of_library, raw, BUFFER) < 0) write (raw, '(a,i0,2a)') 'Status ', report%code, '.', c_null_char
+      if (mud_message(of_library, raw, BUFFER) < 0) write (raw, '(a, i0, 2a)') 'Status ', report%code, '.', &
+         c_null_char
       text = from_c(raw)
    end subroutine message
 
@@ -222,4 +225,19 @@ contains
                              self%n_state, strain, suction, d_suction, self%tangent, raw, BUFFER) /= 0) &
          text = from_c(raw)
    end subroutine save_update
+
+   !> Parameters that are not the default.
+   subroutine remarks(self, list)
+      class(mud_t), intent(in) :: self
+      type(remark_t), allocatable, intent(out) :: list(:)
+      real(wp) :: lower, upper, preset
+      integer :: i
+
+      allocate (list(0))
+      do i = 1, property_count()
+         call property_range(i, lower, upper, preset)
+         if (abs(self%props(i) - preset) > 0.0_wp) list = [list, remark_t('not the default: '//property_name(i), &
+            short(self%props(i))//' (default '//short(preset)//')')]
+      end do
+   end subroutine remarks
 end module material_mud

@@ -7,7 +7,7 @@ module material_point
    use retention_curves, only: retention_t, saturation_t
    implicit none (type, external)
    private
-   public :: material_t, material_slot_t, response_t, report_t, saturation_t, state_index, swollen
+   public :: material_t, material_slot_t, response_t, report_t, remark_t, saturation_t, state_index, swollen
    public :: MOST_POINTS, MOST_GUARDS, NAME_LENGTH, WITHOUT_TANGENT, WITH_TANGENT
 
    integer, parameter :: MOST_POINTS = 12   !< Of a batch: the quadrature points of an element.
@@ -41,6 +41,12 @@ module material_point
       type(report_t) :: report
    end type response_t
 
+   !> A fact about a law, for the head of a file of results.
+   type :: remark_t
+      character(64) :: name = ''
+      character(200) :: text = ''
+   end type remark_t
+
    type, abstract :: material_t
       integer :: n_state = 0                !< State variables a point.
       logical :: has_energy = .false.       !< The stress has a potential: an elastic law.
@@ -58,6 +64,7 @@ module material_point
       procedure(of_state_i), deferred :: saturation
       procedure :: retention => retention_by_curve
       procedure :: save_update => cannot_save
+      procedure :: remarks => no_remarks
    end type material_t
 
    !> One law of a list of different ones.
@@ -134,10 +141,21 @@ contains
       real(wp), intent(in) :: stress(6), state(:), strain(6), suction, d_suction   !< As update has them.
       character(*), intent(out) :: text
 
-      associate (u1 => self, u2 => path, u3 => origin, u4 => state, u5 => stress, u6 => strain, u7 => suction, u8 => d_suction)
+      associate (u1 => self, u2 => path, u3 => origin, u4 => stress, u5 => state, u6 => strain, u7 => suction, &
+                 u8 => d_suction)
       end associate
       text = 'this law cannot write its updates to a file; only those of MUD can be run alone'
    end subroutine cannot_save
+
+   !> What a file of results says about the law beside its name.
+   subroutine no_remarks(self, list)
+      class(material_t), intent(in) :: self
+      type(remark_t), allocatable, intent(out) :: list(:)
+
+      associate (unused => self)
+      end associate
+      allocate (list(0))
+   end subroutine no_remarks
 
    !> Place of a state variable, from 1; 0 if the law has none of that name.
    pure integer function state_index(law, name) result(place)

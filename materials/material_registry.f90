@@ -85,7 +85,6 @@ contains
          return
       end if
       own = group
-      own%name = list(place)%name
       own%count = 0
       do i = 1, group%count
          associate (item => group%entries(i))
@@ -94,7 +93,9 @@ contains
             own%entries(own%count) = item
          end associate
       end do
+      list(place)%keys%group = group%name(:12)   ! errors name the group as the file does
       call check_group(list(place)%keys, own, list(place)%open, fault)
+      own%name = list(place)%name
       if (fault%code == 0) call list(place)%new(own, law, title, fault)
       call get_text(group, 'name', title)
    end subroutine new_material

@@ -31,7 +31,8 @@ contains
       title = 'defaults of the library'
       allocate (props(property_count()))
       if (mud_default_props(props, size(props)) /= 0) then
-         call raise(fault, EXIT_INPUT, 'The library refuses to fill its own defaults; program and library do not match.')
+         call raise(fault, EXIT_INPUT, 'The library refuses to fill its own defaults; program and '// &
+                    'library do not match.')
          return
       end if
       place = find_entry(group, 'file')

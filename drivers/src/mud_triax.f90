@@ -6,11 +6,12 @@ program mud_triax
    use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
    use triax_case, only: case_t, read_case
    use triax_stage, only: CONTROL_NAMES
-   use triax_point, only: point_t, library_version
+   use library_tables, only: library_version
+   use triax_point, only: point_t
    use triax_control, only: tally_t
    use triax_course, only: course_t, begin_stage, next_increment, share_done
-   use triax_output, only: table_t, clock_t, open_table, write_row, add_note, close_table, start_clock, show_progress, &
-      show_summary
+   use triax_output, only: table_t, open_table, write_row, add_note, close_table
+   use triax_progress, only: timer_t, start_timer, show_progress, show_summary
    use triax_help, only: print_help, print_template
    implicit none (type, external)
 
@@ -47,7 +48,7 @@ contains
       character(*), intent(in) :: file
       type(case_t) :: test
       type(table_t) :: table
-      type(clock_t) :: clock
+      type(timer_t) :: timer
       type(point_t) :: point
       type(course_t) :: course
       type(tally_t) :: tally
@@ -76,7 +77,7 @@ contains
       tally%residuals = option_given(options, '--residuals')
       tally%save_to = save_file
       if (tally%residuals) write (output_unit, '(a)') 'increment,iteration,error'
-      call start_clock(clock)
+      call start_timer(timer)
       point = test%start
       pressure = 0.0_wp
       increments = 0
@@ -94,7 +95,7 @@ contains
                   tally%error = 0.0_wp
                   if (fault%code /= 0) exit stages
                end if
-               if (.not. quiet) call show_progress(clock, (real(i - 1, wp) + share_done(course))/ &
+               if (.not. quiet) call show_progress(timer, (real(i - 1, wp) + share_done(course))/ &
                                                    real(size(test%stages), wp), 'stage '//whole(i)//' of '// &
                                                    whole(size(test%stages))//' ('// &
                                                    trim(CONTROL_NAMES(stage%control))//')'//in_cycle(course))
@@ -110,7 +111,7 @@ contains
       else
          call close_table(table, '', fault)
       end if
-      if (.not. quiet) call show_summary(test, table, point, tally, increments, clock)
+      if (.not. quiet) call show_summary(test, table, point, tally, increments, timer)
    end subroutine run
 
    !> ", cycle 3", or nothing.

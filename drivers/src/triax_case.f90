@@ -9,8 +9,9 @@ module triax_case
    use triax_keys, only: KEYS
    use triax_stage, only: stage_t, set_constraints, leads_of, sealed_control, CONTROL_NAMES, QUANTITIES, LINEAR, &
                           BY_EPS_A, BY_GAMMA, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES, PER_PRESSURE, ROWS
-   use triax_material, only: read_material
-   use triax_point, only: soil_t, point_t, start_point, mean_stress, AXIAL, RADIAL
+   use material_point, only: material_t
+   use material_registry, only: new_material
+   use triax_point, only: soil_t, point_t, make_soil, start_point, mean_stress, AXIAL, RADIAL
    implicit none (type, external)
    private
    public :: case_t, read_case
@@ -37,6 +38,8 @@ contains
       type(case_t), intent(out) :: test
       type(fault_t), intent(inout) :: fault
       type(group_t), allocatable :: groups(:)
+      class(material_t), allocatable :: law
+      character(LENGTH) :: word
       integer :: i, of_case, of_material, of_initial, n_stages
 
       test%file = file
@@ -80,8 +83,11 @@ contains
          call get_text(groups(of_case), 'title', test%title)
       end if
 
-      call read_material(groups(of_material), test%soil, test%material, fault)
+      word = 'mud'
+      call get_text(groups(of_material), 'law', word)
+      call new_material(trim(word), groups(of_material), law, test%material, fault)
       if (fault%code /= 0) return
+      call make_soil(law, test%soil)
       call read_initial(groups(of_initial), test%soil, test%start, fault)
       if (fault%code /= 0) return
       allocate (test%stages(n_stages))

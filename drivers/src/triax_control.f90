@@ -6,8 +6,9 @@ module triax_control
    use texts, only: short, whole
    use dense, only: solve, outer
    use triax_stage, only: stage_t, quantity_rows, CONTROL_NAMES, ROWS, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
-   use triax_point, only: soil_t, point_t, tangent_t, mud_report, update_point, save_update, update_sentence, &
-                          state_value, slope_is_exact, axial_strain, volumetric_strain, mean_stress, deviator_stress
+   use material_point, only: MOST_GUARDS
+   use triax_point, only: soil_t, point_t, tangent_t, report_t, update_point, save_update, update_sentence, &
+                          void_ratio, saturation, slope_is_exact, axial_strain, volumetric_strain, mean_stress, deviator_stress
    implicit none (type, external)
    private
    public :: plan_t, tally_t, plan_way, advance, lead, quantity, CONTROL_TOLERANCE
@@ -45,8 +46,7 @@ module triax_control
       logical :: residuals = .false.         !< Print the error of every iteration.
       character(256) :: save_to = ''         !< File for the first update that the library refuses; blank: none.
       logical :: saved = .false.
-      integer :: n_floor = 0, n_cap_d = 0, n_cap_h = 0, n_hysteresis = 0, n_iso_kept = 0, n_no_root = 0, &
-                 n_min_step = 0, n_open = 0, n_tensile = 0
+      integer :: guards(MOST_GUARDS) = 0     !< How often each guard of the law acted.
       real(wp) :: error = 0.0_wp             !< Largest error of a constraint since the caller set it to 0, relative.
       real(wp) :: worst = 0.0_wp             !< The same, of the whole run.
    end type tally_t
@@ -177,7 +177,7 @@ contains
       type(fault_t), intent(inout) :: fault
       type(point_t) :: after
       type(tangent_t) :: tangent
-      type(mud_report) :: report
+      type(report_t) :: report
       real(wp) :: progress, x(7), residual(7), last_residual(7), slope(7, 7), step(7), error, stiffness
       integer :: iteration
       logical :: good
@@ -195,8 +195,8 @@ contains
       do iteration = 1, MAX_ITERATIONS
          call update_point(soil, point, x(:6), x(SUCTION), after, tangent, report)
          tally%updates = tally%updates + 1
-         if (report%status /= 0) then
-            call raise(fault, EXIT_RUN, update_sentence(report))
+         if (report%code /= 0) then
+            call raise(fault, EXIT_RUN, update_sentence(soil, report))
             if (len_trim(tally%save_to) > 0 .and. .not. tally%saved) then
                tally%saved = .true.
                call save_update(tally%save_to, 'mud_triax, '//trim(CONTROL_NAMES(plan%control))// &
@@ -249,7 +249,7 @@ contains
       where (plan%given(:6)) after%strain = plan%strain_start + plan%given_change(:6)*progress
       if (plan%given(SUCTION)) after%suction = plan%suction_start + plan%given_change(SUCTION)*progress
       point = after
-      call count_guards(report, tally)
+      tally%guards = tally%guards + report%guards
    end subroutine solve_part
 
    !> How far the constraints are missed, and the largest such error relative to what the constraint speaks of.
@@ -291,8 +291,8 @@ contains
       real(wp) :: slope(7, 7)
       real(wp) :: by_strain(6, 6), by_suction(6), e, s_w
 
-      e = state_value(point, soil%i_void_ratio)
-      s_w = state_value(point, soil%i_saturation)
+      e = void_ratio(soil, point)
+      s_w = saturation(soil, point)
       by_strain = tangent%dsig_deps
       by_suction = tangent%dsig_dpc
       if (.not. plan%effective) then
@@ -317,7 +317,7 @@ contains
       real(wp) :: stress(6)
 
       stress = point%stress
-      if (.not. plan%effective) stress = stress - state_value(point, soil%i_saturation)*point%suction*IDENTITY
+      if (.not. plan%effective) stress = stress - saturation(soil, point)*point%suction*IDENTITY
    end function controlled_stress
 
    !> Volume of water per volume of solids, S_w e [-].
@@ -325,21 +325,6 @@ contains
       type(soil_t), intent(in) :: soil
       type(point_t), intent(in) :: point
 
-      water = state_value(point, soil%i_saturation)*state_value(point, soil%i_void_ratio)
+      water = saturation(soil, point)*void_ratio(soil, point)
    end function water
-
-   subroutine count_guards(report, tally)
-      type(mud_report), intent(in) :: report
-      type(tally_t), intent(inout) :: tally
-
-      tally%n_floor = tally%n_floor + report%n_floor
-      tally%n_cap_d = tally%n_cap_d + report%n_cap_d
-      tally%n_cap_h = tally%n_cap_h + report%n_cap_h
-      tally%n_hysteresis = tally%n_hysteresis + report%n_hysteresis
-      tally%n_iso_kept = tally%n_iso_kept + report%n_iso_kept
-      tally%n_no_root = tally%n_no_root + report%n_no_root
-      tally%n_min_step = tally%n_min_step + report%n_min_step
-      tally%n_open = tally%n_open + report%n_open
-      tally%n_tensile = tally%n_tensile + report%n_tensile
-   end subroutine count_guards
 end module triax_control

@@ -4,7 +4,7 @@ module triax_help
    use texts, only: short
    use triax_keys, only: print_keys
    use triax_stage, only: CONTROL_NAMES, QUANTITIES, leads_of, LINEAR
-   use triax_point, only: property_count, property_name, property_unit, property_origin, property_meaning, &
+   use library_tables, only: property_count, property_name, property_unit, property_origin, property_meaning, &
       property_range
    implicit none (type, external)
    private

@@ -1,34 +1,26 @@
-!> The sample at a point: the only module that calls the library and the only one that knows its conventions.
+!> The sample at a point, and the only module of the driver that knows the conventions of laws.
 !> Here compression is positive, components are 11, 22, 33, 12, 13, 23, shear strain is engineering shear;
 !> the axis of the sample is component 33, the radial components are 11 and 22.
 module triax_point
-   use, intrinsic :: iso_fortran_env, only: wp => real64
-   use, intrinsic :: iso_c_binding, only: c_int, c_null_char
-   use mud_interface, only: mud_report, mud_version, mud_count, mud_index, mud_text, mud_bounds, mud_default_props, &
-                            mud_validate_props, mud_init_state, mud_update, mud_save_increment, mud_message, &
-                            MUD_PROPS, MUD_STATEV, &
-                            MUD_NAME, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONSISTENT
    use faults, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
-   use texts, only: from_c, whole
+   use kinds, only: wp
+   use material_point, only: material_t, response_t, report_t, state_index, WITH_TANGENT
    implicit none (type, external)
    private
-   public :: soil_t, point_t, tangent_t, mud_report
+   public :: soil_t, point_t, tangent_t, report_t
    public :: AXIAL, RADIAL
-   public :: library_version, default_soil, check_soil, property_count, property_index, property_name, property_unit, &
-             property_origin, property_meaning, property_range
-   public :: start_point, update_point, save_update, update_sentence, slope_is_exact
-   public :: mean_stress, deviator_stress, radial_stress, axial_strain, radial_strain, volumetric_strain, state_value
+   public :: make_soil, start_point, update_point, save_update, update_sentence, slope_is_exact
+   public :: mean_stress, deviator_stress, radial_stress, axial_strain, radial_strain, volumetric_strain, void_ratio, &
+             saturation, state_value
 
    integer, parameter :: AXIAL = 3            !< Component along the axis of the sample.
    integer, parameter :: RADIAL(2) = [1, 2]   !< Components across it.
-   integer, parameter :: BUFFER = 600
+   integer, parameter :: BUFFER = 1000
 
-   !> A material: the values of PROPS and where the state keeps what the driver shows.
+   !> A law, and where its state keeps what the driver shows: places from 1, 0 where the law has no such variable.
    type :: soil_t
-      real(wp), allocatable :: props(:)
-      integer :: n_statev = 0
-      integer :: i_void_ratio = 0, i_saturation = 0, i_state_parameter = 0   !< Places in STATEV, from 1.
-      integer :: i_tangent = 0                                               !< Place in PROPS, from 1.
+      class(material_t), allocatable :: law
+      integer :: i_state_parameter = 0
       integer :: i_n_substep = 0, i_n_reseat = 0, i_n_rate = 0, i_n_reject = 0, i_n_guard = 0
    end type soil_t
 
@@ -37,7 +29,7 @@ module triax_point
       real(wp) :: stress(6) = 0.0_wp   !< Effective stress [kPa].
       real(wp) :: strain(6) = 0.0_wp   !< Strain since the start [-].
       real(wp) :: suction = 0.0_wp     !< [kPa]
-      real(wp), allocatable :: statev(:)
+      real(wp), allocatable :: state(:, :)   !< One column.
    end type point_t
 
    !> Slopes of an update, in the driver's conventions.
@@ -49,120 +41,19 @@ module triax_point
    end type tangent_t
 
 contains
-   function library_version() result(version)
-      character(:), allocatable :: version
-      character(BUFFER) :: text
-      integer(c_int) :: code
-
-      text = c_null_char
-      code = mud_version(text, BUFFER)
-      version = from_c(text)
-      if (code < 0) version = 'unknown'
-   end function library_version
-
-   !> The library's default material, and the places of state variables by their names.
-   subroutine default_soil(soil, fault)
+   !> Takes over a law.
+   subroutine make_soil(law, soil)
+      class(material_t), allocatable, intent(inout) :: law
       type(soil_t), intent(out) :: soil
-      type(fault_t), intent(inout) :: fault
 
-      allocate (soil%props(mud_count(MUD_PROPS)))
-      soil%n_statev = mud_count(MUD_STATEV)
-      if (mud_default_props(soil%props, size(soil%props)) /= 0) then
-         call raise(fault, EXIT_INPUT, 'The library refuses to fill its own defaults; driver and library do not match.')
-      end if
-      soil%i_tangent = property_index('tangent')
-      call locate('void_ratio', soil%i_void_ratio)
-      call locate('saturation', soil%i_saturation)
-      call locate('state_parameter', soil%i_state_parameter)
-      call locate('n_substep', soil%i_n_substep)
-      call locate('n_reseat', soil%i_n_reseat)
-      call locate('n_rate', soil%i_n_rate)
-      call locate('n_reject', soil%i_n_reject)
-      call locate('n_guard', soil%i_n_guard)
-   contains
-      subroutine locate(name, place)
-         character(*), intent(in) :: name
-         integer, intent(out) :: place
-
-         place = mud_index(MUD_STATEV, name//c_null_char) + 1
-         if (place < 1) then
-            call raise(fault, EXIT_INPUT, 'The library keeps no state variable '//name// &
-                       '; driver and library do not match.')
-         end if
-      end subroutine locate
-   end subroutine default_soil
-
-   integer function property_count()
-      property_count = mud_count(MUD_PROPS)
-   end function property_count
-
-   !> Place of a parameter in PROPS, from 1; 0 if there is none of that name.
-   integer function property_index(name)
-      character(*), intent(in) :: name
-
-      property_index = mud_index(MUD_PROPS, trim(name)//c_null_char) + 1
-   end function property_index
-
-   function property_name(place) result(text)
-      integer, intent(in) :: place
-      character(:), allocatable :: text
-
-      text = property_text(place, MUD_NAME)
-   end function property_name
-
-   function property_unit(place) result(text)
-      integer, intent(in) :: place
-      character(:), allocatable :: text
-
-      text = property_text(place, MUD_UNIT)
-   end function property_unit
-
-   function property_origin(place) result(text)
-      integer, intent(in) :: place
-      character(:), allocatable :: text
-
-      text = property_text(place, MUD_ORIGIN)
-   end function property_origin
-
-   function property_meaning(place) result(text)
-      integer, intent(in) :: place
-      character(:), allocatable :: text
-
-      text = property_text(place, MUD_MEANING)
-   end function property_meaning
-
-   function property_text(place, field) result(text)
-      integer, intent(in) :: place
-      integer(c_int), intent(in) :: field
-      character(:), allocatable :: text
-      character(BUFFER) :: raw
-
-      raw = c_null_char
-      if (mud_text(MUD_PROPS, place - 1, field, raw, BUFFER) < 0) raw = c_null_char
-      text = from_c(raw)
-   end function property_text
-
-   subroutine property_range(place, lower, upper, preset)
-      integer, intent(in) :: place
-      real(wp), intent(out) :: lower, upper, preset
-
-      if (mud_bounds(MUD_PROPS, place - 1, lower, upper, preset) < 0) then
-         lower = 0.0_wp
-         upper = 0.0_wp
-         preset = 0.0_wp
-      end if
-   end subroutine property_range
-
-   !> The library's verdict on a set of parameters: an empty sentence, or its first fault.
-   function check_soil(soil) result(sentence)
-      type(soil_t), intent(in) :: soil
-      character(:), allocatable :: sentence
-      character(BUFFER) :: text
-
-      text = c_null_char
-      if (mud_validate_props(soil%props, size(soil%props), text, BUFFER) == 0) text = c_null_char
-      sentence = from_c(text)
-   end function check_soil
+      call move_alloc(law, soil%law)
+      soil%i_state_parameter = state_index(soil%law, 'state_parameter')
+      soil%i_n_substep = state_index(soil%law, 'n_substep')
+      soil%i_n_reseat = state_index(soil%law, 'n_reseat')
+      soil%i_n_rate = state_index(soil%law, 'n_rate')
+      soil%i_n_reject = state_index(soil%law, 'n_reject')
+      soil%i_n_guard = state_index(soil%law, 'n_guard')
+   end subroutine make_soil
 
    !> A sample at rest under an effective stress.
    subroutine start_point(soil, stress, suction, ratio, point, fault)
@@ -174,22 +65,19 @@ contains
       type(fault_t), intent(inout) :: fault
       real(wp) :: tension(6)
       character(BUFFER) :: text
-      integer(c_int) :: code
 
-      allocate (point%statev(soil%n_statev), source=0.0_wp)
+      allocate (point%state(soil%law%n_state, 1), source=0.0_wp)
       tension = -stress
-      text = c_null_char
-      code = mud_init_state(soil%props, size(soil%props), tension, suction, ratio, point%statev, soil%n_statev, text, &
-                            BUFFER)
-      if (code /= 0) then
-         call raise(fault, EXIT_INPUT, from_c(text))
+      call soil%law%initial_state(tension, suction, ratio, point%state(:, 1), text)
+      if (text /= '') then
+         call raise(fault, EXIT_INPUT, trim(text))
          return
       end if
       point%stress = -tension
       point%suction = suction
    end subroutine start_point
 
-   !> Integrates a strain and a change of suction. Where the report's status is not 0, only the report is of use.
+   !> Integrates a strain and a change of suction. Where the report's code is not 0, only the report is of use.
    subroutine update_point(soil, before, strain, suction, after, tangent, report)
       type(soil_t), intent(in) :: soil
       type(point_t), intent(in) :: before
@@ -197,21 +85,22 @@ contains
       real(wp), intent(in) :: suction        !< Increment [kPa].
       type(point_t), intent(inout) :: after
       type(tangent_t), intent(out) :: tangent
-      type(mud_report), intent(out) :: report
-      real(wp) :: tension0(6), tension1(6)
-      integer(c_int) :: code
+      type(report_t), intent(out) :: report
+      type(response_t) :: response
+      real(wp) :: tension(6, 1), strain_(6, 1)
 
-      if (.not. allocated(after%statev)) allocate (after%statev(soil%n_statev), source=0.0_wp)
-      tension0 = -before%stress
-      tension1 = tension0
-      code = mud_update(soil%props, size(soil%props), tension0, before%statev, soil%n_statev, -strain, before%suction, &
-                        suction, tangent_kind(soil), tension1, after%statev, tangent%dsig_deps, tangent%dsig_dpc, &
-                        tangent%dsw_deps, tangent%dsw_dpc, report)
-      report%status = code
-      if (code /= 0) return
-      tangent%dsig_dpc = -tangent%dsig_dpc
-      tangent%dsw_deps = -tangent%dsw_deps
-      after%stress = -tension1
+      if (.not. allocated(after%state)) allocate (after%state(soil%law%n_state, 1), source=0.0_wp)
+      tension(:, 1) = -before%stress
+      strain_(:, 1) = -strain
+      call soil%law%update(1, tension, before%state, strain_, [before%suction], [suction], WITH_TANGENT, response, &
+                           after%state)
+      report = response%report
+      if (report%code /= 0) return
+      tangent%dsig_deps = response%dsig_deps(:, :, 1)
+      tangent%dsig_dpc = -response%dsig_dpc(:, 1)
+      tangent%dsw_deps(1:3) = -response%dsw_dev(1)
+      tangent%dsw_dpc = response%dsw_dpc(1)
+      after%stress = -response%stress(:, 1)
       after%strain = before%strain + strain
       after%suction = before%suction + suction
    end subroutine update_point
@@ -225,37 +114,26 @@ contains
       type(fault_t), intent(inout) :: fault
       character(BUFFER) :: text
 
-      text = c_null_char
-      if (mud_save_increment(trim(file)//c_null_char, origin//c_null_char, soil%props, size(soil%props), &
-                             -before%stress, before%statev, soil%n_statev, -strain, before%suction, suction, &
-                             tangent_kind(soil), text, BUFFER) /= 0) then
-         call raise(fault, EXIT_OUTPUT, '--save-failed '//trim(file)//': '//from_c(text)//'.')
-      end if
+      call soil%law%save_update(file, origin, -before%stress, before%state(:, 1), -strain, before%suction, suction, text)
+      if (text /= '') call raise(fault, EXIT_OUTPUT, '--save-failed '//trim(file)//': '//trim(text)//'.')
    end subroutine save_update
-
-   !> Kind of tangent asked for: that of the material, but a held stress needs a slope of some kind.
-   pure integer(c_int) function tangent_kind(soil)
-      type(soil_t), intent(in) :: soil
-
-      tangent_kind = max(nint(soil%props(soil%i_tangent), c_int), MUD_TANGENT_ELASTIC)
-   end function tangent_kind
 
    !> True if the slope is the derivative of the update itself, so that Newton's method is quadratic with it.
    pure logical function slope_is_exact(soil)
       type(soil_t), intent(in) :: soil
 
-      slope_is_exact = tangent_kind(soil) == MUD_TANGENT_CONSISTENT
+      slope_is_exact = soil%law%exact_tangent
    end function slope_is_exact
 
-   !> The library's sentence for a report.
-   function update_sentence(report) result(sentence)
-      type(mud_report), intent(in) :: report
+   !> The law's sentence for a report.
+   function update_sentence(soil, report) result(sentence)
+      type(soil_t), intent(in) :: soil
+      type(report_t), intent(in) :: report
       character(:), allocatable :: sentence
       character(BUFFER) :: text
 
-      text = c_null_char
-      if (mud_message(report, text, BUFFER) < 0) text = 'Status '//whole(int(report%status))//'.'//c_null_char
-      sentence = from_c(text)
+      call soil%law%message(report, text)
+      sentence = trim(text)
    end function update_sentence
 
    pure real(wp) function mean_stress(point)
@@ -295,11 +173,27 @@ contains
       volumetric_strain = sum(point%strain(1:3))
    end function volumetric_strain
 
-   !> One state variable, by its place in STATEV.
+   pure real(wp) function void_ratio(soil, point)
+      type(soil_t), intent(in) :: soil
+      type(point_t), intent(in) :: point
+
+      void_ratio = soil%law%void_ratio(point%state(:, 1))
+   end function void_ratio
+
+   !> Degree of saturation [-].
+   pure real(wp) function saturation(soil, point)
+      type(soil_t), intent(in) :: soil
+      type(point_t), intent(in) :: point
+
+      saturation = soil%law%saturation(point%state(:, 1))
+   end function saturation
+
+   !> One state variable, by its place; 0 where the law has none.
    pure real(wp) function state_value(point, place)
       type(point_t), intent(in) :: point
       integer, intent(in) :: place
 
-      state_value = point%statev(place)
+      state_value = 0.0_wp
+      if (place > 0) state_value = point%state(place, 1)
    end function state_value
 end module triax_point

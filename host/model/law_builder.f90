@@ -11,9 +11,9 @@ module law_builder
    use permeability_laws, only: permeability_t, LAW_CONSTANT, LAW_COREY, LAW_MUALEM, LAW_POWER
    use retention_curves, only: retention_slot_t, bilogarithmic_t, power_t, table_t, saturated_t
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use triax_material, only: read_material
+   use library_tables, only: state_count
+   use parameter_groups, only: read_parameters
    use namelists, only: group_t, LENGTH
-   use triax_point, only: soil_t
    use texts, only: lower_case
    implicit none (type, external)
    private
@@ -49,7 +49,7 @@ contains
       type(slot_t), intent(out) :: slot
       type(fault_t), intent(inout) :: fault
       type(group_t) :: rest
-      type(soil_t) :: soil
+      real(wp), allocatable :: props(:)
       type(mud_t) :: law
       character(LENGTH) :: title
       integer :: i
@@ -58,9 +58,9 @@ contains
       rest%entries = pack(group%entries(:group%count), &
                           [(lower_case(group%entries(i)%key) /= 'material_call', i=1, group%count)])
       rest%count = size(rest%entries)
-      call read_material(rest, soil, title, fault)
+      call read_parameters(rest, props, title, fault)
       if (fault%code /= 0) return
-      call make_mud(soil%props, soil%n_statev, word_is(group, 'material_call', 'umat'), law)
+      call make_mud(props, state_count(), word_is(group, 'material_call', 'umat'), law)
       slot%name = text_of(group, 'name')
       allocate (slot%law, source=law)
       if (law%tangent == 0) call raise(fault, EXIT_INPUT, at_line(group%file, group%line)// &

@@ -1,0 +1,95 @@
+!> Columns of the results: what they are called, what they mean, and their values at a point.
+module triax_columns
+   use kinds, only: wp
+   use triax_course, only: course_t
+   use triax_point, only: soil_t, point_t, void_ratio, saturation, state_value, mean_stress, deviator_stress, &
+                          radial_stress, axial_strain, radial_strain, volumetric_strain, AXIAL
+   implicit none (type, external)
+   private
+   public :: column_t, COLUMNS, columns_shown, values_of
+
+   !> A column of the results.
+   type :: column_t
+      character(16) :: name
+      character(8) :: unit
+      character(120) :: meaning
+      logical :: whole = .false.   !< Counts.
+   end type column_t
+
+   integer, parameter :: PLAIN = 21   !< Columns of every table; the others are components of tensors.
+   type(column_t), parameter :: COLUMNS(*) = [ &
+      column_t('eps_a', '1', 'axial strain, natural'), &
+      column_t('eps_v', '1', 'volumetric strain, natural'), &
+      column_t('p_eff', 'kPa', 'mean effective stress'), &
+      column_t('q', 'kPa', 'sigma_a - sigma_r, negative in extension'), &
+      column_t('e', '1', 'void ratio'), &
+      column_t('s_w', '1', 'degree of saturation'), &
+      column_t('n_substep', '1', 'accepted substeps since the start', .true.), &
+      column_t('n_reseat', '1', 're-seats of the memory since the start', .true.), &
+      column_t('sigma_a', 'kPa', 'axial effective stress'), &
+      column_t('sigma_r', 'kPa', 'radial effective stress'), &
+      column_t('eps_r', '1', 'radial strain, natural'), &
+      column_t('suction', 'kPa', 'p_a - p_w'), &
+      column_t('u', 'kPa', &
+               'excess pore pressure, saturated sample of constant volume, total radial stress held (shear: axial)'), &
+      column_t('psi', '1', 'state parameter'), &
+      column_t('n_rate', '1', 'rate evaluations since the start', .true.), &
+      column_t('n_reject', '1', 'rejected substeps since the start', .true.), &
+      column_t('n_guard', '1', 'rates in which a guard acted, since the start', .true.), &
+      column_t('control_error', '1', 'largest error of what is held since the row before, relative'), &
+      column_t('stage', '1', 'stage, 0 is the start', .true.), &
+      column_t('cycle', '1', 'cycle of the stage, 0: none', .true.), &
+      column_t('r_u', '1', 'pore pressure of the stage over the effective confining stress at its start'), &
+      column_t('sig_11', 'kPa', 'effective stress'), column_t('sig_22', 'kPa', 'effective stress'), &
+      column_t('sig_33', 'kPa', 'effective stress'), column_t('sig_12', 'kPa', 'effective stress'), &
+      column_t('sig_13', 'kPa', 'effective stress'), column_t('sig_23', 'kPa', 'effective stress'), &
+      column_t('eps_11', '1', 'strain, natural'), column_t('eps_22', '1', 'strain, natural'), &
+      column_t('eps_33', '1', 'strain, natural'), column_t('gamma_12', '1', 'engineering shear strain'), &
+      column_t('gamma_13', '1', 'engineering shear strain'), column_t('gamma_23', '1', 'engineering shear strain')]
+contains
+   !> Numbers of the columns of a test: those of components only where they are wanted, those of state variables only
+   !> where the law has them.
+   function columns_shown(soil, components) result(shown)
+      type(soil_t), intent(in) :: soil
+      logical, intent(in) :: components
+      integer, allocatable :: shown(:)
+      integer :: i
+
+      allocate (shown(0))
+      do i = 1, merge(size(COLUMNS), PLAIN, components)
+         select case (COLUMNS(i)%name)
+         case ('n_substep')
+            if (soil%i_n_substep == 0) cycle
+         case ('n_reseat')
+            if (soil%i_n_reseat == 0) cycle
+         case ('n_rate')
+            if (soil%i_n_rate == 0) cycle
+         case ('n_reject')
+            if (soil%i_n_reject == 0) cycle
+         case ('n_guard')
+            if (soil%i_n_guard == 0) cycle
+         case ('psi')
+            if (soil%i_state_parameter == 0) cycle
+         end select
+         shown = [shown, i]
+      end do
+   end function columns_shown
+
+   !> Values of all columns.
+   pure function values_of(soil, point, course, error, stage) result(values)
+      type(soil_t), intent(in) :: soil
+      type(point_t), intent(in) :: point
+      type(course_t), intent(in) :: course
+      real(wp), intent(in) :: error      !< Largest of what is held since the row before, relative.
+      integer, intent(in) :: stage
+      real(wp) :: values(size(COLUMNS))
+
+      values = [axial_strain(point), volumetric_strain(point), mean_stress(point), deviator_stress(point), &
+                void_ratio(soil, point), saturation(soil, point), &
+                state_value(point, soil%i_n_substep), state_value(point, soil%i_n_reseat), point%stress(AXIAL), &
+                radial_stress(point), radial_strain(point), point%suction, course%pressure, &
+                state_value(point, soil%i_state_parameter), state_value(point, soil%i_n_rate), &
+                state_value(point, soil%i_n_reject), state_value(point, soil%i_n_guard), error, real(stage, wp), &
+                real(course%cycle, wp), course%r_u, point%stress, point%strain]
+   end function values_of
+end module triax_columns

@@ -1,0 +1,95 @@
+!> What a run tells on the screen: progress, and the summary at the end.
+module triax_progress
+   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
+   use kinds, only: wp
+   use library_tables, only: library_version
+   use texts, only: short, whole
+   use triax_case, only: case_t
+   use triax_control, only: tally_t, CONTROL_TOLERANCE
+   use triax_output, only: table_t
+   use triax_point, only: point_t, void_ratio, saturation, state_value, mean_stress, deviator_stress, axial_strain, &
+                          volumetric_strain
+   use wall_clock, only: clock
+   implicit none (type, external)
+   private
+   public :: timer_t, start_timer, show_progress, show_summary
+
+   real(wp), parameter :: FIRST_PROGRESS = 2.0_wp   !< Runs shorter than this show none [s].
+
+   !> Wall-clock time of a run.
+   type :: timer_t
+      real(wp) :: start = 0.0_wp
+      real(wp) :: next = FIRST_PROGRESS
+   end type timer_t
+
+contains
+   subroutine start_timer(timer)
+      type(timer_t), intent(out) :: timer
+
+      timer%start = clock()
+   end subroutine start_timer
+
+   !> A line on the error output after 2 s, and then each time the run has become half as long again.
+   subroutine show_progress(timer, share, what)
+      type(timer_t), intent(inout) :: timer
+      real(wp), intent(in) :: share   !< Of the work, done so far.
+      character(*), intent(in) :: what
+      real(wp) :: seconds
+
+      seconds = clock() - timer%start
+      if (seconds < timer%next .or. share <= 0.0_wp) return
+      timer%next = seconds + max(2.0_wp, 0.5_wp*seconds)
+      write (error_unit, '(a)') 'mud_triax: '//what//', '//whole(nint(100.0_wp*share))//' % after '// &
+         whole(nint(seconds))//' s, about '//whole(nint(seconds*(1.0_wp - share)/share))//' s left'
+   end subroutine show_progress
+
+   !> Where the test ended and what it cost.
+   subroutine show_summary(test, table, point, tally, increments, timer)
+      type(case_t), intent(in) :: test
+      type(table_t), intent(in) :: table
+      type(point_t), intent(in) :: point
+      type(tally_t), intent(in) :: tally
+      integer, intent(in) :: increments
+      type(timer_t), intent(in) :: timer
+      character(:), allocatable :: guards
+      integer :: i
+
+      if (table%to_screen) return
+      associate (soil => test%soil)
+         write (output_unit, '(a)') trim(test%name)//' ('//trim(test%material)//', MUD '//library_version()//')'
+         write (output_unit, '(a)') '   end        eps_a '//short(axial_strain(point))//', eps_v '// &
+            short(volumetric_strain(point))//', p'' '//short(mean_stress(point))//' kPa, q '// &
+            short(deviator_stress(point))//' kPa, e '//short(void_ratio(soil, point))//', S_w '// &
+            short(saturation(soil, point))//of_state(', psi ', soil%i_state_parameter, '')
+         write (output_unit, '(a)') '   work       '//whole(increments)//' increments ('//whole(tally%cuts)// &
+            ' cuts), '//whole(tally%updates)//' updates; '//of_state('', soil%i_n_substep, ' substeps, ')// &
+            of_state('', soil%i_n_reject, ' rejected, ')//of_state('', soil%i_n_rate, ' rates, ')// &
+            of_state('', soil%i_n_reseat, ' re-seats; ')// &
+            short(real(nint(100.0_wp*(clock() - timer%start)), wp)/100.0_wp)//' s'
+         guards = ''
+         do i = 1, soil%law%n_guards
+            if (i > 1) guards = guards//', '
+            guards = guards//trim(soil%law%guard_names(i))//' '//whole(tally%guards(i))
+         end do
+         if (guards /= '') write (output_unit, '(a)') '   guards     '//guards
+         if (tally%solved > 0) then
+            write (output_unit, '(a)') '   control    what is held is met within '//short(tally%worst)// &
+               ' of its value (allowed '// &
+               short(CONTROL_TOLERANCE)//')'
+         end if
+         if (tally%saved) write (output_unit, '(a)') '   saved      '//trim(tally%save_to)// &
+            ', the first refused update, for mud_replay'
+         write (output_unit, '(a)') '   output     '//table%path//', '//whole(table%rows)//' rows'
+      end associate
+   contains
+      !> A state variable between two texts; nothing where the law has none.
+      function of_state(before, place, after) result(text)
+         character(*), intent(in) :: before, after
+         integer, intent(in) :: place
+         character(:), allocatable :: text
+
+         text = ''
+         if (place > 0) text = before//short(state_value(point, place))//after
+      end function of_state
+   end subroutine show_summary
+end module triax_progress
