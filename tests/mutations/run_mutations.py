@@ -3,7 +3,7 @@
 Usage: run_mutations.py [--contact] [-k WORD] [--readme] [--keep] [-j N]. Works on a copy of the source tree in a
 temporary folder; builds release with our own runner. A mutation that no test notices survives: exit code 1. A mutation
 that does not apply or does not compile is an error of mutations.py: exit code 2.
-  --contact  mutations of the host's contact instead: its suites and the page verification/host_contact
+  --contact  mutations of the host's contact instead: its suites and the page verification/host/contact
   -k WORD    only mutations whose title contains it
   --readme   write the table to README.md (CONTACT.md) beside this file
   --keep     keep the temporary folder
@@ -46,9 +46,9 @@ class Contact:
     """The host's contact, its suites and its page of known answers."""
     mutations, sources, table = CONTACT, "host", "CONTACT.md"
     command = "python3 tests/mutations/run_mutations.py --contact --readme"
-    judges = "the suites of contact and drainage in `tests/host` and `verification/host_contact/check.py --quick`"
+    judges = "the suites of contact and drainage in `tests/host` and `verification/run host/contact --quick`"
     patterns = ("tests/host/contact/*.pf", "tests/host/model/test_contact_drainage.pf")
-    programs, pages = ["mud_host"], ["host_contact"]
+    programs, pages = ["mud_host"], ["host/contact"]
 
 
 subject = Library
@@ -84,11 +84,11 @@ def failures_of_page(tree, page):
     venv = ROOT / "build/venv/bin/python3"
     environment = dict(os.environ, MUD_BUILD_DIR=str(tree / "build"))
     try:
-        done = run([venv if venv.exists() else sys.executable, tree / "verification" / page / "check.py", "--quick"],
-                   tree, env=environment, timeout=TIMEOUT)
+        done = run([venv if venv.exists() else sys.executable, tree / "verification/tools/runner.py", page, "--quick"], tree,
+                   env=environment, timeout=TIMEOUT)
     except subprocess.TimeoutExpired:
         return [f"{page} (hangs)"]
-    missed = len(re.findall("^FAILED ", done.stdout, re.MULTILINE))
+    missed = len(re.findall("^ +FAILED ", done.stdout, re.MULTILINE))
     if not done.returncode and not missed:
         return []
     return [f"{page} ({missed} claims)" if re.search(r"^\d+ passed", done.stdout, re.MULTILINE) else f"{page} (stops)"]

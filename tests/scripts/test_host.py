@@ -1,33 +1,16 @@
-"""mud_host as a user meets it: known answers (short versions), mistakes with their own sentence and exit code."""
+"""mud_host as a user meets it: mistakes with their own sentence and exit code. Known answers: tests/verification."""
 import os
 import re
 import subprocess
-import sys
 
-from checking import add, build, check, finish, light, root, work
+from checking import build, check, finish, root, work
 
 host = build / "host/mud_host"
 environment = {**os.environ, "OMP_NUM_THREADS": "1", "MUD_BUILD_DIR": str(build)}
 
-# Known answers: every folder counts its own comparisons. The checking builds take those that are quick.
-QUICK = ("patch", "vibration")
-for folder in sorted((root / "verification").glob("host_*/check.py")):
-    folder = folder.parent
-    name = folder.name.removeprefix("host_")
-    if light and name not in QUICK:
-        continue
-    done = subprocess.run([sys.executable, folder / "check.py", "--quick"], capture_output=True, text=True,
-                          env=environment)
-    last = re.fullmatch(r"(\d+) passed, (\d+) failed", (done.stdout.splitlines() or [""])[-1])
-    if last:
-        add(int(last[1]), int(last[2]))
-    if not last or done.returncode:
-        check(f"known answer {name}", last, "it ended without its closing line")
-        print(done.stdout[-2000:] + done.stderr[-2000:])
-
 SCENE = (root / "verification/host/cylinder/scene.nml").read_text()
-FLOW = (root / "verification/host_terzaghi/scene.nml").read_text()
-FALL = (root / "verification/host_contact/fall.nml").read_text()
+FLOW = (root / "verification/host/terzaghi/scene.nml").read_text()
+FALL = (root / "verification/host/contact/fall.nml").read_text()
 STAGE = "&stage name = 'load' analysis = 'static' duration = 1 dt = 1 /\n"
 # what, scene, old text, new text, exit code, words of the sentence
 MISTAKES = [
@@ -133,7 +116,7 @@ for code in re.findall(r"EXIT_\w+ = (\d+)", (root / "host/exit_codes.f90").read_
 answers = []
 for threads in ("1", "2"):
     out = work / f"threads{threads}"
-    subprocess.run([host, root / "verification/host_terzaghi/scene.nml", "--output", out, "--quiet"], check=True,
+    subprocess.run([host, root / "verification/host/terzaghi/scene.nml", "--output", out, "--quiet"], check=True,
                    env={**environment, "OMP_NUM_THREADS": threads, "OMP_WAIT_POLICY": "passive"})
     answers.append((out / "histories.csv").read_bytes() + (out / "ledger.csv").read_bytes())
 check("threads: same bytes", answers[0] == answers[1])

@@ -100,7 +100,7 @@ check("restart on the way: same bytes", done.returncode == 0 and not differences
 
 # A plate in contact: its tables and the matrix that grew with it come back too.
 touch = work / "touch.nml"
-plate = (root / "verification/host_indentation/indent_s030.nml").read_text().replace("../..", str(root))
+plate = (root / "verification/studies/indentation/indent_s030.nml").read_text().replace("../../..", str(root))
 touch.write_text(plate.replace("duration = 0.03999", f"duration = {6.0e-4 if light else 1.5e-3}")
                  .replace("gravity = 9.81", "gravity = 9.81\n   checkpoint_steps = 4"))
 one, two = work / "touch_one", work / "touch_two"

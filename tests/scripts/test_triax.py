@@ -62,7 +62,7 @@ def rms(values):
     return 100*math.sqrt(sum(value**2 for value in values)/len(values))
 
 
-source = root / "verification/verdugo_ishihara/verdugo_ishihara_1996_drained_TC.csv"
+source = root / "verification/material/verdugo_ishihara/verdugo_ishihara_1996_drained_TC.csv"
 data = list(csv.DictReader(line for line in source.read_text().splitlines() if not line.startswith("#")))
 for test, (q_page, v_page) in LAB.items():
     done, rows = run(cases / f"vi_drained_{test}.nml")

@@ -1,4 +1,4 @@
-!> Tables of numbers in verification/reference of the source tree.
+!> Tables of numbers in verification/material/reference of the source tree.
 module path_reference
    use mud_kinds, only: wp
    implicit none (type, external)
@@ -23,7 +23,7 @@ contains
       integer :: unit, status
 
       call get_environment_variable('MUD_SOURCE_DIR', folder)
-      open (newunit=unit, file=trim(folder)//'/verification/reference/'//name, status='old', action='read', &
+      open (newunit=unit, file=trim(folder)//'/verification/material/reference/'//name, status='old', action='read', &
             iostat=status)
       if (status /= 0) error stop 'path_reference: a reference file is missing; is MUD_SOURCE_DIR set?'
       allocate (table%value(columns, MOST_ROWS))

@@ -37,3 +37,4 @@ def lode(cos3t):
 
 
 INTEGRATION = 1e-5   # relative tolerance of the library's integration: its default
+ROUNDING = 1e-12     # a few thousand roundings

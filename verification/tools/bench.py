@@ -139,9 +139,13 @@ class Bench:
 
     # ---- pictures
 
-    def save(self, figure, name, dpi=110):
-        figure.savefig(self.output / name, dpi=dpi)
+    def picture(self, name):
+        """Where a picture of the page is to be written."""
         self.pictures.append(name)
+        return self.output / name
+
+    def save(self, figure, name, dpi=110):
+        figure.savefig(self.picture(name), dpi=dpi)
 
 
 def changed(text, changes, name="text"):

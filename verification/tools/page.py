@@ -18,6 +18,7 @@ KINDS = {
     "code-to-code": "another program, or another implementation of the same equations",
     "experiment": "laboratory data, reported and not tuned",
     "conservation": "balances of mass, momentum or energy that every solution has to satisfy",
+    "robustness": "whatever the input, nothing is lost and nothing is silently wrong",
     "regression": "earlier results of this program: proves only that they are unchanged",
     "study": "the program compared with itself or with published results; proves nothing about soil",
 }

@@ -35,13 +35,13 @@ def declaration(name, declared):
 
 
 def measured(checks):
-    """The table of checks of a whole run."""
-    lines = []
-    for c in checks:
-        lines.append((cell(c.name) + (f" [{c.unit}]" if c.unit else ""), f"{c.value:.8g}" if c.single else f"{c.value:.2g}" if c.bound else "",
-                      f"{c.reference:.8g}" if c.single else "", "" if c.bound else f"{c.off:.2g}", ("at most " if c.bound else "") + f"{c.allowed:.2g}",
-                      cell(c.because)))
-    return tables.markdown(("check", "measured", "reference", "off by", "allowed", "because"), lines)
+    """The table of checks of a whole run, and the reasons of what is allowed."""
+    reasons = list(dict.fromkeys(c.because for c in checks))
+    lines = [(cell(c.name) + (f" [{c.unit}]" if c.unit else ""), f"{c.value:.8g}" if c.single else f"{c.value:.2g}" if c.bound else "",
+              f"{c.reference:.8g}" if c.single else "", "" if c.bound else f"{c.off:.2g}", ("at most " if c.bound else "") + f"{c.allowed:.2g}",
+              reasons.index(c.because) + 1) for c in checks]
+    return (tables.markdown(("check", "measured", "reference", "off by", "allowed", "why"), lines) + "\n"
+            + "\n".join(f"{i}. {cell(reason)}" for i, reason in enumerate(reasons, 1)) + "\n")
 
 
 def index(pages, sections):

@@ -141,29 +141,30 @@ def update_index():
     write(path, readme.replaced(path.read_text(encoding="utf-8"), "index", readme.index(declared(), SECTIONS)))
 
 
-def update_declaration(name):
-    path = HERE / name / "README.md"
-    write(path, readme.replaced(path.read_text(encoding="utf-8"), "page", readme.declaration(name, load(name).PAGE)))
+def update_texts(name, output):
+    """What does not depend on a run: the declaration, and what the committed files say."""
+    folder, module = HERE / name, load(name)
+    texts = module.texts(Bench(folder, ".", output / name)) if hasattr(module, "texts") else {}
+    texts.setdefault("README.md", {})["page"] = readme.declaration(name, module.PAGE)
+    for file, blocks in texts.items():
+        text = (folder / file).read_text(encoding="utf-8")
+        for mark, content in blocks.items():
+            text = readme.replaced(text, mark, content)
+        write(folder / file, text)
 
 
 def update_page(outcome, output):
-    """Table of checks, texts from committed files, pictures."""
-    folder, module = HERE / outcome.name, load(outcome.name)
+    """Table of checks and pictures."""
+    folder = HERE / outcome.name
     path = folder / "README.md"
     write(path, readme.replaced(path.read_text(encoding="utf-8"), "checks", readme.measured(outcome.checks)))
-    if hasattr(module, "texts"):
-        for file, blocks in module.texts(Bench(folder, ".", output / outcome.name)).items():
-            text = (folder / file).read_text(encoding="utf-8")
-            for mark, content in blocks.items():
-                text = readme.replaced(text, mark, content)
-            write(folder / file, text)
     for picture in outcome.pictures:
         shutil.copyfile(output / outcome.name / picture, folder / picture)
 
 
 # ---- --make
 
-def make(name, build, output, update, only):
+def make(name, build, output, update, only, arguments):
     """Runs the scripts of a page in its folder of the output; True if all ended well."""
     good = True
     for script in getattr(load(name), "MAKES", ()):
@@ -172,7 +173,7 @@ def make(name, build, output, update, only):
         print(f"{name}: {script.name}, about {script.seconds:g} s" + (f", needs {script.needs}" if script.needs else ""), flush=True)
         results = output / name / "made"
         results.mkdir(parents=True, exist_ok=True)
-        code = subprocess.run([sys.executable, HERE / name / script.name], cwd=results,
+        code = subprocess.run([sys.executable, HERE / name / script.name, *arguments], cwd=results,
                               env={**os.environ, "MUD_BUILD_DIR": str(build), "MUD_VERIFICATION_OUTPUT": str(results),
                                    "PYTHONPATH": str(HERE)}).returncode
         good = good and code == 0
@@ -211,6 +212,8 @@ def main():
     parser.add_argument("--update", action="store_true", help="write into the source tree what was found")
     parser.add_argument("--make", action="store_true", help="make the committed data of the pages again")
     parser.add_argument("--only", nargs="+", metavar="SCRIPT", help="with --make: only these scripts")
+    parser.add_argument("--pass", nargs=argparse.REMAINDER, default=[], dest="arguments", metavar="ARGUMENT",
+                        help="with --make: everything behind this goes to the scripts (series.py --help)")
     parser.add_argument("-j", type=int, default=1, metavar="N", help="pages at the same time (1)")
     parser.add_argument("--build", type=pathlib.Path, default=pathlib.Path(os.environ.get("MUD_BUILD_DIR") or ROOT / "build/release"),
                         help="build folder with the programs (build/release)")
@@ -225,23 +228,24 @@ def main():
             page = load(name).PAGE
             print(f"{name:32s} {page.seconds:6g} s  {', '.join(page.kind)}: {page.claim}")
             if options.update:
-                update_declaration(name)
+                update_texts(name, output)
         if options.update:
             update_index()
         return 0
     if options.make:
-        good = [make(name, build, output, options.update, options.only) for name in chosen]
+        good = [make(name, build, output, options.update, options.only, options.arguments) for name in chosen]
         return 0 if all(good) else 1
     if options.quick:
         chosen = [name for name in chosen if load(name).PAGE.quick]
     print(f"{len(chosen)} pages, about {sum(page.quick if options.quick else page.seconds for page in (load(n).PAGE for n in chosen)):.0f} s "
           f"of one core", flush=True)
+    for name in chosen if options.update else ():
+        update_texts(name, output)
     outcomes = []
     for outcome in run_pages(chosen, build, output, options.quick, options.j):
         outcomes.append(outcome)
         report(outcome, f" ({len(outcomes)} of {len(chosen)})")
         if options.update and not outcome.error:
-            update_declaration(outcome.name)
             update_page(outcome, output)
     if options.update:
         update_index()

@@ -7,6 +7,11 @@ import numpy as np
 
 def rows(path, header_in_comment=False):
     """Rows as dictionaries of text. With `header_in_comment` the names of the columns are the last comment before the rows."""
+    return list(csv.DictReader(_lines(path, header_in_comment)))
+
+
+def _lines(path, header_in_comment):
+    """The head and the rows, without comments."""
     lines = pathlib.Path(path).read_text(encoding="utf-8").splitlines()
     body = [line for line in lines if not line.startswith("#")]
     if header_in_comment:
@@ -14,15 +19,15 @@ def rows(path, header_in_comment=False):
         if first == 0:
             raise ValueError(f"{path} has no comment with the names of its columns before the first row")
         body.insert(0, lines[first - 1].lstrip("# "))
-    return list(csv.DictReader(body))
+    return body
 
 
 def columns(path, header_in_comment=False):
     """Columns of numbers as a dictionary of arrays."""
-    found = rows(path, header_in_comment)
+    names, *found = csv.reader(_lines(path, header_in_comment))
     if not found:
         raise ValueError(f"{path} has no rows")
-    return {name: np.array([float(row[name]) for row in found]) for name in found[0]}
+    return dict(zip(names, np.array(found, float).T))
 
 
 def comments(path):
