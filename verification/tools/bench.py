@@ -1,6 +1,6 @@
 """What `check(bench)` of a page works with: runs cases and scenes of the built programs and records what was compared.
 
-All results go to a folder outside the source tree; cases and scenes are copied there with their relative paths made absolute.
+All results go outside the source tree; cases and scenes are copied there with their relative paths made absolute.
 """
 import os
 import pathlib
@@ -42,7 +42,9 @@ class Check:
         unit = f" {self.unit}" if self.unit else ""
         if self.bound:
             return f"{text}{self.value:.3g}, at most {self.allowed:.3g}{unit}"
-        shown = f" (value {self.value:.8g}, reference {self.reference:.8g})" if self.single else f" (worst of {self.count})" * (self.count > 1)
+        shown = f" (worst of {self.count})" if self.count > 1 else ""
+        if self.single:
+            shown = f" (value {self.value:.8g}, reference {self.reference:.8g})"
         return f"{text}off by {self.off:.3g}, allowed {self.allowed:.3g}{unit}{shown}"
 
 
@@ -67,7 +69,8 @@ class Bench:
         off = np.abs(value - reference).ravel()
         allowed = tolerance.absolute + tolerance.relative * np.abs(reference).ravel()
         worst = int(np.argmax(off - allowed))   # a NaN comes first
-        self._record(name, value.ravel()[worst], reference.ravel()[worst], off[worst], allowed[worst], unit, tolerance, value.size, False)
+        self._record(name, value.ravel()[worst], reference.ravel()[worst], off[worst], allowed[worst], unit, tolerance,
+                     value.size, False)
 
     def below(self, name, value, tolerance, unit=""):
         """value <= the absolute tolerance; a value may be negative."""
@@ -75,7 +78,8 @@ class Bench:
 
     def _record(self, name, value, reference, off, allowed, unit, tolerance, count, bound):
         good = bool(off <= allowed)   # false for NaN
-        self.checks.append(Check(name, float(value), float(reference), float(off), float(allowed), unit, tolerance.because, count, good,
+        self.checks.append(Check(name, float(value), float(reference), float(off), float(allowed), unit,
+                                 tolerance.because, count, good,
                                  bound))
         self.note(self.checks[-1].line())
 
@@ -109,19 +113,21 @@ class Bench:
         folder = self.folder()
         case, out = folder / f"{name}.nml", folder / f"{name}.csv"
         case.write_text(text, encoding="utf-8")
-        done = subprocess.run([self.program("drivers/mud_triax"), case, "--quiet", "--output", out], capture_output=True, text=True)
+        done = subprocess.run([self.program("drivers/mud_triax"), case, "--quiet", "--output", out],
+                              capture_output=True, text=True)
         if done.returncode:
             raise RuntimeError(f"{name}: exit code {done.returncode}. {done.stderr.strip()}")
         return tables.columns(out)
 
     def host(self, scene, changes=(), expect=0, more=(), folder=None):
-        """The folder with the output of a run of mud_host: a scene of the page with pieces of its text replaced, and more arguments."""
+        """The folder with the output of mud_host: a scene of the page with pieces of its text replaced."""
         scene = self.here / scene
         text = absolute(changed(scene.read_text(encoding="utf-8"), changes, scene.name), scene.parent)
         folder = folder or self.folder()
         copy = self.folder() / scene.name
         copy.write_text(text, encoding="utf-8")
-        done = subprocess.run([self.program("host/mud_host"), copy, "--output", folder, *more], capture_output=True, text=True,
+        done = subprocess.run([self.program("host/mud_host"), copy, "--output", folder, *more], capture_output=True,
+                              text=True,
                               env={**os.environ, "OMP_NUM_THREADS": "1"})
         if done.returncode != expect:
             raise RuntimeError(f"{scene.name}: exit code {done.returncode}. {done.stderr.strip()}")
@@ -132,10 +138,12 @@ class Bench:
         """Runs a suite of tests that judges the page."""
         done = subprocess.run([self.program(f"tests/{name}")], capture_output=True, text=True, errors="replace",
                               env={**os.environ, "MUD_SOURCE_DIR": str(ROOT), "MUD_BUILD_DIR": str(self.build)})
-        found = re.search(r"(\d+) passed, (\d+) failed\s*$", done.stdout) or re.search(r"OK\s*\((\d+) tests?()", done.stdout)
+        found = (re.search(r"(\d+) passed, (\d+) failed\s*$", done.stdout)
+                 or re.search(r"OK\s*\((\d+) tests?()", done.stdout))   # our own runner, pFUnit
         if not found:
             raise RuntimeError(f"{name} ended with exit code {done.returncode} without its closing line")
-        self.near(f"tests of {name} that fail, of {int(found[1]) + int(found[2] or 0)}", int(found[2] or 0), 0, tolerance)
+        self.near(f"tests of {name} that fail, of {int(found[1]) + int(found[2] or 0)}", int(found[2] or 0), 0,
+                  tolerance)
 
     # ---- pictures
 
@@ -149,7 +157,7 @@ class Bench:
 
 
 def changed(text, changes, name="text"):
-    """Pairs (old, new): old is plain text or a compiled pattern, every occurrence is replaced, and there must be one."""
+    """Pairs (old, new): old is text or a compiled pattern; every occurrence is replaced, and there must be one."""
     for old, new in changes:
         if isinstance(old, re.Pattern):
             text, count = old.subn(new, text)

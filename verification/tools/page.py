@@ -26,7 +26,7 @@ KINDS = {
 
 @dataclass(frozen=True)
 class Tolerance:
-    """What a check allows: |value - reference| <= absolute + relative*|reference|, and why it may be as much as that."""
+    """What a check allows: |value - reference| <= absolute + relative*|reference|, and the reason."""
     because: str
     absolute: float = 0.0
     relative: float = 0.0

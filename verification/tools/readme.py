@@ -37,8 +37,11 @@ def declaration(name, declared):
 def measured(checks):
     """The table of checks of a whole run, and the reasons of what is allowed."""
     reasons = list(dict.fromkeys(c.because for c in checks))
-    lines = [(cell(c.name) + (f" [{c.unit}]" if c.unit else ""), f"{c.value:.8g}" if c.single else f"{c.value:.2g}" if c.bound else "",
-              f"{c.reference:.8g}" if c.single else "", "" if c.bound else f"{c.off:.2g}", ("at most " if c.bound else "") + f"{c.allowed:.2g}",
+    lines = [(cell(c.name) + (f" [{c.unit}]" if c.unit else ""), f"{c.value:.8g}" if c.single else f"{c.value:.2g}"
+              if c.bound else "",
+              f"{c.reference:.8g}" if c.single else "", "" if c.bound else f"{c.off:.2g}",
+              ("at most " if c.bound else "")
+              + f"{c.allowed:.2g}",
               reasons.index(c.because) + 1) for c in checks]
     return (tables.markdown(("check", "measured", "reference", "off by", "allowed", "why"), lines) + "\n"
             + "\n".join(f"{i}. {cell(reason)}" for i, reason in enumerate(reasons, 1)) + "\n")
@@ -49,7 +52,8 @@ def index(pages, sections):
     parts = []
     for section, title in sections.items():
         lines = [(f"[{name.split('/')[1]}]({name}/README.md)", ", ".join(p.kind), cell(p.claim),
-                  f"{p.seconds:g}" + (f" ({p.quick:g})" if p.quick else "")) for name, p in pages.items() if name.split("/")[0] == section]
+                  f"{p.seconds:g}" + (f" ({p.quick:g})" if p.quick else "")) for name, p in pages.items()
+                 if name.split("/")[0] == section]
         if lines:
             parts.append(f"## {section}: {title}\n\n" + tables.markdown(INDEX_HEAD, lines))
     return "\n".join(parts)

@@ -5,12 +5,13 @@
     verification/run --list                   what there is
     verification/run --quick                  short versions of what the check run takes, without pictures
 
-Every page prints its checks, each with what it is off by, what is allowed, value and reference; the last line is `N passed, M failed`,
-the exit code 1 if a check failed. Pictures go to build/verification/PAGE and nothing is written into the source tree but with
-    --update   puts declarations, tables of checks, pictures and the index of verification/README.md into the tree (with --list: without
-               running anything, what does not depend on results)
-    --make     runs the programs that made the committed data of the pages instead, some of them for hours, and says what has changed;
-               with --update the files are taken into the tree
+Every page prints its checks, each with what it is off by, what is allowed, value and reference; the last line is
+`N passed, M failed`, the exit code 1 if a check failed. Pictures go to build/verification/PAGE and nothing is written
+into the source tree but with
+    --update   puts declarations, tables of checks, pictures and the index of verification/README.md into the tree
+               (with --list: without running anything, what does not depend on results)
+    --make     runs the programs that made the committed data of the pages instead, some of them for hours, and says
+               what has changed; with --update the files are taken into the tree
 """
 import argparse
 import concurrent.futures
@@ -57,15 +58,22 @@ class Outcome:
 
 def names():
     """All pages in the order of the sections."""
-    return [f"{section}/{path.parent.name}" for section in SECTIONS for path in sorted((HERE / section).glob("*/page.py"))]
+    return [f"{section}/{path.parent.name}" for section in SECTIONS
+            for path in sorted((HERE / section).glob("*/page.py"))]
 
 
 def load(name):
-    """The module of a page; its folder and its section's are searched for what it imports."""
+    """The module of a page, which finds what it imports in its folder and its section's. Modules of other pages are
+    forgotten, so that two may have a name in common."""
     folder = HERE / name
-    for path in (folder.parent, folder):
-        if str(path) not in sys.path:
-            sys.path.insert(1, str(path))
+    for module, found in list(sys.modules.items()):
+        place = pathlib.Path(getattr(found, "__file__", None) or "/")
+        if HERE in place.parents and "tools" not in place.parts:
+            del sys.modules[module]
+    for path in (str(folder.parent), str(folder)):
+        if path in sys.path:
+            sys.path.remove(path)
+        sys.path.insert(0, path)
     spec = importlib.util.spec_from_file_location("page_" + name.replace("/", "_"), folder / "page.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -86,7 +94,8 @@ def run_page(name, build, output, quick=False):
         for file, blocks in (module.texts(bench) if hasattr(module, "texts") else {}).items():
             text = (bench.here / file).read_text(encoding="utf-8")
             for mark, content in blocks.items():
-                bench.near(f"{file}, {mark}: texts that are not what the committed files say", (readme.block(text, mark) or "").strip()
+                bench.near(f"{file}, {mark}: texts that are not what the committed files say",
+                           (readme.block(text, mark) or "").strip()
                            != content.strip(), 0, SAME)
         if not quick and hasattr(module, "draw"):
             plt = pictures.pyplot()
@@ -95,7 +104,7 @@ def run_page(name, build, output, quick=False):
         if not bench.checks:
             raise RuntimeError("the page compared nothing")
         if not quick and set(bench.pictures) != set(module.PAGE.pictures):
-            raise RuntimeError(f"the page declares the pictures {module.PAGE.pictures} and drew {tuple(bench.pictures)}")
+            raise RuntimeError(f"the page declares pictures {module.PAGE.pictures} and drew {tuple(bench.pictures)}")
     except (RuntimeError, ValueError, OSError) as problem:
         outcome.error = f"{type(problem).__name__}: {problem}"
     except Exception:   # a mistake in the page itself: where
@@ -170,7 +179,8 @@ def make(name, build, output, update, only, arguments):
     for script in getattr(load(name), "MAKES", ()):
         if only and script.name not in only:
             continue
-        print(f"{name}: {script.name}, about {script.seconds:g} s" + (f", needs {script.needs}" if script.needs else ""), flush=True)
+        print(f"{name}: {script.name}, about {script.seconds:g} s" + (f", needs {script.needs}" if script.needs
+                                                                      else ""), flush=True)
         results = output / name / "made"
         results.mkdir(parents=True, exist_ok=True)
         code = subprocess.run([sys.executable, HERE / name / script.name, *arguments], cwd=results,
@@ -205,7 +215,8 @@ def chosen_of(words, parser):
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="verification/run", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(prog="verification/run", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("pages", nargs="*", metavar="PAGE")
     parser.add_argument("--list", action="store_true", help="name the pages and run nothing")
     parser.add_argument("--quick", action="store_true", help="as the check run does")
@@ -215,9 +226,10 @@ def main():
     parser.add_argument("--pass", nargs=argparse.REMAINDER, default=[], dest="arguments", metavar="ARGUMENT",
                         help="with --make: everything behind this goes to the scripts (series.py --help)")
     parser.add_argument("-j", type=int, default=1, metavar="N", help="pages at the same time (1)")
-    parser.add_argument("--build", type=pathlib.Path, default=pathlib.Path(os.environ.get("MUD_BUILD_DIR") or ROOT / "build/release"),
+    parser.add_argument("--build", type=pathlib.Path, default=os.environ.get("MUD_BUILD_DIR") or ROOT / "build/release",
                         help="build folder with the programs (build/release)")
-    parser.add_argument("--output", type=pathlib.Path, default=ROOT / "build/verification", help="where results go (build/verification)")
+    parser.add_argument("--output", type=pathlib.Path, default=ROOT / "build/verification",
+                        help="where results go (build/verification)")
     options = parser.parse_args()
     if options.update and options.quick:
         parser.error("--update takes whole pages: leave out --quick")
@@ -237,7 +249,8 @@ def main():
         return 0 if all(good) else 1
     if options.quick:
         chosen = [name for name in chosen if load(name).PAGE.quick]
-    print(f"{len(chosen)} pages, about {sum(page.quick if options.quick else page.seconds for page in (load(n).PAGE for n in chosen)):.0f} s "
+    print(f"{len(chosen)} pages, about "
+          f"{sum(page.quick if options.quick else page.seconds for page in (load(n).PAGE for n in chosen)):.0f} s "
           f"of one core", flush=True)
     for name in chosen if options.update else ():
         update_texts(name, output)

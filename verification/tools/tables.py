@@ -1,4 +1,4 @@
-"""The one reader of CSV tables: results of the programs, committed results, data from elsewhere. Lines that begin with # are comments."""
+"""The one reader of CSV tables: results of the programs, committed results, data from elsewhere; # begins a comment."""
 import csv
 import pathlib
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def rows(path, header_in_comment=False):
-    """Rows as dictionaries of text. With `header_in_comment` the names of the columns are the last comment before the rows."""
+    """Rows as dictionaries of text. With `header_in_comment` the last comment before the rows names the columns."""
     return list(csv.DictReader(_lines(path, header_in_comment)))
 
 
@@ -32,7 +32,8 @@ def columns(path, header_in_comment=False):
 
 def comments(path):
     """The comment lines without their mark."""
-    return [line.lstrip("# ") for line in pathlib.Path(path).read_text(encoding="utf-8").splitlines() if line.startswith("#")]
+    return [line.lstrip("# ") for line in pathlib.Path(path).read_text(encoding="utf-8").splitlines()
+            if line.startswith("#")]
 
 
 def write(path, header, lines, comment=()):

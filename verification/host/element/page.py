@@ -5,14 +5,18 @@ from tools.bench import CASES
 from tools.page import Page, Tolerance
 
 PAGE = Page(
-    claim="the host's u-p_w-p_c equations and the element driver, two programs over the same library, give the same test",
+    claim="the host's u-p_w-p_c equations and the element driver, two programs over the same library, give the same "
+          "test",
     kind="code-to-code",
-    input="`saturated.nml` (undrained, e 0.735, p' 100 kPa, K_w 1e12, suction held at 0) and `suction.nml` (drained, e 0.8, p_c 100 kPa, net radial stress held, pressures "
-          "prescribed at the top alone): two elements, 0 to 10 % axial strain in 1000 steps, Toyoura sand, consistent tangent",
+    input="`saturated.nml` (undrained, e 0.735, p' 100 kPa, K_w 1e12, suction held at 0) and `suction.nml` (drained, e "
+          "0.8, p_c 100 kPa, net radial stress held, pressures "
+          "prescribed at the top alone): two elements, 0 to 10 % axial strain in 1000 steps, Toyoura sand, consistent "
+          "tangent",
     reference="mud_triax: `drivers/cases/undrained_e735_p100.nml`, `drained_s100.nml`",
     seconds=4, quick=3, pictures=("element.png",))
 
-SAME = Tolerance("the same increments and the same library; what differs is Newton's tolerance and the flow of the interior", absolute=1e-4)
+SAME = Tolerance("the same increments and the same library; what differs is Newton's tolerance and the flow of the "
+                 "interior", absolute=1e-4)
 SAME_CALL = Tolerance("the same point by another interface: rounding of the signs and shear conventions", absolute=1e-6)
 
 
@@ -24,7 +28,8 @@ def check(bench):
         for call in ("mud_update", "umat"):
             if bench.quick and call == "umat" and name == "saturated":
                 continue
-            h = tables.columns(bench.host(f"{name}.nml", [("material_call = 'mud_update'", f"material_call = '{call}'")]) / "histories.csv")
+            h = tables.columns(bench.host(f"{name}.nml", [("material_call = 'mud_update'",
+                                                           f"material_call = '{call}'")]) / "histories.csv")
             strain = 0.1 * h["time"] / h["time"][-1]
             at = [int(np.argmin(abs(d["eps_a"] - e))) for e in strain]
             p = -(h["soil.s_rr"] + h["soil.s_zz"] + h["soil.s_tt"]) / 3
@@ -49,6 +54,7 @@ def draw(bench, results, plt):
         strain, p, q = results[name, "mud_update"]
         axis.plot(100 * strain[::6], p[::6], "o", ms=3, color="C0", label="host")
         axis.plot(100 * strain[::6], q[::6], "o", ms=3, color="C1")
-        axis.set(xlabel="axial strain [%]", ylabel="kPa", title="undrained, saturated" if name == "saturated" else "drained, suction 100 kPa")
+        axis.set(xlabel="axial strain [%]", ylabel="kPa", title="undrained, saturated" if name == "saturated"
+                 else "drained, suction 100 kPa")
         axis.legend()
     bench.save(figure, "element.png")

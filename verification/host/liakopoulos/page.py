@@ -1,22 +1,27 @@
-"""Liakopoulos' drainage with mobile air against OpenGeoSys (values and digitised profiles) and a finite-volume program."""
+"""Liakopoulos' drainage with mobile air against OpenGeoSys (values, digitised profiles) and a finite-volume program."""
 import numpy as np
 from tools import tables
 from tools.page import Page, Script, Tolerance
 
 PAGE = Page(
-    claim="u, p_w and p_c with flow of both fluids, retention and relative permeabilities given by formulas, in a column that starts saturated and lets air in",
+    claim="u, p_w and p_c with flow of both fluids, retention and relative permeabilities given by formulas, in a "
+          "column that starts saturated and lets air in",
     kind="code-to-code",
-    input="`scene.nml`: 20 quadratic cells, ideal gas without the gradient of its density, effective stress zero at the start, rho_inf 0, g 9.81",
-    reference="OpenGeoSys 6: four figures at 7200 s and digitised profiles (`liakopoulos_twophase_ogs6_porouslab.csv`); `liakopoulos.py`, finite volumes written for this page, "
+    input="`scene.nml`: 20 quadratic cells, ideal gas without the gradient of its density, effective stress zero at "
+          "the start, rho_inf 0, g 9.81",
+    reference="OpenGeoSys 6: four figures at 7200 s and digitised profiles "
+              "(`liakopoulos_twophase_ogs6_porouslab.csv`); `liakopoulos.py`, finite volumes written for this page, "
               "variant `no_gradient`, 720 cells. Not the experiment of 1964",
     seconds=6, quick=6, pictures=("liakopoulos.png",))
 MAKES = (Script("liakopoulos.py", ("liakopoulos.csv",), 360),)
 
 TIMES = (120, 300, 4800, 7200)
 OTHER_CODE = Tolerance("the two codes differ in the gas law, gravity (9.806) and the mesh", absolute=0.01)
-DIGITISED = Tolerance("digitised to about half a per cent of the axes; on the flank of the front p_a changes by 1 % of its range within 0.6 mm of height, and the markers' "
+DIGITISED = Tolerance("digitised to about half a per cent of the axes; on the flank of the front p_a changes by 1 % of "
+                      "its range within 0.6 mm of height, and the markers' "
                       "heights are known to 1 mm", absolute=0.03)
-FRONT = Tolerance("720 cells of second order there, 20 quadratic elements here, whose steepest gradient is one of 0.05 m", absolute=0.015)
+FRONT = Tolerance("720 cells of second order there, 20 quadratic elements here, whose steepest gradient is one of 0.05 "
+                  "m", absolute=0.015)
 SMOOTH = Tolerance("displacements are smooth across the front", absolute=0.001)
 AXIS_OF = {"pc_Pa": ("p_c", 1e3, 0.0), "uy_m": ("u_z", 1.0, 0.0), "pg_Pa": ("p_a", 1e3, 101325.0)}
 
@@ -49,7 +54,7 @@ def check(bench):
 
 
 def against_markers(bench, fields, profiles):
-    """Ten equidistant heights (printed with two digits). At 120 and 300 s, when the air has hardly entered, only reported."""
+    """Ten equidistant heights (printed with two digits). At 120 and 300 s the air has hardly entered: only reported."""
     for name, (key, scale, shift) in AXIS_OF.items():
         span = np.ptp([float(r[name]) for r in profiles])
         for t, f in fields.items():
@@ -64,15 +69,19 @@ def against_markers(bench, fields, profiles):
 
 
 def against_volumes(bench, fields):
-    volumes = [r for r in tables.rows(bench.here / "liakopoulos.csv", header_in_comment=True) if r["variant"] == "no_gradient"]
-    for key, column, scale, shift, allowed in (("p_c", "p_c", 1e3, 0.0, FRONT), ("p_a", "p_a", 1e3, 101325.0, FRONT), ("u_z", "u", 1.0, 0.0, SMOOTH)):
+    volumes = [r for r in tables.rows(bench.here / "liakopoulos.csv", header_in_comment=True)
+               if r["variant"] == "no_gradient"]
+    for key, column, scale, shift, allowed in (("p_c", "p_c", 1e3, 0.0, FRONT), ("p_a", "p_a", 1e3, 101325.0, FRONT),
+                                               ("u_z", "u", 1.0, 0.0, SMOOTH)):
         for t in (4800, 7200):
             f = fields[t]
             span = np.ptp([float(r[column]) for r in volumes if float(r["t"]) == t])
             z, value = f["z"][wall(f)], (scale * f[key] + shift)[wall(f)]
             pairs = [(np.interp(float(r["z"]), z, value), float(r[column])) for r in volumes if float(r["t"]) == t
                      and np.min(np.abs(z - float(r["z"]))) < 1e-6]
-            bench.below(f"finite volumes: {key} at {t} s / range ({len(pairs)} heights)", max(abs(a - b) for a, b in pairs) / span, allowed)
+            bench.below(f"finite volumes: {key} at {t} s / range ({len(pairs)} heights)",
+                        max(abs(a - b) for a, b in pairs) / span,
+                        allowed)
 
 
 def draw(bench, results, plt):
@@ -82,8 +91,10 @@ def draw(bench, results, plt):
         for i, (t, f) in enumerate(fields.items()):
             axis.plot((scale * f[key] + shift)[wall(f)], f["z"][wall(f)], color=f"C{i}", label=f"{t} s")
             rows = [r for r in profiles if float(r["t_s"]) == t]
-            axis.plot([float(r[name]) for r in rows], [round(9 * float(r["y_m"])) / 9 for r in rows], "o", ms=3, color=f"C{i}")
-        axis.set(xlabel={"p_c": "suction [Pa]", "u_z": "displacement [m]", "p_a": "air pressure [Pa]"}[key], ylabel="height [m]")
+            axis.plot([float(r[name]) for r in rows], [round(9 * float(r["y_m"])) / 9 for r in rows], "o", ms=3,
+                      color=f"C{i}")
+        axis.set(xlabel={"p_c": "suction [Pa]", "u_z": "displacement [m]", "p_a": "air pressure [Pa]"}[key],
+                 ylabel="height [m]")
         axis.locator_params(axis="x", nbins=4)
     axes[0].legend(title="line: host\no: OpenGeoSys", fontsize=7, title_fontsize=7)
     bench.save(figure, "liakopoulos.png")

@@ -2,7 +2,8 @@
 from tools.page import Page, Script, Tolerance
 
 PAGE = Page(
-    claim="the host solves the coupled equations of u, p_w and p_c with the order of its elements and of its time integration, axisymmetric with the axis r = 0 in the domain, and "
+    claim="the host solves the coupled equations of u, p_w and p_c with the order of its elements and of its time "
+          "integration, axisymmetric with the axis r = 0 in the domain, and "
           "in plane strain",
     kind="manufactured",
     input="`manufactured.f90`: every field is chosen, the loads that make it a solution are derived",
@@ -10,7 +11,8 @@ PAGE = Page(
     seconds=20)
 MAKES = (Script("make_mms.py", ("manufactured.f90", "samples.csv"), 6, "sympy, mpmath"),)
 
-NONE = Tolerance("tests/host/run/test_manufactured.pf asks for orders 3, 2 and 2 within 0.2: meshes and steps that are not infinitely fine")
+NONE = Tolerance("tests/host/run/test_manufactured.pf asks for orders 3, 2 and 2 within 0.2: meshes and steps that are "
+                 "not infinitely fine")
 
 
 def check(bench):

@@ -4,16 +4,20 @@ from tools import tables
 from tools.page import Page, Script, Tolerance
 
 PAGE = Page(
-    claim="with the seepage inertia terms plane waves in unsaturated soil grow, as the equations say; without them they do not at the wave numbers of a mesh",
+    claim="with the seepage inertia terms plane waves in unsaturated soil grow, as the equations say; without them "
+          "they do not at the wave numbers of a mesh",
     kind="exact",
-    input="`scene.nml`: half a wave between two impermeable walls, v_z = v sin(k z) at the start, constrained modulus 13 MPa, 12 quadratic cells, 250 steps an e-folding "
+    input="`scene.nml`: half a wave between two impermeable walls, v_z = v sin(k z) at the start, constrained modulus "
+          "13 MPa, 12 quadratic cells, 250 steps an e-folding "
           "time, trapezoidal; 125, 250 and 500 per metre",
     reference="roots of the determinant of the linearised equations; `growth.csv` by eigenvalues",
     seconds=6, quick=3, pictures=("seepage_inertia.png",))
 MAKES = (Script("growth.py", ("growth.csv", "history.csv"), 15, "scipy, mpmath"),)
 
-E0, RHO_S, RHO_W, RHO_A, K_W, K_A, PERMEABILITY, ETA_W, ETA_A = (0.8, 2.65, 1.0, 1.2e-3, 2.2e6, 101.325, 5e-10, 1e-6, 1.8e-8)
-FITTED = Tolerance("decaying roots and faster modes of the mesh, excited by rounding, are left in the fit; period elongation", absolute=0.01)
+E0, RHO_S, RHO_W, RHO_A, K_W, K_A, PERMEABILITY, ETA_W, ETA_A = (0.8, 2.65, 1.0, 1.2e-3, 2.2e6, 101.325, 5e-10, 1e-6,
+                                                                 1.8e-8)
+FITTED = Tolerance("decaying roots and faster modes of the mesh, excited by rounding, are left in the fit; period "
+                   "elongation", absolute=0.01)
 DECAY = Tolerance("every root decays")
 NO_GROWTH = Tolerance("not more than at the start", absolute=1.0)
 GROWTH = Tolerance("the sign is claimed, no more")
@@ -65,15 +69,19 @@ def check(bench):
         h = tables.columns(bench.host("scene.nml", changes) / "histories.csv")
         late = h["time"] > 1.5 * life
         rate = fitted(h["time"][late], h["middle.v_z"][late])
-        bench.note(f"wave number {k}/m: growth {rate.real:.1f}, frequency {abs(rate.imag):.1f}; linearised {exact.real:.1f}, {abs(exact.imag):.1f} 1/s")
+        bench.note(f"wave number {k}/m: growth {rate.real:.1f}, frequency {abs(rate.imag):.1f}; linearised "
+                   f"{exact.real:.1f}, {abs(exact.imag):.1f} 1/s")
         bench.below(f"wave number {k}: growth rate", abs(rate.real / exact.real - 1), FITTED)
         bench.below(f"wave number {k}: frequency", abs(abs(rate.imag) / abs(exact.imag) - 1), FITTED)
         measured[k] = rate
-    bench.below("largest growth rate without seepage inertia", max(growth(k, p, inertia=False).real for k in (125, 500) for p in (3.0, 10.0, 1000.0)), DECAY, "1/s")
-    h = tables.columns(bench.host("scene.nml", [("seepage_inertia = 'yes'", "seepage_inertia = 'no'")]) / "histories.csv")
+    bench.below("largest growth rate without seepage inertia", max(growth(k, p, inertia=False).real for k in (125, 500)
+                                                                   for p in (3.0, 10.0, 1000.0)), DECAY, "1/s")
+    h = tables.columns(bench.host("scene.nml", [("seepage_inertia = 'yes'",
+                                                 "seepage_inertia = 'no'")]) / "histories.csv")
     v = np.abs(h["middle.v_z"])
     bench.below("without: velocity at the end / at the start", v[-50:].max() / v[0], NO_GROWTH)
-    bench.note("suction 10 and 1000 kPa, wave number 500/m:", *(f"{growth(500, p).real:.0f}" for p in (10.0, 1000.0)), "1/s")
+    bench.note("suction 10 and 1000 kPa, wave number 500/m:", *(f"{growth(500, p).real:.0f}" for p in (10.0, 1000.0)),
+               "1/s")
     bench.below("sign at 10 and 1000 kPa (-growth)", max(-growth(500, p).real for p in (10.0, 1000.0)), GROWTH, "1/s")
     return measured
 

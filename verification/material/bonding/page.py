@@ -4,11 +4,14 @@ from tools.page import Page, Tolerance
 from tools.pictures import COLOURS
 
 PAGE = Page(
-    claim="at constant effective stress suction acts through the bonding variable alone: drying strains nothing, wetting on the line collapses along it",
+    claim="at constant effective stress suction acts through the bonding variable alone: drying strains nothing, "
+          "wetting on the line collapses along it",
     kind="exact",
-    input="`drivers/cases/drying_constant_stress` (p' 100 kPa, e 0.8, suction 1 to 500 kPa) and `wetting_on_the_line` (e 0.8 on the compression line at "
+    input="`drivers/cases/drying_constant_stress` (p' 100 kPa, e 0.8, suction 1 to 500 kPa) and `wetting_on_the_line` "
+          "(e 0.8 on the compression line at "
           "suction 200 kPa, wetted to zero); six effective stresses held as linear constraints",
-    reference="drying lifts the lines of eqs (7), (8): psi = e - N_c f (p' + alpha_csl)^(-lambda) and no strain; on the compression line F = 1 and the rate "
+    reference="drying lifts the lines of eqs (7), (8): psi = e - N_c f (p' + alpha_csl)^(-lambda) and no strain; on "
+              "the compression line F = 1 and the rate "
               "integrates to e = N_l f(zeta(e, p_c)) p'^(-lambda)",
     seconds=2, quick=1, every_build=True, pictures=("bonding.png",))
 
@@ -29,7 +32,8 @@ def check(bench):
     run = bench.driver("drying_constant_stress")
     bench.near("drying at constant stress: strain", max(max(map(abs, run[k])) for k in ("eps_a", "eps_v")), 0, NOTHING)
     psi = [e - critical_void_ratio(100.0, bonding(s, e)) for e, s in zip(run["e"], run["suction"])]
-    bench.near("drying at constant stress: state parameter", max(abs(a - b) for a, b in zip(psi, run["psi"])), 0, ROUNDED)
+    bench.near("drying at constant stress: state parameter", max(abs(a - b) for a, b in zip(psi, run["psi"])), 0,
+               ROUNDED)
     run = bench.driver("wetting_on_the_line")
     p, e, off = run["p_eff"][0], run["e"][0], 0.0
     for suction, there in zip(run["suction"], run["e"]):
@@ -50,7 +54,8 @@ def draw(bench, _, plt):
     axes[0].legend()
     run = bench.driver("drying_constant_stress")
     axes[1].plot(run["suction"], run["psi"], color=COLOURS[0], label="model")
-    axes[1].plot(run["suction"], [e - critical_void_ratio(100.0, bonding(s, e)) for e, s in zip(run["e"], run["suction"])],
+    axes[1].plot(run["suction"], [e - critical_void_ratio(100.0, bonding(s, e)) for e,
+                                  s in zip(run["e"], run["suction"])],
                  "k--", lw=1, label="closed form")
     axes[1].set(xlabel="suction [kPa]", ylabel="state parameter [-]", title="drying under constant effective stress")
     axes[1].legend()

@@ -7,18 +7,22 @@ from tools.page import Page, Tolerance
 from tools.pictures import COLOURS
 
 PAGE = Page(
-    claim="isotropic compression is its scalar equation and ends on the compression line; K0 compression is that of another implementation",
+    claim="isotropic compression is its scalar equation and ends on the compression line; K0 compression is that of "
+          "another implementation",
     kind=("exact", "code-to-code"),
     input="`drivers/cases/isotropic_e8_p50` and `oedometer_e8_p50`, e 0.8 and p' 50 kPa, continued to eps_v 0.15",
-    reference="isotropic: d eps_v = dp'/K + A dp'/p' by Runge-Kutta of 4th order in 20000 steps (half the step moves it by less than 1e-7); line: "
+    reference="isotropic: d eps_v = dp'/K + A dp'/p' by Runge-Kutta of 4th order in 20000 steps (half the step moves "
+              "it by less than 1e-7); line: "
               "p' = (N_l/e)^(1/lambda), eq. (7); K0: the independent implementation in `../reference`",
     seconds=3, quick=2, every_build=True, pictures=("compression.png",))
 
 FAR = ((re.compile(r"eps_v_end = \S+"), "eps_v_end = 0.15"),)
 PATH = Tolerance("ten times the integration's tolerance of 1e-5", relative=10 * INTEGRATION)
 LINE = Tolerance("the path comes near the line from below without reaching it", absolute=0.005)
-NOT_CROSSED = Tolerance("the isotropic path does not cross the line; a hundred times the integration's tolerance", absolute=1e-3)
-SIX_DIGITS = Tolerance("the reference for K0 has six digits; the two implementations were agreed to 0.05 %", relative=5e-4)
+NOT_CROSSED = Tolerance("the isotropic path does not cross the line; a hundred times the integration's tolerance",
+                        absolute=1e-3)
+SIX_DIGITS = Tolerance("the reference for K0 has six digits; the two implementations were agreed to 0.05 %",
+                       relative=5e-4)
 THREE_DIGITS = Tolerance("the reference has three digits", absolute=0.005)
 
 
@@ -46,14 +50,16 @@ def isotropic_reference(p, e, strain, steps=20000):
 
 def k0_ratio(run):
     """(p'/p'_line)(1 + 2 eta^2/M^2): 1 on the compression line."""
-    return [p / line_pressure(e) * (1 + 2 * (q / p / P["M_c"]) ** 2) for p, q, e in zip(run["p_eff"], run["q"], run["e"])]
+    return [p / line_pressure(e) * (1 + 2 * (q / p / P["M_c"]) ** 2) for p, q,
+            e in zip(run["p_eff"], run["q"], run["e"])]
 
 
 def check(bench):
     run = bench.driver("isotropic_e8_p50", FAR)
     for strain in (0.02, 0.06, 0.15):
         here = min(range(len(run["e"])), key=lambda i: abs(run["eps_v"][i] - strain))
-        bench.near(f"isotropic, p' at eps_v {strain}", run["p_eff"][here], isotropic_reference(50.0, 0.8, strain), PATH, "kPa")
+        bench.near(f"isotropic, p' at eps_v {strain}", run["p_eff"][here], isotropic_reference(50.0, 0.8, strain), PATH,
+                   "kPa")
     ratio = [p / line_pressure(e) for p, e in zip(run["p_eff"], run["e"])]
     bench.near("isotropic: on the line at its end, p'/p'_line", ratio[-1], 1, LINE)
     bench.near("isotropic: the line is never crossed by more than", max(max(ratio) - 1, 0), 0, NOT_CROSSED)

@@ -5,11 +5,14 @@ from tools.page import Page, Script, Tolerance
 from tools.pictures import COLOURS
 
 PAGE = Page(
-    claim="the test of the paper's Fig. 1 with every memory rule is that of two other implementations; no variant of the untreated rule gives the paper's picture",
+    claim="the test of the paper's Fig. 1 with every memory rule is that of two other implementations; no variant of "
+          "the untreated rule gives the paper's picture",
     kind="code-to-code",
-    input="`drivers/cases/fig1_uninterrupted`, `_as_published`, `_classic`, `_threshold`, `_repositioning`, `_resume`: e 0.735, p' 100 kPa, undrained triaxial "
+    input="`drivers/cases/fig1_uninterrupted`, `_as_published`, `_classic`, `_threshold`, `_repositioning`, `_resume`: "
+          "e 0.735, p' 100 kPa, undrained triaxial "
           "compression in increments of 1e-5; at axial strain 0.10 back by 0.015 % and forward again",
-    reference="the independent implementation in `../reference` (five digits); `variants.py`, the equations in triaxial space written once more. The paper's "
+    reference="the independent implementation in `../reference` (five digits); `variants.py`, the equations in "
+              "triaxial space written once more. The paper's "
               "curves are not available as numbers",
     seconds=7, quick=5, every_build=True, pictures=("fig1.png",))
 MAKES = (Script("variants.py", ("variants.csv",), 20),)
@@ -20,7 +23,8 @@ MARKS = {"uninterrupted": {0.105: 3015.6, 0.12: 3242.0, 0.15: 3492.1},
          "classic": {0.105: 2936.0, 0.12: 3139.7, 0.15: 3396.6},
          "threshold": {"at": 2920.0, "turn": 2845.0, "back": 2848.0, 0.105: 2943.1, 0.12: 3178.0, 0.15: 3456.4},
          "repositioning": {0.105: 2943.1}, "resume": {0.105: 3012.1}}
-FIVE_DIGITS = Tolerance("the reference has five digits, and the integration's 1e-5 a substep adds up over a test", relative=2e-4)
+FIVE_DIGITS = Tolerance("the reference has five digits, and the integration's 1e-5 a substep adds up over a test",
+                        relative=2e-4)
 
 
 def deviators(bench, rule):
@@ -44,7 +48,8 @@ def check(bench):
             bench.near(f"{rule}: q at {mark}", values[mark], q, FIVE_DIGITS, "kPa")
     for switches, rule in (({"interrupted": False}, "uninterrupted"), ({}, "classic")):
         q = variants.run(**switches, parts=1)[0]
-        bench.near(f"{rule}: q at 0.105 by the equations of triaxial space", deviators(bench, rule)[0.105], q[1], FIVE_DIGITS, "kPa")
+        bench.near(f"{rule}: q at 0.105 by the equations of triaxial space", deviators(bench, rule)[0.105], q[1],
+                   FIVE_DIGITS, "kPa")
 
 
 def draw(bench, _, plt):
@@ -55,7 +60,8 @@ def draw(bench, _, plt):
             axis.plot(100 * run["eps_a"], run["q"], color=("black", *COLOURS)[i], label=rule.replace("_", " "),
                       ls=("-", "--", "-", "-.", ":", "--")[i], lw=(1.8, 1, 1.2, 1.4, 1.8, 1.4)[i])
     axes[0].set(xlabel="axial strain [%]", ylabel="q [kPa]", xlim=(0, 15), ylim=(0, 3600), title="the whole test")
-    axes[1].set(xlabel="axial strain [%]", ylabel="q [kPa]", xlim=(9.97, 10.6), ylim=(2820, 3040), title="the reversal of 0.015 % at 10 %")
+    axes[1].set(xlabel="axial strain [%]", ylabel="q [kPa]", xlim=(9.97, 10.6), ylim=(2820, 3040),
+                title="the reversal of 0.015 % at 10 %")
     axes[1].legend()
     rows = tables.rows(bench.here / "variants.csv")
     jumps = [float(row["jump_0.105_pct"]) for row in rows]
@@ -63,5 +69,6 @@ def draw(bench, _, plt):
     axes[2].set_yticks(range(len(rows)), [row["variant"] for row in rows])
     axes[2].invert_yaxis()
     axes[2].axvline(0, color="black", lw=0.8)
-    axes[2].set(xlabel="q at 10.5 % against the variant's own\nuninterrupted path [%]", title="variants of the untreated rule")
+    axes[2].set(xlabel="q at 10.5 % against the variant's own\nuninterrupted path [%]",
+                title="variants of the untreated rule")
     bench.save(figure, "fig1.png", dpi=90)

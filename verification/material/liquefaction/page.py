@@ -9,16 +9,20 @@ from tools.pictures import COLOURS
 PAGE = Page(
     claim="long cyclic tests run without trouble, and their answer is the model's and not the integrator's",
     kind=("code-to-code", "conservation"),
-    input="`drivers/cases/cyclic_q_e833_p100` (q of 25 kPa to r_u 0.95), `cyclic_q_e833_p100_mobility` (60 cycles), `cyclic_tau_e860_p100` (simple "
+    input="`drivers/cases/cyclic_q_e833_p100` (q of 25 kPa to r_u 0.95), `cyclic_q_e833_p100_mobility` (60 cycles), "
+          "`cyclic_tau_e860_p100` (simple "
           "shear of 15 kPa to a double amplitude of 5 %), `cyclic_strain_e907_p100` (400 strain cycles of 0.1 %)",
-    reference="the same test by Dormand-Prince at 1e-8 in increments of 2e-6; limits that hold whatever the path: p_min, the bounding surface, e",
+    reference="the same test by Dormand-Prince at 1e-8 in increments of 2e-6; limits that hold whatever the path: "
+              "p_min, the bounding surface, e",
     seconds=10, quick=8, every_build=True, pictures=("liquefaction.png",))
 
 SAME_CYCLE = Tolerance("a count")
-STEEP = Tolerance("r_u is steep there: an increment of 1e-5 is 0.06 % of the strain, and three are allowed", relative=2e-3)
+STEEP = Tolerance("r_u is steep there: an increment of 1e-5 is 0.06 % of the strain, and three are allowed",
+                  relative=2e-3)
 REVERSAL = Tolerance("the driver meets reversals to 1e-7 of the amplitude", absolute=25e-7)
 STOP = Tolerance("a stage stops at the first increment beyond its mark: r_u changes by less in one", absolute=0.01)
-AMPLITUDE = Tolerance("a stage stops at the first increment beyond its mark, which is 5e-5 at most; ten of them", absolute=5e-4)
+AMPLITUDE = Tolerance("a stage stops at the first increment beyond its mark, which is 5e-5 at most; ten of them",
+                      absolute=5e-4)
 CUT_OFF = Tolerance("below p_min the tension cut-off holds p': rounding, with room for the units", absolute=1e-9)
 BOUND = Tolerance("softening outside the bounding surface takes some strain to return to it", absolute=0.05)
 ROUNDED = Tolerance("a few thousand roundings", absolute=ROUNDING)
@@ -27,7 +31,8 @@ ROUNDED = Tolerance("a few thousand roundings", absolute=ROUNDING)
 def check(bench):
     run = bench.driver("cyclic_q_e833_p100")
     finer = bench.driver("cyclic_q_e833_p100", ((re.compile(r"increment = \S+"), "increment = 2e-6"),
-                                                (re.compile(r"(?m)^   file = .*$"), r"\g<0>\n   tolerance = 1e-8\n   scheme = 3")))
+                                                (re.compile(r"(?m)^   file = .*$"),
+                                                 r"\g<0>\n   tolerance = 1e-8\n   " r"scheme = 3")))
     bench.near("cycles to r_u 0.95, by another integrator", int(run["cycle"][-1]), int(finer["cycle"][-1]), SAME_CYCLE)
     bench.near("strain there", run["eps_a"][-1], finer["eps_a"][-1], STEEP)
     turns = [q for q in run["q"] if abs(abs(q) - 25) < 1]

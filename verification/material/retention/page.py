@@ -4,9 +4,11 @@ from tools.page import Page, Tolerance
 from tools.pictures import COLOURS
 
 PAGE = Page(
-    claim="the degree of saturation follows the retention curve, with the void ratio in it, also where the water content is held",
+    claim="the degree of saturation follows the retention curve, with the void ratio in it, also where the water "
+          "content is held",
     kind="exact",
-    input="`drivers/cases/drying_constant_volume` (suction 0 to 1000 kPa, no strain) and `constant_water` (drained compression, then isotropic, S_w e held "
+    input="`drivers/cases/drying_constant_volume` (suction 0 to 1000 kPa, no strain) and `constant_water` (drained "
+          "compression, then isotropic, S_w e held "
           "and suction free)",
     reference="eqs (23), (24): p* = p_c e^Omega, S_w = S_min + (S_max - S_min)[ln(exp(1) + (p*/P_a)^n_x)]^(-m_x)",
     seconds=1, quick=1, every_build=True, pictures=("retention.png",))
@@ -16,7 +18,8 @@ HELD = Tolerance("the driver meets the water content to 1e-10 in every increment
 
 
 def check(bench):
-    for name, title in (("drying_constant_volume", "drying at constant volume"), ("constant_water", "constant water content")):
+    for name, title in (("drying_constant_volume", "drying at constant volume"),
+                        ("constant_water", "constant water content")):
         run = bench.driver(name)
         off = max(abs(s - saturation(p, e)) for s, p, e in zip(run["s_w"], run["suction"], run["e"]))
         bench.near(f"{title}: S_w", off, 0, ROUNDED)
@@ -29,7 +32,8 @@ def draw(bench, _, plt):
     run = bench.driver("drying_constant_volume")
     axes[0].semilogx(run["suction"][1:], run["s_w"][1:], color=COLOURS[0], label="model, e 0.8")
     for e, style in ((0.6, ":"), (0.8, "--"), (1.0, "-.")):
-        axes[0].semilogx(run["suction"][1:], [saturation(s, e) for s in run["suction"][1:]], "k", ls=style, lw=1, label=f"closed form, e {e}")
+        axes[0].semilogx(run["suction"][1:], [saturation(s, e) for s in run["suction"][1:]], "k", ls=style, lw=1,
+                         label=f"closed form, e {e}")
     axes[0].set(xlabel="suction [kPa], logarithmic", ylabel="S$_w$ [-]", title="retention curve, eqs (23), (24)")
     axes[0].legend()
     run = bench.driver("constant_water")

@@ -9,16 +9,19 @@ from tools.pictures import COLOURS
 PAGE = Page(
     claim="undrained tests end on the critical state line, and a test that begins there stays",
     kind="exact",
-    input="`drivers/cases/undrained_e735_p100`, `_p3000`, `undrained_e833_p100`, `_p3000`, continued to a natural axial strain of 1; six tests that "
+    input="`drivers/cases/undrained_e735_p100`, `_p3000`, `undrained_e833_p100`, `_p3000`, continued to a natural "
+          "axial strain of 1; six tests that "
           "begin in the steady state (e 0.735, 0.833, 0.907; both ways), sheared by 0.1",
     reference="p'_c = (N_c/e)^(1/lambda) - alpha_csl; q = M_c p'_c in compression, -c M_c p'_c in extension",
     seconds=4, quick=3, every_build=True, pictures=("steady_states.png",))
 
 TESTS = ("undrained_e735_p100", "undrained_e735_p3000", "undrained_e833_p100", "undrained_e833_p3000")
 FAR = ((re.compile(r"eps_a_end = \S+"), "eps_a_end = 1.0"),)
-FIXED_POINT = Tolerance("the steady state is a fixed point (D = 0, R_b = r); rounding starts a stiff motion about it, which the error control keeps "
+FIXED_POINT = Tolerance("the steady state is a fixed point (D = 0, R_b = r); rounding starts a stiff motion about it, "
+                        "which the error control keeps "
                         "within its tolerance of 1e-5 a substep: ten times that", absolute=10 * INTEGRATION)
-ARRIVAL = Tolerance("tests come near exponentially; at strain 1 less than 1e-4 is left for these void ratios", relative=5e-4)
+ARRIVAL = Tolerance("tests come near exponentially; at strain 1 less than 1e-4 is left for these void ratios",
+                    relative=5e-4)
 
 
 def void_ratio(name):
@@ -34,7 +37,8 @@ def check(bench):
                 f"&material\n file = '{MATERIAL}'\n/\n&initial\n void_ratio = {e}\n sigma_a = {p + 2 * q / 3!r}\n"
                 f" sigma_r = {p - q / 3!r}\n/\n&stage\n control = 'undrained'\n eps_a_end = {strain}\n/\n", "steady")
             worst = max(max(abs(v / p - 1) for v in run["p_eff"]), max(abs(v / q - 1) for v in run["q"]))
-            bench.near(f"e {e}: a steady state stays one, {'compression' if way > 0 else 'extension'}", worst, 0, FIXED_POINT)
+            bench.near(f"e {e}: a steady state stays one, {'compression' if way > 0 else 'extension'}", worst, 0,
+                       FIXED_POINT)
     for name in TESTS:
         run = bench.driver(name, FAR)
         bench.near(f"{name} arrives, q", run["q"][-1], P["M_c"] * steady_pressure(void_ratio(name)), ARRIVAL, "kPa")

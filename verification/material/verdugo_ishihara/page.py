@@ -1,4 +1,4 @@
-"""Drained and undrained triaxial tests on Toyoura sand: the published parameters beside the laboratory and the closed-form steady state."""
+"""Triaxial tests on Toyoura sand: the published parameters beside the laboratory and the closed-form steady state."""
 import re
 
 import laboratory
@@ -9,23 +9,31 @@ from tools.page import Page, Tolerance
 from tools.pictures import COLOURS
 
 PAGE = Page(
-    claim="how far the published parameter set is from six drained tests on Toyoura sand; undrained tests beside the closed-form steady state",
+    claim="how far the published parameter set is from six drained tests on Toyoura sand; undrained tests beside the "
+          "closed-form steady state",
     kind=("experiment", "code-to-code"),
-    input="`drivers/cases/vi_drained_TMD1` ... `TMD6` (isotropic start at 500 kPa, TMD1-3, or 100 kPa, radial stress held, axial strain to 0.30 in increments of "
-          "1e-4) and `undrained_eEEE_pPPPP` (e 0.735, 0.833, 0.907, p' 100 to 3000 kPa, axial strain to 0.25, and continued to 1); "
-          "`drivers/materials/toyoura.nml` (the paper's Tables 2 and 3, theta 0.2), memory rule and guards at their defaults",
-    reference="`verdugo_ishihara_1996_drained_TC.csv`: six digitised tests, origin, DOI and licence (CC-BY-4.0) in its header; the misfits of an independent "
+    input="`drivers/cases/vi_drained_TMD1` ... `TMD6` (isotropic start at 500 kPa, TMD1-3, or 100 kPa, radial stress "
+          "held, axial strain to 0.30 in increments of "
+          "1e-4) and `undrained_eEEE_pPPPP` (e 0.735, 0.833, 0.907, p' 100 to 3000 kPa, axial strain to 0.25, and "
+          "continued to 1); "
+          "`drivers/materials/toyoura.nml` (the paper's Tables 2 and 3, theta 0.2), memory rule and guards at their "
+          "defaults",
+    reference="`verdugo_ishihara_1996_drained_TC.csv`: six digitised tests, origin, DOI and licence (CC-BY-4.0) in its "
+              "header; the misfits of an independent "
               "integration of the same equations",
     seconds=10, pictures=("drained.png", "undrained.png", "states.png"))
 
 # Misfits of the independent integration: q [%], eps_v [percentage points].
-OTHERS = {"TMD4": (8, 0.46), "TMD5": (15, 0.83), "TMD6": (33, 1.64), "TMD1": (7, 0.10), "TMD2": (15, 0.98), "TMD3": (42, 1.90)}
+OTHERS = {"TMD4": (8, 0.46), "TMD5": (15, 0.83), "TMD6": (33, 1.64),
+          "TMD1": (7, 0.10), "TMD2": (15, 0.98), "TMD3": (42, 1.90)}
 VOID_RATIOS = ("0.735", "0.833", "0.907")
 PRESSURES = (100, 1000, 2000, 3000)
 FAR = ((re.compile(r"eps_a_end = \S+"), "eps_a_end = 1.0"),)   # natural axial strain
 HELD = Tolerance("the driver's promise for a held stress", absolute=1e-10)
-WHOLE_PERCENT = Tolerance("the other integration is known in whole per cent, and its normalisation of q in part (below)", absolute=1.0)
-TWO_DIGITS = Tolerance("the other integration is known to 0.01 points and does not say which rows it took", absolute=0.05)
+WHOLE_PERCENT = Tolerance("the other integration is known in whole per cent, its normalisation of q in part (below)",
+                          absolute=1.0)
+TWO_DIGITS = Tolerance("the other integration is known to 0.01 points and does not say which rows it took",
+                       absolute=0.05)
 
 
 def check(bench):
@@ -38,15 +46,19 @@ def check(bench):
         bench.near(f"{name}: radial stress held, of its value", error, 0, HELD)
         bench.near(f"{name}: misfit of q, by another integration", q, OTHERS[name][0], WHOLE_PERCENT, "%")
         bench.near(f"{name}: misfit of eps_v, by another integration", volume, OTHERS[name][1], TWO_DIGITS, "points")
-        lines.append((name, test["sigma_r"], test["e_0"], int(laboratory.used(test).sum()), f"{q:.4f}", OTHERS[name][0], f"{volume:.5f}", OTHERS[name][1],
+        lines.append((name, test["sigma_r"], test["e_0"], int(laboratory.used(test).sum()), f"{q:.4f}", OTHERS[name][0],
+                      f"{volume:.5f}", OTHERS[name][1],
                       f"{error:.2e}"))
-    tables.write(bench.output / "misfit.csv", ("test", "sigma_r_kPa", "e_0", "rows", "q_rms_pct", "q_rms_pct_reference", "eps_v_rms_pp",
+    tables.write(bench.output / "misfit.csv", ("test", "sigma_r_kPa", "e_0", "rows", "q_rms_pct", "q_rms_pct_reference",
+                                               "eps_v_rms_pp",
                                                "eps_v_rms_pp_reference", "control_error"), lines)
     bench.note("Drained tests: misfit over the laboratory rows from 1 to 25 % axial strain")
-    bench.note("   q: rms of q/q_lab - 1;  eps_v: rms difference in percentage points;  ref.: an independent integration")
+    bench.note("   q: rms of q/q_lab - 1;  eps_v: rms difference in percentage points;  ref.: an independent "
+               "integration")
     bench.note("   test   sigma_r    e_0   rows |    q [%]   ref.  | eps_v [pp]  ref.  | control error")
     for name, sigma, e, rows, q, other_q, volume, other_volume, error in lines:
-        bench.note(f"   {name}  {sigma:5.0f} kPa  {e:.3f}  {rows:3d} | {float(q):8.2f}  {other_q:5d}  |   {float(volume):7.3f}  {other_volume:5.2f}  |  "
+        bench.note(f"   {name}  {sigma:5.0f} kPa  {e:.3f}  {rows:3d} | {float(q):8.2f}  {other_q:5d}  |   "
+                   f"{float(volume):7.3f}  {other_volume:5.2f}  |  "
                    f"{float(error):.1e}")
     cases = {(e, start): f"undrained_e{e[2:]}_p{start}" for e in VOID_RATIOS for start in PRESSURES}
     undrained = {key: bench.driver(case) for key, case in cases.items()}
@@ -57,23 +69,27 @@ def check(bench):
 def report_undrained(bench, runs, further):
     bench.note("Undrained tests: p' and q [kPa] at 25 %, continued to natural strain 1,")
     bench.note("   and the steady state p'_c = (N_c/e)^(1/lambda) - alpha_csl, q_c = M_c p'_c")
-    bench.note("     e    p'_0 |  at 25 %: p'        q |  continued: p'      q |  closed: p'_c     q_c | q/q_c - 1: at 25 %, continued")
+    bench.note("     e    p'_0 |  at 25 %: p'        q |  continued: p'      q |  closed: p'_c     q_c | q/q_c - 1: at "
+               "25 %, continued")
     lines = []
     for (void_ratio, start), run in runs.items():
         longer, pressure = further[void_ratio, start], steady_pressure(float(void_ratio))
         deviator, end = P["M_c"] * pressure, int(np.argmin(np.abs(run["eps_a"] - 0.25)))
         values = (run["p_eff"][end], run["q"][end], longer["p_eff"][-1], longer["q"][-1], pressure, deviator)
         off = [100 * (values[i] / deviator - 1) for i in (1, 3)]
-        bench.note(f"   {void_ratio}  {start:4d} |   {values[0]:8.2f} {values[1]:8.2f} |   {values[2]:8.2f} {values[3]:8.2f} |"
+        bench.note(f"   {void_ratio}  {start:4d} |   {values[0]:8.2f} {values[1]:8.2f} |   {values[2]:8.2f} "
+                   f"{values[3]:8.2f} |"
                    f"   {values[4]:8.2f} {values[5]:8.2f} |   {off[0]:+8.2f} %   {off[1]:+7.3f} %")
         lines.append((void_ratio, start, *(f"{v:.4f}" for v in values), *(f"{v:.4f}" for v in off)))
-    tables.write(bench.output / "steady_state.csv", ("e", "p_0_kPa", "p_25pct_kPa", "q_25pct_kPa", "p_continued_kPa", "q_continued_kPa", "p_closed_kPa",
+    tables.write(bench.output / "steady_state.csv", ("e", "p_0_kPa", "p_25pct_kPa", "q_25pct_kPa", "p_continued_kPa",
+                                                     "q_continued_kPa", "p_closed_kPa",
                                                      "q_closed_kPa", "q_off_25pct_pct", "q_off_continued_pct"), lines)
 
 
 def draw(bench, results, plt):
     tests, drained, undrained = results
-    with plt.rc_context({"axes.spines.top": False, "axes.spines.right": False, "lines.linewidth": 1.6, "savefig.dpi": 160}):
+    with plt.rc_context({"axes.spines.top": False, "axes.spines.right": False, "lines.linewidth": 1.6,
+                         "savefig.dpi": 160}):
         bench.save(drained_picture(drained, tests, plt), "drained.png", dpi=160)
         bench.save(undrained_picture(undrained, plt), "undrained.png")
         bench.save(states_picture(drained, undrained, tests, plt), "states.png", dpi=160)

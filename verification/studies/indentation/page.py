@@ -1,4 +1,4 @@
-"""Indentation of unsaturated soil by a rigid plate: balances of momentum and energy of a run, and what the committed analyses say."""
+"""Indentation of unsaturated soil by a rigid plate: balances of a run, and what the committed analyses say."""
 import analysis
 import cost
 import numpy as np
@@ -9,20 +9,29 @@ from tools.bench import number
 from tools.page import Page, Script, Tolerance
 
 PAGE = Page(
-    claim="the paper's indentation at eight suctions with and without the remedy against stress overshooting: its Table 1 and Figs 3 to 5 beside what is computed here, what its open "
+    claim="the paper's indentation at eight suctions with and without the remedy against stress overshooting: its "
+          "Table 1 and Figs 3 to 5 beside what is computed here, what its open "
           "choices move, and what the remedy costs",
     kind=("study", "conservation", "regression"),
-    input="`indent_s030.nml` (suction 30 kPa, with the remedy) is run; `results/` holds 54 analyses and 189 variations, made by `series.py`, `sensitivity.py`, `cost.py`",
-    reference="published numbers and curves; balances of momentum and energy; eq. (24) for S_w; the committed analysis at 30 kPa",
-    seconds=45, quick=3, pictures=("fig2_load.png", "fig3_interface.png", "fig4_errors.png", "fig5_displacement.png", "sensitivity.png"))
-MAKES = (Script("series.py", ("results/*.csv", "results/histories/*.csv"), 600), Script("sensitivity.py", ("results/sensitivity.csv",), 18000),
+    input="`indent_s030.nml` (suction 30 kPa, with the remedy) is run; `results/` holds 54 analyses and 189 "
+          "variations, made by `series.py`, `sensitivity.py`, `cost.py`",
+    reference="published numbers and curves; balances of momentum and energy; eq. (24) for S_w; the committed analysis "
+              "at 30 kPa",
+    seconds=45, quick=3, pictures=("fig2_load.png", "fig3_interface.png", "fig4_errors.png", "fig5_displacement.png",
+                                   "sensitivity.png"))
+MAKES = (Script("series.py", ("results/*.csv", "results/histories/*.csv"), 600),
+         Script("sensitivity.py", ("results/sensitivity.csv",), 18000),
          Script("cost.py", ("results/cost.csv",), 600, "valgrind"))
 
-SEATED = Tolerance("the seat is in equilibrium to 1e-8 of all forces; the plate's weight is about 1e-3 of these", absolute=1e-4)
+SEATED = Tolerance("the seat is in equilibrium to 1e-8 of all forces; the plate's weight is about 1e-3 of these",
+                   absolute=1e-4)
 ROUNDED = Tolerance("one evaluation of eq. (24): a few thousand roundings", absolute=1e-12)
-IMPULSE = Tolerance("what the scheme leaves at the end is of the order of dt m times the last acceleration", absolute=1e-3)
-ENERGY = Tolerance("what the ledger leaves open, against its largest entry: second order in the step, and steps that open or close the contact", absolute=1e-3)
-UNCHANGED = Tolerance("the series is written with six digits; loading is smooth, rounding does not grow before the first unloading", absolute=1e-4)
+IMPULSE = Tolerance("what the scheme leaves at the end is of the order of dt m times the last acceleration",
+                    absolute=1e-3)
+ENERGY = Tolerance("what the ledger leaves open, against its largest entry: second order in the step, and steps that "
+                   "open or close the contact", absolute=1e-3)
+UNCHANGED = Tolerance("the series is written with six digits; loading is smooth, rounding does not grow before the "
+                      "first unloading", absolute=1e-4)
 
 
 def check(bench):
@@ -35,8 +44,9 @@ def check(bench):
 
     bench.near("thrust of the seated plate / its weight", c["interface.thrust"][seated] / (9.81 * mass), 1.0, SEATED)
     bench.near("S_w at the start", h["centre.S_w"][0], 1 / np.log(np.e + (30 * 0.8**2 / 5)**2), ROUNDED)
-    # Impulse of load and weight against that of the contact and the plate's momentum, at the level of values within each step.
-    load = (c["plate.load"][seated:-1] + (c["plate.load"][impact] - c["plate.load"][seated:-1]) / (1 + number(text, "rho_inf")))[-len(t):]
+    # Impulse of load and weight against that of the contact and the plate's momentum, at the level of values in a step.
+    before = c["plate.load"][seated:-1]
+    load = (before + (c["plate.load"][impact] - before) / (1 + number(text, "rho_inf")))[-len(t):]
     impulse = np.sum(load * c["dt"][impact])
     missing = impulse + np.sum(c["interface.thrust"][impact] * c["dt"][impact]) - mass * c["plate.v_z"][-1]
     bench.below("impulse left open / impulse of the load", abs(missing / impulse), IMPULSE)
@@ -49,12 +59,15 @@ def check(bench):
     common = kept["t_ms"] <= min(1e3 * t[-1], 14) + 1e-6
     place = np.rint(kept["t_ms"][common] / (1e3 * analysis.DT)).astype(int)
     now = -1e3 * (h["centre.u_z"][-len(t) - 1:] - h["centre.u_z"][-len(t) - 1])
-    bench.near("displacement / that of the committed series", now[place] / now[place].max(), kept["u_mm"][common] / now[place].max(), UNCHANGED)
+    bench.near("displacement / that of the committed series", now[place] / now[place].max(),
+               kept["u_mm"][common] / now[place].max(), UNCHANGED)
     if not bench.quick:
         depth = -1e3 * (h["centre.u_z"][-len(t):] - h["centre.u_z"][-len(t) - 1])
         gone = t[(c["interface.thrust"][impact] <= 0) & (t > 0.014)]
-        bench.note(f"{len(t)} steps, {ledger['iterations'][impact].sum():.0f} iterations, {np.sum(ledger['iterations'][impact] > 1)} steps with more than one")
-        bench.note(f"largest indentation {depth.max():.4f} mm at {1e3 * t[depth.argmax()]:.2f} ms, {depth[-1]:.4f} mm at the end; contact lost at {1e3 * gone[0]:.2f} ms")
+        bench.note(f"{len(t)} steps, {ledger['iterations'][impact].sum():.0f} iterations, "
+                   f"{np.sum(ledger['iterations'][impact] > 1)} steps with more than one")
+        bench.note(f"largest indentation {depth.max():.4f} mm at {1e3 * t[depth.argmax()]:.2f} ms, {depth[-1]:.4f} mm "
+                   f"at the end; contact lost at {1e3 * gone[0]:.2f} ms")
         for name in ("p_w", "p_c", "S_w"):
             value = h["centre." + name][-len(t):]
             bench.note(f"{name} under the centre: {value[0]:.5g}, {value.min():.5g} to {value.max():.5g}")
@@ -63,7 +76,8 @@ def check(bench):
 
 def texts(bench):
     """Tables from the committed results."""
-    return {"README.md": {**series.texts(analysis.RESULTS), **cost.texts(analysis.RESULTS)}, "SENSITIVITY.md": sensitivity.texts(analysis.RESULTS)}
+    return {"README.md": {**series.texts(analysis.RESULTS), **cost.texts(analysis.RESULTS)},
+            "SENSITIVITY.md": sensitivity.texts(analysis.RESULTS)}
 
 
 def draw(bench, _, plt):

@@ -13,7 +13,8 @@ TRUE = {"1": "drained", "0": "undrained"}
 
 def read(folder, name):
     """Rows of a committed file, numbers as such."""
-    return [{k: v if re.search("[A-Za-z]{3}", v) else float(v) for k, v in row.items()} for row in tables.rows(folder / f"{name}.csv")]
+    return [{k: v if re.search("[A-Za-z]{3}", v) else float(v) for k, v in row.items()}
+            for row in tables.rows(folder / f"{name}.csv")]
 
 
 def short(value):
@@ -82,7 +83,8 @@ def cost_table(rows):
         lines.append([rule, len(part), int(sum(r["failed"] for r in part)), int(sum(r["halvings"] for r in part)),
                       int(statistics.median(r["substeps"] for r in part)),
                       int(max(r["substeps"] for r in part)), int(statistics.median(r["reseats"] for r in part))])
-    return tables.markdown(["", "runs", "failed", "increments cut", "substeps, median", "substeps, most", "re-seats, median"],
+    return tables.markdown(["", "runs", "failed", "increments cut", "substeps, median", "substeps, most",
+                            "re-seats, median"],
                  lines)
 
 

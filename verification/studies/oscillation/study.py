@@ -1,6 +1,7 @@
 """Noise on element-test paths: how far each memory rule is led away from the clean path, and at what cost.
 
-`verification/run oscillation --make [--pass --groups GROUP ...]` runs the cases (about ten minutes on two cores) and writes the CSV files.
+`verification/run oscillation --make [--pass --groups GROUP ...]` runs the cases (about ten minutes on two cores) and
+writes the CSV files.
 """
 import argparse
 import concurrent.futures
@@ -86,7 +87,7 @@ def numerics():
 
 
 def hard():
-    """Made to break the rule resume: reversals inside reversals, few and many; noise while unloading; growing cycles."""
+    """Made to break the rule resume: reversals inside reversals, noise while unloading, growing cycles."""
     for name, e, drained in itertools.product(RULES, (0.735, 0.907), (False, True)):
         for size in (1e-6, 1e-5, 1e-4):
             yield case("nested", name, e=e, drained=drained, noise="nested", events=40, size=size)
@@ -108,8 +109,8 @@ GROUPS = {f.__name__: f for f in (clean, transverse, hard, single, many, numeric
 
 
 def clean_key(values, own_rule):
-    key = tuple(values[k] for k in ("e", "drained", "path", "suction", "last", "top")) + (values["increment"]
-                                                                                       * (values["path"] == "turning"),)
+    key = tuple(values[k] for k in ("e", "drained", "path", "suction", "last",
+                                    "top")) + (values["increment"] * (values["path"] == "turning"),)
     return key + ((values["memory"], values["rho_e"]) if own_rule else ())
 
 
@@ -182,19 +183,22 @@ def compute(program, commit, name):
 def laboratory(build, commit):
     """The drained tests of Verdugo & Ishihara with the elastic nucleus: misfit against the rows from 1 to 25 %."""
     tests = tests_of_verdugo_ishihara.read()
-    with tempfile.TemporaryDirectory() as scratch, open(folder(__file__) / "laboratory.csv", "w", encoding="utf-8") as file:
+    with tempfile.TemporaryDirectory() as scratch, open(folder(__file__) / "laboratory.csv", "w",
+                                                        encoding="utf-8") as file:
         bench = Bench(ROOT, build, scratch)
         file.write(f"# made at commit {commit}\n# misfit of q [%], of volumetric strain [points]\n")
         file.write("test,rho_e,q,eps_v\n")
         for name, radius in itertools.product(sorted(tests), (0.0, 1e-5, 5e-5, 1e-4)):
-            run = bench.driver(f"vi_drained_{name}", ((re.compile(r"(?m)^   file = .*$"), rf"\g<0>\n   rho_e = {radius}"),))
+            run = bench.driver(f"vi_drained_{name}", ((re.compile(r"(?m)^   file = .*$"),
+                                                       rf"\g<0>\n   rho_e = {radius}"),))
             q, volume = tests_of_verdugo_ishihara.misfit(run, tests[name])
             file.write(f"{name},{radius:g},{q:.3f},{volume:.4f}\n")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--groups", nargs="*", choices=[*GROUPS, "laboratory"], default=[*GROUPS, "laboratory"], help="what to run again")
+    parser.add_argument("--groups", nargs="*", choices=[*GROUPS, "laboratory"], default=[*GROUPS, "laboratory"],
+                        help="what to run again")
     arguments = parser.parse_args()
     build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or ROOT / "build/release")
     commit = subprocess.run(["git", "describe", "--always"], cwd=ROOT, capture_output=True, text=True).stdout.strip()

@@ -20,7 +20,8 @@ def misfits(bench, parameter, value):
     """{test: (q [%], eps_v [points])} with one parameter of the material changed."""
     changes = ((re.compile(r"(?m)^   file = .*$"), rf"\g<0>\n   {parameter} = {value}"),)
     tests = laboratory.read()
-    return {name: laboratory.misfit(bench.driver(f"vi_drained_{name}", changes), tests[name]) for name in laboratory.TESTS}
+    return {name: laboratory.misfit(bench.driver(f"vi_drained_{name}", changes), tests[name])
+            for name in laboratory.TESTS}
 
 
 def main():
@@ -32,7 +33,8 @@ def main():
                 value = round(factor * P[parameter], 6)
                 found = misfits(bench, parameter, value)
                 mean = [sum(f[i] for f in found.values()) / len(found) for i in (0, 1)]
-                rows.append([parameter, value, factor, *(f"{found[n][0]:.2f}" for n in laboratory.TESTS), f"{mean[0]:.2f}",
+                rows.append([parameter, value, factor, *(f"{found[n][0]:.2f}" for n in laboratory.TESTS),
+                             f"{mean[0]:.2f}",
                              *(f"{found[n][1]:.3f}" for n in laboratory.TESTS), f"{mean[1]:.3f}"])
                 print(*rows[-1], flush=True)
     header = ["parameter", "value", "factor", *(f"q_{n}_pct" for n in laboratory.TESTS), "q_mean_pct",

@@ -8,8 +8,10 @@ from tools.page import Page, Script
 PAGE = Page(
     claim="what accuracy costs with each of the three schemes; their measured orders on smooth paths and across kinks",
     kind=("study", "code-to-code"),
-    input="eight paths, each straight part one increment, tolerances 1e-2 to 1e-10 (`work_precision.csv`); fixed substeps (`orders.csv`): made by `scripts/benchmark`",
-    reference="`reference.csv`: ends of the paths by the independent implementation in `../../material/reference`, Dormand-Prince 8(5,3) at 1e-12, with its uncertainty",
+    input="eight paths, each straight part one increment, tolerances 1e-2 to 1e-10 (`work_precision.csv`); fixed "
+          "substeps (`orders.csv`): made by `scripts/benchmark`",
+    reference="`reference.csv`: ends of the paths by the independent implementation in `../../material/reference`, "
+              "Dormand-Prince 8(5,3) at 1e-12, with its uncertainty",
     seconds=2, quick=1, pictures=("work_precision.png",))
 MAKES = (Script("make_reference.py", ("reference.csv",), 60, "scipy"),)
 
@@ -23,7 +25,7 @@ STYLE = {"ME21": ("o-", "tab:blue", "modified Euler 2(1)"), "BS32": ("s-", "tab:
 
 
 def check(bench):
-    """What the tables say is checked for every page that has texts; orders on smooth paths are held by tests/contract/test_order.pf."""
+    """The texts are checked as those of every page are; tests/contract/test_order.pf holds orders on smooth paths."""
 
 
 def texts(bench):
@@ -77,5 +79,7 @@ def order_table(table):
         used = [(math.log2(n), math.log2(error)) for n, error in points if error > 1e-12][-5:]
         x, y = (sum(column)/len(used) for column in zip(*used))
         slope = sum((a - x)*(b - y) for a, b in used)/sum((a - x)**2 for a, b in used)
-        lines.append((case, scheme, f"{2**used[0][0]:.0f} to {2**used[-1][0]:.0f}", f"{2**used[0][1]:.1e} to {2**used[-1][1]:.1e}", f"{-slope:.2f}"))
+        lines.append((case, scheme, f"{2**used[0][0]:.0f} to {2**used[-1][0]:.0f}",
+                      f"{2**used[0][1]:.1e} to " f"{2**used[-1][1]:.1e}",
+                      f"{-slope:.2f}"))
     return tables.markdown(("case", "scheme", "substeps", "error", "mean slope"), lines)
