@@ -84,8 +84,8 @@ def failures_of_page(tree, page):
     venv = ROOT / "build/venv/bin/python3"
     environment = dict(os.environ, MUD_BUILD_DIR=str(tree / "build"))
     try:
-        done = run([venv if venv.exists() else sys.executable, tree / "verification/tools/runner.py", page, "--quick"], tree,
-                   env=environment, timeout=TIMEOUT)
+        done = run([venv if venv.exists() else sys.executable, tree / "verification/tools/runner.py", page, "--quick"],
+                   tree, env=environment, timeout=TIMEOUT)
     except subprocess.TimeoutExpired:
         return [f"{page} (hangs)"]
     missed = len(re.findall("^ +FAILED ", done.stdout, re.MULTILINE))

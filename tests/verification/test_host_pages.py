@@ -2,7 +2,7 @@
 import pathlib
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "scripts"))
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
 from checking import finish  # noqa: E402
 from page_checks import run_section  # noqa: E402
 

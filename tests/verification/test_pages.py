@@ -4,7 +4,7 @@ import pathlib
 import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "scripts"))
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
 from checking import build, check, finish, work  # noqa: E402
 from page_checks import pages, run_section, verification  # noqa: E402
 from tools import readme, runner  # noqa: E402

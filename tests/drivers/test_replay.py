@@ -1,11 +1,14 @@
 """Failed increments: saved by every door, replayed bit by bit, and every mistake on the way has its sentence."""
 import os
+import pathlib
 import re
 import resource
 import signal
 import subprocess
+import sys
 
-from checking import build, check, finish, root, work
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from checking import build, check, finish, root, work  # noqa: E402
 
 cache = dict(re.findall(r"^(\w+):\w+=(.*)$", (build / "CMakeCache.txt").read_text(encoding="utf-8"), re.MULTILINE))
 replay, triax = build / "drivers/mud_replay", build / "drivers/mud_triax"

@@ -1,5 +1,6 @@
 """Output of mud_host: restarts after SIGKILL at random moments, refused checkpoints, full disks, files and pictures."""
 import os
+import pathlib
 import random
 import re
 import resource
@@ -12,7 +13,9 @@ import time
 import h5py
 import meshio
 import numpy as np
-from checking import build, check, finish, light, root, work
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from checking import build, check, finish, light, root, work  # noqa: E402
 
 host = build / "host/mud_host"
 environment = {**os.environ, "OMP_NUM_THREADS": "1"}

@@ -3,11 +3,14 @@ what is dropped is as small as promised."""
 import csv
 import math
 import os
+import pathlib
 import re
 import shutil
 import subprocess
+import sys
 
-from checking import build, check, finish, work
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from checking import build, check, finish, work  # noqa: E402
 
 host = build / "host/mud_host"
 environment = {**os.environ, "OMP_NUM_THREADS": "1"}

@@ -1,9 +1,12 @@
 """mud_triax as a user meets it: named cases give published numbers, held stresses are held, mistakes are explained."""
 import csv
 import math
+import pathlib
 import subprocess
+import sys
 
-from checking import build, check, finish, root, work
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from checking import build, check, finish, root, work  # noqa: E402
 
 triax = build / "drivers/mud_triax"
 cases = root / "drivers/cases"

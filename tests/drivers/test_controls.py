@@ -1,10 +1,12 @@
 """Controls of mud_triax: what is held is held, what leads arrives, cycles turn where they should, stops stop."""
 import csv
 import math
+import pathlib
 import subprocess
 import sys
 
-from checking import build, check, finish, root, work
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from checking import build, check, finish, root, work  # noqa: E402
 
 triax = build / "drivers/mud_triax"
 HELD = 2e-10    # the driver promises 1e-10 of each increment's stress; compared over a whole stage here

@@ -12,7 +12,7 @@ cache = dict(re.findall(r"^(\w+):\w+=(.*)$", (build / "CMakeCache.txt").read_tex
 built = build / "umat/mud_umat_single.f90"
 WARNINGS = ["-std=f2018", "-Wall", "-Wextra", "-Wuse-without-only", "-Werror"]
 LONGEST = 132  # columns of free form that every compiler takes
-# p' and q [kPa] at 1 % axial strain, undrained e 0.735 p' 100 (verification/material/reference/section7.py), their tolerance.
+# p' and q [kPa] at 1 % axial strain, undrained e 0.735 p' 100 (verification/material/reference), their tolerance.
 KNOWN, WITHIN = (147.354, 219.587), 1e-4
 
 

@@ -34,7 +34,7 @@ blocks = BLOCK.findall(text)
 wrong = [what for _, what, held, _ in blocks if held != content(what)]
 missing = PROMISED - {what for _, what, _, _ in blocks}
 for what in wrong:
-    print(f"FAILED umat/README.md, block {what}: not what it should be; renew with test_readme.py --write")
+    print(f"FAILED umat/README.md, block {what}: not what it should be; renew with tests/umat/test_readme.py --write")
 for what in missing:
     print(f"FAILED umat/README.md: no block {what}")
 print(f"{len(blocks) - len(wrong)} passed, {len(wrong) + len(missing)} failed")

@@ -1,0 +1,224 @@
+"""Layers of the whole tree, read from the `use` lines: which folder may use which, how much one module may know, how
+long a file may be, and where foreign libraries live. Every rule is first shown a planted offence."""
+import re
+import sys
+
+from test_architecture import code_lines, root, sources, uses
+
+LONGEST = 450       # lines of a source
+MOST_MODULES = 15   # that one module may use
+SHOWN = 30          # findings that are printed of one rule
+# Modules whose offence is known and is being taken apart: printed, not counted. To be empty.
+TO_GO = {"linearised_body", "time_stepping", "host_laws", "host_read", "law_builder", "model_builder", "run_setup",
+         "newton_step", "mud_point", "mud_rates"}
+
+# Folders, lowest first; a folder uses those above it in the list of its group and the groups named.
+HOST = ("host/time", "host/mesh", "host/element", "host/contact", "host/solver", "host/scene", "host/model", "host/run",
+        "host/output", "host")
+GROUPS = {
+    "umat/core": (("umat/core/base", "umat/core/laws", "umat/core/rates", "umat/core/integration"), ()),
+    "umat/abi": (("umat/abi",), ("umat/core",)),
+    "umat/include": (("umat/include",), ()),
+    "common": (("common",), ()),
+    "materials": (("materials",), ("common", "umat/include")),
+    "drivers": (("drivers",), ("common", "materials", "umat/include")),
+    "host": (HOST, ("common", "materials", "umat/include")),
+}
+# Ground floor of the host, beside its roof in the top folder.
+GROUND = {"exit_codes", "process_settings"}
+# The one file of each foreign library, and what betrays it.
+FOREIGN = {
+    "HDF5": ("hdf5_file", re.compile(r"\buse\s+(hdf5|h5\w+)\b|\bh5\w+_f\b", re.IGNORECASE)),
+    "LAPACK": ("dense", re.compile(r"\bd(ge|sy|po|gt|gb|pt|tr|st|or)"
+                                   r"(sv|svx|ev|evd|evr|evx|trf|trs|tri|qrf|sdd|svd|con|qr)\b", re.IGNORECASE)),
+    "UMFPACK": ("sparse_factors", re.compile(r"\bumfpack_\w+", re.IGNORECASE)),
+}
+
+
+def programs(files):
+    """Modules whose file holds a program: the tops, which may use as much as they need."""
+    return {stem for stem, (_, text) in files.items() if re.search(r"^program \w+", text, re.MULTILINE | re.IGNORECASE)}
+
+
+def place(folder):
+    """(group, height in it) of a folder; drivers/src and common/without_hdf5 count as drivers and common."""
+    for group, (folders, _) in GROUPS.items():
+        for height, name in enumerate(folders):
+            if folder == name:
+                return group, height
+    parent = folder.rpartition("/")[0]
+    if parent in GROUPS and len(GROUPS[parent][0]) == 1:
+        return parent, 0
+    return None, 0
+
+
+def stands_at(stem, folder):
+    """(group, height) of a module."""
+    group, height = place(folder)
+    return (group, -1) if group == "host" and stem in GROUND else (group, height)
+
+
+def used(files, stem):
+    """Modules of the project that a module uses."""
+    return list(dict.fromkeys(module for _, module, _ in uses(files[stem][1]) if module in files and module != stem))
+
+
+def wrong_layers(files):
+    """Uses that go up, or into a group that is not to be seen. files: {module: (folder, text)}."""
+    wrong = []
+    for stem, (folder, text) in files.items():
+        group, height = stands_at(stem, folder)
+        if group is None:
+            wrong.append(f"{folder}/{stem}: the folder {folder} has no layer")
+            continue
+        for number, module, _ in uses(text):
+            if module not in files or module == stem:
+                continue
+            other, level = stands_at(module, files[module][0])
+            if other == group and level > height:
+                wrong.append(f"{folder}/{stem}:{number}: uses {module} of {files[module][0]}, which is above it")
+            elif other != group and other not in GROUPS[group][1]:
+                wrong.append(f"{folder}/{stem}:{number}: uses {module} of {files[module][0]}, which {group} is not to "
+                             f"see")
+    return wrong
+
+
+def cycles(files):
+    """Folders that use each other, directly or through others."""
+    below = {}
+    for stem, (folder, _) in files.items():
+        at = "ground of the host" if stem in GROUND else folder
+        below.setdefault(at, set())
+        for module in used(files, stem):
+            there = "ground of the host" if module in GROUND else files[module][0]
+            if there != at:
+                below[at].add(there)
+
+    def reaches(start, goal, seen):
+        return any(step == goal or step not in seen and not seen.add(step) and reaches(step, goal, seen)
+                   for step in below.get(start, ()))
+    return sorted(f"{folder} uses folders that use it" for folder in below if reaches(folder, folder, set()))
+
+
+def fan_out(files):
+    return [f"{files[stem][0]}/{stem}: uses {len(used(files, stem))} modules, at most {MOST_MODULES}" for stem in files
+            if len(used(files, stem)) > MOST_MODULES and stem not in programs(files)]
+
+
+def too_long(files):
+    return [f"{folder}/{stem}: {len(text.splitlines())} lines, at most {LONGEST}" for stem,
+            (folder, text) in files.items()
+            if len(text.splitlines()) > LONGEST]
+
+
+def foreign(files):
+    wrong = []
+    for stem, (folder, text) in files.items():
+        for library, (home, sign) in FOREIGN.items():
+            if stem == home:
+                continue
+            wrong += [f"{folder}/{stem}:{number}: {library} lives in {home}.f90: {found[0]}"
+                      for number, line in code_lines(text) if (found := sign.search(line))]
+    return wrong
+
+
+def strange_use(files):
+    """A use of something that is neither of the project nor intrinsic nor one of the foreign libraries."""
+    known = {"iso_fortran_env", "iso_c_binding", "ieee_arithmetic", "ieee_exceptions", "omp_lib", "hdf5", "h5lt"}
+    return [f"{folder}/{stem}:{number}: uses {module}, which is not there" for stem, (folder, text) in files.items()
+            for number, module, _ in uses(text) if module not in files and module not in known]
+
+
+def planted():
+    """Every rule against an offence it must see, and against the nearest innocent tree."""
+    def tree(*modules):
+        return {name: (folder, text) for name, folder, text in modules}
+    node, solve, core = ("node", "host/mesh", ""), ("solve", "host/solver", ""), ("mud_a", "umat/core/base", "")
+    many = [(f"m{i}", "common", "") for i in range(MOST_MODULES + 1)]
+    uses_of = "\n".join(f"use m{i}, only: x" for i in range(MOST_MODULES))
+    code = ("exit_codes", "host", "")
+    cases = [
+        ("upward use", wrong_layers, [("node", "host/mesh", "use solve, only: x"), solve],
+         [node, ("solve", "host/solver", "use node, only: x")]),
+        ("a ground floor that climbs", wrong_layers, [("exit_codes", "host", "use node, only: x"), node],
+         [code, ("node", "host/mesh", "use exit_codes, only: x")]),
+        ("the core from the host", wrong_layers, [("node", "host/mesh", "use mud_a, only: x"), core],
+         [("mud_interface", "umat/include", ""), ("node", "host/mesh", "use mud_interface, only: x")]),
+        ("drivers from the host", wrong_layers, [("node", "host/mesh", "use case, only: x"),
+                                                 ("case", "drivers/src", "")],
+         [("node", "host/mesh", "use point, only: x"), ("point", "materials", "")]),
+        ("host from the materials", wrong_layers, [("point", "materials", "use node, only: x"), node],
+         [("point", "materials", "use texts, only: x"), ("texts", "common", "")]),
+        ("materials from common", wrong_layers, [("texts", "common", "use point, only: x"), ("point", "materials", "")],
+         [("texts", "common", "use kinds, only: x"), ("kinds", "common", "")]),
+        ("upward use in the core", wrong_layers, [("mud_a", "umat/core/base", "use mud_b, only: x"),
+                                                  ("mud_b", "umat/core/laws", "")],
+         [core, ("mud_b", "umat/core/laws", "use mud_a, only: x")]),
+        ("a folder without a layer", wrong_layers, [("new", "host/new", "")], [node]),
+        ("a cycle of folders", cycles,
+         [("a", "host/mesh", "use b, only: x"), ("b", "host/run", "use c, only: x"),
+          ("c", "host/time", "use d, only: x"), ("d", "host/mesh", "")],
+         [("a", "host/mesh", ""), ("b", "host/run", "use c, only: x"), ("c", "host/time", "use a, only: x")]),
+        ("fan-out", fan_out, [*many, ("wide", "host/run", uses_of + "\nuse m15, only: x")],
+         [*many, ("wide", "host/run", uses_of)]),
+        ("fan-out of a program", lambda t: [] if fan_out(t) else ["innocent"],
+         [*many, ("top", "host", "program top\n" + uses_of)],
+         [*many, ("top", "host", "module top\n" + uses_of + "\nuse m15, only: x")]),
+        ("length", too_long, [("long", "common", "x\n" * (LONGEST + 1))], [("long", "common", "x\n" * LONGEST)]),
+        ("HDF5 elsewhere", foreign, [("node", "host/mesh", "use hdf5, only: h5fopen_f")],
+         [("hdf5_file", "common", "use hdf5, only: x")]),
+        ("LAPACK elsewhere", foreign, [("node", "host/mesh", "call dgesv(n)")], [("dense", "common", "call dgesv(n)")]),
+        ("UMFPACK elsewhere", foreign, [("node", "host/mesh", "call umfpack_di_solve(n)")],
+         [("node", "host/mesh", "call solve(n) ! umfpack_di_solve")]),
+        ("a module from nowhere", strange_use, [("node", "host/mesh", "use somewhere, only: x")],
+         [("node", "host/mesh", "use, intrinsic :: iso_fortran_env, only: x")])]
+    return ([f"{name}: the offence is not seen" for name, rule, bad, _ in cases if not rule(tree(*bad))]
+            + [f"{name}: innocent code is blamed" for name, rule, _, good in cases if rule(tree(*good))])
+
+
+def known(finding):
+    return finding.split(":")[0].rpartition("/")[2] in TO_GO
+
+
+def read():
+    """{module: (folder, text)} of every source; the variants without a library have the same names."""
+    found = {}
+    for file in sources("common/*.f90", "materials/**/*.f90", "drivers/**/*.f90", "host/**/*.f90", "umat/core/**/*.f90",
+                        "umat/abi/**/*.f90", "umat/include/*.f90"):
+        if file.parent.name != "without_hdf5":
+            found[file.stem] = (str(file.parent.relative_to(root)), file.read_text(encoding="utf-8"))
+    return found
+
+
+def main():
+    files = read()
+    for finding in wrong_layers(files) + fan_out(files) + too_long(files):
+        if known(finding):
+            print(f"to go: {finding}")
+    have = {place(folder)[0] for folder, _ in files.values()}
+    checks = [
+        ("every rule sees its planted offence and nothing else", planted()),
+        ("there are sources of every group to look at", sorted(set(GROUPS) - have)),
+        ("every module uses only what its layer may see", [f for f in wrong_layers(files) if not known(f)]),
+        ("no folders use each other in a circle",
+         cycles({stem: found for stem, found in files.items() if stem not in TO_GO})),
+        (f"no module but the top of a program uses more than {MOST_MODULES} modules",
+         [f for f in fan_out(files) if not known(f)]),
+        (f"no source has more than {LONGEST} lines",
+         [f for f in too_long(files) if not known(f)]),
+        ("HDF5, LAPACK and UMFPACK live in one file each", foreign(files)),
+        ("every module that is used is there", strange_use(files))]
+    failed = 0
+    for name, findings in checks:
+        failed += bool(findings)
+        if findings:
+            print(f"FAILED {name}:")
+            print("\n".join("  " + finding for finding in findings[:SHOWN]))
+            if len(findings) > SHOWN:
+                print(f"  and {len(findings) - SHOWN} more")
+    print(f"{len(checks) - failed} passed, {failed} failed")
+    return failed > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
