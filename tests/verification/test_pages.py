@@ -25,9 +25,10 @@ for name, page in pages.items():
           RENEW)
     check(f"{name}: its README has a table of checks", (readme.block(text, "checks") or "").count("\n") > 2,
           "verification/run PAGE --update")
+    shown = "".join(path.read_text(encoding="utf-8") for path in (verification / name).glob("*.md"))
     for picture in page.pictures:
-        check(f"{name}: the picture {picture} is there and shown", (verification / name / picture).exists()
-              and f"({picture})" in text)
+        check(f"{name}: the picture {picture} is there and shown",
+              (verification / name / picture).exists() and f"({picture})" in shown)
 
 # A tolerance that nothing can miss proves nothing: what is wrong is seen.
 bench = Bench(verification / "material/lode", build, work / "planted")
