@@ -63,7 +63,8 @@ static void call(host_t *h, double axial)
 
 static int tell(const host_t *h)
 {
-   printf("p' %.3f kPa, q %.3f kPa\n", -(h->stress[0] + h->stress[1] + h->stress[2]) / 3.0, h->stress[1] - h->stress[0]);
+   const double *s = h->stress;
+   printf("p' %.3f kPa, q %.3f kPa\n", -(s[0] + s[1] + s[2]) / 3.0, s[1] - s[0]);
    return 0;
 }
 
