@@ -4,7 +4,6 @@ Writes results/host.csv (every run) and results/host.md (tables). Runs of one co
 """
 import argparse
 import atexit
-import csv
 import math
 import os
 import pathlib
@@ -18,6 +17,9 @@ import tempfile
 
 here = pathlib.Path(__file__).resolve().parent
 root = here.parent
+sys.path.insert(0, str(root / "verification"))
+from tools import tables  # noqa: E402
+
 PHASES = ("material", "assembly", "contact", "factorisation", "solution", "rest of Newton", "output", "all else",
           "in all")
 # Cells of the mesh: along r to 0.15 m and beyond, along z; ratios so that the smallest cells shrink with the mesh.
@@ -69,9 +71,7 @@ def run(part, name, changes=(), threads=1, steps=None):
         for phase in PHASES:
             row[phase] = float(re.search(rf"^ *{phase} +([\d.]+) s", said, re.M)[1])
         row["memory"] = usage.ru_maxrss / 1024
-        with open(work / "out/histories.csv", encoding="utf-8") as lines:
-            *_, last = csv.DictReader(lines)
-        row["settlement"] = -1e3 * float(last["centre.u_z"])
+        row["settlement"] = -1e3 * tables.columns(work / "out/histories.csv")["centre.u_z"][-1]
     rows.append(row)
     print(f"  {part}: {name}, {threads} thread(s): " +
           (f"{row['iterations']} iterations, {row['in all']:.1f} s" if row["completed"] else "failed"), flush=True)
@@ -152,12 +152,8 @@ commit = subprocess.run(["git", "-C", root, "rev-parse", "--short", "HEAD"], cap
                         text=True).stdout.strip()
 origin = f"commit {commit or 'unknown'}; {model}, {os.cpu_count()} cores; {args.rounds} rounds"
 args.results.mkdir(parents=True, exist_ok=True)
-with open(args.results / "host.csv", "w", newline="", encoding="utf-8") as file:
-    file.write(f"# {origin}\n")
-    keys = list(dict.fromkeys(key for row in rows for key in row))
-    writer = csv.DictWriter(file, keys, restval="")
-    writer.writeheader()
-    writer.writerows(rows)
+keys = list(dict.fromkeys(key for row in rows for key in row))
+tables.write(args.results / "host.csv", keys, ([row.get(key, "") for key in keys] for row in rows), [origin])
 
 text = []
 if phases:

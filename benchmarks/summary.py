@@ -1,16 +1,16 @@
 """The tables of benchmarks/README.md from speed.csv and instructions.csv of a folder."""
-import csv
 import pathlib
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "verification"))
+from tools import tables  # noqa: E402
 
 folder = pathlib.Path(sys.argv[1])
 
 
 def rows(name):
     file = folder / name
-    if not file.exists():
-        return []
-    return list(csv.DictReader(line for line in file.read_text(encoding="utf-8").splitlines() if line[:1] != "#"))
+    return tables.rows(file) if file.exists() else []
 
 
 speed = rows("speed.csv")

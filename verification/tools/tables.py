@@ -7,12 +7,17 @@ import numpy as np
 
 def rows(path, header_in_comment=False):
     """Rows as dictionaries of text. With `header_in_comment` the last comment before the rows names the columns."""
-    return list(csv.DictReader(_lines(path, header_in_comment)))
+    return list(csv.DictReader(_lines(pathlib.Path(path).read_text(encoding="utf-8"), header_in_comment, path)))
 
 
-def _lines(path, header_in_comment):
+def parsed(text):
+    """Rows of a text as dictionaries."""
+    return list(csv.DictReader(_lines(text, False, "the text")))
+
+
+def _lines(text, header_in_comment, path):
     """The head and the rows, without comments."""
-    lines = pathlib.Path(path).read_text(encoding="utf-8").splitlines()
+    lines = text.splitlines()
     body = [line for line in lines if not line.startswith("#")]
     if header_in_comment:
         first = next((i for i, line in enumerate(lines) if not line.startswith("#")), 0)
@@ -24,7 +29,8 @@ def _lines(path, header_in_comment):
 
 def columns(path, header_in_comment=False):
     """Columns of numbers as a dictionary of arrays."""
-    names, *found = csv.reader(_lines(path, header_in_comment))
+    text = pathlib.Path(path).read_text(encoding="utf-8")
+    names, *found = csv.reader(_lines(text, header_in_comment, path))
     if not found:
         raise ValueError(f"{path} has no rows")
     return dict(zip(names, np.array(found, float).T))

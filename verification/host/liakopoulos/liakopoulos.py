@@ -8,6 +8,7 @@ import sys
 
 import numpy as np
 from scipy.linalg import solve_banded
+from tools import tables
 from tools.results import folder
 
 HEIGHT, GRAVITY, ATMOSPHERE, SUCTION = 1.0, 9.81, 101325.0, 100.0
@@ -197,17 +198,15 @@ def profiles(options):
 def compare(rows, path):
     """Largest differences from the digitised curves, by code and time; the heights of `ogs` are ninths."""
     table = {}
-    for line in csv.reader(open(path)):
-        if line[0].startswith("#") or line[0] == "code":
-            continue
-        code, t, y = line[0], float(line[1]), float(line[2])
+    for line in tables.rows(path):
+        code, t, y = line["code"], float(line["t_s"]), float(line["y_m"])
         z = round(9*y)/9 if code == "ogs" else y
         if y == 1.0 and code == "ogs":
             z = 1.0
         row = next((r for r in rows if r[0] == t and abs(r[1] - z) < 1e-6), None)
         if row is None:
             continue
-        p_c, s, p_a, u = map(float, line[3:])
+        p_c, s, p_a, u = (float(line[name]) for name in ("pc_Pa", "Sl", "pg_Pa", "uy_m"))
         found = np.abs([row[3] - p_c, row[5] - s, row[4] - p_a, row[6] - u])
         table[code, t] = np.maximum(table.get((code, t), 0), found)
     for (code, t), d in table.items():

@@ -1,4 +1,5 @@
-"""Writes patch.msh: an irregular mesh of 6-node triangles on the unit square, one element turned clockwise, in Gmsh 4.1."""
+"""Writes patch.msh: an irregular mesh of 6-node triangles on the unit square, one element turned clockwise, in Gmsh
+4.1."""
 import matplotlib.tri
 import numpy as np
 from tools.results import folder

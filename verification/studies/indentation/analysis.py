@@ -27,7 +27,8 @@ TEMPLATE = here / "indent_s030.nml"
 RESULTS = here / "results"   # committed: to read from
 SUCTIONS = (0, 3, 30, 50, 100, 200, 500, 1000)
 STEPS, DT = 1333, 3e-5
-# By steps and not by time: factors of the matrix are dropped at a checkpoint, and so the same steps are taken every time.
+# By steps and not by time: factors of the matrix are dropped at a checkpoint, and so the same steps are taken every
+# time.
 CHECKPOINT_STEPS = 500
 # Name: memory rule, Newton's tolerance (None: that of the template).
 SERIES = {"remedy": (1, None), "as_published": (4, None), "classic": (0, None), "resume": (3, None),
@@ -118,7 +119,8 @@ def program():
     """(digest of the executable, commit of its sources; + where they differ from it)."""
     def git(*words):
         return subprocess.run(["git", "-C", root, *words], capture_output=True, text=True).stdout.strip()
-    sources = (":(glob)*/**/*.f90", ":(glob)umat/**/*.h", ":(exclude)tests", ":(exclude)verification", ":(exclude)benchmarks", "cmake", "CMakePresets.json",
+    sources = (":(glob)*/**/*.f90", ":(glob)umat/**/*.h", ":(exclude)tests", ":(exclude)verification",
+               ":(exclude)benchmarks", "cmake", "CMakePresets.json",
                ":(glob)**/CMakeLists.txt")
     commit = git("log", "-1", "--format=%h", "--", *sources) or "unknown"
     return digest(program_bytes()), commit + ("+" if git("status", "--porcelain", "--", *sources) else "")
@@ -139,8 +141,10 @@ def parser_of(text, suctions, limit):
     parser = argparse.ArgumentParser(description=text, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--suction", type=int, nargs="+", choices=suctions, default=suctions, metavar="KPA")
     parser.add_argument("--jobs", type=int, default=2, help="analyses at a time, one thread each (default: 2)")
-    parser.add_argument("--limit", type=float, default=limit, help=f"minutes after which an analysis is stopped (default: {limit})")
-    parser.add_argument("--quick", action="store_true", help="50 steps; results and pictures into build/indentation_quick")
+    parser.add_argument("--limit", type=float, default=limit, help=f"minutes after which an analysis is stopped "
+                                                                   f"(default: {limit})")
+    parser.add_argument("--quick", action="store_true", help="50 steps; results and pictures into "
+                                                             "build/indentation_quick")
     parser.add_argument("--list", action="store_true", help="say what would run")
     return parser
 
@@ -204,7 +208,8 @@ class Job:
             code = os.waitstatus_to_exitcode(status)
             self.process.returncode = code   # it was waited for here
             # Killed from outside: it goes on next time, from the start if its checkpoint was refused.
-            self.book(usage, None if code in (-signal.SIGTERM, -signal.SIGKILL, -signal.SIGINT, CHECKPOINT_REFUSED) else code)
+            self.book(usage, None if code in (-signal.SIGTERM, -signal.SIGKILL, -signal.SIGINT, CHECKPOINT_REFUSED)
+                      else code)
             if code == CHECKPOINT_REFUSED:
                 (self.folder / "checkpoint.h5").unlink(missing_ok=True)
         elif time.monotonic() - self.began > limit:
@@ -256,7 +261,8 @@ def run_all(jobs, parallel, limit, done):
                     continue
                 spent.append(job.state["wall"])
                 done(job)
-                print(f"\r{job.name}: {outcome_of(job)}, {job.state['wall']:.0f} s; {total - len(waiting) - len(running)} of "
+                print(f"\r{job.name}: {outcome_of(job)}, {job.state['wall']:.0f} s; "
+                      f"{total - len(waiting) - len(running)} of "
                       f"{total}, about {span(left(waiting, running, spent, parallel))} left" + 10 * " ", flush=True)
             if sys.stdout.isatty() and time.monotonic() - shown > 1:
                 shown = time.monotonic()
@@ -338,7 +344,8 @@ def measure(job):
     u, plate = (-1e3 * (x - x[0]) for x in (h["centre.u_z"], c["plate.u_z"]))
     thrust = c["interface.thrust"]
     off = time_ms[(thrust <= 0) & (time_ms > 14)]
-    row.update(largest_mm=u.max(), largest_ms=time_ms[u.argmax()], plate_mm=plate[-1], lost_ms=off[0] if len(off) else math.nan)
+    row.update(largest_mm=u.max(), largest_ms=time_ms[u.argmax()], plate_mm=plate[-1], lost_ms=off[0] if len(off)
+               else math.nan)
     row["final_mm"] = u[-1] if job.state["outcome"] == 0 else math.nan
     row.update(S_w_start=t["start"].get("centre.S_w", 1.0))
     suction = job.facts["suction"]
@@ -360,7 +367,8 @@ def measure(job):
                        ("after", time_ms[1:] > 28)):
         if part.any():
             row["first_" + name] = np.median(first[part])
-    row.update(by_residual=int((ledger["reduction"][1:] > 1e-3).sum()), by_change=int((ledger["correction"][1:] > 1e-3).sum()))
+    row.update(by_residual=int((ledger["reduction"][1:] > 1e-3).sum()),
+               by_change=int((ledger["correction"][1:] > 1e-3).sum()))
     return row
 
 
@@ -417,7 +425,8 @@ def read_rows(path):
 
 def write_rows(path, rows):
     keys = list(dict.fromkeys(k for row in rows.values() for k in row))
-    tables.write(path, keys, (["" if isinstance(v, float) and math.isnan(v) else f"{v:.7g}" if isinstance(v, float) else v
+    tables.write(path, keys, (["" if isinstance(v, float) and math.isnan(v) else f"{v:.7g}" if isinstance(v, float)
+                               else v
                                for v in (row.get(k, "") for k in keys)] for row in rows.values()))
 
 

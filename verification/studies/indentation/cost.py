@@ -1,7 +1,8 @@
 """What the remedy costs: instructions of the stress integration with and without it on strain paths of the benchmark.
 
 Runs the indentation at three suctions with more points of output, takes the strain of three elements from their nodes
-step by step, and counts (valgrind, callgrind) the instructions of mud_update along these paths: results/cost.csv. Ten minutes:
+step by step, and counts (valgrind, callgrind) the instructions of mud_update along these paths: results/cost.csv. Ten
+minutes:
 `verification/run indentation --make --only cost.py`.
 """
 import argparse
@@ -16,7 +17,8 @@ from analysis import Job, build, impact_of, program, read_rows, results_folder, 
 FOLDER = root / "build/indentation"
 PROPS, STATEV = 1, 2   # enum mud_list
 SUCTIONS = (30, 200, 1000)
-# Rule and threshold. With a threshold of 1e-12 no process is ever interrupted: the integration takes exactly the path of
+# Rule and threshold. With a threshold of 1e-12 no process is ever interrupted: the integration takes exactly the path
+# of
 # `classic`, and what it does more is the remedy's bookkeeping.
 RULES = {"classic": (0, 1e-4), "remedy, never acting": (1, 1e-12), "remedy": (1, 1e-4), "as_published": (4, 1e-4)}
 
@@ -73,11 +75,13 @@ def path_of(job, name, corners):
     strain = np.array([d[0, 0], d[1, 1], hoop, d[1, 0] + d[0, 1], zero, zero])
     at_start = [float(np.mean([h[f"{name}{i}.{c}"][0] for i in range(3)])) for c in ("s_rr", "s_zz", "s_tt", "s_rz")]
     suction = np.einsum("n,nt->t", shape, np.array([h[f"{name}{i}.p_c"] for i in range(6)]))
-    return {"start": np.array([*at_start, 0.0, 0.0, h[f"{name}0.e"][0]]), "strain": np.diff(strain).T, "suction": suction}
+    return {"start": np.array([*at_start, 0.0, 0.0, h[f"{name}0.e"][0]]), "strain": np.diff(strain).T,
+            "suction": suction}
 
 
 def walk(file, rule, threshold, tangent):
-    """Along a recorded path through the library; what callgrind counts is mud_update (which jumps to kernel_update) alone."""
+    """Along a recorded path through the library; what callgrind counts is mud_update (which jumps to kernel_update)
+    alone."""
     path = np.load(file)
     mud = ctypes.CDLL(str(build / "umat/libmud.so"))
     double = ctypes.POINTER(ctypes.c_double)
@@ -91,14 +95,16 @@ def walk(file, rule, threshold, tangent):
         props[mud.mud_index(PROPS, key.encode())] = value
     stress = path["start"][:6].copy()
     text = ctypes.create_string_buffer(200)
-    if mud.mud_init_state(of(props), n_props, of(stress), ctypes.c_double(path["suction"][0]), ctypes.c_double(path["start"][6]),
+    if mud.mud_init_state(of(props), n_props, of(stress), ctypes.c_double(path["suction"][0]),
+                          ctypes.c_double(path["start"][6]),
                           of(state), n_state, text, 200):
         sys.exit(text.value.decode())
     slope, slope_pc = np.zeros(36), np.zeros(6)
     for d, p, q in zip(np.ascontiguousarray(path["strain"]), path["suction"], path["suction"][1:]):
         step = d.copy()
         code = mud.mud_update(of(props), n_props, of(stress), of(state), n_state, of(step), ctypes.c_double(p),
-                              ctypes.c_double(q - p), int(tangent), of(stress), of(state), of(slope), of(slope_pc), None, None, None)
+                              ctypes.c_double(q - p), int(tangent), of(stress), of(state), of(slope), of(slope_pc),
+                              None, None, None)
         if code:
             sys.exit(f"mud_update: {code}")
     print(*(int(state[mud.mud_index(STATEV, key)]) for key in (b"n_rate", b"n_substep", b"n_reseat")))
@@ -106,7 +112,8 @@ def walk(file, rule, threshold, tangent):
 
 def count(file, rule, threshold, tangent=0):
     """(instructions in mud_update, rates, substeps, re-seats)."""
-    done = subprocess.run(["valgrind", "--tool=callgrind", "--toggle-collect=__mud_kernel_MOD_kernel_update", "--callgrind-out-file=/dev/null",
+    done = subprocess.run(["valgrind", "--tool=callgrind", "--toggle-collect=__mud_kernel_MOD_kernel_update",
+                           "--callgrind-out-file=/dev/null",
                            sys.executable, __file__, "--walk", file, str(rule), str(threshold), str(tangent)],
                           capture_output=True, text=True)
     if done.returncode:
@@ -115,27 +122,35 @@ def count(file, rule, threshold, tangent=0):
 
 
 def report(rows):
-    text = ["| path | rule | updates | rate evaluations | re-seats | instructions | a rate | against `classic`: all | a rate |",
+    text = ["| path | rule | updates | rate evaluations | re-seats | instructions | a rate | against `classic`: all | "
+            "a rate |",
             "|" + 9 * "---|"]
     for row in rows.values():
         base = rows[f"{row['path']}, classic"]
         each = row["instructions"] / row["rates"]
-        text.append(f"| {row['path']} | {row['rule']} | {row['updates']:.0f} | {row['rates']:.0f} | {row['reseats']:.0f} "
-                    f"| {row['instructions']:.0f} | {each:.0f} | {100 * (row['instructions'] / base['instructions'] - 1):+.2f} % "
+        text.append(f"| {row['path']} | {row['rule']} | {row['updates']:.0f} | {row['rates']:.0f} | "
+                    f"{row['reseats']:.0f} "
+                    f"| {row['instructions']:.0f} | {each:.0f} | "
+                    f"{100 * (row['instructions'] / base['instructions'] - 1):+.2f} % "
                     f"| {100 * (each / (base['instructions'] / base['rates']) - 1):+.2f} % |")
     paths = list(dict.fromkeys(r["path"] for r in rows.values()))
     for rule, what in (("remedy, never acting", "bookkeeping"), ("remedy", "whole remedy")):
-        shares = [100 * (rows[f"{p}, {rule}"]["instructions"] / rows[f"{p}, classic"]["instructions"] - 1) for p in paths]
-        text.append(f"\n{what.capitalize()}: {min(shares):+.2f} to {max(shares):+.2f} % of the instructions of `classic`, "
-                    f"over all paths {100 * (sum(rows[f'{p}, {rule}']['instructions'] for p in paths) / sum(rows[f'{p}, classic']['instructions'] for p in paths) - 1):+.2f} %.")
+        shares = [100 * (rows[f"{p}, {rule}"]["instructions"] / rows[f"{p}, classic"]["instructions"] - 1)
+                  for p in paths]
+        text.append(f"\n{what.capitalize()}: {min(shares):+.2f} to {max(shares):+.2f} % of the instructions of "
+                    f"`classic`, "
+                    f"over all paths "
+                    f"{100 * (sum(rows[f'{p}, {rule}']['instructions'] for p in paths) / sum(rows[f'{p}, classic']['instructions'] for p in paths) - 1):+.2f} %.")
     return "\n".join(text)
 
 
 def sixteen(results):
     """Time of the sixteen analyses of Table 1, from the rows of the series."""
-    rows = [r for r in read_rows(results / "series.csv").values() if r["series"] in ("remedy", "as_published") and r["fields"] != "u-p_w"]
+    rows = [r for r in read_rows(results / "series.csv").values() if r["series"] in ("remedy", "as_published")
+            and r["fields"] != "u-p_w"]
     whole = [r["cpu_s"] for r in rows if r["attempts"] == 1]
-    return (f"{len(whole)} of the {len(rows)} analyses of Table 1, those that ran in one go, took {sum(whole) / 60:.1f} min of the processor: "
+    return (f"{len(whole)} of the {len(rows)} analyses of Table 1, those that ran in one go, took "
+            f"{sum(whole) / 60:.1f} min of the processor: "
             f"half of that on two cores that have nothing else to do, two at a time.")
 
 
@@ -162,8 +177,10 @@ def main():
                 if f"{title}, {rule}" in rows:
                     continue
                 n, rates, substeps, reseats = count(file, number, threshold)
-                rows[f"{title}, {rule}"] = dict(name=f"{title}, {rule}", path=title, rule=rule, updates=len(path["strain"]), rates=rates,
-                                                substeps=substeps, reseats=reseats, instructions=n, program=digest, commit=commit)
+                rows[f"{title}, {rule}"] = dict(name=f"{title}, {rule}", path=title, rule=rule,
+                                                updates=len(path["strain"]), rates=rates,
+                                                substeps=substeps, reseats=reseats, instructions=n, program=digest,
+                                                commit=commit)
                 write_rows(results / "cost.csv", rows)
                 print(f"{title}, {rule}: {n} instructions, {rates} rates, {reseats} re-seats", flush=True)
     print(texts(results)["cost"])

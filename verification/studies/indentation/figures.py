@@ -4,7 +4,8 @@ from tools.pictures import pyplot
 plt = pyplot()
 
 COLOURS = {"remedy": "#c8553d", "as_published": "#0b3c6f", "classic": "#3a8f6a", "resume": "#8a5a9e"}
-WORDS = {"remedy": "with the remedy (threshold)", "as_published": "without (as published)", "classic": "classic, with guards",
+WORDS = {"remedy": "with the remedy (threshold)", "as_published": "without (as published)",
+         "classic": "classic, with guards",
          "resume": "resume"}
 STYLE = {"font.size": 9, "axes.grid": True, "grid.color": "#dddddd", "grid.linewidth": 0.6, "axes.axisbelow": True,
          "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False, "lines.linewidth": 1.2,
@@ -46,7 +47,8 @@ def interface(runs, path, suction=30):
         axes[0, 0].legend(loc="upper center", fontsize=8)
         for axis in axes[1]:
             axis.set(xlabel="time [ms]", xlim=(0, 40))
-        figure.suptitle(f"Under the centre of the plate, initial suction {suction} kPa; dotted: peak and end of the load",
+        figure.suptitle(f"Under the centre of the plate, initial suction {suction} kPa; dotted: peak and end of the "
+                        f"load",
                         fontsize=9)
         return save(figure, path)
 
@@ -54,7 +56,8 @@ def interface(runs, path, suction=30):
 def newton(runs, path):
     """Fig. 4: error after the first and after the last iteration of every step; `runs`: (title, columns, tolerance)."""
     with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(2, len(runs), figsize=(2.6 * len(runs) + 1.2, 5), sharex=True, sharey=True, squeeze=False)
+        figure, axes = plt.subplots(2, len(runs), figsize=(2.6 * len(runs) + 1.2, 5), sharex=True, sharey=True,
+                                    squeeze=False)
         for column, (title, e, tolerance) in enumerate(runs):
             second = e["iterations"] > 1
             for axis, key, mask in ((axes[0, column], "first", slice(None)), (axes[1, column], "last", second)):
@@ -63,7 +66,8 @@ def newton(runs, path):
                 axis.axvline(14, color="#999999", lw=0.8, ls=":")
                 axis.axvline(28, color="#999999", lw=0.8, ls=":")
             axes[0, column].set_title(title)
-            axes[1, column].annotate(f"{second.sum()} of {len(second)} steps", (0.03, 0.97), xycoords="axes fraction", va="top")
+            axes[1, column].annotate(f"{second.sum()} of {len(second)} steps", (0.03, 0.97), xycoords="axes fraction",
+                                     va="top")
             axes[1, column].set(xlabel="time [ms]", xlim=(0, 40))
         axes[0, 0].set_ylabel("a) error after the first iteration")
         axes[1, 0].set_ylabel("b) after the last, where there are more")
@@ -79,7 +83,8 @@ def displacement(runs, path):
             axis.axis("off")
         for axis, (title, by_series) in zip(axes.flat, runs.items()):
             for series, columns in by_series.items():
-                axis.plot(columns["t_ms"], columns["u_mm"], color=COLOURS[series], ls="-" if series == "remedy" else "--",
+                axis.plot(columns["t_ms"], columns["u_mm"], color=COLOURS[series], ls="-" if series == "remedy"
+                          else "--",
                           label=WORDS[series], lw=1.6 if series == "remedy" else 1.2)
             axis.axvline(14, color="#999999", lw=0.8, ls=":")
             axis.set_title(title)
@@ -95,12 +100,14 @@ def displacement(runs, path):
 
 
 def tornado(parts, path):
-    """Change of the final displacement by every variation, with and without the remedy; the band is the remedy's effect."""
+    """Change of the final displacement by every variation, with and without the remedy; the band is the remedy's
+    effect."""
     if not parts:
         return None
     names = list(dict.fromkeys(what for _, _, lines in parts.values() for what, *_ in lines))
     with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(1, len(parts), figsize=(3.6 + 2.3 * len(parts), 1.2 + 0.2 * len(names)), sharey=True, squeeze=False)
+        figure, axes = plt.subplots(1, len(parts), figsize=(3.6 + 2.3 * len(parts), 1.2 + 0.2 * len(names)),
+                                    sharey=True, squeeze=False)
         for axis, (suction, (final, effect, lines)) in zip(axes.flat, parts.items()):
             axis.axvspan(-effect, effect, color="#c8553d", alpha=0.15, lw=0, label="effect of the remedy")
             axis.axvline(0, color="#555555", lw=0.8)
@@ -121,8 +128,10 @@ def tornado(parts, path):
             axis.tick_params(axis="x", labelrotation=45, labelsize=7)
         axes[0, 0].set_yticks([len(names) - i for i in range(len(names))], names, fontsize=8)
         axes[0, 0].set_ylim(0.3, len(names) + 0.7)
-        handles = [plt.Rectangle((0, 0), 1, 1, color="#c8553d"), plt.Line2D([], [], color="#0b3c6f", marker="d", ls="", ms=4),
+        handles = [plt.Rectangle((0, 0), 1, 1, color="#c8553d"),
+                   plt.Line2D([], [], color="#0b3c6f", marker="d", ls="", ms=4),
                    plt.Rectangle((0, 0), 1, 1, color="#c8553d", alpha=0.15)]
-        figure.legend(handles, ["with the remedy", "without", "size of the remedy's effect"], loc="outside lower center", ncols=3)
+        figure.legend(handles, ["with the remedy", "without", "size of the remedy's effect"],
+                      loc="outside lower center", ncols=3)
         figure.suptitle("Change of the final displacement of the centre", fontsize=10)
         return save(figure, path)

@@ -1,6 +1,7 @@
 """The paper's Table 1: eight suctions with and without the remedy, beside the paper's numbers, with Figs 2 to 5.
 
-`verification/run indentation --make --only series.py [--pass OPTION ...]` runs what is not finished (about ten minutes on two cores) and writes
+`verification/run indentation --make --only series.py [--pass OPTION ...]` runs what is not finished (about ten
+minutes on two cores) and writes
 its results. An interrupted analysis goes on from its checkpoint; a finished one is
 kept until its scene or the program changes. Its folder, in build/indentation, holds everything, also of a failed one.
 Exit code 1 if a balance is violated or the rows come from several versions of the program.
@@ -25,13 +26,15 @@ CASES = [(0, "u-p_w")] + [(s, "u-p_w-p_c") for s in SUCTIONS]
 def arguments():
     parser = analysis.parser_of(__doc__, SUCTIONS, 60)
     parser.add_argument("--series", nargs="+", choices=[*SERIES, "all"], default=["remedy", "as_published"])
-    parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="analyses by name, for example s0030_remedy")
+    parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="analyses by name, for example "
+                                                                              "s0030_remedy")
     return parser.parse_args()
 
 
 def jobs_of(args, folder, steps):
     names = SERIES if "all" in args.series else args.series
-    jobs = [Job(f"{label(s, f)}_{name}", scene(s, f, name, steps=steps), folder, steps, suction=s, fields=f, series=name)
+    jobs = [Job(f"{label(s, f)}_{name}", scene(s, f, name, steps=steps), folder, steps, suction=s, fields=f,
+                series=name)
             for s, f in CASES if s in args.suction for name in names]
     if args.only:
         everything = {f"{label(s, f)}_{name}": (s, f, name) for s, f in CASES for name in SERIES}
@@ -61,7 +64,8 @@ def main():
         rows[job.name] = row
         write_rows(results / "series.csv", dict(sorted(rows.items())))
         if "last_ms" in row:
-            write_table(results / "histories" / f"{job.name}.csv", histories(job.folder, 2 if job.facts["suction"] == 30 else 10))
+            write_table(results / "histories" / f"{job.name}.csv",
+                        histories(job.folder, 2 if job.facts["suction"] == 30 else 10))
         if job.facts["suction"] == 30 and "last_ms" in row:
             write_table(results / f"errors_{job.facts['series']}.csv", errors(job.folder), 3)
     run_all(jobs, args.jobs, 60 * args.limit, done)
@@ -78,15 +82,18 @@ def texts(results):
 
 def verdict(rows):
     wrong = [w for r in rows.values() if r["outcome"] == "0" for w in balances(r)]
-    wrong += [f"{r['name']} was stopped at the limit of time: start again" for r in rows.values() if r["outcome"] == "limit"]
+    wrong += [f"{r['name']} was stopped at the limit of time: start again" for r in rows.values()
+              if r["outcome"] == "limit"]
     versions = {(r["program"], r["commit"]) for r in rows.values()}
     if len(versions) > 1:
-        wrong.append(f"rows of {len(versions)} versions of the program: run series.py again with all suctions and series")
+        wrong.append(f"rows of {len(versions)} versions of the program: run series.py again with all suctions and "
+                     f"series")
     if any(commit.endswith("+") for _, commit in versions):
         wrong.append("the program's sources are not those of the commit")
     for sentence in wrong:
         print("FAILED " + sentence)
-    print(f"{len(rows)} analyses, {sum(r['outcome'] == '0' for r in rows.values())} to their end, {len(wrong)} complaints")
+    print(f"{len(rows)} analyses, {sum(r['outcome'] == '0' for r in rows.values())} to their end, {len(wrong)} "
+          f"complaints")
     return 1 if wrong else 0
 
 
@@ -130,9 +137,11 @@ def iterations(row):
 
 def table_1(rows):
     """Published | measured, by column."""
-    times = ["| suction [kPa] | relative CPU time: **paper** | measured | relative work | relative difference of displacement: **paper** "
+    times = ["| suction [kPa] | relative CPU time: **paper** | measured | relative work | relative difference of "
+             "displacement: **paper** "
               "| measured | measured, Newton 1e-5 |", "|" + 7 * "---|"]
-    solves = ["| suction [kPa] | iterations with the remedy: **paper** | measured | measured, Newton 1e-5 | without: **paper** | measured "
+    solves = ["| suction [kPa] | iterations with the remedy: **paper** | measured | measured, Newton 1e-5 | without: "
+              "**paper** | measured "
               "| measured, Newton 1e-5 |", "|" + 7 * "---|"]
     for s, fields in CASES:
         paper = PUBLISHED[s]
@@ -140,15 +149,20 @@ def table_1(rows):
         (a, b), (c, d) = pair(rows, s, fields), pair(rows, s, fields, "_tight")
         name = f"{s} (u-p_w)" if fields == "u-p_w" else str(s)
         for text, cells in ((times, (paper[0], own[0], own[1], paper[1], own[2], tight[2])),
-                            (solves, (str(paper[2]), iterations(a), iterations(c), str(paper[3]), iterations(b), iterations(d)))):
+                            (solves, (str(paper[2]), iterations(a), iterations(c), str(paper[3]), iterations(b),
+                                      iterations(d)))):
             text.append("| " + " | ".join([name, *(number(c) for c in cells)]) + " |")
-    text = times + [""] + solves + ["", "**Paper**: published in its Table 1. Measured: here, with the paper's Newton tolerance 1e-3 and with 1e-5. "
-                                     "Relative work: rate evaluations of the material with the remedy over those without; unlike CPU "
-                                     "times, which are single runs (-: not in one go), it does not depend on what else the machine does. "
+    text = times + [""] + solves + ["", "**Paper**: published in its Table 1. Measured: here, with the paper's Newton "
+                                        "tolerance 1e-3 and with 1e-5. "
+                                     "Relative work: rate evaluations of the material with the remedy over those "
+                                     "without; unlike CPU "
+                                     "times, which are single runs (-: not in one go), it does not depend on what else "
+                                     "the machine does. "
                                      "Iterations include those of rejected steps."]
     for r in ordered(rows):
         if r["outcome"] != "0":
-            text.append(f"- `{r['name']}` ended at {number(r.get('last_ms', math.nan), '.2f')} ms: {r['message'] or r['outcome']}")
+            text.append(f"- `{r['name']}` ended at {number(r.get('last_ms', math.nan), '.2f')} ms: "
+                        f"{r['message'] or r['outcome']}")
     text.append(f"\nMade by commit {made_by(rows)}.\n")
     return "\n".join(text)
 
@@ -162,15 +176,18 @@ def ordered(rows):
 
 
 def details(rows):
-    head = (("name", "analysis", ""), ("final_mm", "final [mm]", ".4f"), ("largest_mm", "largest [mm]", ".4f"), ("largest_ms", "at [ms]", ".2f"),
+    head = (("name", "analysis", ""), ("final_mm", "final [mm]", ".4f"), ("largest_mm", "largest [mm]", ".4f"),
+            ("largest_ms", "at [ms]", ".2f"),
             ("lost_ms", "contact lost [ms]", ".2f"), ("d_p_w", "at the peak of the load: change of p_w [kPa]", ".3g"),
             ("d_p_c", "p_c [kPa]", ".2g"), ("d_S_w", "S_w", ".2g"), ("ripple_kPa", "ripple of p_w [kPa]", ".2g"),
-            ("second", "steps with more than one solve", ".0f"), ("cuts", "cuts", ".0f"), ("S_w_start", "S_w at the start", ".4f"),
+            ("second", "steps with more than one solve", ".0f"), ("cuts", "cuts", ".0f"),
+            ("S_w_start", "S_w at the start", ".4f"),
             ("impulse_open", "impulse open", ".1e"), ("energy_open", "energy open", ".1e"), ("cpu_s", "CPU [s]", ".0f"))
     text = ["| " + " | ".join(h for _, h, _ in head) + " |", "|" + len(head) * "---|"]
     for row in ordered(rows):
         shown = {**row, "cpu_s": row["cpu_s"] if row["attempts"] == 1 else math.nan}
-        text.append("| " + " | ".join(row["name"] if not f else number(shown.get(k, math.nan), f) for k, _, f in head) + " |")
+        text.append("| " + " | ".join(row["name"] if not f else number(shown.get(k, math.nan), f) for k, _, f in head)
+                    + " |")
     return "\n".join(text)
 
 
@@ -183,7 +200,8 @@ def statements(rows, results):
     lines = ["| the paper says | measured | |", "|---|---|---|"]
 
     def say(claim, found, agrees, known=True):
-        lines.append(f"| {claim} | {found if known else ''} | {'not known' if not known else 'agrees' if agrees else 'does not agree'} |")
+        lines.append(f"| {claim} | {found if known else ''} | "
+                     f"{'not known' if not known else 'agrees' if agrees else 'does not agree'} |")
     whole = len(present) == len(cases)
     if len(present) < len(cases):
         lines.append(f"| (suctions without both analyses: {', '.join(str(s) for s in got if s not in present)}) | | |")
@@ -192,16 +210,20 @@ def statements(rows, results):
     good = [s for s, g in present.items() if ended(g[0][0])]
     say("with the remedy every analysis ends", f"{len(good)} of {len(present)}", len(good) == len(present), whole)
     bad = [s for s, g in present.items() if not ended(g[0][1])]
-    say("without it the one at 100 kPa fails, and no other", f"fails at: {', '.join(map(str, bad)) or 'none'}", bad == [100], whole)
+    say("without it the one at 100 kPa fails, and no other", f"fails at: {', '.join(map(str, bad)) or 'none'}",
+        bad == [100], whole)
     less = [s for s, g in both.items() if g[1][1] < 1]
-    say("the remedy saves time at every suction", f"less work at {', '.join(map(str, less)) or 'none'} of {', '.join(map(str, both))}",
+    say("the remedy saves time at every suction", f"less work at {', '.join(map(str, less)) or 'none'} of "
+                                                  f"{', '.join(map(str, both))}",
         len(less) == len(both))
     fewer = [s for s, g in both.items() if g[0][0]["iterations"] < g[0][1]["iterations"]]
-    say("in the majority of the analyses it takes fewer iterations", f"fewer at {', '.join(map(str, fewer)) or 'none'} of "
+    say("in the majority of the analyses it takes fewer iterations", f"fewer at {', '.join(map(str, fewer)) or 'none'} "
+                                                                     f"of "
         f"{', '.join(map(str, both))}", 2 * len(fewer) > len(both))
     apart = {s: g[1][2] for s, g in both.items()}
     close = [s for s in apart if PUBLISHED[s][1] is not None and abs(apart[s] - PUBLISHED[s][1]) <= 0.05]
-    say("final displacements differ by 0 to 0.81 (Table 1)", "within 0.05 of the paper's at " + (", ".join(map(str, close)) or "none"),
+    say("final displacements differ by 0 to 0.81 (Table 1)", "within 0.05 of the paper's at "
+        + (", ".join(map(str, close)) or "none"),
         len(close) == len([s for s in apart if PUBLISHED[s][1] is not None]))
     early = {}
     for s in both:
@@ -210,19 +232,25 @@ def statements(rows, results):
         early[s] = np.abs(a["u_mm"] - b["u_mm"])[load].max() / np.abs(b["u_mm"][load]).max()
     if early:
         order = sorted(early, key=early.get)
-        say("both are in perfect agreement until unloading begins (Fig. 5, one example)", f"largest difference up to 14 ms "
+        say("both are in perfect agreement until unloading begins (Fig. 5, one example)",
+            f"largest difference up to 14 ms "
             f"{100 * early[order[-1]]:.2g} % (suction {order[-1]})"
-            + (f", at most {100 * early[order[-2]]:.2g} % at the others" if len(order) > 1 else ""), early[order[0]] <= 0.01)
+            + (f", at most {100 * early[order[-2]]:.2g} % at the others" if len(order) > 1 else ""),
+            early[order[0]] <= 0.01)
     r = rows.get("s0030_remedy")
     if r and ended(r):
-        say("30 kPa: pore water pressure rises on impact (Fig. 3)", f"by {r['d_p_w']:.3g} kPa at the peak of the load", r["d_p_w"] > 0)
+        say("30 kPa: pore water pressure rises on impact (Fig. 3)", f"by {r['d_p_w']:.3g} kPa at the peak of the load",
+            r["d_p_w"] > 0)
         say("suction falls", f"changes by {r['d_p_c']:+.2g} kPa", r["d_p_c"] < 0)
         say("the degree of saturation rises slightly", f"changes by {r['d_S_w']:+.2g}", r["d_S_w"] > 0)
         say("rebound from 14 ms on", f"from {r['largest_ms']:.2f} ms on", abs(r["largest_ms"] - 14) < 0.5)
         counts = second_solves(results / "errors_remedy.csv")
-        say("Newton's method rarely needs a second iteration before unloading, more after the end of the impact (Fig. 4)",
-            "steps with a second one: {} up to 14 ms, {} up to 28 ms, {} after".format(*counts), counts[0] < 5 and counts[2] > max(counts[:2]))
-        say("strong oscillations of p_w after the impact", f"rms about the mean over 0.6 ms: {r['ripple_kPa']:.2g} kPa, "
+        say("Newton's method rarely needs a second iteration before unloading, more after the end of the impact (Fig. "
+            "4)",
+            "steps with a second one: {} up to 14 ms, {} up to 28 ms, {} after".format(*counts),
+            counts[0] < 5 and counts[2] > max(counts[:2]))
+        say("strong oscillations of p_w after the impact", f"rms about the mean over 0.6 ms: {r['ripple_kPa']:.2g} "
+                                                           f"kPa, "
             f"of a change of {r['d_p_w']:.3g}", r["ripple_kPa"] > 0.1 * abs(r["d_p_w"]), r["ripple_kPa"] > 0)
     return "\n".join(lines)
 
@@ -249,7 +277,8 @@ def pictures(results, picture):
         figures.load(next(iter(shown.values())), picture("fig2_load.png"))
         figures.interface(shown, picture("fig3_interface.png"))
     newton = []
-    for series, title in (("remedy", "remedy, tolerance 1e-3"), ("as_published", "without"), ("remedy_tight", "remedy, tolerance 1e-5"),
+    for series, title in (("remedy", "remedy, tolerance 1e-3"), ("as_published", "without"),
+                          ("remedy_tight", "remedy, tolerance 1e-5"),
                           ("as_published_tight", "without")):
         if (results / f"errors_{series}.csv").exists():
             newton.append((title, read(results / f"errors_{series}.csv"), SERIES[series][1] or 1e-3))

@@ -17,6 +17,7 @@ import sys
 import tempfile
 import time
 
+from tools import tables
 from tools.bench import ROOT, Bench
 from tools.results import folder
 
@@ -129,7 +130,7 @@ def run_all(program, lines):
     half = [subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) for _ in range(2)]
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         texts = pool.map(lambda i: half[i].communicate("\n".join(order[i::2]) + "\n")[0], range(2))
-        answers = {int(row["id"]): row for text in texts for row in csv.DictReader(text.splitlines())}
+        answers = {int(row["id"]): row for text in texts for row in tables.parsed(text)}
     if len(answers) != len(lines):
         raise SystemExit(f"{len(lines)} cases, {len(answers)} answers")
     return answers

@@ -1,4 +1,5 @@
-"""Writes reference.csv: ends of the paths of section 7 by verification/material/reference (full matrices, DOP853), with their own
+"""Writes reference.csv: ends of the paths of section 7 by verification/material/reference (full matrices, DOP853),
+with their own
 uncertainty: the largest change of either stress if the tolerance is ten times larger or the method is LSODA."""
 import sys
 
@@ -30,7 +31,8 @@ def end_of(p, e, suction, parts, **options):
 
 
 with open(folder(__file__) / "reference.csv", "w", encoding="utf-8") as file:
-    file.write("# ends of the paths of section 7 by make_reference.py, independent of the library; kPa, compression positive\n")
+    file.write("# ends of the paths of section 7 by make_reference.py, independent of the library; kPa, compression "
+               "positive\n")
     file.write("path,sigma_a,sigma_r,uncertainty\n")
     for name, path in PATHS.items():
         best = end_of(*path, rtol=1e-12)
