@@ -41,7 +41,7 @@ class HalfSpace:
         return quad(lambda s: load(t - s)*kernel(s), low, t, epsabs=0, epsrel=1e-12, limit=400)[0] if t > low else 0.0
 
     def u(self, z, t):
-        """Downwards, Duhamel's integral of the theory page."""
+        """Downwards, the integral of docs/theory/host.md section 10.2."""
         delay = math.sqrt(self.a)*z
 
         def kernel(s):

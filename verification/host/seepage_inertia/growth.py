@@ -167,7 +167,7 @@ def main():
         print(f"  suction {suction}, modulus {c['modulus']:.0f}: grows above", f"{grows[0]:.3g}" if grows else "none",
               f"per metre, limit {limit(c, 0):.4g}")
 
-    # The theory page's criterion, saturated: Q (rho - rho_w) > rho_w E.
+    # The criterion of docs/theory/host.md section 2.5, saturated: Q (rho - rho_w) > rho_w E.
     rng, wrong = np.random.default_rng(3), 0
     for _ in range(2000):
         modulus, q, rho, k, wave = 10**rng.uniform(2, 6), 10**rng.uniform(2, 7), rng.uniform(1.1, 2.3), \

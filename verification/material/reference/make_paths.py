@@ -102,7 +102,7 @@ def integrate(pid, rtol, method="DOP853", nscan=121, pieces=1, max_step=np.inf, 
 
 
 def distance(a, b):
-    """Largest difference per row, relative to |sig|, e, z_max, 0.01 (the error norm of TP section 6)."""
+    """Largest difference per row, relative to |sig|, e, z_max, 0.01 (the error norm of docs/theory/integration.md section 3)."""
     w = np.array([1, 1, 1, 2, 2, 2.0])
     ds = np.sqrt(((a[:, :6] - b[:, :6]) ** 2 * w).sum(1) / (b[:, :6] ** 2 * w).sum(1))
     dz = np.sqrt(((a[:, 9:15] - b[:, 9:15]) ** 2 * w).sum(1)) / 4.0
@@ -166,7 +166,7 @@ def main():
         "# off: effects switched off, 1 isotropic mechanism 2 retention (S_w = S_max = 1) 4 bonding (f = 1; b1 = 0) 8 fabric (A_d = A_0, dz = 0) 16 Lode (g = 1; c = 1)",
         "# reseats: number since the start; unc: change on a 10 times looser tolerance with every segment cut in 3",
         "# (largest of |d sig|/|sig|, |d e|/e, |d z|/z_max, |d eps_q^p|/0.01, |d S_w|; 1e-12 is the smallest stated)",
-        "# eps_q^p is that of the present loading process: zero after a re-seat. Rule resume: it is counted since the turn and is NOT restored when the process resumes (the page does not say)",
+        "# eps_q^p is that of the present loading process: zero after a re-seat. Rule resume: it is counted since the turn and is NOT restored when the process resumes (the rule leaves it open)",
         *notes,
         "# path, segment, rule, off, deps(6), dpc, sig(6), e, p_c, S_w, z(6), eps_q^p, reseats, unc",
     ]

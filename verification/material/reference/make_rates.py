@@ -1,4 +1,4 @@
-"""Writes paths_rates.csv: 200 single evaluations of the rates of TP section 3 (default parameters, memory held)."""
+"""Writes paths_rates.csv: 200 single evaluations of the rates of docs/theory/material.md section 4 (default parameters, memory held)."""
 
 import numpy as np
 
@@ -127,7 +127,7 @@ def evaluate(c, nscan=8001, refine=True):
 
 
 def residual(c, q):
-    """The equations of TP section 3 written out with the answer put in (not the way it was solved)."""
+    """The equations of docs/theory/material.md section 4 written out with the answer put in (not the way it was solved)."""
     pt = Point(c["sig"], c["e"], c["pc"], c["z"], c["r_in"], P)
     if np.trace(c["sig"]) / 3.0 <= P.p_min:
         return 0.0

@@ -1,7 +1,6 @@
 """Independent reference implementation of the soil model MUD.
 
-Written from the theory page (shared/theory/material-model.md, "TP" below) and the paper alone, without sight of the
-library.  It does things differently on purpose: full 3x3 tensors (no Voigt), tr(n^3) = 3 det(n), the direction equation
+Written from the equations of docs/theory and the paper alone, without sight of the library.  It does things differently on purpose: full 3x3 tensors (no Voigt), tr(n^3) = 3 det(n), the direction equation
 solved by a dense scan of the angle w followed by Brent's method, void ratio in closed form along a segment, and the rates
 integrated by Dormand-Prince 8(5,3) (scipy) with located events for every re-seat.
 
@@ -61,7 +60,7 @@ def cos3t_of(n):
 # ---------------------------------------------------------------------------------------------------------------------
 @dataclass(frozen=True)
 class Params:
-    """Paper Table 2 and Table 3, the guards of TP section 4, and one switch per effect."""
+    """Paper Table 2 and Table 3, the guards of docs/theory/material.md section 5, and one switch per effect."""
     # Table 2
     K0: float = 150.0
     G0: float = 125.0
@@ -89,7 +88,7 @@ class Params:
     Omega: float = 2.0
     S_max: float = 1.0
     S_min: float = 0.0
-    # guards (TP section 4)
+    # guards, docs/theory/material.md section 5
     floor: bool = True
     x0: float = 3.0e-3
     contraction_cap: bool = True
@@ -98,11 +97,11 @@ class Params:
     hysteresis: bool = True
     x_rev: float = 1.0e-3
     p_min_ratio: float = 1.0e-3
-    # memory (TP section 5)
+    # memory, docs/theory/memory-rules.md section 2
     rule: str = "threshold"  # classic, threshold, repositioning, resume
     eps_hat: float = 1.0e-4
     j: float = 1.0
-    resume_iso: bool = True  # rule resume, elastic way back: is the isotropic mechanism still resolved? (page: not said)
+    resume_iso: bool = True  # rule resume, elastic way back: is the isotropic mechanism still resolved? (the rule leaves it open)
     # switches
     isotropic: bool = True
     retention: bool = True
@@ -116,7 +115,7 @@ class Params:
 
 
 # ---------------------------------------------------------------------------------------------------------------------
-# TP sections 1 and 2: functions of the state
+# docs/theory/material.md sections 1 to 3: functions of the state
 # ---------------------------------------------------------------------------------------------------------------------
 def saturation(e, pc, P):
     """S_w, dS_w/dp_c (constant e), dS_w/de (constant p_c).  Eqs (23), (24); S_max and zero slopes for p_c <= 0.
@@ -169,7 +168,7 @@ class Point:
         self.Mb = P.M_c * math.exp(max(-P.n_b * self.psi, 0.0))  # (12)
         self.Md = P.M_c * math.exp(P.n_d * self.psi)  # (10)
         self.b0 = P.h0 * P.G0 * max(1.0 - P.c_h * e, 0.01) * (p / P.p_atm) ** (-0.5)  # (13)
-        # isotropic mechanism, TP section 3
+        # isotropic mechanism, docs/theory/material.md section 4.4
         eta2 = 1.5 * dd(r, r)
         self.eta2 = eta2
         self.alpha_hat = (P.N_l * f / e) ** (1.0 / P.lam)  # (7)
@@ -192,7 +191,7 @@ class Point:
 
 
 # ---------------------------------------------------------------------------------------------------------------------
-# TP section 3: the direction
+# docs/theory/material.md section 4.6: the direction
 # ---------------------------------------------------------------------------------------------------------------------
 class _Plane:
     """gamma(w), beta(w), D, hb on n(w) = cos(w) t/|t| + sin(w) q.  Scalars or arrays of angles."""
@@ -348,7 +347,7 @@ def _mechanism(pt, deps, dpc, Ke, B, nscan, refine, elastic):
 
 
 def rates(sig, e, pc, z, r_in, deps, dpc, P, nscan=121, refine=False, elastic=False):
-    """TP section 3.  sig, z, r_in, deps are full 3x3.  elastic=True: L = 0 (rule resume on its way back)."""
+    """docs/theory/material.md section 4.  sig, z, r_in, deps are full 3x3.  elastic=True: L = 0 (rule resume on its way back)."""
     pt = Point(sig, e, pc, z, r_in, P)
     A, B = pt.A, pt.B1 * dpc
     dp, ds, n, L, D, x, w, rts, fl = _mechanism(pt, deps, dpc, pt.K, 0.0, nscan, refine, elastic)
@@ -370,11 +369,11 @@ def rates(sig, e, pc, z, r_in, deps, dpc, P, nscan=121, refine=False, elastic=Fa
 
 
 # ---------------------------------------------------------------------------------------------------------------------
-# TP section 5: memory; state and integration
+# docs/theory/memory-rules.md: memory; state and integration
 # ---------------------------------------------------------------------------------------------------------------------
 @dataclass
 class State:
-    """State at the point.  r_in_before starts as the stress point's own r, J and eqp as zero (TP section 1)."""
+    """State at the point.  r_in_before starts as the stress point's own r, J and eqp as zero: docs/theory/material.md section 1.4."""
     sig: np.ndarray
     e: float
     pc: float = 0.0
@@ -419,7 +418,7 @@ def isotropic(p, e, pc=0.0):
 
 
 def reseat(st, rt, P, where):
-    """The memory jump: TP section 5.  rt is the rate that triggered it (its n is the new direction)."""
+    """The memory jump, docs/theory/memory-rules.md section 2.  rt is the rate that triggered it (its n is the new direction)."""
     r = stress_ratio(st.sig, P)
     old = st.r_in
     if P.rule == "classic":
@@ -504,7 +503,7 @@ def segment(st, deps, dpc, P, rtol=1e-10, method="DOP853", nscan=121, hook=None,
             first_test = False
             continue
         if not first_test and rt.n is not None and rt.x < -x_rev:
-            st.log.append(("still behind", s))  # the new rates would ask for another re-seat; TP: not in this substep
+            st.log.append(("still behind", s))  # the new rates would ask for another re-seat: not in this substep
         first_test = True
 
         # --- smooth integration until an event or the end

@@ -5,7 +5,7 @@ PAGE = Page(
     claim="rates and paths of the library are those of an implementation that shares nothing with it",
     kind="code-to-code",
     input="200 single evaluations of the rates (`paths_rates.csv`), 27 six-component strain paths (`paths.csv`), "
-          "numbers for single paths and states (`section7.csv`)",
+          "numbers for single paths and states (`printed_numbers.csv`)",
     reference="`mud_reference.py`: full 3x3 tensors, tr(n^3) = 3 det n, the direction equation by a scan of the angle "
               "with Brent's method in every bracket, void ratio "
               "in closed form along a segment, Dormand-Prince 8(5,3) with every memory reset located as an event "
@@ -13,7 +13,7 @@ PAGE = Page(
     seconds=5)
 MAKES = (Script("make_rates.py", ("paths_rates.csv",), 20, "scipy"),
          Script("make_paths.py", ("paths.csv",), 100, "scipy"),
-         Script("section7.py", ("section7.csv",), 20, "scipy"))
+         Script("printed_numbers.py", ("printed_numbers.csv",), 20, "scipy"))
 
 NONE = Tolerance("tests/contract/test_reference.pf holds rates to 1e-10 and paths to the tolerance asked for, each "
                  "with its reason")
