@@ -91,7 +91,8 @@ contains
       if (wanted > 0 .and. item%count /= wanted) then
          call raise(fault, EXIT_INPUT, at_line(file, item%line)//trim(key%name)//' takes '//whole(wanted)// &
                     trim(merge(' value ', ' values', wanted == 1))//', '//whole(item%count)// &
-                    trim(merge(' is ', ' are', item%count == 1))//' given ('//described(key)//').')
+                    trim(merge(' is ', ' are', item%count == 1))//' given ('//described(key)// &
+                    ')'//trim(merge('; is a "=" missing?', '                   ', item%count > wanted))//'.')
          return
       end if
       integral = scan(key%kind, 'iI') > 0

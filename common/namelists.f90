@@ -9,7 +9,7 @@ module namelists
    public :: entry_t, group_t, read_groups, find_entry, MAX_VALUES, LENGTH
 
    integer, parameter :: LENGTH = 256      !< Longest key, value or path.
-   integer, parameter :: MAX_VALUES = 6    !< Longest list of values.
+   integer, parameter :: MAX_VALUES = 1000   !< Longest list of values.
    integer, parameter :: LINE_LENGTH = 1024
    character(*), parameter :: LETTERS = 'abcdefghijklmnopqrstuvwxyz'
    character(*), parameter :: NAME_CHARACTERS = LETTERS//'0123456789_'
@@ -20,8 +20,7 @@ module namelists
       character(LENGTH) :: key = ''        !< As written.
       integer :: line = 0
       integer :: count = 0                 !< Number of values.
-      character(LENGTH) :: values(MAX_VALUES) = ''
-      logical :: quoted(MAX_VALUES) = .false.
+      character(LENGTH), allocatable :: values(:)
    end type entry_t
 
    !> `&name ... /`.
@@ -192,6 +191,7 @@ contains
       end if
       new%key = pending%text
       new%line = pending%line
+      allocate (new%values(0))
       groups(n)%entries = [groups(n)%entries, new]
       groups(n)%count = groups(n)%count + 1
       pending%present = .false.
@@ -240,8 +240,7 @@ contains
                        whole(MAX_VALUES)//' values; is a "=" missing after '//trim(pending%text)//'?')
          else
             item%count = item%count + 1
-            item%values(item%count) = pending%text
-            item%quoted(item%count) = pending%quoted
+            item%values = [item%values, pending%text]
          end if
       end associate
    end subroutine file_value

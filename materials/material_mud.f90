@@ -74,6 +74,7 @@ contains
       end if
       law%given_tangent = nint(law%props(property_index('tangent')), c_int)
       law%tangent = max(law%given_tangent, MUD_TANGENT_ELASTIC)
+      law%has_retention = .true.
       law%exact_tangent = law%tangent == MUD_TANGENT_CONSISTENT
       law%e_0 = law%props(property_index('e_0'))
       law%n_guards = size(GUARDS)

@@ -50,6 +50,7 @@ module material_point
    type, abstract :: material_t
       integer :: n_state = 0                !< State variables a point.
       logical :: has_energy = .false.       !< The stress has a potential: an elastic law.
+      logical :: has_retention = .false.    !< It knows its saturation itself; no curve beside it.
       logical :: exact_tangent = .false.    !< d sigma'/d strain is the derivative of the update itself.
       integer :: n_guards = 0
       character(NAME_LENGTH) :: guard_names(MOST_GUARDS) = ''

@@ -5,6 +5,7 @@ module material_registry
    use material_elastic, only: new_elastic, ELASTIC_KEYS
    use material_mud, only: new_mud, MUD_KEYS
    use material_point, only: material_t
+   use material_umat, only: new_umat, UMAT_KEYS
    use namelists, only: group_t, LENGTH
    use spelling, only: nearest_name
    use texts, only: lower_case
@@ -36,9 +37,10 @@ contains
    subroutine list_laws(list)
       type(law_t), allocatable, intent(out) :: list(:)
 
-      allocate (list(2))
+      allocate (list(3))
       list(1) = law_t('mud', new_mud, MUD_KEYS, open=.true.)
       list(2) = law_t('elastic', new_elastic, ELASTIC_KEYS)
+      list(3) = law_t('umat', new_umat, UMAT_KEYS)
    end subroutine list_laws
 
    function law_names() result(names)

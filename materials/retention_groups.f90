@@ -3,12 +3,13 @@ module retention_groups
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use key_schema, only: key_t, number_of, numbers_of, text_of, NONE, UNBOUNDED
+   use material_point, only: material_t
    use namelists, only: group_t
    use retention_curves, only: retention_t, bilogarithmic_t, power_t, table_t, saturated_t
    use texts, only: lower_case
    implicit none (type, external)
    private
-   public :: new_retention, RETENTION_KEYS
+   public :: new_retention, give_retention, RETENTION_KEYS
 
    real(wp), parameter :: SMALLEST = 1.0e-30_wp
    type(key_t), parameter :: RETENTION_KEYS(*) = [ &
@@ -24,6 +25,20 @@ module retention_groups
       key_t('retention', 'suction', 'N', NONE, -UNBOUNDED, UNBOUNDED, 'table: suctions [kPa], ascending'), &
       key_t('retention', 'saturation', 'N', NONE, 0, 1, 'table: degrees of saturation [-]')]
 contains
+   !> Reads a curve and puts it beside a law that has none of its own.
+   subroutine give_retention(group, law, fault)
+      type(group_t), intent(in) :: group   !< Checked against RETENTION_KEYS.
+      class(material_t), intent(inout) :: law
+      type(fault_t), intent(inout) :: fault
+
+      if (law%has_retention) then
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&'//trim(group%name)//' goes with a law '// &
+                    'that has no retention of its own; remove it: a point has one saturation.')
+         return
+      end if
+      call new_retention(group, law%curve, fault)
+   end subroutine give_retention
+
    subroutine new_retention(group, curve, fault)
       type(group_t), intent(in) :: group   !< Checked against RETENTION_KEYS.
       class(retention_t), allocatable, intent(out) :: curve

@@ -11,6 +11,7 @@ module triax_case
                           BY_EPS_A, BY_GAMMA, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES, PER_PRESSURE, ROWS
    use material_point, only: material_t
    use material_registry, only: new_material
+   use retention_groups, only: give_retention, RETENTION_KEYS
    use triax_point, only: soil_t, point_t, make_soil, start_point, mean_stress, AXIAL, RADIAL
    implicit none (type, external)
    private
@@ -40,13 +41,14 @@ contains
       type(group_t), allocatable :: groups(:)
       class(material_t), allocatable :: law
       character(LENGTH) :: word
-      integer :: i, of_case, of_material, of_initial, n_stages
+      integer :: i, of_case, of_material, of_retention, of_initial, n_stages
 
       test%file = file
       call read_groups(file, groups, fault)
       if (fault%code /= 0) return
       of_case = 0
       of_material = 0
+      of_retention = 0
       of_initial = 0
       n_stages = 0
       do i = 1, size(groups)
@@ -55,15 +57,18 @@ contains
             call only_once(file, groups, i, of_case, fault)
          case ('material')
             call only_once(file, groups, i, of_material, fault)
+         case ('retention')
+            call only_once(file, groups, i, of_retention, fault)
+            if (fault%code == 0) call check_entries(RETENTION_KEYS, groups(i), .false., fault)
          case ('initial')
             call only_once(file, groups, i, of_initial, fault)
          case ('stage')
             n_stages = n_stages + 1
          case default
             call raise(fault, EXIT_INPUT, at_line(file, groups(i)%line)//'there is no group &'//trim(groups(i)%name)// &
-                       '; a case has &case, &material, &initial and one &stage or more.')
+                       '; a case has &case, &material, &initial and one &stage or more, and may have &retention.')
          end select
-         if (fault%code == 0 .and. groups(i)%name /= 'material') call check_entries(KEYS, groups(i), .false., fault)
+         if (fault%code == 0 .and. any(KEYS%group == groups(i)%name)) call check_entries(KEYS, groups(i), .false., fault)
          if (fault%code /= 0) return
       end do
       if (of_material == 0) then
@@ -86,6 +91,7 @@ contains
       word = 'mud'
       call get_text(groups(of_material), 'law', word)
       call new_material(trim(word), groups(of_material), law, test%material, fault)
+      if (fault%code == 0 .and. of_retention > 0) call give_retention(groups(of_retention), law, fault)
       if (fault%code /= 0) return
       call make_soil(law, test%soil)
       call read_initial(groups(of_initial), test%soil, test%start, fault)

@@ -1,0 +1,371 @@
+!> A law of others: any UMAT from a shared library, beside a retention curve unless its STATEV holds the saturation.
+!> Suction goes to it as PREDEF(1) and DPRED(1). The law must be rate-independent: a point has no time, so each update
+!> is one unit of it, and TIME counts the updates.
+module material_umat
+   use, intrinsic :: iso_c_binding, only: c_int, c_size_t
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use faults, only: fault_t, raise, at_line, EXIT_INPUT
+   use files, only: folder_of
+   use key_schema, only: key_t, text_of, texts_of, number_of, numbers_of, word_is, line_of, REQUIRED, NONE, UNBOUNDED
+   use kinds, only: wp
+   use material_point, only: material_t, response_t, report_t, remark_t, saturation_t, swollen, NAME_LENGTH
+   use namelists, only: group_t
+   use texts, only: whole, short
+   use umat_library, only: umat_i, load_umat, CMNAME_LENGTH
+   implicit none (type, external)
+   private
+   public :: umat_t, new_umat, UMAT_KEYS, UMAT_REFUSES, UMAT_NOT_FINITE
+
+   !> Codes of a failure.
+   integer, parameter :: UMAT_REFUSES = 1      !< It set PNEWDT below 1.
+   integer, parameter :: UMAT_NOT_FINITE = 2   !< Its stress or DDSDDE is not finite.
+   real(wp), parameter :: HALF = 0.5_wp, SMALLEST_FACTOR = 0.05_wp
+
+   integer, parameter :: ABAQUS(6) = [1, 2, 3, 4, 5, 6]   !< Shear 12, 13, 23.
+   integer, parameter :: KRATOS(6) = [1, 2, 3, 4, 6, 5]   !< Shear 12, 23, 13.
+   real(wp), parameter :: UNIT(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], &
+                                               [3, 3])
+   real(wp), parameter :: STEP = 1.0_wp          !< DTIME of an update.
+   integer, parameter :: OWN = 9                 !< State variables behind those of the UMAT, at these places:
+   integer, parameter :: OWN_STRAIN = 0          !< six strains from the next place on, since the start,
+   integer, parameter :: OWN_COUNT = 7, OWN_E = 8, OWN_S_W = 9   !< updates, void ratio, saturation.
+
+   type(key_t), parameter :: UMAT_KEYS(*) = [ &
+      key_t('umat', 'library', 't', REQUIRED, 0, 0, 'shared library, seen from this file, or a name the system finds'), &
+      key_t('umat', 'symbol', 't', 'umat_', 0, 0, 'symbol of the UMAT in the library'), &
+      key_t('umat', 'props', 'N', NONE, -UNBOUNDED, UNBOUNDED, 'PROPS, in their order'), &
+      key_t('umat', 'nstatv', 'i', '0', 0, 10000, 'number of STATEV; they start as zeros'), &
+      key_t('umat', 'state_names', 'T', NONE, 0, 0, 'names of STATEV, in their order'), &
+      key_t('umat', 'shear_order', 'w', 'abaqus', 0, 0, 'abaqus: 12, 13, 23; kratos: 12, 23, 13', 'abaqus|kratos'), &
+      key_t('umat', 'stress', 'w', 'effective', 0, 0, &
+            'stress that the UMAT knows; total: less the air pressure, sigma'' + S_w p_c', 'effective|total'), &
+      key_t('umat', 'components', 'i', '6', 4, 6, 'NTENS: 6, or 4 for a UMAT of axisymmetry and plane strain'), &
+      key_t('umat', 'tangent', 'w', 'approximate', 0, 0, &
+            'consistent: DDSDDE is the derivative of the update itself', 'approximate|consistent'), &
+      key_t('umat', 'void_ratio_at', 'i', '0', 0, 10000, 'place in STATEV of the void ratio; 0: kept beside'), &
+      key_t('umat', 'saturation_at', 'i', '0', 0, 10000, 'place in STATEV of S_w; 0: from the retention curve'), &
+      key_t('umat', 'saturation_slopes_at', 'i', '0', 0, 10000, &
+            'with saturation_at: place of dS_w/dp_c, before that of dS_w/d eps_v (expansion positive)'), &
+      key_t('umat', 'suction_slope_at', 'i', '0', 0, 10000, &
+            'place in STATEV of the first of NTENS d STRESS/d p_c; 0: none')]
+
+   type, extends(material_t) :: umat_t
+      procedure(umat_i), pointer, nopass :: umat => null()
+      character(CMNAME_LENGTH) :: title = ''
+      character(256) :: library = '', symbol = ''
+      real(wp), allocatable :: props(:)
+      integer :: n_statv = 0, components = 6
+      integer :: order(6) = ABAQUS
+      logical :: total = .false.
+      integer :: void_ratio_at = 0, saturation_at = 0, saturation_slopes_at = 0, suction_slope_at = 0
+   contains
+      procedure :: initial_state
+      procedure :: update
+      procedure :: message
+      procedure :: default_void_ratio
+      procedure :: void_ratio
+      procedure :: saturation
+      procedure :: remarks
+   end type umat_t
+contains
+   !> The law of a group that was checked against UMAT_KEYS.
+   subroutine new_umat(group, law, title, fault)
+      type(group_t), intent(in) :: group
+      class(material_t), allocatable, intent(out) :: law
+      character(*), intent(inout) :: title
+      type(fault_t), intent(inout) :: fault
+      type(umat_t) :: umat
+
+      call fill_umat(group, title, umat, fault)
+      allocate (law, source=umat)
+   end subroutine new_umat
+
+   subroutine fill_umat(group, title, law, fault)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: title
+      type(umat_t), intent(out) :: law
+      type(fault_t), intent(inout) :: fault
+      character(NAME_LENGTH), allocatable :: names(:)
+      integer :: i
+
+      law%title = title
+      law%library = text_of(UMAT_KEYS, group, 'library')
+      law%symbol = text_of(UMAT_KEYS, group, 'symbol')
+      law%props = numbers_of(group, 'props')
+      law%n_statv = integer_of('nstatv')
+      law%components = integer_of('components')
+      law%void_ratio_at = integer_of('void_ratio_at')
+      law%saturation_at = integer_of('saturation_at')
+      law%saturation_slopes_at = integer_of('saturation_slopes_at')
+      law%suction_slope_at = integer_of('suction_slope_at')
+      if (word_is(UMAT_KEYS, group, 'shear_order', 'kratos')) law%order = KRATOS
+      law%total = word_is(UMAT_KEYS, group, 'stress', 'total')
+      law%has_retention = law%saturation_at > 0
+      law%exact_tangent = word_is(UMAT_KEYS, group, 'tangent', 'consistent')
+      if (law%components == 5) call refuse('components', 'is 4 or 6.')
+      call check_place('void_ratio_at', 1)
+      call check_place('saturation_at', 1)
+      call check_place('saturation_slopes_at', 2)
+      call check_place('suction_slope_at', law%components)
+      names = short_names(texts_of(group, 'state_names'))
+      if (size(names) > law%n_statv) call refuse('state_names', 'are more than nstatv = '//whole(law%n_statv)//'.')
+      if (fault%code /= 0) return
+
+      law%n_state = law%n_statv + OWN
+      allocate (law%state_names(law%n_state), law%state_units(law%n_state))
+      law%state_units = '1'
+      do i = 1, law%n_statv
+         law%state_names(i) = 'statev_'//whole(i)
+      end do
+      law%state_names(:size(names)) = names
+      law%state_names(law%n_statv + 1:) = [character(NAME_LENGTH) :: 'strain_11', 'strain_22', 'strain_33', 'strain_12', &
+                                           'strain_13', 'strain_23', 'updates', 'kept_void_ratio', 'kept_saturation']
+      call load(group%file, law, fault)
+      if (fault%code /= 0) fault%text = at_line(group%file, line_of(group, 'library'))//fault%text
+   contains
+      integer function integer_of(key)
+         character(*), intent(in) :: key
+
+         integer_of = nint(number_of(UMAT_KEYS, group, key))
+      end function integer_of
+
+      subroutine check_place(key, room)
+         character(*), intent(in) :: key
+         integer, intent(in) :: room   !< Places from it on.
+
+         if (integer_of(key) + room - 1 > law%n_statv) call refuse(key, '= '//whole(integer_of(key))//' needs '// &
+            whole(integer_of(key) + room - 1)//' STATEV, nstatv is '//whole(law%n_statv)//'.')
+      end subroutine check_place
+
+      subroutine refuse(key, why)
+         character(*), intent(in) :: key, why
+
+         if (fault%code == 0) call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, key))//key//' '//why)
+      end subroutine refuse
+   end subroutine fill_umat
+
+   pure function short_names(long) result(names)
+      character(*), intent(in) :: long(:)
+      character(NAME_LENGTH) :: names(size(long))
+
+      names = long(:)(:NAME_LENGTH)
+   end function short_names
+
+   !> Looks beside the file that names the library, and if it is not there, where the system keeps libraries.
+   subroutine load(file, law, fault)
+      character(*), intent(in) :: file
+      type(umat_t), intent(inout) :: law
+      type(fault_t), intent(inout) :: fault
+      character(:), allocatable :: path
+      logical :: there
+
+      path = trim(law%library)
+      if (path(1:1) /= '/') then
+         path = folder_of(file)//'/'//path
+         inquire (file=path, exist=there)
+         if (.not. there) path = trim(law%library)
+      end if
+      call load_umat(path, trim(law%symbol), law%umat, fault)
+   end subroutine load
+
+   !> STATEV are zeros but for the void ratio; then the UMAT sees an increment of zero strain, in which it may fill them
+   !> and lift the stress.
+   subroutine initial_state(self, stress, suction, void_ratio, state, text)
+      class(umat_t), intent(in) :: self
+      real(wp), intent(inout) :: stress(6)
+      real(wp), intent(in) :: suction, void_ratio
+      real(wp), intent(inout) :: state(:)
+      character(*), intent(out) :: text
+      type(response_t) :: response
+      type(saturation_t) :: sat
+      real(wp) :: before(self%n_state, 1), after(self%n_state, 1), at_rest(6, 1), stress0(6, 1)
+
+      text = ''
+      sat = self%retention(suction, void_ratio)
+      before = 0.0_wp
+      if (self%void_ratio_at > 0) before(self%void_ratio_at, 1) = void_ratio
+      before(self%n_statv + OWN_E, 1) = void_ratio
+      before(self%n_statv + OWN_S_W, 1) = sat%s
+      at_rest = 0.0_wp
+      stress0(:, 1) = stress
+      call self%update(1, stress0, before, at_rest, [suction], [0.0_wp], .false., response, after)
+      if (response%report%code /= 0) then
+         call self%message(response%report, text)
+         return
+      end if
+      state = after(:, 1)
+      stress = response%stress(:, 1)
+   end subroutine initial_state
+
+   subroutine update(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state)
+      class(umat_t), intent(in) :: self
+      integer, intent(in) :: n
+      real(wp), intent(in), contiguous :: stress(:, :), state(:, :), strain(:, :), suction(:), d_suction(:)
+      logical, intent(in) :: with_tangent
+      type(response_t), intent(inout) :: response
+      real(wp), intent(inout), contiguous :: new_state(:, :)
+      integer :: g
+
+      response%report = report_t()
+      do g = 1, n
+         new_state(:self%n_state, g) = state(:self%n_state, g)
+         call update_point(self, stress(:, g), strain(:, g), suction(g), d_suction(g), with_tangent, g, response, &
+                           new_state(:, g))
+         if (response%report%code == 0) cycle
+         response%report%point = g
+         return
+      end do
+   end subroutine update
+
+   !> One point; `state` goes in as that before the increment and comes out as that behind it.
+   subroutine update_point(self, stress, strain, suction, d_suction, with_tangent, g, response, state)
+      class(umat_t), intent(in) :: self
+      real(wp), intent(in) :: stress(6), strain(6), suction, d_suction
+      logical, intent(in) :: with_tangent
+      integer, intent(in) :: g
+      type(response_t), intent(inout) :: response
+      real(wp), intent(inout), contiguous, target :: state(:)
+      real(wp) :: stress_(6), ddsdde(self%components, self%components), strain0(6), d_strain(6), pnewdt, e, p_c, shift
+      real(wp) :: sse, spd, scd, rpl, ddsddt(6), drplde(6), drpldt, time(2), none(3)
+      integer(c_int) :: kstep(4), kinc
+      type(saturation_t) :: sat
+      integer :: own, c, i, j
+
+      own = self%n_statv
+      c = self%components
+      shift = 0.0_wp
+      if (self%total) shift = saturation(self, state)*suction
+      strain0 = state(own + OWN_STRAIN + 1:own + OWN_STRAIN + 6)
+      do i = 1, 6
+         stress_(i) = stress(self%order(i)) + merge(shift, 0.0_wp, i <= 3)
+         d_strain(i) = strain(self%order(i))
+      end do
+      strain0 = strain0(self%order)
+      time = state(own + OWN_COUNT)
+      kstep = [1, 0, 0, 0]
+      kinc = 1 + nint(time(1), c_int)
+      ddsdde = 0.0_wp
+      sse = 0.0_wp
+      spd = 0.0_wp
+      scd = 0.0_wp
+      rpl = 0.0_wp
+      ddsddt = 0.0_wp
+      drplde = 0.0_wp
+      drpldt = 0.0_wp
+      none = 0.0_wp
+      pnewdt = 1.0_wp
+      call self%umat(stress_, state, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, strain0, d_strain, time, STEP, &
+                     0.0_wp, 0.0_wp, [suction], [d_suction], self%title, 3_c_int, int(c - 3, c_int), int(c, c_int), &
+                     int(self%n_statv, c_int), self%props, size(self%props, kind=c_int), none, UNIT, pnewdt, 1.0_wp, &
+                     UNIT, UNIT, 1_c_int, 1_c_int, 1_c_int, 1_c_int, kstep, kinc, int(CMNAME_LENGTH, c_size_t))
+      if (pnewdt < 1.0_wp) then
+         call fail(UMAT_REFUSES, max(pnewdt, SMALLEST_FACTOR), scd)
+         return
+      else if (.not. (all(ieee_is_finite(stress_(:c))) .and. all(ieee_is_finite(ddsdde)))) then
+         call fail(UMAT_NOT_FINITE, HALF, 0.0_wp)
+         return
+      end if
+
+      p_c = suction + d_suction
+      e = swollen(state(own + OWN_E), sum(strain(1:3)))
+      if (self%void_ratio_at > 0) e = state(self%void_ratio_at)
+      if (self%saturation_at > 0) then
+         sat%s = state(self%saturation_at)
+         if (self%saturation_slopes_at > 0) then
+            sat%ds_dpc = state(self%saturation_slopes_at)
+            sat%ds_de = state(self%saturation_slopes_at + 1)/(1.0_wp + e)
+         end if
+      else
+         sat = self%retention(p_c, e)
+      end if
+      state(own + OWN_STRAIN + 1:own + OWN_STRAIN + 6) = state(own + OWN_STRAIN + 1:own + OWN_STRAIN + 6) + strain
+      state(own + OWN_COUNT) = time(1) + STEP
+      state(own + OWN_E) = e
+      state(own + OWN_S_W) = sat%s
+      response%void_ratio(g) = e
+      response%s_w(g) = sat%s
+      shift = 0.0_wp
+      if (self%total) shift = sat%s*p_c
+      response%stress(:, g) = stress
+      do i = 1, c
+         response%stress(self%order(i), g) = stress_(i) - merge(shift, 0.0_wp, i <= 3)
+      end do
+      response%report%n_rate = response%report%n_rate + 1
+      if (.not. with_tangent) return
+
+      response%dsw_dpc(g) = sat%ds_dpc
+      response%dsw_dev(g) = sat%ds_de*(1.0_wp + e)
+      if (self%saturation_slopes_at > 0) response%dsw_dev(g) = state(self%saturation_slopes_at + 1)
+      response%dsig_deps(:, :, g) = 0.0_wp
+      response%dsig_dpc(:, g) = 0.0_wp
+      do j = 1, c
+         do i = 1, c
+            response%dsig_deps(self%order(i), self%order(j), g) = ddsdde(i, j)
+         end do
+         if (self%suction_slope_at > 0) response%dsig_dpc(self%order(j), g) = state(self%suction_slope_at + j - 1)
+      end do
+      if (.not. self%total) return
+      response%dsig_deps(1:3, 1:3, g) = response%dsig_deps(1:3, 1:3, g) - p_c*response%dsw_dev(g)
+      response%dsig_dpc(1:3, g) = response%dsig_dpc(1:3, g) - sat%s - p_c*sat%ds_dpc
+   contains
+      subroutine fail(code, factor, value)
+         integer, intent(in) :: code
+         real(wp), intent(in) :: factor, value
+
+         response%report%code = code
+         response%report%factor = factor
+         response%report%value = value
+         response%report%reached = 0.0_wp
+      end subroutine fail
+   end subroutine update_point
+
+   subroutine message(self, report, text)
+      class(umat_t), intent(in) :: self
+      type(report_t), intent(in) :: report
+      character(*), intent(out) :: text
+
+      text = trim(self%symbol)//' of '//trim(self%library)
+      if (report%code == UMAT_REFUSES) then
+         text = trim(text)//' refuses the increment: PNEWDT '//short(report%factor)
+         if (abs(report%value) > 0.0_wp) text = trim(text)//', SCD '//short(report%value)
+         text = trim(text)//'.'
+      else
+         text = trim(text)//' returns a stress or a DDSDDE that is not finite.'
+      end if
+   end subroutine message
+
+   pure real(wp) function default_void_ratio(self)
+      class(umat_t), intent(in) :: self
+
+      associate (unused => self)
+      end associate
+      default_void_ratio = 0.0_wp
+   end function default_void_ratio
+
+   pure real(wp) function void_ratio(self, state)
+      class(umat_t), intent(in) :: self
+      real(wp), intent(in) :: state(:)
+
+      void_ratio = state(self%n_statv + OWN_E)
+   end function void_ratio
+
+   pure real(wp) function saturation(self, state)
+      class(umat_t), intent(in) :: self
+      real(wp), intent(in) :: state(:)
+
+      saturation = state(self%n_statv + OWN_S_W)
+   end function saturation
+
+   subroutine remarks(self, list)
+      class(umat_t), intent(in) :: self
+      type(remark_t), allocatable, intent(out) :: list(:)
+      character(:), allocatable :: values
+      integer :: i
+
+      values = ''
+      do i = 1, size(self%props)
+         values = values//short(self%props(i))//' '
+      end do
+      list = [remark_t('law', 'UMAT '//trim(self%symbol)//' of '//trim(self%library)), remark_t('props', values)]
+   end subroutine remarks
+end module material_umat
