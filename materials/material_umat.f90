@@ -133,6 +133,7 @@ contains
          character(*), intent(in) :: key
          integer, intent(in) :: room   !< Places from it on.
 
+         if (integer_of(key) == 0) return
          if (integer_of(key) + room - 1 > law%n_statv) call refuse(key, '= '//whole(integer_of(key))//' needs '// &
             whole(integer_of(key) + room - 1)//' STATEV, nstatv is '//whole(law%n_statv)//'.')
       end subroutine check_place
