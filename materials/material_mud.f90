@@ -12,7 +12,7 @@ module material_mud
                             MUD_TANGENT_CONSISTENT
    use namelists, only: group_t
    use parameter_groups, only: read_parameters
-   use texts, only: from_c, short
+   use texts, only: from_c, short, whole
    implicit none (type, external)
    private
    public :: mud_t, new_mud, MUD_KEYS
@@ -178,8 +178,7 @@ contains
                               n_tensile=0, value=report%value, lower=report%lower, upper=report%upper, &
                               reached=report%reached, pnewdt=report%factor)
       raw = c_null_char
-      if (mud_message(of_library, raw, BUFFER) < 0) write (raw, '(a, i0, 2a)') 'Status ', report%code, '.', &
-         c_null_char
+      if (mud_message(of_library, raw, BUFFER) < 0) raw = 'Status '//whole(report%code)//'.'//c_null_char
       text = from_c(raw)
    end subroutine message
 
@@ -222,8 +221,8 @@ contains
 
       raw = c_null_char
       text = ''
-      if (mud_save_increment(trim(path)//c_null_char, origin//c_null_char, self%props, size(self%props), stress, state, &
-                             self%n_state, strain, suction, d_suction, self%tangent, raw, BUFFER) /= 0) &
+      if (mud_save_increment(trim(path)//c_null_char, origin//c_null_char, self%props, size(self%props), stress, &
+                             state, self%n_state, strain, suction, d_suction, self%tangent, raw, BUFFER) /= 0) &
          text = from_c(raw)
    end subroutine save_update
 

@@ -23,15 +23,15 @@ module material_umat
 
    integer, parameter :: ABAQUS(6) = [1, 2, 3, 4, 5, 6]   !< Shear 12, 13, 23.
    integer, parameter :: KRATOS(6) = [1, 2, 3, 4, 6, 5]   !< Shear 12, 23, 13.
-   real(wp), parameter :: UNIT(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], &
-                                               [3, 3])
+   real(wp), parameter :: UNIT(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, &
+                                                0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
    real(wp), parameter :: STEP = 1.0_wp          !< DTIME of an update.
    integer, parameter :: OWN = 9                 !< State variables behind those of the UMAT, at these places:
    integer, parameter :: OWN_STRAIN = 0          !< six strains from the next place on, since the start,
    integer, parameter :: OWN_COUNT = 7, OWN_E = 8, OWN_S_W = 9   !< updates, void ratio, saturation.
 
    type(key_t), parameter :: UMAT_KEYS(*) = [ &
-      key_t('umat', 'library', 't', REQUIRED, 0, 0, 'shared library, seen from this file, or a name the system finds'), &
+      key_t('umat', 'library', 't', REQUIRED, 0, 0, 'shared library, seen from this file, or one the system finds'), &
       key_t('umat', 'symbol', 't', 'umat_', 0, 0, 'symbol of the UMAT in the library'), &
       key_t('umat', 'props', 'N', NONE, -UNBOUNDED, UNBOUNDED, 'PROPS, in their order'), &
       key_t('umat', 'nstatv', 'i', '0', 0, 10000, 'number of STATEV; they start as zeros'), &
@@ -118,8 +118,8 @@ contains
          law%state_names(i) = 'statev_'//whole(i)
       end do
       law%state_names(:size(names)) = names
-      law%state_names(law%n_statv + 1:) = [character(NAME_LENGTH) :: 'strain_11', 'strain_22', 'strain_33', 'strain_12', &
-                                           'strain_13', 'strain_23', 'updates', 'kept_void_ratio', 'kept_saturation']
+      law%state_names(law%n_statv + 1:) = [character(NAME_LENGTH) :: 'strain_11', 'strain_22', 'strain_33', &
+                                           'strain_12', 'strain_13', 'strain_23', 'updates', 'kept_void_ratio', 'kept_saturation']
       call load(group%file, law, fault)
       if (fault%code /= 0) fault%text = at_line(group%file, line_of(group, 'library'))//fault%text
    contains
@@ -255,8 +255,8 @@ contains
       drpldt = 0.0_wp
       none = 0.0_wp
       pnewdt = 1.0_wp
-      call self%umat(stress_, state, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, strain0, d_strain, time, STEP, &
-                     0.0_wp, 0.0_wp, [suction], [d_suction], self%title, 3_c_int, int(c - 3, c_int), int(c, c_int), &
+      call self%umat(stress_, state, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, strain0, d_strain, time, &
+                     STEP, 0.0_wp, 0.0_wp, [suction], [d_suction], self%title, 3_c_int, int(c - 3, c_int), int(c, c_int), &
                      int(self%n_statv, c_int), self%props, size(self%props, kind=c_int), none, UNIT, pnewdt, 1.0_wp, &
                      UNIT, UNIT, 1_c_int, 1_c_int, 1_c_int, 1_c_int, kstep, kinc, int(CMNAME_LENGTH, c_size_t))
       if (pnewdt < 1.0_wp) then

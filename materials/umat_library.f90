@@ -1,7 +1,7 @@
 !> UMATs from shared libraries: the interface of Abaqus, and the loader of the system (POSIX).
 module umat_library
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_funptr, c_char, c_int, c_size_t, c_double, c_null_char, c_associated, &
-                                          c_f_pointer, c_f_procpointer
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_funptr, c_char, c_int, c_size_t, c_double, c_null_char, &
+                                          c_associated, c_f_pointer, c_f_procpointer
    use faults, only: fault_t, raise, EXIT_INPUT
    implicit none (type, external)
    private
@@ -13,8 +13,8 @@ module umat_library
 
    abstract interface
       !> As gfortran calls and is called: every argument by its address, the length of CMNAME behind the last one.
-      subroutine umat_i(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, time, dtime, &
-                        temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, coords, drot, &
+      subroutine umat_i(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, time, &
+                        dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, coords, drot, &
                         pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, kstep, kinc, cmname_length) bind(c)
          import :: c_double, c_int, c_char, c_size_t
          integer(c_int), intent(in) :: ndi, nshr, ntens, nstatv, nprops, noel, npt, layer, kspt, kstep(4), kinc

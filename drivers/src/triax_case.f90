@@ -68,7 +68,8 @@ contains
             call raise(fault, EXIT_INPUT, at_line(file, groups(i)%line)//'there is no group &'//trim(groups(i)%name)// &
                        '; a case has &case, &material, &initial and one &stage or more, and may have &retention.')
          end select
-         if (fault%code == 0 .and. any(KEYS%group == groups(i)%name)) call check_entries(KEYS, groups(i), .false., fault)
+         if (fault%code == 0 .and. any(KEYS%group == groups(i)%name)) &
+            call check_entries(KEYS, groups(i), .false., fault)
          if (fault%code /= 0) return
       end do
       if (of_material == 0) then

@@ -8,7 +8,8 @@ module triax_control
    use triax_stage, only: stage_t, quantity_rows, CONTROL_NAMES, ROWS, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
    use material_point, only: MOST_GUARDS
    use triax_point, only: soil_t, point_t, tangent_t, report_t, update_point, save_update, update_sentence, &
-                          void_ratio, saturation, slope_is_exact, axial_strain, volumetric_strain, mean_stress, deviator_stress
+                          void_ratio, saturation, slope_is_exact, axial_strain, volumetric_strain, mean_stress, &
+                          deviator_stress
    implicit none (type, external)
    private
    public :: plan_t, tally_t, plan_way, advance, lead, quantity, CONTROL_TOLERANCE

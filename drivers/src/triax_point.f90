@@ -114,7 +114,8 @@ contains
       type(fault_t), intent(inout) :: fault
       character(BUFFER) :: text
 
-      call soil%law%save_update(file, origin, -before%stress, before%state(:, 1), -strain, before%suction, suction, text)
+      call soil%law%save_update(file, origin, -before%stress, before%state(:, 1), -strain, before%suction, suction, &
+                                text)
       if (text /= '') call raise(fault, EXIT_OUTPUT, '--save-failed '//trim(file)//': '//trim(text)//'.')
    end subroutine save_update
 
