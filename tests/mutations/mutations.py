@@ -1,6 +1,7 @@
 """The mutations: (title, (file below umat, text that stands there once, its replacement), ...)."""
 
 TENSOR, RATES, POINT = "core/base/mud_tensor.f90", "core/rates/mud_rates.f90", "core/integration/mud_point.f90"
+DIRECTION = "core/rates/mud_direction.f90"
 INCREMENT, REVERSAL, SUBSTEP = "core/integration/mud_increment.f90", "core/integration/mud_reversal.f90", "core/integration/mud_substep.f90"
 FLOW, HARDENING, CRITICAL = "core/laws/mud_flow.f90", "core/laws/mud_hardening.f90", "core/laws/mud_critical_state.f90"
 RETENTION, BONDING, ELASTIC = "core/laws/mud_retention.f90", "core/laws/mud_bonding.f90", "core/laws/mud_elastic.f90"
@@ -58,11 +59,11 @@ MUTATIONS = [
     ("isotropic mechanism acts in extension too",
      (RATES, "if (w%iso%a*w%d_p/w%p + w%iso%b*d_pc > 0.0_wp) then",
       "if (abs(w%iso%a*w%d_p/w%p + w%iso%b*d_pc) > 0.0_wp) then")),
-    ("no floor", (RATES, "w%h_b = max(w%x, par%x_floor)/w%b_0", "w%h_b = max(w%x, 1.0e-15_wp)/w%b_0")),
-    ("no contraction cap", (RATES, "w%d = limit", "w%d = w%d")),
-    ("softening cap twice as large", (RATES, "w%h_b = limit\n", "w%h_b = 2.0_wp*limit\n")),
+    ("no floor", (DIRECTION, "w%h_b = max(w%x, par%x_floor)/w%b_0", "w%h_b = max(w%x, 1.0e-15_wp)/w%b_0")),
+    ("no contraction cap", (DIRECTION, "w%d = limit", "w%d = w%d")),
+    ("softening cap twice as large", (DIRECTION, "w%h_b = limit\n", "w%h_b = 2.0_wp*limit\n")),
     ("first root found taken",
-     (RATES, "if (single_root(par, arc, w)) return", "if (single_root(par, arc, w) .or. .true.) return")),
+     (DIRECTION, "if (single_root(par, arc, w)) return", "if (single_root(par, arc, w) .or. last > 0.0_wp) return")),
     ("plastic shear without sqrt(2/3)", (RATES, "w%d_eps_q = SQRT_2_3*w%l", "w%d_eps_q = w%l")),
     # memory
     ("forget to store the memory", (REVERSAL, "      memory%r_in = r_in\n", "      memory%r_in = memory%r_in\n")),
