@@ -1,4 +1,4 @@
-"""Texts find what they cite: sections of docs/theory, pages that Markdown links to, and headings behind a #.
+"""Texts find what they cite: sections of docs/theory, pages that Markdown links to, headings behind a #, files.
 
 Every rule is first shown a planted offence and its nearest innocent neighbour.
 """
@@ -109,6 +109,12 @@ def broken_links(text, exists, anchors):
     return wrong
 
 
+def missing_files(text, exists):
+    """Paths in code spans, `folder/name`; a part in capitals stands for any name."""
+    return [f"`{path}`: there is no such file or folder" for path in re.findall(r"`([a-z_]+/[\w./-]*)`", text)
+            if not re.search(r"\b(?:\w+_)?[A-Z]{3,}\b", path) and not exists(path)]
+
+
 def planted_offences():
     chapter = {"a.md": ["1", "1.1", "2"]}
     a = "docs/" "theory/a.md"   # in two parts, lest this file cites it
@@ -135,6 +141,8 @@ def planted_offences():
         ("a link to no file", links, "[x](c.md)", "[x](b.md)"),
         ("a picture that is not there", links, "![x](c.png)", "![x](b.md)"),
         ("a link to no heading", links, "[x](#second)", "[x](#1-first-part)"),
+        ("a file that is gone", lambda t: missing_files(t, lambda path: path == "host/mesh"), "in `host/messh`",
+         "in `host/mesh`, `host/law_NAME.f90`, read/write"),
         ("a heading of another page", links, "[x](b.md#second)", "`[x](c.md)` [x](https://c.md)")]
     return ([f"{name}: the offence is not seen" for name, rule, bad, _ in cases if not rule(bad)]
             + [f"{name}: innocent text is blamed" for name, rule, _, good in cases if rule(good)])
@@ -191,6 +199,8 @@ def main():
     report("the code cites the chapters", [] if count else ["nothing cites docs/theory by section"])
     report("every section of docs/theory that is cited exists", cited)
     report("no text cites what a reader cannot find", lost)
+    report("folders and files that CONTRIBUTING.md names exist",
+           missing_files((root/"CONTRIBUTING.md").read_text(encoding="utf-8"), lambda path: (root/path).exists()))
     report("links of the Markdown pages resolve", links)
     finish()
 
