@@ -76,8 +76,6 @@ CASES = {
     "patch_flow": (page("patch") + "flow.nml", []),
     "geostatic": (page("patch") + "geostatic.nml", []),
     "element_suction": (page("element") + "suction.nml", [RULE, ("duration = 1.0e7", "duration = 1.0e6")]),
-    "element_umat": (page("element") + "suction.nml", [RULE, ("duration = 1.0e7", "duration = 1.0e6"),
-                                                               ("= 'mud_update'", "= 'umat'")]),
     "contact_fall": (CONTACT + "fall.nml", []),
     "contact_patch": (CONTACT + "patch.nml", []),
     "contact_split": (CONTACT + "split.nml", [("penalty = 1.0e6", "penalty = 1.0e6\n   gap = 'pointwise'")]),

@@ -3,22 +3,23 @@ module element_equations
    use wall_clock, only: clock, lap
    use unknown_fields, only: FIELDS
    use kinds, only: wp
-   use fe_material, only: answer_t, TOO_LARGE
+   use material_point, only: response_t, report_t
    use porous_domain, only: domain_t, state_t, gauss_t
-   use porous_balance, only: kinematics_t, pore_t, point_response, PLACES
+   use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, PLACES
    use generalised_alpha, only: scheme_t, DYNAMIC
    implicit none (type, external)
    private
-   public :: element_t, compute_element, element_size, MAX_DOF
+   public :: element_t, compute_element, element_size, MAX_DOF, STRAIN_TOO_LARGE
 
    integer, parameter :: MAX_DOF = 24   !< 12 displacements (node by node), then p_w, then p_c.
    integer, parameter :: LAST_U = 12
+   integer, parameter :: STRAIN_TOO_LARGE = 1000   !< Code of a strain beyond 1 in a step: no law is asked.
 
    type :: element_t
       real(wp) :: r(MAX_DOF) = 0.0_wp            !< Residual.
       real(wp) :: k(MAX_DOF, MAX_DOF) = 0.0_wp   !< d r / d new values.
       real(wp) :: stretch(MAX_DOF) = 0.0_wp      !< Volume balances: strain rates and fluxes, added up by magnitude.
-      type(answer_t) :: bad                      !< Answer of the first point that failed.
+      type(report_t) :: bad                      !< Of the material, where a point failed.
       integer :: bad_point = 0                   !< Its number, 0: none.
       integer :: rate_evaluations = 0
       real(wp) :: seconds = 0.0_wp               !< In the material.
@@ -40,73 +41,124 @@ contains
       type(state_t), intent(inout) :: new
       logical, intent(in) :: with_slope
       type(element_t), intent(inout) :: out
-      type(answer_t) :: answer
-      type(kinematics_t) :: k
-      type(pore_t) :: pore
-      real(wp) :: x0(FIELDS, 6), x1(FIELDS, 6), v(FIELDS, 6), a(2, 6), strain(6), response(PLACES), t0
-      real(wp) :: slope(PLACES, PLACES), part(PLACES, MAX_DOF), rate, drift(2)
-      integer :: g, p, n, node(6)
+      type(response_t) :: material
+      type(kinematics_t) :: k(domain%rule)
+      real(wp) :: strain(6, domain%rule), t0
+      integer :: g, first, last
 
-      node = domain%mesh%t6(:, element)
-      n = element_size(domain)
-      x0 = old%x(:, node)
-      x1 = new%x(:, node)
-      a = old%a(:, node) + scheme%l_a*(new%a(:, node) - old%a(:, node))
-      v(1:2, :) = old%v(1:2, node) + scheme%l_v*(new%v(1:2, node) - old%v(1:2, node))
-      v(3:4, :) = old%v(3:4, node) + scheme%l_p*(new%v(3:4, node) - old%v(3:4, node))
       out%r = 0.0_wp
       out%stretch = 0.0_wp
       out%k = 0.0_wp
       out%bad_point = 0
       out%rate_evaluations = 0
       out%seconds = 0.0_wp
-      strain = 0.0_wp
+      call look_at_nodes(domain, element, scheme, old, new, k)
+      do g = 1, domain%rule
+         ! Also where it is not a number.
+         if (all(abs(k(g)%strain) <= 1.0_wp)) cycle
+         out%bad = report_t(code=STRAIN_TOO_LARGE)
+         out%bad_point = g
+         return
+      end do
+      strain(5:6, :) = 0.0_wp
+      do g = 1, domain%rule
+         strain(1:4, g) = k(g)%strain
+      end do
+      first = (element - 1)*domain%rule + 1
+      last = element*domain%rule
+      t0 = clock()
+      call domain%regions(domain%region_of(element))%law%update(domain%rule, old%stress(:, first:last), &
+         old%state(:, first:last), strain, k%c0, k%c1 - k%c0, with_slope, material, new%state(:, first:last))
+      call lap(out%seconds, t0)
+      out%rate_evaluations = material%report%n_rate
+      if (material%report%code /= 0) then
+         out%bad = material%report
+         out%bad_point = material%report%point
+         return
+      end if
+      call add_points(domain, element, scheme, k, material, old, new, with_slope, out)
+   end subroutine compute_element
+
+   !> What the nodes say about the points of an element.
+   subroutine look_at_nodes(domain, element, scheme, old, new, k)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: element
+      type(scheme_t), intent(in) :: scheme
+      type(state_t), intent(in) :: old, new
+      type(kinematics_t), intent(out) :: k(domain%rule)
+      real(wp) :: x0(FIELDS, 6), x1(FIELDS, 6), v(FIELDS, 6), a(2, 6)
+      integer :: g, node(6)
+
+      node = domain%mesh%t6(:, element)
+      x0 = old%x(:, node)
+      x1 = new%x(:, node)
+      a = old%a(:, node) + scheme%l_a*(new%a(:, node) - old%a(:, node))
+      v(1:2, :) = old%v(1:2, node) + scheme%l_v*(new%v(1:2, node) - old%v(1:2, node))
+      v(3:4, :) = old%v(3:4, node) + scheme%l_p*(new%v(3:4, node) - old%v(3:4, node))
+      do g = 1, domain%rule
+         associate (gp => domain%gauss(g, element), region => domain%regions(domain%region_of(element)))
+            call look(gp, domain%n_p, scheme, x0, x1, v, a, k(g))
+            k(g)%speed = 0.0_wp
+            if (region%damping > 0.0_wp .and. scheme%kind == DYNAMIC) k(g)%speed = matmul(v(1:2, :), gp%n)
+            k(g)%source = 0.0_wp
+            if (associated(domain%source)) &
+               k(g)%source = domain%source(gp%x, old%time + scheme%l_f*(new%time - old%time))
+         end associate
+      end do
+   end subroutine look_at_nodes
+
+   !> The balances at the points, added up over the element.
+   subroutine add_points(domain, element, scheme, k, material, old, new, with_slope, out)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: element
+      type(scheme_t), intent(in) :: scheme
+      type(kinematics_t), intent(in) :: k(:)
+      type(response_t), intent(in) :: material
+      type(state_t), intent(in) :: old
+      type(state_t), intent(inout) :: new
+      logical, intent(in) :: with_slope
+      type(element_t), intent(inout) :: out
+      type(skeleton_t) :: skeleton
+      type(pore_t) :: pore
+      real(wp) :: response(PLACES), slope(PLACES, PLACES), part(PLACES, MAX_DOF), rate, drift(2)
+      integer :: g, p, n
+
+      n = element_size(domain)
       do g = 1, domain%rule
          p = (element - 1)*domain%rule + g
+         skeleton%stress = material%stress(1:4, g)
+         skeleton%e = material%void_ratio(g)
+         skeleton%s = material%s_w(g)
+         if (with_slope) then
+            skeleton%slope = material%dsig_deps(1:4, 1:4, g)
+            skeleton%slope_suction = material%dsig_dpc(1:4, g)
+            skeleton%ds_dev = material%dsw_dev(g)
+            skeleton%ds_dpc = material%dsw_dpc(g)
+         else
+            skeleton%ds_dev = 0.0_wp
+            skeleton%ds_dpc = 0.0_wp
+         end if
          associate (gp => domain%gauss(g, element), region => domain%regions(domain%region_of(element)))
-            call look(gp, domain%n_p, scheme, x0, x1, v, a, k)
-            k%speed = 0.0_wp
-            if (region%damping > 0.0_wp .and. scheme%kind == DYNAMIC) k%speed = matmul(v(1:2, :), gp%n)
-            k%source = 0.0_wp
-            if (associated(domain%source)) &
-               k%source = domain%source(gp%x, old%time + scheme%l_f*(new%time - old%time))
-            strain(1:4) = k%strain
-            ! Also where it is not a number.
-            if (.not. all(abs(k%strain) <= 1.0_wp)) then
-               out%bad = answer_t(code=TOO_LARGE)
-               out%bad_point = g
-               return
-            end if
-            associate (law => domain%materials(region%material)%law)
-               t0 = clock()
-               call law%update(old%stress(:, p), old%state(:law%n_state, p), strain, k%c0, k%c1 - k%c0, with_slope, &
-                               answer, new%state(:law%n_state, p))
-               call lap(out%seconds, t0)
-            end associate
-            out%rate_evaluations = out%rate_evaluations + answer%rate_evaluations
-            if (answer%code /= 0) then
-               out%bad = answer
-               out%bad_point = g
-               return
-            end if
-            call point_response(domain, region, scheme, k, old%stress(:, p), answer, &
-                                pore_t(old%e(p), old%s(p), old%s_rate(p)), pore, with_slope, response, slope, &
-                                drift)
-            new%stress(:, p) = answer%stress
+            call point_response(domain, region, scheme, k(g), old%stress(:, p), skeleton, &
+                                pore_t(old%e(p), old%s(p), old%s_rate(p)), pore, with_slope, response, slope, drift)
+            new%stress(:, p) = material%stress(:, g)
             new%e(p) = pore%e
             new%s(p) = pore%s
             new%s_rate(p) = pore%s_rate
             call gather(gp, domain%n_p, n, gp%weight, response, out%r)
-            rate = sum(abs(scheme%c_v*k%strain(1:3)))*gp%weight
-            out%stretch(LAST_U + 1:LAST_U + domain%n_p) = out%stretch(LAST_U + 1:LAST_U + domain%n_p) &
-               + rate*abs(gp%m(:domain%n_p)) + gp%weight*matmul(drift, abs(gp%dm(:, :domain%n_p)))
+            rate = sum(abs(scheme%c_v*k(g)%strain(1:3)))*gp%weight
+            associate (stretch => out%stretch(LAST_U + 1:LAST_U + domain%n_p))
+               stretch = stretch + rate*abs(gp%m(:domain%n_p)) &
+                         + gp%weight*matmul(drift, abs(gp%dm(:, :domain%n_p)))
+            end associate
             if (.not. with_slope) cycle
             call times_b(gp, domain%n_p, n, slope, part)
             call add_transposed(gp, domain%n_p, n, part, out%k)
          end associate
       end do
-      if (n > LAST_U + domain%n_p) out%stretch(LAST_U + domain%n_p + 1:n) = out%stretch(LAST_U + 1:LAST_U + domain%n_p)
-   end subroutine compute_element
+      if (n > LAST_U + domain%n_p) &
+         out%stretch(LAST_U + domain%n_p + 1:n) = out%stretch(LAST_U + 1:LAST_U + domain%n_p)
+   end subroutine add_points
 
    !> What the nodes say about a point.
    pure subroutine look(gp, n_p, scheme, x0, x1, v, a, k)

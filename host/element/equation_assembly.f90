@@ -5,7 +5,7 @@ module equation_assembly
    use kinds, only: wp
    use degrees_of_freedom, only: dofs_t
    use element_equations, only: element_t, compute_element
-   use fe_material, only: answer_t
+   use material_point, only: report_t
    use porous_domain, only: domain_t, state_t
    use sparsity_pattern, only: pattern_t
    use generalised_alpha, only: scheme_t
@@ -24,7 +24,7 @@ module equation_assembly
       logical, allocatable :: air(:)                 !< Nodes whose air pressure is prescribed.
       ! Outcome.
       integer :: bad_element = 0, bad_point = 0
-      type(answer_t) :: bad
+      type(report_t) :: bad
       integer :: rate_evaluations = 0
       real(wp) :: material = 0.0_wp                  !< Share of the material in the time of the last pass.
    end type assembly_t

@@ -4,14 +4,13 @@
 !> Signs: tension positive stress and strain, pressures positive in compression, outflow positive.
 module porous_balance
    use kinds, only: wp
-   use fe_material, only: answer_t
    use porous_domain, only: domain_t, region_t
    use permeability_laws, only: relative_t, relative_permeability
-   use retention_curves, only: saturation_t
+   use material_point, only: saturation_t
    use generalised_alpha, only: scheme_t, rate_of, STATIC
    implicit none (type, external)
    private
-   public :: kinematics_t, pore_t, point_response, PLACES
+   public :: kinematics_t, pore_t, skeleton_t, point_response, PLACES
 
    integer, parameter :: PLACES = 12
    integer, parameter :: U = 4, PW = 7, PC = 8, GW = 8, GA = 10   !< Places, or places before the first.
@@ -32,53 +31,62 @@ module porous_balance
    type :: pore_t
       real(wp) :: e, s, s_rate
    end type pore_t
+
+   !> What the material says about the end of the step; slopes where they are asked for.
+   type :: skeleton_t
+      real(wp) :: stress(4)              !< Effective stress [kPa]
+      real(wp) :: e, s                   !< Void ratio, degree of saturation [-]
+      real(wp) :: slope(4, 4)            !< d stress/d strain [kPa]
+      real(wp) :: slope_suction(4)       !< d stress/d suction [-]
+      real(wp) :: ds_dev, ds_dpc         !< d S_w/d volume strain [-], d S_w/d suction [1/kPa]
+   end type skeleton_t
 contains
-   subroutine point_response(domain, region, scheme, k, stress0, answer, old, new, with_slope, response, slope, &
+   subroutine point_response(domain, region, scheme, k, stress0, skeleton, old, new, with_slope, response, slope, &
                              drift)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
       type(scheme_t), intent(in) :: scheme
       type(kinematics_t), intent(in) :: k
       real(wp), intent(in) :: stress0(6)     !< Effective stress before the step.
-      type(answer_t), intent(in) :: answer   !< The material's answer.
+      type(skeleton_t), intent(in) :: skeleton
       type(pore_t), intent(in) :: old
       type(pore_t), intent(out) :: new
       logical, intent(in) :: with_slope
       real(wp), intent(out) :: response(PLACES), slope(PLACES, PLACES)
       real(wp), intent(out) :: drift(2)      !< What the fluxes are made of, by magnitude [m/s].
-      type(saturation_t) :: sat, before, after
+      type(saturation_t) :: before, after
       real(wp) :: n1, n, s, s_dot, s_ev, s_pc, rate_ev, rate_pc, p_c, p_w, pressure, l
-      real(wp) :: rho, rho_n, rho_s, rho_a, d_rho_a, k_a, d_k_a, pull(2)
+      real(wp) :: rho, rho_n, rho_s, rho_a, d_rho_a, k_a, d_k_a, accel(2)
 
       l = scheme%l_f
-      new%e = (1 + old%e)*exp(sum(k%strain(1:3))) - 1
+      new%e = skeleton%e
       n1 = new%e/(1 + new%e)
       n = old%e/(1 + old%e)
       n = n + l*(n1 - n)
 
-      ! How much of the pores is water; its slopes against volume strain and suction.
+      ! How much of the pores is water: saturated where the scene has no suction.
+      new%s = 1.0_wp
+      new%s_rate = 0.0_wp
+      s_ev = 0.0_wp
+      s_pc = 0.0_wp
       rate_ev = 0.0_wp
       rate_pc = 0.0_wp
-      new%s_rate = 0.0_wp
       if (domain%with_c) then
-         associate (curve => domain%retentions(region%retention)%law)
-            sat = curve%at(k%c1, new%e)
-            if (domain%full_rate) then
-               new%s_rate = rate_of(scheme, old%s, old%s_rate, sat%s)
-               rate_pc = sat%ds_dpc
-               rate_ev = sat%ds_de*(1 + new%e)
-            else
-               before = curve%at(k%c0, old%e)
-               after = curve%at(k%c1, old%e)
-               new%s_rate = rate_of(scheme, before%s, old%s_rate, after%s)
-               rate_pc = after%ds_dpc
-            end if
-         end associate
+         new%s = skeleton%s
+         s_ev = l*skeleton%ds_dev
+         s_pc = l*skeleton%ds_dpc
+         if (domain%full_rate) then
+            new%s_rate = rate_of(scheme, old%s, old%s_rate, new%s)
+            rate_pc = skeleton%ds_dpc
+            rate_ev = skeleton%ds_dev
+         else
+            before = region%law%retention(k%c0, old%e)
+            after = region%law%retention(k%c1, old%e)
+            new%s_rate = rate_of(scheme, before%s, old%s_rate, after%s)
+            rate_pc = after%ds_dpc
+         end if
       end if
-      s_pc = l*sat%ds_dpc
-      s_ev = l*sat%ds_de*(1 + new%e)
-      new%s = sat%s
-      s = old%s + l*(sat%s - old%s)
+      s = old%s + l*(new%s - old%s)
       s_dot = old%s_rate + scheme%l_p*(new%s_rate - old%s_rate)
 
       ! Momentum of the mixture.
@@ -94,25 +102,25 @@ contains
          if (domain%with_c) rho_s = n*(domain%fluids%rho_w - rho_a)
       end if
       rho = region%rho_s + n*rho_n
-      pull = k%accel + region%damping*k%speed
-      pull(2) = pull(2) + domain%gravity
+      accel = k%accel + region%damping*k%speed
+      accel(2) = accel(2) + domain%gravity
       response = 0.0_wp
       drift = 0.0_wp
-      response(1:4) = stress0(1:4) + l*(answer%stress(1:4) - stress0(1:4))
+      response(1:4) = stress0(1:4) + l*(skeleton%stress - stress0(1:4))
       response(1:3) = response(1:3) - pressure
-      response(U + 1:U + 2) = rho*pull - k%source(1:2)
+      response(U + 1:U + 2) = rho*accel - k%source(1:2)
       if (with_slope) then
          slope = 0.0_wp
-         slope(1:4, 1:4) = l*answer%slope
+         slope(1:4, 1:4) = l*skeleton%slope
          slope(1:3, 1:3) = slope(1:3, 1:3) + p_c*s_ev
-         slope(1:4, PC) = l*answer%slope_suction
+         slope(1:4, PC) = l*skeleton%slope_suction
          slope(1:3, PC) = slope(1:3, PC) - (1 - s)*l + p_c*s_pc
          slope(1:3, PW) = -l
          slope(U + 1, U + 1) = rho*(scheme%c_a + region%damping*scheme%c_v)
          slope(U + 2, U + 2) = slope(U + 1, U + 1)
-         slope(U + 1:U + 2, 1:3) = spread(pull*(rho_n*l*(1 - n1) + rho_s*s_ev), 2, 3)
-         slope(U + 1:U + 2, PC) = pull*(rho_s*s_pc + n*(1 - s)*d_rho_a*l)
-         slope(U + 1:U + 2, PW) = pull*n*(1 - s)*d_rho_a*l
+         slope(U + 1:U + 2, 1:3) = spread(accel*(rho_n*l*(1 - n1) + rho_s*s_ev), 2, 3)
+         slope(U + 1:U + 2, PC) = accel*(rho_s*s_pc + n*(1 - s)*d_rho_a*l)
+         slope(U + 1:U + 2, PW) = accel*n*(1 - s)*d_rho_a*l
       end if
       if (.not. domain%with_w .or. scheme%kind == STATIC) return
       call add_water()

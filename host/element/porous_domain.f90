@@ -4,8 +4,7 @@ module porous_domain
    use unknown_fields, only: FIELDS
    use kinds, only: wp, PI
    use shape_functions, only: quadratic, linear, triangle_rule
-   use fe_material, only: slot_t
-   use retention_curves, only: retention_slot_t
+   use material_point, only: material_t
    use permeability_laws, only: permeability_t
    use triangle_mesh, only: mesh_t
    use faults, only: fault_t, raise
@@ -23,9 +22,10 @@ module porous_domain
       real(wp) :: p_ref = 101.325_wp    !< Absolute pressure where p_a = 0 [kPa].
    end type fluids_t
 
-   !> What a region is made of: places in the lists of laws, and numbers.
+   !> What a region is made of.
    type :: region_t
-      integer :: material = 0, retention = 0, permeability = 0
+      class(material_t), allocatable :: law   !< Skeleton and retention: stress, void ratio, degree of saturation.
+      integer :: permeability = 0       !< Place in the list, 0: none.
       real(wp) :: rho_s = 0.0_wp        !< Density of the grains [Mg/m3]
       real(wp) :: void_ratio = 0.0_wp   !< Initially [-].
       real(wp) :: damping = 0.0_wp      !< Force against the velocity over mass, in dynamic stages [1/s].
@@ -60,8 +60,6 @@ module porous_domain
       logical :: seepage_inertia = .false.
       logical :: full_rate = .true.                   !< dS_w/de takes part in the rate of saturation.
       type(fluids_t) :: fluids
-      type(slot_t), allocatable :: materials(:)
-      type(retention_slot_t), allocatable :: retentions(:)
       type(permeability_t), allocatable :: permeabilities(:)
       type(region_t), allocatable :: regions(:)
       integer, allocatable :: region_of(:)            !< Of every element.
@@ -136,7 +134,7 @@ contains
       end do
       domain%n_state = 0
       do i = 1, size(domain%regions)
-         domain%n_state = max(domain%n_state, domain%materials(domain%regions(i)%material)%law%n_state)
+         domain%n_state = max(domain%n_state, domain%regions(i)%law%n_state)
       end do
    end subroutine prepare_domain
 

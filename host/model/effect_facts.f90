@@ -6,7 +6,7 @@ module effect_facts
    use effect_types, only: effect_t, UNBOUNDED
    use model_types, only: model_t
    use unknown_fields, only: AT_P_C
-   use fe_material, only: answer_t
+   use material_point, only: response_t
    implicit none (type, external)
    private
    public :: facts_t, gather, judge, PLASTIC, ROUNDING
@@ -38,8 +38,8 @@ contains
       type(model_t), intent(in) :: model
       type(linearised_body_t), intent(in) :: body
       type(facts_t), intent(inout) :: facts
-      type(answer_t) :: answer
-      real(wp) :: n, p_c, still(6), new(model%domain%n_state)
+      type(response_t) :: answer
+      real(wp) :: n, p_c, slope(3), still(6, 1), new(model%domain%n_state, 1)
       integer :: e, g, i, p
 
       facts%tolerance = model%effect_options%tolerance
@@ -50,18 +50,18 @@ contains
          facts%low = [(minval(m%mesh%x(i, reshape(m%mesh%t6, [size(m%mesh%t6)]))), i=1, 2)]
          facts%high = [(maxval(m%mesh%x(i, reshape(m%mesh%t6, [size(m%mesh%t6)]))), i=1, 2)]
          do e = 1, size(m%mesh%t6, 2)
-            associate (region => m%regions(m%region_of(e)), law => m%materials(m%regions(m%region_of(e))%material)%law)
+            associate (region => m%regions(m%region_of(e)), law => m%regions(m%region_of(e))%law)
                do g = 1, m%rule
                   p = (e - 1)*m%rule + g
                   n = s%e(p)/(1 + s%e(p))
                   facts%rho = max(facts%rho, (1 - n)*region%rho_s + merge(n*m%fluids%rho_w, 0.0_wp, m%with_w))
                   p_c = dot_product(m%gauss(g, e)%m(:m%n_p), s%x(AT_P_C, m%mesh%t6(:m%n_p, e)))
-                  call law%update(s%stress(:, p), s%state(:law%n_state, p), still, p_c, 0.0_wp, .true., answer, &
-                                  new(:law%n_state))
-                  if (answer%code /= 0) answer%slope = 0.0_wp
-                  facts%m_min = min(facts%m_min, minval([(answer%slope(i, i), i=1, 3)]))
-                  facts%m_max = max(facts%m_max, maxval([(answer%slope(i, i), i=1, 3)]))
-                  if (law%stored) cycle
+                  call law%update(1, s%stress(:, p:p), s%state(:, p:p), still, [p_c], [0.0_wp], .true., answer, new)
+                  slope = [(answer%dsig_deps(i, i, 1), i=1, 3)]
+                  if (answer%report%code /= 0) slope = 0.0_wp
+                  facts%m_min = min(facts%m_min, minval(slope))
+                  facts%m_max = max(facts%m_max, maxval(slope))
+                  if (law%has_energy) cycle
                   facts%plastic = .true.
                   facts%p_min = min(facts%p_min, max(0.0_wp, -sum(s%stress(1:3, p))/3))
                end do

@@ -4,7 +4,7 @@ module initial_conditions
    use kinds, only: wp
    use model_types, only: model_t, initial_t
    use porous_domain, only: state_t, new_state_of
-   use retention_curves, only: saturation_t
+   use material_point, only: saturation_t
    use faults, only: fault_t, raise
    use texts, only: short, whole
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C
@@ -55,15 +55,19 @@ contains
                associate (gp => model%domain%gauss(g, e), n_p => model%domain%n_p)
                   p_c = dot_product(gp%m(:n_p), state%x(AT_P_C, model%domain%mesh%t6(:n_p, e)))
                   if (model%domain%with_c) then
-                     sat = model%domain%retentions(region%retention)%law%at(p_c, state%e(p))
+                     sat = region%law%retention(p_c, state%e(p))
                      state%s(p) = sat%s
                   end if
                   call set_stress(model, e, of_point(p), gp%x(2), state%s(p), state%stress(:, p))
                end associate
-               associate (law => model%domain%materials(region%material)%law)
-                  call law%start(state%stress(:, p), p_c, state%e(p), state%state(:law%n_state, p), text)
+               associate (own => state%state(:region%law%n_state, p))
+                  call region%law%initial_state(state%stress(:, p), p_c, state%e(p), own, text)
+                  if (text == '') then
+                     state%e(p) = region%law%void_ratio(own)
+                     if (model%domain%with_c) state%s(p) = region%law%saturation(own)
+                     cycle
+                  end if
                end associate
-               if (text == '') cycle
                call raise(fault, EXIT_MATERIAL, 'Element '//whole(e)//', point '//whole(g)//' at z = '// &
                           short(model%domain%gauss(g, e)%x(2))//' m: '//trim(text))
                return
@@ -124,7 +128,7 @@ contains
          do i = 1, SLICES
             at = z + (i - 0.5_wp)*step
             weight = weight + (1 - n)*region%rho_s
-            if (m%with_c) sat = m%retentions(region%retention)%law%at(suction(initial, at), region%void_ratio)
+            if (m%with_c) sat = region%law%retention(suction(initial, at), region%void_ratio)
             rho_a = m%fluids%rho_a
             p_a = water(initial, at) + suction(initial, at)
             if (m%fluids%ideal_gas) rho_a = rho_a*(1 + p_a/m%fluids%p_ref)

@@ -9,7 +9,8 @@ module pore_effects
    use scene_types, only: acts_in, LOAD_WATER, LOAD_AIR
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
    use permeability_laws, only: relative_permeability, relative_t
-   use retention_curves, only: saturated_t, saturation_t
+   use material_point, only: material_t, saturation_t
+   use retention_curves, only: saturated_t
    use generalised_alpha, only: DYNAMIC
    use texts, only: short
    implicit none (type, external)
@@ -41,11 +42,7 @@ contains
       ! What would be lost with p_c even in saturated soil: air that flows in, and p_w as a difference of two others.
       full = .not. (facts%plastic .or. any(model%loads%kind == LOAD_AIR) .or. prescribe_water())
       do i = 1, size(model%domain%regions)
-         select type (law => model%domain%retentions(model%domain%regions(i)%retention)%law)
-         type is (saturated_t)
-         class default
-            full = .false.
-         end select
+         full = full .and. is_saturated(model%domain%regions(i)%law)
       end do
       if (full) then
          call judge(effect, 0.0_wp, 'saturated by its law, and no stiffness depends on suction', .true.)
@@ -87,6 +84,18 @@ contains
          end associate
       end subroutine look_for_bound
    end subroutine judge_suction
+
+   !> Whether a region is saturated by definition. A law with a retention of its own is not.
+   pure logical function is_saturated(law)
+      class(material_t), intent(in) :: law
+
+      is_saturated = .false.
+      if (.not. allocated(law%curve)) return
+      select type (curve => law%curve)
+      type is (saturated_t)
+         is_saturated = .true.
+      end select
+   end function is_saturated
 
    !> p_a at its highest less p_w at its lowest. Flow alone leaves the potential of the water within its initial and
    !> prescribed values; loads may lower p_w by OVERSHOOT times their changes.
@@ -141,7 +150,7 @@ contains
             n = m%regions(i)%void_ratio/(1 + m%regions(i)%void_ratio)
             do k = 0, STEPS
                p_c = FINEST*RATIO**k
-               sat = m%retentions(m%regions(i)%retention)%law%at(p_c, m%regions(i)%void_ratio)
+               sat = m%regions(i)%law%retention(p_c, m%regions(i)%void_ratio)
                if (n*abs(sat%ds_dpc) + n*(1 - sat%s)/k_a > facts%tolerance*(1/max(facts%m_max, ROUNDING) &
                                                                             + n/m%fluids%k_w)) exit
             end do

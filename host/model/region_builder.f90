@@ -1,83 +1,121 @@
-!> Regions of a scene: which material, retention curve and relative permeability every element has.
+!> Regions of a scene: which material, with which retention curve, and which relative permeability every element has.
 module region_builder
    use kinds, only: wp
-   use faults, only: fault_t, raise, EXIT_INPUT
+   use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use exit_codes, only: EXIT_GROUP
-   use fe_mud, only: mud_t
-   use law_builder, only: build_material, build_retention, build_permeability, retention_of_mud
+   use key_schema, only: line_of
+   use material_mud, only: mud_t
+   use material_point, only: material_t, material_slot_t
+   use material_registry, only: new_material
    use name_search, only: mesh_group, defined_name
-   use porous_domain, only: domain_t, region_t
-   use scene_types, only: scene_t, place_of, scene_region_t
+   use namelists, only: LENGTH
+   use permeability_builder, only: new_permeability
+   use porous_domain, only: domain_t
+   use retention_groups, only: new_retention
+   use scene_types, only: scene_t, scene_region_t, place_of
    use texts, only: whole
    implicit none (type, external)
    private
    public :: build_regions
+
+   character(*), parameter :: OF_THE_MATERIAL = 'mud'   !< Name of no curve: the material has its own.
 contains
    subroutine build_regions(scene, domain, fault)
       type(scene_t), intent(in) :: scene
       type(domain_t), intent(inout) :: domain
       type(fault_t), intent(inout) :: fault
-      integer :: curves, i
+      type(material_slot_t) :: materials(size(scene%materials))
+      character(LENGTH) :: title
+      integer :: i
 
-      curves = size(scene%retentions)
-      ! Room for the curve of a material in every region: lists of different laws cannot grow.
-      allocate (domain%materials(size(scene%materials)), domain%retentions(curves + size(scene%regions)), &
-                domain%permeabilities(size(scene%permeabilities)), domain%regions(size(scene%regions)))
       do i = 1, size(scene%materials)
-         if (fault%code == 0) call build_material(scene%materials(i), domain%materials(i), fault)
+         associate (given => scene%materials(i))
+            materials(i)%name = given%name
+            call new_material(trim(given%group%name), given%group, materials(i)%law, title, fault)
+            if (fault%code == 0) call check_tangent(materials(i), at_line(given%group%file, &
+                                                                          line_of(given%group, 'tangent')), fault)
+         end associate
+         if (fault%code /= 0) return
       end do
-      do i = 1, curves
-         if (fault%code == 0) call build_retention(scene%retentions(i), domain%retentions(i), fault)
-      end do
+      allocate (domain%permeabilities(size(scene%permeabilities)), domain%regions(size(scene%regions)))
       do i = 1, size(scene%permeabilities)
-         if (fault%code == 0) call build_permeability(scene%permeabilities(i), domain%permeabilities(i), fault)
+         call new_permeability(scene%permeabilities(i), domain%permeabilities(i), fault)
+         if (fault%code /= 0) return
       end do
       allocate (domain%region_of(size(domain%mesh%t6, 2)), source=0)
       do i = 1, size(scene%regions)
-         if (fault%code == 0) call build_region(scene%regions(i), i, curves + i, domain, fault)
+         call build_region(scene, scene%regions(i), i, materials, domain, fault)
+         if (fault%code /= 0) return
       end do
-      if (fault%code /= 0 .or. all(domain%region_of > 0)) return
-      call raise(fault, EXIT_GROUP, trim(scene%file)//': element '//whole(findloc(domain%region_of, 0, dim=1))// &
-                 ' belongs to no &region; add one with its group, or with group = ''all''.')
+      if (any(domain%region_of == 0)) call raise(fault, EXIT_GROUP, trim(scene%file)//': element '// &
+         whole(findloc(domain%region_of, 0, dim=1))//' belongs to no &region; add one with its group, or with '// &
+         'group = ''all''.')
    end subroutine build_regions
 
-   subroutine build_region(given, number, own_curve, domain, fault)
+   !> Newton's method needs slopes.
+   subroutine check_tangent(material, place, fault)
+      type(material_slot_t), intent(in) :: material
+      character(*), intent(in) :: place
+      type(fault_t), intent(inout) :: fault
+
+      select type (law => material%law)
+      type is (mud_t)
+         if (law%given_tangent == 0) call raise(fault, EXIT_INPUT, place// &
+            'tangent = 0 gives no slopes; Newton needs 1, 2 or 3 (3: consistent).')
+      end select
+   end subroutine check_tangent
+
+   subroutine build_region(scene, given, number, materials, domain, fault)
+      type(scene_t), intent(in) :: scene
       type(scene_region_t), intent(in) :: given
       integer, intent(in) :: number      !< Of the region.
-      integer, intent(in) :: own_curve   !< Place for the retention curve of its material.
+      type(material_slot_t), intent(in) :: materials(:)
       type(domain_t), intent(inout) :: domain
       type(fault_t), intent(inout) :: fault
-      type(region_t) :: region
-      integer :: group
+      integer :: group, k
 
       group = mesh_group(domain%mesh, given%group_name, place_of(given), fault)
-      if (fault%code == 0) region%material = defined_name('material', given%material_name, domain%materials%name, &
-                                                          place_of(given), fault)
+      if (fault%code == 0) k = defined_name('material', given%material_name, materials%name, place_of(given), fault)
       if (fault%code /= 0) return
-      region%rho_s = given%rho_s
-      region%damping = given%damping
-      region%void_ratio = given%void_ratio
-      if (given%void_ratio < 0.0_wp) region%void_ratio = domain%materials(region%material)%law%initial_void_ratio()
-      if (domain%with_w .and. .not. region%void_ratio > 0.0_wp) call raise(fault, EXIT_INPUT, place_of(given)// &
-         'the region needs a void_ratio: its pores hold the fluids.')
-      if (domain%with_w .and. fault%code == 0) region%permeability = defined_name('permeability', &
-         given%permeability_name, domain%permeabilities%name, place_of(given), fault)
-      if (domain%with_c .and. fault%code == 0) then
-         if (given%retention_name == 'mud') then
-            region%retention = own_curve
-            select type (law => domain%materials(region%material)%law)
-            type is (mud_t)
-               call retention_of_mud(law, domain%retentions(own_curve))
-            class default
-               call raise(fault, EXIT_INPUT, place_of(given)//'retention = ''mud'' needs a &mud material.')
-            end select
-         else
-            region%retention = defined_name('retention', given%retention_name, &
-                                            domain%retentions(:own_curve - number)%name, place_of(given), fault)
-         end if
-      end if
-      if (fault%code /= 0) return
-      domain%regions(number) = region
+      associate (region => domain%regions(number))
+         allocate (region%law, source=materials(k)%law)
+         region%rho_s = given%rho_s
+         region%damping = given%damping
+         region%void_ratio = given%void_ratio
+         if (given%void_ratio < 0.0_wp) region%void_ratio = region%law%default_void_ratio()
+         if (domain%with_w .and. .not. region%void_ratio > 0.0_wp) call raise(fault, EXIT_INPUT, place_of(given)// &
+            'the region needs a void_ratio: its pores hold the fluids.')
+         if (domain%with_w .and. fault%code == 0) region%permeability = defined_name('permeability', &
+            given%permeability_name, domain%permeabilities%name, place_of(given), fault)
+      end associate
       domain%region_of(domain%mesh%groups(group)%elements) = number
+      if (domain%with_c .and. fault%code == 0) call give_retention(scene, given, domain%regions(number)%law, fault)
    end subroutine build_region
+
+   !> A law has a retention of its own, or the curve that the region names: never two.
+   subroutine give_retention(scene, given, law, fault)
+      type(scene_t), intent(in) :: scene
+      type(scene_region_t), intent(in) :: given
+      class(material_t), intent(inout) :: law
+      type(fault_t), intent(inout) :: fault
+      logical :: own
+      integer :: k
+
+      select type (law)
+      type is (mud_t)
+         own = .true.
+      class default
+         own = .false.
+      end select
+      if (own .and. given%retention_name /= OF_THE_MATERIAL) then
+         call raise(fault, EXIT_INPUT, place_of(given)//'material '''//trim(given%material_name)//''' has a '// &
+                    'retention of its own: say retention = ''mud'', and give P_a, Omega, n_x, m_x, S_max and S_min '// &
+                    'as its parameters.')
+      else if (.not. own .and. given%retention_name == OF_THE_MATERIAL) then
+         call raise(fault, EXIT_INPUT, place_of(given)//'retention = ''mud'' needs a &mud material.')
+      else if (.not. own) then
+         k = defined_name('retention', given%retention_name, scene%retentions%name, place_of(given), fault)
+         if (fault%code == 0) call new_retention(scene%retentions(k)%group, law%curve, fault)
+      end if
+   end subroutine give_retention
 end module region_builder

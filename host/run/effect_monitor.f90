@@ -127,7 +127,7 @@ contains
 
          associate (m => model%domain)
             do e = 1, size(m%mesh%t6, 2)
-               if (m%materials(m%regions(m%region_of(e))%material)%law%stored) cycle
+               if (m%regions(m%region_of(e))%law%has_energy) cycle
                associate (stress => new%stress(1:3, (e - 1)*m%rule + 1:e*m%rule))
                   monitor%memory(LEAST_P) = min(monitor%memory(LEAST_P), max(0.0_wp, minval(-sum(stress, dim=1)/3)))
                end associate

@@ -5,7 +5,7 @@ module step_failure
    use texts, only: short, whole
    use contact_types, only: contact_message
    use exit_codes, only: EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
-   use fe_material, only: TOO_LARGE
+   use element_equations, only: STRAIN_TOO_LARGE
    use model_types, only: model_t, stage_t
    use newton_step, only: log_t, BY_RESIDUAL, BY_CORRECTION, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
    use run_state, only: run_t
@@ -30,10 +30,10 @@ contains
          select case (log%outcome)
          case (MATERIAL_FAILED)
             e = run%assembly%bad_element
-            if (run%assembly%bad%code == TOO_LARGE) then
+            if (run%assembly%bad%code == STRAIN_TOO_LARGE) then
                text = 'a strain of the step is beyond 1; the iteration did not converge or the step is far too long.'
             else
-               call m%materials(m%regions(m%region_of(e))%material)%law%explain(run%assembly%bad, text)
+               call m%regions(m%region_of(e))%law%message(run%assembly%bad, text)
             end if
             call raise(fault, EXIT_MATERIAL, place//'the material of element '//whole(e)//', point '// &
                        whole(run%assembly%bad_point)//', refuses: '//trim(text))

@@ -6,7 +6,10 @@ module scene_keys
    use key_schema, only: key_t, REQUIRED, NONE, UNBOUNDED, check_group, given, texts_of, numbers_of, &
                          line_of, words_of, place_of, &
                          schema_number_of => number_of, schema_text_of => text_of, schema_word_is => word_is
+   use material_registry, only: is_law, law_names, law_keys
    use namelists, only: group_t, MAX_VALUES
+   use retention_groups, only: RETENTION_KEYS
+   use spelling, only: nearest_name
    use texts, only: lower_case
    implicit none (type, external)
    private
@@ -14,7 +17,8 @@ module scene_keys
 
    real(wp), parameter :: BIG = UNBOUNDED, TINY_ = 1.0e-30_wp
 
-   type(key_t), parameter :: KEYS(*) = [ &
+   !> Keys of a scene's own groups. Laws of materials and retention curves list theirs themselves.
+   type(key_t), parameter :: OWN_KEYS(*) = [ &
       key_t('scene', 'name', 't', REQUIRED, 0, 0, 'name of the scene'), &
       key_t('scene', 'geometry', 'w', 'axisymmetric', 0, 0, &
             'axisymmetric in r, z or plane strain in x, y', 'axisymmetric|plane_strain'), &
@@ -49,24 +53,7 @@ module scene_keys
       key_t('fluids', 'rho_a', 'n', '1.2e-3', 0, 1000, 'density of air (ideal: at p_ref) [Mg/m3]'), &
       key_t('fluids', 'eta_a', 'n', '1.8e-8', TINY_, BIG, 'viscosity of air [kPa s]'), &
       key_t('fluids', 'p_ref', 'n', '101.325', TINY_, BIG, 'absolute pressure where p_a = 0 [kPa]'), &
-      key_t('mud', 'name', 't', REQUIRED, 0, 0, 'name that regions call the material by'), &
-      key_t('mud', 'material_call', 'w', 'mud_update', 0, 0, 'door to the library', 'mud_update|umat'), &
-      key_t('mud', 'file', 't', NONE, 0, 0, 'material file; every parameter of the library is a key too'), &
-      key_t('elastic', 'name', 't', REQUIRED, 0, 0, 'name that regions call the material by'), &
-      key_t('elastic', 'young', 'n', REQUIRED, TINY_, BIG, 'Young''s modulus [kPa]'), &
-      key_t('elastic', 'poisson', 'n', REQUIRED, -0.99_wp, 0.4999_wp, 'Poisson''s ratio [-]'), &
       key_t('retention', 'name', 't', REQUIRED, 0, 0, 'name that regions call it by'), &
-      key_t('retention', 'law', 'w', 'bilogarithmic', 0, 0, 'see README', 'bilogarithmic|power|table|saturated'), &
-      key_t('retention', 'p_a', 'n', '5.0', TINY_, BIG, 'air entry of the bilogarithmic law [kPa]'), &
-      key_t('retention', 'n', 'n', '2.0', 0.01_wp, 100, 'exponent n of the bilogarithmic law [-]'), &
-      key_t('retention', 'm', 'n', '1.0', 0.001_wp, 100, 'exponent m of the bilogarithmic law [-]'), &
-      key_t('retention', 'omega', 'n', '2.0', 0, 100, 'exponent of the void ratio in the bilogarithmic law [-]'), &
-      key_t('retention', 's_max', 'n', '1.0', 0, 1, 'largest degree of saturation [-]'), &
-      key_t('retention', 's_min', 'n', '0.0', 0, 1, 'least degree of saturation [-]'), &
-      key_t('retention', 'a', 'n', '0.0', 0, BIG, 'factor of the power law S = 1 - a p_c**b'), &
-      key_t('retention', 'b', 'n', '1.0', 1, 100, 'exponent b of the power law [-]'), &
-      key_t('retention', 'suction', 'N', NONE, -BIG, BIG, 'table: suctions [kPa], ascending'), &
-      key_t('retention', 'saturation', 'N', NONE, 0, 1, 'table: degrees of saturation [-]'), &
       key_t('permeability', 'name', 't', REQUIRED, 0, 0, 'name that regions call it by'), &
       key_t('permeability', 'intrinsic', 'n', REQUIRED, TINY_, 1, 'intrinsic permeability [m2]'), &
       key_t('permeability', 'law', 'w', 'corey', 0, 0, 'relative permeabilities', 'corey|mualem|power|constant'), &
@@ -80,7 +67,7 @@ module scene_keys
       key_t('permeability', 'k_ra', 'n', '1.0', 0, 1, 'constant: relative permeability to air [-]'), &
       key_t('permeability', 'floor', 'n', '1.0e-4', 0, 1, 'least relative permeability [-]'), &
       key_t('region', 'group', 't', 'all', 0, 0, 'group of elements'), &
-      key_t('region', 'material', 't', REQUIRED, 0, 0, 'name of a &mud or &elastic'), &
+      key_t('region', 'material', 't', REQUIRED, 0, 0, 'name of a material, as &mud or &elastic'), &
       key_t('region', 'retention', 't', NONE, 0, 0, 'name of a &retention, or "mud": that of the material'), &
       key_t('region', 'permeability', 't', NONE, 0, 0, 'name of a &permeability'), &
       key_t('region', 'rho_s', 'n', '2.65', 0, 1000, 'density of the grains [Mg/m3]'), &
@@ -164,18 +151,31 @@ module scene_keys
       key_t('point', 'name', 't', REQUIRED, 0, 0, 'name in histories.csv'), &
       key_t('point', 'r', 'n', REQUIRED, -BIG, BIG, 'the nearest node is taken [m]'), &
       key_t('point', 'z', 'n', REQUIRED, -BIG, BIG, 'the nearest node is taken [m]')]
+   character(*), parameter :: LAW_NAME = 'name that regions call the material by'
+   type(key_t), parameter :: KEYS(*) = [key_t :: OWN_KEYS, RETENTION_KEYS]
 contains
    !> Refuses unknown groups and keys, missing ones, and values of the wrong kind or outside their range.
    subroutine check_keys(groups, fault)
       type(group_t), intent(in) :: groups(:)
       type(fault_t), intent(inout) :: fault
+      character(12), allocatable :: names(:)
       integer :: g
 
       do g = 1, size(groups)
          call check_renamed(groups(g), fault)
          if (fault%code /= 0) return
-         ! The library knows the parameters of &mud.
-         call check_group(KEYS, groups(g), groups(g)%name == 'mud', fault)
+         if (is_law(groups(g)%name)) then
+            ! The law checks its own keys when it is built.
+            if (.not. given(groups(g), 'name')) call raise(fault, EXIT_INPUT, at_line(groups(g)%file, &
+               groups(g)%line)//'&'//trim(groups(g)%name)//' needs name ('//LAW_NAME//').')
+         else if (.not. any(KEYS%group == groups(g)%name)) then
+            names = [KEYS%group, law_names()]
+            call raise(fault, EXIT_INPUT, at_line(groups(g)%file, groups(g)%line)//'there is no group &'// &
+                       trim(groups(g)%name)//'; the nearest is &'// &
+                       trim(names(nearest_name(groups(g)%name, names)))//'.')
+         else
+            call check_group(KEYS, groups(g), .false., fault)
+         end if
          if (fault%code /= 0) return
       end do
    end subroutine check_keys
@@ -229,29 +229,40 @@ contains
    !> Every key with its default and meaning, as a scene to start from.
    subroutine print_template(unit)
       integer, intent(in) :: unit
-      character(:), allocatable :: value
-      character(:), allocatable :: meaning
+      type(key_t), allocatable :: all_keys(:)
+      character(12), allocatable :: laws(:)
       integer :: g, k
 
+      allocate (all_keys, source=KEYS)
+      laws = law_names()
+      do g = 1, size(laws)
+         all_keys = [all_keys, key_t(laws(g), 'name', 't', REQUIRED, 0, 0, LAW_NAME), law_keys(laws(g))]
+      end do
       write (unit, '(a)') '! Every group and key of a scene. Lines that begin with "!" may be left out.'
       write (unit, '(a,i0,a)') '! Groups but &scene, &mesh and &fluids may occur several times; lists hold up to ', &
          MAX_VALUES, ' values.'
-      do g = 1, size(KEYS)
-         if (any(KEYS(:g - 1)%group == KEYS(g)%group)) cycle
-         write (unit, '(2a)') '&', trim(KEYS(g)%group)
-         do k = g, size(KEYS)
-            if (KEYS(k)%group /= KEYS(g)%group) cycle
-            value = trim(KEYS(k)%preset)
-            if (value == REQUIRED) value = '?'
-            if (index('twT', KEYS(k)%kind) > 0) value = ''''//value//''''
-            meaning = trim(KEYS(k)%meaning)
-            if (KEYS(k)%words /= '') meaning = trim(KEYS(k)%words)//': '//meaning
-            write (unit, '(a,a,a)') merge('     ', '   ! ', KEYS(k)%preset == REQUIRED), &
-               padded(trim(KEYS(k)%name)//' = '//value, 34), '! '//meaning
+      do g = 1, size(all_keys)
+         if (any(all_keys(:g - 1)%group == all_keys(g)%group)) cycle
+         write (unit, '(2a)') '&', trim(all_keys(g)%group)
+         do k = g, size(all_keys)
+            if (all_keys(k)%group == all_keys(g)%group) call print_key(all_keys(k))
          end do
          write (unit, '(a)') '/'
       end do
    contains
+      subroutine print_key(key)
+         type(key_t), intent(in) :: key
+         character(:), allocatable :: value, meaning
+
+         value = trim(key%preset)
+         if (value == REQUIRED) value = '?'
+         if (index('twT', key%kind) > 0) value = ''''//value//''''
+         meaning = trim(key%meaning)
+         if (key%words /= '') meaning = trim(key%words)//': '//meaning
+         write (unit, '(a,a,a)') merge('     ', '   ! ', key%preset == REQUIRED), &
+            padded(trim(key%name)//' = '//value, 34), '! '//meaning
+      end subroutine print_key
+
       pure function padded(text, width) result(wide)
          character(*), intent(in) :: text
          integer, intent(in) :: width

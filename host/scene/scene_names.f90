@@ -2,6 +2,7 @@
 module scene_names
    use scene_types, only: NAME_LENGTH
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
+   use material_registry, only: is_law
    use namelists, only: group_t, find_entry
    use texts, only: whole
    implicit none (type, external)
@@ -9,9 +10,9 @@ module scene_names
    public :: check_names
 
    !> Groups with names; those of one list share them.
-   character(12), parameter :: NAMED(9) = [character(12) :: 'mud', 'elastic', 'retention', 'permeability', 'history', &
-      'stage', 'point', 'plate', 'contact']
-   integer, parameter :: LIST(9) = [1, 1, 2, 3, 4, 5, 6, 7, 8]
+   character(12), parameter :: NAMED(7) = [character(12) :: 'retention', 'permeability', 'history', 'stage', 'point', &
+      'plate', 'contact']
+   integer, parameter :: OF_MATERIALS = size(NAMED) + 1   !< All laws share one list.
    character(12), parameter :: WRITTEN(4) = [character(12) :: 'stage', 'point', 'plate', 'contact']
    character(*), parameter :: LETTERS = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ'
    character(*), parameter :: FIT = LETTERS//'0123456789_-.'
@@ -48,12 +49,10 @@ contains
    end subroutine check_names
 
    !> Number of the list that a group's name belongs to, 0 if it has none.
-   pure integer function list_of(group) result(number)
+   integer function list_of(group) result(number)
       type(group_t), intent(in) :: group
-      integer :: k
 
-      number = 0
-      k = findloc(NAMED, group%name, dim=1)
-      if (k > 0) number = LIST(k)
+      number = findloc(NAMED, group%name, dim=1)
+      if (is_law(group%name)) number = OF_MATERIALS
    end function list_of
 end module scene_names

@@ -2,10 +2,12 @@
 module scene_reader
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use namelists, only: group_t, read_groups
+   use material_registry, only: is_law
+   use namelists, only: group_t, read_groups, LENGTH
    use exit_codes, only: EXIT_GROUP
    use scene_fingerprint, only: fingerprint_of
    use scene_amplitudes, only: read_amplitude
+   use key_schema, only: get_text
    use scene_keys, only: check_keys, number_of, numbers_of, text_of, texts_of, word_is, word_number, given
    use scene_names, only: check_names
    use scene_types, only: scene_t, scene_item_t, scene_law_t, scene_amplitude_t, scene_region_t, scene_initial_t, &
@@ -43,8 +45,6 @@ contains
                call take_mesh(group, scene)
             case ('fluids')
                call take_fluids(group, scene)
-            case ('mud', 'elastic')
-               call take_law(group, scene%materials)
             case ('retention')
                call take_law(group, scene%retentions)
             case ('permeability')
@@ -67,6 +67,8 @@ contains
                call take_contact(group, scene)
             case ('point')
                call take_point(group, scene)
+            case default
+               if (is_law(group%name)) call take_law(group, scene%materials)
             end select
          end associate
       end do
@@ -124,8 +126,11 @@ contains
       type(group_t), intent(in) :: group
       type(scene_law_t), allocatable, intent(inout) :: laws(:)
       type(scene_law_t) :: law
+      character(LENGTH) :: name
 
-      law%name = text_of(group, 'name')
+      name = ''
+      call get_text(group, 'name', name)
+      law%name = name(:len(law%name))   ! scene_names has checked its length
       law%group = group
       laws = [laws, law]
    end subroutine take_law

@@ -14,6 +14,10 @@ environment = {**os.environ, "OMP_NUM_THREADS": "1", "MUD_BUILD_DIR": str(build)
 SCENE = (root / "verification/host/cylinder/scene.nml").read_text()
 FLOW = (root / "verification/host/terzaghi/scene.nml").read_text()
 FALL = (root / "verification/host/contact/fall.nml").read_text()
+SUCTION = (root / "verification/host/element/suction.nml").read_text().replace("../../..", str(root)) + """
+&retention name = 'curve' /
+&elastic name = 'other' young = 1e4 poisson = 0.3 /
+"""
 STAGE = "&stage name = 'load' analysis = 'static' duration = 1 dt = 1 /\n"
 # what, scene, old text, new text, exit code, words of the sentence
 MISTAKES = [
@@ -25,6 +29,10 @@ MISTAKES = [
     ("unknown word", SCENE, "'axisymmetric'", "'spherical'", 2, ("spherical", "plane_strain")),
     ("key given twice", SCENE, "poisson = 0.3", "poisson = 0.3\n   poisson = 0.2", 2, ("given twice",)),
     ("field the scene has not", SCENE, "field = 'u_z'", "field = 'p_w'", 2, ("no field p_w",)),
+    ("second retention of MUD", SUCTION, "retention = 'mud'", "retention = 'curve'", 2, ("retention of its own", "P_a")),
+    ("retention of MUD for another law", SUCTION, "material = 'sand'", "material = 'other'", 2, ("needs a &mud",)),
+    ("tangent without slopes", SUCTION, "tangent = 3", "tangent = 0", 2, ("gives no slopes",)),
+    ("key of a law", SUCTION, "tangent = 3", "tangnt = 3", 2, ("tangnt", "tangent")),
     ("group of older scenes", SCENE, "&elastic", "&rigid group = 'top' mass = 1 /\n&elastic", 2, ("&rigid is &plate now",)),
     ("key of older scenes", FALL, "penalty = 1.0e7", "reach = 1", 2, ("reach", "search_radius now")),
     ("plate without a place", FALL, "   r = 0, 0.15\n   z = 1.0e-5", "", 2, ("give one of the two",)),

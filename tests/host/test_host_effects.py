@@ -241,7 +241,8 @@ check("unsaturated: marked, and called unstable", row["on"] == "off!" and "unsta
 # MUD: a tenth of the frequency, for a stiffness of a hundredth; its dilatancy leaves suction without a bound. The
 # initial stress of 100 kPa carries the load, which then rises to 110 kPa.
 sand = dict(soil="&mud name = 'soil' tangent = 3 /", values="1, 1.1", load=100, laws=WATER + "\n" + CURVE,
-            region=UNSATURATED, more="&initial stress = 'uniform' sigma = -100, -100, -100 /\n" + shallow)
+            region=UNSATURATED.replace("'c'", "'mud'"),
+            more="&initial stress = 'uniform' sigma = -100, -100, -100 /\n" + shallow)
 said = start(column(**sand), "sand", "--check").stdout
 slowest, bound = map(float, re.search(r"free vibrations from (\S+) rad/s, bound with (\S+)", said).groups())
 check("sand: a tenth of the frequency", math.isclose(bound, slowest / 10, rel_tol=1e-5), said)
