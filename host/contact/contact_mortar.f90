@@ -6,6 +6,7 @@
 !> Local coordinates: (2, 6), slave start, end, middle, master start, end, middle; derivatives follow them in that order
 !> as 12 numbers. Everything that moves with the coordinates is in the derivatives: ends of segments, points, normals,
 !> lengths, radii.
+!> docs/theory/contact.md section 2.
 module contact_mortar
    use contact_projection, only: edge_t, edge_of, shapes, shape_slopes, place, tangent, project_point, follow_normal, &
                                  INSIDE, BEFORE, BEYOND, SAME_PLACE

@@ -1,5 +1,5 @@
 !> Frictionless mortar contact by penalty: weights, gaps and pressures of the slave nodes, energy, nodal forces and the
-!> consistent tangent of both surfaces (host/CONTACT.md has the formulas and limits).
+!> consistent tangent of both surfaces: docs/theory/contact.md sections 2 and 3; host/CONTACT.md has the limits.
 module contact_penalty
    use contact_mortar, only: overlap_t, find_overlap, pair_gaps, hats, POINTS, POSITION, SHARE
    use contact_projection, only: edge_t, edge_of, least_stretch, place, tangent

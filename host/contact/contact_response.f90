@@ -5,6 +5,7 @@
 !>   nodal gaps      q = sum_A M_A (a_A phi + b_A L), a_A = eps g_A = -p_A, b_A = -1/2 eps g_A**2, both held;
 !>   pointwise gaps  q = 1/2 eps phi**2/L where phi < 0, that is 1/2 eps g**2 |t|.
 !> In both the pressure at a point is -dq/dphi.
+!> docs/theory/contact.md section 3.
 module contact_response
    use contact_mortar, only: overlap_t, point_t, integration_point, hats, hat_slopes, POINTS, POSITION, SHARE, &
                              LARGEST_SEGMENTS

@@ -1,5 +1,6 @@
 !> Relative permeabilities to water and air as functions of the degree of saturation, with floors so that no balance
 !> equation vanishes.
+!> docs/theory/host.md section 2.6.
 module permeability_laws
    use kinds, only: wp
    implicit none (type, external)

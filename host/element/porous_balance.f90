@@ -2,6 +2,7 @@
 !> derivative. Both are arrays over the same twelve places: strain rr, zz, tt, rz | displacement | p_w | p_c |
 !> gradient of p_w | gradient of p_c, so that an element adds B^T response and B^T slope B and knows no soil.
 !> Signs: tension positive stress and strain, pressures positive in compression, outflow positive.
+!> docs/theory/host.md sections 2 and 3.3.
 module porous_balance
    use kinds, only: wp
    use porous_domain, only: domain_t, region_t

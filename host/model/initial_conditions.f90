@@ -1,4 +1,5 @@
 !> The state at the start of a scene: pressures, degree of saturation, effective stress.
+!> docs/theory/host.md section 8.
 module initial_conditions
    use exit_codes, only: EXIT_MATERIAL
    use kinds, only: wp

@@ -1,6 +1,7 @@
 !> Ledger of a run: energies, work and flow through the boundary, summed step by step.
 !> Mechanical balance: loads + supports + gravity = change of kinetic + skeleton + pores + contact + damping
 !> (+ algorithmic damping).
+!> docs/theory/host.md section 9.
 module energy_ledger
    use kinds, only: wp
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C

@@ -1,6 +1,7 @@
 !> Linear systems by factors that may belong to an earlier matrix: generalised conjugate residuals (Eisenstat, Elman,
 !> Schultz 1983; the iterates are those of GMRES) with the factors as preconditioner. With the factors of the matrix
 !> itself the first step is the direct solution, the second an iterative refinement.
+!> docs/theory/host.md section 6.
 module conjugate_residuals
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use kinds, only: wp

@@ -3,6 +3,7 @@
 !> and a floor, over the free unknowns; a rigid body counts by itself too. The floor of a volume balance is 1e-4 of the
 !> strain rates and of the parts of the fluxes in it: where nothing flows, or nothing can, the balance of every element
 !> is nothing but rounding.
+!> docs/theory/host.md section 5.
 module newton_step
    use wall_clock, only: clock, lap
    use unknown_fields, only: FIELDS

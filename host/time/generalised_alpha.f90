@@ -1,6 +1,7 @@
 !> Generalised-alpha with one spectral radius: Chung & Hulbert (1993) for accelerations, Jansen, Whiting & Hulbert
 !> (2000) for first-order rates. Residuals are formed from values, displacement rates and pressures at 1 - alpha_f,
 !> accelerations and first-order rates at their own levels.
+!> docs/theory/host.md section 4.
 module generalised_alpha
    use kinds, only: wp
    implicit none (type, external)
