@@ -119,7 +119,8 @@ contains
       end do
       law%state_names(:size(names)) = names
       law%state_names(law%n_statv + 1:) = [character(NAME_LENGTH) :: 'strain_11', 'strain_22', 'strain_33', &
-                                           'strain_12', 'strain_13', 'strain_23', 'updates', 'kept_void_ratio', 'kept_saturation']
+                                           'strain_12', 'strain_13', 'strain_23', 'updates', 'kept_void_ratio', &
+                                           'kept_saturation']
       call load(group%file, law, fault)
       if (fault%code /= 0) fault%text = at_line(group%file, line_of(group, 'library'))//fault%text
    contains
@@ -256,8 +257,8 @@ contains
       none = 0.0_wp
       pnewdt = 1.0_wp
       call self%umat(stress_, state, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, strain0, d_strain, time, &
-                     STEP, 0.0_wp, 0.0_wp, [suction], [d_suction], self%title, 3_c_int, int(c - 3, c_int), int(c, c_int), &
-                     int(self%n_statv, c_int), self%props, size(self%props, kind=c_int), none, UNIT, pnewdt, 1.0_wp, &
+                     STEP, 0.0_wp, 0.0_wp, [suction], [d_suction], self%title, 3_c_int, int(c - 3, c_int), &
+                     int(c, c_int), int(self%n_statv, c_int), self%props, size(self%props, kind=c_int), none, UNIT, pnewdt, 1.0_wp, &
                      UNIT, UNIT, 1_c_int, 1_c_int, 1_c_int, 1_c_int, kstep, kinc, int(CMNAME_LENGTH, c_size_t))
       if (pnewdt < 1.0_wp) then
          call fail(UMAT_REFUSES, max(pnewdt, SMALLEST_FACTOR), scd)
