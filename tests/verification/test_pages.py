@@ -15,9 +15,10 @@ run_section("material", "studies")
 
 # The READMEs say what the pages declare.
 RENEW = "renew it with verification/run --list --update"
-index = readme.block((verification / "README.md").read_text(encoding="utf-8"), "index")
-check("the index of verification/README.md is that of the pages",
-      (index or "").strip() == readme.index(pages, runner.SECTIONS).strip(), RENEW)
+front = (verification / "README.md").read_text(encoding="utf-8")
+for mark, content in (("kinds", readme.kinds()), ("index", readme.index(pages, runner.SECTIONS))):
+    check(f"the {mark} of verification/README.md are those of the pages",
+          (readme.block(front, mark) or "").strip() == content.strip(), RENEW)
 for name, page in pages.items():
     text = (verification / name / "README.md").read_text(encoding="utf-8")
     check(f"{name}: its README says what it declares", (readme.block(text, "page")

@@ -47,6 +47,11 @@ def measured(checks):
             + "\n".join(f"{i}. {cell(reason)}" for i, reason in enumerate(reasons, 1)) + "\n")
 
 
+def kinds():
+    """The list of kinds of verification/README.md."""
+    return "".join(f"- **{kind}**: {meaning}\n" for kind, meaning in page.KINDS.items())
+
+
 def index(pages, sections):
     """The tables of verification/README.md; pages: {name: Page}."""
     parts = []

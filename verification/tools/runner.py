@@ -147,7 +147,8 @@ def write(path, text):
 
 def update_index():
     path = HERE / "README.md"
-    write(path, readme.replaced(path.read_text(encoding="utf-8"), "index", readme.index(declared(), SECTIONS)))
+    text = readme.replaced(path.read_text(encoding="utf-8"), "kinds", readme.kinds())
+    write(path, readme.replaced(text, "index", readme.index(declared(), SECTIONS)))
 
 
 def update_texts(name, output):
