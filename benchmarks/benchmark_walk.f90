@@ -31,8 +31,8 @@ module benchmark_walk
    real(wp), parameter :: UNDRAINED(6) = [-1.0_wp, 0.5_wp, 0.5_wp, 0.0_wp, 0.0_wp, 0.0_wp]
    real(wp), parameter :: TURN_FROM(6) = [-1.0_wp, 0.4_wp, 0.5_wp, -0.6_wp, 0.4_wp, -0.3_wp]
    real(wp), parameter :: TURN_TO(6) = [0.2_wp, -0.5_wp, 0.2_wp, 1.0_wp, -0.8_wp, -0.6_wp]
-   !> Section 7's dense undrained test and its unsaturated one; the same two states sheared in six components, the
-   !> unsaturated one while it is wetted.
+   !> The dense undrained test and the unsaturated one of docs/theory/integration.md section 6.1; the same two states
+   !> sheared in six components, the unsaturated one while it is wetted.
    type(path_t), parameter :: PATHS(4) = [ &
       path_t('saturated', 100.0_wp*EQUAL, 0.735_wp, 0.0_wp, UNDRAINED, UNDRAINED, 0.0_wp), &
       path_t('unsaturated', 20.0_wp*EQUAL, 0.8_wp, 100.0_wp, UNDRAINED, UNDRAINED, 0.0_wp), &

@@ -1,6 +1,5 @@
-"""Writes reference.csv: ends of the paths of section 7 by verification/material/reference (full matrices, DOP853),
-with their own
-uncertainty: the largest change of either stress if the tolerance is ten times larger or the method is LSODA."""
+"""Writes reference.csv: ends of the paths of docs/theory/integration.md section 6.1 by verification/material/reference
+(full matrices, DOP853), with their own uncertainty: the largest change of either stress if the tolerance is ten times larger or the method is LSODA."""
 import sys
 
 import numpy as np
@@ -31,7 +30,7 @@ def end_of(p, e, suction, parts, **options):
 
 
 with open(folder(__file__) / "reference.csv", "w", encoding="utf-8") as file:
-    file.write("# ends of the paths of section 7 by make_reference.py, independent of the library; kPa, compression "
+    file.write("# ends of the paths of docs/theory/integration.md section 6.1 by make_reference.py, independent of the library; kPa, compression "
                "positive\n")
     file.write("path,sigma_a,sigma_r,uncertainty\n")
     for name, path in PATHS.items():

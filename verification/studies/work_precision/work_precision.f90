@@ -1,4 +1,4 @@
-!> Error against work of the three schemes on the paths of section 7, as CSV on the screen.
+!> Error against work of the three schemes on the paths of docs/theory/integration.md section 6.1, as CSV on the screen.
 !>
 !> work_precision REFERENCE.csv   tolerances 1e-2 .. 1e-10: error, rate evaluations, substeps, nanoseconds, status
 !> work_precision orders          fixed substeps: errors across kinks and on a smooth path
