@@ -7,7 +7,7 @@ program mud_host
    use effects_table, only: print_effects
    use model_builder, only: build_model
    use model_types, only: model_t
-   use newton_step, only: T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST
+   use linear_system, only: T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST
    use output_tables, only: check_tables
    use process_settings, only: settle_process
    use run_output, only: run_output_t

@@ -5,7 +5,7 @@ module boundary_conditions
    use degrees_of_freedom, only: dofs_t
    use generalised_alpha, only: STATIC
    use model_types, only: model_t, stage_t, factor_at, PRESCRIBED_P_A
-   use newton_step, only: constraint_t
+   use prescribed_values, only: constraint_t
    use scene_types, only: acts_in
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)

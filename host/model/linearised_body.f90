@@ -13,7 +13,7 @@ module linearised_body
    use degrees_of_freedom, only: dofs_t, number_unknowns
    use porous_domain, only: state_t, mixture_density
    use sparsity_pattern, only: pattern_t, make_pattern
-   use newton_step, only: constraint_t
+   use prescribed_values, only: constraint_t
    use sparse_factors, only: sparse_t, analyse, factorise, backsolve, times, release, SOLVED
    use generalised_alpha, only: make_scheme, STATIC
    use faults, only: fault_t

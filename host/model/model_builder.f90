@@ -11,7 +11,7 @@ module model_builder
    use generalised_alpha, only: STATIC, QUASI_STATIC, DYNAMIC
    use mesh_builder, only: build_mesh
    use model_types, only: model_t, stage_t, point_t
-   use newton_step, only: BY_FORCES, BY_RESIDUAL, BY_CORRECTION
+   use convergence, only: BY_FORCES, BY_RESIDUAL, BY_CORRECTION
    use porous_domain, only: fluids_t, prepare_domain
    use region_builder, only: build_regions
    use scene_types, only: scene_t, scene_stage_t, scene_point_t, WITH_P_W, WITH_P_C

@@ -5,7 +5,7 @@ module model_types
    use contact_types, only: contact_options_t
    use degrees_of_freedom, only: dofs_t
    use effect_types, only: effect_t, effect_options_t
-   use newton_step, only: BY_FORCES
+   use convergence, only: BY_FORCES
    use porous_domain, only: domain_t
    use unknown_fields, only: FIELDS
    use scene_types, only: scene_amplitude_t, scene_initial_t, scene_stage_t, scene_fix_t, scene_load_t, scene_plate_t, &

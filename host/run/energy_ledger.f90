@@ -8,7 +8,7 @@ module energy_ledger
    use degrees_of_freedom, only: dofs_t
    use porous_domain, only: domain_t, state_t, mixture_density
    use permeability_laws, only: relative_t, relative_permeability
-   use newton_step, only: constraint_t
+   use prescribed_values, only: constraint_t
    use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
    implicit none (type, external)
    private

@@ -3,7 +3,7 @@ module run_observer
    use kinds, only: wp
    use faults, only: fault_t
    use model_types, only: model_t
-   use newton_step, only: log_t
+   use convergence, only: log_t
    use run_state, only: run_t
    implicit none (type, external)
    private

@@ -6,7 +6,8 @@ module run_state
    use effect_monitor, only: monitor_t
    use energy_ledger, only: ledger_t
    use equation_assembly, only: assembly_t
-   use newton_step, only: constraint_t, system_t
+   use linear_system, only: system_t
+   use prescribed_values, only: constraint_t
    use porous_domain, only: state_t
    use sparsity_pattern, only: pattern_t
    implicit none (type, external)

@@ -7,7 +7,8 @@ module step_failure
    use exit_codes, only: EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
    use element_equations, only: STRAIN_TOO_LARGE
    use model_types, only: model_t, stage_t
-   use newton_step, only: log_t, BY_RESIDUAL, BY_CORRECTION, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
+   use convergence, only: log_t, BY_RESIDUAL, BY_CORRECTION
+   use newton_step, only: MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
    use run_state, only: run_t
    use unknown_fields, only: FIELD_NAMES
    implicit none (type, external)

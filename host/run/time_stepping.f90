@@ -12,8 +12,9 @@ module time_stepping
    use energy_ledger, only: book_step, kinetic_energy
    use generalised_alpha, only: scheme_t, make_scheme, step_error, DYNAMIC
    use model_types, only: model_t, stage_t
-   use newton_step, only: control_t, log_t, take_step, start_accelerations, CONVERGED, MATERIAL_FAILED, BODY_FREE, &
-                          SOLVER_FAILED, T_CONTACT
+   use convergence, only: control_t, log_t
+   use linear_system, only: T_CONTACT
+   use newton_step, only: take_step, start_accelerations, CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
    use porous_domain, only: copy_state
    use run_observer, only: run_observer_t, step_report_t
    use run_state, only: run_t, stage_state_t

@@ -1,0 +1,149 @@
+!> The error of an iteration, and whether it may end. The error of a field is |R_f| over the largest of |sum of the
+!> magnitudes of the elements' contributions|, 1e-6 of its largest value so far, and a floor, over the free unknowns; a
+!> rigid body counts by itself too. The floor of a volume balance is 1e-4 of the strain rates and of the parts of the
+!> fluxes in it: where nothing flows, or nothing can, the balance of every element is nothing but rounding.
+!> docs/theory/host.md section 5.1.
+module convergence
+   use kinds, only: wp
+   use degrees_of_freedom, only: dofs_t
+   use equation_assembly, only: assembly_t
+   use prescribed_values, only: constraint_t
+   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_Z, AT_P_C
+   implicit none (type, external)
+   private
+   public :: control_t, log_t, measure, good_enough, field_scales, body_scale, is_body
+   public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION
+
+   integer, parameter :: BY_FORCES = 1       !< The errors of the fields, see above;
+   integer, parameter :: BY_RESIDUAL = 2     !< |R|/|R_0| of all unknowns together, whatever their units,
+                                             !< or |R|/|R_1| where R_1 is larger;
+   integer, parameter :: BY_CORRECTION = 3   !< |dx|/|x| of the worst field.
+   real(wp), parameter :: HISTORY_SHARE = 1.0e-6_wp   !< Share of the largest scale so far that still counts.
+   real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Of strain rates and parts of fluxes, see above.
+   real(wp), parameter :: ABSOLUTE_FLOOR = 1.0e-12_wp   !< [kN] or [m3/s]: nothing smaller is a force.
+
+   type :: control_t
+      real(wp) :: tolerance = 1.0e-3_wp
+      integer :: max_iterations = 12
+      logical :: no_predictor = .false.              !< Predict no change.
+      integer :: measure = BY_FORCES          !< What has to fall below the tolerance.
+   end type control_t
+
+   !> What a step did.
+   type :: log_t
+      integer :: outcome = 0                  !< One of the outcomes of newton_step; 0: converged.
+      integer :: iterations = 0
+      real(wp) :: error(FIELDS) = 0.0_wp, first_error(FIELDS) = 0.0_wp
+      real(wp) :: reduction = 0.0_wp          !< |R| over the larger of |R_0| and |R_1|.
+      real(wp) :: correction = 0.0_wp         !< |dx|/|x|, the worst field.
+      integer :: worst_field = 0, worst_unknown = 0
+      integer :: rate_evaluations = 0                   !< Rate evaluations of the material.
+   end type log_t
+contains
+   !> Whether the iteration may end.
+   pure logical function good_enough(control, log)
+      type(control_t), intent(in) :: control
+      type(log_t), intent(in) :: log
+
+      select case (control%measure)
+      case (BY_RESIDUAL)
+         good_enough = log%reduction < control%tolerance
+      case (BY_CORRECTION)
+         good_enough = log%correction < control%tolerance
+      case default
+         good_enough = all(log%error < control%tolerance)
+      end select
+   end function good_enough
+
+   !> What a residual of a field is small against; rows of prescribed unknowns do not count.
+   pure function field_scales(dofs, constraint, assembly, largest) result(scales)
+      type(dofs_t), intent(in) :: dofs
+      type(constraint_t), intent(in) :: constraint
+      type(assembly_t), intent(in) :: assembly
+      real(wp), intent(in) :: largest(FIELDS)   !< That of every field so far.
+      real(wp) :: scales(FIELDS)
+      real(wp) :: s(FIELDS), floor(FIELDS)
+
+      call add_scales(dofs, constraint, assembly, s, floor)
+      scales = max(sqrt(s), HISTORY_SHARE*largest, sqrt(floor), ABSOLUTE_FLOOR)
+   end function field_scales
+
+   pure subroutine add_scales(dofs, constraint, assembly, s, floor)
+      type(dofs_t), intent(in) :: dofs
+      type(constraint_t), intent(in) :: constraint
+      type(assembly_t), intent(in) :: assembly
+      real(wp), intent(out) :: s(FIELDS), floor(FIELDS)
+      integer :: i, f
+
+      s = 0.0_wp
+      floor = 0.0_wp
+      do i = 1, dofs%n
+         f = dofs%field(i)
+         if (.not. counts(dofs, constraint, i)) cycle
+         s(f) = s(f) + assembly%scale(i)**2
+         floor(f) = floor(f) + (RATE_SHARE*assembly%floor(i))**2
+      end do
+      ! The displacements are one field: a component without forces is no measure of its own.
+      s(:DISPLACEMENTS) = sum(s(:DISPLACEMENTS))
+   end subroutine add_scales
+
+   !> A rigid body that moves is measured by the forces on it: in the sum of its field it would be lost.
+   pure logical function is_body(constraint, i)
+      type(constraint_t), intent(in) :: constraint
+      integer, intent(in) :: i
+
+      is_body = constraint%mass(i) > 0.0_wp .and. .not. constraint%fixed(i)
+   end function is_body
+
+   pure real(wp) function body_scale(assembly, largest, i)
+      type(assembly_t), intent(in) :: assembly
+      real(wp), intent(in) :: largest(FIELDS)
+      integer, intent(in) :: i
+
+      body_scale = max(assembly%scale(i), HISTORY_SHARE*largest(AT_U_Z), ABSOLUTE_FLOOR)
+   end function body_scale
+
+   pure logical function counts(dofs, constraint, i)
+      type(dofs_t), intent(in) :: dofs
+      type(constraint_t), intent(in) :: constraint
+      integer, intent(in) :: i
+
+      counts = .not. constraint%fixed(i)
+      if (counts .and. dofs%field(i) == AT_P_C) counts = .not. constraint%air(dofs%node(i))
+   end function counts
+
+   !> Errors of the fields.
+   pure subroutine measure(dofs, constraint, assembly, rhs, largest, log)
+      type(dofs_t), intent(in) :: dofs
+      type(constraint_t), intent(in) :: constraint
+      type(assembly_t), intent(in) :: assembly
+      real(wp), intent(in) :: rhs(:)
+      real(wp), intent(inout) :: largest(FIELDS)
+      type(log_t), intent(inout) :: log
+      real(wp) :: r(FIELDS), s(FIELDS), floor(FIELDS), worst
+      integer :: i
+
+      r = 0.0_wp
+      do i = 1, dofs%n
+         if (counts(dofs, constraint, i)) r(dofs%field(i)) = r(dofs%field(i)) + rhs(i)**2
+      end do
+      r(:DISPLACEMENTS) = sum(r(:DISPLACEMENTS))
+      call add_scales(dofs, constraint, assembly, s, floor)
+      largest = max(largest, sqrt(s))
+      log%error = sqrt(r)/field_scales(dofs, constraint, assembly, largest)
+      do i = 1, dofs%n
+         if (is_body(constraint, i)) &
+            log%error(AT_U_Z) = max(log%error(AT_U_Z), abs(rhs(i))/body_scale(assembly, largest, i))
+      end do
+      log%worst_field = maxloc(log%error, 1)
+      log%worst_unknown = 0
+      worst = -1.0_wp
+      do i = 1, dofs%n
+         if (dofs%field(i) /= log%worst_field .or. constraint%fixed(i)) cycle
+         if (abs(rhs(i)) > worst) then
+            worst = abs(rhs(i))
+            log%worst_unknown = i
+         end if
+      end do
+   end subroutine measure
+end module convergence

@@ -1,0 +1,112 @@
+!> The linear system of an iteration: contacts in its pattern, factors that are kept while they serve, and where the
+!> time goes. docs/theory/host.md section 6.
+module linear_system
+   use kinds, only: wp
+   use wall_clock, only: clock, lap
+   use conjugate_residuals, only: solve_by_factors, INACCURATE
+   use contact_interfaces, only: contacts_t, evaluate_contacts, fit_pattern
+   use convergence, only: field_scales, body_scale, is_body
+   use degrees_of_freedom, only: dofs_t
+   use equation_assembly, only: assembly_t
+   use prescribed_values, only: constraint_t
+   use sparse_factors, only: sparse_t, analyse, factorise, SOLVED
+   use sparsity_pattern, only: pattern_t
+   use unknown_fields, only: FIELDS
+   implicit none (type, external)
+   private
+   public :: system_t, solve_step, look_at_contacts, MOST_STEPS
+   public :: T_ASSEMBLY, T_FACTORISATION, T_SOLUTION, T_REST, T_MATERIAL, T_CONTACT
+
+   integer, parameter :: TIMERS = 6, T_ASSEMBLY = 1, T_FACTORISATION = 2, T_SOLUTION = 3, T_REST = 4, T_MATERIAL = 5, &
+                         T_CONTACT = 6
+   real(wp), parameter :: LINEAR_SHARE = 1.0e-5_wp    !< Share of Newton's tolerance left to the linear solution.
+   integer, parameter :: MOST_STEPS = 6               !< Of the linear solution with factors of an earlier matrix;
+   integer, parameter :: WORN_STEPS = 5               !< after so many the next matrix is factorised again.
+
+   type :: system_t
+      type(sparse_t) :: sparse
+      type(contacts_t) :: contacts
+      logical :: analysed = .false.
+      logical :: reuse = .true.               !< Factors may serve later matrices.
+      logical :: factored = .false.           !< There are factors worth trying.
+      logical, allocatable :: fixed(:), air(:)   !< What was fixed when they were made,
+      integer :: active = 0                   !< and how many nodes were in contact.
+      logical :: reassemble_tangent = .false.    !< In every iteration: the last step needed several.
+      real(wp) :: largest(FIELDS) = 0.0_wp    !< Largest scale of every field so far.
+      real(wp), allocatable :: reaction(:)    !< Residual with the constrained rows kept.
+      real(wp) :: seconds(TIMERS) = 0.0_wp    !< Wall time, by T_...
+      integer :: n_pass = 0
+   end type system_t
+contains
+   !> Solution to a small share of Newton's tolerance: by the factors of an earlier matrix as long as these serve and
+   !> nothing has come to be fixed, let go or touched, else by new ones.
+   subroutine solve_step(dofs, pattern, constraint, assembly, tolerance, rhs, system, dx, status)
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(in) :: pattern
+      type(constraint_t), intent(in) :: constraint
+      type(assembly_t), intent(in) :: assembly
+      real(wp), intent(in) :: tolerance
+      real(wp), intent(in) :: rhs(:)
+      type(system_t), intent(inout) :: system
+      real(wp), intent(out) :: dx(:)
+      integer, intent(out) :: status
+      real(wp) :: weight(dofs%n), scales(FIELDS), t0
+      integer :: steps, active, i
+
+      t0 = clock()
+      scales = field_scales(dofs, constraint, assembly, system%largest)
+      weight = 1/scales(dofs%field)
+      do i = 1, dofs%n
+         if (is_body(constraint, i)) weight(i) = 1/body_scale(assembly, system%largest, i)
+      end do
+      active = 0
+      if (allocated(system%contacts%interfaces)) active = sum(system%contacts%interfaces%active)
+      if (system%factored) system%factored = system%reuse .and. active == system%active &
+         .and. all(constraint%fixed .eqv. system%fixed) .and. all(constraint%air .eqv. system%air)
+      if (system%factored) then
+         call solve_by_factors(system%sparse, assembly%values, rhs, weight, LINEAR_SHARE*tolerance, MOST_STEPS, dx, &
+                               steps, status)
+         call lap(system%seconds(T_SOLUTION), t0)
+         system%factored = status == SOLVED .and. steps < WORN_STEPS
+         if (status == SOLVED) return
+      end if
+      if (.not. system%analysed) then
+         call analyse(system%sparse, pattern%row, pattern%col, status)
+         system%analysed = .true.
+      end if
+      call factorise(system%sparse, assembly%values, status)
+      call lap(system%seconds(T_FACTORISATION), t0)
+      system%factored = status == SOLVED
+      if (status /= SOLVED) return
+      system%fixed = constraint%fixed
+      system%air = constraint%air
+      system%active = active
+      call solve_by_factors(system%sparse, assembly%values, rhs, weight, LINEAR_SHARE*tolerance, MOST_STEPS, dx, &
+                            steps, status)
+      ! What rounding leaves is Newton's to judge.
+      if (status == INACCURATE) status = SOLVED
+      call lap(system%seconds(T_SOLUTION), t0)
+   end subroutine solve_step
+
+   !> Contacts at given displacements, and room for them in the matrix; false if their kernels refuse.
+   logical function look_at_contacts(system, dofs, pattern, x, slopes, assembly) result(good)
+      type(system_t), intent(inout) :: system
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(inout) :: pattern
+      real(wp), intent(in) :: x(:, :)
+      logical, intent(in) :: slopes
+      type(assembly_t), intent(inout) :: assembly
+      logical :: changed
+
+      good = .true.
+      if (.not. allocated(system%contacts%interfaces)) return
+      good = evaluate_contacts(system%contacts, x, slopes)
+      if (.not. good .or. .not. slopes) return
+      call fit_pattern(system%contacts, dofs, pattern, changed)
+      if (.not. changed) return
+      deallocate (assembly%values)
+      allocate (assembly%values(size(pattern%col)), source=0.0_wp)
+      system%analysed = .false.
+      system%factored = .false.
+   end function look_at_contacts
+end module linear_system

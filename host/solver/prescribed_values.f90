@@ -1,0 +1,71 @@
+!> What a step prescribes, and the rows of the equations that say so. docs/theory/host.md section 7.1.
+module prescribed_values
+   use kinds, only: wp
+   use degrees_of_freedom, only: dofs_t
+   use sparsity_pattern, only: pattern_t, place_of
+   use unknown_fields, only: AT_P_W, AT_P_C
+   implicit none (type, external)
+   private
+   public :: constraint_t, constrain, loads_of_water
+
+   !> Prescribed unknowns and loads of a step.
+   type :: constraint_t
+      logical, allocatable :: fixed(:)        !< Unknowns
+      real(wp), allocatable :: target(:)      !< their values at the end of the step
+      logical, allocatable :: air(:)          !< Nodes with a prescribed air pressure
+      real(wp), allocatable :: air_target(:)
+      real(wp), allocatable :: load_0(:), load_1(:)   !< Loads before and after.
+      real(wp), allocatable :: offset(:)      !< Flow of the initial state that is subtracted.
+      real(wp), allocatable :: mass(:)        !< Of rigid bodies [Mg].
+   end type constraint_t
+contains
+   !> Rows of prescribed unknowns say what is missing of their value; the diagonal keeps its size.
+   subroutine constrain(dofs, pattern, constraint, x, values, rhs)
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(in) :: pattern
+      type(constraint_t), intent(in) :: constraint
+      real(wp), intent(in) :: x(:, :)
+      real(wp), intent(inout) :: values(:), rhs(:)
+      real(wp) :: size_of
+      integer :: i, k
+
+      do i = 1, dofs%n
+         if (.not. constraint%fixed(i)) cycle
+         call clear(i, size_of)
+         values(place_of(pattern, i, i)) = size_of
+         rhs(i) = size_of*(constraint%target(i) - x(dofs%field(i), dofs%node(i)))
+      end do
+      do k = 1, size(constraint%air)
+         if (.not. constraint%air(k)) cycle
+         i = dofs%of(AT_P_C, k)
+         if (constraint%fixed(i)) cycle
+         call clear(i, size_of)
+         values(place_of(pattern, i, i)) = size_of
+         values(place_of(pattern, i, dofs%of(AT_P_W, k))) = size_of
+         rhs(i) = size_of*(constraint%air_target(k) - x(AT_P_W, k) - x(AT_P_C, k))
+      end do
+   contains
+      !> Empties a row; its diagonal is returned, or 1 if there is nothing on it.
+      subroutine clear(row, diagonal)
+         integer, intent(in) :: row
+         real(wp), intent(out) :: diagonal
+
+         diagonal = abs(values(place_of(pattern, row, row)))
+         if (.not. diagonal > 0.0_wp) diagonal = 1.0_wp
+         diagonal = set_exponent(1.0_wp, exponent(diagonal))   ! Steady, for the sake of factors that are used again.
+         values(pattern%row(row):pattern%row(row + 1) - 1) = 0.0_wp
+      end subroutine clear
+   end subroutine constrain
+
+   !> Where the air pressure is prescribed the first balance is that of the water: so are its loads.
+   pure subroutine loads_of_water(dofs, air, load)
+      type(dofs_t), intent(in) :: dofs
+      logical, intent(in) :: air(:)
+      real(wp), intent(inout) :: load(:)
+      integer :: i
+
+      do i = 1, size(air)
+         if (air(i)) load(dofs%of(AT_P_W, i)) = load(dofs%of(AT_P_W, i)) - load(dofs%of(AT_P_C, i))
+      end do
+   end subroutine loads_of_water
+end module prescribed_values
