@@ -129,8 +129,11 @@ def program():
 def results_folder(script, quick):
     """Where a script writes results: beside those of earlier runs, which begin as the committed ones."""
     folder = results.folder(script) / ("quick" if quick else "results")
-    if not quick and not folder.exists():
-        shutil.copytree(RESULTS, folder)
+    for kept in [] if quick else RESULTS.rglob("*.csv"):
+        copy = folder / kept.relative_to(RESULTS)
+        if not copy.exists() or copy.stat().st_mtime < kept.stat().st_mtime:
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(kept, copy)
     return folder
 
 
