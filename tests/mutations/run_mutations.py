@@ -38,8 +38,8 @@ class Library:
     """The library and its suites."""
     mutations, sources, table = MUTATIONS, "umat", "README.md"
     command = "python3 tests/mutations/run_mutations.py --readme"
-    judges = "the suites of `tests/unit` and `tests/contract`"
-    patterns, programs, pages = ("tests/unit/*.pf", "tests/contract/*.pf"), [], []
+    judges = "the suites of `tests/umat/core` and `tests/umat/contract`"
+    patterns, programs, pages = ("tests/umat/core/*/*.pf", "tests/umat/contract/*.pf"), [], []
 
 
 class Contact:

@@ -9,7 +9,7 @@ PAGE = Page(
     reference="limits that hold whatever the answer: finite values, status codes, the state of a failed increment",
     seconds=60)
 
-NONE = Tolerance("tests/contract/test_random.pf: no failure up to 1e-4, below 0.1 % up to 1e-2, none stuck, no value "
+NONE = Tolerance("tests/umat/contract/test_random.pf: no failure up to 1e-4, below 0.1 % up to 1e-2, none stuck, no value "
                  "that is not finite")
 
 

@@ -25,7 +25,7 @@ STYLE = {"ME21": ("o-", "tab:blue", "modified Euler 2(1)"), "BS32": ("s-", "tab:
 
 
 def check(bench):
-    """The texts are checked as those of every page are; tests/contract/test_order.pf holds orders on smooth paths."""
+    """The texts are checked as those of every page are; tests/umat/contract/test_order.pf holds orders on smooth paths."""
 
 
 def texts(bench):
