@@ -259,7 +259,8 @@ contains
       call self%umat(stress_, state, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, strain0, d_strain, time, &
                      STEP, 0.0_wp, 0.0_wp, [suction], [d_suction], self%title, 3_c_int, int(c - 3, c_int), &
                      int(c, c_int), int(self%n_statv, c_int), self%props, size(self%props, kind=c_int), none, UNIT, &
-                     pnewdt, 1.0_wp, UNIT, UNIT, 1_c_int, 1_c_int, 1_c_int, 1_c_int, kstep, kinc, int(CMNAME_LENGTH, c_size_t))
+                     pnewdt, 1.0_wp, UNIT, UNIT, 1_c_int, 1_c_int, 1_c_int, 1_c_int, kstep, kinc, &
+                     int(CMNAME_LENGTH, c_size_t))
       if (pnewdt < 1.0_wp) then
          call fail(UMAT_REFUSES, max(pnewdt, SMALLEST_FACTOR), scd)
          return
