@@ -6,14 +6,14 @@ module namelists
    use texts, only: lower_case, whole
    implicit none (type, external)
    private
-   public :: entry_t, group_t, read_groups, find_entry, MAX_VALUES, LENGTH
+   public :: entry_t, group_t, read_groups, groups_of_text, find_entry, MAX_VALUES, LENGTH
 
    integer, parameter :: LENGTH = 256      !< Longest key, value or path.
    integer, parameter :: MAX_VALUES = 1000   !< Longest list of values.
    integer, parameter :: LINE_LENGTH = 1024
    character(*), parameter :: LETTERS = 'abcdefghijklmnopqrstuvwxyz'
    character(*), parameter :: NAME_CHARACTERS = LETTERS//'0123456789_'
-   character(*), parameter :: TAB = achar(9), RETURN = achar(13)
+   character(*), parameter :: TAB = achar(9), RETURN = achar(13), NEW_LINE_ = achar(10)
 
    !> `key = values`.
    type :: entry_t
@@ -66,20 +66,47 @@ contains
          line = line + 1
          if (status /= 0) then
             call raise(fault, EXIT_INPUT, at_line(file, line)//'cannot be read ('//trim(problem)//').')
-         else if (len_trim(text) == LINE_LENGTH) then
-            call raise(fault, EXIT_INPUT, at_line(file, line)//'the line is longer than '//whole(LINE_LENGTH - 1)// &
-                       ' characters; break it.')
          else
             call read_line(file, line, text, groups, inside, pending, fault)
          end if
          if (fault%code /= 0) exit
       end do
       close (unit)
-      if (fault%code == 0 .and. inside) then
-         call raise(fault, EXIT_INPUT, at_line(file, groups(size(groups))%line)//'the group &'// &
-                    trim(groups(size(groups))%name)//' is never closed; end it with a line "/".')
-      end if
+      if (inside) call check_closed(file, groups, fault)
    end subroutine read_groups
+
+   !> All groups of a text of several lines, in their order.
+   subroutine groups_of_text(text, file, groups, fault)
+      character(*), intent(in) :: text
+      character(*), intent(in) :: file   !< What errors call it; its folder is where relative paths begin.
+      type(group_t), allocatable, intent(out) :: groups(:)
+      type(fault_t), intent(inout) :: fault
+      type(word_t) :: pending
+      logical :: inside
+      integer :: line, first, length
+
+      allocate (groups(0))
+      inside = .false.
+      line = 0
+      first = 1
+      do while (first <= len(text) .and. fault%code == 0)
+         length = index(text(first:)//NEW_LINE_, NEW_LINE_) - 1
+         line = line + 1
+         call read_line(file, line, text(first:first + length - 1), groups, inside, pending, fault)
+         first = first + length + 1
+      end do
+      if (inside) call check_closed(file, groups, fault)
+   end subroutine groups_of_text
+
+   subroutine check_closed(file, groups, fault)
+      character(*), intent(in) :: file
+      type(group_t), intent(in) :: groups(:)
+      type(fault_t), intent(inout) :: fault
+
+      if (fault%code /= 0) return   ! the first fault is the one that is told
+      call raise(fault, EXIT_INPUT, at_line(file, groups(size(groups))%line)//'the group &'// &
+                 trim(groups(size(groups))%name)//' is never closed; end it with a line "/".')
+   end subroutine check_closed
 
    !> Splits a line into tokens and files them.
    subroutine read_line(file, line, text, groups, inside, pending, fault)
@@ -91,6 +118,11 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: at, last
 
+      if (len_trim(text) >= LINE_LENGTH) then
+         call raise(fault, EXIT_INPUT, at_line(file, line)//'the line is longer than '//whole(LINE_LENGTH - 1)// &
+                    ' characters; break it.')
+         return
+      end if
       at = 1
       do while (at <= len_trim(text) .and. fault%code == 0)
          select case (text(at:at))

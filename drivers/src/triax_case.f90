@@ -15,7 +15,7 @@ module triax_case
    use triax_point, only: soil_t, point_t, make_soil, start_point, mean_stress, AXIAL, RADIAL
    implicit none (type, external)
    private
-   public :: case_t, read_case
+   public :: case_t, read_case, make_case
 
    !> A test.
    type :: case_t
@@ -39,13 +39,22 @@ contains
       type(case_t), intent(out) :: test
       type(fault_t), intent(inout) :: fault
       type(group_t), allocatable :: groups(:)
+
+      call read_groups(file, groups, fault)
+      if (fault%code == 0) call make_case(groups, file, test, fault)
+   end subroutine read_case
+
+   !> Checks the groups of a case with its material, and brings the sample to its start.
+   subroutine make_case(groups, file, test, fault)
+      type(group_t), intent(in) :: groups(:)
+      character(*), intent(in) :: file
+      type(case_t), intent(out) :: test
+      type(fault_t), intent(inout) :: fault
       class(material_t), allocatable :: law
       character(LENGTH) :: word
       integer :: i, of_case, of_material, of_retention, of_initial, n_stages
 
       test%file = file
-      call read_groups(file, groups, fault)
-      if (fault%code /= 0) return
       of_case = 0
       of_material = 0
       of_retention = 0
@@ -105,7 +114,7 @@ contains
          call read_stage(groups(i), test%stages(n_stages), fault)
          if (fault%code /= 0) return
       end do
-   end subroutine read_case
+   end subroutine make_case
 
    subroutine only_once(file, groups, i, place, fault)
       character(*), intent(in) :: file

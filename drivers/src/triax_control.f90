@@ -42,6 +42,7 @@ module triax_control
    !> What a run cost.
    type :: tally_t
       integer :: updates = 0                 !< Calls of the library.
+      integer :: increments = 0              !< Of all stages.
       integer :: solved = 0                  !< Increments that needed a solution.
       integer :: cuts = 0                    !< Increments cut and retried.
       logical :: residuals = .false.         !< Print the error of every iteration.

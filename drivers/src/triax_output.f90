@@ -17,19 +17,21 @@ module triax_output
    use triax_point, only: soil_t, point_t
    implicit none (type, external)
    private
-   public :: table_t, open_table, write_row, add_note, close_table
+   public :: table_t, open_table, open_memory_table, write_row, add_note, close_table
 
    !> An output file; `to_screen` if it is the standard output.
    type :: table_t
       type(csv_t) :: csv
       type(h5_t) :: h5
       logical :: to_screen = .false.
-      logical :: hdf5 = .false.      !< Rows are kept and written when the table is closed.
+      logical :: hdf5 = .false.      !< Written when the table is closed.
+      logical :: keeps = .false.     !< Rows are kept: for HDF5, or for a caller.
       logical :: closed = .true.
       integer, allocatable :: shown(:)      !< Numbers of the columns that are written.
       integer :: rows = 0
       character(:), allocatable :: path
-      real(wp), allocatable :: kept(:, :)   !< rows, columns
+      real(wp), allocatable :: kept(:, :)   !< rows (room for more), columns
+      character(:), allocatable :: remarks  !< Of a table in memory, a line each.
    end type table_t
 
 contains
@@ -51,7 +53,7 @@ contains
          ! The file is written at the end; this says now whether it can be.
          if (can_be_written(path)) then
             call new_file(table%h5)
-            allocate (table%kept(0, size(table%shown)))
+            call keep_rows(table)
          else
             call raise(fault, EXIT_OUTPUT, path//' cannot be written; choose another place with --output.')
          end if
@@ -62,6 +64,27 @@ contains
       table%closed = .false.
       call header(test, table, fault)
    end subroutine open_table
+
+   !> A table that stays in memory.
+   subroutine open_memory_table(test, table, fault)
+      type(case_t), intent(in) :: test
+      type(table_t), intent(out) :: table
+      type(fault_t), intent(inout) :: fault
+
+      table%path = ''
+      table%shown = columns_shown(test%soil, any(general_control(test%stages%control)))
+      table%remarks = ''
+      call keep_rows(table)
+      table%closed = .false.
+      call header(test, table, fault)
+   end subroutine open_memory_table
+
+   subroutine keep_rows(table)
+      type(table_t), intent(inout) :: table
+
+      table%keeps = .true.
+      allocate (table%kept(0, size(table%shown)))
+   end subroutine keep_rows
 
    pure logical function ends_in(path, ending)
       character(*), intent(in) :: path, ending
@@ -92,7 +115,7 @@ contains
       do i = 2, size(table%shown)
          names = names//','//trim(COLUMNS(table%shown(i))%name)
       end do
-      if (.not. table%hdf5) call write_line(table%csv, names, fault)
+      if (.not. table%keeps) call write_line(table%csv, names, fault)
    end subroutine header
 
    !> A fact about the run: a comment line, or an attribute of the HDF5 file.
@@ -103,6 +126,8 @@ contains
 
       if (table%hdf5) then
          call put_text(table%h5, name, text)
+      else if (table%keeps) then
+         table%remarks = table%remarks//name//': '//text//new_line('a')
       else
          call write_line(table%csv, '# '//name//': '//text, fault)
       end if
@@ -131,7 +156,7 @@ contains
 
       values = values_of(soil, point, course, error, stage)
       table%rows = table%rows + 1
-      if (table%hdf5) then
+      if (table%keeps) then
          call keep(table, values(table%shown))
          return
       end if
@@ -184,9 +209,9 @@ contains
       if (table%closed) return
       table%closed = .true.
       if (len(stopped) > 0) call remark(table, 'stopped', stopped, last)
-      if (.not. table%hdf5) then
+      if (.not. table%keeps) then
          call close_csv(table%csv, last)
-      else
+      else if (table%hdf5) then
          do i = 1, size(table%shown)
             call put_column(table%h5, COLUMNS(table%shown(i)), table%kept(:table%rows, i))
          end do

@@ -20,6 +20,7 @@ module triax_progress
    type :: timer_t
       real(wp) :: start = 0.0_wp
       real(wp) :: next = FIRST_PROGRESS
+      logical :: shown = .false.   !< Progress is wanted.
    end type timer_t
 
 contains
@@ -36,6 +37,7 @@ contains
       character(*), intent(in) :: what
       real(wp) :: seconds
 
+      if (.not. timer%shown) return
       seconds = clock() - timer%start
       if (seconds < timer%next .or. share <= 0.0_wp) return
       timer%next = seconds + max(2.0_wp, 0.5_wp*seconds)
@@ -44,12 +46,11 @@ contains
    end subroutine show_progress
 
    !> Where the test ended and what it cost.
-   subroutine show_summary(test, table, point, tally, increments, timer)
+   subroutine show_summary(test, table, point, tally, timer)
       type(case_t), intent(in) :: test
       type(table_t), intent(in) :: table
       type(point_t), intent(in) :: point
       type(tally_t), intent(in) :: tally
-      integer, intent(in) :: increments
       type(timer_t), intent(in) :: timer
       character(:), allocatable :: guards
       integer :: i
@@ -61,7 +62,7 @@ contains
             short(volumetric_strain(point))//', p'' '//short(mean_stress(point))//' kPa, q '// &
             short(deviator_stress(point))//' kPa, e '//short(void_ratio(soil, point))//', S_w '// &
             short(saturation(soil, point))//of_state(', psi ', soil%i_state_parameter, '')
-         write (output_unit, '(a)') '   work       '//whole(increments)//' increments ('//whole(tally%cuts)// &
+         write (output_unit, '(a)') '   work       '//whole(tally%increments)//' increments ('//whole(tally%cuts)// &
             ' cuts), '//whole(tally%updates)//' updates; '//of_state('', soil%i_n_substep, ' substeps, ')// &
             of_state('', soil%i_n_reject, ' rejected, ')//of_state('', soil%i_n_rate, ' rates, ')// &
             of_state('', soil%i_n_reseat, ' re-seats; ')// &

@@ -1,0 +1,183 @@
+!> The functions of mud_triax.h: a case given as text, its table in memory.
+module triax_c_api
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_char, c_double, c_size_t, c_null_ptr, c_null_char, c_loc, &
+                                          c_f_pointer, c_associated
+   use faults, only: fault_t, raise, EXIT_INPUT
+   use namelists, only: group_t, groups_of_text
+   use triax_case, only: case_t, make_case
+   use triax_columns, only: COLUMNS
+   use triax_control, only: tally_t
+   use triax_output, only: table_t, open_memory_table
+   use triax_point, only: point_t
+   use triax_progress, only: timer_t
+   use triax_run, only: run_test
+   implicit none (type, external)
+   private
+   public :: triax_run_text, triax_rows, triax_columns_, triax_column, triax_values, triax_remarks, triax_free
+
+   !> What a handle points to.
+   type :: result_t
+      type(table_t) :: table
+   end type result_t
+
+   interface
+      integer(c_size_t) function strlen(text) bind(c)
+         import :: c_size_t, c_ptr
+         type(c_ptr), value :: text
+      end function strlen
+   end interface
+contains
+   !> Runs a case. A handle is given where there are rows: also after a test that stopped (3), not after one that was
+   !> refused (2).
+   integer(c_int) function triax_run_text(text, name, handle, message, length) bind(c, name='mud_triax_run')
+      type(c_ptr), value :: text, name, message
+      type(c_ptr), intent(out) :: handle
+      integer(c_int), value :: length
+      type(result_t), pointer :: result
+      type(group_t), allocatable :: groups(:)
+      type(case_t) :: test
+      type(tally_t) :: tally
+      type(timer_t) :: timer
+      type(point_t) :: point
+      type(fault_t) :: fault
+      character(:), allocatable :: file
+
+      handle = c_null_ptr
+      file = 'case'
+      if (c_associated(name)) file = text_at(name)
+      if (c_associated(text)) then
+         call groups_of_text(text_at(text), file, groups, fault)
+      else
+         call raise(fault, EXIT_INPUT, 'There is no text of a case.')
+      end if
+      if (fault%code == 0) call make_case(groups, file, test, fault)
+      if (fault%code == 0) then
+         allocate (result)
+         call open_memory_table(test, result%table, fault)
+         call run_test(test, result%table, tally, timer, point, fault)
+         handle = c_loc(result)
+      end if
+      call put(trim(fault%text), message, length)
+      triax_run_text = fault%code
+   end function triax_run_text
+
+   !> Number of rows, 0 without a handle.
+   integer(c_int) function triax_rows(handle) bind(c, name='mud_triax_rows')
+      type(c_ptr), value :: handle
+      type(result_t), pointer :: result
+
+      triax_rows = 0
+      if (.not. c_associated(handle)) return
+      call c_f_pointer(handle, result)
+      triax_rows = result%table%rows
+   end function triax_rows
+
+   !> Number of columns, 0 without a handle.
+   integer(c_int) function triax_columns_(handle) bind(c, name='mud_triax_columns')
+      type(c_ptr), value :: handle
+      type(result_t), pointer :: result
+
+      triax_columns_ = 0
+      if (.not. c_associated(handle)) return
+      call c_f_pointer(handle, result)
+      triax_columns_ = size(result%table%shown, kind=c_int)
+   end function triax_columns_
+
+   !> A text about a column: MUD_TRIAX_NAME, _UNIT or _MEANING.
+   integer(c_int) function triax_column(handle, index, field, text, len) bind(c, name='mud_triax_column')
+      type(c_ptr), value :: handle, text
+      integer(c_int), value :: index, field, len
+      type(result_t), pointer :: result
+
+      triax_column = -1
+      if (.not. c_associated(handle)) return
+      call c_f_pointer(handle, result)
+      if (index < 0 .or. index >= size(result%table%shown)) return
+      triax_column = 0
+      associate (column => result%table%shown(index + 1))
+         select case (field)
+         case (1)
+            call put(trim(COLUMNS(column)%name), text, len)
+         case (2)
+            call put(trim(COLUMNS(column)%unit), text, len)
+         case (3)
+            call put(trim(COLUMNS(column)%meaning), text, len)
+         case default
+            triax_column = -1
+         end select
+      end associate
+   end function triax_column
+
+   !> All values, column after column.
+   integer(c_int) function triax_values(handle, values) bind(c, name='mud_triax_values')
+      type(c_ptr), value :: handle, values
+      type(result_t), pointer :: result
+      real(c_double), pointer :: room(:, :)
+
+      triax_values = -1
+      if (.not. (c_associated(handle) .and. c_associated(values))) return
+      call c_f_pointer(handle, result)
+      call c_f_pointer(values, room, [result%table%rows, size(result%table%shown)])
+      room = result%table%kept(:result%table%rows, :)
+      triax_values = 0
+   end function triax_values
+
+   !> What the head of a file would say, and how stages ended: "name: text" lines. Returns how long it is.
+   integer(c_int) function triax_remarks(handle, text, len) bind(c, name='mud_triax_remarks')
+      type(c_ptr), value :: handle, text
+      integer(c_int), value :: len
+      type(result_t), pointer :: result
+
+      triax_remarks = 0
+      if (.not. c_associated(handle)) return
+      call c_f_pointer(handle, result)
+      call put(result%table%remarks, text, len)
+      triax_remarks = length_of(result%table%remarks)
+   end function triax_remarks
+
+   subroutine triax_free(handle) bind(c, name='mud_triax_free')
+      type(c_ptr), value :: handle
+      type(result_t), pointer :: result
+
+      if (.not. c_associated(handle)) return
+      call c_f_pointer(handle, result)
+      deallocate (result)
+   end subroutine triax_free
+
+   pure integer(c_int) function length_of(text)
+      character(*), intent(in) :: text
+
+      length_of = int(len(text), c_int)
+   end function length_of
+
+   !> A text of C, without its null.
+   function text_at(place) result(text)
+      type(c_ptr), intent(in) :: place
+      character(:), allocatable :: text
+      character(kind=c_char), pointer :: letters(:)
+      integer :: i
+
+      call c_f_pointer(place, letters, [strlen(place)])
+      allocate (character(size(letters)) :: text)
+      do i = 1, size(letters)
+         text(i:i) = letters(i)
+      end do
+   end function text_at
+
+   !> Into a buffer of `length` bytes, cut to fit and always closed by a null.
+   subroutine put(text, place, length)
+      character(*), intent(in) :: text
+      type(c_ptr), intent(in) :: place
+      integer(c_int), intent(in) :: length
+      character(kind=c_char), pointer :: letters(:)
+      integer :: i, last
+
+      if (.not. c_associated(place) .or. length < 1) return
+      call c_f_pointer(place, letters, [length])
+      last = min(len(text), int(length) - 1)
+      do i = 1, last
+         letters(i) = text(i:i)
+      end do
+      letters(last + 1) = c_null_char
+   end subroutine put
+end module triax_c_api

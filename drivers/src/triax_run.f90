@@ -1,0 +1,71 @@
+!> Runs a test: its stages one after the other, a row of the table where the course calls for one.
+module triax_run
+   use faults, only: fault_t
+   use kinds, only: wp
+   use texts, only: whole
+   use triax_case, only: case_t
+   use triax_control, only: tally_t
+   use triax_course, only: course_t, begin_stage, next_increment, share_done
+   use triax_output, only: table_t, write_row, add_note, close_table
+   use triax_point, only: point_t
+   use triax_progress, only: timer_t, show_progress
+   use triax_stage, only: CONTROL_NAMES
+   implicit none (type, external)
+   private
+   public :: run_test
+contains
+   !> From the start of the test to its end, or to where it stops: rows so far are kept, and the table is closed.
+   subroutine run_test(test, table, tally, timer, point, fault)
+      type(case_t), intent(in) :: test
+      type(table_t), intent(inout) :: table   !< Open.
+      type(tally_t), intent(inout) :: tally
+      type(timer_t), intent(inout) :: timer
+      type(point_t), intent(out) :: point     !< The sample at the end.
+      type(fault_t), intent(inout) :: fault
+      type(course_t) :: course
+      type(fault_t) :: ending
+      real(wp) :: pressure
+      integer :: i
+
+      point = test%start
+      pressure = 0.0_wp
+      call write_row(table, test%soil, point, course, 0.0_wp, 0, fault)
+      stages: do i = 1, size(test%stages)
+         associate (stage => test%stages(i))
+            call begin_stage(test%soil, stage, point, pressure, course, fault)
+            if (fault%code /= 0) exit stages
+            do while (.not. course%finished)
+               call next_increment(test%soil, stage, course, point, tally, fault)
+               if (fault%code /= 0) exit stages
+               tally%increments = tally%increments + 1
+               if (course%row) then
+                  call write_row(table, test%soil, point, course, tally%error, i, fault)
+                  tally%error = 0.0_wp
+                  if (fault%code /= 0) exit stages
+               end if
+               call show_progress(timer, (real(i - 1, wp) + share_done(course))/real(size(test%stages), wp), &
+                                  'stage '//whole(i)//' of '//whole(size(test%stages))//' ('// &
+                                  trim(CONTROL_NAMES(stage%control))//')'//in_cycle(course))
+            end do
+            pressure = course%pressure
+            if (len_trim(course%note) > 0) call add_note(table, 'stage '//whole(i)//': '//trim(course%note), fault)
+         end associate
+      end do stages
+
+      if (fault%code /= 0) then
+         fault%text = trim(test%name)//', stage '//whole(i)//': '//fault%text
+         call close_table(table, trim(fault%text), ending)
+      else
+         call close_table(table, '', fault)
+      end if
+   end subroutine run_test
+
+   !> ", cycle 3", or nothing.
+   pure function in_cycle(course) result(text)
+      type(course_t), intent(in) :: course
+      character(:), allocatable :: text
+
+      text = ''
+      if (course%cycle > 0) text = ', cycle '//whole(course%cycle)
+   end function in_cycle
+end module triax_run
