@@ -112,6 +112,13 @@ for name, (text, words) in MISTAKES.items():
     check(name, done.returncode == 2 and told and not out.exists(), f"{done.returncode} {done.stderr}")
 done = call(work / "absent.nml")
 check("a missing file is named", done.returncode == 2 and "absent.nml" in done.stderr, done.stderr)
+if pathlib.Path("/dev/full").exists():
+    done = call(cases / "undrained_e735_p100.nml", "--quiet", "--output", "/dev/full")
+    check("a full disk is an error, not a short file", done.returncode == 4 and "disk full" in done.stderr, done.stderr)
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([triax, cases / "undrained_e735_p100.nml", "--quiet", "--output", "-"], stdout=full,
+                              stderr=subprocess.PIPE, text=True)
+    check("also on the standard output", done.returncode == 4 and "disk full" in done.stderr, done.stderr)
 done = call("--help")
 check("--help explains", done.returncode == 0 and "CASE.nml" in done.stdout, done.stdout[:80])
 template = work / "template.nml"
