@@ -2,15 +2,17 @@
 !> contacts nothing is allocated and nothing is done.
 module contact_interfaces
    use kinds, only: wp
-   use contact_penalty, only: contact_t, contact_prepare, contact_evaluate
-   use contact_rigid, only: rigid_t, rigid_prepare, rigid_positions, rigid_gather
+   use contact_penalty, only: contact_geometry_t, contact_workspace_t, contact_result_t, contact_prepare, &
+                              new_workspace, new_result, contact_evaluate
+   use contact_plate, only: plate_response_t, new_plate_response, plate_positions, gather_on_plate, force_on_plate
    use contact_types, only: contact_options_t, contact_status_t, CONTACT_OK
    use degrees_of_freedom, only: dofs_t
+   use unknown_fields, only: AT_U_Z, DISPLACEMENTS
    use sparsity_pattern, only: pattern_t, make_pattern, place_of
    implicit none (type, external)
    private
    public :: contacts_t, contact_interface_t, surface_t, surface_of, new_interface, plate_surface
-   public :: evaluate_contacts, fit_pattern, add_contacts, work_of_contacts
+   public :: evaluate_contacts, probe_contacts, probe_interface, fit_pattern, add_contacts, work_of_contacts
 
    !> A boundary with numbers of its own.
    type :: surface_t
@@ -21,11 +23,14 @@ module contact_interfaces
 
    !> The interface of two surfaces that may touch.
    type :: contact_interface_t
-      type(contact_t) :: kernel
-      type(rigid_t) :: body                 !< Where the master is a plate,
+      type(contact_geometry_t) :: geometry
+      type(contact_workspace_t) :: work
+      type(contact_result_t) :: result      !< Of the iterates of a step;
+      type(contact_result_t) :: probe       !< of other displacements, which leave the step alone.
+      type(plate_response_t) :: on_plate    !< The same where the master is a plate,
       integer :: plate = 0                  !< whose node this is.
       type(surface_t) :: slave, master
-      integer, allocatable :: unknown(:)    !< Of every unknown of the kernel (or body), 0: none.
+      integer, allocatable :: unknown(:)    !< Of every unknown of the kernel, or of slave and plate; 0: none.
       logical :: acts = .true.              !< In this stage.
       ! Outcome of the last evaluation within a step.
       real(wp) :: thrust = 0.0_wp           !< Vertical force on the master, upwards [kN].
@@ -71,26 +76,29 @@ contains
       if (up) surface%x0 = surface%x0(:, [2, 1, 3])
    end function plate_surface
 
-   subroutine new_interface(dofs, slave, master, plate, options, interface_, status)
+   subroutine new_interface(dofs, slave, master, plate, options, one, status)
       type(dofs_t), intent(in) :: dofs
       type(surface_t), intent(in) :: slave, master
       integer, intent(in) :: plate   !< Node of the plate that the master is the face of, or 0.
       type(contact_options_t), intent(in) :: options
-      type(contact_interface_t), intent(out) :: interface_
+      type(contact_interface_t), intent(out) :: one
       type(contact_status_t), intent(out) :: status
       integer, allocatable :: nodes(:)
 
-      interface_%slave = slave
-      interface_%master = master
-      interface_%plate = plate
-      call contact_prepare(interface_%kernel, size(slave%x0, 2), slave%edges, size(master%x0, 2), master%edges, &
-                           options, status)
+      one%slave = slave
+      one%master = master
+      one%plate = plate
+      call contact_prepare(one%geometry, size(slave%x0, 2), slave%edges, size(master%x0, 2), master%edges, options, &
+                           status)
       if (status%code /= CONTACT_OK) return
+      one%work = new_workspace(one%geometry)
+      one%result = new_result(one%geometry)
+      one%probe = new_result(one%geometry)
       nodes = [slave%node, master%node]
-      interface_%unknown = reshape(dofs%of(1:2, nodes), [2*size(nodes)])
+      one%unknown = reshape(dofs%of(:DISPLACEMENTS, nodes), [DISPLACEMENTS*size(nodes)])
       if (plate == 0) return
-      call rigid_prepare(interface_%body, size(slave%node), master%x0, [0.0_wp, 0.0_wp], 1)
-      interface_%unknown = [interface_%unknown, dofs%of(2, plate)]
+      one%on_plate = new_plate_response(one%geometry)
+      one%unknown = [one%unknown, dofs%of(AT_U_Z, plate)]
    end subroutine new_interface
 
    !> Everything at given displacements; false if a kernel refuses them.
@@ -98,7 +106,6 @@ contains
       type(contacts_t), intent(inout) :: contacts
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes)
       logical, intent(in) :: with_slope
-      real(wp), allocatable :: master(:, :)
       integer :: i
 
       good = .true.
@@ -109,24 +116,56 @@ contains
             t%energy = 0.0_wp
             t%area = 0.0_wp
             if (.not. t%acts) cycle
-            allocate (master, mold=t%master%x0)
-            if (t%plate > 0) then
-               call rigid_positions(t%body, x(2:2, t%plate), master)
-            else
-               master = t%master%x0 + x(1:2, t%master%node)
-            end if
-            call contact_evaluate(t%kernel, t%slave%x0 + x(1:2, t%slave%node), master, with_slope, contacts%status)
+            call probe_interface(t%geometry, t%slave, t%master, t%plate, x, with_slope, t%work, t%result, &
+                                 contacts%status)
             good = contacts%status%code == CONTACT_OK
             if (.not. good) return
-            if (t%plate > 0) call rigid_gather(t%body, t%kernel, x(2:2, t%plate), master)
-            deallocate (master)
-            t%active = count(t%kernel%active)
-            t%thrust = sum(t%kernel%force(2:2*t%kernel%slave_nodes:2))
-            t%energy = t%kernel%energy
-            t%area = sum(t%kernel%weight, mask=t%kernel%active)
+            if (t%plate > 0) call gather_on_plate(t%geometry, t%result, t%on_plate)
+            t%active = count(t%result%active)
+            t%thrust = sum(t%result%force(2:2*t%geometry%slave_nodes:2))
+            t%energy = t%result%energy
+            t%area = sum(t%result%weight, mask=t%result%active)
          end associate
       end do
    end function evaluate_contacts
+
+   !> The same without slopes, into `probe` of every interface that acts: the outcome of the last evaluation within a
+   !> step stays.
+   logical function probe_contacts(contacts, x) result(good)
+      type(contacts_t), intent(inout) :: contacts
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes)
+      integer :: i
+
+      good = .true.
+      do i = 1, size(contacts%interfaces)
+         associate (t => contacts%interfaces(i))
+            if (.not. t%acts) cycle
+            call probe_interface(t%geometry, t%slave, t%master, t%plate, x, .false., t%work, t%probe, contacts%status)
+            good = contacts%status%code == CONTACT_OK
+            if (.not. good) return
+         end associate
+      end do
+   end function probe_contacts
+
+   !> One pair of surfaces at given displacements.
+   subroutine probe_interface(geometry, slave, master, plate, x, with_slope, work, result, status)
+      type(contact_geometry_t), intent(in) :: geometry
+      type(surface_t), intent(in) :: slave, master
+      integer, intent(in) :: plate
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes)
+      logical, intent(in) :: with_slope
+      type(contact_workspace_t), intent(inout) :: work
+      type(contact_result_t), intent(inout) :: result
+      type(contact_status_t), intent(out) :: status
+      real(wp) :: at(2, size(master%x0, 2))
+
+      if (plate > 0) then
+         at = plate_positions(master%x0, x(AT_U_Z, plate))
+      else
+         at = master%x0 + x(:DISPLACEMENTS, master%node)
+      end if
+      call contact_evaluate(geometry, slave%x0 + x(:DISPLACEMENTS, slave%node), at, with_slope, work, result, status)
+   end subroutine probe_interface
 
    !> Makes the pattern hold the slopes of the last evaluation. It grows only: a contact that opens leaves it alone.
    subroutine fit_pattern(contacts, dofs, pattern, changed)
@@ -143,9 +182,9 @@ contains
          associate (t => contacts%interfaces(i))
             if (.not. t%acts) cycle
             if (t%plate > 0) then
-               call list(t%body%row(:t%body%triplets), t%body%column(:t%body%triplets))
+               call list(t%on_plate%row(:t%on_plate%triplets), t%on_plate%column(:t%on_plate%triplets))
             else
-               call list(t%kernel%row(:t%kernel%triplets), t%kernel%column(:t%kernel%triplets))
+               call list(t%result%row(:t%result%triplets), t%result%column(:t%result%triplets))
             end if
          end associate
       end do
@@ -159,7 +198,7 @@ contains
       pure integer function room(t)
          type(contact_interface_t), intent(in) :: t
 
-         room = t%kernel%triplets + t%body%triplets
+         room = t%result%triplets + t%on_plate%triplets
       end function room
 
       subroutine list(row, column)
@@ -190,9 +229,11 @@ contains
          associate (t => contacts%interfaces(i))
             if (.not. t%acts) cycle
             if (t%plate > 0) then
-               call add(t%unknown, t%body%force, t%body%row(:t%body%triplets), t%body%column, t%body%value)
+               call add(t%unknown, t%on_plate%force, t%on_plate%row(:t%on_plate%triplets), t%on_plate%column, &
+                        t%on_plate%value)
             else
-               call add(t%unknown, t%kernel%force, t%kernel%row(:t%kernel%triplets), t%kernel%column, t%kernel%value)
+               call add(t%unknown, t%result%force, t%result%row(:t%result%triplets), t%result%column, &
+                        t%result%value)
             end if
          end associate
       end do
@@ -219,36 +260,40 @@ contains
    !> Work done on the penalty between two sets of displacements, by the mean of the forces [kJ]. The outcome of the
    !> last evaluation within the step stays.
    real(wp) function work_of_contacts(contacts, dofs, x0, x1) result(work)
-      type(contacts_t), intent(in) :: contacts
+      type(contacts_t), intent(inout) :: contacts
       type(dofs_t), intent(in) :: dofs
       real(wp), intent(in) :: x0(:, :), x1(:, :)
-      type(contacts_t) :: probe
-      real(wp), allocatable :: force(:)
-      integer :: i, n
+      real(wp) :: force(dofs%n)
+      integer :: i
 
-      probe = contacts
-      allocate (force(dofs%n), source=0.0_wp)
       work = 0.0_wp
-      do n = 1, 2
-         if (n == 1) then
-            if (.not. evaluate_contacts(probe, x0, .false.)) return
-         else
-            if (.not. evaluate_contacts(probe, x1, .false.)) return
-         end if
-         do i = 1, size(probe%interfaces)
-            if (.not. probe%interfaces(i)%acts) cycle
-            if (probe%interfaces(i)%plate > 0) then
-               call gather(probe%interfaces(i)%unknown, probe%interfaces(i)%body%force)
-            else
-               call gather(probe%interfaces(i)%unknown, probe%interfaces(i)%kernel%force)
-            end if
-         end do
-      end do
+      force = 0.0_wp
+      if (.not. probe_contacts(contacts, x0)) return
+      call gather_probes()
+      if (.not. probe_contacts(contacts, x1)) return
+      call gather_probes()
       do i = 1, dofs%n
-         if (dofs%field(i) > 2) cycle
+         if (dofs%field(i) > DISPLACEMENTS) cycle
          work = work + 0.5_wp*force(i)*(x1(dofs%field(i), dofs%node(i)) - x0(dofs%field(i), dofs%node(i)))
       end do
    contains
+      subroutine gather_probes()
+         integer :: c, n
+
+         do c = 1, size(contacts%interfaces)
+            associate (t => contacts%interfaces(c))
+               if (.not. t%acts) cycle
+               if (t%plate > 0) then
+                  n = 2*t%geometry%slave_nodes
+                  call gather(t%unknown(:n), t%probe%force(:n))
+                  call gather(t%unknown(n + 1:), [force_on_plate(t%geometry, t%probe)])
+               else
+                  call gather(t%unknown, t%probe%force)
+               end if
+            end associate
+         end do
+      end subroutine gather_probes
+
       subroutine gather(u, f)
          integer, intent(in) :: u(:)
          real(wp), intent(in) :: f(:)

@@ -11,7 +11,10 @@ module contact_penalty
                             CONTACT_DISTORTED_EDGE, CONTACT_NO_PROJECTION
    implicit none (type, external)
    private
-   public :: contact_t, contact_prepare, contact_evaluate
+   public :: contact_geometry_t, contact_workspace_t, contact_result_t, contact_prepare, new_workspace, new_result, &
+             contact_evaluate
+
+   integer, parameter :: FIRST_ROOM = 1024   !< Triplets to begin with.
 
    !> A slave edge with a master edge opposite.
    type :: pair_t
@@ -20,11 +23,29 @@ module contact_penalty
       real(wp) :: d_weight(12, 3) = 0.0_wp, d_weighted_gap(12, 3) = 0.0_wp, push(12, 3) = 0.0_wp
    end type pair_t
 
-   !> A contact between two surfaces: what was prepared, and the answer of the last evaluation. Unknowns are numbered
-   !> 2 (node - 1) + direction, first the slave's nodes, then the master's.
-   type :: contact_t
+   !> Two surfaces that may touch, prepared once. Unknowns are numbered 2 (node - 1) + direction, first the slave's
+   !> nodes, then the master's.
+   type :: contact_geometry_t
       integer :: slave_nodes = 0, master_nodes = 0
       type(contact_options_t) :: options
+      integer, allocatable, private :: slave_edges(:, :), master_edges(:, :)
+      integer, allocatable, private :: edges_of(:, :)    !< (2, slave nodes), 0 if there is none
+      logical, allocatable, private :: free(:)           !< (master nodes) in one edge only: the surface ends there.
+   end type contact_geometry_t
+
+   !> Room for an evaluation; what it holds between two is of no meaning.
+   type :: contact_workspace_t
+      private
+      integer, allocatable :: first_pair(:)     !< Of a slave edge.
+      type(pair_t), allocatable :: pair(:)
+      type(search_t) :: search
+      integer, allocatable :: position(:), touched(:)   !< Unknowns that a nodal gap depends on.
+      real(wp), allocatable :: left(:), right(:)        !< Force of a unit dp_A, slope of p_A over -1.
+      real(wp), allocatable :: load(:)                  !< int M_A p 2 pi r dGamma, pointwise form.
+   end type contact_workspace_t
+
+   !> What an evaluation found.
+   type :: contact_result_t
       real(wp) :: energy = 0.0_wp               !< 1/2 eps sum_A w_A <-g_A>**2, or eq. (18) [kN m] (plane: kN)
       real(wp), allocatable :: force(:)         !< Slope of the energy: minus what contact exerts on the nodes [kN]
       integer :: triplets = 0                   !< How many are filled.
@@ -39,53 +60,60 @@ module contact_penalty
       integer :: changed = 0                    !< Nodes whose `active` differs from the evaluation before.
       integer :: pairs = 0                      !< Pairs of edges opposite each other.
       integer :: checks = 0                     !< Pairs of boxes the search compared.
-      integer, allocatable, private :: slave_edges(:, :), master_edges(:, :)
-      integer, allocatable, private :: edges_of(:, :)    !< (2, slave nodes), 0 if there is none
-      logical, allocatable, private :: free(:)           !< (master nodes) in one edge only: the surface ends there.
-      integer, allocatable, private :: first_pair(:)     !< Of a slave edge.
-      type(pair_t), allocatable, private :: pair(:)
-      type(search_t), private :: search
-      integer, allocatable, private :: position(:), touched(:)        !< Unknowns that a nodal gap depends on.
-      real(wp), allocatable, private :: left(:), right(:)   !< Force of a unit dp_A, slope of p_A over -1.
-      real(wp), allocatable, private :: load(:)              !< int M_A p 2 pi r dGamma, pointwise form.
-   end type contact_t
+   end type contact_result_t
 contains
-   !> Makes room for two surfaces: (3, edges) node numbers of each in the order start, end, middle, the body on the
+   !> Prepares two surfaces: (3, edges) node numbers of each in the order start, end, middle, the body on the
    !> left.
-   pure subroutine contact_prepare(contact, slave_nodes, slave_edges, master_nodes, master_edges, options, status)
-      type(contact_t), intent(out) :: contact
+   pure subroutine contact_prepare(geometry, slave_nodes, slave_edges, master_nodes, master_edges, options, status)
+      type(contact_geometry_t), intent(out) :: geometry
       integer, intent(in) :: slave_nodes, master_nodes
       integer, intent(in) :: slave_edges(:, :), master_edges(:, :)
       type(contact_options_t), intent(in) :: options
       type(contact_status_t), intent(out) :: status
       integer, allocatable :: edges_of(:, :)
-      integer :: unknowns
 
       call check_options(options, status)
       if (status%code /= CONTACT_OK) return
-      call list_edges(slave_edges, slave_nodes, .false., contact%edges_of, status)
+      call list_edges(slave_edges, slave_nodes, .false., geometry%edges_of, status)
       if (status%code /= CONTACT_OK) return
       call list_edges(master_edges, master_nodes, .true., edges_of, status)
       if (status%code /= CONTACT_OK) return
-      contact%options = options
-      contact%slave_nodes = slave_nodes
-      contact%master_nodes = master_nodes
-      contact%slave_edges = slave_edges
-      contact%master_edges = master_edges
-      contact%free = edges_of(2, :) == 0
-      unknowns = 2*(slave_nodes + master_nodes)
-      allocate (contact%force(unknowns), source=0.0_wp)
-      allocate (contact%weight(slave_nodes), contact%whole(slave_nodes), contact%gap(slave_nodes), &
-                contact%pressure(slave_nodes), source=0.0_wp)
-      allocate (contact%active(slave_nodes), source=.false.)
-      allocate (contact%first_pair(size(slave_edges, 2) + 1), source=1)
-      allocate (contact%pair(size(slave_edges, 2) + size(master_edges, 2)))
-      allocate (contact%position(unknowns), contact%touched(unknowns), source=0)
-      allocate (contact%left(unknowns), contact%right(unknowns), contact%load(slave_nodes), source=0.0_wp)
-      allocate (contact%row(1024), contact%column(1024), source=0)
-      allocate (contact%value(1024), source=0.0_wp)
-      call prepare_search(contact%search, size(slave_edges, 2), size(master_edges, 2))
+      geometry%options = options
+      geometry%slave_nodes = slave_nodes
+      geometry%master_nodes = master_nodes
+      geometry%slave_edges = slave_edges
+      geometry%master_edges = master_edges
+      geometry%free = edges_of(2, :) == 0
    end subroutine contact_prepare
+
+   !> Room for evaluations of prepared surfaces.
+   pure function new_workspace(geometry) result(work)
+      type(contact_geometry_t), intent(in) :: geometry
+      type(contact_workspace_t) :: work
+      integer :: unknowns, slaves, masters
+
+      unknowns = 2*(geometry%slave_nodes + geometry%master_nodes)
+      slaves = size(geometry%slave_edges, 2)
+      masters = size(geometry%master_edges, 2)
+      allocate (work%first_pair(slaves + 1), source=1)
+      allocate (work%pair(slaves + masters))
+      allocate (work%position(unknowns), work%touched(unknowns), source=0)
+      allocate (work%left(unknowns), work%right(unknowns), work%load(geometry%slave_nodes), source=0.0_wp)
+      call prepare_search(work%search, slaves, masters)
+   end function new_workspace
+
+   !> Nothing in contact.
+   pure function new_result(geometry) result(result)
+      type(contact_geometry_t), intent(in) :: geometry
+      type(contact_result_t) :: result
+
+      allocate (result%force(2*(geometry%slave_nodes + geometry%master_nodes)), source=0.0_wp)
+      allocate (result%weight(geometry%slave_nodes), result%whole(geometry%slave_nodes), &
+                result%gap(geometry%slave_nodes), result%pressure(geometry%slave_nodes), source=0.0_wp)
+      allocate (result%active(geometry%slave_nodes), source=.false.)
+      allocate (result%row(FIRST_ROOM), result%column(FIRST_ROOM), source=0)
+      allocate (result%value(FIRST_ROOM), source=0.0_wp)
+   end function new_result
 
    pure subroutine check_options(options, status)
       type(contact_options_t), intent(in) :: options
@@ -141,49 +169,51 @@ contains
 
    !> Evaluates everything for current coordinates. If the status is not CONTACT_OK the answer is of no use, but
    !> `active` is still that of the evaluation before.
-   pure subroutine contact_evaluate(contact, slave_x, master_x, with_tangent, status)
-      type(contact_t), intent(inout) :: contact
+   pure subroutine contact_evaluate(geometry, slave_x, master_x, with_tangent, work, result, status)
+      type(contact_geometry_t), intent(in) :: geometry
       real(wp), intent(in) :: slave_x(:, :), master_x(:, :)   !< (2, nodes): r and z, or x and y [m]
       logical, intent(in) :: with_tangent
+      type(contact_workspace_t), intent(inout) :: work
+      type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
 
-      contact%force = 0.0_wp
-      contact%triplets = 0
-      contact%energy = 0.0_wp
-      contact%pairs = 0
-      call check_coordinates(contact, slave_x, master_x, status)
+      result%force = 0.0_wp
+      result%triplets = 0
+      result%energy = 0.0_wp
+      result%pairs = 0
+      call check_coordinates(geometry, slave_x, master_x, status)
       if (status%code /= CONTACT_OK) return
-      if (size(contact%slave_edges) == 0 .or. size(contact%master_edges) == 0) return
+      if (size(geometry%slave_edges) == 0 .or. size(geometry%master_edges) == 0) return
 
-      call find_candidates(contact%search, slave_x, contact%slave_edges, master_x, contact%master_edges, &
-                           contact%options%search_radius)
-      contact%checks = contact%search%checks
-      call find_whole(contact, slave_x)
-      call find_gaps(contact, slave_x, master_x, status)
+      call find_candidates(work%search, slave_x, geometry%slave_edges, master_x, geometry%master_edges, &
+                           geometry%options%search_radius)
+      result%checks = work%search%checks
+      call find_whole(geometry, slave_x, result)
+      call find_gaps(geometry, slave_x, master_x, work, result, status)
       if (status%code /= CONTACT_OK) return
-      call respond(contact, slave_x, master_x, with_tangent, status)
+      call respond(geometry, slave_x, master_x, with_tangent, work, result, status)
       if (status%code /= CONTACT_OK) return
-      contact%changed = count(contact%active .neqv. contact%pressure > 0.0_wp)
-      contact%active = contact%pressure > 0.0_wp
+      result%changed = count(result%active .neqv. result%pressure > 0.0_wp)
+      result%active = result%pressure > 0.0_wp
    end subroutine contact_evaluate
 
-   pure subroutine check_coordinates(contact, slave_x, master_x, status)
-      type(contact_t), intent(in) :: contact
+   pure subroutine check_coordinates(geometry, slave_x, master_x, status)
+      type(contact_geometry_t), intent(in) :: geometry
       real(wp), intent(in) :: slave_x(:, :), master_x(:, :)
       type(contact_status_t), intent(out) :: status
       integer :: i
 
-      if (size(slave_x, 2) /= contact%slave_nodes) then
-         status = contact_fail(CONTACT_BAD_SIZE, contact%slave_nodes, .false., real(size(slave_x, 2), wp))
-      else if (size(master_x, 2) /= contact%master_nodes) then
-         status = contact_fail(CONTACT_BAD_SIZE, contact%master_nodes, .true., real(size(master_x, 2), wp))
+      if (size(slave_x, 2) /= geometry%slave_nodes) then
+         status = contact_fail(CONTACT_BAD_SIZE, geometry%slave_nodes, .false., real(size(slave_x, 2), wp))
+      else if (size(master_x, 2) /= geometry%master_nodes) then
+         status = contact_fail(CONTACT_BAD_SIZE, geometry%master_nodes, .true., real(size(master_x, 2), wp))
       end if
       if (status%code /= CONTACT_OK) return
-      call check_surface(slave_x, contact%slave_edges, .false., status)
+      call check_surface(slave_x, geometry%slave_edges, .false., status)
       if (status%code /= CONTACT_OK) return
-      call check_surface(master_x, contact%master_edges, .true., status)
-      if (status%code /= CONTACT_OK .or. .not. contact%options%axisymmetric) return
-      do i = 1, contact%slave_nodes
+      call check_surface(master_x, geometry%master_edges, .true., status)
+      if (status%code /= CONTACT_OK .or. .not. geometry%options%axisymmetric) return
+      do i = 1, geometry%slave_nodes
          if (slave_x(1, i) >= 0.0_wp) cycle
          status = contact_fail(CONTACT_BAD_RADIUS, i, .false., slave_x(1, i))
          return
@@ -212,24 +242,25 @@ contains
    end subroutine check_surface
 
    !> Weights of the whole slave edges. The hats bend at the middle node, so both halves are integrated.
-   pure subroutine find_whole(contact, slave_x)
-      type(contact_t), intent(inout) :: contact
+   pure subroutine find_whole(geometry, slave_x, result)
+      type(contact_geometry_t), intent(in) :: geometry
       real(wp), intent(in) :: slave_x(:, :)
+      type(contact_result_t), intent(inout) :: result
       type(edge_t) :: edge
       real(wp) :: s, ring, x(2)
       integer :: e, k, side
 
-      contact%whole = 0.0_wp
-      do e = 1, size(contact%slave_edges, 2)
-         associate (nodes => contact%slave_edges(:, e))
+      result%whole = 0.0_wp
+      do e = 1, size(geometry%slave_edges, 2)
+         associate (nodes => geometry%slave_edges(:, e))
             edge = edge_of(slave_x(:, nodes))
             do side = -1, 1, 2
                do k = 1, POINTS
                   s = 0.5_wp*(POSITION(k) + side)
                   x = place(edge, s)
-                  ring = merge(TWO_PI*x(1), 1.0_wp, contact%options%axisymmetric)
+                  ring = merge(TWO_PI*x(1), 1.0_wp, geometry%options%axisymmetric)
                   ! Half the Gauss weight for half the edge, whose length is 2.
-                  contact%whole(nodes) = contact%whole(nodes) + 0.5_wp*SHARE(k)*ring*norm2(tangent(edge, s))*hats(s)
+                  result%whole(nodes) = result%whole(nodes) + 0.5_wp*SHARE(k)*ring*norm2(tangent(edge, s))*hats(s)
                end do
             end do
          end associate
@@ -237,186 +268,192 @@ contains
    end subroutine find_whole
 
    !> Pairs of edges opposite each other, weights and gaps of the slave nodes.
-   pure subroutine find_gaps(contact, slave_x, master_x, status)
-      type(contact_t), intent(inout) :: contact
+   pure subroutine find_gaps(geometry, slave_x, master_x, work, result, status)
+      type(contact_geometry_t), intent(in) :: geometry
       real(wp), intent(in) :: slave_x(:, :), master_x(:, :)
+      type(contact_workspace_t), intent(inout) :: work
+      type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
       real(wp) :: weight(3), weighted_gap(3), x(2, 6), missed
       integer :: e, c, n
 
-      contact%weight = 0.0_wp
-      contact%gap = 0.0_wp
+      result%weight = 0.0_wp
+      result%gap = 0.0_wp
       n = 0
-      do e = 1, size(contact%slave_edges, 2)
-         contact%first_pair(e) = n + 1
-         do c = contact%search%first(e), contact%search%first(e + 1) - 1
-            if (n == size(contact%pair)) call grow_pairs(contact%pair)
-            associate (pair => contact%pair(n + 1), master => contact%search%candidate(c))
-               x(:, 1:3) = slave_x(:, contact%slave_edges(:, e))
-               x(:, 4:6) = master_x(:, contact%master_edges(:, master))
-               call find_overlap(x, contact%free(contact%master_edges(1:2, master)), pair%overlap)
+      do e = 1, size(geometry%slave_edges, 2)
+         work%first_pair(e) = n + 1
+         do c = work%search%first(e), work%search%first(e + 1) - 1
+            if (n == size(work%pair)) call grow_pairs(work%pair)
+            associate (pair => work%pair(n + 1), master => work%search%candidate(c))
+               x(:, 1:3) = slave_x(:, geometry%slave_edges(:, e))
+               x(:, 4:6) = master_x(:, geometry%master_edges(:, master))
+               call find_overlap(x, geometry%free(geometry%master_edges(1:2, master)), pair%overlap)
                if (pair%overlap%segments == 0) cycle
                n = n + 1
                pair%slave = e
                pair%master = master
-               call pair_gaps(x, pair%overlap, contact%options%axisymmetric, weight, weighted_gap, pair%d_weight, &
+               call pair_gaps(x, pair%overlap, geometry%options%axisymmetric, weight, weighted_gap, pair%d_weight, &
                               pair%d_weighted_gap, pair%push, missed)
                if (missed > 0.0_wp) then
                   status = contact_fail(CONTACT_NO_PROJECTION, e, .false., missed)
                   return
                end if
             end associate
-            associate (nodes => contact%slave_edges(:, e))
-               contact%weight(nodes) = contact%weight(nodes) + weight
-               contact%gap(nodes) = contact%gap(nodes) + weighted_gap
+            associate (nodes => geometry%slave_edges(:, e))
+               result%weight(nodes) = result%weight(nodes) + weight
+               result%gap(nodes) = result%gap(nodes) + weighted_gap
             end associate
          end do
       end do
-      contact%first_pair(e) = n + 1
-      contact%pairs = n
-      where (contact%weight > 0.0_wp)
-         contact%gap = contact%gap/contact%weight
+      work%first_pair(e) = n + 1
+      result%pairs = n
+      where (result%weight > 0.0_wp)
+         result%gap = result%gap/result%weight
       elsewhere
-         contact%gap = 0.0_wp
+         result%gap = 0.0_wp
       end where
    end subroutine find_gaps
 
    !> Pressures, energy, forces and tangent.
-   pure subroutine respond(contact, slave_x, master_x, with_tangent, status)
-      type(contact_t), intent(inout) :: contact
+   pure subroutine respond(geometry, slave_x, master_x, with_tangent, work, result, status)
+      type(contact_geometry_t), intent(in) :: geometry
       real(wp), intent(in) :: slave_x(:, :), master_x(:, :)
       logical, intent(in) :: with_tangent
+      type(contact_workspace_t), intent(inout) :: work
+      type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
       type(response_t) :: response
       real(wp) :: x(2, 6), missed
       integer :: unknown(12), i, j
 
-      contact%pressure = 0.0_wp
-      contact%load = 0.0_wp
-      if (contact%options%gap == NODAL_GAP) then
-         contact%pressure = contact%options%penalty*max(-contact%gap, 0.0_wp)
-         contact%energy = sum(0.5_wp*contact%weight*contact%pressure**2)/contact%options%penalty
+      result%pressure = 0.0_wp
+      work%load = 0.0_wp
+      if (geometry%options%gap == NODAL_GAP) then
+         result%pressure = geometry%options%penalty*max(-result%gap, 0.0_wp)
+         result%energy = sum(0.5_wp*result%weight*result%pressure**2)/geometry%options%penalty
       end if
-      do i = 1, contact%pairs
-         associate (pair => contact%pair(i), nodes => contact%slave_edges(:, contact%pair(i)%slave))
-            if (contact%options%gap == NODAL_GAP .and. .not. any(contact%pressure(nodes) > 0.0_wp)) cycle
+      do i = 1, result%pairs
+         associate (pair => work%pair(i), nodes => geometry%slave_edges(:, work%pair(i)%slave))
+            if (geometry%options%gap == NODAL_GAP .and. .not. any(result%pressure(nodes) > 0.0_wp)) cycle
             x(:, 1:3) = slave_x(:, nodes)
-            x(:, 4:6) = master_x(:, contact%master_edges(:, pair%master))
-            call pair_response(x, pair%overlap, contact%options, contact%pressure(nodes), with_tangent, response, &
+            x(:, 4:6) = master_x(:, geometry%master_edges(:, pair%master))
+            call pair_response(x, pair%overlap, geometry%options, result%pressure(nodes), with_tangent, response, &
                                missed)
             if (missed > 0.0_wp) then
                status = contact_fail(CONTACT_NO_PROJECTION, pair%slave, .false., missed)
                return
             end if
-            unknown = unknowns_of(contact, pair)
-            contact%force(unknown) = contact%force(unknown) + response%force
-            if (contact%options%gap == POINTWISE_GAP) then
-               contact%energy = contact%energy + response%energy
-               contact%load(nodes) = contact%load(nodes) + response%load
+            unknown = unknowns_of(geometry, pair)
+            result%force(unknown) = result%force(unknown) + response%force
+            if (geometry%options%gap == POINTWISE_GAP) then
+               result%energy = result%energy + response%energy
+               work%load(nodes) = work%load(nodes) + response%load
                if (response%energy <= 0.0_wp) cycle
             end if
             if (.not. with_tangent) cycle
-            call make_room(contact, 144)
+            call make_room(result, 144)
             do j = 1, 12
-               call add_column(contact, unknown, unknown(j), response%stiffness(:, j))
+               call add_column(result, unknown, unknown(j), response%stiffness(:, j))
             end do
          end associate
       end do
-      if (contact%options%gap == POINTWISE_GAP) then
-         where (contact%weight > 0.0_wp) contact%pressure = contact%load/contact%weight
+      if (geometry%options%gap == POINTWISE_GAP) then
+         where (result%weight > 0.0_wp) result%pressure = work%load/result%weight
       else if (with_tangent) then
-         do i = 1, contact%slave_nodes
-            if (contact%pressure(i) > 0.0_wp) call add_node(contact, i)
+         do i = 1, geometry%slave_nodes
+            if (result%pressure(i) > 0.0_wp) call add_node(geometry, i, work, result)
          end do
       end if
    end subroutine respond
 
    !> The change of a nodal pressure: dp_A = -eps dg_A times what a unit of p_A pushes, over all unknowns that g_A
    !> depends on.
-   pure subroutine add_node(contact, node)
-      type(contact_t), intent(inout) :: contact
+   pure subroutine add_node(geometry, node, work, result)
+      type(contact_geometry_t), intent(in) :: geometry
       integer, intent(in) :: node
+      type(contact_workspace_t), intent(inout) :: work
+      type(contact_result_t), intent(inout) :: result
       real(wp) :: slope(12)
       integer :: unknown(12), side, edge, i, a, j, n
 
       n = 0
       do side = 1, 2
-         edge = contact%edges_of(side, node)
+         edge = geometry%edges_of(side, node)
          if (edge == 0) cycle
-         do i = contact%first_pair(edge), contact%first_pair(edge + 1) - 1
-            a = findloc(contact%slave_edges(:, contact%pair(i)%slave), node, dim=1)
-            unknown = unknowns_of(contact, contact%pair(i))
+         do i = work%first_pair(edge), work%first_pair(edge + 1) - 1
+            a = findloc(geometry%slave_edges(:, work%pair(i)%slave), node, dim=1)
+            unknown = unknowns_of(geometry, work%pair(i))
             do j = 1, 12
-               if (contact%position(unknown(j)) > 0) cycle
+               if (work%position(unknown(j)) > 0) cycle
                n = n + 1
-               contact%position(unknown(j)) = n
-               contact%touched(n) = unknown(j)
-               contact%left(n) = 0.0_wp
-               contact%right(n) = 0.0_wp
+               work%position(unknown(j)) = n
+               work%touched(n) = unknown(j)
+               work%left(n) = 0.0_wp
+               work%right(n) = 0.0_wp
             end do
-            associate (pair => contact%pair(i), at => contact%position(unknown))
-               slope = pair%d_weighted_gap(:, a) - contact%gap(node)*pair%d_weight(:, a)
-               contact%right(at) = contact%right(at) + slope
-               if (contact%options%variation == PRESSURE_WORK) then
-                  contact%left(at) = contact%left(at) - pair%push(:, a)
+            associate (pair => work%pair(i), at => work%position(unknown))
+               slope = pair%d_weighted_gap(:, a) - result%gap(node)*pair%d_weight(:, a)
+               work%right(at) = work%right(at) + slope
+               if (geometry%options%variation == PRESSURE_WORK) then
+                  work%left(at) = work%left(at) - pair%push(:, a)
                else
-                  contact%left(at) = contact%left(at) + slope
+                  work%left(at) = work%left(at) + slope
                end if
             end associate
          end do
       end do
-      contact%right(:n) = contact%options%penalty/contact%weight(node)*contact%right(:n)
-      call make_room(contact, n*n)
+      work%right(:n) = geometry%options%penalty/result%weight(node)*work%right(:n)
+      call make_room(result, n*n)
       do j = 1, n
-         contact%position(contact%touched(j)) = 0
-         call add_column(contact, contact%touched(:n), contact%touched(j), contact%right(j)*contact%left(:n))
+         work%position(work%touched(j)) = 0
+         call add_column(result, work%touched(:n), work%touched(j), work%right(j)*work%left(:n))
       end do
    end subroutine add_node
 
-   pure function unknowns_of(contact, pair) result(unknown)
-      type(contact_t), intent(in) :: contact
+   pure function unknowns_of(geometry, pair) result(unknown)
+      type(contact_geometry_t), intent(in) :: geometry
       type(pair_t), intent(in) :: pair
       integer :: unknown(12)
 
-      unknown(1:5:2) = 2*contact%slave_edges(:, pair%slave) - 1
-      unknown(7:11:2) = 2*(contact%slave_nodes + contact%master_edges(:, pair%master)) - 1
+      unknown(1:5:2) = 2*geometry%slave_edges(:, pair%slave) - 1
+      unknown(7:11:2) = 2*(geometry%slave_nodes + geometry%master_edges(:, pair%master)) - 1
       unknown(2:12:2) = unknown(1:11:2) + 1
    end function unknowns_of
 
    !> Entries of one column of the tangent; exact zeros are left out.
-   pure subroutine add_column(contact, rows, column, values)
-      type(contact_t), intent(inout) :: contact
+   pure subroutine add_column(result, rows, column, values)
+      type(contact_result_t), intent(inout) :: result
       integer, intent(in) :: rows(:), column
       real(wp), intent(in) :: values(:)
       integer :: i
 
       do i = 1, size(rows)
          if (.not. abs(values(i)) > 0.0_wp) cycle
-         contact%triplets = contact%triplets + 1
-         contact%row(contact%triplets) = rows(i)
-         contact%column(contact%triplets) = column
-         contact%value(contact%triplets) = values(i)
+         result%triplets = result%triplets + 1
+         result%row(result%triplets) = rows(i)
+         result%column(result%triplets) = column
+         result%value(result%triplets) = values(i)
       end do
    end subroutine add_column
 
    !> Room for more triplets: it doubles, so that it soon stays as it is.
-   pure subroutine make_room(contact, more)
-      type(contact_t), intent(inout) :: contact
+   pure subroutine make_room(result, more)
+      type(contact_result_t), intent(inout) :: result
       integer, intent(in) :: more
       integer, allocatable :: row(:), column(:)
       real(wp), allocatable :: value(:)
       integer :: n
 
-      if (contact%triplets + more <= size(contact%row)) return
-      n = max(2*size(contact%row), contact%triplets + more)
+      if (result%triplets + more <= size(result%row)) return
+      n = max(2*size(result%row), result%triplets + more)
       allocate (row(n), column(n), source=0)
       allocate (value(n), source=0.0_wp)
-      row(:contact%triplets) = contact%row(:contact%triplets)
-      column(:contact%triplets) = contact%column(:contact%triplets)
-      value(:contact%triplets) = contact%value(:contact%triplets)
-      call move_alloc(row, contact%row)
-      call move_alloc(column, contact%column)
-      call move_alloc(value, contact%value)
+      row(:result%triplets) = result%row(:result%triplets)
+      column(:result%triplets) = result%column(:result%triplets)
+      value(:result%triplets) = result%value(:result%triplets)
+      call move_alloc(row, result%row)
+      call move_alloc(column, result%column)
+      call move_alloc(value, result%value)
    end subroutine make_room
 
    pure subroutine grow_pairs(pair)

@@ -7,7 +7,7 @@ module contact_drainage
    use kinds, only: wp
    use model_types, only: model_t
    use contact_types, only: contact_message
-   use contact_interfaces, only: contacts_t, evaluate_contacts
+   use contact_interfaces, only: contacts_t, probe_contacts
    use faults, only: fault_t, raise, EXIT_INPUT
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
@@ -68,15 +68,13 @@ contains
       type(contacts_t), intent(inout) :: contacts
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) at the start of the step
       type(fault_t), intent(inout) :: fault
-      type(contacts_t) :: probe
       character(400) :: text
       logical, allocatable :: sealed(:)
       integer :: c, f
 
       if (.not. allocated(drainage%gives_way)) return
-      probe = contacts
-      if (.not. evaluate_contacts(probe, x, .false.)) then
-         call contact_message(probe%status, text)
+      if (.not. probe_contacts(contacts, x)) then
+         call contact_message(contacts%status, text)
          call raise(fault, EXIT_CONVERGENCE, 'Drainage at the start of a step: '//trim(text)//'.')
          return
       end if
@@ -84,8 +82,8 @@ contains
       do c = 1, size(model%contacts)
          contacts%interfaces(c)%sealed = 0
          if (.not. model%contacts(c)%drains_by_state .or. .not. contacts%interfaces(c)%acts) cycle
-         associate (kernel => probe%interfaces(c)%kernel, nodes => contacts%interfaces(c)%slave%node)
-            sealed = kernel%pressure > 0.0_wp .and. kernel%weight >= HALF*kernel%whole
+         associate (probe => contacts%interfaces(c)%probe, nodes => contacts%interfaces(c)%slave%node)
+            sealed = probe%pressure > 0.0_wp .and. probe%weight >= HALF*probe%whole
             contacts%interfaces(c)%sealed = count(sealed)
             do f = 1, size(model%fixes)
                if (.not. drainage%gives_way(f, c)) cycle

@@ -2,7 +2,9 @@
 module contact_rows
    use kinds, only: wp
    use boundary_loads, only: plate_load
-   use contact_interfaces, only: contacts_t, contact_interface_t, evaluate_contacts
+   use contact_interfaces, only: contacts_t, contact_interface_t, probe_interface
+   use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result
+   use contact_types, only: contact_status_t, CONTACT_OK
    use model_types, only: model_t
    use porous_domain, only: state_t
    use unknown_fields, only: AT_U_Z
@@ -58,18 +60,25 @@ contains
       type(contacts_t), intent(in) :: contacts
       type(state_t), intent(in) :: state
       real(wp), allocatable, intent(out) :: table(:, :)
-      type(contacts_t) :: probe
+      type(contact_workspace_t) :: work
+      type(contact_result_t) :: found
+      type(contact_status_t) :: status
+      real(wp), allocatable :: rows(:, :)
       integer :: c, i
 
-      allocate (table(7, 0))
-      probe = contacts
-      if (.not. evaluate_contacts(probe, state%x, .false.)) return
+      allocate (rows(7, 0), table(7, 0))
       do c = 1, size(model%contacts)
-         if (.not. probe%interfaces(c)%acts) cycle
-         associate (k => probe%interfaces(c)%kernel, slave => probe%interfaces(c)%slave)
-            table = reshape([table, (real(c, wp), slave%x0(:, i), k%weight(i), k%weight(i)/k%whole(i), k%gap(i), &
-                                     k%pressure(i), i=1, size(slave%node))], [7, size(table, 2) + size(slave%node)])
+         associate (t => contacts%interfaces(c))
+            if (.not. t%acts) cycle
+            work = new_workspace(t%geometry)
+            found = new_result(t%geometry)
+            call probe_interface(t%geometry, t%slave, t%master, t%plate, state%x, .false., work, found, status)
+            if (status%code /= CONTACT_OK) return
+            rows = reshape([rows, (real(c, wp), t%slave%x0(:, i), found%weight(i), found%weight(i)/found%whole(i), &
+                                   found%gap(i), found%pressure(i), i=1, size(t%slave%node))], &
+                           [7, size(rows, 2) + size(t%slave%node)])
          end associate
       end do
+      call move_alloc(rows, table)
    end subroutine contact_nodes
 end module contact_rows

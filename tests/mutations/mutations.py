@@ -118,7 +118,7 @@ MUTATIONS = [
 ]
 
 MORTAR, RESPONSE, PENALTY = "contact/contact_mortar.f90", "contact/contact_response.f90", "contact/contact_penalty.f90"
-SEARCH, RIGID, JOINED = "contact/contact_search.f90", "contact/contact_rigid.f90", "contact/contact_interfaces.f90"
+SEARCH, PLATE, JOINED = "contact/contact_search.f90", "contact/contact_plate.f90", "contact/contact_interfaces.f90"
 DRAINAGE = "model/contact_drainage.f90"
 
 # Of the host's contact, below host.
@@ -141,16 +141,17 @@ CONTACT = [
      (MORTAR, "+ p%y(1)*p%d_t(2, :) - p%y(2)*p%d_t(1, :)", "+ 0.0_wp*p%y(1)*p%d_t(2, :)")),
     ("the tangent forgets the radius", (MORTAR, "p%d_ring = TWO_PI*p%d_xs(1, :)", "p%d_ring = 0.0_wp")),
     ("the tangent forgets the nodal pressures",
-     (PENALTY, "if (contact%pressure(i) > 0.0_wp) call add_node", "if (contact%pressure(i) > huge(1.0_wp)) call add_node")),
+     (PENALTY, "if (result%pressure(i) > 0.0_wp) call add_node", "if (result%pressure(i) > huge(1.0_wp)) call add_node")),
     ("nothing pushes the master", (RESPONSE, "push(2*i + 5:2*i + 6) = -p%nm(i)*nu", "push(2*i + 5:2*i + 6) = 0.0_wp*nu")),
-    ("an open gap pulls", (PENALTY, "penalty*max(-contact%gap, 0.0_wp)", "penalty*(-contact%gap)")),
+    ("an open gap pulls", (PENALTY, "penalty*max(-result%gap, 0.0_wp)", "penalty*(-result%gap)")),
     ("the search does not sort", (SEARCH, "grid%side = max(mean, ", "grid%side = max(1.0e6_wp*mean, ")),
     ("the search forgets the reach", (SEARCH, "search%slave_box(1:2, e) - near", "search%slave_box(1:2, e) - 0.0_wp*near")),
-    ("a plate feels nothing", (RIGID, "+ contact%force(n + i)*by_row(:m)", "+ 0.0_wp*contact%force(n + i)*by_row(:m)")),
+    ("a plate feels nothing", (PLATE, "force = force + result%force(i)", "force = force + 0.0_wp*result%force(i)")),
     ("slopes against the values within the step", (JOINED, "values(place) + share*value(k)", "values(place) + value(k)")),
-    ("a contact acts in every stage", (JOINED, "if (.not. t%acts) cycle\n            allocate", "allocate")),
-    ("drainage without coverage", (DRAINAGE, "kernel%weight >= HALF*kernel%whole", "kernel%weight > 0.0_wp")),
-    ("drainage without pressure", (DRAINAGE, "kernel%pressure > 0.0_wp .and. ", "")),
+    ("a contact acts in every stage", (JOINED, "if (.not. t%acts) cycle\n            call probe_interface(t%geometry, t%slave, t%master, t%plate, x, with_slope",
+                                          "call probe_interface(t%geometry, t%slave, t%master, t%plate, x, with_slope")),
+    ("drainage without coverage", (DRAINAGE, "probe%weight >= HALF*probe%whole", "probe%weight > 0.0_wp")),
+    ("drainage without pressure", (DRAINAGE, "probe%pressure > 0.0_wp .and. ", "")),
     ("a released node stays so", (DRAINAGE, "drainage%released = .false.\n      do c", "do c")),
     ("a boundary that touches the slave gives way too",
      (DRAINAGE, "shared .or. all(in_group(edges(:, e)))", "shared .or. any(in_group(edges(:, e)))")),

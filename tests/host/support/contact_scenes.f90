@@ -1,12 +1,13 @@
 !> Surfaces for the tests of the contact kernels, and what every such test asks of an answer.
 module contact_scenes
    use, intrinsic :: iso_fortran_env, only: int64
-   use contact_penalty, only: contact_t, contact_prepare, contact_evaluate
+   use contact_penalty, only: contact_geometry_t, contact_workspace_t, contact_result_t, contact_prepare, &
+                              new_workspace, new_result, contact_evaluate
    use contact_types, only: wp, TWO_PI, contact_options_t, contact_status_t
    implicit none (type, external)
    private
    public :: random_t, uniform, surface_t, straight, curve, rough, flat_pair
-   public :: scene_t, new_scene, positions, evaluate, dense_tangent, balance, differences, edge_loads
+   public :: scene_t, new_scene, positions, evaluate, evaluate_at, dense_tangent, balance, differences, edge_loads
 
    !> A generator of its own, the same on every machine (Park & Miller's minimal standard).
    type :: random_t
@@ -19,10 +20,17 @@ module contact_scenes
       integer, allocatable :: edges(:, :)
    end type surface_t
 
+   !> A contact with room for its evaluations.
+   type :: kernel_t
+      type(contact_geometry_t) :: geometry
+      type(contact_workspace_t) :: work
+      type(contact_result_t) :: result
+   end type kernel_t
+
    !> Two surfaces with a contact between them.
    type :: scene_t
       type(surface_t) :: slave, master
-      type(contact_t) :: contact
+      type(kernel_t) :: contact
       type(contact_status_t) :: status
    end type scene_t
 contains
@@ -70,8 +78,10 @@ contains
 
       scene%slave = slave
       scene%master = master
-      call contact_prepare(scene%contact, size(slave%x, 2), slave%edges, size(master%x, 2), master%edges, options, &
-                           scene%status)
+      call contact_prepare(scene%contact%geometry, size(slave%x, 2), slave%edges, size(master%x, 2), master%edges, &
+                           options, scene%status)
+      scene%contact%work = new_workspace(scene%contact%geometry)
+      scene%contact%result = new_result(scene%contact%geometry)
    end function new_scene
 
    !> All coordinates as one list, in the order of the contact's unknowns.
@@ -81,6 +91,15 @@ contains
 
       x = [scene%slave%x, scene%master%x]
    end function positions
+
+   subroutine evaluate_at(contact, slave_x, master_x, with_tangent, status)
+      type(kernel_t), intent(inout) :: contact
+      real(wp), intent(in) :: slave_x(:, :), master_x(:, :)
+      logical, intent(in) :: with_tangent
+      type(contact_status_t), intent(out) :: status
+
+      call contact_evaluate(contact%geometry, slave_x, master_x, with_tangent, contact%work, contact%result, status)
+   end subroutine evaluate_at
 
    !> Evaluates at the scene's own coordinates, or at those given.
    subroutine evaluate(scene, x, with_tangent)
@@ -94,22 +113,22 @@ contains
       if (present(with_tangent)) tangent_too = with_tangent
       n = size(scene%slave%x)
       if (present(x)) then
-         call contact_evaluate(scene%contact, reshape(x(:n), shape(scene%slave%x)), &
-                               reshape(x(n + 1:), shape(scene%master%x)), tangent_too, scene%status)
+         call evaluate_at(scene%contact, reshape(x(:n), shape(scene%slave%x)), &
+                          reshape(x(n + 1:), shape(scene%master%x)), tangent_too, scene%status)
       else
-         call contact_evaluate(scene%contact, scene%slave%x, scene%master%x, tangent_too, scene%status)
+         call evaluate_at(scene%contact, scene%slave%x, scene%master%x, tangent_too, scene%status)
       end if
    end subroutine evaluate
 
    pure function dense_tangent(scene) result(k)
       type(scene_t), intent(in) :: scene
-      real(wp) :: k(size(scene%contact%force), size(scene%contact%force))
+      real(wp) :: k(size(scene%contact%result%force), size(scene%contact%result%force))
       integer :: i
 
       k = 0.0_wp
-      do i = 1, scene%contact%triplets
-         associate (a => scene%contact%row(i), b => scene%contact%column(i))
-            k(a, b) = k(a, b) + scene%contact%value(i)
+      do i = 1, scene%contact%result%triplets
+         associate (a => scene%contact%result%row(i), b => scene%contact%result%column(i))
+            k(a, b) = k(a, b) + scene%contact%result%value(i)
          end associate
       end do
    end function dense_tangent
@@ -158,8 +177,8 @@ contains
             moved = x
             moved(i) = x(i) + at(k)*step
             call evaluate(scene, moved, .false.)
-            force(:, k) = scene%contact%force
-            energy(k) = scene%contact%energy
+            force(:, k) = scene%contact%result%force
+            energy(k) = scene%contact%result%energy
          end do
          d_force(:, i) = matmul(force, by)/step
          d_energy(i) = dot_product(energy, by)/step
