@@ -18,7 +18,8 @@ module region_builder
    private
    public :: build_regions
 
-   character(*), parameter :: OF_THE_MATERIAL = 'mud'   !< Name of no curve: the material has its own.
+   !> Names of no curve: the material has a retention of its own. The second is that of older scenes.
+   character(8), parameter :: OF_THE_MATERIAL(2) = [character(8) :: 'material', 'mud']
 contains
    subroutine build_regions(scene, domain, fault)
       type(scene_t), intent(in) :: scene
@@ -98,22 +99,18 @@ contains
       type(scene_region_t), intent(in) :: given
       class(material_t), intent(inout) :: law
       type(fault_t), intent(inout) :: fault
-      logical :: own
+      logical :: asked
       integer :: k
 
-      select type (law)
-      type is (mud_t)
-         own = .true.
-      class default
-         own = .false.
-      end select
-      if (own .and. given%retention_name /= OF_THE_MATERIAL) then
+      asked = any(given%retention_name == OF_THE_MATERIAL)
+      if (law%has_retention .and. .not. asked) then
          call raise(fault, EXIT_INPUT, place_of(given)//'material '''//trim(given%material_name)//''' has a '// &
-                    'retention of its own: say retention = ''mud'', and give P_a, Omega, n_x, m_x, S_max and S_min '// &
-                    'as its parameters.')
-      else if (.not. own .and. given%retention_name == OF_THE_MATERIAL) then
-         call raise(fault, EXIT_INPUT, place_of(given)//'retention = ''mud'' needs a &mud material.')
-      else if (.not. own) then
+                    'retention of its own: say retention = ''material'', and give its parameters there (of &mud: P_a, '// &
+                    'Omega, n_x, m_x, S_max, S_min).')
+      else if (asked .and. .not. law%has_retention) then
+         call raise(fault, EXIT_INPUT, place_of(given)//'material '''//trim(given%material_name)//''' has no '// &
+                    'retention of its own; name a &retention.')
+      else if (.not. law%has_retention) then
          k = defined_name('retention', given%retention_name, scene%retentions%name, place_of(given), fault)
          if (fault%code == 0) call new_retention(scene%retentions(k)%group, law%curve, fault)
       end if

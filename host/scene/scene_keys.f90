@@ -68,7 +68,7 @@ module scene_keys
       key_t('permeability', 'floor', 'n', '1.0e-4', 0, 1, 'least relative permeability [-]'), &
       key_t('region', 'group', 't', 'all', 0, 0, 'group of elements'), &
       key_t('region', 'material', 't', REQUIRED, 0, 0, 'name of a material, as &mud or &elastic'), &
-      key_t('region', 'retention', 't', NONE, 0, 0, 'name of a &retention, or "mud": that of the material'), &
+      key_t('region', 'retention', 't', NONE, 0, 0, 'name of a &retention, or "material": its own'), &
       key_t('region', 'permeability', 't', NONE, 0, 0, 'name of a &permeability'), &
       key_t('region', 'rho_s', 'n', '2.65', 0, 1000, 'density of the grains [Mg/m3]'), &
       key_t('region', 'void_ratio', 'n', NONE, 0, 10, 'initial void ratio [-]; default: the material''s'), &

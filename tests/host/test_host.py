@@ -31,7 +31,7 @@ MISTAKES = [
     ("field the scene has not", SCENE, "field = 'u_z'", "field = 'p_w'", 2, ("no field p_w",)),
     ("second retention of MUD", SUCTION, "retention = 'mud'", "retention = 'curve'", 2,
      ("retention of its own", "P_a")),
-    ("retention of MUD for another law", SUCTION, "material = 'sand'", "material = 'other'", 2, ("needs a &mud",)),
+    ("retention of MUD for another law", SUCTION, "material = 'sand'", "material = 'other'", 2, ("has no retention of its own",)),
     ("tangent without slopes", SUCTION, "tangent = 3", "tangent = 0", 2, ("gives no slopes",)),
     ("key of a law", SUCTION, "tangent = 3", "tangnt = 3", 2, ("tangnt", "tangent")),
     ("group of older scenes", SCENE, "&elastic", "&rigid group = 'top' mass = 1 /\n&elastic", 2,

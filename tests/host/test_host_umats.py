@@ -1,0 +1,112 @@
+"""mud_host with laws of others: MUD through its own UMAT gives the files of &mud byte for byte; a foreign UMAT gives
+what the host's elastic law gives, and a Mohr-Coulomb one its strength."""
+import csv
+import math
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from checking import build, check, finish, root, work  # noqa: E402
+
+host, describe = build / "host/mud_host", build / "drivers/mud_describe"
+umats = build / "tests/umats"
+environment = {**os.environ, "OMP_NUM_THREADS": "1"}
+
+
+def run(text, name):
+    """What it says, and the folder of its files."""
+    scene, folder = work / f"{name}.nml", work / name
+    scene.write_text(text)
+    done = subprocess.run([host, scene, "--output", folder, "--quiet"], capture_output=True, text=True, env=environment)
+    return done, folder
+
+
+def cells(path):
+    """Rows without the rate evaluations, which a UMAT does not count."""
+    rows = list(csv.DictReader(path.open()))
+    return [{key: value for key, value in row.items() if key != "rates"} for row in rows]
+
+
+def last_row(path):
+    return {key: float(value) for key, value in list(csv.DictReader(path.open()))[-1].items()}
+
+
+def table(which, pattern):
+    text = subprocess.run([describe, which], capture_output=True, text=True).stdout
+    return re.findall(pattern, text, re.MULTILINE)
+
+
+# The same words for the same numbers, as keys of &mud and as PROPS of its UMAT.
+states, props = table("statev", r"^\| \d+ \| `(\w+)`"), dict(table("namelist", r"^   (\w+) = (\S+)"))
+props.update(memory_rule="1", tangent="3", theta="0.2")
+own = "&mud\n   name = 'sand'\n   " + "\n   ".join(f"{key} = {value}" for key, value in props.items()) + "\n/\n"
+places = {"void_ratio_at": "void_ratio", "saturation_at": "saturation", "saturation_slopes_at": "dsw_dpc",
+          "suction_slope_at": "dsigma_dpc_11"}
+lines = ["name = 'sand'", f"library = '{build}/umat/libmud.so'", "props = " + ",\n".join(props.values()),
+         f"nstatv = {len(states)}", "state_names = " + ",\n".join(states), "tangent = 'consistent'"]
+lines += [f"{key} = {states.index(name) + 1}" for key, name in places.items()]
+foreign = "&umat\n   " + "\n   ".join(lines) + "\n/\n"
+for name, file, changes in (
+        ("suction", "verification/host/element/suction.nml", [("duration = 1.0e7", "duration = 1.0e6")]),
+        ("pulse", "tests/host/scenes/restart.nml", [("checkpoint_steps = 2", "")])):
+    text = (root / file).read_text()
+    for old, new in changes:
+        assert old in text, (name, old)
+        text = text.replace(old, new)
+    (one, left), (other, right) = (run(re.sub(r"&mud\n.*?^/\n", lambda _: law, text, flags=re.S | re.M), f"{name}_{n}")
+                                   for n, law in (("own", own), ("foreign", foreign)))
+    check(f"{name}: both run", one.returncode == other.returncode == 0, one.stderr + other.stderr)
+    tables = sorted(file.name for file in left.glob("*.csv"))
+    check(f"{name}: there are tables to compare", len(tables) >= 4, tables)
+    for file in tables:
+        check(f"{name}: MUD as a UMAT is MUD, digit by digit, in {file}", cells(left / file) == cells(right / file))
+
+# An elastic law of others, isotropic by its constants, is that of the host but for rounding; effective stress, saturated.
+YOUNG, POISSON = 1e4, 0.25
+text = (root / "verification/host/terzaghi/scene.nml").read_text()
+assert "young = 1.0e4\n   poisson = 0.25" in text
+shear = YOUNG / (2 * (1 + POISSON))
+group = f"""&umat
+   name = 'soil'
+   library = '{umats}/orthotropic.so'
+   props = {YOUNG}, {POISSON}, {shear}, {shear}, {shear}
+   tangent = 'consistent'
+/
+"""
+(one, left), (other, right) = (run(re.sub(r"&elastic\n.*?^/\n", lambda _: law, text, flags=re.S | re.M), f"terzaghi_{n}")
+                               for n, law in (("own", re.search(r"&elastic\n.*?^/\n", text, re.S | re.M)[0]),
+                                              ("foreign", group)))
+check("consolidation: both run", one.returncode == other.returncode == 0, one.stderr + other.stderr)
+if one.returncode == other.returncode == 0:
+    mine, theirs = last_row(left / "histories.csv"), last_row(right / "histories.csv")
+    # 500 steps, each solved to 1e-8 of the loads of 100 kPa.
+    for key, size in (("top.u_z", 1e-2), ("base.p_w", 100), ("base.s_zz", 100), ("base.e", 1)):
+        check(f"consolidation: {key}", abs(mine[key] - theirs[key]) <= 1e-8 * size, (mine[key], theirs[key]))
+
+# Mohr-Coulomb between smooth plates: sigma_1 = N sigma_3 + 2 c sqrt(N), in every point of two elements.
+C, PHI, PSI, HELD = 5.0, 30.0, 10.0, 100.0
+n_phi = (1 + math.sin(math.radians(PHI))) / (1 - math.sin(math.radians(PHI)))
+done, folder = run(f"""&scene name = 'sample' fields = 'u' /
+&mesh r = 0, 1 r_cells = 1 z = 0, 1 z_cells = 1 /
+&umat name = 'soil' library = '{umats}/mohr_coulomb.so' props = {YOUNG}, {POISSON}, {C}, {PHI}, {PSI} /
+&region material = 'soil' void_ratio = 0.8 /
+&initial stress = 'uniform' sigma = -{HELD}, -{HELD}, -{HELD} /
+&history name = 'ramp' times = 0, 1 values = 0, 1 /
+&stage name = 'shear' analysis = 'static' duration = 1 dt = 0.02 tolerance = 1e-10 max_iterations = 60 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'top' field = 'u_z' value = -0.06 history = 'ramp' /
+&load group = 'right' kind = 'pressure' value = {HELD} /
+""", "sample")
+check("Mohr-Coulomb runs", done.returncode == 0, done.stderr)
+if done.returncode == 0:
+    rows = list(csv.DictReader((folder / "points_shear.csv").open()))
+    strength = n_phi * HELD + 2 * C * math.sqrt(n_phi)
+    apart = max(abs(-float(row["s_zz"]) / strength - 1) for row in rows)
+    # Newton's tolerance, 1e-10 of the forces, is what is left.
+    check("Mohr-Coulomb fails at its strength in every point", apart < 1e-8, apart)
+
+finish()
