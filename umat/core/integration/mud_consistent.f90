@@ -9,7 +9,7 @@ module mud_consistent
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY
    use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RESUME
-   use mud_sensitivity, only: change_t, linearised_t, linearise, change_of_rate
+   use mud_sensitivity, only: change_t, linearised_t, linearise, change_of_rate, changes_of_rate
    use mud_state, only: memory_t
    use mud_substep, only: MAX_STAGES, stage_point, solution
    use mud_tensor, only: trace, deviator
@@ -166,16 +166,16 @@ contains
       type(driving_t), intent(in) :: driving
       real(wp), intent(out) :: rates(NY, DIRECTIONS)
       type(linearised_t) :: lin
-      type(change_t) :: change
-      real(wp) :: dn(6), e
+      type(change_t) :: changes(DIRECTIONS)
+      real(wp) :: e
       integer :: j
 
       e = void_ratio_at(inc, time)
       call linearise_stage(par, inc, mode, w, point, time, e, lin)
       do j = 1, DIRECTIONS
-         call direction(inc, mode, j, time, e, y(:, j), r_in(:, j), driving, change)
-         call change_of_rate(par, w, lin, change, rates(1:6, j), rates(7:12, j), rates(13, j), dn)
+         call direction(inc, mode, j, time, e, y(:, j), r_in(:, j), driving, changes(j))
       end do
+      call changes_of_rate(par, w, lin, DIRECTIONS, changes, rates)
    end subroutine change_of_stage
 
    pure subroutine linearise_stage(par, inc, mode, w, point, time, e, lin)

@@ -13,9 +13,15 @@ module mud_bonding
       real(wp) :: f        !< f(zeta) [-]
       real(wp) :: df_dpc   !< df/dp_c at constant e [1/kPa]
       real(wp) :: df_de    !< df/de at constant p_c [-]
+      ! on the way there, for the curvature
+      type(saturation_t) :: sat            !< degree of saturation and its slopes
+      real(wp) :: force_0, force_1, force_2   !< g of paper eq. (1) and its derivatives [-, 1/kPa, 1/kPa2]
+      real(wp) :: slope                    !< df/d zeta [-]
    end type bonding_t
 
-   type(bonding_t), parameter :: UNBONDED = bonding_t(1.0_wp, 0.0_wp, 0.0_wp)   !< Saturated, or the effect off.
+   !> Saturated, or the effect off.
+   type(bonding_t), parameter :: UNBONDED = bonding_t(1.0_wp, 0.0_wp, 0.0_wp, &
+      saturation_t(1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp), 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
    real(wp), parameter :: FORCE_A = 10.7_wp, FORCE_B = 2.4_wp   !< g = 1 + t/(A + B t), Borja (2004).
 contains
    !> True if bonding acts at suctions up to p_c [kPa]: with S_max < 1 it does so without suction too.
@@ -32,36 +38,35 @@ contains
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: p_c, e
       type(bonding_t) :: bond
-      type(saturation_t) :: sat
-      real(wp) :: force(0:2), zeta, growth, slope
+      real(wp) :: force(0:2), zeta, growth
 
-      sat = saturation(par, p_c, e)
+      bond%sat = saturation(par, p_c, e)
       force = meniscus_force(par, p_c)
-      zeta = (1.0_wp - sat%s_w)*force(0)
+      zeta = (1.0_wp - bond%sat%s_w)*force(0)
       growth = exp(par%b_2*zeta)
-      slope = par%b_1*par%b_2*growth
+      bond%slope = par%b_1*par%b_2*growth
       bond%f = 1.0_wp - par%b_1*(1.0_wp - growth)
-      bond%df_dpc = slope*((1.0_wp - sat%s_w)*force(1) - sat%ds_dpc*force(0))
-      bond%df_de = -slope*sat%ds_de*force(0)
+      bond%df_dpc = bond%slope*((1.0_wp - bond%sat%s_w)*force(1) - bond%sat%ds_dpc*force(0))
+      bond%df_de = -bond%slope*bond%sat%ds_de*force(0)
+      bond%force_0 = force(0)
+      bond%force_1 = force(1)
+      bond%force_2 = force(2)
    end function bonding
 
-   !> Second derivatives [d2f/dp_c2 (1/kPa2), d2f/dp_c de (1/kPa), d2f/de2 (-)].
-   pure function bonding_curvature(par, p_c, e) result(curvature)
+   !> Second derivatives [d2f/dp_c2 (1/kPa2), d2f/dp_c de (1/kPa), d2f/de2 (-)] at the suction and void ratio of bond.
+   pure function bonding_curvature(par, bond, p_c, e) result(curvature)
       type(params_t), intent(in) :: par
+      type(bonding_t), intent(in) :: bond
       real(wp), intent(in) :: p_c, e
-      real(wp) :: curvature(3), force(0:2), slope, zeta_pc, zeta_e, s(3)
-      type(saturation_t) :: sat
+      real(wp) :: curvature(3), zeta_pc, zeta_e, s(3)
 
-      sat = saturation(par, p_c, e)
-      s = saturation_curvature(par, sat, p_c, e)
-      force = meniscus_force(par, p_c)
-      slope = par%b_1*par%b_2*exp(par%b_2*(1.0_wp - sat%s_w)*force(0))
-      zeta_pc = (1.0_wp - sat%s_w)*force(1) - sat%ds_dpc*force(0)
-      zeta_e = -sat%ds_de*force(0)
-      curvature(1) = (1.0_wp - sat%s_w)*force(2) - 2.0_wp*sat%ds_dpc*force(1) - s(1)*force(0)
-      curvature(2) = -sat%ds_de*force(1) - s(2)*force(0)
-      curvature(3) = -s(3)*force(0)
-      curvature = slope*(curvature + par%b_2*[zeta_pc**2, zeta_pc*zeta_e, zeta_e**2])
+      s = saturation_curvature(par, bond%sat, p_c, e)
+      zeta_pc = (1.0_wp - bond%sat%s_w)*bond%force_1 - bond%sat%ds_dpc*bond%force_0
+      zeta_e = -bond%sat%ds_de*bond%force_0
+      curvature(1) = (1.0_wp - bond%sat%s_w)*bond%force_2 - 2.0_wp*bond%sat%ds_dpc*bond%force_1 - s(1)*bond%force_0
+      curvature(2) = -bond%sat%ds_de*bond%force_1 - s(2)*bond%force_0
+      curvature(3) = -s(3)*bond%force_0
+      curvature = bond%slope*(curvature + par%b_2*[zeta_pc**2, zeta_pc*zeta_e, zeta_e**2])
    end function bonding_curvature
 
    !> g of paper eq. (1) and its first two derivatives with respect to suction [-, 1/kPa, 1/kPa2].

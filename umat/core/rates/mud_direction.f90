@@ -6,6 +6,7 @@ module mud_direction
    use mud_kinds, only: wp, SQRT_2_3, SQRT_6
    use mud_params, only: params_t
    use mud_tensor, only: ddot, norm, square
+   use mud_bonding, only: bonding_t
    use mud_critical_state, only: lode_factor, lode_slope
    use mud_flow, only: dilatancy_factor, dilatancy
    use mud_hardening, only: isotropic_t
@@ -28,6 +29,7 @@ module mud_direction
       real(wp) :: r_moved(6)       !< r - r_in [-]
       real(wp) :: z(6)             !< fabric [-]
       real(wp) :: k, g             !< elastic moduli K, G [kPa]
+      type(bonding_t) :: bond      !< bonding, none where saturated
       real(wp) :: psi              !< state parameter [-]
       real(wp) :: m_b, m_d         !< M^b, M^d in triaxial compression [-]
       real(wp) :: b_0              !< h x [-]

@@ -7,7 +7,7 @@ module mud_rates
    use mud_params, only: params_t
    use mud_tensor, only: IDENTITY, ddot, trace, deviator, norm, square
    use mud_elastic, only: bulk_modulus, shear_modulus, swelling_slope
-   use mud_bonding, only: bonding_t, bonding, UNBONDED
+   use mud_bonding, only: bonding, UNBONDED
    use mud_critical_state, only: critical_void_ratio, bounding_ratio, dilatancy_ratio, lode_factor
    use mud_direction, only: rate_t, find_direction
    use mud_flow, only: fabric_rate
@@ -95,7 +95,6 @@ contains
       logical, intent(in) :: bonded
       real(wp), intent(in) :: sigma(6), e, p_c, z(6), r_in(6)
       type(rate_t), intent(inout) :: w
-      type(bonding_t) :: bond
       real(wp) :: r_norm, weight
 
       call stress_ratio(par, sigma, w%p, w%r)
@@ -103,12 +102,9 @@ contains
       w%z = z
       w%k = bulk_modulus(par, e, w%p)
       w%g = shear_modulus(par, e, w%p)
-      if (bonded) then
-         bond = bonding(par, p_c, e)
-      else
-         bond = UNBONDED
-      end if
-      w%psi = e - critical_void_ratio(par, bond%f, w%p)
+      w%bond = UNBONDED
+      if (bonded) w%bond = bonding(par, p_c, e)
+      w%psi = e - critical_void_ratio(par, w%bond%f, w%p)
       w%m_b = bounding_ratio(par, w%psi)
       w%m_d = dilatancy_ratio(par, w%psi)
       w%b_0 = kinematic_modulus(par, e, w%p)
@@ -117,7 +113,7 @@ contains
          r_norm = norm(w%r)
          weight = max(1.0_wp - (r_norm/bounding_norm(par, w%r, r_norm, w%m_b))**2, 0.0_wp)
          if (weight > 0.0_wp) then
-            w%iso = isotropic_hardening(par, bond, e, w%p, swelling_slope(w%k, e, w%p), 1.5_wp*r_norm**2, weight)
+            w%iso = isotropic_hardening(par, w%bond, e, w%p, swelling_slope(w%k, e, w%p), 1.5_wp*r_norm**2, weight)
          end if
       end if
    end subroutine evaluate_point

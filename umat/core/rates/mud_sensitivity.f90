@@ -4,16 +4,15 @@
 module mud_sensitivity
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
-   use mud_bonding, only: bonding_t, bonding, bonding_curvature, UNBONDED
-   use mud_critical_state, only: critical_void_ratio, lode_factor, lode_slope
-   use mud_elastic, only: swelling_slope
-   use mud_hardening, only: SMALLEST_VOID_TERM
+   use mud_linearise, only: linearised_t, linearise
    use mud_rates, only: rate_t
-   use mud_tangent, only: gradients, inverse_of
-   use mud_tensor, only: IDENTITY, ddot, trace, deviator, norm, square
+   use mud_tensor, only: IDENTITY, ddot, trace, deviator
    implicit none (type, external)
    private
-   public :: change_t, linearised_t, linearise, change_of_rate
+   public :: change_t, linearised_t, linearise, change_of_rate, changes_of_rate, NRATES
+
+   integer, parameter :: NRATES = 13   !< sigma'(6), z(6), plastic shear.
+   integer, parameter :: WIDTH = 8     !< Directions worked on side by side: the seven of a tangent, and an even number.
 
    !> A direction in which the arguments of a rate change.
    type :: change_t
@@ -23,213 +22,384 @@ module mud_sensitivity
       real(wp) :: d_aside(6)                !< of the strain rate beside it that is elastic (nucleus) [-]
    end type change_t
 
-   !> What all directions share.
-   type :: linearised_t
-      logical :: held_p                     !< p' is at its lower bound: it does not follow the stress.
-      real(wp) :: e, p_c, d_v, d_pc, d_e(6), d_aside(6)
-      logical :: beside                     !< There is an elastic strain rate beside (nucleus).
-      type(bonding_t) :: bond
-      real(wp) :: curvature(3)              !< of f [1/kPa2, 1/kPa, -]
-      real(wp) :: e_c, kappa, r_norm
-      real(wp) :: e_c_slope                 !< -d ln e_c/dp' [1/kPa]
-      real(wp) :: k_slope, g_slope, b_slope !< d ln K/de, d ln G/de, d ln b_0/de [-]
-      real(wp) :: per_p, per_f, per_b_0, per_gamma, per_y   !< Reciprocals of p', f, b_0, gamma, y.
-      real(wp) :: r_cube_slope(6)           !< d tr(r^3/|r|^3)/dr
-      real(wp) :: lode_r, lode_slope_r      !< Lode factor in the direction of r and its slope
-      real(wp), dimension(6) :: h_n, d_n, beta_n, gamma_n
-      real(wp) :: inverse(3, 3)
-   end type linearised_t
+   !> Directions side by side: changes of a rate's arguments, what lies between, and its results.
+   type :: lanes_t
+      integer :: m                                   !< how many, an even number
+      logical :: at_rest                             !< the state does not change, as in the first stage of an update
+      real(wp), dimension(WIDTH, 6) :: sigma, z, r_in, strain, aside
+      real(wp), dimension(WIDTH) :: e, p_c, d_pc
+      real(wp), dimension(WIDTH) :: mean, v          !< a third of the trace of sigma; trace of strain
+      real(wp), dimension(WIDTH) :: p, share         !< of p', and over p'
+      real(wp), dimension(WIDTH) :: k, g, f, psi, m_b, k_e, b, volumetric, dd, dh, beta, gamma
+      real(wp), dimension(WIDTH, 6) :: dr, d_e, dt   !< of r, G e and y t
+      real(wp), dimension(WIDTH) :: on_t, on_n, on_r !< coefficients of gamma dn
+      real(wp), dimension(WIDTH) :: n_part, p_part   !< parts of the stress rate along n and I
+      real(wp), dimension(WIDTH) :: flow             !< of L D
+      real(wp), dimension(WIDTH, 6) :: d_sigma, d_z, dn
+      real(wp), dimension(WIDTH) :: d_eps_q
+   end type lanes_t
 contains
-   !> Prepares the derivative of a rate w that was evaluated at (sigma, e, p_c) for (d_strain, d_pc), with an elastic
-   !> strain rate d_aside beside it.
-   pure subroutine linearise(par, bonded, w, sigma, e, p_c, d_strain, d_pc, lin, d_aside)
-      type(params_t), intent(in) :: par
-      logical, intent(in) :: bonded
-      type(rate_t), intent(in) :: w
-      real(wp), intent(in) :: sigma(6), e, p_c, d_strain(6), d_pc
-      type(linearised_t), intent(inout) :: lin
-      real(wp), intent(in), optional :: d_aside(6)
-      real(wp) :: m(3, 3), r2(6), cube
-
-      lin%held_p = trace(sigma) < 3.0_wp*par%p_min
-      lin%e = e
-      lin%p_c = p_c
-      lin%d_v = trace(d_strain)
-      lin%d_pc = d_pc
-      lin%d_e = deviator(d_strain)
-      lin%beside = present(d_aside)
-      if (present(d_aside)) lin%d_aside = d_aside
-      lin%bond = UNBONDED
-      lin%curvature = 0.0_wp
-      if (bonded) then
-         lin%bond = bonding(par, p_c, e)
-         lin%curvature = bonding_curvature(par, p_c, e)
-      end if
-      lin%e_c = e - w%psi
-      lin%e_c_slope = par%lambda/(w%p + par%alpha_csl)
-      lin%k_slope = 1.0_wp/(1.0_wp + e) - 1.0_wp/e
-      lin%g_slope = -1.0_wp/(1.0_wp + e)
-      ! At e = 2.97 the shear modulus and its slope are zero.
-      if (abs(2.97_wp - e) > epsilon(e)) lin%g_slope = lin%g_slope - 2.0_wp/(2.97_wp - e)
-      lin%b_slope = 0.0_wp
-      if (1.0_wp - par%c_h*e > SMALLEST_VOID_TERM) lin%b_slope = -par%c_h/(1.0_wp - par%c_h*e)
-      lin%per_p = 1.0_wp/w%p
-      lin%per_f = 1.0_wp/lin%bond%f
-      lin%per_b_0 = 1.0_wp/w%b_0
-      if (w%iso_active) then
-         lin%kappa = swelling_slope(w%k, e, w%p)
-         lin%r_norm = norm(w%r)
-         lin%r_cube_slope = 0.0_wp
-         lin%lode_r = 1.0_wp
-         lin%lode_slope_r = 0.0_wp
-         if (lin%r_norm > 0.0_wp) then
-            r2 = square(w%r)
-            cube = ddot(r2, w%r)/lin%r_norm**3
-            lin%lode_r = lode_factor(par, cube)
-            lin%lode_slope_r = lode_slope(par, lin%lode_r)
-            lin%r_cube_slope = 3.0_wp*(r2/lin%r_norm**3 - (cube/lin%r_norm**2)*w%r)
-         end if
-      end if
-      if (.not. w%loading) return
-      call gradients(par, w, lin%h_n, lin%d_n, lin%beta_n, lin%gamma_n)
-      m(1, :) = [ddot(w%t, w%n), -1.0_wp, w%r_n]
-      m(2, :) = [ddot(lin%gamma_n, w%t), -w%gamma, ddot(lin%gamma_n, w%r)]
-      m(3, :) = [ddot(lin%beta_n, w%t), 0.0_wp, ddot(lin%beta_n, w%r) - w%gamma]
-      lin%inverse = inverse_of(m)
-      lin%per_gamma = 1.0_wp/w%gamma
-      lin%per_y = 1.0_wp/w%y
-   end subroutine linearise
-
-   !> Change of the rates of stress, fabric and plastic shear, and of the loading direction.
+   !> Change of the rates of stress, fabric and plastic shear, and of the loading direction, along one direction.
    pure subroutine change_of_rate(par, w, lin, change, d_sigma, d_z, d_eps_q, dn)
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
       type(change_t), intent(in) :: change
       real(wp), intent(out) :: d_sigma(6), d_z(6), d_eps_q, dn(6)
-      real(wp) :: dp, dr(6), dt(6), dk, dg, df, dpsi, dm_b, dm_d, db_0, dk_e, db, dv, volumetric, dvolumetric
-      real(wp) :: dx, drn, dr_b, dd, dh, dstiffness, stiffness, reach, dbeta, dgamma, dy, dl, s(3), a, b
-      real(wp) :: d_e(6), share
+      real(wp) :: rates(NRATES, 1), turns(6, 1)
 
-      ! the point
-      dp = merge(0.0_wp, trace(change%sigma)/3.0_wp, lin%held_p)
-      share = dp*lin%per_p
-      dr = (deviator(change%sigma) - dp*w%r)*lin%per_p
-      dk = w%k*(2.0_wp/3.0_wp*share + change%e*lin%k_slope)
-      dg = w%g*(0.5_wp*share + change%e*lin%g_slope)
-      df = lin%bond%df_de*change%e + lin%bond%df_dpc*change%p_c
-      dpsi = change%e - lin%e_c*(df*lin%per_f - dp*lin%e_c_slope)
-      dm_b = merge(-par%n_b*w%m_b*dpsi, 0.0_wp, w%psi < 0.0_wp)
-      dm_d = par%n_d*w%m_d*dpsi
-      db_0 = w%b_0*(lin%b_slope*change%e - 0.5_wp*share)
-
-      ! the isotropic mechanism and the trial stress
-      dk_e = dk
-      db = 0.0_wp
-      if (w%iso_active) call change_of_mechanism(par, w, lin, change, dp, dr, dk, df, dm_b, dk_e, db)
-      dv = trace(change%d_strain)
-      volumetric = w%k_e*(lin%d_v - w%b_rate)
-      dvolumetric = dk_e*(lin%d_v - w%b_rate) + w%k_e*(dv - db)
-      d_e = dg*lin%d_e + w%g*deviator(change%d_strain)
-      dt = 2.0_wp*d_e - volumetric*dr - dvolumetric*w%r
-
-      if (.not. w%loading) then
-         dn = 0.0_wp
-         d_z = 0.0_wp
-         d_eps_q = 0.0_wp
-         d_sigma = 2.0_wp*d_e + dvolumetric*IDENTITY
-         if (lin%beside) call add_aside(w, lin, change, dk, dg, d_sigma)
-         return
-      end if
-
-      ! everything at the present direction
-      drn = ddot(dr, w%n)
-      dr_b = SQRT_2_3*w%lode*dm_b
-      if (w%capped_d) then
-         dd = w%d*(dg/w%g - dk_e/w%k_e - drn/w%r_n)
-      else
-         dd = w%a_d*(SQRT_2_3*w%lode*dm_d - drn)
-         ! With A_0 = 0 there is no dilatancy that fabric could change.
-         if (par%fabric .and. w%z_n > 0.0_wp .and. w%a_d > 0.0_wp) dd = dd + par%a_0*ddot(change%z, w%n)*w%d/w%a_d
-      end if
-      stiffness = 2.0_wp*w%g - w%k_e*w%d*w%r_n
-      dstiffness = 2.0_wp*dg - dk_e*w%d*w%r_n - w%k_e*(dd*w%r_n + w%d*drn)
-      if (w%capped_h) then
-         reach = 2.0_wp/3.0_wp*w%p/((1.0_wp - par%cap_h)*stiffness)
-         dh = w%h_b*(share - dstiffness/stiffness) + reach*(drn - dr_b)
-      else
-         dx = merge(0.0_wp, drn - ddot(change%r_in, w%n), w%floored)
-         dh = (dx - w%h_b*db_0)*lin%per_b_0
-      end if
-      dbeta = 2.0_wp/3.0_wp*dp + dh*w%k_e*w%d + w%h_b*(dk_e*w%d + w%k_e*dd)
-      dgamma = 2.0_wp/3.0_wp*(dp*SQRT_2_3*w%lode*w%m_b + w%p*dr_b) + 2.0_wp*(dg*w%h_b + w%g*dh)
-
-      ! the direction turns: gamma dn = y dt + beta dr + t dy - n dgamma + r dbeta
-      dt = w%y*dt + w%beta*dr
-      s = [-ddot(w%n, dt), -ddot(lin%gamma_n, dt) - w%gamma*dgamma, -ddot(lin%beta_n, dt) - w%gamma*dbeta]
-      dy = lin%inverse(1, 1)*s(1) + lin%inverse(1, 2)*s(2) + lin%inverse(1, 3)*s(3)
-      a = lin%inverse(2, 1)*s(1) + lin%inverse(2, 2)*s(2) + lin%inverse(2, 3)*s(3)
-      b = lin%inverse(3, 1)*s(1) + lin%inverse(3, 2)*s(2) + lin%inverse(3, 3)*s(3)
-      dn = (dt + dy*w%t - a*w%n + b*w%r)*lin%per_gamma
-      dh = dh + ddot(lin%h_n, dn)
-      dd = dd + ddot(lin%d_n, dn)
-      dl = (dh - w%l*dy)*lin%per_y
-
-      d_sigma = 2.0_wp*(d_e - (dg*w%l + w%g*dl)*w%n - (w%g*w%l)*dn) &
-                + (dvolumetric - dk_e*w%l*w%d - w%k_e*(dl*w%d + w%l*dd))*IDENTITY
-      if (lin%beside) call add_aside(w, lin, change, dk, dg, d_sigma)
-      d_eps_q = SQRT_2_3*dl
-      d_z = 0.0_wp
-      if (par%fabric .and. w%d < 0.0_wp) then
-         d_z = par%c_z*((dl*w%d + w%l*dd)*(par%z_max*w%n + w%z) + w%l*w%d*(par%z_max*dn + change%z))
-      end if
+      call changes_of_rate(par, w, lin, 1, [change], rates, turns)
+      d_sigma = rates(1:6, 1)
+      d_z = rates(7:12, 1)
+      d_eps_q = rates(13, 1)
+      dn = turns(:, 1)
    end subroutine change_of_rate
 
-   !> Adds the change of what the elastic strain beside gives.
-   pure subroutine add_aside(w, lin, change, dk, dg, d_sigma)
-      type(rate_t), intent(in) :: w
-      type(linearised_t), intent(in) :: lin
-      type(change_t), intent(in) :: change
-      real(wp), intent(in) :: dk, dg
-      real(wp), intent(inout) :: d_sigma(6)
-
-      d_sigma = d_sigma + 2.0_wp*(dg*deviator(lin%d_aside) + w%g*deviator(change%d_aside)) &
-                + (dk*trace(lin%d_aside) + w%k*trace(change%d_aside))*IDENTITY
-   end subroutine add_aside
-
-   !> Change of K_e and of B while the isotropic mechanism acts.
-   pure subroutine change_of_mechanism(par, w, lin, change, dp, dr, dk, df, dm_b, dk_e, db)
+   !> The same along n directions. Loops over directions stand inside, with a number of turns that the compiler does not
+   !> know: it then lets two directions be worked on at once.
+   pure subroutine changes_of_rate(par, w, lin, n, changes, rates, dn)
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
-      type(change_t), intent(in) :: change
-      real(wp), intent(in) :: dp, dr(6), dk, df, dm_b
-      real(wp), intent(out) :: dk_e, db
-      real(wp) :: dweight, dr_norm, dapproach, dcrowding, df_f, dc, dshare, da, softening, shared
+      integer, intent(in) :: n
+      type(change_t), intent(in) :: changes(n)
+      real(wp), intent(out) :: rates(NRATES, n)       !< of sigma', z and plastic shear
+      real(wp), intent(out), optional :: dn(6, n)
+      type(lanes_t) :: x
+      integer :: first, last, j
 
-      ! w = 1 - (|r|/R_b(r))^2
-      dr_norm = 0.0_wp
-      if (lin%r_norm > 0.0_wp) dr_norm = ddot(w%r, dr)/lin%r_norm
-      dweight = 2.0_wp*(1.0_wp - w%iso%weight)*(lin%lode_slope_r/lin%lode_r*ddot(lin%r_cube_slope, dr) + dm_b/w%m_b)
-      dweight = dweight - 3.0_wp*lin%r_norm*dr_norm/(lin%lode_r*w%m_b)**2
+      do first = 1, n, WIDTH
+         last = min(first + WIDTH - 1, n)
+         call gather(lin, changes(first:last), x)
+         if (x%at_rest) then
+            call change_strain(w, x)
+         else
+            call change_point(par, w, lin, x)
+         end if
+         if (w%loading) then
+            if (.not. x%at_rest) call change_moduli(par, w, lin, x)
+            call turn_direction(par, w, lin, x)
+         else
+            call change_elastic(x)
+         end if
+         if (lin%beside) call add_aside(w, lin, x)
+         do j = first, last
+            rates(1:6, j) = x%d_sigma(j - first + 1, :)
+            rates(7:12, j) = x%d_z(j - first + 1, :)
+            rates(13, j) = x%d_eps_q(j - first + 1)
+            if (present(dn)) dn(:, j) = x%dn(j - first + 1, :)
+         end do
+      end do
+   end subroutine changes_of_rate
 
-      dapproach = w%iso%approach*(dp/w%p - (df/lin%bond%f - change%e/lin%e)/par%lambda)
-      dcrowding = dapproach*(1.0_wp + 3.0_wp*(lin%r_norm/par%m_c)**2) &
-                  + w%iso%approach*6.0_wp*lin%r_norm*dr_norm/par%m_c**2
-      df_f = -w%iso%f_slope*dcrowding
-      shared = lin%bond%df_de/lin%bond%f
-      dc = -change%e*shared*w%iso%f - lin%e*shared*(df_f - w%iso%f*df/lin%bond%f) &
-           - lin%e/lin%bond%f*w%iso%f*(lin%curvature(3)*change%e + lin%curvature(2)*change%p_c)
-      dshare = w%iso%share*(dweight/w%iso%weight + change%e*(1.0_wp/lin%e - 1.0_wp/(1.0_wp + lin%e)))
-      if (.not. w%iso%floored) dshare = dshare - w%iso%share*dc/(1.0_wp + w%iso%c)
-      da = dshare/w%iso%share*w%iso%a + w%iso%share*((par%lambda - lin%kappa)*df_f - lin%kappa*dc &
-                                                     - lin%kappa*dp/(3.0_wp*w%p)*(w%iso%f + w%iso%c))
-      softening = w%k*w%iso%a/w%p
-      dk_e = w%k_e*(dk/w%k - (w%k*da/w%p + softening*(dk/w%k - dp/w%p))/(1.0_wp + softening))
+   !> Directions side by side, an even number of them.
+   pure subroutine gather(lin, changes, x)
+      type(linearised_t), intent(in) :: lin
+      type(change_t), intent(in) :: changes(:)
+      type(lanes_t), intent(inout) :: x
+      integer :: j, from
 
-      shared = lin%bond%df_dpc/lin%bond%f
-      db = -(dshare*w%iso%f*shared + w%iso%share*df_f*shared - w%iso%share*w%iso%f*shared*df/lin%bond%f &
-             + w%iso%share*w%iso%f/lin%bond%f*(lin%curvature(2)*change%e + lin%curvature(1)*change%p_c))
-      db = db*lin%d_pc + w%iso%b*change%d_pc
+      x%m = size(changes) + mod(size(changes), 2)
+      x%at_rest = .true.
+      do j = 1, size(changes)
+         x%at_rest = sum(abs(changes(j)%sigma)) + sum(abs(changes(j)%z)) + sum(abs(changes(j)%r_in)) &
+                     + abs(changes(j)%e) + abs(changes(j)%p_c) <= 0.0_wp
+         if (.not. x%at_rest) exit
+      end do
+      do j = 1, x%m
+         from = min(j, size(changes))
+         x%strain(j, :) = changes(from)%d_strain
+         x%d_pc(j) = changes(from)%d_pc
+         if (lin%beside) x%aside(j, :) = changes(from)%d_aside
+         if (x%at_rest) cycle
+         x%sigma(j, :) = changes(from)%sigma
+         x%z(j, :) = changes(from)%z
+         x%r_in(j, :) = changes(from)%r_in
+         x%e(j) = changes(from)%e
+         x%p_c(j) = changes(from)%p_c
+      end do
+   end subroutine gather
+
+   !> What change_point and change_moduli leave where only the strain rate and the suction rate change.
+   pure subroutine change_strain(w, x)
+      type(rate_t), intent(in) :: w
+      type(lanes_t), intent(inout) :: x
+      real(wp) :: b
+      integer :: i, j
+
+      b = 0.0_wp
+      if (w%iso_active) b = w%iso%b
+      do j = 1, x%m
+         x%v(j) = x%strain(j, 1) + x%strain(j, 2) + x%strain(j, 3)
+         x%volumetric(j) = w%k_e*(x%v(j) - b*x%d_pc(j))
+         x%k(j) = 0.0_wp
+         x%g(j) = 0.0_wp
+         x%k_e(j) = 0.0_wp
+         x%dd(j) = 0.0_wp
+         x%dh(j) = 0.0_wp
+         x%beta(j) = 0.0_wp
+         x%gamma(j) = 0.0_wp
+      end do
+      do i = 1, 6
+         do j = 1, x%m
+            x%d_e(j, i) = w%g*(x%strain(j, i) - (IDENTITY(i)/3.0_wp)*x%v(j))
+            x%dt(j, i) = w%y*(2.0_wp*x%d_e(j, i) - w%r(i)*x%volumetric(j))
+            x%z(j, i) = 0.0_wp
+         end do
+      end do
+   end subroutine change_strain
+
+   !> Changes of the point's scalars, of both moduli, of the stress ratio and of the elastic stress rate.
+   pure subroutine change_point(par, w, lin, x)
+      type(params_t), intent(in) :: par
+      type(rate_t), intent(in) :: w
+      type(linearised_t), intent(in) :: lin
+      type(lanes_t), intent(inout) :: x
+      real(wp) :: m_b_slope, follows
+      integer :: i, j
+
+      follows = merge(0.0_wp, 1.0_wp, lin%held_p)
+      m_b_slope = merge(-par%n_b*w%m_b, 0.0_wp, w%psi < 0.0_wp)
+      do j = 1, x%m
+         x%mean(j) = (x%sigma(j, 1) + x%sigma(j, 2) + x%sigma(j, 3))/3.0_wp
+         x%v(j) = x%strain(j, 1) + x%strain(j, 2) + x%strain(j, 3)
+         x%p(j) = follows*x%mean(j)
+         x%share(j) = x%p(j)*lin%per_p
+         x%k(j) = w%k*(2.0_wp/3.0_wp*x%share(j) + x%e(j)*lin%k_slope)
+         x%g(j) = w%g*(0.5_wp*x%share(j) + x%e(j)*lin%g_slope)
+         x%f(j) = lin%bond%df_de*x%e(j) + lin%bond%df_dpc*x%p_c(j)
+         x%psi(j) = x%e(j) - lin%e_c*(x%f(j)*lin%per_f - x%p(j)*lin%e_c_slope)
+         x%m_b(j) = m_b_slope*x%psi(j)
+         x%k_e(j) = x%k(j)
+         x%b(j) = 0.0_wp
+      end do
+      do i = 1, 6
+         do j = 1, x%m
+            x%dr(j, i) = (x%sigma(j, i) - IDENTITY(i)*x%mean(j) - w%r(i)*x%p(j))*lin%per_p
+         end do
+      end do
+      if (w%iso_active) call change_of_mechanism(par, w, lin, x)
+      do j = 1, x%m
+         x%volumetric(j) = (lin%d_v - w%b_rate)*x%k_e(j) + w%k_e*(x%v(j) - x%b(j))
+      end do
+      do i = 1, 6
+         do j = 1, x%m
+            x%d_e(j, i) = lin%d_e(i)*x%g(j) + w%g*(x%strain(j, i) - (IDENTITY(i)/3.0_wp)*x%v(j))
+         end do
+      end do
+   end subroutine change_point
+
+   !> Change of a rate without loading.
+   pure subroutine change_elastic(x)
+      type(lanes_t), intent(inout) :: x
+      integer :: i, j
+
+      do i = 1, 6
+         do j = 1, x%m
+            x%d_sigma(j, i) = 2.0_wp*x%d_e(j, i) + IDENTITY(i)*x%volumetric(j)
+            x%d_z(j, i) = 0.0_wp
+            x%dn(j, i) = 0.0_wp
+         end do
+      end do
+      x%d_eps_q = 0.0_wp
+   end subroutine change_elastic
+
+   !> Changes of D, 1/h, beta, gamma and y t at the present direction.
+   pure subroutine change_moduli(par, w, lin, x)
+      type(params_t), intent(in) :: par
+      type(rate_t), intent(in) :: w
+      type(linearised_t), intent(in) :: lin
+      type(lanes_t), intent(inout) :: x
+      real(wp) :: dr_n, r_b, stiffness, dd, dh   ! of one direction
+      real(wp) :: d_g, d_k, d_r, d_psi, d_z, h_share, h_e, h_r, h_in, h_stiffness, h_b, r_b_1, volumetric, at_rest
+      integer :: i, j
+
+      ! D and 1/h: coefficients of what they depend on
+      d_g = 0.0_wp
+      d_k = 0.0_wp
+      d_psi = 0.0_wp
+      d_z = 0.0_wp
+      if (w%capped_d) then
+         d_g = w%d/w%g
+         d_k = -w%d/w%k_e
+         d_r = -w%d/w%r_n
+      else
+         d_psi = w%a_d*SQRT_2_3*w%lode*par%n_d*w%m_d
+         d_r = -w%a_d
+         if (par%fabric .and. w%z_n > 0.0_wp) d_z = par%a_0*w%d/w%a_d
+      end if
+      h_e = 0.0_wp
+      h_in = 0.0_wp
+      h_stiffness = 0.0_wp
+      h_b = 0.0_wp
+      if (w%capped_h) then
+         at_rest = 2.0_wp*w%g - w%k_e*w%d*w%r_n
+         h_share = w%h_b
+         h_stiffness = -w%h_b/at_rest
+         h_r = 2.0_wp/3.0_wp*w%p/((1.0_wp - par%cap_h)*at_rest)
+         h_b = -h_r
+      else
+         h_share = 0.5_wp*w%h_b
+         h_e = -w%h_b*lin%b_slope
+         h_r = merge(0.0_wp, lin%per_b_0, w%floored)
+         h_in = -h_r
+      end if
+      r_b_1 = SQRT_2_3*w%lode
+      do j = 1, x%m
+         dr_n = along(x%dr, j, w%n)
+         r_b = r_b_1*x%m_b(j)
+         dd = d_g*x%g(j) + d_k*x%k_e(j) + d_r*dr_n + d_psi*x%psi(j) + d_z*along(x%z, j, w%n)
+         stiffness = 2.0_wp*x%g(j) - (w%d*w%r_n)*x%k_e(j) - w%k_e*(w%r_n*dd + w%d*dr_n)
+         dh = h_share*x%share(j) + h_e*x%e(j) + h_r*dr_n + h_in*along(x%r_in, j, w%n) + h_stiffness*stiffness + h_b*r_b
+         x%beta(j) = 2.0_wp/3.0_wp*x%p(j) + (w%k_e*w%d)*dh + w%h_b*(w%d*x%k_e(j) + w%k_e*dd)
+         x%gamma(j) = 2.0_wp/3.0_wp*((r_b_1*w%m_b)*x%p(j) + w%p*r_b) + 2.0_wp*(w%h_b*x%g(j) + w%g*dh)
+         x%dd(j) = dd
+         x%dh(j) = dh
+      end do
+
+      volumetric = w%k_e*(lin%d_v - w%b_rate)
+      do i = 1, 6
+         do j = 1, x%m
+            x%dt(j, i) = w%y*(2.0_wp*x%d_e(j, i) - w%r(i)*x%volumetric(j)) + (w%beta - w%y*volumetric)*x%dr(j, i)
+         end do
+      end do
+   end subroutine change_moduli
+
+   !> The direction's turn, gamma dn = y dt + beta dr + t dy - n dgamma + r dbeta, and the rates with it.
+   pure subroutine turn_direction(par, w, lin, x)
+      type(params_t), intent(in) :: par
+      type(rate_t), intent(in) :: w
+      type(linearised_t), intent(in) :: lin
+      type(lanes_t), intent(inout) :: x
+      real(wp) :: h_t, d_t, s_1, s_2, s_3, a, b, dy, dd, dh, dl, turn   ! of one direction
+      real(wp) :: h_on_t, h_on_r, d_on_t, d_on_r, turning
+      integer :: i, j
+
+      h_on_t = ddot(lin%h_n, w%t)
+      h_on_r = ddot(lin%h_n, w%r)
+      d_on_t = ddot(lin%d_n, w%t)
+      d_on_r = ddot(lin%d_n, w%r)
+      do j = 1, x%m
+         h_t = along(x%dt, j, lin%h_n)
+         d_t = along(x%dt, j, lin%d_n)
+         s_1 = -along(x%dt, j, w%n)
+         s_2 = -along(x%dt, j, lin%gamma_n) - w%gamma*x%gamma(j)
+         s_3 = -w%k_e*(w%d*h_t + w%h_b*d_t) - w%gamma*x%beta(j)          ! beta_n = K_e (D h_n + d_n/h)
+         dy = lin%inverse(1, 1)*s_1 + lin%inverse(1, 2)*s_2 + lin%inverse(1, 3)*s_3
+         a = lin%inverse(2, 1)*s_1 + lin%inverse(2, 2)*s_2 + lin%inverse(2, 3)*s_3
+         b = lin%inverse(3, 1)*s_1 + lin%inverse(3, 2)*s_2 + lin%inverse(3, 3)*s_3
+         dh = x%dh(j) + lin%per_gamma*(h_t + h_on_t*dy + h_on_r*b)
+         dd = x%dd(j) + lin%per_gamma*(d_t + d_on_t*dy + d_on_r*b)
+         dl = (dh - w%l*dy)*lin%per_y
+         x%d_eps_q(j) = SQRT_2_3*dl
+         x%on_t(j) = dy
+         x%on_n(j) = -a
+         x%on_r(j) = b
+         x%n_part(j) = w%l*x%g(j) + w%g*dl
+         x%flow(j) = w%d*dl + w%l*dd
+         x%p_part(j) = x%volumetric(j) - (w%l*w%d)*x%k_e(j) - w%k_e*x%flow(j)
+      end do
+      do i = 1, 6
+         do j = 1, x%m
+            turn = lin%per_gamma*(x%dt(j, i) + w%t(i)*x%on_t(j) + w%n(i)*x%on_n(j) + w%r(i)*x%on_r(j))
+            x%dn(j, i) = turn
+            x%d_sigma(j, i) = 2.0_wp*(x%d_e(j, i) - w%n(i)*x%n_part(j) - (w%g*w%l)*turn) + IDENTITY(i)*x%p_part(j)
+         end do
+      end do
+      if (.not. (par%fabric .and. w%d < 0.0_wp)) then
+         x%d_z = 0.0_wp
+         return
+      end if
+      turning = par%c_z*w%l*w%d
+      do i = 1, 6
+         do j = 1, x%m
+            x%d_z(j, i) = (par%c_z*(par%z_max*w%n(i) + w%z(i)))*x%flow(j) + turning*(par%z_max*x%dn(j, i) + x%z(j, i))
+         end do
+      end do
+   end subroutine turn_direction
+
+   !> Contraction of one of several tensors side by side with a direction.
+   pure real(wp) function along(tensors, j, direction)
+      real(wp), intent(in) :: tensors(WIDTH, 6), direction(6)
+      integer, intent(in) :: j
+
+      along = direction(1)*tensors(j, 1) + direction(2)*tensors(j, 2) + direction(3)*tensors(j, 3) &
+              + (2.0_wp*direction(4))*tensors(j, 4) + (2.0_wp*direction(5))*tensors(j, 5) &
+              + (2.0_wp*direction(6))*tensors(j, 6)
+   end function along
+
+   !> Adds the change of what the elastic strain beside gives.
+   pure subroutine add_aside(w, lin, x)
+      type(rate_t), intent(in) :: w
+      type(linearised_t), intent(in) :: lin
+      type(lanes_t), intent(inout) :: x
+      real(wp) :: d_aside(6), volume
+      integer :: i, j
+
+      d_aside = deviator(lin%d_aside)
+      volume = trace(lin%d_aside)
+      do j = 1, x%m
+         x%v(j) = x%aside(j, 1) + x%aside(j, 2) + x%aside(j, 3)
+         x%mean(j) = volume*x%k(j) + (w%k - 2.0_wp/3.0_wp*w%g)*x%v(j)
+      end do
+      do i = 1, 6
+         do j = 1, x%m
+            x%d_sigma(j, i) = x%d_sigma(j, i) + (2.0_wp*d_aside(i))*x%g(j) + (2.0_wp*w%g)*x%aside(j, i) &
+                              + IDENTITY(i)*x%mean(j)
+         end do
+      end do
+   end subroutine add_aside
+
+   !> Change of K_e and of B while the isotropic mechanism acts.
+   pure subroutine change_of_mechanism(par, w, lin, x)
+      type(params_t), intent(in) :: par
+      type(rate_t), intent(in) :: w
+      type(linearised_t), intent(in) :: lin
+      type(lanes_t), intent(inout) :: x
+      real(wp) :: r_dr, weight, approach, crowding, f, f_bond, coupling, share, a, dk   ! of one direction
+      real(wp) :: on_weight, by_norm, crowd_share, crowd_norm, e_share, per_coupling, per_a, per_k, softening, de, dpc
+      real(wp) :: shared_e, shared_pc, per_f, coupled, per_weight, per_lambda, per_softening, per_e, per_m_b
+      integer :: j
+
+      per_f = lin%per_f
+      per_lambda = 1.0_wp/par%lambda
+      per_weight = w%iso%share/w%iso%weight
+      on_weight = 2.0_wp*(1.0_wp - w%iso%weight)
+      by_norm = 3.0_wp/(lin%lode_r*w%m_b)**2
+      crowd_share = 1.0_wp + 3.0_wp*(lin%r_norm/par%m_c)**2
+      crowd_norm = w%iso%approach*6.0_wp/par%m_c**2
+      shared_e = lin%bond%df_de*per_f
+      shared_pc = lin%bond%df_dpc*per_f
+      e_share = w%iso%share*(1.0_wp/lin%e - 1.0_wp/(1.0_wp + lin%e))
+      per_coupling = merge(0.0_wp, w%iso%share/(1.0_wp + w%iso%c), w%iso%floored)
+      per_a = w%iso%a/w%iso%share
+      per_k = 1.0_wp/w%k
+      softening = w%k*w%iso%a*lin%per_p
+      per_softening = 1.0_wp/(1.0_wp + softening)
+      per_e = 1.0_wp/lin%e
+      per_m_b = 1.0_wp/w%m_b
+      coupled = lin%kappa*(w%iso%f + w%iso%c)/3.0_wp
+      do j = 1, x%m
+         de = x%e(j)
+         dpc = x%p_c(j)
+         ! w = 1 - (|r|/R_b(r))^2; r_dr = |r| d|r|
+         r_dr = along(x%dr, j, w%r)
+         weight = on_weight*((lin%lode_slope_r/lin%lode_r)*along(x%dr, j, lin%r_cube_slope) + x%m_b(j)*per_m_b) &
+                  - by_norm*r_dr
+         f_bond = per_f*x%f(j)
+         approach = w%iso%approach*(x%share(j) - (f_bond - de*per_e)*per_lambda)
+         crowding = crowd_share*approach + crowd_norm*r_dr
+         f = -w%iso%f_slope*crowding
+         coupling = -(shared_e*w%iso%f)*de - (lin%e*shared_e)*(f - w%iso%f*f_bond) &
+                    - (lin%e*per_f*w%iso%f)*(lin%curvature(3)*de + lin%curvature(2)*dpc)
+         share = per_weight*weight + e_share*de - per_coupling*coupling
+         a = per_a*share + w%iso%share*((par%lambda - lin%kappa)*f - lin%kappa*coupling - coupled*x%share(j))
+         dk = x%k(j)*per_k
+         x%k_e(j) = w%k_e*(dk - ((w%k*lin%per_p)*a + softening*(dk - x%share(j)))*per_softening)
+         x%b(j) = w%iso%b*x%d_pc(j) - lin%d_pc*((w%iso%f*shared_pc)*share &
+                                                + (w%iso%share*shared_pc)*(f - w%iso%f*f_bond) &
+                                                + (w%iso%share*w%iso%f*per_f) &
+                                                *(lin%curvature(2)*de + lin%curvature(1)*dpc))
+      end do
    end subroutine change_of_mechanism
 end module mud_sensitivity
