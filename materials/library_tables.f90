@@ -2,13 +2,13 @@
 module library_tables
    use, intrinsic :: iso_c_binding, only: c_int, c_null_char
    use kinds, only: wp
-   use mud_interface, only: mud_version, mud_count, mud_index, mud_text, mud_bounds, MUD_PROPS, MUD_STATEV, MUD_NAME, &
-                            MUD_UNIT, MUD_ORIGIN, MUD_MEANING
-   use texts, only: from_c
+   use mud_interface, only: mud_version, mud_count, mud_index, mud_text, mud_option, mud_bounds, MUD_PROPS, &
+                            MUD_STATEV, MUD_NAME, MUD_UNIT, MUD_ORIGIN, MUD_MEANING
+   use texts, only: from_c, lower_case
    implicit none (type, external)
    private
    public :: library_version, property_count, property_index, property_name, property_unit, property_origin, &
-             property_meaning, property_range, state_count, statev_index, statev_name, statev_unit
+             property_meaning, property_option, property_range, state_count, statev_index, statev_name, statev_unit
 
    integer, parameter :: BUFFER = 600
 contains
@@ -97,6 +97,27 @@ contains
       if (mud_text(list, place - 1, field, raw, BUFFER) < 0) raw = c_null_char
       text = from_c(raw)
    end function table_text
+
+   !> The value of a parameter that a word stands for; `good` is false if it knows no such word. Case is ignored.
+   subroutine property_option(place, word, value, good)
+      integer, intent(in) :: place
+      character(*), intent(in) :: word
+      real(wp), intent(out) :: value
+      logical, intent(out) :: good
+      character(BUFFER) :: raw
+      integer(c_int) :: number
+
+      good = .false.
+      value = 0.0_wp
+      raw = c_null_char
+      number = 0
+      do while (mud_option(place - 1, number, value, raw, BUFFER) == 0)
+         good = lower_case(from_c(raw)) == lower_case(trim(word))
+         if (good) return
+         number = number + 1
+      end do
+      value = 0.0_wp
+   end subroutine property_option
 
    !> Bounds and default of a parameter, in kPa; zeros if there is none of that place.
    subroutine property_range(place, lower, upper, preset)

@@ -8,7 +8,7 @@ module parameter_groups
    use namelists, only: group_t, entry_t, read_groups, find_entry, LENGTH
    use spelling, only: nearest_name
    use library_tables, only: property_count, property_index, property_name, property_unit, property_meaning, &
-                             property_range
+                             property_option, property_range
    implicit none (type, external)
    private
    public :: read_parameters
@@ -132,7 +132,7 @@ contains
          return
       end if
       call read_number(item%values(1), value, good)
-      if (.not. good) call read_option(property_meaning(place), item%values(1), value, good)
+      if (.not. good) call property_option(place, item%values(1), value, good)
       if (.not. good) then
          call raise(fault, EXIT_INPUT, at_line(file, item%line)//property_name(place)//' = '//trim(item%values(1))// &
                     ' is no number and no word it knows ('//described_range(place)//').')
@@ -146,29 +146,6 @@ contains
       end if
       props(place) = value
    end subroutine set_property
-
-   !> An option by its word: the meaning of such a parameter lists '0 classic, 1 threshold, ...'.
-   subroutine read_option(meaning, word, value, good)
-      character(*), intent(in) :: meaning, word
-      real(wp), intent(out) :: value
-      logical, intent(out) :: good
-      character(:), allocatable :: item
-      integer :: at, comma, blank
-
-      value = 0.0_wp
-      good = .false.
-      at = 1
-      do while (at <= len(meaning))
-         comma = index(meaning(at:)//',', ',')
-         item = trim(adjustl(meaning(at:min(at + comma - 2, len(meaning)))))
-         blank = index(item, ' ')
-         if (blank > 1) then
-            if (lower_case(item(blank + 1:)) == lower_case(trim(word))) call read_number(item(:blank - 1), value, good)
-            if (good) return
-         end if
-         at = at + comma
-      end do
-   end subroutine read_option
 
    !> "from 0.001 to 10000, default 12: kinematic hardening constant, eq. (13)"
    function described_range(place) result(text)

@@ -6,7 +6,8 @@ module mud_c_api
    use mud_kinds, only: wp
    use mud_messages, only: status_text, report_text
    use mud_params, only: params_t, read_params, default_props
-   use mud_registry, only: NPROPS, NSTATV, PROPERTIES, VARIABLES, property_index, statev_index, statev_name, &
+   use mud_registry, only: OPTIONS, NPROPS, NSTATV, PROPERTIES, VARIABLES, property_index, property_meaning, &
+      statev_index, statev_name, &
       statev_variable
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, &
       MUD_BAD_OPTION, &
@@ -17,7 +18,7 @@ module mud_c_api
    use mud_units, only: bounds_for, convert_props
    implicit none (type, external)
    private
-   public :: mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_bounds, mud_bounds_for, &
+   public :: mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_option, mud_bounds, mud_bounds_for, &
              mud_default_props, mud_convert_props, mud_validate_props, mud_init_state, &
              mud_trace_increment, mud_status_text, mud_message
    public :: ABI_VERSION, VERSION
@@ -93,7 +94,7 @@ contains
             case (FIELD_ORIGIN)
                call put(entry%origin, text, len)
             case (FIELD_MEANING)
-               call put(entry%meaning, text, len)
+               call put(property_meaning(index + 1), text, len)
             case (FIELD_INITIAL, FIELD_ROTATION, FIELD_EVOLUTION)
                call put('', text, len)
             case default
@@ -125,6 +126,25 @@ contains
          end associate
       end if
    end function mud_text
+
+   !> The number-th value, from 0, of a parameter that takes words, and its word.
+   integer(c_int) function mud_option(index, number, value, word, len) bind(c, name='mud_option')
+      integer(c_int), value :: index, number, len
+      type(c_ptr), value :: value, word
+      integer :: i, found
+
+      mud_option = MUD_BAD_OPTION
+      found = -1
+      do i = 1, size(OPTIONS)
+         if (OPTIONS(i)%property /= index + 1) cycle
+         found = found + 1
+         if (found /= number) cycle
+         call put_real(real(OPTIONS(i)%value, wp), value)
+         call put(OPTIONS(i)%word, word, len)
+         mud_option = MUD_OK
+         return
+      end do
+   end function mud_option
 
    !> Bounds and default of a parameter where p_atm is an atmosphere in kPa; state variables have none.
    integer(c_int) function mud_bounds(list, index, lower, upper, preset) bind(c, name='mud_bounds')

@@ -1,7 +1,7 @@
 !> Sentences for status codes: what, where, value, allowed range, remedy.
 module mud_messages
    use mud_kinds, only: wp
-   use mud_registry, only: NPROPS, NSTATV, PROPERTIES, KIND_REAL, statev_name
+   use mud_registry, only: NPROPS, NSTATV, PROPERTIES, KIND_REAL, property_meaning, statev_name
    use mud_status, only: MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_BAD_NTENS, MUD_BAD_PROPS, MUD_BAD_STATE, &
       MUD_BAD_INPUT, MUD_NULL_ARGUMENT, MUD_BAD_VOID_RATIO, MUD_BAD_OPTION, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, &
       MUD_NO_DIRECTION, MUD_VOID_RATIO_LIMIT, MUD_NOT_FINITE, MUD_INCREMENT_TOO_LARGE, MUD_NOT_WRITTEN, &
@@ -77,7 +77,7 @@ contains
          text = 'parameter '//trim(PROPERTIES(report%index)%name)//' (PROPS '//trim(whole(report%index))//') is '// &
                 trim(number(report%value))//', allowed '//trim(lower)//' to '//trim(upper)
          if (PROPERTIES(report%index)%kind /= KIND_REAL) text = trim(text)//', whole numbers only'
-         text = trim(text)//' (default '//trim(number(default_like(report)))//'): '//PROPERTIES(report%index)%meaning
+         text = trim(text)//' (default '//trim(number(default_like(report)))//'): '//property_meaning(report%index)
       case (MUD_BAD_STATE)
          if (report%index < 1 .or. report%index > NSTATV) return
          text = 'state variable '//trim(statev_name(report%index))//' (STATEV '//trim(whole(report%index))//') is '// &

@@ -69,6 +69,9 @@ int mud_version(char *text, int len);                       /* "0.1.0" */
 int mud_count(int list);                                    /* entries of PROPS or STATEV; MUD_BAD_OPTION */
 int mud_index(int list, const char *name);                  /* index from 0; -1: no such name (case is ignored) */
 int mud_text(int list, int index, int field, char *text, int len);
+/* Entries of PROPS that stand for a choice: the number-th value, from 0, and its word. MUD_BAD_OPTION: no such value,
+ * or the entry takes numbers. */
+int mud_option(int index, int number, double *value, char *word, int len);
 /* Bounds and default of an entry of PROPS. Those whose MUD_UNIT is kPa or kPa^lambda are told for p_atm = 101.325 and
  * scale with p_atm (and p_atm^lambda); only p_atm's own bounds do not. mud_bounds_for tells them for the p_atm and
  * lambda of props. */

@@ -4,8 +4,8 @@ module mud_interface
    use, intrinsic :: iso_c_binding, only: c_int, c_double, c_char
    implicit none (type, external)
    private
-   public :: mud_report, mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_bounds, mud_bounds_for, &
-             mud_default_props, mud_convert_props, mud_validate_props, mud_init_state, &
+   public :: mud_report, mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_option, mud_bounds, &
+             mud_bounds_for, mud_default_props, mud_convert_props, mud_validate_props, mud_init_state, &
              mud_update, mud_update_batch, mud_status_text, mud_message, mud_substep, mud_trace_increment, &
              mud_save_increment, mud_prepared_size, mud_prepare, mud_update_prepared, mud_update_batch_prepared, &
              mud_saturation
@@ -67,6 +67,13 @@ module mud_interface
          integer(c_int), value :: list, index, field, len
          character(kind=c_char), intent(out) :: text(*)
       end function mud_text
+
+      integer(c_int) function mud_option(index, number, value, word, len) bind(c, name='mud_option')
+         import :: c_int, c_double, c_char
+         integer(c_int), value :: index, number, len
+         real(c_double), intent(inout) :: value
+         character(kind=c_char), intent(inout) :: word(*)
+      end function mud_option
 
       integer(c_int) function mud_bounds(list, index, lower, upper, preset) bind(c, name='mud_bounds')
          import :: c_int, c_double

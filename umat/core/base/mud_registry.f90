@@ -7,7 +7,7 @@ module mud_registry
    public :: property_t, variable_t, PROPERTIES, VARIABLES, NPROPS, NSTATV, NVARIABLES, STATE_LAYOUT
    public :: UNIT_STRESS, UNIT_STRESS_TO_LAMBDA
    public :: KIND_REAL, KIND_SWITCH, KIND_OPTION, KIND_COUNT
-   public :: property_index, statev_index, statev_name, statev_variable, COMPONENTS
+   public :: option_t, OPTIONS, property_meaning, property_index, statev_index, statev_name, statev_variable, COMPONENTS
    public :: RULE_CLASSIC, RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RESUME, RULE_AS_PUBLISHED
 
    public :: P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, &
@@ -40,8 +40,14 @@ module mud_registry
       real(wp) :: upper        !< Largest allowed value, likewise.
       real(wp) :: default      !< Value of the paper, or ours; likewise.
       character(12) :: origin  !< paper, mended, rebuilt, ours or numerical.
-      character(112) :: meaning
+      character(112) :: meaning   !< Of a KIND_OPTION without its words, which are OPTIONS.
    end type property_t
+
+   !> A value of a KIND_OPTION parameter, and the word for it.
+   type :: option_t
+      integer :: property, value
+      character(24) :: word
+   end type option_t
 
    !> One state variable: a scalar or a tensor of six components.
    type :: variable_t
@@ -203,7 +209,7 @@ module mud_registry
       property_t(P_LODE, 'lode', 'lode', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 1.0_wp, 'rebuilt', &
          '1: strength depends on the Lode angle; 0: circle of M_c'), &
       property_t(P_MEMORY_RULE, 'memory_rule', 'rule', '1', KIND_OPTION, 0.0_wp, 4.0_wp, 3.0_wp, 'ours', &
-         '0 classic, 1 threshold, 2 repositioning, 3 resume, 4 as_published'), &
+         ''), &
       property_t(P_EPS_HAT, 'eps_hat', 'eps_hat', '1', KIND_REAL, 1e-12_wp, 1.0_wp, 0.0001_wp, 'paper', &
          'plastic shear below which a process counts as an oscillation, eq. (16); value of Dafalias & Taiebat 2016'), &
       property_t(P_J_EXP, 'j_exp', 'j', '1', KIND_REAL, 0.01_wp, 100.0_wp, 1.0_wp, 'paper', &
@@ -219,7 +225,7 @@ module mud_registry
       property_t(P_CUTOFF, 'cutoff', 'cutoff', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 1.0_wp, 'numerical', &
          '1: tension cut-off at p_min; 0: off'), &
       property_t(P_SCHEME, 'scheme', 'scheme', '1', KIND_OPTION, 1.0_wp, 3.0_wp, 1.0_wp, 'paper', &
-         '1 modified Euler 2(1), 2 Bogacki-Shampine 3(2), 3 Dormand-Prince 5(4)'), &
+         ''), &
       property_t(P_TOLERANCE, 'tolerance', 'tol', '1', KIND_REAL, 1e-12_wp, 0.1_wp, 1e-05_wp, 'paper', &
          'relative tolerance of the stress integration'), &
       property_t(P_H_MIN, 'h_min', 'h_min', '1', KIND_REAL, 1e-12_wp, 0.1_wp, 1e-07_wp, 'numerical', &
@@ -227,7 +233,7 @@ module mud_registry
       property_t(P_MAX_SUBSTEPS, 'max_substeps', 'n_max', '1', KIND_COUNT, 1.0_wp, 1.0e8_wp, 1.0e5_wp, 'numerical', &
          'largest number of attempted substeps in an update'), &
       property_t(P_TANGENT, 'tangent', 'tangent', '1', KIND_OPTION, 0.0_wp, 3.0_wp, 3.0_wp, 'ours', &
-         'tangent that umat_ returns: 0 none, 1 elastic, 2 continuum, 3 consistent'), &
+         'tangent that umat_ returns'), &
       property_t(P_RHO_E, 'rho_e', 'rho_e', '1', KIND_REAL, 0.0_wp, 0.01_wp, 0.0_wp, 'ours', &
          'radius of the elastic nucleus, a norm of the strain tensor; 0: none, as in the paper'), &
       property_t(P_SHEAR_ORDER, 'shear_order', '-', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 0.0_wp, 'ours', &
@@ -303,7 +309,43 @@ module mud_registry
       variable_t(S_NUCLEUS, 6, 'nucleus', 'd', '1', .true., 'ours', &
          'strain from the centre of the elastic nucleus (rho_e > 0), compression positive', '0', &
          'follows the strain, |d| <= rho_e')]
+
+   type(option_t), parameter :: OPTIONS(*) = [ &
+      option_t(P_MEMORY_RULE, RULE_CLASSIC, 'classic'), &
+      option_t(P_MEMORY_RULE, RULE_THRESHOLD, 'threshold'), &
+      option_t(P_MEMORY_RULE, RULE_REPOSITIONING, 'repositioning'), &
+      option_t(P_MEMORY_RULE, RULE_RESUME, 'resume'), &
+      option_t(P_MEMORY_RULE, RULE_AS_PUBLISHED, 'as_published'), &
+      option_t(P_SCHEME, 1, 'modified Euler 2(1)'), &
+      option_t(P_SCHEME, 2, 'Bogacki-Shampine 3(2)'), &
+      option_t(P_SCHEME, 3, 'Dormand-Prince 5(4)'), &
+      option_t(P_TANGENT, 0, 'none'), &
+      option_t(P_TANGENT, 1, 'elastic'), &
+      option_t(P_TANGENT, 2, 'continuum'), &
+      option_t(P_TANGENT, 3, 'consistent')]
 contains
+   !> What a parameter means, with its values and words if it is an option: 'tangent that umat_ returns: 0 none, ...'.
+   pure function property_meaning(index) result(text)
+      integer, intent(in) :: index
+      character(200) :: text
+      character(2) :: gap
+      character :: digit
+      integer :: i
+
+      text = PROPERTIES(index)%meaning
+      gap = ': '
+      do i = 1, size(OPTIONS)
+         if (OPTIONS(i)%property /= index) cycle
+         digit = achar(iachar('0') + OPTIONS(i)%value)   ! options are few
+         if (text == '') then
+            text = digit//' '//OPTIONS(i)%word
+         else
+            text = trim(text)//gap//digit//' '//OPTIONS(i)%word
+         end if
+         gap = ', '
+      end do
+   end function property_meaning
+
    !> Place of a parameter in PROPS, 0 if there is none of that name. Case does not matter, as in a namelist.
    pure integer function property_index(name) result(index)
       character(*), intent(in) :: name
