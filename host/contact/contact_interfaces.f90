@@ -2,8 +2,8 @@
 !> contacts nothing is allocated and nothing is done.
 module contact_interfaces
    use kinds, only: wp
-   use contact_penalty, only: contact_geometry_t, contact_workspace_t, contact_result_t, contact_prepare, &
-                              new_workspace, new_result, contact_evaluate
+   use contact_geometry, only: contact_geometry_t, contact_prepare
+   use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate
    use contact_plate, only: plate_response_t, new_plate_response, plate_positions, gather_on_plate, force_on_plate
    use contact_types, only: contact_options_t, contact_status_t, CONTACT_OK
    use degrees_of_freedom, only: dofs_t

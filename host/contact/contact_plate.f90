@@ -2,7 +2,8 @@
 !> tangent are gathered on it. docs/theory/contact.md section 4.
 module contact_plate
    use kinds, only: wp
-   use contact_penalty, only: contact_geometry_t, contact_result_t
+   use contact_geometry, only: contact_geometry_t
+   use contact_penalty, only: contact_result_t
    implicit none (type, external)
    private
    public :: plate_response_t, new_plate_response, plate_positions, gather_on_plate, force_on_plate

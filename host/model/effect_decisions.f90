@@ -5,8 +5,8 @@ module effect_decisions
    use kinds, only: wp, PI
    use load_histories, only: pace_t, pace_of
    use effect_facts, only: facts_t, gather, judge, PLASTIC, ROUNDING
-   use linearised_body, only: linearised_body_t, prepare_body, support, response_of, imbalance_of, mass_of_nodes, &
-                              release_body
+   use body_response, only: response_of, imbalance_of
+   use linearised_body, only: linearised_body_t, prepare_body, support, mass_of_nodes, release_body
    use pore_effects, only: judge_suction, judge_water
    use effect_types, only: effect_t, OF_P_W, OF_P_C, OF_INERTIA, OF_SEEPAGE, OF_GRAVITY, UNBOUNDED, &
                          UNKNOWN

@@ -1,43 +1,39 @@
 !> The body at the start of a scene, taken as linear with its drained stiffness and its supports of a stage: the
-!> slowest free vibration, and the strain energy of what acts on it.
+!> slowest free vibration.
 module linearised_body
    use kinds, only: wp
-   use load_histories, only: load_history_t, start_of, FORCE, MOTION
+   use load_histories, only: start_of
    use contact_drainage, only: drainage_t
    use initial_conditions, only: initial_state
    use boundary_conditions, only: constrain_step, new_constraint
-   use boundary_loads, only: shape_loads, ties_of, load_at
-   use effect_types, only: UNBOUNDED
+   use boundary_loads, only: shape_loads, ties_of
    use model_types, only: model_t, stage_t
    use equation_assembly, only: assembly_t, make_assembly, assemble
    use degrees_of_freedom, only: dofs_t, number_unknowns
    use porous_domain, only: state_t, mixture_density
    use sparsity_pattern, only: pattern_t, make_pattern
    use prescribed_values, only: constraint_t
-   use sparse_factors, only: sparse_t, analyse, factorise, backsolve, times, release, SOLVED
+   use sparse_factors, only: sparse_t, analyse, factorise, backsolve, release, SOLVED
    use generalised_alpha, only: make_scheme, STATIC
    use faults, only: fault_t
-   use unknown_fields, only: DISPLACEMENTS, AT_U_Z
    implicit none (type, external)
    private
-   public :: linearised_body_t, prepare_body, support, mass_of_nodes, response_of, imbalance_of, release_body
+   public :: linearised_body_t, prepare_body, support, mass_times, mass_of_nodes, release_body
 
    integer, parameter :: MOST_TURNS = 60              !< Of the inverse iteration;
    real(wp), parameter :: ENOUGH = 1.0e-4_wp          !< it ends when the square of the frequency changes less.
-
-   real(wp), parameter :: NO_STRAIN = 1.0e-6_wp       !< Below it a motion carries the body along as a whole.
 
    type :: linearised_body_t
       type(dofs_t) :: dofs
       type(pattern_t) :: pattern
       type(state_t) :: state
       real(wp) :: omega = 0.0_wp                      !< Slowest free vibration [rad/s]; 0: nothing holds the body.
-      type(assembly_t), private :: assembly
-      type(constraint_t), private :: constraint
-      type(sparse_t), private :: sparse
-      real(wp), allocatable, private :: matrix(:), held(:)   !< Without and with the supports.
-      logical, allocatable, private :: free(:)
-      logical, private :: refused = .false.           !< The material gives no stiffness.
+      type(assembly_t) :: assembly
+      type(constraint_t) :: constraint
+      type(sparse_t) :: sparse
+      real(wp), allocatable :: matrix(:), held(:)   !< Without and with the supports.
+      logical, allocatable :: free(:)
+      logical :: refused = .false.           !< The material gives no stiffness.
    end type linearised_body_t
 contains
    !> Unknowns, initial state and stiffness.
@@ -114,68 +110,6 @@ contains
       ! Rayleigh's quotient comes from above.
       body%omega = sqrt(square*(1 - ENOUGH*MOST_TURNS))
    end subroutine support
-
-   !> Square root of twice the strain energy under the largest change of a load history, and how much of the response to
-   !> a prescribed motion is carried along without strain: at least 1, and the bound of its vibration grows with it.
-   subroutine response_of(model, history, body, energy, carried)
-      type(model_t), intent(in) :: model
-      type(load_history_t), intent(in) :: history
-      type(linearised_body_t), intent(inout) :: body
-      real(wp), intent(out) :: energy, carried   !< [kJ**(1/2)], [-]
-      real(wp) :: b(body%dofs%n), x(body%dofs%n), y(body%dofs%n)
-      integer :: k, at, status
-
-      energy = 0.0_wp
-      carried = 1.0_wp
-      if (.not. body%omega > 0.0_wp .or. .not. history%change > 0.0_wp) return
-      b = 0.0_wp
-      if (history%kind == FORCE .and. history%load > 0) then
-         b = merge(model%loads(history%load)%shape, 0.0_wp, body%free)
-         call backsolve(body%sparse, body%held, b, x, status)
-         energy = sqrt(max(dot_product(x, b), 0.0_wp))*history%change
-      else if (history%kind == FORCE) then
-         at = body%dofs%of(AT_U_Z, model%plates(history%plate)%node)
-         if (body%free(at)) b(at) = 1.0_wp
-         call backsolve(body%sparse, body%held, b, x, status)
-         energy = sqrt(max(dot_product(x, b), 0.0_wp))*history%change
-      else if (history%kind == MOTION) then
-         x = 0.0_wp
-         do k = 1, size(model%domain%mesh%groups(history%group)%nodes)
-            at = body%dofs%of(history%field, model%domain%mesh%groups(history%group)%nodes(k))
-            if (at > 0) x(at) = 1.0_wp
-         end do
-         call times(body%sparse, body%matrix, x, y)
-         b = merge(-y, 0.0_wp, body%free)
-         call backsolve(body%sparse, body%held, b, y, status)
-         x = x + merge(y, 0.0_wp, body%free)
-         where (body%dofs%field > DISPLACEMENTS) x = 0.0_wp
-         call times(body%sparse, body%matrix, x, y)
-         energy = sqrt(max(dot_product(x, y), 0.0_wp))
-         b = mass_times(model, body, x)
-         carried = body%omega*sqrt(dot_product(x, b))
-         carried = merge(UNBOUNDED, max(1.0_wp, carried/max(energy, NO_STRAIN*carried)), energy <= NO_STRAIN*carried)
-         energy = energy*history%change
-      end if
-   end subroutine response_of
-
-   !> The same of the forces that nothing balances when a stage begins with the initial state.
-   real(wp) function imbalance_of(model, stage, body) result(energy)
-      type(model_t), intent(in) :: model
-      integer, intent(in) :: stage
-      type(linearised_body_t), intent(inout) :: body
-      real(wp), parameter :: ROUNDING = 1.0e-9_wp
-      real(wp) :: b(body%dofs%n), x(body%dofs%n), y(body%dofs%n)
-      integer :: status
-
-      energy = 0.0_wp
-      if (.not. body%omega > 0.0_wp) return
-      b = load_at(model, model%stages(stage), body%dofs, start_of(model, stage))
-      y = merge(abs(b) + body%assembly%scale, 0.0_wp, body%free)
-      b = merge(b - body%assembly%residual, 0.0_wp, body%free)
-      if (norm2(b) <= ROUNDING*norm2(y)) return
-      call backsolve(body%sparse, body%held, b, x, status)
-      energy = sqrt(max(dot_product(x, b), 0.0_wp))
-   end function imbalance_of
 
    function mass_times(model, body, x) result(y)
       type(model_t), intent(in) :: model

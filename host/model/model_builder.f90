@@ -8,13 +8,12 @@ module model_builder
    use degrees_of_freedom, only: number_unknowns
    use effect_decisions, only: derive_effects
    use effect_types, only: effect_options_t
-   use generalised_alpha, only: STATIC, QUASI_STATIC, DYNAMIC
    use mesh_builder, only: build_mesh
-   use model_types, only: model_t, stage_t, point_t
-   use convergence, only: BY_FORCES, BY_RESIDUAL, BY_CORRECTION
+   use model_types, only: model_t, point_t
    use porous_domain, only: fluids_t, prepare_domain
    use region_builder, only: build_regions
-   use scene_types, only: scene_t, scene_stage_t, scene_point_t, WITH_P_W, WITH_P_C
+   use scene_types, only: scene_t, scene_point_t, WITH_P_W, WITH_P_C
+   use stage_builder, only: stage_of
    use shape_functions, only: RULES
    use texts, only: whole
    !$ use omp_lib, only: omp_get_max_threads
@@ -23,9 +22,6 @@ module model_builder
    public :: build_model
 
    real(wp), parameter :: EARTH = 9.81_wp   !< [m/s2] Where gravity is to be derived.
-   ! Of the words of &stage analysis and measure.
-   integer, parameter :: KIND_OF(*) = [STATIC, QUASI_STATIC, DYNAMIC]
-   integer, parameter :: MEASURE_OF(*) = [BY_FORCES, BY_RESIDUAL, BY_CORRECTION]
 contains
    subroutine build_model(scene, model, fault)
       type(scene_t), intent(in) :: scene
@@ -90,18 +86,6 @@ contains
          if (fault%code == 0) call build_mesh(scene%mesh, domain%mesh, fault)
       end associate
    end subroutine build_domain
-
-   pure function stage_of(given) result(stage)
-      type(scene_stage_t), intent(in) :: given
-      type(stage_t) :: stage
-
-      stage%scene_stage_t = given
-      stage%derived = given%analysis == 0
-      ! A derived stage begins as the general one.
-      stage%kind = DYNAMIC
-      if (.not. stage%derived) stage%kind = KIND_OF(given%analysis)
-      stage%measure = MEASURE_OF(given%measure_number)
-   end function stage_of
 
    !> The node and the quadrature point nearest to a point.
    function point_of(given, model) result(point)

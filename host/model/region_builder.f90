@@ -105,8 +105,8 @@ contains
       asked = any(given%retention_name == OF_THE_MATERIAL)
       if (law%has_retention .and. .not. asked) then
          call raise(fault, EXIT_INPUT, place_of(given)//'material '''//trim(given%material_name)//''' has a '// &
-                    'retention of its own: say retention = ''material'', and give its parameters there (of &mud: P_a, '// &
-                    'Omega, n_x, m_x, S_max, S_min).')
+                    'retention of its own: say retention = ''material'', and give its parameters there (of &mud: '// &
+                    'P_a, Omega, n_x, m_x, S_max, S_min).')
       else if (asked .and. .not. law%has_retention) then
          call raise(fault, EXIT_INPUT, place_of(given)//'material '''//trim(given%material_name)//''' has no '// &
                     'retention of its own; name a &retention.')

@@ -12,7 +12,6 @@ module run_setup
    use generalised_alpha, only: make_scheme, DYNAMIC
    use initial_conditions, only: initial_state
    use model_types, only: model_t
-   use porous_domain, only: copy_state
    use run_state, only: run_t
    use sparsity_pattern, only: make_pattern
    use unknown_fields, only: DISPLACEMENTS
@@ -53,6 +52,6 @@ contains
          return
       end if
       where (model%dofs%field > DISPLACEMENTS) run%constraint%offset = -run%assembly%residual
-      call copy_state(run%state, run%next)
+      run%next = run%state
    end subroutine keep_flow
 end module run_setup

@@ -3,23 +3,17 @@ module time_stepping
    use kinds, only: wp
    use wall_clock, only: clock, lap
    use faults, only: fault_t
-   use boundary_conditions, only: constrain_step
-   use boundary_loads, only: load_at
-   use contact_drainage, only: freeze_drainage
-   use contact_interfaces, only: work_of_contacts
    use contact_setup, only: contacts_act
-   use effect_monitor, only: begin_stage_of_monitor, monitor_step, warning_of
-   use energy_ledger, only: book_step, kinetic_energy
-   use generalised_alpha, only: scheme_t, make_scheme, step_error, DYNAMIC
-   use model_types, only: model_t, stage_t
    use convergence, only: control_t, log_t
-   use linear_system, only: T_CONTACT
-   use newton_step, only: take_step, start_accelerations, CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
+   use effect_monitor, only: monitor_step, warning_of
+   use generalised_alpha, only: scheme_t, make_scheme, step_error
+   use model_types, only: model_t
    use porous_domain, only: copy_state
    use run_observer, only: run_observer_t, step_report_t
-   use run_state, only: run_t, stage_state_t
+   use run_state, only: run_t
    use sparse_factors, only: release
-   use step_failure, only: explain_failure
+   use step_attempt, only: begin_stage, try_step
+   use step_booking, only: book_accepted_step
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
@@ -96,42 +90,6 @@ contains
       end associate
    end subroutine run_stage
 
-   !> From run%state to run%next; where it fails the next step is smaller, or the fault says why there is none.
-   subroutine try_step(model, stage, control, dt, run, log, accepted, fault)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      type(control_t), intent(in) :: control
-      real(wp), intent(in) :: dt
-      type(run_t), intent(inout) :: run
-      type(log_t), intent(out) :: log
-      logical, intent(out) :: accepted
-      type(fault_t), intent(inout) :: fault
-
-      accepted = .false.
-      run%constraint%load_0 = load_at(model, stage, model%dofs, run%state%time)
-      run%constraint%load_1 = load_at(model, stage, model%dofs, run%state%time + dt)
-      call prescribe(model, stage, run%state%time + dt, run, fault)
-      if (fault%code /= 0) return
-      call take_step(model%domain, model%dofs, run%pattern, make_scheme(stage%kind, stage%rho_inf, dt), &
-                     run%constraint, control, run%state, run%next, run%assembly, run%system, log)
-      run%iterations = run%iterations + log%iterations
-      run%rate_evaluations = run%rate_evaluations + log%rate_evaluations
-      accepted = log%outcome == CONVERGED
-      if (accepted) return
-      associate (at => run%at)
-         run%cuts = run%cuts + 1
-         at%cuts = at%cuts + 1
-         at%good = 0
-         run%system%factored = .false.
-         if (at%cuts > stage%cuts .or. log%outcome == BODY_FREE .or. log%outcome == SOLVER_FAILED) then
-            call explain_failure(model, stage, run, log, run%state%time + dt, dt, fault)
-            return
-         end if
-         ! Nothing of the failed step is kept: the next attempt starts from run%state alone.
-         at%factor = at%factor*merge(min(run%assembly%bad%factor, 0.5_wp), 0.5_wp, log%outcome == MATERIAL_FAILED)
-      end associate
-   end subroutine try_step
-
    !> Books an accepted step, takes it over and shows it.
    subroutine close_step(model, number, dt, log, run, fault, observer)
       type(model_t), intent(in) :: model
@@ -150,14 +108,7 @@ contains
          scheme = make_scheme(stage%kind, stage%rho_inf, dt)
          at%step = at%step + 1
          run%steps = run%steps + 1
-         call book_step(model%domain, model%dofs, scheme, run%constraint, run%system%reaction, run%state, run%next, &
-                        run%ledger)
-         if (allocated(run%system%contacts%interfaces)) then
-            t0 = clock()
-            run%ledger%contact = run%ledger%contact &
-               + work_of_contacts(run%system%contacts, model%dofs, run%state%x, run%next%x)
-            call lap(run%system%seconds(T_CONTACT), t0)
-         end if
+         call book_accepted_step(model, scheme, run)
          report = step_report_t(number, dt, step_error(scheme, run%state%x, run%state%a, run%next%x, run%next%a), &
                                 at%t_start + stage%duration - run%next%time <= LAST_STEP*dt, log)
          if (model%effect_options%auto) call watch_effects(model, report, run, observer)
@@ -193,49 +144,4 @@ contains
          if (news(i)) call observer%warn(warning_of(model, run%monitor%table(i)))
       end do
    end subroutine watch_effects
-
-   subroutine begin_stage(model, number, run, fault)
-      type(model_t), intent(in) :: model
-      integer, intent(in) :: number
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      associate (stage => model%stages(number))
-         run%at = stage_state_t(stage=number, t_start=run%state%time, nominal=stage%dt, x_start=run%state%x)
-         call prescribe(model, stage, run%state%time, run, fault)
-         if (fault%code /= 0) return
-         run%system%factored = .false.
-         call begin_stage_of_monitor(run%monitor)
-         if (stage%kind == DYNAMIC .and. stage%solve_start) call first_accelerations(model, stage, run, fault)
-         if (fault%code /= 0) return
-         run%ledger%kinetic_0 = run%ledger%kinetic_0 + kinetic_energy(model%domain, model%dofs, run%constraint%mass, &
-                                                                      run%state) - run%ledger%kinetic
-      end associate
-   end subroutine begin_stage
-
-   !> Prescribed unknowns of a step that ends at a time, from the state that it starts from.
-   subroutine prescribe(model, stage, time, run, fault)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: time
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      call freeze_drainage(model, run%drainage, run%system%contacts, run%state%x, fault)
-      if (fault%code /= 0) return
-      call constrain_step(model, stage, model%dofs, run%drainage, time, run%at%x_start, run%constraint)
-   end subroutine prescribe
-
-   subroutine first_accelerations(model, stage, run, fault)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-      type(log_t) :: log
-
-      run%constraint%load_0 = load_at(model, stage, model%dofs, run%state%time)
-      call start_accelerations(model%domain, model%dofs, run%pattern, run%constraint, run%state, run%next, &
-                               run%assembly, run%system, log)
-      if (log%outcome /= CONVERGED) call explain_failure(model, stage, run, log, run%state%time, 0.0_wp, fault)
-   end subroutine first_accelerations
 end module time_stepping

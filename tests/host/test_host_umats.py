@@ -64,7 +64,7 @@ for name, file, changes in (
     for file in tables:
         check(f"{name}: MUD as a UMAT is MUD, digit by digit, in {file}", cells(left / file) == cells(right / file))
 
-# An elastic law of others, isotropic by its constants, is that of the host but for rounding; effective stress, saturated.
+# An elastic law of others, isotropic by its constants, is that of the host but for rounding.
 YOUNG, POISSON = 1e4, 0.25
 text = (root / "verification/host/terzaghi/scene.nml").read_text()
 assert "young = 1.0e4\n   poisson = 0.25" in text
@@ -76,9 +76,9 @@ group = f"""&umat
    tangent = 'consistent'
 /
 """
-(one, left), (other, right) = (run(re.sub(r"&elastic\n.*?^/\n", lambda _: law, text, flags=re.S | re.M), f"terzaghi_{n}")
-                               for n, law in (("own", re.search(r"&elastic\n.*?^/\n", text, re.S | re.M)[0]),
-                                              ("foreign", group)))
+(one, left), (other, right) = (
+    run(re.sub(r"&elastic\n.*?^/\n", lambda _: law, text, flags=re.S | re.M), f"terzaghi_{n}")
+    for n, law in (("own", re.search(r"&elastic\n.*?^/\n", text, re.S | re.M)[0]), ("foreign", group)))
 check("consolidation: both run", one.returncode == other.returncode == 0, one.stderr + other.stderr)
 if one.returncode == other.returncode == 0:
     mine, theirs = last_row(left / "histories.csv"), last_row(right / "histories.csv")

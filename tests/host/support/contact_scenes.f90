@@ -1,8 +1,8 @@
 !> Surfaces for the tests of the contact kernels, and what every such test asks of an answer.
 module contact_scenes
    use, intrinsic :: iso_fortran_env, only: int64
-   use contact_penalty, only: contact_geometry_t, contact_workspace_t, contact_result_t, contact_prepare, &
-                              new_workspace, new_result, contact_evaluate
+   use contact_geometry, only: contact_geometry_t, contact_prepare
+   use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate
    use contact_types, only: wp, TWO_PI, contact_options_t, contact_status_t
    implicit none (type, external)
    private

@@ -1,0 +1,142 @@
+!> Two surfaces that may touch, as a contact needs them: their edges, once per mesh, and whether given coordinates will
+!> do. docs/theory/contact.md section 2.
+module contact_geometry
+   use contact_projection, only: edge_of, least_stretch
+   use contact_types, only: wp, NODAL_GAP, POINTWISE_GAP, PRESSURE_WORK, ENERGY_SLOPE, contact_options_t, &
+                            contact_status_t, contact_fail, is_finite, CONTACT_OK, CONTACT_BAD_OPTION, &
+                            CONTACT_BAD_EDGE, CONTACT_BAD_SIZE, CONTACT_NOT_FINITE, CONTACT_BAD_RADIUS, &
+                            CONTACT_DISTORTED_EDGE
+   implicit none (type, external)
+   private
+   public :: contact_geometry_t, contact_prepare, check_coordinates
+
+   !> Two surfaces that may touch, prepared once. Unknowns are numbered 2 (node - 1) + direction, first the slave's
+   !> nodes, then the master's.
+   type :: contact_geometry_t
+      integer :: slave_nodes = 0, master_nodes = 0
+      type(contact_options_t) :: options
+      integer, allocatable :: slave_edges(:, :), master_edges(:, :)
+      integer, allocatable :: edges_of(:, :)    !< (2, slave nodes), 0 if there is none
+      logical, allocatable :: free(:)           !< (master nodes) in one edge only: the surface ends there.
+   end type contact_geometry_t
+contains
+   !> Prepares two surfaces: (3, edges) node numbers of each in the order start, end, middle, the body on the
+   !> left.
+   pure subroutine contact_prepare(geometry, slave_nodes, slave_edges, master_nodes, master_edges, options, status)
+      type(contact_geometry_t), intent(out) :: geometry
+      integer, intent(in) :: slave_nodes, master_nodes
+      integer, intent(in) :: slave_edges(:, :), master_edges(:, :)
+      type(contact_options_t), intent(in) :: options
+      type(contact_status_t), intent(out) :: status
+      integer, allocatable :: edges_of(:, :)
+
+      call check_options(options, status)
+      if (status%code /= CONTACT_OK) return
+      call list_edges(slave_edges, slave_nodes, .false., geometry%edges_of, status)
+      if (status%code /= CONTACT_OK) return
+      call list_edges(master_edges, master_nodes, .true., edges_of, status)
+      if (status%code /= CONTACT_OK) return
+      geometry%options = options
+      geometry%slave_nodes = slave_nodes
+      geometry%master_nodes = master_nodes
+      geometry%slave_edges = slave_edges
+      geometry%master_edges = master_edges
+      geometry%free = edges_of(2, :) == 0
+   end subroutine contact_prepare
+
+   pure subroutine check_options(options, status)
+      type(contact_options_t), intent(in) :: options
+      type(contact_status_t), intent(out) :: status
+
+      if (.not. all(is_finite([options%penalty, options%search_radius]))) then
+         status = contact_fail(CONTACT_BAD_OPTION, &
+                               value=merge(options%search_radius, options%penalty, is_finite(options%penalty)))
+      else if (options%penalty <= 0.0_wp) then
+         status = contact_fail(CONTACT_BAD_OPTION, value=options%penalty)
+      else if (options%search_radius < 0.0_wp) then
+         status = contact_fail(CONTACT_BAD_OPTION, value=options%search_radius)
+      else if (all(options%gap /= [NODAL_GAP, POINTWISE_GAP])) then
+         status = contact_fail(CONTACT_BAD_OPTION, value=real(options%gap, wp))
+      else if (all(options%variation /= [PRESSURE_WORK, ENERGY_SLOPE])) then
+         status = contact_fail(CONTACT_BAD_OPTION, value=real(options%variation, wp))
+      end if
+   end subroutine check_options
+
+   !> The edges of every node; at most two, of a middle node one.
+   pure subroutine list_edges(edges, nodes, master, edges_of, status)
+      integer, intent(in) :: edges(:, :), nodes
+      logical, intent(in) :: master
+      integer, allocatable, intent(out) :: edges_of(:, :)
+      type(contact_status_t), intent(out) :: status
+      integer :: e, i, node
+
+      allocate (edges_of(2, max(nodes, 0)), source=0)
+      do e = 1, size(edges, 2)
+         do i = 1, 3
+            node = edges(i, e)
+            if (node < 1 .or. node > nodes) then
+               status = contact_fail(CONTACT_BAD_EDGE, e, master, real(node, wp))
+               return
+            end if
+            ! A middle node fills both places, so that nobody else may have it.
+            if (edges_of(2, node) /= 0 .or. (i == 3 .and. edges_of(1, node) /= 0)) then
+               status = contact_fail(CONTACT_BAD_EDGE, e, master, real(node, wp))
+               return
+            end if
+            if (edges_of(1, node) == 0) then
+               edges_of(1, node) = e
+               if (i == 3) edges_of(2, node) = e
+            else
+               edges_of(2, node) = e
+            end if
+         end do
+      end do
+      do e = 1, size(edges, 2)
+         edges_of(2, edges(3, e)) = 0
+      end do
+   end subroutine list_edges
+
+   pure subroutine check_coordinates(geometry, slave_x, master_x, status)
+      type(contact_geometry_t), intent(in) :: geometry
+      real(wp), intent(in) :: slave_x(:, :), master_x(:, :)
+      type(contact_status_t), intent(out) :: status
+      integer :: i
+
+      if (size(slave_x, 2) /= geometry%slave_nodes) then
+         status = contact_fail(CONTACT_BAD_SIZE, geometry%slave_nodes, .false., real(size(slave_x, 2), wp))
+      else if (size(master_x, 2) /= geometry%master_nodes) then
+         status = contact_fail(CONTACT_BAD_SIZE, geometry%master_nodes, .true., real(size(master_x, 2), wp))
+      end if
+      if (status%code /= CONTACT_OK) return
+      call check_surface(slave_x, geometry%slave_edges, .false., status)
+      if (status%code /= CONTACT_OK) return
+      call check_surface(master_x, geometry%master_edges, .true., status)
+      if (status%code /= CONTACT_OK .or. .not. geometry%options%axisymmetric) return
+      do i = 1, geometry%slave_nodes
+         if (slave_x(1, i) >= 0.0_wp) cycle
+         status = contact_fail(CONTACT_BAD_RADIUS, i, .false., slave_x(1, i))
+         return
+      end do
+   end subroutine check_coordinates
+
+   pure subroutine check_surface(x, edges, master, status)
+      real(wp), intent(in) :: x(:, :)
+      integer, intent(in) :: edges(:, :)
+      logical, intent(in) :: master
+      type(contact_status_t), intent(inout) :: status
+      real(wp) :: stretch
+      integer :: i
+
+      do i = 1, size(x, 2)
+         if (all(is_finite(x(:, i)))) cycle
+         status = contact_fail(CONTACT_NOT_FINITE, i, master)
+         return
+      end do
+      do i = 1, size(edges, 2)
+         stretch = least_stretch(edge_of(x(:, edges(:, i))))
+         if (stretch > 0.0_wp) cycle
+         status = contact_fail(CONTACT_DISTORTED_EDGE, i, master, stretch)
+         return
+      end do
+   end subroutine check_surface
+end module contact_geometry

@@ -1,0 +1,101 @@
+!> The start of a stage, and one attempt at a step: what it prescribes, its solution, and the size of the next attempt.
+!> docs/theory/host.md section 4.4.
+module step_attempt
+   use kinds, only: wp
+   use faults, only: fault_t
+   use boundary_conditions, only: constrain_step
+   use boundary_loads, only: load_at
+   use contact_drainage, only: freeze_drainage
+   use convergence, only: control_t, log_t
+   use effect_monitor, only: begin_stage_of_monitor
+   use energy_ledger, only: kinetic_energy
+   use generalised_alpha, only: make_scheme, DYNAMIC
+   use model_types, only: model_t, stage_t
+   use newton_step, only: take_step, start_accelerations, CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
+   use run_state, only: run_t, stage_state_t
+   use step_failure, only: explain_failure
+   implicit none (type, external)
+   private
+   public :: begin_stage, try_step
+contains
+   subroutine begin_stage(model, number, run, fault)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: number
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+
+      associate (stage => model%stages(number))
+         run%at = stage_state_t(stage=number, t_start=run%state%time, nominal=stage%dt, x_start=run%state%x)
+         call prescribe(model, stage, run%state%time, run, fault)
+         if (fault%code /= 0) return
+         run%system%factored = .false.
+         call begin_stage_of_monitor(run%monitor)
+         if (stage%kind == DYNAMIC .and. stage%solve_start) call first_accelerations(model, stage, run, fault)
+         if (fault%code /= 0) return
+         run%ledger%kinetic_0 = run%ledger%kinetic_0 + kinetic_energy(model%domain, model%dofs, run%constraint%mass, &
+                                                                      run%state) - run%ledger%kinetic
+      end associate
+   end subroutine begin_stage
+
+   !> From run%state to run%next; where it fails the next step is smaller, or the fault says why there is none.
+   subroutine try_step(model, stage, control, dt, run, log, accepted, fault)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(control_t), intent(in) :: control
+      real(wp), intent(in) :: dt
+      type(run_t), intent(inout) :: run
+      type(log_t), intent(out) :: log
+      logical, intent(out) :: accepted
+      type(fault_t), intent(inout) :: fault
+
+      accepted = .false.
+      run%constraint%load_0 = load_at(model, stage, model%dofs, run%state%time)
+      run%constraint%load_1 = load_at(model, stage, model%dofs, run%state%time + dt)
+      call prescribe(model, stage, run%state%time + dt, run, fault)
+      if (fault%code /= 0) return
+      call take_step(model%domain, model%dofs, run%pattern, make_scheme(stage%kind, stage%rho_inf, dt), &
+                     run%constraint, control, run%state, run%next, run%assembly, run%system, log)
+      run%iterations = run%iterations + log%iterations
+      run%rate_evaluations = run%rate_evaluations + log%rate_evaluations
+      accepted = log%outcome == CONVERGED
+      if (accepted) return
+      associate (at => run%at)
+         run%cuts = run%cuts + 1
+         at%cuts = at%cuts + 1
+         at%good = 0
+         run%system%factored = .false.
+         if (at%cuts > stage%cuts .or. log%outcome == BODY_FREE .or. log%outcome == SOLVER_FAILED) then
+            call explain_failure(model, stage, run, log, run%state%time + dt, dt, fault)
+            return
+         end if
+         ! Nothing of the failed step is kept: the next attempt starts from run%state alone.
+         at%factor = at%factor*merge(min(run%assembly%bad%factor, 0.5_wp), 0.5_wp, log%outcome == MATERIAL_FAILED)
+      end associate
+   end subroutine try_step
+
+   !> Prescribed unknowns of a step that ends at a time, from the state that it starts from.
+   subroutine prescribe(model, stage, time, run, fault)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: time
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+
+      call freeze_drainage(model, run%drainage, run%system%contacts, run%state%x, fault)
+      if (fault%code /= 0) return
+      call constrain_step(model, stage, model%dofs, run%drainage, time, run%at%x_start, run%constraint)
+   end subroutine prescribe
+
+   subroutine first_accelerations(model, stage, run, fault)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+      type(log_t) :: log
+
+      run%constraint%load_0 = load_at(model, stage, model%dofs, run%state%time)
+      call start_accelerations(model%domain, model%dofs, run%pattern, run%constraint, run%state, run%next, &
+                               run%assembly, run%system, log)
+      if (log%outcome /= CONVERGED) call explain_failure(model, stage, run, log, run%state%time, 0.0_wp, fault)
+   end subroutine first_accelerations
+end module step_attempt
