@@ -6,7 +6,7 @@ from checking import add, build, check, light, root, work
 verification = root / "verification"
 sys.path.insert(0, str(verification))
 sys.dont_write_bytecode = True
-from tools import runner  # noqa: E402
+from tools import readme, runner  # noqa: E402
 
 pages = runner.declared()
 
@@ -26,6 +26,9 @@ def run_section(*sections):
         add(outcome.passed, outcome.failed)
         if outcome.failed:
             runner.report(outcome)
+        table = readme.block((verification / outcome.name / "README.md").read_text(encoding="utf-8"), "checks") or ""
+        missing = [c.name for c in outcome.checks if f"| {readme.cell(c.name)}" not in table]
+        check(f"{outcome.name}: its README has its checks", not missing, f"{missing}: verification/run PAGE --update")
     after = tree()
     check("a run of the pages changes nothing in the source tree", after == before,
           sorted(str(path) for path in before.keys() | after.keys() if before.get(path) != after.get(path)))
