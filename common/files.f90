@@ -5,7 +5,7 @@ module files
    use, intrinsic :: iso_fortran_env, only: output_unit
    implicit none (type, external)
    private
-   public :: write_whole, can_be_written, bytes_of, make_folder, folder_of, to_terminal, limits_are_errors
+   public :: write_whole, read_whole, can_be_written, bytes_of, make_folder, folder_of, to_terminal, limits_are_errors
    public :: fopen, open_output, fwrite, fflush, fileno, fclose, fsync, truncate
 
    character(*), parameter :: PART = '.part'   !< Ends the name of a file that is being written.
@@ -21,6 +21,17 @@ module files
          type(c_ptr), value :: data, file
          integer(c_size_t), value :: size, count
       end function fwrite
+
+      integer(c_size_t) function fread(data, size, count, file) bind(c)
+         import :: c_ptr, c_size_t
+         type(c_ptr), value :: data, file
+         integer(c_size_t), value :: size, count
+      end function fread
+
+      integer(c_int) function ferror(file) bind(c)
+         import :: c_ptr, c_int
+         type(c_ptr), value :: file
+      end function ferror
 
       integer(c_int) function fflush(file) bind(c)
          import :: c_ptr, c_int
@@ -111,6 +122,29 @@ contains
          good = .false.
       end if
    end subroutine write_whole
+
+   !> A whole file as text. Not by a Fortran unit: two threads that read one file would be refused.
+   subroutine read_whole(path, text, good)
+      character(*), intent(in) :: path
+      character(:), allocatable, intent(out) :: text
+      logical, intent(out) :: good
+      integer(c_size_t), parameter :: ROOM = 65536
+      character(len=ROOM), target :: piece
+      integer(c_size_t) :: got
+      type(c_ptr) :: file
+
+      text = ''
+      file = fopen(trim(path)//c_null_char, 'rb'//c_null_char)
+      good = c_associated(file)
+      if (.not. good) return
+      do
+         got = fread(c_loc(piece), 1_c_size_t, ROOM, file)
+         text = text//piece(:got)
+         if (got < ROOM) exit
+      end do
+      good = ferror(file) == 0
+      if (fclose(file) /= 0) good = .false.
+   end subroutine read_whole
 
    !> Whether write_whole could write a file of that name now; one that is there stays as it is.
    logical function can_be_written(path) result(good)

@@ -3,6 +3,7 @@
 !> library's registry and because every refusal has to say the file, the line and the nearest name.
 module namelists
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
+   use files, only: read_whole
    use texts, only: lower_case, whole
    implicit none (type, external)
    private
@@ -46,33 +47,16 @@ contains
       character(*), intent(in) :: file
       type(group_t), allocatable, intent(out) :: groups(:)
       type(fault_t), intent(inout) :: fault
-      character(LINE_LENGTH) :: text
-      character(LENGTH) :: problem
-      type(word_t) :: pending
-      logical :: inside
-      integer :: unit, line, status
+      character(:), allocatable :: text
+      logical :: good
 
-      allocate (groups(0))
-      open (newunit=unit, file=file, status='old', action='read', form='formatted', iostat=status, iomsg=problem)
-      if (status /= 0) then
-         call raise(fault, EXIT_INPUT, trim(file)//': cannot be read ('//trim(problem)//').')
-         return
+      call read_whole(file, text, good)
+      if (good) then
+         call groups_of_text(text, file, groups, fault)
+      else
+         allocate (groups(0))
+         call raise(fault, EXIT_INPUT, trim(file)//': cannot be read; is it there, is it a file?')
       end if
-      inside = .false.
-      line = 0
-      do
-         read (unit, '(a)', iostat=status, iomsg=problem) text
-         if (is_iostat_end(status)) exit
-         line = line + 1
-         if (status /= 0) then
-            call raise(fault, EXIT_INPUT, at_line(file, line)//'cannot be read ('//trim(problem)//').')
-         else
-            call read_line(file, line, text, groups, inside, pending, fault)
-         end if
-         if (fault%code /= 0) exit
-      end do
-      close (unit)
-      if (inside) call check_closed(file, groups, fault)
    end subroutine read_groups
 
    !> All groups of a text of several lines, in their order.
@@ -90,7 +74,8 @@ contains
       line = 0
       first = 1
       do while (first <= len(text) .and. fault%code == 0)
-         length = index(text(first:)//NEW_LINE_, NEW_LINE_) - 1
+         length = index(text(first:), NEW_LINE_) - 1
+         if (length < 0) length = len(text) - first + 1
          line = line + 1
          call read_line(file, line, text(first:first + length - 1), groups, inside, pending, fault)
          first = first + length + 1
@@ -272,10 +257,21 @@ contains
                        whole(MAX_VALUES)//' values; is a "=" missing after '//trim(pending%text)//'?')
          else
             item%count = item%count + 1
-            item%values = [item%values, pending%text]
+            call append(item%values, pending%text)
          end if
       end associate
    end subroutine file_value
+
+   pure subroutine append(values, value)
+      character(LENGTH), allocatable, intent(inout) :: values(:)
+      character(LENGTH), intent(in) :: value
+      character(LENGTH), allocatable :: more(:)
+
+      allocate (more(size(values) + 1))
+      more(:size(values)) = values
+      more(size(more)) = value
+      call move_alloc(more, values)
+   end subroutine append
 
    !> An entry that is complete has a value.
    subroutine check_last_entry(file, group, fault)

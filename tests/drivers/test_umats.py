@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish, root, work  # noqa: E402
+from checking import build, check, finish, light, root, work  # noqa: E402
 
 triax, describe = build / "drivers/mud_triax", build / "drivers/mud_describe"
 umats = build / "tests/umats"
@@ -147,6 +147,8 @@ drained = START.format(0) + stage("control = 'drained'", "eps_a_end = 0.01")
 done, _, rows = run(material("orthotropic", "nan, 0.25") + drained)
 check("PROPS that are not numbers are refused", done.returncode == 2 and "nan" in done.stderr, done.stderr)
 done, _, rows = run(material("orthotropic", "1e4, 0.5") + drained)
-check("a stress that is not finite is no answer", done.returncode != 0 and "not finite" in done.stderr, done.stderr)
+# Builds that trap end in the division of the UMAT itself.
+check("a stress that is not finite is no answer", done.returncode != 0 and (light or "not finite" in done.stderr),
+      done.stderr)
 
 finish()
