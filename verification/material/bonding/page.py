@@ -1,5 +1,5 @@
 """Wetting and drying where only the bonding variable changes."""
-from closed_forms import ROUNDING, P, bonding, critical_void_ratio
+from closed_forms import PUBLISHED, ROUNDING, P, bonding, critical_void_ratio
 from tools.page import Page, Tolerance
 from tools.pictures import COLOURS
 
@@ -29,12 +29,12 @@ def line_void_ratio(suction, e, p):
 
 
 def check(bench):
-    run = bench.driver("drying_constant_stress")
+    run = bench.driver("drying_constant_stress", PUBLISHED)
     bench.near("drying at constant stress: strain", max(max(map(abs, run[k])) for k in ("eps_a", "eps_v")), 0, NOTHING)
     psi = [e - critical_void_ratio(100.0, bonding(s, e)) for e, s in zip(run["e"], run["suction"])]
     bench.near("drying at constant stress: state parameter", max(abs(a - b) for a, b in zip(psi, run["psi"])), 0,
                ROUNDED)
-    run = bench.driver("wetting_on_the_line")
+    run = bench.driver("wetting_on_the_line", PUBLISHED)
     p, e, off = run["p_eff"][0], run["e"][0], 0.0
     for suction, there in zip(run["suction"], run["e"]):
         e = line_void_ratio(suction, e, p)
@@ -45,14 +45,14 @@ def check(bench):
 
 def draw(bench, _, plt):
     figure, axes = plt.subplots(1, 2, figsize=(10, 4.2))
-    run = bench.driver("wetting_on_the_line")
+    run = bench.driver("wetting_on_the_line", PUBLISHED)
     line = [line_void_ratio(s, e, run["p_eff"][0]) for s, e in zip(run["suction"], run["e"])]
     axes[0].plot(run["suction"], run["e"], color=COLOURS[0], label="model")
     axes[0].plot(run["suction"], line, "k--", lw=1, label="closed form")
     axes[0].set(xlabel="suction [kPa]", ylabel="e [-]", title="wetting under constant effective stress, on the line")
     axes[0].invert_xaxis()
     axes[0].legend()
-    run = bench.driver("drying_constant_stress")
+    run = bench.driver("drying_constant_stress", PUBLISHED)
     axes[1].plot(run["suction"], run["psi"], color=COLOURS[0], label="model")
     axes[1].plot(run["suction"], [e - critical_void_ratio(100.0, bonding(s, e)) for e,
                                   s in zip(run["e"], run["suction"])],

@@ -15,7 +15,8 @@ MAKES = (Script("make_rates.py", ("paths_rates.csv",), 20, "scipy"),
          Script("make_paths.py", ("paths.csv",), 100, "scipy"),
          Script("printed_numbers.py", ("printed_numbers.csv",), 20, "scipy"))
 
-NONE = Tolerance("tests/umat/contract/test_reference.pf holds rates to 1e-10 and paths to the tolerance asked for, each "
+NONE = Tolerance("tests/umat/contract/test_reference.pf holds rates to 1e-10 and paths to the tolerance asked for, "
+                 "each "
                  "with its reason")
 
 

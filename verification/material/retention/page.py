@@ -1,5 +1,5 @@
 """Retention curve and constant water content."""
-from closed_forms import ROUNDING, saturation
+from closed_forms import PUBLISHED, ROUNDING, saturation
 from tools.page import Page, Tolerance
 from tools.pictures import COLOURS
 
@@ -20,7 +20,7 @@ HELD = Tolerance("the driver meets the water content to 1e-10 in every increment
 def check(bench):
     for name, title in (("drying_constant_volume", "drying at constant volume"),
                         ("constant_water", "constant water content")):
-        run = bench.driver(name)
+        run = bench.driver(name, PUBLISHED)
         off = max(abs(s - saturation(p, e)) for s, p, e in zip(run["s_w"], run["suction"], run["e"]))
         bench.near(f"{title}: S_w", off, 0, ROUNDED)
     water = [s * e for s, e in zip(run["s_w"], run["e"])]
@@ -29,14 +29,14 @@ def check(bench):
 
 def draw(bench, _, plt):
     figure, axes = plt.subplots(1, 2, figsize=(10, 4.2))
-    run = bench.driver("drying_constant_volume")
+    run = bench.driver("drying_constant_volume", PUBLISHED)
     axes[0].semilogx(run["suction"][1:], run["s_w"][1:], color=COLOURS[0], label="model, e 0.8")
     for e, style in ((0.6, ":"), (0.8, "--"), (1.0, "-.")):
         axes[0].semilogx(run["suction"][1:], [saturation(s, e) for s in run["suction"][1:]], "k", ls=style, lw=1,
                          label=f"closed form, e {e}")
     axes[0].set(xlabel="suction [kPa], logarithmic", ylabel="S$_w$ [-]", title="retention curve, eqs (23), (24)")
     axes[0].legend()
-    run = bench.driver("constant_water")
+    run = bench.driver("constant_water", PUBLISHED)
     axes[1].plot(run["e"], run["s_w"], color=COLOURS[0], label="model")
     axes[1].plot(run["e"], [run["s_w"][0] * run["e"][0] / e for e in run["e"]], "k--", lw=1, label="S$_w$ e constant")
     axes[1].set(xlabel="e [-]", ylabel="S$_w$ [-]", title="constant water content, drained then isotropic")

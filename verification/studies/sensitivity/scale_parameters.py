@@ -18,7 +18,7 @@ FACTORS = (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0)
 
 def misfits(bench, parameter, value):
     """{test: (q [%], eps_v [points])} with one parameter of the material changed."""
-    changes = ((re.compile(r"(?m)^   file = .*$"), rf"\g<0>\n   {parameter} = {value}"),)
+    changes = ((re.compile(r"(?m)^   file = .*$"), rf"\g<0>\n   {parameter} = {value}\n   rho_e = 0.0"),)
     tests = laboratory.read()
     return {name: laboratory.misfit(bench.driver(f"vi_drained_{name}", changes), tests[name])
             for name in laboratory.TESTS}
