@@ -18,7 +18,7 @@ module mud_params
    ! Side by side: an update checks them every time, and entries of PROPERTIES are several hundred bytes apart.
    real(wp), parameter :: LOWER(NPROPS) = PROPERTIES%lower, UPPER(NPROPS) = PROPERTIES%upper
    !> Switches, options and counts.
-   integer, parameter :: WHOLE(*) = pack(PROPERTIES%index, PROPERTIES%kind /= KIND_REAL)
+   integer, parameter :: WHOLE_ENTRIES(*) = pack(PROPERTIES%index, PROPERTIES%kind /= KIND_REAL)
    real(wp), parameter :: NEARLY_WHOLE = 1.0e-9_wp   !< A number this close to a whole one is it [-].
 
    !> Parameters of one material; names and units as in mud_registry.
@@ -93,20 +93,20 @@ contains
       params%p_min = minimum_stress(props)
       params%largest_stress = LARGEST_STRESS*stress_unit(props)
       params%largest_suction_step = LARGEST_SUCTION_STEP*stress_unit(props)
-      params%bonding = nint(props(P_BONDING)) == 1
-      params%fabric = nint(props(P_FABRIC)) == 1
-      params%isotropic = nint(props(P_ISOTROPIC)) == 1
-      params%lode = nint(props(P_LODE)) == 1
-      params%memory_rule = nint(props(P_MEMORY_RULE))
+      params%bonding = whole(props(P_BONDING)) == 1
+      params%fabric = whole(props(P_FABRIC)) == 1
+      params%isotropic = whole(props(P_ISOTROPIC)) == 1
+      params%lode = whole(props(P_LODE)) == 1
+      params%memory_rule = whole(props(P_MEMORY_RULE))
       params%eps_hat = props(P_EPS_HAT)
       params%j_exp = props(P_J_EXP)
-      params%scheme = nint(props(P_SCHEME))
+      params%scheme = whole(props(P_SCHEME))
       params%tolerance = props(P_TOLERANCE)
       params%h_min = props(P_H_MIN)
-      params%max_substeps = nint(props(P_MAX_SUBSTEPS))
-      params%tangent = nint(props(P_TANGENT))
+      params%max_substeps = whole(props(P_MAX_SUBSTEPS))
+      params%tangent = whole(props(P_TANGENT))
       params%rho_e = props(P_RHO_E)
-      params%shear_order = nint(props(P_SHEAR_ORDER))
+      params%shear_order = whole(props(P_SHEAR_ORDER))
       params%c4 = params%c**4
       params%lode_bend = SQRT_6*(1.0_wp - params%c4)/(8.0_wp*params%c4)
 
@@ -118,7 +118,7 @@ contains
       params%x_rev = merge(0.0_wp, props(P_X_REV), published)
       params%cap_d = merge(0.0_wp, props(P_CAP_D), published)
       params%cap_h = merge(0.0_wp, props(P_CAP_H), published)
-      params%cutoff = nint(props(P_CUTOFF)) == 1 .and. .not. published
+      params%cutoff = whole(props(P_CUTOFF)) == 1 .and. .not. published
    end subroutine read_params
 
    !> Names the first entry that is not finite, out of its bounds or not the whole number it should be.
@@ -150,10 +150,17 @@ contains
       real(wp), intent(in) :: props(NPROPS)
 
       no_fault = .not. any(props < LOWER .or. props > UPPER)
-      if (no_fault) no_fault = all(abs(props(WHOLE) - anint(props(WHOLE))) < NEARLY_WHOLE) .and. &
+      if (no_fault) no_fault = all(abs(props(WHOLE_ENTRIES) - whole(props(WHOLE_ENTRIES))) < NEARLY_WHOLE) .and. &
                                props(P_S_MIN) < props(P_S_MAX) .and. &
                                (props(P_P_MIN) <= 0.0_wp .or. props(P_P_MIN) >= SMALLEST_MINIMUM)
    end function no_fault
+
+   !> The whole number nearest to one that is not negative: nint without a call.
+   pure elemental integer function whole(value)
+      real(wp), intent(in) :: value
+
+      whole = int(value + 0.5_wp)
+   end function whole
 
    !> Finite, within the bounds and, for switches, options and counts, a whole number.
    pure logical function acceptable(i, value, low, high)
@@ -163,6 +170,6 @@ contains
       acceptable = is_finite(value)
       if (.not. acceptable) return
       acceptable = value >= low .and. value <= high
-      if (acceptable .and. any(i == WHOLE)) acceptable = abs(value - anint(value)) < NEARLY_WHOLE
+      if (acceptable .and. any(i == WHOLE_ENTRIES)) acceptable = abs(value - anint(value)) < NEARLY_WHOLE
    end function acceptable
 end module mud_params
