@@ -124,11 +124,13 @@ contains
    pure subroutine change_strain(w, x)
       type(rate_t), intent(in) :: w
       type(lanes_t), intent(inout) :: x
-      real(wp) :: b
+      real(wp) :: b, y
       integer :: i, j
 
       b = 0.0_wp
       if (w%iso_active) b = w%iso%b
+      y = 0.0_wp
+      if (w%loading) y = w%y
       do j = 1, x%m
          x%v(j) = x%strain(j, 1) + x%strain(j, 2) + x%strain(j, 3)
          x%volumetric(j) = w%k_e*(x%v(j) - b*x%d_pc(j))
@@ -143,7 +145,7 @@ contains
       do i = 1, 6
          do j = 1, x%m
             x%d_e(j, i) = w%g*(x%strain(j, i) - (IDENTITY(i)/3.0_wp)*x%v(j))
-            x%dt(j, i) = w%y*(2.0_wp*x%d_e(j, i) - w%r(i)*x%volumetric(j))
+            x%dt(j, i) = y*(2.0_wp*x%d_e(j, i) - w%r(i)*x%volumetric(j))
             x%z(j, i) = 0.0_wp
          end do
       end do
