@@ -42,7 +42,8 @@ def near(a, b, size=1.0):
 # Linear elasticity, E = 1e4 kPa, nu = 0.25: G = 4000, K = 6666.7 kPa. Shear moduli of their own in the three planes.
 YOUNG, POISSON, SHEAR = 1e4, 0.25, (3000.0, 4000.0, 5000.0)
 SPRING = f"{YOUNG}, {POISSON}, {', '.join(map(str, SHEAR))}"
-elastic = material("orthotropic", SPRING, "nstatv = 2", "state_names = calls, axial", "tangent = 'consistent'")
+elastic = material("orthotropic", SPRING, "nstatv = 2", "state_names = n_substep, state_parameter",
+                   "tangent = 'consistent'")
 
 done, lines, rows = run(elastic + START.format(0) + stage("control = 'drained'", "eps_a_end = 0.01"))
 last = rows[-1] if rows else {}
@@ -50,7 +51,11 @@ check("drained compression has the slope E and Poisson's ratio", last and near(l
       and near(last["eps_r"], -POISSON*0.01, 0.01) and near(last["sigma_r"], 100), f"{last} {done.stderr}")
 check("the void ratio follows the volume", last and near(last["e"], 1.8*math.exp(-0.01*(1 - 2*POISSON)) - 1), last)
 check("columns of a state that the law does not have are left out",
-      lines and not {"psi", "n_rate", "n_guard", "n_reseat"} & set(lines[0].split(",")), lines[:1])
+      lines and not {"n_rate", "n_guard", "n_reseat"} & set(lines[0].split(",")), lines[:1])
+# The UMAT was told to call its time n_substep and its strain 33 state_parameter: 100 increments after the one of zero
+# strain at the start.
+check("TIME counts the updates", last and last["n_substep"] == 101, last)
+check("STRAN is the strain since the start, tension positive", last and near(last["psi"], -0.01, 0.01), last)
 done, _, rows = run(elastic + START.format(0) + stage("control = 'undrained'", "eps_a_end = 0.01"))
 check("undrained compression has the slope 3 G and keeps the mean stress",
       rows and near(rows[-1]["q"], 3*4000*0.01) and near(rows[-1]["p_eff"], 100), f"{rows[-1:]} {done.stderr}")
@@ -141,8 +146,9 @@ for name, (text, word) in MISTAKES.items():
     check(f"{name} is explained", done.returncode == 2 and told and not lines, f"{done.returncode} {done.stderr}")
 leap = stage("control = 'strain_path'", "d_eps = 0, 0, 0.08, 0, 0, 0", "increment = 0.1")
 done, _, rows = run(elastic + START.format(0) + leap)
-check("an increment that the UMAT refuses is halved", done.returncode == 0 and rows and near(rows[-1]["eps_a"], 0.08),
-      f"{done.returncode} {done.stderr}")
+# lambda + 2 G = 12000 kPa: no part of the strain is lost.
+check("an increment that the UMAT refuses is halved", done.returncode == 0 and rows and near(rows[-1]["eps_a"], 0.08)
+      and near(rows[-1]["sig_33"], 100 + 12000*0.08), f"{done.returncode} {rows[-1:]} {done.stderr}")
 drained = START.format(0) + stage("control = 'drained'", "eps_a_end = 0.01")
 done, _, rows = run(material("orthotropic", "nan, 0.25") + drained)
 check("PROPS that are not numbers are refused", done.returncode == 2 and "nan" in done.stderr, done.stderr)

@@ -1,6 +1,6 @@
 !> A UMAT as others write it: linear elasticity with a shear modulus of its own for each shear component in the order
-!> of the caller. PROPS: Young's modulus, Poisson's ratio, three shear moduli. STATEV(1) counts the calls,
-!> STATEV(2) is the axial strain that STRAN and DSTRAN add up to.
+!> of the caller. PROPS: Young's modulus, Poisson's ratio, three shear moduli. STATEV(1) is the
+!> time at the end of the increment, STATEV(2) the strain 33 there.
 subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, time, dtime, temp, &
                 dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, coords, drot, pnewdt, celent, &
                 dfgrd0, dfgrd1, noel, npt, layer, kspt, kstep, kinc)
@@ -29,7 +29,7 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
    end do
    stress = stress + matmul(ddsdde, dstran)
    if (nstatv >= 2) then
-      statev(1) = statev(1) + 1.0d0
+      statev(1) = time(2) + dtime
       statev(2) = stran(3) + dstran(3)
    end if
 end subroutine umat
