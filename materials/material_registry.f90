@@ -37,10 +37,24 @@ contains
    subroutine list_laws(list)
       type(law_t), allocatable, intent(out) :: list(:)
 
-      allocate (list(3))
-      list(1) = law_t('mud', new_mud, MUD_KEYS, open=.true.)
-      list(2) = law_t('elastic', new_elastic, ELASTIC_KEYS)
-      list(3) = law_t('umat', new_umat, UMAT_KEYS)
+      allocate (list(0))
+      call add('mud', new_mud, MUD_KEYS, open=.true.)
+      call add('elastic', new_elastic, ELASTIC_KEYS)
+      call add('umat', new_umat, UMAT_KEYS)
+   contains
+      subroutine add(name, new, keys, open)
+         character(*), intent(in) :: name
+         procedure(new_i) :: new
+         type(key_t), intent(in) :: keys(:)
+         logical, intent(in), optional :: open
+         type(law_t) :: law
+
+         law%name = name
+         law%new => new
+         law%keys = keys
+         if (present(open)) law%open = open
+         list = [list, law]
+      end subroutine add
    end subroutine list_laws
 
    function law_names() result(names)

@@ -6,7 +6,7 @@ module triax_case
    use namelists, only: group_t, read_groups, LENGTH
    use spelling, only: nearest_name
    use key_schema, only: check_entries, describe_key, get_text, get_number, get_numbers, line_of, given, word_is
-   use triax_keys, only: KEYS
+   use triax_keys, only: CASE_KEYS
    use triax_stage, only: stage_t, set_constraints, leads_of, sealed_control, CONTROL_NAMES, QUANTITIES, LINEAR, &
                           BY_EPS_A, BY_GAMMA, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES, PER_PRESSURE, ROWS
    use material_point, only: material_t
@@ -77,8 +77,8 @@ contains
             call raise(fault, EXIT_INPUT, at_line(file, groups(i)%line)//'there is no group &'//trim(groups(i)%name)// &
                        '; a case has &case, &material, &initial and one &stage or more, and may have &retention.')
          end select
-         if (fault%code == 0 .and. any(KEYS%group == groups(i)%name)) &
-            call check_entries(KEYS, groups(i), .false., fault)
+         if (fault%code == 0 .and. any(CASE_KEYS%group == groups(i)%name)) &
+            call check_entries(CASE_KEYS, groups(i), .false., fault)
          if (fault%code /= 0) return
       end do
       if (of_material == 0) then
@@ -150,7 +150,7 @@ contains
       call get_number(group, 'void_ratio', ratio, found)
       if (.not. found) then
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&initial lacks void_ratio ('// &
-                    describe_key(KEYS, 'initial', 'void_ratio')//').')
+                    describe_key(CASE_KEYS, 'initial', 'void_ratio')//').')
       else if (has_p .eqv. (has_a .or. has_r)) then
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)// &
                     '&initial needs the stress once: either p_eff, or sigma_a and sigma_r.')
@@ -256,7 +256,7 @@ contains
       type(fault_t), intent(inout) :: fault
 
       call read_word(group, 'control', CONTROL_NAMES, stage%control, fault)
-      stage%effective = word_is(KEYS, group, 'stress', 'effective')
+      stage%effective = word_is(CASE_KEYS, group, 'stress', 'effective')
    end subroutine read_control
 
    !> Cycles: by what, how many, how far. The stage is then led by the strain that is driven.
@@ -274,7 +274,7 @@ contains
       if (.not. given(group, 'cycle_by')) then
          do i = 1, size(OF_CYCLES)
             if (given(group, trim(OF_CYCLES(i)))) then
-               call refuse(group, OF_CYCLES(i), 'needs cycle_by: '//describe_key(KEYS, 'stage', 'cycle_by')//'.', fault)
+               call refuse(group, OF_CYCLES(i), 'needs cycle_by: '//describe_key(CASE_KEYS, 'stage', 'cycle_by')//'.', fault)
             end if
          end do
          return
@@ -297,9 +297,9 @@ contains
       call get_number(group, 'stop_double_amplitude', stage%stop_double_amplitude, found)
       stage%cycles = nint(cycles)
       if (.not. has_cycles) then
-         call refuse(group, 'cycle_by', 'needs cycles: '//describe_key(KEYS, 'stage', 'cycles')//'.', fault)
+         call refuse(group, 'cycle_by', 'needs cycles: '//describe_key(CASE_KEYS, 'stage', 'cycles')//'.', fault)
       else if (.not. has_amplitude) then
-         call refuse(group, 'cycle_by', 'needs amplitude: '//describe_key(KEYS, 'stage', 'amplitude')//'.', fault)
+         call refuse(group, 'cycle_by', 'needs amplitude: '//describe_key(CASE_KEYS, 'stage', 'amplitude')//'.', fault)
       else if (abs(stage%amplitude) <= 0.0_wp) then
          call refuse(group, 'amplitude', '= 0: there is nothing to do.', fault)
       end if
@@ -342,7 +342,7 @@ contains
       if (stage%lead == 0) then
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'a stage of control '// &
                     name_of(stage%control)//' needs '//choice//': '// &
-                    describe_key(KEYS, 'stage', QUANTITIES(leads(1))%key)//'.')
+                    describe_key(CASE_KEYS, 'stage', QUANTITIES(leads(1))%key)//'.')
          return
       end if
 
@@ -379,7 +379,7 @@ contains
       type(stage_t), intent(inout) :: stage
       type(fault_t), intent(inout) :: fault
 
-      stage%keeps_water = word_is(KEYS, group, 'water', 'constant')
+      stage%keeps_water = word_is(CASE_KEYS, group, 'water', 'constant')
       call get_number(group, 'suction_end', stage%suction_end, stage%moves_suction)
       if (stage%moves_suction .and. stage%keeps_water) then
          call refuse(group, 'suction_end', 'cannot go with a constant water content; remove one of them.', fault)

@@ -2,7 +2,10 @@
 module triax_help
    use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit
    use texts, only: short
-   use triax_keys, only: print_keys
+   use key_schema, only: key_t
+   use material_registry, only: law_names, law_keys
+   use retention_groups, only: RETENTION_KEYS
+   use triax_keys, only: CASE_KEYS, print_keys
    use triax_stage, only: CONTROL_NAMES, QUANTITIES, leads_of, LINEAR
    use library_tables, only: property_count, property_name, property_unit, property_origin, property_meaning, &
       property_range
@@ -12,6 +15,8 @@ module triax_help
 
 contains
    subroutine print_help()
+      character(12), allocatable :: laws(:)
+      type(key_t), allocatable :: keys(:)
       integer :: i
 
       write (output_unit, '(a)') &
@@ -19,7 +24,7 @@ contains
          '       mud_triax --template > my_case.nml', &
          '       mud_triax --help | --version', &
          '', &
-         'Runs a laboratory test on the MUD soil model at a point and writes a CSV or HDF5 file.', &
+         'Runs a laboratory test on a soil model at a point, MUD or another law, and writes a CSV or HDF5 file.', &
          'Compression is positive, stresses are effective, q = sigma_a - sigma_r is negative in extension.', &
          '', &
          '   --output FILE   where to write; default: NAME.csv in the present folder; "-" is the screen;', &
@@ -37,7 +42,15 @@ contains
          '      file             path of a material file, relative to the case file', &
          '      name, reference  texts', &
          '      (parameters)     by name, see --template; they replace those of the file'
-      call print_keys(output_unit)
+      allocate (laws(0), keys(0))   ! or gfortran believes the assignments to read them
+      laws = law_names()
+      do i = 2, size(laws)
+         keys = law_keys(laws(i))
+         keys%group = 'material'
+         call print_keys(output_unit, keys, ' with law = '''//trim(laws(i))//''', besides name and reference')
+      end do
+      call print_keys(output_unit, RETENTION_KEYS, ' of a law that has none of its own')
+      call print_keys(output_unit, CASE_KEYS, '')
       write (output_unit, '(a)') '   Controls, and what may lead each of them:'
       do i = 1, size(CONTROL_NAMES)
          write (output_unit, '(3a)') '      ', CONTROL_NAMES(i), leads_text(i)

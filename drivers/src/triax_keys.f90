@@ -4,11 +4,11 @@ module triax_keys
    use key_schema, only: key_t, described, NONE
    implicit none (type, external)
    private
-   public :: KEYS, print_keys
+   public :: CASE_KEYS, print_keys
 
    character, parameter :: DIGITS(6) = ['1', '2', '3', '4', '5', '6']
    integer, private :: i   ! of the implied loops below
-   type(key_t), parameter :: KEYS(*) = [ &
+   type(key_t), parameter :: CASE_KEYS(*) = [ &
       key_t('case', 'name', 't', NONE, 0, 0, 'name of the case and of its output; default: name of the file'), &
       key_t('case', 'title', 't', NONE, 0, 0, 'a line about the case'), &
       key_t('initial', 'p_eff', 'n', NONE, 1.0e-6_wp, 1.0e7_wp, &
@@ -62,14 +62,16 @@ module triax_keys
             'a row at each multiple of it: strain, default 1e-3; stress [kPa], 10; suction [kPa], 1; linear: 1e-2')]
 
 contains
-   !> The keys of case files, for the help text.
-   subroutine print_keys(unit)
+   !> A list of keys for the help text, under the heads of their groups.
+   subroutine print_keys(unit, keys, remark)
       integer, intent(in) :: unit
+      type(key_t), intent(in) :: keys(:)
+      character(*), intent(in) :: remark   !< Behind the head.
       integer :: k
 
-      do k = 1, size(KEYS)
-         if (.not. any(KEYS(:k - 1)%group == KEYS(k)%group)) write (unit, '(2a)') '   &', trim(KEYS(k)%group)
-         write (unit, '(3a)') '      ', KEYS(k)%name, described(KEYS(k))
+      do k = 1, size(keys)
+         if (.not. any(keys(:k - 1)%group == keys(k)%group)) write (unit, '(3a)') '   &', trim(keys(k)%group), remark
+         write (unit, '(3a)') '      ', keys(k)%name, described(keys(k))
       end do
    end subroutine print_keys
 end module triax_keys
