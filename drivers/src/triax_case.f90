@@ -274,7 +274,8 @@ contains
       if (.not. given(group, 'cycle_by')) then
          do i = 1, size(OF_CYCLES)
             if (given(group, trim(OF_CYCLES(i)))) then
-               call refuse(group, OF_CYCLES(i), 'needs cycle_by: '//describe_key(CASE_KEYS, 'stage', 'cycle_by')//'.', fault)
+               call refuse(group, OF_CYCLES(i), 'needs cycle_by: '// &
+                           describe_key(CASE_KEYS, 'stage', 'cycle_by')//'.', fault)
             end if
          end do
          return
