@@ -102,10 +102,10 @@ contains
    end subroutine new_interface
 
    !> Everything at given displacements; false if a kernel refuses them.
-   logical function evaluate_contacts(contacts, x, with_slope) result(good)
+   logical function evaluate_contacts(contacts, x, with_tangent) result(good)
       type(contacts_t), intent(inout) :: contacts
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes)
-      logical, intent(in) :: with_slope
+      logical, intent(in) :: with_tangent
       integer :: i
 
       good = .true.
@@ -116,7 +116,7 @@ contains
             t%energy = 0.0_wp
             t%area = 0.0_wp
             if (.not. t%acts) cycle
-            call probe_interface(t%geometry, t%slave, t%master, t%plate, x, with_slope, t%work, t%result, &
+            call probe_interface(t%geometry, t%slave, t%master, t%plate, x, with_tangent, t%work, t%result, &
                                  contacts%status)
             good = contacts%status%code == CONTACT_OK
             if (.not. good) return
@@ -148,12 +148,12 @@ contains
    end function probe_contacts
 
    !> One pair of surfaces at given displacements.
-   subroutine probe_interface(geometry, slave, master, plate, x, with_slope, work, result, status)
+   subroutine probe_interface(geometry, slave, master, plate, x, with_tangent, work, result, status)
       type(contact_geometry_t), intent(in) :: geometry
       type(surface_t), intent(in) :: slave, master
       integer, intent(in) :: plate
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes)
-      logical, intent(in) :: with_slope
+      logical, intent(in) :: with_tangent
       type(contact_workspace_t), intent(inout) :: work
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
@@ -164,7 +164,7 @@ contains
       else
          at = master%x0 + x(:DISPLACEMENTS, master%node)
       end if
-      call contact_evaluate(geometry, slave%x0 + x(:DISPLACEMENTS, slave%node), at, with_slope, work, result, status)
+      call contact_evaluate(geometry, slave%x0 + x(:DISPLACEMENTS, slave%node), at, with_tangent, work, result, status)
    end subroutine probe_interface
 
    !> Makes the pattern hold the slopes of the last evaluation. It grows only: a contact that opens leaves it alone.
@@ -217,11 +217,11 @@ contains
    end subroutine fit_pattern
 
    !> Adds the last evaluation; `share` is the slope of the evaluated displacements against the new ones.
-   subroutine add_contacts(contacts, pattern, share, with_slope, residual, scale, values)
+   subroutine add_contacts(contacts, pattern, share, with_tangent, residual, scale, values)
       type(contacts_t), intent(in) :: contacts
       type(pattern_t), intent(in) :: pattern
       real(wp), intent(in) :: share
-      logical, intent(in) :: with_slope
+      logical, intent(in) :: with_tangent
       real(wp), intent(inout) :: residual(:), scale(:), values(:)
       integer :: i
 
@@ -248,7 +248,7 @@ contains
             residual(u(k)) = residual(u(k)) + force(k)
             scale(u(k)) = scale(u(k)) + abs(force(k))
          end do
-         if (.not. with_slope) return
+         if (.not. with_tangent) return
          do k = 1, size(row)
             if (u(row(k)) == 0 .or. u(column(k)) == 0) cycle
             place = place_of(pattern, u(row(k)), u(column(k)))

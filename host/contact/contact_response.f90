@@ -44,10 +44,10 @@ contains
       real(wp), intent(out) :: missed
       type(point_t) :: p
       type(density_t) :: density
-      real(wp) :: pull(LARGEST_SEGMENTS + 1)
+      real(wp) :: end_force(LARGEST_SEGMENTS + 1)
       integer :: segment, k
 
-      pull = 0.0_wp
+      end_force = 0.0_wp
       missed = 0.0_wp
       do segment = 1, overlap%segments
          do k = 1, POINTS
@@ -63,13 +63,13 @@ contains
                call add_work(p, density, with_stiffness, response)
             else
                call add_slope(p, density, SHARE(k), merge(TWO_PI, 0.0_wp, options%axisymmetric), POSITION(k), &
-                              with_stiffness, response, pull(segment:segment + 1))
+                              with_stiffness, response, end_force(segment:segment + 1))
             end if
          end do
       end do
       if (options%variation == PRESSURE_WORK .or. .not. with_stiffness) return
       do k = 1, overlap%segments + 1
-         if (overlap%follows(k) > 0) call add_end(x, overlap, k, pull(k), response)
+         if (overlap%follows(k) > 0) call add_end(x, overlap, k, end_force(k), response)
       end do
    end subroutine pair_response
 
@@ -137,13 +137,13 @@ contains
    !> First and second derivative of share/2 span 2 pi r q at a point. The place m on the master edge and the ends of
    !> the segment follow from conditions: y.t = 0 joins with a multiplier mu such that m is free to move (stationary);
    !> how much the ends are pulled is collected for add_end. With that their second derivatives are not needed.
-   pure subroutine add_slope(p, density, weight, ring_slope, zeta, with_stiffness, response, pull)
+   pure subroutine add_slope(p, density, weight, ring_slope, zeta, with_stiffness, response, end_force)
       type(point_t), intent(in) :: p
       type(density_t), intent(in) :: density
       real(wp), intent(in) :: weight, ring_slope, zeta
       logical, intent(in) :: with_stiffness
       type(response_t), intent(inout) :: response
-      real(wp), intent(inout) :: pull(2)
+      real(wp), intent(inout) :: end_force(2)
       real(wp) :: f(FIELDS), ff(FIELDS, FIELDS), q_f(FIELDS), phi_f(FIELDS), length_f(FIELDS), ring_f(FIELDS)
       real(wp) :: slopes(FIELDS, 12), d_psi(12), half, mu, by_s
       integer :: i
@@ -185,7 +185,8 @@ contains
       mu = -dot_product(f(5:6), p%tm)/p%slip
       call add_condition(p%y, p%t, mu, f, ff)
       by_s = dot_product(f(1:2), p%t) + dot_product(f(3:4), p%t_bend) + f(7)
-      pull = pull + half*p%ring*density%q*[-1.0_wp, 1.0_wp] + by_s*[0.5_wp*(1.0_wp - zeta), 0.5_wp*(1.0_wp + zeta)]
+      end_force = end_force + half*p%ring*density%q*[-1.0_wp, 1.0_wp] &
+                  + by_s*[0.5_wp*(1.0_wp - zeta), 0.5_wp*(1.0_wp + zeta)]
       call add_product(response%stiffness, half*p%d_span, d_psi)
       call add_product(response%stiffness, d_psi, half*p%d_span)
       call add_fields(f, ff, slopes, p%dns, p%t_bend, p%d_s, response%stiffness)
@@ -193,9 +194,9 @@ contains
    end subroutine add_slope
 
    !> The end of a segment is the foot of a master node: (x_j - x(s)).t(s) = 0 with the multiplier that balances its
-   !> pull.
-   pure subroutine add_end(x, overlap, k, pull, response)
-      real(wp), intent(in) :: x(2, 6), pull
+   !> end_force.
+   pure subroutine add_end(x, overlap, k, end_force, response)
+      real(wp), intent(in) :: x(2, 6), end_force
       type(overlap_t), intent(in) :: overlap
       integer, intent(in) :: k
       type(response_t), intent(inout) :: response
@@ -211,7 +212,7 @@ contains
       bend = 2.0_wp*slave%bend
       f = 0.0_wp
       ff = 0.0_wp
-      call add_condition(y, t, pull/(dot_product(t, t) - dot_product(y, bend)), f, ff)
+      call add_condition(y, t, end_force/(dot_product(t, t) - dot_product(y, bend)), f, ff)
       slopes = 0.0_wp
       do i = 1, 2
          slopes(i, :) = t(i)*overlap%d_end(:, k)

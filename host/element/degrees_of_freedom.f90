@@ -1,7 +1,7 @@
 !> Numbers of the unknowns: one per node and field that the scene has, shared where nodes move as one rigid body, and
 !> room for unknowns that belong to no node.
 module degrees_of_freedom
-   use unknown_fields, only: FIELDS
+   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_Z, AT_P_W, AT_P_C
    use element_equations, only: element_size
    use porous_domain, only: domain_t
    implicit none (type, external)
@@ -25,12 +25,12 @@ contains
       integer :: e, f, i, leader
 
       has = .false.
-      has(1:2, reshape(domain%mesh%t6, [size(domain%mesh%t6)])) = .true.
+      has(:DISPLACEMENTS, reshape(domain%mesh%t6, [size(domain%mesh%t6)])) = .true.
       do e = 1, size(domain%mesh%t6, 2)
-         has(3, domain%mesh%t6(1:domain%n_p, e)) = domain%with_w
-         has(4, domain%mesh%t6(1:domain%n_p, e)) = domain%with_c
+         has(AT_P_W, domain%mesh%t6(1:domain%n_p, e)) = domain%with_w
+         has(AT_P_C, domain%mesh%t6(1:domain%n_p, e)) = domain%with_c
       end do
-      if (allocated(domain%bodies)) has(2, domain%bodies) = .true.
+      if (allocated(domain%bodies)) has(AT_U_Z, domain%bodies) = .true.
       allocate (dofs%of(FIELDS, size(has, 2)), source=0)
       do i = 1, size(has, 2)
          do f = 1, FIELDS
@@ -58,10 +58,10 @@ contains
       do e = 1, size(domain%mesh%t6, 2)
          associate (node => domain%mesh%t6(:, e), n_p => domain%n_p)
             do i = 1, 6
-               dofs%element(2*i - 1:2*i, e) = dofs%of(1:2, node(i))
+               dofs%element(2*i - 1:2*i, e) = dofs%of(:DISPLACEMENTS, node(i))
             end do
-            if (domain%with_w) dofs%element(13:12 + n_p, e) = dofs%of(3, node(:n_p))
-            if (domain%with_c) dofs%element(13 + n_p:12 + 2*n_p, e) = dofs%of(4, node(:n_p))
+            if (domain%with_w) dofs%element(13:12 + n_p, e) = dofs%of(AT_P_W, node(:n_p))
+            if (domain%with_c) dofs%element(13 + n_p:12 + 2*n_p, e) = dofs%of(AT_P_C, node(:n_p))
          end associate
       end do
    end subroutine number_unknowns

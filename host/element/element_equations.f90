@@ -1,7 +1,7 @@
 !> Residual and exact tangent of one element: B^T response and B^T slope B over its quadrature points.
 module element_equations
    use wall_clock, only: clock, lap
-   use unknown_fields, only: FIELDS
+   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
    use kinds, only: wp
    use material_point, only: response_t, report_t
    use porous_domain, only: domain_t, state_t, gauss_t
@@ -33,13 +33,13 @@ contains
    end function element_size
 
    !> Writes r (and k where `with_slope`), and the point data of `new`.
-   subroutine compute_element(domain, element, scheme, old, new, with_slope, out)
+   subroutine compute_element(domain, element, scheme, old, new, with_tangent, out)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
       type(scheme_t), intent(in) :: scheme
       type(state_t), intent(in) :: old
       type(state_t), intent(inout) :: new
-      logical, intent(in) :: with_slope
+      logical, intent(in) :: with_tangent
       type(element_t), intent(inout) :: out
       type(response_t) :: material
       type(kinematics_t) :: k(domain%rule)
@@ -68,7 +68,7 @@ contains
       last = element*domain%rule
       t0 = clock()
       call domain%regions(domain%region_of(element))%law%update(domain%rule, old%stress(:, first:last), &
-         old%state(:, first:last), strain, k%c0, k%c1 - k%c0, with_slope, material, new%state(:, first:last))
+         old%state(:, first:last), strain, k%c0, k%c1 - k%c0, with_tangent, material, new%state(:, first:last))
       call lap(out%seconds, t0)
       out%rate_evaluations = material%report%n_rate
       if (material%report%code /= 0) then
@@ -76,7 +76,7 @@ contains
          out%bad_point = material%report%point
          return
       end if
-      call add_points(domain, element, scheme, k, material, old, new, with_slope, out)
+      call add_points(domain, element, scheme, k, material, old, new, with_tangent, out)
    end subroutine compute_element
 
    !> What the nodes say about the points of an element.
@@ -93,13 +93,14 @@ contains
       x0 = old%x(:, node)
       x1 = new%x(:, node)
       a = old%a(:, node) + scheme%l_a*(new%a(:, node) - old%a(:, node))
-      v(1:2, :) = old%v(1:2, node) + scheme%l_v*(new%v(1:2, node) - old%v(1:2, node))
-      v(3:4, :) = old%v(3:4, node) + scheme%l_p*(new%v(3:4, node) - old%v(3:4, node))
+      v(:DISPLACEMENTS, :) = old%v(:DISPLACEMENTS, node) &
+         + scheme%l_v*(new%v(:DISPLACEMENTS, node) - old%v(:DISPLACEMENTS, node))
+      v(AT_P_W:, :) = old%v(AT_P_W:, node) + scheme%l_p*(new%v(AT_P_W:, node) - old%v(AT_P_W:, node))
       do g = 1, domain%rule
          associate (gp => domain%gauss(g, element), region => domain%regions(domain%region_of(element)))
             call look(gp, domain%n_p, scheme, x0, x1, v, a, k(g))
             k(g)%speed = 0.0_wp
-            if (region%damping > 0.0_wp .and. scheme%kind == DYNAMIC) k(g)%speed = matmul(v(1:2, :), gp%n)
+            if (region%damping > 0.0_wp .and. scheme%kind == DYNAMIC) k(g)%speed = matmul(v(:DISPLACEMENTS, :), gp%n)
             k(g)%source = 0.0_wp
             if (associated(domain%source)) &
                k(g)%source = domain%source(gp%x, old%time + scheme%l_f*(new%time - old%time))
@@ -108,7 +109,7 @@ contains
    end subroutine look_at_nodes
 
    !> The balances at the points, added up over the element.
-   subroutine add_points(domain, element, scheme, k, material, old, new, with_slope, out)
+   subroutine add_points(domain, element, scheme, k, material, old, new, with_tangent, out)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
       type(scheme_t), intent(in) :: scheme
@@ -116,11 +117,11 @@ contains
       type(response_t), intent(in) :: material
       type(state_t), intent(in) :: old
       type(state_t), intent(inout) :: new
-      logical, intent(in) :: with_slope
+      logical, intent(in) :: with_tangent
       type(element_t), intent(inout) :: out
       type(skeleton_t) :: skeleton
       type(pore_t) :: pore
-      real(wp) :: response(PLACES), slope(PLACES, PLACES), part(PLACES, MAX_DOF), rate, drift(2)
+      real(wp) :: response(PLACES), tangent(PLACES, PLACES), part(PLACES, MAX_DOF), rate, drift(2)
       integer :: g, p, n
 
       n = element_size(domain)
@@ -129,9 +130,9 @@ contains
          skeleton%stress = material%stress(1:4, g)
          skeleton%e = material%void_ratio(g)
          skeleton%s = material%s_w(g)
-         if (with_slope) then
-            skeleton%slope = material%dsig_deps(1:4, 1:4, g)
-            skeleton%slope_suction = material%dsig_dpc(1:4, g)
+         if (with_tangent) then
+            skeleton%tangent = material%dsig_deps(1:4, 1:4, g)
+            skeleton%tangent_suction = material%dsig_dpc(1:4, g)
             skeleton%ds_dev = material%dsw_dev(g)
             skeleton%ds_dpc = material%dsw_dpc(g)
          else
@@ -140,7 +141,7 @@ contains
          end if
          associate (gp => domain%gauss(g, element), region => domain%regions(domain%region_of(element)))
             call point_response(domain, region, scheme, k(g), old%stress(:, p), skeleton, &
-                                pore_t(old%e(p), old%s(p), old%s_rate(p)), pore, with_slope, response, slope, drift)
+                                pore_t(old%e(p), old%s(p), old%s_rate(p)), pore, with_tangent, response, tangent, drift)
             new%stress(:, p) = material%stress(:, g)
             new%e(p) = pore%e
             new%s(p) = pore%s
@@ -151,8 +152,8 @@ contains
                stretch = stretch + rate*abs(gp%m(:domain%n_p)) &
                          + gp%weight*matmul(drift, abs(gp%dm(:, :domain%n_p)))
             end associate
-            if (.not. with_slope) cycle
-            call times_b(gp, domain%n_p, n, slope, part)
+            if (.not. with_tangent) cycle
+            call times_b(gp, domain%n_p, n, tangent, part)
             call add_transposed(gp, domain%n_p, n, part, out%k)
          end associate
       end do
@@ -169,20 +170,20 @@ contains
       type(kinematics_t), intent(inout) :: k
       real(wp) :: du(2, 6), x(2, 6)
 
-      du = x1(1:2, :) - x0(1:2, :)
+      du = x1(:DISPLACEMENTS, :) - x0(:DISPLACEMENTS, :)
       k%strain = [dot_product(gp%dn(1, :), du(1, :)), dot_product(gp%dn(2, :), du(2, :)), &
                   dot_product(gp%n_over_r, du(1, :)), &
                   dot_product(gp%dn(2, :), du(1, :)) + dot_product(gp%dn(1, :), du(2, :))]
       k%div_v = dot_product(gp%dn(1, :), v(1, :)) + dot_product(gp%dn(2, :), v(2, :)) &
                 + dot_product(gp%n_over_r, v(1, :))
       k%accel = matmul(a, gp%n)
-      x = x0(3:4, :) + scheme%l_f*(x1(3:4, :) - x0(3:4, :))
-      k%w0 = dot_product(gp%m(:n_p), x0(3, :n_p))
-      k%w1 = dot_product(gp%m(:n_p), x1(3, :n_p))
-      k%c0 = dot_product(gp%m(:n_p), x0(4, :n_p))
-      k%c1 = dot_product(gp%m(:n_p), x1(4, :n_p))
-      k%w_dot = dot_product(gp%m(:n_p), v(3, :n_p))
-      k%c_dot = dot_product(gp%m(:n_p), v(4, :n_p))
+      x = x0(AT_P_W:, :) + scheme%l_f*(x1(AT_P_W:, :) - x0(AT_P_W:, :))
+      k%w0 = dot_product(gp%m(:n_p), x0(AT_P_W, :n_p))
+      k%w1 = dot_product(gp%m(:n_p), x1(AT_P_W, :n_p))
+      k%c0 = dot_product(gp%m(:n_p), x0(AT_P_C, :n_p))
+      k%c1 = dot_product(gp%m(:n_p), x1(AT_P_C, :n_p))
+      k%w_dot = dot_product(gp%m(:n_p), v(AT_P_W, :n_p))
+      k%c_dot = dot_product(gp%m(:n_p), v(AT_P_C, :n_p))
       k%grad_w = matmul(gp%dm(:, :n_p), x(1, :n_p))
       k%grad_c = matmul(gp%dm(:, :n_p), x(2, :n_p))
    end subroutine look
@@ -210,23 +211,23 @@ contains
    end subroutine gather
 
    !> part = slope B.
-   pure subroutine times_b(gp, n_p, n, slope, part)
+   pure subroutine times_b(gp, n_p, n, tangent, part)
       type(gauss_t), intent(in) :: gp
       integer, intent(in) :: n_p, n
-      real(wp), intent(in) :: slope(PLACES, PLACES)
+      real(wp), intent(in) :: tangent(PLACES, PLACES)
       real(wp), intent(out) :: part(PLACES, MAX_DOF)
       integer :: i, at
 
       do i = 1, 6
-         part(:, 2*i - 1) = gp%dn(1, i)*slope(:, 1) + gp%n_over_r(i)*slope(:, 3) + gp%dn(2, i)*slope(:, 4) &
-                            + gp%n(i)*slope(:, 5)
-         part(:, 2*i) = gp%dn(2, i)*slope(:, 2) + gp%dn(1, i)*slope(:, 4) + gp%n(i)*slope(:, 6)
+         part(:, 2*i - 1) = gp%dn(1, i)*tangent(:, 1) + gp%n_over_r(i)*tangent(:, 3) + gp%dn(2, i)*tangent(:, 4) &
+                            + gp%n(i)*tangent(:, 5)
+         part(:, 2*i) = gp%dn(2, i)*tangent(:, 2) + gp%dn(1, i)*tangent(:, 4) + gp%n(i)*tangent(:, 6)
       end do
       do i = 1, n_p
          at = LAST_U + i
-         if (at <= n) part(:, at) = gp%m(i)*slope(:, 7) + gp%dm(1, i)*slope(:, 9) + gp%dm(2, i)*slope(:, 10)
+         if (at <= n) part(:, at) = gp%m(i)*tangent(:, 7) + gp%dm(1, i)*tangent(:, 9) + gp%dm(2, i)*tangent(:, 10)
          at = at + n_p
-         if (at <= n) part(:, at) = gp%m(i)*slope(:, 8) + gp%dm(1, i)*slope(:, 11) + gp%dm(2, i)*slope(:, 12)
+         if (at <= n) part(:, at) = gp%m(i)*tangent(:, 8) + gp%dm(1, i)*tangent(:, 11) + gp%dm(2, i)*tangent(:, 12)
       end do
    end subroutine times_b
 

@@ -45,14 +45,14 @@ contains
    end subroutine make_assembly
 
    !> Internal forces of the state `new`; loads are not in it.
-   subroutine assemble(domain, dofs, pattern, scheme, old, new, with_slope, assembly)
+   subroutine assemble(domain, dofs, pattern, scheme, old, new, with_tangent, assembly)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(in) :: pattern
       type(scheme_t), intent(in) :: scheme
       type(state_t), intent(in) :: old
       type(state_t), intent(inout) :: new
-      logical, intent(in) :: with_slope
+      logical, intent(in) :: with_tangent
       type(assembly_t), intent(inout) :: assembly
       integer, allocatable :: bad_point(:), rate_evaluations(:)
       real(wp) :: seconds, t0
@@ -68,37 +68,37 @@ contains
       !$omp parallel do num_threads(threads) schedule(dynamic, 8) default(shared) private(e) firstprivate(out) &
       !$omp reduction(+:seconds)
       do e = 1, ne
-         call compute_element(domain, e, scheme, old, new, with_slope, out)
+         call compute_element(domain, e, scheme, old, new, with_tangent, out)
          bad_point(e) = out%bad_point
          rate_evaluations(e) = out%rate_evaluations
          seconds = seconds + out%seconds
-         if (domain%with_c) call balance_of_water(domain, assembly%air, e, m, with_slope, out)
+         if (domain%with_c) call balance_of_water(domain, assembly%air, e, m, with_tangent, out)
          assembly%r(:, e) = out%r(:m)
          assembly%stretch(:, e) = out%stretch(:m)
-         if (with_slope) assembly%k(:, :, e) = out%k(:m, :m)
+         if (with_tangent) assembly%k(:, :, e) = out%k(:m, :m)
       end do
       !$omp end parallel do
       assembly%rate_evaluations = sum(rate_evaluations)
       assembly%bad_element = findloc(bad_point > 0, .true., dim=1)
       if (assembly%bad_element > 0) then
          ! Once more, for the answer of the first that failed: which is first does not depend on the threads.
-         call compute_element(domain, assembly%bad_element, scheme, old, new, with_slope, out)
+         call compute_element(domain, assembly%bad_element, scheme, old, new, with_tangent, out)
          assembly%bad_point = out%bad_point
          assembly%bad = out%bad
          return
       end if
-      call add_up(threads, pattern, with_slope, assembly)
+      call add_up(threads, pattern, with_tangent, assembly)
       ! The threads share the loop evenly.
       assembly%material = min(1.0_wp, seconds/threads/max(clock() - t0, tiny(1.0_wp)))
    end subroutine assemble
 
    !> Where the air pressure is prescribed the flow of air is unknown, so that the sum of the balances is replaced by
    !> its difference from that of the air: the balance of water.
-   pure subroutine balance_of_water(domain, air, e, m, with_slope, out)
+   pure subroutine balance_of_water(domain, air, e, m, with_tangent, out)
       type(domain_t), intent(in) :: domain
       logical, intent(in) :: air(:)
       integer, intent(in) :: e, m
-      logical, intent(in) :: with_slope
+      logical, intent(in) :: with_tangent
       type(element_t), intent(inout) :: out
       integer :: i, w, c
 
@@ -107,14 +107,14 @@ contains
          w = 12 + i
          c = w + domain%n_p
          out%r(w) = out%r(w) - out%r(c)
-         if (with_slope) out%k(w, :m) = out%k(w, :m) - out%k(c, :m)
+         if (with_tangent) out%k(w, :m) = out%k(w, :m) - out%k(c, :m)
       end do
    end subroutine balance_of_water
 
-   subroutine add_up(threads, pattern, with_slope, assembly)
+   subroutine add_up(threads, pattern, with_tangent, assembly)
       integer, intent(in) :: threads
       type(pattern_t), intent(in) :: pattern
-      logical, intent(in) :: with_slope
+      logical, intent(in) :: with_tangent
       type(assembly_t), intent(inout), target :: assembly
       real(wp), pointer, contiguous :: k(:), r(:), s(:)
       real(wp) :: total
@@ -131,7 +131,7 @@ contains
          assembly%scale(i) = sum(abs(r(pattern%r_source(pattern%r_first(i):pattern%r_first(i + 1) - 1))))
       end do
       !$omp end do
-      if (with_slope) then
+      if (with_tangent) then
          !$omp do schedule(static)
          do i = 1, size(pattern%col)
             total = 0.0_wp

@@ -1,6 +1,6 @@
 !> The physics at one quadrature point: what the balances of momentum, water plus air, and air need, and its exact
 !> derivative. Both are arrays over the same twelve places: strain rr, zz, tt, rz | displacement | p_w | p_c |
-!> gradient of p_w | gradient of p_c, so that an element adds B^T response and B^T slope B and knows no soil.
+!> gradient of p_w | gradient of p_c, so that an element adds B^T response and B^T tangent B and knows no soil.
 !> Signs: tension positive stress and strain, pressures positive in compression, outflow positive.
 !> docs/theory/host.md sections 2 and 3.3.
 module porous_balance
@@ -37,12 +37,12 @@ module porous_balance
    type :: skeleton_t
       real(wp) :: stress(4)              !< Effective stress [kPa]
       real(wp) :: e, s                   !< Void ratio, degree of saturation [-]
-      real(wp) :: slope(4, 4)            !< d stress/d strain [kPa]
-      real(wp) :: slope_suction(4)       !< d stress/d suction [-]
+      real(wp) :: tangent(4, 4)            !< d stress/d strain [kPa]
+      real(wp) :: tangent_suction(4)       !< d stress/d suction [-]
       real(wp) :: ds_dev, ds_dpc         !< d S_w/d volume strain [-], d S_w/d suction [1/kPa]
    end type skeleton_t
 contains
-   subroutine point_response(domain, region, scheme, k, stress0, skeleton, old, new, with_slope, response, slope, &
+   subroutine point_response(domain, region, scheme, k, stress0, skeleton, old, new, with_tangent, response, tangent, &
                              drift)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
@@ -52,8 +52,8 @@ contains
       type(skeleton_t), intent(in) :: skeleton
       type(pore_t), intent(in) :: old
       type(pore_t), intent(out) :: new
-      logical, intent(in) :: with_slope
-      real(wp), intent(out) :: response(PLACES), slope(PLACES, PLACES)
+      logical, intent(in) :: with_tangent
+      real(wp), intent(out) :: response(PLACES), tangent(PLACES, PLACES)
       real(wp), intent(out) :: drift(2)      !< What the fluxes are made of, by magnitude [m/s].
       type(saturation_t) :: before, after
       real(wp) :: n1, n, s, s_dot, s_ev, s_pc, rate_ev, rate_pc, p_c, p_w, pressure, l
@@ -110,18 +110,18 @@ contains
       response(1:4) = stress0(1:4) + l*(skeleton%stress - stress0(1:4))
       response(1:3) = response(1:3) - pressure
       response(U + 1:U + 2) = rho*accel - k%source(1:2)
-      if (with_slope) then
-         slope = 0.0_wp
-         slope(1:4, 1:4) = l*skeleton%slope
-         slope(1:3, 1:3) = slope(1:3, 1:3) + p_c*s_ev
-         slope(1:4, PC) = l*skeleton%slope_suction
-         slope(1:3, PC) = slope(1:3, PC) - (1 - s)*l + p_c*s_pc
-         slope(1:3, PW) = -l
-         slope(U + 1, U + 1) = rho*(scheme%c_a + region%damping*scheme%c_v)
-         slope(U + 2, U + 2) = slope(U + 1, U + 1)
-         slope(U + 1:U + 2, 1:3) = spread(accel*(rho_n*l*(1 - n1) + rho_s*s_ev), 2, 3)
-         slope(U + 1:U + 2, PC) = accel*(rho_s*s_pc + n*(1 - s)*d_rho_a*l)
-         slope(U + 1:U + 2, PW) = accel*n*(1 - s)*d_rho_a*l
+      if (with_tangent) then
+         tangent = 0.0_wp
+         tangent(1:4, 1:4) = l*skeleton%tangent
+         tangent(1:3, 1:3) = tangent(1:3, 1:3) + p_c*s_ev
+         tangent(1:4, PC) = l*skeleton%tangent_suction
+         tangent(1:3, PC) = tangent(1:3, PC) - (1 - s)*l + p_c*s_pc
+         tangent(1:3, PW) = -l
+         tangent(U + 1, U + 1) = rho*(scheme%c_a + region%damping*scheme%c_v)
+         tangent(U + 2, U + 2) = tangent(U + 1, U + 1)
+         tangent(U + 1:U + 2, 1:3) = spread(accel*(rho_n*l*(1 - n1) + rho_s*s_ev), 2, 3)
+         tangent(U + 1:U + 2, PC) = accel*(rho_s*s_pc + n*(1 - s)*d_rho_a*l)
+         tangent(U + 1:U + 2, PW) = accel*n*(1 - s)*d_rho_a*l
       end if
       if (.not. domain%with_w .or. scheme%kind == STATIC) return
       call add_water()
@@ -142,13 +142,13 @@ contains
          drive = k%grad_w + domain%fluids%rho_w*body_force()
          response(GW + 1:GW + 2) = kappa*drive
          drift = kappa*(abs(k%grad_w) + domain%fluids%rho_w*abs(body_force()))
-         if (.not. with_slope) return
-         slope(PW, 1:3) = s*inverse*k%w_dot*l*(1 - n1) + n*inverse*k%w_dot*s_ev + scheme%c_v
-         slope(PW, PW) = n*s*inverse*scheme%c_p
-         slope(PW, PC) = n*inverse*k%w_dot*s_pc
-         call flux_slope(GW, kappa, d_kappa, domain%fluids%rho_w, drive)
-         slope(GW + 1, GW + 1) = kappa*l
-         slope(GW + 2, GW + 2) = kappa*l
+         if (.not. with_tangent) return
+         tangent(PW, 1:3) = s*inverse*k%w_dot*l*(1 - n1) + n*inverse*k%w_dot*s_ev + scheme%c_v
+         tangent(PW, PW) = n*s*inverse*scheme%c_p
+         tangent(PW, PC) = n*inverse*k%w_dot*s_pc
+         call flux_tangent(GW, kappa, d_kappa, domain%fluids%rho_w, drive)
+         tangent(GW + 1, GW + 1) = kappa*l
+         tangent(GW + 2, GW + 2) = kappa*l
       end subroutine add_water
 
       !> Air, in both sums.
@@ -169,21 +169,22 @@ contains
          response(GA + 1:GA + 2) = kappa*drive
          drift = drift + kappa*(abs(k%grad_w) + abs(k%grad_c) + rho_a*abs(body_force()))
          response(GW + 1:GW + 2) = response(GW + 1:GW + 2) + kappa*drive
-         if (.not. with_slope) return
+         if (.not. with_tangent) return
          d_stored = n*(1 - s)/k_a*(scheme%c_p - a_dot*d_k_a*l/k_a)
-         slope(PC, 1:3) = (1 - s)/k_a*a_dot*l*(1 - n1) - n/k_a*a_dot*s_ev
-         slope(PC, PW) = d_stored
-         slope(PC, PC) = d_stored - n/k_a*a_dot*s_pc
-         slope(PW, 1:8) = slope(PW, 1:8) + slope(PC, 1:8)
-         slope(PC, 1:3) = slope(PC, 1:3) - s_dot*l*(1 - n1) - n*scheme%c_p*rate_ev - k%div_v*s_ev + (1 - s)*scheme%c_v
-         slope(PC, PC) = slope(PC, PC) - n*scheme%c_p*rate_pc - k%div_v*s_pc
-         call flux_slope(GA, kappa, d_kappa, rho_a, drive)
+         tangent(PC, 1:3) = (1 - s)/k_a*a_dot*l*(1 - n1) - n/k_a*a_dot*s_ev
+         tangent(PC, PW) = d_stored
+         tangent(PC, PC) = d_stored - n/k_a*a_dot*s_pc
+         tangent(PW, 1:8) = tangent(PW, 1:8) + tangent(PC, 1:8)
+         tangent(PC, 1:3) = tangent(PC, 1:3) - s_dot*l*(1 - n1) - n*scheme%c_p*rate_ev - k%div_v*s_ev &
+                            + (1 - s)*scheme%c_v
+         tangent(PC, PC) = tangent(PC, PC) - n*scheme%c_p*rate_pc - k%div_v*s_pc
+         call flux_tangent(GA, kappa, d_kappa, rho_a, drive)
          do i = 1, 2
-            slope(GA + i, [GW + i, GA + i]) = kappa*l
+            tangent(GA + i, [GW + i, GA + i]) = kappa*l
          end do
-         slope(GA + 1:GA + 2, PW) = slope(GA + 1:GA + 2, PW) + kappa*d_rho_a*l*body_force()
-         slope(GA + 1:GA + 2, PC) = slope(GA + 1:GA + 2, PC) + kappa*d_rho_a*l*body_force()
-         slope(GW + 1:GW + 2, :) = slope(GW + 1:GW + 2, :) + slope(GA + 1:GA + 2, :)
+         tangent(GA + 1:GA + 2, PW) = tangent(GA + 1:GA + 2, PW) + kappa*d_rho_a*l*body_force()
+         tangent(GA + 1:GA + 2, PC) = tangent(GA + 1:GA + 2, PC) + kappa*d_rho_a*l*body_force()
+         tangent(GW + 1:GW + 2, :) = tangent(GW + 1:GW + 2, :) + tangent(GA + 1:GA + 2, :)
       end subroutine add_air
 
       !> What drives seepage besides the gradient: weight, and inertia if the scene wants it [m/s2].
@@ -196,17 +197,17 @@ contains
       end function body_force
 
       !> Slopes of a flux against saturation and displacement.
-      subroutine flux_slope(place, kappa, d_kappa, density, drive)
+      subroutine flux_tangent(place, kappa, d_kappa, density, drive)
          integer, intent(in) :: place
          real(wp), intent(in) :: kappa, d_kappa, density, drive(2)
          integer :: i
 
          do i = 1, 2
-            slope(place + i, 1:3) = d_kappa*drive(i)*s_ev
-            slope(place + i, PC) = d_kappa*drive(i)*s_pc
-            if (domain%seepage_inertia) slope(place + i, U + i) = kappa*density*scheme%c_a
+            tangent(place + i, 1:3) = d_kappa*drive(i)*s_ev
+            tangent(place + i, PC) = d_kappa*drive(i)*s_pc
+            if (domain%seepage_inertia) tangent(place + i, U + i) = kappa*density*scheme%c_a
          end do
-      end subroutine flux_slope
+      end subroutine flux_tangent
    end subroutine point_response
 
    !> Bulk modulus and density of the air and their slopes against p_a.

@@ -93,7 +93,7 @@ contains
          effect%why = trim(effect%why)//'; acts from the start'
       end if
       ! The weight is certain: above the threshold there is nothing left to see.
-      effect%watched = .not. effect%on .and. facts%weight <= effect%threshold
+      effect%monitored = .not. effect%on .and. facts%weight <= effect%threshold
    end subroutine judge_gravity
 
    !> The vibration that quasi-static steps leave out, as a share of the response: a jump leaves all of it, a bend of a
@@ -174,7 +174,7 @@ contains
             end if
          end if
          call judge(effect, share, why, now%kind == DYNAMIC)
-         effect%watched = .not. effect%on
+         effect%monitored = .not. effect%on
          ! The fastest that the loads bring; a jump brings all that the steps can carry.
          facts%omega(stage) = 0.5_wp*PI*facts%pace(stage)
          if (facts%jump(stage) > facts%tolerance .or. (stage == 1 .and. facts%loose > facts%tolerance) &
@@ -262,7 +262,7 @@ contains
             effect%on = effect%on .and. effect%by_hand
          end if
       end associate
-      effect%watched = .not. effect%on
+      effect%monitored = .not. effect%on
    end subroutine judge_seepage
 
    !> Unknowns of a field, and entries of the matrix in their rows and columns.

@@ -38,14 +38,14 @@ contains
       type(model_t), intent(in) :: model
       type(linearised_body_t), intent(in) :: body
       type(facts_t), intent(inout) :: facts
-      type(response_t) :: answer
-      real(wp) :: n, p_c, slope(3), still(6, 1), new(model%domain%n_state, 1)
+      type(response_t) :: response
+      real(wp) :: n, p_c, slope(3), no_strain(6, 1), new(model%domain%n_state, 1)
       integer :: e, g, i, p
 
       facts%tolerance = model%effect_options%tolerance
       facts%m_min = huge(1.0_wp)
       facts%p_min = huge(1.0_wp)
-      still = 0.0_wp
+      no_strain = 0.0_wp
       associate (m => model%domain, s => body%state)
          facts%low = [(minval(m%mesh%x(i, reshape(m%mesh%t6, [size(m%mesh%t6)]))), i=1, 2)]
          facts%high = [(maxval(m%mesh%x(i, reshape(m%mesh%t6, [size(m%mesh%t6)]))), i=1, 2)]
@@ -56,9 +56,10 @@ contains
                   n = s%e(p)/(1 + s%e(p))
                   facts%rho = max(facts%rho, (1 - n)*region%rho_s + merge(n*m%fluids%rho_w, 0.0_wp, m%with_w))
                   p_c = dot_product(m%gauss(g, e)%m(:m%n_p), s%x(AT_P_C, m%mesh%t6(:m%n_p, e)))
-                  call law%update(1, s%stress(:, p:p), s%state(:, p:p), still, [p_c], [0.0_wp], .true., answer, new)
-                  slope = [(answer%dsig_deps(i, i, 1), i=1, 3)]
-                  if (answer%report%code /= 0) slope = 0.0_wp
+                  call law%update(1, s%stress(:, p:p), s%state(:, p:p), no_strain, [p_c], [0.0_wp], .true., &
+                                  response, new)
+                  slope = [(response%dsig_deps(i, i, 1), i=1, 3)]
+                  if (response%report%code /= 0) slope = 0.0_wp
                   facts%m_min = min(facts%m_min, minval(slope))
                   facts%m_max = max(facts%m_max, maxval(slope))
                   if (law%has_energy) cycle

@@ -21,7 +21,7 @@ module effect_types
       integer :: unknowns = 0, entries = 0        !< It costs so many, also of the matrix.
       character(128) :: why = ''
       ! Monitored during the run where it is off.
-      logical :: watched = .false.
+      logical :: monitored = .false.
       real(wp) :: scale = 1.0_wp                  !< What the indicator is measured with, see effect_monitor.
       real(wp) :: largest = 0.0_wp                !< Indicator so far,
       real(wp) :: crossed = NEVER                 !< time when it crossed the threshold [s].

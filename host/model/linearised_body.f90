@@ -67,16 +67,16 @@ contains
       type(model_t), intent(in) :: model
       integer, intent(in) :: stage
       type(linearised_body_t), intent(inout) :: body
-      type(stage_t) :: still
+      type(stage_t) :: at_rest
       type(drainage_t) :: fixed   ! It follows no contact.
       real(wp) :: x(body%dofs%n), y(body%dofs%n), square, last, work
       integer :: i, k, status
 
       body%omega = 0.0_wp
       if (body%refused) return
-      still = model%stages(stage)
-      still%kind = STATIC   ! Pressures held: the skeleton alone.
-      call constrain_step(model, still, body%dofs, fixed, start_of(model, stage) + still%dt, body%state%x, &
+      at_rest = model%stages(stage)
+      at_rest%kind = STATIC   ! Pressures held: the skeleton alone.
+      call constrain_step(model, at_rest, body%dofs, fixed, start_of(model, stage) + at_rest%dt, body%state%x, &
                           body%constraint)
       body%free = .not. body%constraint%fixed
       body%held = body%matrix

@@ -35,7 +35,7 @@ contains
          effect%threshold = facts%tolerance*facts%acting
          effect%why = 'no region has a retention law'
          if (effect%by_hand) effect%why = 'no such field'
-         effect%watched = model%domain%with_w
+         effect%monitored = model%domain%with_w
          return
       end if
       effect%threshold = harmless_suction(model, facts)
@@ -55,7 +55,7 @@ contains
          suction = largest_suction(model, body, facts)
          call judge(effect, max(suction, 0.0_wp), 'largest suction from pressures, weight and loads', .true.)
       end if
-      effect%watched = .not. effect%on
+      effect%monitored = .not. effect%on
    contains
       pure logical function prescribe_water()
          prescribe_water = any(facts%histories%field == AT_P_C) .and. any(facts%histories%field == PRESCRIBED_P_A)
@@ -202,7 +202,7 @@ contains
          effect%scale = path**2/(2*conductivity)/max(facts%acting, ROUNDING)
       end if
       call judge(effect, share, trim(effect%why), .true.)
-      effect%watched = .not. effect%on
+      effect%monitored = .not. effect%on
    end subroutine judge_water
 
    !> Distance from a wholly drained side to the opposite one.

@@ -23,7 +23,7 @@ module checkpoints
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
    character(*), parameter :: KIND_OF_FILE = 'checkpoint of mud_host'
-   character(*), parameter :: FORMAT = '4'      !< Grows with every change of what is stored.
+   character(*), parameter :: FORMAT = '5'      !< Grows with every change of what is stored.
    integer, parameter :: N_COUNTERS = 13
    character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
                                         'contact, seepage, damping [kJ], outflow, outflow_air [m3]'
@@ -47,9 +47,10 @@ contains
       call put_text(file, 'fingerprint', model%fingerprint)
       associate (s => run%state, c => run%at)
          call put(file, 'counters', counters_of(run, tables), '-', 'stage, step of it, cuts in force, good steps, '// &
-                  'steps, iterations, cuts, rate evaluations, eager, bytes of histories.csv, bytes of ledger.csv, '// &
-                  'bytes of contact.csv, pairs of unknowns brought together by contacts')
-         call put(file, 'course', [s%time, c%t_start, c%nominal, c%factor], 's', &
+                  'steps, iterations, cuts, rate evaluations, tangent in every iteration, bytes of '// &
+                  'histories.csv, bytes of ledger.csv, bytes of contact.csv, pairs of unknowns brought '// &
+                  'together by contacts')
+         call put(file, 'stage', [s%time, c%t_start, c%nominal, c%factor], 's', &
                   'time, start of the stage, step without cuts, share of it [-]')
          call put(file, 'ledger', transfer(run%ledger, [0.0_wp]), 'kJ', BALANCE)
          call put(file, 'largest', run%system%largest, 'kN', 'largest scale of every field')
@@ -64,7 +65,7 @@ contains
          call put(file, 's', s%s, '-', 'degree of saturation')
          call put(file, 's_rate', s%s_rate, '1/s', 'its rate')
       end associate
-      if (model%effect_options%auto) call put(file, 'watch', [run%monitor%table%largest, run%monitor%table%crossed, &
+      if (model%effect_options%auto) call put(file, 'monitor', [run%monitor%table%largest, run%monitor%table%crossed, &
          run%monitor%memory], '-', 'indicators of the effects that are off, when they crossed [s], extremes')
       if (pairs_of(run) > 0) call put(file, 'pairs', reshape(run%system%contacts%extra, [2*pairs_of(run)]), '-', &
                                       'pairs of unknowns that contacts brought into the matrix')
@@ -82,7 +83,7 @@ contains
       type(fault_t), intent(inout) :: fault
       type(h5_t) :: file
       real(wp) :: counters(N_COUNTERS)
-      real(wp) :: course(4), ledger(storage_size(run%ledger)/storage_size(0.0_wp))
+      real(wp) :: stage(4), ledger(storage_size(run%ledger)/storage_size(0.0_wp))
 
       if (.not. HAS_HDF5) then
          call raise(fault, EXIT_RESTART, 'This mud_host was built without HDF5: it cannot restart from '//path//'.')
@@ -97,7 +98,7 @@ contains
       call check_origin(path, model, file, fault)
       if (fault%code == 0) then
          call get(file, 'counters', counters)
-         call get(file, 'course', course)
+         call get(file, 'stage', stage)
          call get(file, 'ledger', ledger)
          call get(file, 'largest', run%system%largest)
          allocate (run%at%x_start, mold=run%state%x)
@@ -117,10 +118,10 @@ contains
          if (file%good .and. counters(N_COUNTERS) > 0.5_wp) &
             call take_pairs(file, nint(counters(N_COUNTERS)), model%dofs, run)
          if (file%good) then
-            run%state%time = course(1)
-            run%at%t_start = course(2)
-            run%at%nominal = course(3)
-            run%at%factor = course(4)
+            run%state%time = stage(1)
+            run%at%t_start = stage(2)
+            run%at%nominal = stage(3)
+            run%at%factor = stage(4)
             run%ledger = transfer(ledger, run%ledger)
             call take_counters(counters, run, tables)
             call copy_state(run%state, run%next)
@@ -140,7 +141,7 @@ contains
       integer :: n
 
       n = size(run%monitor%table)
-      call get(file, 'watch', seen)
+      call get(file, 'monitor', seen)
       run%monitor%table%largest = seen(:n)
       run%monitor%table%crossed = seen(n + 1:2*n)
       run%monitor%memory = seen(2*n + 1:)

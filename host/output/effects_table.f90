@@ -87,7 +87,7 @@ contains
       do i = 1, size(table)
          associate (t => table(i))
             seen = ','
-            if (t%watched) seen = short(t%largest)//','
+            if (t%monitored) seen = short(t%largest)//','
             if (t%crossed > NEVER) seen = trim(seen)//short(t%crossed)
             call write_line(file, trim(t%name)//','//trim(state_of(t))//','//trim(by(t))//','// &
                trim(number(t%estimate))//','//trim(t%unit)//','//trim(number(t%threshold))//','// &

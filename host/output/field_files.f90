@@ -3,6 +3,7 @@
 module field_files
    use kinds, only: wp
    use porous_domain, only: domain_t, state_t
+   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
    use files, only: write_whole, bytes_of
    use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get_text
    use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
@@ -99,7 +100,7 @@ contains
       type(frames_t), intent(inout) :: frames
       type(fault_t), intent(inout) :: fault
       type(h5_t) :: file
-      real(wp) :: x(4, size(state%x, 2)), cells(8, size(domain%mesh%t6, 2))
+      real(wp) :: x(FIELDS, size(state%x, 2)), cells(8, size(domain%mesh%t6, 2))
       character(:), allocatable :: path
       integer :: i
       logical :: good
@@ -115,17 +116,17 @@ contains
          if (.not. has(domain, i)) cycle
          select case (i)
          case (N_DISPLACEMENT)
-            call put_vector(state%x(1:2, :))
+            call put_vector(state%x(:DISPLACEMENTS, :))
          case (N_VELOCITY)
-            call put_vector(state%v(1:2, :))
+            call put_vector(state%v(:DISPLACEMENTS, :))
          case (N_ACCELERATION)
             call put_vector(state%a)
          case (N_P_W)
-            call put_list(x(3, :))
+            call put_list(x(AT_P_W, :))
          case (N_P_C)
-            call put_list(x(4, :))
+            call put_list(x(AT_P_C, :))
          case (N_P_A)
-            call put_list(x(3, :) + x(4, :))
+            call put_list(x(AT_P_W, :) + x(AT_P_C, :))
          case default
             if (i == N_FIRST_CELL) call means(domain, state, cells)
             call put_list(cells(i - N_FIRST_CELL + 1, :))
@@ -196,7 +197,7 @@ contains
       do e = 1, size(domain%mesh%t6, 2)
          associate (node => domain%mesh%t6(:, e))
             do i = 1, 3
-               x(3:4, node(3 + i)) = 0.5_wp*(state%x(3:4, node(i)) + state%x(3:4, node(mod(i, 3) + 1)))
+               x(AT_P_W:, node(3 + i)) = 0.5_wp*(state%x(AT_P_W:, node(i)) + state%x(AT_P_W:, node(mod(i, 3) + 1)))
             end do
          end associate
       end do

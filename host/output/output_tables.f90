@@ -12,6 +12,7 @@ module output_tables
                        NUMBERS
    use run_observer, only: step_report_t
    use faults, only: fault_t
+   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_Z
    implicit none (type, external)
    private
    public :: tables_t, open_tables, check_tables, write_history, write_ledger, write_contacts, write_fields
@@ -122,7 +123,8 @@ contains
          integer, intent(in) :: k, p
          real(wp) :: values(size(COLUMNS))
 
-         values = [state%x(:, k), state%v(1:2, k), state%a(2, k), state%stress(1:4, p), state%e(p), state%s(p)]
+         values = [state%x(:, k), state%v(:DISPLACEMENTS, k), state%a(AT_U_Z, k), state%stress(1:4, p), &
+                   state%e(p), state%s(p)]
       end function values
    end subroutine write_history
 
@@ -163,7 +165,7 @@ contains
       character(*), intent(in) :: stage
       type(state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
-      real(wp) :: x(4, size(state%x, 2))
+      real(wp) :: x(FIELDS, size(state%x, 2))
       type(csv_t) :: table
       integer :: i, e, g, p
 
@@ -171,7 +173,7 @@ contains
       call new_csv(folder//'/nodes_'//stage//'.csv', 'r,z,u_r,u_z,p_w,p_c,v_r,v_z', table, fault)
       do i = 1, size(state%x, 2)
          if (fault%code /= 0) exit
-         write (table%row, NUMBERS) domain%mesh%x(:, i), x(:, i), state%v(1:2, i)
+         write (table%row, NUMBERS) domain%mesh%x(:, i), x(:, i), state%v(:DISPLACEMENTS, i)
          call write_row(table, fault)
       end do
       call close_csv(table, fault)

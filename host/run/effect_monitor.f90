@@ -6,7 +6,7 @@ module effect_monitor
    use energy_ledger, only: ledger_t
    use linearised_body, only: mass_of_nodes
    use model_types, only: model_t
-   use unknown_fields, only: AT_P_W
+   use unknown_fields, only: DISPLACEMENTS, AT_P_W
    use porous_domain, only: state_t
    use generalised_alpha, only: DYNAMIC
    use texts, only: short
@@ -62,7 +62,7 @@ contains
       news = .false.
       do i = 1, size(monitor%table)
          associate (t => monitor%table(i))
-            if (.not. t%watched .or. (t%kind == OF_INERTIA .and. t%stage /= stage)) cycle
+            if (.not. t%monitored .or. (t%kind == OF_INERTIA .and. t%stage /= stage)) cycle
             limit = t%threshold
             value = 0.0_wp
             select case (t%kind)
@@ -94,7 +94,7 @@ contains
          real(wp) :: speed, all_work
 
          share = 0.0_wp
-         speed = sqrt(sum(monitor%mass*sum(((new%x(1:2, :) - old%x(1:2, :))/dt)**2, dim=1)))
+         speed = sqrt(sum(monitor%mass*sum(((new%x(:DISPLACEMENTS, :) - old%x(:DISPLACEMENTS, :))/dt)**2, dim=1)))
          all_work = work_of(ledger)
          if (all_work - monitor%memory(WORK) > UNDER_WAY*all_work) all_work = 0.0_wp
          all_work = max(expected, sqrt(2*all_work))
@@ -108,7 +108,7 @@ contains
          real(wp) :: v
 
          frequency = 0.0_wp
-         v = sqrt(sum(monitor%mass*sum(new%v(1:2, :)**2, dim=1)))
+         v = sqrt(sum(monitor%mass*sum(new%v(:DISPLACEMENTS, :)**2, dim=1)))
          monitor%memory(MOST_A) = max(monitor%memory(MOST_A), sqrt(sum(monitor%mass*sum(new%a**2, dim=1))))
          if (slow > 0.0_wp) then
             frequency = min(v/slow, UNBOUNDED)

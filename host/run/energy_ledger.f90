@@ -71,7 +71,7 @@ contains
 
       node = domain%mesh%t6(:, e)
       n_p = domain%n_p
-      du = new%x(1:2, node) - old%x(1:2, node)
+      du = new%x(:DISPLACEMENTS, node) - old%x(:DISPLACEMENTS, node)
       middle = 0.5_wp*(old%x(:, node) + new%x(:, node))
       do g = 1, domain%rule
          p = (e - 1)*domain%rule + g
@@ -90,7 +90,8 @@ contains
             ledger%gravity = ledger%gravity - gp%weight*rho*domain%gravity*dot_product(gp%n, du(2, :))
             if (region%damping > 0.0_wp .and. scheme%kind == DYNAMIC) &
                ledger%damping = ledger%damping + gp%weight*rho*region%damping &
-                                *dot_product(matmul(du, gp%n), 0.5_wp*matmul(old%v(1:2, node) + new%v(1:2, node), gp%n))
+                                *dot_product(matmul(du, gp%n), 0.5_wp*matmul(old%v(:DISPLACEMENTS, node) &
+                                                                             + new%v(:DISPLACEMENTS, node), gp%n))
             if (.not. domain%with_w .or. scheme%kind == STATIC) cycle
             rel = relative_permeability(domain%permeabilities(region%permeability), s)
             kappa = domain%permeabilities(region%permeability)%intrinsic*rel%w/f%eta_w
@@ -117,7 +118,7 @@ contains
       do e = 1, size(domain%mesh%t6, 2)
          do g = 1, domain%rule
             p = (e - 1)*domain%rule + g
-            v = matmul(state%v(1:2, domain%mesh%t6(:, e)), domain%gauss(g, e)%n)
+            v = matmul(state%v(:DISPLACEMENTS, domain%mesh%t6(:, e)), domain%gauss(g, e)%n)
             n = state%e(p)/(1 + state%e(p))
             energy = energy + 0.5_wp*domain%gauss(g, e)%weight*dot_product(v, v) &
                      *mixture_density(domain, domain%regions(domain%region_of(e))%rho_s, n, state%s(p))

@@ -42,7 +42,7 @@ contains
       real(wp), allocatable :: rhs(:), dx(:)
       real(wp) :: norm, norm_0, t0
       integer :: status
-      logical :: with_slope
+      logical :: with_tangent
 
       t0 = clock()
       allocate (rhs(dofs%n), dx(dofs%n))
@@ -51,9 +51,9 @@ contains
       call predict(scheme, control%no_predictor, old%x, old%v, old%a, new%x)
       call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
       norm_0 = -1.0_wp
-      with_slope = .true.
+      with_tangent = .true.
       do
-         if (.not. pass(with_slope)) return
+         if (.not. pass(with_tangent)) return
          if (log%iterations > 0) then
             call measure(dofs, constraint, assembly, rhs, system%largest, log)
             if (log%iterations == 1) log%first_error = log%error
@@ -68,7 +68,7 @@ contains
                return
             end if
             ! The slopes at the present values, where the last pass left them out.
-            if (.not. with_slope) then
+            if (.not. with_tangent) then
                if (.not. pass(.true.)) return
             end if
          else
@@ -87,7 +87,7 @@ contains
          log%iterations = log%iterations + 1
          call add_correction(dofs, dx, new%x, log%correction)
          call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
-         with_slope = system%reassemble_tangent
+         with_tangent = system%reassemble_tangent
       end do
       system%reassemble_tangent = log%iterations > 1
       call lap(system%seconds(T_REST), t0)
