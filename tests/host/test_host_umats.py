@@ -8,6 +8,8 @@ import re
 import subprocess
 import sys
 
+import h5py
+
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
 from checking import build, check, finish, root, work  # noqa: E402
 
@@ -63,6 +65,16 @@ for name, file, changes in (
     check(f"{name}: there are tables to compare", len(tables) >= 4, tables)
     for file in tables:
         check(f"{name}: MUD as a UMAT is MUD, digit by digit, in {file}", cells(left / file) == cells(right / file))
+
+# One void ratio and one degree of saturation a point: what the host computes with is what the law keeps.
+text = (root / "tests/host/scenes/restart.nml").read_text()
+done, folder = run(re.sub(r"&mud\n.*?^/\n", lambda _: own, text, flags=re.S | re.M), "one_value")
+check("a scene with checkpoints runs", done.returncode == 0, done.stderr)
+if (folder / "checkpoint.h5").exists():
+    with h5py.File(folder / "checkpoint.h5") as file:
+        for name, field in (("void_ratio", "e"), ("saturation", "s")):
+            kept, used = file["state"][:, states.index(name)], file[field][:]
+            check(f"{name} of the law is that of the host", len(used) == 12 and (kept == used).all(), (kept, used))
 
 # An elastic law of others, isotropic by its constants, is that of the host but for rounding.
 YOUNG, POISSON = 1e4, 0.25
