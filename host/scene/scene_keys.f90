@@ -192,8 +192,8 @@ contains
          call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, 'reach'))//'the key reach of &contact is '// &
                     'search_radius now.')
       else if (group%name == 'mud' .and. given(group, 'material_call')) then
-         call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, 'material_call'))//'the key material_call '// &
-                    'of &mud is gone: leave it out, or load a UMAT with &umat.')
+         call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, 'material_call'))//'the key '// &
+                    'material_call of &mud is gone: leave it out, or load a UMAT with &umat.')
       end if
    end subroutine check_renamed
 
