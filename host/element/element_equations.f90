@@ -5,7 +5,8 @@ module element_equations
    use kinds, only: wp
    use material_point, only: response_t, report_t
    use porous_domain, only: domain_t, state_t, gauss_t
-   use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, PLACES
+   use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, PLACES, RR, ZZ, TT, RZ, U, &
+                             PW, PC, GW, GA
    use generalised_alpha, only: scheme_t, DYNAMIC
    implicit none (type, external)
    private
@@ -197,16 +198,17 @@ contains
       integer :: i, at
 
       do i = 1, 6
-         r(2*i - 1) = r(2*i - 1) + weight*(gp%dn(1, i)*response(1) + gp%n_over_r(i)*response(3) &
-                                           + gp%dn(2, i)*response(4) + gp%n(i)*response(5))
-         r(2*i) = r(2*i) + weight*(gp%dn(2, i)*response(2) + gp%dn(1, i)*response(4) + gp%n(i)*response(6))
+         r(2*i - 1) = r(2*i - 1) + weight*(gp%dn(1, i)*response(RR) + gp%n_over_r(i)*response(TT) &
+                                           + gp%dn(2, i)*response(RZ) + gp%n(i)*response(U + 1))
+         r(2*i) = r(2*i) + weight*(gp%dn(2, i)*response(ZZ) + gp%dn(1, i)*response(RZ) + gp%n(i)*response(U + 2))
       end do
       do i = 1, n_p
          at = LAST_U + i
-         if (at <= n) r(at) = r(at) + weight*(gp%m(i)*response(7) + gp%dm(1, i)*response(9) + gp%dm(2, i)*response(10))
+         if (at <= n) r(at) = r(at) + weight*(gp%m(i)*response(PW) + gp%dm(1, i)*response(GW + 1) &
+                                              + gp%dm(2, i)*response(GW + 2))
          at = at + n_p
-         if (at <= n) r(at) = r(at) + weight*(gp%m(i)*response(8) + gp%dm(1, i)*response(11) &
-                                              + gp%dm(2, i)*response(12))
+         if (at <= n) r(at) = r(at) + weight*(gp%m(i)*response(PC) + gp%dm(1, i)*response(GA + 1) &
+                                              + gp%dm(2, i)*response(GA + 2))
       end do
    end subroutine gather
 
@@ -219,15 +221,17 @@ contains
       integer :: i, at
 
       do i = 1, 6
-         part(:, 2*i - 1) = gp%dn(1, i)*tangent(:, 1) + gp%n_over_r(i)*tangent(:, 3) + gp%dn(2, i)*tangent(:, 4) &
-                            + gp%n(i)*tangent(:, 5)
-         part(:, 2*i) = gp%dn(2, i)*tangent(:, 2) + gp%dn(1, i)*tangent(:, 4) + gp%n(i)*tangent(:, 6)
+         part(:, 2*i - 1) = gp%dn(1, i)*tangent(:, RR) + gp%n_over_r(i)*tangent(:, TT) + gp%dn(2, i)*tangent(:, RZ) &
+                            + gp%n(i)*tangent(:, U + 1)
+         part(:, 2*i) = gp%dn(2, i)*tangent(:, ZZ) + gp%dn(1, i)*tangent(:, RZ) + gp%n(i)*tangent(:, U + 2)
       end do
       do i = 1, n_p
          at = LAST_U + i
-         if (at <= n) part(:, at) = gp%m(i)*tangent(:, 7) + gp%dm(1, i)*tangent(:, 9) + gp%dm(2, i)*tangent(:, 10)
+         if (at <= n) part(:, at) = gp%m(i)*tangent(:, PW) + gp%dm(1, i)*tangent(:, GW + 1) &
+                                    + gp%dm(2, i)*tangent(:, GW + 2)
          at = at + n_p
-         if (at <= n) part(:, at) = gp%m(i)*tangent(:, 8) + gp%dm(1, i)*tangent(:, 11) + gp%dm(2, i)*tangent(:, 12)
+         if (at <= n) part(:, at) = gp%m(i)*tangent(:, PC) + gp%dm(1, i)*tangent(:, GA + 1) &
+                                    + gp%dm(2, i)*tangent(:, GA + 2)
       end do
    end subroutine times_b
 

@@ -11,10 +11,14 @@ module porous_balance
    use generalised_alpha, only: scheme_t, rate_of, STATIC
    implicit none (type, external)
    private
-   public :: kinematics_t, pore_t, skeleton_t, point_response, PLACES
+   public :: kinematics_t, pore_t, skeleton_t, point_response, PLACES, RR, ZZ, TT, RZ, U, PW, PC, GW, GA
 
    integer, parameter :: PLACES = 12
-   integer, parameter :: U = 4, PW = 7, PC = 8, GW = 8, GA = 10   !< Places, or places before the first.
+   ! Places, or places before the first; the strain comes first.
+   integer, parameter :: RR = 1, ZZ = 2, TT = 3, RZ = 4
+   integer, parameter :: U = 4            !< Displacements are at U + 1, U + 2;
+   integer, parameter :: PW = 7, PC = 8   !< pressures;
+   integer, parameter :: GW = 8, GA = 10  !< their gradients at GW + 1, GW + 2 and GA + 1, GA + 2.
 
    !> What the nodes say about a point.
    type :: kinematics_t
