@@ -4,8 +4,7 @@ program mud_replay
    use, intrinsic :: iso_c_binding, only: c_int, c_null_char
    use mud_interface, only: mud_report, mud_substep, mud_version, mud_update, mud_trace_increment, &
       mud_save_increment, mud_status_text, mud_message, mud_index, MUD_STATEV, MUD_SUBSTEP_ACCEPTED, &
-      MUD_SUBSTEP_REJECTED, MUD_MODE_ELASTIC, MUD_MODE_HELD, MUD_MODE_NUCLEUS, MUD_JUMP_RESEAT, MUD_JUMP_RESUME, &
-      MUD_JUMP_NEW
+      MUD_SUBSTEP_REJECTED, MUD_MODE_ELASTIC, MUD_MODE_HELD, MUD_JUMP_REVERSAL, MUD_JUMP_RETURN, MUD_JUMP_NEW
    use replay_file, only: increment_t, read_increment
    use faults, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
    use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
@@ -74,9 +73,9 @@ contains
          '', &
          'Columns: time and size as shares of the increment; error relative, to be compared with `tolerance`;', &
          'where the substep led: p'' (compression positive) and q = sqrt(3/2 s:s) [unit of p_atm], e, S_w; rates,', &
-         're-seats and guards counted since the increment began. Notes: reseat, resume, new: what the memory did', &
-         'at the beginning of the substep; way back: elastic; held: by the tension cut-off; event: the substep was', &
-         'shortened to end at one.', &
+         'reversals and guards counted since the increment began. Notes: reversal, return, new: what the memory did', &
+         'at the beginning of the substep; elastic: inside the elastic nucleus; held: by the tension cut-off; event:', &
+         'the substep was shortened to end at one.', &
          '', &
          'Exit codes: 0 replayed, whatever the increment''s status; 2 input refused; 4 COPY cannot be written.'
    end subroutine print_help
@@ -146,12 +145,11 @@ contains
             if (step%outcome == MUD_SUBSTEP_ACCEPTED) outcome = 'accepted'
             if (step%outcome == MUD_SUBSTEP_REJECTED) outcome = 'rejected'
             notes = ''
-            if (step%jump == MUD_JUMP_RESEAT) notes = trim(notes)//' reseat'
-            if (step%jump == MUD_JUMP_RESUME) notes = trim(notes)//' resume'
+            if (step%jump == MUD_JUMP_REVERSAL) notes = trim(notes)//' reversal'
+            if (step%jump == MUD_JUMP_RETURN) notes = trim(notes)//' return'
             if (step%jump == MUD_JUMP_NEW) notes = trim(notes)//' new'
-            if (step%mode == MUD_MODE_ELASTIC) notes = trim(notes)//' way back'
+            if (step%mode == MUD_MODE_ELASTIC) notes = trim(notes)//' elastic'
             if (step%mode == MUD_MODE_HELD) notes = trim(notes)//' held'
-            if (step%mode == MUD_MODE_NUCLEUS) notes = trim(notes)//' nucleus'
             if (step%landed /= 0) notes = trim(notes)//' event'
             if (step%n_no_root > 0) notes = trim(notes)//' no direction: '//whole(int(step%n_no_root))
             write (output_unit, '(i8, 2es10.3, 2x, a, es10.2, 2es13.5, 2f9.5, i9, i9, i7, a)') first + i - 1, &

@@ -187,7 +187,7 @@ for name, wrong, line, words in (
         ("a missing end", text.replace("\nend\n", "\n"), place("end"), ["`end`", "truncated"]),
         ("text after the end", text + "more\n", place("end") + 1, ["after `end`"]),
         ("another format", text.replace("format 1", "format 2"), place("format"), ["format 2", "format 1"]),
-        ("another ABI", text.replace("abi 1\n", "abi 7\n"), place("abi"), ["ABI 7", "ABI 1"]),
+        ("another ABI", text.replace("abi 2\n", "abi 7\n"), place("abi"), ["ABI 7", "ABI 2"]),
         ("a name of another library", text.replace("\nh_0 ", "\nh_O "), place("h_0"), ["`h_0`", "`h_O`"]),
         ("another number of entries", re.sub(r"\nprops \d+", "\nprops 3", text), place("props"), ["3 entries"]),
         ("a word for a number", re.sub(r"\nG_0 .*", "\nG_0 1.2.3", text), place("G_0"), ["`G_0`", "1.2.3"]),

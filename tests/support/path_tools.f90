@@ -5,7 +5,7 @@ module path_tools
    use mud_params, only: params_t, read_params, default_props
    use mud_point, only: blocks_t, initial_state, update_point, TANGENT_NONE
    use mud_rates, only: rate_t, rate_at, MODE_ORDINARY
-   use mud_registry, only: NPROPS
+   use mud_registry, only: NPROPS, P_RHO_E
    use mud_state, only: state_t, counters_t
    use mud_status, only: mud_status_t
    use mud_tensor, only: IDENTITY, trace, norm
@@ -16,7 +16,8 @@ module path_tools
              shear_stress, distance, full, rotation
 
 contains
-   !> The parameters of the paper with some entries changed; an entry that is not accepted stops the test program.
+   !> The parameters of the paper, so without elastic nucleus, with some entries changed; an entry that is not accepted
+   !> stops the test program.
    function material(entries, values) result(par)
       integer, intent(in), optional :: entries(:)   !< P_*
       real(wp), intent(in), optional :: values(:)
@@ -25,6 +26,7 @@ contains
       real(wp) :: props(NPROPS)
 
       props = default_props()
+      props(P_RHO_E) = 0.0_wp
       if (present(entries) .and. present(values)) props(entries) = values
       call read_params(props, par, status)
       if (status%code /= 0) error stop 'path_tools: a parameter of the test is not accepted'

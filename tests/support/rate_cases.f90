@@ -71,7 +71,7 @@ contains
          this%r_in = r + uniform(random, -1.0e-2_wp, 1.0e-2_wp)*random_deviator(random)
       case ('unsaturated')
          this%d_pc = uniform(random, -1.0_wp, 1.0_wp)*1.0e-3_wp*w%k
-      case ('suspended')
+      case ('elastic')
          this%mode = MODE_ELASTIC
       case ('kink')
          ! at r = 0 the direction is that of the strain, so x is known beforehand

@@ -73,8 +73,8 @@ done = run(host, "kratos_hard", MUD_NO_PNEWDT="stop")
 check("any other value of it does not", "did not converge" in done.stdout, done.stdout)
 
 # The first thing that goes wrong: too few STATEV, an NTENS of another element.
-for name, number, status, words in (("kratos", 60, "-2", ("given 60, needed 66",)),
-                                    ("calculix", 60, "-2", ("given 60, needed 66",)),
+for name, number, status, words in (("kratos", 60, "-2", ("given 60, needed 112",)),
+                                    ("calculix", 60, "-2", ("given 60, needed 112",)),
                                     ("abaqus", 3, "-3", ("NTENS is 3", "6 (solid) or 4"))):
     done = run(host, name, number)
     told = sentences(done)

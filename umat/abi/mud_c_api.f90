@@ -23,7 +23,7 @@ module mud_c_api
              mud_trace_increment, mud_status_text, mud_message
    public :: ABI_VERSION, VERSION
 
-   integer, parameter :: ABI_VERSION = 1
+   integer, parameter :: ABI_VERSION = 2
    character(*), parameter :: VERSION = '0.1.0'
    integer, parameter :: LIST_PROPS = 1, LIST_STATEV = 2
    integer, parameter :: FIELD_NAME = 1, FIELD_SYMBOL = 2, FIELD_UNIT = 3, FIELD_ORIGIN = 4, FIELD_MEANING = 5, &

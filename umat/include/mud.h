@@ -19,7 +19,7 @@
 extern "C" {
 #endif
 
-#define MUD_ABI_VERSION 1
+#define MUD_ABI_VERSION 2
 
 enum mud_status {
    MUD_OK = 0,
@@ -140,15 +140,15 @@ int mud_saturation(const double *prepared, double suction, double void_ratio, do
 /* One substep that an update tried. */
 enum mud_outcome { MUD_SUBSTEP_REJECTED = 0, MUD_SUBSTEP_ACCEPTED = 1, MUD_SUBSTEP_FAILED = 2 /* the update ended */ };
 enum mud_mode {
-   MUD_MODE_ORDINARY = 0, MUD_MODE_ELASTIC = 1 /* way back */, MUD_MODE_HELD = 2 /* by the cut-off */,
-   MUD_MODE_NUCLEUS = 3   /* inside the elastic nucleus */
+   MUD_MODE_ORDINARY = 0, MUD_MODE_ELASTIC = 1 /* inside the elastic nucleus */, MUD_MODE_HELD = 2 /* by the cut-off */
 };
 enum mud_jump {   /* of the memory, where the substep begins */
-   MUD_JUMP_NONE = 0, MUD_JUMP_RESEAT = 1, MUD_JUMP_RESUME = 2, MUD_JUMP_NEW = 3 /* the cut-off let go */
+   MUD_JUMP_NONE = 0, MUD_JUMP_REVERSAL = 1 /* a new process begins */, MUD_JUMP_RETURN = 2 /* an old one goes on */,
+   MUD_JUMP_NEW = 3 /* the cut-off let go */
 };
 typedef struct mud_substep {
    int outcome, mode, jump; /* enumerations above                                                      */
-   int landed;              /* 1: shortened to end at an event (p_min reached or left, turning point)  */
+   int landed;              /* 1: shortened to end at an event (p_min, a reversal, a return)        */
    int n_rate, n_reseat;    /* counted since the increment began, as in mud_report                     */
    int n_guard, n_no_root;  /* likewise; n_guard: all guards together                                  */
    double time, size;       /* where it began and how long it was, shares of the increment             */

@@ -12,7 +12,7 @@ module mud_interface
    public :: MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL, &
       MUD_ROTATION, MUD_EVOLUTION
    public :: MUD_SUBSTEP_REJECTED, MUD_SUBSTEP_ACCEPTED, MUD_SUBSTEP_FAILED, MUD_MODE_ORDINARY, MUD_MODE_ELASTIC, &
-      MUD_MODE_HELD, MUD_MODE_NUCLEUS, MUD_JUMP_NONE, MUD_JUMP_RESEAT, MUD_JUMP_RESUME, MUD_JUMP_NEW
+      MUD_MODE_HELD, MUD_JUMP_NONE, MUD_JUMP_REVERSAL, MUD_JUMP_RETURN, MUD_JUMP_NEW
    public :: MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONTINUUM, MUD_TANGENT_CONSISTENT
 
    integer(c_int), parameter :: MUD_PROPS = 1, MUD_STATEV = 2
@@ -22,9 +22,8 @@ module mud_interface
                                 MUD_TANGENT_CONSISTENT = 3
 
    integer(c_int), parameter :: MUD_SUBSTEP_REJECTED = 0, MUD_SUBSTEP_ACCEPTED = 1, MUD_SUBSTEP_FAILED = 2
-   integer(c_int), parameter :: MUD_MODE_ORDINARY = 0, MUD_MODE_ELASTIC = 1, MUD_MODE_HELD = 2, &
-      MUD_MODE_NUCLEUS = 3
-   integer(c_int), parameter :: MUD_JUMP_NONE = 0, MUD_JUMP_RESEAT = 1, MUD_JUMP_RESUME = 2, MUD_JUMP_NEW = 3
+   integer(c_int), parameter :: MUD_MODE_ORDINARY = 0, MUD_MODE_ELASTIC = 1, MUD_MODE_HELD = 2
+   integer(c_int), parameter :: MUD_JUMP_NONE = 0, MUD_JUMP_REVERSAL = 1, MUD_JUMP_RETURN = 2, MUD_JUMP_NEW = 3
 
    !> struct mud_report of mud.h.
    type, bind(c) :: mud_report

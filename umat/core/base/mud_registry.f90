@@ -8,7 +8,7 @@ module mud_registry
    public :: UNIT_STRESS, UNIT_STRESS_TO_LAMBDA
    public :: KIND_REAL, KIND_SWITCH, KIND_OPTION, KIND_COUNT
    public :: option_t, OPTIONS, property_meaning, property_index, statev_index, statev_name, statev_variable, COMPONENTS
-   public :: RULE_CLASSIC, RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RESUME, RULE_AS_PUBLISHED
+   public :: RULE_CLASSIC, RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, RULE_AS_PUBLISHED
 
    public :: P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, &
              P_H_0, P_C_H, P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, &
@@ -16,13 +16,14 @@ module mud_registry
              P_X_0, P_X_REV, P_CAP_D, P_CAP_H, P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, &
              P_TANGENT, P_RHO_E, P_SHEAR_ORDER
    public :: S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION, S_STATE_PARAMETER, S_EPS_Q_P, S_EPS_Q_P_TOTAL, &
-             S_X_BEFORE, S_X_RUNNING, S_WAY_BACK, S_SUSPENDED, S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, &
-             S_MEMORY_BEFORE, S_TURNING_POINT, S_DIRECTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, S_N_RATE, &
-             S_N_SUBSTEP, S_N_REJECT, S_N_RESEAT, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, S_NUCLEUS
+             S_X_BEFORE, S_X_RUNNING, S_TARGET, S_INTERRUPTED, S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, &
+             S_MEMORY_BEFORE, S_DIRECTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, S_N_RATE, &
+             S_N_SUBSTEP, S_N_REJECT, S_N_RESEAT, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, S_NUCLEUS, &
+             S_STACK, ENTRY_SIZE, MAX_INTERRUPTED
 
-   integer, parameter :: STATE_LAYOUT = 1   !< Layout number that an initialised STATEV carries.
+   integer, parameter :: STATE_LAYOUT = 2   !< Layout number that an initialised STATEV carries.
    integer, parameter :: KIND_REAL = 0, KIND_SWITCH = 1, KIND_OPTION = 2, KIND_COUNT = 3
-   integer, parameter :: RULE_CLASSIC = 0, RULE_THRESHOLD = 1, RULE_REPOSITIONING = 2, RULE_RESUME = 3, &
+   integer, parameter :: RULE_CLASSIC = 0, RULE_THRESHOLD = 1, RULE_REPOSITIONING = 2, RULE_RETURN_POINT = 3, &
                          RULE_AS_PUBLISHED = 4
    !> Units of the entries of PROPS that change with the unit of p_atm. Their bounds and defaults below are those for
    !> the default p_atm; mud_units converts them.
@@ -120,30 +121,32 @@ module mud_registry
    integer, parameter :: S_EPS_Q_P_TOTAL = 7
    integer, parameter :: S_X_BEFORE = 8
    integer, parameter :: S_X_RUNNING = 9
-   integer, parameter :: S_WAY_BACK = 10
-   integer, parameter :: S_SUSPENDED = 11
+   integer, parameter :: S_TARGET = 10
+   integer, parameter :: S_INTERRUPTED = 11
    integer, parameter :: S_OPEN = 12
    integer, parameter :: S_LAST_STEP = 13
    integer, parameter :: S_FABRIC = 14
    integer, parameter :: S_MEMORY = 20
    integer, parameter :: S_MEMORY_BEFORE = 26
-   integer, parameter :: S_TURNING_POINT = 32
-   integer, parameter :: S_DIRECTION = 38
-   integer, parameter :: S_DSIGMA_DPC = 44
-   integer, parameter :: S_DSW_DPC = 50
-   integer, parameter :: S_DSW_DEV = 51
-   integer, parameter :: S_N_RATE = 52
-   integer, parameter :: S_N_SUBSTEP = 53
-   integer, parameter :: S_N_REJECT = 54
-   integer, parameter :: S_N_RESEAT = 55
-   integer, parameter :: S_N_GUARD = 56
-   integer, parameter :: S_N_NO_ROOT = 57
-   integer, parameter :: S_N_MIN_STEP = 58
-   integer, parameter :: S_N_OPEN = 59
-   integer, parameter :: S_N_TENSILE = 60
-   integer, parameter :: S_NUCLEUS = 61
-   integer, parameter :: NVARIABLES = 31
-   integer, parameter :: NSTATV = 66
+   integer, parameter :: S_DIRECTION = 32
+   integer, parameter :: S_DSIGMA_DPC = 38
+   integer, parameter :: S_DSW_DPC = 44
+   integer, parameter :: S_DSW_DEV = 45
+   integer, parameter :: S_N_RATE = 46
+   integer, parameter :: S_N_SUBSTEP = 47
+   integer, parameter :: S_N_REJECT = 48
+   integer, parameter :: S_N_RESEAT = 49
+   integer, parameter :: S_N_GUARD = 50
+   integer, parameter :: S_N_NO_ROOT = 51
+   integer, parameter :: S_N_MIN_STEP = 52
+   integer, parameter :: S_N_OPEN = 53
+   integer, parameter :: S_N_TENSILE = 54
+   integer, parameter :: S_NUCLEUS = 55
+   !> Interrupted processes of the rule return_point, the oldest first: memory, direction and target of each.
+   integer, parameter :: MAX_INTERRUPTED = 4, ENTRY_SIZE = 13
+   integer, parameter :: S_STACK = 61
+   integer, parameter :: NVARIABLES = 30 + 3*MAX_INTERRUPTED
+   integer, parameter :: NSTATV = S_STACK - 1 + ENTRY_SIZE*MAX_INTERRUPTED
 
    type(property_t), parameter :: PROPERTIES(NPROPS) = [ &
       property_t(P_K_0, 'K_0', 'K_0', '1', KIND_REAL, 0.001_wp, 1.0e5_wp, 150.0_wp, 'paper', &
@@ -234,7 +237,7 @@ module mud_registry
          'largest number of attempted substeps in an update'), &
       property_t(P_TANGENT, 'tangent', 'tangent', '1', KIND_OPTION, 0.0_wp, 3.0_wp, 3.0_wp, 'ours', &
          'tangent that umat_ returns'), &
-      property_t(P_RHO_E, 'rho_e', 'rho_e', '1', KIND_REAL, 0.0_wp, 0.01_wp, 0.0_wp, 'ours', &
+      property_t(P_RHO_E, 'rho_e', 'rho_e', '1', KIND_REAL, 0.0_wp, 0.01_wp, 2.0e-5_wp, 'ours', &
          'radius of the elastic nucleus, a norm of the strain tensor; 0: none, as in the paper'), &
       property_t(P_SHEAR_ORDER, 'shear_order', '-', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 0.0_wp, 'ours', &
          'shear components of umat_: 0 as 12, 13, 23 (Abaqus, CalculiX), 1 as 12, 23, 13 (Kratos)')]
@@ -259,12 +262,12 @@ module mud_registry
          '(r - r_in):n at the end of the process before (rule repositioning)', '0', 'set at a reversal'), &
       variable_t(S_X_RUNNING, 1, 'x_running', 'x', '1', .false., 'paper', &
          '(r - r_in):n of the last accepted rate with x >= 0', '0', 'set by every accepted substep'), &
-      variable_t(S_WAY_BACK, 1, 'way_back', 'd', '1', .false., 'ours', &
-         'distance from the turning point where an elastic way back began; 0: none (rule resume)', '0', &
-         'set where an elastic way back begins, 0 at its end'), &
-      variable_t(S_SUSPENDED, 1, 'suspended', '-', '1', .false., 'ours', &
-         '1 while a process is suspended (rule resume)', '0', &
-         'set where a process turns, 0 when it resumes or is given up'), &
+      variable_t(S_TARGET, 1, 'target', 'T:n_t', '1', .false., 'ours', &
+         'how far r has come along direction in the present process (rule return_point)', '0', &
+         'with direction; restored where an interrupted process goes on'), &
+      variable_t(S_INTERRUPTED, 1, 'interrupted', '-', '1', .false., 'ours', &
+         'number of interrupted processes that are remembered (rule return_point)', '0', &
+         'grows at a reversal, falls at a return'), &
       variable_t(S_OPEN, 1, 'open', '-', '1', .false., 'numerical', &
          '1 while the tension cut-off holds p'' at p_min', '0', &
          'set where p'' would fall below p_min, 0 when p'' rises again'), &
@@ -275,12 +278,10 @@ module mud_registry
       variable_t(S_MEMORY, 6, 'memory', 'r_in', '1', .true., 'paper', &
          'stress ratio where the present loading process began', 'r', 'jumps at a reversal, by the memory rule'), &
       variable_t(S_MEMORY_BEFORE, 6, 'memory_before', 'r_prev', '1', .true., 'paper', &
-         'memory of the process before (threshold) or of the suspended one (resume)', 'r', 'set where memory jumps'), &
-      variable_t(S_TURNING_POINT, 6, 'turning_point', 'r_t', '1', .true., 'ours', &
-         'stress ratio where the suspended process was left (resume)', '0', 'set where a process is suspended'), &
-      variable_t(S_DIRECTION, 6, 'direction', 'n', '1', .true., 'ours', &
-         'last loading direction with x >= 0; direction before the turn while suspended', '0', &
-         'set by every accepted substep'), &
+         'memory of the loading process before the present one (rule threshold)', 'r', 'set where memory jumps'), &
+      variable_t(S_DIRECTION, 6, 'direction', 'n_t', '1', .true., 'ours', &
+         'direction in which the present process moves r, the chord from memory (rule return_point)', '0', &
+         'set by accepted plastic substeps; restored at a return'), &
       variable_t(S_DSIGMA_DPC, 6, 'dsigma_dpc', '-', '1', .true., 'paper', &
          'output: d sigma''/d p_c in the sign convention of STRESS', '0', 'written with every tangent'), &
       variable_t(S_DSW_DPC, 1, 'dsw_dpc', '-', '1/kPa', .false., 'paper', &
@@ -314,7 +315,7 @@ module mud_registry
       option_t(P_MEMORY_RULE, RULE_CLASSIC, 'classic'), &
       option_t(P_MEMORY_RULE, RULE_THRESHOLD, 'threshold'), &
       option_t(P_MEMORY_RULE, RULE_REPOSITIONING, 'repositioning'), &
-      option_t(P_MEMORY_RULE, RULE_RESUME, 'resume'), &
+      option_t(P_MEMORY_RULE, RULE_RETURN_POINT, 'return_point'), &
       option_t(P_MEMORY_RULE, RULE_AS_PUBLISHED, 'as_published'), &
       option_t(P_SCHEME, 1, 'modified Euler 2(1)'), &
       option_t(P_SCHEME, 2, 'Bogacki-Shampine 3(2)'), &

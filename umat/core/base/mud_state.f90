@@ -2,14 +2,14 @@
 module mud_state
    use mud_kinds, only: wp
    use mud_registry, only: NSTATV, STATE_LAYOUT, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION, S_STATE_PARAMETER, &
-      S_EPS_Q_P, S_EPS_Q_P_TOTAL, S_X_BEFORE, S_X_RUNNING, S_WAY_BACK, S_SUSPENDED, S_OPEN, S_LAST_STEP, S_FABRIC, &
-      S_MEMORY, S_MEMORY_BEFORE, S_TURNING_POINT, S_DIRECTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, S_N_RATE, &
-      S_N_SUBSTEP, S_N_REJECT, S_N_RESEAT, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, S_NUCLEUS
+      S_EPS_Q_P, S_EPS_Q_P_TOTAL, S_X_BEFORE, S_X_RUNNING, S_TARGET, S_INTERRUPTED, S_OPEN, S_LAST_STEP, S_FABRIC, &
+      S_MEMORY, S_MEMORY_BEFORE, S_DIRECTION, S_N_RATE, S_N_SUBSTEP, S_N_REJECT, S_N_RESEAT, S_N_GUARD, S_N_NO_ROOT, &
+      S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, S_NUCLEUS, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED
    use mud_status, only: mud_status_t, fail, MUD_BAD_STATE, MUD_BAD_NSTATV, ON_STATEV
    use mud_tensor, only: is_finite
    implicit none (type, external)
    private
-   public :: memory_t, state_t, counters_t, guard_count, pack_state, unpack_state, E_LOWER, E_UPPER
+   public :: memory_t, interrupted_t, state_t, counters_t, guard_count, pack_state, unpack_state, E_LOWER, E_UPPER
 
    real(wp), parameter :: E_LOWER = 0.01_wp, E_UPPER = 5.0_wp   !< Range of the void ratio [-].
 
@@ -18,17 +18,24 @@ module mud_state
    real(wp), parameter :: LARGEST_NUCLEUS = 1.0_wp        !< Strain from the nucleus' centre; rho_e is at most 0.01 [-].
    real(wp), parameter :: LARGEST_DIRECTION = 1.01_wp     !< Components of a unit tensor [-].
 
+   !> A loading process that was interrupted (rule return_point).
+   type :: interrupted_t
+      real(wp) :: r_in(6)      !< its memory [-]
+      real(wp) :: direction(6) !< in which it moved r [-]
+      real(wp) :: target       !< r:direction where it was left [-]
+   end type interrupted_t
+
    !> What the point remembers of its loading processes.
    type :: memory_t
       real(wp) :: r_in(6)      !< stress ratio where the present process began
-      real(wp) :: r_before(6)  !< memory of the process before (threshold) or of the suspended one (resume)
-      real(wp) :: r_turn(6)    !< turning point of the suspended process
-      real(wp) :: n_turn(6)    !< running direction; while suspended that before the turn
+      real(wp) :: r_before(6)  !< memory of the process before (rule threshold)
+      real(wp) :: direction(6) !< in which the present process moves r (rule return_point)
+      real(wp) :: target       !< how far it has come, r:direction
       real(wp) :: eps_q_p      !< plastic shear of the present process
       real(wp) :: x_before     !< J
       real(wp) :: x_running    !< (r - r_in):n of the last accepted rate with x >= 0
-      real(wp) :: way_back     !< distance from r_turn where the elastic way back began, 0 if not on it
-      logical :: suspended
+      integer :: depth         !< Number of interrupted processes.
+      type(interrupted_t) :: interrupted(MAX_INTERRUPTED)   !< The oldest first; beyond depth without meaning.
    end type memory_t
 
    type :: state_t
@@ -69,21 +76,22 @@ contains
       end do
       call require(statev, S_LAYOUT, real(STATE_LAYOUT, wp), real(STATE_LAYOUT, wp), status)
       call require(statev, S_VOID_RATIO, E_LOWER, E_UPPER, status)
-      call require(statev, S_SUSPENDED, 0.0_wp, 1.0_wp, status)
+      call require(statev, S_INTERRUPTED, 0.0_wp, real(MAX_INTERRUPTED, wp), status)
       call require(statev, S_OPEN, 0.0_wp, 1.0_wp, status)
       call require(statev, S_LAST_STEP, 0.0_wp, huge(1.0_wp), status)
       call require(statev, S_EPS_Q_P, 0.0_wp, huge(1.0_wp), status)
-      call require(statev, S_WAY_BACK, 0.0_wp, LARGEST_RATIO, status)
+      call require(statev, S_TARGET, -LARGEST_RATIO, LARGEST_RATIO, status)
       call require(statev, S_X_BEFORE, -LARGEST_RATIO, LARGEST_RATIO, status)
       call require(statev, S_X_RUNNING, -LARGEST_RATIO, LARGEST_RATIO, status)
       do i = 0, 5
          call require(statev, S_FABRIC + i, -LARGEST_FABRIC, LARGEST_FABRIC, status)
          call require(statev, S_MEMORY + i, -LARGEST_RATIO, LARGEST_RATIO, status)
          call require(statev, S_MEMORY_BEFORE + i, -LARGEST_RATIO, LARGEST_RATIO, status)
-         call require(statev, S_TURNING_POINT + i, -LARGEST_RATIO, LARGEST_RATIO, status)
          call require(statev, S_DIRECTION + i, -LARGEST_DIRECTION, LARGEST_DIRECTION, status)
          call require(statev, S_NUCLEUS + i, -LARGEST_NUCLEUS, LARGEST_NUCLEUS, status)
       end do
+      if (status%code /= 0) return
+      call unpack_stack(statev, state%memory, status)
       if (status%code /= 0) return
 
       state%e = statev(S_VOID_RATIO)
@@ -97,14 +105,47 @@ contains
       state%nucleus = statev(S_NUCLEUS:S_NUCLEUS + 5)
       state%memory%r_in = statev(S_MEMORY:S_MEMORY + 5)
       state%memory%r_before = statev(S_MEMORY_BEFORE:S_MEMORY_BEFORE + 5)
-      state%memory%r_turn = statev(S_TURNING_POINT:S_TURNING_POINT + 5)
-      state%memory%n_turn = statev(S_DIRECTION:S_DIRECTION + 5)
+      state%memory%direction = statev(S_DIRECTION:S_DIRECTION + 5)
+      state%memory%target = statev(S_TARGET)
       state%memory%eps_q_p = statev(S_EPS_Q_P)
       state%memory%x_before = statev(S_X_BEFORE)
       state%memory%x_running = statev(S_X_RUNNING)
-      state%memory%way_back = statev(S_WAY_BACK)
-      state%memory%suspended = statev(S_SUSPENDED) > 0.5_wp
    end subroutine unpack_state
+
+   !> Reads the interrupted processes; places beyond their number are not looked at.
+   pure subroutine unpack_stack(statev, memory, status)
+      real(wp), intent(in) :: statev(:)
+      type(memory_t), intent(inout) :: memory
+      type(mud_status_t), intent(inout) :: status
+      integer :: k, i, first
+
+      memory%depth = nint(statev(S_INTERRUPTED))
+      do k = 1, memory%depth
+         first = S_STACK + ENTRY_SIZE*(k - 1)
+         do i = 0, 5
+            call require(statev, first + i, -LARGEST_RATIO, LARGEST_RATIO, status)
+            call require(statev, first + 6 + i, -LARGEST_DIRECTION, LARGEST_DIRECTION, status)
+         end do
+         call require(statev, first + 12, -LARGEST_RATIO, LARGEST_RATIO, status)
+         memory%interrupted(k) = interrupted_t(statev(first:first + 5), statev(first + 6:first + 11), statev(first + 12))
+      end do
+   end subroutine unpack_stack
+
+   !> Writes the interrupted processes; unused places become zero.
+   pure subroutine pack_stack(memory, statev)
+      type(memory_t), intent(in) :: memory
+      real(wp), intent(inout) :: statev(:)
+      integer :: k, first
+
+      statev(S_INTERRUPTED) = real(memory%depth, wp)
+      statev(S_STACK:S_STACK + ENTRY_SIZE*MAX_INTERRUPTED - 1) = 0.0_wp
+      do k = 1, memory%depth
+         first = S_STACK + ENTRY_SIZE*(k - 1)
+         statev(first:first + 5) = memory%interrupted(k)%r_in
+         statev(first + 6:first + 11) = memory%interrupted(k)%direction
+         statev(first + 12) = memory%interrupted(k)%target
+      end do
+   end subroutine pack_stack
 
    !> Keeps the first entry that is out of its range.
    pure subroutine require(statev, entry, lower, upper, status)
@@ -136,13 +177,12 @@ contains
       statev(S_NUCLEUS:S_NUCLEUS + 5) = state%nucleus
       statev(S_MEMORY:S_MEMORY + 5) = state%memory%r_in
       statev(S_MEMORY_BEFORE:S_MEMORY_BEFORE + 5) = state%memory%r_before
-      statev(S_TURNING_POINT:S_TURNING_POINT + 5) = state%memory%r_turn
-      statev(S_DIRECTION:S_DIRECTION + 5) = state%memory%n_turn
+      statev(S_DIRECTION:S_DIRECTION + 5) = state%memory%direction
+      statev(S_TARGET) = state%memory%target
       statev(S_EPS_Q_P) = state%memory%eps_q_p
       statev(S_X_BEFORE) = state%memory%x_before
       statev(S_X_RUNNING) = state%memory%x_running
-      statev(S_WAY_BACK) = state%memory%way_back
-      statev(S_SUSPENDED) = merge(1.0_wp, 0.0_wp, state%memory%suspended)
+      call pack_stack(state%memory, statev)
 
       statev(S_N_RATE) = statev(S_N_RATE) + counters%rate
       statev(S_N_SUBSTEP) = statev(S_N_SUBSTEP) + counters%substep

@@ -1,25 +1,34 @@
-!> Consistent tangent: the derivative of the algorithm, carried through the accepted substeps. Sizes of substeps,
-!> landings on events and the choice of branch are frozen; the jumps of memory and the share of an increment that is
-!> inside the elastic nucleus are differentiated.
+!> Consistent tangent: the derivative of the algorithm, carried through the accepted substeps. The jumps of memory, the
+!> share of an increment inside the elastic nucleus and the times of events (mud_event_time) are differentiated. Sizes
+!> of substeps are frozen but for those that end at an event and for the last, which ends where the increment ends:
+!> behind an event all substeps begin later by its shift. In the limit of small substeps that is the saltation term
+!> (f_before - f_after) (x) dt/d increment; docs/theory/integration.md section 5.
 module mud_consistent
    use mud_kinds, only: wp
-   use mud_increment, only: increment_t, trial_t, void_ratio_at, suction_at, loading_strain, change_of_loading_strain, &
-      has_aside, NY, MODE_HELD
+   use mud_cutoff, only: slide, change_of_slide
+   use mud_increment, only: increment_t, void_ratio_at, suction_at, loading_strain, change_of_loading_strain, &
+      turn_of_loading_strain, has_aside, NY
    use mud_nucleus, only: change_of_exit
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY
-   use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RESUME
+   use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, MAX_INTERRUPTED
+   use mud_reversal, only: interrupted_share
    use mud_sensitivity, only: change_t, linearised_t, linearise, change_of_rate, changes_of_rate
    use mud_state, only: memory_t
    use mud_substep, only: MAX_STAGES, stage_point, solution
    use mud_tensor, only: trace, deviator
+   use mud_trial, only: trial_t, MODE_HELD
    implicit none (type, external)
    private
    public :: sensitivity_t, no_sensitivity, enter_nucleus, leave_nucleus, propagate, jump_of_memory, &
-             JUMP_NONE, JUMP_RESEAT, JUMP_RESUME, JUMP_NEW
+             change_with_size, change_along, change_of_ratio, linearise_stage, DIRECTIONS, AT_REST, &
+             JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
 
    integer, parameter :: DIRECTIONS = 7   !< Six engineering strains and the suction at the end of the increment.
-   integer, parameter :: JUMP_NONE = 0, JUMP_RESEAT = 1, JUMP_RESUME = 2, JUMP_NEW = 3
+   integer, parameter :: JUMP_NONE = 0
+   integer, parameter :: JUMP_REVERSAL = 1   !< A new process begins.
+   integer, parameter :: JUMP_RETURN = 2     !< An interrupted process goes on.
+   integer, parameter :: JUMP_NEW = 3        !< The tension cut-off let go: no past.
 
    !> Derivatives of what drives the increment, or one of its phases, along the seven directions.
    type :: driving_t
@@ -31,23 +40,33 @@ module mud_consistent
       real(wp) :: nucleus(6, DIRECTIONS)     !< of the strain from the nucleus' centre at its start
    end type driving_t
 
+   !> Nothing drives.
+   type(driving_t), parameter :: AT_REST = driving_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
+
    !> Derivatives along the seven directions.
    type :: sensitivity_t
       real(wp) :: y(NY, DIRECTIONS)          !< of sigma', z and the plastic shear of the present process
       real(wp) :: r_in(6, DIRECTIONS)        !< of the memory
-      real(wp) :: r_before(6, DIRECTIONS)    !< of the memory of the process before, or of the suspended one
+      real(wp) :: r_before(6, DIRECTIONS)    !< of the memory of the process before
+      real(wp) :: shift(DIRECTIONS)          !< of the pseudo-time where the next substep begins
+      !> Of the memories of interrupted processes; those up to number `settled` were there when the increment began.
+      real(wp) :: interrupted(6, DIRECTIONS, MAX_INTERRUPTED)
+      integer :: settled
       type(driving_t) :: driving
    end type sensitivity_t
 contains
    !> At the start of an increment nothing depends on it yet.
-   pure function no_sensitivity() result(sens)
-      type(sensitivity_t) :: sens
+   pure subroutine no_sensitivity(depth, sens)
+      integer, intent(in) :: depth           !< number of interrupted processes
+      type(sensitivity_t), intent(inout) :: sens
 
       sens%y = 0.0_wp
       sens%r_in = 0.0_wp
       sens%r_before = 0.0_wp
+      sens%shift = 0.0_wp
+      sens%settled = depth
       sens%driving = whole_increment()
-   end function no_sensitivity
+   end subroutine no_sensitivity
 
    pure function whole_increment() result(driving)
       type(driving_t) :: driving
@@ -113,69 +132,146 @@ contains
       end do
    end subroutine scale_driving
 
-   !> Carries the derivatives through an accepted substep h.
-   pure subroutine propagate(par, inc, trial, h, sens)
+   !> Carries the derivatives through an accepted substep h at whose end the pseudo-time is fixed (the last one of an
+   !> increment or a phase) or not.
+   pure subroutine propagate(par, inc, trial, h, last, sens)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h
+      logical, intent(in) :: last
       type(sensitivity_t), intent(inout) :: sens
+      real(wp) :: dh(DIRECTIONS)
 
-      if (trial%mode == MODE_HELD) then
-         sens%y(1:6, :) = 0.0_wp   ! an open point has no stiffness
-      else
-         call through_stages(par, inc, trial, h, sens%r_in, sens%driving, sens%y)
-      end if
+      dh = 0.0_wp
+      if (last) dh = -sens%shift
+      call through_substep(par, inc, trial, h, sens%shift, dh, sens%r_in, sens%driving, sens%y)
+      if (last) sens%shift = 0.0_wp
    end subroutine propagate
 
-   !> The scheme applied to all directions as one long vector.
-   pure subroutine through_stages(par, inc, trial, h, r_in, driving, y1)
+   !> Derivative of the end of a substep with respect to its size.
+   pure subroutine change_with_size(par, inc, trial, h, change)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
-      real(wp), intent(in) :: h, r_in(6, DIRECTIONS)
+      real(wp), intent(in) :: h
+      real(wp), intent(out) :: change(NY)
+      real(wp) :: r_in(6, 1), y(NY, 1)
+
+      r_in = 0.0_wp
+      y = 0.0_wp
+      call through_substep(par, inc, trial, h, [0.0_wp], [1.0_wp], r_in, AT_REST, y)
+      change = y(:, 1)
+   end subroutine change_with_size
+
+   !> Derivatives across a substep along any number of directions: its start moves by `shift` in pseudo-time, its size
+   !> changes by dh.
+   pure subroutine through_substep(par, inc, trial, h, shift, dh, r_in, driving, y)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      real(wp), intent(in) :: h
+      real(wp), intent(in), contiguous :: shift(:), dh(:), r_in(:, :)
       type(driving_t), intent(in) :: driving
-      real(wp), intent(inout) :: y1(NY*DIRECTIONS)
-      real(wp) :: rates(NY*DIRECTIONS, MAX_STAGES), y0(NY*DIRECTIONS), y(NY*DIRECTIONS), point(NY)
-      integer :: i, last
+      real(wp), intent(inout), contiguous :: y(:, :)
+
+      if (trial%mode == MODE_HELD) then
+         call through_held(par, inc, trial, h, shift, dh, driving, y)
+      else
+         call through_stages(par, inc, trial, h, size(shift), shift, dh, r_in, driving, y)
+      end if
+   end subroutine through_substep
+
+   !> Derivatives of the stress ratio of a held point, whose p' rests: two half steps.
+   pure subroutine through_held(par, inc, trial, h, shift, dh, driving, y)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      real(wp), intent(in) :: h, shift(:), dh(:)
+      type(driving_t), intent(in) :: driving
+      real(wp), intent(inout) :: y(:, :)
+      real(wp) :: r0(6), r_half(6), dr(6), strain(6), de, dp_c, half, middle
+      integer :: j
+
+      half = 0.5_wp*h
+      middle = trial%time + half
+      r0 = deviator(trial%y0(1:6))/par%p_min
+      r_half = slide(par, inc, r0, trial%time, half)
+      do j = 1, size(shift)
+         strain = driving%d_strain(:, j) + (dh(j)/h)*inc%d_strain
+         call change_of_place(inc, j, middle, shift(j) + 0.5_wp*dh(j), driving, de, dp_c)
+         dr = change_of_slide(par, inc, r0, trial%time, half, deviator(y(1:6, j))/par%p_min, strain, de, dp_c)
+         call change_of_place(inc, j, trial%time + h, shift(j) + dh(j), driving, de, dp_c)
+         y(1:6, j) = par%p_min*change_of_slide(par, inc, r_half, middle, half, dr, strain, de, dp_c)
+      end do
+   end subroutine through_held
+
+   !> Derivatives of void ratio and suction at a pseudo-time that itself changes by dt.
+   pure subroutine change_of_place(inc, j, time, dt, driving, de, dp_c)
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: j
+      real(wp), intent(in) :: time, dt
+      type(driving_t), intent(in) :: driving
+      real(wp), intent(out) :: de, dp_c
+
+      de = (1.0_wp + void_ratio_at(inc, time))*(driving%e0(j) - time*driving%d_v(j) - dt*inc%d_v)
+      dp_c = driving%p_c0(j) + time*driving%d_pc(j) + dt*inc%d_pc
+   end subroutine change_of_place
+
+   !> The scheme applied to all directions as one long vector.
+   pure subroutine through_stages(par, inc, trial, h, n, shift, dh, r_in, driving, y1)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      integer, intent(in) :: n               !< number of directions
+      real(wp), intent(in) :: h, shift(n), dh(n), r_in(6, n)
+      type(driving_t), intent(in) :: driving
+      real(wp), intent(inout) :: y1(NY*n)
+      real(wp) :: rates(NY*DIRECTIONS, MAX_STAGES), y0(NY*DIRECTIONS), y(NY*DIRECTIONS), point(NY), dt(DIRECTIONS)
+      integer :: i, j, last, size
 
       ! the last stage of such a pair serves the error estimate and the next substep, not the solution
       last = inc%scheme%stages
       if (inc%scheme%first_same_as_last) last = last - 1
-      y0 = y1
-      y = y0
+      size = NY*n
+      y0(:size) = y1
+      y(:size) = y1
       point = trial%y0
       do i = 1, last
          if (i > 1) then
-            call stage_point(inc%scheme, i, y0, rates, h, y)
+            call stage_point(inc%scheme, i, y0(:size), rates(:size, :), h, y(:size))
             call stage_point(inc%scheme, i, trial%y0, trial%rates, h, point)
          end if
-         call change_of_stage(par, inc, trial%mode, trial%w(i), point, trial%time + inc%scheme%node(i)*h, r_in, &
-                              driving, y, rates(:, i))
+         dt(:n) = shift + inc%scheme%node(i)*dh
+         call change_of_stage(par, inc, trial%mode, trial%w(i), point, trial%time + inc%scheme%node(i)*h, n, &
+                              dt, r_in, driving, y, rates(:, i))
+         do j = 1, n
+            if (abs(dh(j)) > 0.0_wp) then
+               rates(NY*(j - 1) + 1:NY*j, i) = rates(NY*(j - 1) + 1:NY*j, i) + (dh(j)/h)*trial%rates(:, i)
+            end if
+         end do
       end do
-      call solution(inc%scheme, y0, rates, h, y1)
+      call solution(inc%scheme, y0(:size), rates(:size, :), h, y1)
    end subroutine through_stages
 
-   !> Derivatives of one stage's rates.
-   pure subroutine change_of_stage(par, inc, mode, w, point, time, r_in, driving, y, rates)
+   !> Derivatives of one stage's rates; its pseudo-time changes by dt.
+   pure subroutine change_of_stage(par, inc, mode, w, point, time, n, dt, r_in, driving, y, rates)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
-      integer, intent(in) :: mode
+      integer, intent(in) :: mode, n
       type(rate_t), intent(in) :: w
-      real(wp), intent(in) :: point(NY), time, r_in(6, DIRECTIONS), y(NY, DIRECTIONS)
+      real(wp), intent(in) :: point(NY), time, dt(n), r_in(6, n), y(NY, n)
       type(driving_t), intent(in) :: driving
-      real(wp), intent(out) :: rates(NY, DIRECTIONS)
+      real(wp), intent(out) :: rates(NY, n)
       type(linearised_t) :: lin
       type(change_t) :: changes(DIRECTIONS)
-      real(wp) :: e
       integer :: j
 
-      e = void_ratio_at(inc, time)
-      call linearise_stage(par, inc, mode, w, point, time, e, lin)
-      do j = 1, DIRECTIONS
-         call direction(inc, mode, j, time, e, y(:, j), r_in(:, j), driving, changes(j))
+      call linearise_stage(par, inc, mode, w, point, time, void_ratio_at(inc, time), lin)
+      do j = 1, n
+         call change_along(inc, mode, j, time, dt(j), y(:, j), r_in(:, j), driving, changes(j))
       end do
-      call changes_of_rate(par, w, lin, DIRECTIONS, changes, rates)
+      call changes_of_rate(par, w, lin, n, changes, rates)
    end subroutine change_of_stage
 
    pure subroutine linearise_stage(par, inc, mode, w, point, time, e, lin)
@@ -195,26 +291,41 @@ contains
       end if
    end subroutine linearise_stage
 
-   !> How the arguments of a rate change along a direction.
-   pure subroutine direction(inc, mode, j, time, e, y, r_in, driving, change)
+   !> How the arguments of a rate change along a direction, at a pseudo-time that itself changes by dt.
+   pure subroutine change_along(inc, mode, j, time, dt, y, r_in, driving, change)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode, j
-      real(wp), intent(in) :: time, e, y(NY), r_in(6)
+      real(wp), intent(in) :: time, dt, y(NY), r_in(6)
       type(driving_t), intent(in) :: driving
       type(change_t), intent(inout) :: change
+      real(wp) :: turn(6)
 
       change%sigma = y(1:6)
       change%z = y(7:12)
       change%r_in = r_in
       change%d_strain = driving%d_strain(:, j)
-      change%e = (1.0_wp + e)*(driving%e0(j) - time*driving%d_v(j))
       change%d_pc = driving%d_pc(j)
-      change%p_c = driving%p_c0(j) + time*driving%d_pc(j)
-      if (has_aside(inc, mode)) then
-         call change_of_loading_strain(inc, mode, time, driving%d_strain(:, j), driving%nucleus(:, j), &
-                                       change%d_strain, change%d_aside)
+      call change_of_place(inc, j, time, dt, driving, change%e, change%p_c)
+      if (.not. has_aside(inc, mode)) return
+      call change_of_loading_strain(inc, mode, time, driving%d_strain(:, j), driving%nucleus(:, j), change%d_strain, &
+                                    change%d_aside)
+      if (abs(dt) > 0.0_wp) then
+         turn = dt*turn_of_loading_strain(inc, mode, time)
+         change%d_strain = change%d_strain + turn
+         change%d_aside = change%d_aside - turn
       end if
-   end subroutine direction
+   end subroutine change_along
+
+   !> Change of the stress ratio with the stress.
+   pure function change_of_ratio(par, sigma, d_sigma) result(dr)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: sigma(6), d_sigma(6)
+      real(wp) :: dr(6), p, r(6)
+
+      call stress_ratio(par, sigma, p, r)
+      dr = deviator(d_sigma)/p
+      if (trace(sigma) >= 3.0_wp*par%p_min) dr = dr - (trace(d_sigma)/(3.0_wp*p))*r
+   end function change_of_ratio
 
    !> Derivatives of the memory across its jump at the start of a substep; `before` is the memory ahead of it and
    !> `trigger` the rate that made it jump.
@@ -226,50 +337,90 @@ contains
       type(rate_t), intent(in) :: trigger
       type(trial_t), intent(in) :: trial
       type(sensitivity_t), intent(inout) :: sens
-      type(linearised_t) :: lin
-      type(change_t) :: change
-      real(wp) :: p, r(6), dr(6), dn(6), d_sigma(6), d_z(6), d_eps_q, m, dm, e, old_r_in(6), new_r_in(6)
+      real(wp) :: p, r(6), dr(6), old_r_in(6)
       integer :: j
-      logical :: held_p, inner
 
-      if (jump == JUMP_RESUME) then
-         sens%r_in = sens%r_before
+      if (jump == JUMP_RETURN) then
+         ! of the two memories the softer one was taken
+         if (any(abs(after%r_in - before%r_in) > 0.0_wp)) then
+            sens%r_in = 0.0_wp
+            if (after%depth >= sens%settled) sens%r_in = sens%interrupted(:, :, after%depth + 1)
+         end if
+         sens%settled = min(sens%settled, after%depth)
+         sens%y(13, :) = 0.0_wp
+         return
+      end if
+      if (jump == JUMP_REVERSAL .and. after%depth /= before%depth) then
+         sens%interrupted(:, :, after%depth) = sens%r_in
+         sens%settled = min(sens%settled, after%depth - 1)
+      end if
+      if (jump == JUMP_NEW) sens%settled = 0
+      if (jump == JUMP_REVERSAL .and. par%memory_rule == RULE_REPOSITIONING) then
+         call reposition(par, inc, before, trigger, trial, sens)
          return
       end if
       call stress_ratio(par, trial%y0(1:6), p, r)
-      e = void_ratio_at(inc, trial%time)
-      held_p = trace(trial%y0(1:6)) < 3.0_wp*par%p_min
-      if (jump == JUMP_RESEAT .and. par%memory_rule == RULE_REPOSITIONING) then
-         call linearise_stage(par, inc, MODE_ORDINARY, trigger, trial%y0, trial%time, e, lin)
-      end if
-      ! a re-seat while a process is suspended leaves its memory and the plastic shear since the turn (rule resume)
-      inner = jump == JUMP_RESEAT .and. par%memory_rule == RULE_RESUME .and. before%suspended
-      m = 0.0_wp
-      if (before%eps_q_p < par%eps_hat) m = 1.0_wp - (before%eps_q_p/par%eps_hat)**par%j_exp
       do j = 1, DIRECTIONS
-         dr = deviator(sens%y(1:6, j))/p
-         if (.not. held_p) dr = dr - (trace(sens%y(1:6, j))/(3.0_wp*p))*r
-         dm = 0.0_wp
-         if (m > 0.0_wp .and. before%eps_q_p > 0.0_wp) dm = -par%j_exp*(1.0_wp - m)/before%eps_q_p*sens%y(13, j)
+         dr = change_of_ratio(par, trial%y0(1:6), sens%y(1:6, j))
          old_r_in = sens%r_in(:, j)
-         new_r_in = dr
-         if (jump == JUMP_RESEAT) then
-            select case (par%memory_rule)
-            case (RULE_THRESHOLD)
-               ! a fall-back left r_in at r
-               if (any(abs(after%r_in - r) > 0.0_wp)) then
-                  new_r_in = (1.0_wp - m)*dr + m*sens%r_before(:, j) + dm*(before%r_before - r)
-               end if
-            case (RULE_REPOSITIONING)
-               call direction(inc, MODE_ORDINARY, j, trial%time, e, sens%y(:, j), old_r_in, sens%driving, change)
-               call change_of_rate(par, trigger, lin, change, d_sigma, d_z, d_eps_q, dn)
-               new_r_in = dr - before%x_before*(m*dn + dm*trigger%n)
-            end select
+         sens%r_in(:, j) = dr
+         if (jump == JUMP_REVERSAL .and. par%memory_rule == RULE_THRESHOLD) then
+            ! a fall-back left r_in at r
+            if (any(abs(after%r_in - r) > 0.0_wp)) then
+               sens%r_in(:, j) = change_of_threshold(par, before, r, dr, sens%r_before(:, j), sens%y(13, j))
+            end if
          end if
-         sens%r_in(:, j) = new_r_in
-         if (inner) cycle
-         sens%r_before(:, j) = merge(dr, old_r_in, jump == JUMP_NEW)
+         sens%r_before(:, j) = old_r_in
+         if (jump == JUMP_NEW) sens%r_before(:, j) = dr
+      end do
+      sens%y(13, :) = 0.0_wp
+   end subroutine jump_of_memory
+
+   !> Change of r_in = r + m (r_before - r), rule threshold.
+   pure function change_of_threshold(par, before, r, dr, dr_before, d_eps_q) result(change)
+      type(params_t), intent(in) :: par
+      type(memory_t), intent(in) :: before
+      real(wp), intent(in) :: r(6), dr(6), dr_before(6), d_eps_q
+      real(wp) :: change(6), m
+
+      m = interrupted_share(par, before%eps_q_p)
+      change = (1.0_wp - m)*dr + m*dr_before + (share_slope(par, before%eps_q_p)*d_eps_q)*(before%r_before - r)
+   end function change_of_threshold
+
+   !> dm/d eps_q^p of paper eq. (16) [-].
+   pure real(wp) function share_slope(par, eps_q_p) result(slope)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: eps_q_p
+      real(wp) :: m
+
+      slope = 0.0_wp
+      m = interrupted_share(par, eps_q_p)
+      if (m > 0.0_wp .and. eps_q_p > 0.0_wp) slope = -par%j_exp*(1.0_wp - m)/eps_q_p
+   end function share_slope
+
+   !> Derivatives of r_in = r - m J n, rule repositioning.
+   pure subroutine reposition(par, inc, before, trigger, trial, sens)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(memory_t), intent(in) :: before
+      type(rate_t), intent(in) :: trigger
+      type(trial_t), intent(in) :: trial
+      type(sensitivity_t), intent(inout) :: sens
+      type(linearised_t) :: lin
+      type(change_t) :: change
+      real(wp) :: m, dm, dn(6), d_sigma(6), d_z(6), d_eps_q
+      integer :: j
+
+      m = interrupted_share(par, before%eps_q_p)
+      call linearise_stage(par, inc, MODE_ORDINARY, trigger, trial%y0, trial%time, void_ratio_at(inc, trial%time), lin)
+      do j = 1, DIRECTIONS
+         call change_along(inc, MODE_ORDINARY, j, trial%time, sens%shift(j), sens%y(:, j), sens%r_in(:, j), &
+                           sens%driving, change)
+         call change_of_rate(par, trigger, lin, change, d_sigma, d_z, d_eps_q, dn)
+         dm = share_slope(par, before%eps_q_p)*sens%y(13, j)
+         sens%r_before(:, j) = sens%r_in(:, j)
+         sens%r_in(:, j) = change_of_ratio(par, trial%y0(1:6), sens%y(1:6, j)) - before%x_before*(m*dn + dm*trigger%n)
          sens%y(13, j) = 0.0_wp
       end do
-   end subroutine jump_of_memory
+   end subroutine reposition
 end module mud_consistent

@@ -5,7 +5,8 @@ module mud_trace
    use mud_params, only: params_t
    use mud_retention, only: saturation_t, saturation
    use mud_state, only: counters_t, guard_count
-   use mud_increment, only: increment_t, trial_t, void_ratio_at, suction_at
+   use mud_increment, only: increment_t, void_ratio_at, suction_at
+   use mud_trial, only: trial_t
    implicit none (type, external)
    private
    public :: substep_t, trace_t, record_substep, SUBSTEP_REJECTED, SUBSTEP_ACCEPTED, SUBSTEP_FAILED

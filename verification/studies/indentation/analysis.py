@@ -74,7 +74,7 @@ def scene(suction, fields, series, adapt=None, steps=STEPS):
     """Groups of one analysis; `adapt(groups)` makes a variation of it."""
     groups = parse(TEMPLATE.read_text(encoding="utf-8"))
     rule, tolerance = SERIES[series]
-    change(groups, "mud", file=f"'{MATERIAL}'", memory_rule=rule)
+    change(groups, "mud", file=f"'{MATERIAL}'", memory_rule=rule, rho_e=0.0)
     change(groups, "scene", fields=f"'{fields}'", checkpoint_steps=CHECKPOINT_STEPS)
     change(groups, "stage:impact", duration=f"{steps * DT:.8g}")
     if tolerance:

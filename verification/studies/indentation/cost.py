@@ -91,7 +91,7 @@ def walk(file, rule, threshold, tangent):
     def of(array):
         return array.ctypes.data_as(double)
     mud.mud_default_props(of(props), n_props)
-    for key, value in (("memory_rule", rule), ("eps_hat", threshold)):
+    for key, value in (("memory_rule", rule), ("rho_e", 0.0), ("eps_hat", threshold)):
         props[mud.mud_index(PROPS, key.encode())] = value
     stress = path["start"][:6].copy()
     text = ctypes.create_string_buffer(200)

@@ -1,0 +1,94 @@
+!> Tangent blocks of an update that are not carried through its substeps: elastic, and continuum by the last rate.
+module mud_blocks
+   use mud_kinds, only: wp
+   use mud_cutoff, only: slides, held_rate
+   use mud_elastic, only: bulk_modulus, shear_modulus
+   use mud_increment, only: increment_t, has_aside
+   use mud_nucleus, only: loading_direction
+   use mud_params, only: params_t
+   use mud_rates, only: rate_t, stress_ratio, MODE_ELASTIC
+   use mud_state, only: state_t
+   use mud_tangent, only: continuum_tangent, elastic_tangent
+   use mud_tensor, only: SHEAR_WEIGHT, deviator, outer_add
+   use mud_trial, only: trial_t, MODE_HELD
+   implicit none (type, external)
+   private
+   public :: blocks_t, elastic_blocks, continuum_blocks
+
+   !> Tangent blocks, compression positive, with engineering shear strain.
+   type :: blocks_t
+      real(wp) :: dsig_deps(6, 6)   !< d sigma'/d eps [kPa]
+      real(wp) :: dsig_dpc(6)       !< d sigma'/d p_c [-]
+      real(wp) :: dsw_dev           !< d S_w/d eps_v [-]
+      real(wp) :: dsw_dpc           !< d S_w/d p_c [1/kPa]
+   end type blocks_t
+
+contains
+   !> Blocks of an elastic response at a state.
+   pure subroutine elastic_blocks(par, state, blocks)
+      type(params_t), intent(in) :: par
+      type(state_t), intent(in) :: state
+      type(blocks_t), intent(inout) :: blocks
+      real(wp) :: p, r(6)
+
+      call stress_ratio(par, state%sigma, p, r)
+      blocks%dsig_deps = elastic_tangent(bulk_modulus(par, state%e, p), shear_modulus(par, state%e, p))
+      blocks%dsig_dpc = 0.0_wp
+   end subroutine elastic_blocks
+
+   !> Blocks of the last rate of an increment.
+   pure subroutine continuum_blocks(par, inc, trial, state, blocks)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc       !< the phase that ended the increment
+      type(trial_t), intent(in) :: trial         !< its last substep
+      type(state_t), intent(in) :: state         !< at its end
+      type(blocks_t), intent(inout) :: blocks
+
+      if (trial%mode == MODE_HELD) then
+         call held_tangent(par, inc, state, blocks)
+         return
+      end if
+      call continuum_tangent(par, trial%w(inc%scheme%stages), blocks%dsig_deps, blocks%dsig_dpc)
+      if (has_aside(inc, trial%mode)) call project(inc, trial%mode, trial%w(inc%scheme%stages), blocks%dsig_deps)
+   end subroutine continuum_blocks
+
+   !> Tangent of a rate of which only the strain along nu loads (inside the nucleus none does), the rest being elastic.
+   pure subroutine project(inc, mode, w, c)
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: mode
+      type(rate_t), intent(in) :: w
+      real(wp), intent(inout) :: c(6, 6)
+      real(wp) :: nu(6), along(6), elastic(6, 6)
+
+      elastic = elastic_tangent(w%k, w%g)
+      along = 0.0_wp
+      nu = 0.0_wp
+      if (mode /= MODE_ELASTIC) then
+         nu = loading_direction(inc%rho, inc%nucleus, inc%d_strain, 1.0_wp)
+         along = matmul(c - elastic, SHEAR_WEIGHT*nu)
+      end if
+      c = elastic
+      call outer_add(along, nu, c)
+   end subroutine project
+
+   !> Tangent of a point held by the tension cut-off: p' rests, the stress ratio moves.
+   pure subroutine held_tangent(par, inc, state, blocks)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(state_t), intent(in) :: state
+      type(blocks_t), intent(inout) :: blocks
+      real(wp) :: unit(6), r(6)
+      integer :: j
+      logical :: sliding
+
+      r = deviator(state%sigma)/par%p_min
+      sliding = slides(par, inc%bonded, state%e, state%p_c, r, inc%d_strain, inc%d_pc)
+      do j = 1, 6
+         unit = 0.0_wp
+         unit(j) = merge(1.0_wp, 0.5_wp, j <= 3)
+         blocks%dsig_deps(:, j) = par%p_min*held_rate(par, inc%bonded, state%e, state%p_c, r, sliding, unit, 0.0_wp)
+      end do
+      unit = 0.0_wp
+      blocks%dsig_dpc = par%p_min*held_rate(par, inc%bonded, state%e, state%p_c, r, sliding, unit, 1.0_wp)
+   end subroutine held_tangent
+end module mud_blocks

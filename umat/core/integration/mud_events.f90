@@ -1,0 +1,240 @@
+!> Events inside a substep: where one happens, the substep is shortened to end just beyond it.
+module mud_events
+   use mud_kinds, only: wp
+   use mud_bounding, only: state_parameter, excess
+   use mud_critical_state, only: bounding_ratio
+   use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, NY
+   use mud_params, only: params_t
+   use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY, MODE_ELASTIC
+   use mud_registry, only: RULE_AS_PUBLISHED
+   use mud_return_point, only: beyond_target
+   use mud_state, only: counters_t
+   use mud_tensor, only: ddot, trace, norm
+   use mud_trial, only: trial_t, take_step, MODE_HELD
+   implicit none (type, external)
+   private
+   public :: stop_at_event, closing_rate, change_of_closing_rate, psi_at, EVENT_TOLERANCE, LARGEST_EXCESS
+   public :: EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN
+
+   integer, parameter :: EVENT_NONE = 0
+   integer, parameter :: EVENT_OPENS = 1      !< p' falls to p_min.
+   integer, parameter :: EVENT_CLOSES = 2     !< p' would rise from p_min.
+   integer, parameter :: EVENT_BOUNDS = 3     !< r exceeds the bounding surface inside the elastic nucleus.
+   integer, parameter :: EVENT_REVERSAL = 4   !< (r - r_in):n falls to -x_rev.
+   integer, parameter :: EVENT_RETURN = 5     !< r reaches the target of an interrupted process.
+
+   !> An open point closes when p' would rise by this share of the elastic rate: opening and closing at the same rate
+   !> would chatter where the two pull the stress ratio to opposite sides [-].
+   real(wp), parameter :: CLOSING = 0.01_wp
+   !> At a low stress an elastic strain of rho_e may be more than the whole strength: r may exceed the bounding surface
+   !> by this share. Softening sand is some per cent beyond it and must be able to return where it came from [-].
+   real(wp), parameter :: LARGEST_EXCESS = 0.2_wp
+   !> Width of the bracket of an event, share of increment [-].
+   real(wp), parameter :: EVENT_TOLERANCE = 1.0e-13_wp
+   real(wp), parameter :: EVENT_RESIDUAL = 1.0e-13_wp        !< An event's function this small is zero [-].
+   real(wp), parameter :: PROBE_BELOW = 0.5_wp   !< A minimum below this share of x_rev above -x_rev is looked at [-].
+   integer, parameter :: MAX_EVENT_ITERATIONS = 100          !< Bisection alone needs about 45.
+contains
+   !> Shortens an accepted substep so that it lands where the first event happens that its mode knows.
+   pure subroutine stop_at_event(par, inc, h, trial, counters, event)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(inout) :: h
+      type(trial_t), intent(inout) :: trial
+      type(counters_t), intent(inout) :: counters
+      integer, intent(out) :: event        !< EVENT_* at the end of the substep
+      real(wp) :: reversal
+
+      event = EVENT_NONE
+      if (trial%mode == MODE_HELD) then
+         call land_on(par, inc, EVENT_CLOSES, h, trial, counters, event)
+         return
+      end if
+      if (par%cutoff) call land_on(par, inc, EVENT_OPENS, h, trial, counters, event)
+      if (trial%mode == MODE_ELASTIC) then
+         call land_on(par, inc, EVENT_BOUNDS, h, trial, counters, event)
+         return
+      end if
+      if (may_reverse(par, inc, trial)) then
+         reversal = h
+         call find_reversal(par, inc, trial, counters, reversal)
+         if (reversal < h) then
+            h = reversal
+            call take_step(par, inc, h, trial, counters)
+         end if
+         call land_on(par, inc, EVENT_REVERSAL, h, trial, counters, event)
+      end if
+      if (trial%watched > 0) call land_on(par, inc, EVENT_RETURN, h, trial, counters, event)
+   end subroutine stop_at_event
+
+   !> True where a reversal inside the substep is possible: (r - r_in):n is negative at its end, where the last stage
+   !> stands, or it falls at its start and is so small that it may have been negative in between. A process that drifts
+   !> backwards from its beginning (softening outside the bounding surface) is not looked at: there the floor makes the
+   !> rates independent of the memory, and it is enough to begin anew where a substep begins. The rule as_published tests
+   !> there and nowhere else.
+   pure logical function may_reverse(par, inc, trial)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+
+      may_reverse = par%memory_rule /= RULE_AS_PUBLISHED .and. trial%advanced .and. trial%w(1)%loading .and. &
+                    trial%w(1)%x >= -par%x_rev
+      if (may_reverse) then
+         associate (last => trial%w(inc%scheme%stages))
+            may_reverse = last%loading .and. (last%x < 0.0_wp .or. falls(par, trial))
+         end associate
+      end if
+   end function may_reverse
+
+   !> True where (r - r_in):n was larger a substep ago and is below the floor.
+   pure logical function falls(par, trial)
+      type(params_t), intent(in) :: par
+      type(trial_t), intent(in) :: trial
+
+      falls = trial%w(1)%x < par%x_floor .and. trial%w(1)%x < trial%x_previous
+   end function falls
+
+   !> Shortens h to a place beyond the reversal where (r - r_in):n passes -x_rev and comes back within the substep: its
+   !> minimum, by a parabola through the start, the middle and the end.
+   pure subroutine find_reversal(par, inc, trial, counters, h)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      type(counters_t), intent(inout) :: counters
+      real(wp), intent(inout) :: h
+      type(trial_t) :: probe
+      real(wp) :: x_start, x_middle, x_end, slope, bend, lowest
+
+      x_start = trial%w(1)%x + par%x_rev
+      call event_function(par, inc, EVENT_REVERSAL, trial, trial%time + h, trial%y, counters, x_end)
+      if (x_end < 0.0_wp) return
+      probe = trial
+      call take_step(par, inc, 0.5_wp*h, probe, counters)
+      call event_function(par, inc, EVENT_REVERSAL, probe, probe%time + 0.5_wp*h, probe%y, counters, x_middle)
+      slope = 4.0_wp*x_middle - 3.0_wp*x_start - x_end
+      bend = 2.0_wp*(x_start + x_end - 2.0_wp*x_middle)
+      if (bend <= 0.0_wp) return
+      lowest = -0.5_wp*slope/bend
+      if (lowest <= 0.0_wp .or. lowest >= 1.0_wp) return
+      if (x_start + lowest*(slope + lowest*bend) > PROBE_BELOW*par%x_rev) return
+      call take_step(par, inc, lowest*h, probe, counters)
+      call event_function(par, inc, EVENT_REVERSAL, probe, probe%time + lowest*h, probe%y, counters, x_middle)
+      if (x_middle < 0.0_wp) h = lowest*h
+   end subroutine find_reversal
+
+   !> Finds the end of the substep where the event's function turns negative (Illinois' variant of false position), and
+   !> leaves the trial there, just beyond.
+   pure subroutine land_on(par, inc, event, h, trial, counters, landed)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: event
+      real(wp), intent(inout) :: h
+      type(trial_t), intent(inout) :: trial
+      type(counters_t), intent(inout) :: counters
+      integer, intent(inout) :: landed     !< becomes the event if it happens
+      real(wp) :: low, high, f_low, f_high, f, h_trial
+      integer :: iteration
+
+      call event_function(par, inc, event, trial, trial%time + h, trial%y, counters, f_high)
+      if (f_high >= 0.0_wp) return
+      landed = event
+      call event_function(par, inc, event, trial, trial%time, trial%y0, counters, f_low)
+      low = 0.0_wp
+      high = h
+      h_trial = h
+      do iteration = 1, MAX_EVENT_ITERATIONS
+         if (high - low <= EVENT_TOLERANCE .or. high <= par%h_min) exit
+         if (f_low > 0.0_wp) then
+            h_trial = low + (high - low)*f_low/(f_low - f_high)
+            h_trial = min(max(h_trial, low + 0.01_wp*(high - low)), high - 0.01_wp*(high - low))
+         else
+            h_trial = 0.5_wp*(low + high)
+         end if
+         call take_step(par, inc, h_trial, trial, counters)
+         call event_function(par, inc, event, trial, trial%time + h_trial, trial%y, counters, f)
+         if (f < 0.0_wp) then
+            if (f_low > 0.0_wp .and. high < h) f_low = 0.5_wp*f_low
+            high = h_trial
+            f_high = f
+            if (f > -EVENT_RESIDUAL) exit
+         else
+            f_high = 0.5_wp*f_high
+            low = h_trial
+            f_low = f
+         end if
+      end do
+      if (abs(h_trial - high) > 0.0_wp) call take_step(par, inc, high, trial, counters)
+      h = high
+   end subroutine land_on
+
+   !> Function of an event, dimensionless, negative beyond it.
+   pure subroutine event_function(par, inc, event, trial, time, y, counters, f)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: event
+      type(trial_t), intent(in) :: trial       !< where the substep began
+      real(wp), intent(in) :: time, y(NY)
+      type(counters_t), intent(inout) :: counters
+      real(wp), intent(out) :: f
+      type(rate_t) :: w
+      real(wp) :: p, r(6)
+
+      call stress_ratio(par, y(1:6), p, r)
+      select case (event)
+      case (EVENT_OPENS)
+         f = trace(y(1:6))/(3.0_wp*par%p_min) - 1.0_wp
+      case (EVENT_BOUNDS)
+         f = allowed_excess(par, inc, trial) - excess(par, psi_at(par, inc, time, p), r)
+      case (EVENT_REVERSAL)
+         call rate_of(par, inc, time, y, trial%r_in, trial%mode, w, counters)
+         f = w%x + par%x_rev
+      case (EVENT_RETURN)
+         f = -beyond_target(par, trial%process, r, bounding_ratio(par, psi_at(par, inc, time, p)))
+      case default
+         call rate_of(par, inc, time, y, r, MODE_ORDINARY, w, counters)
+         f = -closing_rate(inc, w)/(w%k*norm(inc%d_strain) + abs(inc%d_pc))
+      end select
+   end subroutine event_function
+
+   !> How far the rate of p' is above the one at which an open point closes, positive if it closes [kPa].
+   pure real(wp) function closing_rate(inc, w)
+      type(increment_t), intent(in) :: inc
+      type(rate_t), intent(in) :: w        !< at p_min, without a past
+
+      closing_rate = w%d_p - CLOSING*(w%k*norm(inc%d_strain) + abs(inc%d_pc))
+   end function closing_rate
+
+   !> Its change with the rate of p', the void ratio, the strain and the suction step [kPa].
+   pure real(wp) function change_of_closing_rate(inc, w, e, d_rate, de, d_strain, d_pc) result(change)
+      type(increment_t), intent(in) :: inc
+      type(rate_t), intent(in) :: w
+      real(wp), intent(in) :: e, d_rate, de, d_strain(6), d_pc
+      real(wp) :: length
+
+      length = norm(inc%d_strain)
+      change = w%k*length*de*(1.0_wp/(1.0_wp + e) - 1.0_wp/e) + sign(1.0_wp, inc%d_pc)*d_pc
+      if (length > 0.0_wp) change = change + w%k*ddot(inc%d_strain, d_strain)/length
+      change = d_rate - CLOSING*change
+   end function change_of_closing_rate
+
+   !> How far r may be beyond the bounding surface in a substep inside the nucleus: from farther outside it is the
+   !> excess at the start.
+   pure real(wp) function allowed_excess(par, inc, trial)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      real(wp) :: p, r(6)
+
+      call stress_ratio(par, trial%y0(1:6), p, r)
+      allowed_excess = max(excess(par, psi_at(par, inc, trial%time, p), r), LARGEST_EXCESS)
+   end function allowed_excess
+
+   !> State parameter at a pseudo-time and a mean stress [-].
+   pure real(wp) function psi_at(par, inc, time, p)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time, p
+
+      psi_at = state_parameter(par, inc%bonded, void_ratio_at(inc, time), suction_at(inc, time), p)
+   end function psi_at
+end module mud_events

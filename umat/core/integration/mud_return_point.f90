@@ -1,0 +1,105 @@
+!> Return-point memory (ours; docs/theory/memory-rules.md): a loading process that is interrupted is remembered, and
+!> goes on where the path comes back to the point where it was left; a loop that closes is forgotten (Masing's second
+!> rule; wiping-out property of Preisach).
+module mud_return_point
+   use mud_kinds, only: wp, SQRT_2_3
+   use mud_critical_state, only: lode_factor
+   use mud_params, only: params_t
+   use mud_registry, only: MAX_INTERRUPTED
+   use mud_state, only: memory_t, interrupted_t
+   use mud_tensor, only: ddot, norm, square
+   implicit none (type, external)
+   private
+   public :: note_progress, interrupt, watched_process, beyond_target, target_limit, is_limited, resume_process
+
+   !> A substep tells the direction of its process where its loading direction is within 45 degrees of the chord from
+   !> the memory; without this bound circles about a biased state ratchet sideways [-].
+   real(wp), parameter :: SMALLEST_COSINE = 0.7_wp
+   !> A target beyond the bounding surface is reached just inside it, because r approaches the surface but never
+   !> arrives [-].
+   real(wp), parameter :: SURFACE_MARGIN = 1.001_wp
+contains
+   !> After an accepted plastic substep with (r - r_in):n >= 0 that led to r: direction and target of the present
+   !> process. The chord from the memory counts, not the running direction: on a smoothly turned loop n follows the
+   !> turn, and no reversal would ever be found.
+   pure subroutine note_progress(par, r, n, memory)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: r(6), n(6)      !< stress ratio, loading direction [-]
+      type(memory_t), intent(inout) :: memory
+      real(wp) :: chord(6), length
+
+      chord = r - memory%r_in + par%x_floor*n
+      length = norm(chord)
+      if (length <= 0.0_wp) return
+      if (ddot(chord, n) < SMALLEST_COSINE*length) return
+      memory%direction = chord/length
+      memory%target = ddot(r, memory%direction)
+   end subroutine note_progress
+
+   !> The present process is interrupted. A full stack drops its two newest entries, which are the smallest loop.
+   pure subroutine interrupt(memory)
+      type(memory_t), intent(inout) :: memory
+
+      if (memory%depth == MAX_INTERRUPTED) memory%depth = MAX_INTERRUPTED - 2
+      memory%depth = memory%depth + 1
+      memory%interrupted(memory%depth) = interrupted_t(memory%r_in, memory%direction, memory%target)
+   end subroutine interrupt
+
+   !> Number of the interrupted process that the path may come back to, 0 if there is none: the newest while the path
+   !> leads back along it (the reversal is then still held back by the hysteresis or by the elastic nucleus), otherwise
+   !> the one before it, whose direction the present process shares.
+   pure integer function watched_process(memory, t) result(k)
+      type(memory_t), intent(in) :: memory
+      real(wp), intent(in) :: t(6)   !< elastic rate of the stress ratio, of any length
+
+      k = memory%depth
+      if (k == 0) return
+      if (ddot(t, memory%interrupted(k)%direction) > 0.0_wp) return
+      k = k - 1
+      if (k == 0) return
+      if (ddot(t, memory%interrupted(k)%direction) <= 0.0_wp) k = 0
+   end function watched_process
+
+   !> How far r is beyond the target of an interrupted process, negative before it [-].
+   pure real(wp) function beyond_target(par, process, r, m_b) result(distance)
+      type(params_t), intent(in) :: par
+      type(interrupted_t), intent(in) :: process
+      real(wp), intent(in) :: r(6)
+      real(wp), intent(in) :: m_b    !< M^b at r [-]
+
+      distance = ddot(r, process%direction) - min(process%target, target_limit(par, process)*m_b)
+   end function beyond_target
+
+   !> Farthest target on the bounding surface in the direction of a process, over M^b [-].
+   pure real(wp) function target_limit(par, process) result(limit)
+      type(params_t), intent(in) :: par
+      type(interrupted_t), intent(in) :: process
+
+      limit = SQRT_2_3*lode_factor(par, ddot(square(process%direction), process%direction))/SURFACE_MARGIN
+   end function target_limit
+
+   !> True where the bounding surface sets the target.
+   pure logical function is_limited(par, process, m_b)
+      type(params_t), intent(in) :: par
+      type(interrupted_t), intent(in) :: process
+      real(wp), intent(in) :: m_b
+
+      is_limited = target_limit(par, process)*m_b < process%target
+   end function is_limited
+
+   !> Process k goes on; it and the loops above it leave the stack. The memory becomes the softer one of the present
+   !> process and of process k along t.
+   pure subroutine resume_process(k, r, t, memory)
+      integer, intent(in) :: k
+      real(wp), intent(in) :: r(6), t(6)
+      type(memory_t), intent(inout) :: memory
+
+      associate (process => memory%interrupted(k))
+         if (ddot(r - process%r_in, t) > ddot(r - memory%r_in, t)) memory%r_in = process%r_in
+         memory%direction = process%direction
+         memory%target = process%target
+      end associate
+      memory%depth = k - 1
+      memory%eps_q_p = 0.0_wp
+   end subroutine resume_process
+end module mud_return_point

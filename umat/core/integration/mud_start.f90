@@ -1,0 +1,90 @@
+!> Where a point starts, and what a state says of itself: degree of saturation, state parameter, tension.
+module mud_start
+   use mud_kinds, only: wp
+   use mud_blocks, only: blocks_t
+   use mud_bonding, only: is_bonded
+   use mud_bounding, only: state_parameter, limited
+   use mud_checks, only: check_stress
+   use mud_params, only: params_t
+   use mud_rates, only: stress_ratio
+   use mud_retention, only: saturation_t, saturation
+   use mud_reversal, only: new_memory
+   use mud_state, only: state_t, E_LOWER, E_UPPER
+   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_VOID_RATIO, ON_VOID_RATIO
+   use mud_tensor, only: IDENTITY, trace, deviator, is_finite
+   use mud_transitions, only: AT_LIMIT
+   implicit none (type, external)
+   private
+   public :: initial_state, lift_to_limit, finish_state, has_tension
+
+contains
+   !> State of a point that starts at a stress, a void ratio and a suction without a past. A mean stress below p_min is
+   !> lifted to p_min, its stress ratio limited to the bounding surface.
+   pure subroutine initial_state(par, sigma, e, p_c, state, status)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: sigma(6), e, p_c   !< [kPa, -, kPa], compression positive
+      type(state_t), intent(out) :: state
+      type(mud_status_t), intent(out) :: status
+      real(wp) :: p, r(6)
+
+      call check_stress(par, sigma, p_c, status)
+      if (status%code /= MUD_OK) return
+      if (.not. is_finite(e)) then
+         status = fail(MUD_BAD_VOID_RATIO, ON_VOID_RATIO, 0, e, E_LOWER, E_UPPER)
+         return
+      end if
+      if (e <= E_LOWER .or. e >= E_UPPER) then
+         status = fail(MUD_BAD_VOID_RATIO, ON_VOID_RATIO, 0, e, E_LOWER, E_UPPER)
+         return
+      end if
+      state%sigma = sigma
+      state%e = e
+      state%p_c = p_c
+      state%z = 0.0_wp
+      state%nucleus = 0.0_wp
+      state%eps_q_total = 0.0_wp
+      state%last_step = 0.0_wp
+      state%open = .false.
+      call lift_to_limit(par, is_bonded(par, p_c), state)
+      call stress_ratio(par, state%sigma, p, r)
+      state%memory = new_memory(r)
+      call finish_state(par, state)
+   end subroutine initial_state
+
+   !> Mean stress below p_min, as at a free surface: p_min, with a stress ratio on or inside the bounding surface.
+   pure subroutine lift_to_limit(par, bonded, state)
+      type(params_t), intent(in) :: par
+      logical, intent(in) :: bonded
+      type(state_t), intent(inout) :: state
+
+      if (trace(state%sigma) >= 3.0_wp*par%p_min*(1.0_wp - AT_LIMIT)) return
+      state%sigma = par%p_min*(IDENTITY + limited(par, state_parameter(par, bonded, state%e, state%p_c, par%p_min), &
+                                                  deviator(state%sigma)/par%p_min))
+   end subroutine lift_to_limit
+
+   !> Saturation and state parameter of a state, and the saturation's slopes.
+   pure subroutine finish_state(par, state, blocks)
+      type(params_t), intent(in) :: par
+      type(state_t), intent(inout) :: state
+      type(blocks_t), intent(inout), optional :: blocks
+      type(saturation_t) :: sat
+
+      sat = saturation(par, state%p_c, state%e)
+      state%s_w = sat%s_w
+      state%psi = state_parameter(par, is_bonded(par, state%p_c), state%e, state%p_c, &
+                                  max(trace(state%sigma)/3.0_wp, par%p_min))
+      if (.not. present(blocks)) return
+      blocks%dsw_dpc = sat%ds_dpc
+      blocks%dsw_dev = -(1.0_wp + state%e)*sat%ds_de
+   end subroutine finish_state
+
+   !> True if a principal stress is negative (tensile): Sylvester's criterion fails.
+   pure logical function has_tension(s)
+      real(wp), intent(in) :: s(6)
+      real(wp) :: minor
+
+      minor = s(1)*s(2) - s(4)*s(4)
+      has_tension = s(1) < 0.0_wp .or. minor < 0.0_wp .or. &
+                    s(3)*minor + 2.0_wp*s(4)*s(5)*s(6) - s(1)*s(6)*s(6) - s(2)*s(5)*s(5) < 0.0_wp
+   end function has_tension
+end module mud_start

@@ -1,0 +1,134 @@
+!> The loop over substeps of an increment, or of one of its phases.
+module mud_substepping
+   use mud_kinds, only: wp
+   use mud_consistent, only: sensitivity_t, propagate
+   use mud_event_time, only: move_event
+   use mud_events, only: stop_at_event, EVENT_TOLERANCE, EVENT_NONE
+   use mud_increment, only: increment_t, void_ratio_at, suction_at
+   use mud_params, only: params_t
+   use mud_rates, only: MODE_ORDINARY
+   use mud_registry, only: RULE_AS_PUBLISHED
+   use mud_state, only: state_t, counters_t
+   use mud_status, only: mud_status_t, fail, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, &
+      MUD_NOT_FINITE, ON_STRESS
+   use mud_substep, only: step_factor
+   use mud_tensor, only: ddot, norm, is_finite
+   use mud_trace, only: trace_t, record_substep, SUBSTEP_REJECTED, SUBSTEP_ACCEPTED, SUBSTEP_FAILED
+   use mud_transitions, only: begin_substep, accept_substep
+   use mud_trial, only: trial_t, take_step, error_norm
+   implicit none (type, external)
+   private
+   public :: integrate
+
+   real(wp), parameter :: ALIGNED = 1.0e-8_wp                !< Cosine this close to 1 is no turn [-].
+   real(wp), parameter :: LAST_SLIVER = 1.0e-9_wp            !< A rest of this share joins the substep before it [-].
+contains
+   !> The loop over substeps.
+   pure subroutine integrate(par, inc, size, consistent, state, trial, sens, counters, reached, status, record)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: size                !< of the increment, in units of strain [-]
+      logical, intent(in) :: consistent           !< derivatives are wanted
+      type(state_t), intent(inout) :: state
+      type(trial_t), intent(inout) :: trial       !< the last accepted substep
+      type(sensitivity_t), intent(inout) :: sens
+      type(counters_t), intent(inout) :: counters
+      real(wp), intent(out) :: reached
+      type(mud_status_t), intent(out) :: status
+      type(trace_t), intent(inout), optional :: record
+      real(wp) :: time, h, h_taken, error, factor
+      integer :: elastic_substeps, jump, event
+      logical :: may_grow, known
+
+      time = 0.0_wp
+      h = 1.0_wp
+      ! an elastic phase goes in one step if it can, and leaves the remembered step to the next plastic one
+      if (state%last_step > 0.0_wp .and. state%last_step < size .and. .not. inc%inside) h = state%last_step/size
+      if (turns(inc)) h = min(h, inc%rho/norm(inc%d_strain))
+      may_grow = .true.
+      elastic_substeps = 0
+      known = .false.
+      event = EVENT_NONE
+      trial%x_previous = state%memory%x_running
+      trial%pressed = .false.
+      substeps: do while (time < 1.0_wp)
+         reached = time
+         trial%time = time
+         trial%y0(1:6) = state%sigma
+         trial%y0(7:12) = state%z
+         trial%y0(13) = 0.0_wp
+         call begin_substep(par, inc, event, known, consistent, state, trial, sens, jump, counters)
+         attempts: do
+            if (counters%substep + counters%reject >= par%max_substeps) then
+               status = fail(MUD_TOO_MANY_SUBSTEPS, value=real(par%max_substeps, wp))
+               return
+            end if
+            h = max(h, par%h_min)
+            h_taken = h
+            if (time + h*(1.0_wp + LAST_SLIVER) >= 1.0_wp) h_taken = 1.0_wp - time
+            call take_step(par, inc, h_taken, trial, counters)
+            error = error_norm(par, inc%scheme, trial, h_taken)
+            if (.not. all(is_finite(trial%y)) .or. .not. is_finite(error)) then
+               status = fail(MUD_NOT_FINITE, ON_STRESS)
+               call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), SUBSTEP_FAILED, jump, .false., &
+                                   counters, record)
+               return
+            end if
+            factor = step_factor(inc%scheme, error, par%tolerance, may_grow)
+            if (error <= par%tolerance) exit attempts
+            if (min(h, h_taken) <= par%h_min*(1.0_wp + LAST_SLIVER)) then
+               if (.not. par%accept_minimum) then
+                  status = fail(MUD_MINIMUM_STEP, value=error, lower=0.0_wp, upper=par%tolerance)
+                  call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), SUBSTEP_FAILED, jump, .false., &
+                                      counters, record)
+                  return
+               end if
+               counters%min_step = counters%min_step + 1
+               factor = 1.0_wp
+               exit attempts
+            end if
+            counters%reject = counters%reject + 1
+            call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), SUBSTEP_REJECTED, jump, .false., &
+                                counters, record)
+            may_grow = .false.
+            h = h_taken*min(factor, 0.9_wp)
+         end do attempts
+         may_grow = .true.
+
+         h = h_taken*factor
+         call stop_at_event(par, inc, h_taken, trial, counters, event)
+         if (trial%w(1)%no_root) elastic_substeps = elastic_substeps + 1
+         if (elastic_substeps > 1 .and. par%memory_rule /= RULE_AS_PUBLISHED) then
+            status = fail(MUD_NO_DIRECTION)
+            call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), SUBSTEP_FAILED, jump, &
+                                event /= EVENT_NONE, counters, record)
+            return
+         end if
+         time = time + h_taken
+         if (1.0_wp - time < EVENT_TOLERANCE) time = 1.0_wp
+         state%e = void_ratio_at(inc, time)
+         state%p_c = suction_at(inc, time)
+         if (consistent) then
+            call propagate(par, inc, trial, h_taken, time >= 1.0_wp, sens)
+            if (event /= EVENT_NONE .and. time < 1.0_wp) call move_event(par, inc, event, trial, h_taken, sens)
+         end if
+         call accept_substep(par, trial, state, counters)
+         call record_substep(par, inc, trial, h_taken, error, state%sigma, SUBSTEP_ACCEPTED, jump, &
+                             event /= EVENT_NONE, counters, record)
+         trial%x_previous = trial%w(1)%x
+         known = inc%scheme%first_same_as_last .and. trial%mode == MODE_ORDINARY .and. event == EVENT_NONE
+      end do substeps
+      if (.not. inc%inside) state%last_step = h*size
+      reached = 1.0_wp
+   end subroutine integrate
+
+   !> True where the elastic nucleus turns at the start: the transient lasts about a radius of strain.
+   pure logical function turns(inc)
+      type(increment_t), intent(in) :: inc
+
+      turns = .false.
+      if (inc%rho > 0.0_wp .and. .not. inc%inside) then
+         turns = ddot(inc%nucleus, inc%d_strain) < (1.0_wp - ALIGNED)*inc%rho*norm(inc%d_strain)
+      end if
+   end function turns
+end module mud_substepping

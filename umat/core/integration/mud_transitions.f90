@@ -1,0 +1,198 @@
+!> What happens between substeps: the mode of the coming one, reversals and returns of the memory, opening and closing
+!> at p_min, and what an accepted substep leaves behind.
+module mud_transitions
+   use mud_kinds, only: wp
+   use mud_bounding, only: excess
+   use mud_consistent, only: sensitivity_t, jump_of_memory, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
+   use mud_events, only: closing_rate, psi_at, LARGEST_EXCESS, EVENT_REVERSAL, EVENT_RETURN
+   use mud_increment, only: increment_t, rate_of
+   use mud_params, only: params_t
+   use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY, MODE_ELASTIC
+   use mud_registry, only: RULE_RETURN_POINT
+   use mud_return_point, only: watched_process, beyond_target, resume_process
+   use mud_reversal, only: new_memory, begin_process, accept_process
+   use mud_state, only: memory_t, state_t, counters_t
+   use mud_tensor, only: IDENTITY, ddot, trace, deviator
+   use mud_trial, only: trial_t, MODE_HELD
+   implicit none (type, external)
+   private
+   public :: begin_substep, accept_substep, AT_LIMIT
+
+   real(wp), parameter :: AT_LIMIT = 1.0e-9_wp               !< p' this close (relative) to p_min is at p_min [-].
+contains
+   !> Decides what the coming substep is - ordinary, elastic or held by the tension cut-off - applies the memory rule,
+   !> and leaves the first rate in the trial.
+   pure subroutine begin_substep(par, inc, event, known, consistent, state, trial, sens, jump, counters)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: event       !< At which the substep before ended.
+      logical, intent(in) :: known       !< The trial's last rate is that of this point.
+      logical, intent(in) :: consistent  !< Derivatives are wanted.
+      type(state_t), intent(inout) :: state
+      type(trial_t), intent(inout) :: trial
+      type(sensitivity_t), intent(inout) :: sens
+      integer, intent(out) :: jump       !< JUMP_*, the last one if there are several
+      type(counters_t), intent(inout) :: counters
+      real(wp) :: p, r(6), outwards
+
+      jump = JUMP_NONE
+      trial%watched = 0
+      call stress_ratio(par, state%sigma, p, r)
+      trial%mode = MODE_ORDINARY
+      trial%r_in = state%memory%r_in
+      if (state%open) then
+         call try_to_close(par, inc, r, consistent, state, trial, sens, jump, counters)
+         return
+      end if
+
+      if (inc%inside .and. .not. trial%pressed) then
+         trial%mode = MODE_ELASTIC
+         call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
+         outwards = (2.0_wp*trial%w(1)%g)*ddot(inc%d_strain, r) - (trial%w(1)%k*inc%d_v)*ddot(r, r)
+         if (outwards > 0.0_wp) trial%pressed = excess(par, psi_at(par, inc, trial%time, p), r) >= LARGEST_EXCESS
+         if (trial%pressed) trial%mode = MODE_ORDINARY
+      end if
+
+      trial%advanced = .false.
+      if (trial%mode == MODE_ORDINARY) then
+         if (known) then
+            trial%w(1) = trial%w(inc%scheme%stages)
+         else
+            call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
+         end if
+         call apply_memory_rule(par, inc, event, r, consistent, state, trial, sens, jump, counters)
+         trial%advanced = state%memory%x_running > 0.0_wp .or. trial%w(1)%x > 0.0_wp
+      end if
+
+      if (par%cutoff .and. trial%w(1)%d_p <= 0.0_wp) then
+         if (trace(state%sigma) <= 3.0_wp*par%p_min*(1.0_wp + AT_LIMIT)) then
+            call try_to_close(par, inc, r, consistent, state, trial, sens, jump, counters)
+         end if
+      end if
+   end subroutine begin_substep
+
+   !> Returns and reversals where an ordinary substep begins; the trial holds the rate of the memory that results.
+   pure subroutine apply_memory_rule(par, inc, event, r, consistent, state, trial, sens, jump, counters)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: event
+      real(wp), intent(in) :: r(6)
+      logical, intent(in) :: consistent
+      type(state_t), intent(inout) :: state
+      type(trial_t), intent(inout) :: trial
+      type(sensitivity_t), intent(inout) :: sens
+      integer, intent(inout) :: jump
+      type(counters_t), intent(inout) :: counters
+      type(memory_t) :: before
+      type(rate_t) :: trigger
+      real(wp) :: t(6)
+
+      ! the part of the strain across the elastic nucleus turns t, not the process: the whole strain tells where it goes
+      t = (2.0_wp*trial%w(1)%g)*deviator(inc%d_strain) - (trial%w(1)%k*inc%d_v)*r
+      if (par%memory_rule == RULE_RETURN_POINT) then
+         call try_to_return(par, inc, event == EVENT_RETURN, r, t, consistent, state, trial, sens, jump, counters)
+      end if
+      if (.not. trial%w(1)%loading .or. trial%w(1)%x >= 0.0_wp) return
+      if (trial%w(1)%x >= -par%x_rev .and. event /= EVENT_REVERSAL) then
+         counters%hysteresis = counters%hysteresis + 1
+         return
+      end if
+      counters%reseat = counters%reseat + 1
+      jump = JUMP_REVERSAL
+      trigger = trial%w(1)
+      before = state%memory
+      call begin_process(par, r, trigger%n, t, state%memory)
+      if (consistent) call jump_of_memory(par, inc, jump, before, state%memory, trigger, trial, sens)
+      trial%r_in = state%memory%r_in
+      call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
+      if (par%memory_rule == RULE_RETURN_POINT) then
+         call try_to_return(par, inc, .false., r, t, consistent, state, trial, sens, jump, counters)
+      end if
+   end subroutine apply_memory_rule
+
+   !> Lets interrupted processes go on whose targets r has reached, and leaves the one to watch in the trial.
+   pure subroutine try_to_return(par, inc, landed, r, t, consistent, state, trial, sens, jump, counters)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      logical, intent(in) :: landed          !< On the target: rounding does not count.
+      real(wp), intent(in) :: r(6), t(6)
+      logical, intent(in) :: consistent
+      type(state_t), intent(inout) :: state
+      type(trial_t), intent(inout) :: trial
+      type(sensitivity_t), intent(inout) :: sens
+      integer, intent(inout) :: jump
+      type(counters_t), intent(inout) :: counters
+      type(memory_t) :: before
+      logical :: reached
+
+      reached = landed
+      do
+         trial%watched = watched_process(state%memory, t)
+         if (trial%watched == 0) return
+         trial%process = state%memory%interrupted(trial%watched)
+         if (.not. reached) reached = beyond_target(par, trial%process, r, trial%w(1)%m_b) >= 0.0_wp
+         if (.not. reached) return
+         jump = JUMP_RETURN
+         before = state%memory
+         call resume_process(trial%watched, r, t, state%memory)
+         if (consistent) call jump_of_memory(par, inc, jump, before, state%memory, trial%w(1), trial, sens)
+         trial%r_in = state%memory%r_in
+         call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
+         reached = .false.
+      end do
+   end subroutine try_to_return
+
+   !> A point at p_min stays open while p' would not rise from there; it closes without memory of the gap. The trial
+   !> holds the ordinary rate of a point without a past.
+   pure subroutine try_to_close(par, inc, r, consistent, state, trial, sens, jump, counters)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: r(6)
+      logical, intent(in) :: consistent
+      type(state_t), intent(inout) :: state
+      type(trial_t), intent(inout) :: trial
+      type(sensitivity_t), intent(inout) :: sens
+      integer, intent(inout) :: jump
+      type(counters_t), intent(inout) :: counters
+      type(memory_t) :: before
+
+      trial%r_in = r
+      trial%mode = MODE_ORDINARY
+      call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
+      state%open = closing_rate(inc, trial%w(1)) <= 0.0_wp
+      trial%watched = 0
+      if (state%open) then
+         trial%mode = MODE_HELD
+         return
+      end if
+      jump = JUMP_NEW
+      before = state%memory
+      state%memory = new_memory(r)
+      if (consistent) call jump_of_memory(par, inc, jump, before, state%memory, trial%w(1), trial, sens)
+   end subroutine try_to_close
+
+   !> Takes over an accepted substep; state already has its void ratio and suction.
+   pure subroutine accept_substep(par, trial, state, counters)
+      type(params_t), intent(in) :: par
+      type(trial_t), intent(in) :: trial
+      type(state_t), intent(inout) :: state
+      type(counters_t), intent(inout) :: counters
+      real(wp) :: p, r(6)
+
+      counters%substep = counters%substep + 1
+      state%sigma = trial%y(1:6)
+      if (trial%mode == MODE_HELD) then
+         counters%open = counters%open + 1
+         return
+      end if
+      state%z = trial%y(7:12)
+      state%eps_q_total = state%eps_q_total + trial%y(13)
+      if (par%cutoff .and. trace(state%sigma) < 3.0_wp*par%p_min) then
+         state%sigma = deviator(state%sigma) + par%p_min*IDENTITY
+      end if
+      if (trial%mode == MODE_ORDINARY) then
+         call stress_ratio(par, state%sigma, p, r)
+         call accept_process(par, trial%w(1)%loading, trial%w(1)%x, trial%w(1)%n, r, trial%y(13), state%memory)
+      end if
+   end subroutine accept_substep
+end module mud_transitions

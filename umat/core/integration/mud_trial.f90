@@ -1,0 +1,101 @@
+!> One trial substep: the scheme's stages and the error, or a step held by the tension cut-off.
+module mud_trial
+   use mud_kinds, only: wp
+   use mud_cutoff, only: slide
+   use mud_increment, only: increment_t, rate_of, NY
+   use mud_params, only: params_t
+   use mud_rates, only: rate_t
+   use mud_state, only: counters_t, interrupted_t
+   use mud_substep, only: scheme_t, MAX_STAGES, stage_point, solution, error_vector
+   use mud_tensor, only: IDENTITY, deviator, norm
+   implicit none (type, external)
+   private
+   public :: trial_t, take_step, error_norm, store_rate, MODE_HELD
+
+   integer, parameter :: MODE_HELD = 2   !< A substep held at p_min by the tension cut-off; see MODE_* of mud_rates.
+   real(wp), parameter :: PLASTIC_SHEAR_SCALE = 0.01_wp   !< Of the error norm [-].
+
+   !> A trial substep from one point.
+   type :: trial_t
+      real(wp) :: rates(NY, MAX_STAGES)
+      real(wp) :: y0(NY), y(NY)
+      type(rate_t) :: w(MAX_STAGES) !< What each stage's rate went through; the first is that of the memory as it is.
+      integer :: mode
+      logical :: pressed            !< Inside the nucleus the bounding surface was met: ordinary rates from there on.
+      real(wp) :: r_in(6)
+      real(wp) :: time              !< Pseudo-time of y0 [-].
+      real(wp) :: x_previous        !< (r - r_in):n where the substep before began [-].
+      logical :: advanced           !< The present process has had (r - r_in):n > 0: a reversal would end it.
+      real(wp) :: held_error        !< Error of a held substep's stress ratio [-].
+      integer :: watched            !< The interrupted process whose target is looked for, 0: none.
+      type(interrupted_t) :: process   !< That process.
+   end type trial_t
+contains
+   !> One trial substep from the first rate that the trial holds.
+   pure subroutine take_step(par, inc, h, trial, counters)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: h
+      type(trial_t), intent(inout) :: trial
+      type(counters_t), intent(inout) :: counters
+      real(wp) :: y(NY)
+      integer :: i
+
+      if (trial%mode == MODE_HELD) then
+         call hold(par, inc, h, trial)
+         return
+      end if
+      call store_rate(trial%w(1), trial%rates(:, 1))
+      do i = 2, inc%scheme%stages
+         call stage_point(inc%scheme, i, trial%y0, trial%rates, h, y)
+         call rate_of(par, inc, trial%time + inc%scheme%node(i)*h, y, trial%r_in, trial%mode, trial%w(i), &
+                      counters)
+         call store_rate(trial%w(i), trial%rates(:, i))
+      end do
+      call solution(inc%scheme, trial%y0, trial%rates, h, trial%y)
+   end subroutine take_step
+
+   !> A substep at p_min: two half steps, the error against the whole one.
+   pure subroutine hold(par, inc, h, trial)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: h
+      type(trial_t), intent(inout) :: trial
+      real(wp) :: whole(6), half(6)
+
+      half = deviator(trial%y0(1:6))/par%p_min
+      whole = slide(par, inc, half, trial%time, h)
+      half = slide(par, inc, half, trial%time, 0.5_wp*h)
+      half = slide(par, inc, half, trial%time + 0.5_wp*h, 0.5_wp*h)
+      trial%y = trial%y0
+      trial%y(1:6) = par%p_min*(half + IDENTITY)
+      trial%held_error = norm(half - whole)
+   end subroutine hold
+
+   !> A rate as one of the integrated vector.
+   pure subroutine store_rate(w, dy)
+      type(rate_t), intent(in) :: w
+      real(wp), intent(out) :: dy(NY)
+
+      dy(1:6) = w%d_sigma
+      dy(7:12) = w%d_z
+      dy(13) = w%d_eps_q
+   end subroutine store_rate
+
+   !> Relative error of a trial substep; the void ratio is exact.
+   pure real(wp) function error_norm(par, scheme, trial, h) result(error)
+      type(params_t), intent(in) :: par
+      type(scheme_t), intent(in) :: scheme
+      type(trial_t), intent(in) :: trial
+      real(wp), intent(in) :: h
+      real(wp) :: delta(NY)
+
+      if (trial%mode == MODE_HELD) then
+         error = trial%held_error
+         return
+      end if
+      call error_vector(scheme, trial%rates, h, delta)
+      error = max(norm(delta(1:6))/max(norm(trial%y(1:6)), par%p_min), norm(delta(7:12))/par%z_max, &
+                  abs(delta(13))/PLASTIC_SHEAR_SCALE)
+   end function error_norm
+end module mud_trial
