@@ -309,7 +309,35 @@ module mud_registry
          'total: increments that ended with a tensile principal effective stress', '0', 'adds up'), &
       variable_t(S_NUCLEUS, 6, 'nucleus', 'd', '1', .true., 'ours', &
          'strain from the centre of the elastic nucleus (rho_e > 0), compression positive', '0', &
-         'follows the strain, |d| <= rho_e')]
+         'follows the strain, |d| <= rho_e'), &
+      variable_t(S_STACK + 0, 6, 'memory_1', 'r_in,1', '1', .true., 'ours', &
+         'memory of the interrupted process 1; the first is the oldest (rule return_point)', '0', &
+         'set where the process is interrupted'), &
+      variable_t(S_STACK + 6, 6, 'direction_1', 'n_1', '1', .true., 'ours', &
+         'direction of the interrupted process 1', '0', 'set where the process is interrupted'), &
+      variable_t(S_STACK + 12, 1, 'target_1', 'T:n_1', '1', .false., 'ours', &
+         'r:direction_1 at which the process 1 goes on', '0', 'set where the process is interrupted'), &
+      variable_t(S_STACK + 13, 6, 'memory_2', 'r_in,2', '1', .true., 'ours', &
+         'memory of the interrupted process 2; the first is the oldest (rule return_point)', '0', &
+         'set where the process is interrupted'), &
+      variable_t(S_STACK + 19, 6, 'direction_2', 'n_2', '1', .true., 'ours', &
+         'direction of the interrupted process 2', '0', 'set where the process is interrupted'), &
+      variable_t(S_STACK + 25, 1, 'target_2', 'T:n_2', '1', .false., 'ours', &
+         'r:direction_2 at which the process 2 goes on', '0', 'set where the process is interrupted'), &
+      variable_t(S_STACK + 26, 6, 'memory_3', 'r_in,3', '1', .true., 'ours', &
+         'memory of the interrupted process 3; the first is the oldest (rule return_point)', '0', &
+         'set where the process is interrupted'), &
+      variable_t(S_STACK + 32, 6, 'direction_3', 'n_3', '1', .true., 'ours', &
+         'direction of the interrupted process 3', '0', 'set where the process is interrupted'), &
+      variable_t(S_STACK + 38, 1, 'target_3', 'T:n_3', '1', .false., 'ours', &
+         'r:direction_3 at which the process 3 goes on', '0', 'set where the process is interrupted'), &
+      variable_t(S_STACK + 39, 6, 'memory_4', 'r_in,4', '1', .true., 'ours', &
+         'memory of the interrupted process 4; the first is the oldest (rule return_point)', '0', &
+         'set where the process is interrupted'), &
+      variable_t(S_STACK + 45, 6, 'direction_4', 'n_4', '1', .true., 'ours', &
+         'direction of the interrupted process 4', '0', 'set where the process is interrupted'), &
+      variable_t(S_STACK + 51, 1, 'target_4', 'T:n_4', '1', .false., 'ours', &
+         'r:direction_4 at which the process 4 goes on', '0', 'set where the process is interrupted')]
 
    type(option_t), parameter :: OPTIONS(*) = [ &
       option_t(P_MEMORY_RULE, RULE_CLASSIC, 'classic'), &

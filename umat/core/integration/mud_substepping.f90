@@ -21,6 +21,7 @@ module mud_substepping
    public :: integrate
 
    real(wp), parameter :: ALIGNED = 1.0e-8_wp                !< Cosine this close to 1 is no turn [-].
+   real(wp), parameter :: TURN_PIECE = 0.7_wp                !< First substep where the nucleus turns, share of its radius [-].
    real(wp), parameter :: LAST_SLIVER = 1.0e-9_wp            !< A rest of this share joins the substep before it [-].
 contains
    !> The loop over substeps.
@@ -44,7 +45,8 @@ contains
       h = 1.0_wp
       ! an elastic phase goes in one step if it can, and leaves the remembered step to the next plastic one
       if (state%last_step > 0.0_wp .and. state%last_step < size .and. .not. inc%inside) h = state%last_step/size
-      if (turns(inc)) h = min(h, inc%rho/norm(inc%d_strain))
+      ! a whole number of pieces, so that a small change of the strain does not change their size
+      if (turns(inc)) h = min(h, 1.0_wp/real(ceiling(min(norm(inc%d_strain)/(TURN_PIECE*inc%rho), 1.0e6_wp)), wp))
       may_grow = .true.
       elastic_substeps = 0
       known = .false.
