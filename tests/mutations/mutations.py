@@ -2,7 +2,12 @@
 
 TENSOR, RATES, POINT = "core/base/mud_tensor.f90", "core/rates/mud_rates.f90", "core/integration/mud_point.f90"
 DIRECTION = "core/rates/mud_direction.f90"
-INCREMENT, REVERSAL, SUBSTEP = "core/integration/mud_increment.f90", "core/integration/mud_reversal.f90", "core/integration/mud_substep.f90"
+INCREMENT, REVERSAL = "core/integration/mud_increment.f90", "core/integration/mud_reversal.f90"
+SUBSTEP, TRIAL = "core/integration/mud_substep.f90", "core/integration/mud_trial.f90"
+RETURN_POINT, EVENTS = "core/integration/mud_return_point.f90", "core/integration/mud_events.f90"
+TRANSITIONS, PHASES = "core/integration/mud_transitions.f90", "core/integration/mud_phases.f90"
+BOUNDING, EVENT_TIME = "core/rates/mud_bounding.f90", "core/integration/mud_event_time.f90"
+CUTOFF = "core/integration/mud_cutoff.f90"
 FLOW, HARDENING, CRITICAL = "core/laws/mud_flow.f90", "core/laws/mud_hardening.f90", "core/laws/mud_critical_state.f90"
 RETENTION, BONDING, ELASTIC = "core/laws/mud_retention.f90", "core/laws/mud_bonding.f90", "core/laws/mud_elastic.f90"
 PARAMS, REGISTRY, STATE = "core/base/mud_params.f90", "core/base/mud_registry.f90", "core/base/mud_state.f90"
@@ -19,7 +24,7 @@ MUTATIONS = [
      (TENSOR, "c(6) = a(6)*(a(2) + a(3)) + a(4)*a(5)", "c(5) = a(6)*(a(2) + a(3)) + a(4)*a(5)")),
     ("swap two shear components in rotate()",
      (TENSOR, "full(1, 2), full(1, 3), full(2, 3)]", "full(1, 3), full(1, 2), full(2, 3)]")),
-    ("freeze the fabric", (INCREMENT, "dy(7:12) = w%d_z", "dy(7:12) = 0.0_wp*w%d_z")),
+    ("freeze the fabric", (TRIAL, "dy(7:12) = w%d_z", "dy(7:12) = 0.0_wp*w%d_z")),
     # tensors and elasticity
     ("transpose the rotation",
      (TENSOR, "matmul(r, matmul(full, transpose(r)))", "matmul(transpose(r), matmul(full, r))")),
@@ -74,42 +79,48 @@ MUTATIONS = [
     ("no fall-back of the threshold rule", (REVERSAL, "if (ddot(r - r_in, n) < 0.0_wp) r_in = r", "continue")),
     ("repositioning with the process that ends",
      (REVERSAL, "x_before = memory%x_before\n", "x_before = memory%x_running\n")),
-    ("resume forgets at once", (REVERSAL, "memory%eps_q_p > par%eps_hat", "memory%eps_q_p > 0.0_wp*par%eps_hat")),
-    ("resume never leaves its ball", (REVERSAL, "BALL*memory%way_back", "1.0e9_wp*BALL*memory%way_back")),
-    ("resume does not restore the memory",
-     (REVERSAL, "memory%r_in = memory%r_before\n", "memory%r_before = memory%r_in\n")),
-    ("hysteresis the other way round", (POINT, "%x < -par%x_rev) then", "%x < par%x_rev) then")),
-    ("reversals never found", (POINT, "%x < -par%x_rev) then", "%x < -huge(1.0_wp) + par%x_rev) then")),
+    ("return_point follows the running direction", (RETURN_POINT, "memory%direction = chord/length", "memory%direction = n")),
+    ("return_point notes every direction", (RETURN_POINT, "SMALLEST_COSINE = 0.7_wp", "SMALLEST_COSINE = -2.0_wp")),
+    ("return_point keeps a drift",
+     (REVERSAL, "if (ddot(t, memory%direction) <= 0.0_wp) call", "if (ddot(t, memory%direction) < huge(1.0_wp)) call")),
+    ("return_point drops its oldest loops", (RETURN_POINT, "memory%depth = MAX_INTERRUPTED - 2", "memory%depth = 0")),
+    ("return_point looks at the newest process only", (RETURN_POINT, "      k = k - 1\n", "      k = 0\n")),
+    ("a target beyond the bounding surface",
+     (RETURN_POINT, "min(process%target, target_limit(par, process)*m_b)", "process%target")),
+    ("return_point takes the harder memory", (RETURN_POINT, ">= ddot(r - memory%r_in, t))", "< ddot(r - memory%r_in, t))")),
+    ("return_point restores no target", (RETURN_POINT, "memory%target = process%target", "memory%target = memory%target")),
+    ("no reversal inside a substep", (EVENTS, "may_reverse = last%loading .and.", "may_reverse = .false. .and.")),
+    ("an event's time is frozen", (EVENT_TIME, "dh = -slope/slope_with_size", "dh = 0.0_wp*slope")),
+    ("substeps behind an event keep their place",
+     (EVENT_TIME, "sens%shift(j) = sens%shift(j) + dh", "sens%shift(j) = sens%shift(j) + 0.0_wp*dh")),
+    ("a held point does not follow the strain",
+     (CUTOFF, "change = dr0 + deviator(stiffness*d_strain)", "change = dr0 + 0.0_wp*deviator(stiffness*d_strain)")),
+    ("hysteresis the other way round", (TRANSITIONS, "%x >= -par%x_rev .and. event", "%x >= par%x_rev .and. event")),
+    ("reversals never found", (TRANSITIONS, "%x >= -par%x_rev .and. event /= EVENT_REVERSAL", "%x >= -huge(1.0_wp)")),
     # integration
     ("suction stays at its start",
      (INCREMENT, "p_c = inc%p_c0 + time*inc%d_pc", "p_c = inc%p_c0 + 0.0_wp*time*inc%d_pc")),
     ("void ratio linear in the increment",
      (INCREMENT, "e = (1.0_wp + e)*exp(-inc%d_v*time) - 1.0_wp", "e = e - (1.0_wp + e)*inc%d_v*time")),
     ("error norm without the stress",
-     (INCREMENT, "error = max(norm(delta(1:6))/", "error = max(0.0_wp*norm(delta(1:6))/")),
+     (TRIAL, "error = max(norm(delta(1:6))/", "error = max(0.0_wp*norm(delta(1:6))/")),
     ("a weight of Dormand-Prince mistyped", (SUBSTEP, "19372.0_wp/6561", "19732.0_wp/6561")),
     ("an error weight of Bogacki-Shampine mistyped", (SUBSTEP, "[-5.0_wp/72, ", "[-5.0_wp/27, ")),
     ("growth right after a rejection", (SUBSTEP, "factor = min(factor, 1.0_wp)", "factor = min(factor, 2.0_wp)")),
     # tension cut-off
     ("p' is not held at the opening",
-     (POINT, "if (par%cutoff) call land_on(par, inc, EVENT_OPENS, memory, h, trial, counters, crossed)\n"
-             "         call land_on", "call land_on"),
-     (POINT, "      case default\n         if (par%cutoff) call land_on",
-      "      case default\n         if (.false.) call land_on")),
-    ("closing remembers the gap",
-     (POINT, "state%memory = new_memory(r)\n      end if", "state%memory%r_in = state%memory%r_in\n      end if")),
-    ("open stress ratio beyond the bounding surface",
-     (INCREMENT, "if (r_norm > limit) r_limited", "if (r_norm > 1.0e9_wp*limit) r_limited")),
+     (EVENTS, "if (par%cutoff) call land_on(par, inc, EVENT_OPENS", "if (.false.) call land_on(par, inc, EVENT_OPENS")),
+    ("closing remembers the gap", (TRANSITIONS, "state%memory = new_memory(r)", "state%memory%depth = state%memory%depth")),
+    ("open stress ratio beyond the bounding surface", (BOUNDING, "if (beyond > 0.0_wp) r_limited", "if (beyond > 1.0e9_wp) r_limited")),
     ("an open point never closes",
-     (POINT, "state%open = rise(inc, trial%w(1)) <= CLOSING",
-      "state%open = rise(inc, trial%w(1)) <= huge(1.0_wp) + CLOSING")),
+     (TRANSITIONS, "closing_rate(inc, trial%w(1)) <= 0.0_wp", "closing_rate(inc, trial%w(1)) <= huge(1.0_wp)")),
     ("tension is not reported", (POINT, "if (has_tension(state1%sigma)) counters%tensile = 1", "continue")),
     # elastic nucleus
     ("the nucleus forgets the strain inside",
-     (POINT, "whole%nucleus + share*whole%d_strain", "whole%nucleus + 0.0_wp*share")),
+     (PHASES, "whole%nucleus + share*whole%d_strain", "whole%nucleus + 0.0_wp*share")),
     ("strain beside the loading direction is lost",
      (INCREMENT, "aside = inc%d_strain - loading", "aside = 0.0_wp*loading")),
-    ("no bounding surface inside the nucleus", (POINT, "EXCESS = 0.2_wp", "EXCESS = 1.0e9_wp")),
+    ("no bounding surface inside the nucleus", (EVENTS, "LARGEST_EXCESS = 0.2_wp", "LARGEST_EXCESS = 1.0e9_wp")),
     ("the tangent does not know where the nucleus ends",
      (CONSISTENT, "change = side*change_of_exit", "change = 0.0_wp*side*change_of_exit")),
     # tables

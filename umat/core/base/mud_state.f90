@@ -127,7 +127,9 @@ contains
             call require(statev, first + 6 + i, -LARGEST_DIRECTION, LARGEST_DIRECTION, status)
          end do
          call require(statev, first + 12, -LARGEST_RATIO, LARGEST_RATIO, status)
-         memory%interrupted(k) = interrupted_t(statev(first:first + 5), statev(first + 6:first + 11), statev(first + 12))
+         memory%interrupted(k)%r_in = statev(first:first + 5)
+         memory%interrupted(k)%direction = statev(first + 6:first + 11)
+         memory%interrupted(k)%target = statev(first + 12)
       end do
    end subroutine unpack_stack
 

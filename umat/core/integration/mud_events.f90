@@ -70,8 +70,8 @@ contains
    !> True where a reversal inside the substep is possible: (r - r_in):n is negative at its end, where the last stage
    !> stands, or it falls at its start and is so small that it may have been negative in between. A process that drifts
    !> backwards from its beginning (softening outside the bounding surface) is not looked at: there the floor makes the
-   !> rates independent of the memory, and it is enough to begin anew where a substep begins. The rule as_published tests
-   !> there and nowhere else.
+   !> rates independent of the memory, and it is enough to begin anew where a substep begins. The rule as_published
+   !> tests there and nowhere else.
    pure logical function may_reverse(par, inc, trial)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc

@@ -95,7 +95,7 @@ contains
       type(memory_t), intent(inout) :: memory
 
       associate (process => memory%interrupted(k))
-         if (ddot(r - process%r_in, t) > ddot(r - memory%r_in, t)) memory%r_in = process%r_in
+         if (ddot(r - process%r_in, t) >= ddot(r - memory%r_in, t)) memory%r_in = process%r_in
          memory%direction = process%direction
          memory%target = process%target
       end associate

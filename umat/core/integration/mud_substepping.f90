@@ -21,7 +21,7 @@ module mud_substepping
    public :: integrate
 
    real(wp), parameter :: ALIGNED = 1.0e-8_wp                !< Cosine this close to 1 is no turn [-].
-   real(wp), parameter :: TURN_PIECE = 0.7_wp                !< First substep where the nucleus turns, share of its radius [-].
+   real(wp), parameter :: TURN_PIECE = 0.7_wp   !< First substep where the nucleus turns, share of its radius [-].
    real(wp), parameter :: LAST_SLIVER = 1.0e-9_wp            !< A rest of this share joins the substep before it [-].
 contains
    !> The loop over substeps.
