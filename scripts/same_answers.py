@@ -6,7 +6,7 @@
 The program is build/release/host/mud_host, or the one under $MUD_BUILD_DIR; --program names another one, --only some
 of the scenes. Tables count byte for byte, HDF5 files by the values of every dataset (a checkpoint without its
 fingerprint, which is that of the scene's words). The scenes are short versions of those of the verification and
-name everything that a default of the library could change. About two minutes; exit code 1 where an answer moved.
+name everything that a default of the library could change. About a minute; exit code 1 where an answer moved.
 """
 import argparse
 import os
