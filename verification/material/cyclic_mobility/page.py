@@ -62,7 +62,7 @@ def check(bench):
 
 
 def texts(bench):
-    return {"README.md": {"values": recorded.table(bench, tuple(recorded.PARAMETERS), "cycle of")}}
+    return {"README.md": {"values": recorded.table(bench, tuple(recorded.PARAMETERS), "cycle of a mark, and values")}}
 
 
 def draw(bench, _, plt):

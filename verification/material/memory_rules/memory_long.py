@@ -193,9 +193,9 @@ def energy_path(soil, size, loops=100, steps=10):
 
 
 def energy(walker, soil):
-    """100 square loops of volume and shear about K0 = 0.5, sides 1e-5 and 1e-4: work of all [J/m3], drift of stress [kPa]"""
+    """100 square loops of volume and shear about K0 = 0.5, sides 1e-5, 2e-5, 1e-4: work of all [J/m3], drift of stress [kPa]"""
     found = {}
-    for size in (1e-5, 1e-4):
+    for size in (1e-5, 2e-5, 1e-4):
         rows = walker.run(energy_path(soil, size))
         work = 0.0
         for a, b in zip(rows, rows[1:]):

@@ -8,12 +8,14 @@
 !>    go N D1 D2 D3 D4 D5 D6 DSUCTION N equal increments; engineering shear
 !>    turn R11 R21 R31 R12 ... R33    rigid rotation
 !>    row LABEL                       writes the state
+!>    show NAME N                     writes a comment with N entries of STATEV from a name on
 !>
 !> A path whose increments fail ends with a row of status 1; its other lines are passed over.
 program mud_walk
    use, intrinsic :: iso_fortran_env, only: input_unit, output_unit, iostat_end
    use walk_linear, only: wp
-   use walk_point, only: point_t, prepare, set_property, start, lead_components, lead_deviator, go, turn, state_of
+   use walk_point, only: point_t, prepare, set_property, start, lead_components, lead_deviator, go, turn, state_of, &
+      states_of
    implicit none (type, external)
    type(point_t) :: point
    character(40) :: name, word, label
@@ -71,6 +73,9 @@ contains
       case ('row')
          read (line, *, iostat=code) word, label
          if (code == 0) call write_row(label)
+      case ('show')
+         read (line, *, iostat=code) word, label, n
+         if (code == 0) write (output_unit, '("# ", a, *(1x, es13.6))') trim(label), states_of(point, trim(label), n)
       case default
          code = 1
       end select

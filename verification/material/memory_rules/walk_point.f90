@@ -7,7 +7,7 @@ module walk_point
    use walk_linear, only: wp, solve, rotated
    implicit none (type, external)
    private
-   public :: point_t, control_t, prepare, set_property, start, lead_components, lead_deviator, go, turn, state_of
+   public :: point_t, control_t, prepare, set_property, start, lead_components, lead_deviator, go, turn, state_of, states_of
 
    integer, parameter :: ROOM = 256                      !< For PROPS and STATEV; checked.
    integer, parameter :: MAX_ITERATIONS = 25, MAX_BACKTRACKS = 6, MAX_HALVINGS = 12
@@ -281,4 +281,17 @@ contains
 
       state_of = point%statev(mud_index(MUD_STATEV, name//c_null_char) + 1)
    end function state_of
+
+   !> n entries of STATEV from a name on.
+   function states_of(point, name, n) result(values)
+      type(point_t), intent(in) :: point
+      character(*), intent(in) :: name
+      integer, intent(in) :: n
+      real(wp) :: values(n)
+      integer :: place
+
+      place = mud_index(MUD_STATEV, name//c_null_char) + 1
+      if (place < 1) error stop 'mud_walk: the library has no such state variable'
+      values = point%statev(place:place + n - 1)
+   end function states_of
 end module walk_point
