@@ -73,12 +73,12 @@ def cutoff(walker, soil, cycles=30):
 
 
 def random_increments(walker, soil, paths=50, n=2000):
-    """1e5 random six-component increments (50 starts, sizes 1e-6 to 5e-4): increments done, cuts, rates an increment"""
+    """1e5 random six-component increments (50 starts, sizes 1e-6 to 2e-4): increments done, cuts, rates an increment"""
     made = []
     for seed in range(paths):
         dice = random.Random(seed)
-        size = math.exp(dice.uniform(math.log(1e-6), math.log(5e-4)))
-        path, volume = Path(soil, dice.uniform(0.7, 0.95), p=math.exp(dice.uniform(math.log(20), math.log(1000)))), 0.0
+        size = math.exp(dice.uniform(math.log(1e-6), math.log(2e-4)))
+        path, volume = Path(soil, dice.uniform(0.6, 0.9), p=math.exp(dice.uniform(math.log(50), math.log(1000)))), 0.0
         for _ in range(n):
             d = [dice.gauss(0, size) for _ in range(6)]
             mean = sum(d[:3]) / 3

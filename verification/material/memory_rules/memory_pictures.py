@@ -49,7 +49,7 @@ def draw_loops(walker, plt):
                           lw=2.2 if name == "uninterrupted" else 1.3, alpha=0.35 if name == "uninterrupted" else 1)
             axis.set(title=f"e {e} at {100 * place:g} %, rho_e {radius}", xlabel="axial strain [%]")
         line[0].set_ylabel("q [kPa]")
-    axes[0, 0].legend(loc="lower right")
+    axes[0, 0].legend(loc="upper left")
     return figure
 
 
@@ -73,6 +73,8 @@ def symmetric_cycles(soil, amplitude, shown):
     """Drained simple shear of +-amplitude; rows along the cycles `shown`."""
     path = Path(soil, MIDDLE).lead("ssseee").go(10, times(amplitude, ACROSS))
     for i in range(1, max(shown) + 1):
+        if i in shown:
+            path.row(str(i))
         for size in (-2 * amplitude, 2 * amplitude):
             for _ in range(20):
                 path.go(1, times(size / 20, ACROSS))

@@ -79,7 +79,7 @@ def check(bench):
     return walker
 
 
-SEEN = {"repositioning:2e-5": 15, "classic:2e-5": 10, "threshold:2e-5": 10, "classic:0": 20}
+SEEN = {"repositioning:2e-5": 10, "classic:2e-5": 10, "threshold:2e-5": 10, "classic:0": 20}
 
 
 def draw(bench, walker, plt):
