@@ -3,7 +3,7 @@ import math
 import random
 
 from memory_published import biased_path, noise_path, strains_after, symmetric_path, turns
-from point_steps import (ACROSS, AXIAL, DENSE, LOOSE, MIDDLE, closed, distance, last, per_cent, plus, straight, times)
+from point_steps import (ACROSS, AXIAL, DENSE, LOOSE, MIDDLE, clean_path, closed, deviation, distance, last, per_cent, plus, straight, times)
 from point_walk import Path
 
 AMPLITUDES = (1e-6, 1e-5, 3e-5, 1e-4, 3e-4)
@@ -17,6 +17,16 @@ def long_symmetric(walker, soil, cycles=1000):
         tau = turns(rows)
         found[f"{size:.0e}"] = 100 * abs(sum(tau[cycles])) / (tau[1][1] - tau[1][0]) if cycles in tau else math.nan
     found["cuts"] = max(rows[-1]["cuts"] for rows in runs.values())
+    return found
+
+
+def seeds(walker, soil, n=8):
+    """smallest and largest deviation of q over eight seeds of the noise of 5e-5, dense and loose [%]"""
+    clean = {e: clean_path(walker, soil, e, 0.05) for e in (DENSE, LOOSE)}
+    found = {}
+    for e in (DENSE, LOOSE):
+        off = [deviation(rows, clean[e].result()) for rows in walker.run_all([noise_path(soil, e, 5e-5, seed) for seed in range(1, n + 1)])]
+        found[f"e {e}, smallest"], found[f"e {e}, largest"] = min(off), max(off)
     return found
 
 
@@ -47,14 +57,14 @@ def k0_loops(walker, soil):
 
 
 def softening(walker, soil, loops=200):
-    """drained compression beyond the peak (dense, 10 to 15 %) with 200 loops of 1e-4: q and volume against none [%]; cuts"""
+    """drained compression beyond the peak (dense, 10 to 15 %) with 200 loops of 1e-4: q 0.5 % later and volume against none [%]; cuts"""
     def path(size):
         made = Path(soil, DENSE).lead("esseee").go(1000, times(0.10, (1, 0, 0, 0, 0, 0)))
         for _ in range(loops):
             made.go(5, (0.05 / loops, 0, 0, 0, 0, 0))
             if size:
                 made.go(10, (-size, 0, 0, 0, 0, 0)).go(10, (size, 0, 0, 0, 0, 0))
-        return made.row()
+        return made.go(100, (0.005, 0, 0, 0, 0, 0)).row()
     with_loops, clean = walker.run_all([path(1e-4), path(0.0)])
     a, b = last(with_loops), last(clean)
     return {"q": per_cent(a.q, b.q) if a else math.nan,
@@ -206,4 +216,4 @@ def energy(walker, soil):
     return found
 
 
-ROWS = (long_symmetric, reversed_bias, k0_loops, softening, cutoff, random_increments, drot, schemes, perturbation, energy)
+ROWS = (long_symmetric, seeds, reversed_bias, k0_loops, softening, cutoff, random_increments, drot, schemes, perturbation, energy)

@@ -52,15 +52,19 @@ def lateral(walker, soil):
 
 
 def squares(walker, soil, size=3e-5, loops=200, to=0.05):
-    """deviation of q at 5 % after 200 square loops of 3e-5 along and across the path [%]"""
-    found = {}
-    for e in (DENSE, LOOSE):
-        path = Path(soil, e)
-        for _ in range(loops):
-            straight(path, to / loops)
-            along_side(path, [(-size, 0), (-size, size), (0, size)])
-        found[f"e {e}"] = (walker.start(path.row()), clean_path(walker, soil, e, to))
-    return {key: deviation(run.result(), clean.result()) for key, (run, clean) in found.items()}
+    """deviation of q at 5 % after 200 loops of 3e-5 along and across the path: squares by their first legs, a line [%]"""
+    shapes = {"back, side": [(-size, 0), (-size, size), (0, size)], "side, back": [(0, size), (-size, size), (-size, 0)],
+              "forward, side": [(size, 0), (size, size), (0, size)], "side, forward": [(0, size), (size, size), (size, 0)],
+              "line across": [(0, size)]}
+    clean = {e: clean_path(walker, soil, e, to) for e in (DENSE, LOOSE)}
+    runs = {}
+    for name, corners in shapes.items():
+        for e in (DENSE, LOOSE):
+            path = Path(soil, e)
+            for _ in range(loops):
+                along_side(straight(path, to / loops), corners)
+            runs[f"{name} e {e}"] = (e, walker.start(path.row()))
+    return {key: deviation(run.result(), clean[e].result()) for key, (e, run) in runs.items()}
 
 
 def nested(walker, soil):

@@ -129,9 +129,18 @@ def row_table(values, rows):
     lines = []
     for row in rows:
         lines.append((f"**{row.__name__}**: {question(row)}", *[""] * len(RULES)))
-        for key in dict.fromkeys(k for r, k, _ in values if r == row.__name__):
-            lines.append((key, *(number(values[row.__name__, key, rule]) for rule in RULES)))
+        for key in dict.fromkeys(k for r, k, rule in values if r == row.__name__ and rule in RULES):
+            found = [values.get((row.__name__, key, rule)) for rule in RULES]
+            lines.append((key, *("" if value is None else number(value) for value in found)))
     return tables.markdown(("", *map(rule_text, RULES)), lines)
+
+
+def energy_table(values):
+    """The rows inside the elastic domain, and the first one outside."""
+    return tables.markdown(("rho_e", "side of the square", "work of 100 loops [J/m3]", "largest drift of a stress [kPa]"), [
+        (radius, side, number(values["energy", f"{side} work", f"{rule}:{radius}"]), number(values["energy", f"{side} drift", f"{rule}:{radius}"]))
+        for rule, radius, side in (("classic", "1e-3", "1e-05"), ("classic", "1e-3", "1e-04"), ("return_point", "2e-5", "1e-05"),
+                                   ("return_point", "2e-5", "2e-05"), ("return_point", "2e-5", "1e-04"))])
 
 
 def texts(bench):
@@ -139,6 +148,6 @@ def texts(bench):
     values = {(row["row"], row["quantity"], row["rule"]): row["value"] for row in found}
     made = tables.comments(bench.here / "results.csv")[0]
     return {"README.md": {"published": published_table(values), "loops": loop_table(values), "six": row_table(values, memory_six.ROWS),
-                          "long": row_table(values, memory_long.ROWS), "commit": f"The tables of this page: {made}.\n"}}
+                          "long": row_table(values, memory_long.ROWS), "energy": energy_table(values), "commit": f"The tables of this page: {made}.\n"}}
 
 
