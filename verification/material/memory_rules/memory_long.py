@@ -10,7 +10,7 @@ AMPLITUDES = (1e-6, 1e-5, 3e-5, 1e-4, 3e-4)
 
 
 def long_symmetric(walker, soil, cycles=1000):
-    """asymmetry |high + low| of tau in cycle 1000 over the range of cycle 1, gamma 1e-6 to 3e-4; cuts of increments [%]"""
+    """asymmetry abs(high + low) of tau in cycle 1000 over the range of cycle 1, gamma 1e-6 to 3e-4; cuts of increments [%]"""
     runs = walker.run_all({size: symmetric_path(soil, size, cycles, (1, cycles)).row() for size in AMPLITUDES})
     found = {}
     for size, rows in runs.items():

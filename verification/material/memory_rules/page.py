@@ -92,7 +92,9 @@ def number(text):
     value = float(text)
     if math.isnan(value):
         return "failed"
-    if value == 0 or abs(value) < 5e-4:
+    if value == round(value) and abs(value) < 1e6:
+        return f"{value:.0f}"
+    if abs(value) < 5e-4:
         return f"{value:.0e}" if 1e-9 < abs(value) else "0"
     return f"{value:.2f}" if 0.1 <= abs(value) < 100 else f"{value:.3g}" if abs(value) < 0.1 else f"{value:.5g}"
 
