@@ -54,6 +54,8 @@ def shown(value):
         return ""
     if math.isnan(value):
         return "never"
+    if abs(value) < 1e-9:
+        return "0"
     return f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"
 
 

@@ -13,7 +13,7 @@ PAGE = Page(
           "e 0.85, 0.75, 0.65 at the start; led by the axial stress in steps of 1 kPa",
     reference="K0 = 1 - sin phi (Jaky 1944), with the friction angle of the published M_c: sin phi = 3 M_c/(6 + M_c); unloading K0 OCR^(sin phi) "
               "(Mayne & Kulhawy 1982)",
-    seconds=3, pictures=("k0.png",))
+    seconds=3, quick=1, pictures=("k0.png",))
 MAKES = (Script("make_results.py", ("results.csv",), 3),)
 
 TOP, VOID_RATIOS, STARTS, OCRS = 400.0, (0.85, 0.75, 0.65), (1.0, 20.0), (1, 2, 4, 8, 16)
