@@ -114,7 +114,7 @@ contains
             call propagate(par, inc, trial, h_taken, time >= 1.0_wp, sens)
             if (event /= EVENT_NONE .and. time < 1.0_wp) call move_event(par, inc, event, trial, h_taken, sens)
          end if
-         call accept_substep(par, trial, state, counters)
+         call accept_substep(par, inc, trial, state, counters)
          call record_substep(par, inc, trial, h_taken, error, state%sigma, SUBSTEP_ACCEPTED, jump, &
                              event /= EVENT_NONE, counters, record)
          trial%x_previous = trial%w(1)%x

@@ -87,8 +87,7 @@ contains
       type(rate_t) :: trigger
       real(wp) :: t(6)
 
-      ! the part of the strain across the elastic nucleus turns t, not the process: the whole strain tells where it goes
-      t = (2.0_wp*trial%w(1)%g)*deviator(inc%d_strain) - (trial%w(1)%k*inc%d_v)*r
+      t = elastic_rate(inc, trial, r)
       if (par%memory_rule == RULE_RETURN_POINT) then
          call try_to_return(par, inc, event == EVENT_RETURN, r, t, consistent, state, trial, sens, jump, counters)
       end if
@@ -172,8 +171,9 @@ contains
    end subroutine try_to_close
 
    !> Takes over an accepted substep; state already has its void ratio and suction.
-   pure subroutine accept_substep(par, trial, state, counters)
+   pure subroutine accept_substep(par, inc, trial, state, counters)
       type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
       type(state_t), intent(inout) :: state
       type(counters_t), intent(inout) :: counters
@@ -192,7 +192,19 @@ contains
       end if
       if (trial%mode == MODE_ORDINARY) then
          call stress_ratio(par, state%sigma, p, r)
-         call accept_process(par, trial%w(1)%loading, trial%w(1)%x, trial%w(1)%n, r, trial%y(13), state%memory)
+         call accept_process(par, trial%w(1)%loading, trial%w(1)%x, trial%w(1)%n, r, elastic_rate(inc, trial, r), &
+                             trial%y(13), state%memory)
       end if
    end subroutine accept_substep
+
+   !> p' times the rate of the stress ratio if the whole strain were elastic. The part of the strain across the elastic
+   !> nucleus turns the direction of loading, not the process: the whole strain tells where it goes.
+   pure function elastic_rate(inc, trial, r) result(t)
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      real(wp), intent(in) :: r(6)
+      real(wp) :: t(6)   !< [stress]
+
+      t = (2.0_wp*trial%w(1)%g)*deviator(inc%d_strain) - (trial%w(1)%k*inc%d_v)*r
+   end function elastic_rate
 end module mud_transitions
