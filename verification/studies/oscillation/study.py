@@ -24,7 +24,7 @@ from tools.results import folder
 sys.path.insert(0, str(ROOT / "verification/material/verdugo_ishihara"))
 import laboratory as tests_of_verdugo_ishihara  # noqa: E402
 
-RULES = {"classic": (0, 0.0), "threshold": (1, 0.0), "repositioning": (2, 0.0), "resume": (3, 0.0),
+RULES = {"classic": (0, 0.0), "threshold": (1, 0.0), "repositioning": (2, 0.0), "return_point": (3, 0.0),
          "as_published": (4, 0.0), "nucleus": (1, 5e-5)}   # name: memory_rule, rho_e
 SIZES = [10.0 ** k for k in range(-9, -2)]
 SETTINGS = [dict(e=e, drained=drained, path=path, suction=suction) for e, drained, path, suction in itertools.product(
@@ -69,7 +69,7 @@ def transverse():
         if drained and noise == "six":
             continue
         values = dict(e=e, drained=drained, noise=noise, size=size, events=300, random_events=True)
-        for name in ("classic", "threshold", "repositioning", "resume"):
+        for name in ("classic", "threshold", "repositioning", "return_point"):
             yield case("transverse", name, **values)
         for radius in radii:
             yield case("transverse", "nucleus", radius, **values)
@@ -88,7 +88,7 @@ def numerics():
 
 
 def hard():
-    """Made to break the rule resume: reversals inside reversals, noise while unloading, growing cycles."""
+    """Made to break the rule that was resume: reversals inside reversals, noise while unloading, growing cycles."""
     for name, e, drained in itertools.product(RULES, (0.735, 0.907), (False, True)):
         for size in (1e-6, 1e-5, 1e-4):
             yield case("nested", name, e=e, drained=drained, noise="nested", events=40, size=size)
