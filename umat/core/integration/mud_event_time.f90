@@ -6,10 +6,11 @@ module mud_event_time
    use mud_consistent, only: sensitivity_t, change_with_size, change_along, change_of_ratio, linearise_stage, &
       DIRECTIONS, AT_REST
    use mud_critical_state, only: bounding_ratio
-   use mud_events, only: EVENT_OPENS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, change_of_closing_rate, psi_at
+   use mud_events, only: EVENT_OPENS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, closing_mode, &
+      change_of_closing_rate, psi_at
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, NY
    use mud_params, only: params_t
-   use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY
+   use mud_rates, only: rate_t, stress_ratio
    use mud_return_point, only: target_limit, is_limited
    use mud_sensitivity, only: change_t, linearised_t, change_of_rate
    use mud_state, only: counters_t
@@ -44,7 +45,7 @@ contains
          call rate_of(par, inc, time, trial%y, trial%r_in, mode, w, uncounted)
          call linearise_stage(par, inc, mode, w, trial%y, time, void_ratio_at(inc, time), lin)
       else if (mode == MODE_HELD) then
-         mode = MODE_ORDINARY
+         mode = closing_mode(inc)
          call rate_without_past(par, inc, time, trial%y, w)
          call linearise_stage(par, inc, mode, w, trial%y, time, void_ratio_at(inc, time), lin)
       end if
@@ -74,7 +75,7 @@ contains
       real(wp) :: p, r(6)
 
       call stress_ratio(par, y(1:6), p, r)
-      call rate_of(par, inc, time, y, r, MODE_ORDINARY, w, uncounted)
+      call rate_of(par, inc, time, y, r, closing_mode(inc), w, uncounted)
    end subroutine rate_without_past
 
    !> Change of the event's function, where it is zero; its scale does not matter.

@@ -13,7 +13,7 @@ module mud_events
    use mud_trial, only: trial_t, take_step, MODE_HELD
    implicit none (type, external)
    private
-   public :: stop_at_event, closing_rate, change_of_closing_rate, psi_at, EVENT_TOLERANCE, LARGEST_EXCESS
+   public :: stop_at_event, closing_mode, closing_rate, change_of_closing_rate, psi_at, EVENT_TOLERANCE, LARGEST_EXCESS
    public :: EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN
 
    integer, parameter :: EVENT_NONE = 0
@@ -191,10 +191,17 @@ contains
       case (EVENT_RETURN)
          f = -beyond_target(par, trial%process, r, bounding_ratio(par, psi_at(par, inc, time, p)))
       case default
-         call rate_of(par, inc, time, y, r, MODE_ORDINARY, w, counters)
+         call rate_of(par, inc, time, y, r, closing_mode(inc), w, counters)
          f = -closing_rate(inc, w)/(w%k*norm(inc%d_strain) + abs(inc%d_pc))
       end select
    end subroutine event_function
+
+   !> How a held point would go on if it closed: inside the elastic nucleus without plastic dilatancy.
+   pure integer function closing_mode(inc)
+      type(increment_t), intent(in) :: inc
+
+      closing_mode = merge(MODE_ELASTIC, MODE_ORDINARY, inc%inside)
+   end function closing_mode
 
    !> How far the rate of p' is above the one at which an open point closes, positive if it closes [kPa].
    pure real(wp) function closing_rate(inc, w)

@@ -4,7 +4,7 @@ module mud_transitions
    use mud_kinds, only: wp
    use mud_bounding, only: excess
    use mud_consistent, only: sensitivity_t, jump_of_memory, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
-   use mud_events, only: closing_rate, psi_at, LARGEST_EXCESS, EVENT_REVERSAL, EVENT_RETURN
+   use mud_events, only: closing_mode, closing_rate, psi_at, LARGEST_EXCESS, EVENT_REVERSAL, EVENT_RETURN
    use mud_increment, only: increment_t, rate_of
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY, MODE_ELASTIC
@@ -156,7 +156,7 @@ contains
       type(memory_t) :: before
 
       trial%r_in = r
-      trial%mode = MODE_ORDINARY
+      trial%mode = closing_mode(inc)
       call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
       state%open = closing_rate(inc, trial%w(1)) <= 0.0_wp
       trial%watched = 0
