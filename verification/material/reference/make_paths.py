@@ -9,7 +9,7 @@ from tools.results import folder
 
 from mud_reference import (Params, Point, State, dd, norm, rates, saturation, segment, six, stress_ratio, tensor)
 
-RULES = ("classic", "threshold", "repositioning", "resume")
+RULES = ("classic", "threshold", "repositioning", "return_point")
 EFFECTS = ("isotropic", "retention", "bonding", "fabric", "lode")
 
 # base directions, none aligned with an axis, all six components nonzero and different (11, 22, 33, 12, 13, 23), x 1e-3
@@ -34,6 +34,9 @@ UNS = [(mix(0.5, A), -2.0), (mix(1, A, 0.5, B, 0.2, V), -6.0), (ZERO, -9.0), (mi
        (mix(1, B, 0.5, C), 14.0), (ZERO, 5.0), (mix(0.5, B, 1, C, -0.1, V), -20.0)]
 NOISE = [(mix(4, A), 0), (mix(-0.008, A), 0), (mix(0.008, A), 0), (mix(1, A, 0.1, B), 0)]
 SOFT = [(mix(0.6, A), 0), (mix(-0.015, A), 0), (mix(0.02, A), 0), (mix(0.4, A, 0.1, B), 0)]
+NEST = [(mix(1, A), 0), (mix(-0.2, A, -0.02, B), 0), (mix(0.08, A, 0.01, B), 0), (mix(-0.03, A, 0.005, C), 0), (mix(0.025, A), 0),
+        (mix(0.2, A, 0.02, B), 0), (mix(0.5, A, 0.2, B), 0)]
+PULSE = [(mix(1, A), 0), (mix(-0.08, A), 6.0), (mix(0.04, A), -9.0), (mix(0.1, A, 0.01, B), 4.0), (mix(0.5, A, 0.1, B), -6.0)]
 TURN = [(mix(-1, B, -0.5, C), 0.0), (mix(-0.5, B, -1, A), 3.0)]
 
 # id: (title, sig(6), e, p_c, rule, effects off, segments)
@@ -57,7 +60,7 @@ PATHS = {
     10: ("small reversal, rule classic", (130, 90, 80, 12, -9, 6), 0.78, 0.0, "classic", (), NOISE),
     11: ("small reversal, rule threshold", (130, 90, 80, 12, -9, 6), 0.78, 0.0, "threshold", (), NOISE),
     12: ("small reversal, rule repositioning", (130, 90, 80, 12, -9, 6), 0.78, 0.0, "repositioning", (), NOISE),
-    13: ("small reversal, rule resume", (130, 90, 80, 12, -9, 6), 0.78, 0.0, "resume", (), NOISE),
+    13: ("small reversal, rule return_point", (130, 90, 80, 12, -9, 6), 0.78, 0.0, "return_point", (), NOISE),
     14: ("unloading towards p_min", (26, 18, 17, 2.2, -1.3, 1.7), 0.85, 0.0, "threshold", (),
          [(mix(0.2, A), 0), (mix(-1.2, V, 0.05, A), 0), (mix(-0.7, V, 0.02, B), 0), (mix(-0.25, V, 0.01, B), 0),
           (mix(0.02, B, 0.02, V), 0), (mix(0.3, B, 0.5, V), 0)]),
@@ -69,7 +72,9 @@ PATHS = {
     30: ("small reversal while hardening, rule classic", (130, 90, 80, 12, -9, 6), 0.90, 0.0, "classic", (), SOFT),
     31: ("small reversal while hardening, rule threshold", (130, 90, 80, 12, -9, 6), 0.90, 0.0, "threshold", (), SOFT),
     32: ("small reversal while hardening, rule repositioning", (130, 90, 80, 12, -9, 6), 0.90, 0.0, "repositioning", (), SOFT),
-    33: ("small reversal while hardening, rule resume", (130, 90, 80, 12, -9, 6), 0.90, 0.0, "resume", (), SOFT),
+    33: ("small reversal while hardening, rule return_point", (130, 90, 80, 12, -9, 6), 0.90, 0.0, "return_point", (), SOFT),
+    34: ("loops inside loops, rule return_point", (130, 90, 80, 12, -9, 6), 0.80, 0.0, "return_point", (), NEST),
+    35: ("loop while suction changes, rule return_point", (180, 140, 130, 15, -8, 12), 0.80, 30.0, "return_point", (), PULSE),
     20: ("all effects on, suction 20 (as 21-26)", (330, 220, 230, 28, -20, 14), 0.84, 20.0, "threshold", (), UNS + TURN),
     21: ("isotropic mechanism off", (330, 220, 230, 28, -20, 14), 0.84, 20.0, "threshold", ("isotropic",), UNS + TURN),
     22: ("retention off (S_w = S_max)", (330, 220, 230, 28, -20, 14), 0.84, 20.0, "threshold", ("retention",), UNS + TURN),
@@ -138,9 +143,9 @@ def main():
             ds = np.abs(late[:, :6] - ref[:, :6]).max() / np.abs(ref[:, :6]).max()
             note += (f"; {drift} re-seats inside segments: if each came 1e-4 (in x) late the stress would move by {ds:.0e},"
                      f" eps_q^p by {np.abs(late[:, 15] - ref[:, 15]).max():.0e} absolute")
-        if rule == "resume":
-            alt = distance(integrate(pid, 1e-12, resume_iso=False)[0], ref).max()
-            note += f"; without the isotropic mechanism on the elastic way back: {alt:.0e}"
+        back = sum(1 for k in log if k[0] == "return")
+        if back:
+            note += f"; {back} returns to an interrupted process"
         if again:
             note += f"; {again} times still behind after a re-seat"
         print(note, flush=True)
@@ -162,11 +167,11 @@ def main():
         "# segment 0 holds the initial state (z = 0, eps_q^p = 0, J = 0, r_in = r_in_before = r); its deps, dpc are zero",
         "# segment k > 0: deps, dpc applied linearly from the state of segment k-1; then the state at its end",
         "# de = -(1+e) tr(deps), so e = (1+e_start) exp(-tr(deps)) - 1",
-        "# rule: 0 classic 1 threshold 2 repositioning 3 resume",
+        "# rule: 0 classic 1 threshold 2 repositioning 3 return_point",
         "# off: effects switched off, 1 isotropic mechanism 2 retention (S_w = S_max = 1) 4 bonding (f = 1; b1 = 0) 8 fabric (A_d = A_0, dz = 0) 16 Lode (g = 1; c = 1)",
         "# reseats: number since the start; unc: change on a 10 times looser tolerance with every segment cut in 3",
         "# (largest of |d sig|/|sig|, |d e|/e, |d z|/z_max, |d eps_q^p|/0.01, |d S_w|; 1e-12 is the smallest stated)",
-        "# eps_q^p is that of the present loading process: zero after a re-seat. Rule resume: it is counted since the turn and is NOT restored when the process resumes (the rule leaves it open)",
+        "# eps_q^p is that of the present loading process: zero after a re-seat, and zero again where an interrupted process goes on (rule return_point)",
         *notes,
         "# path, segment, rule, off, deps(6), dpc, sig(6), e, p_c, S_w, z(6), eps_q^p, reseats, unc",
     ]

@@ -98,10 +98,9 @@ class Params:
     x_rev: float = 1.0e-3
     p_min_ratio: float = 1.0e-3
     # memory, docs/theory/memory-rules.md section 2
-    rule: str = "threshold"  # classic, threshold, repositioning, resume
+    rule: str = "threshold"  # classic, threshold, repositioning, return_point
     eps_hat: float = 1.0e-4
     j: float = 1.0
-    resume_iso: bool = True  # rule resume, elastic way back: is the isotropic mechanism still resolved? (the rule leaves it open)
     # switches
     isotropic: bool = True
     retention: bool = True
@@ -323,14 +322,14 @@ class Rate:
     all_roots: tuple = ()
 
 
-def _mechanism(pt, deps, dpc, Ke, B, nscan, refine, elastic):
+def _mechanism(pt, deps, dpc, Ke, B, nscan, refine):
     dv = deps[0, 0] + deps[1, 1] + deps[2, 2]
     de = deps - dv / 3.0 * I3
     G = pt.G
     t = 2.0 * G * de - pt.r * (Ke * (dv - B))
     scale = 2.0 * G * norm(de) + Ke * norm(pt.r) * abs(dv - B)
     n, L, D, x, w, rts, fl = None, 0.0, 0.0, 0.0, 0.0, (), {}
-    if not elastic and norm(t) > 1.0e-14 * scale and scale > 0.0:
+    if norm(t) > 1.0e-14 * scale and scale > 0.0:
         pl = _Plane(pt, t, Ke)
         rts = tuple(roots_of(pl, nscan, refine))
         if rts:
@@ -346,15 +345,15 @@ def _mechanism(pt, deps, dpc, Ke, B, nscan, refine, elastic):
     return dp, ds, n, L, D, x, w, rts, fl
 
 
-def rates(sig, e, pc, z, r_in, deps, dpc, P, nscan=121, refine=False, elastic=False):
-    """docs/theory/material.md section 4.  sig, z, r_in, deps are full 3x3.  elastic=True: L = 0 (rule resume on its way back)."""
+def rates(sig, e, pc, z, r_in, deps, dpc, P, nscan=121, refine=False):
+    """docs/theory/material.md section 4.  sig, z, r_in, deps are full 3x3."""
     pt = Point(sig, e, pc, z, r_in, P)
     A, B = pt.A, pt.B1 * dpc
-    dp, ds, n, L, D, x, w, rts, fl = _mechanism(pt, deps, dpc, pt.K, 0.0, nscan, refine, elastic)
+    dp, ds, n, L, D, x, w, rts, fl = _mechanism(pt, deps, dpc, pt.K, 0.0, nscan, refine)
     iso = 0
-    if A * dp / pt.p + B > 0.0 and (P.resume_iso or not elastic):
+    if A * dp / pt.p + B > 0.0:
         Ke = pt.K / (1.0 + pt.K * A / pt.p)
-        second = _mechanism(pt, deps, dpc, Ke, B, nscan, refine, elastic)
+        second = _mechanism(pt, deps, dpc, Ke, B, nscan, refine)
         if A * second[0] / pt.p + B < 0.0:
             iso = 2
         else:
@@ -371,6 +370,22 @@ def rates(sig, e, pc, z, r_in, deps, dpc, P, nscan=121, refine=False, elastic=Fa
 # ---------------------------------------------------------------------------------------------------------------------
 # docs/theory/memory-rules.md: memory; state and integration
 # ---------------------------------------------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class Interrupted:
+    """A loading process that waits for the path to come back (rule return_point): its memory, direction and turning point."""
+    r_in: np.ndarray
+    n: np.ndarray
+    T: float
+
+    def to_go(self, r, Mb, P):
+        """How far r still is from the turning point along n; the bounding surface of now stands in for what lies beyond it."""
+        surface = SQ23 * lode(cos3t_of(self.n), P) * Mb / 1.001
+        return min(self.T, surface) - dd(r, self.n)
+
+
+MOST_INTERRUPTED = 4
+
+
 @dataclass
 class State:
     """State at the point.  r_in_before starts as the stress point's own r, J and eqp as zero: docs/theory/material.md section 1.4."""
@@ -383,8 +398,9 @@ class State:
     eqp: float = 0.0
     J: float = 0.0
     J_run: float = 0.0
-    n_last: np.ndarray | None = None
-    susp: dict | None = None  # rule resume: r_in, r_t, n_t, [d_back]
+    n_t: np.ndarray | None = None  # rule return_point: direction of the present process, and how far it came along it
+    T: float = 0.0
+    stack: list = field(default_factory=list)  # rule return_point: interrupted processes, the newest last
     reseats: int = 0
     nrate: int = 0
     nsteps: int = 0
@@ -431,14 +447,13 @@ def reseat(st, rt, P, where):
             new = r
             st.fallbacks += 1
         st.eqp = 0.0
-    elif P.rule == "resume":
+    elif P.rule == "return_point":
         new = r
-        if st.susp is None:
-            # A turn that is none (the elastic trial already points forward, drift in softening) suspends nothing: decision
-            dr_e = elastic_trial(st.sig, st.e, where[1], P)
-            if st.n_last is not None and dd(dr_e, st.n_last) < 0.0:
-                st.susp = dict(r_in=old.copy(), r_t=r.copy(), n_t=st.n_last.copy(), d_back=None)
-            st.eqp = 0.0
+        if st.n_t is not None and dd(elastic_trial(st.sig, st.e, where[1], P), st.n_t) <= 0.0:
+            if len(st.stack) == MOST_INTERRUPTED:
+                del st.stack[-2:]
+            st.stack.append(Interrupted(old.copy(), st.n_t, st.T))
+        st.eqp = 0.0
     else:
         raise ValueError(P.rule)
     st.r_in_before = old
@@ -456,9 +471,52 @@ def elastic_trial(sig, e, deps, P):
     return (2.0 * pt.G * dev(deps) - pt.r * (pt.K * np.trace(deps))) / pt.p
 
 
+def progress(st, r, n, P):
+    """How clearly the step that leads to r in the direction n belongs to its process; from 0 on it qualifies.  And the chord."""
+    c = r - st.r_in + P.x0 * n
+    return min(dd(r - st.r_in, n), dd(c, n) - 0.7 * norm(c)), c
+
+
+def note(st, r, n, P):
+    """Rule return_point: direction of the present process and its farthest point, where a plastic step qualifies.  That the
+    path goes forwards (t:n > 0) needs no test here: without an elastic domain |w| < pi/2."""
+    how, c = progress(st, r, n, P)
+    if how >= 0.0:
+        st.n_t = c / norm(c)
+        st.T = dd(r, st.n_t)
+
+
+def watched(st, t):
+    """Index of the interrupted process the path may come back to, or None: the newest, or else the one before."""
+    for k in (len(st.stack) - 1, len(st.stack) - 2):
+        if k >= 0 and dd(t, st.stack[k].n) > 0.0:
+            return k
+    return None
+
+
+def come_back(st, deps, P, s, landed=False):
+    """Rule return_point: lets every process go on whose turning point is reached.  landed: an event found it so."""
+    while True:
+        t = elastic_trial(st.sig, st.e, deps, P)
+        k = watched(st, t)
+        if k is None:
+            return
+        r = stress_ratio(st.sig, P)
+        Mb = Point(st.sig, st.e, st.pc, st.z, st.r_in, P).Mb
+        if not landed and st.stack[k].to_go(r, Mb, P) > 0.0:
+            return
+        landed = False
+        back = st.stack[k]
+        st.r_in = max((back.r_in, st.r_in), key=lambda a: dd(r - a, t))
+        st.n_t, st.T = back.n, back.T
+        st.eqp = 0.0
+        del st.stack[k:]
+        st.log.append(("return", s))
+
+
 def segment(st, deps, dpc, P, rtol=1e-10, method="DOP853", nscan=121, hook=None, max_reseats=100000, max_step=np.inf):
     """Integrate one straight segment (deps 3x3, dpc) in place.  Every re-seat is located as the root of (r-r_in):n + x_rev
-    on the dense output and the integration restarted there; the rule resume has its own events."""
+    on the dense output and the integration restarted there; so are the events of the rule return_point."""
     e0, pc0, dv = st.e, st.pc, float(np.trace(deps))
     x_rev = P.x_rev if P.hysteresis else 0.0
 
@@ -471,31 +529,26 @@ def segment(st, deps, dpc, P, rtol=1e-10, method="DOP853", nscan=121, hook=None,
     def unpack(y):
         return y[:9].reshape(3, 3), y[9:18].reshape(3, 3), y[18]
 
-    def rate_at(s, y, elastic):
+    def rate_at(s, y):
         st.nrate += 1
         sig, z, _ = unpack(y)
-        return rates(sig, e_of(s), pc_of(s), z, st.r_in, deps, dpc, P, nscan=nscan, elastic=elastic)
+        return rates(sig, e_of(s), pc_of(s), z, st.r_in, deps, dpc, P, nscan=nscan)
 
+    remembers = P.rule == "return_point"
     s = 0.0
     y = np.concatenate([st.sig.ravel(), st.z.ravel(), [st.eqp]])
     first_test = True
+    landed = False
     while s < 1.0:
-        # --- mode and memory at the start of a smooth piece
+        # --- memory at the start of a smooth piece
         sig, z, _ = unpack(y)
         st.sig, st.z, st.eqp, st.e, st.pc = sig.copy(), z.copy(), float(y[18]), e_of(s), pc_of(s)
-        elastic = False
-        if st.susp is not None:
-            r = stress_ratio(st.sig, P)
-            back = dd(elastic_trial(st.sig, st.e, deps, P), st.susp["n_t"]) > 0.0
-            if back:
-                elastic = True
-                d = norm(r - st.susp["r_t"])
-                if st.susp["d_back"] is None:
-                    st.susp["d_back"] = d
-            else:
-                st.susp["d_back"] = None
-        rt = rate_at(s, y, elastic)
-        if not elastic and rt.n is not None and rt.x < -x_rev and first_test:
+        if remembers:
+            come_back(st, deps, P, s, landed)
+            landed = False
+            y[18] = st.eqp
+        rt = rate_at(s, y)
+        if rt.n is not None and rt.x < -x_rev and first_test:
             reseat(st, rt, P, (s, deps))
             if st.reseats > max_reseats:
                 raise RuntimeError("too many re-seats")
@@ -507,28 +560,29 @@ def segment(st, deps, dpc, P, rtol=1e-10, method="DOP853", nscan=121, hook=None,
         first_test = True
 
         # --- smooth integration until an event or the end
+        t = elastic_trial(st.sig, st.e, deps, P)
+        k_watched = watched(st, t) if remembers else None
+        sides = [math.copysign(1.0, dd(t, i.n)) for i in st.stack[-2:]]
+
         def rhs(ss, yy):
-            q = rate_at(ss, yy, elastic)
+            q = rate_at(ss, yy)
             return np.concatenate([q.dsig.ravel(), q.dz.ravel(), [q.deqp]])
 
         def events(ss, yy):
             """Values that are positive inside the smooth piece."""
             sg, zz, eqp = unpack(yy)
-            ev = {}
-            if not elastic:
-                q = rate_at(ss, yy, False)
-                ev["reseat"] = (q.x + x_rev) if q.n is not None else 1.0
-                ev["_x"], ev["_n"] = q.x, q.n
-            if st.susp is not None:
+            q = rate_at(ss, yy)
+            ev = {"reseat": (q.x + x_rev) if q.n is not None else 1.0, "_x": q.x, "_n": q.n}
+            if remembers:
                 rr = stress_ratio(sg, P)
-                b = dd(elastic_trial(sg, e_of(ss), deps, P), st.susp["n_t"])
-                if elastic:
-                    ev["land"] = -dd(rr - st.susp["r_t"], st.susp["n_t"])
-                    ev["ball"] = 1.5 * st.susp["d_back"] - norm(rr - st.susp["r_t"])
-                    ev["out"] = b
-                else:
-                    ev["forget"] = P.eps_hat - eqp
-                    ev["back"] = -b
+                if q.n is not None:
+                    ev["astray"] = progress(st, rr, q.n, P)[0]
+                tt = elastic_trial(sg, e_of(ss), deps, P)
+                for name, side, i in zip(("side of a", "side of b"), sides, st.stack[-2:]):
+                    ev[name] = side * dd(tt, i.n)
+                if k_watched is not None:
+                    pt = Point(sg, e_of(ss), pc_of(ss), zz, st.r_in, P)
+                    ev["return"] = st.stack[k_watched].to_go(rr, pt.Mb, P)
             return ev
 
         scale = max(float(np.max(np.abs(st.sig))), P.p_min)
@@ -552,7 +606,7 @@ def segment(st, deps, dpc, P, rtol=1e-10, method="DOP853", nscan=121, hook=None,
                 if k.startswith("_") or v is None:
                     continue
                 v0 = ev0.get(k, 1.0)
-                if v < 0.0 and v0 >= 0.0 or (k in ("land", "forget", "ball") and v < 0.0):
+                if v < 0.0 and v0 >= 0.0:
                     dense = dense or slv.dense_output()
                     ta, tb = slv.t_old, slv.t
 
@@ -564,8 +618,8 @@ def segment(st, deps, dpc, P, rtol=1e-10, method="DOP853", nscan=121, hook=None,
             if ev1.get("_n") is not None:
                 if ev1["_x"] >= 0.0:
                     st.J_run = ev1["_x"]
-                if not hits:
-                    st.n_last = ev1["_n"]
+                if remembers and not hits:
+                    note(st, stress_ratio(unpack(slv.y)[0], P), ev1["_n"], P)
             if hits:
                 te, k = min(hits)
                 s, y = te, np.array(dense(te))
@@ -582,35 +636,33 @@ def segment(st, deps, dpc, P, rtol=1e-10, method="DOP853", nscan=121, hook=None,
         sig, z, _ = unpack(y)
         st.sig, st.z, st.eqp, st.e, st.pc = sig.copy(), z.copy(), float(y[18]), e_of(s), pc_of(s)
         if done_event == "reseat":
-            q = rate_at(s, y, False)
+            q = rate_at(s, y)
             st.J_run = 0.0  # its last value at x >= 0 was zero
-            st.n_last = q.n
             reseat(st, q, P, (s, deps))
             y[18] = st.eqp
             first_test = False
-        elif done_event == "land":
-            st.r_in_before, st.r_in = st.r_in, st.susp["r_in"]
-            st.n_last = st.susp["n_t"]
-            st.susp = None
-            st.log.append(("land", s))
-        elif done_event in ("forget", "ball"):
-            st.susp = None
-            st.log.append((done_event, s))
+        elif done_event == "return":
+            landed = True
         else:
             st.log.append((done_event, s))
+            if done_event == "astray":  # the last point that qualifies
+                q = rate_at(s, y)
+                c = progress(st, stress_ratio(st.sig, P), q.n, P)[1]
+                st.n_t = c / norm(c)
+                st.T = dd(stress_ratio(st.sig, P), st.n_t)
             # the switch sits on its own zero: step over it
             h = 1e-13
             y = y + h * rhs(s, y)
             s = s + h
     sig, z, _ = unpack(y)
     st.sig, st.z, st.eqp, st.e, st.pc = sig.copy(), z.copy(), float(y[18]), e_of(1.0), pc_of(1.0)
-    # running value and direction at the end of the segment
-    if not elastic:
-        q = rate_at(1.0, y, False)
-        if q.n is not None:
-            st.n_last = q.n
-            if q.x >= 0.0:
-                st.J_run = q.x
+    # running values at the end of the segment
+    q = rate_at(1.0, y)
+    if q.n is not None:
+        if q.x >= 0.0:
+            st.J_run = q.x
+        if remembers:
+            note(st, stress_ratio(st.sig, P), q.n, P)
     return st
 
 

@@ -4,7 +4,7 @@ from tools.page import Page, Script, Tolerance
 PAGE = Page(
     claim="rates and paths of the library are those of an implementation that shares nothing with it",
     kind="code-to-code",
-    input="200 single evaluations of the rates (`paths_rates.csv`), 27 six-component strain paths (`paths.csv`), "
+    input="200 single evaluations of the rates (`paths_rates.csv`), 29 six-component strain paths (`paths.csv`), "
           "numbers for single paths and states (`printed_numbers.csv`)",
     reference="`mud_reference.py`: full 3x3 tensors, tr(n^3) = 3 det n, the direction equation by a scan of the angle "
               "with Brent's method in every bracket, void ratio "

@@ -79,11 +79,13 @@ def monotone():
 
 def reversals():
     want = {(0.01, "clean"): (312.0,), (0.01, "classic"): (319.5,), (0.01, "threshold"): (294.0,), (0.01, "repositioning"): (292.6,),
-            (0.01, "resume"): (310.7,),
+            (0.01, "return_point"): (310.0,),
             (0.05, "clean"): (1574.0,), (0.05, "classic"): (1522.9,), (0.05, "threshold"): (1524.2,),
-            (0.05, "repositioning"): (1524.2,), (0.05, "resume"): (1571.1,),
+            (0.05, "repositioning"): (1524.2,), (0.05, "return_point"): (1536.6,),
             (0.10, "clean"): (3015.6, 3242.0, 3492.1), (0.10, "classic"): (2936.1, 3139.8, 3396.7),
-            (0.10, "threshold"): (2943.1, 3178.1, 3456.4), (0.10, "repositioning"): (2943.1,), (0.10, "resume"): (3012.1,)}
+            (0.10, "threshold"): (2943.1, 3178.1, 3456.4), (0.10, "repositioning"): (2943.1,), (0.10, "return_point"): (2946.5, 3181.4, 3459.4)}
+    around = {"threshold": ((0, "before", 2920.0), (1, "turn", 2845.0), (2, "return", 2848.0)),
+              "return_point": ((1, "turn", 2845.0), (2, "return", 2851.2))}
     for (at, rule), printed in want.items():
         P = replace(Params(), rule="classic" if rule == "clean" else rule)
         st = isotropic(100, 0.735)
@@ -94,8 +96,8 @@ def reversals():
             for d in (-1.5e-4, 1.5e-4):
                 segment(st, undrained(d), 0.0, P, rtol=RTOL)
                 q.append(st.q)
-            if (at, rule) == (0.10, "threshold"):
-                for k, (what, v) in enumerate((("before", 2920.0), ("turn", 2845.0), ("return", 2848.0))):
+            if at == 0.10:
+                for k, what, v in around.get(rule, ()):
                     put("integration 6.2", name, f"q {what}", v, q[k])
         pos = at
         for m, v in zip((at + 0.005, 0.12, 0.15), printed):
@@ -107,7 +109,7 @@ def reversals():
 def noise40():
     """40 reversals of 1e-5, taken here as equally spaced: after 0.01 + 0.001 k, k = 0..39 (the table of the reversals does not say where)."""
     base = 1389.6314
-    for rule, printed in (("classic", -3.8), ("threshold", -10.0), ("repositioning", -10.5), ("resume", -0.05)):
+    for rule, printed in (("classic", -3.8), ("threshold", -10.0), ("repositioning", -10.5), ("return_point", -4.7)):
         P = replace(Params(), rule=rule)
         st = isotropic(100, 0.735)
         segment(st, undrained(0.01), 0.0, P, rtol=1e-9)
