@@ -25,7 +25,7 @@ sys.path.insert(0, str(ROOT / "verification/material/verdugo_ishihara"))
 import laboratory as tests_of_verdugo_ishihara  # noqa: E402
 
 RULES = {"classic": (0, 0.0), "threshold": (1, 0.0), "repositioning": (2, 0.0), "return_point": (3, 0.0),
-         "as_published": (4, 0.0), "nucleus": (1, 5e-5)}   # name: memory_rule, rho_e
+         "as_published": (4, 0.0), "nucleus": (1, 5e-5), "return_point_2e-5": (3, 2e-5)}   # name: memory_rule, rho_e
 SIZES = [10.0 ** k for k in range(-9, -2)]
 SETTINGS = [dict(e=e, drained=drained, path=path, suction=suction) for e, drained, path, suction in itertools.product(
     (0.735, 0.907), (False, True), ("straight", "turning"), (0.0, 100.0))]
@@ -69,8 +69,9 @@ def transverse():
         if drained and noise == "six":
             continue
         values = dict(e=e, drained=drained, noise=noise, size=size, events=300, random_events=True)
-        for name in ("classic", "threshold", "repositioning", "return_point"):
-            yield case("transverse", name, **values)
+        for name in RULES:
+            if name not in ("as_published", "nucleus"):
+                yield case("transverse", name, **values)
         for radius in radii:
             yield case("transverse", "nucleus", radius, **values)
 
@@ -88,7 +89,7 @@ def numerics():
 
 
 def hard():
-    """Made to break the rule that was resume: reversals inside reversals, noise while unloading, growing cycles."""
+    """Made to break a memory that comes back: reversals inside reversals, noise while unloading, growing cycles."""
     for name, e, drained in itertools.product(RULES, (0.735, 0.907), (False, True)):
         for size in (1e-6, 1e-5, 1e-4):
             yield case("nested", name, e=e, drained=drained, noise="nested", events=40, size=size)
@@ -102,7 +103,7 @@ def hard():
 def clean():
     """No noise: what the rule and the nucleus do by themselves."""
     for name, setting in itertools.product(RULES, SETTINGS):
-        for radius in (1e-5, 5e-5, 1e-4) if name == "nucleus" else (0.0,):
+        for radius in (1e-5, 5e-5, 1e-4) if name == "nucleus" else (None,):
             yield case("clean", name, radius, **setting)
 
 
@@ -144,8 +145,23 @@ def length(s):
     return math.sqrt(sum(x * x for x in s[:3]) + 2.0 * sum(x * x for x in s[3:]))
 
 
-def compute(program, commit, name):
-    cases = [*GROUPS[name]()]
+def kept(group, rules):
+    """The rows of a committed file that other rules than these made, and the note of where they come from."""
+    path = pathlib.Path(__file__).with_name(f"{group}.csv")
+    heads = [line for line in path.read_text(encoding="utf-8").splitlines() if line.startswith("# ")]
+    fixed = dict(part.rsplit(" ", 1) for part in heads[-1].split(": ", 1)[1].split(", "))
+    fixed = {k: {"True": "1", "False": "0"}.get(v) or (f"{float(v):g}" if re.fullmatch(r"[-+.\de]+", v) else v)
+             for k, v in fixed.items()}
+    rows = [fixed | row for row in tables.rows(path) if row["rule"] in RULES and row["rule"] not in rules]
+    return rows, [line for line in heads[:-1] if rows and not set(rules) >= set(line.split(": ")[-1].split(", "))]
+
+
+def text_of(value):
+    return f"{value:g}" if isinstance(value, float) else str(int(value)) if isinstance(value, bool) else str(value)
+
+
+def compute(program, commit, name, rules):
+    cases = [c for c in GROUPS[name]() if c["rule"] in rules]
     own = [c["group"] in ("unloading", "growing") for c in cases]
     keys = {}
     for c, o in zip(cases, own):
@@ -170,15 +186,20 @@ def compute(program, commit, name):
         rows.append(row)
     for group in dict.fromkeys(c["group"] for c in cases):
         chosen = [r for r in rows if r["group"] == group]
-        varied = [f for f in FIELDS[1:] if len({str(r[f]) for r in chosen}) > 1 or f in ("rule", "failed", "distance")]
+        heads = [f"# made at commit {commit}"]
+        if len(rules) < len(RULES):
+            others, heads = kept(group, rules)
+            heads.append(f"# made at commit {commit}: {', '.join(rules)}")
+            chosen = sorted(others + chosen, key=lambda row: [*RULES].index(row["rule"]))
+        chosen = [{f: text_of(r[f]) for f in FIELDS if f in r} for r in chosen]
+        varied = [f for f in FIELDS[1:] if len({r[f] for r in chosen}) > 1 or f in ("rule", "failed", "distance")]
         fixed = {f: chosen[0][f] for f in FIELDS[1:] if f not in varied}
         with open(folder(__file__) / f"{group}.csv", "w", encoding="utf-8", newline="") as file:
-            file.write(f"# made at commit {commit}\n# the same in every row: "
+            file.write("\n".join(heads) + "\n# the same in every row: "
                        + ", ".join(f"{k} {v}" for k, v in fixed.items()) + "\n")
             writer = csv.DictWriter(file, varied, extrasaction="ignore", lineterminator="\n")
             writer.writeheader()
-            writer.writerows({k: f"{v:g}" if isinstance(v, float) else int(v) if isinstance(v, bool) else v
-                              for k, v in r.items()} for r in chosen)
+            writer.writerows(chosen)
 
 
 def laboratory(build, commit):
@@ -200,12 +221,15 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--groups", nargs="*", choices=[*GROUPS, "laboratory"], default=[*GROUPS, "laboratory"],
                         help="what to run again")
+    parser.add_argument("--rules", nargs="*", choices=[*RULES], default=[*RULES],
+                        help="whose rows to make again; those of other rules stay as they are committed")
     arguments = parser.parse_args()
     build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or ROOT / "build/release")
     commit = subprocess.run(["git", "describe", "--always"], cwd=ROOT, capture_output=True, text=True).stdout.strip()
     for group in arguments.groups:
         if group in GROUPS:
-            compute(build / "verification/studies/oscillation/mud_oscillation", commit or "unknown", group)
+            compute(build / "verification/studies/oscillation/mud_oscillation", commit or "unknown", group,
+                    arguments.rules)
     if "laboratory" in arguments.groups:
         laboratory(build, commit or "unknown")
 
