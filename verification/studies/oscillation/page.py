@@ -4,7 +4,7 @@ from tools.page import Page, Script
 
 PAGE = Page(
     claim="noise on a path: distance from the clean path, cost and failures of each memory rule; the elastic nucleus; "
-          "as measured while `resume`, since withdrawn, was the default",
+          "why an elastic domain belongs to the default rule `return_point`",
     kind="study",
     input="a point of Toyoura sand at p' 100 kPa, e 0.735 or 0.907, sheared at constant volume or with the lateral "
           "effective stresses held, straight or turning into simple "
