@@ -26,7 +26,8 @@ module checkpoints
    character(*), parameter :: FORMAT = '5'      !< Grows with every change of what is stored.
    integer, parameter :: N_COUNTERS = 13
    character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
-                                        'contact, seepage, damping [kJ], outflow, outflow_air [m3]'
+                                        'contact, seepage, damping [kJ], outflow, outflow_air [m3], '// &
+                                        'largest_work, most_created [kJ]'
 contains
    subroutine write_checkpoint(model, run, tables, fault)
       type(model_t), intent(in) :: model

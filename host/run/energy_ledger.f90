@@ -12,7 +12,11 @@ module energy_ledger
    use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
    implicit none (type, external)
    private
-   public :: ledger_t, book_step, kinetic_energy, imbalance
+   public :: ledger_t, book_step, book_creation, kinetic_energy, imbalance, ALARMING_SHARE
+
+   !> Energy that a run creates out of nothing, as a share of the largest work done in it, beyond which its answers are
+   !> not to be trusted: the balances of the verified scenes close to 1e-3 and better [-].
+   real(wp), parameter :: ALARMING_SHARE = 0.01_wp
 
    type :: ledger_t
       real(wp) :: kinetic = 0.0_wp, kinetic_0 = 0.0_wp   !< Now, and at the start [kJ].
@@ -24,6 +28,8 @@ module energy_ledger
       real(wp) :: seepage = 0.0_wp    !< Dissipated by seepage [kJ].
       real(wp) :: damping = 0.0_wp    !< Dissipated by the damping of regions [kJ].
       real(wp) :: outflow = 0.0_wp, outflow_air = 0.0_wp !< Through prescribed pressures: both fluids, air [m3].
+      real(wp) :: largest_work = 0.0_wp !< Largest of the works and of the kinetic energy at the start, so far [kJ].
+      real(wp) :: most_created = 0.0_wp !< Largest energy that dynamic stages have created, so far [kJ].
    end type ledger_t
 contains
    subroutine book_step(domain, dofs, scheme, constraint, reaction, old, new, ledger)
@@ -128,6 +134,17 @@ contains
          energy = energy + 0.5_wp*mass(i)*state%v(dofs%field(i), dofs%node(i))**2
       end do
    end function kinetic_energy
+
+   !> After a step is booked: the largest work so far and, in a dynamic stage, the most energy created, which is what
+   !> the balance leaves open with the wrong sign.
+   pure subroutine book_creation(scheme, ledger)
+      type(scheme_t), intent(in) :: scheme
+      type(ledger_t), intent(inout) :: ledger
+
+      ledger%largest_work = max(ledger%largest_work, abs(ledger%loads), abs(ledger%supports), abs(ledger%gravity), &
+                                ledger%kinetic_0)
+      if (scheme%kind == DYNAMIC) ledger%most_created = max(ledger%most_created, -imbalance(ledger))
+   end subroutine book_creation
 
    !> What the mechanical balance leaves open [kJ].
    pure real(wp) function imbalance(ledger)

@@ -4,14 +4,15 @@ module step_booking
    use kinds, only: wp
    use wall_clock, only: clock, lap
    use contact_interfaces, only: work_of_contacts
-   use energy_ledger, only: book_step
+   use energy_alarm, only: tell_creation
+   use energy_ledger, only: book_step, book_creation
    use generalised_alpha, only: scheme_t
    use linear_system, only: T_CONTACT
    use model_types, only: model_t
    use run_state, only: run_t
    implicit none (type, external)
    private
-   public :: book_accepted_step
+   public :: book_accepted_step, tell_creation
 contains
    subroutine book_accepted_step(model, scheme, run)
       type(model_t), intent(in) :: model
@@ -21,10 +22,12 @@ contains
 
       call book_step(model%domain, model%dofs, scheme, run%constraint, run%system%reaction, run%state, run%next, &
                      run%ledger)
-      if (.not. allocated(run%system%contacts%interfaces)) return
-      t0 = clock()
-      run%ledger%contact = run%ledger%contact &
-         + work_of_contacts(run%system%contacts, model%dofs, run%state%x, run%next%x)
-      call lap(run%system%seconds(T_CONTACT), t0)
+      if (allocated(run%system%contacts%interfaces)) then
+         t0 = clock()
+         run%ledger%contact = run%ledger%contact &
+            + work_of_contacts(run%system%contacts, model%dofs, run%state%x, run%next%x)
+         call lap(run%system%seconds(T_CONTACT), t0)
+      end if
+      call book_creation(scheme, run%ledger)
    end subroutine book_accepted_step
 end module step_booking

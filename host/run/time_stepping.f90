@@ -13,7 +13,7 @@ module time_stepping
    use run_state, only: run_t
    use sparse_factors, only: release
    use step_attempt, only: begin_stage, try_step
-   use step_booking, only: book_accepted_step
+   use step_booking, only: book_accepted_step, tell_creation
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
@@ -38,6 +38,7 @@ contains
       call lap(run%seconds_output, t0)
       do i = max(1, run%at%stage), size(model%stages)
          call run_stage(model, i, run, fault, observer)
+         if (present(observer)) call tell_creation(model%stages(i), run%ledger)
          t0 = clock()
          ! Also after a failure, which is reported, not what its last output may meet.
          last = fault_t()
