@@ -106,7 +106,10 @@ contains
          arc%cubic(2) = ddot(q2, n_t)
          arc%cubic(3) = ddot(q2, q)
          start = -1.0_wp
-         if (known) start = ddot(w%n, q)/(1.0_wp + ddot(w%n, n_t))
+         if (known) then
+            ! a direction against t has no half angle
+            if (ddot(w%n, n_t) > -0.9_wp) start = ddot(w%n, q)/(1.0_wp + ddot(w%n, n_t))
+         end if
          call find_angle(par, arc, start, w, tau, at, found)
          w%n = at%cosine*n_t + at%sine*q
       end if
