@@ -80,9 +80,9 @@ for test, (q_page, v_page) in LAB.items():
           f"q {q:.2f} %, eps_v {v:.3f} points")
 
 # Newton with the consistent tangent. Without elastic nucleus an error e becomes at most C e^2 with C the relative
-# curvature, here up to 11; a linear contraction, even by a hundred from the first errors of 2e-4, would show 50. With the
-# nucleus substeps follow its turning, and the derivative at frozen sizes leaves a contraction of some 1e-3 at the default
-# tolerance.
+# curvature, here up to 11; a linear contraction, even by a hundred from the first errors of 2e-4, would show 50. With
+# the nucleus substeps follow its turning, and the derivative at frozen sizes leaves a contraction of some 1e-3 at the
+# default tolerance.
 def newton_errors(entry):
     text = (cases / "vi_drained_TMD1.nml").read_text()
     text = text.replace("../materials/toyoura.nml'",

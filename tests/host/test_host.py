@@ -127,9 +127,9 @@ if done.returncode == 0:
 for code in re.findall(r"EXIT_\w+ = (\d+)", (root / "host/exit_codes.f90").read_text()):
     check(f"the manual names exit code {code}", f"| {code} |" in manual)
 
-# A plate that bounces on its penalty: generalised-alpha with rho_inf = 0.8 gains energy at every opening and closing where
-# a period of the penalty has few steps (five times the energy of the fall here); rho_inf = 0 never does. The run must say
-# so, on standard error, also where it is quiet.
+# A plate that bounces on its penalty: generalised-alpha with rho_inf = 0.8 gains energy at every opening and closing
+# where a period of the penalty has few steps (five times the energy of the fall here); rho_inf = 0 never does. The run
+# must say so, on standard error, also where it is quiet.
 fall = (root / "verification/host/contact/fall.nml").read_text().replace("penalty = 1.0e7", "penalty = 1.0e8") \
     .replace("dt = 1.0e-5", "dt = 3.0e-4").replace("duration = 0.006", "duration = 0.06")
 for rho, word in (("0.8", "has created energy"), ("0.0", "")):

@@ -4,7 +4,7 @@ module mud_transitions
    use mud_kinds, only: wp
    use mud_bounding, only: excess
    use mud_consistent, only: sensitivity_t, jump_of_memory, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
-   use mud_events, only: closing_mode, closing_rate, psi_at, LARGEST_EXCESS, EVENT_REVERSAL, EVENT_RETURN
+   use mud_events, only: closing_mode, closing_rate, psi_at, LARGEST_EXCESS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN
    use mud_increment, only: increment_t, rate_of
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY, MODE_ELASTIC
@@ -45,6 +45,8 @@ contains
          return
       end if
 
+      ! beyond the surface by a landing, whichever way the strain leads: suction may move the surface
+      if (event == EVENT_BOUNDS) trial%pressed = .true.
       if (inc%inside .and. .not. trial%pressed) then
          trial%mode = MODE_ELASTIC
          call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
