@@ -27,7 +27,7 @@ module checkpoints
    integer, parameter :: N_COUNTERS = 13
    character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
                                         'contact, seepage, damping [kJ], outflow, outflow_air [m3], '// &
-                                        'largest_work, most_created [kJ]'
+                                        'largest_work, open_0, most_created [kJ]'
 contains
    subroutine write_checkpoint(model, run, tables, fault)
       type(model_t), intent(in) :: model

@@ -29,7 +29,8 @@ module energy_ledger
       real(wp) :: damping = 0.0_wp    !< Dissipated by the damping of regions [kJ].
       real(wp) :: outflow = 0.0_wp, outflow_air = 0.0_wp !< Through prescribed pressures: both fluids, air [m3].
       real(wp) :: largest_work = 0.0_wp !< Largest of the works and of the kinetic energy at the start, so far [kJ].
-      real(wp) :: most_created = 0.0_wp !< Largest energy that dynamic stages have created, so far [kJ].
+      real(wp) :: open_0 = 0.0_wp       !< What the balance left open where the present stage began [kJ].
+      real(wp) :: most_created = 0.0_wp !< Largest energy that a dynamic stage has created, so far [kJ].
    end type ledger_t
 contains
    subroutine book_step(domain, dofs, scheme, constraint, reaction, old, new, ledger)
@@ -143,7 +144,7 @@ contains
 
       ledger%largest_work = max(ledger%largest_work, abs(ledger%loads), abs(ledger%supports), abs(ledger%gravity), &
                                 ledger%kinetic_0)
-      if (scheme%kind == DYNAMIC) ledger%most_created = max(ledger%most_created, -imbalance(ledger))
+      if (scheme%kind == DYNAMIC) ledger%most_created = max(ledger%most_created, ledger%open_0 - imbalance(ledger))
    end subroutine book_creation
 
    !> What the mechanical balance leaves open [kJ].

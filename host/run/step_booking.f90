@@ -5,7 +5,7 @@ module step_booking
    use wall_clock, only: clock, lap
    use contact_interfaces, only: work_of_contacts
    use energy_alarm, only: tell_creation
-   use energy_ledger, only: book_step, book_creation
+   use energy_ledger, only: book_step, book_creation, imbalance
    use generalised_alpha, only: scheme_t
    use linear_system, only: T_CONTACT
    use model_types, only: model_t
@@ -20,6 +20,8 @@ contains
       type(run_t), intent(inout) :: run
       real(wp) :: t0
 
+      ! the velocities of a stage without inertia are no motion: each stage begins its own account
+      if (run%at%step == 1) run%ledger%open_0 = imbalance(run%ledger)
       call book_step(model%domain, model%dofs, scheme, run%constraint, run%system%reaction, run%state, run%next, &
                      run%ledger)
       if (allocated(run%system%contacts%interfaces)) then
