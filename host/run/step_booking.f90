@@ -21,7 +21,7 @@ contains
       real(wp) :: t0
 
       ! the velocities of a stage without inertia are no motion: each stage begins its own account
-      if (run%at%step == 1) run%ledger%open_0 = imbalance(run%ledger)
+      if (run%at%step == 1 .and. run%steps > 1) run%ledger%open_0 = imbalance(run%ledger)
       call book_step(model%domain, model%dofs, scheme, run%constraint, run%system%reaction, run%state, run%next, &
                      run%ledger)
       if (allocated(run%system%contacts%interfaces)) then
