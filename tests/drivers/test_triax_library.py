@@ -1,5 +1,6 @@
 """mud_triax as a library: a case given as text has the table that the program writes, mistakes come back as texts."""
 import ctypes
+import os
 import pathlib
 import subprocess
 import sys
@@ -8,6 +9,10 @@ import threading
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
 from checking import build, check, finish, root, work  # noqa: E402
 
+if os.environ.get("MUD_PRESET") == "sanitize":
+    print("note: a Python without sanitizers cannot load a library with them; the other builds run the library")
+    check("the library is built", (build / "drivers/libmud_triax.so").exists(), "")
+    finish()
 library = ctypes.CDLL(str(build / "drivers/libmud_triax.so"))
 handle_of, text_of = ctypes.c_void_p, ctypes.create_string_buffer
 for name in ("mud_triax_rows", "mud_triax_columns", "mud_triax_column", "mud_triax_values", "mud_triax_remarks",
