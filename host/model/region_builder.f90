@@ -76,7 +76,8 @@ contains
       integer :: group, k
 
       group = mesh_group(domain%mesh, given%group_name, place_of(given), fault)
-      if (fault%code == 0) k = defined_name('material', given%material_name, materials%name, place_of(given), fault)
+      if (fault%code /= 0) return
+      k = defined_name('material', given%material_name, materials%name, place_of(given), fault)
       if (fault%code /= 0) return
       associate (region => domain%regions(number))
          allocate (region%law, source=materials(k)%law)
