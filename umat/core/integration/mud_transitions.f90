@@ -37,6 +37,7 @@ contains
 
       jump = JUMP_NONE
       trial%watched = 0
+      trial%advanced = .false.
       call stress_ratio(par, state%sigma, p, r)
       trial%mode = MODE_ORDINARY
       trial%r_in = state%memory%r_in
