@@ -73,6 +73,8 @@ program mud_host
       if (fault%code == 0) call run_stages(model, run, fault, output)
    end if
    if (.not. (quiet .or. only_check) .and. run%steps > 0) call account()
+   ! A main program's variables are not freed at its end; a leak checker would report these two.
+   deallocate (folder, restart)
    if (fault%code /= 0) then
       write (error_unit, '(a)') trim(fault%text)
       stop fault%code, quiet=.true.
