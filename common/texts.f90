@@ -9,7 +9,7 @@ module texts
    private
    public :: lower_case, short, whole, read_number, from_c, word_place
 
-   !> A whole number as text.
+   !> An integer as text.
    interface whole
       module procedure whole_32, whole_64
    end interface whole

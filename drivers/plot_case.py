@@ -4,7 +4,6 @@ Several files are drawn over each other. The panels follow from what the test di
 pore pressure where it builds up, suction and saturation where suction moves, cycles where there are any.
 """
 import argparse
-import csv
 import pathlib
 import sys
 
@@ -13,6 +12,10 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import matplotlib.ticker  # noqa: E402
 import numpy as np  # noqa: E402
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "common"))
+sys.dont_write_bytecode = True
+import tables  # noqa: E402 (its folder is known only now)
 
 COLOURS = ("#0b3c6f", "#c8553d", "#3a8f6a", "#8a5a9e", "#b58900", "#555555")
 LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)))
@@ -29,15 +32,11 @@ def read_result(path):
         import h5py
         with h5py.File(path) as file:
             return ({k: v.decode() for k, v in file.attrs.items()}, {k: np.array(v, float) for k, v in file.items()})
-    facts, lines = {}, []
-    for line in path.read_text(encoding="utf-8").splitlines():
-        if line.startswith("# "):
-            name, _, text = line[2:].rpartition(": ") if line.startswith("# not") else line[2:].partition(": ")
-            facts[name] = text
-        else:
-            lines.append(line)
-    rows = list(csv.DictReader(lines))
-    return facts, {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+    facts = {}
+    for line in tables.comments(path):
+        name, _, text = line.rpartition(": ") if line.startswith("not") else line.partition(": ")
+        facts[name] = text
+    return facts, tables.columns(path)
 
 
 def moves(run, name, scale=None):

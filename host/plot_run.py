@@ -4,7 +4,6 @@ Writes fields.png (a row for every time, a column for every field) and histories
 for every point) into the folder. Without options: the last moment, and of everything what changes.
 """
 import argparse
-import csv
 import pathlib
 import re
 import sys
@@ -15,6 +14,10 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import matplotlib.tri  # noqa: E402
 import numpy as np  # noqa: E402
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "common"))
+sys.dont_write_bytecode = True
+import tables  # noqa: E402 (its folder is known only now)
 
 COLOURS = ("#0b3c6f", "#c8553d", "#3a8f6a", "#8a5a9e", "#b58900", "#555555")
 # Components of vectors by the names of histories.csv.
@@ -133,10 +136,8 @@ def draw_fields(run, frames, names, factor, output):
 
 
 def read_histories(folder):
-    with open(folder / "histories.csv", newline="", encoding="utf-8") as file:
-        rows = list(csv.reader(file))
-    values = np.array([[float(v) for v in row] for row in rows[1:]]).T
-    return values[0] if len(values) else np.array([]), dict(zip(rows[0][1:], values[1:]))
+    table = tables.columns(folder / "histories.csv")
+    return table.pop("time"), table
 
 
 def draw_histories(run, time, table, names, output):
@@ -190,7 +191,10 @@ def main():
     names = names or [n for n in USUAL if n in run.names and tells(run, last, n)][:PAGE] or ["u_z"]
     draw_fields(run, list(dict.fromkeys(frames)), names, options.deformed, output / "fields.png")
 
-    time, table = read_histories(options.folder)
+    try:
+        time, table = read_histories(options.folder)
+    except (OSError, tables.TableError) as problem:
+        sys.exit(f"plot_run: {problem}")
     if options.window:
         inside = (time >= options.window[0]) & (time <= options.window[1])
         time, table = time[inside], {name: values[inside] for name, values in table.items()}

@@ -20,6 +20,9 @@ import h5py
 import numpy as np
 
 root = pathlib.Path(__file__).resolve().parents[1]
+sys.path.append(str(root / "common"))
+import tables  # noqa: E402 (its folder is known only now)
+
 build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
 
 
@@ -127,11 +130,10 @@ def apart(one, other):
         return ""
     if one.suffix != ".csv":
         return "the text"
-    a, b = ([line.split(",") for line in path.read_text().splitlines()] for path in (one, other))
-    if a[0] != b[0] or len(a) != len(b):
-        return f"columns or rows ({len(a) - 1} and {len(b) - 1})"
-    return ", ".join(f"{head} {largest(*columns)}" for head, *columns in
-                     zip(a[0], zip(*a[1:]), zip(*b[1:])) if columns[0] != columns[1])
+    if tables.header(one) != tables.header(other) or len(a := tables.rows(one)) != len(b := tables.rows(other)):
+        return "columns or number of rows"
+    pairs = {name: [[row[name] for row in table] for table in (a, b)] for name in tables.header(one)}
+    return ", ".join(f"{name} {largest(*pair)}" for name, pair in pairs.items() if pair[0] != pair[1])
 
 
 def largest(a, b):

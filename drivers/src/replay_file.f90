@@ -147,7 +147,7 @@ contains
       code = verify(trim(word), '-0123456789')
       if (code == 0) read (word, *, iostat=code) value
       if (code /= 0) then
-         call complain(source, '`'//key//'` needs a whole number, found `'//trim(word)//'`.', fault)
+         call complain(source, '`'//key//'` needs an integer, found `'//trim(word)//'`.', fault)
       else if (value < lower .or. value > upper) then
          call complain(source, '`'//key//'` is '//whole(int(value))//', allowed '//whole(lower)//' to '// &
                        whole(upper)//'.', fault)

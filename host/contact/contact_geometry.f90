@@ -1,4 +1,4 @@
-!> Two surfaces that may touch, as a contact needs them: their edges, once per mesh, and whether given coordinates will
+!> Two surfaces that may come into contact: their edges, once per mesh, and whether given coordinates will
 !> do. docs/theory/contact.md section 2.
 module contact_geometry
    use contact_projection, only: edge_of, least_stretch
@@ -10,7 +10,7 @@ module contact_geometry
    private
    public :: contact_geometry_t, contact_prepare, check_coordinates
 
-   !> Two surfaces that may touch, prepared once. Unknowns are numbered 2 (node - 1) + direction, first the slave's
+   !> Two surfaces that may come into contact, prepared once. Unknowns are numbered 2 (node - 1) + direction, first the slave's
    !> nodes, then the master's.
    type :: contact_geometry_t
       integer :: slave_nodes = 0, master_nodes = 0

@@ -21,7 +21,7 @@ module contact_interfaces
       real(wp), allocatable :: x0(:, :)     !< (2, nodes) at the start [m]
    end type surface_t
 
-   !> The interface of two surfaces that may touch.
+   !> The interface of two surfaces that may come into contact.
    type :: contact_interface_t
       type(contact_geometry_t) :: geometry
       type(contact_workspace_t) :: work

@@ -105,7 +105,7 @@ contains
       values = 0
       if (fault%code /= 0) return
       read (reader%text, *, iostat=status) values
-      if (status /= 0) call wrong(reader, 'expected '//whole(size(values))//' whole numbers', fault)
+      if (status /= 0) call wrong(reader, 'expected '//whole(size(values))//' integers', fault)
    end subroutine integers
 
    subroutine read_format(reader, fault)

@@ -44,7 +44,7 @@ module model_types
       integer :: group = 0                  !< Boundary that it is joined to, 0: none.
    end type plate_t
 
-   !> Two boundaries, or a boundary and a plate, that may touch.
+   !> Two boundaries, or a boundary and a plate, that may come into contact.
    type, extends(scene_contact_t) :: contact_pair_t
       integer :: slave = 0, master = 0      !< Groups of the mesh.
       integer :: plate = 0                  !< The master as a plate with a face of its own, 0: it is none.

@@ -128,7 +128,7 @@ def strange_use(files):
             for number, module, _ in uses(text) if module not in files and module not in known]
 
 
-def astray(suites, folders):
+def misplaced(suites, folders):
     """Suites whose folder is not that of what they test: tests/X/... for X/..."""
     beside = {"architecture", "umat/contract"}   # of the whole tree, of the whole library
     return [f"{suite}: there is no folder {place}" for suite in suites
@@ -178,8 +178,8 @@ def planted():
          [("node", "host/mesh", "call solve(n) ! umfpack_di_solve")]),
         ("a module from nowhere", strange_use, [("node", "host/mesh", "use somewhere, only: x")],
          [("node", "host/mesh", "use, intrinsic :: iso_fortran_env, only: x")])]
-    mirror = [] if (astray(["tests/unit/test_a.pf"], {"host/mesh"})
-                    and not astray(["tests/host/mesh/test_a.pf"], {"host/mesh"})) else ["suites astray"]
+    mirror = [] if (misplaced(["tests/unit/test_a.pf"], {"host/mesh"})
+                    and not misplaced(["tests/host/mesh/test_a.pf"], {"host/mesh"})) else ["misplaced suites"]
     return (mirror + [f"{name}: the offence is not seen" for name, rule, bad, _ in cases if not rule(tree(*bad))]
             + [f"{name}: innocent code is blamed" for name, rule, _, good in cases if rule(tree(*good))])
 
@@ -216,7 +216,7 @@ def main():
          [f for f in too_long(files) if not known(f)]),
         ("HDF5, LAPACK and UMFPACK live in one file each", foreign(files)),
         ("every module that is used is there", strange_use(files)),
-        ("tests mirror the tree", astray([str(file.relative_to(root)) for file in sources("tests/**/test_*")],
+        ("tests mirror the tree", misplaced([str(file.relative_to(root)) for file in sources("tests/**/test_*")],
                                          {str(folder.relative_to(root)) for folder in sources("*", "*/*", "*/*/*")
                                           if folder.is_dir() and folder.parts[len(root.parts)] != "tests"}))]
     failed = 0

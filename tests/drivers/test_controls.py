@@ -1,5 +1,4 @@
 """Controls of mud_triax: what is held is held, what leads arrives, cycles turn where they should, stops stop."""
-import csv
 import math
 import pathlib
 import subprocess
@@ -7,6 +6,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
 from checking import build, check, finish, root, work  # noqa: E402
+import tables  # noqa: E402 (checking knows its folder)
 
 triax = build / "drivers/mud_triax"
 NORM = 173      # kPa: the stress of 100 kPa as a tensor, which the promise is relative to
@@ -24,14 +24,12 @@ def call(*stages, initial="p_eff = 100.0, void_ratio = 0.833", output="case.csv"
 
 
 def run(*stages, **options):
-    """Rows and comment lines."""
+    """Rows and comments."""
     done = call(*stages, **options)
     check(f"{stages[-1]} runs", done.returncode == 0, done.stderr)
     if done.returncode:
         sys.exit(1)
-    lines = (work / "case.csv").read_text().splitlines()
-    rows = csv.DictReader(line for line in lines if not line.startswith("#"))
-    return [{k: float(v) for k, v in row.items()} for row in rows], [x for x in lines if x.startswith("#")]
+    return tables.numbers(work / "case.csv"), tables.comments(work / "case.csv")
 
 
 def spread(rows, value):

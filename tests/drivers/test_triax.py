@@ -1,5 +1,4 @@
 """mud_triax as a user meets it: named cases give published numbers, held stresses are held, mistakes are explained."""
-import csv
 import math
 import pathlib
 import subprocess
@@ -7,6 +6,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
 from checking import build, check, finish, root, work  # noqa: E402
+import tables  # noqa: E402 (checking knows its folder)
 
 triax = build / "drivers/mud_triax"
 cases = root / "drivers/cases"
@@ -21,8 +21,7 @@ def run(case, *words):
     done = call(case, "--output", out, "--quiet", *words)
     if done.returncode:
         return done, []
-    lines = [line for line in out.read_text().splitlines() if not line.startswith("#")]
-    return done, [{k: float(v) for k, v in row.items()} for row in csv.DictReader(lines)]
+    return done, tables.numbers(out)
 
 
 def at(rows, column, value):
@@ -65,8 +64,7 @@ def rms(values):
     return 100*math.sqrt(sum(value**2 for value in values)/len(values))
 
 
-source = root / "verification/material/verdugo_ishihara/verdugo_ishihara_1996_drained_TC.csv"
-data = list(csv.DictReader(line for line in source.read_text().splitlines() if not line.startswith("#")))
+data = tables.rows(root / "verification/material/verdugo_ishihara/verdugo_ishihara_1996_drained_TC.csv")
 for test, (q_page, v_page) in LAB.items():
     done, rows = run(cases / f"vi_drained_{test}.nml")
     worst = max(row["control_error"] for row in rows)

@@ -8,6 +8,7 @@ import threading
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
 from checking import build, check, finish, root, work  # noqa: E402
+import tables  # noqa: E402 (checking knows its folder)
 
 if os.environ.get("MUD_PRESET") == "sanitize":
     print("note: a Python without sanitizers cannot load a library with them; the other builds run the library")
@@ -46,9 +47,8 @@ def by_program(case):
     out = work / f"{case}.csv"
     program, file = build / "drivers/mud_triax", root / f"drivers/cases/{case}.nml"
     subprocess.run([program, file, "--output", out, "--quiet"], check=True)
-    lines = out.read_text().splitlines()
-    table = [line.split(",") for line in lines if line[0] != "#"]
-    return dict(zip(table[0], zip(*table[1:]))), [line[2:] for line in lines if line[0] == "#"]
+    rows = tables.rows(out)
+    return {name: [row[name] for row in rows] for name in rows[0]}, tables.comments(out)
 
 
 # The file has 16 digits: the number behind each cell is the same when it has them too.

@@ -1,6 +1,5 @@
-"""Effects that mud_host derives from a scene: each on and off, by hand, the table, the watch, restarts, and whether
+"""Effects that mud_host derives from a scene: each on and off, by hand, the table, the monitored effects, restarts, and whether
 what is dropped is as small as promised."""
-import csv
 import math
 import os
 import pathlib
@@ -11,6 +10,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
 from checking import build, check, finish, work  # noqa: E402
+import tables  # noqa: E402 (checking knows its folder)
 
 host = build / "host/mud_host"
 environment = {**os.environ, "OMP_NUM_THREADS": "1"}
@@ -57,13 +57,12 @@ def run(text, name="run", *more):
     done = start(text, name, *more)
     check(f"{name} runs", done.returncode == 0, done.stderr)
     table = work / name / "effects.csv"
-    rows = csv.DictReader(table.open()) if table.exists() else []
+    rows = tables.rows(table) if table.exists() else []
     return done.stdout, {row["effect"]: row for row in rows}
 
 
 def history(name, column):
-    return {round(float(row["time"]), 9): float(row[column])
-            for row in csv.DictReader((work / name / "histories.csv").open())}
+    return {round(row["time"], 9): row[column] for row in tables.numbers(work / name / "histories.csv")}
 
 
 def apart(one, other, column):
@@ -269,7 +268,7 @@ _, dry = run(column("gravity = 0 fields = 'u'"), "dry")
 rest = int(re.search(r"(\d+) entries", start(column("gravity = 0 fields = 'u'"), "dry", "--check").stdout)[1])
 check("cost: entries of p_w", int(row["entries"]) == whole - rest, (row, whole, rest))
 
-# The watch. From 0.1 s on the water is drawn down to -4 kPa within 0.1 s: 1 % of the 10 kPa of load are passed in the
+# Monitored effects. From 0.1 s on the water is drawn down to -4 kPa within 0.1 s: 1 % of the 10 kPa of load are passed in the
 # eleventh step of 0.01 s.
 crossing = dict(keys="gravity = 0 fields = 'u-p_w' seepage_inertia = 'no' checkpoint_steps = 10", times="0, 0.1",
                 stage="analysis = 'quasi_static' duration = 0.25 dt = 0.01", laws=WATER, region=POROUS,

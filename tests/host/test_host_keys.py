@@ -1,5 +1,4 @@
 """Keys of a scene that no page of the verification uses, against answers known in closed form."""
-import csv
 import os
 import pathlib
 import subprocess
@@ -7,6 +6,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
 from checking import build, check, finish, root, work  # noqa: E402
+import tables  # noqa: E402 (checking knows its folder)
 
 host = build / "host/mud_host"
 environment = {**os.environ, "OMP_NUM_THREADS": "1"}
@@ -30,7 +30,7 @@ def run(text, name, *words):
     done = subprocess.run([host, scene, "--output", folder, "--quiet", *words], capture_output=True, text=True,
                           env=environment)
     check(f"{name} runs", done.returncode == 0, done.stderr)
-    return list(csv.DictReader((folder / "histories.csv").open())), folder
+    return tables.numbers(folder / "histories.csv"), folder
 
 
 def near(what, value, wanted):
@@ -50,7 +50,7 @@ held = "&fix group = 'all' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' 
 plate = "&plate name = 'lid' group = 'top' mass = 1 /\n"
 rows, folder = run(once + held + plate + "&load group = 'top' kind = 'force_z' value = -2 /\n", "force_z")
 near("forces on nodes: 6 kN over M", rows[-1]["corner.u_z"], -6 / CONSTRAINED)
-row = list(csv.DictReader((folder / "contact.csv").open()))[-1]
+row = tables.numbers(folder / "contact.csv")[-1]
 near("a joined plate tells its motion", row["lid.u_z"], -6 / CONSTRAINED)
 weightless = once.replace("fields = 'u'", "fields = 'u' gravity = 10").replace("void_ratio", "rho_s = 0 void_ratio")
 rows, _ = run(weightless + held
@@ -81,7 +81,7 @@ fall = (root / "verification/host/contact/fall.nml").read_text().replace("durati
 for radius, meets in (("0", True), ("1.0e-3", True), ("1.0e-9", False)):
     near_by = fall.replace("penalty = 1.0e7", f"penalty = 1.0e7\n   search_radius = {radius}")
     _, folder = run(near_by, f"radius_{radius}")
-    thrust = max(float(row["soil_plate.thrust"]) for row in csv.DictReader((folder / "contact.csv").open()))
+    thrust = max(row["soil_plate.thrust"] for row in tables.numbers(folder / "contact.csv"))
     check(f"search radius {radius}", (thrust > 0) == meets, thrust)
 
 finish()

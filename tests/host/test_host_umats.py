@@ -1,6 +1,5 @@
 """mud_host with laws of others: MUD through its own UMAT gives the files of &mud byte for byte; a foreign UMAT gives
 what the host's elastic law gives, and a Mohr-Coulomb one its strength."""
-import csv
 import math
 import os
 import pathlib
@@ -12,6 +11,7 @@ import h5py
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
 from checking import build, check, finish, root, work  # noqa: E402
+import tables  # noqa: E402 (checking knows its folder)
 
 host, describe = build / "host/mud_host", build / "drivers/mud_describe"
 umats = build / "tests/umats"
@@ -28,12 +28,11 @@ def run(text, name):
 
 def cells(path):
     """Rows without the rate evaluations, which a UMAT does not count."""
-    rows = list(csv.DictReader(path.open()))
-    return [{key: value for key, value in row.items() if key != "rates"} for row in rows]
+    return [{key: value for key, value in row.items() if key != "rates"} for row in tables.rows(path)]
 
 
 def last_row(path):
-    return {key: float(value) for key, value in list(csv.DictReader(path.open()))[-1].items()}
+    return tables.numbers(path)[-1]
 
 
 def table(which, pattern):
@@ -61,9 +60,9 @@ for name, file, changes in (
     (one, left), (other, right) = (run(re.sub(r"&mud\n.*?^/\n", lambda _: law, text, flags=re.S | re.M), f"{name}_{n}")
                                    for n, law in (("own", own), ("foreign", foreign)))
     check(f"{name}: both run", one.returncode == other.returncode == 0, one.stderr + other.stderr)
-    tables = sorted(file.name for file in left.glob("*.csv"))
-    check(f"{name}: there are tables to compare", len(tables) >= 4, tables)
-    for file in tables:
+    files = sorted(file.name for file in left.glob("*.csv"))
+    check(f"{name}: there are tables to compare", len(files) >= 4, files)
+    for file in files:
         check(f"{name}: MUD as a UMAT is MUD, digit by digit, in {file}", cells(left / file) == cells(right / file))
 
 # One void ratio and one degree of saturation a point: what the host computes with is what the law keeps.
@@ -115,9 +114,9 @@ done, folder = run(f"""&scene name = 'sample' fields = 'u' /
 """, "sample")
 check("Mohr-Coulomb runs", done.returncode == 0, done.stderr)
 if done.returncode == 0:
-    rows = list(csv.DictReader((folder / "points_shear.csv").open()))
+    rows = tables.numbers(folder / "points_shear.csv")
     strength = n_phi * HELD + 2 * C * math.sqrt(n_phi)
-    apart = max(abs(-float(row["s_zz"]) / strength - 1) for row in rows)
+    apart = max(abs(-row["s_zz"] / strength - 1) for row in rows)
     # Newton's tolerance, 1e-10 of the forces, is what is left.
     check("Mohr-Coulomb fails at its strength in every point", apart < 1e-8, apart)
 

@@ -9,6 +9,9 @@ import tempfile
 root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2]).resolve()
 build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release").resolve()
 light = os.environ.get("MUD_PRESET", "release") != "release"   # the checking builds are slow
+# Scripts read CSV tables by common/tables.py.
+sys.path.append(str(root / "common"))
+sys.dont_write_bytecode = True
 work = pathlib.Path(tempfile.mkdtemp())
 atexit.register(shutil.rmtree, work, ignore_errors=True)
 counts = {True: 0, False: 0}

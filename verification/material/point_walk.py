@@ -1,13 +1,15 @@
 """Paths of one point for mud_walk, and the program itself. Compression positive, engineering shear, kPa."""
 import concurrent.futures
-import csv
 import dataclasses
 import pathlib
 import subprocess
+import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "common"))
+import tables  # noqa: E402 (its folder is known only now)
+
 RULES = {"classic": 0, "threshold": 1, "repositioning": 2, "return_point": 3, "as_published": 4}
-ALIASES = {"resume": 3}   # the rule that return_point replaces under the same number
 
 
 @dataclasses.dataclass(frozen=True)
@@ -108,4 +110,4 @@ class Walker:
         done = subprocess.run([self.program], input=text, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             raise SystemExit(f"mud_walk: {done.stdout.splitlines()[-1:]} {done.stderr}")
-        return [Row(cells) for cells in csv.DictReader(done.stdout.splitlines())]
+        return [Row(cells) for cells in tables.parsed(done.stdout)]

@@ -17,7 +17,7 @@ sys.path[:0] = [str(HERE), str(HERE.parent)]
 import memory_long  # noqa: E402
 import memory_published  # noqa: E402
 import memory_six  # noqa: E402
-from point_walk import ALIASES, ROOT, RULES, Soil, Walker  # noqa: E402
+from point_walk import ROOT, RULES, Soil, Walker  # noqa: E402
 
 ROWS = {row.__name__: row for rows in (memory_published, memory_six, memory_long) for row in rows.ROWS}
 QUICK = [row.__name__ for row in memory_published.ROWS]
@@ -26,11 +26,10 @@ QUICK = [row.__name__ for row in memory_published.ROWS]
 def parse_rule(text):
     """The soil of NAME:RHO_E or NUMBER:RHO_E."""
     name, _, radius = text.partition(":")
-    numbers = {**RULES, **ALIASES}
     try:
-        return Soil(numbers[name] if name in numbers else int(name), float(radius or 0.0))
+        return Soil(RULES[name] if name in RULES else int(name), float(radius or 0.0))
     except ValueError:
-        raise SystemExit(f"rule {text}: NAME:RHO_E or NUMBER:RHO_E, names are {', '.join(numbers)}") from None
+        raise SystemExit(f"rule {text}: NAME:RHO_E or NUMBER:RHO_E, names are {', '.join(RULES)}") from None
 
 
 def question(row):

@@ -13,7 +13,7 @@
 !> A path whose increments fail ends with a row of status 1; its other lines are passed over.
 program mud_walk
    use, intrinsic :: iso_fortran_env, only: input_unit, output_unit, iostat_end
-   use walk_linear, only: wp
+   use kinds, only: wp
    use walk_point, only: point_t, prepare, set_property, start, lead_components, lead_deviator, go, turn, state_of, &
       states_of
    implicit none (type, external)

@@ -4,7 +4,8 @@ module walk_point
    use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_loc, c_null_ptr, c_null_char
    use mud_interface, only: mud_count, mud_index, mud_default_props, mud_validate_props, mud_init_state, mud_update, &
       MUD_PROPS, MUD_STATEV, MUD_TANGENT_NONE, MUD_TANGENT_CONSISTENT
-   use walk_linear, only: wp, solve, rotated
+   use kinds, only: wp
+   use dense, only: solve
    implicit none (type, external)
    private
    public :: point_t, control_t, prepare, set_property, start, lead_components, lead_deviator, go, turn, state_of, states_of
@@ -196,16 +197,16 @@ contains
       real(wp) :: trial(6), change(6), stress(6), statev(ROOM), tangent(6, 6), residual(6), matrix(6, 6), error, last
       real(wp) :: allowed
       integer :: iteration, backtracks
-      logical :: singular
+      logical :: good
 
       control = point%control
       allowed = STRESS_TOLERANCE*max(abs(sum(point%stress(1:3)))/3.0_wp, SMALLEST_SCALE)
       trial = merge(0.0_wp, values, control%by_stress)
       if (point%tangent_known) then
-         change = values - merge(matmul(control%stress, point%stress), 0.0_wp, control%by_stress)
+         residual = values - merge(matmul(control%stress, point%stress), 0.0_wp, control%by_stress)
          matrix = control%strain + matmul(control%stress, point%tangent)
-         call solve(matrix, change, singular)
-         if (.not. singular) trial = change
+         call solve(matrix, residual, change, good)
+         if (good) trial = change
       end if
       failed = .true.
       last = huge(1.0_wp)
@@ -238,9 +239,8 @@ contains
          backtracks = 0
          last = error
          matrix = control%strain + matmul(control%stress, tangent)
-         change = residual
-         call solve(matrix, change, singular)
-         if (singular) return
+         call solve(matrix, residual, change, good)
+         if (.not. good) return
          trial = trial + change
       end do
    end subroutine mixed_step
@@ -294,4 +294,14 @@ contains
       if (place < 1) error stop 'mud_walk: the library has no such state variable'
       values = point%statev(place:place + n - 1)
    end function states_of
+
+   !> R a R^T of a symmetric tensor with components 11, 22, 33, 12, 13, 23.
+   pure function rotated(tensor, rotation) result(turned)
+      real(wp), intent(in) :: tensor(6), rotation(3, 3)
+      real(wp) :: turned(6), a(3, 3)
+
+      a = reshape(tensor([1, 4, 5, 4, 2, 6, 5, 6, 3]), [3, 3])
+      a = matmul(rotation, matmul(a, transpose(rotation)))
+      turned = [a(1, 1), a(2, 2), a(3, 3), a(1, 2), a(1, 3), a(2, 3)]
+   end function rotated
 end module walk_point

@@ -2,7 +2,8 @@
 program mud_oscillation
    use, intrinsic :: iso_fortran_env, only: input_unit, output_unit, iostat_end, int64
    use oscillation_path, only: strain_at, direction_at, random_t, uniform, noise_steps, MAX_STEPS
-   use oscillation_soil, only: wp, soil_t, new_soil, step_soil, total, void_ratio
+   use kinds, only: wp
+   use oscillation_soil, only: soil_t, new_soil, step_soil, total, void_ratio
    implicit none (type, external)
    character(40) :: id
    character(10) :: path, noise

@@ -1,7 +1,7 @@
 !> Strain paths and the noise on them.
 module oscillation_path
    use, intrinsic :: iso_fortran_env, only: int64
-   use oscillation_soil, only: wp
+   use kinds, only: wp
    implicit none (type, external)
    private
    public :: strain_at, direction_at, random_t, uniform, noise_steps, MAX_STEPS

@@ -1,13 +1,14 @@
 !> One point of soil under mixed control, through the library's public interface. Compression positive, tensor shear.
 module oscillation_soil
-   use, intrinsic :: iso_c_binding, only: c_int, c_double, c_null_char
+   use, intrinsic :: iso_c_binding, only: c_int, c_null_char
+   use kinds, only: wp
+   use dense, only: solve
    use mud_interface, only: mud_report, mud_count, mud_index, mud_default_props, mud_validate_props, mud_init_state, &
       mud_update, MUD_PROPS, MUD_STATEV, MUD_TANGENT_NONE, MUD_TANGENT_CONSISTENT
    implicit none (type, external)
    private
-   public :: wp, soil_t, new_soil, step_soil, total, void_ratio
+   public :: soil_t, new_soil, step_soil, total, void_ratio
 
-   integer, parameter :: wp = c_double
    integer, parameter :: ROOM = 128                 !< For PROPS and STATEV; checked.
    integer, parameter :: MAX_ITERATIONS = 30, MAX_HALVINGS = 12
    real(wp), parameter :: STRESS_TOLERANCE = 1.0e-9_wp   !< Of a held stress, share of the mean stress [-].
@@ -105,7 +106,8 @@ contains
       type(soil_t), intent(inout) :: soil
       real(wp), intent(in) :: strain(6)
       logical, intent(out) :: failed
-      real(wp) :: trial(6), stress(6), statev(ROOM), tangent(6, 6), residual(6), matrix(6, 6), last
+      real(wp) :: trial(6), stress(6), statev(ROOM), tangent(6, 6), residual(6), matrix(6, 6), change(6), last
+      logical :: good
       integer :: iteration, i
       integer(c_int) :: code
 
@@ -132,44 +134,14 @@ contains
             matrix(:, i) = 0.0_wp
             matrix(i, i) = 1.0_wp
          end do
-         call solve(matrix, residual, failed)
-         if (failed) return
-         failed = .true.
-         ! a step that made things worse is taken by half
-         if (maxval(abs(residual)) > 0.5_wp*last .and. iteration > 6) residual = 0.5_wp*residual
-         last = maxval(abs(residual))
-         trial = trial + residual
+         call solve(matrix, residual, change, good)
+         if (.not. good) return
+         ! A correction that hardly shrank is taken by half.
+         if (maxval(abs(change)) > 0.5_wp*last .and. iteration > 6) change = 0.5_wp*change
+         last = maxval(abs(change))
+         trial = trial + change
       end do
    end subroutine mixed_step
-
-   !> Solves m x = b in place by elimination with row exchange.
-   pure subroutine solve(m, b, singular)
-      real(wp), intent(inout) :: m(6, 6), b(6)
-      logical, intent(out) :: singular
-      real(wp) :: row(6), value
-      integer :: i, j, pivot
-
-      singular = .true.
-      do i = 1, 6
-         pivot = i - 1 + maxloc(abs(m(i:6, i)), 1)
-         if (abs(m(pivot, i)) <= 0.0_wp) return
-         row = m(i, :)
-         m(i, :) = m(pivot, :)
-         m(pivot, :) = row
-         value = b(i)
-         b(i) = b(pivot)
-         b(pivot) = value
-         do j = i + 1, 6
-            value = m(j, i)/m(i, i)
-            m(j, :) = m(j, :) - value*m(i, :)
-            b(j) = b(j) - value*b(i)
-         end do
-      end do
-      do i = 6, 1, -1
-         b(i) = (b(i) - dot_product(m(i, i + 1:6), b(i + 1:6)))/m(i, i)
-      end do
-      singular = .false.
-   end subroutine solve
 
    !> A total of STATEV, by its name.
    real(wp) function total(soil, name)
