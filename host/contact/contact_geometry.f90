@@ -10,7 +10,7 @@ module contact_geometry
    private
    public :: contact_geometry_t, contact_prepare, check_coordinates
 
-   !> Two surfaces that may come into contact, prepared once. Unknowns are numbered 2 (node - 1) + direction, first the slave's
+   !> Two surfaces that may meet, prepared once. Unknowns are numbered 2 (node - 1) + direction, first the slave's
    !> nodes, then the master's.
    type :: contact_geometry_t
       integer :: slave_nodes = 0, master_nodes = 0

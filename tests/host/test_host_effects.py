@@ -1,5 +1,5 @@
-"""Effects that mud_host derives from a scene: each on and off, by hand, the table, the monitored effects, restarts, and whether
-what is dropped is as small as promised."""
+"""Effects that mud_host derives from a scene: each on and off, by hand, the table, the monitored effects, restarts,
+and whether what is dropped is as small as promised."""
 import math
 import os
 import pathlib
@@ -268,8 +268,8 @@ _, dry = run(column("gravity = 0 fields = 'u'"), "dry")
 rest = int(re.search(r"(\d+) entries", start(column("gravity = 0 fields = 'u'"), "dry", "--check").stdout)[1])
 check("cost: entries of p_w", int(row["entries"]) == whole - rest, (row, whole, rest))
 
-# Monitored effects. From 0.1 s on the water is drawn down to -4 kPa within 0.1 s: 1 % of the 10 kPa of load are passed in the
-# eleventh step of 0.01 s.
+# Monitored effects. From 0.1 s on the water is drawn down to -4 kPa within 0.1 s: 1 % of the 10 kPa of load are
+# passed in the eleventh step of 0.01 s.
 crossing = dict(keys="gravity = 0 fields = 'u-p_w' seepage_inertia = 'no' checkpoint_steps = 10", times="0, 0.1",
                 stage="analysis = 'quasi_static' duration = 0.25 dt = 0.01", laws=WATER, region=POROUS,
                 more="&history name = 'd' times = 0.1, 0.2 values = 0, 1 /\n"
