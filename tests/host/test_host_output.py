@@ -391,7 +391,8 @@ check("picture of no run", done.returncode == 1 and "no fields of mud_host" in d
 done = run(scene, work / "told")
 seconds = [float(s) for s in re.findall(r"^ +\D+? +(\d+\.\d+) s", done.stdout, re.MULTILINE)]
 check("account: phases add up", len(seconds) == 9 and abs(sum(seconds[:-1]) - seconds[-1]) < 9*0.0005 + 1e-9, seconds)
-check("account: counters", f"{len(ledger["time"])} steps" in done.stdout, done.stdout)
+steps = len(ledger["time"])
+check("account: counters", f"{steps} steps" in done.stdout, done.stdout)
 for phase in ("material", "assembly", "contact", "factorisation", "solution", "output"):
     check(f"account: {phase}", re.search(rf"^ +{phase} ", done.stdout, re.MULTILINE), done.stdout)
 
