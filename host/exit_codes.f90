@@ -2,7 +2,8 @@
 module exit_codes
    implicit none (type, external)
    private
-   public :: EXIT_MESH, EXIT_GROUP, EXIT_ELEMENT, EXIT_FREE_BODY, EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_SOLVER
+   public :: EXIT_MESH, EXIT_GROUP, EXIT_ELEMENT, EXIT_FREE_BODY, EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_SOLVER, &
+             EXIT_ENERGY
 
    integer, parameter :: EXIT_MESH = 10         !< A mesh that cannot be read or built.
    integer, parameter :: EXIT_GROUP = 11        !< A group, material, history or stage that nobody defines.
@@ -11,4 +12,5 @@ module exit_codes
    integer, parameter :: EXIT_CONVERGENCE = 14  !< No convergence with the smallest step.
    integer, parameter :: EXIT_MATERIAL = 15     !< The material refuses the smallest step.
    integer, parameter :: EXIT_SOLVER = 16       !< The linear solver ran out of memory.
+   integer, parameter :: EXIT_ENERGY = 18       !< The run created energy (17 is EXIT_RESTART of `faults`).
 end module exit_codes

@@ -1,24 +1,51 @@
-!> The word that a run says when it has created energy: its answers may then be wrong by any factor, however well every
-!> step has converged.
+!> Ends a run that has created energy: its answers may then be wrong by any factor, however well every step has
+!> converged. docs/theory/host.md section 9.
 module energy_alarm
    use, intrinsic :: iso_fortran_env, only: error_unit
+   use kinds, only: wp
    use energy_ledger, only: ledger_t, ALARMING_SHARE
+   use exit_codes, only: EXIT_ENERGY
+   use faults, only: fault_t, raise
    use generalised_alpha, only: DYNAMIC
    use model_types, only: stage_t
    use texts, only: short
    implicit none (type, external)
    private
-   public :: tell_creation
+   public :: check_creation, tell_creation
+
+   character(*), parameter :: REMEDY = 'shorten dt, or set rho_inf = 0 where a contact opens and closes'
 contains
-   !> At the end of a dynamic stage, also of one that failed; on standard error, also where the run is quiet.
+   !> After every booked step: a fault where a dynamic stage has created more than it may.
+   subroutine check_creation(stage, time, ledger, fault)
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: time   !< At the end of the step [s].
+      type(ledger_t), intent(in) :: ledger
+      type(fault_t), intent(inout) :: fault
+
+      if (stage%kind /= DYNAMIC .or. fault%code /= 0) return
+      if (ledger%most_created <= stage%created_energy*ledger%largest_work) return
+      call raise(fault, EXIT_ENERGY, 'Stage '//trim(stage%name)//', time '//short(time)//' s: the run has created '// &
+                 amount(ledger)//', allowed '//short(100*stage%created_energy)//' %. Its answers may be wrong by '// &
+                 'any factor: '//REMEDY//'; created_energy of &stage allows more.')
+   end subroutine check_creation
+
+   !> At the end of a dynamic stage that may create much: the warning, on standard error, also where the run is quiet.
    subroutine tell_creation(stage, ledger)
       type(stage_t), intent(in) :: stage
       type(ledger_t), intent(in) :: ledger
 
       if (stage%kind /= DYNAMIC .or. ledger%most_created <= ALARMING_SHARE*ledger%largest_work) return
-      write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//' has created energy: '// &
-         short(ledger%most_created)//' kJ, '//short(100*ledger%most_created/ledger%largest_work)// &
-         ' % of the largest work (column imbalance of ledger.csv). Do not trust its answers: shorten dt, or set '// &
-         'rho_inf = 0 where a contact opens and closes.'
+      if (ledger%most_created > stage%created_energy*ledger%largest_work) return
+      write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//' has created '//amount(ledger)// &
+         '. Do not trust its answers: '//REMEDY//'.'
    end subroutine tell_creation
+
+   !> Energy in kJ and as a share.
+   function amount(ledger) result(text)
+      type(ledger_t), intent(in) :: ledger
+      character(:), allocatable :: text
+
+      text = short(ledger%most_created)//' kJ of energy, '//short(100*ledger%most_created/max(ledger%largest_work, &
+             tiny(1.0_wp)))//' % of the largest work (column imbalance of ledger.csv)'
+   end function amount
 end module energy_alarm

@@ -143,7 +143,7 @@ contains
       type(ledger_t), intent(inout) :: ledger
 
       ledger%largest_work = max(ledger%largest_work, abs(ledger%loads), abs(ledger%supports), abs(ledger%gravity), &
-                                ledger%kinetic_0)
+                                ledger%kinetic_0, -ledger%skeleton)
       if (scheme%kind == DYNAMIC) ledger%most_created = max(ledger%most_created, ledger%open_0 - imbalance(ledger))
    end subroutine book_creation
 

@@ -4,7 +4,7 @@ module step_booking
    use kinds, only: wp
    use wall_clock, only: clock, lap
    use contact_interfaces, only: work_of_contacts
-   use energy_alarm, only: tell_creation
+   use energy_alarm, only: check_creation, tell_creation
    use energy_ledger, only: book_step, book_creation, imbalance
    use generalised_alpha, only: scheme_t
    use linear_system, only: T_CONTACT
@@ -12,7 +12,7 @@ module step_booking
    use run_state, only: run_t
    implicit none (type, external)
    private
-   public :: book_accepted_step, tell_creation
+   public :: book_accepted_step, check_creation, tell_creation
 contains
    subroutine book_accepted_step(model, scheme, run)
       type(model_t), intent(in) :: model

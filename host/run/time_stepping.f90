@@ -13,7 +13,7 @@ module time_stepping
    use run_state, only: run_t
    use sparse_factors, only: release
    use step_attempt, only: begin_stage, try_step
-   use step_booking, only: book_accepted_step, tell_creation
+   use step_booking, only: book_accepted_step, check_creation, tell_creation
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
@@ -122,12 +122,14 @@ contains
             at%good = 0
          end if
       end associate
-      if (.not. present(observer)) return
-      t0 = clock()
-      call observer%step_done(model, run, report, checkpoint, fault)
-      ! A run that is taken up here has no factors.
-      if (checkpoint) run%system%factored = .false.
-      call lap(run%seconds_output, t0)
+      if (present(observer)) then
+         t0 = clock()
+         call observer%step_done(model, run, report, checkpoint, fault)
+         ! A run that is taken up here has no factors.
+         if (checkpoint) run%system%factored = .false.
+         call lap(run%seconds_output, t0)
+      end if
+      call check_creation(model%stages(number), run%state%time, run%ledger, fault)
    end subroutine close_step
 
    !> Monitors a step that is accepted but not yet taken over, and warns.

@@ -86,6 +86,7 @@ module scene_types
       real(wp) :: duration = 0.0_wp, dt = 0.0_wp, dt_growth = 1.0_wp, dt_max = huge(1.0_wp)   !< [s, s, -, s]
       integer :: cuts = 10
       real(wp) :: rho_inf = 0.8_wp, tolerance = 1.0e-3_wp
+      real(wp) :: created_energy = 0.01_wp           !< Share of the largest work that ends the run [-].
       integer :: measure_number = MEASURE_FORCES
       integer :: max_iterations = 12, every = 1, fields = 0
       logical :: no_predictor = .false., solve_start = .true., zero_displacements = .false.

@@ -330,7 +330,7 @@ def falling_plate(bench):
         for rho in ("0.8", "0.5"):
             for step in (2.0e-5, 1.0e-5, 5.0e-6, 2.5e-6):
                 ledger = read(bench.host("fall.nml", [("dt = 1.0e-5", f"dt = {step}"),
-                                                      ("rho_inf = 0.8", f"rho_inf = {rho}"),
+                                                      ("rho_inf = 0.8", f"rho_inf = {rho}\n   created_energy = 1e9"),
                                                       ("penalty = 1.0e7", f"penalty = {penalty}")]), "ledger")
                 bench.note(f"{penalty:.0e} {rho} {period / step:6.1f} {gain(ledger):.1e}")
                 if period / step > 39:

@@ -99,7 +99,7 @@ VARIATIONS = {v[0]: Variation(*v) for v in (
     ("eps_hat_1e-3", "threshold of the remedy 1e-3", "not stated; 1e-4", keys("mud", eps_hat=1e-3), ("remedy",), OPEN),
     ("damping_10", "damping 10 /s", "matrices of it are named; none (10 /s: 4.5 % of critical at the load's 112 rad/s)",
      keys("region", damping=10), BOTH, OPEN),
-    ("rho_1", "rho_inf 1 (no damping)", "not stated; 0.8", keys("stage:impact", rho_inf=1), BOTH, OPEN),
+    ("rho_1", "rho_inf 1 (no damping)", "not stated; 0.8", keys("stage:impact", rho_inf=1, created_energy=1e9), BOTH, OPEN),
     ("rho_0.5", "rho_inf 0.5", "not stated; 0.8", keys("stage:impact", rho_inf=0.5), BOTH, OPEN),
     ("rho_0", "rho_inf 0", "not stated; 0.8", keys("stage:impact", rho_inf=0), BOTH, OPEN),
     ("dt_half", "half the time step", "3e-5 s stated", keys("stage:impact", dt=DT / 2), BOTH, STATED),
