@@ -64,7 +64,8 @@ def check(bench):
         h = tables.columns(bench.host("scene.nml", [("rho_inf = 0.8", f"rho_inf = {rho}"),
                                                     ("duration = 0.5", "duration = 4000"),
                                                     ("dt = 0.005",
-                                                     "dt = 100\n   predictor = 'none'\n   created_energy = 1e9")]) / "histories.csv")
+                                                     "dt = 100\n   predictor = 'none'\n   created_energy = 1e9")]) \
+            / "histories.csv"
         u = h["top.u_z"][1:]
         reference = recursion(rho, 100.0, len(u) - 1)
         bench.near(f"rho_inf {rho}: 40 steps of 1000 periods", u / U0, reference / U0, LONG_STEPS)
