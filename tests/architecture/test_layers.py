@@ -17,6 +17,7 @@ HOST = ("host/time", "host/mesh", "host/element", "host/contact", "host/solver",
 GROUPS = {
     "umat/core": (("umat/core/base", "umat/core/laws", "umat/core/rates", "umat/core/integration"), ()),
     "umat/abi": (("umat/abi",), ("umat/core",)),
+    "umat/tables": (("umat/tables",), ("umat/core",)),
     "umat/include": (("umat/include",), ()),
     "common": (("common",), ()),
     "materials": (("materials",), ("common", "umat/include")),
@@ -192,7 +193,7 @@ def read():
     """{module: (folder, text)} of every source; the variants without a library have the same names."""
     found = {}
     for file in sources("common/*.f90", "materials/**/*.f90", "drivers/**/*.f90", "host/**/*.f90", "umat/core/**/*.f90",
-                        "umat/abi/**/*.f90", "umat/include/*.f90"):
+                        "umat/abi/**/*.f90", "umat/include/*.f90", "umat/tables/*.f90"):
         if file.parent.name != "without_hdf5":
             found[file.stem] = (str(file.parent.relative_to(root)), file.read_text(encoding="utf-8"))
     return found

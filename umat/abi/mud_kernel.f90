@@ -4,8 +4,9 @@ module mud_kernel
    use, intrinsic :: iso_c_binding, only: c_int, c_double
    use mud_kinds, only: wp
    use mud_params, only: params_t, read_params
-   use mud_point, only: blocks_t, initial_state, update_point
-   use mud_registry, only: NSTATV, VARIABLES, S_LAYOUT, S_VOID_RATIO, S_SUCTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV
+   use mud_point, only: blocks_t, initial_state, update_point, LAST_RATE => TANGENT_CONTINUUM
+   use mud_registry, only: NSTATV, VARIABLES, S_LAYOUT, S_VOID_RATIO, S_SUCTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, &
+      S_NUCLEUS
    use mud_state, only: state_t, counters_t, pack_state, unpack_state, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_BAD_STATE, MUD_BAD_INPUT, MUD_BAD_OPTION, &
       MUD_NOT_FINITE, ON_STATEV, ON_STRESS, ON_STRAIN, ON_ARGUMENT
@@ -13,12 +14,16 @@ module mud_kernel
    use mud_trace, only: trace_t
    implicit none (type, external)
    private
-   public :: report_t, output_t, kernel_init, kernel_update, kernel_point, rotate_statev, failed_report, &
-      TANGENT_FROM_PROPS
+   public :: report_t, output_t, kernel_init, kernel_update, kernel_point, kernel_tangent, rotate_statev, &
+      failed_report, TANGENT_FROM_PROPS
 
    integer, parameter :: TANGENT_FROM_PROPS = -1   !< Take the tangent kind from PROPS.
    integer, parameter :: LAST_TANGENT = 3          !< Largest tangent kind.
    real(wp), parameter :: SMALLEST_CUT = 0.1_wp, LARGEST_CUT = 0.5_wp   !< Range of the suggested PNEWDT [-].
+   !> Strain by which kernel_tangent looks ahead [-]: the stress moves by about 1e-7 of itself, the slopes likewise.
+   real(wp), parameter :: LOOK_AHEAD = 1.0e-10_wp
+   !> Suction that counts like a strain of 1, in atmospheres: about the bulk modulus number of soil [-].
+   real(wp), parameter :: STIFF = 1.0e3_wp
 
    !> struct mud_report of mud.h.
    type, bind(c) :: report_t
@@ -107,6 +112,36 @@ contains
       if (status%code == MUD_OK) call write_output(state1, blocks, counters, kind > 0, output, status)
       report = report_of(status, counters, reached)
    end subroutine kernel_point
+
+   !> Slopes with which a state goes on in a direction of strain and suction of any length. No direction: that in which
+   !> the state strained last, as far as its elastic domain remembers it. Only the blocks of output mean something.
+   pure subroutine kernel_tangent(par, stress, statev, direction, suction, d_suction, output, report)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: stress(6), statev(:)
+      real(wp), intent(in) :: direction(6)         !< Engineering shear [-].
+      real(wp), intent(in) :: suction, d_suction   !< [kPa]
+      type(output_t), intent(inout) :: output
+      type(report_t), intent(out) :: report
+      real(wp) :: ahead(6), length
+
+      ahead = direction
+      if (.not. (all(is_finite(direction)) .and. is_finite(d_suction))) then
+         report = failed_report(fail(MUD_BAD_INPUT, ON_STRAIN))
+         return
+      end if
+      length = max(maxval(abs(ahead)), abs(d_suction)/(STIFF*par%p_atm))
+      if (length <= 0.0_wp .and. size(statev) >= NSTATV) then
+         ahead = statev(S_NUCLEUS:S_NUCLEUS + 5)*[-1.0_wp, -1.0_wp, -1.0_wp, -2.0_wp, -2.0_wp, -2.0_wp]
+         if (.not. all(is_finite(ahead))) ahead = 0.0_wp   ! said by the update
+         length = maxval(abs(ahead))
+      end if
+      if (length > 0.0_wp) then
+         call kernel_point(par, stress, statev, ahead/length*LOOK_AHEAD, suction, d_suction/length*LOOK_AHEAD, &
+                           LAST_RATE, output, report)
+      else
+         call kernel_point(par, stress, statev, ahead, suction, d_suction, LAST_RATE, output, report)
+      end if
+   end subroutine kernel_tangent
 
    !> Rotates every tensor of STATEV by DROT, as Abaqus asks for.
    pure subroutine rotate_statev(drot, statev)

@@ -85,6 +85,12 @@ int mud_convert_props(double *props, int nprops, double factor);
  * than p_atm, a sentence that begins with "warning: ". */
 int mud_validate_props(const double *props, int nprops, char *text, int len);
 
+/* The same names as constants, for tables of your own that the linker fills; entries as mud_count tells. They are those
+ * of the library that is linked, so do not copy their number into code. */
+extern const int mud_props_count, mud_statev_count;
+extern const char *const mud_props_names[], *const mud_props_units[];
+extern const char *const mud_statev_names[], *const mud_statev_units[];
+
 /* --- one integration point --------------------------------------------------------------------------- */
 /* Fills statev[nstatev] for a stress[6] (lifted in place to p_min if its mean is below), suction and void ratio
  * (0: e_0 of the props). */

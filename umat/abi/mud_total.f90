@@ -1,0 +1,40 @@
+!> Bishop's effective stress and total stress, and what becomes of the slopes. Tension positive; chi = S_w:
+!> sigma' = sigma + p_a I - S_w p_c I, docs/theory/material.md section 2.
+module mud_total
+   use mud_kinds, only: wp
+   use mud_tensor, only: IDENTITY
+   implicit none (type, external)
+   private
+   public :: effective_stress, total_stress, total_blocks
+
+contains
+   !> Effective stress of a total one [kPa].
+   pure function effective_stress(total, air_pressure, s_w, suction) result(effective)
+      real(wp), intent(in) :: total(6), air_pressure, s_w, suction   !< Air pressure positive in compression.
+      real(wp) :: effective(6)
+
+      effective = total + (air_pressure - s_w*suction)*IDENTITY
+   end function effective_stress
+
+   !> Total stress of an effective one [kPa].
+   pure function total_stress(effective, air_pressure, s_w, suction) result(total)
+      real(wp), intent(in) :: effective(6), air_pressure, s_w, suction
+      real(wp) :: total(6)
+
+      total = effective - (air_pressure - s_w*suction)*IDENTITY
+   end function total_stress
+
+   !> Slopes of effective stress become those of total stress at constant air pressure:
+   !> d sigma/d eps = d sigma'/d eps + p_c I (x) dS_w/d eps, d sigma/d p_c = d sigma'/d p_c + (S_w + p_c dS_w/d p_c) I.
+   pure subroutine total_blocks(s_w, suction, dsw_deps, dsw_dpc, dsig_deps, dsig_dpc)
+      real(wp), intent(in) :: s_w, suction, dsw_deps(6), dsw_dpc
+      real(wp), intent(inout) :: dsig_deps(6, 6)   !< [kPa]
+      real(wp), intent(inout) :: dsig_dpc(6)       !< [-]
+      integer :: j
+
+      do j = 1, 6
+         dsig_deps(:, j) = dsig_deps(:, j) + suction*dsw_deps(j)*IDENTITY
+      end do
+      dsig_dpc = dsig_dpc + (s_w + suction*dsw_dpc)*IDENTITY
+   end subroutine total_blocks
+end module mud_total
