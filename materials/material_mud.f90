@@ -173,7 +173,7 @@ contains
       associate (unused => self)
       end associate
       of_library = mud_report(status=report%code, subject=report%subject, index=report%entry, n_rate=report%n_rate, &
-                              n_substep=report%n_substep, n_reject=report%n_reject, n_reseat=0, n_floor=0, n_cap_d=0, &
+                              n_substep=report%n_substep, n_reject=report%n_reject, n_reset=0, n_floor=0, n_cap_d=0, &
                               n_cap_h=0, n_hysteresis=0, n_iso_kept=0, n_no_root=0, n_min_step=0, n_open=0, &
                               n_tensile=0, value=report%value, lower=report%lower, upper=report%upper, &
                               reached=report%reached, pnewdt=report%factor)

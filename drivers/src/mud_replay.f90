@@ -74,7 +74,7 @@ contains
          'Columns: time and size as shares of the increment; error relative, to be compared with `tolerance`;', &
          'where the substep led: p'' (compression positive) and q = sqrt(3/2 s:s) [unit of p_atm], e, S_w; rates,', &
          'reversals and guards counted since the increment began. Notes: reversal, return, new: what the memory did', &
-         'at the beginning of the substep; elastic: inside the elastic nucleus; held: by the tension cut-off; event:', &
+         'at the beginning of the substep; elastic: inside the elastic domain; held: by the tension cut-off; event:', &
          'the substep was shortened to end at one.', &
          '', &
          'Exit codes: 0 replayed, whatever the increment''s status; 2 input refused; 4 COPY cannot be written.'
@@ -107,7 +107,7 @@ contains
                                  inc%suction, inc%dsuction, inc%tangent, 1, head, size(head), attempts, report)
       if (attempts > 0 .and. rows > 0) write (output_unit, '(/a)') &
          ' substep      time      size  outcome      error           p''            q        e      S_w    rates '// &
-         're-seats guards'
+         'resets guards'
       call print_rows(head(:min(size(head), int(attempts))), 1)
       first = max(attempts - size(tail) + 1, size(head) + 1)
       if (first <= attempts) then
@@ -123,7 +123,7 @@ contains
       write (output_unit, '(/a)') 'status      '//whole(int(report%status))//': '//message(report)
       write (output_unit, '(a)') '   work     '//whole(int(report%n_substep))//' substeps, '// &
          whole(int(report%n_reject))//' rejected, '//whole(int(report%n_rate))//' rates, '// &
-         whole(int(report%n_reseat))//' re-seats; '//short(100.0_wp*report%reached)//' % of the increment'
+         whole(int(report%n_reset))//' resets; '//short(100.0_wp*report%reached)//' % of the increment'
       write (output_unit, '(a)') '   saved    '//comparison(inc, report)
       if (report%status > 0) call try_parts(inc)
    end subroutine replay
@@ -154,7 +154,7 @@ contains
             if (step%n_no_root > 0) notes = trim(notes)//' no direction: '//whole(int(step%n_no_root))
             write (output_unit, '(i8, 2es10.3, 2x, a, es10.2, 2es13.5, 2f9.5, i9, i9, i7, a)') first + i - 1, &
                step%time, step%size, outcome, step%error, -p, sqrt(1.5_wp*(sum(deviator(1:3)**2) + &
-               2.0_wp*sum(deviator(4:6)**2))), step%void_ratio, step%saturation, step%n_rate, step%n_reseat, &
+               2.0_wp*sum(deviator(4:6)**2))), step%void_ratio, step%saturation, step%n_rate, step%n_reset, &
                step%n_guard, trim(notes)
          end associate
       end do

@@ -25,7 +25,7 @@ module triax_columns
       column_t('e', '1', 'void ratio'), &
       column_t('s_w', '1', 'degree of saturation'), &
       column_t('n_substep', '1', 'accepted substeps since the start', .true.), &
-      column_t('n_reseat', '1', 're-seats of the memory since the start', .true.), &
+      column_t('n_reset', '1', 'resets of the memory since the start', .true.), &
       column_t('sigma_a', 'kPa', 'axial effective stress'), &
       column_t('sigma_r', 'kPa', 'radial effective stress'), &
       column_t('eps_r', '1', 'radial strain, natural'), &
@@ -60,8 +60,8 @@ contains
          select case (COLUMNS(i)%name)
          case ('n_substep')
             if (soil%i_n_substep == 0) cycle
-         case ('n_reseat')
-            if (soil%i_n_reseat == 0) cycle
+         case ('n_reset')
+            if (soil%i_n_reset == 0) cycle
          case ('n_rate')
             if (soil%i_n_rate == 0) cycle
          case ('n_reject')
@@ -86,7 +86,7 @@ contains
 
       values = [axial_strain(point), volumetric_strain(point), mean_stress(point), deviator_stress(point), &
                 void_ratio(soil, point), saturation(soil, point), &
-                state_value(point, soil%i_n_substep), state_value(point, soil%i_n_reseat), point%stress(AXIAL), &
+                state_value(point, soil%i_n_substep), state_value(point, soil%i_n_reset), point%stress(AXIAL), &
                 radial_stress(point), radial_strain(point), point%suction, course%pressure, &
                 state_value(point, soil%i_state_parameter), state_value(point, soil%i_n_rate), &
                 state_value(point, soil%i_n_reject), state_value(point, soil%i_n_guard), error, real(stage, wp), &

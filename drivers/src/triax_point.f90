@@ -21,7 +21,7 @@ module triax_point
    type :: soil_t
       class(material_t), allocatable :: law
       integer :: i_state_parameter = 0
-      integer :: i_n_substep = 0, i_n_reseat = 0, i_n_rate = 0, i_n_reject = 0, i_n_guard = 0
+      integer :: i_n_substep = 0, i_n_reset = 0, i_n_rate = 0, i_n_reject = 0, i_n_guard = 0
    end type soil_t
 
    !> A sample at one moment.
@@ -49,7 +49,7 @@ contains
       call move_alloc(law, soil%law)
       soil%i_state_parameter = state_index(soil%law, 'state_parameter')
       soil%i_n_substep = state_index(soil%law, 'n_substep')
-      soil%i_n_reseat = state_index(soil%law, 'n_reseat')
+      soil%i_n_reset = state_index(soil%law, 'n_reset')
       soil%i_n_rate = state_index(soil%law, 'n_rate')
       soil%i_n_reject = state_index(soil%law, 'n_reject')
       soil%i_n_guard = state_index(soil%law, 'n_guard')

@@ -65,7 +65,7 @@ contains
          write (output_unit, '(a)') '   work       '//whole(tally%increments)//' increments ('//whole(tally%cuts)// &
             ' cuts), '//whole(tally%updates)//' updates; '//of_state('', soil%i_n_substep, ' substeps, ')// &
             of_state('', soil%i_n_reject, ' rejected, ')//of_state('', soil%i_n_rate, ' rates, ')// &
-            of_state('', soil%i_n_reseat, ' re-seats; ')// &
+            of_state('', soil%i_n_reset, ' resets; ')// &
             short(real(nint(100.0_wp*(clock() - timer%start)), wp)/100.0_wp)//' s'
          guards = ''
          do i = 1, soil%law%n_guards

@@ -77,10 +77,10 @@ for test, (q_page, v_page) in LAB.items():
     check(f"vi_drained_{test} misfit", abs(q - q_page) < 1 and abs(v - v_page) < 0.05,
           f"q {q:.2f} %, eps_v {v:.3f} points")
 
-# Newton with the consistent tangent. Without elastic nucleus an error e becomes at most C e^2 with C the relative
+# Newton with the consistent tangent. Without elastic domain an error e becomes at most C e^2 with C the relative
 # curvature, here up to 11; a linear contraction, even by a hundred from the first errors of 2e-4, would show 50. With
-# the nucleus substeps follow its turning, and the derivative at frozen sizes leaves a contraction of some 1e-3 at the
-# default tolerance.
+# the elastic domain substeps follow its turning and the derivative at frozen sizes leaves a contraction of some 1e-3
+# at the default tolerance.
 def newton_errors(entry):
     text = (cases / "vi_drained_TMD1.nml").read_text()
     text = text.replace("../materials/toyoura.nml'",
@@ -101,7 +101,7 @@ check("Newton converges quadratically with the consistent tangent", len(ratios) 
       f"{len(ratios)} pairs, e'/e^2 from {min(ratios, default=0):.3g} to {max(ratios, default=0):.3g} {complaint}")
 check("Newton needs at most 4 iterations", max(map(len, errors.values())) <= 4, f"{max(map(len, errors.values()))}")
 errors, complaint = newton_errors("")
-check("with the elastic nucleus Newton needs at most 5 iterations", max(map(len, errors.values())) <= 5,
+check("with the elastic domain Newton needs at most 5 iterations", max(map(len, errors.values())) <= 5,
       f"{max(map(len, errors.values()))} {complaint}")
 
 # Mistakes: what, where, value, range, remedy; exit code 2; nothing written.

@@ -51,7 +51,7 @@ check("drained compression has the slope E and Poisson's ratio", last and near(l
       and near(last["eps_r"], -POISSON*0.01, 0.01) and near(last["sigma_r"], 100), f"{last} {done.stderr}")
 check("the void ratio follows the volume", last and near(last["e"], 1.8*math.exp(-0.01*(1 - 2*POISSON)) - 1), last)
 check("columns of a state that the law does not have are left out",
-      last and not {"n_rate", "n_guard", "n_reseat"} & set(last), lines[:1])
+      last and not {"n_rate", "n_guard", "n_reset"} & set(last), lines[:1])
 # The UMAT was told to call its time n_substep and its strain 33 state_parameter: 100 increments after the one of zero
 # strain at the start.
 check("TIME counts the updates", last and last["n_substep"] == 101, last)

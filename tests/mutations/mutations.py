@@ -115,13 +115,13 @@ MUTATIONS = [
     ("an open point never closes",
      (TRANSITIONS, "closing_rate(inc, trial%w(1)) <= 0.0_wp", "closing_rate(inc, trial%w(1)) <= huge(1.0_wp)")),
     ("tension is not reported", (POINT, "if (has_tension(state1%sigma)) counters%tensile = 1", "continue")),
-    # elastic nucleus
-    ("the nucleus forgets the strain inside",
-     (PHASES, "whole%nucleus + share*whole%d_strain", "whole%nucleus + 0.0_wp*share")),
+    # elastic domain
+    ("the elastic domain forgets the strain inside",
+     (PHASES, "whole%from_centre + share*whole%d_strain", "whole%from_centre + 0.0_wp*share")),
     ("strain beside the loading direction is lost",
      (INCREMENT, "aside = inc%d_strain - loading", "aside = 0.0_wp*loading")),
-    ("no bounding surface inside the nucleus", (EVENTS, "LARGEST_EXCESS = 0.2_wp", "LARGEST_EXCESS = 1.0e9_wp")),
-    ("the tangent does not know where the nucleus ends",
+    ("no bounding surface inside the elastic domain", (EVENTS, "LARGEST_EXCESS = 0.2_wp", "LARGEST_EXCESS = 1.0e9_wp")),
+    ("the tangent does not know where the elastic domain ends",
      (CONSISTENT, "change = side*change_of_exit", "change = 0.0_wp*side*change_of_exit")),
     # tables
     ("two parameters swapped", (PARAMS, "params%n_b = props(P_N_B)", "params%n_b = props(P_N_D)")),

@@ -24,7 +24,7 @@ int abi_header_version(void) { return MUD_ABI_VERSION; }
 void abi_fill_report(mud_report *r)
 {
    *r = (mud_report){
-      .status = 1, .subject = 2, .index = 3, .n_rate = 4, .n_substep = 5, .n_reject = 6, .n_reseat = 7, .n_floor = 8,
+      .status = 1, .subject = 2, .index = 3, .n_rate = 4, .n_substep = 5, .n_reject = 6, .n_reset = 7, .n_floor = 8,
       .n_cap_d = 9, .n_cap_h = 10, .n_hysteresis = 11, .n_iso_kept = 12, .n_no_root = 13, .n_min_step = 14,
       .n_open = 15, .n_tensile = 16, .value = 17.0, .lower = 18.0, .upper = 19.0, .reached = 20.0, .pnewdt = 21.0};
 }

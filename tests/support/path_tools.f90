@@ -16,7 +16,7 @@ module path_tools
              shear_stress, distance, full, rotation
 
 contains
-   !> The parameters of the paper, so without elastic nucleus, with some entries changed; an entry that is not accepted
+   !> The parameters of the paper, so without elastic domain, with some entries changed; an entry that is not accepted
    !> stops the test program.
    function material(entries, values) result(par)
       integer, intent(in), optional :: entries(:)   !< P_*
@@ -98,7 +98,7 @@ contains
       counters%rate = counters%rate + more%rate
       counters%substep = counters%substep + more%substep
       counters%reject = counters%reject + more%reject
-      counters%reseat = counters%reseat + more%reseat
+      counters%reset = counters%reset + more%reset
       counters%floor = counters%floor + more%floor
       counters%cap_d = counters%cap_d + more%cap_d
       counters%cap_h = counters%cap_h + more%cap_h

@@ -6,7 +6,7 @@ module mud_kernel
    use mud_params, only: params_t, read_params
    use mud_point, only: blocks_t, initial_state, update_point, LAST_RATE => TANGENT_CONTINUUM
    use mud_registry, only: NSTATV, VARIABLES, S_LAYOUT, S_VOID_RATIO, S_SUCTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, &
-      S_NUCLEUS
+      S_ELASTIC_DOMAIN
    use mud_state, only: state_t, counters_t, pack_state, unpack_state, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_BAD_STATE, MUD_BAD_INPUT, MUD_BAD_OPTION, &
       MUD_NOT_FINITE, ON_STATEV, ON_STRESS, ON_STRAIN, ON_ARGUMENT
@@ -27,7 +27,7 @@ module mud_kernel
 
    !> struct mud_report of mud.h.
    type, bind(c) :: report_t
-      integer(c_int) :: status, subject, index, n_rate, n_substep, n_reject, n_reseat, n_floor, n_cap_d, n_cap_h, &
+      integer(c_int) :: status, subject, index, n_rate, n_substep, n_reject, n_reset, n_floor, n_cap_d, n_cap_h, &
                         n_hysteresis, n_iso_kept, n_no_root, n_min_step, n_open, n_tensile
       real(c_double) :: value, lower, upper, reached, pnewdt
    end type report_t
@@ -131,7 +131,7 @@ contains
       end if
       length = max(maxval(abs(ahead)), abs(d_suction)/(STIFF*par%p_atm))
       if (length <= 0.0_wp .and. size(statev) >= NSTATV) then
-         ahead = statev(S_NUCLEUS:S_NUCLEUS + 5)*[-1.0_wp, -1.0_wp, -1.0_wp, -2.0_wp, -2.0_wp, -2.0_wp]
+         ahead = statev(S_ELASTIC_DOMAIN:S_ELASTIC_DOMAIN + 5)*[-1.0_wp, -1.0_wp, -1.0_wp, -2.0_wp, -2.0_wp, -2.0_wp]
          if (.not. all(is_finite(ahead))) ahead = 0.0_wp   ! said by the update
          length = maxval(abs(ahead))
       end if
@@ -297,7 +297,7 @@ contains
       report%n_rate = counters%rate
       report%n_substep = counters%substep
       report%n_reject = counters%reject
-      report%n_reseat = counters%reseat
+      report%n_reset = counters%reset
       report%n_floor = counters%floor
       report%n_cap_d = counters%cap_d
       report%n_cap_h = counters%cap_h

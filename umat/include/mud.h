@@ -47,11 +47,11 @@ typedef struct mud_report {
    int n_rate;              /* rate evaluations                                                        */
    int n_substep;           /* accepted substeps                                                       */
    int n_reject;            /* rejected substeps                                                       */
-   int n_reseat;            /* re-seats of the memory                                                  */
+   int n_reset;             /* resets of the memory                                                    */
    int n_floor;             /* rates with the floor x_0 active                                         */
    int n_cap_d;             /* rates with the contraction cap active                                   */
    int n_cap_h;             /* rates with the softening cap active                                     */
-   int n_hysteresis;        /* substeps whose re-seat the hysteresis x_rev held back                   */
+   int n_hysteresis;        /* substeps whose reset the hysteresis x_rev held back                     */
    int n_iso_kept;          /* rates where the isotropic mechanism contradicted itself                 */
    int n_no_root;           /* rates without an admissible direction, taken as elastic                 */
    int n_min_step;          /* substeps accepted at the minimum size (rule as_published)               */
@@ -146,7 +146,7 @@ int mud_saturation(const double *prepared, double suction, double void_ratio, do
 /* One substep that an update tried. */
 enum mud_outcome { MUD_SUBSTEP_REJECTED = 0, MUD_SUBSTEP_ACCEPTED = 1, MUD_SUBSTEP_FAILED = 2 /* the update ended */ };
 enum mud_mode {
-   MUD_MODE_ORDINARY = 0, MUD_MODE_ELASTIC = 1 /* inside the elastic nucleus */, MUD_MODE_HELD = 2 /* by the cut-off */
+   MUD_MODE_ORDINARY = 0, MUD_MODE_ELASTIC = 1 /* inside the elastic domain */, MUD_MODE_HELD = 2 /* by the cut-off */
 };
 enum mud_jump {   /* of the memory, where the substep begins */
    MUD_JUMP_NONE = 0, MUD_JUMP_REVERSAL = 1 /* a new process begins */, MUD_JUMP_RETURN = 2 /* an old one goes on */,
@@ -155,7 +155,7 @@ enum mud_jump {   /* of the memory, where the substep begins */
 typedef struct mud_substep {
    int outcome, mode, jump; /* enumerations above                                                      */
    int landed;              /* 1: shortened to end at an event (p_min, a reversal, a return)        */
-   int n_rate, n_reseat;    /* counted since the increment began, as in mud_report                     */
+   int n_rate, n_reset;     /* counted since the increment began, as in mud_report                     */
    int n_guard, n_no_root;  /* likewise; n_guard: all guards together                                  */
    double time, size;       /* where it began and how long it was, shares of the increment             */
    double error;            /* relative; compare with `tolerance` of PROPS                             */

@@ -27,14 +27,14 @@ module mud_interface
 
    !> struct mud_report of mud.h.
    type, bind(c) :: mud_report
-      integer(c_int) :: status, subject, index, n_rate, n_substep, n_reject, n_reseat, n_floor, n_cap_d, n_cap_h, &
+      integer(c_int) :: status, subject, index, n_rate, n_substep, n_reject, n_reset, n_floor, n_cap_d, n_cap_h, &
                         n_hysteresis, n_iso_kept, n_no_root, n_min_step, n_open, n_tensile
       real(c_double) :: value, lower, upper, reached, pnewdt
    end type mud_report
 
    !> struct mud_substep of mud.h.
    type, bind(c) :: mud_substep
-      integer(c_int) :: outcome, mode, jump, landed, n_rate, n_reseat, n_guard, n_no_root
+      integer(c_int) :: outcome, mode, jump, landed, n_rate, n_reset, n_guard, n_no_root
       real(c_double) :: time, size, error, void_ratio, saturation, suction, stress(6)
    end type mud_substep
 

@@ -38,6 +38,6 @@ def lode(cos3t):
 
 
 INTEGRATION = 1e-5   # relative tolerance of the library's integration: its default
-# The closed forms are those of the published model, which has no elastic nucleus: so are the cases held against them.
+# The closed forms are those of the published model, which has no elastic domain: so are the cases held against them.
 PUBLISHED = ((re.compile(r"(?m)^   file = .*$"), r"\g<0>\n   rho_e = 0.0"),)
 ROUNDING = 1e-12     # a few thousand roundings

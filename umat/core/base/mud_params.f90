@@ -37,7 +37,7 @@ module mud_params
       integer :: scheme, tangent, max_substeps
       integer :: shear_order   !< Of umat_ alone: 0 as 12, 13, 23, 1 as 12, 23, 13.
       real(wp) :: tolerance, h_min
-      real(wp) :: rho_e     !< Radius of the elastic nucleus, 0: none [-].
+      real(wp) :: rho_e     !< Radius of the elastic domain, 0: none [-].
       real(wp) :: c4        !< c**4, for the Lode function [-].
       real(wp) :: lode_bend !< sqrt(6) (1 - c**4)/(8 c**4), for its slope [-].
       real(wp) :: largest_stress, largest_suction_step   !< Limits of input in the unit of p_atm.

@@ -18,8 +18,8 @@ module mud_registry
    public :: S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION, S_STATE_PARAMETER, S_EPS_Q_P, S_EPS_Q_P_TOTAL, &
              S_X_BEFORE, S_X_RUNNING, S_TARGET, S_INTERRUPTED, S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, &
              S_MEMORY_BEFORE, S_DIRECTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, S_N_RATE, &
-             S_N_SUBSTEP, S_N_REJECT, S_N_RESEAT, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, &
-             S_NUCLEUS,              S_STACK, ENTRY_SIZE, MAX_INTERRUPTED
+             S_N_SUBSTEP, S_N_REJECT, S_N_RESET, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, &
+             S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED
 
    integer, parameter :: STATE_LAYOUT = 2   !< Layout number that an initialised STATEV carries.
    integer, parameter :: KIND_REAL = 0, KIND_SWITCH = 1, KIND_OPTION = 2, KIND_COUNT = 3
@@ -135,13 +135,13 @@ module mud_registry
    integer, parameter :: S_N_RATE = 46
    integer, parameter :: S_N_SUBSTEP = 47
    integer, parameter :: S_N_REJECT = 48
-   integer, parameter :: S_N_RESEAT = 49
+   integer, parameter :: S_N_RESET = 49
    integer, parameter :: S_N_GUARD = 50
    integer, parameter :: S_N_NO_ROOT = 51
    integer, parameter :: S_N_MIN_STEP = 52
    integer, parameter :: S_N_OPEN = 53
    integer, parameter :: S_N_TENSILE = 54
-   integer, parameter :: S_NUCLEUS = 55
+   integer, parameter :: S_ELASTIC_DOMAIN = 55
    !> Interrupted processes of the rule return_point, the oldest first: memory, direction and target of each.
    integer, parameter :: MAX_INTERRUPTED = 4, ENTRY_SIZE = 13
    integer, parameter :: S_STACK = 61
@@ -238,7 +238,7 @@ module mud_registry
       property_t(P_TANGENT, 'tangent', 'tangent', '1', KIND_OPTION, 0.0_wp, 3.0_wp, 3.0_wp, 'ours', &
          'tangent that umat_ returns'), &
       property_t(P_RHO_E, 'rho_e', 'rho_e', '1', KIND_REAL, 0.0_wp, 0.01_wp, 2.0e-5_wp, 'ours', &
-         'radius of the elastic nucleus, a norm of the strain tensor; 0: none, as in the paper'), &
+         'radius of the elastic domain, a norm of the strain tensor; 0: none, as in the paper'), &
       property_t(P_SHEAR_ORDER, 'shear_order', '-', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 0.0_wp, 'ours', &
          'shear components of umat_: 0 as 12, 13, 23 (Abaqus, CalculiX), 1 as 12, 23, 13 (Kratos)')]
 
@@ -255,7 +255,8 @@ module mud_registry
       variable_t(S_STATE_PARAMETER, 1, 'state_parameter', 'psi', '1', .false., 'paper', &
          'e - e_c, eq. (8)', 'from e, p'', p_c', 'computed at the end of the increment'), &
       variable_t(S_EPS_Q_P, 1, 'eps_q_p', 'eps_q^p', '1', .false., 'paper', &
-         'plastic shear of the present loading process, eq. (16)', '0', 'grows with plastic shear; 0 at a re-seat'), &
+         'plastic shear of the present loading process, eq. (16)', '0', &
+         'grows with plastic shear; 0 at a reset or return of the memory'), &
       variable_t(S_EPS_Q_P_TOTAL, 1, 'eps_q_p_total', '-', '1', .false., 'ours', &
          'plastic shear of all processes', '0', 'grows with plastic shear'), &
       variable_t(S_X_BEFORE, 1, 'x_before', 'J', '1', .false., 'paper', &
@@ -295,10 +296,11 @@ module mud_registry
          'total: accepted substeps', '0', 'adds up'), &
       variable_t(S_N_REJECT, 1, 'n_reject', '-', '1', .false., 'ours', &
          'total: rejected substeps', '0', 'adds up'), &
-      variable_t(S_N_RESEAT, 1, 'n_reseat', '-', '1', .false., 'ours', &
-         'total: re-seats of the memory', '0', 'adds up'), &
+      variable_t(S_N_RESET, 1, 'n_reset', '-', '1', .false., 'ours', &
+         'total: resets of the memory', '0', 'adds up'), &
       variable_t(S_N_GUARD, 1, 'n_guard', '-', '1', .false., 'ours', &
-         'total: rates in which a guard of section 4 acted', '0', 'adds up'), &
+         'total: times the floor, a cap or the hysteresis acted, or the isotropic mechanism contradicted itself', &
+         '0', 'adds up'), &
       variable_t(S_N_NO_ROOT, 1, 'n_no_root', '-', '1', .false., 'ours', &
          'total: rates without an admissible direction, taken as elastic', '0', 'adds up'), &
       variable_t(S_N_MIN_STEP, 1, 'n_min_step', '-', '1', .false., 'ours', &
@@ -307,8 +309,8 @@ module mud_registry
          'total: substeps held by the tension cut-off', '0', 'adds up'), &
       variable_t(S_N_TENSILE, 1, 'n_tensile', '-', '1', .false., 'ours', &
          'total: increments that ended with a tensile principal effective stress', '0', 'adds up'), &
-      variable_t(S_NUCLEUS, 6, 'nucleus', 'd', '1', .true., 'ours', &
-         'strain from the centre of the elastic nucleus (rho_e > 0), compression positive', '0', &
+      variable_t(S_ELASTIC_DOMAIN, 6, 'elastic_domain', 'd', '1', .true., 'ours', &
+         'strain from the centre of the elastic domain (rho_e > 0), compression positive', '0', &
          'follows the strain, |d| <= rho_e'), &
       variable_t(S_STACK + 0, 6, 'memory_1', 'r_in,1', '1', .true., 'ours', &
          'memory of the interrupted process 1; the first is the oldest (rule return_point)', '0', &

@@ -3,8 +3,8 @@ module mud_state
    use mud_kinds, only: wp
    use mud_registry, only: NSTATV, STATE_LAYOUT, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION, S_STATE_PARAMETER, &
       S_EPS_Q_P, S_EPS_Q_P_TOTAL, S_X_BEFORE, S_X_RUNNING, S_TARGET, S_INTERRUPTED, S_OPEN, S_LAST_STEP, S_FABRIC, &
-      S_MEMORY, S_MEMORY_BEFORE, S_DIRECTION, S_N_RATE, S_N_SUBSTEP, S_N_REJECT, S_N_RESEAT, S_N_GUARD, S_N_NO_ROOT, &
-      S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, S_NUCLEUS, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED
+      S_MEMORY, S_MEMORY_BEFORE, S_DIRECTION, S_N_RATE, S_N_SUBSTEP, S_N_REJECT, S_N_RESET, S_N_GUARD, S_N_NO_ROOT, &
+      S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED
    use mud_status, only: mud_status_t, fail, MUD_BAD_STATE, MUD_BAD_NSTATV, ON_STATEV
    use mud_tensor, only: is_finite
    implicit none (type, external)
@@ -15,7 +15,7 @@ module mud_state
 
    real(wp), parameter :: LARGEST_RATIO = 1.0e12_wp       !< A stress ratio beyond it is no state [-].
    real(wp), parameter :: LARGEST_FABRIC = 1.0e6_wp       !< Likewise; z_max is at most 1e3 [-].
-   real(wp), parameter :: LARGEST_NUCLEUS = 1.0_wp        !< Strain from the nucleus' centre; rho_e is at most 0.01 [-].
+   real(wp), parameter :: LARGEST_FROM_CENTRE = 1.0_wp    !< Strain from the elastic domain's centre; rho_e <= 0.01 [-].
    real(wp), parameter :: LARGEST_DIRECTION = 1.01_wp     !< Components of a unit tensor [-].
 
    !> A loading process that was interrupted (rule return_point).
@@ -47,14 +47,14 @@ module mud_state
       real(wp) :: psi          !< state parameter [-]
       real(wp) :: eps_q_total  !< plastic shear of all processes [-]
       real(wp) :: last_step    !< size of the substep proposed last, in units of strain [-]
-      real(wp) :: nucleus(6)   !< strain from the centre of the elastic nucleus [-]
+      real(wp) :: from_centre(6)   !< strain from the centre of the elastic domain [-]
       logical :: open          !< held by the tension cut-off
       type(memory_t) :: memory
    end type state_t
 
    !> What an update did.
    type :: counters_t
-      integer :: rate = 0, substep = 0, reject = 0, reseat = 0, floor = 0, cap_d = 0, cap_h = 0, hysteresis = 0, &
+      integer :: rate = 0, substep = 0, reject = 0, reset = 0, floor = 0, cap_d = 0, cap_h = 0, hysteresis = 0, &
                  iso_kept = 0, no_root = 0, min_step = 0, open = 0, tensile = 0
    end type counters_t
 contains
@@ -88,7 +88,7 @@ contains
          call require(statev, S_MEMORY + i, -LARGEST_RATIO, LARGEST_RATIO, status)
          call require(statev, S_MEMORY_BEFORE + i, -LARGEST_RATIO, LARGEST_RATIO, status)
          call require(statev, S_DIRECTION + i, -LARGEST_DIRECTION, LARGEST_DIRECTION, status)
-         call require(statev, S_NUCLEUS + i, -LARGEST_NUCLEUS, LARGEST_NUCLEUS, status)
+         call require(statev, S_ELASTIC_DOMAIN + i, -LARGEST_FROM_CENTRE, LARGEST_FROM_CENTRE, status)
       end do
       if (status%code /= 0) return
       call unpack_stack(statev, state%memory, status)
@@ -102,7 +102,7 @@ contains
       state%last_step = statev(S_LAST_STEP)
       state%open = statev(S_OPEN) > 0.5_wp
       state%z = statev(S_FABRIC:S_FABRIC + 5)
-      state%nucleus = statev(S_NUCLEUS:S_NUCLEUS + 5)
+      state%from_centre = statev(S_ELASTIC_DOMAIN:S_ELASTIC_DOMAIN + 5)
       state%memory%r_in = statev(S_MEMORY:S_MEMORY + 5)
       state%memory%r_before = statev(S_MEMORY_BEFORE:S_MEMORY_BEFORE + 5)
       state%memory%direction = statev(S_DIRECTION:S_DIRECTION + 5)
@@ -176,7 +176,7 @@ contains
       statev(S_LAST_STEP) = state%last_step
       statev(S_OPEN) = merge(1.0_wp, 0.0_wp, state%open)
       statev(S_FABRIC:S_FABRIC + 5) = state%z
-      statev(S_NUCLEUS:S_NUCLEUS + 5) = state%nucleus
+      statev(S_ELASTIC_DOMAIN:S_ELASTIC_DOMAIN + 5) = state%from_centre
       statev(S_MEMORY:S_MEMORY + 5) = state%memory%r_in
       statev(S_MEMORY_BEFORE:S_MEMORY_BEFORE + 5) = state%memory%r_before
       statev(S_DIRECTION:S_DIRECTION + 5) = state%memory%direction
@@ -189,7 +189,7 @@ contains
       statev(S_N_RATE) = statev(S_N_RATE) + counters%rate
       statev(S_N_SUBSTEP) = statev(S_N_SUBSTEP) + counters%substep
       statev(S_N_REJECT) = statev(S_N_REJECT) + counters%reject
-      statev(S_N_RESEAT) = statev(S_N_RESEAT) + counters%reseat
+      statev(S_N_RESET) = statev(S_N_RESET) + counters%reset
       statev(S_N_GUARD) = statev(S_N_GUARD) + guard_count(counters)
       statev(S_N_NO_ROOT) = statev(S_N_NO_ROOT) + counters%no_root
       statev(S_N_MIN_STEP) = statev(S_N_MIN_STEP) + counters%min_step
@@ -197,7 +197,7 @@ contains
       statev(S_N_TENSILE) = statev(S_N_TENSILE) + counters%tensile
    end subroutine pack_state
 
-   !> How often a guard acted.
+   !> How often a guard acted: floor, caps, hysteresis, and the isotropic mechanism that contradicts itself.
    pure integer function guard_count(counters)
       type(counters_t), intent(in) :: counters
 

@@ -4,7 +4,7 @@ module mud_blocks
    use mud_cutoff, only: slides, held_rate
    use mud_elastic, only: bulk_modulus, shear_modulus
    use mud_increment, only: increment_t, has_aside
-   use mud_nucleus, only: loading_direction
+   use mud_elastic_domain, only: loading_direction
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio, MODE_ELASTIC
    use mud_state, only: state_t
@@ -52,7 +52,7 @@ contains
       if (has_aside(inc, trial%mode)) call project(inc, trial%mode, trial%w(inc%scheme%stages), blocks%dsig_deps)
    end subroutine continuum_blocks
 
-   !> Tangent of a rate of which only the strain along nu loads (inside the nucleus none does), the rest being elastic.
+   !> Tangent of a rate of which only the strain along nu loads (inside the domain none), the rest being elastic.
    pure subroutine project(inc, mode, w, c)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
@@ -64,7 +64,7 @@ contains
       along = 0.0_wp
       nu = 0.0_wp
       if (mode /= MODE_ELASTIC) then
-         nu = loading_direction(inc%rho, inc%nucleus, inc%d_strain, 1.0_wp)
+         nu = loading_direction(inc%rho, inc%from_centre, inc%d_strain, 1.0_wp)
          along = matmul(c - elastic, SHEAR_WEIGHT*nu)
       end if
       c = elastic

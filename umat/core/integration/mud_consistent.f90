@@ -1,5 +1,5 @@
 !> Consistent tangent: the derivative of the algorithm, carried through the accepted substeps. The jumps of memory, the
-!> share of an increment inside the elastic nucleus and the times of events (mud_event_time) are differentiated. Sizes
+!> share of an increment inside the elastic domain and the times of events (mud_event_time) are differentiated. Sizes
 !> of substeps are frozen but for those that end at an event and for the last, which ends where the increment ends:
 !> behind an event all substeps begin later by its shift. In the limit of small substeps that is the saltation term
 !> (f_before - f_after) (x) dt/d increment; docs/theory/integration.md section 5.
@@ -8,7 +8,7 @@ module mud_consistent
    use mud_cutoff, only: slide, change_of_slide
    use mud_increment, only: increment_t, void_ratio_at, suction_at, loading_strain, change_of_loading_strain, &
       turn_of_loading_strain, has_aside, NY
-   use mud_nucleus, only: change_of_exit
+   use mud_elastic_domain, only: change_of_exit
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY
    use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, MAX_INTERRUPTED
@@ -20,7 +20,7 @@ module mud_consistent
    use mud_trial, only: trial_t, MODE_HELD
    implicit none (type, external)
    private
-   public :: sensitivity_t, no_sensitivity, enter_nucleus, leave_nucleus, propagate, jump_of_memory, &
+   public :: sensitivity_t, no_sensitivity, enter_elastic_domain, leave_elastic_domain, propagate, jump_of_memory, &
              change_with_size, change_along, change_of_ratio, linearise_stage, DIRECTIONS, AT_REST, &
              JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
 
@@ -37,7 +37,7 @@ module mud_consistent
       real(wp) :: d_pc(DIRECTIONS)           !< of its suction step
       real(wp) :: e0(DIRECTIONS)             !< of ln(1 + e) at its start
       real(wp) :: p_c0(DIRECTIONS)           !< of its first suction
-      real(wp) :: nucleus(6, DIRECTIONS)     !< of the strain from the nucleus' centre at its start
+      real(wp) :: from_centre(6, DIRECTIONS)     !< of the strain from the centre of the elastic domain at its start
    end type driving_t
 
    !> Nothing drives.
@@ -80,20 +80,20 @@ contains
       driving%d_pc = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp]
       driving%e0 = 0.0_wp
       driving%p_c0 = 0.0_wp
-      driving%nucleus = 0.0_wp
+      driving%from_centre = 0.0_wp
    end function whole_increment
 
-   !> The share of the increment inside the nucleus: it depends on the strain itself.
-   pure subroutine enter_nucleus(whole, share, sens)
+   !> The share of the increment inside the elastic domain: it depends on the strain itself.
+   pure subroutine enter_elastic_domain(whole, share, sens)
       type(increment_t), intent(in) :: whole
       real(wp), intent(in) :: share
       type(sensitivity_t), intent(inout) :: sens
 
       call scale_driving(whole, share, 1.0_wp, sens%driving)
-   end subroutine enter_nucleus
+   end subroutine enter_elastic_domain
 
    !> The rest of the increment.
-   pure subroutine leave_nucleus(whole, share, sens)
+   pure subroutine leave_elastic_domain(whole, share, sens)
       type(increment_t), intent(in) :: whole
       real(wp), intent(in) :: share
       type(sensitivity_t), intent(inout) :: sens
@@ -105,11 +105,11 @@ contains
       sens%driving = whole_increment()
       call scale_driving(whole, share, -1.0_wp, sens%driving)
       do j = 1, DIRECTIONS
-         sens%driving%nucleus(:, j) = inside%d_strain(:, j)
+         sens%driving%from_centre(:, j) = inside%d_strain(:, j)
          sens%driving%e0(j) = -inside%d_v(j)
          sens%driving%p_c0(j) = inside%d_pc(j)
       end do
-   end subroutine leave_nucleus
+   end subroutine leave_elastic_domain
 
    !> Derivatives of share (side +1) or 1 - share (side -1) times the increment.
    pure subroutine scale_driving(whole, share, side, driving)
@@ -124,7 +124,7 @@ contains
       do j = 1, DIRECTIONS
          change = 0.0_wp
          if (share > 0.0_wp .and. share < 1.0_wp) then
-            change = side*change_of_exit(whole%nucleus, whole%d_strain, share, AT_REST, driving%d_strain(:, j))
+            change = side*change_of_exit(whole%from_centre, whole%d_strain, share, AT_REST, driving%d_strain(:, j))
          end if
          driving%d_strain(:, j) = length*driving%d_strain(:, j) + change*whole%d_strain
          driving%d_v(j) = length*driving%d_v(j) + change*whole%d_v
@@ -307,8 +307,8 @@ contains
       change%d_pc = driving%d_pc(j)
       call change_of_place(inc, j, time, dt, driving, change%e, change%p_c)
       if (.not. has_aside(inc, mode)) return
-      call change_of_loading_strain(inc, mode, time, driving%d_strain(:, j), driving%nucleus(:, j), change%d_strain, &
-                                    change%d_aside)
+      call change_of_loading_strain(inc, mode, time, driving%d_strain(:, j), driving%from_centre(:, j), &
+                                    change%d_strain, change%d_aside)
       if (abs(dt) > 0.0_wp) then
          turn = dt*turn_of_loading_strain(inc, mode, time)
          change%d_strain = change%d_strain + turn

@@ -19,7 +19,7 @@ module mud_events
    integer, parameter :: EVENT_NONE = 0
    integer, parameter :: EVENT_OPENS = 1      !< p' falls to p_min.
    integer, parameter :: EVENT_CLOSES = 2     !< p' would rise from p_min.
-   integer, parameter :: EVENT_BOUNDS = 3     !< r exceeds the bounding surface inside the elastic nucleus.
+   integer, parameter :: EVENT_BOUNDS = 3     !< r exceeds the bounding surface inside the elastic domain.
    integer, parameter :: EVENT_REVERSAL = 4   !< (r - r_in):n falls to -x_rev.
    integer, parameter :: EVENT_RETURN = 5     !< r reaches the target of an interrupted process.
 
@@ -196,7 +196,7 @@ contains
       end select
    end subroutine event_function
 
-   !> How a held point would go on if it closed: inside the elastic nucleus without plastic dilatancy.
+   !> How a held point would go on if it closed: inside the elastic domain without plastic dilatancy.
    pure integer function closing_mode(inc)
       type(increment_t), intent(in) :: inc
 
@@ -224,8 +224,8 @@ contains
       change = d_rate - CLOSING*change
    end function change_of_closing_rate
 
-   !> How far r may be beyond the bounding surface in a substep inside the nucleus: from farther outside it is the
-   !> excess at the start.
+   !> How far r may be beyond the bounding surface in a substep inside the elastic domain: from farther outside it is
+   !> the excess at the start.
    pure real(wp) function allowed_excess(par, inc, trial)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc

@@ -6,7 +6,7 @@ module mud_increment
    use mud_tensor, only: IDENTITY, ddot, trace, deviator, norm
    use mud_bonding, only: is_bonded
    use mud_rates, only: rate_t, rate_at, MODE_ORDINARY, MODE_ELASTIC
-   use mud_nucleus, only: loading_direction, change_of_direction
+   use mud_elastic_domain, only: loading_direction, change_of_direction
    use mud_substep, only: scheme_t, SCHEMES
    implicit none (type, external)
    private
@@ -14,18 +14,18 @@ module mud_increment
              change_of_loading_strain, turn_of_loading_strain, has_aside, NY
 
    integer, parameter :: NY = 13         !< Length of the integrated vector: sigma'(6), z(6), plastic shear.
-   !> A strain across the nucleus, whose part along nu is rounding of either sign, does not load: it would look like a
-   !> reversal [-].
+   !> A strain across the elastic domain, whose part along nu is rounding of either sign, does not load: it would look
+   !> like a reversal [-].
    real(wp), parameter :: ACROSS = 1.0e-12_wp
 
-   !> What stays the same through an update; with an elastic nucleus, through one of its phases.
+   !> What stays the same through an update; with an elastic domain, through one of its phases.
    type :: increment_t
       real(wp) :: d_strain(6), d_pc, p_c0, e0, d_v
       logical :: bonded             !< Bonding is on and there is suction: decided once.
-      logical :: inside             !< The phase inside the elastic nucleus.
-      real(wp) :: rho               !< Radius of the nucleus, 0: none [-].
+      logical :: inside             !< The phase inside the elastic domain.
+      real(wp) :: rho               !< Radius of the elastic domain, 0: none [-].
       real(wp) :: from, length      !< The phase's place in the update [-].
-      real(wp) :: nucleus(6)        !< Strain from its centre at the start [-].
+      real(wp) :: from_centre(6)        !< Strain from its centre at the start [-].
       type(scheme_t) :: scheme
    end type increment_t
 contains
@@ -57,7 +57,7 @@ contains
       if (w%no_root) counters%no_root = counters%no_root + 1
    end subroutine rate_of
 
-   !> True if a part of the strain is elastic: all of it inside the nucleus, some where the nucleus is pulled along.
+   !> True if a part of the strain is elastic: all of it inside the elastic domain, some where that is pulled.
    pure logical function has_aside(inc, mode)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
@@ -75,31 +75,31 @@ contains
 
       loading = 0.0_wp
       if (mode /= MODE_ELASTIC) then
-         nu = loading_direction(inc%rho, inc%nucleus, inc%d_strain, time)
+         nu = loading_direction(inc%rho, inc%from_centre, inc%d_strain, time)
          along = ddot(nu, inc%d_strain)
          if (along > ACROSS*norm(inc%d_strain)) loading = along*nu
       end if
       aside = inc%d_strain - loading
    end subroutine loading_strain
 
-   !> Change of both parts with the strain rate and the nucleus at the start.
-   pure subroutine change_of_loading_strain(inc, mode, time, strain_change, nucleus_change, loading, aside)
+   !> Change of both parts with the strain rate and the elastic domain at the start.
+   pure subroutine change_of_loading_strain(inc, mode, time, strain_change, centre_change, loading, aside)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
-      real(wp), intent(in) :: time, strain_change(6), nucleus_change(6)
+      real(wp), intent(in) :: time, strain_change(6), centre_change(6)
       real(wp), intent(out) :: loading(6), aside(6)
       real(wp) :: nu(6), change(6)
 
       loading = 0.0_wp
       if (mode /= MODE_ELASTIC) then
-         nu = loading_direction(inc%rho, inc%nucleus, inc%d_strain, time)
-         change = change_of_direction(inc%rho, inc%nucleus, inc%d_strain, time, nucleus_change, strain_change)
+         nu = loading_direction(inc%rho, inc%from_centre, inc%d_strain, time)
+         change = change_of_direction(inc%rho, inc%from_centre, inc%d_strain, time, centre_change, strain_change)
          loading = (ddot(change, inc%d_strain) + ddot(nu, strain_change))*nu + ddot(nu, inc%d_strain)*change
       end if
       aside = strain_change - loading
    end subroutine change_of_loading_strain
 
-   !> Rate at which the part that loads turns with the nucleus, per unit of pseudo-time: nu' = (a - (nu:a) nu)/rho.
+   !> Rate at which the part that loads turns with the domain, per unit of pseudo-time: nu' = (a - (nu:a) nu)/rho.
    pure function turn_of_loading_strain(inc, mode, time) result(turn)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
@@ -108,7 +108,7 @@ contains
 
       turn = 0.0_wp
       if (mode == MODE_ELASTIC) return
-      nu = loading_direction(inc%rho, inc%nucleus, inc%d_strain, time)
+      nu = loading_direction(inc%rho, inc%from_centre, inc%d_strain, time)
       along = ddot(nu, inc%d_strain)
       nu_rate = (inc%d_strain - along*nu)/inc%rho
       turn = ddot(nu_rate, inc%d_strain)*nu + along*nu_rate
@@ -131,7 +131,7 @@ contains
       inc%inside = .false.
       inc%from = 0.0_wp
       inc%length = 1.0_wp
-      inc%nucleus = 0.0_wp
+      inc%from_centre = 0.0_wp
    end function new_increment
 
    !> The part of an increment between two pseudo-times as an increment of its own.

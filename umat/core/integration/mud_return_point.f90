@@ -46,7 +46,7 @@ contains
    end subroutine interrupt
 
    !> Number of the interrupted process that the path may come back to, 0 if there is none: the newest while the path
-   !> leads back along it (the reversal is then still held back by the hysteresis or by the elastic nucleus), otherwise
+   !> leads back along it (the reversal is then still held back by the hysteresis or by the elastic domain), otherwise
    !> the one before it, whose direction the present process shares.
    pure integer function watched_process(memory, t) result(k)
       type(memory_t), intent(in) :: memory

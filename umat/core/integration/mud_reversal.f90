@@ -69,7 +69,7 @@ contains
    end function interrupted_share
 
    !> After an accepted substep that began with (r - r_in):n = x in the direction n and led to the stress ratio r, with
-   !> an elastic rate of the stress ratio along t. The path may leave the elastic nucleus sideways on its way back: then
+   !> an elastic rate of the stress ratio along t. The path may leave the elastic domain sideways on its way back: then
    !> n still points forwards while r falls, which is no progress of the process.
    pure subroutine accept_process(par, loading, x, n, r, t, d_eps_q, memory)
       type(params_t), intent(in) :: par

@@ -41,7 +41,7 @@ contains
       state%e = e
       state%p_c = p_c
       state%z = 0.0_wp
-      state%nucleus = 0.0_wp
+      state%from_centre = 0.0_wp
       state%eps_q_total = 0.0_wp
       state%last_step = 0.0_wp
       state%open = .false.

@@ -21,7 +21,7 @@ module mud_substepping
    public :: integrate
 
    real(wp), parameter :: ALIGNED = 1.0e-8_wp                !< Cosine this close to 1 is no turn [-].
-   real(wp), parameter :: TURN_PIECE = 0.7_wp   !< First substep where the nucleus turns, share of its radius [-].
+   real(wp), parameter :: TURN_PIECE = 0.7_wp   !< First substep where the domain turns, share of its radius [-].
    real(wp), parameter :: LAST_SLIVER = 1.0e-9_wp            !< A rest of this share joins the substep before it [-].
 contains
    !> The loop over substeps.
@@ -124,13 +124,13 @@ contains
       reached = 1.0_wp
    end subroutine integrate
 
-   !> True where the elastic nucleus turns at the start: the transient lasts about a radius of strain.
+   !> True where the elastic domain turns at the start: the transient lasts about a radius of strain.
    pure logical function turns(inc)
       type(increment_t), intent(in) :: inc
 
       turns = .false.
       if (inc%rho > 0.0_wp .and. .not. inc%inside) then
-         turns = ddot(inc%nucleus, inc%d_strain) < (1.0_wp - ALIGNED)*inc%rho*norm(inc%d_strain)
+         turns = ddot(inc%from_centre, inc%d_strain) < (1.0_wp - ALIGNED)*inc%rho*norm(inc%d_strain)
       end if
    end function turns
 end module mud_substepping

@@ -16,7 +16,7 @@ module mud_trace
 
    !> struct mud_substep of mud.h; here the stress is compression positive.
    type, bind(c) :: substep_t
-      integer(c_int) :: outcome, mode, jump, landed, n_rate, n_reseat, n_guard, n_no_root
+      integer(c_int) :: outcome, mode, jump, landed, n_rate, n_reset, n_guard, n_no_root
       real(c_double) :: time, size, error, void_ratio, saturation, suction, stress(6)
    end type substep_t
 
@@ -50,7 +50,7 @@ contains
       e = void_ratio_at(inc, trial%time + h)
       p_c = suction_at(inc, trial%time + h)
       sat = saturation(par, p_c, e)
-      trace%rows(row) = substep_t(outcome, trial%mode, jump, merge(1, 0, landed), counters%rate, counters%reseat, &
+      trace%rows(row) = substep_t(outcome, trial%mode, jump, merge(1, 0, landed), counters%rate, counters%reset, &
                                   guard_count(counters), counters%no_root, &
                                   inc%from + inc%length*trial%time, inc%length*h, error, e, sat%s_w, p_c, sigma)
    end subroutine record_substep

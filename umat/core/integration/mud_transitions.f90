@@ -99,7 +99,7 @@ contains
          counters%hysteresis = counters%hysteresis + 1
          return
       end if
-      counters%reseat = counters%reseat + 1
+      counters%reset = counters%reset + 1
       jump = JUMP_REVERSAL
       trigger = trial%w(1)
       before = state%memory
@@ -201,7 +201,7 @@ contains
    end subroutine accept_substep
 
    !> p' times the rate of the stress ratio if the whole strain were elastic. The part of the strain across the elastic
-   !> nucleus turns the direction of loading, not the process: the whole strain tells where it goes.
+   !> domain turns the direction of loading, not the process: the whole strain tells where it goes.
    pure function elastic_rate(inc, trial, r) result(t)
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial

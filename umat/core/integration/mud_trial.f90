@@ -21,7 +21,7 @@ module mud_trial
       real(wp) :: y0(NY), y(NY)
       type(rate_t) :: w(MAX_STAGES) !< What each stage's rate went through; the first is that of the memory as it is.
       integer :: mode
-      logical :: pressed            !< Inside the nucleus the bounding surface was met: ordinary rates from there on.
+      logical :: pressed            !< The bounding surface was met inside the elastic domain: ordinary rates follow.
       real(wp) :: r_in(6)
       real(wp) :: time              !< Pseudo-time of y0 [-].
       real(wp) :: x_previous        !< (r - r_in):n where the substep before began [-].

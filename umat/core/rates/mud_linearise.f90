@@ -17,7 +17,7 @@ module mud_linearise
    type :: linearised_t
       logical :: held_p                     !< p' is at its lower bound: it does not follow the stress.
       real(wp) :: e, p_c, d_v, d_pc, d_e(6), d_aside(6)
-      logical :: beside                     !< There is an elastic strain rate beside (nucleus).
+      logical :: beside                     !< An elastic strain rate beside (the elastic domain pulled along).
       type(bonding_t) :: bond
       real(wp) :: curvature(3)              !< of f [1/kPa2, 1/kPa, -]
       real(wp) :: e_c, kappa, r_norm

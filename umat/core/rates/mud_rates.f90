@@ -17,7 +17,7 @@ module mud_rates
    public :: rate_t, rate_at, stress_ratio, bounding_norm, MODE_ORDINARY, MODE_ELASTIC
 
    integer, parameter :: MODE_ORDINARY = 0   !< Both mechanisms act.
-   integer, parameter :: MODE_ELASTIC = 1    !< L = 0: inside the elastic nucleus.
+   integer, parameter :: MODE_ELASTIC = 1    !< L = 0: inside the elastic domain.
 
    !> |t| below this share of its terms is rounding. The terms are measured by the whole strain and by a stress ratio of
    !> at least SMALLEST_RATIO: where both deviators are rounding themselves, as in isotropic compression, theirs would

@@ -19,7 +19,7 @@ module mud_sensitivity
       real(wp) :: sigma(6), z(6), r_in(6)   !< [kPa, -, -]
       real(wp) :: e, p_c                    !< [-, kPa]
       real(wp) :: d_strain(6), d_pc         !< of the strain rate that loads and the suction rate [-, kPa]
-      real(wp) :: d_aside(6)                !< of the strain rate beside it that is elastic (nucleus) [-]
+      real(wp) :: d_aside(6)                !< of the strain rate beside it that is elastic [-]
    end type change_t
 
    !> Directions side by side: changes of a rate's arguments, what lies between, and its results.

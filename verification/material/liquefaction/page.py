@@ -9,7 +9,7 @@ from tools.pictures import COLOURS
 PAGE = Page(
     claim="long cyclic tests run without trouble, and their answer is the model's and not the integrator's",
     kind=("code-to-code", "conservation"),
-    input="without an elastic nucleus: `drivers/cases/cyclic_q_e833_p100` (q of 25 kPa to r_u 0.95), "
+    input="without an elastic domain: `drivers/cases/cyclic_q_e833_p100` (q of 25 kPa to r_u 0.95), "
           "`cyclic_q_e833_p100_mobility` (60 cycles), "
           "`cyclic_tau_e860_p100` (simple "
           "shear of 15 kPa to a double amplitude of 5 %), `cyclic_strain_e907_p100` (400 strain cycles of 0.1 %)",

@@ -86,7 +86,7 @@ contains
 
       write (output_unit, '(a, ",", a, ",", i0, 14(",", es22.15), 5(",", i0))') trim(name), trim(label), &
          merge(1, 0, failed), point%stress, point%strain, state_of(point, 'void_ratio'), point%suction, &
-         nint(state_of(point, 'n_rate')), nint(state_of(point, 'n_substep')), nint(state_of(point, 'n_reseat')), &
+         nint(state_of(point, 'n_rate')), nint(state_of(point, 'n_substep')), nint(state_of(point, 'n_reset')), &
          point%halvings, point%iterations
    end subroutine write_row
 end program mud_walk

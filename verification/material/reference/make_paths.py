@@ -102,7 +102,7 @@ def integrate(pid, rtol, method="DOP853", nscan=121, pieces=1, max_step=np.inf, 
         info.append((q0.x, q1.x, q0.iso, q1.iso, q1.flags, st.log[nlog:], st.p, np.sqrt(pt.eta2), pt.Mb, pt.psi, pt.ratio, q0.roots,
                      q1.roots))
         S = saturation(st.e, st.pc, P)[0]
-        out.append(np.array([*six(st.sig), st.e, st.pc, S, *six(st.z), st.eqp, st.reseats]))
+        out.append(np.array([*six(st.sig), st.e, st.pc, S, *six(st.z), st.eqp, st.resets]))
     return np.array(out), info, st
 
 
@@ -118,7 +118,7 @@ def distance(a, b):
 def show(pid):
     """A readable trace of one path."""
     a, info, st = integrate(pid, 1e-9)
-    print(f"== {pid} {PATHS[pid][0]}: rates {st.nrate} steps {st.nsteps} reseats {st.reseats}")
+    print(f"== {pid} {PATHS[pid][0]}: rates {st.nrate} steps {st.nsteps} resets {st.resets}")
     for row, i in zip(a, info):
         print("   sig", np.array2string(row[:6], precision=2, floatmode="fixed"),
               "e %.4f Sw %.4f eqp %.5f |z| %.3f" % (row[6], row[8], row[15], norm(tensor(row[9:15]))),
@@ -135,19 +135,19 @@ def main():
         c = integrate(pid, 1e-11, method="LSODA", max_step=0.05)[0]
         u = np.maximum(distance(b, ref), 1e-12)
         ul = distance(c, ref).max()
-        drift = sum(1 for k in log if k[0] == "reseat" and k[1] > 0.0)
+        drift = sum(1 for k in log if k[0] == "reset" and k[1] > 0.0)
         again = sum(1 for k in log if k[0] == "still behind")
         note = f"# path {pid}: {title}; rule {rule}; converged to {u.max():.0e} (DOP853), LSODA differs by {ul:.0e}"
         if drift:
             late = integrate(pid, 1e-11, x_rev=1.1e-3)[0]
             ds = np.abs(late[:, :6] - ref[:, :6]).max() / np.abs(ref[:, :6]).max()
-            note += (f"; {drift} re-seats inside segments: if each came 1e-4 (in x) late the stress would move by {ds:.0e},"
+            note += (f"; {drift} resets inside segments: if each came 1e-4 (in x) late the stress would move by {ds:.0e},"
                      f" eps_q^p by {np.abs(late[:, 15] - ref[:, 15]).max():.0e} absolute")
         back = sum(1 for k in log if k[0] == "return")
         if back:
             note += f"; {back} returns to an interrupted process"
         if again:
-            note += f"; {again} times still behind after a re-seat"
+            note += f"; {again} times still behind after a reset"
         print(note, flush=True)
         notes.append(note)
         mask = sum(1 << k for k, name in enumerate(EFFECTS) if name in off)
@@ -163,17 +163,17 @@ def main():
     head = [
         "# general six-component reference paths of MUD; made by mud_reference.py (make_paths.py), independent of the library",
         "# units kPa and -, compression positive, true tensor shear (not engineering), component order 11 22 33 12 13 23",
-        "# sig = effective stress. Default parameters (paper Tables 2, 3; p_atm 101.325, theta 0.2, eps_hat 1e-4, guards on), no strain nucleus",
+        "# sig = effective stress. Default parameters (paper Tables 2, 3; p_atm 101.325, theta 0.2, eps_hat 1e-4, guards on), no elastic domain",
         "# segment 0 holds the initial state (z = 0, eps_q^p = 0, J = 0, r_in = r_in_before = r); its deps, dpc are zero",
         "# segment k > 0: deps, dpc applied linearly from the state of segment k-1; then the state at its end",
         "# de = -(1+e) tr(deps), so e = (1+e_start) exp(-tr(deps)) - 1",
         "# rule: 0 classic 1 threshold 2 repositioning 3 return_point",
         "# off: effects switched off, 1 isotropic mechanism 2 retention (S_w = S_max = 1) 4 bonding (f = 1; b1 = 0) 8 fabric (A_d = A_0, dz = 0) 16 Lode (g = 1; c = 1)",
-        "# reseats: number since the start; unc: change on a 10 times looser tolerance with every segment cut in 3",
+        "# resets: number since the start; unc: change on a 10 times looser tolerance with every segment cut in 3",
         "# (largest of |d sig|/|sig|, |d e|/e, |d z|/z_max, |d eps_q^p|/0.01, |d S_w|; 1e-12 is the smallest stated)",
-        "# eps_q^p is that of the present loading process: zero after a re-seat, and zero again where an interrupted process goes on (rule return_point)",
+        "# eps_q^p is that of the present loading process: zero after a reset, and zero again where an interrupted process goes on (rule return_point)",
         *notes,
-        "# path, segment, rule, off, deps(6), dpc, sig(6), e, p_c, S_w, z(6), eps_q^p, reseats, unc",
+        "# path, segment, rule, off, deps(6), dpc, sig(6), e, p_c, S_w, z(6), eps_q^p, resets, unc",
     ]
     with open(folder(__file__) / "paths.csv", "w") as fh:
         fh.write("\n".join(head + rows) + "\n")

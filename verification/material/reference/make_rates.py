@@ -244,7 +244,7 @@ def main():
         "# 200 single evaluations of the MUD rates; made by mud_reference.py (make_rates.py), independent of the library",
         "# default parameters (paper Tables 2 and 3, p_atm 101.325, theta 0.2, x_0 3e-3, kappa_c 0.5, all guards and effects on)",
         "# units kPa and -, compression positive, true tensor shear, component order 11 22 33 12 13 23",
-        "# sig = effective stress; the memory r_in is held: NO re-seat test is made even where x < -x_rev",
+        "# sig = effective stress; the memory r_in is held: NO reset test is made even where x < -x_rev",
         "# all inputs are exact short decimals; r_in and z are traceless",
         "# results are of degree one in (deps, dpc): they are increments for the given deps, dpc",
         "# iso: 0 isotropic mechanism off, 1 on, 2 second solution rejected (the first is kept)",

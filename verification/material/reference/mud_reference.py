@@ -2,7 +2,7 @@
 
 Written from the equations of docs/theory and the paper alone, without sight of the library.  It does things differently on purpose: full 3x3 tensors (no Voigt), tr(n^3) = 3 det(n), the direction equation
 solved by a dense scan of the angle w followed by Brent's method, void ratio in closed form along a segment, and the rates
-integrated by Dormand-Prince 8(5,3) (scipy) with located events for every re-seat.
+integrated by Dormand-Prince 8(5,3) (scipy) with located events for every reset.
 
 Conventions: compression positive, true tensor shear components, kPa.  A "segment" is a straight piece of strain and suction
 path, s in [0, 1].  Everything needs numpy and scipy only.
@@ -401,7 +401,7 @@ class State:
     n_t: np.ndarray | None = None  # rule return_point: direction of the present process, and how far it came along it
     T: float = 0.0
     stack: list = field(default_factory=list)  # rule return_point: interrupted processes, the newest last
-    reseats: int = 0
+    resets: int = 0
     nrate: int = 0
     nsteps: int = 0
     fallbacks: int = 0
@@ -433,7 +433,7 @@ def isotropic(p, e, pc=0.0):
     return State(p * I3, e, pc)
 
 
-def reseat(st, rt, P, where):
+def reset(st, rt, P, where):
     """The memory jump, docs/theory/memory-rules.md section 2.  rt is the rate that triggered it (its n is the new direction)."""
     r = stress_ratio(st.sig, P)
     old = st.r_in
@@ -460,8 +460,8 @@ def reseat(st, rt, P, where):
     st.r_in = new
     st.J = st.J_run
     st.J_run = 0.0
-    st.reseats += 1
-    st.log.append(("reseat", where[0]))
+    st.resets += 1
+    st.log.append(("reset", where[0]))
 
 
 def elastic_trial(sig, e, deps, P):
@@ -514,8 +514,8 @@ def come_back(st, deps, P, s, landed=False):
         st.log.append(("return", s))
 
 
-def segment(st, deps, dpc, P, rtol=1e-10, method="DOP853", nscan=121, hook=None, max_reseats=100000, max_step=np.inf):
-    """Integrate one straight segment (deps 3x3, dpc) in place.  Every re-seat is located as the root of (r-r_in):n + x_rev
+def segment(st, deps, dpc, P, rtol=1e-10, method="DOP853", nscan=121, hook=None, max_resets=100000, max_step=np.inf):
+    """Integrate one straight segment (deps 3x3, dpc) in place.  Every reset is located as the root of (r-r_in):n + x_rev
     on the dense output and the integration restarted there; so are the events of the rule return_point."""
     e0, pc0, dv = st.e, st.pc, float(np.trace(deps))
     x_rev = P.x_rev if P.hysteresis else 0.0
@@ -549,14 +549,14 @@ def segment(st, deps, dpc, P, rtol=1e-10, method="DOP853", nscan=121, hook=None,
             y[18] = st.eqp
         rt = rate_at(s, y)
         if rt.n is not None and rt.x < -x_rev and first_test:
-            reseat(st, rt, P, (s, deps))
-            if st.reseats > max_reseats:
-                raise RuntimeError("too many re-seats")
+            reset(st, rt, P, (s, deps))
+            if st.resets > max_resets:
+                raise RuntimeError("too many resets")
             y[18] = st.eqp
             first_test = False
             continue
         if not first_test and rt.n is not None and rt.x < -x_rev:
-            st.log.append(("still behind", s))  # the new rates would ask for another re-seat: not in this substep
+            st.log.append(("still behind", s))  # the new rates would ask for another reset: not in this substep
         first_test = True
 
         # --- smooth integration until an event or the end
@@ -572,7 +572,7 @@ def segment(st, deps, dpc, P, rtol=1e-10, method="DOP853", nscan=121, hook=None,
             """Values that are positive inside the smooth piece."""
             sg, zz, eqp = unpack(yy)
             q = rate_at(ss, yy)
-            ev = {"reseat": (q.x + x_rev) if q.n is not None else 1.0, "_x": q.x, "_n": q.n}
+            ev = {"reset": (q.x + x_rev) if q.n is not None else 1.0, "_x": q.x, "_n": q.n}
             if remembers:
                 rr = stress_ratio(sg, P)
                 if q.n is not None:
@@ -635,10 +635,10 @@ def segment(st, deps, dpc, P, rtol=1e-10, method="DOP853", nscan=121, hook=None,
         # --- after an event
         sig, z, _ = unpack(y)
         st.sig, st.z, st.eqp, st.e, st.pc = sig.copy(), z.copy(), float(y[18]), e_of(s), pc_of(s)
-        if done_event == "reseat":
+        if done_event == "reset":
             q = rate_at(s, y)
             st.J_run = 0.0  # its last value at x >= 0 was zero
-            reseat(st, q, P, (s, deps))
+            reset(st, q, P, (s, deps))
             y[18] = st.eqp
             first_test = False
         elif done_event == "return":

@@ -107,11 +107,11 @@ def walk(file, rule, threshold, tangent):
                               None, None, None)
         if code:
             sys.exit(f"mud_update: {code}")
-    print(*(int(state[mud.mud_index(STATEV, key)]) for key in (b"n_rate", b"n_substep", b"n_reseat")))
+    print(*(int(state[mud.mud_index(STATEV, key)]) for key in (b"n_rate", b"n_substep", b"n_reset")))
 
 
 def count(file, rule, threshold, tangent=0):
-    """(instructions in mud_update, rates, substeps, re-seats)."""
+    """(instructions in mud_update, rates, substeps, resets)."""
     done = subprocess.run(["valgrind", "--tool=callgrind", "--toggle-collect=__mud_kernel_MOD_kernel_update",
                            "--callgrind-out-file=/dev/null",
                            sys.executable, __file__, "--walk", file, str(rule), str(threshold), str(tangent)],
@@ -122,14 +122,14 @@ def count(file, rule, threshold, tangent=0):
 
 
 def report(rows):
-    text = ["| path | rule | updates | rate evaluations | re-seats | instructions | a rate | against `classic`: all | "
+    text = ["| path | rule | updates | rate evaluations | resets | instructions | a rate | against `classic`: all | "
             "a rate |",
             "|" + 9 * "---|"]
     for row in rows.values():
         base = rows[f"{row['path']}, classic"]
         each = row["instructions"] / row["rates"]
         text.append(f"| {row['path']} | {row['rule']} | {row['updates']:.0f} | {row['rates']:.0f} | "
-                    f"{row['reseats']:.0f} "
+                    f"{row['resets']:.0f} "
                     f"| {row['instructions']:.0f} | {each:.0f} | "
                     f"{100 * (row['instructions'] / base['instructions'] - 1):+.2f} % "
                     f"| {100 * (each / (base['instructions'] / base['rates']) - 1):+.2f} % |")
@@ -176,13 +176,13 @@ def main():
                 title = f"{job.facts['suction']} kPa, {name}"
                 if f"{title}, {rule}" in rows:
                     continue
-                n, rates, substeps, reseats = count(file, number, threshold)
+                n, rates, substeps, resets = count(file, number, threshold)
                 rows[f"{title}, {rule}"] = dict(name=f"{title}, {rule}", path=title, rule=rule,
                                                 updates=len(path["strain"]), rates=rates,
-                                                substeps=substeps, reseats=reseats, instructions=n, program=digest,
+                                                substeps=substeps, resets=resets, instructions=n, program=digest,
                                                 commit=commit)
                 write_rows(results / "cost.csv", rows)
-                print(f"{title}, {rule}: {n} instructions, {rates} rates, {reseats} re-seats", flush=True)
+                print(f"{title}, {rule}: {n} instructions, {rates} rates, {resets} resets", flush=True)
     print(texts(results)["cost"])
 
 

@@ -15,7 +15,7 @@ program mud_oscillation
    namelist /run/ id, path, noise, rule, scheme, events, seed, e, p, suction, from, to, last, top, size, growth, &
       increment, tolerance, rho_e, eps_hat, drained, random_events
 
-   write (output_unit, '(a)') 'id,status,s11,s22,s33,s12,s13,s23,e,substeps,rejects,rates,reseats,halvings'
+   write (output_unit, '(a)') 'id,status,s11,s22,s33,s12,s13,s23,e,substeps,rejects,rates,resets,halvings'
    do
       call set_defaults()
       read (input_unit, nml=run, iostat=code, iomsg=message)
@@ -88,7 +88,7 @@ contains
       if (.not. failed) call go_on(soil, s, last, failed)
       write (output_unit, '(a, ",", i0, 7(",", es14.7), 5(",", i0))') trim(id), merge(1, 0, failed), -soil%stress, &
          void_ratio(soil), nint(total(soil, 'n_substep')), nint(total(soil, 'n_reject')), &
-         nint(total(soil, 'n_rate')), nint(total(soil, 'n_reseat')), soil%halvings
+         nint(total(soil, 'n_rate')), nint(total(soil, 'n_reset')), soil%halvings
    end subroutine run_case
 
    !> Along the path to s = goal, in increments that end on multiples of the increment.

@@ -4,7 +4,7 @@ import statistics
 
 from tools import tables
 
-RULES = ("classic", "threshold", "repositioning", "return_point", "as_published", "nucleus", "return_point_2e-5")
+RULES = ("classic", "threshold", "repositioning", "return_point", "as_published", "elastic_domain", "return_point_2e-5")
 COLOURS = dict(zip(RULES, ("#555555", "#0b3c6f", "#3a8f6a", "#c8553d", "#b0b0b0", "#8a5a9e", "#d9a441")))
 WIDTHS = {"classic": 5.0, "threshold": 3.2}   # drawn first: curves that others hide stay visible
 FLOOR = 1e-5   # % of distance that is drawn as "none": below the integration's own error
@@ -82,21 +82,21 @@ def cost_table(rows):
         part = chosen(rows, rule=rule)
         lines.append([rule, len(part), int(sum(r["failed"] for r in part)), int(sum(r["halvings"] for r in part)),
                       int(statistics.median(r["substeps"] for r in part)),
-                      int(max(r["substeps"] for r in part)), int(statistics.median(r["reseats"] for r in part))])
+                      int(max(r["substeps"] for r in part)), int(statistics.median(r["resets"] for r in part))])
     return tables.markdown(["", "runs", "failed", "increments cut", "substeps, median", "substeps, most",
-                            "re-seats, median"],
+                            "resets, median"],
                  lines)
 
 
 def transverse_table(rows):
-    plain = [r for r in RULES if r not in ("nucleus", "as_published")]
-    radii = values_of(chosen(rows, rule="nucleus"), "rho_e")
+    plain = [r for r in RULES if r not in ("elastic_domain", "as_published")]
+    radii = values_of(chosen(rows, rule="elastic_domain"), "rho_e")
     lines = []
     for noise in ("shear", "six"):
         for size in values_of(rows, "size"):
             same = chosen(rows, noise=noise, size=size)
             lines.append([noise, size_text(size)] + [worst(chosen(same, rule=rule)) for rule in plain]
-                         + [worst(chosen(same, rule="nucleus", rho_e=radius)) for radius in radii])
+                         + [worst(chosen(same, rule="elastic_domain", rho_e=radius)) for radius in radii])
     return tables.markdown(["noise", "size", *plain, *(f"rho_e {size_text(r)}" for r in radii)], lines)
 
 
@@ -127,7 +127,7 @@ def clean_table(rows):
     lines = []
     for rule in RULES:
         for radius in values_of(chosen(rows, rule=rule), "rho_e"):
-            line = [f"nucleus, rho_e {size_text(radius)}" if rule == "nucleus" else rule]
+            line = [f"elastic domain, rho_e {size_text(radius)}" if rule == "elastic_domain" else rule]
             for drained in (0.0, 1.0):
                 part = chosen(rows, rule=rule, rho_e=radius, drained=drained)
                 line += [worst(part), int(statistics.median(r["rates"] for r in part))]
@@ -186,9 +186,9 @@ def pictures(bench, plt):
          "amplitude of one reversal at 0.05 [-]", 4, plt)
     draw(bench, "many.png", panels_of(many, rules, path="straight", suction=0.0, events=300, random_events=1),
          "mean size of 300 random reversals [-]", 4, plt)
-    radii = values_of(chosen(transverse, rule="nucleus"), "rho_e")
+    radii = values_of(chosen(transverse, rule="elastic_domain"), "rho_e")
     curves = {rule: rules[rule] for rule in ("classic", "threshold", "return_point", "return_point_2e-5")}
-    curves |= {f"rho_e {size_text(r)}": (colour, "-", {"rule": "nucleus", "rho_e": r})
+    curves |= {f"rho_e {size_text(r)}": (colour, "-", {"rule": "elastic_domain", "rho_e": r})
                for r, colour in zip(radii, ("#e3c9ee", "#c79bdb", "#8a5a9e", "#4d2060"))}
     draw(bench, "transverse.png", panels_of(transverse, curves, noise="shear"),
          "mean size of 300 random perturbations in shear, across the path [-]", 4, plt)

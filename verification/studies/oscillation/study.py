@@ -25,14 +25,14 @@ sys.path.insert(0, str(ROOT / "verification/material/verdugo_ishihara"))
 import laboratory as tests_of_verdugo_ishihara  # noqa: E402
 
 RULES = {"classic": (0, 0.0), "threshold": (1, 0.0), "repositioning": (2, 0.0), "return_point": (3, 0.0),
-         "as_published": (4, 0.0), "nucleus": (1, 5e-5), "return_point_2e-5": (3, 2e-5)}   # name: memory_rule, rho_e
+         "as_published": (4, 0.0), "elastic_domain": (1, 5e-5), "return_point_2e-5": (3, 2e-5)}   # name: memory_rule, rho_e
 SIZES = [10.0 ** k for k in range(-9, -2)]
 SETTINGS = [dict(e=e, drained=drained, path=path, suction=suction) for e, drained, path, suction in itertools.product(
     (0.735, 0.907), (False, True), ("straight", "turning"), (0.0, 100.0))]
 DEFAULT = dict(e=0.735, drained=False, path="straight", suction=0.0, noise="back", events=0, random_events=False,
                size=0.0, growth=1.0, to=0.05, last=0.05, top=0.05, increment=1e-5, tolerance=1e-5, **{"from": 0.01})
 DRAINED_INCREMENT = 5e-5   # held stresses cost iterations
-FIELDS = ["group", "rule", "rho_e", *DEFAULT, "failed", "distance", "eps_v", "substeps", "rejects", "rates", "reseats",
+FIELDS = ["group", "rule", "rho_e", *DEFAULT, "failed", "distance", "eps_v", "substeps", "rejects", "rates", "resets",
           "halvings"]
 
 
@@ -70,10 +70,10 @@ def transverse():
             continue
         values = dict(e=e, drained=drained, noise=noise, size=size, events=300, random_events=True)
         for name in RULES:
-            if name not in ("as_published", "nucleus"):
+            if name not in ("as_published", "elastic_domain"):
                 yield case("transverse", name, **values)
         for radius in radii:
-            yield case("transverse", "nucleus", radius, **values)
+            yield case("transverse", "elastic_domain", radius, **values)
 
 
 def numerics():
@@ -101,9 +101,9 @@ def hard():
 
 
 def clean():
-    """No noise: what the rule and the nucleus do by themselves."""
+    """No noise: what the rule and the elastic domain do by themselves."""
     for name, setting in itertools.product(RULES, SETTINGS):
-        for radius in (1e-5, 5e-5, 1e-4) if name == "nucleus" else (None,):
+        for radius in (1e-5, 5e-5, 1e-4) if name == "elastic_domain" else (None,):
             yield case("clean", name, radius, **setting)
 
 
@@ -167,7 +167,7 @@ def compute(program, commit, name, rules):
     for c, o in zip(cases, own):
         keys.setdefault(clean_key(c, o), c)
     lines = [namelist(i, c) for i, c in enumerate(cases)]
-    # the clean path: the same without events, Dormand-Prince at 1e-9, no nucleus
+    # the clean path: the same without events, Dormand-Prince at 1e-9, no elastic domain
     for i, (key, c) in enumerate(keys.items()):
         lines.append(namelist(len(cases) + i, dict(c, rho_e=0.0), events=0, noise="back", tolerance=1e-9, scheme=3,
                               increment=c["increment"] if c["path"] == "turning" else 1e-4))
@@ -182,7 +182,7 @@ def compute(program, commit, name, rules):
         row = {k: c[k] for k in FIELDS if k in c}
         row.update(failed=a["status"], distance=f"{length(difference) / length(stress(b)):.3g}",
                    eps_v=f"{(float(b['e']) - float(a['e'])) / (1.0 + float(b['e'])):.3g}",
-                   **{k: a[k] for k in ("substeps", "rejects", "rates", "reseats", "halvings")})
+                   **{k: a[k] for k in ("substeps", "rejects", "rates", "resets", "halvings")})
         rows.append(row)
     for group in dict.fromkeys(c["group"] for c in cases):
         chosen = [r for r in rows if r["group"] == group]
@@ -203,7 +203,7 @@ def compute(program, commit, name, rules):
 
 
 def laboratory(build, commit):
-    """The drained tests of Verdugo & Ishihara with the elastic nucleus: misfit against the rows from 1 to 25 %."""
+    """The drained tests of Verdugo & Ishihara with the elastic domain: misfit against the rows from 1 to 25 %."""
     tests = tests_of_verdugo_ishihara.read()
     with tempfile.TemporaryDirectory() as scratch, open(folder(__file__) / "laboratory.csv", "w",
                                                         encoding="utf-8") as file:

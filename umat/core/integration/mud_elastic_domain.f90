@@ -1,10 +1,10 @@
-!> Strain nucleus: a ball of radius rho in strain inside which sand is elastic (a play operator).
+!> Elastic domain: a ball of radius rho in strain inside which sand is elastic (a play operator).
 !>
 !> d is the strain from the ball's centre, |d| <= rho. Inside, and while strain points inwards, only d moves. On the
 !> sphere the centre is pulled along: d = rho nu, and of the strain rate a only (nu:a) nu loads, the rest is elastic.
 !> For a constant a that is the tractrix: tan(phi/2) falls as exp(-|a| t/rho), phi the angle between nu and a. So an
 !> increment is exact in two phases, whatever its size, and a large one is not cut into pieces.
-module mud_nucleus
+module mud_elastic_domain
    use mud_kinds, only: wp
    use mud_tensor, only: ddot, norm
    implicit none (type, external)
@@ -76,4 +76,4 @@ contains
       change = (2.0_wp*(ddecay*d + decay*d_change)/rho + dshare*u + share*du &
                 - (ddivisor/divisor)*(2.0_wp*decay*(d/rho) + share*u))/divisor
    end function change_of_direction
-end module mud_nucleus
+end module mud_elastic_domain
