@@ -140,8 +140,9 @@ def nothing_installed_names_the_source_or_the_build_folder(folder, prefix):
 
 
 @check(ALL)
-def the_shared_library_shows_what_its_headers_declare_and_mfront_looks_up(folder, prefix):
-    declared = set(re.findall(r"\b(mud_\w+)\s*\([^;{]*\)\s*;", header)) | {"umat_"}
+def the_shared_library_shows_the_functions_of_its_header_and_the_entries_of_hosts(folder, prefix):
+    entries = re.search(r"set\(entries ([^)]*)\)", (root / "umat/CMakeLists.txt").read_text(encoding="utf-8"))[1]
+    declared = set(re.findall(r"\b(mud_\w+)\s*\([^;{]*\)\s*;", header)) | set(entries.split())
     variables = "".join(re.findall(r"^extern [^;]*;", header, re.MULTILINE))
     declared |= set(re.findall(r"\b(mud_\w+)(?:\[\])?[,;]", variables))
     lines = run("nm", "-D", "--defined-only", library(prefix)).splitlines()

@@ -1,5 +1,6 @@
 !> A refusal of umat_ is heard: a sentence on standard error, once a process for each distinct failure, a request for a
-!> cut in PNEWDT or, where the host gives no PNEWDT, a STRESS that no solver takes for an answer.
+!> cut in PNEWDT or, where the host gives no PNEWDT, a STRESS that no solver takes for an answer. user_mod_ and vumat_
+!> say their sentences here too.
 module mud_refusals
    use, intrinsic :: iso_c_binding, only: c_ptr, c_double, c_null_ptr, c_associated, c_f_pointer
    use, intrinsic :: iso_fortran_env, only: int64
@@ -15,10 +16,11 @@ module mud_refusals
    use mud_tensor, only: is_finite
    implicit none (type, external)
    private
-   public :: place_t, refuse, remark_on_suction, remark_on_props, save_if_asked
+   public :: place_t, refuse, say_refusal, remark_on_suction, remark_on_props, save_if_asked
 
    !> KSTEP, KINC, NOEL and NPT of the host; each may be NULL.
    type :: place_t
+      character(9) :: door = 'umat_'   !< Which of the library's entries was called.
       type(c_ptr) :: step = c_null_ptr, increment = c_null_ptr, element = c_null_ptr, point = c_null_ptr
    end type place_t
 
@@ -54,7 +56,15 @@ contains
          call c_f_pointer(scd, code)
          code = real(report%status, c_double)
       end if
-      if (first_time(kind_of(report))) call say_why(report, place, c_associated(pnewdt), stops)
+      if (c_associated(pnewdt)) then
+         call say_refusal(report, place, '')
+      else if (stops) then
+         call say_refusal(report, place, '. PNEWDT is NULL, so STRESS is NaN to stop the analysis '// &
+                          '(MUD_NO_PNEWDT=keep leaves it)')
+      else
+         call say_refusal(report, place, '. PNEWDT is NULL: the host cannot know, and what it computes from here '// &
+                          'is wrong')
+      end if
    end subroutine refuse
 
    !> PNEWDT is written only to ask for a cut, and never raised: another point may have asked for a smaller one. Hosts
@@ -88,27 +98,23 @@ contains
                  + min(max(report%subject, 0), SUBJECTS - 1))*ENTRIES + min(max(report%index, 0), ENTRIES - 1)
    end function kind_of
 
-   subroutine say_why(report, place, cuts, stops)
+   !> Why an increment was refused and what becomes of it: the first time that this failure is met.
+   subroutine say_refusal(report, place, consequence)
       type(report_t), intent(in) :: report
       type(place_t), intent(in) :: place
-      logical, intent(in) :: cuts    !< PNEWDT asks for a cut.
-      logical, intent(in) :: stops   !< STRESS is NaN.
+      character(*), intent(in) :: consequence   !< Follows the message.
       character(SENTENCE_LENGTH) :: text
       character(12) :: code
 
+      if (.not. first_time(kind_of(report))) return
       write (code, '(i0)') report%status
-      text = 'MUD: umat_ refused the increment at '//trim(place_text(place))//', status '//trim(code)//': '// &
-             report_text(report)
+      text = 'MUD: '//trim(place%door)//' refused the increment at '//trim(place_text(place))//', status '// &
+             trim(code)//': '//report_text(report)
       if (report%status == MUD_NULL_ARGUMENT .and. report%index >= 1 .and. report%index <= size(ARGUMENT_NAMES)) then
          text = trim(text)//': '//ARGUMENT_NAMES(report%index)
       end if
-      if (stops) then
-         text = trim(text)//'. PNEWDT is NULL, so STRESS is NaN to stop the analysis (MUD_NO_PNEWDT=keep leaves it)'
-      else if (.not. cuts) then
-         text = trim(text)//'. PNEWDT is NULL: the host cannot know, and what it computes from here is wrong'
-      end if
-      call speak(trim(text)//CLOSING)
-   end subroutine say_why
+      call speak(trim(text)//consequence//CLOSING)
+   end subroutine say_refusal
 
    !> Says that the suction of STATEV was taken instead of PREDEF.
    subroutine remark_on_suction(suction, place)
@@ -191,8 +197,8 @@ contains
       if (taken) return
       tangent = 0   ! where PROPS have none, they fail before it matters
       if (is_finite(props(P_TANGENT))) tangent = nint(min(max(props(P_TANGENT), 0.0_wp), 3.0_wp))
-      call write_increment(path, 'umat_, '//place_text(place), props, stress, statev, d_strain, suction, d_suction, &
-                           tangent, report, problem)
+      call write_increment(path, trim(place%door)//', '//place_text(place), props, stress, statev, d_strain, suction, &
+                           d_suction, tangent, report, problem)
       if (problem == '') return
       inquire (file=path, exist=taken)   ! by another thread or process, a moment ago
       if (.not. taken) call remark_on_saving(trim(problem)//', '//path)

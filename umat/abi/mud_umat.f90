@@ -25,7 +25,7 @@ contains
       type(mud_status_t) :: status
       type(place_t) :: place
 
-      place = place_t(kstep, kinc, noel, npt)
+      place = place_t(step=kstep, increment=kinc, element=noel, point=npt)
       call check_arguments(stress, statev, dstran, ndi, ntens, nstatv_, props, nprops, status)
       if (status%code == MUD_OK) then
          call update(stress, statev, ddsdde, dstran, integer_at(ntens), integer_at(nstatv_), props, &
