@@ -3,7 +3,8 @@ module retention_curves
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: retention_t, saturation_t, saturated_t, bilogarithmic_t, power_t, table_t, retention_slot_t
+   public :: retention_t, saturation_t, saturated_t, bilogarithmic_t, van_genuchten_t, power_t, table_t, &
+             retention_slot_t
 
    type :: saturation_t
       real(wp) :: s = 1.0_wp        !< S_w [-]
@@ -43,6 +44,15 @@ module retention_curves
    contains
       procedure :: at => bilogarithmic_at
    end type bilogarithmic_t
+
+   !> S = S_min + (S_max - S_min) (1 + (alpha p_c)**n)**(-m) (van Genuchten 1980; his constraint is m = 1 - 1/n).
+   type, extends(retention_t) :: van_genuchten_t
+      real(wp) :: alpha = 0.1_wp   !< [1/kPa]
+      real(wp) :: n = 2.0_wp       !< > 1, for a slope at the air entry
+      real(wp) :: m = 0.5_wp, s_max = 1.0_wp, s_min = 0.0_wp
+   contains
+      procedure :: at => van_genuchten_at
+   end type van_genuchten_t
 
    !> S = 1 - a p_c**b, not below s_min.
    type, extends(retention_t) :: power_t
@@ -95,6 +105,32 @@ contains
       sat%ds_de = slope*self%omega/e
    end function bilogarithmic_at
 
+   pure function van_genuchten_at(self, p_c, e) result(sat)
+      class(van_genuchten_t), intent(in) :: self
+      real(wp), intent(in) :: p_c, e
+      type(saturation_t) :: sat
+      real(wp), parameter :: LOG_LARGE = 200.0_wp
+      real(wp) :: log_a, share, log_sum, s_e
+
+      associate (unused => e)
+      end associate
+      sat%s = self%s_max
+      if (p_c <= 0.0_wp) return
+      log_a = self%n*log(self%alpha*p_c)
+      if (log_a < -LOG_LARGE) return
+      ! Beyond it the 1 is lost in the sum, and the power might overflow.
+      if (log_a > LOG_LARGE) then
+         log_sum = log_a
+         share = 1.0_wp
+      else
+         log_sum = log(1.0_wp + exp(log_a))
+         share = exp(log_a - log_sum)
+      end if
+      s_e = (self%s_max - self%s_min)*exp(-self%m*log_sum)
+      sat%s = self%s_min + s_e
+      sat%ds_dpc = -self%m*self%n*s_e*share/p_c
+   end function van_genuchten_at
+
    pure function power_at(self, p_c, e) result(sat)
       class(power_t), intent(in) :: self
       real(wp), intent(in) :: p_c, e
@@ -114,18 +150,27 @@ contains
       class(table_t), intent(in) :: self
       real(wp), intent(in) :: p_c, e
       type(saturation_t) :: sat
-      integer :: i
+      integer :: i, n, low, high
 
       associate (unused => e)
       end associate
+      n = size(self%s)
       sat%s = self%s(1)
       if (p_c <= self%p_c(1)) return
-      do i = 2, size(self%s)
-         if (p_c > self%p_c(i)) cycle
-         sat%ds_dpc = (self%s(i) - self%s(i - 1))/(self%p_c(i) - self%p_c(i - 1))
-         sat%s = self%s(i - 1) + sat%ds_dpc*(p_c - self%p_c(i - 1))
-         return
+      sat%s = self%s(n)
+      if (p_c > self%p_c(n)) return
+      ! The pair that the suction lies between, by halves: a measured curve may have thousands.
+      low = 1
+      high = n
+      do while (high - low > 1)
+         i = (low + high)/2
+         if (p_c > self%p_c(i)) then
+            low = i
+         else
+            high = i
+         end if
       end do
-      sat%s = self%s(size(self%s))
+      sat%ds_dpc = (self%s(high) - self%s(low))/(self%p_c(high) - self%p_c(low))
+      sat%s = self%s(low) + sat%ds_dpc*(p_c - self%p_c(low))
    end function table_at
 end module retention_curves

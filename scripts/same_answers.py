@@ -6,7 +6,9 @@
 The program is build/release/host/mud_host, or the one under $MUD_BUILD_DIR; --program names another one, --only some
 of the scenes. Tables count byte for byte, HDF5 files by the values of every dataset (a checkpoint without its
 fingerprint, which is that of the scene's words). The scenes are short versions of those of the verification and
-name everything that a default of the library could change. About a minute; exit code 1 where an answer moved.
+name everything that a default of the library could change. About a minute; exit code 1 where an answer moved. Files
+and columns that the older program did not write are named, and are no answer that moved; of a checkpoint the counters,
+whose number grows with what is stored, take no part.
 """
 import argparse
 import os
@@ -110,12 +112,15 @@ def run(program, name, folder, text, beside):
         copy.unlink()
 
 
+NO_ANSWERS = ("fingerprint", "past", "origin", "counters")   # of a checkpoint
+
+
 def datasets(path):
     """Every dataset of an HDF5 file by its path."""
     found = {}
     with h5py.File(path) as file:
         file.visititems(lambda name, item: found.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
-    return {k: v for k, v in found.items() if not (path.name == "checkpoint.h5" and "fingerprint" in k)}
+    return {k: v for k, v in found.items() if not (path.name == "checkpoint.h5" and k in NO_ANSWERS)}
 
 
 def apart(one, other):
@@ -130,7 +135,8 @@ def apart(one, other):
         return ""
     if one.suffix != ".csv":
         return "the text"
-    if tables.header(one) != tables.header(other) or len(a := tables.rows(one)) != len(b := tables.rows(other)):
+    if not set(tables.header(one)) <= set(tables.header(other)) or len(a := tables.rows(one)) != len(
+            b := tables.rows(other)):
         return "columns or number of rows"
     pairs = {name: [[row[name] for row in table] for table in (a, b)] for name in tables.header(one)}
     return ", ".join(f"{name} {largest(*pair)}" for name, pair in pairs.items() if pair[0] != pair[1])
@@ -174,13 +180,16 @@ def main():
                 print(f"{name}: {sum(1 for f in kept.rglob('*') if f.is_file())} files", flush=True)
                 continue
             files = {str(f.relative_to(p)) for p in (kept, folder) for f in p.rglob("*") if f.is_file()}
-            wrong = []
+            wrong, new = [], []
             for file in sorted(files):
-                if not (kept / file).exists() or not (folder / file).exists():
-                    wrong.append(f"{file}: {'new' if (folder / file).exists() else 'gone'}")
+                if not (kept / file).exists():
+                    new.append(file)
+                elif not (folder / file).exists():
+                    wrong.append(f"{file}: gone")
                 elif difference := apart(kept / file, folder / file):
                     wrong.append(f"{file}: {difference}")
-            print(f"{name}: {'same' if not wrong else 'MOVED'}", *wrong[:8], sep="\n   ", flush=True)
+            also = f", and new files: {', '.join(new)}" if new else ""
+            print(f"{name}: {'same' if not wrong else 'MOVED'}{also}", *wrong[:8], sep="\n   ", flush=True)
             moved += bool(wrong)
     if args.what == "compare":
         print(f"{len(args.only) - moved} scenes the same, {moved} moved")

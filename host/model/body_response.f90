@@ -31,7 +31,12 @@ contains
       if (.not. body%omega > 0.0_wp .or. .not. history%change > 0.0_wp) return
       b = 0.0_wp
       if (history%kind == FORCE .and. history%load > 0) then
-         b = merge(model%loads(history%load)%shape, 0.0_wp, body%free)
+         associate (load => model%loads(history%load))
+            b = load%shape
+            ! Of a load that changes with z: its distribution, with 1 where it is largest.
+            if (allocated(load%rise)) b = (load%value*load%shape + load%value_slope*load%rise)/history%value
+         end associate
+         b = merge(b, 0.0_wp, body%free)
          call backsolve(body%sparse, body%held, b, x, status)
          energy = sqrt(max(dot_product(x, b), 0.0_wp))*history%change
       else if (history%kind == FORCE) then

@@ -4,13 +4,13 @@ module boundary_conditions
    use contact_drainage, only: drainage_t, is_released
    use degrees_of_freedom, only: dofs_t
    use generalised_alpha, only: STATIC
-   use model_types, only: model_t, stage_t, factor_at, PRESCRIBED_P_A
+   use model_types, only: model_t, stage_t, fix_t, factor_at, PRESCRIBED_P_A
    use prescribed_values, only: constraint_t
    use scene_types, only: acts_in
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: new_constraint, constrain_step
+   public :: new_constraint, constrain_step, prescribing_fixes
 
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
 contains
@@ -40,19 +40,19 @@ contains
       type(drainage_t), intent(in) :: drainage
       real(wp), intent(in) :: time, x_start(:, :)
       type(constraint_t), intent(inout) :: constraint
-      real(wp) :: value
+      real(wp) :: value, factor
       integer :: i, k, node, at
 
       constraint%fixed = .false.
       constraint%air = .false.
       do i = 1, size(model%fixes)
          associate (fix => model%fixes(i))
-            if (.not. acts_in(fix%stages, stage%name)) cycle
-            if (time <= fix%from .or. time > fix%until + ROUNDING*abs(time)) cycle
-            value = fix%value*factor_at(model, fix%amplitude, time)
+            if (.not. acts(fix, stage, time)) cycle
+            factor = factor_at(model, fix%amplitude, time)
             do k = 1, size(model%domain%mesh%groups(fix%group)%nodes)
                node = model%domain%mesh%groups(fix%group)%nodes(k)
                if (is_released(drainage, i, node)) cycle
+               value = (fix%value + fix%value_slope*(model%domain%mesh%x(2, node) - fix%datum))*factor
                if (fix%field == PRESCRIBED_P_A) then
                   if (dofs%of(AT_P_C, node) == 0) cycle
                   constraint%air(node) = .true.
@@ -91,4 +91,40 @@ contains
       end do
       constraint%air = .false.
    end subroutine constrain_step
+
+   pure logical function acts(fix, stage, time)
+      type(fix_t), intent(in) :: fix
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: time   !< At the end of the step.
+
+      acts = acts_in(fix%stages, stage%name) .and. time > fix%from .and. time <= fix%until + ROUNDING*abs(time)
+   end function acts
+
+   !> Number of the &fix that prescribes every unknown, and of that which prescribes the air pressure of every node; 0:
+   !> none. The last one counts, as in constrain_step.
+   subroutine prescribing_fixes(model, stage, dofs, drainage, time, by, air_by)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(dofs_t), intent(in) :: dofs
+      type(drainage_t), intent(in) :: drainage
+      real(wp), intent(in) :: time
+      integer, intent(out) :: by(:), air_by(:)   !< (unknowns), (nodes)
+      integer :: i, k, node, at
+
+      by = 0
+      air_by = 0
+      do i = 1, size(model%fixes)
+         associate (fix => model%fixes(i))
+            if (.not. acts(fix, stage, time)) cycle
+            do k = 1, size(model%domain%mesh%groups(fix%group)%nodes)
+               node = model%domain%mesh%groups(fix%group)%nodes(k)
+               if (is_released(drainage, i, node)) cycle
+               at = dofs%of(min(fix%field, AT_P_C), node)
+               if (at == 0) cycle
+               if (fix%field == PRESCRIBED_P_A) air_by(node) = i
+               if (fix%field /= PRESCRIBED_P_A) by(at) = i
+            end do
+         end associate
+      end do
+   end subroutine prescribing_fixes
 end module boundary_conditions

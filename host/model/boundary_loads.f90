@@ -1,7 +1,7 @@
 !> Load vectors: of a unit of every load once, of all loads at a moment.
 module boundary_loads
    use kinds, only: wp, PI
-   use model_types, only: model_t, stage_t, plate_t, factor_at
+   use model_types, only: model_t, stage_t, load_t, plate_t, factor_at
    use scene_types, only: acts_in, LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_AIR, LOAD_FORCE_R
    use unknown_fields, only: FIELDS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    use degrees_of_freedom, only: dofs_t, tie
@@ -27,32 +27,54 @@ contains
    subroutine shape_loads(model, dofs)
       type(model_t), intent(inout) :: model
       type(dofs_t), intent(in) :: dofs
-      integer :: i, e, k, f
+      integer :: i
 
       do i = 1, size(model%loads)
-         associate (load => model%loads(i), group => model%domain%mesh%groups(model%loads(i)%group))
+         associate (load => model%loads(i))
+            if (allocated(load%shape)) deallocate (load%shape)
+            if (allocated(load%rise)) deallocate (load%rise)
             allocate (load%shape(dofs%n), source=0.0_wp)
-            if (load%kind < LOAD_FORCE_R) then
-               do e = 1, size(group%edges, 2)
-                  call add_edge(model, dofs, group%edges(:, e), load%kind, load%shape)
-               end do
-            else
-               f = merge(AT_U_R, AT_U_Z, load%kind == LOAD_FORCE_R)
-               do k = 1, size(group%nodes)
-                  associate (at => dofs%of(f, group%nodes(k)))
-                     if (at > 0) load%shape(at) = load%shape(at) + 1.0_wp
-                  end associate
-               end do
+            call shape_load(model, dofs, load, 1.0_wp, 0.0_wp, load%shape)
+            if (abs(load%value_slope) > 0.0_wp) then
+               allocate (load%rise(dofs%n), source=0.0_wp)
+               call shape_load(model, dofs, load, -load%datum, 1.0_wp, load%rise)
             end if
          end associate
       end do
    end subroutine shape_loads
 
-   !> A unit load on an edge; its body lies on the left, so that the outward normal is the tangent turned right.
-   subroutine add_edge(model, dofs, edge, kind, shape)
+   !> Vector of a load of base + slope z.
+   subroutine shape_load(model, dofs, load, base, slope, shape)
+      type(model_t), intent(in) :: model
+      type(dofs_t), intent(in) :: dofs
+      type(load_t), intent(in) :: load
+      real(wp), intent(in) :: base, slope
+      real(wp), intent(inout) :: shape(:)
+      integer :: e, k, f
+
+      associate (group => model%domain%mesh%groups(load%group))
+         if (load%kind < LOAD_FORCE_R) then
+            do e = 1, size(group%edges, 2)
+               call add_edge(model, dofs, group%edges(:, e), load%kind, base, slope, shape)
+            end do
+         else
+            f = merge(AT_U_R, AT_U_Z, load%kind == LOAD_FORCE_R)
+            do k = 1, size(group%nodes)
+               associate (at => dofs%of(f, group%nodes(k)))
+                  if (at > 0) shape(at) = shape(at) + (base + slope*model%domain%mesh%x(2, group%nodes(k)))
+               end associate
+            end do
+         end if
+      end associate
+   end subroutine shape_load
+
+   !> A load of base + slope z on an edge; its body lies on the left, so that the outward normal is the tangent turned
+   !> right.
+   subroutine add_edge(model, dofs, edge, kind, base, slope, shape)
       type(model_t), intent(in) :: model
       type(dofs_t), intent(in) :: dofs
       integer, intent(in) :: edge(3), kind
+      real(wp), intent(in) :: base, slope
       real(wp), intent(inout) :: shape(:)
       real(wp) :: points(3), weights(3), n(3), dn(3), m(3), x(2, 3), at(2), tangent(2), weight
       integer :: g, i
@@ -65,7 +87,7 @@ contains
          if (model%domain%n_p == 3) m = [0.5_wp*(1 - points(g)), 0.5_wp*(1 + points(g)), 0.0_wp]
          at = matmul(x, n)
          tangent = matmul(x, dn)
-         weight = weights(g)
+         weight = weights(g)*(base + slope*at(2))
          if (model%domain%axisymmetric) weight = weight*2*PI*at(1)
          do i = 1, 3
             select case (kind)
@@ -107,7 +129,10 @@ contains
       allocate (load(dofs%n), source=0.0_wp)
       do i = 1, size(model%loads)
          associate (one => model%loads(i))
-            if (acts_in(one%stages, stage%name)) load = load + factor_at(model, one%amplitude, time)*one%value*one%shape
+            if (acts_in(one%stages, stage%name)) then
+               load = load + factor_at(model, one%amplitude, time)*one%value*one%shape
+               if (allocated(one%rise)) load = load + factor_at(model, one%amplitude, time)*one%value_slope*one%rise
+            end if
          end associate
       end do
       do i = 1, size(model%plates)

@@ -42,14 +42,11 @@ contains
       type(linearised_body_t), intent(out) :: body
       type(fault_t), intent(inout) :: fault
       type(state_t) :: work
-      integer :: i, status
+      integer :: status
 
       call number_unknowns(model%domain, ties_of(model), body%dofs)
       call make_pattern(body%dofs%n, body%dofs%element, reshape([integer ::], [2, 0]), body%pattern)
       call make_assembly(model%domain, body%dofs, body%pattern, body%assembly)
-      do i = 1, size(model%loads)
-         if (allocated(model%loads(i)%shape)) deallocate (model%loads(i)%shape)
-      end do
       call shape_loads(model, body%dofs)
       body%constraint = new_constraint(model, body%dofs)
       call initial_state(model, body%state, fault)
@@ -170,6 +167,7 @@ contains
       call release(body%sparse)
       do i = 1, size(model%loads)
          if (allocated(model%loads(i)%shape)) deallocate (model%loads(i)%shape)
+         if (allocated(model%loads(i)%rise)) deallocate (model%loads(i)%rise)
       end do
    end subroutine release_body
 end module linearised_body

@@ -21,7 +21,8 @@ module load_histories
       integer :: field = 0             !< Of what is prescribed: u_r, u_z, p_w, p_c, p_a.
       integer :: group = 0, amplitude = 0
       integer :: load = 0, plate = 0   !< Number of the load or of the plate; 0: it is none.
-      real(wp) :: value = 0.0_wp
+      real(wp) :: value = 0.0_wp       !< Where it changes with z: the value of largest magnitude.
+      real(wp) :: value_slope = 0.0_wp, base = 0.0_wp   !< Change with z, and value at z = 0.
       character(LENGTH), allocatable :: stages(:)
       logical :: held = .false.        !< At what it is when a stage begins.
       logical :: lasting = .true.      !< It does not come or go within a stage.
@@ -58,6 +59,7 @@ contains
                                      stress=merge(1.0_wp, 0.0_wp, one%kind <= LOAD_SHEAR_Z))
             end select
             histories(n)%stages = one%stages
+            call spread_over(model, one%value_slope, one%datum, histories(n))
          end associate
       end do
       do i = 1, size(model%plates)
@@ -77,6 +79,7 @@ contains
                                   lasting=one%from <= -huge(1.0_wp) .and. one%until >= huge(1.0_wp), &
                                   stress=merge(0.0_wp, 1.0_wp, one%field <= DISPLACEMENTS))
             histories(n)%stages = one%stages
+            call spread_over(model, one%value_slope, one%datum, histories(n))
          end associate
       end do
       do i = 1, size(histories)
@@ -84,13 +87,27 @@ contains
       end do
    end function load_histories_of
 
+   !> A value that changes with z counts by its largest magnitude in the group.
+   pure subroutine spread_over(model, slope, datum, history)
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: slope, datum
+      type(load_history_t), intent(inout) :: history
+      real(wp), allocatable :: values(:)
+
+      if (.not. abs(slope) > 0.0_wp) return
+      history%value_slope = slope
+      history%base = history%value - slope*datum
+      values = history%base + slope*model%domain%mesh%x(2, model%domain%mesh%groups(history%group)%nodes)
+      history%value = values(maxloc(abs(values), 1))
+   end subroutine spread_over
+
    !> Start, offset and change.
    subroutine measure(model, state, history)
       type(model_t), intent(in) :: model
       type(state_t), intent(in) :: state
       type(load_history_t), intent(inout) :: history
       real(wp), allocatable :: times(:)
-      real(wp) :: there
+      real(wp) :: here, there
       integer :: i, k, node
 
       if (history%held) return
@@ -106,7 +123,11 @@ contains
          node = model%domain%mesh%groups(history%group)%nodes(k)
          there = state%x(min(history%field, AT_P_C), node)
          if (history%field == PRESCRIBED_P_A) there = state%x(AT_P_W, node) + state%x(AT_P_C, node)
-         history%offset = max(history%offset, abs(history%start - there))
+         here = history%start
+         if (abs(history%value_slope) > 0.0_wp .and. acts_in(history%stages, model%stages(1)%name)) &
+            here = (history%base + history%value_slope*model%domain%mesh%x(2, node)) &
+                   *factor_at(model, history%amplitude, 0.0_wp)
+         history%offset = max(history%offset, abs(here - there))
       end do
       history%change = history%change + history%offset
    end subroutine measure

@@ -31,11 +31,13 @@ contains
 
       model%name = scene%name
       model%fingerprint = scene%fingerprint
+      model%groups = scene%groups
       model%subtract_flow = scene%subtract_flow
       model%reuse_factors = scene%reuse_factors
       model%ordering = scene%ordering
       model%checkpoint_steps = scene%checkpoint_steps
       model%checkpoint_seconds = scene%checkpoint_seconds
+      model%checkpoint_end = scene%checkpoint_end
       model%effect_options = effect_options_t(scene%derive_effects, scene%fields_by_hand, scene%gravity_by_hand, &
                                               scene%seepage_by_hand, scene%effects_tolerance)
       model%amplitudes = scene%amplitudes

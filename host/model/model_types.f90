@@ -4,12 +4,13 @@ module model_types
    use kinds, only: wp
    use contact_types, only: contact_options_t
    use degrees_of_freedom, only: dofs_t
+   use namelists, only: group_t
    use effect_types, only: effect_t, effect_options_t
    use convergence, only: BY_FORCES
    use porous_domain, only: domain_t
    use unknown_fields, only: FIELDS
    use scene_types, only: scene_amplitude_t, scene_initial_t, scene_stage_t, scene_fix_t, scene_load_t, scene_plate_t, &
-                          scene_contact_t, scene_point_t, NAME_LENGTH, FINGERPRINT_LENGTH
+                          scene_contact_t, scene_point_t, amplitude_at, NAME_LENGTH, FINGERPRINT_LENGTH
    implicit none (type, external)
    private
    public :: model_t, initial_t, stage_t, fix_t, load_t, plate_t, contact_pair_t, point_t, factor_at
@@ -35,7 +36,8 @@ module model_types
 
    type, extends(scene_load_t) :: load_t
       integer :: group = 0, amplitude = 0
-      real(wp), allocatable :: shape(:)     !< Vector of a unit value.
+      real(wp), allocatable :: shape(:)     !< Vector of a unit value,
+      real(wp), allocatable :: rise(:)      !< and of z - datum, where the value changes with z.
    end type load_t
 
    type, extends(scene_plate_t) :: plate_t
@@ -58,6 +60,7 @@ module model_types
    type :: model_t
       character(NAME_LENGTH) :: name = ''
       character(FINGERPRINT_LENGTH) :: fingerprint = ''   !< Of the scene.
+      type(group_t), allocatable :: groups(:)             !< Its words, see scene_past.
       type(domain_t) :: domain
       type(dofs_t) :: dofs
       type(effect_options_t) :: effect_options
@@ -67,6 +70,7 @@ module model_types
       integer :: ordering = 1                             !< See sparse_factors.
       integer :: checkpoint_steps = 0                     !< 0: none.
       real(wp) :: checkpoint_seconds = 0.0_wp             !< 0: none.
+      logical :: checkpoint_end = .false.                 !< When the last stage ends.
       type(scene_amplitude_t), allocatable :: amplitudes(:)
       type(initial_t), allocatable :: initials(:)
       type(stage_t), allocatable :: stages(:)
@@ -77,24 +81,13 @@ module model_types
       type(point_t), allocatable :: points(:)
    end type model_t
 contains
-   !> Factor of an amplitude at a time: straight lines between its pairs, constant outside; amplitude 0 is 1 throughout.
+   !> Factor of an amplitude at a time; amplitude 0 is 1 throughout.
    pure real(wp) function factor_at(model, amplitude, time) result(factor)
       type(model_t), intent(in) :: model
       integer, intent(in) :: amplitude
       real(wp), intent(in) :: time
-      integer :: i
 
       factor = 1.0_wp
-      if (amplitude == 0) return
-      associate (t => model%amplitudes(amplitude)%times, v => model%amplitudes(amplitude)%values)
-         factor = v(1)
-         if (time <= t(1)) return
-         do i = 2, size(t)
-            if (time > t(i)) cycle
-            factor = v(i - 1) + (v(i) - v(i - 1))*(time - t(i - 1))/(t(i) - t(i - 1))
-            return
-         end do
-         factor = v(size(v))
-      end associate
+      if (amplitude > 0) factor = amplitude_at(model%amplitudes(amplitude), time)
    end function factor_at
 end module model_types

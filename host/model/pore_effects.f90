@@ -73,7 +73,8 @@ contains
             if (prescribe_water()) why = 'p_c and p_a prescribe p_w'
             do k = 1, size(model%loads)
                if (model%loads(k)%kind == LOAD_AIR) why = 'inflow of air'
-               if (model%loads(k)%kind == LOAD_WATER .and. model%loads(k)%value < 0.0_wp) why = 'outflow of water'
+               if (model%loads(k)%kind == LOAD_WATER .and. (model%loads(k)%value < 0.0_wp .or. &
+                   abs(model%loads(k)%value_slope) > 0.0_wp)) why = 'outflow of water'
                if (model%loads(k)%kind /= LOAD_WATER .or. model%loads(k)%amplitude == 0) cycle
                if (any(model%amplitudes(model%loads(k)%amplitude)%values < 0.0_wp)) why = 'outflow of water'
             end do

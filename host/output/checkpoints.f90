@@ -16,15 +16,17 @@ module checkpoints
    use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, &
                       get_text, extent_of
    use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
-   use texts, only: from_c
+   use scene_past, only: past_fingerprint
+   use texts, only: from_c, short, whole
    implicit none (type, external)
    private
    public :: write_checkpoint, read_checkpoint, CHECKPOINT
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
    character(*), parameter :: KIND_OF_FILE = 'checkpoint of mud_host'
-   character(*), parameter :: FORMAT = '5'      !< Grows with every change of what is stored.
-   integer, parameter :: N_COUNTERS = 13
+   character(*), parameter :: FORMAT = '6'      !< Grows with every change of what is stored.
+   real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
+   integer, parameter :: N_COUNTERS = 14
    character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
                                         'contact, seepage, damping [kJ], outflow, outflow_air [m3], '// &
                                         'largest_work, open_0, most_created [kJ]'
@@ -46,10 +48,13 @@ contains
       call put_text(file, 'library', library())
       call put_text(file, 'scene', trim(model%name))
       call put_text(file, 'fingerprint', model%fingerprint)
+      call put_text(file, 'past', past_fingerprint(model%groups, model%amplitudes, run%at%stage, run%state%time))
+      call put_text(file, 'origin', tables%origin)
       associate (s => run%state, c => run%at)
          call put(file, 'counters', counters_of(run, tables), '-', 'stage, step of it, cuts in force, good steps, '// &
                   'steps, iterations, cuts, rate evaluations, tangent in every iteration, bytes of '// &
-                  'histories.csv, bytes of ledger.csv, bytes of contact.csv, pairs of unknowns brought '// &
+                  'histories.csv, bytes of ledger.csv, bytes of contact.csv, of the table of '// &
+                  'reactions, pairs of unknowns brought '// &
                   'together by contacts')
          call put(file, 'stage', [s%time, c%t_start, c%nominal, c%factor], 's', &
                   'time, start of the stage, step without cuts, share of it [-]')
@@ -84,6 +89,7 @@ contains
       type(fault_t), intent(inout) :: fault
       type(h5_t) :: file
       real(wp) :: counters(N_COUNTERS)
+      character(64) :: origin
       real(wp) :: stage(4), ledger(storage_size(run%ledger)/storage_size(0.0_wp))
 
       if (.not. HAS_HDF5) then
@@ -125,6 +131,9 @@ contains
             run%at%factor = stage(4)
             run%ledger = transfer(ledger, run%ledger)
             call take_counters(counters, run, tables)
+            tables%stage = model%stages(run%at%stage)%name
+            origin = get_text(file, 'origin')
+            tables%origin = origin(:len(tables%origin))
             call copy_state(run%state, run%next)
          else
             call raise(fault, EXIT_RESTART, path//' is damaged: an entry is missing, has another extent or a wrong '// &
@@ -168,9 +177,11 @@ contains
    subroutine check_origin(path, model, file, fault)
       character(*), intent(in) :: path
       type(model_t), intent(in) :: model
-      type(h5_t), intent(in) :: file
+      type(h5_t), intent(inout) :: file
       type(fault_t), intent(inout) :: fault
-      character(64) :: kind, format_of, library_of, here
+      character(64) :: kind, format_of, library_of, here, theirs
+      real(wp) :: counters(N_COUNTERS), stage(4)
+      integer :: number
 
       kind = get_text(file, 'kind')
       format_of = get_text(file, 'format')
@@ -183,11 +194,39 @@ contains
          call raise(fault, EXIT_RESTART, path//' was written by another version: format '//trim(format_of)// &
                     ', library '//trim(library_of)//'; this one has format '//FORMAT//', library '//trim(here)// &
                     '. Finish the run with the program that began it.')
-      else if (get_text(file, 'fingerprint') /= model%fingerprint) then
-         call raise(fault, EXIT_RESTART, path//' belongs to another scene ('//trim(get_text(file, 'scene'))// &
-                    ', fingerprint '//trim(get_text(file, 'fingerprint'))//', here '//model%fingerprint// &
-                    '): groups, keys, values and files must be those of the run, but for threads and checkpoint_*.')
       end if
+      if (fault%code /= 0) return
+      theirs = get_text(file, 'fingerprint')
+      if (theirs == model%fingerprint) return
+      ! Another scene may go on from here if it says the same about the past.
+      counters = 0.0_wp
+      stage = 0.0_wp
+      call get(file, 'counters', counters)
+      call get(file, 'stage', stage)
+      if (.not. file%good) return
+      number = nint(counters(1))
+      if (number > size(model%stages)) then
+         call raise(fault, EXIT_RESTART, foreign()//'it stands in stage '//whole(number)//', and the scene has '// &
+                    whole(size(model%stages))//'.')
+      else if (get_text(file, 'past') /= past_fingerprint(model%groups, model%amplitudes, number, stage(1))) then
+         call raise(fault, EXIT_RESTART, foreign()//'groups, keys, values and files must be those of the run, but for '// &
+                    'threads and checkpoint_*; what may differ is the duration of the stage under way ('// &
+                    trim(model%stages(number)%name)//'), later stages with the &fix and &load of these alone, and '// &
+                    'histories after '//short(stage(1))//' s.')
+      else if (model%effect_options%auto) then
+         call raise(fault, EXIT_RESTART, foreign()//'with effects = ''auto'' what is left out was derived from the '// &
+                    'whole scene; set the effects by hand to go on with more stages or other durations.')
+      else if (stage(2) + model%stages(number)%duration < stage(1)*(1 - ROUNDING)) then
+         call raise(fault, EXIT_RESTART, foreign()//'the run stands at '//short(stage(1))//' s, after the end of stage '// &
+                    trim(model%stages(number)%name)//' at '//short(stage(2) + model%stages(number)%duration)//' s.')
+      end if
+   contains
+      function foreign() result(text)
+         character(:), allocatable :: text
+
+         text = path//' belongs to another scene ('//trim(get_text(file, 'scene'))//', fingerprint '// &
+                trim(theirs)//', here '//model%fingerprint//'): '
+      end function foreign
    end subroutine check_origin
 
    function library() result(text)
@@ -216,7 +255,7 @@ contains
          counters = real([integer(int64) :: c%stage, c%step, c%cuts, c%good, run%steps, run%iterations, run%cuts, &
                           run%rate_evaluations, merge(1, 0, run%system%reassemble_tangent), tables%history%bytes, &
                           tables%ledger%bytes, &
-                          tables%contact%bytes, pairs_of(run)], wp)
+                          tables%contact%bytes, tables%reactions%bytes, pairs_of(run)], wp)
       end associate
    end function counters_of
 
@@ -237,5 +276,6 @@ contains
       tables%history%bytes = nint(counters(10), int64)
       tables%ledger%bytes = nint(counters(11), int64)
       tables%contact%bytes = nint(counters(12), int64)
+      tables%reactions%bytes = nint(counters(13), int64)
    end subroutine take_counters
 end module checkpoints

@@ -1,6 +1,7 @@
 !> Output: histories at points, the ledger, and the fields at the end of every stage and in between.
 module output_tables
    use kinds, only: wp
+   use reaction_rows, only: reaction_columns, reaction_row
    use contact_rows, only: contact_columns, contact_row, contact_nodes
    use energy_ledger, only: ledger_t, imbalance
    use field_files, only: frames_t, write_mesh, check_mesh, all_pressures
@@ -11,15 +12,17 @@ module output_tables
    use csv, only: csv_t, new_csv, check_csv, resume_csv, write_row, settle_csv, close_csv, is_open, &
                        NUMBERS
    use run_observer, only: step_report_t
+   use run_state, only: run_t
+   use scene_types, only: NAME_LENGTH, FINGERPRINT_LENGTH
    use faults, only: fault_t
-   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_Z
+   use unknown_fields, only: FIELDS, DISPLACEMENTS
    implicit none (type, external)
    private
    public :: tables_t, open_tables, check_tables, write_history, write_ledger, write_contacts, write_fields
-   public :: write_contact_nodes, close_tables, settle_tables
+   public :: write_contact_nodes, write_reactions, close_reactions, reactions_of, close_tables, settle_tables
 
-   character(4), parameter :: COLUMNS(13) = [character(4) :: 'u_r', 'u_z', 'p_w', 'p_c', 'v_r', 'v_z', 'a_z', 's_rr', &
-      's_zz', 's_tt', 's_rz', 'e', 'S_w']
+   character(4), parameter :: COLUMNS(14) = [character(4) :: 'u_r', 'u_z', 'p_w', 'p_c', 'v_r', 'v_z', 'a_r', 'a_z', &
+      's_rr', 's_zz', 's_tt', 's_rz', 'e', 'S_w']
    character(*), parameter :: LEDGER_COLUMNS = 'time,dt,stage,iterations,'// &
       'error_u_r,error_u_z,error_p_w,error_p_c,first_u_r,first_u_z,first_p_w,first_p_c,reduction,correction,'// &
       'rates,kinetic,skeleton,pores,gravity,loads,supports,seepage,damping,imbalance,outflow,outflow_air,step_error'
@@ -27,7 +30,10 @@ module output_tables
    type :: tables_t
       character(:), allocatable :: folder
       type(csv_t) :: history, ledger, contact   !< The last is open if the scene has contacts or plates.
+      type(csv_t) :: reactions                  !< Of the stage under way, if it prescribes or loads anything.
       type(frames_t) :: frames
+      character(FINGERPRINT_LENGTH) :: origin = ''   !< Fingerprint of the scene that began the run;
+      character(NAME_LENGTH) :: stage = ''           !< stage that was under way at the checkpoint.
    end type tables_t
 contains
    !> New files; or, after a restart, those of the run as they were at its checkpoint.
@@ -44,6 +50,7 @@ contains
       else
          call make_folder(folder)
          tables%frames = frames_t([real(wp) ::])
+         tables%origin = model%fingerprint
       end if
       call open_one('histories.csv', history_columns(model), tables%history)
       call open_one('ledger.csv', LEDGER_COLUMNS, tables%ledger)
@@ -71,11 +78,13 @@ contains
       type(tables_t), intent(in) :: tables
       type(fault_t), intent(inout) :: fault
 
-      call check_mesh(folder, model%fingerprint, fault)
+      call check_mesh(folder, tables%origin, fault)
       if (fault%code == 0) call check_csv(folder//'/histories.csv', tables%history%bytes, fault)
       if (fault%code == 0) call check_csv(folder//'/ledger.csv', tables%ledger%bytes, fault)
       if (fault%code == 0 .and. has_contact_table(model)) &
          call check_csv(folder//'/contact.csv', tables%contact%bytes, fault)
+      if (fault%code == 0 .and. tables%reactions%bytes > 0) call check_csv(reactions_of(folder, &
+                                                                           tables%stage), tables%reactions%bytes, fault)
    end subroutine check_tables
 
    pure logical function has_contact_table(model)
@@ -105,6 +114,7 @@ contains
       call settle_csv(tables%history, fault)
       if (fault%code == 0) call settle_csv(tables%ledger, fault)
       if (fault%code == 0 .and. is_open(tables%contact)) call settle_csv(tables%contact, fault)
+      if (fault%code == 0 .and. is_open(tables%reactions)) call settle_csv(tables%reactions, fault)
    end subroutine settle_tables
 
    subroutine write_history(tables, model, state, fault)
@@ -123,10 +133,54 @@ contains
          integer, intent(in) :: k, p
          real(wp) :: values(size(COLUMNS))
 
-         values = [state%x(:, k), state%v(:DISPLACEMENTS, k), state%a(AT_U_Z, k), state%stress(1:4, p), &
-                   state%e(p), state%s(p)]
+         values = [state%x(:, k), state%v(:DISPLACEMENTS, k), state%a(:DISPLACEMENTS, k), &
+                   state%stress(1:4, p), state%e(p), state%s(p)]
       end function values
    end subroutine write_history
+
+   !> A row of reactions_STAGE.csv after a step. The file belongs to the stage: it begins with its first row, or goes on
+   !> where it was at the checkpoint.
+   subroutine write_reactions(tables, model, run, dt, fault)
+      type(tables_t), intent(inout) :: tables
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      real(wp), intent(in) :: dt   !< [s]
+      type(fault_t), intent(inout) :: fault
+      character(:), allocatable :: head, path
+
+      associate (stage => model%stages(run%at%stage))
+         if (.not. is_open(tables%reactions)) then
+            head = reaction_columns(model, stage)
+            if (head == '') return
+            path = reactions_of(tables%folder, stage%name)
+            if (tables%reactions%bytes > 0) then
+               call resume_csv(path, head, tables%reactions, fault)
+            else
+               call new_csv(path, head, tables%reactions, fault)
+            end if
+            if (fault%code /= 0) return
+         end if
+         write (tables%reactions%row, NUMBERS) reaction_row(model, stage, run%drainage, run%constraint, &
+                                                            run%system%reaction, run%state%time, dt)
+         call write_row(tables%reactions, fault)
+      end associate
+   end subroutine write_reactions
+
+   pure function reactions_of(folder, stage) result(path)
+      character(*), intent(in) :: folder, stage
+      character(:), allocatable :: path
+
+      path = folder//'/reactions_'//trim(stage)//'.csv'
+   end function reactions_of
+
+   !> Ends the table of a stage.
+   subroutine close_reactions(tables, fault)
+      type(tables_t), intent(inout) :: tables
+      type(fault_t), intent(inout) :: fault
+
+      call close_csv(tables%reactions, fault)
+      tables%reactions%bytes = 0
+   end subroutine close_reactions
 
    subroutine write_ledger(tables, time, report, ledger, fault)
       type(tables_t), intent(inout) :: tables
@@ -223,5 +277,6 @@ contains
       call close_csv(tables%history, fault)
       call close_csv(tables%ledger, fault)
       call close_csv(tables%contact, fault)
+      call close_csv(tables%reactions, fault)
    end subroutine close_tables
 end module output_tables

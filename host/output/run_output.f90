@@ -13,7 +13,7 @@ module run_output
    use field_files, only: write_frame
    use model_types, only: model_t
    use output_tables, only: tables_t, open_tables, write_history, write_ledger, write_contacts, write_fields, &
-                            write_contact_nodes, close_tables
+                            write_contact_nodes, write_reactions, close_reactions, close_tables
    use progress_line, only: progress_t, show_progress, clear_progress
    use run_observer, only: run_observer_t, step_report_t
    use run_state, only: run_t
@@ -43,7 +43,8 @@ contains
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      if (.not. HAS_HDF5 .and. (model%checkpoint_steps > 0 .or. model%checkpoint_seconds > 0.0_wp)) then
+      if (.not. HAS_HDF5 .and. (model%checkpoint_steps > 0 .or. model%checkpoint_seconds > 0.0_wp .or. &
+                                model%checkpoint_end)) then
          call raise(fault, EXIT_INPUT, 'This mud_host was built without HDF5: it writes no checkpoints; leave '// &
                     'checkpoint_steps and checkpoint_seconds out, or install HDF5 and build anew.')
          return
@@ -69,7 +70,10 @@ contains
       associate (stage => model%stages(report%stage), step => run%at%step)
          call write_ledger(self%tables, run%state%time, report, run%ledger, fault)
          call write_contacts(self%tables, model, run%system%contacts, report%dt, run%state, run%ledger%contact, fault)
-         if (mod(step, stage%every) == 0 .or. report%last) call write_history(self%tables, model, run%state, fault)
+         if (mod(step, stage%every) == 0 .or. report%last) then
+            call write_history(self%tables, model, run%state, fault)
+            if (fault%code == 0) call write_reactions(self%tables, model, run, report%dt, fault)
+         end if
          if (fault%code /= 0) return
          if (stage%fields > 0 .and. .not. report%last) then
             if (mod(step, stage%fields) == 0) &
@@ -80,6 +84,7 @@ contains
       if (model%checkpoint_steps > 0) checkpoint = mod(run%steps, model%checkpoint_steps) == 0
       if (model%checkpoint_seconds > 0.0_wp) &
          checkpoint = clock() - self%last_checkpoint >= model%checkpoint_seconds .or. checkpoint
+      if (model%checkpoint_end .and. report%last) checkpoint = report%stage == size(model%stages) .or. checkpoint
       if (checkpoint) then
          call write_checkpoint(model, run, self%tables, fault)
          self%last_checkpoint = clock()
@@ -103,6 +108,7 @@ contains
       if (complete .and. .not. self%quiet) write (output_unit, '(a)') 'Stage '//name//': '//whole(run%at%step)// &
          ' steps, time '//short(run%state%time)//' s, '//whole(run%iterations)//' linear solves and '// &
          whole(run%cuts)//' cuts so far.'
+      call close_reactions(self%tables, fault)
       call write_fields(self%folder, model%domain, name, run%state, fault)
       if (fault%code == 0) call write_contact_nodes(self%folder, model, run%system%contacts, name, run%state, fault)
       if (fault%code == 0) call write_frame(self%folder, model%domain, run%state, self%tables%frames, fault)

@@ -7,50 +7,88 @@ module scene_fingerprint
    use texts, only: lower_case
    implicit none (type, external)
    private
-   public :: fingerprint_of
+   public :: fingerprint_of, hash_t, add_text, text_of_hash, sealed, is_free
 
    integer, parameter :: BLOCK = 65536
    ! Two polynomial hashes modulo primes below 2**31: products stay below 2**63.
    integer(int64), parameter :: PRIMES(2) = [2147483647_int64, 2147483629_int64], BASES(2) = [65599_int64, 31337_int64]
-   character(*), parameter :: FREE(*) = [character(18) :: 'threads', 'checkpoint_steps', 'checkpoint_seconds']
+   character(*), parameter :: FREE(*) = [character(18) :: 'threads', 'checkpoint_steps', 'checkpoint_seconds', &
+                                    'checkpoint_end']
+
+   type :: hash_t
+      integer(int64) :: parts(2) = 1
+   end type hash_t
 contains
    function fingerprint_of(groups) result(text)
       type(group_t), intent(in) :: groups(:)
       character(FINGERPRINT_LENGTH) :: text
-      integer(int64) :: hash(2)
+      type(hash_t) :: hash
       integer :: g, i, k
 
-      hash = 1
       do g = 1, size(groups)
-         call add('&'//trim(groups(g)%name), hash)
+         call add_text('&'//trim(groups(g)%name), hash)
          do i = 1, groups(g)%count
             associate (item => groups(g)%entries(i))
-               if (any(FREE == lower_case(item%key))) cycle
-               call add(' '//lower_case(trim(item%key)), hash)
+               if (is_free(item%key)) cycle
+               call add_text(' '//lower_case(trim(item%key)), hash)
                do k = 1, item%count
-                  call add('='//trim(item%values(k)), hash)
+                  call add_text('='//trim(item%values(k)), hash)
                end do
                if (lower_case(item%key) == 'file') call add_file(trim(groups(g)%file), trim(item%values(1)), hash)
             end associate
          end do
       end do
-      write (text, '(2z8.8)') hash
+      text = text_of_hash(hash)
    end function fingerprint_of
 
-   pure subroutine add(text, hash)
+   !> Whether a key changes no result.
+   pure logical function is_free(key)
+      character(*), intent(in) :: key
+
+      is_free = any(FREE == lower_case(key))
+   end function is_free
+
+   pure function text_of_hash(hash) result(text)
+      type(hash_t), intent(in) :: hash
+      character(FINGERPRINT_LENGTH) :: text
+
+      write (text, '(2z8.8)') hash%parts
+   end function text_of_hash
+
+   !> Groups with the contents of the files that they name in place of the names, so that nothing has to be read again.
+   function sealed(groups) result(copies)
+      type(group_t), intent(in) :: groups(:)
+      type(group_t), allocatable :: copies(:)
+      type(hash_t) :: hash
+      integer :: g, i
+
+      copies = groups
+      do g = 1, size(groups)
+         do i = 1, groups(g)%count
+            associate (item => groups(g)%entries(i))
+               if (lower_case(item%key) /= 'file') cycle
+               hash = hash_t()
+               call add_file(trim(groups(g)%file), trim(item%values(1)), hash)
+               copies(g)%entries(i)%values(1) = text_of_hash(hash)
+            end associate
+         end do
+      end do
+   end function sealed
+
+   pure subroutine add_text(text, hash)
       character(*), intent(in) :: text
-      integer(int64), intent(inout) :: hash(2)
+      type(hash_t), intent(inout) :: hash
       integer :: i
 
       do i = 1, len(text)
-         hash = mod(hash*BASES + iachar(text(i:i)) + 1, PRIMES)
+         hash%parts = mod(hash%parts*BASES + iachar(text(i:i)) + 1, PRIMES)
       end do
-   end subroutine add
+   end subroutine add_text
 
    !> Contents of a file, its path seen from the scene. One that cannot be read is refused elsewhere.
    subroutine add_file(scene, path, hash)
       character(*), intent(in) :: scene, path
-      integer(int64), intent(inout) :: hash(2)
+      type(hash_t), intent(inout) :: hash
       character(:), allocatable :: whole_path
       character(BLOCK) :: block_of
       integer :: unit, status, length, left
@@ -64,7 +102,7 @@ contains
       left = length
       do while (left > 0 .and. status == 0)
          read (unit, iostat=status) block_of(:min(left, BLOCK))
-         if (status == 0) call add(block_of(:min(left, BLOCK)), hash)
+         if (status == 0) call add_text(block_of(:min(left, BLOCK)), hash)
          left = left - BLOCK
       end do
       close (unit)

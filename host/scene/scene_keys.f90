@@ -38,6 +38,7 @@ module scene_keys
       key_t('scene', 'ordering', 'w', 'amd', 0, 0, 'ordering of the unknowns; best tries several', 'amd|metis|best'), &
       key_t('scene', 'checkpoint_steps', 'i', '0', 0, 1000000000, 'checkpoint.h5 after every so many steps; 0: none'), &
       key_t('scene', 'checkpoint_seconds', 'n', '0', 0, BIG, 'checkpoint.h5 after so much wall time [s]; 0: none'), &
+      key_t('scene', 'checkpoint_end', 'w', 'no', 0, 0, 'checkpoint.h5 when the last stage ends', 'no|yes'), &
       key_t('mesh', 'file', 't', NONE, 0, 0, 'Gmsh 4.1 text mesh, seen from the scene; or a built-in one:'), &
       key_t('mesh', 'r', 'N', NONE, -BIG, BIG, 'breaks along r [m], ascending'), &
       key_t('mesh', 'r_cells', 'I', NONE, 1, 100000, 'cells between two breaks'), &
@@ -116,7 +117,9 @@ module scene_keys
             'fields are written every so many steps; 0: at the end of the stage'), &
       key_t('fix', 'group', 't', REQUIRED, 0, 0, 'boundary, region or node group'), &
       key_t('fix', 'field', 'w', REQUIRED, 0, 0, 'what is prescribed', 'u_r|u_z|p_w|p_c|p_a'), &
-      key_t('fix', 'value', 'n', '0', -BIG, BIG, 'prescribed value [m, kPa]'), &
+      key_t('fix', 'value', 'n', '0', -BIG, BIG, 'prescribed value, at the datum [m, kPa]'), &
+      key_t('fix', 'value_slope', 'n', '0', -BIG, BIG, 'change of the value with z [-, kPa/m]'), &
+      key_t('fix', 'datum', 'n', '0', -BIG, BIG, 'z of the datum [m]'), &
       key_t('fix', 'history', 't', NONE, 0, 0, 'factor on the value'), &
       key_t('fix', 'hold', 'w', 'no', 0, 0, 'yes: at its value at the start of the stage', 'no|yes'), &
       key_t('fix', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
@@ -125,7 +128,9 @@ module scene_keys
       key_t('load', 'group', 't', REQUIRED, 0, 0, 'boundary (for force: node group)'), &
       key_t('load', 'kind', 'w', REQUIRED, 0, 0, &
             'kind of load, see README', 'pressure|shear_r|shear_z|water|air|force_r|force_z'), &
-      key_t('load', 'value', 'n', REQUIRED, -BIG, BIG, 'value of the load [kPa, m/s, kN]'), &
+      key_t('load', 'value', 'n', REQUIRED, -BIG, BIG, 'value of the load, at the datum [kPa, m/s, kN]'), &
+      key_t('load', 'value_slope', 'n', '0', -BIG, BIG, 'change of the value with z [kPa/m, 1/s, kN/m]'), &
+      key_t('load', 'datum', 'n', '0', -BIG, BIG, 'z of the datum [m]'), &
       key_t('load', 'history', 't', NONE, 0, 0, 'factor on the value'), &
       key_t('load', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
       key_t('plate', 'name', 't', REQUIRED, 0, 0, 'rigid plate, vertical; also a group for &fix and &load'), &

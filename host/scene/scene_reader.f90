@@ -5,7 +5,7 @@ module scene_reader
    use material_registry, only: is_law
    use namelists, only: group_t, read_groups, LENGTH
    use exit_codes, only: EXIT_GROUP
-   use scene_fingerprint, only: fingerprint_of
+   use scene_fingerprint, only: fingerprint_of, sealed
    use scene_amplitudes, only: read_amplitude
    use key_schema, only: get_text
    use scene_keys, only: check_keys, number_of, numbers_of, text_of, texts_of, word_is, word_number, given
@@ -31,6 +31,7 @@ contains
       if (fault%code /= 0) return
       scene%file = file
       scene%fingerprint = fingerprint_of(groups)
+      scene%groups = sealed(groups)
       allocate (scene%materials(0), scene%retentions(0), scene%permeabilities(0), scene%regions(0), &
                 scene%initials(0), scene%amplitudes(0), scene%stages(0), scene%fixes(0), scene%loads(0), &
                 scene%plates(0), scene%contacts(0), scene%points(0))
@@ -170,6 +171,7 @@ contains
       scene%ordering = word_number(group, 'ordering')
       scene%checkpoint_steps = nint(number_of(group, 'checkpoint_steps'))
       scene%checkpoint_seconds = number_of(group, 'checkpoint_seconds')
+      scene%checkpoint_end = word_is(group, 'checkpoint_end', 'yes')
       scene%derive_effects = word_is(group, 'effects', 'auto')
       scene%effects_tolerance = number_of(group, 'effects_tolerance')
       scene%fields_by_hand = given(group, 'fields') .or. .not. scene%derive_effects
@@ -308,6 +310,8 @@ contains
       fix%amplitude_name = text_of(group, 'history')
       fix%field_number = word_number(group, 'field')
       fix%value = number_of(group, 'value')
+      fix%value_slope = number_of(group, 'value_slope')
+      fix%datum = number_of(group, 'datum')
       fix%hold = word_is(group, 'hold', 'yes')
       fix%stages = texts_of(group, 'stages')
       if (given(group, 'from')) fix%from = number_of(group, 'from')
@@ -325,6 +329,8 @@ contains
       load%amplitude_name = text_of(group, 'history')
       load%kind = word_number(group, 'kind')
       load%value = number_of(group, 'value')
+      load%value_slope = number_of(group, 'value_slope')
+      load%datum = number_of(group, 'datum')
       load%stages = texts_of(group, 'stages')
       scene%loads = [scene%loads, load]
    end subroutine take_load

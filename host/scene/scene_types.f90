@@ -10,7 +10,7 @@ module scene_types
    public :: scene_t, scene_item_t, scene_mesh_t, scene_fluids_t, scene_law_t, scene_region_t, scene_initial_t
    public :: scene_amplitude_t
    public :: scene_stage_t, scene_fix_t, scene_load_t, scene_plate_t, scene_contact_t, scene_point_t
-   public :: NAME_LENGTH, FINGERPRINT_LENGTH, acts_in, place_of
+   public :: NAME_LENGTH, FINGERPRINT_LENGTH, acts_in, place_of, amplitude_at
    public :: WITH_U, WITH_P_W, WITH_P_C, IS_STATIC, IS_QUASI_STATIC, IS_DYNAMIC, FIX_P_W, FIX_P_C, FIX_P_A
    public :: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z
    public :: MEASURE_FORCES, MEASURE_RESIDUAL, MEASURE_CORRECTION
@@ -95,7 +95,8 @@ module scene_types
    type, extends(scene_item_t) :: scene_fix_t
       character(LENGTH) :: group_name = '', amplitude_name = ''   !< Amplitude empty: none.
       integer :: field_number = 0                    !< 1 u_r, 2 u_z, FIX_...
-      real(wp) :: value = 0.0_wp                     !< [m, kPa]
+      real(wp) :: value = 0.0_wp                     !< At the datum [m, kPa]
+      real(wp) :: value_slope = 0.0_wp, datum = 0.0_wp   !< Change with z [1/m of it], z of the datum [m].
       logical :: hold = .false.
       character(LENGTH), allocatable :: stages(:)    !< None: all.
       real(wp) :: from = -huge(1.0_wp), until = huge(1.0_wp)    !< [s]
@@ -104,7 +105,8 @@ module scene_types
    type, extends(scene_item_t) :: scene_load_t
       character(LENGTH) :: group_name = '', amplitude_name = ''
       integer :: kind = 0                            !< LOAD_...
-      real(wp) :: value = 0.0_wp                     !< [kPa, m/s, kN]
+      real(wp) :: value = 0.0_wp                     !< At the datum [kPa, m/s, kN]
+      real(wp) :: value_slope = 0.0_wp, datum = 0.0_wp   !< Change with z [1/m of it], z of the datum [m].
       character(LENGTH), allocatable :: stages(:)
    end type scene_load_t
 
@@ -139,6 +141,7 @@ module scene_types
       character(LENGTH) :: file = ''
       character(NAME_LENGTH) :: name = ''
       character(FINGERPRINT_LENGTH) :: fingerprint = ''
+      type(group_t), allocatable :: groups(:)        !< As they were read, files by their contents.
       logical :: axisymmetric = .true.
       integer :: fields = WITH_U
       logical :: linear_pressures = .false.
@@ -150,6 +153,7 @@ module scene_types
       integer :: ordering = 1                        !< Of the unknowns: 1 amd, 2 metis, 3 best.
       integer :: checkpoint_steps = 0
       real(wp) :: checkpoint_seconds = 0.0_wp
+      logical :: checkpoint_end = .false.
       logical :: derive_effects = .false.            !< What the keys leave out is derived;
       real(wp) :: effects_tolerance = 0.01_wp
       logical :: fields_by_hand = .true., gravity_by_hand = .true., seepage_by_hand = .true.   !< these say it.
@@ -174,6 +178,32 @@ contains
 
       place = at_line(item%file, item%line)
    end function place_of
+
+   !> Factor of an amplitude at a time: straight lines between its pairs, constant outside.
+   pure real(wp) function amplitude_at(amplitude, time) result(factor)
+      type(scene_amplitude_t), intent(in) :: amplitude
+      real(wp), intent(in) :: time
+      integer :: low, high, i
+
+      associate (t => amplitude%times, v => amplitude%values)
+         high = size(t)
+         factor = v(1)
+         if (time <= t(1)) return
+         factor = v(high)
+         if (time > t(high)) return
+         ! By halves: an earthquake has thousands of pairs.
+         low = 1
+         do while (high - low > 1)
+            i = (low + high)/2
+            if (time > t(i)) then
+               low = i
+            else
+               high = i
+            end if
+         end do
+         factor = v(low) + (v(high) - v(low))*(time - t(low))/(t(high) - t(low))
+      end associate
+   end function amplitude_at
 
    !> Whether something limited to stages takes part in one; an empty list means every stage.
    pure logical function acts_in(stages, name)

@@ -1,0 +1,163 @@
+!> Reactions of supports, flow through prescribed pressures and thrust of loads, as rows of a table: one column for every
+!> group and direction, whatever number of &fix or &load of a stage name it. What an unknown is held with belongs to the
+!> &fix that prescribes it, so that the columns add up to the whole. docs/theory/host.md section 9.1.
+module reaction_rows
+   use kinds, only: wp
+   use boundary_conditions, only: prescribing_fixes
+   use contact_drainage, only: drainage_t
+   use generalised_alpha, only: scheme_t, make_scheme, STATIC
+   use model_types, only: model_t, stage_t, factor_at
+   use prescribed_values, only: constraint_t
+   use scene_types, only: acts_in, LOAD_WATER, LOAD_AIR
+   use unknown_fields, only: DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
+   implicit none (type, external)
+   private
+   public :: reaction_columns, reaction_row
+
+   integer, parameter :: SUFFIXES = 8
+   character(10), parameter :: SUFFIX(SUFFIXES) = [character(10) :: 'force_r', 'force_z', 'outflow_w', 'outflow_a', &
+                                                   'load_r', 'load_z', 'inflow_w', 'inflow_a']
+   integer, parameter :: OUT_W = 3, OUT_A = 4, LOAD_R = 5, LOAD_Z = 6, IN_W = 7, IN_A = 8
+contains
+   !> Columns of a stage's table; empty where the stage prescribes and loads nothing.
+   function reaction_columns(model, stage) result(head)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      character(:), allocatable :: head
+      integer, allocatable :: list(:, :)
+      integer :: i
+
+      call list_columns(model, stage, list)
+      head = ''
+      if (size(list, 2) > 0) head = 'time,time_of_forces'
+      do i = 1, size(list, 2)
+         head = head//','//trim(model%domain%mesh%groups(list(1, i))%name)//'.'//trim(SUFFIX(list(2, i)))
+      end do
+   end function reaction_columns
+
+   !> (2, columns) group and suffix, in the order in which the scene names them.
+   subroutine list_columns(model, stage, list)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      integer, allocatable, intent(out) :: list(:, :)
+      integer :: i
+
+      allocate (list(2, 0))
+      do i = 1, size(model%fixes)
+         associate (fix => model%fixes(i))
+            if (.not. acts_in(fix%stages, stage%name)) cycle
+            if (fix%field <= DISPLACEMENTS) then
+               call add(fix%group, fix%field)
+            else
+               call add(fix%group, OUT_W)
+               if (model%domain%with_c) call add(fix%group, OUT_A)
+            end if
+         end associate
+      end do
+      do i = 1, size(model%loads)
+         associate (load => model%loads(i))
+            if (.not. acts_in(load%stages, stage%name)) cycle
+            select case (load%kind)
+            case (LOAD_WATER)
+               call add(load%group, IN_W)
+            case (LOAD_AIR)
+               call add(load%group, IN_A)
+            case default
+               call add(load%group, LOAD_R)
+               call add(load%group, LOAD_Z)
+            end select
+         end associate
+      end do
+   contains
+      subroutine add(group, kind)
+         integer, intent(in) :: group, kind
+
+         if (any(list(1, :) == group .and. list(2, :) == kind)) return
+         list = reshape([list, group, kind], [2, size(list, 2) + 1])
+      end subroutine add
+   end subroutine list_columns
+
+   !> Row after a step. Forces hold where the step is in balance: at the level of its values.
+   function reaction_row(model, stage, drainage, constraint, reaction, time, dt) result(row)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(drainage_t), intent(in) :: drainage
+      type(constraint_t), intent(in) :: constraint
+      real(wp), intent(in) :: reaction(:)   !< Residual with every row kept [kN, m3/s].
+      real(wp), intent(in) :: time, dt      !< At the end of the step, and its length [s].
+      real(wp), allocatable :: row(:)
+      type(scheme_t) :: scheme
+      integer, allocatable :: list(:, :)
+      real(wp), allocatable :: sums(:, :)
+
+      scheme = make_scheme(stage%kind, stage%rho_inf, dt)
+      call list_columns(model, stage, list)
+      allocate (sums(SUFFIXES, size(model%domain%mesh%groups)), source=0.0_wp)
+      call add_reactions()
+      call add_loads()
+      row = [time, time - (1 - scheme%l_f)*dt, picked()]
+   contains
+      function picked() result(values)
+         real(wp) :: values(size(list, 2))
+         integer :: i
+
+         values = [(sums(list(2, i), list(1, i)), i=1, size(list, 2))]
+      end function picked
+
+      subroutine add_reactions()
+         integer :: by(model%dofs%n), air_by(size(model%domain%mesh%x, 2)), i, k
+         real(wp) :: w, a
+
+         call prescribing_fixes(model, stage, model%dofs, drainage, time, by, air_by)
+         associate (dofs => model%dofs)
+            do i = 1, dofs%n
+               if (by(i) == 0 .or. dofs%field(i) > DISPLACEMENTS) cycle
+               associate (total => sums(dofs%field(i), model%fixes(by(i))%group))
+                  total = total + reaction(i)
+               end associate
+            end do
+            if (scheme%kind == STATIC .or. .not. model%domain%with_w) return
+            do i = 1, size(air_by)
+               if (dofs%of(AT_P_W, i) == 0) cycle
+               w = reaction(dofs%of(AT_P_W, i))
+               a = 0.0_wp
+               k = max(by(dofs%of(AT_P_W, i)), air_by(i))
+               if (model%domain%with_c) then
+                  a = reaction(dofs%of(AT_P_C, i))
+                  k = max(k, by(dofs%of(AT_P_C, i)))
+                  ! The first balance is that of both fluids; where the air pressure is given, that of the water.
+                  if (.not. constraint%air(i)) w = w - a
+               end if
+               if (k == 0) cycle
+               sums([OUT_W, OUT_A], model%fixes(k)%group) = sums([OUT_W, OUT_A], model%fixes(k)%group) - [w, a]
+            end do
+         end associate
+      end subroutine add_reactions
+
+      subroutine add_loads()
+         real(wp) :: factor, vector(model%dofs%n)
+         integer :: i
+
+         do i = 1, size(model%loads)
+            associate (load => model%loads(i), field => model%dofs%field)
+               if (.not. acts_in(load%stages, stage%name)) cycle
+               vector = load%value*load%shape
+               if (allocated(load%rise)) vector = vector + load%value_slope*load%rise
+               factor = factor_at(model, load%amplitude, time - dt)
+               factor = factor + scheme%l_f*(factor_at(model, load%amplitude, time) - factor)
+               associate (sum_of => sums(:, load%group))
+                  select case (load%kind)
+                  case (LOAD_WATER)
+                     sum_of(IN_W) = sum_of(IN_W) + factor*sum(vector, mask=field == AT_P_W)
+                  case (LOAD_AIR)
+                     sum_of(IN_A) = sum_of(IN_A) + factor*sum(vector, mask=field == AT_P_C)
+                  case default
+                     sum_of(LOAD_R) = sum_of(LOAD_R) + factor*sum(vector, mask=field == AT_U_R)
+                     sum_of(LOAD_Z) = sum_of(LOAD_Z) + factor*sum(vector, mask=field == AT_U_Z)
+                  end select
+               end associate
+            end associate
+         end do
+      end subroutine add_loads
+   end function reaction_row
+end module reaction_rows
