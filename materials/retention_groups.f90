@@ -83,8 +83,8 @@ contains
       law%s_max = number_of(RETENTION_KEYS, group, 's_max')
       law%s_min = number_of(RETENTION_KEYS, group, 's_min')
       if (.not. given(group, 'alpha')) then
-         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'law = ''van_genuchten'' needs alpha [1/kPa], '// &
-                    'about one over the air entry.')
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'law = ''van_genuchten'' needs alpha '// &
+                    '[1/kPa], about one over the air entry.')
       else if (.not. law%n > 1.0_wp) then
          call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, 'n'))//'n = '//short(law%n)//' of van '// &
                     'Genuchten''s curve must lie above 1: below it the slope at zero suction is not finite.')

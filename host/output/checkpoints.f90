@@ -209,16 +209,16 @@ contains
          call raise(fault, EXIT_RESTART, foreign()//'it stands in stage '//whole(number)//', and the scene has '// &
                     whole(size(model%stages))//'.')
       else if (get_text(file, 'past') /= past_fingerprint(model%groups, model%amplitudes, number, stage(1))) then
-         call raise(fault, EXIT_RESTART, foreign()//'groups, keys, values and files must be those of the run, but for '// &
-                    'threads and checkpoint_*; what may differ is the duration of the stage under way ('// &
+         call raise(fault, EXIT_RESTART, foreign()//'groups, keys, values and files must be those of the run, but '// &
+                    'for threads and checkpoint_*; what may differ is the duration of the stage under way ('// &
                     trim(model%stages(number)%name)//'), later stages with the &fix and &load of these alone, and '// &
                     'histories after '//short(stage(1))//' s.')
       else if (model%effect_options%auto) then
-         call raise(fault, EXIT_RESTART, foreign()//'with effects = ''auto'' what is left out was derived from the '// &
-                    'whole scene; set the effects by hand to go on with more stages or other durations.')
+         call raise(fault, EXIT_RESTART, foreign()//'with effects = ''auto'' what is left out was derived from '// &
+                    'the whole scene; set the effects by hand to go on with more stages or other durations.')
       else if (stage(2) + model%stages(number)%duration < stage(1)*(1 - ROUNDING)) then
-         call raise(fault, EXIT_RESTART, foreign()//'the run stands at '//short(stage(1))//' s, after the end of stage '// &
-                    trim(model%stages(number)%name)//' at '//short(stage(2) + model%stages(number)%duration)//' s.')
+         call raise(fault, EXIT_RESTART, foreign()//'the run stands at '//short(stage(1))//' s, after the end of '// &
+                    'stage '//trim(model%stages(number)%name)//' at '//short(stage(2) + model%stages(number)%duration)//' s.')
       end if
    contains
       function foreign() result(text)

@@ -1,5 +1,5 @@
-!> Reactions of supports, flow through prescribed pressures and thrust of loads, as rows of a table: one column for every
-!> group and direction, whatever number of &fix or &load of a stage name it. What an unknown is held with belongs to the
+!> Reactions of supports, flow through prescribed pressures and thrust of loads, as rows of a table: one column for
+!> every group and direction, whatever number of &fix or &load of a stage name it. What holds an unknown belongs to the
 !> &fix that prescribes it, so that the columns add up to the whole. docs/theory/host.md section 9.1.
 module reaction_rows
    use kinds, only: wp

@@ -55,7 +55,7 @@ contains
       write (text, '(2z8.8)') hash%parts
    end function text_of_hash
 
-   !> Groups with the contents of the files that they name in place of the names, so that nothing has to be read again.
+   !> Groups with a fingerprint of the files that they name in place of the names, so that nothing has to be read again.
    function sealed(groups) result(copies)
       type(group_t), intent(in) :: groups(:)
       type(group_t), allocatable :: copies(:)
@@ -68,6 +68,7 @@ contains
             associate (item => groups(g)%entries(i))
                if (lower_case(item%key) /= 'file') cycle
                hash = hash_t()
+               call add_text(trim(item%values(1)), hash)
                call add_file(trim(groups(g)%file), trim(item%values(1)), hash)
                copies(g)%entries(i)%values(1) = text_of_hash(hash)
             end associate

@@ -314,7 +314,7 @@ done = run(many, work / "many", "--quiet")
 check("400 points", done.returncode == 0, done.stderr)
 if done.returncode == 0:
     rows = tables.numbers(work / "many/histories.csv")   # which refuses a row that is shorter than the first
-    check("400 points: columns", len(rows) == 2 and len(rows[0]) == 1 + 13*401, [len(row) for row in rows])
+    check("400 points: columns", len(rows) == 2 and len(rows[0]) == 1 + 14*401, [len(row) for row in rows])
 
 # A folder that nothing can be written to, from the first file on.
 done = run(scene, "/proc/nowhere", "--quiet")
