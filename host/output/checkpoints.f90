@@ -218,7 +218,8 @@ contains
                     'the whole scene; set the effects by hand to go on with more stages or other durations.')
       else if (stage(2) + model%stages(number)%duration < stage(1)*(1 - ROUNDING)) then
          call raise(fault, EXIT_RESTART, foreign()//'the run stands at '//short(stage(1))//' s, after the end of '// &
-                    'stage '//trim(model%stages(number)%name)//' at '//short(stage(2) + model%stages(number)%duration)//' s.')
+                    'stage '//trim(model%stages(number)%name)//' at '// &
+                    short(stage(2) + model%stages(number)%duration)//' s.')
       end if
    contains
       function foreign() result(text)
