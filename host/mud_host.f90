@@ -2,8 +2,10 @@
 program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit, int64
    use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
+   use blas_in_use, only: blas_t, find_blas
    use checkpoints, only: read_checkpoint
    use wall_clock, only: clock
+   use generalised_alpha, only: STATIC, DYNAMIC
    use effects_table, only: print_effects
    use model_builder, only: build_model
    use model_types, only: model_t
@@ -105,11 +107,34 @@ contains
    end subroutine check_restart
 
    subroutine announce()
+      integer :: i
+
       write (output_unit, '(a)') trim(model%name)//': '//whole(size(model%domain%mesh%t6, 2))//' elements, '// &
          whole(size(model%domain%mesh%x, 2))//' nodes, '//whole(model%dofs%n)//' unknowns, '// &
          whole(size(run%pattern%col))//' entries, '//whole(model%domain%threads)//' threads.'
+      call tell_libraries()
+      do i = 1, size(model%stages)
+         if (model%stages(i)%kind /= STATIC) write (output_unit, '(a)') 'Stage '//trim(model%stages(i)%name)//': '// &
+            trim(merge('dynamic     ', 'quasi_static', model%stages(i)%kind == DYNAMIC))//', rho_inf '// &
+            short(model%stages(i)%rho_inf)//'.'
+      end do
       if (model%effect_options%auto) call print_effects(output_unit, run%monitor%table)
    end subroutine announce
+
+   !> The libraries that a factorisation spends its time in.
+   subroutine tell_libraries()
+      type(blas_t) :: found
+
+      found = find_blas()
+      if (found%name == '' .and. found%blas_file == '') then
+         write (output_unit, '(a)') 'BLAS: not known (linked statically?).'
+      else
+         write (output_unit, '(a)') 'BLAS: '//trim(found%name//' '//found%blas_file)//'; LAPACK: '// &
+            found%lapack_file//'.'
+      end if
+      if (found%slow) write (output_unit, '(a)') 'Warning: this is the reference BLAS: a factorisation takes two '// &
+         'to five times as long as with an optimised one (Debian: libopenblas0-serial).'
+   end subroutine tell_libraries
 
    !> Where the time went.
    subroutine account()

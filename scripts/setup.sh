@@ -30,6 +30,20 @@ has_lapack() {
    return 1
 }
 
+# Debian keeps the reference BLAS in a folder blas; an optimised one replaces the link to it.
+has_optimised_blas() {
+   local library
+   library=$(readlink -f "$("${FC:-gfortran}" -print-file-name=libblas.so.3 2>/dev/null)" 2>/dev/null)
+   case $library in
+      */blas/libblas.so*) return 1 ;;
+   esac
+}
+
+# What the programs run without, but slowly: installed where that is possible, told by mud_host where it is not.
+wanted_packages() {
+   has_optimised_blas || dpkg -s libopenblas0-serial >/dev/null 2>&1 || echo libopenblas0-serial
+}
+
 # The one list of what is needed: each line prints a Debian package if what it brings is missing.
 missing_packages() {
    [ -n "${FC:-}" ] || command -v gfortran >/dev/null || echo gfortran
@@ -69,6 +83,22 @@ install_packages() {
       setup_fail "apt-get could not install: $packages (its own message is above)"
    packages=$(missing_packages | xargs)
    [ -z "$packages" ] || setup_fail "still missing after the installation: $packages"
+}
+
+install_wanted_packages() {
+   local packages as_root=()
+   packages=$(wanted_packages | xargs)
+   [ -n "$packages" ] && command -v apt-get >/dev/null || return 0
+   if [ "$(id -u)" != 0 ]; then
+      sudo -n true 2>/dev/null || return 0
+      as_root=(sudo)
+   fi
+   echo "setup: installing $packages"
+   # shellcheck disable=SC2086  # one word per package
+   { "${as_root[@]}" apt-get update -q -o DPkg::Lock::Timeout=300 &&
+      "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+         apt-get install -q -y --no-install-recommends -o DPkg::Lock::Timeout=300 $packages; } >&2 ||
+      echo "setup: apt-get could not install $packages; everything works without, but slowly" >&2
 }
 
 check_versions() {
@@ -117,5 +147,6 @@ configure_and_build() {
 }
 
 install_packages
+install_wanted_packages
 check_versions
 install_python_packages

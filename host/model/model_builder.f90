@@ -13,7 +13,7 @@ module model_builder
    use porous_domain, only: fluids_t, prepare_domain
    use region_builder, only: build_regions
    use scene_types, only: scene_t, scene_point_t, WITH_P_W, WITH_P_C
-   use stage_builder, only: stage_of
+   use stage_builder, only: stage_of, choose_schemes
    use shape_functions, only: RULES
    use texts, only: whole
    !$ use omp_lib, only: omp_get_max_threads
@@ -52,6 +52,7 @@ contains
       allocate (model%effects(0))
       if (scene%derive_effects) call derive_effects(model, fault)
       if (fault%code /= 0) return
+      call choose_schemes(model)
       call number_unknowns(model%domain, ties_of(model), model%dofs)
       call shape_loads(model, model%dofs)
    end subroutine build_model

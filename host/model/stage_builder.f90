@@ -1,16 +1,20 @@
-!> Stages of a scene, their words translated.
+!> Stages of a scene, their words translated, and the time integration that holds where the scene leaves it open.
 module stage_builder
+   use kinds, only: wp
    use convergence, only: BY_FORCES, BY_RESIDUAL, BY_CORRECTION
    use generalised_alpha, only: STATIC, QUASI_STATIC, DYNAMIC
-   use model_types, only: stage_t
-   use scene_types, only: scene_stage_t
+   use model_types, only: model_t, stage_t
+   use scene_types, only: scene_stage_t, acts_in
    implicit none (type, external)
    private
-   public :: stage_of
+   public :: stage_of, choose_schemes
 
    ! Of the words of &stage analysis and measure.
    integer, parameter :: KIND_OF(*) = [STATIC, QUASI_STATIC, DYNAMIC]
    integer, parameter :: MEASURE_OF(*) = [BY_FORCES, BY_RESIDUAL, BY_CORRECTION]
+   real(wp), parameter :: SMOOTH = 0.8_wp     !< rho_inf of a stage without contact.
+   real(wp), parameter :: OPENING = 0.0_wp    !< With contact: it never gains energy where a penalty opens and closes,
+                                              !< however long the step (docs/theory/host.md section 4.1).
 contains
    pure function stage_of(given) result(stage)
       type(scene_stage_t), intent(in) :: given
@@ -23,4 +27,22 @@ contains
       if (.not. stage%derived) stage%kind = KIND_OF(given%analysis)
       stage%measure = MEASURE_OF(given%measure_number)
    end function stage_of
+
+   !> rho_inf of the stages that the scene leaves it open in.
+   pure subroutine choose_schemes(model)
+      type(model_t), intent(inout) :: model
+      logical :: touching
+      integer :: i, k
+
+      do i = 1, size(model%stages)
+         associate (stage => model%stages(i))
+            if (stage%rho_inf >= 0.0_wp) cycle
+            touching = .false.
+            do k = 1, size(model%contacts)
+               touching = touching .or. acts_in(model%contacts(k)%stages, stage%name)
+            end do
+            stage%rho_inf = merge(OPENING, SMOOTH, stage%kind == DYNAMIC .and. touching)
+         end associate
+      end do
+   end subroutine choose_schemes
 end module stage_builder

@@ -101,7 +101,8 @@ module scene_keys
       key_t('stage', 'dt_growth', 'n', '1', 1, 10, 'factor on the step after every accepted one'), &
       key_t('stage', 'dt_max', 'n', NONE, TINY_, BIG, 'largest step with dt_growth [s]'), &
       key_t('stage', 'cuts', 'i', '10', 0, 40, 'how often a step may be halved'), &
-      key_t('stage', 'rho_inf', 'n', '0.8', 0, 1, 'spectral radius of generalised-alpha [-]'), &
+      key_t('stage', 'rho_inf', 'n', NONE, 0, 1, &
+            'spectral radius of generalised-alpha [-]; default 0.8, dynamic with contact 0'), &
       key_t('stage', 'created_energy', 'n', '0.01', TINY_, BIG, &
             'energy created out of nothing that ends the run, share of the largest work [-]'), &
       key_t('stage', 'tolerance', 'n', '1.0e-3', 1.0e-14_wp, 0.1_wp, 'Newton: error that ends the iteration [-]'), &

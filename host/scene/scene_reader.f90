@@ -239,7 +239,7 @@ contains
       stage%dt_growth = number_of(group, 'dt_growth')
       if (given(group, 'dt_max')) stage%dt_max = number_of(group, 'dt_max')
       stage%cuts = nint(number_of(group, 'cuts'))
-      stage%rho_inf = number_of(group, 'rho_inf')
+      if (given(group, 'rho_inf')) stage%rho_inf = number_of(group, 'rho_inf')
       stage%created_energy = number_of(group, 'created_energy')
       stage%tolerance = number_of(group, 'tolerance')
       stage%measure_number = word_number(group, 'measure')

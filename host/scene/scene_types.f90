@@ -85,7 +85,7 @@ module scene_types
       integer :: analysis = 0                        !< IS_...; 0: to be derived.
       real(wp) :: duration = 0.0_wp, dt = 0.0_wp, dt_growth = 1.0_wp, dt_max = huge(1.0_wp)   !< [s, s, -, s]
       integer :: cuts = 10
-      real(wp) :: rho_inf = 0.8_wp, tolerance = 1.0e-3_wp
+      real(wp) :: rho_inf = -1.0_wp, tolerance = 1.0e-3_wp   !< rho_inf below zero: not given.
       real(wp) :: created_energy = 0.01_wp           !< Share of the largest work that ends the run [-].
       integer :: measure_number = MEASURE_FORCES
       integer :: max_iterations = 12, every = 1, fields = 0
