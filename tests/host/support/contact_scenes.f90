@@ -3,11 +3,15 @@ module contact_scenes
    use, intrinsic :: iso_fortran_env, only: int64
    use contact_geometry, only: contact_geometry_t, contact_prepare
    use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate
-   use contact_types, only: wp, TWO_PI, contact_options_t, contact_status_t
+   use contact_types, only: wp, TWO_PI, NODAL_GAP, POINTWISE_GAP, PRESSURE_WORK, ENERGY_SLOPE, contact_options_t, &
+                            contact_status_t
    implicit none (type, external)
    private
-   public :: random_t, uniform, surface_t, straight, curve, rough, flat_pair
+   public :: random_t, uniform, surface_t, straight, curve, rough, flat_pair, contact_form, crossing_chains
    public :: scene_t, new_scene, positions, evaluate, evaluate_at, dense_tangent, balance, differences, edge_loads
+
+   !> Penalty [kN/m3] of a contact_form: deep penetration, all terms count.
+   real(wp), parameter, public :: SOFT_PENALTY = 1.0e3_wp
 
    !> A generator of its own, the same on every machine (Park & Miller's minimal standard).
    type :: random_t
@@ -227,4 +231,31 @@ contains
          surface%x(1, i) = max(surface%x(1, i), 0.0_wp)
       end do
    end subroutine rough
+
+   !> The eight forms of a contact.
+   pure function contact_form(form) result(options)
+      integer, intent(in) :: form   !< 1 to 8
+      type(contact_options_t) :: options
+
+      options%penalty = SOFT_PENALTY
+      options%gap = merge(NODAL_GAP, POINTWISE_GAP, mod(form, 2) == 1)
+      options%variation = merge(PRESSURE_WORK, ENERGY_SLOPE, mod((form - 1)/2, 2) == 0)
+      options%axisymmetric = form > 4
+   end function contact_form
+
+   !> Curved chains of three edges that cross each other; the master's ends lie inside slave edges.
+   subroutine crossing_chains(random, options, scene)
+      type(random_t), intent(inout) :: random
+      type(contact_options_t), intent(in) :: options
+      type(scene_t), intent(out) :: scene
+      type(surface_t) :: slave, master
+      real(wp) :: offset
+
+      offset = uniform(random, 0.15_wp, 0.35_wp)
+      call flat_pair([0.1_wp, 0.4_wp, 0.7_wp, 1.0_wp], &
+                     offset + [0.0_wp, 0.15_wp, 0.35_wp, 0.6_wp], -0.03_wp, slave, master)
+      call rough(slave, random, 0.03_wp)
+      call rough(master, random, 0.02_wp)
+      scene = new_scene(slave, master, options)
+   end subroutine crossing_chains
 end module contact_scenes

@@ -7,7 +7,8 @@ import numpy as np
 
 from tools.results import folder
 
-from mud_reference import (Params, Point, State, dd, norm, rates, saturation, segment, six, stress_ratio, tensor)
+from mud_reference import State, segment, stress_ratio
+from reference_rates import Params, Point, dd, norm, rates, saturation, six, tensor
 
 RULES = ("classic", "threshold", "repositioning", "return_point")
 EFFECTS = ("isotropic", "retention", "bonding", "fabric", "lode")

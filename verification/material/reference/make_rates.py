@@ -4,7 +4,7 @@ import numpy as np
 
 from tools.results import folder
 
-from mud_reference import (I3, Params, Point, dd, dev, norm, rates, six, tensor)
+from reference_rates import I3, Params, Point, dd, dev, norm, rates, six, tensor
 
 P = Params()
 rng = np.random.default_rng(20240521)

@@ -9,8 +9,8 @@ from scipy.optimize import brentq
 from tools import tables
 from tools.results import folder
 
-from mud_reference import (I3, Params, Point, State, isotropic, oedometric, rates, saturation, segment, six, stress_ratio, tensor,
-                           undrained)
+from mud_reference import State, isotropic, oedometric, segment, stress_ratio, undrained
+from reference_rates import I3, Params, Point, bonding, rates, saturation, six, tensor
 
 DATA = pathlib.Path(__file__).resolve().parents[1] / "verdugo_ishihara/verdugo_ishihara_1996_drained_TC.csv"
 RTOL = 1e-11
@@ -175,7 +175,6 @@ def self_checks():
     c = rates(sig, 0.8, 30.0, z, ri, 7.0 * de, -7.0, P)
     print("rotation", np.abs(Q @ a.dsig @ Q.T - b.dsig).max() / np.abs(a.dsig).max(),
           "degree one", np.abs(7 * a.dsig - c.dsig).max() / np.abs(c.dsig).max())
-    from mud_reference import bonding
     h = 1e-5
     for fn in (saturation, bonding):
         v = fn(0.8, 30.0, P)

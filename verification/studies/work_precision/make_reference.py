@@ -7,7 +7,8 @@ from tools.bench import ROOT
 from tools.results import folder
 
 sys.path.insert(0, str(ROOT / "verification/material/reference"))
-from mud_reference import I3, Params, isotropic, oedometric, segment, undrained  # noqa: E402
+from mud_reference import isotropic, oedometric, segment, undrained  # noqa: E402
+from reference_rates import I3, Params  # noqa: E402
 
 # name: p', e, suction, strain of every straight part (compression positive)
 PATHS = {
