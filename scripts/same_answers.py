@@ -93,23 +93,32 @@ CASES = {
 }
 
 
-def run(program, name, folder, text, beside):
-    """A scene's files; its text lies beside the original for the moment, so that relative paths hold."""
-    copy = beside / f".same_answers_{name}_{os.getpid()}.nml"
+def stage(source, text, scratch):
+    """A scene's changed text in a folder of its own, where the paths that it names lead to what they lead to beside the
+    original: nothing is written into the source tree."""
+    place = scratch / source.parent.relative_to(root)
+    place.mkdir(parents=True, exist_ok=True)
+    for real, shown in ((source.parent, place), (root, scratch)):
+        for entry in real.iterdir():
+            if not (shown / entry.name).exists():
+                (shown / entry.name).symlink_to(entry)
+    copy = place / f"same_answers_{source.name}"
     copy.write_text(text, encoding="utf-8")
-    commands = [[program, copy, "--output", folder]]
+    return copy
+
+
+def run(program, name, folder, scene):
+    """A scene's files."""
+    commands = [[program, scene, "--output", folder]]
     if name == "restart":
         commands.append([*commands[0], "--restart", folder / "checkpoint.h5"])
-    try:
-        for command in commands:
-            done = subprocess.run(command, capture_output=True, text=True,
-                                  env={**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"})
-            if done.returncode:
-                sys.exit(f"{name} ended with {done.returncode}: {done.stderr}")
-            if name == "restart" and len(commands) == 2 and command is commands[0]:
-                shutil.copytree(folder, folder / "unbroken")
-    finally:
-        copy.unlink()
+    for command in commands:
+        done = subprocess.run(command, capture_output=True, text=True,
+                              env={**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"})
+        if done.returncode:
+            sys.exit(f"{name} ended with {done.returncode}: {done.stderr}")
+        if name == "restart" and len(commands) == 2 and command is commands[0]:
+            shutil.copytree(folder, folder / "unbroken")
 
 
 NO_ANSWERS = ("fingerprint", "past", "origin", "counters")   # of a checkpoint
@@ -162,17 +171,14 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         for name in args.only:
             source, changes = CASES[name]
-            beside = root
-            text = source
-            if not source.startswith("&"):
-                beside = (root / source).parent
-                text = (root / source).read_text(encoding="utf-8")
+            text = source if source.startswith("&") else (root / source).read_text(encoding="utf-8")
             for old, new in changes:
                 if old not in text:
                     sys.exit(f"{name}: {source} has no text {old!r} to replace")
                 text = text.replace(old, new)
             folder = pathlib.Path(scratch) / name
-            run(args.program, name, folder, text, beside)
+            beside = root / ("scene.nml" if source.startswith("&") else source)
+            run(args.program, name, folder, stage(beside, text, pathlib.Path(scratch) / "tree" / name))
             kept = args.folder / name
             if args.what == "record":
                 shutil.rmtree(kept, ignore_errors=True)

@@ -45,7 +45,19 @@ module porous_balance
       real(wp) :: tangent_suction(4)       !< d stress/d suction [-]
       real(wp) :: ds_dev, ds_dpc         !< d S_w/d volume strain [-], d S_w/d suction [1/kPa]
    end type skeleton_t
+
+   !> The mixture of a point at its levels, and the slopes of that.
+   type :: mixture_t
+      real(wp) :: n, n1              !< Porosity at the level of values and at the end of the step [-]
+      real(wp) :: s, s_dot           !< Degree of saturation [-] and its rate [1/s]
+      real(wp) :: s_ev, s_pc         !< Slopes of s against volume strain [-] and suction [1/kPa]
+      real(wp) :: rate_ev, rate_pc   !< Those of its rate, over that of the scheme.
+      real(wp) :: p_w, p_c           !< [kPa]
+      real(wp) :: k_a, d_k_a         !< Bulk modulus of the air [kPa] and its slope against p_a [-]
+      real(wp) :: rho_a, d_rho_a     !< Density of the air [t/m3] and its slope against p_a.
+   end type mixture_t
 contains
+   !> Response of a point, its tangent where it is asked for, and its pores at the end of the step.
    subroutine point_response(domain, region, scheme, k, stress0, skeleton, old, new, with_tangent, response, tangent, &
                              drift)
       type(domain_t), intent(in) :: domain
@@ -57,162 +69,219 @@ contains
       type(pore_t), intent(in) :: old
       type(pore_t), intent(out) :: new
       logical, intent(in) :: with_tangent
-      real(wp), intent(out) :: response(PLACES), tangent(PLACES, PLACES)
+      real(wp), intent(out) :: response(PLACES), tangent(PLACES, PLACES)   !< The tangent where it is asked for.
       real(wp), intent(out) :: drift(2)      !< What the fluxes are made of, by magnitude [m/s].
+      type(mixture_t) :: mix
+
+      call fill_pores(domain, region, scheme, k, skeleton, old, new, mix)
+      if (with_tangent) tangent = 0.0_wp
+      drift = 0.0_wp
+      call add_momentum(domain, region, scheme, k, stress0, skeleton, mix, with_tangent, response, tangent)
+      if (.not. domain%with_w .or. scheme%kind == STATIC) return
+      call add_water(domain, region, scheme, k, mix, with_tangent, response, tangent, drift)
+      if (domain%with_c) call add_air(domain, region, scheme, k, mix, with_tangent, response, tangent, drift)
+      response(PW) = response(PW) - k%source(3)
+   end subroutine point_response
+
+   !> Void ratio and saturation at the end of the step, and the mixture at its levels.
+   subroutine fill_pores(domain, region, scheme, k, skeleton, old, new, mix)
+      type(domain_t), intent(in) :: domain
+      type(region_t), intent(in) :: region
+      type(scheme_t), intent(in) :: scheme
+      type(kinematics_t), intent(in) :: k
+      type(skeleton_t), intent(in) :: skeleton
+      type(pore_t), intent(in) :: old
+      type(pore_t), intent(out) :: new
+      type(mixture_t), intent(out) :: mix
       type(saturation_t) :: before, after
-      real(wp) :: n1, n, s, s_dot, s_ev, s_pc, rate_ev, rate_pc, p_c, p_w, pressure, l
-      real(wp) :: rho, rho_n, rho_s, rho_a, d_rho_a, k_a, d_k_a, accel(2)
+      real(wp) :: l
 
       l = scheme%l_f
       new%e = skeleton%e
-      n1 = new%e/(1 + new%e)
-      n = old%e/(1 + old%e)
-      n = n + l*(n1 - n)
-
+      mix%n1 = new%e/(1 + new%e)
+      mix%n = old%e/(1 + old%e)
+      mix%n = mix%n + l*(mix%n1 - mix%n)
       ! How much of the pores is water: saturated where the scene has no suction.
       new%s = 1.0_wp
       new%s_rate = 0.0_wp
-      s_ev = 0.0_wp
-      s_pc = 0.0_wp
-      rate_ev = 0.0_wp
-      rate_pc = 0.0_wp
+      mix%s_ev = 0.0_wp
+      mix%s_pc = 0.0_wp
+      mix%rate_ev = 0.0_wp
+      mix%rate_pc = 0.0_wp
       if (domain%with_c) then
          new%s = skeleton%s
-         s_ev = l*skeleton%ds_dev
-         s_pc = l*skeleton%ds_dpc
+         mix%s_ev = l*skeleton%ds_dev
+         mix%s_pc = l*skeleton%ds_dpc
          if (domain%full_rate) then
             new%s_rate = rate_of(scheme, old%s, old%s_rate, new%s)
-            rate_pc = skeleton%ds_dpc
-            rate_ev = skeleton%ds_dev
+            mix%rate_pc = skeleton%ds_dpc
+            mix%rate_ev = skeleton%ds_dev
          else
             before = region%law%retention(k%c0, old%e)
             after = region%law%retention(k%c1, old%e)
             new%s_rate = rate_of(scheme, before%s, old%s_rate, after%s)
-            rate_pc = after%ds_dpc
+            mix%rate_pc = after%ds_dpc
          end if
       end if
-      s = old%s + l*(new%s - old%s)
-      s_dot = old%s_rate + scheme%l_p*(new%s_rate - old%s_rate)
+      mix%s = old%s + l*(new%s - old%s)
+      mix%s_dot = old%s_rate + scheme%l_p*(new%s_rate - old%s_rate)
+      mix%p_w = k%w0 + l*(k%w1 - k%w0)
+      mix%p_c = k%c0 + l*(k%c1 - k%c0)
+      call air(domain, mix%p_w + mix%p_c, mix%k_a, mix%d_k_a, mix%rho_a, mix%d_rho_a)
+   end subroutine fill_pores
 
-      ! Momentum of the mixture.
-      p_w = k%w0 + l*(k%w1 - k%w0)
-      p_c = k%c0 + l*(k%c1 - k%c0)
-      pressure = p_w + (1 - s)*p_c
-      call air(domain, p_w + p_c, k_a, d_k_a, rho_a, d_rho_a)
-      rho_n = -region%rho_s
-      rho_s = 0.0_wp
-      if (domain%with_w) then
-         rho_n = rho_n + s*domain%fluids%rho_w
-         if (domain%with_c) rho_n = rho_n + (1 - s)*rho_a
-         if (domain%with_c) rho_s = n*(domain%fluids%rho_w - rho_a)
-      end if
-      rho = region%rho_s + n*rho_n
-      accel = k%accel + region%damping*k%speed
-      accel(2) = accel(2) + domain%gravity
-      response = 0.0_wp
-      drift = 0.0_wp
-      response(1:4) = stress0(1:4) + l*(skeleton%stress - stress0(1:4))
-      response(1:3) = response(1:3) - pressure
-      response(U + 1:U + 2) = rho*accel - k%source(1:2)
-      if (with_tangent) then
-         tangent = 0.0_wp
+   !> Momentum of the mixture: total stress, inertia, weight.
+   pure subroutine add_momentum(domain, region, scheme, k, stress0, skeleton, mix, with_tangent, response, tangent)
+      type(domain_t), intent(in) :: domain
+      type(region_t), intent(in) :: region
+      type(scheme_t), intent(in) :: scheme
+      type(kinematics_t), intent(in) :: k
+      real(wp), intent(in) :: stress0(6)
+      type(skeleton_t), intent(in) :: skeleton
+      type(mixture_t), intent(in) :: mix
+      logical, intent(in) :: with_tangent
+      real(wp), intent(out) :: response(PLACES)
+      real(wp), intent(inout) :: tangent(PLACES, PLACES)
+      real(wp) :: pressure, rho, rho_n, rho_s, accel(2), l
+
+      l = scheme%l_f
+      associate (n => mix%n, s => mix%s, fluids => domain%fluids)
+         pressure = mix%p_w + (1 - s)*mix%p_c
+         rho_n = -region%rho_s
+         rho_s = 0.0_wp
+         if (domain%with_w) then
+            rho_n = rho_n + s*fluids%rho_w
+            if (domain%with_c) rho_n = rho_n + (1 - s)*mix%rho_a
+            if (domain%with_c) rho_s = n*(fluids%rho_w - mix%rho_a)
+         end if
+         rho = region%rho_s + n*rho_n
+         accel = k%accel + region%damping*k%speed
+         accel(2) = accel(2) + domain%gravity
+         response = 0.0_wp
+         response(1:4) = stress0(1:4) + l*(skeleton%stress - stress0(1:4))
+         response(1:3) = response(1:3) - pressure
+         response(U + 1:U + 2) = rho*accel - k%source(1:2)
+         if (.not. with_tangent) return
          tangent(1:4, 1:4) = l*skeleton%tangent
-         tangent(1:3, 1:3) = tangent(1:3, 1:3) + p_c*s_ev
+         tangent(1:3, 1:3) = tangent(1:3, 1:3) + mix%p_c*mix%s_ev
          tangent(1:4, PC) = l*skeleton%tangent_suction
-         tangent(1:3, PC) = tangent(1:3, PC) - (1 - s)*l + p_c*s_pc
+         tangent(1:3, PC) = tangent(1:3, PC) - (1 - s)*l + mix%p_c*mix%s_pc
          tangent(1:3, PW) = -l
          tangent(U + 1, U + 1) = rho*(scheme%c_a + region%damping*scheme%c_v)
          tangent(U + 2, U + 2) = tangent(U + 1, U + 1)
-         tangent(U + 1:U + 2, 1:3) = spread(accel*(rho_n*l*(1 - n1) + rho_s*s_ev), 2, 3)
-         tangent(U + 1:U + 2, PC) = accel*(rho_s*s_pc + n*(1 - s)*d_rho_a*l)
-         tangent(U + 1:U + 2, PW) = accel*n*(1 - s)*d_rho_a*l
-      end if
-      if (.not. domain%with_w .or. scheme%kind == STATIC) return
-      call add_water()
-      if (domain%with_c) call add_air()
-      response(PW) = response(PW) - k%source(3)
-   contains
-      !> Water, in the sum of the balances.
-      subroutine add_water()
-         type(relative_t) :: rel
-         real(wp) :: drive(2), kappa, d_kappa, inverse
+         tangent(U + 1:U + 2, 1:3) = spread(accel*(rho_n*l*(1 - mix%n1) + rho_s*mix%s_ev), 2, 3)
+         tangent(U + 1:U + 2, PC) = accel*(rho_s*mix%s_pc + n*(1 - s)*mix%d_rho_a*l)
+         tangent(U + 1:U + 2, PW) = accel*n*(1 - s)*mix%d_rho_a*l
+      end associate
+   end subroutine add_momentum
 
-         inverse = 1/domain%fluids%k_w
-         response(PW) = n*s*inverse*k%w_dot + k%div_v
-         rel = relative_permeability(domain%permeabilities(region%permeability), s)
-         kappa = domain%permeabilities(region%permeability)%intrinsic/domain%fluids%eta_w
-         d_kappa = kappa*rel%dw
-         kappa = kappa*rel%w
-         drive = k%grad_w + domain%fluids%rho_w*body_force()
-         response(GW + 1:GW + 2) = kappa*drive
-         drift = kappa*(abs(k%grad_w) + domain%fluids%rho_w*abs(body_force()))
-         if (.not. with_tangent) return
-         tangent(PW, 1:3) = s*inverse*k%w_dot*l*(1 - n1) + n*inverse*k%w_dot*s_ev + scheme%c_v
-         tangent(PW, PW) = n*s*inverse*scheme%c_p
-         tangent(PW, PC) = n*inverse*k%w_dot*s_pc
-         call flux_tangent(GW, kappa, d_kappa, domain%fluids%rho_w, drive)
-         tangent(GW + 1, GW + 1) = kappa*l
-         tangent(GW + 2, GW + 2) = kappa*l
-      end subroutine add_water
+   !> Water, in the sum of the balances.
+   subroutine add_water(domain, region, scheme, k, mix, with_tangent, response, tangent, drift)
+      type(domain_t), intent(in) :: domain
+      type(region_t), intent(in) :: region
+      type(scheme_t), intent(in) :: scheme
+      type(kinematics_t), intent(in) :: k
+      type(mixture_t), intent(in) :: mix
+      logical, intent(in) :: with_tangent
+      real(wp), intent(inout) :: response(PLACES), tangent(PLACES, PLACES)
+      real(wp), intent(out) :: drift(2)
+      type(relative_t) :: rel
+      real(wp) :: drive(2), body(2), kappa, d_kappa, inverse, l
 
-      !> Air, in both sums.
-      subroutine add_air()
-         type(relative_t) :: rel
-         real(wp) :: drive(2), kappa, d_kappa, a_dot, stored, d_stored
-         integer :: i
+      l = scheme%l_f
+      inverse = 1/domain%fluids%k_w
+      body = body_force(domain, k)
+      response(PW) = mix%n*mix%s*inverse*k%w_dot + k%div_v
+      rel = relative_permeability(domain%permeabilities(region%permeability), mix%s)
+      kappa = domain%permeabilities(region%permeability)%intrinsic/domain%fluids%eta_w
+      d_kappa = kappa*rel%dw
+      kappa = kappa*rel%w
+      drive = k%grad_w + domain%fluids%rho_w*body
+      response(GW + 1:GW + 2) = kappa*drive
+      drift = kappa*(abs(k%grad_w) + domain%fluids%rho_w*abs(body))
+      if (.not. with_tangent) return
+      tangent(PW, 1:3) = mix%s*inverse*k%w_dot*l*(1 - mix%n1) + mix%n*inverse*k%w_dot*mix%s_ev + scheme%c_v
+      tangent(PW, PW) = mix%n*mix%s*inverse*scheme%c_p
+      tangent(PW, PC) = mix%n*inverse*k%w_dot*mix%s_pc
+      call add_flux_slopes(domain, scheme, mix, GW, kappa, d_kappa, domain%fluids%rho_w, drive, tangent)
+      tangent(GW + 1, GW + 1) = kappa*l
+      tangent(GW + 2, GW + 2) = kappa*l
+   end subroutine add_water
 
-         a_dot = k%w_dot + k%c_dot
+   !> Air, in both sums.
+   subroutine add_air(domain, region, scheme, k, mix, with_tangent, response, tangent, drift)
+      type(domain_t), intent(in) :: domain
+      type(region_t), intent(in) :: region
+      type(scheme_t), intent(in) :: scheme
+      type(kinematics_t), intent(in) :: k
+      type(mixture_t), intent(in) :: mix
+      logical, intent(in) :: with_tangent
+      real(wp), intent(inout) :: response(PLACES), tangent(PLACES, PLACES), drift(2)
+      type(relative_t) :: rel
+      real(wp) :: drive(2), body(2), kappa, d_kappa, a_dot, stored, d_stored, l
+      integer :: i
+
+      l = scheme%l_f
+      a_dot = k%w_dot + k%c_dot
+      body = body_force(domain, k)
+      associate (n => mix%n, s => mix%s, k_a => mix%k_a)
          stored = n*(1 - s)/k_a*a_dot
          response(PW) = response(PW) + stored
-         response(PC) = stored - n*s_dot + (1 - s)*k%div_v - k%source(4)
+         response(PC) = stored - n*mix%s_dot + (1 - s)*k%div_v - k%source(4)
          rel = relative_permeability(domain%permeabilities(region%permeability), s)
          kappa = domain%permeabilities(region%permeability)%intrinsic/domain%fluids%eta_a
          d_kappa = kappa*rel%da
          kappa = kappa*rel%a
-         drive = k%grad_w + k%grad_c + rho_a*body_force()
+         drive = k%grad_w + k%grad_c + mix%rho_a*body
          response(GA + 1:GA + 2) = kappa*drive
-         drift = drift + kappa*(abs(k%grad_w) + abs(k%grad_c) + rho_a*abs(body_force()))
+         drift = drift + kappa*(abs(k%grad_w) + abs(k%grad_c) + mix%rho_a*abs(body))
          response(GW + 1:GW + 2) = response(GW + 1:GW + 2) + kappa*drive
          if (.not. with_tangent) return
-         d_stored = n*(1 - s)/k_a*(scheme%c_p - a_dot*d_k_a*l/k_a)
-         tangent(PC, 1:3) = (1 - s)/k_a*a_dot*l*(1 - n1) - n/k_a*a_dot*s_ev
+         d_stored = n*(1 - s)/k_a*(scheme%c_p - a_dot*mix%d_k_a*l/k_a)
+         tangent(PC, 1:3) = (1 - s)/k_a*a_dot*l*(1 - mix%n1) - n/k_a*a_dot*mix%s_ev
          tangent(PC, PW) = d_stored
-         tangent(PC, PC) = d_stored - n/k_a*a_dot*s_pc
+         tangent(PC, PC) = d_stored - n/k_a*a_dot*mix%s_pc
          tangent(PW, 1:8) = tangent(PW, 1:8) + tangent(PC, 1:8)
-         tangent(PC, 1:3) = tangent(PC, 1:3) - s_dot*l*(1 - n1) - n*scheme%c_p*rate_ev - k%div_v*s_ev &
-                            + (1 - s)*scheme%c_v
-         tangent(PC, PC) = tangent(PC, PC) - n*scheme%c_p*rate_pc - k%div_v*s_pc
-         call flux_tangent(GA, kappa, d_kappa, rho_a, drive)
+         tangent(PC, 1:3) = tangent(PC, 1:3) - mix%s_dot*l*(1 - mix%n1) - n*scheme%c_p*mix%rate_ev &
+                            - k%div_v*mix%s_ev + (1 - s)*scheme%c_v
+         tangent(PC, PC) = tangent(PC, PC) - n*scheme%c_p*mix%rate_pc - k%div_v*mix%s_pc
+         call add_flux_slopes(domain, scheme, mix, GA, kappa, d_kappa, mix%rho_a, drive, tangent)
          do i = 1, 2
             tangent(GA + i, [GW + i, GA + i]) = kappa*l
          end do
-         tangent(GA + 1:GA + 2, PW) = tangent(GA + 1:GA + 2, PW) + kappa*d_rho_a*l*body_force()
-         tangent(GA + 1:GA + 2, PC) = tangent(GA + 1:GA + 2, PC) + kappa*d_rho_a*l*body_force()
+         tangent(GA + 1:GA + 2, PW) = tangent(GA + 1:GA + 2, PW) + kappa*mix%d_rho_a*l*body
+         tangent(GA + 1:GA + 2, PC) = tangent(GA + 1:GA + 2, PC) + kappa*mix%d_rho_a*l*body
          tangent(GW + 1:GW + 2, :) = tangent(GW + 1:GW + 2, :) + tangent(GA + 1:GA + 2, :)
-      end subroutine add_air
+      end associate
+   end subroutine add_air
 
-      !> What drives seepage besides the gradient: weight, and inertia if the scene wants it [m/s2].
-      pure function body_force() result(b)
-         real(wp) :: b(2)
+   !> What drives seepage besides the gradient: weight, and inertia if the scene wants it [m/s2].
+   pure function body_force(domain, k) result(b)
+      type(domain_t), intent(in) :: domain
+      type(kinematics_t), intent(in) :: k
+      real(wp) :: b(2)
 
-         b = 0.0_wp
-         if (domain%seepage_inertia) b = k%accel
-         b(2) = b(2) + domain%gravity
-      end function body_force
+      b = 0.0_wp
+      if (domain%seepage_inertia) b = k%accel
+      b(2) = b(2) + domain%gravity
+   end function body_force
 
-      !> Slopes of a flux against saturation and displacement.
-      subroutine flux_tangent(place, kappa, d_kappa, density, drive)
-         integer, intent(in) :: place
-         real(wp), intent(in) :: kappa, d_kappa, density, drive(2)
-         integer :: i
+   !> Slopes of a flux against saturation and displacement.
+   pure subroutine add_flux_slopes(domain, scheme, mix, place, kappa, d_kappa, density, drive, tangent)
+      type(domain_t), intent(in) :: domain
+      type(scheme_t), intent(in) :: scheme
+      type(mixture_t), intent(in) :: mix
+      integer, intent(in) :: place
+      real(wp), intent(in) :: kappa, d_kappa, density, drive(2)
+      real(wp), intent(inout) :: tangent(PLACES, PLACES)
+      integer :: i
 
-         do i = 1, 2
-            tangent(place + i, 1:3) = d_kappa*drive(i)*s_ev
-            tangent(place + i, PC) = d_kappa*drive(i)*s_pc
-            if (domain%seepage_inertia) tangent(place + i, U + i) = kappa*density*scheme%c_a
-         end do
-      end subroutine flux_tangent
-   end subroutine point_response
+      do i = 1, 2
+         tangent(place + i, 1:3) = d_kappa*drive(i)*mix%s_ev
+         tangent(place + i, PC) = d_kappa*drive(i)*mix%s_pc
+         if (domain%seepage_inertia) tangent(place + i, U + i) = kappa*density*scheme%c_a
+      end do
+   end subroutine add_flux_slopes
 
    !> Bulk modulus and density of the air and their slopes against p_a.
    pure subroutine air(domain, p_a, k_a, d_k_a, rho_a, d_rho_a)

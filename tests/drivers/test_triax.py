@@ -89,9 +89,8 @@ def newton_errors(entry):
     newton.write_text(text)
     done = call(newton, "--residuals", "--quiet", "--output", work / "newton.csv")
     errors = {}
-    for line in done.stdout.splitlines()[1:]:
-        k, _, error = line.split(",")
-        errors.setdefault(int(k), []).append(float(error))
+    for row in tables.parsed(done.stdout):
+        errors.setdefault(int(row["increment"]), []).append(float(row["error"]))
     return errors, done.stderr
 
 

@@ -35,7 +35,7 @@ def axis(breaks, cells, ratios):
 def triangles(groups):
     """Corners of right triangles between nodes of the mesh: under the centre, under the rim, one radius deep."""
     mesh = next(k for g, k in groups if g == "mesh")
-    values = {key: [float(v) for v in text.split(",")] for key, text in mesh.items()}
+    values = {key: [float(v) for v in text.replace(",", " ").split()] for key, text in mesh.items()}
     r = axis(values["r"], [int(n) for n in values["r_cells"]], values["r_ratio"])
     z = axis(values["z"], [int(n) for n in values["z_cells"]], values["z_ratio"])
     rim = int(np.argmin(abs(r - 0.15)))

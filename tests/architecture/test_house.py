@@ -1,0 +1,109 @@
+"""One house: no source of any language is too long, no procedure does too much, tables have one reader, and
+documents name only what is there. Every rule is first shown a planted offence."""
+import pathlib
+import re
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from checking import check, finish, root  # noqa: E402
+
+LONGEST = 450        # lines of a source
+MOST_LINES = 105     # of a Fortran procedure, with its declarations
+LANGUAGES = (".f90", ".pf", ".py", ".c", ".h", ".sh", ".cmake")
+GENERATED = {"verification/host/mms/manufactured.f90"}   # by make_mms.py: formulas, a procedure a solution
+
+HEAD = re.compile(r"(?:[\w()*, =]+\s)?(subroutine|function)\s+(\w+)\s*(?:\(|$)", re.IGNORECASE)
+END = re.compile(r"end (?:subroutine|function) (\w+)", re.IGNORECASE)
+READER = re.compile(r"\bcsv\.(reader|DictReader)\b|\b(loadtxt|genfromtxt|read_csv)\b|\.split\([\"'],[\"']\)")
+LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
+TOPS = "common|umat|materials|host|drivers|tests|verification|scripts|docs|benchmarks|cmake"
+PLACE = re.compile(rf"`((?:{TOPS})/[\w./-]+)`")
+
+
+def too_long(lines):
+    return [f"{len(lines)} lines, at most {LONGEST}"] if len(lines) > LONGEST else []
+
+
+def long_procedures(lines):
+    """Procedures of a Fortran source with more than MOST_LINES lines, those that they contain included."""
+    found, begun = [], {}
+    for number, line in enumerate(lines, 1):
+        statement = line.strip()
+        if end := END.match(statement):
+            length = number - begun.pop(end[1].lower(), number) + 1
+            found += [f"{end[1]} has {length} lines, at most {MOST_LINES}"] if length > MOST_LINES else []
+        elif not statement.startswith(("!", "end")) and (head := HEAD.match(statement)):
+            begun.setdefault(head[2].lower(), number)
+    return found
+
+
+def own_readers(lines):
+    return [f"{number}: {line.strip()}" for number, line in enumerate(lines, 1) if READER.search(line)]
+
+
+def gone(text, folder, exists):
+    """Links of a document that lead nowhere, and places in backticks that are not there."""
+    links = [target for target in LINK.findall(text) if "://" not in target and not target.startswith("mailto:")
+             and not exists(folder / target)]
+    places = [place for place in PLACE.findall(text) if not re.search(r"[A-Z]{4,}|\bbuild/", place)
+              and not any(exists(root / name) for name in (place, place + ".nml", "verification/" + place))]
+    return links + places
+
+
+def planted():
+    long, short = ["x"] * (LONGEST + 1), ["x"] * LONGEST
+    head, tail = ["subroutine f(x)"], ["end subroutine f"]
+    body = ["x = 1"] * (MOST_LINES - 2)
+    there = {root / "host/README.md", root / "docs/a.md", root / "common"}
+    exists = there.__contains__
+    cases = [("a long source", too_long, long, short),
+             ("a long procedure", long_procedures, head + body + ["x = 2"] + tail, head + body + tail),
+             ("a long function with attributes", long_procedures,
+              ["   pure real(wp) function f(x)", *body, "x = 2", "   end function f"], head + body + tail),
+             ("a reader of its own", own_readers, ["rows = csv.DictReader(file)"], ["rows = tables.rows(file)"]),
+             ("a table taken apart", own_readers, ["a = line.split(',')"], ["a = line.split(';')"]),
+             ("numpy's reader", own_readers, ["a = np.loadtxt(path)"], ["a = tables.columns(path)"])]
+    documents = [("a link", "[a](b.md)", "[a](a.md#b) [c](https://x.org/y)"),
+                 ("a folder", "`host/src` and", "`host/README.md`, `host/FOLDER/x`")]
+    return ([f"{name}: the offence is not seen" for name, rule, bad, _ in cases if not rule(bad)]
+            + [f"{name}: innocent code is blamed" for name, rule, _, good in cases if rule(good)]
+            + [f"{name}: the offence is not seen" for name, bad, _ in documents if not gone(bad, root / "docs", exists)]
+            + [f"{name}: an innocent text is blamed" for name, _, good in documents
+               if gone(good, root / "docs", exists)])
+
+
+def files(*suffixes):
+    """Committed and new files, or, without git, what lies in the tree."""
+    told = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=root,
+                          capture_output=True, text=True)
+    names = told.stdout.split("\n") if told.returncode == 0 else [
+        str(path.relative_to(root)) for path in root.rglob("*") if "build" not in path.relative_to(root).parts]
+    return sorted(name for name in names if name and (root / name).is_file() and name not in GENERATED
+                  and (pathlib.Path(name).suffix in suffixes or pathlib.Path(name).name in suffixes))
+
+
+def over(names, rule):
+    found = []
+    for name in names:
+        found += [f"{name}: {what}" for what in rule((root / name).read_text(encoding="utf-8").splitlines())]
+    return found
+
+
+def rule(name, findings):
+    check(name, not findings, "\n  " + "\n  ".join(findings[:30]))
+
+
+sources = files(*LANGUAGES, "CMakeLists.txt", "check", "demo", "run", "benchmark")
+rule("every rule sees its planted offence and nothing else", planted())
+check("there are sources of every language to look at",
+      {".f90", ".pf", ".py", ".c", ".h"} <= {pathlib.Path(name).suffix for name in sources}, len(sources))
+rule("no source of any language is too long", over(sources, too_long))
+rule("no procedure does too much", over(files(".f90", ".pf"), long_procedures))
+rule("tables are read by common/tables.py", over(
+    [name for name in files(".py") if name not in ("common/tables.py", "tests/architecture/test_house.py")],
+    own_readers))
+rule("documents name only what is there", [
+    f"{name}: {what}" for name in files(".md") if name != "CHANGELOG.md"
+    for what in gone((root / name).read_text(encoding="utf-8"), (root / name).parent, pathlib.Path.exists)])
+finish()
