@@ -12,7 +12,7 @@ module triax_progress
    use wall_clock, only: clock
    implicit none (type, external)
    private
-   public :: timer_t, start_timer, show_progress, show_summary
+   public :: timer_t, start_timer, progress_is_due, show_progress, show_summary
 
    real(wp), parameter :: FIRST_PROGRESS = 2.0_wp   !< Runs shorter than this show none [s].
 
@@ -37,13 +37,20 @@ contains
       character(*), intent(in) :: what
       real(wp) :: seconds
 
-      if (.not. timer%shown) return
       seconds = clock() - timer%start
-      if (seconds < timer%next .or. share <= 0.0_wp) return
       timer%next = seconds + max(2.0_wp, 0.5_wp*seconds)
       write (error_unit, '(a)') 'mud_triax: '//what//', '//whole(nint(100.0_wp*share))//' % after '// &
          whole(nint(seconds))//' s, about '//whole(nint(seconds*(1.0_wp - share)/share))//' s left'
    end subroutine show_progress
+
+   !> Whether it is time for a line. Asked after every increment, before the line is put together.
+   logical function progress_is_due(timer, share)
+      type(timer_t), intent(in) :: timer
+      real(wp), intent(in) :: share
+
+      progress_is_due = .false.
+      if (timer%shown .and. share > 0.0_wp) progress_is_due = clock() - timer%start >= timer%next
+   end function progress_is_due
 
    !> Where the test ended and what it cost.
    subroutine show_summary(test, table, point, tally, timer)

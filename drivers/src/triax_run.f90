@@ -8,7 +8,7 @@ module triax_run
    use triax_course, only: course_t, begin_stage, next_increment, share_done
    use triax_output, only: table_t, write_row, add_note, close_table
    use triax_point, only: point_t
-   use triax_progress, only: timer_t, show_progress
+   use triax_progress, only: timer_t, progress_is_due, show_progress
    use triax_stage, only: CONTROL_NAMES
    implicit none (type, external)
    private
@@ -24,7 +24,7 @@ contains
       type(fault_t), intent(inout) :: fault
       type(course_t) :: course
       type(fault_t) :: ending
-      real(wp) :: pressure
+      real(wp) :: pressure, share
       integer :: i
 
       point = test%start
@@ -43,9 +43,10 @@ contains
                   tally%error = 0.0_wp
                   if (fault%code /= 0) exit stages
                end if
-               call show_progress(timer, (real(i - 1, wp) + share_done(course))/real(size(test%stages), wp), &
-                                  'stage '//whole(i)//' of '//whole(size(test%stages))//' ('// &
-                                  trim(CONTROL_NAMES(stage%control))//')'//in_cycle(course))
+               share = (real(i - 1, wp) + share_done(course))/real(size(test%stages), wp)
+               if (progress_is_due(timer, share)) call show_progress(timer, share, &
+                  'stage '//whole(i)//' of '//whole(size(test%stages))//' ('//trim(CONTROL_NAMES(stage%control))//')'// &
+                  in_cycle(course))
             end do
             pressure = course%pressure
             if (len_trim(course%note) > 0) call add_note(table, 'stage '//whole(i)//': '//trim(course%note), fault)
