@@ -45,8 +45,8 @@ contains
                end if
                share = (real(i - 1, wp) + share_done(course))/real(size(test%stages), wp)
                if (progress_is_due(timer, share)) call show_progress(timer, share, &
-                  'stage '//whole(i)//' of '//whole(size(test%stages))//' ('//trim(CONTROL_NAMES(stage%control))//')'// &
-                  in_cycle(course))
+                  'stage '//whole(i)//' of '//whole(size(test%stages))//' ('// &
+                  trim(CONTROL_NAMES(stage%control))//')'//in_cycle(course))
             end do
             pressure = course%pressure
             if (len_trim(course%note) > 0) call add_note(table, 'stage '//whole(i)//': '//trim(course%note), fault)

@@ -151,8 +151,7 @@ quiet_fall = fall.replace("rho_inf = 0.8", "").replace("duration = 0.06", "durat
 for step in (1.2e-4, 4.8e-4, 2.0e-3):
     scene.write_text(quiet_fall.replace("dt = 3.0e-4", f"dt = {step}"))
     done = subprocess.run([host, scene, "--output", work / "fall"], capture_output=True, text=True, env=environment)
-    rows = [row.split(",") for row in (work / "fall/ledger.csv").read_text().splitlines()]
-    gained = -min(float(row[rows[0].index("imbalance")]) for row in rows[1:])
+    gained = -min(row["imbalance"] for row in tables.numbers(work / "fall/ledger.csv"))
     check(f"contact, dt = {step}: no energy gained", done.returncode == 0 and gained < 1e-12, gained)
     check(f"contact, dt = {step}: rho_inf told", "Stage fall: dynamic, rho_inf 0." in done.stdout, done.stdout)
 done = subprocess.run([host, root / "verification/host/terzaghi/scene.nml", "--check"], capture_output=True, text=True,

@@ -1,6 +1,5 @@
 """What people read from a run of mud_host: reactions, flow and thrust of every group against statics and Darcy; loads
 and supports that change with z; retention from files; a run that goes on with more stages or for longer."""
-import csv
 import os
 import pathlib
 import shutil
@@ -11,6 +10,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
 from checking import build, check, finish, work  # noqa: E402
+import tables  # noqa: E402 (checking knows its folder)
 
 host = build / "host/mud_host"
 environment = {**os.environ, "OMP_NUM_THREADS": "1"}
@@ -48,7 +48,7 @@ def run(text, name, *words):
 
 
 def last(folder, table="reactions_s.csv"):
-    return {k: float(v) for k, v in list(csv.DictReader((folder / table).open()))[-1].items()}
+    return tables.numbers(folder / table)[-1]
 
 
 def near(what, value, wanted, size=1.0):
@@ -68,8 +68,8 @@ near("thrust of water, 10 kPa/m over 3 m: to the left", row["right.load_r"], -45
 near("loads of one group in one column", row["top.load_r"], 14.0)
 near("and in the other", row["top.load_z"], -10.0)
 near("supports along r hold what acts", row["left.force_r"] + row["bottom.force_r"], 45.0 - 14.0)
-points = list(csv.DictReader((folder / "points_s.csv").open()))
-weight = 10 * 2.65 * sum(float(p["weight"]) / (1 + float(p["e"])) for p in points)
+points = tables.numbers(folder / "points_s.csv")
+weight = 10 * 2.65 * sum(p["weight"] / (1 + p["e"]) for p in points)
 near("the base carries weight and load", row["bottom.force_z"], weight + 10.0)
 check("the weight is that of 6 m2", abs(weight - 0.5 * 2.65 * 6 * 10) < 0.01 * weight, weight)
 near("forces of a static stage are those of its end", row["time_of_forces"], row["time"])
@@ -136,7 +136,7 @@ old = "law = 'table' suction = 0, 1e6 saturation = 0.6, 0.6"
 water = {}
 for name, law in laws.items():
     folder = run(column.replace(old, law), f"retention_{name}")
-    water[name] = np.array([float(r["S_w"]) for r in csv.DictReader((folder / "points_s.csv").open())])
+    water[name] = tables.columns(folder / "points_s.csv")["S_w"]
 check("a table of 3001 pairs is the curve", np.abs(water["file"] - water["genuchten"]).max() < 1e-5
       and np.ptp(water["file"]) > 0.1, np.abs(water["file"] - water["genuchten"]).max())
 check("a table of 61 pairs is coarser", 1e-5 < np.abs(water["lists"] - water["genuchten"]).max() < 2e-2)
@@ -171,7 +171,7 @@ check("and once more, for longer", abs(last(again, "histories.csv")["time"] - 3)
 longer = first.replace("duration = 1", "duration = 2")
 shutil.copytree(work / "kept", work / "longer")
 whole, part = run(longer, "whole"), run(longer, "longer", "--restart", work / "longer/checkpoint.h5")
-a, b = (np.loadtxt(f / "histories.csv", delimiter=",", skiprows=1) for f in (whole, part))
+a, b = (np.stack([*tables.columns(f / "histories.csv").values()], axis=1) for f in (whole, part))
 check("a longer stage: the same to rounding", a.shape == b.shape
       and (np.abs(a - b).max(0) <= 1e-8 * np.abs(a).max(0) + 1e-12).all(), np.abs(a - b).max(0))
 # What is past must not change: a value, a history before the moment, a stage cut off before it, a derived scene.
