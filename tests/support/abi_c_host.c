@@ -14,6 +14,9 @@ _Static_assert(offsetof(mud_substep, landed) == 3 * sizeof(int) && offsetof(mud_
 _Static_assert(offsetof(mud_substep, error) == 8 * sizeof(int) + 2 * sizeof(double)
                && offsetof(mud_substep, stress) == 8 * sizeof(int) + 6 * sizeof(double), "likewise the numbers");
 
+_Static_assert(offsetof(mud_summary, pnewdt) == 6 * sizeof(int)
+               && sizeof(mud_summary) == 6 * sizeof(int) + 3 * sizeof(double), "five counts, a gap, three numbers");
+
 enum { MAX_PROPS = 128, MAX_STATEV = 256, STEPS = 300 };
 
 /* Layout of the report, in bytes. */

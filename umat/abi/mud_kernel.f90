@@ -14,8 +14,8 @@ module mud_kernel
    use mud_trace, only: trace_t
    implicit none (type, external)
    private
-   public :: report_t, output_t, kernel_init, kernel_update, kernel_point, kernel_tangent, rotate_statev, &
-      failed_report, TANGENT_FROM_PROPS
+   public :: report_t, output_t, kernel_init, kernel_begin, kernel_update, kernel_point, kernel_tangent, &
+      rotate_statev, failed_report, TANGENT_FROM_PROPS
 
    integer, parameter :: TANGENT_FROM_PROPS = -1   !< Take the tangent kind from PROPS.
    integer, parameter :: LAST_TANGENT = 3          !< Largest tangent kind.
@@ -47,18 +47,34 @@ contains
       real(wp), intent(inout) :: statev(:)
       type(report_t), intent(out) :: report
       type(params_t) :: par
+      type(mud_status_t) :: status
+
+      call read_params(props, par, status)
+      if (status%code == MUD_OK) then
+         call kernel_begin(par, stress, suction, void_ratio, statev, report)
+      else
+         report = failed_report(status)
+      end if
+   end subroutine kernel_init
+
+   !> The same for checked parameters.
+   pure subroutine kernel_begin(par, stress, suction, void_ratio, statev, report)
+      type(params_t), intent(in) :: par
+      real(wp), intent(inout) :: stress(6)
+      real(wp), intent(in) :: suction, void_ratio   !< Void ratio 0: e_0.
+      real(wp), intent(inout) :: statev(:)
+      type(report_t), intent(out) :: report
       type(state_t) :: state
       type(mud_status_t) :: status
       real(wp) :: packed(NSTATV)
 
-      call read_params(props, par, status)
-      if (status%code == MUD_OK .and. size(statev) < NSTATV) status = wrong_nstatv(size(statev))
+      if (size(statev) < NSTATV) status = wrong_nstatv(size(statev))
       if (status%code == MUD_OK) call initialise(par, stress, suction, void_ratio, state, packed, status)
-      report = report_of(status, counters_t(), 0.0_wp)
+      report = failed_report(status)
       if (status%code /= MUD_OK) return
       stress = to_umat_stress(state%sigma)
       statev(1:NSTATV) = packed
-   end subroutine kernel_init
+   end subroutine kernel_begin
 
    !> One increment of a material as PROPS give it. On failure output is undefined.
    pure subroutine kernel_update(props, stress, statev, d_strain, suction, d_suction, tangent, output, report, trace)

@@ -1,14 +1,18 @@
-!> The retention curve of a prepared material for a C host: mud_saturation of mud.h.
+!> The retention curve of a prepared material for a C host: mud_saturation and mud_state_saturation of mud.h.
 module mud_retention_point
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
+   use mud_kinds, only: wp
    use mud_prepared, only: prepared_t, find_prepared
+   use mud_registry, only: NSTATV, S_LAYOUT, S_VOID_RATIO
    use mud_retention, only: saturation_t, saturation
-   use mud_status, only: mud_status_t, MUD_OK, MUD_BAD_INPUT, MUD_BAD_VOID_RATIO
+   use mud_state, only: E_LOWER, E_UPPER
+   use mud_status, only: mud_status_t, MUD_OK, MUD_BAD_INPUT, MUD_BAD_VOID_RATIO, MUD_BAD_NSTATV, MUD_BAD_STATE, &
+      MUD_NULL_ARGUMENT
    use mud_tensor, only: is_finite
    use mud_to_host, only: put_real
    implicit none (type, external)
    private
-   public :: mud_saturation
+   public :: mud_saturation, mud_state_saturation
 contains
    !> Degree of saturation and its slopes; on an error nothing is written.
    integer(c_int) function mud_saturation(prepared, suction, void_ratio, s_w, ds_dpc, ds_de) &
@@ -33,4 +37,39 @@ contains
       call put_real(sat%ds_dpc, ds_dpc)
       call put_real(sat%ds_de, ds_de)
    end function mud_saturation
+
+   !> The same for a point with a past: its STATEV tells the void ratio (e_0 of the material before it began). The curve
+   !> of eq. (24) has no hysteresis; the rest of the past is not read.
+   integer(c_int) function mud_state_saturation(prepared, statev, n_statev, suction, s_w, ds_dpc, ds_dev) &
+      bind(c, name='mud_state_saturation')
+      type(c_ptr), value :: prepared, statev, s_w, ds_dpc, ds_dev
+      integer(c_int), value :: n_statev
+      real(c_double), value :: suction
+      type(prepared_t), pointer :: material
+      real(c_double), pointer, contiguous :: state(:)
+      type(saturation_t) :: sat
+      type(mud_status_t) :: status
+      real(wp) :: e
+
+      call find_prepared(prepared, material, status)
+      mud_state_saturation = status%code
+      if (status%code /= MUD_OK) return
+      mud_state_saturation = MUD_NULL_ARGUMENT
+      if (.not. c_associated(statev)) return
+      mud_state_saturation = MUD_BAD_NSTATV
+      if (n_statev < NSTATV) return
+      call c_f_pointer(statev, state, [NSTATV])
+      mud_state_saturation = MUD_BAD_INPUT
+      if (.not. is_finite(suction)) return
+      mud_state_saturation = MUD_BAD_STATE
+      if (.not. (is_finite(state(S_LAYOUT)) .and. is_finite(state(S_VOID_RATIO)))) return
+      e = state(S_VOID_RATIO)
+      if (abs(state(S_LAYOUT)) <= 0.0_wp .and. abs(e) <= 0.0_wp) e = material%par%e_0
+      if (.not. (e > E_LOWER .and. e < E_UPPER)) return
+      mud_state_saturation = MUD_OK
+      sat = saturation(material%par, suction, e)
+      call put_real(sat%s_w, s_w)
+      call put_real(sat%ds_dpc, ds_dpc)
+      call put_real((1.0_wp + e)*sat%ds_de, ds_dev)
+   end function mud_state_saturation
 end module mud_retention_point

@@ -142,6 +142,60 @@ int mud_update_batch_prepared(const double *prepared, int n, const double *stres
 int mud_saturation(const double *prepared, double suction, double void_ratio, double *s_w, double *ds_dpc,
                    double *ds_de);
 
+/* The same for a point: statev tells its void ratio and its past (which the curve of today, without hysteresis, does
+ * not read). ds_dev: slope against the volume strain, tension positive, like dsw_deps of mud_update. */
+int mud_state_saturation(const double *prepared, const double *statev, int nstatev, double suction, double *s_w,
+                         double *ds_dpc, double *ds_dev);
+
+/* --- many points of a mesh with several materials ------------------------------------------------------ */
+/* The arrays are those of all points of the mesh; n numbers in `points`, from 0, each once, say which of them a call
+ * reads and writes (NULL: the first n). n may be 0. Every material is one call with its own list. */
+
+/* What became of a batch. Join those of several calls or ranks by sums, and by the smallest pnewdt. */
+typedef struct mud_summary {
+   int failed;              /* how many points failed                                                  */
+   int first;               /* smallest number of a failed point, from 0; -1: none                     */
+   int status;              /* its code                                                                */
+   int n_open, n_tensile;   /* points held by the tension cut-off; with a tensile principal stress     */
+   double pnewdt;           /* smallest suggested factor on the increment, 1 if no point failed        */
+   double n_rate, n_substep;   /* of all points together                                               */
+} mud_summary;
+
+/* Begins points: fills statev[nstatev*...] for stress[6*...], suction and void_ratio (each NULL: 0; a void ratio of 0
+ * is e_0 of the material). A mean stress below p_min is lifted in place, and lifted[...] is 1 there (may be NULL).
+ * status[...] receives the code of every point; a failed one keeps its stress and statev. Returns how many failed, or a
+ * negative code if nothing was done. */
+int mud_init_batch(const double *prepared, int n, const int *points, double *stress, const double *suction,
+                   const double *void_ratio, double *statev, int nstatev, int *lifted, int *status);
+
+/* mud_update_batch_prepared for the points of a list; bit by bit the same. reports and summary may be NULL. */
+int mud_update_list(const double *prepared, int n, const int *points, const double *stress0, const double *statev0,
+                    int nstatev, const double *dstrain, const double *suction0, const double *dsuction, int tangent,
+                    int threads, double *stress1, double *statev1, double *dsig_deps, double *dsig_dpc,
+                    double *dsw_deps, double *dsw_dpc, int *status, mud_report *reports, mud_summary *summary);
+
+/* Slopes with which the present state goes on, for the first iteration of a step; nothing is updated. direction[6*...]
+ * is the strain that is expected, of any length (such as the last increment), with its suction dsuction (may be NULL).
+ * NULL or zero: the direction in which the point strained last, as far as its elastic domain remembers it. Inside its
+ * elastic domain the slopes of a point are elastic. */
+int mud_tangent_list(const double *prepared, int n, const int *points, const double *stress, const double *statev,
+                     int nstatev, const double *direction, const double *suction, const double *dsuction, int threads,
+                     double *dsig_deps, double *dsig_dpc, double *dsw_deps, double *dsw_dpc, int *status,
+                     mud_summary *summary);
+
+/* --- total stress --------------------------------------------------------------------------------------- */
+/* n points: sigma' = sigma + (p_a - S_w p_c) I and back, tension positive; air_pressure[n] (NULL: 0) is positive in
+ * compression. The result may be the array that is given. */
+int mud_effective_stress(int n, const double *total, const double *air_pressure, const double *s_w,
+                         const double *suction, double *effective);
+int mud_total_stress(int n, const double *effective, const double *air_pressure, const double *s_w,
+                     const double *suction, double *total);
+/* Turns dsig_deps[36*n] and dsig_dpc[6*n] of an update (either may be NULL) into the slopes of total stress at constant
+ * air pressure, in place; S_w, suction and the slopes of S_w are those at the end of the increment. Against water
+ * pressure: the negative of dsig_dpc. */
+int mud_total_blocks(int n, const double *s_w, const double *suction, const double *dsw_deps, const double *dsw_dpc,
+                     double *dsig_deps, double *dsig_dpc);
+
 /* --- failed increments ---------------------------------------------------------------------------------- */
 /* One substep that an update tried. */
 enum mud_outcome { MUD_SUBSTEP_REJECTED = 0, MUD_SUBSTEP_ACCEPTED = 1, MUD_SUBSTEP_FAILED = 2 /* the update ended */ };

@@ -8,7 +8,8 @@ module mud_interface
              mud_bounds_for, mud_default_props, mud_convert_props, mud_validate_props, mud_init_state, &
              mud_update, mud_update_batch, mud_status_text, mud_message, mud_substep, mud_trace_increment, &
              mud_save_increment, mud_prepared_size, mud_prepare, mud_update_prepared, mud_update_batch_prepared, &
-             mud_saturation
+             mud_saturation, mud_state_saturation, mud_summary, mud_init_batch, mud_update_list, mud_tangent_list, &
+             mud_effective_stress, mud_total_stress, mud_total_blocks
    public :: MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL, &
       MUD_ROTATION, MUD_EVOLUTION
    public :: MUD_SUBSTEP_REJECTED, MUD_SUBSTEP_ACCEPTED, MUD_SUBSTEP_FAILED, MUD_MODE_ORDINARY, MUD_MODE_ELASTIC, &
@@ -37,6 +38,12 @@ module mud_interface
       integer(c_int) :: outcome, mode, jump, landed, n_rate, n_reset, n_guard, n_no_root
       real(c_double) :: time, size, error, void_ratio, saturation, suction, stress(6)
    end type mud_substep
+
+   !> struct mud_summary of mud.h.
+   type, bind(c) :: mud_summary
+      integer(c_int) :: failed, first, status, n_open, n_tensile
+      real(c_double) :: pnewdt, n_rate, n_substep
+   end type mud_summary
 
    interface
       integer(c_int) function mud_abi_version() bind(c, name='mud_abi_version')
@@ -188,6 +195,82 @@ module mud_interface
          real(c_double), value :: suction, void_ratio
          real(c_double), intent(inout), optional :: s_w, ds_dpc, ds_de
       end function mud_saturation
+
+      integer(c_int) function mud_state_saturation(prepared, statev, nstatev, suction, s_w, ds_dpc, ds_dev) &
+         bind(c, name='mud_state_saturation')
+         import :: c_int, c_double
+         integer(c_int), value :: nstatev
+         real(c_double), intent(in) :: prepared(*), statev(nstatev)
+         real(c_double), value :: suction
+         real(c_double), intent(inout), optional :: s_w, ds_dpc, ds_dev
+      end function mud_state_saturation
+
+      !> Numbers of points are those of C, from 0; arrays are those of all points.
+      integer(c_int) function mud_init_batch(prepared, n, points, stress, suction, void_ratio, statev, nstatev, &
+              lifted, status) bind(c, name='mud_init_batch')
+         import :: c_int, c_double
+         integer(c_int), value :: n, nstatev
+         integer(c_int), intent(in), optional :: points(n)
+         real(c_double), intent(in) :: prepared(*)
+         real(c_double), intent(in), optional :: suction(*), void_ratio(*)
+         real(c_double), intent(inout) :: stress(6, *), statev(nstatev, *)
+         integer(c_int), intent(inout), optional :: lifted(*)
+         integer(c_int), intent(inout) :: status(*)
+      end function mud_init_batch
+
+      integer(c_int) function mud_update_list(prepared, n, points, stress0, statev0, nstatev, dstrain, suction0, &
+              dsuction, tangent, threads, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status, &
+              reports, summary) bind(c, name='mud_update_list')
+         import :: c_int, c_double, mud_report, mud_summary
+         integer(c_int), value :: n, nstatev, tangent, threads
+         integer(c_int), intent(in), optional :: points(n)
+         real(c_double), intent(in) :: prepared(*), stress0(6, *), statev0(nstatev, *), dstrain(6, *)
+         real(c_double), intent(in), optional :: suction0(*), dsuction(*)
+         real(c_double), intent(inout) :: stress1(6, *), statev1(nstatev, *)
+         real(c_double), intent(inout), optional :: dsig_deps(6, 6, *), dsig_dpc(6, *), dsw_deps(6, *), dsw_dpc(*)
+         integer(c_int), intent(inout) :: status(*)
+         type(mud_report), intent(inout), optional :: reports(*)
+         type(mud_summary), intent(out), optional :: summary
+      end function mud_update_list
+
+      integer(c_int) function mud_tangent_list(prepared, n, points, stress, statev, nstatev, direction, suction, &
+              dsuction, threads, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status, summary) &
+              bind(c, name='mud_tangent_list')
+         import :: c_int, c_double, mud_summary
+         integer(c_int), value :: n, nstatev, threads
+         integer(c_int), intent(in), optional :: points(n)
+         real(c_double), intent(in) :: prepared(*), stress(6, *), statev(nstatev, *)
+         real(c_double), intent(in), optional :: direction(6, *), suction(*), dsuction(*)
+         real(c_double), intent(inout), optional :: dsig_deps(6, 6, *), dsig_dpc(6, *), dsw_deps(6, *), dsw_dpc(*)
+         integer(c_int), intent(inout) :: status(*)
+         type(mud_summary), intent(out), optional :: summary
+      end function mud_tangent_list
+
+      integer(c_int) function mud_effective_stress(n, total, air_pressure, s_w, suction, effective) &
+         bind(c, name='mud_effective_stress')
+         import :: c_int, c_double
+         integer(c_int), value :: n
+         real(c_double), intent(in) :: total(6, n), s_w(n), suction(n)
+         real(c_double), intent(in), optional :: air_pressure(n)
+         real(c_double), intent(inout) :: effective(6, n)
+      end function mud_effective_stress
+
+      integer(c_int) function mud_total_stress(n, effective, air_pressure, s_w, suction, total) &
+         bind(c, name='mud_total_stress')
+         import :: c_int, c_double
+         integer(c_int), value :: n
+         real(c_double), intent(in) :: effective(6, n), s_w(n), suction(n)
+         real(c_double), intent(in), optional :: air_pressure(n)
+         real(c_double), intent(inout) :: total(6, n)
+      end function mud_total_stress
+
+      integer(c_int) function mud_total_blocks(n, s_w, suction, dsw_deps, dsw_dpc, dsig_deps, dsig_dpc) &
+         bind(c, name='mud_total_blocks')
+         import :: c_int, c_double
+         integer(c_int), value :: n
+         real(c_double), intent(in) :: s_w(n), suction(n), dsw_deps(6, n), dsw_dpc(n)
+         real(c_double), intent(inout), optional :: dsig_deps(6, 6, n), dsig_dpc(6, n)
+      end function mud_total_blocks
 
       integer(c_int) function mud_trace_increment(props, nprops, stress0, statev0, nstatev, dstrain, suction0, &
               dsuction, tangent, first, rows, nrows, attempts, report) bind(c, name='mud_trace_increment')
