@@ -16,6 +16,8 @@ GENERATED = {"verification/host/mms/manufactured.f90"}   # by make_mms.py: formu
 HEAD = re.compile(r"(?:[\w()*, =]+\s)?(subroutine|function)\s+(\w+)\s*(?:\(|$)", re.IGNORECASE)
 END = re.compile(r"end (?:subroutine|function) (\w+)", re.IGNORECASE)
 READER = re.compile(r"\bcsv\.(reader|DictReader)\b|\b(loadtxt|genfromtxt|read_csv)\b|\.split\([\"'],[\"']\)")
+# Words of earlier versions: elastic domain, reset of the memory, did not converge, docs/theory/FILE.md, porous balance.
+OLD_WORDS = re.compile(r"nucleus|re-?seat|\b(goes|went) astray|theory page|\bfe_point\b", re.IGNORECASE)
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
 TOPS = "common|umat|materials|host|drivers|tests|verification|scripts|docs|benchmarks|cmake"
 PLACE = re.compile(rf"`((?:{TOPS})/[\w./-]+)`")
@@ -42,6 +44,10 @@ def own_readers(lines):
     return [f"{number}: {line.strip()}" for number, line in enumerate(lines, 1) if READER.search(line)]
 
 
+def old_words(lines):
+    return [f"{number}: {found[0]}" for number, line in enumerate(lines, 1) if (found := OLD_WORDS.search(line))]
+
+
 def gone(text, folder, exists):
     """Links of a document that lead nowhere, and places in backticks that are not there."""
     links = [target for target in LINK.findall(text) if "://" not in target and not target.startswith("mailto:")
@@ -63,6 +69,7 @@ def planted():
               ["   pure real(wp) function f(x)", *body, "x = 2", "   end function f"], head + body + tail),
              ("a reader of its own", own_readers, ["rows = csv.DictReader(file)"], ["rows = tables.rows(file)"]),
              ("a table taken apart", own_readers, ["a = line.split(',')"], ["a = line.split(';')"]),
+             ("an old word", old_words, ["! the way out of the nucleus"], ["! the way out of the elastic domain"]),
              ("numpy's reader", own_readers, ["a = np.loadtxt(path)"], ["a = tables.columns(path)"])]
     documents = [("a link", "[a](b.md)", "[a](a.md#b) [c](https://x.org/y)"),
                  ("a folder", "`host/src` and", "`host/README.md`, `host/FOLDER/x`")]
@@ -103,6 +110,9 @@ rule("no procedure does too much", over(files(".f90", ".pf"), long_procedures))
 rule("tables are read by common/tables.py", over(
     [name for name in files(".py") if name not in ("common/tables.py", "tests/architecture/test_house.py")],
     own_readers))
+rule("texts say the words of today", over(
+    [name for name in files(*LANGUAGES, ".md", ".nml")
+     if name not in ("CHANGELOG.md", "tests/architecture/test_house.py")], old_words))
 rule("documents name only what is there", [
     f"{name}: {what}" for name in files(".md") if name != "CHANGELOG.md"
     for what in gone((root / name).read_text(encoding="utf-8"), (root / name).parent, pathlib.Path.exists)])
