@@ -1,0 +1,69 @@
+"""Kratos GeoMechanics: a cube and a ring by UMAT, and what the page says of the order of shear."""
+import csv
+import pathlib
+import shutil
+
+import clients
+import project
+
+here = pathlib.Path(__file__).parent
+PACKAGES = ["KratosGeoMechanicsApplication==10.4.4", "KratosLinearSolversApplication==10.4.4"]
+KRATOS_3D = (0, 1, 2, 3, 5, 4)  # xx, yy, zz, xy, yz, xz
+KRATOS_2D = (0, 1, 2, 3)
+# Held stress: Kratos stops where displacements move by 1e-10 of themselves, mud_triax at 1e-10 of the stress.
+HELD = 1e-7
+python = clients.venv("kratos", PACKAGES)
+
+
+def analysis(name, law, dimension, mesh, table, pressure, imposed, **presets):
+    """Stresses of every step; the folder stays for the reader."""
+    folder = clients.work_folder(f"kratos/{name}")
+    shutil.copy(here / mesh, folder)
+    steps = len(table["eps_a"]) - 1
+    order = {"shear_order": 1} if dimension == 3 else {}
+    state = clients.statev(void_ratio=table["e"][0], **presets)
+    project.write(folder, "MaterialParameters.json",
+                  project.material(law, clients.library_file, clients.props(**order), state, True))
+    constraints, parts = [project.dry()], ["Soil"]
+    if not imposed:
+        faces = "XYZ"[:dimension]
+        constraints += [project.constraint(f"Face_{c.lower()}", c) for c in faces]
+        constraints.append(project.constraint("Top", faces[-1], 1))
+        parts += [f"Face_{c.lower()}" for c in faces] + ["Top", "Cell"]
+    components = 6 if dimension == 3 else 4
+    loads = [project.start([-pressure]*3 + [0.0]*(components - 3))]
+    if not imposed:
+        loads.append(project.cell_pressure(dimension, pressure))
+    project.write(folder, "ProjectParameters.json",
+                  project.project(dimension, mesh.removesuffix(".mdpa"), steps, constraints, loads, parts))
+    command = [python, here / "run.py"]
+    if imposed:
+        with open(folder / "strains.csv", "w") as file:
+            csv.writer(file).writerows([repr(x) for x in row] for row in clients.strains(table)[1:])
+        command.append("strains.csv")
+    if clients.run(command, folder / "log.txt", cwd=folder, timeout=600) != 0:
+        return []
+    with open(folder / "stress.csv") as file:
+        return [[float(x) for x in row] for row in csv.reader(file)]
+
+
+def in_triaxial_axes(rows, axis):
+    """(axial, radial) stress, compression positive."""
+    return [[-row[axis], -row[0]] for row in rows]
+
+
+table = clients.expected("triaxial")
+wanted = list(zip(table["sigma_a"][1:], table["sigma_r"][1:]))
+rows = analysis("triaxial_3d", "SmallStrainUMAT3DLaw", 3, "cube.mdpa", table, table["p_eff"][0], False)
+clients.compare("triaxial with unloading, cube, UMAT", in_triaxial_axes(rows, 2), wanted, HELD)
+rows = analysis("triaxial_2d", "SmallStrainUMAT2DPlaneStrainLaw", 2, "ring.mdpa", table, table["p_eff"][0], False)
+clients.compare("triaxial with unloading, ring, UMAT", in_triaxial_axes(rows, 1), wanted, HELD)
+
+table = clients.expected("shear")
+rows = analysis("shear", "SmallStrainUMAT3DLaw", 3, "cube.mdpa", table, table["p_eff"][0], True)
+clients.compare("three shear components, reversed, cube, UMAT", rows, clients.stresses(table)[1:], places=KRATOS_3D)
+table = clients.expected("shear_suction")
+rows = analysis("shear_suction", "SmallStrainUMAT3DLaw", 3, "cube.mdpa", table, table["p_eff"][0], True,
+                suction=table["suction"][0])
+clients.compare("the same at a suction preset in STATE_VARIABLES", rows, clients.stresses(table)[1:], places=KRATOS_3D)
+clients.finish()

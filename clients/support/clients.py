@@ -1,0 +1,164 @@
+"""What the checks of all foreign programs share: the library, the expected answers, installation, comparison."""
+import csv
+import ctypes
+import hashlib
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+root = pathlib.Path(__file__).resolve().parents[2]
+build = pathlib.Path(os.environ.get("MUD_BUILD_DIR", root / "build/release"))
+home = pathlib.Path(os.environ.get("MUD_CLIENTS_DIR", root / "build/clients"))  # programs and results of the checks
+library_file = build / "umat/libmud.so"
+COMPONENTS = ("11", "22", "33", "12", "13", "23")
+SKIPPED = 77
+DIGITS = 1e-9  # relative: prescribed strain passes through matrix products of the host, ten digits and more survive
+MUD_PROPS, MUD_STATEV = 1, 2
+counted = {"passed": 0, "failed": 0}
+
+
+def mud():
+    library = ctypes.CDLL(str(library_file))
+    library.mud_index.argtypes = [ctypes.c_int, ctypes.c_char_p]
+    library.mud_default_props.argtypes = [ctypes.POINTER(ctypes.c_double), ctypes.c_int]
+    return library
+
+
+def props(**changes):
+    """PROPS in their order: the defaults of the library of the day, but for the changes."""
+    library = mud()
+    values = (ctypes.c_double*library.mud_count(MUD_PROPS))()
+    if library.mud_default_props(values, len(values)) != 0:
+        sys.exit("mud_default_props failed")
+    for name, value in changes.items():
+        index = library.mud_index(MUD_PROPS, name.encode())
+        if index < 0:
+            sys.exit(f"PROPS have no entry {name}")
+        values[index] = value
+    return list(values)
+
+
+def statev(**presets):
+    """Zeros, which the first update initialises, but for the presets (void_ratio, suction)."""
+    library = mud()
+    values = [0.0]*library.mud_count(MUD_STATEV)
+    for name, value in presets.items():
+        index = library.mud_index(MUD_STATEV, name.encode())
+        if index < 0:
+            sys.exit(f"STATEV have no entry {name}")
+        values[index] = value
+    return values
+
+
+def place_of(name):
+    """Place of a name in STATEV, from 0."""
+    return mud().mud_index(MUD_STATEV, name.encode())
+
+
+def expected(case):
+    """Columns of a case of clients/cases, by the mud_triax of the day: a row for every increment."""
+    out = work_folder("expected") / f"{case}.csv"
+    program, file = build / "drivers/mud_triax", root / f"clients/cases/{case}.nml"
+    subprocess.run([program, file, "--output", out, "--quiet"], check=True, timeout=60)
+    lines = [line for line in out.read_text().splitlines() if line[0] != "#"]
+    rows = list(csv.reader(lines))
+    return {name: [float(row[i]) for row in rows[1:]] for i, name in enumerate(rows[0])}
+
+
+def strains(table):
+    """Strains of every row, tension positive, 11, 22, 33, 12, 13, 23, shear as engineering strain."""
+    names = [("eps_" if a[0] == a[1] else "gamma_") + a for a in COMPONENTS]
+    return [[-x for x in row] for row in zip(*(table[name] for name in names))]
+
+
+def stresses(table):
+    """Effective stresses of every row, tension positive, components as the strains."""
+    return [[-x for x in row] for row in zip(*(table["sig_" + a] for a in COMPONENTS))]
+
+
+def work_folder(name):
+    folder = home / "work" / name
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+def compare(what, got, wanted, relative=DIGITS, places=None):
+    """Rows of numbers against rows of numbers: the largest difference over the largest number wanted."""
+    got, wanted = [list(row) for row in got], [list(row) for row in wanted]
+    if places is not None:
+        wanted = [[row[i] for i in places] for row in wanted]
+    if len(got) != len(wanted) or any(len(a) != len(b) for a, b in zip(got, wanted)):
+        return verdict(False, what, f"{len(got)} rows came, {len(wanted)} were expected")
+    scale = max(abs(x) for row in wanted for x in row)
+    # A NaN fails: it is not less than anything.
+    differences = [abs(a - b) for x, y in zip(got, wanted) for a, b in zip(x, y)]
+    largest = max(differences) if all(d == d for d in differences) else float("nan")
+    verdict(largest <= relative*scale, what,
+            f"{len(got)} rows, largest difference {largest:.1e} of {scale:.6g}, allowed {relative*scale:.1e}")
+
+
+def verdict(good, what, told=""):
+    counted["passed" if good else "failed"] += 1
+    print(f"{'ok    ' if good else 'FAILED'} {what}: {told}", flush=True)
+
+
+def finish():
+    print(f"{counted['passed']} passed, {counted['failed']} failed", flush=True)
+    sys.exit(1 if counted["failed"] or not counted["passed"] else 0)
+
+
+def skip(why):
+    print(f"skipped: {why}")
+    sys.exit(SKIPPED)
+
+
+def run(command, log, **more):
+    """Runs a program into a log; a failure shows its end."""
+    with open(log, "w") as out:
+        code = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, **more).returncode
+    if code != 0:
+        print(f"exit code {code} of {' '.join(map(str, command))}; the log ends:")
+        print("\n".join(pathlib.Path(log).read_text(errors="replace").splitlines()[-15:]))
+    return code
+
+
+def venv(name, packages):
+    """Python of an own environment with packages from the index of Python packages."""
+    folder = home / name
+    python = folder / "bin/python3"
+    stamp = folder / "packages"
+    wanted = " ".join(packages)
+    if not (stamp.exists() and stamp.read_text() == wanted):
+        if may_not_install():
+            skip(f"{wanted} not installed")
+        subprocess.run([sys.executable, "-m", "venv", folder], check=True)
+        subprocess.run([python, "-m", "pip", "install", "--quiet", *packages], check=True)
+        stamp.write_text(wanted)
+    return python
+
+
+def debian(packages):
+    """Makes sure that Debian packages are there; without the right to install them it says what to type."""
+    def there(package):
+        told = subprocess.run(["dpkg-query", "-W", "-f", "${Status}", package], capture_output=True, text=True).stdout
+        return told.endswith("ok installed")
+
+    if not shutil.which("dpkg-query"):
+        skip("needs a Debian system")
+    missing = [p for p in packages if not there(p)]
+    if not missing:
+        return
+    command = ["apt-get", "install", "-y", "--no-install-recommends", *missing]
+    if may_not_install() or os.geteuid() != 0:
+        skip(f"missing; type: {' '.join(command)}")
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+
+
+def may_not_install():
+    return os.environ.get("MUD_CLIENTS_INSTALL") == "no"
+
+
+def fingerprint(*texts):
+    return hashlib.sha256("\n".join(texts).encode()).hexdigest()[:12]
