@@ -1,0 +1,71 @@
+"""Scenes of nonsense: a clear refusal or a run, never a crash.
+
+1000 scenes in the check run (fewer in the slow builds, which only read them); `MUD_NONSENSE=100000` for a long run, `MUD_NONSENSE_FIRST` for where it begins.
+"""
+import concurrent.futures
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from checking import add, build, check, finish, light, root, work  # noqa: E402
+from nonsense import Grammar  # noqa: E402
+
+HOST = build / "host/mud_host"
+CODES = {0, *map(int, re.findall(r"^\| (\d+) \|", (root / "host/README.md").read_text(encoding="utf-8").split("## Exit codes")[1], re.MULTILINE))}
+CRASH = re.compile(r"Fortran runtime error|Backtrace|Sanitizer|runtime error:|SIG[A-Z]+|terminate called")
+SECONDS = 2   # a scene that still runs then is a run
+ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1"}
+FIRST = int(os.environ.get("MUD_NONSENSE_FIRST", 0))
+COUNT = int(os.environ.get("MUD_NONSENSE", 100 if light else 1000))
+
+
+def bases():
+    """Scenes that work and take little: drained, coupled, with contact, with MUD at suction."""
+    names = ("cylinder/scene.nml", "terzaghi/scene.nml", "contact/fall.nml", "element/suction.nml")
+    folder = root / "verification/host"
+    return [re.sub(r"'(\.\.[^']*)'", lambda m, at=(folder / name).parent: f"'{at / m[1]}'", (folder / name).read_text(encoding="utf-8"))
+            for name in names]
+
+
+def judged(number, text):
+    """What is wrong with the answer to a scene; an empty text if nothing is."""
+    folder = work / str(number)
+    folder.mkdir()
+    scene = folder / "scene.nml"
+    scene.write_bytes(text.encode("utf-8"))
+    # Reading and building alone for nine of ten; the slow builds trap overflow, which nonsense may well reach in a run.
+    check_only = ("--check",) if light or number % 10 else ()
+    try:
+        done = subprocess.run([HOST, scene, "--output", folder / "out", "--quiet", *check_only], capture_output=True, timeout=SECONDS * (30 if check_only else 1),
+                              env=ENVIRONMENT, cwd=folder, stdin=subprocess.DEVNULL)
+    except subprocess.TimeoutExpired:
+        return "reading hangs" if check_only else ""
+    told = done.stderr.decode(errors="replace")
+    if done.returncode not in CODES:
+        return f"exit code {done.returncode}: {told[:300]}"
+    if CRASH.search(told):
+        return f"crash: {told[:300]}"
+    if done.returncode and len(told.split()) < 4:
+        return f"exit code {done.returncode} without a sentence: {told!r}"
+    return ""
+
+
+def main():
+    grammar = Grammar(subprocess.run([HOST, "--template"], capture_output=True, text=True, check=True).stdout)
+    check("the grammar has the groups of the template", len(grammar.groups) > 15 and len(grammar.words) > 15, f"{grammar.groups.keys()}")
+    texts = bases()
+    passed = failed = 0
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        numbers = range(FIRST, FIRST + COUNT)
+        for number, wrong in zip(numbers, pool.map(lambda n: judged(n, grammar.scene(n, texts)), numbers)):
+            passed, failed = passed + (not wrong), failed + bool(wrong)
+            if wrong:
+                print(f"FAILED scene {number} (MUD_NONSENSE_FIRST={number} MUD_NONSENSE=1): {wrong}")
+    add(passed, failed)
+    finish()
+
+
+main()
