@@ -1,6 +1,6 @@
 """Every case with every setting. Resumable: what the table in the output folder holds already is not run again.
 
-Usage: study.py [CASE...] (all). Progress and time left go to standard output.
+Usage: study.py [NAME...]: cases or settings by name (all). Progress and time left go to standard output.
 """
 import os
 import pathlib
@@ -26,7 +26,7 @@ def main(names):
     if path.exists() and tables.comments(path) == comment:
         done = {(row["case"], row["setting"]): tuple(row.values()) for row in tables.rows(path)}
     todo = [(case, setting) for case in report.CASES for setting in SETTINGS
-            if (case.name, setting.name) not in done and (not names or case.name in names)]
+            if (case.name, setting.name) not in done and (not names or case.name in names or setting.name in names)]
     start = time.monotonic()
     for count, (case, setting) in enumerate(todo, 1):
         outcome = evaluate(walker, case, setting)
