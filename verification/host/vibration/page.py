@@ -65,7 +65,7 @@ def check(bench):
                                                     ("duration = 0.5", "duration = 4000"),
                                                     ("dt = 0.005",
                                                      "dt = 100\n   predictor = 'none'\n   created_energy = 1e9")]) \
-            / "histories.csv"
+            / "histories.csv")
         u = h["top.u_z"][1:]
         reference = recursion(rho, 100.0, len(u) - 1)
         bench.near(f"rho_inf {rho}: 40 steps of 1000 periods", u / U0, reference / U0, LONG_STEPS)
