@@ -18,6 +18,7 @@ program mud_host
    use scene_keys, only: print_template
    use scene_reader, only: read_scene
    use scene_types, only: scene_t
+   use scene_warnings, only: list_warnings, WARNING_LENGTH
    use time_stepping, only: run_stages
    use files, only: limits_are_errors, folder_of
    use faults, only: fault_t
@@ -107,6 +108,7 @@ contains
    end subroutine check_restart
 
    subroutine announce()
+      character(WARNING_LENGTH), allocatable :: warnings(:)
       integer :: i
 
       write (output_unit, '(a)') trim(model%name)//': '//whole(size(model%domain%mesh%t6, 2))//' elements, '// &
@@ -119,6 +121,10 @@ contains
             short(model%stages(i)%rho_inf)//'.'
       end do
       if (model%effect_options%auto) call print_effects(output_unit, run%monitor%table)
+      call list_warnings(scene, model, run%tension, warnings)
+      do i = 1, size(warnings)
+         write (output_unit, '(a)') 'Warning: '//trim(warnings(i))
+      end do
    end subroutine announce
 
    !> The libraries that a factorisation spends its time in.

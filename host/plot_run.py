@@ -86,6 +86,9 @@ def choose(names, known, what):
     return list(names)
 
 
+WIDE, BREADTH, LOWEST = 2.5, 9.0, 0.9   # width over height; inches of a panel of a wide mesh
+
+
 def levels_of(low, high):
     """(levels, ticks): few and round; a constant gets a band of its own."""
     if not high - low > SMALL*max(abs(low), abs(high)):
@@ -98,13 +101,23 @@ def levels_of(low, high):
     return levels, ticks[::2]
 
 
+def panel_size(wide, high):
+    """(width, height) of a panel [inch], how much heights are stretched, and whether panels go one below the other."""
+    if wide <= WIDE*high:
+        # The shape of the mesh, within what a page can bear.
+        scale = min(2.9/wide, 5.5/high)
+        return (max(scale*wide, 0.5), max(scale*high, 0.8)), 1.0, False
+    stretch = max(1.0, LOWEST/(BREADTH*high/wide))
+    return (BREADTH, stretch*BREADTH*high/wide), stretch, True
+
+
 def draw_fields(run, frames, names, factor, output):
-    wide, high = np.ptp(run.nodes, axis=0)
-    # Panels with the shape of the mesh, within what a page can bear.
-    scale = min(2.9/wide, 5.5/high)
-    width, height = max(scale*wide, 0.5) + 1.2, max(scale*high, 0.8)
-    figure, grid = plt.subplots(len(frames), len(names), figsize=(width*len(names), (height + 0.6)*len(frames) + 0.4),
+    size, stretch, below = panel_size(*np.ptp(run.nodes, axis=0))
+    # Panels of a wide mesh fill the page one below the other.
+    shape = (len(frames)*len(names), 1) if below else (len(frames), len(names))
+    figure, grid = plt.subplots(*shape, figsize=((size[0] + 1.2)*shape[1], (size[1] + 0.6)*shape[0] + 0.4),
                                 squeeze=False, layout="constrained")
+    grid = grid.reshape(len(frames), len(names))
     triangles = np.concatenate([run.elements[:, corners] for corners in SPLIT])
     for column, name in enumerate(names):
         shown = [run.field(frame, name) for frame in frames]
@@ -125,11 +138,13 @@ def draw_fields(run, frames, names, factor, output):
                 axis.triplot(*moved.T, run.elements[:, :3], color="white", lw=0.25, alpha=0.6)
             axis.set_title(f"{name} [{unit}]")
             axis.margins(0)
-            axis.set_aspect("equal")
+            axis.set_aspect(stretch)
             first, second = run.axes[0], run.axes[3]
-            axis.set_xlabel(f"{first} [m]" if row == len(frames) - 1 else "")
-            axis.set_ylabel(f"t = {run.times[frame]:.4g} s\n{second} [m]" if column == 0 else "")
-    figure.suptitle(run.scene + (f" (displacements x {factor:g})" if factor else ""), fontsize=11)
+            last = row == len(frames) - 1 and (not below or column == len(names) - 1)
+            axis.set_xlabel(f"{first} [m]" if last else "")
+            axis.set_ylabel(f"t = {run.times[frame]:.4g} s\n{second} [m]" if column == 0 or below else "")
+    notes = ([f"displacements x {factor:g}"] if factor else []) + ([f"heights x {stretch:.3g}"] if stretch > 1 else [])
+    figure.suptitle(run.scene + (f" ({', '.join(notes)})" if notes else ""), fontsize=11)
     figure.savefig(output)
     plt.close(figure)
     print(output)

@@ -5,20 +5,29 @@ module initial_conditions
    use kinds, only: wp
    use model_types, only: model_t, initial_t
    use porous_domain, only: state_t, new_state_of
-   use material_point, only: saturation_t
+   use material_mud, only: mud_t
+   use material_point, only: material_t, saturation_t
    use faults, only: fault_t, raise
    use texts, only: short, whole
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: initial_state
+   public :: initial_state, tension_t
 
    integer, parameter :: SLICES = 400   !< Of a column, for its weight: relative error 1/(24 SLICES**2) of its bend.
+
+   !> Points of MUD whose effective stress the scene gives a tensile component.
+   type :: tension_t
+      integer :: points = 0
+      real(wp) :: largest = 0.0_wp   !< [kPa]
+      real(wp) :: z = 0.0_wp         !< Where it is [m].
+   end type tension_t
 contains
-   subroutine initial_state(model, state, fault)
+   subroutine initial_state(model, state, fault, tension)
       type(model_t), intent(in) :: model
       type(state_t), intent(out) :: state
       type(fault_t), intent(inout) :: fault
+      type(tension_t), intent(out), optional :: tension
       type(initial_t), allocatable :: of_point(:)
       type(saturation_t) :: sat
       character(600) :: text
@@ -60,6 +69,7 @@ contains
                      state%s(p) = sat%s
                   end if
                   call set_stress(model, e, of_point(p), gp%x(2), state%s(p), state%stress(:, p))
+                  if (present(tension)) call note_tension(region%law, state%stress(:, p), gp%x(2), tension)
                end associate
                associate (own => state%state(:region%law%n_state, p))
                   call region%law%initial_state(state%stress(:, p), p_c, state%e(p), own, text)
@@ -76,6 +86,21 @@ contains
          end associate
       end do
    end subroutine initial_state
+
+   pure subroutine note_tension(law, stress, z, tension)
+      class(material_t), intent(in) :: law
+      real(wp), intent(in) :: stress(6), z
+      type(tension_t), intent(inout) :: tension
+
+      select type (law)
+      type is (mud_t)
+         if (.not. any(stress(1:3) > 0.0_wp)) return
+         tension%points = tension%points + 1
+         if (maxval(stress(1:3)) <= tension%largest) return
+         tension%largest = maxval(stress(1:3))
+         tension%z = z
+      end select
+   end subroutine note_tension
 
    pure real(wp) function water(initial, z)
       type(initial_t), intent(in) :: initial

@@ -29,7 +29,7 @@ contains
       call make_pattern(model%dofs%n, model%dofs%element, reshape([integer ::], [2, 0]), run%pattern)
       call make_assembly(model%domain, model%dofs, run%pattern, run%assembly)
       run%constraint = new_constraint(model, model%dofs)
-      call initial_state(model, run%state, fault)
+      call initial_state(model, run%state, fault, run%tension)
       if (fault%code == 0) call prepare_contacts(model, run%system%contacts, fault)
       if (fault%code == 0) call prepare_drainage(model, run%drainage, fault)
       if (fault%code == 0) call seat_plates(model, run%system%contacts, run%state)

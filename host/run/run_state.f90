@@ -6,6 +6,7 @@ module run_state
    use effect_monitor, only: monitor_t
    use energy_ledger, only: ledger_t
    use equation_assembly, only: assembly_t
+   use initial_conditions, only: tension_t
    use linear_system, only: system_t
    use prescribed_values, only: constraint_t
    use porous_domain, only: state_t
@@ -34,6 +35,7 @@ module run_state
       type(state_t) :: state, next             !< Before and after the step under way.
       type(ledger_t) :: ledger
       type(stage_state_t) :: at
+      type(tension_t) :: tension               !< Of the initial state, for a warning.
       type(monitor_t) :: monitor               !< Of effects that are off; with effects = 'auto' alone.
       integer :: steps = 0, iterations = 0, cuts = 0
       integer(int64) :: rate_evaluations = 0   !< Of the material.

@@ -1,0 +1,81 @@
+"""What mud_host warns about at the start and with --check: a scene without a doubt draws nothing, every doubt its own
+sentence, and the run goes on."""
+import os
+import pathlib
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from checking import build, check, finish, root, work  # noqa: E402
+
+host = build / "host/mud_host"
+environment = {**os.environ, "OMP_NUM_THREADS": "1"}
+SCENE = f"""&scene name = 'clean' fields = 'u-p_w' gravity = 9.81 /
+&mesh r = 0, 2 r_cells = 2 z = -2, 0 z_cells = 2 /
+&mud name = 'sand' file = '{root}/drivers/materials/toyoura.nml' /
+&elastic name = 'rock' young = 1e6 poisson = 0.3 /
+&permeability name = 'k' intrinsic = 1e-11 /
+&region material = 'sand' void_ratio = 0.8 permeability = 'k' /
+&region group = 'beam' material = 'rock' void_ratio = 0.1 permeability = 'k' /
+&initial p_w_slope = -9.81 stress = 'geostatic' surface = 0 surcharge = 5 /
+&history name = 'h' times = 0, 1 values = 0, 1 /
+&stage name = 'load' analysis = 'quasi_static' duration = 1 dt = 0.5 rho_inf = 0 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'bottom' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'top' field = 'p_w' /
+&load group = 'top' kind = 'pressure' value = 5 history = 'h' /
+&point name = 'base' r = 0 z = -2 /
+""".replace("'beam'", "'block_1_1'").replace("&mesh r = 0, 2 r_cells = 2", "&mesh r = 0, 1, 2 r_cells = 1, 1")
+
+
+def warnings(text, *words):
+    (work / "scene.nml").write_text(text)
+    done = subprocess.run([host, work / "scene.nml", "--output", work / "out", *words], capture_output=True, text=True,
+                          env=environment)
+    check(f"{words} goes on", done.returncode == 0, done.stderr)
+    # The BLAS is the machine's, not the scene's.
+    return [line for line in done.stdout.splitlines() if line.startswith("Warning: ") and "BLAS" not in line]
+
+
+check("no doubt, no warning", warnings(SCENE, "--check") == [], warnings(SCENE, "--check"))
+DOUBTS = [
+    ("point that is no node", "r = 0 z = -2", "r = 0.1 z = -1.9", ["no node of the mesh", "node at (0, -2) m"]),
+    ("point outside", "r = 0 z = -2", "r = 0.1 z = 0.5", ["outside the mesh", "node at (0, 0) m"]),
+    ("tension in MUD", "p_w_slope = -9.81", "p_w = 30", ["tensile at", "points of MUD"]),
+    ("surface below the mesh", "surface = 0", "surface = -1", ["surface = -1 m lies below", "'all' at 0 m"]),
+    ("permeability", "intrinsic = 1e-11", "intrinsic = 1.1e-8", ["intrinsic = 1.1e-8 m2", "conductivity"]),
+    ("stiffness", "young = 1e6", "young = 1.1e9", ["young = 1.1e9 kPa"]),
+    ("large mesh", "r = 0, 1, 2", "r = 0, 1, 1002", ["the mesh is 1002 m large"]),
+    ("two supports", "'bottom' field = 'u_r'", "'bottom' field = 'u_r' value = 0.001",
+     ["u_r of the node at (0, -2) m has two &fix", "'left' and 'bottom'"]),
+    ("curve of nobody", "0.8 permeability", "0.8 retention = 'curve' permeability", ["no &retention is named 'curve'"]),
+    ("key of another law", "1e-11", "1e-11 m = 0.5", ["m of &permeability has no effect with law = 'corey'"]),
+    ("key without its partner", "'bottom' field = 'u_z'", "'bottom' field = 'u_z' datum = 1",
+     ["datum of &fix has no effect without value_slope"]),
+    ("key beside a file", "name = 'h'", "name = 'h' file = 'h.txt'", ["times of &history has no effect beside file"]),
+    ("key of a static stage", "'quasi_static'", "'static'", ["rho_inf of &stage has no effect"]),
+    ("key of a field", "'u-p_w'", "'u'", ["p_w_slope of &initial has no effect: the scene has no field p_w"]),
+    ("definition of nobody", "&fix group = 'left'", "&retention name = 'x' /\n&fix group = 'left'",
+     ["&retention 'x' has no effect", "no group names it as its retention"]),
+    ("history of nobody", " history = 'h'", "", ["&history 'h' has no effect"]),
+]
+(work / "h.txt").write_text("0 0\n1 1\n")
+for what, old, new, words in DOUBTS:
+    check(f"{what}: the text is there", SCENE.count(old) == 1, old)
+    if "fields" in SCENE and what == "key of a field":
+        text = SCENE.replace(old, new).replace("&fix group = 'top' field = 'p_w' /\n", "")
+    else:
+        text = SCENE.replace(old, new)
+    told = warnings(text, "--check")
+    check(what, any(all(word in line for word in words) for line in told), told)
+small = SCENE.replace("r = 0, 1, 2", "r = 0, 1e-4, 2e-4").replace("z = -2, 0", "z = -2e-4, 0").replace("z = -2 /",
+                                                                                                     "z = -2e-4 /")
+check("small mesh", any("the mesh is 2e-4 m large" in line for line in warnings(small, "--check")), small)
+same = SCENE.replace("&fix group = 'bottom' field = 'u_r' /", "&fix group = 'bottom' field = 'u_r' value = 0 /\n"
+                     "&fix group = 'left' field = 'u_r' stages = 'load' /")
+check("two supports of one value are no doubt", warnings(same, "--check") == [], warnings(same, "--check"))
+doubtful = SCENE.replace("surface = 0", "surface = 0 sigma = 1, 1, 1")
+check("told at the start of a run", len(warnings(doubtful)) == 1)
+check("--quiet tells errors only", warnings(doubtful, "--quiet") == [])
+finish()
