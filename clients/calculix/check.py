@@ -60,8 +60,9 @@ def programs():
                         "LDFLAGS=-ldl -rdynamic"], source / "make.log", cwd=source) != 0:
             sys.exit(1)
     # -u umat_: otherwise the linker takes CalculiX' own umat_ without a word.
-    if clients.run(["gfortran", "-o", static, source / f"ccx_{VERSION}.o", "-Wl,-u,umat_", clients.build / "umat/libmud.a",
-                    source / f"ccx_{VERSION}.a", *"-lspooles -lpthread -larpack -llapack -lblas -lm -fopenmp -ldl".split()],
+    libraries = "-lspooles -lpthread -larpack -llapack -lblas -lm -fopenmp -ldl".split()
+    if clients.run(["gfortran", "-o", static, source / f"ccx_{VERSION}.o", "-Wl,-u,umat_",
+                    clients.build / "umat/libmud.a", source / f"ccx_{VERSION}.a", *libraries],
                    clients.home / "calculix/link.log") != 0:
         sys.exit(1)
     return loading, static
@@ -106,7 +107,8 @@ rows = stresses("triaxial", loading, "@ABAQUS_MUD")
 clients.compare("triaxial with unloading, loaded by @", [[-r[2], -r[0]] for r in rows], wanted, HELD)
 table = clients.expected("shear")
 wanted = clients.stresses(table)[1:]
-clients.compare("three shear components, reversed, loaded by @", stresses("shear", loading, "@ABAQUS_MUD"), wanted, PRINTED)
+clients.compare("three shear components, reversed, loaded by @", stresses("shear", loading, "@ABAQUS_MUD"), wanted,
+                PRINTED)
 clients.compare("the same, linked statically", stresses("shear", static, "ABAQUS_MUD"), wanted, PRINTED)
 table = clients.expected("shear_suction")
 more = solution(8, clients.statev(suction=table["suction"][0]))

@@ -10,6 +10,8 @@ import sys
 import time
 
 import numpy as np
+import petsc4py
+petsc4py.init(sys.argv)  # options of PETSc from the command line
 import ufl
 from dolfinx import fem, mesh
 from mpi4py import MPI
@@ -25,7 +27,8 @@ SURCHARGE = 50.0             # [kPa], also the effective stress at the start
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--strip", action="store_true", help="plane strain under a pressure")
-    parser.add_argument("--cells", type=int, default=6, help="along an edge; divisible by 3: a third lies under the footing")
+    parser.add_argument("--cells", type=int, default=6,
+                        help="along an edge; divisible by 3: a third lies under the footing")
     parser.add_argument("--settlement", type=float, default=0.02, help="of the square footing [m]")
     parser.add_argument("--pressure", type=float, default=150.0, help="of the strip [kPa]")
     parser.add_argument("--steps", type=int, default=10)
@@ -91,7 +94,8 @@ def model(given):
     sides = [(i, near(i, v)) for i in range(up) for v in (0.0, SIZE)] + [(up, near(up, -SIZE))]
     bcs = []
     for axis, where in sides:
-        dofs = fem.locate_dofs_topological(problem.V.sub(axis), facet, mesh.locate_entities_boundary(domain, facet, where))
+        facets = mesh.locate_entities_boundary(domain, facet, where)
+        dofs = fem.locate_dofs_topological(problem.V.sub(axis), facet, facets)
         bcs.append(fem.dirichletbc(PETSc.ScalarType(0), dofs, problem.V.sub(axis)))
     top = mesh.locate_entities_boundary(domain, facet, near(up, 0.0))
     bcs.append(fem.dirichletbc(PETSc.ScalarType(0), fem.locate_dofs_topological(problem.Q, facet, top), problem.Q))

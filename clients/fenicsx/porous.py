@@ -168,7 +168,7 @@ class Problem:
             self._multigrid(pc)
 
     def _multigrid(self, pc):
-        """Fields apart: multigrid with the rigid-body modes for u, the compressibility of the soil in the block of p."""
+        """Fields apart: multigrid with the rigid-body modes for u, and for p on its Schur complement."""
         first = self.A.getOwnershipRange()[0]
         n_p = self.A.getLocalSize()[0] - self.n_u
         u = PETSc.IS().createStride(self.n_u, first, 1, self.comm)
@@ -307,8 +307,8 @@ class Problem:
         f.destroy()
         return total
 
-    # Checkpoints: what a cell holds, by the number it had in the mesh before the mesh was distributed. So that a run may
-    # go on with another number of ranks, and two runs may be compared cell by cell.
+    # Checkpoints: what a cell holds, by the number it had in the mesh before the mesh was distributed, so that a run
+    # may go on with another number of ranks, and two runs may be compared cell by cell.
     def _cell_data(self):
         """(cells, columns): displacement, pressure, stress and state of owned cells."""
         u = self.V.dofmap.list.array.reshape(-1, self.V.dofmap.dof_layout.num_dofs)[:self.cells]

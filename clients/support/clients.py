@@ -117,7 +117,8 @@ def skip(why):
 def run(command, log, **more):
     """Runs a program into a log; a failure shows its end."""
     with open(log, "w") as out:
-        code = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, **more).returncode
+        code = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
+                              **more).returncode
     if code != 0:
         print(f"exit code {code} of {' '.join(map(str, command))}; the log ends:")
         print("\n".join(pathlib.Path(log).read_text(errors="replace").splitlines()[-15:]))

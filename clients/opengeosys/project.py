@@ -1,0 +1,141 @@
+"""Writes projects of OpenGeoSys with MUD: a cube whose nodes all move by given strains, saturated or unsaturated."""
+POINTS = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+CUBE = (0, 1, 3, 2, 4, 5, 7, 6)
+
+
+def array(name, kind, values, components=1):
+    width = f' NumberOfComponents="{components}"' if components > 1 else ""
+    return f'<DataArray type="{kind}" Name="{name}"{width} format="ascii">{" ".join(map(str, values))}</DataArray>\n'
+
+
+def grid(points, cells, kinds, point_data="", cell_data=""):
+    """An unstructured grid of VTK as text."""
+    ends = [sum(map(len, cells[:i + 1])) for i in range(len(cells))]
+    return ('<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian">\n'
+            f'<UnstructuredGrid><Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}">\n<Points>'
+            + array("Points", "Float64", [x for p in points for x in p], 3) + "</Points>\n<Cells>"
+            + array("connectivity", "Int64", [n for c in cells for n in c]) + array("offsets", "Int64", ends)
+            + array("types", "UInt8", kinds) + f"</Cells>\n<PointData>{point_data}</PointData>\n"
+            f"<CellData>{cell_data}</CellData>\n</Piece></UnstructuredGrid></VTKFile>\n")
+
+
+def write_cube(folder):
+    HEXAHEDRON = 12
+    (folder / "cube.vtu").write_text(grid(POINTS, [CUBE], [HEXAHEDRON],
+                                          cell_data=array("MaterialIDs", "Int32", [0])))
+    (folder / "nodes.vtu").write_text(grid(POINTS, [CUBE], [HEXAHEDRON], array("bulk_node_ids", "UInt64", range(8)),
+                                           array("bulk_element_ids", "UInt64", [0])))
+
+
+def constant(name, *values):
+    tag = "value" if len(values) == 1 else "values"
+    return (f"<parameter><name>{name}</name><type>Constant</type><{tag}>{' '.join(repr(float(v)) for v in values)}"
+            f"</{tag}></parameter>\n")
+
+
+def function(name, expression):
+    return f"<parameter><name>{name}</name><type>Function</type><expression>{expression}</expression></parameter>\n"
+
+
+def curve(name, values):
+    times = " ".join(repr(float(i)) for i in range(len(values)))
+    return f"<curve><name>{name}</name><coords>{times}</coords><values>{' '.join(map(repr, values))}</values></curve>\n"
+
+
+def dirichlet(component, parameter):
+    return (f"<boundary_condition><mesh>nodes</mesh><type>Dirichlet</type><component>{component}</component>"
+            f"<parameter>{parameter}</parameter></boundary_condition>\n")
+
+
+def variable(name, components, start, conditions):
+    return (f"<process_variable><name>{name}</name><components>{components}</components><order>1</order>"
+            f"<initial_condition>{start}</initial_condition><boundary_conditions>\n{conditions}"
+            "</boundary_conditions></process_variable>\n")
+
+
+def properties(**values):
+    return "<properties>" + "".join(
+        f"<property><name>{name}</name>{value if isinstance(value, str) else ''}"
+        + ("" if isinstance(value, str) else f"<type>Constant</type><value>{value!r}</value>") + "</property>\n"
+        for name, value in values.items()) + "</properties>"
+
+
+def relation(behaviour, library, names, presets):
+    """The law: every parameter by its name, and the state variables that do not begin at zero."""
+    material = "".join(f'<material_property name="{n}" parameter="mud_{n}"/>\n' for n in names)
+    state = "".join(f'<state_variable name="mud_{n}" parameter="start_{n}"/>\n' for n in presets)
+    return (f"<constitutive_relation><type>MFront</type><behaviour>{behaviour}</behaviour>"
+            f"<library>{library}</library>\n<material_properties>{material}</material_properties>\n"
+            f"<initial_values>{state}</initial_values></constitutive_relation>\n")
+
+
+SMALL_DEFORMATION = """<process><name>P</name><type>SMALL_DEFORMATION</type><integration_order>2</integration_order>
+{relation}<process_variables><process_variable>displacement</process_variable></process_variables>
+<secondary_variables><secondary_variable internal_name="sigma" output_name="sigma"/></secondary_variables>
+<specific_body_force>0 0 0</specific_body_force><initial_stress>start_stress</initial_stress></process>"""
+UNSATURATED = """<process><name>P</name><type>THERMO_RICHARDS_MECHANICS</type>
+<subtype>StressSaturation_StrainPressureTemperature</subtype><integration_order>2</integration_order>
+{relation}<process_variables><temperature>temperature</temperature><pressure>pressure</pressure>
+<displacement>displacement</displacement></process_variables>
+<secondary_variables><secondary_variable name="sigma_total"/><secondary_variable name="saturation"/>
+</secondary_variables>
+<specific_body_force>0 0 0</specific_body_force><initial_stress type="total">start_stress</initial_stress></process>"""
+
+
+def project(library, props, presets, strains, stress, suction=None):
+    """Text of a .prj: step i ends at time i. strains: rows of 11, 22, 33, 12, 13, 23 that begin with zeros, tension
+    positive, engineering shear; stress: at the start, effective, or total where there is a suction for every row."""
+    unsaturated = suction is not None
+    law = relation("MUD_StressSaturation" if unsaturated else "MUD", library, props, presets)
+    parameters = "".join(constant(f"mud_{n}", v) for n, v in props.items())
+    parameters += "".join(constant(f"start_{n}", v) for n, v in presets.items())
+    parameters += constant("start_stress", stress, stress, stress, 0, 0, 0) + constant("rest", 0, 0, 0)
+    # u = H x with a triangular H: its symmetric part is the strain.
+    parameters += function("u_x", "e11(t)*x + e12(t)*y + e13(t)*z") + function("u_y", "e22(t)*y + e23(t)*z")
+    parameters += function("u_z", "e33(t)*z")
+    names = ("e11", "e22", "e33", "e12", "e13", "e23")
+    curves = "".join(curve(name, column) for name, column in zip(names, zip(*strains)))
+    variables = variable("displacement", 3, "rest", "".join(dirichlet(i, f"u_{a}") for i, a in enumerate("xyz")))
+    solid = {"density": 2.65}
+    media, tolerances, outputs = "", "<abstols>1e-13 1e-13 1e-13</abstols>", ("sigma",)
+    liquid = ""
+    if unsaturated:
+        curves += curve("liquid", [-s for s in suction])
+        parameters += constant("start_pressure", -suction[0]) + constant("warm", 293.15) + function("p_L", "liquid(t)")
+        variables += variable("pressure", 1, "start_pressure", dirichlet(0, "p_L"))
+        variables += variable("temperature", 1, "warm", dirichlet(0, "warm"))
+        heat = {"specific_heat_capacity": 1.0, "thermal_conductivity": 1.0, "thermal_expansivity": 0.0}
+        solid |= heat
+        liquid = ("<phase><type>AqueousLiquid</type>" + properties(density=1.0, viscosity=1.0e-6, **heat) + "</phase>")
+        media = properties(saturation=1.0, relative_permeability=1.0, permeability=1.0e-12, porosity=0.444,
+                           bishops_effective_stress="<type>BishopsPowerLaw</type><exponent>1.0</exponent>",
+                           biot_coefficient=1.0,
+                           thermal_conductivity="<type>EffectiveThermalConductivityPorosityMixing</type>")
+        tolerances = "<abstols>1e-9 1e-9 1e-13 1e-13 1e-13</abstols>"
+        outputs = ("sigma_total", "saturation")
+    steps = len(strains) - 1
+    process = (UNSATURATED if unsaturated else SMALL_DEFORMATION).format(relation=law)
+    wanted = "".join(f"<variable>{name}</variable>" for name in outputs)
+    return f"""<?xml version="1.0"?>
+<OpenGeoSysProject>
+<meshes><mesh>cube.vtu</mesh><mesh>nodes.vtu</mesh></meshes>
+<processes>{process}</processes>
+<media><medium><phases>{liquid}<phase><type>Solid</type>{properties(**solid)}</phase></phases>{media}</medium></media>
+<time_loop><processes><process ref="P"><nonlinear_solver>newton</nonlinear_solver>
+<convergence_criterion><type>PerComponentDeltaX</type><norm_type>INFINITY_N</norm_type>{tolerances}
+</convergence_criterion>
+<time_discretization><type>BackwardEuler</type></time_discretization>
+<time_stepping><type>FixedTimeStepping</type><t_initial>0</t_initial><t_end>{steps}</t_end>
+<timesteps><pair><repeat>{steps}</repeat><delta_t>1</delta_t></pair></timesteps></time_stepping></process></processes>
+<output><type>VTK</type><prefix>r</prefix><suffix>_{{:timestep}}</suffix><data_mode>Ascii</data_mode>
+<timesteps><pair><repeat>1</repeat><each_steps>1</each_steps></pair></timesteps><variables>{wanted}</variables></output>
+</time_loop>
+<parameters>{parameters}</parameters>
+<curves>{curves}</curves>
+<process_variables>{variables}</process_variables>
+<nonlinear_solvers><nonlinear_solver><name>newton</name><type>Newton</type><max_iter>30</max_iter>
+<linear_solver>direct</linear_solver></nonlinear_solver></nonlinear_solvers>
+<linear_solvers><linear_solver><name>direct</name><eigen><solver_type>SparseLU</solver_type></eigen></linear_solver>
+</linear_solvers>
+</OpenGeoSysProject>
+"""
