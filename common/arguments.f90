@@ -20,11 +20,12 @@ module arguments
    end type option_t
 contains
    !> The command line of this program; see parse_words.
-   subroutine read_command_line(options, subject, hint, operand, fault)
+   subroutine read_command_line(options, subject, hint, operand, fault, second)
       type(option_t), intent(inout) :: options(:)
       character(*), intent(in) :: subject, hint
       character(WORD_LENGTH), intent(out) :: operand
       type(fault_t), intent(inout) :: fault
+      character(WORD_LENGTH), intent(out), optional :: second
       character(WORD_LENGTH) :: words(command_argument_count())
       integer :: i, status
 
@@ -36,20 +37,23 @@ contains
             return
          end if
       end do
-      call parse_words(words, options, subject, hint, operand, fault)
+      call parse_words(words, options, subject, hint, operand, fault, second)
    end subroutine read_command_line
 
-   !> Sorts words into options with their values and one operand, which is there unless an option asks for a text.
-   subroutine parse_words(words, options, subject, hint, operand, fault)
+   !> Sorts words into options with their values and one operand, which is there unless an option asks for a text; where
+   !> `second` is present, a second one may follow.
+   subroutine parse_words(words, options, subject, hint, operand, fault, second)
       character(*), intent(in) :: words(:)
       type(option_t), intent(inout) :: options(:)
       character(*), intent(in) :: subject    !< What the operand is, as 'case'.
       character(*), intent(in) :: hint       !< How to go on after a mistake, as 'see mud_triax --help'.
       character(*), intent(out) :: operand
       type(fault_t), intent(inout) :: fault
+      character(*), intent(out), optional :: second   !< Blank if there is none.
       integer :: i, k
 
       operand = ''
+      if (present(second)) second = ''
       i = 0
       do while (i < size(words))
          i = i + 1
@@ -57,6 +61,12 @@ contains
             call raise(fault, EXIT_INPUT, 'Argument '//whole(i)//' is empty; '//hint//'.')
             return
          else if (.not. looks_like_option(words(i))) then
+            if (present(second) .and. operand /= '') then
+               if (second == '') then
+                  second = words(i)
+                  cycle
+               end if
+            end if
             if (operand /= '') then
                call raise(fault, EXIT_INPUT, 'One '//subject//' at a time: '//trim(operand)//' or '//trim(words(i))// &
                           '? ('//hint//')')

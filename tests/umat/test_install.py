@@ -1,4 +1,4 @@
-"""Installs the library and uses it as a stranger would: find_package, pkg-config, plain compilers, C and Fortran."""
+"""Installs library and programs and uses them as a stranger would: find_package, pkg-config, plain compilers."""
 import concurrent.futures
 import ctypes
 import os
@@ -127,7 +127,8 @@ def every_promised_file_is_installed(folder, prefix):
                 "include/mud.h", "include/mud_interface.f90", "include/mud/modules/mud_interface.mod",
                 f"{lib}/cmake/mud/mudConfig.cmake", f"{lib}/cmake/mud/mudConfigVersion.cmake",
                 f"{lib}/pkgconfig/mud.pc",
-                "share/mud/mud_umat_single.f90", "share/mud/LICENSE"}
+                "share/mud/mud_umat_single.f90", "share/mud/LICENSE", "bin/mud_triax", "bin/mud_replay",
+                "bin/mud_describe", "bin/mud_host", "share/mud/materials/toyoura.nml"}
     expect(promised <= there, f"missing: {sorted(promised - there)}")
 
 
@@ -149,6 +150,15 @@ def the_shared_library_shows_the_functions_of_its_header_and_the_entries_of_host
     # Those of MFront: test_mfront_symbols.
     shown = {name for line in lines if not (name := line.split()[-1]).startswith("MUD_")}
     expect(len(declared) >= 19 and shown == declared, f"too many: {shown - declared}, missing: {declared - shown}")
+
+
+@check(ALL)
+def the_installed_programs_run(folder, prefix):
+    """Away from the build tree, with a material that was installed beside them."""
+    plain = run(prefix / "bin/mud_describe", "plain", prefix / "share/mud/materials/toyoura.nml", folder=folder)
+    expect(len(plain.split()) > 40, plain)
+    for program in ("mud_triax", "mud_replay", "mud_host"):
+        expect(program in run(prefix / "bin" / program, "--help", folder=folder), program)
 
 
 @check(ALL)

@@ -1,0 +1,299 @@
+!> A material as other programs read it: cards, JSON, XML and plain numbers. Every number is written with as many digits
+!> as bring back its bits.
+module describe_hosts
+   use, intrinsic :: iso_c_binding, only: c_int, c_null_char
+   use, intrinsic :: iso_fortran_env, only: output_unit
+   use describe_tables, only: text, number, version
+   use faults, only: fault_t, raise, EXIT_INPUT
+   use kinds, only: wp
+   use library_tables, only: property_index, property_name, property_unit, statev_name, state_count
+   use mud_interface, only: mud_convert_props, MUD_STATEV, MUD_MEANING
+   use namelists, only: group_t, read_groups
+   use parameter_groups, only: read_parameters
+   use texts, only: whole
+   implicit none (type, external)
+   private
+   public :: named_material_t, read_material, print_host, HOSTS, UNITS
+
+   !> Words for the hosts, and what is printed.
+   character(66), parameter :: HOSTS(2, 10) = reshape([character(66) :: &
+      'abaqus', '*User material and *Depvar', &
+      'calculix', '*MATERIAL cards with the behaviour of libMUD.so', &
+      'kratos', 'MaterialParameters.json, by umat_ (shear_order is set to 1)', &
+      'kratos-udsm', 'MaterialParameters.json, by user_mod_', &
+      'ogs', 'constitutive_relation and parameters of a .prj, behaviour MUD', &
+      'ogs-unsaturated', 'the same, behaviour MUD_StressSaturation', &
+      'incrementaldriver', 'parameters.inp', &
+      'incrementaldriver-start', 'initialconditions.inp at an isotropic stress of -100', &
+      'udsm', 'number, name, unit and value of each PLAXIS parameter', &
+      'plain', 'PROPS, a number a line'], [2, 10])
+   character(3), parameter :: UNITS(4) = ['kPa', 'Pa ', 'MPa', 'psi']
+   real(wp), parameter :: IN_A_KPA(4) = [1.0_wp, 1000.0_wp, 1.0e-3_wp, 0.1450377377302092_wp]
+   integer, parameter :: A_LINE = 8          !< Numbers of a card.
+   real(wp), parameter :: EXAMPLE_STRESS = -100.0_wp   !< [kPa]
+
+   !> PROPS, their name, and the unit of their stresses.
+   type :: named_material_t
+      real(wp), allocatable :: props(:)
+      character(200) :: title = ''
+      character(3) :: unit = 'kPa'
+   end type named_material_t
+contains
+   !> The &material group of a file (blank: the library's defaults), which is in kPa, in another unit of stress.
+   subroutine read_material(file, unit, material, fault)
+      character(*), intent(in) :: file, unit   !< Unit blank: kPa.
+      type(named_material_t), intent(out) :: material
+      type(fault_t), intent(inout) :: fault
+      type(group_t), allocatable :: groups(:)
+      type(group_t) :: none
+      integer :: k
+
+      if (file == '') then
+         allocate (none%entries(0))
+         call read_parameters(none, material%props, material%title, fault)
+      else
+         call read_groups(trim(file), groups, fault)
+         if (fault%code /= 0) return
+         if (size(groups) /= 1) then
+            call raise(fault, EXIT_INPUT, trim(file)//': has '//whole(size(groups))// &
+                       ' groups; a material file holds exactly one, &material.')
+         else if (groups(1)%name /= 'material') then
+            call raise(fault, EXIT_INPUT, trim(file)//': the group is &'//trim(groups(1)%name)// &
+                       '; a material file holds exactly one, &material.')
+         else
+            call read_parameters(groups(1), material%props, material%title, fault)
+         end if
+      end if
+      if (fault%code /= 0 .or. unit == '') return
+      k = findloc(UNITS, unit, dim=1)
+      if (k == 0) then
+         call raise(fault, EXIT_INPUT, 'There is no unit '//trim(unit)//'; one of kPa, Pa, MPa, psi.')
+      else if (mud_convert_props(material%props, size(material%props), IN_A_KPA(k)) /= 0) then
+         call raise(fault, EXIT_INPUT, 'The library refuses the material in '//trim(unit)//'.')
+      else
+         material%unit = UNITS(k)
+      end if
+   end subroutine read_material
+
+   !> Prints what a host reads. The word is one of HOSTS.
+   subroutine print_host(host, material)
+      character(*), intent(in) :: host
+      type(named_material_t), intent(in) :: material
+
+      select case (host)
+      case ('abaqus')
+         call print_abaqus(material)
+      case ('calculix')
+         call print_calculix(material)
+      case ('kratos')
+         call print_kratos(material, .false.)
+      case ('kratos-udsm')
+         call print_kratos(material, .true.)
+      case ('ogs')
+         call print_ogs(material, 'MUD')
+      case ('ogs-unsaturated')
+         call print_ogs(material, 'MUD_StressSaturation')
+      case ('incrementaldriver')
+         call print_driver(material)
+      case ('incrementaldriver-start')
+         call print_driver_start(material)
+      case ('udsm')
+         call print_udsm(material)
+      case ('plain')
+         call print_plain(material)
+      end select
+   end subroutine print_host
+
+   !> Eight values a line, as Abaqus reads them, and the state variables with their names.
+   subroutine print_abaqus(material)
+      type(named_material_t), intent(in) :: material
+      integer(c_int) :: i
+
+      write (output_unit, '(2a)') '*User material, constants=', whole(size(material%props))
+      call print_cards(material%props)
+      write (output_unit, '(a)') '*Depvar'
+      write (output_unit, '(2a)') whole(state_count()), ','
+      do i = 1, state_count()
+         write (output_unit, '(*(a))') whole(i), ', ', statev_name(i), ', "', text(MUD_STATEV, i - 1, MUD_MEANING), '"'
+      end do
+   end subroutine print_abaqus
+
+   subroutine print_calculix(material)
+      type(named_material_t), intent(in) :: material
+
+      write (output_unit, '(a)') '** '//headline(material)
+      write (output_unit, '(a)') '** @: CalculiX loads libMUD.so, a copy of libmud.so on LD_LIBRARY_PATH. Static:', &
+         '** NAME=ABAQUS_MUD. Initial stress: *INITIAL CONDITIONS, TYPE=STRESS; void ratio and suction of a point:', &
+         '** TYPE=SOLUTION, state variables 2 and 4, the others 0.', &
+         '*MATERIAL, NAME=@ABAQUS_MUD'
+      write (output_unit, '(2a)') '*USER MATERIAL, CONSTANTS=', whole(size(material%props))
+      call print_cards(material%props)
+      write (output_unit, '(a)') '*DEPVAR', whole(state_count())
+   end subroutine print_calculix
+
+   !> One entry of "properties", with the Variables that carry the soil.
+   subroutine print_kratos(material, by_udsm)
+      type(named_material_t), intent(in) :: material
+      logical, intent(in) :: by_udsm
+      real(wp) :: props(size(material%props))
+      real(wp), allocatable :: state(:)
+      integer :: i
+
+      props = material%props
+      if (.not. by_udsm) props(property_index('shear_order')) = 1.0_wp
+      allocate (state(state_count()), source=0.0_wp)
+      write (output_unit, '(a)') '{"properties": [{', '   "model_part_name": "PorousDomain.Soil",', &
+         '   "properties_id": 1,', '   "Material": {'
+      write (output_unit, '(3a)') '      "constitutive_law": {"name": "SmallStrain', merge('UDSM', 'UMAT', by_udsm), &
+         '3DLaw"},'
+      write (output_unit, '(a)') '      "Variables": {', '         "UDSM_NAME": "libmud.so",'
+      if (by_udsm) write (output_unit, '(a)') '         "UDSM_NUMBER": 1,'
+      write (output_unit, '(a)') '         "IS_FORTRAN_UDSM": true,', '         "UMAT_PARAMETERS": ['
+      call print_list(props)
+      if (by_udsm) then
+         write (output_unit, '(a)') '         ]'
+      else
+         write (output_unit, '(a)') '         ],', '         "STATE_VARIABLES": ['
+         call print_list(state)
+         write (output_unit, '(a)') '         ]'
+      end if
+      write (output_unit, '(a)') '      },', '      "Tables": {}', '   }', '}]}'
+   contains
+      subroutine print_list(values)
+         real(wp), intent(in) :: values(:)
+         character(:), allocatable :: line
+
+         line = ''
+         do i = 1, size(values)
+            line = line//exact(values(i))
+            if (i < size(values)) line = line//', '
+            if (mod(i, A_LINE) /= 0 .and. i < size(values)) cycle
+            write (output_unit, '(12x, a)') trim(line)
+            line = ''
+         end do
+      end subroutine print_list
+   end subroutine print_kratos
+
+   !> Two pieces of a .prj: into <process>, and into <parameters>.
+   subroutine print_ogs(material, behaviour)
+      type(named_material_t), intent(in) :: material
+      character(*), intent(in) :: behaviour
+      integer :: i
+
+      write (output_unit, '(a)') '<!-- '//headline(material)//' -->', '<!-- into <process> -->', &
+         '<constitutive_relation>', '    <type>MFront</type>', '    <library>libmud.so</library>', &
+         '    <behaviour>'//behaviour//'</behaviour>', '    <material_properties>'
+      do i = 1, size(material%props)
+         write (output_unit, '(5a)') '        <material_property name="', property_name(i), '" parameter="mud_', &
+            property_name(i), '"/>'
+      end do
+      write (output_unit, '(a)') '    </material_properties>', '</constitutive_relation>', '<!-- into <parameters> -->'
+      do i = 1, size(material%props)
+         write (output_unit, '(5a)') '<parameter><name>mud_', property_name(i), '</name><type>Constant</type><value>', &
+            exact(material%props(i)), '</value></parameter>'
+      end do
+   end subroutine print_ogs
+
+   !> Name, count, a number a line; what follows # in the first line is a remark.
+   subroutine print_driver(material)
+      type(named_material_t), intent(in) :: material
+
+      write (output_unit, '(a)') 'MUD # '//headline(material), whole(size(material%props))
+      call print_plain(material)
+   end subroutine print_driver
+
+   !> Stress of six components, then STATEV with the void ratio of the material.
+   subroutine print_driver_start(material)
+      type(named_material_t), intent(in) :: material
+      real(wp) :: stress
+      integer :: i
+
+      stress = EXAMPLE_STRESS*IN_A_KPA(findloc(UNITS, material%unit, dim=1))
+      write (output_unit, '(a)') '6', (exact(stress), i=1, 3), '0.0', '0.0', '0.0', whole(state_count())
+      do i = 1, state_count()
+         if (statev_name(i) == 'void_ratio') then
+            write (output_unit, '(a)') exact(material%props(property_index('e_0')))
+         else
+            write (output_unit, '(a)') '0.0'
+         end if
+      end do
+   end subroutine print_driver_start
+
+   subroutine print_udsm(material)
+      type(named_material_t), intent(in) :: material
+      integer :: i
+
+      write (output_unit, '(a)') headline(material)
+      do i = 1, size(material%props)
+         write (output_unit, '(a, t6, a, t24, a, t36, a)') whole(i), property_name(i), unit_of(material, i), &
+            exact(material%props(i))
+      end do
+   end subroutine print_udsm
+
+   subroutine print_plain(material)
+      type(named_material_t), intent(in) :: material
+      integer :: i
+
+      write (output_unit, '(a)') (exact(material%props(i)), i=1, size(material%props))
+   end subroutine print_plain
+
+   !> Numbers of a card, eight a line.
+   subroutine print_cards(values)
+      real(wp), intent(in) :: values(:)
+      character(:), allocatable :: line
+      integer :: i
+
+      line = ''
+      do i = 1, size(values)
+         line = line//exact(values(i))
+         if (mod(i, A_LINE) == 0 .or. i == size(values)) then
+            write (output_unit, '(a)') line
+            line = ''
+         else
+            line = line//', '
+         end if
+      end do
+   end subroutine print_cards
+
+   !> What it is, on a line.
+   function headline(material) result(line)
+      type(named_material_t), intent(in) :: material
+      character(:), allocatable :: line
+
+      line = 'MUD '//version()//', '//trim(material%title)//', stresses in '//trim(material%unit)
+   end function headline
+
+   !> Unit of a parameter, with the unit of stress of the material.
+   function unit_of(material, i) result(unit)
+      type(named_material_t), intent(in) :: material
+      integer, intent(in) :: i
+      character(:), allocatable :: unit
+      integer :: k
+
+      unit = property_unit(i)
+      k = index(unit, 'kPa')
+      if (k > 0) unit = unit(:k - 1)//trim(material%unit)//unit(k + 3:)
+      if (unit == '1') unit = '-'
+   end function unit_of
+
+   !> As few digits as read back to the same bits: as `number` writes it where that is enough, else up to 17 of them.
+   function exact(value) result(string)
+      real(wp), intent(in) :: value
+      character(:), allocatable :: string
+      character(24) :: buffer
+      character(10) :: form
+      real(wp) :: back
+      integer :: digits, status
+
+      string = number(value)
+      read (string, *, iostat=status) back
+      if (status == 0 .and. abs(back - value) <= 0.0_wp) return
+      do digits = 2, 16
+         write (form, '(a, i0, a)') '(es24.', digits, ')'
+         write (buffer, form) value
+         read (buffer, *, iostat=status) back
+         if (status == 0 .and. abs(back - value) <= 0.0_wp) exit
+      end do
+      string = trim(adjustl(buffer))
+   end function exact
+end module describe_hosts
