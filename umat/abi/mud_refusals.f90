@@ -16,7 +16,7 @@ module mud_refusals
    use mud_tensor, only: is_finite
    implicit none (type, external)
    private
-   public :: place_t, refuse, say_refusal, remark_on_suction, remark_on_props, save_if_asked
+   public :: KEEP_VARIABLE, place_t, refuse, say_refusal, remark_on_suction, remark_on_props, save_if_asked
 
    !> KSTEP, KINC, NOEL and NPT of the host; each may be NULL.
    type :: place_t
