@@ -29,6 +29,7 @@ def arguments():
     parser.add_argument("--strip", action="store_true", help="plane strain under a pressure")
     parser.add_argument("--cells", type=int, default=6,
                         help="along an edge; divisible by 3: a third lies under the footing")
+    parser.add_argument("--scale", type=float, default=1.0, help="of footing and ground")
     parser.add_argument("--settlement", type=float, default=0.02, help="of the square footing [m]")
     parser.add_argument("--pressure", type=float, default=150.0, help="of the strip [kPa]")
     parser.add_argument("--steps", type=int, default=10)
@@ -60,7 +61,7 @@ def graded(x):
     return np.where(x <= 1/3, 3.0*HALF_WIDTH*x, HALF_WIDTH + slope*beyond + (SIZE - HALF_WIDTH - slope)*beyond**2)
 
 
-def ground(dimension, n):
+def ground(dimension, n, scale):
     comm = MPI.COMM_WORLD
     if dimension == 2:
         domain = mesh.create_unit_square(comm, n, n)
@@ -70,12 +71,14 @@ def ground(dimension, n):
     for i in range(dimension - 1):
         x[:, i] = graded(x[:, i])
     x[:, dimension - 1] = -graded(1.0 - x[:, dimension - 1])  # the top is 0
+    x *= scale
     return domain
 
 
 def model(given):
+    half_width, size = HALF_WIDTH*given.scale, SIZE*given.scale
     dimension = 2 if given.strip else 3
-    domain = ground(dimension, given.cells)
+    domain = ground(dimension, given.cells, given.scale)
     material = mud_points.Material(given.library, scheme=given.scheme, tangent=3)
     control = porous.Control(linear=given.linear, tolerance=given.tolerance)
     problem = porous.Problem(domain, material, [-SURCHARGE]*3 + [0.0]*3, given.void_ratio, control=control)
@@ -88,10 +91,10 @@ def model(given):
     def under(x):
         inside = np.isclose(x[up], 0.0)
         for i in range(up):
-            inside &= x[i] <= HALF_WIDTH*(1.0 + 1e-9)
+            inside &= x[i] <= half_width*(1.0 + 1e-9)
         return inside
 
-    sides = [(i, near(i, v)) for i in range(up) for v in (0.0, SIZE)] + [(up, near(up, -SIZE))]
+    sides = [(i, near(i, v)) for i in range(up) for v in (0.0, size)] + [(up, near(up, -size))]
     bcs = []
     for axis, where in sides:
         facets = mesh.locate_entities_boundary(domain, facet, where)
@@ -153,9 +156,9 @@ def main():
     problem, set_boundary, plate, up = model(given)
     if given.load:
         problem.load(given.load)
-    area = HALF_WIDTH**(problem.dimension - 1)
+    area = (HALF_WIDTH*given.scale)**(problem.dimension - 1)
     first = round(problem.time/given.duration*given.steps) + 1
-    loads, row = [], None
+    loads = []
     solving = time.monotonic()
     for step in range(first, (given.stop_after or given.steps) + 1):
         before = (problem.stress0.copy(), problem.state0.copy())
@@ -169,7 +172,8 @@ def main():
     unknowns = sum(space.dofmap.index_map.size_global*space.dofmap.index_map_bs for space in (problem.V, problem.Q))
     row = {"ranks": problem.comm.size, "unknowns": unknowns,
            "points": problem.comm.allreduce(len(problem.stress0)), "pressure": loads,
-           "settlement": -at_axis(problem, problem.u, up, 0.0), "p_w": at_axis(problem, problem.p, 0, HALF_WIDTH),
+           "settlement": -at_axis(problem, problem.u, up, 0.0),
+           "p_w": at_axis(problem, problem.p, 0, HALF_WIDTH*given.scale),
            "digest": problem.digest(), "seconds": solved - solving, "seconds_before": solving - began, **problem.counts}
     if problem.comm.rank == 0:
         print(json.dumps(row))

@@ -63,7 +63,7 @@ class Problem:
         self._points(cell, stress, void_ratio)
         self._forms(cell, water)
         self.bcs, self.loads = [], None
-        self.counts = {"steps": 0, "iterations": 0, "cuts": 0, "searches": 0}
+        self.counts = {"steps": 0, "iterations": 0, "cuts": 0, "searches": 0, "linear_iterations": 0}
 
     def _points(self, cell, stress, void_ratio):
         degree = self.control.quadrature
@@ -184,9 +184,11 @@ class Problem:
         for name, value in (("pc_fieldsplit_type", "schur"), ("pc_fieldsplit_schur_fact_type", "full"),
                             ("pc_fieldsplit_schur_precondition", "selfp"),
                             ("fieldsplit_u_ksp_type", "gmres"), ("fieldsplit_u_ksp_rtol", 1e-2),
-                            ("fieldsplit_u_ksp_max_it", 30), ("fieldsplit_u_pc_type", "gamg"),
-                            ("fieldsplit_u_pc_gamg_threshold", 0.01), ("fieldsplit_u_mg_levels_ksp_type", "richardson"),
-                            ("fieldsplit_u_mg_levels_pc_type", "sor"), ("fieldsplit_u_mg_levels_ksp_max_it", 2),
+                            ("fieldsplit_u_ksp_max_it", 30),
+                            ("fieldsplit_u_pc_type", "hypre"),
+                            ("fieldsplit_u_pc_hypre_boomeramg_nodal_coarsen", 4),  # nodes, not components
+                            ("fieldsplit_u_pc_hypre_boomeramg_vec_interp_variant", 2),  # keeps the rigid-body modes
+                            ("fieldsplit_u_pc_hypre_boomeramg_strong_threshold", 0.5),
                             ("fieldsplit_p_ksp_type", "preonly"), ("fieldsplit_p_pc_type", "hypre")):
             if not options.hasName(name):  # the command line goes first
                 options[name] = value
@@ -225,7 +227,7 @@ class Problem:
             self.A.assemble()
             self.ksp.solve(self.b, self.d)
             self.counts["iterations"] += 1
-            self.linear_iterations = self.ksp.getIterationNumber()
+            self.counts["linear_iterations"] += self.ksp.getIterationNumber()
             if self.ksp.getConvergedReason() < 0:
                 raise NotConverged(f"linear solver: reason {self.ksp.getConvergedReason()}")
             base, direction, share = self.x.array.copy(), -self.d.array, 1.0

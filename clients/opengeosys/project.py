@@ -42,8 +42,8 @@ def curve(name, values):
     return f"<curve><name>{name}</name><coords>{times}</coords><values>{' '.join(map(repr, values))}</values></curve>\n"
 
 
-def dirichlet(component, parameter):
-    return (f"<boundary_condition><mesh>nodes</mesh><type>Dirichlet</type><component>{component}</component>"
+def condition(component, parameter, mesh="nodes", kind="Dirichlet"):
+    return (f"<boundary_condition><mesh>{mesh}</mesh><type>{kind}</type><component>{component}</component>"
             f"<parameter>{parameter}</parameter></boundary_condition>\n")
 
 
@@ -72,19 +72,20 @@ def relation(behaviour, library, names, presets):
 SMALL_DEFORMATION = """<process><name>P</name><type>SMALL_DEFORMATION</type><integration_order>2</integration_order>
 {relation}<process_variables><process_variable>displacement</process_variable></process_variables>
 <secondary_variables><secondary_variable internal_name="sigma" output_name="sigma"/></secondary_variables>
-<specific_body_force>0 0 0</specific_body_force><initial_stress>start_stress</initial_stress></process>"""
+<specific_body_force>{zero}</specific_body_force><initial_stress>start_stress</initial_stress></process>"""
 UNSATURATED = """<process><name>P</name><type>THERMO_RICHARDS_MECHANICS</type>
 <subtype>StressSaturation_StrainPressureTemperature</subtype><integration_order>2</integration_order>
 {relation}<process_variables><temperature>temperature</temperature><pressure>pressure</pressure>
 <displacement>displacement</displacement></process_variables>
 <secondary_variables><secondary_variable name="sigma_total"/><secondary_variable name="saturation"/>
 </secondary_variables>
-<specific_body_force>0 0 0</specific_body_force><initial_stress type="total">start_stress</initial_stress></process>"""
+<specific_body_force>{zero}</specific_body_force><initial_stress type="total">start_stress</initial_stress></process>"""
 
 
-def project(library, props, presets, strains, stress, suction=None):
+def project(library, props, presets, strains, stress, suction=None, saturation=1.0):
     """Text of a .prj: step i ends at time i. strains: rows of 11, 22, 33, 12, 13, 23 that begin with zeros, tension
-    positive, engineering shear; stress: at the start, effective, or total where there is a suction for every row."""
+    positive, engineering shear; stress: at the start, effective, or total where there is a suction for every row,
+    with the saturation of the start."""
     unsaturated = suction is not None
     law = relation("MUD_StressSaturation" if unsaturated else "MUD", library, props, presets)
     parameters = "".join(constant(f"mud_{n}", v) for n, v in props.items())
@@ -95,38 +96,55 @@ def project(library, props, presets, strains, stress, suction=None):
     parameters += function("u_z", "e33(t)*z")
     names = ("e11", "e22", "e33", "e12", "e13", "e23")
     curves = "".join(curve(name, column) for name, column in zip(names, zip(*strains)))
-    variables = variable("displacement", 3, "rest", "".join(dirichlet(i, f"u_{a}") for i, a in enumerate("xyz")))
-    solid = {"density": 2.65}
-    media, tolerances, outputs = "", "<abstols>1e-13 1e-13 1e-13</abstols>", ("sigma",)
-    liquid = ""
+    variables = variable("displacement", 3, "rest", "".join(condition(i, f"u_{a}") for i, a in enumerate("xyz")))
+    media, tolerances, outputs = solid_alone(), "<abstols>1e-13 1e-13 1e-13</abstols>", ("sigma",)
     if unsaturated:
         curves += curve("liquid", [-s for s in suction])
         parameters += constant("start_pressure", -suction[0]) + constant("warm", 293.15) + function("p_L", "liquid(t)")
-        variables += variable("pressure", 1, "start_pressure", dirichlet(0, "p_L"))
-        variables += variable("temperature", 1, "warm", dirichlet(0, "warm"))
-        heat = {"specific_heat_capacity": 1.0, "thermal_conductivity": 1.0, "thermal_expansivity": 0.0}
-        solid |= heat
-        liquid = ("<phase><type>AqueousLiquid</type>" + properties(density=1.0, viscosity=1.0e-6, **heat) + "</phase>")
-        media = properties(saturation=1.0, relative_permeability=1.0, permeability=1.0e-12, porosity=0.444,
-                           bishops_effective_stress="<type>BishopsPowerLaw</type><exponent>1.0</exponent>",
-                           biot_coefficient=1.0,
-                           thermal_conductivity="<type>EffectiveThermalConductivityPorosityMixing</type>")
+        variables += variable("pressure", 1, "start_pressure", condition(0, "p_L"))
+        variables += variable("temperature", 1, "warm", condition(0, "warm"))
+        media = soil_with_water(0.444, saturation)
         tolerances = "<abstols>1e-9 1e-9 1e-13 1e-13 1e-13</abstols>"
         outputs = ("sigma_total", "saturation")
     steps = len(strains) - 1
-    process = (UNSATURATED if unsaturated else SMALL_DEFORMATION).format(relation=law)
+    process = (UNSATURATED if unsaturated else SMALL_DEFORMATION).format(relation=law, zero="0 0 0")
+    return whole(["cube", "nodes"], process, media, tolerances, float(steps), steps, outputs, parameters, curves,
+                 variables)
+
+
+def solid_alone():
+    return f"<phases><phase><type>Solid</type>{properties(density=2.65)}</phase></phases>"
+
+
+def soil_with_water(porosity, saturation, permeability=1.0e-12):
+    """Incompressible grains and water, no heat; units m, s, kPa, Mg. The saturation is that of the start alone."""
+    heat = {"specific_heat_capacity": 1.0, "thermal_conductivity": 1.0, "thermal_expansivity": 0.0}
+    mass_balance = ("<type>PorosityFromMassBalance</type><minimal_porosity>0</minimal_porosity>"
+                    "<maximal_porosity>1</maximal_porosity><initial_porosity>start_porosity</initial_porosity>")
+    return ("<phases><phase><type>AqueousLiquid</type>" + properties(density=1.0, viscosity=1.0e-6, **heat)
+            + "</phase><phase><type>Solid</type>" + properties(density=2.65, **heat) + "</phase></phases>"
+            + properties(saturation=saturation, relative_permeability=1.0, permeability=permeability,
+                         porosity=mass_balance if porosity is None else porosity,
+                         bishops_effective_stress="<type>BishopsPowerLaw</type><exponent>1.0</exponent>",
+                         biot_coefficient=1.0,
+                         thermal_conductivity="<type>EffectiveThermalConductivityPorosityMixing</type>"))
+
+
+def whole(meshes, process, media, tolerances, end, steps, outputs, parameters, curves, variables):
+    mesh = "".join(f"<mesh>{name}.vtu</mesh>" for name in meshes)
     wanted = "".join(f"<variable>{name}</variable>" for name in outputs)
     return f"""<?xml version="1.0"?>
 <OpenGeoSysProject>
-<meshes><mesh>cube.vtu</mesh><mesh>nodes.vtu</mesh></meshes>
+<meshes>{mesh}</meshes>
 <processes>{process}</processes>
-<media><medium><phases>{liquid}<phase><type>Solid</type>{properties(**solid)}</phase></phases>{media}</medium></media>
+<media><medium>{media}</medium></media>
 <time_loop><processes><process ref="P"><nonlinear_solver>newton</nonlinear_solver>
 <convergence_criterion><type>PerComponentDeltaX</type><norm_type>INFINITY_N</norm_type>{tolerances}
 </convergence_criterion>
 <time_discretization><type>BackwardEuler</type></time_discretization>
-<time_stepping><type>FixedTimeStepping</type><t_initial>0</t_initial><t_end>{steps}</t_end>
-<timesteps><pair><repeat>{steps}</repeat><delta_t>1</delta_t></pair></timesteps></time_stepping></process></processes>
+<time_stepping><type>FixedTimeStepping</type><t_initial>0</t_initial><t_end>{end!r}</t_end>
+<timesteps><pair><repeat>{steps}</repeat><delta_t>{end/steps!r}</delta_t></pair></timesteps></time_stepping>
+</process></processes>
 <output><type>VTK</type><prefix>r</prefix><suffix>_{{:timestep}}</suffix><data_mode>Ascii</data_mode>
 <timesteps><pair><repeat>1</repeat><each_steps>1</each_steps></pair></timesteps><variables>{wanted}</variables></output>
 </time_loop>
@@ -139,3 +157,37 @@ def project(library, props, presets, strains, stress, suction=None):
 </linear_solvers>
 </OpenGeoSysProject>
 """
+
+
+def write_column(folder, cells, height):
+    """One row of quadrilaterals in plane strain; node 2 i is on the left."""
+    QUADRILATERAL, LINE = 9, 3
+    points = [(x, height*i/cells, 0.0) for i in range(cells + 1) for x in (0.0, height/cells)]
+    quads = [(2*i, 2*i + 1, 2*i + 3, 2*i + 2) for i in range(cells)]
+    every = array("bulk_node_ids", "UInt64", range(len(points))), array("bulk_element_ids", "UInt64", range(cells))
+    kinds = [QUADRILATERAL]*cells
+    (folder / "column.vtu").write_text(grid(points, quads, kinds, cell_data=array("MaterialIDs", "Int32", [0]*cells)))
+    (folder / "nodes.vtu").write_text(grid(points, quads, kinds, *every))
+    for name, first, element in (("bottom", 0, 0), ("top", 2*cells, cells - 1)):
+        (folder / f"{name}.vtu").write_text(grid(points[first:first + 2], [(0, 1)], [LINE],
+                                                 array("bulk_node_ids", "UInt64", [first, first + 1]),
+                                                 array("bulk_element_ids", "UInt64", [element])))
+
+
+def column(library, props, void_ratio, stress, pull, suction, permeability, end, steps):
+    """A column that is wetted from below: suction at the bottom goes from `suction` to 0, the load on top stays.
+    stress: effective at the start; pull: S_w p_c at the start."""
+    total = stress + pull
+    parameters = "".join(constant(f"mud_{n}", v) for n, v in props.items()) + constant("start_void_ratio", void_ratio)
+    parameters += constant("start_stress", total, total, total, 0) + constant("rest", 0, 0) + constant("held", 0)
+    parameters += constant("start_pressure", -suction) + constant("warm", 293.15) + constant("load", total)
+    parameters += constant("start_porosity", void_ratio/(1.0 + void_ratio))
+    parameters += function("p_L", f"{-suction!r}*(1-t/{end!r})")
+    variables = variable("displacement", 2, "rest", condition(0, "held") + condition(1, "held", "bottom")
+                         + condition(1, "load", "top", "Neumann"))
+    variables += variable("pressure", 1, "start_pressure", condition(0, "p_L", "bottom"))
+    variables += variable("temperature", 1, "warm", condition(0, "warm"))
+    law = relation("MUD_StressSaturation", library, props, ["void_ratio"])
+    return whole(["column", "nodes", "bottom", "top"], UNSATURATED.format(relation=law, zero="0 0"),
+                 soil_with_water(None, pull/suction, permeability), "<abstols>1e-9 1e-6 1e-10 1e-10</abstols>", end,
+                 steps, ("displacement", "pressure"), parameters, "", variables)

@@ -57,6 +57,19 @@ def place_of(name):
     return mud().mud_index(MUD_STATEV, name.encode())
 
 
+def saturation(suction, void_ratio):
+    """Degree of saturation of the default material."""
+    library, values = mud(), props()
+    prepared = (ctypes.c_double*library.mud_prepared_size())()
+    array = (ctypes.c_double*len(values))(*values)
+    library.mud_prepare(array, len(array), prepared, len(prepared), None, 0)
+    library.mud_saturation.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_double] + [ctypes.c_void_p]*3
+    answer = ctypes.c_double()
+    if library.mud_saturation(prepared, suction, void_ratio, ctypes.byref(answer), None, None) != 0:
+        sys.exit("mud_saturation failed")
+    return answer.value
+
+
 def expected(case):
     """Columns of a case of clients/cases, by the mud_triax of the day: a row for every increment."""
     out = work_folder("expected") / f"{case}.csv"
