@@ -68,18 +68,19 @@ contains
       state(PLACE_S_W) = sat%s
    end subroutine initial_state
 
-   subroutine update(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state)
+   subroutine update(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state, &
+                     report)
       class(elastic_t), intent(in) :: self
       integer, intent(in) :: n
       real(wp), intent(in), contiguous :: stress(:, :), state(:, :), strain(:, :), suction(:), d_suction(:)
       logical, intent(in) :: with_tangent
       type(response_t), intent(inout) :: response
       real(wp), intent(inout), contiguous :: new_state(:, :)
+      type(report_t), intent(out) :: report
       type(saturation_t) :: sat
       real(wp) :: lame, shear, slope(6, 6), e
       integer :: i, g
 
-      response%report = report_t()
       shear = self%young/(2*(1 + self%poisson))
       lame = 2*shear*self%poisson/(1 - 2*self%poisson)
       slope = 0.0_wp

@@ -107,36 +107,37 @@ contains
    end subroutine initial_state
 
    !> Point by point: the library's batch would start a team of threads for every element, and programs have theirs.
-   subroutine update(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state)
+   subroutine update(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state, &
+                     report)
       class(mud_t), intent(in) :: self
       integer, intent(in) :: n
       real(wp), intent(in), contiguous :: stress(:, :), state(:, :), strain(:, :), suction(:), d_suction(:)
       logical, intent(in) :: with_tangent
       type(response_t), intent(inout) :: response
       real(wp), intent(inout), contiguous :: new_state(:, :)
-      type(mud_report) :: report
+      type(report_t), intent(out) :: report
+      type(mud_report) :: of_point
       real(wp) :: dsw_deps(6)
       integer(c_int) :: code
       integer :: g
 
-      response%report = report_t()
       do g = 1, n
          response%stress(:, g) = stress(:, g)
          if (with_tangent) then
             code = mud_update_prepared(self%prepared, stress(:, g), state(:, g), self%n_state, strain(:, g), &
                                        suction(g), d_suction(g), self%tangent, response%stress(:, g), &
                                        new_state(:, g), response%dsig_deps(:, :, g), response%dsig_dpc(:, g), &
-                                       dsw_deps, response%dsw_dpc(g), report)
+                                       dsw_deps, response%dsw_dpc(g), of_point)
             response%dsw_dev(g) = dsw_deps(1)   ! the normal components are equal, those of shear are zero
          else
             code = mud_update_prepared(self%prepared, stress(:, g), state(:, g), self%n_state, strain(:, g), &
                                        suction(g), d_suction(g), MUD_TANGENT_NONE, response%stress(:, g), &
-                                       new_state(:, g), report=report)
+                                       new_state(:, g), report=of_point)
          end if
-         call add_up(report, response%report)
+         call add_up(of_point, report)
          if (code /= 0) then
-            response%report%code = code
-            response%report%point = g
+            report%code = code
+            report%point = g
             return
          end if
          response%void_ratio(g) = new_state(self%place_e, g)

@@ -29,7 +29,8 @@ module material_point
       real(wp) :: reached = 1.0_wp         !< Share of the increment that was integrated.
    end type report_t
 
-   !> Answers of a batch, as many columns as there are points. Tangent blocks only where they were asked for.
+   !> Answers of a batch, as many columns as there are points. Tangent blocks only where they were asked for. No component
+   !> has a default: it would be paid for with the whole of the type at every batch.
    type :: response_t
       real(wp) :: stress(6, MOST_POINTS)          !< sigma' [kPa]
       real(wp) :: dsig_deps(6, 6, MOST_POINTS)    !< d sigma'/d strain [kPa]
@@ -38,7 +39,6 @@ module material_point
       real(wp) :: dsw_dev(MOST_POINTS)            !< d S_w/d volumetric strain, expansion positive [-]
       real(wp) :: dsw_dpc(MOST_POINTS)            !< d S_w/d p_c [1/kPa]
       real(wp) :: void_ratio(MOST_POINTS)         !< [-]
-      type(report_t) :: report
    end type response_t
 
    !> A fact about a law, for the head of a file of results.
@@ -88,8 +88,9 @@ module material_point
 
       !> One increment at n points, from (stress, state, suction); thread safe, allocates nothing. Ends at the first
       !> point that fails, whose new state and answers are of no use.
-      subroutine update_i(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state)
-         import :: material_t, response_t, wp
+      subroutine update_i(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state, &
+                          report)
+         import :: material_t, response_t, report_t, wp
          class(material_t), intent(in) :: self
          integer, intent(in) :: n                                !< 1 .. MOST_POINTS
          real(wp), intent(in), contiguous :: stress(:, :)        !< (6, n) [kPa]
@@ -100,6 +101,7 @@ module material_point
          logical, intent(in) :: with_tangent
          type(response_t), intent(inout) :: response
          real(wp), intent(inout), contiguous :: new_state(:, :)  !< As state.
+         type(report_t), intent(out) :: report
       end subroutine update_i
 
       !> A sentence about a failed batch.

@@ -179,6 +179,7 @@ contains
       real(wp), intent(inout) :: state(:)
       character(*), intent(out) :: text
       type(response_t) :: response
+      type(report_t) :: report
       type(saturation_t) :: sat
       real(wp) :: before(self%n_state, 1), after(self%n_state, 1), at_rest(6, 1), stress0(6, 1)
 
@@ -190,43 +191,45 @@ contains
       before(self%n_statv + OWN_S_W, 1) = sat%s
       at_rest = 0.0_wp
       stress0(:, 1) = stress
-      call self%update(1, stress0, before, at_rest, [suction], [0.0_wp], .false., response, after)
-      if (response%report%code /= 0) then
-         call self%message(response%report, text)
+      call self%update(1, stress0, before, at_rest, [suction], [0.0_wp], .false., response, after, report)
+      if (report%code /= 0) then
+         call self%message(report, text)
          return
       end if
       state = after(:, 1)
       stress = response%stress(:, 1)
    end subroutine initial_state
 
-   subroutine update(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state)
+   subroutine update(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state, &
+                     report)
       class(umat_t), intent(in) :: self
       integer, intent(in) :: n
       real(wp), intent(in), contiguous :: stress(:, :), state(:, :), strain(:, :), suction(:), d_suction(:)
       logical, intent(in) :: with_tangent
       type(response_t), intent(inout) :: response
       real(wp), intent(inout), contiguous :: new_state(:, :)
+      type(report_t), intent(out) :: report
       integer :: g
 
-      response%report = report_t()
       do g = 1, n
          new_state(:self%n_state, g) = state(:self%n_state, g)
          call update_point(self, stress(:, g), strain(:, g), suction(g), d_suction(g), with_tangent, g, response, &
-                           new_state(:, g))
-         if (response%report%code == 0) cycle
-         response%report%point = g
+                           new_state(:, g), report)
+         if (report%code == 0) cycle
+         report%point = g
          return
       end do
    end subroutine update
 
    !> One point; `state` goes in as that before the increment and comes out as that behind it.
-   subroutine update_point(self, stress, strain, suction, d_suction, with_tangent, g, response, state)
+   subroutine update_point(self, stress, strain, suction, d_suction, with_tangent, g, response, state, report)
       class(umat_t), intent(in) :: self
       real(wp), intent(in) :: stress(6), strain(6), suction, d_suction
       logical, intent(in) :: with_tangent
       integer, intent(in) :: g
       type(response_t), intent(inout) :: response
       real(wp), intent(inout), contiguous, target :: state(:)
+      type(report_t), intent(inout) :: report
       real(wp) :: stress_(6), ddsdde(self%components, self%components), strain0(6), d_strain(6), pnewdt, e, p_c, shift
       real(wp) :: sse, spd, scd, rpl, ddsddt(6), drplde(6), drpldt, time(2), none(3)
       integer(c_int) :: kstep(4), kinc
@@ -293,7 +296,7 @@ contains
       do i = 1, c
          response%stress(self%order(i), g) = stress_(i) - merge(shift, 0.0_wp, i <= 3)
       end do
-      response%report%n_rate = response%report%n_rate + 1
+      report%n_rate = report%n_rate + 1
       if (.not. with_tangent) return
 
       response%dsw_dpc(g) = sat%ds_dpc
@@ -315,10 +318,10 @@ contains
          integer, intent(in) :: code
          real(wp), intent(in) :: factor, value
 
-         response%report%code = code
-         response%report%factor = factor
-         response%report%value = value
-         response%report%reached = 0.0_wp
+         report%code = code
+         report%factor = factor
+         report%value = value
+         report%reached = 0.0_wp
       end subroutine fail
    end subroutine update_point
 

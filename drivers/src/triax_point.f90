@@ -93,8 +93,7 @@ contains
       tension(:, 1) = -before%stress
       strain_(:, 1) = -strain
       call soil%law%update(1, tension, before%state, strain_, [before%suction], [suction], WITH_TANGENT, response, &
-                           after%state)
-      report = response%report
+                           after%state, report)
       if (report%code /= 0) return
       tangent%dsig_deps = response%dsig_deps(:, :, 1)
       tangent%dsig_dpc = -response%dsig_dpc(:, 1)

@@ -3,7 +3,7 @@ module element_equations
    use wall_clock, only: clock, lap
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
    use kinds, only: wp
-   use material_point, only: response_t, report_t
+   use material_point, only: response_t, report_t, MOST_POINTS
    use porous_domain, only: domain_t, state_t, gauss_t
    use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, PLACES, RR, ZZ, TT, RZ, U, &
                              PW, PC, GW, GA
@@ -43,9 +43,11 @@ contains
       logical, intent(in) :: with_tangent
       type(element_t), intent(inout) :: out
       type(response_t) :: material
-      type(kinematics_t) :: k(domain%rule)
-      real(wp) :: strain(6, domain%rule), t0
-      integer :: g, first, last
+      type(report_t) :: report
+      type(kinematics_t) :: k(MOST_POINTS)
+      real(wp), dimension(MOST_POINTS) :: suction, d_suction
+      real(wp) :: strain(6, MOST_POINTS), t0
+      integer :: g, n, first, last
 
       out%r = 0.0_wp
       out%stretch = 0.0_wp
@@ -61,20 +63,23 @@ contains
          out%bad_point = g
          return
       end do
-      strain(5:6, :) = 0.0_wp
-      do g = 1, domain%rule
+      n = domain%rule
+      do g = 1, n
          strain(1:4, g) = k(g)%strain
+         strain(5:6, g) = 0.0_wp
+         suction(g) = k(g)%c0
+         d_suction(g) = k(g)%c1 - k(g)%c0
       end do
-      first = (element - 1)*domain%rule + 1
-      last = element*domain%rule
+      first = (element - 1)*n + 1
+      last = element*n
       t0 = clock()
-      call domain%regions(domain%region_of(element))%law%update(domain%rule, old%stress(:, first:last), &
-         old%state(:, first:last), strain, k%c0, k%c1 - k%c0, with_tangent, material, new%state(:, first:last))
+      call domain%regions(domain%region_of(element))%law%update(n, old%stress(:, first:last), &
+         old%state(:, first:last), strain, suction, d_suction, with_tangent, material, new%state(:, first:last), report)
       call lap(out%seconds, t0)
-      out%rate_evaluations = material%report%n_rate
-      if (material%report%code /= 0) then
-         out%bad = material%report
-         out%bad_point = material%report%point
+      out%rate_evaluations = report%n_rate
+      if (report%code /= 0) then
+         out%bad = report
+         out%bad_point = report%point
          return
       end if
       call add_points(domain, element, scheme, k, material, old, new, with_tangent, out)
@@ -86,7 +91,7 @@ contains
       integer, intent(in) :: element
       type(scheme_t), intent(in) :: scheme
       type(state_t), intent(in) :: old, new
-      type(kinematics_t), intent(out) :: k(domain%rule)
+      type(kinematics_t), intent(inout) :: k(:)   !< As many as points, or more.
       real(wp) :: x0(FIELDS, 6), x1(FIELDS, 6), v(FIELDS, 6), a(2, 6)
       integer :: g, node(6)
 

@@ -6,7 +6,7 @@ module effect_facts
    use effect_types, only: effect_t, UNBOUNDED
    use model_types, only: model_t
    use unknown_fields, only: AT_P_C
-   use material_point, only: response_t
+   use material_point, only: response_t, report_t
    implicit none (type, external)
    private
    public :: facts_t, gather, judge, PLASTIC, ROUNDING
@@ -39,6 +39,7 @@ contains
       type(linearised_body_t), intent(in) :: body
       type(facts_t), intent(inout) :: facts
       type(response_t) :: response
+      type(report_t) :: report
       real(wp) :: n, p_c, slope(3), no_strain(6, 1), new(model%domain%n_state, 1)
       integer :: e, g, i, p
 
@@ -57,9 +58,9 @@ contains
                   facts%rho = max(facts%rho, (1 - n)*region%rho_s + merge(n*m%fluids%rho_w, 0.0_wp, m%with_w))
                   p_c = dot_product(m%gauss(g, e)%m(:m%n_p), s%x(AT_P_C, m%mesh%t6(:m%n_p, e)))
                   call law%update(1, s%stress(:, p:p), s%state(:, p:p), no_strain, [p_c], [0.0_wp], .true., &
-                                  response, new)
+                                  response, new, report)
                   slope = [(response%dsig_deps(i, i, 1), i=1, 3)]
-                  if (response%report%code /= 0) slope = 0.0_wp
+                  if (report%code /= 0) slope = 0.0_wp
                   facts%m_min = min(facts%m_min, minval(slope))
                   facts%m_max = max(facts%m_max, maxval(slope))
                   if (law%has_energy) cycle

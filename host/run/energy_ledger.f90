@@ -118,14 +118,15 @@ contains
       type(dofs_t), intent(in) :: dofs
       real(wp), intent(in) :: mass(:)
       type(state_t), intent(in) :: state
-      real(wp) :: v(2), n
+      real(wp) :: nodal(DISPLACEMENTS, 6), v(DISPLACEMENTS), n
       integer :: e, g, p, i
 
       energy = 0.0_wp
       do e = 1, size(domain%mesh%t6, 2)
+         nodal = state%v(:DISPLACEMENTS, domain%mesh%t6(:, e))
          do g = 1, domain%rule
             p = (e - 1)*domain%rule + g
-            v = matmul(state%v(:DISPLACEMENTS, domain%mesh%t6(:, e)), domain%gauss(g, e)%n)
+            v = matmul(nodal, domain%gauss(g, e)%n)
             n = state%e(p)/(1 + state%e(p))
             energy = energy + 0.5_wp*domain%gauss(g, e)%weight*dot_product(v, v) &
                      *mixture_density(domain, domain%regions(domain%region_of(e))%rho_s, n, state%s(p))
