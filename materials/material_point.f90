@@ -29,8 +29,8 @@ module material_point
       real(wp) :: reached = 1.0_wp         !< Share of the increment that was integrated.
    end type report_t
 
-   !> Answers of a batch, as many columns as there are points. Tangent blocks only where they were asked for. No component
-   !> has a default: it would be paid for with the whole of the type at every batch.
+   !> Answers of a batch, as many columns as there are points. Tangent blocks only where they were asked for. No
+   !> component has a default: it would be paid for with the whole of the type at every batch.
    type :: response_t
       real(wp) :: stress(6, MOST_POINTS)          !< sigma' [kPa]
       real(wp) :: dsig_deps(6, 6, MOST_POINTS)    !< d sigma'/d strain [kPa]

@@ -17,7 +17,7 @@ HEAD = re.compile(r"(?:[\w()*, =]+\s)?(subroutine|function)\s+(\w+)\s*(?:\(|$)",
 END = re.compile(r"end (?:subroutine|function) (\w+)", re.IGNORECASE)
 READER = re.compile(r"\bcsv\.(reader|DictReader)\b|\b(loadtxt|genfromtxt|read_csv)\b|\.split\([\"'],[\"']\)")
 # Words of earlier versions: elastic domain, reset of the memory, did not converge, docs/theory/FILE.md, porous balance.
-OLD_WORDS = re.compile(r"nucleus|re-?seat|\b(goes|went) astray|theory page|\bfe_point\b", re.IGNORECASE)
+OLD_WORDS = re.compile(r"nucleus|re-?seat|\b(goes|went) astray|theory[ ]page|\bfe_point\b", re.IGNORECASE)
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
 TOPS = "common|umat|materials|host|drivers|tests|verification|scripts|docs|benchmarks|cmake"
 PLACE = re.compile(rf"`((?:{TOPS})/[\w./-]+)`")

@@ -1,6 +1,7 @@
 """Scenes of nonsense: a clear refusal or a run, never a crash.
 
-1000 scenes in the check run (fewer in the slow builds, which only read them); `MUD_NONSENSE=100000` for a long run, `MUD_NONSENSE_FIRST` for where it begins.
+1000 scenes in the check run (fewer in the slow builds, which only read them); `MUD_NONSENSE=100000` for a long run,
+`MUD_NONSENSE_FIRST` for where it begins.
 """
 import concurrent.futures
 import os
@@ -14,7 +15,8 @@ from checking import add, build, check, finish, light, root, work  # noqa: E402
 from nonsense import Grammar  # noqa: E402
 
 HOST = build / "host/mud_host"
-CODES = {0, *map(int, re.findall(r"^\| (\d+) \|", (root / "host/README.md").read_text(encoding="utf-8").split("## Exit codes")[1], re.MULTILINE))}
+TABLE = (root / "host/README.md").read_text(encoding="utf-8").split("## Exit codes")[1]
+CODES = {0, *map(int, re.findall(r"^\| (\d+) \|", TABLE, re.MULTILINE))}
 CRASH = re.compile(r"Fortran runtime error|Backtrace|Sanitizer|runtime error:|SIG[A-Z]+|terminate called")
 SECONDS = 2   # a scene that still runs then is a run
 ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1"}
@@ -26,7 +28,8 @@ def bases():
     """Scenes that work and take little: drained, coupled, with contact, with MUD at suction."""
     names = ("cylinder/scene.nml", "terzaghi/scene.nml", "contact/fall.nml", "element/suction.nml")
     folder = root / "verification/host"
-    return [re.sub(r"'(\.\.[^']*)'", lambda m, at=(folder / name).parent: f"'{at / m[1]}'", (folder / name).read_text(encoding="utf-8"))
+    return [re.sub(r"'(\.\.[^']*)'", lambda m, at=(folder / name).parent: f"'{at / m[1]}'",
+                   (folder / name).read_text(encoding="utf-8"))
             for name in names]
 
 
@@ -39,7 +42,8 @@ def judged(number, text):
     # Reading and building alone for nine of ten; the slow builds trap overflow, which nonsense may well reach in a run.
     check_only = ("--check",) if light or number % 10 else ()
     try:
-        done = subprocess.run([HOST, scene, "--output", folder / "out", "--quiet", *check_only], capture_output=True, timeout=SECONDS * (30 if check_only else 1),
+        done = subprocess.run([HOST, scene, "--output", folder / "out", "--quiet", *check_only], capture_output=True,
+                              timeout=SECONDS * (30 if check_only else 1),
                               env=ENVIRONMENT, cwd=folder, stdin=subprocess.DEVNULL)
     except subprocess.TimeoutExpired:
         return "reading hangs" if check_only else ""
@@ -55,7 +59,8 @@ def judged(number, text):
 
 def main():
     grammar = Grammar(subprocess.run([HOST, "--template"], capture_output=True, text=True, check=True).stdout)
-    check("the grammar has the groups of the template", len(grammar.groups) > 15 and len(grammar.words) > 15, f"{grammar.groups.keys()}")
+    check("the grammar has the groups of the template", len(grammar.groups) > 15 and len(grammar.words) > 15,
+          f"{grammar.groups.keys()}")
     texts = bases()
     passed = failed = 0
     with concurrent.futures.ThreadPoolExecutor(2) as pool:

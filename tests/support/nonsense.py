@@ -1,13 +1,18 @@
-"""Scenes of nonsense: a scene that works with some of its text replaced by a grammar's choice, or groups and keys thrown together.
+"""Scenes of nonsense: a scene that works with some of its text replaced by a grammar's choice, or groups and keys
+thrown together.
 
-The grammar is what `mud_host --template` prints: its groups, keys, words and ranges of numbers. Every scene hangs on its number alone.
+The grammar is what `mud_host --template` prints: its groups, keys, words and ranges of numbers. Every scene hangs
+on its number alone.
 """
 import random
 import re
 
-NUMBERS = ("0", "-0.0", "1", "-1", "2", "3", "7", "0.5", "1e-3", "1e3", "-1e-9", "1e9", "1e30", "-1e30", "1e308", "1e-320", "1e400", "nan", "inf",
-           "-inf", "1e", "--1", "1.2.3", "2**3", "3*1.0", "1000*1", "0x10", "1d0", "99999999999", "2147483648", "yes", "'word'", "", "/", "&", "!", "=")
-WORDS = ("''", "'all'", "'none'", "'yes'", "'no'", "'maybe'", "'u_z'", "'p_w'", "'p_c'", "'top'", "'left'", "'sand'", "'dynamic'", "'static'", "'é'",
+NUMBERS = ("0", "-0.0", "1", "-1", "2", "3", "7", "0.5", "1e-3", "1e3", "-1e-9", "1e9", "1e30", "-1e30", "1e308",
+           "1e-320", "1e400", "nan",
+           "inf", "-inf", "1e", "--1", "1.2.3", "2**3", "3*1.0", "1000*1", "0x10", "1d0", "99999999999",
+           "2147483648", "yes", "'word'", "", "/", "&", "!", "=")
+WORDS = ("''", "'all'", "'none'", "'yes'", "'no'", "'maybe'", "'u_z'", "'p_w'", "'p_c'", "'top'",
+         "'left'", "'sand'", "'dynamic'", "'static'", "'é'",
          "'../../etc'", "'" + 300 * "x" + "'", "'unclosed", '"double"', "1", "nan", "'a' 'b'", "'a', 'b'", "word")
 
 
@@ -40,7 +45,8 @@ class Grammar:
         return f"&{name} " + " ".join(f"{key} = {self.value(dice, name, key)}" for key in keys) + " /\n"
 
     def scene(self, number, bases):
-        """The text of scene `number`: one in eight is thrown together, the others are one of `bases` with odd numbers or mistakes."""
+        """The text of scene `number`: one in eight is thrown together, the others are one of `bases` with odd numbers
+        or mistakes."""
         dice = random.Random(number)
         if dice.random() < 0.125:
             return "".join(self.group(dice) for _ in range(dice.randint(0, 12)))
@@ -58,7 +64,8 @@ class Grammar:
         found = dice.choice(list(re.finditer(r"(?<=[=\s,])-?\d+\.?\d*(?:[eE][-+]?\d+)?(?=[\s,/])", text)))
         value = float(found[0]) * dice.choice((-1, 0, 1, 1, 1, 1)) * 10.0 ** dice.choice((-9, -3, -1, 1, 1, 3, 6))
         whole = "." not in found[0] and "e" not in found[0].lower()
-        return text[:found.start()] + (str(int(value)) if whole and abs(value) >= 1 else f"{value:g}") + text[found.end():]
+        odd = str(int(value)) if whole and abs(value) >= 1 else f"{value:g}"
+        return text[:found.start()] + odd + text[found.end():]
 
     def mistake(self, dice, text):
         lines = text.splitlines(keepends=True)

@@ -45,8 +45,8 @@ contains
    !> (MUD_NO_PNEWDT=keep leaves the old stress), and its old state.
    subroutine vumat(nblock, ndir, nshr, nstatev, nfieldv, n_props, lanneal, step_time, total_time, dt, cmname, &
                     coord_mp, char_length, props, density, strain_inc, rel_spin_inc, temp_old, stretch_old, &
-                    defgrad_old, field_old, stress_old, state_old, ener_intern_old, ener_inelas_old, temp_new, stretch_new, &
-                    defgrad_new, field_new, stress_new, state_new, ener_intern_new, ener_inelas_new) &
+                    defgrad_old, field_old, stress_old, state_old, ener_intern_old, ener_inelas_old, temp_new, &
+                    stretch_new, defgrad_new, field_new, stress_new, state_new, ener_intern_new, ener_inelas_new) &
       bind(c, name='vumat_')
       type(c_ptr), value :: nblock, ndir, nshr, nstatev, nfieldv, n_props, lanneal, step_time, total_time, dt, cmname, &
                             coord_mp, char_length, props, density, strain_inc, rel_spin_inc, temp_old, stretch_old, &
