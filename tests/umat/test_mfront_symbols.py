@@ -5,6 +5,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 
 root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2])
 build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
@@ -122,10 +123,49 @@ def both_show_the_same():
           {name.replace("StressSaturation_", "") for name in wet} == shown - wet, shown)
 
 
+class View(ctypes.Structure):
+    """A point as MGIS hands it over: message, dt, K, rdt, speed of sound, and eight arrays of each state."""
+    _fields_ = [("message", ctypes.c_void_p), ("dt", ctypes.c_double), ("rest", ctypes.c_void_p * 19)]
+
+
+def fail():
+    """An increment that is too hard; prints what the host sees."""
+    mud = ctypes.CDLL(str(library))
+    n, m = mud.mud_count(1), mud.mud_count(2)
+    numbers = {"k": (ctypes.c_double * 36)(4.0), "rdt": ctypes.c_double(1.0), "g0": (ctypes.c_double * 6)(),
+               "g1": (ctypes.c_double * 6)(-0.02, 0.01, 0.01), "f0": (ctypes.c_double * 6)(-100, -100, -100),
+               "f1": (ctypes.c_double * 6)(), "props": (ctypes.c_double * n)(), "v0": (ctypes.c_double * m)(),
+               "v1": (ctypes.c_double * m)()}
+    mud.mud_default_props(numbers["props"], n)
+    numbers["props"][mud.mud_index(1, b"max_substeps")] = 3.0
+    message = ctypes.create_string_buffer(512)
+    at = {word: ctypes.addressof(value) for word, value in numbers.items()}
+    view = View(ctypes.addressof(message), 1.0, (ctypes.c_void_p * 19)(
+        at["k"], at["rdt"], None, at["g0"], at["f0"], None, at["props"], at["v0"], None, None, None,
+        at["g1"], at["f1"], None, at["props"], at["v1"], None, None, None))
+    print(mud.MUD_Tridimensional(ctypes.byref(view)), numbers["rdt"].value < 0.6, message.value.decode())
+
+
+def failures_are_heard_and_saved():
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([sys.executable, __file__, "fail"], capture_output=True, text=True,
+                              env={**os.environ, "MUD_SAVE_FAILED": folder, "MUD_MESSAGES": ""})
+        saved = [path.name for path in pathlib.Path(folder).iterdir()]
+    check("the host gets code, factor and sentence", done.stdout.startswith("-1 True MUD: too many substeps"),
+          done.stdout)
+    check("a host that drops the sentence is heard all the same", "MUD: MFront refused the increment" in done.stderr
+          and "too many substeps" in done.stderr, done.stderr)
+    check("the increment is saved", saved == ["mud_failed_too_many_substeps.txt"], saved)
+
+
+if sys.argv[1:] == ["fail"]:
+    fail()
+    sys.exit()
 both_show_the_same()
 if preset == "sanitize":
     print("note: a sanitized library is not loaded into a plain Python; test_mfront calls it (one check here)")
 else:
     main()
+    failures_are_heard_and_saved()
 print(f"{passed} passed, {failed} failed")
 sys.exit(failed > 0)

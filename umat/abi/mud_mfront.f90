@@ -7,6 +7,7 @@ module mud_mfront
    use mud_kinds, only: wp
    use mud_messages, only: report_text
    use mud_params, only: params_t, read_params
+   use mud_refusals, only: place_t, say_refusal, save_if_asked
    use mud_registry, only: NPROPS, NSTATV, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION
    use mud_retention, only: saturation_t, saturation
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_INPUT, MUD_BAD_OPTION, ON_ARGUMENT, &
@@ -24,6 +25,7 @@ module mud_mfront
    real(wp), parameter :: SHEAR = sqrt(2.0_wp)                !< Mandel's factor.
    real(wp), parameter :: MANDEL(6) = [1.0_wp, 1.0_wp, 1.0_wp, SHEAR, SHEAR, SHEAR]
    real(wp), parameter :: WITH_SPEED_OF_SOUND = 50.0_wp       !< K(1) above it asks for the speed of sound too.
+   character(*), parameter :: DOOR = 'MFront'                 !< What a sentence calls the interface.
    integer, parameter :: NONE = 0, ELASTIC = 1, CONTINUUM = 2, CONSISTENT = 3
 
    !> A state of a point as MGIS hands it over, in its order.
@@ -130,6 +132,7 @@ contains
       if (report%status == MUD_OK) return
       outcome = FAILED
       call put('MUD: '//report_text(report), view%error_message, MESSAGE_ROOM)
+      call say_refusal(report, place_t(DOOR), '')   ! hosts drop the message
       if (.not. c_associated(view%rdt)) return
       call c_f_pointer(view%rdt, factor)
       factor = min(factor, report%pnewdt)
@@ -172,7 +175,11 @@ contains
          call kernel_point(par, stress, point%state0, strain, suction(1), suction(2) - suction(1), kind_of(request), &
                            output, report)
       end if
-      if (report%status /= MUD_OK) return
+      if (report%status /= MUD_OK) then
+         call save_if_asked(point%props, stress, point%state0, strain, suction(1), suction(2) - suction(1), &
+                            place_t(DOOR), report)
+         return
+      end if
       if (request >= -0.5_wp) then
          point%state1(1:NSTATV) = output%statev
          stress = output%stress

@@ -7,8 +7,9 @@
  *
  * Every array is the caller's. Nothing is allocated, printed or kept between calls; calls are thread-safe. No file is
  * read or written, but for mud_save_increment and what MUD_SAVE_FAILED asks of umat_ (see "failed increments" below).
- * umat_ alone prints: each distinct refusal once a process, on standard error (MUD_MESSAGES=off silences), and alone
- * returns a NaN, in STRESS, where it refuses and PNEWDT is NULL (MUD_NO_PNEWDT=keep leaves STRESS).
+ * umat_, vumat_, user_mod_ and MFront's behaviours alone print: each distinct refusal once a process, on standard error
+ * (MUD_MESSAGES=off silences). umat_ where PNEWDT is NULL, and vumat_, alone return a NaN, in the stress of a point
+ * that they refuse (MUD_NO_PNEWDT=keep leaves the stress).
  * Functions return MUD_OK (0), a negative code (the caller's mistake) or a positive one (a hard increment: cut it).
  * Text goes into the caller's buffer of `len` bytes, cut to fit and always terminated; a NULL buffer is allowed.
  */
