@@ -7,7 +7,7 @@ module namelists
    use texts, only: lower_case, whole
    implicit none (type, external)
    private
-   public :: entry_t, group_t, read_groups, groups_of_text, find_entry, MAX_VALUES, LENGTH
+   public :: entry_t, group_t, read_groups, groups_of_text, find_entry, set_entry, MAX_VALUES, LENGTH
 
    integer, parameter :: LENGTH = 256      !< Longest key, value or path.
    integer, parameter :: MAX_VALUES = 1000   !< Longest list of values.
@@ -298,4 +298,23 @@ contains
       end do
       place = 0
    end function find_entry
+
+   !> Gives a key one value, in place of those that it had.
+   pure subroutine set_entry(group, key, value)
+      type(group_t), intent(inout) :: group
+      character(*), intent(in) :: key, value
+      type(entry_t) :: entry
+
+      entry%key = key
+      entry%line = group%line
+      entry%count = 1
+      allocate (entry%values(1))
+      entry%values = value
+      if (find_entry(group, key) > 0) then
+         group%entries(find_entry(group, key)) = entry
+      else
+         group%entries = [group%entries(:group%count), entry]
+         group%count = group%count + 1
+      end if
+   end subroutine set_entry
 end module namelists

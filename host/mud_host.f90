@@ -2,6 +2,7 @@
 program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit, int64
    use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
+   use answer_errors, only: write_answers, print_answers
    use blas_in_use, only: blas_t, find_blas
    use checkpoints, only: read_checkpoint
    use wall_clock, only: clock
@@ -25,13 +26,14 @@ program mud_host
    use texts, only: short, whole
    implicit none (type, external)
    character(*), parameter :: USAGE = 'usage: mud_host SCENE.nml [--output FOLDER] [--restart CHECKPOINT] '// &
-                              '[--quiet] [--check] | --template'
-   type(option_t) :: options(6) = [ &
+                              '[--accuracy SHARE] [--quiet] [--check] | --template'
+   type(option_t) :: options(7) = [ &
       option_t('--help', letter='-h', answers=.true.), &
       option_t('--template', answers=.true.), &
       option_t('--quiet'), &
       option_t('--check'), &
       option_t('--output', 'a folder'), &
+      option_t('--accuracy', 'a share, as 1e-2'), &
       option_t('--restart', 'a checkpoint')]
    character(WORD_LENGTH) :: file
    character(:), allocatable :: folder, restart
@@ -62,7 +64,7 @@ program mud_host
       if (restart /= '') folder = folder_of(restart)
    end if
    t0 = clock()
-   if (fault%code == 0) call read_scene(trim(file), scene, fault)
+   if (fault%code == 0) call read_scene(trim(file), scene, fault, option_value(options, '--accuracy'))
    if (fault%code == 0) call build_model(scene, model, fault)
    if (fault%code == 0) call prepare_run(model, run, fault)
    if (fault%code == 0 .and. .not. quiet) call announce()
@@ -74,6 +76,10 @@ program mud_host
       output%resume = restart /= ''
       if (output%resume) call read_checkpoint(restart, model, run, output%tables, fault)
       if (fault%code == 0) call run_stages(model, run, fault, output)
+      if (fault%code == 0 .and. allocated(run%control%x_first)) then
+         call write_answers(folder, model, run%control, fault)
+         if (.not. quiet) call print_answers(output_unit, model, run%control)
+      end if
    end if
    if (.not. (quiet .or. only_check) .and. run%steps > 0) call account()
    ! A main program's variables are not freed at its end; a leak checker would report these two.
@@ -84,10 +90,12 @@ program mud_host
    end if
 contains
    subroutine print_help()
-      character(*), parameter :: LINES(6) = [character(100) :: &
+      character(*), parameter :: LINES(8) = [character(100) :: &
          '  --output FOLDER       where files go, made if missing; default: output, with --restart that of the', &
          '                        checkpoint', &
          '  --restart CHECKPOINT  goes on from a checkpoint of the same scene', &
+         '  --accuracy SHARE      relative error wanted in the histories of the points; in place of the key', &
+         '                        accuracy of &scene', &
          '  --check               reads and checks scene and checkpoint, runs nothing', &
          '  --quiet               prints errors only', &
          '  --template            prints every group and key of a scene']

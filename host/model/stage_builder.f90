@@ -41,7 +41,10 @@ contains
             do k = 1, size(model%contacts)
                touching = touching .or. acts_in(model%contacts(k)%stages, stage%name)
             end do
-            stage%rho_inf = merge(OPENING, SMOOTH, stage%kind == DYNAMIC .and. touching)
+            stage%rho_inf = SMOOTH
+            if (stage%kind == DYNAMIC .and. touching) stage%rho_inf = OPENING
+            ! Long steps of a flow: what they do not resolve is to go.
+            if (stage%kind == QUASI_STATIC .and. stage%controlled) stage%rho_inf = OPENING
          end associate
       end do
    end subroutine choose_schemes

@@ -6,6 +6,7 @@ module checkpoints
    use mud_interface, only: mud_version
    use kinds, only: wp
    use run_state, only: run_t
+   use control_state, only: new_control_state, numbers_of, take_numbers, count_of_numbers
    use degrees_of_freedom, only: dofs_t
    use energy_ledger, only: ledger_t
    use output_tables, only: tables_t, settle_tables
@@ -73,6 +74,8 @@ contains
       end associate
       if (model%effect_options%auto) call put(file, 'monitor', [run%monitor%table%largest, run%monitor%table%crossed, &
          run%monitor%memory], '-', 'indicators of the effects that are off, when they crossed [s], extremes')
+      if (allocated(run%control%x_first)) call put(file, 'control', numbers_of(run%control), '-', &
+         'control of the time step: see control_state')
       if (pairs_of(run) > 0) call put(file, 'pairs', reshape(run%system%contacts%extra, [2*pairs_of(run)]), '-', &
                                       'pairs of unknowns that contacts brought into the matrix')
       call write_file(file, tables%folder//'/'//CHECKPOINT, good)
@@ -122,6 +125,7 @@ contains
          call get(file, 's', run%state%s)
          call get(file, 's_rate', run%state%s_rate)
          if (file%good .and. model%effect_options%auto) call take_monitor(file, run)
+         if (any(model%stages(:nint(counters(1)))%controlled)) call take_control(file, model, run)
          if (file%good .and. counters(N_COUNTERS) > 0.5_wp) &
             call take_pairs(file, nint(counters(N_COUNTERS)), model%dofs, run)
          if (file%good) then
@@ -142,6 +146,20 @@ contains
       end if
       call close_file(file)
    end subroutine read_checkpoint
+
+   !> The control of the time step.
+   subroutine take_control(file, model, run)
+      type(h5_t), intent(inout) :: file
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      real(wp), allocatable :: list(:)
+
+      if (.not. file%good) return
+      run%control = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(model%points))
+      allocate (list(count_of_numbers(run%control)))
+      call get(file, 'control', list)
+      if (file%good) call take_numbers(list, run%control)
+   end subroutine take_control
 
    !> What was seen of the effects that are off.
    subroutine take_monitor(file, run)

@@ -21,6 +21,8 @@ module run_output
    private
    public :: run_output_t
 
+   real(wp), parameter :: ON_TIME = 1.0e-6_wp   !< Distance from a time of output, share of output_dt, that is rounding.
+
    type, extends(run_observer_t) :: run_output_t
       character(:), allocatable :: folder
       logical :: quiet = .false.
@@ -75,7 +77,11 @@ contains
             if (fault%code == 0) call write_reactions(self%tables, model, run, report%dt, fault)
          end if
          if (fault%code /= 0) return
-         if (stage%fields > 0 .and. .not. report%last) then
+         if (stage%output_dt > 0.0_wp .and. .not. report%last) then
+            if (abs((run%state%time - run%at%t_start)/stage%output_dt - anint((run%state%time - run%at%t_start) &
+                /stage%output_dt)) < ON_TIME) call write_frame(self%folder, model%domain, run%state, &
+                                                               self%tables%frames, fault)
+         else if (stage%fields > 0 .and. .not. report%last) then
             if (mod(step, stage%fields) == 0) &
                call write_frame(self%folder, model%domain, run%state, self%tables%frames, fault)
          end if

@@ -14,6 +14,7 @@ module step_attempt
    use newton_step, only: take_step, start_accelerations, CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
    use run_state, only: run_t, stage_state_t
    use step_failure, only: explain_failure
+   use step_size, only: begin_control, prepare_rates, judge_step, shorten_step
    implicit none (type, external)
    private
    public :: begin_stage, try_step
@@ -30,6 +31,7 @@ contains
          if (fault%code /= 0) return
          run%system%factored = .false.
          call begin_stage_of_monitor(run%monitor)
+         call begin_control(model, stage, run)
          if (stage%kind == DYNAMIC .and. stage%solve_start) call first_accelerations(model, stage, run, fault)
          if (fault%code /= 0) return
          run%ledger%kinetic_0 = run%ledger%kinetic_0 + kinetic_energy(model%domain, model%dofs, run%constraint%mass, &
@@ -53,12 +55,16 @@ contains
       run%constraint%load_1 = load_at(model, stage, model%dofs, run%state%time + dt)
       call prescribe(model, stage, run%state%time + dt, run, fault)
       if (fault%code /= 0) return
+      call prepare_rates(stage, dt, run)
       call take_step(model%domain, model%dofs, run%pattern, make_scheme(stage%kind, stage%rho_inf, dt), &
                      run%constraint, control, run%state, run%next, run%assembly, run%system, log)
       run%iterations = run%iterations + log%iterations
       run%rate_evaluations = run%rate_evaluations + log%rate_evaluations
       accepted = log%outcome == CONVERGED
-      if (accepted) return
+      if (accepted) then
+         call judge_step(model, stage, dt, run, accepted)
+         return
+      end if
       associate (at => run%at)
          run%cuts = run%cuts + 1
          at%cuts = at%cuts + 1
@@ -70,6 +76,7 @@ contains
          end if
          ! Nothing of the failed step is kept: the next attempt starts from run%state alone.
          at%factor = at%factor*merge(min(run%assembly%bad%factor, 0.5_wp), 0.5_wp, log%outcome == MATERIAL_FAILED)
+         call shorten_step(stage, dt, run)
       end associate
    end subroutine try_step
 

@@ -4,15 +4,17 @@ module step_booking
    use kinds, only: wp
    use wall_clock, only: clock, lap
    use contact_interfaces, only: work_of_contacts
+   use effect_monitor, only: monitor_step, warning_of
    use energy_alarm, only: check_creation, tell_creation
    use energy_ledger, only: book_step, book_creation, imbalance
    use generalised_alpha, only: scheme_t
    use linear_system, only: T_CONTACT
    use model_types, only: model_t
+   use run_observer, only: run_observer_t, step_report_t
    use run_state, only: run_t
    implicit none (type, external)
    private
-   public :: book_accepted_step, check_creation, tell_creation
+   public :: book_accepted_step, watch_effects, check_creation, tell_creation
 contains
    subroutine book_accepted_step(model, scheme, run)
       type(model_t), intent(in) :: model
@@ -32,4 +34,20 @@ contains
       end if
       call book_creation(scheme, run%ledger)
    end subroutine book_accepted_step
+
+   !> Monitors a step that is accepted but not yet taken over, and warns.
+   subroutine watch_effects(model, report, run, observer)
+      type(model_t), intent(in) :: model
+      type(step_report_t), intent(in) :: report
+      type(run_t), intent(inout) :: run
+      class(run_observer_t), intent(inout), optional :: observer
+      logical :: news(size(run%monitor%table))
+      integer :: i
+
+      call monitor_step(model, report%stage, report%dt, report%last, run%ledger, run%state, run%next, run%monitor, news)
+      if (.not. present(observer)) return
+      do i = 1, size(news)
+         if (news(i)) call observer%warn(warning_of(model, run%monitor%table(i)))
+      end do
+   end subroutine watch_effects
 end module step_booking

@@ -5,7 +5,6 @@ module time_stepping
    use faults, only: fault_t
    use contact_setup, only: contacts_act
    use convergence, only: control_t, log_t
-   use effect_monitor, only: monitor_step, warning_of
    use generalised_alpha, only: scheme_t, make_scheme, step_error
    use model_types, only: model_t
    use porous_domain, only: copy_state
@@ -13,13 +12,13 @@ module time_stepping
    use run_state, only: run_t
    use sparse_factors, only: release
    use step_attempt, only: begin_stage, try_step
-   use step_booking, only: book_accepted_step, check_creation, tell_creation
+   use step_size, only: next_step, keep_step, is_over, LAST_STEP
+   use step_booking, only: book_accepted_step, watch_effects, check_creation, tell_creation
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
    public :: run_stages
 
-   real(wp), parameter :: LAST_STEP = 1.0e-6_wp   !< A rest of a stage below this share of a step is rounding.
    integer, parameter :: GOOD_STEPS = 2           !< Accepted steps in a row after which a cut step grows back.
 contains
    !> All stages, from where the run stands.
@@ -62,7 +61,7 @@ contains
       class(run_observer_t), intent(inout), optional :: observer
       type(control_t) :: control
       type(log_t) :: log
-      real(wp) :: dt, left
+      real(wp) :: dt
       logical :: accepted
 
       associate (stage => model%stages(number), at => run%at)
@@ -72,10 +71,8 @@ contains
          if (at%stage /= number) call begin_stage(model, number, run, fault)
          if (fault%code /= 0) return
          do
-            left = at%t_start + stage%duration - run%state%time
-            dt = at%nominal*at%factor
-            if (left <= LAST_STEP*dt) exit
-            if (dt > left*(1 - LAST_STEP)) dt = left
+            if (is_over(stage, run)) exit
+            dt = next_step(model, stage, run)
             call try_step(model, stage, control, dt, run, log, accepted, fault)
             if (fault%code == 0 .and. accepted) call close_step(model, number, dt, log, run, fault, observer)
             if (fault%code /= 0) return
@@ -113,8 +110,9 @@ contains
          report = step_report_t(number, dt, step_error(scheme, run%state%x, run%state%a, run%next%x, run%next%a), &
                                 at%t_start + stage%duration - run%next%time <= LAST_STEP*dt, log)
          if (model%effect_options%auto) call watch_effects(model, report, run, observer)
+         call keep_step(model, stage, dt, run)
          call copy_state(run%next, run%state)
-         at%nominal = min(at%nominal*stage%dt_growth, max(stage%dt_max, stage%dt))
+         if (.not. stage%controlled) at%nominal = min(at%nominal*stage%dt_growth, max(stage%dt_max, stage%dt))
          at%good = at%good + 1
          if (at%good >= GOOD_STEPS .and. at%factor < 1.0_wp) then
             at%factor = min(1.0_wp, 2*at%factor)
@@ -131,20 +129,4 @@ contains
       end if
       call check_creation(model%stages(number), run%state%time, run%ledger, fault)
    end subroutine close_step
-
-   !> Monitors a step that is accepted but not yet taken over, and warns.
-   subroutine watch_effects(model, report, run, observer)
-      type(model_t), intent(in) :: model
-      type(step_report_t), intent(in) :: report
-      type(run_t), intent(inout) :: run
-      class(run_observer_t), intent(inout), optional :: observer
-      logical :: news(size(run%monitor%table))
-      integer :: i
-
-      call monitor_step(model, report%stage, report%dt, report%last, run%ledger, run%state, run%next, run%monitor, news)
-      if (.not. present(observer)) return
-      do i = 1, size(news)
-         if (news(i)) call observer%warn(warning_of(model, run%monitor%table(i)))
-      end do
-   end subroutine watch_effects
 end module time_stepping

@@ -32,6 +32,8 @@ module scene_keys
       key_t('scene', 'saturation_rate', 'w', 'full', 0, 0, &
             'rate of saturation with dS_w/de, or by suction alone', 'full|suction'), &
       key_t('scene', 'initial_flow', 'w', 'drain', 0, 0, 'subtract: flow at the start is kept up', 'drain|subtract'), &
+      key_t('scene', 'accuracy', 'n', NONE, 1.0e-8_wp, 0.5_wp, &
+            'relative error wanted in the histories of the points [-], see README'), &
       key_t('scene', 'threads', 'i', '0', 0, 1024, 'threads of the element loop; 0: OMP_NUM_THREADS'), &
       key_t('scene', 'factors', 'w', 'reuse', 0, 0, &
             'factors of the matrix: reused while they serve, or new in every iteration', 'reuse|fresh'), &
@@ -97,7 +99,10 @@ module scene_keys
       key_t('stage', 'analysis', 'w', NONE, 0, 0, &
             'kind of the stage; needed unless effects = ''auto''', 'static|quasi_static|dynamic'), &
       key_t('stage', 'duration', 'n', REQUIRED, TINY_, BIG, 'duration [s]'), &
-      key_t('stage', 'dt', 'n', REQUIRED, TINY_, BIG, 'time step [s]'), &
+      key_t('stage', 'dt', 'n', NONE, TINY_, BIG, 'time step [s]; where steps are controlled the first one'), &
+      key_t('stage', 'steps', 'w', NONE, 0, 0, &
+            'controlled: by their error; default with accuracy or without dt', 'given|controlled'), &
+      key_t('stage', 'output_dt', 'n', NONE, TINY_, BIG, 'controlled steps end at multiples of it, with fields [s]'), &
       key_t('stage', 'dt_growth', 'n', '1', 1, 10, 'factor on the step after every accepted one'), &
       key_t('stage', 'dt_max', 'n', NONE, TINY_, BIG, 'largest step with dt_growth [s]'), &
       key_t('stage', 'cuts', 'i', '10', 0, 40, 'how often a step may be halved'), &

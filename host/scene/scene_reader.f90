@@ -6,6 +6,7 @@ module scene_reader
    use namelists, only: group_t, read_groups, LENGTH
    use exit_codes, only: EXIT_GROUP
    use scene_fingerprint, only: fingerprint_of, sealed
+   use scene_accuracy, only: ask_accuracy, ask_steps, ask_stress
    use scene_amplitudes, only: read_amplitude
    use key_schema, only: get_text
    use scene_keys, only: check_keys, number_of, numbers_of, text_of, texts_of, word_is, word_number, given
@@ -17,14 +18,16 @@ module scene_reader
    private
    public :: read_scene
 contains
-   subroutine read_scene(file, scene, fault)
+   subroutine read_scene(file, scene, fault, accuracy)
       character(*), intent(in) :: file
       type(scene_t), intent(out) :: scene
       type(fault_t), intent(inout) :: fault
+      character(*), intent(in), optional :: accuracy   !< In place of that of the scene; empty: none.
       type(group_t), allocatable :: groups(:)
       integer :: i
 
       call read_groups(file, groups, fault)
+      if (present(accuracy) .and. fault%code == 0) call ask_accuracy(accuracy, groups)
       if (fault%code == 0) call check_keys(groups, fault)
       if (fault%code == 0) call check_names(groups, fault)
       if (fault%code == 0) call check_counts(file, groups, fault)
@@ -69,7 +72,10 @@ contains
             case ('point')
                call take_point(group, scene)
             case default
-               if (is_law(group%name)) call take_law(group, scene%materials)
+               if (is_law(group%name)) then
+                  call take_law(group, scene%materials)
+                  call ask_stress(scene%accuracy, scene%materials(size(scene%materials))%group)
+               end if
             end select
          end associate
       end do
@@ -169,6 +175,7 @@ contains
       scene%threads = nint(number_of(group, 'threads'))
       scene%reuse_factors = word_is(group, 'factors', 'reuse')
       scene%ordering = word_number(group, 'ordering')
+      if (given(group, 'accuracy')) scene%accuracy = number_of(group, 'accuracy')
       scene%checkpoint_steps = nint(number_of(group, 'checkpoint_steps'))
       scene%checkpoint_seconds = number_of(group, 'checkpoint_seconds')
       scene%checkpoint_end = word_is(group, 'checkpoint_end', 'yes')
@@ -235,13 +242,13 @@ contains
          at_line(group%file, group%line)//'&stage needs analysis (static, quasi_static or dynamic); '// &
          'effects = ''auto'' in &scene would derive it.')
       stage%duration = number_of(group, 'duration')
-      stage%dt = number_of(group, 'dt')
       stage%dt_growth = number_of(group, 'dt_growth')
       if (given(group, 'dt_max')) stage%dt_max = number_of(group, 'dt_max')
       stage%cuts = nint(number_of(group, 'cuts'))
       if (given(group, 'rho_inf')) stage%rho_inf = number_of(group, 'rho_inf')
       stage%created_energy = number_of(group, 'created_energy')
       stage%tolerance = number_of(group, 'tolerance')
+      call ask_steps(group, scene%accuracy, stage, fault)
       stage%measure_number = word_number(group, 'measure')
       stage%max_iterations = nint(number_of(group, 'max_iterations'))
       stage%every = nint(number_of(group, 'every'))

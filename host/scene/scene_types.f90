@@ -84,6 +84,9 @@ module scene_types
       character(NAME_LENGTH) :: name = ''
       integer :: analysis = 0                        !< IS_...; 0: to be derived.
       real(wp) :: duration = 0.0_wp, dt = 0.0_wp, dt_growth = 1.0_wp, dt_max = huge(1.0_wp)   !< [s, s, -, s]
+      logical :: controlled = .false.                 !< Steps are chosen from their error.
+      real(wp) :: accuracy = 0.0_wp                  !< Asked for, in the histories of the named points [-].
+      real(wp) :: output_dt = 0.0_wp                 !< Steps end at its multiples [s]; 0: none.
       integer :: cuts = 10
       real(wp) :: rho_inf = -1.0_wp, tolerance = 1.0e-3_wp   !< rho_inf below zero: not given.
       real(wp) :: created_energy = 0.01_wp           !< Share of the largest work that ends the run [-].
@@ -151,6 +154,7 @@ module scene_types
       integer :: threads = 0
       logical :: reuse_factors = .true.
       integer :: ordering = 1                        !< Of the unknowns: 1 amd, 2 metis, 3 best.
+      real(wp) :: accuracy = 0.0_wp                  !< Relative error wanted in the histories; 0: not asked for.
       integer :: checkpoint_steps = 0
       real(wp) :: checkpoint_seconds = 0.0_wp
       logical :: checkpoint_end = .false.

@@ -1,0 +1,111 @@
+!> What the control of the time step carries from one step to the next, and what it has seen so far.
+module control_state
+   use kinds, only: wp
+   use error_norms, only: rate_memory_t, new_memory
+   use step_control, only: controller_t
+   use unknown_fields, only: FIELDS
+   implicit none (type, external)
+   private
+   public :: control_state_t, new_control_state, numbers_of, take_numbers, count_of_numbers
+   public :: LIMITS, LIMIT_NAMES, BY_DISPLACEMENTS, BY_PRESSURE, BY_SUCTION, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
+
+   !> What kept a step from being longer.
+   integer, parameter :: LIMITS = 7
+   integer, parameter :: BY_DISPLACEMENTS = 1, BY_PRESSURE = 2, BY_SUCTION = 3, BY_TIMES = 4, BY_LARGEST = 5, &
+                         BY_SMALLEST = 6, BY_GROWTH = 7
+   character(30), parameter :: LIMIT_NAMES(LIMITS) = [character(30) :: 'error of the displacements', 'error of p_w', &
+      'error of p_c', 'times that steps end at', 'dt_max', 'smallest step', 'growth of the step']
+   integer, parameter :: SCALARS = 9
+
+   type :: control_state_t
+      type(controller_t) :: controller
+      type(rate_memory_t) :: memory
+      real(wp) :: t_sudden = 0.0_wp              !< Time of the last sudden change [s].
+      integer :: fresh = 0                       !< Accepted steps since then.
+      real(wp) :: start_up = 0.0_wp              !< Span in which changes are expected to grow yet [s].
+      integer :: rejected = 0                    !< Steps repeated because of their error, in the whole run.
+      real(wp) :: scale(FIELDS) = 0.0_wp         !< Largest change of the fields in the run [m, kPa].
+      real(wp) :: gathered(FIELDS) = 0.0_wp      !< Error of the fields that the steps have left [m, kPa].
+      real(wp) :: largest(FIELDS) = 0.0_wp       !< The largest so far.
+      real(wp) :: limits(LIMITS) = 0.0_wp        !< Steps by what kept them short.
+      ! Of the fields at the named points, (FIELDS, points).
+      real(wp), allocatable :: low(:, :), high(:, :), point_gathered(:, :), point_largest(:, :)
+      real(wp), allocatable :: x_first(:, :)     !< Unknowns at the start of the stage.
+   end type control_state_t
+contains
+   pure function new_control_state(nodes, points, named) result(state)
+      integer, intent(in) :: nodes, points, named   !< Nodes, quadrature points, named points.
+      type(control_state_t) :: state
+
+      state%memory = new_memory(FIELDS, nodes, points)
+      allocate (state%x_first(FIELDS, nodes), source=0.0_wp)
+      allocate (state%low(FIELDS, named), source=huge(1.0_wp))
+      allocate (state%high(FIELDS, named), source=-huge(1.0_wp))
+      allocate (state%point_gathered(FIELDS, named), state%point_largest(FIELDS, named), source=0.0_wp)
+   end function new_control_state
+
+   pure integer function count_of_numbers(state) result(n)
+      type(control_state_t), intent(in) :: state
+
+      n = SCALARS + 3*FIELDS + LIMITS + size(state%x_first) + size(state%memory%rate) &
+          + size(state%memory%s_rate) + 4*size(state%low)
+   end function count_of_numbers
+
+   !> Everything as one list, for a checkpoint.
+   pure function numbers_of(state) result(list)
+      type(control_state_t), intent(in) :: state
+      real(wp) :: list(count_of_numbers(state))
+
+      associate (c => state%controller, m => state%memory)
+         list = [c%dt, c%last_ratio, merge(1.0_wp, 0.0_wp, c%held), state%t_sudden, real(state%fresh, wp), &
+                 state%start_up, real(state%rejected, wp), merge(1.0_wp, 0.0_wp, m%known), m%dt, &
+                 state%scale, state%gathered, state%largest, state%limits, state%x_first, m%rate, &
+                 m%s_rate, state%low, state%high, state%point_gathered, state%point_largest]
+      end associate
+   end function numbers_of
+
+   !> The state again; its arrays must have their sizes.
+   subroutine take_numbers(list, state)
+      real(wp), intent(in) :: list(:)
+      type(control_state_t), intent(inout) :: state
+      integer :: at
+
+      associate (c => state%controller, m => state%memory)
+         c%dt = list(1)
+         c%last_ratio = list(2)
+         c%held = list(3) > 0.5_wp
+         state%t_sudden = list(4)
+         state%fresh = nint(list(5))
+         state%start_up = list(6)
+         state%rejected = nint(list(7))
+         m%known = list(8) > 0.5_wp
+         m%dt = list(9)
+         at = SCALARS
+         call take_row(state%scale)
+         call take_row(state%gathered)
+         call take_row(state%largest)
+         call take_row(state%limits)
+         call take(state%x_first)
+         call take(m%rate)
+         call take_row(m%s_rate)
+         call take(state%low)
+         call take(state%high)
+         call take(state%point_gathered)
+         call take(state%point_largest)
+      end associate
+   contains
+      subroutine take_row(values)
+         real(wp), intent(inout) :: values(:)
+
+         values = list(at + 1:at + size(values))
+         at = at + size(values)
+      end subroutine take_row
+
+      subroutine take(values)
+         real(wp), intent(inout) :: values(:, :)
+
+         values = reshape(list(at + 1:at + size(values)), shape(values))
+         at = at + size(values)
+      end subroutine take
+   end subroutine take_numbers
+end module control_state

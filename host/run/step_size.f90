@@ -1,0 +1,334 @@
+!> Length of the steps of a stage: given, or chosen from the error of each step so that what the steps leave in all
+!> stays below the accuracy asked for. docs/theory/host.md section 4.5.
+module step_size
+   use kinds, only: wp
+   use control_state, only: control_state_t, new_control_state, BY_DISPLACEMENTS, BY_PRESSURE, BY_SUCTION, BY_TIMES, &
+                            BY_LARGEST, BY_SMALLEST, BY_GROWTH
+   use error_norms, only: shift_rates, local_errors, remember, forget, rms
+   use generalised_alpha, only: scheme_t, make_scheme, STATIC, QUASI_STATIC, DYNAMIC
+   use model_types, only: model_t, stage_t
+   use run_state, only: run_t
+   use scene_types, only: acts_in
+   use step_control, only: new_controller, judge, LARGEST_FACTOR
+   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_Z, AT_P_W, AT_P_C
+   implicit none (type, external)
+   private
+   public :: begin_control, next_step, prepare_rates, judge_step, shorten_step, keep_step, is_over, LAST_STEP
+
+   real(wp), parameter :: LAST_STEP = 1.0e-6_wp   !< A rest of a span below this share of a step is rounding.
+   integer, parameter :: MOST_TIMES = 200         !< A load history with more breaks is a record: steps do not end there.
+   integer, parameter :: SETTLED = 3              !< Steps after a sudden change until rates tell of the error again.
+   real(wp), parameter :: START_UP_STEPS = 10.0_wp !< First steps in which changes are expected to grow yet.
+   real(wp), parameter :: EVENT = 0.01_wp         !< Least share of the allowance that a step may take: an impact or a
+                                                  !< change of contact is not resolved for its own sake.
+   real(wp), parameter :: KNOCK = 0.3_wp          !< The same of the pressures in a dynamic stage.
+   real(wp), parameter :: DYNAMIC_SHARE = 0.3_wp  !< Errors of a vibration stay and add up, those of a flow fade.
+   real(wp), parameter :: PEAK = 1.57_wp          !< Of a sine over the mean of its magnitude: errors of phase count there.
+   real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Of its change that the second step after a sudden load errs by: flow
+                                                  !< begins with the root of time.
+   real(wp), parameter :: SHORTEST = 1.0e-8_wp    !< Smallest step as a share of the stage.
+   real(wp), parameter :: PLATE_SHARE = 0.1_wp    !< Of the way of a plate, as a least scale of the soil's.
+   real(wp), parameter :: FLOOR = 1.0e-9_wp       !< Share of the largest value of a field that is no change of it.
+contains
+   !> A stage begins.
+   subroutine begin_control(model, stage, run)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(inout) :: run
+      integer :: rejected
+
+      if (.not. stage%controlled) return
+      associate (c => run%control)
+         if (.not. allocated(c%x_first)) then
+            c = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(model%points))
+         else if (model%stages(run%at%stage - 1)%zero_displacements) then
+            ! Displacements count anew: what was seen of them is of no answer.
+            rejected = c%rejected
+            c = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(model%points))
+            c%rejected = rejected
+         end if
+         c%x_first = run%state%x
+         c%controller = new_controller(first_step(model, stage, run))
+         c%start_up = START_UP_STEPS*c%controller%dt
+         call sudden(run%state%time, run)
+      end associate
+   end subroutine begin_control
+
+   !> First step: that of the scene, or a share of the span to the first break of what acts.
+   real(wp) function first_step(model, stage, run) result(dt)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(in) :: run
+      real(wp) :: span
+
+      if (stage%dt > 0.0_wp) then
+         dt = min(stage%dt, stage%dt_max)
+         return
+      end if
+      span = next_time(model, stage, run) - run%state%time
+      select case (stage%kind)
+      case (STATIC)
+         dt = span
+      case (QUASI_STATIC)
+         ! What a load leaves at once flows off with the root of time.
+         dt = span*min(0.01_wp, max(stage%accuracy**2, SHORTEST))
+      case default
+         dt = span*min(0.05_wp, 0.2_wp*sqrt(stage%accuracy))
+      end select
+      dt = min(dt, stage%dt_max)
+   end function first_step
+
+   subroutine sudden(time, run)
+      real(wp), intent(in) :: time
+      type(run_t), intent(inout) :: run
+
+      run%control%t_sudden = time
+      run%control%fresh = 0
+      call forget(run%control%memory)
+   end subroutine sudden
+
+   !> The next time that a step has to end at: a break of what acts, a support that comes or goes, a time of output,
+   !> the end of the stage [s].
+   real(wp) function next_time(model, stage, run) result(next)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(in) :: run
+      real(wp) :: now, close
+      integer :: i
+
+      now = run%state%time
+      next = run%at%t_start + stage%duration
+      close = LAST_STEP*min(stage%duration, max(run%control%controller%dt, SHORTEST*stage%duration))
+      do i = 1, size(model%amplitudes)
+         if (size(model%amplitudes(i)%times) > MOST_TIMES) cycle
+         next = min(next, minval(model%amplitudes(i)%times, mask=model%amplitudes(i)%times > now + close))
+      end do
+      do i = 1, size(model%fixes)
+         if (.not. acts_in(model%fixes(i)%stages, stage%name)) cycle
+         if (model%fixes(i)%from > now + close) next = min(next, model%fixes(i)%from)
+         if (model%fixes(i)%until > now + close) next = min(next, model%fixes(i)%until)
+      end do
+      if (stage%output_dt > 0.0_wp) next = min(next, run%at%t_start &
+         + stage%output_dt*(aint((now - run%at%t_start + close)/stage%output_dt) + 1))
+   end function next_time
+
+   !> Whether a stage has come to its end.
+   pure logical function is_over(stage, run)
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(in) :: run
+      real(wp) :: rounding
+
+      rounding = LAST_STEP*run%at%nominal*run%at%factor
+      if (stage%controlled) rounding = max(LAST_STEP*SHORTEST*stage%duration, 4*spacing(run%state%time))
+      is_over = run%at%t_start + stage%duration - run%state%time <= rounding
+   end function is_over
+
+   !> Length of the next attempt [s].
+   real(wp) function next_step(model, stage, run) result(dt)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(in) :: run
+      real(wp) :: left
+
+      dt = run%at%nominal*run%at%factor
+      left = run%at%t_start + stage%duration - run%state%time
+      if (.not. stage%controlled) then
+         if (dt > left*(1 - LAST_STEP)) dt = left
+         return
+      end if
+      dt = min(run%control%controller%dt, stage%dt_max)
+      left = next_time(model, stage, run) - run%state%time
+      if (dt > left*(1 - LAST_STEP)) then
+         dt = left
+      else if (2*dt > left) then
+         ! Two equal steps rather than a long one and a sliver.
+         dt = 0.5_wp*left
+      end if
+   end function next_step
+
+   !> Before an attempt: rates of the present state where the step expects them.
+   subroutine prepare_rates(stage, dt, run)
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: dt
+      type(run_t), intent(inout) :: run
+
+      if (.not. stage%controlled) return
+      call shift_rates(make_scheme(stage%kind, stage%rho_inf, dt), run%control%memory, run%state%v, &
+                       run%state%s_rate)
+   end subroutine prepare_rates
+
+   !> After a solution: whether its error lets it stand; the length of the next attempt follows from it.
+   subroutine judge_step(model, stage, dt, run, accepted)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: dt
+      type(run_t), intent(inout) :: run
+      logical, intent(out) :: accepted
+      real(wp) :: error(FIELDS, size(run%state%x, 2)), norm(FIELDS), share(FIELDS), ratio, ratios(FIELDS), elapsed, asked
+      logical :: known(FIELDS)
+      integer :: bodies
+
+      accepted = .true.
+      if (.not. stage%controlled) return
+      associate (c => run%control)
+         call local_errors(make_scheme(stage%kind, stage%rho_inf, dt), c%memory, run%state%x, run%state%v, &
+                           run%state%a, run%next%x, run%next%v, run%next%a, error, known)
+         if (stage%kind == DYNAMIC) error = PEAK*error
+         if (stage%kind == QUASI_STATIC .and. c%fresh == 1) error = ROOT_SHARE*(run%next%x - run%state%x)
+         ! Plates with a face of their own come last: their vibration on a penalty is no answer.
+         bodies = size(run%state%x, 2) - size(model%domain%bodies)
+         elapsed = run%next%time - c%t_sudden
+         norm = field_norms(error(:, :bodies))
+         share = dt/elapsed
+         if (stage%kind == DYNAMIC) then
+            share(:DISPLACEMENTS) = max(DYNAMIC_SHARE*dt/elapsed, EVENT)
+            ! Pressures follow every knock of a contact; such errors do not add up.
+            share(DISPLACEMENTS + 1:) = max(dt/elapsed, KNOCK)
+         end if
+         ratios = norm/(stage%accuracy*share*scales(run, bodies)*max(1.0_wp, c%start_up/elapsed)**2)
+         ratio = maxval(ratios, mask=known)
+         if (.not. any(known)) ratio = -1.0_wp
+         asked = c%controller%dt
+         if (dt <= SHORTEST*stage%duration) ratio = min(ratio, 1.0_wp)
+         call judge(c%controller, dt, ratio, accepted)
+         c%controller%dt = max(c%controller%dt, SHORTEST*stage%duration)
+         if (.not. accepted) then
+            c%rejected = c%rejected + 1
+            return
+         end if
+         if (.not. any(known)) c%controller%dt = asked
+         call gather(model, stage, error, norm, elapsed - dt, elapsed, run)
+         call note_limit()
+      end associate
+   contains
+      subroutine note_limit()
+         integer :: by
+
+         associate (c => run%control)
+            if (dt < asked*(1 - LAST_STEP) .and. dt < stage%dt_max) then
+               by = BY_TIMES
+            else if (dt >= stage%dt_max) then
+               by = BY_LARGEST
+            else if (dt <= SHORTEST*stage%duration) then
+               by = BY_SMALLEST
+            else if (c%controller%dt > asked .or. ratio < 0.0_wp) then
+               by = BY_GROWTH
+            else
+               by = maxloc([maxval(ratios(:DISPLACEMENTS)), ratios(AT_P_W), ratios(AT_P_C)], 1)
+            end if
+            c%limits(by) = c%limits(by) + 1
+         end associate
+      end subroutine note_limit
+   end subroutine judge_step
+
+   !> Displacements count as one field.
+   pure function field_norms(values) result(norms)
+      real(wp), intent(in) :: values(:, :)
+      real(wp) :: norms(FIELDS)
+
+      norms(:DISPLACEMENTS) = rms(values(:DISPLACEMENTS, :))
+      norms(AT_P_W) = rms(values(AT_P_W:AT_P_W, :))
+      norms(AT_P_C) = rms(values(AT_P_C:AT_P_C, :))
+   end function field_norms
+
+   !> Largest changes of the fields in the run, that of the step under way among them; not below a share of their values.
+   pure function scales(run, bodies) result(s)
+      type(run_t), intent(in) :: run
+      integer, intent(in) :: bodies
+      real(wp) :: s(FIELDS)
+
+      associate (c => run%control)
+         s = max(c%scale, field_norms(run%next%x(:, :bodies) - c%x_first(:, :bodies)), &
+                 FLOOR*field_norms(run%next%x(:, :bodies)), tiny(1.0_wp)**0.25_wp)
+         ! What a falling plate has yet to do to the soil is of the size of its own way.
+         if (size(run%next%x, 2) > bodies) s(:DISPLACEMENTS) = max(s(:DISPLACEMENTS), &
+            PLATE_SHARE*maxval(abs(run%next%x(AT_U_Z, bodies + 1:) - c%x_first(AT_U_Z, bodies + 1:))))
+      end associate
+   end function scales
+
+   !> Adds the errors of an accepted step up: those of a flow fade as its memory does, in proportion to the time since
+   !> the last sudden change; those of a vibration or of a path stay.
+   subroutine gather(model, stage, error, norm, before, after, run)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: error(:, :), norm(:), before, after   !< Times since the last sudden change [s].
+      type(run_t), intent(inout) :: run
+      real(wp) :: kept(FIELDS)
+      integer :: i, node
+
+      kept = 1.0_wp
+      if (stage%kind == QUASI_STATIC) kept = before/after
+      if (stage%kind == DYNAMIC) kept(DISPLACEMENTS + 1:) = before/after
+      associate (c => run%control)
+         c%scale = scales(run, size(run%state%x, 2) - size(model%domain%bodies))
+         c%gathered = kept*c%gathered + norm
+         c%largest = max(c%largest, c%gathered)
+         do i = 1, size(model%points)
+            node = model%points(i)%node
+            c%point_gathered(:, i) = kept*c%point_gathered(:, i) + abs(error(:, node))
+            c%point_largest(:, i) = max(c%point_largest(:, i), c%point_gathered(:, i))
+            c%low(:, i) = min(c%low(:, i), run%state%x(:, node), run%next%x(:, node))
+            c%high(:, i) = max(c%high(:, i), run%state%x(:, node), run%next%x(:, node))
+         end do
+      end associate
+   end subroutine gather
+
+   !> After an attempt that failed: the share of it that is tried next becomes the step.
+   subroutine shorten_step(stage, dt, run)
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: dt
+      type(run_t), intent(inout) :: run
+
+      if (.not. stage%controlled) return
+      run%control%controller%dt = dt*run%at%factor
+      run%control%controller%held = .true.
+      if (run%control%memory%based) then
+         run%state%v = run%control%memory%base_rate
+         run%state%s_rate = run%control%memory%base_s_rate
+      end if
+      call forget(run%control%memory)
+      run%at%factor = 1.0_wp
+   end subroutine shorten_step
+
+   !> After an accepted step, before it is taken over: rates for the next estimate, and what ends with the step.
+   subroutine keep_step(model, stage, dt, run)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: dt
+      type(run_t), intent(inout) :: run
+      type(scheme_t) :: scheme
+
+      if (.not. stage%controlled) return
+      scheme = make_scheme(stage%kind, stage%rho_inf, dt)
+      associate (c => run%control)
+         call remember(scheme, c%memory, run%state%x, run%next%x, run%state%v, run%state%s_rate)
+         c%fresh = c%fresh + 1
+         if (c%fresh < SETTLED .and. .not. stage%kind == STATIC) c%memory%known = .false.
+         run%at%cuts = max(0, run%at%cuts - 1)
+         run%at%nominal = c%controller%dt
+         if (stage%kind /= DYNAMIC .and. is_break(model, stage, run%next%time, dt)) then
+            call sudden(run%next%time, run)
+            c%controller%dt = min(c%controller%dt, max(dt*stage%accuracy, SHORTEST*stage%duration*LARGEST_FACTOR))
+            c%start_up = START_UP_STEPS*c%controller%dt
+         end if
+      end associate
+   end subroutine keep_step
+
+   !> Whether something that acts breaks at a time.
+   logical function is_break(model, stage, time, dt)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: time, dt
+      integer :: i
+
+      is_break = .false.
+      do i = 1, size(model%amplitudes)
+         if (size(model%amplitudes(i)%times) <= MOST_TIMES) &
+            is_break = is_break .or. any(abs(model%amplitudes(i)%times - time) < LAST_STEP*dt)
+      end do
+      do i = 1, size(model%fixes)
+         if (acts_in(model%fixes(i)%stages, stage%name)) is_break = is_break &
+            .or. abs(model%fixes(i)%from - time) < LAST_STEP*dt .or. abs(model%fixes(i)%until - time) < LAST_STEP*dt
+      end do
+   end function is_break
+end module step_size

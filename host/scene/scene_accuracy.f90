@@ -1,0 +1,64 @@
+!> What an accuracy asks of the keys that a scene leaves out: steps, Newton's tolerance, stress integration. What the
+!> scene sets by hand stays. docs/theory/host.md section 4.5.
+module scene_accuracy
+   use kinds, only: wp
+   use faults, only: fault_t, raise, at_line, EXIT_INPUT
+   use namelists, only: group_t, set_entry
+   use scene_keys, only: number_of, word_is, given
+   use scene_types, only: scene_stage_t
+   implicit none (type, external)
+   private
+   public :: ask_accuracy, ask_steps, ask_stress
+
+   real(wp), parameter :: DEFAULT_ACCURACY = 1.0e-2_wp   !< Of stages without dt in scenes that ask for none.
+   real(wp), parameter :: NEWTON_SHARE = 0.1_wp          !< Newton's tolerance as a share of the accuracy.
+   real(wp), parameter :: STRESS_SHARE = 1.0e-3_wp       !< Tolerance of MUD's stress integration, likewise.
+   real(wp), parameter :: STRESS_LEAST = 1.0e-10_wp, STRESS_LARGEST = 1.0e-4_wp   !< Its bounds.
+   real(wp), parameter :: TIGHT = 1.0e-3_wp              !< Below it the scheme of order 3 costs less.
+contains
+   !> The accuracy of the command line, as if the scene said it.
+   pure subroutine ask_accuracy(accuracy, groups)
+      character(*), intent(in) :: accuracy   !< Empty: none.
+      type(group_t), intent(inout) :: groups(:)
+      integer :: i
+
+      if (accuracy == '') return
+      i = findloc(groups%name, 'scene', dim=1)
+      if (i > 0) call set_entry(groups(i), 'accuracy', accuracy)
+   end subroutine ask_accuracy
+
+   !> Steps and tolerance of a stage.
+   subroutine ask_steps(group, accuracy, stage, fault)
+      type(group_t), intent(in) :: group
+      real(wp), intent(in) :: accuracy   !< Of the scene; 0: not asked for.
+      type(scene_stage_t), intent(inout) :: stage
+      type(fault_t), intent(inout) :: fault
+
+      stage%accuracy = accuracy
+      if (.not. accuracy > 0.0_wp) stage%accuracy = DEFAULT_ACCURACY
+      stage%controlled = accuracy > 0.0_wp .or. .not. given(group, 'dt')
+      if (given(group, 'steps')) stage%controlled = word_is(group, 'steps', 'controlled')
+      if (given(group, 'dt')) then
+         stage%dt = number_of(group, 'dt')
+      else if (.not. stage%controlled) then
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&stage with steps = ''given'' needs dt [s].')
+      end if
+      if (given(group, 'output_dt')) stage%output_dt = number_of(group, 'output_dt')
+      if (stage%controlled .and. .not. given(group, 'tolerance')) &
+         stage%tolerance = min(stage%tolerance, NEWTON_SHARE*stage%accuracy)
+   end subroutine ask_steps
+
+   !> Tolerance and scheme of MUD.
+   subroutine ask_stress(accuracy, group)
+      real(wp), intent(in) :: accuracy
+      type(group_t), intent(inout) :: group
+      character(16) :: text
+
+      if (.not. accuracy > 0.0_wp .or. group%name /= 'mud') return
+      if (.not. given(group, 'tolerance')) then
+         write (text, '(es10.3)') min(STRESS_LARGEST, max(STRESS_LEAST, STRESS_SHARE*accuracy))
+         call set_entry(group, 'tolerance', trim(adjustl(text)))
+      end if
+      if (.not. given(group, 'scheme') .and. accuracy < TIGHT) call set_entry(group, 'scheme', '2')
+   end subroutine ask_stress
+end module scene_accuracy

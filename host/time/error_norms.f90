@@ -1,0 +1,130 @@
+!> Error that a step makes by itself, from the rates at its ends and those before.
+!>
+!> Generalised-alpha stores rates that belong not to the ends of a step but to a moment D dt off, with D = l_f - l_a for
+!> accelerations and l_f - l_p for first-order rates. Where the step of a flow changes, the stored rates are moved there
+!> first: so second order is kept. Accelerations stay as they are: what their change of place errs by is of third order,
+!> and to extrapolate them would multiply the jumps of a contact. The leading error of a step is C dt**3 times the third derivative, C = 1/12 + 3/8 D**2 for
+!> accelerations and 1/12 + D**2 for first-order rates (the phase error and the error of the decay that the principal
+!> root accumulates; a test holds both against the amplification matrix).
+!> docs/theory/host.md section 4.5.
+module error_norms
+   use kinds, only: wp
+   use generalised_alpha, only: scheme_t, STATIC, QUASI_STATIC, DYNAMIC
+   implicit none (type, external)
+   private
+   public :: rate_memory_t, new_memory, shift_rates, local_errors, remember, forget, constant_of_accelerations, &
+             constant_of_rates, rms
+
+   !> Share of the curvature of a path that a straight step leaves out (deviation in the middle of the step).
+   real(wp), parameter :: LONGEST = 2.0_wp   !< Times the last step: no rate is carried over a longer one.
+   real(wp), parameter :: PATH = 0.125_wp
+
+   !> Rates one step back.
+   type :: rate_memory_t
+      logical :: known = .false.            !< There are such rates, with nothing sudden since.
+      real(wp) :: dt = 0.0_wp               !< Step from them to the present ones, which both belong to [s].
+      real(wp), allocatable :: rate(:, :)   !< (fields, nodes)
+      real(wp), allocatable :: s_rate(:)    !< (points)
+      ! The present ones as the last step left them; attempts of different length move them from here.
+      logical :: based = .false.
+      real(wp), allocatable :: base_rate(:, :), base_s_rate(:)
+   end type rate_memory_t
+contains
+   pure function new_memory(fields, nodes, points) result(memory)
+      integer, intent(in) :: fields, nodes, points
+      type(rate_memory_t) :: memory
+
+      allocate (memory%rate(fields, nodes), memory%s_rate(points), source=0.0_wp)
+      allocate (memory%base_rate(fields, nodes), memory%base_s_rate(points), source=0.0_wp)
+   end function new_memory
+
+   pure real(wp) function constant_of_accelerations(scheme) result(c)
+      type(scheme_t), intent(in) :: scheme
+
+      c = 1.0_wp/12 + 0.375_wp*(scheme%l_a - scheme%l_f)**2
+   end function constant_of_accelerations
+
+   pure real(wp) function constant_of_rates(scheme) result(c)
+      type(scheme_t), intent(in) :: scheme
+
+      c = 1.0_wp/12 + (scheme%l_p - scheme%l_f)**2
+   end function constant_of_rates
+
+   !> Moves the rates of the present state to where a step of another length expects them.
+   pure subroutine shift_rates(scheme, memory, v, s_rate)
+      type(scheme_t), intent(in) :: scheme   !< Of the step to come.
+      type(rate_memory_t), intent(inout) :: memory
+      real(wp), intent(inout) :: v(:, :), s_rate(:)
+      real(wp) :: share
+
+      if (.not. memory%based) then
+         memory%base_rate = v
+         memory%base_s_rate = s_rate
+         memory%based = .true.
+      end if
+      if (scheme%kind /= QUASI_STATIC .or. .not. memory%known) return
+      share = (scheme%l_f - scheme%l_p)*(min(scheme%dt, LONGEST*memory%dt) - memory%dt)/memory%dt
+      v = memory%base_rate + share*(memory%base_rate - memory%rate)
+      s_rate = memory%base_s_rate + share*(memory%base_s_rate - memory%s_rate)
+   end subroutine shift_rates
+
+   !> Errors of all unknowns in a step from x0 to x1; `known` says of which fields.
+   pure subroutine local_errors(scheme, memory, x0, v0, a0, x1, v1, a1, error, known)
+      type(scheme_t), intent(in) :: scheme
+      type(rate_memory_t), intent(in) :: memory
+      real(wp), intent(in) :: x0(:, :), v0(:, :), a0(:, :), x1(:, :), v1(:, :), a1(:, :)
+      real(wp), intent(out) :: error(:, :)
+      logical, intent(out) :: known(:)
+      real(wp) :: off
+      integer :: first
+
+      error = 0.0_wp
+      known = memory%known
+      associate (dt => scheme%dt)
+         if (scheme%kind == STATIC) then
+            if (memory%known) error = PATH*dt**2*((x1 - x0)/dt - memory%rate)/(0.5_wp*(dt + memory%dt))
+            return
+         end if
+         first = 1
+         if (scheme%kind == DYNAMIC) then
+            first = 3
+            known(1:2) = .true.
+            error(1:2, :) = constant_of_accelerations(scheme)*dt**2*(a1 - a0)
+         end if
+         if (.not. memory%known) return
+         off = 0.0_wp
+         if (scheme%kind == QUASI_STATIC) off = scheme%l_f - scheme%l_p
+         error(first:, :) = constant_of_rates(scheme)*dt**3*((v1(first:, :) - v0(first:, :))/dt &
+                            - (memory%base_rate(first:, :) - memory%rate(first:, :))/memory%dt) &
+                            /(0.5_wp*(dt + memory%dt) + off*(min(dt, LONGEST*memory%dt) - memory%dt))
+      end associate
+   end subroutine local_errors
+
+   !> Keeps the rates of the start of an accepted step.
+   pure subroutine remember(scheme, memory, x0, x1, v0, s_rate)
+      type(scheme_t), intent(in) :: scheme
+      type(rate_memory_t), intent(inout) :: memory
+      real(wp), intent(in) :: x0(:, :), x1(:, :), v0(:, :), s_rate(:)
+
+      memory%rate = v0
+      if (scheme%kind == STATIC) memory%rate = (x1 - x0)/scheme%dt
+      memory%s_rate = s_rate
+      memory%dt = scheme%dt
+      memory%based = .false.
+      memory%known = .true.
+   end subroutine remember
+
+   !> Something sudden: the rates before say nothing of those to come.
+   pure subroutine forget(memory)
+      type(rate_memory_t), intent(inout) :: memory
+
+      memory%known = .false.
+   end subroutine forget
+
+   !> Root mean square over the nodes.
+   pure real(wp) function rms(values)
+      real(wp), intent(in) :: values(:, :)
+
+      rms = sqrt(sum(values**2)/max(1, size(values, 2)))
+   end function rms
+end module error_norms
