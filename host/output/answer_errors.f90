@@ -42,13 +42,13 @@ contains
       real(wp) :: change, error
       integer :: i, f
 
-      call new_csv(folder//'/answers.csv', 'answer,largest_change,estimated_error,field_error', table, fault)
+      call new_csv(folder//'/answers.csv', 'answer,largest_change,estimated_error', table, fault)
       do i = 1, size(model%points)
          do f = 1, FIELDS
             if (fault%code /= 0) exit
             if (.not. estimate(model, control, i, f, change, error)) cycle
-            write (table%row, '(a,3(",",es14.6e3))') trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f)), change, &
-               error, control%largest(f)/max(control%scale(f), tiny(1.0_wp))
+            write (table%row, '(a,2(",",es14.6e3))') trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f)), change, &
+               error
             call write_row(table, fault)
          end do
       end do
@@ -63,8 +63,8 @@ contains
       real(wp) :: change, error
       integer :: i, f
 
-      write (unit, '(a)') 'Answers: largest change, and estimated error of the history as a share of it (steps in time '// &
-         'alone; the mesh is not in it):'
+      write (unit, '(a)') 'Answers: largest change, and estimated error of the history as a share of it (steps in '// &
+         'time alone; the mesh is not in it):'
       do i = 1, size(model%points)
          do f = 1, FIELDS
             if (estimate(model, control, i, f, change, error)) write (unit, '(a)') '   '//trim(model%points(i)%name)// &
@@ -73,7 +73,7 @@ contains
          end do
       end do
       i = maxloc(control%limits, 1)
-      write (unit, '(a)') '   Steps were kept short by: '//trim(LIMIT_NAMES(i))//' ('//whole(nint(control%limits(i)))// &
-         ' of '//whole(nint(sum(control%limits)))//'); '//whole(control%rejected)//' steps were repeated.'
+      write (unit, '(a)') '   Steps were kept short by: '//trim(LIMIT_NAMES(i))//' ('// &
+         whole(nint(control%limits(i)))//' of '//whole(nint(sum(control%limits)))//'); '//whole(control%rejected)//' steps were repeated.'
    end subroutine print_answers
 end module answer_errors

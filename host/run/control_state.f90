@@ -7,7 +7,8 @@ module control_state
    implicit none (type, external)
    private
    public :: control_state_t, new_control_state, numbers_of, take_numbers, count_of_numbers
-   public :: LIMITS, LIMIT_NAMES, BY_DISPLACEMENTS, BY_PRESSURE, BY_SUCTION, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
+   public :: LIMITS, LIMIT_NAMES, BY_DISPLACEMENTS, BY_PRESSURE, BY_SUCTION, BY_TIMES, BY_LARGEST, BY_SMALLEST, &
+             BY_GROWTH
 
    !> What kept a step from being longer.
    integer, parameter :: LIMITS = 7

@@ -16,16 +16,16 @@ module step_size
    public :: begin_control, next_step, prepare_rates, judge_step, shorten_step, keep_step, is_over, LAST_STEP
 
    real(wp), parameter :: LAST_STEP = 1.0e-6_wp   !< A rest of a span below this share of a step is rounding.
-   integer, parameter :: MOST_TIMES = 200         !< A load history with more breaks is a record: steps do not end there.
+   integer, parameter :: MOST_TIMES = 200         !< A load history with more breaks is a record: no step ends there.
    integer, parameter :: SETTLED = 3              !< Steps after a sudden change until rates tell of the error again.
    real(wp), parameter :: START_UP_STEPS = 10.0_wp !< First steps in which changes are expected to grow yet.
    real(wp), parameter :: EVENT = 0.01_wp         !< Least share of the allowance that a step may take: an impact or a
                                                   !< change of contact is not resolved for its own sake.
    real(wp), parameter :: KNOCK = 0.3_wp          !< The same of the pressures in a dynamic stage.
    real(wp), parameter :: DYNAMIC_SHARE = 0.3_wp  !< Errors of a vibration stay and add up, those of a flow fade.
-   real(wp), parameter :: PEAK = 1.57_wp          !< Of a sine over the mean of its magnitude: errors of phase count there.
-   real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Of its change that the second step after a sudden load errs by: flow
-                                                  !< begins with the root of time.
+   real(wp), parameter :: PEAK = 1.57_wp          !< Of a sine over the mean of its magnitude.
+   real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Of its change that the second step after a sudden load errs by:
+                                                  !< flow begins with the root of time.
    real(wp), parameter :: SHORTEST = 1.0e-8_wp    !< Smallest step as a share of the stage.
    real(wp), parameter :: PLATE_SHARE = 0.1_wp    !< Of the way of a plate, as a least scale of the soil's.
    real(wp), parameter :: FLOOR = 1.0e-9_wp       !< Share of the largest value of a field that is no change of it.
@@ -164,7 +164,8 @@ contains
       real(wp), intent(in) :: dt
       type(run_t), intent(inout) :: run
       logical, intent(out) :: accepted
-      real(wp) :: error(FIELDS, size(run%state%x, 2)), norm(FIELDS), share(FIELDS), ratio, ratios(FIELDS), elapsed, asked
+      real(wp) :: error(FIELDS, size(run%state%x, 2)), norm(FIELDS), share(FIELDS), ratios(FIELDS)
+      real(wp) :: ratio, elapsed, asked
       logical :: known(FIELDS)
       integer :: bodies
 
@@ -231,7 +232,7 @@ contains
       norms(AT_P_C) = rms(values(AT_P_C:AT_P_C, :))
    end function field_norms
 
-   !> Largest changes of the fields in the run, that of the step under way among them; not below a share of their values.
+   !> Largest changes of the fields, that of the step under way among them; not below a share of their values.
    pure function scales(run, bodies) result(s)
       type(run_t), intent(in) :: run
       integer, intent(in) :: bodies

@@ -36,7 +36,7 @@ contains
    !> error: the step stands and the next is no longer.
    pure subroutine judge(controller, dt, ratio, accepted)
       type(controller_t), intent(inout) :: controller
-      real(wp), intent(in) :: dt      !< Step that was tried; shorter than asked where it had to end at a given time [s].
+      real(wp), intent(in) :: dt      !< That was tried; shorter than asked where it had to end at a given time [s].
       real(wp), intent(in) :: ratio   !< Its error over what is allowed [-].
       logical, intent(out) :: accepted
       real(wp) :: factor, r

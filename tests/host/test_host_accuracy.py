@@ -1,0 +1,99 @@
+"""Accuracy asked of mud_host: steps follow their error, end at the breaks of what acts, are the same after a restart;
+estimated errors that are those of known answers within a band."""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from checking import build, check, finish, root, work  # noqa: E402
+import tables  # noqa: E402
+
+host = build / "host/mud_host"
+environment = {**os.environ, "OMP_NUM_THREADS": "1"}
+VIBRATION = root / "verification/host/vibration/scene.nml"
+TERZAGHI = root / "verification/host/terzaghi/scene.nml"
+RESTART = root / "tests/host/scenes/restart.nml"
+BAND = 0.2, 5.0   # of the true error over the estimated one: what the manual promises
+
+
+def run(scene, out, *words):
+    return subprocess.run([host, scene, "--output", out, *words], capture_output=True, text=True, env=environment)
+
+
+def written(name, text):
+    scene = work / f"{name}.nml"
+    scene.write_text(text.replace("'../../..", f"'{root}"))
+    return scene
+
+
+def history(folder, name):
+    return tables.columns(folder / "histories.csv")[name]
+
+
+def estimated(folder):
+    """Estimated error of every answer."""
+    return {row["answer"]: float(row["estimated_error"]) for row in tables.rows(folder / "answers.csv")}
+
+
+# Free vibration of period 1 s: the true error of the history over the estimated one lies within the band.
+scene = written("swing", VIBRATION.read_text().replace("rho_inf = 0.8", ""))
+run(written("fine", VIBRATION.read_text().replace("rho_inf = 0.8", "").replace("dt = 0.005", "dt = 2e-4")),
+    work / "fine")
+t_fine, u_fine = history(work / "fine", "time"), history(work / "fine", "top.u_z")
+steps = {}
+for accuracy in ("1e-1", "1e-2"):
+    out = work / f"swing{accuracy}"
+    done = run(scene, out, "--accuracy", accuracy)
+    check(f"vibration, {accuracy}: runs", done.returncode == 0, done.stderr)
+    t, u = history(out, "time"), history(out, "top.u_z")
+    true = np.max(np.abs(u - np.interp(t, t_fine, u_fine)))/np.ptp(u)
+    estimate = estimated(out)["top.u_z"]
+    steps[accuracy] = len(t)
+    check(f"vibration, {accuracy}: true error / estimated", BAND[0] < true/estimate < BAND[1], (true, estimate))
+    check(f"vibration, {accuracy}: what was asked for, within the band", true < BAND[1]*float(accuracy), true)
+    check(f"vibration, {accuracy}: told", "top.u_z: " in done.stdout
+          and "kept short by: error of the displacements" in done.stdout, done.stdout)
+check("vibration: ten times the accuracy takes about sqrt(10) times the steps",
+      1.5 < steps["1e-2"]/steps["1e-1"] < 5, steps)
+
+# What the scene sets by hand stays: steps, Newton's tolerance.
+done = run(written("hand", TERZAGHI.read_text().replace("dt = 1.0e-3", "dt = 1.0e-3\n   steps = 'given'")),
+           work / "hand", "--accuracy", "1e-1")
+run(TERZAGHI, work / "plain")
+check("given steps stay", (work / "hand/ledger.csv").read_bytes() == (work / "plain/ledger.csv").read_bytes()
+      and "Answers:" not in done.stdout)
+# Without dt a stage is controlled, and without accuracy at 1e-2: six decades of time in few steps.
+free = TERZAGHI.read_text().replace("   dt = 1.0e-3\n   dt_growth = 1.03\n   dt_max = 1\n", "")
+done = run(written("free", free), work / "free")
+t, p = history(work / "free", "time"), history(work / "free", "base.p_w")
+true = np.max(np.abs(p - np.interp(t, history(work / "plain", "time"), history(work / "plain", "base.p_w"))))/np.ptp(p)
+check("consolidation without dt", done.returncode == 0 and len(t) < 150 and true < 1e-2, (done.stderr, len(t), true))
+done = run(written("none", TERZAGHI.read_text().replace("dt = 1.0e-3", "steps = 'given'")), work / "none")
+check("given steps need dt", done.returncode == 2 and "needs dt" in done.stderr, done.stderr)
+for word, said in (("0", "accuracy"), ("fine", "not a number"), ("2", "outside")):
+    done = run(TERZAGHI, work / "none", "--accuracy", word)
+    check(f"--accuracy {word}: refused", done.returncode == 2 and said in done.stderr, done.stderr)
+
+# Steps end where a load history breaks, where a support comes or goes, and at the times of output; and a run that is
+# taken up from a checkpoint takes the same steps, byte for byte.
+text = RESTART.read_text().replace("   fields = 7\n", "   output_dt = 0.125\n").replace("   dt_growth = 1.3\n", "") \
+    .replace("checkpoint_steps = 2", "checkpoint_steps = 30\n   accuracy = 3e-2")
+text += "&fix group = 'bottom' field = 'p_w' value = -20 from = 0.05 until = 0.07 /\n"
+whole, half = work / "whole", work / "half"
+scene = written("again", text)
+done = run(scene, whole)
+check("three fields, MUD, two stages: runs", done.returncode == 0, done.stderr)
+times = tables.columns(whole / "ledger.csv")["time"]
+for landing in (0.05, 0.07, 0.125, 0.25, 0.3, 0.31, 0.32, 0.33):
+    check(f"a step ends at {landing} s", np.min(np.abs(times - landing)) < 1e-9, times)
+shutil.copytree(whole, half)
+check("the last checkpoint is not the end", len(times) % 30 not in (0, 1), len(times))
+done = run(scene, half, "--restart", half / "checkpoint.h5")
+check("restart: goes on", done.returncode == 0, done.stderr)
+for file in ("ledger.csv", "histories.csv", "answers.csv"):
+    check(f"restart: same bytes of {file}", (whole / file).read_bytes() == (half / file).read_bytes())
+finish()
