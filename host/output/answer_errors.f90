@@ -74,6 +74,7 @@ contains
       end do
       i = maxloc(control%limits, 1)
       write (unit, '(a)') '   Steps were kept short by: '//trim(LIMIT_NAMES(i))//' ('// &
-         whole(nint(control%limits(i)))//' of '//whole(nint(sum(control%limits)))//'); '//whole(control%rejected)//' steps were repeated.'
+         whole(nint(control%limits(i)))//' of '//whole(nint(sum(control%limits)))//'); '// &
+         whole(control%rejected)//' steps were repeated.'
    end subroutine print_answers
 end module answer_errors
