@@ -5,6 +5,7 @@ program mud_triax
    use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
    use triax_case, only: case_t, read_case
    use library_tables, only: library_version
+   use material_folder, only: material_path
    use triax_point, only: point_t
    use triax_control, only: tally_t
    use triax_output, only: table_t, open_table
@@ -13,13 +14,14 @@ program mud_triax
    use triax_help, only: print_help, print_template
    implicit none (type, external)
 
-   type(option_t) :: options(7) = [ &
+   type(option_t) :: options(8) = [ &
       option_t('--help', letter='-h', answers=.true.), &
       option_t('--version', answers=.true.), &
       option_t('--template', answers=.true.), &
       option_t('--quiet', letter='-q'), &
       option_t('--residuals'), &
       option_t('--output', 'the name of a file', '-o'), &
+      option_t('--material', 'the name of a material'), &
       option_t('--save-failed', 'the name of a new file')]
    character(WORD_LENGTH) :: case_file
    type(fault_t) :: fault
@@ -49,10 +51,13 @@ contains
       type(timer_t) :: timer
       type(point_t) :: point
       type(tally_t) :: tally
-      character(:), allocatable :: output_file, save_file
+      character(:), allocatable :: output_file, save_file, material_file
       logical :: taken, quiet
 
-      call read_case(file, test, fault)
+      material_file = ''
+      if (option_given(options, '--material')) &
+         call material_path(option_value(options, '--material'), material_file, fault)
+      if (fault%code == 0) call read_case(file, material_file, test, fault)
       if (fault%code /= 0) return
       quiet = option_given(options, '--quiet')
       output_file = option_value(options, '--output')

@@ -3,10 +3,11 @@ module triax_case
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use texts, only: lower_case, short, whole
-   use namelists, only: group_t, read_groups, LENGTH
+   use namelists, only: group_t, read_groups, groups_of_text, LENGTH
    use spelling, only: nearest_name
    use key_schema, only: check_entries, describe_key, get_text, get_number, get_numbers, line_of, given, word_is
    use triax_keys, only: CASE_KEYS
+   use triax_control, only: CONTROL_TOLERANCE
    use triax_stage, only: stage_t, set_constraints, leads_of, sealed_control, CONTROL_NAMES, QUANTITIES, LINEAR, &
                           BY_EPS_A, BY_GAMMA, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES, PER_PRESSURE, ROWS
    use material_point, only: material_t
@@ -23,6 +24,7 @@ module triax_case
       type(soil_t) :: soil
       type(point_t) :: start
       type(stage_t), allocatable :: stages(:)
+      real(wp) :: control_tolerance = CONTROL_TOLERANCE   !< Of what is held, relative.
    end type case_t
 
    !> Defaults by the unit of what leads (PER_*), suction apart.
@@ -34,15 +36,33 @@ module triax_case
 
 contains
    !> Reads and checks a case with its material, and brings the sample to its start.
-   subroutine read_case(file, test, fault)
+   subroutine read_case(file, material, test, fault)
       character(*), intent(in) :: file
+      character(*), intent(in) :: material   !< File of a material that replaces that of the case; blank: none.
       type(case_t), intent(out) :: test
       type(fault_t), intent(inout) :: fault
       type(group_t), allocatable :: groups(:)
 
       call read_groups(file, groups, fault)
+      if (fault%code == 0 .and. material /= '') call replace_material(material, groups, fault)
       if (fault%code == 0) call make_case(groups, file, test, fault)
    end subroutine read_case
+
+   !> The first &material of a case becomes a file; a case without one gets it.
+   subroutine replace_material(material, groups, fault)
+      character(*), intent(in) :: material   !< Path from the present folder, not from that of the case.
+      type(group_t), allocatable, intent(inout) :: groups(:)
+      type(fault_t), intent(inout) :: fault
+      type(group_t), allocatable :: own(:)
+      integer :: place
+
+      call groups_of_text('&material file = "'//trim(material)//'" /', '', own, fault)
+      if (fault%code /= 0) return
+      own(1)%file = ''
+      place = findloc(groups%name, 'material', dim=1)
+      if (place > 0) groups(place) = own(1)
+      if (place == 0) groups = [groups, own]
+   end subroutine replace_material
 
    !> Checks the groups of a case with its material, and brings the sample to its start.
    subroutine make_case(groups, file, test, fault)
@@ -53,6 +73,7 @@ contains
       class(material_t), allocatable :: law
       character(LENGTH) :: word
       integer :: i, of_case, of_material, of_retention, of_initial, n_stages
+      logical :: found
 
       test%file = file
       of_case = 0
@@ -96,6 +117,7 @@ contains
       if (of_case > 0) then
          call get_text(groups(of_case), 'name', test%name)
          call get_text(groups(of_case), 'title', test%title)
+         call get_number(groups(of_case), 'control_tolerance', test%control_tolerance, found)
       end if
 
       word = 'mud'

@@ -14,7 +14,7 @@ module triax_control
    private
    public :: plan_t, tally_t, plan_way, advance, lead, quantity, CONTROL_TOLERANCE
 
-   !> Constraints are met to this, relative to the effective stress they speak of: a hundred thousand times below the
+   !> Constraints are met to this unless a case says otherwise, relative to the effective stress they speak of: a hundred thousand times below the
    !> library's own default tolerance, and far above rounding (1e-16 times the ratio of stiffness to stress, about 1e3).
    real(wp), parameter :: CONTROL_TOLERANCE = 1.0e-10_wp
    !> A quasi-Newton step gains a digit or more, 10 are usual; Newton steps with the consistent tangent need 2 to 4.
@@ -45,6 +45,7 @@ module triax_control
       integer :: increments = 0              !< Of all stages.
       integer :: solved = 0                  !< Increments that needed a solution.
       integer :: cuts = 0                    !< Increments cut and retried.
+      real(wp) :: tolerance = CONTROL_TOLERANCE   !< Of what is held, relative.
       logical :: residuals = .false.         !< Print the error of every iteration.
       character(256) :: save_to = ''         !< File for the first update that the library refuses; blank: none.
       logical :: saved = .false.
@@ -211,7 +212,7 @@ contains
          if (all(plan%given)) exit
          call find_residual(soil, plan, progress, x, point, after, residual, error)
          if (tally%residuals) write (output_unit, '(i0, a, i0, a, es10.3)') k, ',', iteration, ',', error
-         if (error <= CONTROL_TOLERANCE) exit
+         if (error <= tally%tolerance) exit
          ! In the slope suction is counted in strains: [kPa] over a stiffness.
          if (iteration == 1 .or. slope_is_exact(soil)) then
             stiffness = max(maxval(abs(tangent%dsig_deps)), tiny(stiffness)**0.5_wp)
@@ -237,7 +238,7 @@ contains
       if (.not. all(plan%given)) then
          if (iteration > MAX_ITERATIONS) then
             call raise(fault, EXIT_RUN, 'What is held is off by '//short(error)//' of its value after '// &
-                       whole(MAX_ITERATIONS)//' iterations; allowed is '//short(CONTROL_TOLERANCE)// &
+                       whole(MAX_ITERATIONS)//' iterations; allowed is '//short(tally%tolerance)// &
                        '. A smaller increment may help, unless the sample cannot carry what is held any more.')
             plan%rate = 0.0_wp
             return

@@ -20,7 +20,8 @@ contains
       integer :: i
 
       write (output_unit, '(a)') &
-         'usage: mud_triax CASE.nml [--output FILE.csv|.h5] [--quiet] [--residuals] [--save-failed FILE]', &
+         'usage: mud_triax CASE.nml [--output FILE.csv|.h5] [--material NAME] [--quiet] [--residuals]', &
+         '                 [--save-failed FILE]', &
          '       mud_triax --template > my_case.nml', &
          '       mud_triax --help | --version', &
          '', &
@@ -29,6 +30,8 @@ contains
          '', &
          '   --output FILE   where to write; default: NAME.csv in the present folder; "-" is the screen;', &
          '                   a name that ends in .h5 or .hdf5 is written as HDF5', &
+         '   --material NAME   replaces &material of the case by a set of the library of materials (toyoura, karlsruhe', &
+         '                   ...), or by a file whose name ends in .nml', &
          '   --quiet         no summary, no progress', &
          '   --residuals     print the error of every iteration of a held stress', &
          '   --save-failed FILE   write the first update that the library refuses to a new file for mud_replay', &

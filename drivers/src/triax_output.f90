@@ -9,7 +9,6 @@ module triax_output
    use triax_case, only: case_t
    use triax_stage, only: general_control
    use triax_columns, only: column_t, COLUMNS, columns_shown, values_of
-   use triax_control, only: CONTROL_TOLERANCE
    use triax_course, only: course_t
    use csv, only: csv_t, open_csv, write_line, close_csv
    use files, only: can_be_written
@@ -110,7 +109,7 @@ contains
       end do
       call remark(table, 'library', 'MUD '//library_version(), fault)
       call remark(table, 'conventions', 'compression positive; stresses are effective [kPa], suction and u [kPa], '// &
-                  'strains and the rest [-]; control_error may be up to '//short(CONTROL_TOLERANCE), fault)
+                  'strains and the rest [-]; control_error may be up to '//short(test%control_tolerance), fault)
       names = trim(COLUMNS(table%shown(1))%name)
       do i = 2, size(table%shown)
          names = names//','//trim(COLUMNS(table%shown(i))%name)

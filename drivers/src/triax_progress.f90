@@ -5,7 +5,7 @@ module triax_progress
    use library_tables, only: library_version
    use texts, only: short, whole
    use triax_case, only: case_t
-   use triax_control, only: tally_t, CONTROL_TOLERANCE
+   use triax_control, only: tally_t
    use triax_output, only: table_t
    use triax_point, only: point_t, void_ratio, saturation, state_value, mean_stress, deviator_stress, axial_strain, &
                           volumetric_strain
@@ -83,7 +83,7 @@ contains
          if (tally%solved > 0) then
             write (output_unit, '(a)') '   control    what is held is met within '//short(tally%worst)// &
                ' of its value (allowed '// &
-               short(CONTROL_TOLERANCE)//')'
+               short(tally%tolerance)//')'
          end if
          if (tally%saved) write (output_unit, '(a)') '   saved      '//trim(tally%save_to)// &
             ', the first refused update, for mud_replay'

@@ -27,6 +27,7 @@ contains
       real(wp) :: pressure, share
       integer :: i
 
+      tally%tolerance = test%control_tolerance
       point = test%start
       pressure = 0.0_wp
       call write_row(table, test%soil, point, course, 0.0_wp, 0, fault)
