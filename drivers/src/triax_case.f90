@@ -25,6 +25,7 @@ module triax_case
       type(point_t) :: start
       type(stage_t), allocatable :: stages(:)
       real(wp) :: control_tolerance = CONTROL_TOLERANCE   !< Of what is held, relative.
+      integer :: max_updates = huge(0)   !< The test stops after so many updates of the material.
    end type case_t
 
    !> Defaults by the unit of what leads (PER_*), suction apart.
@@ -73,6 +74,7 @@ contains
       class(material_t), allocatable :: law
       character(LENGTH) :: word
       integer :: i, of_case, of_material, of_retention, of_initial, n_stages
+      real(wp) :: number
       logical :: found
 
       test%file = file
@@ -118,6 +120,9 @@ contains
          call get_text(groups(of_case), 'name', test%name)
          call get_text(groups(of_case), 'title', test%title)
          call get_number(groups(of_case), 'control_tolerance', test%control_tolerance, found)
+         number = 0.0_wp
+         call get_number(groups(of_case), 'max_updates', number, found)
+         if (found) test%max_updates = nint(number)
       end if
 
       word = 'mud'

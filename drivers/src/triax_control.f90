@@ -42,6 +42,7 @@ module triax_control
    !> What a run cost.
    type :: tally_t
       integer :: updates = 0                 !< Calls of the library.
+      integer :: max_updates = huge(0)       !< The test stops after so many.
       integer :: increments = 0              !< Of all stages.
       integer :: solved = 0                  !< Increments that needed a solution.
       integer :: cuts = 0                    !< Increments cut and retried.
@@ -146,6 +147,12 @@ contains
       done = 0.0_wp
       share = upto
       do while (done < upto)
+         if (tally%updates >= tally%max_updates) then
+            call raise(fault, EXIT_RUN, trim(CONTROL_NAMES(plan%control))//' stage, at eps_a '// &
+                       short(axial_strain(point))//': '//whole(tally%updates)//' updates of the material are done, and '// &
+                       'max_updates of &case allows '//whole(tally%max_updates)//'.')
+            return
+         end if
          trouble = fault_t()
          call solve_part(soil, plan, k, done, share, point, tally, trouble)
          if (trouble%code == 0) then

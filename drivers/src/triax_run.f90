@@ -28,6 +28,7 @@ contains
       integer :: i
 
       tally%tolerance = test%control_tolerance
+      tally%max_updates = test%max_updates
       point = test%start
       pressure = 0.0_wp
       call write_row(table, test%soil, point, course, 0.0_wp, 0, fault)

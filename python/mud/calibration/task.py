@@ -1,0 +1,115 @@
+"""A calibration as it is asked for: tables, what is known, what is held out; from Python or from a TOML file."""
+from __future__ import annotations
+
+import dataclasses
+import os
+import pathlib
+import tomllib
+from collections.abc import Mapping, Sequence
+
+from ..errors import InputError
+from ..material import Material
+from .simulation import SCATTER, Use, use_of
+from .tables import LaboratoryTest, read_table
+from .variables import VARIABLES, Variable, chosen, known_parameters
+
+KEYS = ("name", "title", "reference", "start", "seed", "known", "tables", "held_out", "groups", "bounds", "notes")
+TABLE_KEYS = ("file", "kind", "first", "last", "scatter", "branch", "weight", "only")
+
+
+@dataclasses.dataclass
+class Item:
+    """A test with what counts of it."""
+    test: LaboratoryTest
+    use: Use
+    weight: float = 1.0
+
+
+@dataclasses.dataclass
+class Task:
+    """A calibration. ``calibrate(task)`` runs it."""
+    name: str                                 #: of the material, and of its file
+    items: list[Item]
+    title: str = ""
+    reference: str = ""                       #: where the tests come from
+    start: str | None = None                  #: material whose values are the start, and stay where nothing is fitted
+    known: dict[str, float] = dataclasses.field(default_factory=dict)
+    groups: list[str] | None = None           #: groups that are fitted; None: those the tests speak of
+    bounds: dict[str, tuple[float, float]] = dataclasses.field(default_factory=dict)   #: in place of the usual ones
+    seed: int = 1
+    notes: list[str] = dataclasses.field(default_factory=list)   #: sentences for the report
+
+    def __post_init__(self):
+        if not any(not item.test.held_out for item in self.items):
+            raise InputError("every test is held out: nothing is left to fit")
+        self.base = dict(Material(self.start).items())
+        values, self.origins = known_parameters(self.known, self.base)
+        self.base.update({k: v for k, v in values.items() if k in self.base})
+        self.fixed_variables = {k: v for k, v in values.items() if k not in self.base}
+        for name in self.bounds:
+            if name not in VARIABLES:
+                raise InputError(f"bounds: {name} is not fitted; there are {', '.join(VARIABLES)}")
+
+    def fitted(self) -> list[Item]:
+        return [item for item in self.items if not item.test.held_out]
+
+    def variables(self) -> list[Variable]:
+        """What is fitted, with the bounds of this task."""
+        kinds = {item.test.kind for item in self.fitted()}
+        unsaturated = any(item.test.suction > 0 for item in self.fitted() if item.test.kind != "retention")
+        return [dataclasses.replace(v, lower=self.bounds[v.name][0], upper=self.bounds[v.name][1]) if v.name in self.bounds else v
+                for v in chosen(kinds, unsaturated, [*self.origins], self.groups)]
+
+
+def make_task(name: str, tables: Sequence[Mapping], held_out: Sequence[str] = (), folder: str | os.PathLike = ".",
+              **others) -> Task:
+    """A task of tables: each a mapping of ``file`` and ``kind``, and if wanted ``first``, ``last`` (range of the leading
+    quantity: strain as a fraction, stress in kPa), ``scatter`` ({"q": [3.0, 0.05]}: kPa or fraction, and share of the value),
+    ``branch`` (of retention), ``only`` (names of tests) and ``weight``. held_out : names of tests, chosen before the fit.
+    """
+    items: list[Item] = []
+    for table in tables:
+        strange = [key for key in table if key not in TABLE_KEYS]
+        if strange or not {"file", "kind"} <= set(table):
+            raise InputError(f"a table has file and kind, and may have {', '.join(TABLE_KEYS[2:])}"
+                             + (f"; there is no {strange[0]}" if strange else ""))
+        tests = read_table(pathlib.Path(folder) / table["file"], table["kind"])
+        scatter = {q: tuple(float(x) for x in s) for q, s in table.get("scatter", {}).items()}
+        for quantity in scatter:
+            if quantity not in SCATTER[table["kind"]]:
+                raise InputError(f"scatter: a {table['kind']} test compares {', '.join(SCATTER[table['kind']])}, not {quantity}")
+        only = table.get("only")
+        for test in tests:
+            if only is None or test.name in only:
+                use = use_of(test, table.get("first"), table.get("last"), scatter, table.get("branch", "all"))
+                items.append(Item(test, use, float(table.get("weight", 1.0))))
+    names = [item.test.name for item in items]
+    for held in held_out:
+        if held not in names:
+            raise InputError(f"held_out: there is no test {held}; there are {', '.join(names)}")
+    for item in items:
+        item.test.held_out = item.test.name in held_out
+    double = next((n for i, n in enumerate(names) if n in names[:i]), None)
+    if double:
+        raise InputError(f"two tests are called {double}; rename one of them, because held-out tests are chosen by name")
+    return Task(name=name, items=items, **others)
+
+
+def read_task(path: str | os.PathLike) -> Task:
+    """The task of a TOML file; paths in it begin in its folder. Keys: those of ``make_task`` and of ``Task``."""
+    path = pathlib.Path(path)
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as problem:
+        raise InputError(f"{path} cannot be read: {problem.strerror}") from problem
+    except tomllib.TOMLDecodeError as problem:
+        raise InputError(f"{path}: {problem}") from problem
+    for key in content:
+        if key not in KEYS:
+            raise InputError(f"{path}: there is no key {key}; there are {', '.join(KEYS)}")
+    if "tables" not in content:
+        raise InputError(f"{path}: there is no [[tables]]")
+    if "bounds" in content:
+        content["bounds"] = {name: (float(low), float(high)) for name, (low, high) in content["bounds"].items()}
+    content.setdefault("name", path.stem)
+    return make_task(tables=content.pop("tables"), folder=path.parent, **content)

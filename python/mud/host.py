@@ -1,0 +1,99 @@
+"""Results of the finite-element host: tables of a run with numpy alone, fields with h5py (extra ``host``)."""
+from __future__ import annotations
+
+import csv
+import os
+import pathlib
+import re
+
+import numpy as np
+
+from .errors import InputError
+
+
+class HostRun:
+    """The output folder of a run of mud_host (host/README.md, "Output"). Units m, s, kPa; tension positive.
+
+    >>> run = HostRun("out")
+    >>> time, settlement = run.histories["time"], run.histories["top.u_z"]
+    """
+
+    def __init__(self, folder: str | os.PathLike):
+        self.folder = pathlib.Path(folder)
+        if not (self.folder / "histories.csv").exists():
+            raise InputError(f"{self.folder} holds no histories.csv of mud_host; name the folder of its --output")
+
+    @property
+    def histories(self) -> dict[str, np.ndarray]:
+        """Columns of histories.csv: the time [s] first, then POINT.QUANTITY; arrays (steps,)."""
+        return self.table("histories")
+
+    @property
+    def ledger(self) -> dict[str, np.ndarray]:
+        """Columns of ledger.csv, a row a step: iterations, errors, energies [kJ], outflow [m3]."""
+        return self.table("ledger")
+
+    @property
+    def stages(self) -> list[str]:
+        """Names of the stages that came to their end."""
+        files = sorted(self.folder.glob("nodes_*.csv"), key=lambda path: path.stat().st_mtime)
+        return [path.stem.removeprefix("nodes_") for path in files]
+
+    def table(self, name: str) -> dict[str, np.ndarray]:
+        """Columns of a table of the folder by its name without .csv: histories, ledger, contact, nodes_STAGE, points_STAGE.
+
+        Columns of numbers are arrays of float64 (rows,), others arrays of text.
+        """
+        path = self.folder / f"{name}.csv"
+        if not path.exists():
+            there = ", ".join(sorted(p.stem for p in self.folder.glob("*.csv")))
+            raise InputError(f"{self.folder} has no table {name}; it has {there}")
+        with open(path, newline="", encoding="utf-8") as file:
+            rows = [row for row in csv.reader(file) if row and not row[0].startswith("#")]
+        return {key: _column(values) for key, values in zip(rows[0], zip(*rows[1:]))} if len(rows) > 1 else \
+            {key: np.empty(0) for key in rows[0]}
+
+    def _frames(self) -> list[pathlib.Path]:
+        # Not whatever lies in the folder: an earlier run may have written more.
+        listed = self.folder / "results.xdmf"
+        if not listed.exists():
+            raise InputError(f"{self.folder} has no fields: the host was built without HDF5, or the scene asks for none")
+        return [self.folder / n for n in dict.fromkeys(re.findall(r">(fields_\d+\.h5):/", listed.read_text(encoding="utf-8")))]
+
+    def mesh(self) -> tuple[np.ndarray, np.ndarray]:
+        """Nodes (n, 2) [m] and elements (m, 6), numbers from 0."""
+        with _h5py().File(self.folder / "mesh.h5") as file:
+            return file["nodes"][...], file["elements"][...].reshape(-1, 6)
+
+    def times(self) -> np.ndarray:
+        """Moments at which fields were written [s]."""
+        return np.array([_read(path, "time")[0] for path in self._frames()])
+
+    def field(self, name: str, frame: int = -1) -> np.ndarray:
+        """A field at a moment: (nodes,), (nodes, 2) for vectors, or (elements,)."""
+        path = self._frames()[frame]
+        with _h5py().File(path) as file:
+            for place in ("nodes", "cells"):
+                if name in file[place]:
+                    return file[place][name][...]
+            raise InputError(f"there is no field {name}; there are {', '.join([*file['nodes'], *file['cells']])}")
+
+
+def _column(values: tuple[str, ...]) -> np.ndarray:
+    try:
+        return np.array([float(v) for v in values])
+    except ValueError:
+        return np.array(values)
+
+
+def _h5py():
+    try:
+        import h5py
+    except ImportError as problem:
+        raise ImportError("fields of a run need h5py: pip install 'mud-soil[host]'; tables do not") from problem
+    return h5py
+
+
+def _read(path: pathlib.Path, name: str) -> np.ndarray:
+    with _h5py().File(path) as file:
+        return file[name][...]
