@@ -50,7 +50,7 @@ def use_of(test: LaboratoryTest, first: float | None = None, last: float | None 
     """Rows of a test that count: those whose leading quantity (eps_a, sigma_a, p, cycle, suction) lies in [first, last].
 
     A test that is led by stress starts at its first used row, one led by strain at its first row. branch : of a retention
-    curve, "drying" (suction at its largest so far), "wetting" (suction falling) or "all".
+    curve, "drying" (suction at its largest so far), "wetting" (behind the largest suction) or "all".
     """
     lead = test[{"drained": "eps_a", "undrained": "eps_a", "oedometer": "sigma_a", "isotropic": "p", "cyclic": "cycle",
                  "retention": "suction"}[test.kind]]
@@ -64,7 +64,7 @@ def use_of(test: LaboratoryTest, first: float | None = None, last: float | None 
         used[start] = False   # where the model starts is given
     if test.kind == "retention" and branch != "all":
         grows = lead >= np.maximum.accumulate(lead)
-        used &= grows if branch == "drying" else np.concatenate([[False], np.diff(lead) < 0])
+        used &= grows if branch == "drying" else np.arange(len(lead)) > np.argmax(lead)
     if used.sum() < 1:
         raise InputError(f"{test.source}, test {test.name}: no row between {first} and {last}")
     quantities = {q: s for q, s in {**SCATTER[test.kind], **(scatter or {})}.items() if q in test}

@@ -14,7 +14,7 @@ from .tables import LaboratoryTest, read_table
 from .variables import VARIABLES, Variable, chosen, known_parameters
 
 KEYS = ("name", "title", "reference", "start", "seed", "known", "tables", "held_out", "groups", "bounds", "notes")
-TABLE_KEYS = ("file", "kind", "first", "last", "scatter", "branch", "weight", "only")
+TABLE_KEYS = ("file", "kind", "first", "last", "scatter", "branch", "weight", "only", "name")
 
 
 @dataclasses.dataclass
@@ -65,7 +65,7 @@ def make_task(name: str, tables: Sequence[Mapping], held_out: Sequence[str] = ()
               **others) -> Task:
     """A task of tables: each a mapping of ``file`` and ``kind``, and if wanted ``first``, ``last`` (range of the leading
     quantity: strain as a fraction, stress in kPa), ``scatter`` ({"q": [3.0, 0.05]}: kPa or fraction, and share of the value),
-    ``branch`` (of retention), ``only`` (names of tests) and ``weight``. held_out : names of tests, chosen before the fit.
+    ``branch`` (of retention), ``only`` (names of tests), ``weight`` and ``name`` (of the one test of a table). held_out : names of tests, chosen before the fit.
     """
     items: list[Item] = []
     for table in tables:
@@ -74,6 +74,10 @@ def make_task(name: str, tables: Sequence[Mapping], held_out: Sequence[str] = ()
             raise InputError(f"a table has file and kind, and may have {', '.join(TABLE_KEYS[2:])}"
                              + (f"; there is no {strange[0]}" if strange else ""))
         tests = read_table(pathlib.Path(folder) / table["file"], table["kind"])
+        if "name" in table:
+            if len(tests) != 1:
+                raise InputError(f"{table['file']}: {len(tests)} tests cannot all be called {table['name']}")
+            tests[0].name = table["name"]
         scatter = {q: tuple(float(x) for x in s) for q, s in table.get("scatter", {}).items()}
         for quantity in scatter:
             if quantity not in SCATTER[table["kind"]]:
