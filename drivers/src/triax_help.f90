@@ -30,8 +30,8 @@ contains
          '', &
          '   --output FILE   where to write; default: NAME.csv in the present folder; "-" is the screen;', &
          '                   a name that ends in .h5 or .hdf5 is written as HDF5', &
-         '   --material NAME   replaces &material of the case by a set of the library of materials (toyoura, karlsruhe', &
-         '                   ...), or by a file whose name ends in .nml', &
+         '   --material NAME   replaces &material of the case by a set of the library of materials (toyoura, ', &
+         '                   karlsruhe ...), or by a file whose name ends in .nml', &
          '   --quiet         no summary, no progress', &
          '   --residuals     print the error of every iteration of a held stress', &
          '   --save-failed FILE   write the first update that the library refuses to a new file for mud_replay', &

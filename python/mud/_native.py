@@ -56,7 +56,7 @@ def _structure(header: str, name: str) -> type[ctypes.Structure]:
     body = re.search(rf"typedef struct {name}\s*\{{(.*?)\}}", header, re.DOTALL)
     kinds = {"int": c_int, "double": c_double}
     fields = [(field.strip(), kinds[kind]) for kind, names in re.findall(r"\b(int|double)\s+([^;]+);", body[1])
-              for field in names.split(",")]
+              for field in re.split(",", names)]
     return type(name, (ctypes.Structure,), {"_fields_": fields})
 
 

@@ -1,13 +1,13 @@
 """Results of the finite-element host: tables of a run with numpy alone, fields with h5py (extra ``host``)."""
 from __future__ import annotations
 
-import csv
 import os
 import pathlib
 import re
 
 import numpy as np
 
+from ._csv import rows_of
 from .errors import InputError
 
 
@@ -48,8 +48,7 @@ class HostRun:
         if not path.exists():
             there = ", ".join(sorted(p.stem for p in self.folder.glob("*.csv")))
             raise InputError(f"{self.folder} has no table {name}; it has {there}")
-        with open(path, newline="", encoding="utf-8") as file:
-            rows = [row for row in csv.reader(file) if row and not row[0].startswith("#")]
+        rows = [cells for _, cells in rows_of(path)]
         return {key: _column(values) for key, values in zip(rows[0], zip(*rows[1:]))} if len(rows) > 1 else \
             {key: np.empty(0) for key in rows[0]}
 

@@ -11,7 +11,7 @@ from .fit import Fit
 from .misfit import scaled
 from .simulation import Answer
 from .task import Task
-from .variables import PINNED, Variable, meaning_of, start_of
+from .variables import PINNED, Variable, meaning_of, poisson_ratio, start_of
 
 POINTS = 4          # of one curve that count as independent: its rows follow each other closely
 CONFIDENT = 1.96    # standard deviations of a 95 % interval
@@ -160,9 +160,7 @@ def _out_of_range(name: str, material: Material, answer: Answer) -> list[str]:
         return told
     if np.min(1 - material["c_h"]*e) < SOFTEST:
         told.append(f"{name}: 1 - c_h e comes to {np.min(1 - material['c_h']*e):.3f}: the hardening law is next to its guard.")
-    stiffness = material["K_0"]*(1 + e)/e*(p/material["p_atm"])**(2/3)
-    shear = material["G_0"]*(2.97 - e)**2/(1 + e)*np.sqrt(p/material["p_atm"])
-    poisson = (3*stiffness - 2*shear)/(2*(3*stiffness + shear))
+    poisson = poisson_ratio(material, e, p)
     if np.min(poisson) < POISSON[0] or np.max(poisson) > POISSON[1]:
         told.append(f"{name}: elastic Poisson's ratio runs from {np.min(poisson):.2f} to {np.max(poisson):.2f}, sand has "
                     f"{POISSON[0]:g} to {POISSON[1]:g}.")

@@ -13,7 +13,7 @@ from ..errors import MudError
 from ..material import Material
 from .simulation import SETTINGS, Answer, simulate
 from .task import Item
-from .variables import parameters_of
+from .variables import parameters_of, poisson_residual
 
 ROBUST = 3.0     # residuals beyond so many standard deviations count less (soft l1)
 PENALTY = 20.0   # residual of a row that the model did not reach, in standard deviations
@@ -68,7 +68,8 @@ class Evaluator:
 
     def residuals(self, sets: Sequence[Mapping[str, float]], numbers: Sequence[int] | None = None, thin: int = 1
                   ) -> list[np.ndarray]:
-        """Residual vectors of several sets of variables on tests by their number; thin : every so manieth row counts."""
+        """Residual vectors of several sets of variables on tests by their number, and behind them what keeps Poisson's ratio;
+        thin : every so manieth row counts."""
         numbers = range(len(self.items)) if numbers is None else numbers
         jobs = [({**self.fixed, **values}, number, thin) for values in sets for number in numbers]
         if self._pool:
@@ -82,7 +83,9 @@ class Evaluator:
                 name = self.items[number].test.name
                 self.failures[name] = self.failures.get(name, 0) + 1
         count = len(numbers)
-        return [np.concatenate([part for part, _ in parts[i*count:(i + 1)*count]]) for i in range(len(sets))]
+        return [np.concatenate([*(part for part, _ in parts[i*count:(i + 1)*count]),
+                                poisson_residual(parameters_of({**self.fixed, **values}, self.base))])
+                for i, values in enumerate(sets)]
 
 
 def scaled(item: Item, answer: Answer, quantity: str) -> np.ndarray:

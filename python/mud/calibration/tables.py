@@ -5,7 +5,6 @@ positive. Inside, strains are fractions and stresses kPa.
 """
 from __future__ import annotations
 
-import csv
 import dataclasses
 import difflib
 import os
@@ -13,6 +12,7 @@ import pathlib
 
 import numpy as np
 
+from .._csv import rows_of
 from ..errors import InputError
 
 # Units behind the name of a column, and what they are worth.
@@ -105,12 +105,7 @@ def read_table(path: str | os.PathLike, kind: str) -> list[LaboratoryTest]:
     path = pathlib.Path(path)
     if kind not in NEEDS:
         raise InputError(f"there is no kind of test {kind}; there are {', '.join(NEEDS)}")
-    try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except OSError as problem:
-        raise InputError(f"{path} cannot be read: {problem.strerror}") from problem
-    rows = [(number, next(csv.reader([line]))) for number, line in enumerate(lines, 1)
-            if line.strip() and not line.startswith("#")]
+    rows = rows_of(path)
     if len(rows) < 2:
         raise InputError(f"{path} has no rows of numbers below its line of names")
     head = _head(rows[0][1], path, rows[0][0])

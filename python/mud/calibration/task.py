@@ -11,7 +11,7 @@ from ..errors import InputError
 from ..material import Material
 from .simulation import SCATTER, Use, use_of
 from .tables import LaboratoryTest, read_table
-from .variables import VARIABLES, Variable, chosen, known_parameters
+from .variables import LEAST_HARDENING, VARIABLES, Variable, chosen, known_parameters
 
 KEYS = ("name", "title", "reference", "start", "seed", "known", "tables", "held_out", "groups", "bounds", "notes")
 TABLE_KEYS = ("file", "kind", "first", "last", "scatter", "branch", "weight", "only", "name")
@@ -57,7 +57,12 @@ class Task:
         """What is fitted, with the bounds of this task."""
         kinds = {item.test.kind for item in self.fitted()}
         unsaturated = any(item.test.suction > 0 for item in self.fitted() if item.test.kind != "retention")
-        return [dataclasses.replace(v, lower=self.bounds[v.name][0], upper=self.bounds[v.name][1]) if v.name in self.bounds else v
+        bounds = dict(self.bounds)
+        loosest = max((item.test["e"][item.use.rows].max() for item in self.fitted() if "e" in item.test), default=0.0)
+        if loosest > 0 and "c_h" not in bounds:
+            c_h = VARIABLES["c_h"]
+            bounds["c_h"] = (c_h.lower, min(c_h.upper, (1 - LEAST_HARDENING)/float(loosest)))
+        return [dataclasses.replace(v, lower=bounds[v.name][0], upper=bounds[v.name][1]) if v.name in bounds else v
                 for v in chosen(kinds, unsaturated, [*self.origins], self.groups)]
 
 

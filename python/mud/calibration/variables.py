@@ -38,6 +38,11 @@ class Variable:
         return float(min(max(place, 0.0), 1.0))
 
 
+POISSON = (0.05, 0.4)    # elastic Poisson's ratio of sand
+POISSON_STATES = [(e, p) for e in (0.6, 1.0) for p in (50.0, 500.0)]   # void ratio, p' [kPa] where it is looked at
+POISSON_WEIGHT = 30.0    # of a ratio outside, beside residuals in standard deviations: 0.03 counts as one curve off by one
+LEAST_HARDENING = 0.05   # 1 - c_h e of the loosest fitted sample: at zero the hardening law ends
+
 GROUPS = ("critical state", "elasticity and compression", "peak and dilatancy", "hardening", "cycles", "retention", "bonding")
 # Group -> kinds of tests that speak of it.
 SPEAKS = {"critical state": {"drained", "undrained"}, "elasticity and compression": {"oedometer", "isotropic", "drained"},
@@ -84,6 +89,19 @@ def pins_of(base: Mapping[str, float]) -> dict[str, float]:
             "e_l10": base["N_l"]*P_COMPRESSION**-base["lambda"]}
 
 
+def poisson_ratio(values: Mapping[str, float], e: np.ndarray | float, p: np.ndarray | float) -> np.ndarray | float:
+    """Elastic Poisson's ratio of eqs (2), (3) at a void ratio and a mean stress [kPa]."""
+    bulk = values["K_0"]*(1 + e)/e*(p/values["p_atm"])**(2/3)
+    shear = values["G_0"]*(2.97 - e)**2/(1 + e)*np.sqrt(p/values["p_atm"])
+    return (3*bulk - 2*shear)/(2*(3*bulk + shear))
+
+
+def poisson_residual(values: Mapping[str, float]) -> np.ndarray:
+    """Residuals that keep G_0 and K_0 in keeping: shear and compression tests alone let them drift apart."""
+    ratios = np.array([poisson_ratio(values, e, p) for e, p in POISSON_STATES])
+    return POISSON_WEIGHT*(np.minimum(ratios - POISSON[0], 0) + np.maximum(ratios - POISSON[1], 0))
+
+
 def start_of(name: str, base: Mapping[str, float]) -> float:
     """Value of a variable in a set of parameters."""
     return pins_of(base)[name] if name in PINNED.values() else base[name]
@@ -113,9 +131,15 @@ def known_parameters(known: Mapping[str, float], base: Mapping[str, float]) -> t
             raise InputError(f"known: {name} is neither a parameter of the library nor one of phi_c, G_max, G_max_p, G_max_e, "
                              f"{', '.join(PINNED.values())}")
         values[name], origins[name] = float(value), "known"
-    for pin, name in PINNED.items():
-        if pin in values:   # the line is given as a whole
-            raise InputError(f"known: give {name} ({meaning_of(name)}) in place of {pin}")
+    for position, pin in PINNED.items():
+        if position not in values:
+            continue
+        with_it = ("lambda", "alpha_csl") if position == "N_c" else ("lambda",)
+        for name in with_it:
+            if name not in values:
+                raise InputError(f"known: {position} is the position of a line: give {' and '.join(with_it)} with it, or {pin} "
+                                 f"({meaning_of(pin)}) in its place")
+        values[pin], origins[pin] = pins_of({**base, **values})[pin], "known"
     return values, origins
 
 

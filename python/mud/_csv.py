@@ -1,0 +1,20 @@
+"""The package's one reader of CSV tables: a wheel has nothing of the tree's common/."""
+from __future__ import annotations
+
+import csv
+import os
+import pathlib
+
+from .errors import InputError
+
+
+def rows_of(path: str | os.PathLike) -> list[tuple[int, list[str]]]:
+    """(line, cells) of every row that is neither empty nor a comment (#), the names of the columns first."""
+    try:
+        lines = pathlib.Path(path).read_text(encoding="utf-8-sig").splitlines()
+    except OSError as problem:
+        raise InputError(f"{path} cannot be read: {problem.strerror}") from problem
+    except UnicodeDecodeError as problem:
+        raise InputError(f"{path} is no text in UTF-8; save it as CSV") from problem
+    return [(number, next(csv.reader([line]))) for number, line in enumerate(lines, 1)
+            if line.strip() and not line.startswith("#")]
