@@ -2,7 +2,7 @@
 
 Six drained tests beside their laboratory points, twelve undrained tests beside the closed-form steady state, through the
 driver mud_triax: the page verification/material/verdugo_ishihara; the paper's indentation at a suction of 30 kPa through
-mud_host (its Fig. 3). This file only starts them.
+mud_host (its Fig. 3). Between them Toyoura sand with its published and with fitted parameters. This file only starts them.
 """
 import argparse
 import os
@@ -38,6 +38,38 @@ def indentation(host, folder):
     print(f"figure {figures.interface({'remedy': columns}, folder / 'indentation.png')}")
 
 
+def fitted_sand(build, folder):
+    """Toyoura sand with the published and the fitted parameters beside the laboratory, by the Python package."""
+    os.environ.setdefault("MUD_LIBRARY_DIR", str(build))
+    sys.path.insert(0, str(ROOT / "python"))
+    import mud
+    from mud import plots
+    from mud.calibration import answers_of, misfits_of, read_task
+    print("\nA fitted sand beside the published one (a second)", flush=True)
+    items = read_task(ROOT / "calibration/toyoura_fitted.toml").items
+    plt = plots.pyplot()
+    figure, axes = plt.subplots(2, 2, figsize=(9.5, 7), sharex=True, layout="constrained")
+    for column, name in enumerate(("toyoura", "toyoura_fitted")):
+        answers = answers_of(mud.Material(name), items)
+        missed = misfits_of(items, answers)
+        for row, (quantity, label, factor) in enumerate((("q", "q [kPa]", 1), ("eps_v", "volumetric strain [%]", 100))):
+            for colour, item in zip(plots.COLOURS, items):
+                strain = 100*item.test["eps_a"][item.use.rows]
+                axes[row, column].plot(strain, factor*item.test[quantity][item.use.rows], "o", ms=3.5, mfc="white", color=colour)
+                axes[row, column].plot(strain, factor*answers[item.test.name].columns[quantity], color=colour,
+                                       label=f"e {item.test.e_0:.3f}, {item.test.sigma_r:.0f} kPa")
+            axes[row, column].set_ylabel(label)
+            axes[row, column].sharey(axes[row, 0])
+        axes[0, column].set_title(f"material {name}")
+        axes[1, column].set_xlabel("axial strain [%]")
+        print(f"   {name}: misfit of q {np.sqrt(np.mean([m.q**2 for m in missed])):.0f} % rms of {len(items)} drained tests, of volumetric "
+              f"strain {np.sqrt(np.mean([m.eps_v**2 for m in missed])):.2f} points")
+    axes[0, 0].legend(fontsize=7)
+    figure.suptitle("Toyoura sand, Verdugo & Ishihara (1996): published and fitted parameters")
+    figure.savefig(folder / "fitted_sand.png")
+    print(f"figure {folder / 'fitted_sand.png'}; your own sand: calibration/README.md")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build" / "release", metavar="DIR",
@@ -55,6 +87,7 @@ def main():
     if outcome.failed:
         sys.exit("run_demo: the triaxial tests are not what they should be, see the lines that begin with FAILED.")
     print(f"figures and tables in {folder / PAGE}")
+    fitted_sand(build, folder)
     host = build / "host" / "mud_host"
     if host.exists():
         indentation(host, folder)

@@ -1,4 +1,5 @@
 """A drained triaxial test with a picture: drained_test.py [PICTURE.png]"""
+
 import sys
 
 import mud

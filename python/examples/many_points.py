@@ -2,6 +2,7 @@
 
 Points follow the library's convention: tension positive, components 11, 22, 33, 12, 13, 23, engineering shear strain.
 """
+
 import numpy as np
 
 import mud
@@ -15,7 +16,7 @@ strains = np.random.default_rng(1).normal(scale=1e-4, size=(n, 6))
 strains[:, :3] -= strains[:, :3].mean(axis=1, keepdims=True)
 
 for _ in range(20):
-    answer = sand.update_batch(stresses, states, strains, out=(stresses, states))   # nothing is copied
+    answer = sand.update_batch(stresses, states, strains, out=(stresses, states))  # nothing is copied
 pressure = -stresses[:, :3].mean(axis=1)
 print(f"{answer.failed} points failed; p' {pressure.min():.1f} to {pressure.max():.1f} kPa")
 print(f"largest fabric component {np.abs(mud.state(states, 'fabric')).max():.3f}")

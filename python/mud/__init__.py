@@ -9,6 +9,7 @@
 laboratory tests. Points follow the library's convention (tension positive, engineering shear), element tests that of the
 laboratory (compression positive); both say so.
 """
+
 from .element_test import Stage, TestResult, element_test, run_case
 from .errors import IncrementError, InputError, MudError, TestStopped, UnknownName
 from .host import HostRun
@@ -16,6 +17,28 @@ from .material import BatchResponse, Material, Response, material_file, material
 from .plots import plot_histories, plot_test
 from .registry import Parameter, Registry, StateVariable, parameters, state, states
 
-__all__ = ["BatchResponse", "HostRun", "IncrementError", "InputError", "Material", "MudError", "Parameter", "Registry",
-           "Response", "Stage", "StateVariable", "TestResult", "TestStopped", "UnknownName", "element_test", "material_file", "materials",
-           "parameters", "plot_histories", "plot_test", "run_case", "state", "states"]
+__all__ = [
+    "BatchResponse",
+    "HostRun",
+    "IncrementError",
+    "InputError",
+    "Material",
+    "MudError",
+    "Parameter",
+    "Registry",
+    "Response",
+    "Stage",
+    "StateVariable",
+    "TestResult",
+    "TestStopped",
+    "UnknownName",
+    "element_test",
+    "material_file",
+    "materials",
+    "parameters",
+    "plot_histories",
+    "plot_test",
+    "run_case",
+    "state",
+    "states",
+]

@@ -1,4 +1,5 @@
 """The package's one reader of CSV tables: a wheel has nothing of the tree's common/."""
+
 from __future__ import annotations
 
 import csv
@@ -16,5 +17,8 @@ def rows_of(path: str | os.PathLike) -> list[tuple[int, list[str]]]:
         raise InputError(f"{path} cannot be read: {problem.strerror}") from problem
     except UnicodeDecodeError as problem:
         raise InputError(f"{path} is no text in UTF-8; save it as CSV") from problem
-    return [(number, next(csv.reader([line]))) for number, line in enumerate(lines, 1)
-            if line.strip() and not line.startswith("#")]
+    return [
+        (number, next(csv.reader([line])))
+        for number, line in enumerate(lines, 1)
+        if line.strip() and not line.startswith("#")
+    ]

@@ -3,6 +3,7 @@
 Constants, the report of an update and the version of the interface are read from ``mud.h`` and ``mud_triax.h``, which lie
 beside the libraries: there is one list of them, and this module does not repeat it.
 """
+
 from __future__ import annotations
 
 import ctypes
@@ -16,7 +17,7 @@ SOURCE_TREE = PACKAGE.parent.parent
 FOLDER_VARIABLE = "MUD_LIBRARY_DIR"
 # Interfaces that this package was written for.
 ABI_VERSIONS = {"mud": (2, 3), "mud_triax": (1,)}
-TEXT = 2000   # bytes of a sentence
+TEXT = 2000  # bytes of a sentence
 
 
 def _folders() -> list[pathlib.Path]:
@@ -31,9 +32,13 @@ def _find(name: str) -> pathlib.Path:
         for suffix in (".so", ".dylib"):
             if (folder / f"lib{name}{suffix}").exists():
                 return folder / f"lib{name}{suffix}"
-    looked = ", ".join(str(folder) for folder in dict.fromkeys(_folders()) if folder.is_dir()) or "no folder that is there"
-    raise ImportError(f"lib{name}.so was not found in {looked}. Install the package with `pip install .` from the tree, build "
-                      f"the tree (cmake --preset release; ninja -C build/release), or name the folder with {FOLDER_VARIABLE}.")
+    looked = (
+        ", ".join(str(folder) for folder in dict.fromkeys(_folders()) if folder.is_dir()) or "no folder that is there"
+    )
+    raise ImportError(
+        f"lib{name}.so was not found in {looked}. Install the package with `pip install .` from the tree, build "
+        f"the tree (cmake --preset release; ninja -C build/release), or name the folder with {FOLDER_VARIABLE}."
+    )
 
 
 def _header(name: str) -> str:
@@ -55,35 +60,65 @@ def _structure(header: str, name: str) -> type[ctypes.Structure]:
     """The ctypes twin of a `typedef struct` of ints and doubles."""
     body = re.search(rf"typedef struct {name}\s*\{{(.*?)\}}", header, re.DOTALL)
     kinds = {"int": c_int, "double": c_double}
-    fields = [(field.strip(), kinds[kind]) for kind, names in re.findall(r"\b(int|double)\s+([^;]+);", body[1])
-              for field in re.split(",", names)]
+    fields = [
+        (field.strip(), kinds[kind])
+        for kind, names in re.findall(r"\b(int|double)\s+([^;]+);", body[1])
+        for field in re.split(",", names)
+    ]
     return type(name, (ctypes.Structure,), {"_fields_": fields})
 
 
 _text, _text_triax = _header("mud.h"), _header("mud_triax.h")
 CONSTANTS = {**_constants(_text), **_constants(_text_triax)}
 Report = _structure(_text, "mud_report")
-STATUS_NAMES = {value: name for name, value in _constants(re.search(r"enum mud_status\s*\{.*?\}", _text, re.DOTALL)[0]).items()}
+STATUS_NAMES = {
+    value: name for name, value in _constants(re.search(r"enum mud_status\s*\{.*?\}", _text, re.DOTALL)[0]).items()
+}
 _doubles, _ints = POINTER(c_double), POINTER(c_int)
 _SIGNATURES = {
-    "mud_abi_version": [], "mud_version": [c_char_p, c_int], "mud_count": [c_int], "mud_index": [c_int, c_char_p],
-    "mud_text": [c_int, c_int, c_int, c_char_p, c_int], "mud_option": [c_int, c_int, _doubles, c_char_p, c_int],
-    "mud_bounds": [c_int, c_int, _doubles, _doubles, _doubles], "mud_default_props": [c_void_p, c_int],
+    "mud_abi_version": [],
+    "mud_version": [c_char_p, c_int],
+    "mud_count": [c_int],
+    "mud_index": [c_int, c_char_p],
+    "mud_text": [c_int, c_int, c_int, c_char_p, c_int],
+    "mud_option": [c_int, c_int, _doubles, c_char_p, c_int],
+    "mud_bounds": [c_int, c_int, _doubles, _doubles, _doubles],
+    "mud_default_props": [c_void_p, c_int],
     "mud_bounds_for": [c_void_p, c_int, c_int, _doubles, _doubles, _doubles],
     "mud_validate_props": [c_void_p, c_int, c_char_p, c_int],
     "mud_init_state": [c_void_p, c_int, c_void_p, c_double, c_double, c_void_p, c_int, c_char_p, c_int],
-    "mud_prepared_size": [], "mud_prepare": [c_void_p, c_int, c_void_p, c_int, c_char_p, c_int],
-    "mud_update_prepared": [c_void_p, c_void_p, c_void_p, c_int, c_void_p, c_double, c_double, c_int] + 6*[c_void_p]
+    "mud_prepared_size": [],
+    "mud_prepare": [c_void_p, c_int, c_void_p, c_int, c_char_p, c_int],
+    "mud_update_prepared": [c_void_p, c_void_p, c_void_p, c_int, c_void_p, c_double, c_double, c_int]
+    + 6 * [c_void_p]
     + [POINTER(Report)],
-    "mud_update_batch_prepared": [c_void_p, c_int, c_void_p, c_void_p, c_int, c_void_p, c_void_p, c_void_p, c_int, c_int]
-    + 7*[c_void_p] + [c_void_p],
+    "mud_update_batch_prepared": [
+        c_void_p,
+        c_int,
+        c_void_p,
+        c_void_p,
+        c_int,
+        c_void_p,
+        c_void_p,
+        c_void_p,
+        c_int,
+        c_int,
+    ]
+    + 7 * [c_void_p]
+    + [c_void_p],
     "mud_saturation": [c_void_p, c_double, c_double, _doubles, _doubles, _doubles],
-    "mud_status_text": [c_int, c_char_p, c_int], "mud_message": [POINTER(Report), c_char_p, c_int]}
+    "mud_status_text": [c_int, c_char_p, c_int],
+    "mud_message": [POINTER(Report), c_char_p, c_int],
+}
 _SIGNATURES_TRIAX = {
-    "mud_triax_run": [c_char_p, c_char_p, POINTER(c_void_p), c_char_p, c_int], "mud_triax_rows": [c_void_p],
-    "mud_triax_columns": [c_void_p], "mud_triax_column": [c_void_p, c_int, c_int, c_char_p, c_int],
-    "mud_triax_values": [c_void_p, c_void_p], "mud_triax_remarks": [c_void_p, c_char_p, c_int],
-    "mud_triax_free": [c_void_p]}
+    "mud_triax_run": [c_char_p, c_char_p, POINTER(c_void_p), c_char_p, c_int],
+    "mud_triax_rows": [c_void_p],
+    "mud_triax_columns": [c_void_p],
+    "mud_triax_column": [c_void_p, c_int, c_int, c_char_p, c_int],
+    "mud_triax_values": [c_void_p, c_void_p],
+    "mud_triax_remarks": [c_void_p, c_char_p, c_int],
+    "mud_triax_free": [c_void_p],
+}
 
 
 def _load(name: str, signatures: dict[str, list]) -> ctypes.CDLL:
@@ -91,8 +126,10 @@ def _load(name: str, signatures: dict[str, list]) -> ctypes.CDLL:
     try:
         library = ctypes.CDLL(str(path))
     except OSError as problem:
-        raise ImportError(f"{path} cannot be loaded: {problem}. It needs the runtime of gfortran (Debian: libgfortran5) and, "
-                          "for element tests, LAPACK.") from problem
+        raise ImportError(
+            f"{path} cannot be loaded: {problem}. It needs the runtime of gfortran (Debian: libgfortran5) and, "
+            "for element tests, LAPACK."
+        ) from problem
     for function, arguments in signatures.items():
         getattr(library, function).argtypes = arguments
         getattr(library, function).restype = c_int
@@ -104,8 +141,10 @@ mud_triax = _load("mud_triax", _SIGNATURES_TRIAX)
 mud_triax.mud_triax_free.restype = None
 for _name, _found in (("mud", mud.mud_abi_version()), ("mud_triax", CONSTANTS["MUD_TRIAX_ABI_VERSION"])):
     if _found not in ABI_VERSIONS[_name]:
-        raise ImportError(f"lib{_name} has interface {_found}, this package was written for {ABI_VERSIONS[_name]}; "
-                          "install library and package from the same tree.")
+        raise ImportError(
+            f"lib{_name} has interface {_found}, this package was written for {ABI_VERSIONS[_name]}; "
+            "install library and package from the same tree."
+        )
 
 
 def text_of(function, *arguments) -> tuple[int, str]:

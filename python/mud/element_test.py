@@ -1,4 +1,5 @@
 """Element tests: every control of mud_triax, run in this process by the driver's own library."""
+
 from __future__ import annotations
 
 import ctypes
@@ -41,13 +42,15 @@ class Stage:
 class TestResult(Mapping):
     """Table of a test: columns by name, arrays of shape (rows,); compression positive, kPa, natural strain."""
 
-    __test__ = False   # not a test of pytest
+    __test__ = False  # not a test of pytest
 
-    def __init__(self, columns: dict[str, np.ndarray], units: dict[str, str], meanings: dict[str, str], remarks: list[str]):
+    def __init__(
+        self, columns: dict[str, np.ndarray], units: dict[str, str], meanings: dict[str, str], remarks: list[str]
+    ):
         self._columns = columns
-        self.units = units           #: unit of each column
-        self.meanings = meanings     #: what each column is
-        self.remarks = remarks       #: facts of the run, "name: text"
+        self.units = units  #: unit of each column
+        self.meanings = meanings  #: what each column is
+        self.remarks = remarks  #: facts of the run, "name: text"
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self._columns:
@@ -64,7 +67,7 @@ class TestResult(Mapping):
     def volumetric_strain(self) -> np.ndarray:
         """(rows,) linear volumetric strain as a laboratory reports it, (e_0 - e)/(1 + e_0) [-]; `eps_v` is natural."""
         e = self["e"]
-        return (e[0] - e)/(1 + e[0])
+        return (e[0] - e) / (1 + e[0])
 
     @property
     def axial_strain(self) -> np.ndarray:
@@ -77,9 +80,18 @@ class TestResult(Mapping):
         return np.concatenate([np.flatnonzero(np.diff(stage) != 0), [len(stage) - 1]])
 
 
-def element_test(material: Material | Mapping[str, object] | str | os.PathLike, *stages: Stage, void_ratio: float,
-                 p_eff: float | None = None, sigma_a: float | None = None, sigma_r: float | None = None, suction: float = 0.0,
-                 name: str = "test", control_tolerance: float | None = None, max_updates: int | None = None) -> TestResult:
+def element_test(
+    material: Material | Mapping[str, object] | str | os.PathLike,
+    *stages: Stage,
+    void_ratio: float,
+    p_eff: float | None = None,
+    sigma_a: float | None = None,
+    sigma_r: float | None = None,
+    suction: float = 0.0,
+    name: str = "test",
+    control_tolerance: float | None = None,
+    max_updates: int | None = None,
+) -> TestResult:
     """Runs a test on one point and returns its table.
 
     material : a ``Material``, a name or file of one, or the keys of a ``&material`` group for another law
@@ -94,10 +106,14 @@ def element_test(material: Material | Mapping[str, object] | str | os.PathLike, 
     if isinstance(material, (str, os.PathLike)):
         material = Material(material)
     initial = {"void_ratio": void_ratio, "p_eff": p_eff, "sigma_a": sigma_a, "sigma_r": sigma_r, "suction": suction}
-    text = "".join([
-        _group("case", {"name": name, "control_tolerance": control_tolerance, "max_updates": max_updates}),
-        material.group() if isinstance(material, Material) else _group("material", material),
-        _group("initial", initial), *(_group("stage", {"control": s.control, **s.keys}) for s in stages)])
+    text = "".join(
+        [
+            _group("case", {"name": name, "control_tolerance": control_tolerance, "max_updates": max_updates}),
+            material.group() if isinstance(material, Material) else _group("material", material),
+            _group("initial", initial),
+            *(_group("stage", {"control": s.control, **s.keys}) for s in stages),
+        ]
+    )
     return run_case(text)
 
 
@@ -128,16 +144,24 @@ def _table(handle: ctypes.c_void_p) -> TestResult:
     rows, count = library.mud_triax_rows(handle), library.mud_triax_columns(handle)
     values = np.empty((count, rows))
     library.mud_triax_values(handle, values.ctypes.data)
-    fields = [[_native.text_of(library.mud_triax_column, handle, i, C[f"MUD_TRIAX_{field}"])[1] for i in range(count)]
-              for field in ("NAME", "UNIT", "MEANING")]
+    fields = [
+        [_native.text_of(library.mud_triax_column, handle, i, C[f"MUD_TRIAX_{field}"])[1] for i in range(count)]
+        for field in ("NAME", "UNIT", "MEANING")
+    ]
     remarks = ctypes.create_string_buffer(library.mud_triax_remarks(handle, None, 0) + 1)
     library.mud_triax_remarks(handle, remarks, len(remarks))
-    return TestResult(dict(zip(fields[0], values)), dict(zip(fields[0], fields[1])), dict(zip(fields[0], fields[2])),
-                      remarks.value.decode().splitlines())
+    return TestResult(
+        dict(zip(fields[0], values)),
+        dict(zip(fields[0], fields[1])),
+        dict(zip(fields[0], fields[2])),
+        remarks.value.decode().splitlines(),
+    )
 
 
 def _group(name: str, keys: Mapping[str, object]) -> str:
-    return "".join([f"&{name}\n", *(f"   {key} = {_value(value)}\n" for key, value in keys.items() if value is not None), "/\n"])
+    return "".join(
+        [f"&{name}\n", *(f"   {key} = {_value(value)}\n" for key, value in keys.items() if value is not None), "/\n"]
+    )
 
 
 def _value(value: object) -> str:

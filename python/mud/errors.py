@@ -1,4 +1,5 @@
 """Exceptions; what they say is the library's own sentence."""
+
 from __future__ import annotations
 
 from . import _native
@@ -19,7 +20,7 @@ class InputError(MudError, ValueError):
 class UnknownName(InputError, KeyError):
     """A name that the registry does not have; the sentence names the nearest one."""
 
-    __str__ = Exception.__str__   # KeyError shows a representation, not the sentence
+    __str__ = Exception.__str__  # KeyError shows a representation, not the sentence
 
 
 class IncrementError(MudError):
@@ -32,7 +33,7 @@ class IncrementError(MudError):
 class TestStopped(MudError):
     """An element test that stopped before its end; ``result`` holds the rows so far (mud.TestResult)."""
 
-    __test__ = False   # not a test of pytest
+    __test__ = False  # not a test of pytest
 
     def __init__(self, sentence: str, result: object):
         super().__init__(sentence)

@@ -1,4 +1,5 @@
 """Results of the finite-element host: tables of a run with numpy alone, fields with h5py (extra ``host``)."""
+
 from __future__ import annotations
 
 import os
@@ -49,15 +50,23 @@ class HostRun:
             there = ", ".join(sorted(p.stem for p in self.folder.glob("*.csv")))
             raise InputError(f"{self.folder} has no table {name}; it has {there}")
         rows = [cells for _, cells in rows_of(path)]
-        return {key: _column(values) for key, values in zip(rows[0], zip(*rows[1:]))} if len(rows) > 1 else \
-            {key: np.empty(0) for key in rows[0]}
+        return (
+            {key: _column(values) for key, values in zip(rows[0], zip(*rows[1:]))}
+            if len(rows) > 1
+            else {key: np.empty(0) for key in rows[0]}
+        )
 
     def _frames(self) -> list[pathlib.Path]:
         # Not whatever lies in the folder: an earlier run may have written more.
         listed = self.folder / "results.xdmf"
         if not listed.exists():
-            raise InputError(f"{self.folder} has no fields: the host was built without HDF5, or the scene asks for none")
-        return [self.folder / n for n in dict.fromkeys(re.findall(r">(fields_\d+\.h5):/", listed.read_text(encoding="utf-8")))]
+            raise InputError(
+                f"{self.folder} has no fields: the host was built without HDF5, or the scene asks for none"
+            )
+        return [
+            self.folder / n
+            for n in dict.fromkeys(re.findall(r">(fields_\d+\.h5):/", listed.read_text(encoding="utf-8")))
+        ]
 
     def mesh(self) -> tuple[np.ndarray, np.ndarray]:
         """Nodes (n, 2) [m] and elements (m, 6), numbers from 0."""

@@ -1,4 +1,5 @@
 """Material files: one group ``&material`` with ``key = value`` lines; ``!`` begins a comment."""
+
 from __future__ import annotations
 
 import os
@@ -17,7 +18,9 @@ def read_material(path: str | os.PathLike) -> dict[str, float | str]:
         lines = path.read_text(encoding="utf-8").splitlines()
     except OSError as problem:
         raise InputError(f"{path} cannot be read: {problem.strerror}") from problem
-    tokens = [(number, match) for number, line in enumerate(lines, 1) for match in TOKEN.finditer(_without_comment(line))]
+    tokens = [
+        (number, match) for number, line in enumerate(lines, 1) for match in TOKEN.finditer(_without_comment(line))
+    ]
     marks = [match["mark"] for _, match in tokens]
     if marks.count("&") != 1 or marks[:1] != ["&"] or tokens[1][1]["word"] != "material" or marks[-1] != "/":
         raise InputError(f"{path}: a material file holds exactly one group, &material ... /")

@@ -1,4 +1,5 @@
 """Parameters and state variables by name, as the library's registry lists them."""
+
 from __future__ import annotations
 
 import dataclasses
@@ -16,22 +17,24 @@ from .errors import UnknownName
 @dataclasses.dataclass(frozen=True)
 class Parameter:
     """A material parameter (entry of PROPS). Bounds and default in ``unit``, for p_atm = 101.325 kPa."""
-    index: int                   #: place in PROPS, from 0
+
+    index: int  #: place in PROPS, from 0
     name: str
     symbol: str
-    unit: str                    #: "1" if it has none
+    unit: str  #: "1" if it has none
     lower: float
     upper: float
     default: float
-    origin: str                  #: paper, mended, rebuilt, numerical or ours
+    origin: str  #: paper, mended, rebuilt, numerical or ours
     meaning: str
-    options: Mapping[str, float]   #: words that stand for a value; empty if the parameter takes numbers
+    options: Mapping[str, float]  #: words that stand for a value; empty if the parameter takes numbers
 
 
 @dataclasses.dataclass(frozen=True)
 class StateVariable:
     """A state variable (entry of STATEV)."""
-    index: int                   #: place in STATEV, from 0
+
+    index: int  #: place in STATEV, from 0
     name: str
     symbol: str
     unit: str
@@ -83,8 +86,9 @@ def _options(index: int) -> dict[str, float]:
 def _parameters() -> Registry:
     entries, numbers = [], [c_double() for _ in range(3)]
     for i in range(_native.mud.mud_count(C["MUD_PROPS"])):
-        name, symbol, unit, origin, meaning = _texts(C["MUD_PROPS"], i, "MUD_NAME", "MUD_SYMBOL", "MUD_UNIT", "MUD_ORIGIN",
-                                                     "MUD_MEANING")
+        name, symbol, unit, origin, meaning = _texts(
+            C["MUD_PROPS"], i, "MUD_NAME", "MUD_SYMBOL", "MUD_UNIT", "MUD_ORIGIN", "MUD_MEANING"
+        )
         _native.mud.mud_bounds(C["MUD_PROPS"], i, *map(byref, numbers))
         entries.append(Parameter(i, name, symbol, unit, *(n.value for n in numbers), origin, meaning, _options(i)))
     return Registry("parameter", entries)
@@ -92,8 +96,10 @@ def _parameters() -> Registry:
 
 def _states() -> Registry:
     fields = ("MUD_NAME", "MUD_SYMBOL", "MUD_UNIT", "MUD_ORIGIN", "MUD_MEANING")
-    return Registry("state variable", [StateVariable(i, *_texts(C["MUD_STATEV"], i, *fields))
-                                       for i in range(_native.mud.mud_count(C["MUD_STATEV"]))])
+    return Registry(
+        "state variable",
+        [StateVariable(i, *_texts(C["MUD_STATEV"], i, *fields)) for i in range(_native.mud.mud_count(C["MUD_STATEV"]))],
+    )
 
 
 #: Material parameters by name.
@@ -111,5 +117,5 @@ def state(statev: np.ndarray, name: str) -> np.ndarray:
         return statev[..., states[name].index]
     if f"{name}_11" in states:
         first = states[f"{name}_11"].index
-        return statev[..., first:first + 6]
-    return statev[..., states[name].index]   # raises with the nearest name
+        return statev[..., first : first + 6]
+    return statev[..., states[name].index]  # raises with the nearest name

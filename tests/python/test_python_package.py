@@ -1,4 +1,5 @@
 """The Python package: names of the registry, sentences of the library, updates without copies, element tests of the driver."""
+
 import ctypes
 import os
 import pathlib
@@ -16,7 +17,7 @@ if os.environ.get("MUD_PRESET") == "sanitize":
     check("the libraries are built", (build / "drivers/libmud_triax.so").exists())
     finish()
 os.environ["MUD_LIBRARY_DIR"] = str(build)
-os.environ["MPLBACKEND"] = "Agg"
+os.environ.update(MPLBACKEND="Agg", OMP_WAIT_POLICY="passive", OMP_NUM_THREADS="2")
 sys.path[:0] = [str(root / "python"), str(root / "common")]
 import mud  # noqa: E402
 import tables  # noqa: E402
@@ -36,18 +37,29 @@ def refused(kind, action):
 
 
 def case_file(name, *, output=work / "case.csv", options=()):
-    done = subprocess.run([build / "drivers/mud_triax", root / f"drivers/cases/{name}.nml", "--output", output, "--quiet",
-                           *options], capture_output=True, text=True)
+    done = subprocess.run(
+        [build / "drivers/mud_triax", root / f"drivers/cases/{name}.nml", "--output", output, "--quiet", *options],
+        capture_output=True,
+        text=True,
+    )
     return done, tables.columns(output) if done.returncode == 0 else {}
 
 
 # Registry: the same as the C functions tell, by name and by place.
 entry = mud.parameters["G_0"]
-check("a parameter has unit, range, default, meaning", (entry.unit, entry.lower, entry.default) == ("1", 1e-3, 125.0)
-      and "shear modulus" in entry.meaning, entry)
-check("places are those of the library", all(
-    _native.mud.mud_index(which, name.encode()) == registry[name].index
-    for which, registry in ((1, mud.parameters), (2, mud.states)) for name in registry))
+check(
+    "a parameter has unit, range, default, meaning",
+    (entry.unit, entry.lower, entry.default) == ("1", 1e-3, 125.0) and "shear modulus" in entry.meaning,
+    entry,
+)
+check(
+    "places are those of the library",
+    all(
+        _native.mud.mud_index(which, name.encode()) == registry[name].index
+        for which, registry in ((1, mud.parameters), (2, mud.states))
+        for name in registry
+    ),
+)
 check("every word of memory_rule has its number", mud.parameters["memory_rule"].options["return_point"] == 3.0)
 check("upper and lower case do not matter", mud.parameters["g_0"].name == "G_0" and "nothing" not in mud.parameters)
 told = refused(mud.UnknownName, lambda: mud.states["void_rato"])
@@ -57,7 +69,11 @@ check("an unknown name is told the nearest", "void_ratio" in told and "'" not in
 sand = mud.Material("toyoura", e_0=0.735, memory_rule="classic")
 check("a material of the library", sand["M_c"] == 1.25 and sand["memory_rule"] == 0.0 and sand["e_0"] == 0.735, sand)
 told = refused(mud.InputError, lambda: mud.Material("toyoura", G_0=-1.0))
-check("a value out of range has the library's sentence", "G_0" in told and "allowed" in told and "shear modulus" in told, told)
+check(
+    "a value out of range has the library's sentence",
+    "G_0" in told and "allowed" in told and "shear modulus" in told,
+    told,
+)
 told = refused(mud.InputError, lambda: mud.Material("toyora"))
 check("an unknown material is told which there are", "toyoura" in told, told)
 told = refused(mud.InputError, lambda: mud.Material(memory_rule="classical"))
@@ -72,50 +88,94 @@ check("a value given twice is refused with its line", "sand.nml:3" in told and "
 
 # Updates: those of the C interface, bit by bit, in whatever way they are asked for.
 stress, state = sand.initial_state(COMPRESSION)
-check("the state begins with the void ratio of the material", mud.state(state, "void_ratio") == 0.735
-      and mud.state(state, "fabric").shape == (6,))
+check(
+    "the state begins with the void ratio of the material",
+    mud.state(state, "void_ratio") == 0.735 and mud.state(state, "fabric").shape == (6,),
+)
 answer = sand.update(stress, state, SHEAR, tangent="consistent")
 direct = np.empty(6), np.empty(len(mud.states))
 library = ctypes.CDLL(str(build / "umat/libmud.so"))
-library.mud_update.argtypes = ([ctypes.c_void_p, ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int, ctypes.c_void_p,
-                                ctypes.c_double, ctypes.c_double, ctypes.c_int] + 7*[ctypes.c_void_p])
-library.mud_update(sand.props.ctypes.data, len(sand.props), stress.ctypes.data, state.ctypes.data, len(state), SHEAR.ctypes.data,
-                   0.0, 0.0, 3, direct[0].ctypes.data, direct[1].ctypes.data, None, None, None, None, None)
-check("an update is that of mud_update", np.array_equal(answer.stress, direct[0]) and np.array_equal(answer.statev, direct[1]))
+library.mud_update.argtypes = [
+    ctypes.c_void_p,
+    ctypes.c_int,
+    ctypes.c_void_p,
+    ctypes.c_void_p,
+    ctypes.c_int,
+    ctypes.c_void_p,
+    ctypes.c_double,
+    ctypes.c_double,
+    ctypes.c_int,
+] + 7 * [ctypes.c_void_p]
+library.mud_update(
+    sand.props.ctypes.data,
+    len(sand.props),
+    stress.ctypes.data,
+    state.ctypes.data,
+    len(state),
+    SHEAR.ctypes.data,
+    0.0,
+    0.0,
+    3,
+    direct[0].ctypes.data,
+    direct[1].ctypes.data,
+    None,
+    None,
+    None,
+    None,
+    None,
+)
+check(
+    "an update is that of mud_update",
+    np.array_equal(answer.stress, direct[0]) and np.array_equal(answer.statev, direct[1]),
+)
 check("its report counts", answer.report.n_substep >= 1 and answer.report.status == 0)
 step = 1e-7
 tight = sand.changed(tolerance=1e-9)
 slope = tight.update(stress, state, SHEAR, tangent="consistent").dsig_deps
-for j in (0, 3):   # central differences are good to about 1e-5 here: tolerance 1e-9 over a step of 1e-7 of 1e-4 strain
-    e_j = step*np.eye(6)[j]
-    difference = (tight.update(stress, state, SHEAR + e_j).stress - tight.update(stress, state, SHEAR - e_j).stress)/(2*step)
-    off = np.max(np.abs(slope[:, j] - difference))/np.max(np.abs(difference))
+for j in (0, 3):  # central differences are good to about 1e-5 here: tolerance 1e-9 over a step of 1e-7 of 1e-4 strain
+    e_j = step * np.eye(6)[j]
+    difference = (tight.update(stress, state, SHEAR + e_j).stress - tight.update(stress, state, SHEAR - e_j).stress) / (
+        2 * step
+    )
+    off = np.max(np.abs(slope[:, j] - difference)) / np.max(np.abs(difference))
     check(f"column {j} of the tangent is the derivative, not its transpose", off < 1e-3, off)
-told = refused(mud.IncrementError, lambda: sand.update(stress, state, 1e4*SHEAR))
+told = refused(mud.IncrementError, lambda: sand.update(stress, state, 1e5 * SHEAR))
 check("a hard increment has the library's sentence", "too large" in told or "cut" in told, told)
 before = state.copy()
 told = refused(mud.InputError, lambda: sand.update(np.full(6, np.nan), state, SHEAR))
-check("not finite is the caller's mistake, and nothing changes", "not finite" in told and np.array_equal(state, before), told)
+check(
+    "not finite is the caller's mistake, and nothing changes",
+    "not finite" in told and np.array_equal(state, before),
+    told,
+)
 check("a wrong shape is told", "(3,)" in refused(mud.InputError, lambda: sand.update(stress[:3], state, SHEAR)))
 n = 50
 many = np.tile(stress, (n, 1)), np.tile(state, (n, 1))
-strains = np.ascontiguousarray(SHEAR*np.linspace(0.0, 2.0, n)[:, None])
+strains = np.ascontiguousarray(SHEAR * np.linspace(0.0, 2.0, n)[:, None])
 batch = sand.update_batch(*many, strains, tangent="continuum", threads=2)
 one = [sand.update(stress, state, strain, tangent="continuum") for strain in strains]
-check("a batch has the bits of single updates", np.array_equal(batch.stress, [o.stress for o in one])
-      and np.array_equal(batch.dsig_deps.transpose(0, 2, 1), [o.dsig_deps for o in one]))
+check(
+    "a batch has the bits of single updates",
+    np.array_equal(batch.stress, [o.stress for o in one])
+    and np.array_equal(batch.dsig_deps.transpose(0, 2, 1), [o.dsig_deps for o in one]),
+)
 place = many[0].ctypes.data
 inside = sand.update_batch(*many, strains, out=many)
-check("a batch in place writes to the arrays themselves", inside.stress is many[0] and many[0].ctypes.data == place
-      and np.array_equal(many[0], batch.stress))
+check(
+    "a batch in place writes to the arrays themselves",
+    inside.stress is many[0] and many[0].ctypes.data == place and np.array_equal(many[0], batch.stress),
+)
 told = refused(mud.InputError, lambda: sand.update_batch(many[0][::2], many[1][::2], strains[::2]))
 check("an array that would have to be copied is refused", "contiguous" in told, told)
 strains[3] *= 1e5
 batch = sand.update_batch(*many, strains)
-check("a point that fails keeps what it had", batch.failed == 1 and batch.status[3] > 0
-      and np.array_equal(batch.stress[3], many[0][3]) and batch.sentence(3), batch.status[:5])
+check(
+    "a point that fails keeps what it had",
+    batch.failed == 1 and batch.status[3] > 0 and np.array_equal(batch.stress[3], many[0][3]) and batch.sentence(3),
+    batch.status[:5],
+)
 curve = sand.saturation(np.array([0.0, 10.0]), 0.8)
-closed = np.log(np.e + (10.0*0.8**2/5.0)**2)**-1.0   # eq. (24), Omega 2, n_x 2, m_x 1, P_a 5
+closed = np.log(np.e + (10.0 * 0.8**2 / 5.0) ** 2) ** -1.0  # eq. (24), Omega 2, n_x 2, m_x 1, P_a 5
 check("the retention curve is eq. (24)", curve[0] == 1.0 and abs(curve[1] - closed) < 1e-14, curve)
 
 # Element tests: the driver's own, every control.
@@ -124,43 +184,81 @@ for name in ("vi_drained_TMD4", "cyclic_q_e833_p100", "lode_simple_shear", "cons
     result = mud.run_case((root / f"drivers/cases/{name}.nml").read_text(), root / "drivers/cases")
     same = list(result) == list(wanted) and all(np.allclose(result[k], wanted[k], rtol=1e-14, atol=0) for k in wanted)
     check(f"{name} is the program's, digit by digit", same, done.stderr)
-stages = {"drained": {"eps_a_end": 0.01}, "undrained": {"eps_a_end": 0.01}, "isotropic": {"p_end": 150.0},
-          "oedometer": {"sigma_a_end": 150.0}, "k0": {"eps_v_end": 0.002}, "constant_p": {"q_end": 30.0},
-          "constant_q": {"p_end": 150.0}, "simple_shear_drained": {"gamma_end": 0.01},
-          "simple_shear_constant_volume": {"tau_end": 10.0}, "strain_path": {"d_eps": [1e-3, 0, 0, 0, 5e-4, 0]},
-          "stress_path": {"d_sigma": [1.0, 2.0, 5.0, 0, 1.0, 0]}, "constant_net_stress": {"suction_end": 5.0},
-          "linear": {**{f"strain_{i}": np.eye(6)[i - 1] for i in range(1, 7)}, "change_3": 1e-3}}
-listed = subprocess.run([build / "drivers/mud_triax", "--help"], capture_output=True, text=True).stdout.split("Controls, and")[1]
-check("every control of the driver is tried here", {line.split()[0] for line in listed.splitlines()[1:]} == set(stages), listed)
+stages = {
+    "drained": {"eps_a_end": 0.01},
+    "undrained": {"eps_a_end": 0.01},
+    "isotropic": {"p_end": 150.0},
+    "oedometer": {"sigma_a_end": 150.0},
+    "k0": {"eps_v_end": 0.002},
+    "constant_p": {"q_end": 30.0},
+    "constant_q": {"p_end": 150.0},
+    "simple_shear_drained": {"gamma_end": 0.01},
+    "simple_shear_constant_volume": {"tau_end": 10.0},
+    "strain_path": {"d_eps": [1e-3, 0, 0, 0, 5e-4, 0]},
+    "stress_path": {"d_sigma": [1.0, 2.0, 5.0, 0, 1.0, 0]},
+    "constant_net_stress": {"suction_end": 5.0},
+    "linear": {**{f"strain_{i}": np.eye(6)[i - 1] for i in range(1, 7)}, "change_3": 1e-3},
+}
+listed = subprocess.run([build / "drivers/mud_triax", "--help"], capture_output=True, text=True).stdout.split(
+    "Controls, and"
+)[1]
+named = {line[6:34].strip() for line in listed.splitlines()[1:]}  # of 28 letters
+check("every control of the driver is tried here", named == set(stages), named ^ set(stages))
 for control, keys in stages.items():
     result = mud.element_test(sand, mud.Stage(control, **keys), p_eff=100.0, void_ratio=0.8)
     check(f"{control} runs", len(result["q"]) > 1 and result["control_error"].max() <= 1e-10, result.remarks)
-result = mud.element_test(sand, mud.Stage("undrained", cycle_by="q", amplitude=20.0, cycles=2, increment=1e-4), p_eff=100.0,
-                          void_ratio=0.8)
-check("cycles are counted, and units told", result["cycle"].max() == 2 and result.units["q"] == "kPa" and result.meanings["psi"])
-told = refused(mud.InputError, lambda: mud.element_test(sand, mud.Stage("draned", eps_a_end=0.1), p_eff=100.0, void_ratio=0.8))
+result = mud.element_test(
+    sand, mud.Stage("undrained", cycle_by="q", amplitude=20.0, cycles=2, increment=1e-4), p_eff=100.0, void_ratio=0.8
+)
+check(
+    "cycles are counted, and units told",
+    result["cycle"].max() == 2 and result.units["q"] == "kPa" and result.meanings["psi"],
+)
+told = refused(
+    mud.InputError, lambda: mud.element_test(sand, mud.Stage("draned", eps_a_end=0.1), p_eff=100.0, void_ratio=0.8)
+)
 check("a refused case has the driver's sentence", "nearest is drained" in told, told)
 try:
     mud.element_test(sand, mud.Stage("drained", q_end=1e5, increment=20.0), p_eff=100.0, void_ratio=0.8)
     stopped = None
 except mud.TestStopped as problem:
     stopped = problem
-check("a test that stops says where and keeps its rows", stopped and "stage 1" in str(stopped) and len(stopped.result["q"]) > 1)
-told = refused(mud.TestStopped, lambda: mud.element_test(sand, mud.Stage("drained", eps_a_end=0.1), p_eff=100.0, void_ratio=0.8,
-                                                         max_updates=50))
+check(
+    "a test that stops says where and keeps its rows",
+    stopped and "stage 1" in str(stopped) and len(stopped.result["q"]) > 1,
+)
+told = refused(
+    mud.TestStopped,
+    lambda: mud.element_test(sand, mud.Stage("drained", eps_a_end=0.1), p_eff=100.0, void_ratio=0.8, max_updates=50),
+)
 check("max_updates ends a test", "max_updates" in told, told)
-loose = mud.element_test(sand, mud.Stage("drained", eps_a_end=0.05), p_eff=100.0, void_ratio=0.8, control_tolerance=1e-4)
+loose = mud.element_test(
+    sand, mud.Stage("drained", eps_a_end=0.05), p_eff=100.0, void_ratio=0.8, control_tolerance=1e-4
+)
 tight = mud.element_test(sand, mud.Stage("drained", eps_a_end=0.05), p_eff=100.0, void_ratio=0.8)
-check("control_tolerance is what is held to", 1e-10 < loose["control_error"].max() <= 1e-4
-      and abs(loose["q"][-1]/tight["q"][-1] - 1) < 1e-3, loose["control_error"].max())
-check("linear strains are the laboratory's", np.allclose(tight.axial_strain, 1 - np.exp(-tight["eps_a"]))
-      and np.allclose(tight.volumetric_strain, 1 - np.exp(-tight["eps_v"]), atol=1e-6))
-elastic = mud.element_test({"law": "elastic", "young": 1e4, "poisson": 0.25}, mud.Stage("drained", eps_a_end=0.01), p_eff=100.0,
-                           void_ratio=0.8)
+check(
+    "control_tolerance is what is held to",
+    1e-10 < loose["control_error"].max() <= 1e-4 and abs(loose["q"][-1] / tight["q"][-1] - 1) < 1e-3,
+    loose["control_error"].max(),
+)
+check(
+    "linear strains are the laboratory's",
+    np.allclose(tight.axial_strain, 1 - np.exp(-tight["eps_a"]))
+    and np.allclose(tight.volumetric_strain, 1 - np.exp(-tight["eps_v"]), atol=1e-6),
+)
+elastic = mud.element_test(
+    {"law": "elastic", "young": 1e4, "poisson": 0.25}, mud.Stage("drained", eps_a_end=0.01), p_eff=100.0, void_ratio=0.8
+)
 check("another law runs too", abs(elastic["q"][-1] - 100.0) < 1e-6, elastic["q"][-1])
 answers = []
-threads = [threading.Thread(target=lambda: answers.append(mud.element_test(
-    sand, mud.Stage("drained", eps_a_end=0.02), p_eff=100.0, void_ratio=0.8)["q"][-1])) for _ in range(3)]
+threads = [
+    threading.Thread(
+        target=lambda: answers.append(
+            mud.element_test(sand, mud.Stage("drained", eps_a_end=0.02), p_eff=100.0, void_ratio=0.8)["q"][-1]
+        )
+    )
+    for _ in range(3)
+]
 for thread in threads:
     thread.start()
 for thread in threads:
@@ -169,13 +267,27 @@ check("threads have one answer", len(set(answers)) == 1 and len(answers) == 3, a
 
 # The library of materials in the driver.
 done, by_name = case_file("undrained_e833_p100", options=("--material", "karlsruhe"))
-result = mud.element_test("karlsruhe", mud.Stage("undrained", eps_a_end=by_name["eps_a"][-1] if by_name else 0.1), p_eff=100.0,
-                          void_ratio=0.833)
-check("--material takes a set by its name, and replaces that of the case",
-      done.returncode == 0 and abs(by_name["q"][-1]/result["q"][-1] - 1) < 1e-4, done.stderr)
+result = mud.element_test(
+    "karlsruhe",
+    mud.Stage("undrained", eps_a_end=by_name["eps_a"][-1] if by_name else 0.1),
+    p_eff=100.0,
+    void_ratio=0.833,
+)
+check(
+    "--material takes a set by its name, and replaces that of the case",
+    done.returncode == 0 and abs(by_name["q"][-1] / result["q"][-1] - 1) < 1e-4,
+    done.stderr,
+)
 done, _ = case_file("undrained_e833_p100", options=("--material", "karlsruher"))
-check("a name that is not there is refused with the folder", done.returncode == 2 and "drivers/materials" in done.stderr, done.stderr)
-check("the library has what its page lists", {"toyoura", "toyoura_fitted", "karlsruhe", "hostun_retention"} <= set(mud.materials()))
+check(
+    "a name that is not there is refused with the folder",
+    done.returncode == 2 and "drivers/materials" in done.stderr,
+    done.stderr,
+)
+check(
+    "the library has what its page lists",
+    {"toyoura", "toyoura_fitted", "karlsruhe", "hostun_retention"} <= set(mud.materials()),
+)
 for name in mud.materials():
     material = mud.Material(name)
     check(f"material {name} is complete", material.title and np.all(np.isfinite(material.props)))
@@ -196,22 +308,38 @@ check("pictures are drawn", (work / "history.png").stat().st_size > 5000 and (wo
 if (build / "host/mud_host").exists():
     scene = (root / "host/README.md").read_text().split("<!-- first scene -->\n```\n")[1].split("```")[0]
     (work / "scene.nml").write_text(scene)
-    done = subprocess.run([build / "host/mud_host", work / "scene.nml", "--output", work / "out", "--quiet"], capture_output=True,
-                          text=True)
+    done = subprocess.run(
+        [build / "host/mud_host", work / "scene.nml", "--output", work / "out", "--quiet"],
+        capture_output=True,
+        text=True,
+    )
     run = mud.HostRun(work / "out")
     # A laterally unconstrained elastic block of 1 m under 10 kPa: 10/1e4 m.
-    check("the host's first scene is read", done.returncode == 0 and run.stages == ["load"]
-          and abs(run.histories["top.u_z"][-1]) > 1e-5, done.stderr)
+    check(
+        "the host's first scene is read",
+        done.returncode == 0 and run.stages == ["load"] and abs(run.histories["top.u_z"][-1]) > 1e-5,
+        done.stderr,
+    )
     if (work / "out/results.xdmf").exists():
         nodes, elements = run.mesh()
-        check("and its fields", run.field("displacement").shape == nodes.shape and elements.shape[1] == 6 and run.times()[-1] == 1.0)
+        check(
+            "and its fields",
+            run.field("displacement").shape == nodes.shape and elements.shape[1] == 6 and run.times()[-1] == 1.0,
+        )
 
 # Examples run as they stand.
 environment = {**os.environ, "PYTHONPATH": str(root / "python")}
 for name, words in (("drained_test", [work / "picture.png"]), ("many_points", []), ("fit_a_sand", [work / "fitted"])):
-    done = subprocess.run([sys.executable, root / f"python/examples/{name}.py", *words], env=environment, cwd=work,
-                          capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, root / f"python/examples/{name}.py", *words],
+        env=environment,
+        cwd=work,
+        capture_output=True,
+        text=True,
+    )
     check(f"the example {name} runs", done.returncode == 0 and len(done.stdout) > 40, done.stdout + done.stderr)
-lines = [line for line in (root / "python/examples/drained_test.py").read_text().split('"""')[2].splitlines() if line.strip()]
+lines = [
+    line for line in (root / "python/examples/drained_test.py").read_text().split('"""')[2].splitlines() if line.strip()
+]
 check("a drained test with a picture in ten lines", len(lines) <= 10 and (work / "picture.png").exists(), len(lines))
 finish()

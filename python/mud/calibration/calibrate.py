@@ -1,4 +1,5 @@
 """The calibration from task to result."""
+
 from __future__ import annotations
 
 import dataclasses
@@ -18,18 +19,19 @@ from .task import Item, Task
 @dataclasses.dataclass
 class Calibration:
     """What a calibration found."""
+
     task: Task
-    material: Material                    #: with the library's own numerical settings
-    values: dict[str, float]              #: variables that were fitted
-    answers: dict[str, Answer]            #: model at the rows of every test, by its name
-    misfits: list[Misfit]                 #: of every test, held-out ones too
+    material: Material  #: with the library's own numerical settings
+    values: dict[str, float]  #: variables that were fitted
+    answers: dict[str, Answer]  #: model at the rows of every test, by its name
+    misfits: list[Misfit]  #: of every test, held-out ones too
     diagnosis: Diagnosis
-    history: list[tuple[str, float]]      #: misfit after each step
+    history: list[tuple[str, float]]  #: misfit after each step
     simulations: int
     seconds: float
-    cpu_seconds: float                    #: of this process and its workers
+    cpu_seconds: float  #: of this process and its workers
     workers: int
-    beside: list[Misfit] | None = None    #: the same of another material, if wanted
+    beside: list[Misfit] | None = None  #: the same of another material, if wanted
     beside_name: str = ""
 
     def item(self, name: str) -> Item:
@@ -37,8 +39,13 @@ class Calibration:
         return next(item for item in self.task.items if item.test.name == name)
 
 
-def calibrate(task: Task, effort: Effort | None = None, workers: int = 0, write: Callable[[str], None] | None = say,
-              beside: str | None = None) -> Calibration:
+def calibrate(
+    task: Task,
+    effort: Effort | None = None,
+    workers: int = 0,
+    write: Callable[[str], None] | None = say,
+    beside: str | None = None,
+) -> Calibration:
     """Fits a material to the tests of a task that are not held out.
 
     effort : how much the search may do; the default is a whole calibration. workers : processes, 0: one a core; the answer does
@@ -60,9 +67,21 @@ def calibrate(task: Task, effort: Effort | None = None, workers: int = 0, write:
     finally:
         fit.evaluator.close()
     other = Material(beside, **SETTINGS) if beside else None
-    return Calibration(task, fit.evaluator.material(values), values, answers, misfits_of(task.items, answers), found, fit.history,
-                       fit.evaluator.simulations, time.monotonic() - begin, _cpu() - used, workers or os.cpu_count() or 1,
-                       misfits_of(task.items, answers_of(other, task.items)) if other else None, beside or "")
+    return Calibration(
+        task,
+        fit.evaluator.material(values),
+        values,
+        answers,
+        misfits_of(task.items, answers),
+        found,
+        fit.history,
+        fit.evaluator.simulations,
+        time.monotonic() - begin,
+        _cpu() - used,
+        workers or os.cpu_count() or 1,
+        misfits_of(task.items, answers_of(other, task.items)) if other else None,
+        beside or "",
+    )
 
 
 def answers_of(material: Material, items: Sequence[Item]) -> dict[str, Answer]:

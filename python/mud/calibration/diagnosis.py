@@ -1,4 +1,5 @@
 """What the tests determine: sensitivity, confidence, correlations, bounds, and whether the model stays in its range."""
+
 from __future__ import annotations
 
 import dataclasses
@@ -13,39 +14,57 @@ from .simulation import Answer
 from .task import Task
 from .variables import PINNED, Variable, meaning_of, poisson_ratio, start_of
 
-POINTS = 4          # of one curve that count as independent: its rows follow each other closely
-CONFIDENT = 1.96    # standard deviations of a 95 % interval
+POINTS = 4  # of one curve that count as independent: its rows follow each other closely
+CONFIDENT = 1.96  # standard deviations of a 95 % interval
 UNDETERMINED = 2.0  # a 95 % interval that reaches from half to twice the value (of a share of the bounds: half of them)
-FLAT = 0.05         # [standard deviations of a curve] a change by 10 % that moves the curves by less is not felt
+FLAT = 0.05  # [standard deviations of a curve] a change by 10 % that moves the curves by less is not felt
 CORRELATED = 0.95
-NEAR_BOUND = 0.01   # share of the bounds
-STEP = 8e-3         # of the differences at the optimum, to both sides
+NEAR_BOUND = 0.01  # share of the bounds
+STEP = 8e-3  # of the differences at the optimum, to both sides
 POISSON = (0.0, 0.45)
-SOFTEST = 0.05      # 1 - c_h e below it: the hardening law is at its guard
+SOFTEST = 0.05  # 1 - c_h e below it: the hardening law is at its guard
 # Parameters that may matter and are not fitted here: what these tests say about them is told as well.
-WATCHED = ("G_0", "K_0", "c", "c_z", "z_max", "theta", "n_b", "n_d", "A_0", "h_0", "c_h", "M_c", "e_c100", "lambda", "alpha_csl", "e_l10")
+WATCHED = (
+    "G_0",
+    "K_0",
+    "c",
+    "c_z",
+    "z_max",
+    "theta",
+    "n_b",
+    "n_d",
+    "A_0",
+    "h_0",
+    "c_h",
+    "M_c",
+    "e_c100",
+    "lambda",
+    "alpha_csl",
+    "e_l10",
+)
 
 
 @dataclasses.dataclass
 class Finding:
     """What the tests say about one variable."""
+
     variable: Variable
     value: float
     fitted: bool
-    low: float              #: 95 % interval; NaN where it was not fitted
+    low: float  #: 95 % interval; NaN where it was not fitted
     high: float
-    sensitivity: float      #: how far a change by 10 % moves the curves, rms in standard deviations of what was measured
+    sensitivity: float  #: how far a change by 10 % moves the curves, rms in standard deviations of what was measured
     determined: bool
-    at_bound: str = ""      #: "lower", "upper" or nothing
+    at_bound: str = ""  #: "lower", "upper" or nothing
 
 
 @dataclasses.dataclass
 class Diagnosis:
     findings: list[Finding]
-    correlations: list[tuple[str, str, float]]   #: pairs beyond CORRELATED
-    names: list[str]                             #: of the matrix
-    matrix: np.ndarray                           #: correlations of the fitted variables
-    sentences: list[str]                         #: plain words
+    correlations: list[tuple[str, str, float]]  #: pairs beyond CORRELATED
+    names: list[str]  #: of the matrix
+    matrix: np.ndarray  #: correlations of the fitted variables
+    sentences: list[str]  #: plain words
     warnings: list[str]
 
 
@@ -61,31 +80,46 @@ def diagnose(fit: Fit, values: Mapping[str, float], answers: Mapping[str, Answer
     curves = fit.curves
     n = len(fit.variables)
     residual = fit.evaluator.residuals([everything])[0]
-    covariance = _covariance(jacobian[:, :n], float(residual @ residual)/max(curves - n/POINTS, 1.0))
+    covariance = _covariance(jacobian[:, :n], float(residual @ residual) / max(curves - n / POINTS, 1.0))
     deviations = np.sqrt(np.diag(covariance))
     findings = []
     for i, variable in enumerate(both):
         share = variable.share(everything[variable.name])
         tenth = _share_of_tenth(variable, everything[variable.name])
-        felt = float(np.linalg.norm(jacobian[:, i])*tenth/np.sqrt(curves))
+        felt = float(np.linalg.norm(jacobian[:, i]) * tenth / np.sqrt(curves))
         if i < n:
-            low, high = (variable.value(float(np.clip(share + s*CONFIDENT*deviations[i], 0, 1))) for s in (-1, 1))
-            wide = high/max(low, 1e-12) > UNDETERMINED**2 if variable.log else high - low > (variable.upper - variable.lower)/2
+            low, high = (variable.value(float(np.clip(share + s * CONFIDENT * deviations[i], 0, 1))) for s in (-1, 1))
+            wide = (
+                high / max(low, 1e-12) > UNDETERMINED**2
+                if variable.log
+                else high - low > (variable.upper - variable.lower) / 2
+            )
             bound = "lower" if share < NEAR_BOUND else "upper" if share > 1 - NEAR_BOUND else ""
-            findings.append(Finding(variable, everything[variable.name], True, low, high, felt, not wide and felt >= FLAT, bound))
+            findings.append(
+                Finding(variable, everything[variable.name], True, low, high, felt, not wide and felt >= FLAT, bound)
+            )
         else:
             findings.append(Finding(variable, everything[variable.name], False, np.nan, np.nan, felt, felt >= FLAT))
     scale = np.outer(deviations, deviations)
     matrix = np.divide(covariance, scale, out=np.zeros_like(covariance), where=scale > 0)
     names = [v.name for v in fit.variables]
-    pairs = [(names[i], names[j], float(matrix[i, j])) for i in range(n) for j in range(i) if abs(matrix[i, j]) > CORRELATED]
-    return Diagnosis(findings, pairs, names, matrix, _sentences(findings, pairs, fit.task),
-                     _warnings(findings, fit, everything, answers))
+    pairs = [
+        (names[i], names[j], float(matrix[i, j])) for i in range(n) for j in range(i) if abs(matrix[i, j]) > CORRELATED
+    ]
+    return Diagnosis(
+        findings,
+        pairs,
+        names,
+        matrix,
+        _sentences(findings, pairs, fit.task),
+        _warnings(findings, fit, everything, answers),
+    )
 
 
 def _variable(name: str) -> Variable:
     from .variables import VARIABLES
     from ..registry import parameters
+
     if name in VARIABLES:
         return VARIABLES[name]
     entry = parameters[name]
@@ -94,8 +128,8 @@ def _variable(name: str) -> Variable:
 
 def _share_of_tenth(variable: Variable, value: float) -> float:
     if variable.log:
-        return float(np.log(1.1)/np.log(variable.upper/variable.lower))
-    return 0.1*abs(value)/(variable.upper - variable.lower)
+        return float(np.log(1.1) / np.log(variable.upper / variable.lower))
+    return 0.1 * abs(value) / (variable.upper - variable.lower)
 
 
 def _central(fit: Fit, variables: list[Variable], values: Mapping[str, float]) -> np.ndarray:
@@ -103,14 +137,16 @@ def _central(fit: Fit, variables: list[Variable], values: Mapping[str, float]) -
     ends = [(min(s + STEP, 1.0), max(s - STEP, 0.0)) for s in base]
     sets = [{**values, v.name: v.value(end)} for v, pair in zip(variables, ends) for end in pair]
     residuals = fit.evaluator.residuals(sets)
-    return np.stack([(residuals[2*i] - residuals[2*i + 1])/(pair[0] - pair[1]) for i, pair in enumerate(ends)], axis=1)
+    return np.stack(
+        [(residuals[2 * i] - residuals[2 * i + 1]) / (pair[0] - pair[1]) for i, pair in enumerate(ends)], axis=1
+    )
 
 
 def _covariance(jacobian: np.ndarray, variance: float) -> np.ndarray:
     """Of the shares: the residuals of a curve are divided by the root of its rows, POINTS of which are independent."""
     _, singular, right = np.linalg.svd(jacobian, full_matrices=False)
-    small = np.maximum(singular, 1e-8*singular[0])
-    return (right.T/small**2) @ right*variance/POINTS
+    small = np.maximum(singular, 1e-8 * singular[0])
+    return (right.T / small**2) @ right * variance / POINTS
 
 
 def _sentences(findings: list[Finding], pairs: list[tuple[str, str, float]], task: Task) -> list[str]:
@@ -118,21 +154,36 @@ def _sentences(findings: list[Finding], pairs: list[tuple[str, str, float]], tas
     for finding in findings:
         name = finding.variable.name
         if finding.fitted and not finding.determined:
-            told.append(f"These tests do not determine {name}: the 95 % interval is {finding.low:.3g} to {finding.high:.3g}"
-                        + (f", and a change by 10 % moves the curves by {finding.sensitivity:.2f} standard deviations."
-                           if finding.sensitivity < FLAT else "."))
+            told.append(
+                f"These tests do not determine {name}: the 95 % interval is {finding.low:.3g} to {finding.high:.3g}"
+                + (
+                    f", and a change by 10 % moves the curves by {finding.sensitivity:.2f} standard deviations."
+                    if finding.sensitivity < FLAT
+                    else "."
+                )
+            )
         elif not finding.fitted and not finding.determined:
-            told.append(f"These tests do not determine {name}: a change by 10 % moves the curves by {finding.sensitivity:.3f} "
-                        f"standard deviations. It keeps the value {finding.value:.4g} of "
-                        f"{'material ' + task.start if task.start else 'the library'}.")
-    told += [f"{a} and {b} are determined together only (correlation {c:+.3f}): another pair would do as well."
-             for a, b, c in pairs]
+            told.append(
+                f"These tests do not determine {name}: a change by 10 % moves the curves by {finding.sensitivity:.3f} "
+                f"standard deviations. It keeps the value {finding.value:.4g} of "
+                f"{'material ' + task.start if task.start else 'the library'}."
+            )
+    told += [
+        f"{a} and {b} are determined together only (correlation {c:+.3f}): another pair would do as well."
+        for a, b, c in pairs
+    ]
     return told
 
 
-def _warnings(findings: list[Finding], fit: Fit, values: Mapping[str, float], answers: Mapping[str, Answer]) -> list[str]:
-    told = [f"{f.variable.name} = {f.value:.4g} sits on its {f.at_bound} bound ({f.variable.lower:g} to {f.variable.upper:g}): the "
-            "tests, or the model, want it beyond." for f in findings if f.at_bound]
+def _warnings(
+    findings: list[Finding], fit: Fit, values: Mapping[str, float], answers: Mapping[str, Answer]
+) -> list[str]:
+    told = [
+        f"{f.variable.name} = {f.value:.4g} sits on its {f.at_bound} bound ({f.variable.lower:g} to {f.variable.upper:g}): the "
+        "tests, or the model, want it beyond."
+        for f in findings
+        if f.at_bound
+    ]
     material = fit.evaluator.material(values)
     for item in fit.task.items:
         answer = answers[item.test.name]
@@ -141,15 +192,19 @@ def _warnings(findings: list[Finding], fit: Fit, values: Mapping[str, float], an
         elif item.test.kind != "retention":
             told += _out_of_range(item.test.name, material, answer)
     for name, count in sorted(fit.evaluator.failures.items()):
-        told.append(f"{name} stopped under {count} of the sets that were tried; rows that were not reached counted as misfit.")
+        told.append(
+            f"{name} stopped under {count} of the sets that were tried; rows that were not reached counted as misfit."
+        )
     for item in fit.task.items:
         if answers[item.test.name].stopped:
             continue
         for quantity in item.use.scatter:
             z = scaled(item, answers[item.test.name], quantity)
             if np.sqrt(np.mean(z**2)) > 5:
-                told.append(f"{item.test.name}: {quantity} is off by {np.sqrt(np.mean(z**2)):.1f} standard deviations (rms): the "
-                            "model cannot, or the test is special.")
+                told.append(
+                    f"{item.test.name}: {quantity} is off by {np.sqrt(np.mean(z**2)):.1f} standard deviations (rms): the "
+                    "model cannot, or the test is special."
+                )
     return told
 
 
@@ -158,13 +213,17 @@ def _out_of_range(name: str, material: Material, answer: Answer) -> list[str]:
     e, p = answer.columns.get("e"), answer.columns.get("p")
     if e is None or p is None:
         return told
-    if np.min(1 - material["c_h"]*e) < SOFTEST:
-        told.append(f"{name}: 1 - c_h e comes to {np.min(1 - material['c_h']*e):.3f}: the hardening law is next to its guard.")
+    if np.min(1 - material["c_h"] * e) < SOFTEST:
+        told.append(
+            f"{name}: 1 - c_h e comes to {np.min(1 - material['c_h']*e):.3f}: the hardening law is next to its guard."
+        )
     poisson = poisson_ratio(material, e, p)
     if np.min(poisson) < POISSON[0] or np.max(poisson) > POISSON[1]:
-        told.append(f"{name}: elastic Poisson's ratio runs from {np.min(poisson):.2f} to {np.max(poisson):.2f}, sand has "
-                    f"{POISSON[0]:g} to {POISSON[1]:g}.")
-    if np.min(p) < 2*1e-3*material["p_atm"]:
+        told.append(
+            f"{name}: elastic Poisson's ratio runs from {np.min(poisson):.2f} to {np.max(poisson):.2f}, sand has "
+            f"{POISSON[0]:g} to {POISSON[1]:g}."
+        )
+    if np.min(p) < 2 * 1e-3 * material["p_atm"]:
         told.append(f"{name}: p' falls to {np.min(p):.3g} kPa, next to the tension cut-off.")
     return told
 
@@ -179,8 +238,11 @@ def origin_of(name: str, diagnosis: Diagnosis, task: Task) -> str:
     if found is not None:
         text = "fitted" if pinned == name else f"fitted as {pinned} = {found.value:.4g} ({meaning_of(pinned)})"
         text += f", 95 % {found.low:.3g} to {found.high:.3g}"
-        return text + ("" if found.determined else ", not determined by these tests") + \
-            (f", at its {found.at_bound} bound" if found.at_bound else "")
+        return (
+            text
+            + ("" if found.determined else ", not determined by these tests")
+            + (f", at its {found.at_bound} bound" if found.at_bound else "")
+        )
     if name in PINNED and follows is not None:
         return f"{pinned} of the start kept while lambda was fitted"
     return f"of material {task.start}" if task.start else "default of the library"

@@ -1,4 +1,5 @@
 """Residuals of a material against tests: scaled by scatter, robust, each curve as much as any other."""
+
 from __future__ import annotations
 
 import dataclasses
@@ -15,8 +16,8 @@ from .simulation import SETTINGS, Answer, simulate
 from .task import Item
 from .variables import parameters_of, poisson_residual
 
-ROBUST = 3.0     # residuals beyond so many standard deviations count less (soft l1)
-PENALTY = 20.0   # residual of a row that the model did not reach, in standard deviations
+ROBUST = 3.0  # residuals beyond so many standard deviations count less (soft l1)
+PENALTY = 20.0  # residual of a row that the model did not reach, in standard deviations
 
 
 # What a worker process works on, set once when it begins.
@@ -34,11 +35,12 @@ def _job(values: Mapping[str, float], number: int, thin: int) -> tuple[np.ndarra
     item = _items[number]
     try:
         answer = simulate(Material(**{**parameters_of(values, _base), **SETTINGS}), item.test, item.use)
-    except MudError as problem:   # the set is refused
+    except MudError as problem:  # the set is refused
         answer = Answer({q: np.full(len(item.use.rows), np.nan) for q in item.use.scatter}, str(problem))
     rows = len(item.use.rows[::thin])
-    return np.concatenate([residual_of(item, answer, quantity)[::thin]/np.sqrt(rows)*item.weight
-                           for quantity in item.use.scatter]), bool(answer.stopped)
+    return np.concatenate(
+        [residual_of(item, answer, quantity)[::thin] / np.sqrt(rows) * item.weight for quantity in item.use.scatter]
+    ), bool(answer.stopped)
 
 
 class Evaluator:
@@ -50,12 +52,16 @@ class Evaluator:
 
     def __init__(self, items: Sequence[Item], base: Mapping[str, float], fixed: Mapping[str, float], workers: int = 0):
         self.items, self.base, self.fixed = items, base, fixed
-        self.simulations = 0                 #: single tests that were run
-        self.failures: dict[str, int] = {}   #: test -> how often it stopped or was refused
+        self.simulations = 0  #: single tests that were run
+        self.failures: dict[str, int] = {}  #: test -> how often it stopped or was refused
         count = workers or os.cpu_count() or 1
         _begin(items, base)
         method = "fork" if "fork" in multiprocessing.get_all_start_methods() else "spawn"
-        self._pool = ProcessPoolExecutor(count, multiprocessing.get_context(method), _begin, (items, base)) if count > 1 else None
+        self._pool = (
+            ProcessPoolExecutor(count, multiprocessing.get_context(method), _begin, (items, base))
+            if count > 1
+            else None
+        )
 
     def close(self) -> None:
         """Ends the workers."""
@@ -66,8 +72,9 @@ class Evaluator:
         """The material of a set of variables."""
         return Material(**{**parameters_of({**self.fixed, **values}, self.base), **settings})
 
-    def residuals(self, sets: Sequence[Mapping[str, float]], numbers: Sequence[int] | None = None, thin: int = 1
-                  ) -> list[np.ndarray]:
+    def residuals(
+        self, sets: Sequence[Mapping[str, float]], numbers: Sequence[int] | None = None, thin: int = 1
+    ) -> list[np.ndarray]:
         """Residual vectors of several sets of variables on tests by their number, and behind them what keeps Poisson's ratio;
         thin : every so manieth row counts."""
         numbers = range(len(self.items)) if numbers is None else numbers
@@ -83,42 +90,49 @@ class Evaluator:
                 name = self.items[number].test.name
                 self.failures[name] = self.failures.get(name, 0) + 1
         count = len(numbers)
-        return [np.concatenate([*(part for part, _ in parts[i*count:(i + 1)*count]),
-                                poisson_residual(parameters_of({**self.fixed, **values}, self.base))])
-                for i, values in enumerate(sets)]
+        return [
+            np.concatenate(
+                [
+                    *(part for part, _ in parts[i * count : (i + 1) * count]),
+                    poisson_residual(parameters_of({**self.fixed, **values}, self.base)),
+                ]
+            )
+            for i, values in enumerate(sets)
+        ]
 
 
 def scaled(item: Item, answer: Answer, quantity: str) -> np.ndarray:
     """(model - laboratory) over the standard deviation of what was measured; NaN where the model did not come."""
     measured = item.test[quantity][item.use.rows]
     absolute, share = item.use.scatter[quantity]
-    return (answer.columns[quantity] - measured)/np.hypot(absolute, share*measured)
+    return (answer.columns[quantity] - measured) / np.hypot(absolute, share * measured)
 
 
 def residual_of(item: Item, answer: Answer, quantity: str) -> np.ndarray:
     """The same, robust (soft l1: linear beyond ROBUST) and with a penalty for what is missing."""
     z = scaled(item, answer, quantity)
     missing = ~np.isfinite(z)
-    z = np.where(missing, PENALTY, z)/ROBUST
-    return np.sign(z)*np.sqrt(2*(np.sqrt(1 + z*z) - 1))*ROBUST
+    z = np.where(missing, PENALTY, z) / ROBUST
+    return np.sign(z) * np.sqrt(2 * (np.sqrt(1 + z * z) - 1)) * ROBUST
 
 
 @dataclasses.dataclass
 class Misfit:
     """How far one test is missed; NaN where a kind of test has no such quantity."""
+
     name: str
     kind: str
     held_out: bool
-    q: float = np.nan        #: rms of q/q_lab - 1 over 1 to 20 % axial strain [%]
-    p: float = np.nan        #: undrained: rms of p/p_lab - 1 [%]
-    eps_v: float = np.nan    #: rms difference over the same rows [percentage points]
-    e: float = np.nan        #: largest difference of void ratio [-]
-    e_loading: float = np.nan   #: the same, of the first loading alone
-    S_w: float = np.nan      #: rms difference [-]
+    q: float = np.nan  #: rms of q/q_lab - 1 over 1 to 20 % axial strain [%]
+    p: float = np.nan  #: undrained: rms of p/p_lab - 1 [%]
+    eps_v: float = np.nan  #: rms difference over the same rows [percentage points]
+    e: float = np.nan  #: largest difference of void ratio [-]
+    e_loading: float = np.nan  #: the same, of the first loading alone
+    S_w: float = np.nan  #: rms difference [-]
     stopped: str = ""
 
 
-RANGE = (0.0099, 0.2501)   # axial strain over which q and eps_v are told
+RANGE = (0.0099, 0.2501)  # axial strain over which q and eps_v are told
 
 
 def misfit_of(item: Item, answer: Answer, last: float = 0.2001) -> Misfit:
@@ -128,19 +142,20 @@ def misfit_of(item: Item, answer: Answer, last: float = 0.2001) -> Misfit:
 
     def rms(values: np.ndarray) -> float:
         return float(np.sqrt(np.mean(np.square(values)))) if len(values) else np.nan
+
     if test.kind in ("drained", "undrained"):
         used = (np.abs(test["eps_a"][rows]) >= RANGE[0]) & (np.abs(test["eps_a"][rows]) <= last)
-        told.q = 100*rms(answer.columns["q"][used]/test["q"][rows][used] - 1)
+        told.q = 100 * rms(answer.columns["q"][used] / test["q"][rows][used] - 1)
         if test.kind == "undrained":
-            told.p = 100*rms(answer.columns["p"][used]/test["p"][rows][used] - 1)
+            told.p = 100 * rms(answer.columns["p"][used] / test["p"][rows][used] - 1)
         else:
-            told.eps_v = 100*rms(answer.columns["eps_v"][used] - test["eps_v"][rows][used])
+            told.eps_v = 100 * rms(answer.columns["eps_v"][used] - test["eps_v"][rows][used])
     elif test.kind in ("oedometer", "isotropic"):
         off = np.abs(answer.columns["e"] - test["e"][rows])
         stress = test["sigma_a" if test.kind == "oedometer" else "p"][rows]
-        told.e, told.e_loading = float(np.max(off)), float(np.max(off[:int(np.argmax(stress)) + 1]))
+        told.e, told.e_loading = float(np.max(off)), float(np.max(off[: int(np.argmax(stress)) + 1]))
     elif test.kind == "retention":
         told.S_w = rms(answer.columns["S_w"] - test["S_w"][rows])
     elif "eps_v" in item.use.scatter:
-        told.eps_v = 100*rms(answer.columns["eps_v"] - test["eps_v"][rows])
+        told.eps_v = 100 * rms(answer.columns["eps_v"] - test["eps_v"][rows])
     return told

@@ -1,4 +1,5 @@
 """What a calibration leaves: the material file, a page in Markdown with pictures, and the misfits as a table."""
+
 from __future__ import annotations
 
 import csv
@@ -16,23 +17,33 @@ from .diagnosis import POINTS, origin_of
 from .misfit import ROBUST, Misfit
 from .task import Item
 
-PAGE = 6   # tests a picture
+PAGE = 6  # tests a picture
 
 
 def write_material(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
     """NAME.nml: every paper parameter with the origin of its value, ranges and misfit as comments."""
     folder.mkdir(parents=True, exist_ok=True)
     task, path = result.task, folder / f"{result.task.name}.nml"
-    lines = [f"! {task.title or task.name}, fitted by mud_calibrate on {datetime.date.today().isoformat()}, MUD {_version()}.",
-             *_wrapped(f"Tests: {task.reference}" if task.reference else "Tests: see the report"),
-             *_wrapped(_range_text(result)), *_wrapped(_misfit_text(result)), "&material",
-             f"   name = '{task.title or task.name}{'' if '(' in task.title else ' (fitted)'}'",
-             f"   reference = '{task.reference.replace(chr(39), ' ')[:200]}'"]
+    lines = [
+        f"! {task.title or task.name}, fitted by mud_calibrate on {datetime.date.today().isoformat()}, MUD {_version()}.",
+        *_wrapped(f"Tests: {task.reference}" if task.reference else "Tests: see the report"),
+        *_wrapped(_range_text(result)),
+        *_wrapped(_misfit_text(result)),
+        "&material",
+        f"   name = '{task.title or task.name}{'' if '(' in task.title else ' (fitted)'}'",
+        f"   reference = '{task.reference.replace(chr(39), ' ')[:200]}'",
+    ]
     for name, entry in parameters.items():
         value = result.material[name]
         # Switches and numerical settings are left to the library, as a material file does not speak of them.
-        if (entry.origin in ("paper", "mended") and not entry.options and name not in ("scheme", "tolerance", "eps_hat", "j_exp")
-                and not (entry.lower == 0 and entry.upper == 1 and entry.default in (0.0, 1.0) and name not in ("S_min", "S_max"))):
+        if (
+            entry.origin in ("paper", "mended")
+            and not entry.options
+            and name not in ("scheme", "tolerance", "eps_hat", "j_exp")
+            and not (
+                entry.lower == 0 and entry.upper == 1 and entry.default in (0.0, 1.0) and name not in ("S_min", "S_max")
+            )
+        ):
             lines.append(f"   {name} = {value:.6g}".ljust(26) + f"! {origin_of(name, result.diagnosis, task)}")
     path.write_text("\n".join([*lines, "/", ""]), encoding="utf-8")
     return path
@@ -53,10 +64,14 @@ def _range_text(result: Calibration) -> str:
     told = []
     mechanical = [i for i in result.task.fitted() if i.test.kind != "retention"]
     if mechanical:
-        stress = np.concatenate([i.test["p" if "p" in i.test else "sigma_a"][i.use.rows] for i in mechanical if i.test.kind != "cyclic"])
+        stress = np.concatenate(
+            [i.test["p" if "p" in i.test else "sigma_a"][i.use.rows] for i in mechanical if i.test.kind != "cyclic"]
+        )
         ratio = np.concatenate([i.test["e"][i.use.rows] for i in mechanical if "e" in i.test])
-        told.append(f"stress (p', oedometer: sigma_a) {stress.min():.0f} to {stress.max():.0f} kPa, void ratio "
-                    f"{ratio.min():.3f} to {ratio.max():.3f}")
+        told.append(
+            f"stress (p', oedometer: sigma_a) {stress.min():.0f} to {stress.max():.0f} kPa, void ratio "
+            f"{ratio.min():.3f} to {ratio.max():.3f}"
+        )
     retention = [i for i in result.task.fitted() if i.test.kind == "retention"]
     if retention:
         suction = np.concatenate([i.test["suction"][i.use.rows] for i in retention])
@@ -73,16 +88,27 @@ def summary(misfits: list[Misfit]) -> list[dict[str, str]]:
     lines = []
     for held, word in ((False, "fitted"), (True, "held out")):
         mine, told = [m for m in misfits if m.held_out is held], []
-        for key, unit, what in (("q", "%", "q"), ("p", "%", "p'"), ("eps_v", "points", "volumetric strain"), ("S_w", "", "S_w")):
+        for key, unit, what in (
+            ("q", "%", "q"),
+            ("p", "%", "p'"),
+            ("eps_v", "points", "volumetric strain"),
+            ("S_w", "", "S_w"),
+        ):
             values = np.array([getattr(m, key) for m in mine])
             values = values[np.isfinite(values)]
             if len(values):
-                told.append(f"{what} {np.sqrt(np.mean(values**2)):.2g} {unit} rms of {len(values)} tests (worst {values.max():.2g})".replace("  ", " "))
+                told.append(
+                    f"{what} {np.sqrt(np.mean(values**2)):.2g} {unit} rms of {len(values)} tests (worst {values.max():.2g})".replace(
+                        "  ", " "
+                    )
+                )
         values = np.array([m.e for m in mine if np.isfinite(m.e)])
         if len(values):
             loading = np.array([m.e_loading for m in mine if np.isfinite(m.e)])
-            told.append(f"void ratio in compression within {loading.max():.4f} in first loading, {values.max():.4f} with unloading "
-                        f"({len(values)} tests)")
+            told.append(
+                f"void ratio in compression within {loading.max():.4f} in first loading, {values.max():.4f} with unloading "
+                f"({len(values)} tests)"
+            )
         if mine:
             lines.append({"set": word, "text": ", ".join(told)})
     return lines
@@ -93,57 +119,135 @@ def write_report(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
     folder.mkdir(parents=True, exist_ok=True)
     pictures = _pictures(result, folder)
     task, found = result.task, result.diagnosis
-    text = [f"# {task.title or task.name}: calibration", "",
-            f"Made by `mud_calibrate`: MUD {_version()}{_commit()}, seed {task.seed}, {len(task.fitted())} tests fitted and "
-            f"{len(task.items) - len(task.fitted())} held out, {result.simulations} simulations, {result.seconds:.0f} s with "
-            f"{result.workers} workers ({result.cpu_seconds:.0f} s of processor time).", "", f"Tests: {task.reference}", ""]
+    text = [
+        f"# {task.title or task.name}: calibration",
+        "",
+        f"Made by `mud_calibrate`: MUD {_version()}{_commit()}, seed {task.seed}, {len(task.fitted())} tests fitted and "
+        f"{len(task.items) - len(task.fitted())} held out, {result.simulations} simulations, {result.seconds:.0f} s with "
+        f"{result.workers} workers ({result.cpu_seconds:.0f} s of processor time).",
+        "",
+        f"Tests: {task.reference}",
+        "",
+    ]
     text += [f"- {note}" for note in task.notes] + [""]
-    text += ["| set | misfit |", "|---|---|", *(f"| {line['set']} | {line['text']} |" for line in summary(result.misfits)), "",
-             "q: rms of q/q_lab - 1 over the laboratory rows from 1 to 20 % axial strain; volumetric strain: rms difference in "
-             "percentage points over the same rows; void ratio: largest difference. The laboratory's linear axial strain is turned "
-             "into the model's natural one.", ""]
+    text += [
+        "| set | misfit |",
+        "|---|---|",
+        *(f"| {line['set']} | {line['text']} |" for line in summary(result.misfits)),
+        "",
+        "q: rms of q/q_lab - 1 over the laboratory rows from 1 to 20 % axial strain; volumetric strain: rms difference in "
+        "percentage points over the same rows; void ratio: largest difference. The laboratory's linear axial strain is turned "
+        "into the model's natural one.",
+        "",
+    ]
     if result.beside is not None:
-        text += [f"Beside it: material `{result.beside_name}`, the same measure.", "", "| set | misfit |", "|---|---|",
-                 *(f"| {line['set']} | {line['text']} |" for line in summary(result.beside)), ""]
+        text += [
+            f"Beside it: material `{result.beside_name}`, the same measure.",
+            "",
+            "| set | misfit |",
+            "|---|---|",
+            *(f"| {line['set']} | {line['text']} |" for line in summary(result.beside)),
+            "",
+        ]
     text += ["## Curves", "", *(f"![{p.stem}]({p.name})" for p in pictures), "", "## Misfit of each test", ""]
     text += _misfit_table(result)
-    text += ["", "## Parameters", "", "| parameter | value | 95 % | bounds | a change by 10 % moves the curves by | |", "|---|---|---|---|---|---|"]
+    text += [
+        "",
+        "## Parameters",
+        "",
+        "| parameter | value | 95 % | bounds | a change by 10 % moves the curves by | |",
+        "|---|---|---|---|---|---|",
+    ]
     for f in found.findings:
         if f.fitted:
-            text.append(f"| `{f.variable.name}` | {f.value:.4g} | {f.low:.3g} to {f.high:.3g} | {f.variable.lower:g} to "
-                        f"{f.variable.upper:g} | {f.sensitivity:.2f} | {'' if f.determined else 'not determined'}"
-                        f"{' at its ' + f.at_bound + ' bound' if f.at_bound else ''} |")
-    text += ["", "The last column but one is the sensitivity: rms over the curves, in standard deviations of what was measured. "
-             "`e_c100` is the critical void ratio at 100 kPa and stands for N_c; `e_l10` the void ratio of the compression line at "
-             f"10 MPa and stands for N_l. Confidence comes from the Jacobian at the optimum; {POINTS} points of a curve count as "
-             "independent, and a systematic error of the model is not in it.", "", "## What these tests determine", ""]
+            text.append(
+                f"| `{f.variable.name}` | {f.value:.4g} | {f.low:.3g} to {f.high:.3g} | {f.variable.lower:g} to "
+                f"{f.variable.upper:g} | {f.sensitivity:.2f} | {'' if f.determined else 'not determined'}"
+                f"{' at its ' + f.at_bound + ' bound' if f.at_bound else ''} |"
+            )
+    text += [
+        "",
+        "The last column but one is the sensitivity: rms over the curves, in standard deviations of what was measured. "
+        "`e_c100` is the critical void ratio at 100 kPa and stands for N_c; `e_l10` the void ratio of the compression line at "
+        f"10 MPa and stands for N_l. Confidence comes from the Jacobian at the optimum; {POINTS} points of a curve count as "
+        "independent, and a systematic error of the model is not in it.",
+        "",
+        "## What these tests determine",
+        "",
+    ]
     text += [f"- {sentence}" for sentence in found.sentences] or ["Every parameter that was fitted is determined."]
-    text += ["", "Correlations of the fitted variables at the optimum:", "", *_matrix(found.names, found.matrix), "", "## Warnings", ""]
+    text += [
+        "",
+        "Correlations of the fitted variables at the optimum:",
+        "",
+        *_matrix(found.names, found.matrix),
+        "",
+        "## Warnings",
+        "",
+    ]
     text += [f"- {warning}" for warning in found.warnings] or ["None."]
-    text += ["", "## How it was fitted", "", "| step | misfit |", "|---|---|", *(f"| {step} | {cost:.3f} |" for step, cost in result.history), "",
-             "Misfit in standard deviations of the measurement: every curve counts as much as any other, residuals beyond "
-             f"{ROBUST:g} deviations count less (soft l1). Start: critical state from the ends of the shear tests; then a Sobol "
-             "search, the groups one after the other, and everything together (trust region, bounded). Steps before `together` use "
-             "a part of the tests and rows.", ""]
+    text += [
+        "",
+        "## How it was fitted",
+        "",
+        "| step | misfit |",
+        "|---|---|",
+        *(f"| {step} | {cost:.3f} |" for step, cost in result.history),
+        "",
+        "Misfit in standard deviations of the measurement: every curve counts as much as any other, residuals beyond "
+        f"{ROBUST:g} deviations count less (soft l1). Start: critical state from the ends of the shear tests; then a Sobol "
+        "search, the groups one after the other, and everything together (trust region, bounded). Steps before `together` use "
+        "a part of the tests and rows.",
+        "",
+    ]
     path = folder / "README.md"
     path.write_text("\n".join(text), encoding="utf-8")
     with open(folder / "misfit.csv", "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow(("test", "kind", "set", "q_rms_percent", "eps_v_rms_points", "e_largest", "e_largest_loading", "S_w_rms", "stopped"))
+        writer.writerow(
+            (
+                "test",
+                "kind",
+                "set",
+                "q_rms_percent",
+                "eps_v_rms_points",
+                "e_largest",
+                "e_largest_loading",
+                "S_w_rms",
+                "stopped",
+            )
+        )
         for m in result.misfits:
-            writer.writerow((m.name, m.kind, "held out" if m.held_out else "fitted",
-                             *("" if np.isnan(v) else f"{v:.4g}" for v in (m.q, m.eps_v, m.e, m.e_loading, m.S_w)), m.stopped))
+            writer.writerow(
+                (
+                    m.name,
+                    m.kind,
+                    "held out" if m.held_out else "fitted",
+                    *("" if np.isnan(v) else f"{v:.4g}" for v in (m.q, m.eps_v, m.e, m.e_loading, m.S_w)),
+                    m.stopped,
+                )
+            )
     return path
 
 
 def _misfit_table(result: Calibration) -> list[str]:
     """Fitted and held-out tests apart; columns that a kind has."""
-    columns = [("q", "q [%]", ".1f"), ("p", "p' [%]", ".1f"), ("eps_v", "eps_v [points]", ".2f"), ("e", "e, largest", ".4f"),
-               ("e_loading", "e, first loading", ".4f"), ("S_w", "S_w, rms", ".3f")]
+    columns = [
+        ("q", "q [%]", ".1f"),
+        ("p", "p' [%]", ".1f"),
+        ("eps_v", "eps_v [points]", ".2f"),
+        ("e", "e, largest", ".4f"),
+        ("e_loading", "e, first loading", ".4f"),
+        ("S_w", "S_w, rms", ".3f"),
+    ]
     used = [c for c in columns if any(np.isfinite(getattr(m, c[0])) for m in result.misfits)]
     beside = {m.name: m for m in result.beside or []}
-    lines = ["| test | set | start | " + " | ".join(title + (f" | {result.beside_name}" if beside else "") for _, title, _ in used) + " |",
-             "|" + "---|"*(3 + len(used)*(2 if beside else 1))]
+    lines = [
+        "| test | set | start | "
+        + " | ".join(title + (f" | {result.beside_name}" if beside else "") for _, title, _ in used)
+        + " |",
+        "|" + "---|" * (3 + len(used) * (2 if beside else 1)),
+    ]
     for held in (False, True):
         for m in result.misfits:
             if m.held_out is held:
@@ -152,8 +256,11 @@ def _misfit_table(result: Calibration) -> list[str]:
                     for one in ([m, beside[m.name]] if beside else [m]):
                         value = getattr(one, key)
                         cells.append("" if np.isnan(value) else format(value, form))
-                lines.append(f"| {m.name} | {'**held out**' if held else 'fitted'} | {_start_text(result.item(m.name))} | "
-                             + " | ".join(cells) + f" |{' ' + m.stopped if m.stopped else ''}")
+                lines.append(
+                    f"| {m.name} | {'**held out**' if held else 'fitted'} | {_start_text(result.item(m.name))} | "
+                    + " | ".join(cells)
+                    + f" |{' ' + m.stopped if m.stopped else ''}"
+                )
     return lines
 
 
@@ -169,9 +276,14 @@ def _start_text(item: Item) -> str:
 
 
 def _matrix(names: list[str], matrix: np.ndarray) -> list[str]:
-    return ["| | " + " | ".join(names) + " |", "|" + "---|"*(len(names) + 1),
-            *("| " + name + " | " + " | ".join(f"{v:+.2f}" if j < i else "" for j, v in enumerate(row)) + " |"
-              for i, (name, row) in enumerate(zip(names, matrix)))]
+    return [
+        "| | " + " | ".join(names) + " |",
+        "|" + "---|" * (len(names) + 1),
+        *(
+            "| " + name + " | " + " | ".join(f"{v:+.2f}" if j < i else "" for j, v in enumerate(row)) + " |"
+            for i, (name, row) in enumerate(zip(names, matrix))
+        ),
+    ]
 
 
 def _pictures(result: Calibration, folder: pathlib.Path) -> list[pathlib.Path]:
@@ -180,9 +292,14 @@ def _pictures(result: Calibration, folder: pathlib.Path) -> list[pathlib.Path]:
     for held, word in ((False, "fitted"), (True, "held_out")):
         for kind in dict.fromkeys(item.test.kind for item in result.task.items):
             items = [i for i in result.task.items if i.test.kind == kind and i.test.held_out is held]
-            parts = -(-len(items)//PAGE)
+            parts = -(-len(items) // PAGE)
             for n in range(parts):
-                figure = _page(result, items[n::parts], f"{result.task.title or result.task.name}: {kind}, {word.replace('_', ' ')}", plt)
+                figure = _page(
+                    result,
+                    items[n::parts],
+                    f"{result.task.title or result.task.name}: {kind}, {word.replace('_', ' ')}",
+                    plt,
+                )
                 made.append(folder / f"{word}_{kind}{f'_{n + 1}' if parts > 1 else ''}.png")
                 figure.savefig(made[-1], dpi=100)
                 plt.close(figure)
@@ -191,23 +308,55 @@ def _pictures(result: Calibration, folder: pathlib.Path) -> list[pathlib.Path]:
 
 def _page(result: Calibration, items: list[Item], title: str, plt):
     shear = items[0].test.kind in ("drained", "undrained")
-    figure, axes = plt.subplots(1, 2 if shear else 1, figsize=(10 if shear else 7, 4.2), squeeze=False, layout="constrained")
+    figure, axes = plt.subplots(
+        1, 2 if shear else 1, figsize=(10 if shear else 7, 4.2), squeeze=False, layout="constrained"
+    )
     for colour, item in zip(COLOURS, items):
         test, rows, answer = item.test, item.use.rows, result.answers[item.test.name]
-        panels = [("eps_a", "q"), ("eps_a", "eps_v") if test.kind == "drained" else ("p", "q")] if shear else \
-            [("sigma_a", "e")] if test.kind == "oedometer" else [("p", "e")] if test.kind == "isotropic" else \
-            [("suction", "S_w")] if test.kind == "retention" else [("cycle", next(iter(item.use.scatter)))]
+        panels = (
+            [("eps_a", "q"), ("eps_a", "eps_v") if test.kind == "drained" else ("p", "q")]
+            if shear
+            else (
+                [("sigma_a", "e")]
+                if test.kind == "oedometer"
+                else (
+                    [("p", "e")]
+                    if test.kind == "isotropic"
+                    else [("suction", "S_w")] if test.kind == "retention" else [("cycle", next(iter(item.use.scatter)))]
+                )
+            )
+        )
         for axis, (x, y) in zip(axes[0], panels):
             factor = [100 if name.startswith("eps") else 1 for name in (x, y)]
             model_x = answer.columns["p"] if x == "p" else test[x][rows]
-            axis.plot(factor[0]*test[x][rows], factor[1]*test[y][rows], "o", ms=3, color=colour, mfc="white", mew=0.8)
+            axis.plot(
+                factor[0] * test[x][rows], factor[1] * test[y][rows], "o", ms=3, color=colour, mfc="white", mew=0.8
+            )
             order = np.argsort(model_x, kind="stable") if test.kind == "retention" else slice(None)
-            axis.plot(factor[0]*model_x[order], factor[1]*answer.columns[y][order], color=colour,
-                      label=f"{test.name}: {_start_text(item)}")
-            axis.set_xlabel({"eps_a": "axial strain [%]", "p": "p' [kPa]", "sigma_a": "axial stress [kPa]", "suction": "suction [kPa]",
-                             "cycle": "cycle"}[x])
-            axis.set_ylabel({"q": "q [kPa]", "eps_v": "volumetric strain [%]", "e": "void ratio", "S_w": "degree of saturation",
-                             "r_u": "pore pressure ratio"}[y])
+            axis.plot(
+                factor[0] * model_x[order],
+                factor[1] * answer.columns[y][order],
+                color=colour,
+                label=f"{test.name}: {_start_text(item)}",
+            )
+            axis.set_xlabel(
+                {
+                    "eps_a": "axial strain [%]",
+                    "p": "p' [kPa]",
+                    "sigma_a": "axial stress [kPa]",
+                    "suction": "suction [kPa]",
+                    "cycle": "cycle",
+                }[x]
+            )
+            axis.set_ylabel(
+                {
+                    "q": "q [kPa]",
+                    "eps_v": "volumetric strain [%]",
+                    "e": "void ratio",
+                    "S_w": "degree of saturation",
+                    "r_u": "pore pressure ratio",
+                }[y]
+            )
             if x in ("sigma_a", "p") and y == "e" or x == "suction":
                 axis.set_xscale("log")
             axis.grid(color="#dddddd", lw=0.6)
@@ -223,8 +372,14 @@ def _version() -> str:
 def _commit() -> str:
     """', commit X' where the package is used in its source tree."""
     try:
-        done = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=_native.SOURCE_TREE, capture_output=True, text=True,
-                              check=True, timeout=10)
+        done = subprocess.run(
+            ["git", "rev-parse", "--short", "HEAD"],
+            cwd=_native.SOURCE_TREE,
+            capture_output=True,
+            text=True,
+            check=True,
+            timeout=10,
+        )
     except (OSError, subprocess.SubprocessError):
         return ""
     return f", commit {done.stdout.strip()}" if (_native.SOURCE_TREE / "umat").is_dir() else ""

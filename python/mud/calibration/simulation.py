@@ -1,4 +1,5 @@
 """What the model answers to a laboratory test, at the rows of the laboratory."""
+
 from __future__ import annotations
 
 import dataclasses
@@ -13,47 +14,66 @@ from .tables import LaboratoryTest
 # Numerical settings of a fit: errors of 1e-4 are far below the scatter of any laboratory (percents).
 SETTINGS = {"scheme": 2, "tolerance": 1e-4, "tangent": "continuum", "max_substeps": 1000}
 CONTROL_TOLERANCE = 1e-5
-MAX_UPDATES = 3000          # a usual test needs 100 to 300; a hopeless set of parameters could take minutes
-CYCLE_UPDATES = 1000        # of each cycle
+MAX_UPDATES = 3000  # a usual test needs 100 to 300; a hopeless set of parameters could take minutes
+CYCLE_UPDATES = 1000  # of each cycle
 # Shear: increments up to a natural strain. The model is interpolated between them, to less than 1 % of q.
 STRAIN_INCREMENTS = ((0.01, 1e-3), (0.05, 2.5e-3), (1.0, 1e-2))
 # Compression: a stage for each factor of stress, in equal increments; void ratio is interpolated over the logarithm of stress.
 STRESS_FACTOR, STRESS_INCREMENTS = 2.0, 3
-CYCLE_STEPS = 20            # of a strain amplitude
-FAR = 1e6                   # output interval that leaves rows at reversals and ends of stages alone
+CYCLE_STEPS = 20  # of a strain amplitude
+FAR = 1e6  # output interval that leaves rows at reversals and ends of stages alone
 
 
 @dataclasses.dataclass
 class Answer:
     """The model at the used rows of a test: columns as in the laboratory, NaN behind the point where it stopped."""
+
     columns: dict[str, np.ndarray]
-    stopped: str = ""            #: the driver's sentence, empty if the test came to its end
+    stopped: str = ""  #: the driver's sentence, empty if the test came to its end
 
 
 @dataclasses.dataclass
 class Use:
     """Which rows of a test count, and what is compared with which scatter."""
-    rows: np.ndarray             #: row numbers that are compared, in their order
-    start: int                   #: row at which the model starts
-    scatter: dict[str, tuple[float, float]]   #: quantity -> (absolute, share of the value): standard deviation
+
+    rows: np.ndarray  #: row numbers that are compared, in their order
+    start: int  #: row at which the model starts
+    scatter: dict[str, tuple[float, float]]  #: quantity -> (absolute, share of the value): standard deviation
 
 
 # Standard deviation of what a laboratory measures: (absolute, as a share of the value). Stresses in kPa.
-SCATTER = {"drained": {"q": (3.0, 0.05), "eps_v": (0.0025, 0.0)},
-           "undrained": {"q": (3.0, 0.05), "p": (3.0, 0.05)},
-           "oedometer": {"e": (0.003, 0.0)}, "isotropic": {"e": (0.003, 0.0)},
-           "cyclic": {"eps_v": (0.001, 0.1), "r_u": (0.05, 0.1)}, "retention": {"S_w": (0.02, 0.0)}}
+SCATTER = {
+    "drained": {"q": (3.0, 0.05), "eps_v": (0.0025, 0.0)},
+    "undrained": {"q": (3.0, 0.05), "p": (3.0, 0.05)},
+    "oedometer": {"e": (0.003, 0.0)},
+    "isotropic": {"e": (0.003, 0.0)},
+    "cyclic": {"eps_v": (0.001, 0.1), "r_u": (0.05, 0.1)},
+    "retention": {"S_w": (0.02, 0.0)},
+}
 
 
-def use_of(test: LaboratoryTest, first: float | None = None, last: float | None = None,
-           scatter: dict[str, tuple[float, float]] | None = None, branch: str = "all") -> Use:
+def use_of(
+    test: LaboratoryTest,
+    first: float | None = None,
+    last: float | None = None,
+    scatter: dict[str, tuple[float, float]] | None = None,
+    branch: str = "all",
+) -> Use:
     """Rows of a test that count: those whose leading quantity (eps_a, sigma_a, p, cycle, suction) lies in [first, last].
 
     A test that is led by stress starts at its first used row, one led by strain at its first row. branch : of a retention
     curve, "drying" (suction at its largest so far), "wetting" (behind the largest suction) or "all".
     """
-    lead = test[{"drained": "eps_a", "undrained": "eps_a", "oedometer": "sigma_a", "isotropic": "p", "cyclic": "cycle",
-                 "retention": "suction"}[test.kind]]
+    lead = test[
+        {
+            "drained": "eps_a",
+            "undrained": "eps_a",
+            "oedometer": "sigma_a",
+            "isotropic": "p",
+            "cyclic": "cycle",
+            "retention": "suction",
+        }[test.kind]
+    ]
     size = np.abs(lead)
     used = (size >= (0 if first is None else first)) & (size <= (np.inf if last is None else last))
     by_stress = test.kind in ("oedometer", "isotropic")
@@ -61,7 +81,7 @@ def use_of(test: LaboratoryTest, first: float | None = None, last: float | None 
         used &= size > 0
     start = int(np.argmax(used)) if by_stress else 0
     if test.kind in ("drained", "undrained", "oedometer", "isotropic"):
-        used[start] = False   # where the model starts is given
+        used[start] = False  # where the model starts is given
     if test.kind == "retention" and branch != "all":
         grows = lead >= np.maximum.accumulate(lead)
         used &= grows if branch == "drying" else np.arange(len(lead)) > np.argmax(lead)
@@ -78,8 +98,11 @@ def simulate(material: Material, test: LaboratoryTest, use: Use) -> Answer:
         return Answer({"S_w": material.saturation(test["suction"][use.rows], e)})
     try:
         stages, start = _course(material, test, use)
-        most = int(CYCLE_UPDATES*test["cycle"].max()) if test.kind == "cyclic" else MAX_UPDATES
-        result, stopped = element_test(material, *stages, control_tolerance=CONTROL_TOLERANCE, max_updates=most, **start), ""
+        most = int(CYCLE_UPDATES * test["cycle"].max()) if test.kind == "cyclic" else MAX_UPDATES
+        result, stopped = (
+            element_test(material, *stages, control_tolerance=CONTROL_TOLERANCE, max_updates=most, **start),
+            "",
+        )
     except TestStopped as problem:
         result, stopped = problem.result, str(problem)
     except MudError as problem:
@@ -94,71 +117,99 @@ def natural(strain: np.ndarray) -> np.ndarray:
 
 def earth_pressure(material: Material) -> float:
     """Jaky's K0 = 1 - sin(phi_c) with sin(phi_c) = 3 M_c/(6 + M_c): lateral stress of a sample that was poured."""
-    return 1 - 3*material["M_c"]/(6 + material["M_c"])
+    return 1 - 3 * material["M_c"] / (6 + material["M_c"])
 
 
 def _course(material: Material, test: LaboratoryTest, use: Use) -> tuple[list[Stage], dict]:
     """Stages and start of a test."""
     if test.kind == "cyclic":
         by, amplitude = test.cycle_by, float(test["amplitude"][0])
-        step = amplitude/CYCLE_STEPS if by in ("eps_a", "gamma") else 1e-4
-        stage = Stage(test.control, cycle_by=by, amplitude=amplitude, cycles=int(test["cycle"].max()), increment=abs(step),
-                      output_interval=FAR)
+        step = amplitude / CYCLE_STEPS if by in ("eps_a", "gamma") else 1e-4
+        stage = Stage(
+            test.control,
+            cycle_by=by,
+            amplitude=amplitude,
+            cycles=int(test["cycle"].max()),
+            increment=abs(step),
+            output_interval=FAR,
+        )
         return [stage], {"p_eff": float(test["p_0"][0]), "void_ratio": test.e_0, "suction": test.suction}
     if test.kind in ("oedometer", "isotropic"):
         name = "sigma_a" if test.kind == "oedometer" else "p"
         stresses = test[name][np.concatenate([[use.start], use.rows])]
-        stages = [Stage(test.kind, **{f"{name}_end": float(b)}, increment=abs(b - a)/STRESS_INCREMENTS,
-                        output_interval=abs(b - a)/STRESS_INCREMENTS)
-                  for turn, end in zip(*_turns(stresses)) for a, b in _pieces(float(stresses[turn]), float(stresses[end]))]
+        stages = [
+            Stage(
+                test.kind,
+                **{f"{name}_end": float(b)},
+                increment=abs(b - a) / STRESS_INCREMENTS,
+                output_interval=abs(b - a) / STRESS_INCREMENTS,
+            )
+            for turn, end in zip(*_turns(stresses))
+            for a, b in _pieces(float(stresses[turn]), float(stresses[end]))
+        ]
         first = float(stresses[0])
-        start = {"sigma_a": first, "sigma_r": earth_pressure(material)*first} if test.kind == "oedometer" else {"p_eff": first}
+        start = (
+            {"sigma_a": first, "sigma_r": earth_pressure(material) * first}
+            if test.kind == "oedometer"
+            else {"p_eff": first}
+        )
         return stages, {**start, "void_ratio": float(test["e"][use.start])}
     last = float(natural(test["eps_a"][use.rows[-1]]))
     ends = [end for end, _ in STRAIN_INCREMENTS if end < abs(last)] + [abs(last)]
-    stages = [Stage(test.kind, eps_a_end=float(np.copysign(end, last)), increment=step, output_interval=step)
-              for end, (_, step) in zip(ends, STRAIN_INCREMENTS)]
-    start = test.sigma_r if test.kind == "drained" else float(test["p"][0] - test["q"][0]/3)
+    stages = [
+        Stage(test.kind, eps_a_end=float(np.copysign(end, last)), increment=step, output_interval=step)
+        for end, (_, step) in zip(ends, STRAIN_INCREMENTS)
+    ]
+    start = test.sigma_r if test.kind == "drained" else float(test["p"][0] - test["q"][0] / 3)
     return stages, {"p_eff": start, "void_ratio": test.e_0, "suction": test.suction}
 
 
 def _turns(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Rows at which the branches of a path begin and end."""
     way = np.sign(np.diff(values))
-    for i in range(1, len(way)):   # a value that is there twice goes on as before
+    for i in range(1, len(way)):  # a value that is there twice goes on as before
         way[i] = way[i] or way[i - 1]
-    turns = np.flatnonzero(way[1:]*way[:-1] < 0) + 1
+    turns = np.flatnonzero(way[1:] * way[:-1] < 0) + 1
     return np.concatenate([[0], turns]), np.concatenate([turns, [len(values) - 1]])
 
 
 def _pieces(a: float, b: float) -> list[tuple[float, float]]:
     """A way from stress a to b in pieces of at most STRESS_FACTOR."""
-    count = max(1, int(np.ceil(abs(np.log(b/a))/np.log(STRESS_FACTOR))))
+    count = max(1, int(np.ceil(abs(np.log(b / a)) / np.log(STRESS_FACTOR))))
     ends = np.geomspace(a, b, count + 1)
     return list(zip(ends[:-1].tolist(), ends[1:].tolist()))
 
 
 def _at_rows(test: LaboratoryTest, use: Use, result: TestResult) -> dict[str, np.ndarray]:
     """Columns of the model at the used rows, NaN where it did not come."""
-    values = {"q": result["q"], "eps_v": result.volumetric_strain, "p": result["p_eff"], "e": result["e"], "r_u": result["r_u"]}
+    values = {
+        "q": result["q"],
+        "eps_v": result.volumetric_strain,
+        "p": result["p_eff"],
+        "e": result["e"],
+        "r_u": result["r_u"],
+    }
     names = list(dict.fromkeys([*use.scatter, "e", "p", "q"]))
-    if test.kind == "cyclic":   # the last reversal of each cycle
+    if test.kind == "cyclic":  # the last reversal of each cycle
         rows = [np.flatnonzero(result["cycle"] == c) for c in test["cycle"][use.rows]]
         return {n: np.array([values[n][r[-1]] if len(r) else np.nan for r in rows]) for n in names}
     if test.kind in ("drained", "undrained"):
         way = np.sign(test["eps_a"][use.rows[-1]])
-        at, path = way*natural(test["eps_a"][use.rows]), way*result["eps_a"]
+        at, path = way * natural(test["eps_a"][use.rows]), way * result["eps_a"]
         return {n: np.interp(at, path, values[n], right=np.nan) for n in names}
     stress = np.log(np.maximum(result["sigma_a" if test.kind == "oedometer" else "p_eff"], 1e-9))
     at = np.log(test["sigma_a" if test.kind == "oedometer" else "p"][np.concatenate([[use.start], use.rows])])
     answer = {n: np.full(len(at), np.nan) for n in names}
-    for mine, theirs in zip(zip(*_turns(at)), zip(*_turns(stress))):   # branch by branch
+    for mine, theirs in zip(zip(*_turns(at)), zip(*_turns(stress))):  # branch by branch
         rows, path = slice(mine[0], mine[1] + 1), slice(theirs[0], theirs[1] + 1)
         way = np.sign(at[mine[1]] - at[mine[0]])
         for n in names:
             # An end is met to the tolerance of the control, not exactly.
-            x = np.minimum(way*at[rows], way*stress[theirs[1]] if theirs[1] < len(stress) - 1 or _met(at, mine, stress) else np.inf)
-            answer[n][rows] = np.interp(x, way*stress[path], values[n][path], right=np.nan)
+            x = np.minimum(
+                way * at[rows],
+                way * stress[theirs[1]] if theirs[1] < len(stress) - 1 or _met(at, mine, stress) else np.inf,
+            )
+            answer[n][rows] = np.interp(x, way * stress[path], values[n][path], right=np.nan)
     return {n: v[1:] for n, v in answer.items()}
 
 

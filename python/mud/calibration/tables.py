@@ -3,6 +3,7 @@
 A column is a quantity with its unit behind it: ``eps_a_percent``, ``q_kPa``, ``e``. ``#`` begins a comment. Compression is
 positive. Inside, strains are fractions and stresses kPa.
 """
+
 from __future__ import annotations
 
 import dataclasses
@@ -21,32 +22,48 @@ STRAINS, STRESSES = ("eps_a", "eps_v", "gamma"), ("q", "p", "sigma_a", "sigma_r"
 NUMBERS = ("e", "e_0", "S_w", "stress_ratio", "cycle", "r_u")
 TEXTS = ("test", "control", "cycle_by")
 # Other names of the same.
-ALIASES = {"eps_1": "eps_a", "sigma_1": "sigma_a", "sigma_3": "sigma_r", "sigma3": "sigma_r", "sigma1": "sigma_a", "e0": "e_0",
-           "sr": "stress_ratio", "s_w": "S_w", "p_eff": "p", "epsv": "eps_v", "epsa": "eps_a", "p0": "p_0", "p_c": "suction"}
+ALIASES = {
+    "eps_1": "eps_a",
+    "sigma_1": "sigma_a",
+    "sigma_3": "sigma_r",
+    "sigma3": "sigma_r",
+    "sigma1": "sigma_a",
+    "e0": "e_0",
+    "sr": "stress_ratio",
+    "s_w": "S_w",
+    "p_eff": "p",
+    "epsv": "eps_v",
+    "epsa": "eps_a",
+    "p0": "p_0",
+    "p_c": "suction",
+}
 # What a kind of test needs; a tuple: one of these.
-NEEDS = {"drained": ("eps_a", ("q", "stress_ratio"), ("eps_v", "e"), ("e", "e_0")),
-         "undrained": ("eps_a", "q", "p", ("e", "e_0")),
-         "oedometer": ("sigma_a", "e"),
-         "isotropic": ("p", "e"),
-         "cyclic": ("control", "cycle_by", "amplitude", "cycle", "p_0", "e_0", ("eps_v", "r_u")),
-         "retention": ("suction", "S_w")}
+NEEDS = {
+    "drained": ("eps_a", ("q", "stress_ratio"), ("eps_v", "e"), ("e", "e_0")),
+    "undrained": ("eps_a", "q", "p", ("e", "e_0")),
+    "oedometer": ("sigma_a", "e"),
+    "isotropic": ("p", "e"),
+    "cyclic": ("control", "cycle_by", "amplitude", "cycle", "p_0", "e_0", ("eps_v", "r_u")),
+    "retention": ("suction", "S_w"),
+}
 FEWEST_ROWS = {"cyclic": 1, "drained": 3, "undrained": 3, "oedometer": 3, "isotropic": 3, "retention": 3}
-LARGEST_FRACTION = 1.5     # a strain in fractions cannot be larger: more means per cent
-SMALLEST_PERCENT = 0.6     # a shear test in per cent goes further: less means fractions
-TOO_SMALL = 1e-3           # [kPa]; a largest stress below it means another unit
-RETURN = 1e-9              # a strain that steps back by less is rounding
-SLOPE_MISFIT = 0.5         # share of eps_v by which e may contradict it before the signs are doubted
+LARGEST_FRACTION = 1.5  # a strain in fractions cannot be larger: more means per cent
+SMALLEST_PERCENT = 0.6  # a shear test in per cent goes further: less means fractions
+TOO_SMALL = 1e-3  # [kPa]; a largest stress below it means another unit
+RETURN = 1e-9  # a strain that steps back by less is rounding
+SLOPE_MISFIT = 0.5  # share of eps_v by which e may contradict it before the signs are doubted
 
 
 @dataclasses.dataclass
 class LaboratoryTest:
     """One test. Columns are arrays (rows,): strains linear [-], stresses kPa, compression positive."""
+
     name: str
-    kind: str                        #: key of NEEDS
+    kind: str  #: key of NEEDS
     columns: dict[str, np.ndarray]
-    source: str                      #: file it comes from
-    lines: np.ndarray                #: line of each row in it
-    control: str = ""                #: cyclic tests: of mud_triax
+    source: str  #: file it comes from
+    lines: np.ndarray  #: line of each row in it
+    control: str = ""  #: cyclic tests: of mud_triax
     cycle_by: str = ""
     held_out: bool = False
 
@@ -71,7 +88,7 @@ class LaboratoryTest:
         """Effective radial stress of a drained test [kPa], held: the median of what was measured, or the given one."""
         if "sigma_r" in self.columns:
             return float(np.median(self["sigma_r"]))
-        return float(np.median(self["p"] - self["q"]/3))
+        return float(np.median(self["p"] - self["q"] / 3))
 
 
 def _head(cells: list[str], path: pathlib.Path, line: int) -> list[tuple[str, float | None]]:
@@ -84,11 +101,20 @@ def _head(cells: list[str], path: pathlib.Path, line: int) -> list[tuple[str, fl
         if stem and last in UNITS:
             name, factor = stem, UNITS[last]
         name = ALIASES.get(name, name)
-        if name in STRESSES and factor in (0.01,) or name in STRAINS and factor not in (None, 0.01) or \
-                name in NUMBERS and factor is not None:
+        if (
+            name in STRESSES
+            and name != "amplitude"
+            and factor == 0.01
+            or name in STRAINS
+            and factor not in (None, 0.01)
+            or name in NUMBERS
+            and factor is not None
+        ):
             raise InputError(f"{path}:{line}: the column {cell} has a unit that {name} cannot have")
         found.append((name, factor))
-    double = next((name for i, (name, _) in enumerate(found) if name in known and name in [n for n, _ in found[:i]]), None)
+    double = next(
+        (name for i, (name, _) in enumerate(found) if name in known and name in [n for n, _ in found[:i]]), None
+    )
     if double:
         raise InputError(f"{path}:{line}: two columns are called {double} (units behind the name do not count)")
     return found
@@ -115,7 +141,9 @@ def read_table(path: str | os.PathLike, kind: str) -> list[LaboratoryTest]:
     for number, cells in rows[1:]:
         if len(cells) != len(head):
             raise InputError(f"{path}:{number}: {len(cells)} cells, the line of names has {len(head)}")
-        groups.setdefault(cells[names.index("test")].strip() if "test" in names else path.stem, []).append((number, cells))
+        groups.setdefault(cells[names.index("test")].strip() if "test" in names else path.stem, []).append(
+            (number, cells)
+        )
     return [_test(path, kind, name, head, rows[0][1], mine) for name, mine in groups.items()]
 
 
@@ -126,14 +154,24 @@ def _need_columns(path: pathlib.Path, head: tuple[int, list[str]], kind: str, na
             continue
         near = difflib.get_close_matches(choices[0], head[1], 1, 0.5)
         hint = f"; is {near[0]} meant? a unit is written behind the name, as in q_kPa or eps_a_percent" if near else ""
-        raise InputError(f"{path}:{head[0]}: a table of {kind} tests needs the column {' or '.join(choices)}; it has "
-                         f"{', '.join(head[1])}{hint}")
+        raise InputError(
+            f"{path}:{head[0]}: a table of {kind} tests needs the column {' or '.join(choices)}; it has "
+            f"{', '.join(head[1])}{hint}"
+        )
     if kind == "drained" and "sigma_r" not in names and not {"p", "q"} <= set(names):
-        raise InputError(f"{path}:{head[0]}: a table of drained tests needs p beside q, or sigma_r: which radial stress was held?")
+        raise InputError(
+            f"{path}:{head[0]}: a table of drained tests needs p beside q, or sigma_r: which radial stress was held?"
+        )
 
 
-def _test(path: pathlib.Path, kind: str, name: str, head: list[tuple[str, float | None]], titles: list[str],
-          rows: list[tuple[int, list[str]]]) -> LaboratoryTest:
+def _test(
+    path: pathlib.Path,
+    kind: str,
+    name: str,
+    head: list[tuple[str, float | None]],
+    titles: list[str],
+    rows: list[tuple[int, list[str]]],
+) -> LaboratoryTest:
     columns: dict[str, np.ndarray] = {}
     words = {"control": "", "cycle_by": ""}
     numbers = np.array([number for number, _ in rows])
@@ -147,12 +185,14 @@ def _test(path: pathlib.Path, kind: str, name: str, head: list[tuple[str, float 
         if quantity in STRAINS:
             _check_percent(path, name, kind, quantity, titles[place], values, factor, numbers)
         largest = np.max(np.abs(values))
-        if quantity in ("q", "p", "sigma_a", "sigma_r") and largest*(factor or 1.0) < TOO_SMALL:
-            raise InputError(f"{path}, test {name}: the largest {titles[place]} is {largest:g}; stresses are in kPa unless the "
-                             "name says _MPa or _Pa")
+        if quantity in ("q", "p", "sigma_a", "sigma_r") and largest * (factor or 1.0) < TOO_SMALL:
+            raise InputError(
+                f"{path}, test {name}: the largest {titles[place]} is {largest:g}; stresses are in kPa unless the "
+                "name says _MPa or _Pa"
+            )
         if quantity == "amplitude" and words["cycle_by"] in ("eps_a", "gamma") and factor not in (None, 0.01):
             raise InputError(f"{path}, test {name}: an amplitude of {words['cycle_by']} is a strain, not a stress")
-        columns[quantity] = values*(1.0 if factor is None else factor)
+        columns[quantity] = values * (1.0 if factor is None else factor)
     test = LaboratoryTest(name, kind, columns, path.name, numbers, **words)
     if len(rows) < FEWEST_ROWS[kind]:
         raise InputError(f"{path}, test {name}: {len(rows)} rows; a {kind} test needs at least {FEWEST_ROWS[kind]}")
@@ -174,17 +214,29 @@ def _values(path: pathlib.Path, title: str, cells: list[str], numbers: np.ndarra
     return values
 
 
-def _check_percent(path: pathlib.Path, name: str, kind: str, quantity: str, title: str, values: np.ndarray,
-                   factor: float | None, numbers: np.ndarray) -> None:
+def _check_percent(
+    path: pathlib.Path,
+    name: str,
+    kind: str,
+    quantity: str,
+    title: str,
+    values: np.ndarray,
+    factor: float | None,
+    numbers: np.ndarray,
+) -> None:
     """A strain whose size contradicts its unit."""
     at = int(np.argmax(np.abs(values)))
     largest = abs(values[at])
     if factor is None and largest > LARGEST_FRACTION:
-        raise InputError(f"{path}:{numbers[at]}: test {name}: {title} reaches {values[at]:g}, too much for a strain as a "
-                         f"fraction; if it is in per cent call the column {quantity}_percent")
+        raise InputError(
+            f"{path}:{numbers[at]}: test {name}: {title} reaches {values[at]:g}, too much for a strain as a "
+            f"fraction; if it is in per cent call the column {quantity}_percent"
+        )
     if factor is not None and quantity == "eps_a" and kind in ("drained", "undrained") and largest < SMALLEST_PERCENT:
-        raise InputError(f"{path}:{numbers[at]}: test {name}: {title} ends at {values[at]:g} per cent, too little for a shear "
-                         f"test; if it is a fraction call the column {quantity}")
+        raise InputError(
+            f"{path}:{numbers[at]}: test {name}: {title} ends at {values[at]:g} per cent, too little for a shear "
+            f"test; if it is a fraction call the column {quantity}"
+        )
 
 
 def _check_values(path: pathlib.Path, test: LaboratoryTest) -> None:
@@ -203,36 +255,42 @@ def _check_values(path: pathlib.Path, test: LaboratoryTest) -> None:
     if test.kind in ("drained", "undrained"):
         strain, q = test["eps_a"], test["q"] if "q" in test else test["stress_ratio"] - 1
         way = np.sign(strain[-1] - strain[0])
-        back = np.diff(strain)*way < RETURN*abs(strain[-1])
+        back = np.diff(strain) * way < RETURN * abs(strain[-1])
         if back.any():
             at = int(np.argmax(back)) + 1
-            raise InputError(f"{path}:{test.lines[at]}: test {test.name}: eps_a goes from {strain[at - 1]:g} to {strain[at]:g}; "
-                             f"in a {test.kind} test it moves one way. A test with reversals is cyclic; a row that is there "
-                             "twice must go")
-        late = slice(len(q)//2, None)
-        if way*np.median(q[late]) < 0:
-            raise InputError(f"{where}: q is {'negative' if way > 0 else 'positive'} while eps_a "
-                             f"{'grows' if way > 0 else 'falls'}: one of the two has its sign swapped; compression is positive, "
-                             "and q = sigma_a - sigma_r")
+            raise InputError(
+                f"{path}:{test.lines[at]}: test {test.name}: eps_a goes from {strain[at - 1]:g} to {strain[at]:g}; "
+                f"in a {test.kind} test it moves one way. A test with reversals is cyclic; a row that is there "
+                "twice must go"
+            )
+        late = slice(len(q) // 2, None)
+        if way * np.median(q[late]) < 0:
+            raise InputError(
+                f"{where}: q is {'negative' if way > 0 else 'positive'} while eps_a "
+                f"{'grows' if way > 0 else 'falls'}: one of the two has its sign swapped; compression is positive, "
+                "and q = sigma_a - sigma_r"
+            )
     for quantity in ("p", "sigma_a", "sigma_r"):
         if quantity in test and np.median(test[quantity]) <= 0:
             raise InputError(f"{where}: {quantity} is negative: compression is positive")
     if "eps_v" in test and "e" in test:
-        told = (test["e"][0] - test["e"])/(1 + test["e"][0])
+        told = (test["e"][0] - test["e"]) / (1 + test["e"][0])
         size = np.max(np.abs(told))
-        if size > 0 and np.max(np.abs(told + test["eps_v"] - test["eps_v"][0])) < SLOPE_MISFIT*size:
-            raise InputError(f"{where}: eps_v and e contradict each other: where the void ratio grows eps_v must fall. The sign of "
-                             "eps_v is swapped; compression is positive")
+        if size > 0 and np.max(np.abs(told + test["eps_v"] - test["eps_v"][0])) < SLOPE_MISFIT * size:
+            raise InputError(
+                f"{where}: eps_v and e contradict each other: where the void ratio grows eps_v must fall. The sign of "
+                "eps_v is swapped; compression is positive"
+            )
 
 
 def _complete_drained(test: LaboratoryTest) -> None:
     """q of a stress ratio, eps_v of e, e of eps_v."""
     columns = test.columns
     if "q" not in columns:
-        columns["q"] = (columns["stress_ratio"] - 1)*columns["sigma_r"]
+        columns["q"] = (columns["stress_ratio"] - 1) * columns["sigma_r"]
     if "eps_v" not in columns:
-        columns["eps_v"] = (columns["e"][0] - columns["e"])/(1 + columns["e"][0])
+        columns["eps_v"] = (columns["e"][0] - columns["e"]) / (1 + columns["e"][0])
     if "e" not in columns:
-        columns["e"] = columns["e_0"] - (1 + columns["e_0"])*columns["eps_v"]
+        columns["e"] = columns["e_0"] - (1 + columns["e_0"]) * columns["eps_v"]
     if "p" not in columns:
-        columns["p"] = columns["sigma_r"] + columns["q"]/3
+        columns["p"] = columns["sigma_r"] + columns["q"] / 3

@@ -1,4 +1,5 @@
 """A calibration as it is asked for: tables, what is known, what is held out; from Python or from a TOML file."""
+
 from __future__ import annotations
 
 import dataclasses
@@ -20,6 +21,7 @@ TABLE_KEYS = ("file", "kind", "first", "last", "scatter", "branch", "weight", "o
 @dataclasses.dataclass
 class Item:
     """A test with what counts of it."""
+
     test: LaboratoryTest
     use: Use
     weight: float = 1.0
@@ -28,16 +30,17 @@ class Item:
 @dataclasses.dataclass
 class Task:
     """A calibration. ``calibrate(task)`` runs it."""
-    name: str                                 #: of the material, and of its file
+
+    name: str  #: of the material, and of its file
     items: list[Item]
     title: str = ""
-    reference: str = ""                       #: where the tests come from
-    start: str | None = None                  #: material whose values are the start, and stay where nothing is fitted
+    reference: str = ""  #: where the tests come from
+    start: str | None = None  #: material whose values are the start, and stay where nothing is fitted
     known: dict[str, float] = dataclasses.field(default_factory=dict)
-    groups: list[str] | None = None           #: groups that are fitted; None: those the tests speak of
-    bounds: dict[str, tuple[float, float]] = dataclasses.field(default_factory=dict)   #: in place of the usual ones
+    groups: list[str] | None = None  #: groups that are fitted; None: those the tests speak of
+    bounds: dict[str, tuple[float, float]] = dataclasses.field(default_factory=dict)  #: in place of the usual ones
     seed: int = 1
-    notes: list[str] = dataclasses.field(default_factory=list)   #: sentences for the report
+    notes: list[str] = dataclasses.field(default_factory=list)  #: sentences for the report
 
     def __post_init__(self):
         if not any(not item.test.held_out for item in self.items):
@@ -61,13 +64,16 @@ class Task:
         loosest = max((item.test["e"][item.use.rows].max() for item in self.fitted() if "e" in item.test), default=0.0)
         if loosest > 0 and "c_h" not in bounds:
             c_h = VARIABLES["c_h"]
-            bounds["c_h"] = (c_h.lower, min(c_h.upper, (1 - LEAST_HARDENING)/float(loosest)))
-        return [dataclasses.replace(v, lower=bounds[v.name][0], upper=bounds[v.name][1]) if v.name in bounds else v
-                for v in chosen(kinds, unsaturated, [*self.origins], self.groups)]
+            bounds["c_h"] = (c_h.lower, min(c_h.upper, (1 - LEAST_HARDENING) / float(loosest)))
+        return [
+            dataclasses.replace(v, lower=bounds[v.name][0], upper=bounds[v.name][1]) if v.name in bounds else v
+            for v in chosen(kinds, unsaturated, [*self.origins], self.groups)
+        ]
 
 
-def make_task(name: str, tables: Sequence[Mapping], held_out: Sequence[str] = (), folder: str | os.PathLike = ".",
-              **others) -> Task:
+def make_task(
+    name: str, tables: Sequence[Mapping], held_out: Sequence[str] = (), folder: str | os.PathLike = ".", **others
+) -> Task:
     """A task of tables: each a mapping of ``file`` and ``kind``, and if wanted ``first``, ``last`` (range of the leading
     quantity: strain as a fraction, stress in kPa), ``scatter`` ({"q": [3.0, 0.05]}: kPa or fraction, and share of the value),
     ``branch`` (of retention), ``only`` (names of tests), ``weight`` and ``name`` (of the one test of a table). held_out : names of tests, chosen before the fit.
@@ -76,8 +82,10 @@ def make_task(name: str, tables: Sequence[Mapping], held_out: Sequence[str] = ()
     for table in tables:
         strange = [key for key in table if key not in TABLE_KEYS]
         if strange or not {"file", "kind"} <= set(table):
-            raise InputError(f"a table has file and kind, and may have {', '.join(TABLE_KEYS[2:])}"
-                             + (f"; there is no {strange[0]}" if strange else ""))
+            raise InputError(
+                f"a table has file and kind, and may have {', '.join(TABLE_KEYS[2:])}"
+                + (f"; there is no {strange[0]}" if strange else "")
+            )
         tests = read_table(pathlib.Path(folder) / table["file"], table["kind"])
         if "name" in table:
             if len(tests) != 1:
@@ -86,7 +94,9 @@ def make_task(name: str, tables: Sequence[Mapping], held_out: Sequence[str] = ()
         scatter = {q: tuple(float(x) for x in s) for q, s in table.get("scatter", {}).items()}
         for quantity in scatter:
             if quantity not in SCATTER[table["kind"]]:
-                raise InputError(f"scatter: a {table['kind']} test compares {', '.join(SCATTER[table['kind']])}, not {quantity}")
+                raise InputError(
+                    f"scatter: a {table['kind']} test compares {', '.join(SCATTER[table['kind']])}, not {quantity}"
+                )
         only = table.get("only")
         for test in tests:
             if only is None or test.name in only:
@@ -100,7 +110,9 @@ def make_task(name: str, tables: Sequence[Mapping], held_out: Sequence[str] = ()
         item.test.held_out = item.test.name in held_out
     double = next((n for i, n in enumerate(names) if n in names[:i]), None)
     if double:
-        raise InputError(f"two tests are called {double}; rename one of them, because held-out tests are chosen by name")
+        raise InputError(
+            f"two tests are called {double}; rename one of them, because held-out tests are chosen by name"
+        )
     return Task(name=name, items=items, **others)
 
 

@@ -1,4 +1,5 @@
 """What is fitted: variables with physical bounds, in groups, and how parameters of the library follow from them."""
+
 from __future__ import annotations
 
 import dataclasses
@@ -9,13 +10,16 @@ import numpy as np
 from ..errors import InputError
 from ..registry import parameters
 
-P_CRITICAL = 100.0      # [kPa] where the critical state line is pinned: N_c alone is nearly the same as lambda and alpha_csl
-P_COMPRESSION = 1.0e4   # [kPa] the same of the compression line
+P_CRITICAL = (
+    100.0  # [kPa] where the critical state line is pinned: N_c alone is nearly the same as lambda and alpha_csl
+)
+P_COMPRESSION = 1.0e4  # [kPa] the same of the compression line
 
 
 @dataclasses.dataclass(frozen=True)
 class Variable:
     """A quantity that the fit moves between physical bounds; with ``log`` its logarithm is moved."""
+
     name: str
     group: str
     lower: float
@@ -27,44 +31,90 @@ class Variable:
     def value(self, share: float) -> float:
         """Its value at a place between 0 (lower) and 1 (upper bound)."""
         if self.log:
-            return float(self.lower*(self.upper/self.lower)**share)
-        return float(self.lower + (self.upper - self.lower)*share)
+            return float(self.lower * (self.upper / self.lower) ** share)
+        return float(self.lower + (self.upper - self.lower) * share)
 
     def share(self, value: float) -> float:
         """The place of a value, within 0 and 1."""
         inside = min(max(value, self.lower), self.upper)
-        place = np.log(inside/self.lower)/np.log(self.upper/self.lower) if self.log else \
-            (inside - self.lower)/(self.upper - self.lower)
+        place = (
+            np.log(inside / self.lower) / np.log(self.upper / self.lower)
+            if self.log
+            else (inside - self.lower) / (self.upper - self.lower)
+        )
         return float(min(max(place, 0.0), 1.0))
 
 
-POISSON = (0.05, 0.4)    # elastic Poisson's ratio of sand
-POISSON_STATES = [(e, p) for e in (0.6, 1.0) for p in (50.0, 500.0)]   # void ratio, p' [kPa] where it is looked at
-POISSON_WEIGHT = 30.0    # of a ratio outside, beside residuals in standard deviations: 0.03 counts as one curve off by one
-LEAST_HARDENING = 0.05   # 1 - c_h e of the loosest fitted sample: at zero the hardening law ends
+POISSON = (0.05, 0.4)  # elastic Poisson's ratio of sand
+POISSON_STATES = [(e, p) for e in (0.6, 1.0) for p in (50.0, 500.0)]  # void ratio, p' [kPa] where it is looked at
+POISSON_WEIGHT = (
+    30.0  # of a ratio outside, beside residuals in standard deviations: 0.03 counts as one curve off by one
+)
+LEAST_HARDENING = 0.05  # 1 - c_h e of the loosest fitted sample: at zero the hardening law ends
 
-GROUPS = ("critical state", "elasticity and compression", "peak and dilatancy", "hardening", "cycles", "retention", "bonding")
+GROUPS = (
+    "critical state",
+    "elasticity and compression",
+    "peak and dilatancy",
+    "hardening",
+    "cycles",
+    "retention",
+    "bonding",
+)
 # Group -> kinds of tests that speak of it.
-SPEAKS = {"critical state": {"drained", "undrained"}, "elasticity and compression": {"oedometer", "isotropic", "drained"},
-          "peak and dilatancy": {"drained", "undrained"}, "hardening": {"drained", "undrained"}, "cycles": {"cyclic"},
-          "retention": {"retention"}, "bonding": set()}
+SPEAKS = {
+    "critical state": {"drained", "undrained"},
+    "elasticity and compression": {"oedometer", "isotropic", "drained"},
+    "peak and dilatancy": {"drained", "undrained"},
+    "hardening": {"drained", "undrained"},
+    "cycles": {"cyclic"},
+    "retention": {"retention"},
+    "bonding": set(),
+}
 # Bounds: what is known of sands, narrower than what the library can compute with. G_0 and K_0: Hardin's formula gives sands
 # about 60 to 250 in these units; a factor of two beyond is allowed.
-VARIABLES = {v.name: v for v in (
-    Variable("M_c", GROUPS[0], 0.9, 1.7, False),
-    Variable("e_c100", GROUPS[0], 0.4, 1.3, False, "1", "critical void ratio at p' = 100 kPa, N_c (100 + alpha_csl)^-lambda"),
-    Variable("lambda", GROUPS[0], 0.02, 0.8, True),
-    Variable("alpha_csl", GROUPS[0], 10.0, 2.0e4, True, "kPa"),
-    Variable("G_0", GROUPS[1], 30.0, 400.0, True), Variable("K_0", GROUPS[1], 30.0, 400.0, True),
-    Variable("e_l10", GROUPS[1], 0.3, 3.0, True, "1", "void ratio of the compression line at p' = 10 MPa, N_l 10000^-lambda"),
-    Variable("theta", GROUPS[1], 0.02, 5.0, True),
-    Variable("n_b", GROUPS[2], 0.1, 8.0, True), Variable("n_d", GROUPS[2], 0.1, 10.0, True),
-    Variable("A_0", GROUPS[2], 0.05, 4.0, True),
-    Variable("h_0", GROUPS[3], 0.2, 200.0, True), Variable("c_h", GROUPS[3], 0.0, 1.2, False),
-    Variable("c_z", GROUPS[4], 10.0, 5.0e3, True), Variable("z_max", GROUPS[4], 0.1, 50.0, True),
-    Variable("P_a", GROUPS[5], 0.01, 1.0e3, True, "kPa"), Variable("n_x", GROUPS[5], 1.0, 20.0, True),
-    Variable("m_x", GROUPS[5], 0.05, 10.0, True), Variable("S_min", GROUPS[5], 0.0, 0.4, False),
-    Variable("b_1", GROUPS[6], 0.0, 3.0, False), Variable("b_2", GROUPS[6], 0.0, 3.0, False))}
+VARIABLES = {
+    v.name: v
+    for v in (
+        Variable("M_c", GROUPS[0], 0.9, 1.7, False),
+        Variable(
+            "e_c100",
+            GROUPS[0],
+            0.4,
+            1.3,
+            False,
+            "1",
+            "critical void ratio at p' = 100 kPa, N_c (100 + alpha_csl)^-lambda",
+        ),
+        Variable("lambda", GROUPS[0], 0.02, 0.8, True),
+        Variable("alpha_csl", GROUPS[0], 10.0, 2.0e4, True, "kPa"),
+        Variable("G_0", GROUPS[1], 30.0, 400.0, True),
+        Variable("K_0", GROUPS[1], 30.0, 400.0, True),
+        Variable(
+            "e_l10",
+            GROUPS[1],
+            0.3,
+            3.0,
+            True,
+            "1",
+            "void ratio of the compression line at p' = 10 MPa, N_l 10000^-lambda",
+        ),
+        Variable("theta", GROUPS[1], 0.02, 5.0, True),
+        Variable("n_b", GROUPS[2], 0.1, 8.0, True),
+        Variable("n_d", GROUPS[2], 0.1, 10.0, True),
+        Variable("A_0", GROUPS[2], 0.05, 4.0, True),
+        Variable("h_0", GROUPS[3], 0.2, 200.0, True),
+        Variable("c_h", GROUPS[3], 0.0, 1.2, False),
+        Variable("c_z", GROUPS[4], 10.0, 5.0e3, True),
+        Variable("z_max", GROUPS[4], 0.1, 50.0, True),
+        Variable("P_a", GROUPS[5], 0.01, 1.0e3, True, "kPa"),
+        Variable("n_x", GROUPS[5], 1.0, 20.0, True),
+        Variable("m_x", GROUPS[5], 0.05, 10.0, True),
+        Variable("S_min", GROUPS[5], 0.0, 0.4, False),
+        Variable("b_1", GROUPS[6], 0.0, 3.0, False),
+        Variable("b_2", GROUPS[6], 0.0, 3.0, False),
+    )
+}
 #: Parameters of the library that are pinned by a variable of another name.
 PINNED = {"N_c": "e_c100", "N_l": "e_l10"}
 
@@ -78,28 +128,30 @@ def parameters_of(values: Mapping[str, float], base: Mapping[str, float]) -> dic
     """Parameters of the library: ``base`` with the values of variables; N_c and N_l of their pins, which hold if lambda moves."""
     answer = {**base, **{k: v for k, v in values.items() if k not in PINNED.values()}}
     pins = {**pins_of(base), **{k: v for k, v in values.items() if k in PINNED.values()}}
-    answer["N_c"] = pins["e_c100"]*(P_CRITICAL + answer["alpha_csl"])**answer["lambda"]
-    answer["N_l"] = pins["e_l10"]*P_COMPRESSION**answer["lambda"]
+    answer["N_c"] = pins["e_c100"] * (P_CRITICAL + answer["alpha_csl"]) ** answer["lambda"]
+    answer["N_l"] = pins["e_l10"] * P_COMPRESSION ** answer["lambda"]
     return answer
 
 
 def pins_of(base: Mapping[str, float]) -> dict[str, float]:
     """Void ratios that the two lines have at their pins."""
-    return {"e_c100": base["N_c"]*(P_CRITICAL + base["alpha_csl"])**-base["lambda"],
-            "e_l10": base["N_l"]*P_COMPRESSION**-base["lambda"]}
+    return {
+        "e_c100": base["N_c"] * (P_CRITICAL + base["alpha_csl"]) ** -base["lambda"],
+        "e_l10": base["N_l"] * P_COMPRESSION ** -base["lambda"],
+    }
 
 
 def poisson_ratio(values: Mapping[str, float], e: np.ndarray | float, p: np.ndarray | float) -> np.ndarray | float:
     """Elastic Poisson's ratio of eqs (2), (3) at a void ratio and a mean stress [kPa]."""
-    bulk = values["K_0"]*(1 + e)/e*(p/values["p_atm"])**(2/3)
-    shear = values["G_0"]*(2.97 - e)**2/(1 + e)*np.sqrt(p/values["p_atm"])
-    return (3*bulk - 2*shear)/(2*(3*bulk + shear))
+    bulk = values["K_0"] * (1 + e) / e * (p / values["p_atm"]) ** (2 / 3)
+    shear = values["G_0"] * (2.97 - e) ** 2 / (1 + e) * np.sqrt(p / values["p_atm"])
+    return (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear))
 
 
 def poisson_residual(values: Mapping[str, float]) -> np.ndarray:
     """Residuals that keep G_0 and K_0 in keeping: shear and compression tests alone let them drift apart."""
     ratios = np.array([poisson_ratio(values, e, p) for e, p in POISSON_STATES])
-    return POISSON_WEIGHT*(np.minimum(ratios - POISSON[0], 0) + np.maximum(ratios - POISSON[1], 0))
+    return POISSON_WEIGHT * (np.minimum(ratios - POISSON[0], 0) + np.maximum(ratios - POISSON[1], 0))
 
 
 def start_of(name: str, base: Mapping[str, float]) -> float:
@@ -117,19 +169,21 @@ def known_parameters(known: Mapping[str, float], base: Mapping[str, float]) -> t
     rest = dict(known)
     if "phi_c" in rest:
         sine = np.sin(np.radians(rest.pop("phi_c")))
-        values["M_c"] = float(6*sine/(3 - sine))
+        values["M_c"] = float(6 * sine / (3 - sine))
         origins["M_c"] = f"known: critical friction angle {known['phi_c']:g} degrees"
     measured = [rest.pop(name, None) for name in ("G_max", "G_max_p", "G_max_e")]
     if any(m is not None for m in measured):
         if any(m is None for m in measured):
             raise InputError("G_max [kPa] is known at a state: give G_max_p [kPa] and G_max_e with it")
         modulus, p, e = measured
-        values["G_0"] = float(modulus/(base["p_atm"]*(2.97 - e)**2/(1 + e)*np.sqrt(p/base["p_atm"])))
+        values["G_0"] = float(modulus / (base["p_atm"] * (2.97 - e) ** 2 / (1 + e) * np.sqrt(p / base["p_atm"])))
         origins["G_0"] = f"known: G = {modulus:g} kPa at p' = {p:g} kPa, e = {e:g}"
     for name, value in rest.items():
         if name not in VARIABLES and name not in parameters:
-            raise InputError(f"known: {name} is neither a parameter of the library nor one of phi_c, G_max, G_max_p, G_max_e, "
-                             f"{', '.join(PINNED.values())}")
+            raise InputError(
+                f"known: {name} is neither a parameter of the library nor one of phi_c, G_max, G_max_p, G_max_e, "
+                f"{', '.join(PINNED.values())}"
+            )
         values[name], origins[name] = float(value), "known"
     for position, pin in PINNED.items():
         if position not in values:
@@ -137,17 +191,26 @@ def known_parameters(known: Mapping[str, float], base: Mapping[str, float]) -> t
         with_it = ("lambda", "alpha_csl") if position == "N_c" else ("lambda",)
         for name in with_it:
             if name not in values:
-                raise InputError(f"known: {position} is the position of a line: give {' and '.join(with_it)} with it, or {pin} "
-                                 f"({meaning_of(pin)}) in its place")
+                raise InputError(
+                    f"known: {position} is the position of a line: give {' and '.join(with_it)} with it, or {pin} "
+                    f"({meaning_of(pin)}) in its place"
+                )
         values[pin], origins[pin] = pins_of({**base, **values})[pin], "known"
     return values, origins
 
 
-def chosen(kinds: set[str], unsaturated: bool, known: Sequence[str], groups: Sequence[str] | None = None) -> list[Variable]:
+def chosen(
+    kinds: set[str], unsaturated: bool, known: Sequence[str], groups: Sequence[str] | None = None
+) -> list[Variable]:
     """Variables that are fitted: of groups that the tests speak of, without what is known."""
     if groups is not None:
         for group in groups:
             if group not in GROUPS:
                 raise InputError(f"there is no group {group}; there are {', '.join(GROUPS)}")
-    return [v for v in VARIABLES.values() if v.name not in known and (groups is None or v.group in groups)
-            and (SPEAKS[v.group] & kinds or v.group == "bonding" and unsaturated)]
+    return [
+        v
+        for v in VARIABLES.values()
+        if v.name not in known
+        and (groups is None or v.group in groups)
+        and (SPEAKS[v.group] & kinds or v.group == "bonding" and unsaturated)
+    ]
