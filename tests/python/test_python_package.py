@@ -1,4 +1,4 @@
-"""The Python package: names of the registry, sentences of the library, updates without copies, element tests of the driver."""
+"""The Python package: names of the registry, sentences of the library, updates without copies, the driver's tests."""
 
 import ctypes
 import os
@@ -179,7 +179,7 @@ closed = np.log(np.e + (10.0 * 0.8**2 / 5.0) ** 2) ** -1.0  # eq. (24), Omega 2,
 check("the retention curve is eq. (24)", curve[0] == 1.0 and abs(curve[1] - closed) < 1e-14, curve)
 
 # Element tests: the driver's own, every control.
-for name in ("vi_drained_TMD4", "cyclic_q_e833_p100", "lode_simple_shear", "constant_water"):
+for name in ("vi_drained_TMD4", "undrained_e735_p100", "lode_simple_shear", "constant_water"):
     done, wanted = case_file(name)
     result = mud.run_case((root / f"drivers/cases/{name}.nml").read_text(), root / "drivers/cases")
     same = list(result) == list(wanted) and all(np.allclose(result[k], wanted[k], rtol=1e-14, atol=0) for k in wanted)
