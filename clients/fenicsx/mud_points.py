@@ -42,6 +42,11 @@ class Material:
                 raise ValueError(f"MUD has no parameter {name}")
             self.props[index] = value
         self.prepared = np.zeros(lib.mud_prepared_size())
+        self.set_props(self.props)
+
+    def set_props(self, props):
+        """Takes other PROPS, checked, for the updates to come."""
+        lib, self.props = self.library, np.array(props, float)
         text = ctypes.create_string_buffer(400)
         if lib.mud_prepare(self.props, len(self.props), self.prepared, len(self.prepared), text, len(text)) != 0:
             raise ValueError(text.value.decode())

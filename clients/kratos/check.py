@@ -76,4 +76,45 @@ rows = analysis("shear_suction", "SmallStrainUMAT3DLaw", 3, "cube.mdpa", table, 
                 suction=table["suction"][0])
 clients.compare("shear at a suction preset in STATE_VARIABLES, UMAT", rows, clients.stresses(table)[1:],
                 places=KRATOS_3D)
+
+
+def column(cells):
+    """Settlement of the top under a pulse at every step: 1333 steps, dry, dynamic."""
+    folder = clients.work_folder(f"kratos/column_{cells}")
+    (folder / "column.mdpa").write_text(project.column_mesh(cells))
+    project.write(folder, "MaterialParameters.json",
+                  project.material("SmallStrainUMAT2DPlaneStrainLaw", clients.library_file, clients.props(),
+                                   clients.statev(void_ratio=0.8), True))
+    constraints = [project.dry(), project.constraint("Sides", "X"), project.constraint("Bottom", "Y")]
+    loads = [project.start([-100.0]*3 + [0.0]), project.cell_pressure(2, 100.0, 1)]
+    content = project.project(2, "column", STEPS, constraints, loads, ["Soil", "Sides", "Bottom", "Cell"])
+    project.write(folder, "ProjectParameters.json", project.dynamic(content, STEP, STEPS*STEP))
+    if clients.run([python, here / "run.py", "--top"], folder / "log.txt", cwd=folder, timeout=1500) != 0:
+        return []
+    with open(folder / "stress.csv") as file:
+        return [float(row[0]) for row in csv.reader(file)]
+
+
+def host_column(cells):
+    folder = clients.work_folder(f"kratos/host_{cells}")
+    (folder / "column.nml").write_text((here / "column.nml").read_text().replace("@CELLS@", str(cells)))
+    command = [clients.build / "host/mud_host", "column.nml", "--output", "out", "--quiet"]
+    if clients.run(command, folder / "log.txt", cwd=folder, timeout=1500) != 0:
+        return []
+    with open(folder / "out/histories.csv") as file:
+        return [float(row["top.u_z"]) for row in csv.DictReader(file)][1:]
+
+
+# The dynamic column. Both programs take the average acceleration, so that only the elements differ: what halving them
+# moves either program is allowed.
+STEPS, STEP = 1333, 2e-5
+lists = coarse, fine, own_coarse, own_fine = column(10), column(20), host_column(10), host_column(20)
+if any(len(rows) != STEPS for rows in lists):
+    clients.verdict(False, "dynamic column, 1333 steps", f"steps {[len(rows) for rows in lists]}")
+else:
+    scale = max(abs(x) for x in own_fine)
+    theirs, ours, apart = (max(abs(a - b) for a, b in zip(*pair))/scale
+                           for pair in ((coarse, fine), (own_coarse, own_fine), (fine, own_fine)))
+    clients.verdict(apart <= theirs + ours, "dynamic column against mud_host, 1333 steps",
+                    f"apart {apart:.1e} of {scale:.4g}, allowed {theirs:.1e} (Kratos) + {ours:.1e} (mud_host)")
 clients.finish()

@@ -17,11 +17,11 @@ def constraint(part, component, table=0):
 
 
 def material(law, library, props, state, dry):
-    """A soil by UMAT or UDSM. Kratos' own saturation rests at one; grains and water are as good as rigid."""
+    """A dry soil by UMAT or UDSM: water without weight, whose pressure `dry` fixes; void ratio 0.8."""
     variables = {
         "IGNORE_UNDRAINED": dry, "IS_FORTRAN_UDSM": True, "UDSM_NAME": str(library), "UDSM_NUMBER": 1,
         "UMAT_PARAMETERS": props, "STATE_VARIABLES": state,
-        "DENSITY_SOLID": 2.65, "DENSITY_WATER": 1.0, "POROSITY": 0.444, "BULK_MODULUS_SOLID": 1.0e9,
+        "DENSITY_SOLID": 2.65, "DENSITY_WATER": 1.0e-9, "POROSITY": 0.8/1.8, "BULK_MODULUS_SOLID": 1.0e9,
         "BULK_MODULUS_FLUID": 2.0e6, "PERMEABILITY_XX": 1.0e-11, "PERMEABILITY_YY": 1.0e-11, "PERMEABILITY_ZZ": 1.0e-11,
         "PERMEABILITY_XY": 0.0, "PERMEABILITY_YZ": 0.0, "PERMEABILITY_ZX": 0.0, "DYNAMIC_VISCOSITY": 1.0e-6,
         "BIOT_COEFFICIENT": 1.0, "RETENTION_LAW": "SaturatedLaw", "SATURATED_SATURATION": 1.0}
@@ -66,13 +66,46 @@ def start(stress):
             "Parameters": {"model_part_name": "PorousDomain.Soil", "value": stress}}
 
 
-def cell_pressure(dimension, value):
+def cell_pressure(dimension, value, table=0):
     return {"python_module": "apply_normal_load_table_process",
             "kratos_module": "KratosMultiphysics.GeoMechanicsApplication",
             "process_name": "apply_normal_load_table_process",
             "Parameters": {"model_part_name": "PorousDomain.Cell", "variable_name": "NORMAL_CONTACT_STRESS",
                            "active": [True, False], "value": [value, 0.0], "fluid_pressure_type": "Uniform",
-                           "table": [0, 0]}}
+                           "table": [table, 0]}}
+
+
+def column_mesh(cells):
+    """A row of quadrilaterals, 1 m high, with a load on top that rises by half and falls again."""
+    nodes = [(x, i/cells) for i in range(cells + 1) for x in (0.0, 0.1)]
+    everything, top = range(1, len(nodes) + 1), (2*cells + 1, 2*cells + 2)
+
+    def block(kind, rows):
+        return [f"Begin {kind}", *rows, f"End {kind.split()[0]}", ""]
+
+    def part(name, numbers, elements=(), conditions=(), tables=()):
+        lists = [("Tables", tables), ("Nodes", numbers), ("Elements", elements), ("Conditions", conditions)]
+        return block(f"SubModelPart {name}", [row for kind, rows in lists if rows
+                                              for row in block(f"SubModelPart{kind}", map(str, rows))])
+
+    elements = [f"{i + 1} 0  {2*i + 1} {2*i + 2} {2*i + 4} {2*i + 3}" for i in range(cells)]
+    return "\n".join(
+        block("ModelPartData", []) + block("Properties 0", [])
+        + block("Table 1 TIME NORMAL_CONTACT_STRESS", ["0.0 100.0", "0.002 150.0", "0.004 100.0", "1.0 100.0"])
+        + block("Nodes", [f"{i} {x} {y!r} 0.0" for i, (x, y) in enumerate(nodes, 1)])
+        + block("Elements UPwSmallStrainElement2D4N", elements)
+        + block("Conditions UPwNormalFaceLoadCondition2D2N", [f"1 0  {top[1]} {top[0]}"])
+        + part("Soil", everything, elements=range(1, cells + 1)) + part("Bottom", (1, 2)) + part("Sides", everything)
+        + part("Cell", top, conditions=(1,), tables=(1,)))
+
+
+def dynamic(content, step, end):
+    """The project with Newmark's average acceleration and steps of a length."""
+    content["problem_data"]["end_time"] = end
+    content["solver_settings"] |= {"solution_type": "Dynamic", "scheme_type": "Newmark", "newmark_beta": 0.25,
+                                   "newmark_gamma": 0.5, "rayleigh_m": 0.0, "rayleigh_k": 0.0}
+    content["solver_settings"]["time_stepping"]["time_step"] = step
+    return content
 
 
 def write(folder, name, content):

@@ -1,7 +1,8 @@
 """Runs a project of Kratos in the present folder and writes the stress of its first point at every step.
 
-usage: run.py [STRAINS.csv]: six strains a step (11, 22, 33, 12, 13, 23, shear as engineering strain), imposed on every
-node; without it the project's own constraints move the nodes.
+usage: run.py [STRAINS.csv | --top]
+STRAINS.csv: six strains a step (11, 22, 33, 12, 13, 23, shear as engineering strain), imposed on every node; without it
+the project's own constraints move the nodes. --top: vertical displacement of the highest node instead of stress.
 """
 import csv
 import sys
@@ -35,12 +36,16 @@ class Recorded(GeoMechanicsAnalysis):
         super().FinalizeSolutionStep()
         part = self._GetSolver().main_model_part
         element = next(iter(part.Elements))
+        if sys.argv[1:] == ["--top"]:
+            top = max(part.Nodes, key=lambda node: node.Y0)
+            self.rows.append([repr(top.GetSolutionStepValue(Kratos.DISPLACEMENT_Y))])
+            return
         stress = element.CalculateOnIntegrationPoints(Kratos.CAUCHY_STRESS_VECTOR, part.ProcessInfo)[0]
         self.rows.append([repr(float(s)) for s in stress])
 
 
 strains = None
-if len(sys.argv) > 1:
+if len(sys.argv) > 1 and sys.argv[1] != "--top":
     with open(sys.argv[1]) as file:
         strains = [[float(x) for x in row] for row in csv.reader(file)]
 with open("ProjectParameters.json") as file:

@@ -1,0 +1,120 @@
+"""FEniCSx, PETSc and MPI: points against mud_triax, ranks, restart, multigrid, a metre, a strip against mud_host."""
+import csv
+import json
+import os
+import pathlib
+import re
+import subprocess
+
+import clients
+
+here = pathlib.Path(__file__).parent
+PYTHON = "/usr/bin/python3"  # Debian's packages belong to Debian's Python
+RANKS = 1e-8  # loads of a push, relative: ten times the tolerance of Newton's method for the residual
+clients.debian(["python3-dolfinx", "openmpi-bin"])
+folder = clients.work_folder("fenicsx")
+environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+environment |= {"MUD_LIBRARY": str(clients.library_file), "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
+                "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
+SMALL = ["--cells", "3", "--steps", "4"]
+
+
+def program(name, script, *arguments, ranks=1):
+    """What a program wrote to its result file, or None."""
+    result = folder / f"{name}.json"
+    result.unlink(missing_ok=True)
+    launch = ["mpirun", "-n", str(ranks), "--bind-to", "none"] if ranks > 1 else []
+    command = [*launch, PYTHON, here / script, *arguments, "--result", result]
+    if clients.run(command, folder / f"{name}.log", cwd=folder, env=environment, timeout=3000) != 0:
+        return None
+    return json.loads(result.read_text())
+
+
+def footing(name, *arguments, ranks=1):
+    return program(name, "footing.py", *arguments, ranks=ranks)
+
+
+def close(what, got, wanted, relative):
+    if got is None or wanted is None:
+        clients.verdict(False, what, "a run did not come to its end")
+    else:
+        clients.compare(what, [[x] for x in got["pressure"]], [[x] for x in wanted["pressure"]], relative)
+
+
+# Points by the batch call, as the finite elements use it: the strains and suctions of mud_triax.
+for case in ("shear", "shear_suction", "wetting"):
+    table = clients.expected(case)
+    path = folder / f"{case}.json"
+    path.write_text(json.dumps({"strains": clients.strains(table), "suction": table["suction"],
+                                "void_ratio": table["e"][0], "stress": -table["p_eff"][0]}))
+    answer = program(f"points_{case}", "points.py", path)
+    clients.compare(f"batch call, {case}", answer["stress"] if answer else [], clients.stresses(table)[1:])
+
+one = footing("one", *SMALL, "--record", "one")
+two = footing("two", *SMALL, "--record", "two", ranks=2)
+close("footing, u-p_w in three dimensions: two ranks give the loads of one", two, one, RANKS)
+replay = program("replay", "points.py", folder / "two.npz")
+clients.verdict(bool(replay) and replay["same"] and replay["points"] > 0,
+                "stress and state of the points of two ranks are those of one process, bit by bit",
+                f"{replay and replay['points']} points")
+footing("half", *SMALL, "--stop-after", "2", "--save", "checkpoint")
+again = footing("again", *SMALL, "--load", "checkpoint")
+clients.verdict(bool(again and one) and again["digest"] == one["digest"], "a restart gives the bits of the whole run",
+                f"digests {again and again['digest']}, {one and one['digest']}")
+other = footing("other", *SMALL, "--load", "checkpoint", ranks=2)
+if one:
+    one_later = {"pressure": one["pressure"][2:]}
+    close("a restart with another number of ranks gives the loads", other, one_later, RANKS)
+multigrid = footing("multigrid", *SMALL, "--linear", "amg")
+close("multigrid with rigid-body modes gives the loads of MUMPS", multigrid, one, RANKS)
+metre = footing("metre", "--cells", "3", "--scale", "4", "--settlement", "1", "--steps", "3", "--scheme", "2")
+clients.verdict(bool(metre) and abs(metre["settlement"] - 1.0) < 1e-12 and metre["cuts"] > 0,
+                "a metre in three steps gets through", json.dumps(metre and {k: metre[k] for k in (
+                    "pressure", "steps", "cuts", "searches", "iterations")}))
+
+
+def graded(x):
+    """As in footing.py."""
+    beyond = max(0.0, (x - 1/3)*1.5)
+    return 1.5*x if x <= 1/3 + 1e-12 else 0.5 + beyond + 2.5*beyond**2
+
+
+def host(cells, steps):
+    """Settlement and pressure of the water at the axis, by mud_host on a mesh with the same breaks."""
+    name = f"host_{cells}_{steps}"
+    lines = [graded(i/cells) for i in range(cells + 1)]
+    scene = (here / "strip.nml").read_text()
+    load = "".join(f"&load\n   group = 'top_{i}'\n   kind = 'pressure'\n   value = 150\n   history = 'ramp'\n/\n"
+                   for i in range(1, cells//3 + 1))
+    for word, text in (("R", ", ".join(map(repr, lines))), ("Z", ", ".join(repr(-x) for x in reversed(lines))),
+                       ("ONES", ", ".join(["1"]*cells)), ("STEP", repr(100.0/steps)), ("LOAD", load)):
+        scene = re.sub(f"@{word}@", text, scene)
+    (folder / f"{name}.nml").write_text(scene)
+    command = [clients.build / "host/mud_host", f"{name}.nml", "--output", name, "--quiet"]
+    subprocess.run(["rm", "-rf", folder / name], check=True)
+    if clients.run(command, folder / f"{name}.log", cwd=folder, timeout=900) != 0:
+        return None
+    with open(folder / name / "histories.csv") as file:
+        last = list(csv.DictReader(file))[-1]
+    return {"settlement": -float(last["centre.u_z"]), "p_w": float(last["below.p_w"])}
+
+
+def strip(cells, steps):
+    return footing(f"strip_{cells}_{steps}", "--strip", "--cells", str(cells), "--steps", str(steps))
+
+
+# The strip. The finite elements here are of first order in time: two runs are extrapolated to steps of no length.
+# Allowed is what halving the elements moves either program, and halving the step mud_host.
+runs = {(n, s): strip(n, s) for n in (6, 12) for s in (10, 20)}
+own = {(n, s): host(n, s) for n, s in ((6, 20), (12, 20), (12, 10))}
+for name in ("settlement", "p_w"):
+    if not all(runs.values()) or not all(own.values()):
+        clients.verdict(False, f"strip against mud_host, {name}", "a run did not come to its end")
+        continue
+    coarse, fine = (2.0*runs[n, 20][name] - runs[n, 10][name] for n in (6, 12))
+    ours = own[12, 20][name]
+    apart, theirs = abs(fine - ours)/ours, abs(fine - coarse)/ours
+    mine = (abs(ours - own[6, 20][name]) + abs(ours - own[12, 10][name]))/ours
+    clients.verdict(apart <= theirs + mine, f"strip against mud_host, {name}",
+                    f"apart {apart:.1e} of {ours:.6g}, allowed {theirs:.1e} (FEniCSx) + {mine:.1e} (mud_host)")
+clients.finish()
