@@ -14,9 +14,9 @@ module triax_control
    private
    public :: plan_t, tally_t, plan_way, advance, lead, quantity, CONTROL_TOLERANCE
 
-   !> Constraints are met to this unless a case says otherwise, relative to the effective stress they speak of: a hundred
-   !> thousand times below the library's own default tolerance, and far above rounding (1e-16 times the ratio of stiffness
-   !> to stress, about 1e3).
+   !> Constraints are met to this unless a case says otherwise, relative to the effective stress they speak of: a
+   !> hundred thousand times below the library's own default tolerance, and far above rounding (1e-16 times the ratio
+   !> of stiffness to stress, about 1e3).
    real(wp), parameter :: CONTROL_TOLERANCE = 1.0e-10_wp
    !> A quasi-Newton step gains a digit or more, 10 are usual; Newton steps with the consistent tangent need 2 to 4.
    integer, parameter :: MAX_ITERATIONS = 40
@@ -151,7 +151,8 @@ contains
          if (tally%updates >= tally%max_updates) then
             call raise(fault, EXIT_RUN, trim(CONTROL_NAMES(plan%control))//' stage, at eps_a '// &
                        short(axial_strain(point))//': '//whole(tally%updates)// &
-                       ' updates of the material are done, and max_updates of &case allows '//whole(tally%max_updates)//'.')
+                       ' updates of the material are done, and max_updates of &case allows '// &
+                       whole(tally%max_updates)//'.')
             return
          end if
          trouble = fault_t()

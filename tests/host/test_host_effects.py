@@ -297,7 +297,7 @@ speed = math.sqrt(rho / 3 / MODULUS) / 0.02
 check("speed: as large as that of the column", math.isclose(float(row["largest_seen"]), speed, rel_tol=0.1),
       (row, speed))
 said, table = run(column(), "slow")
-check("slow: no warning", "Warning" not in said and not table["inertia in load"]["crossed_at"], said)
+check("slow: no warning", "Warning: inertia" not in said and not table["inertia in load"]["crossed_at"], said)
 seen = float(table["inertia in load"]["largest_seen"])
 check("slow: seen, and below the estimate", 0 < seen < float(table["inertia in load"]["estimate"]), table)
 
