@@ -68,12 +68,6 @@ def programs():
     return loading, static
 
 
-def card(name, props):
-    rows = [", ".join(f"{x:.10g}" for x in props[i:i + 8]) for i in range(0, len(props), 8)]
-    return "\n".join([f"*MATERIAL, NAME={name}", f"*USER MATERIAL, CONSTANTS={len(props)}", *rows, "*DEPVAR",
-                      str(len(clients.statev())), ""])
-
-
 def solution(elements, state):
     """STATEV at the start. The reader of ccx 2.20 returns after one point where STATEV have more than six entries: a
     card for every point, two lines each, sets the first six; the rest stays zero."""
@@ -87,7 +81,7 @@ def stresses(job, ccx, name, more=""):
     folder = clients.work_folder(f"calculix/{job}_{ccx.name}{'_more' if more else ''}")
     deck = (here / f"{job}.inp").read_text().replace("@ABAQUS_MUD", name)
     (folder / f"{job}.inp").write_text(deck.replace("*INITIAL CONDITIONS", more + "*INITIAL CONDITIONS", 1))
-    (folder / "material.inp").write_text(card(name, clients.props()))
+    (folder / "material.inp").write_text(clients.describe("calculix").replace("@ABAQUS_MUD", name))
     shutil.copy(clients.library_file, folder / "libMUD.so")
     environment = dict(os.environ, LD_LIBRARY_PATH=str(folder), OMP_NUM_THREADS="1")
     if clients.run([ccx, job], folder / "log.txt", cwd=folder, env=environment, timeout=900) != 0:

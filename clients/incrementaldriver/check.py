@@ -2,7 +2,6 @@
 import csv
 import os
 import pathlib
-import subprocess
 
 import clients
 
@@ -26,16 +25,11 @@ def load(case):
     return "\n".join([*lines, "*End", ""])
 
 
-def describe(host):
-    command = [clients.build / "drivers/mud_describe", host]
-    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
-
-
 program = os.environ.get("MUD_INCREMENTAL_DRIVER")
 for case in STAGES:
     folder = clients.work_folder(f"incrementaldriver/{case}")
-    (folder / "parameters.inp").write_text(describe("incrementaldriver"))
-    (folder / "initialconditions.inp").write_text(describe("incrementaldriver-start"))
+    (folder / "parameters.inp").write_text(clients.describe("incrementaldriver"))
+    (folder / "initialconditions.inp").write_text(clients.describe("incrementaldriver-start"))
     (folder / "test.inp").write_text(load(case))
     table = clients.expected(case)
     if case == "shear":

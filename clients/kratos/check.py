@@ -1,5 +1,6 @@
 """Kratos GeoMechanics: a cube, a ring and a plane by UMAT and by UDSM."""
 import csv
+import json
 import pathlib
 
 import clients
@@ -54,6 +55,10 @@ def in_triaxial_axes(rows, axis):
     return [[-row[axis], -row[0]] for row in rows]
 
 
+told = json.loads(clients.describe("kratos"))["properties"][0]["Material"]["Variables"]
+clients.verdict(told["UMAT_PARAMETERS"] == clients.props(shear_order=1) and told["STATE_VARIABLES"] == clients.statev()
+                and told["IS_FORTRAN_UDSM"], "mud_describe kratos tells the parameters that follow",
+                f"{len(told['UMAT_PARAMETERS'])} parameters, {len(told['STATE_VARIABLES'])} state variables")
 for interface in ("UMAT", "UDSM"):
     solid, flat = f"SmallStrain{interface}3DLaw", f"SmallStrain{interface}2DPlaneStrainLaw"
     tag = interface.lower()

@@ -88,6 +88,11 @@ def run(name, strains, presets, stress, names, suction=None, saturation=1.0):
     return [list(rows) for rows in zip(*found)]
 
 
+for host in ("ogs", "ogs-unsaturated"):
+    told = clients.describe(host)
+    missing = [name for name in named_props() if f'name="{name}"' not in told]
+    clients.verdict(not missing and "<material_properties>" in told, f"mud_describe {host} names every parameter",
+                    f"missing: {missing}")
 table = clients.expected("shear")
 rows, = run("shear", clients.strains(table), {"void_ratio": table["e"][0]}, -table["p_eff"][0], ["sigma"])
 clients.compare("three shear components, reversed, SMALL_DEFORMATION", rows, clients.stresses(table)[1:], DIGITS,

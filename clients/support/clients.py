@@ -57,6 +57,12 @@ def place_of(name):
     return mud().mud_index(MUD_STATEV, name.encode())
 
 
+def describe(host):
+    """What mud_describe prints for a host: the default material as that program reads it."""
+    command = [build / "drivers/mud_describe", host]
+    return subprocess.run(command, check=True, capture_output=True, text=True, timeout=60).stdout
+
+
 def saturation(suction, void_ratio):
     """Degree of saturation of the default material."""
     library, values = mud(), props()
