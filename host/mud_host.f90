@@ -2,16 +2,18 @@
 program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit, int64
    use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
+   use answer_verification, only: history_t, read_history, differences
    use answer_errors, only: write_answers, print_answers
    use blas_in_use, only: blas_t, find_blas
    use checkpoints, only: read_checkpoint
+   use kinds, only: wp
    use wall_clock, only: clock
    use generalised_alpha, only: STATIC, DYNAMIC
    use effects_table, only: print_effects
    use model_builder, only: build_model
    use model_types, only: model_t
    use linear_system, only: T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST
-   use output_tables, only: check_tables
+   use output_tables, only: check_tables, COLUMNS_OF_A_POINT
    use process_settings, only: settle_process
    use run_output, only: run_output_t
    use run_setup, only: prepare_run
@@ -22,17 +24,18 @@ program mud_host
    use scene_warnings, only: list_warnings, WARNING_LENGTH
    use time_stepping, only: run_stages
    use files, only: limits_are_errors, folder_of
-   use faults, only: fault_t
+   use faults, only: fault_t, raise, EXIT_INPUT
    use texts, only: short, whole
    implicit none (type, external)
    character(*), parameter :: USAGE = 'usage: mud_host SCENE.nml [--output FOLDER] [--restart CHECKPOINT] '// &
-                              '[--accuracy SHARE] [--quiet] [--check] | --template'
-   type(option_t) :: options(7) = [ &
+                              '[--accuracy SHARE] [--verify] [--quiet] [--check] | --template'
+   type(option_t) :: options(8) = [ &
       option_t('--help', letter='-h', answers=.true.), &
       option_t('--template', answers=.true.), &
       option_t('--quiet'), &
       option_t('--check'), &
       option_t('--output', 'a folder'), &
+      option_t('--verify'), &
       option_t('--accuracy', 'a share, as 1e-2'), &
       option_t('--restart', 'a checkpoint')]
    character(WORD_LENGTH) :: file
@@ -43,6 +46,7 @@ program mud_host
    type(run_output_t) :: output
    type(fault_t) :: fault
    logical :: quiet, only_check
+   real(wp), parameter :: QUARTER_SHARE = 0.25_wp
    double precision :: t0
 
    call limits_are_errors()
@@ -63,6 +67,8 @@ program mud_host
       folder = 'output'
       if (restart /= '') folder = folder_of(restart)
    end if
+   if (fault%code == 0 .and. option_given(options, '--verify') .and. restart /= '') call raise(fault, EXIT_INPUT, &
+      '--verify repeats a whole run: leave --restart out.')
    t0 = clock()
    if (fault%code == 0) call read_scene(trim(file), scene, fault, option_value(options, '--accuracy'))
    if (fault%code == 0) call build_model(scene, model, fault)
@@ -77,8 +83,10 @@ program mud_host
       if (output%resume) call read_checkpoint(restart, model, run, output%tables, fault)
       if (fault%code == 0) call run_stages(model, run, fault, output)
       if (fault%code == 0 .and. allocated(run%control%x_first)) then
-         call write_answers(folder, model, run%control, fault)
-         if (.not. quiet) call print_answers(output_unit, model, run%control)
+         if (option_given(options, '--verify')) call verify()
+         if (fault%code == 0) call write_answers(folder, model, run%control, fault)
+         if (fault%code == 0 .and. .not. quiet) call print_answers(output_unit, model, run%control, &
+                                                                   option_given(options, '--verify'))
       end if
    end if
    if (.not. (quiet .or. only_check) .and. run%steps > 0) call account()
@@ -90,12 +98,14 @@ program mud_host
    end if
 contains
    subroutine print_help()
-      character(*), parameter :: LINES(8) = [character(100) :: &
+      character(*), parameter :: LINES(10) = [character(100) :: &
          '  --output FOLDER       where files go, made if missing; default: output, with --restart that of the', &
          '                        checkpoint', &
          '  --restart CHECKPOINT  goes on from a checkpoint of the same scene', &
          '  --accuracy SHARE      relative error wanted in the histories of the points; in place of the key', &
          '                        accuracy of &scene', &
+         '  --verify              repeats the run at a quarter of the accuracy and tells the difference as the', &
+         '                        error; needs points, controlled steps, no --restart', &
          '  --check               reads and checks scene and checkpoint, runs nothing', &
          '  --quiet               prints errors only', &
          '  --template            prints every group and key of a scene']
@@ -134,6 +144,28 @@ contains
          write (output_unit, '(a)') 'Warning: '//trim(warnings(i))
       end do
    end subroutine announce
+
+   !> The run again at a quarter of the accuracy, in a folder of its own: the difference takes the estimate's place.
+   subroutine verify()
+      type(scene_t) :: fine_scene
+      type(model_t) :: fine_model
+      type(run_t) :: fine_run
+      type(run_output_t) :: fine_output
+      type(history_t) :: one, two
+      character(16) :: quarter
+
+      write (quarter, '(es12.5)') QUARTER_SHARE*maxval(model%stages%accuracy, mask=model%stages%controlled)
+      call read_scene(trim(file), fine_scene, fault, trim(adjustl(quarter)))
+      if (fault%code == 0) call build_model(fine_scene, fine_model, fault)
+      if (fault%code == 0) call prepare_run(fine_model, fine_run, fault)
+      if (fault%code /= 0) return
+      fine_output%folder = folder//'/verify'
+      fine_output%quiet = .true.
+      call run_stages(fine_model, fine_run, fault, fine_output)
+      if (fault%code == 0) call read_history(folder, size(model%points), COLUMNS_OF_A_POINT, one, fault)
+      if (fault%code == 0) call read_history(folder//'/verify', size(model%points), COLUMNS_OF_A_POINT, two, fault)
+      if (fault%code == 0) run%control%point_largest = differences(one, two)
+   end subroutine verify
 
    !> The libraries that a factorisation spends its time in.
    subroutine tell_libraries()

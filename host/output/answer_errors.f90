@@ -56,13 +56,15 @@ contains
    end subroutine write_answers
 
    !> The same in words, and what kept the steps short.
-   subroutine print_answers(unit, model, control)
+   subroutine print_answers(unit, model, control, verified)
       integer, intent(in) :: unit
       type(model_t), intent(in) :: model
       type(control_state_t), intent(in) :: control
+      logical, intent(in) :: verified   !< The errors are differences to a run at a quarter of the accuracy.
       real(wp) :: change, error
       integer :: i, f
 
+      if (verified) write (unit, '(a)') 'Verified: errors are differences to the run at a quarter of the accuracy.'
       write (unit, '(a)') 'Answers: largest change, and estimated error of the history as a share of it (steps in '// &
          'time alone; the mesh is not in it):'
       do i = 1, size(model%points)

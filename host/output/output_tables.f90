@@ -18,11 +18,13 @@ module output_tables
    use unknown_fields, only: FIELDS, DISPLACEMENTS
    implicit none (type, external)
    private
+   public :: COLUMNS_OF_A_POINT
    public :: tables_t, open_tables, check_tables, write_history, write_ledger, write_contacts, write_fields
    public :: write_contact_nodes, write_reactions, close_reactions, reactions_of, close_tables, settle_tables
 
    character(4), parameter :: COLUMNS(14) = [character(4) :: 'u_r', 'u_z', 'p_w', 'p_c', 'v_r', 'v_z', 'a_r', 'a_z', &
       's_rr', 's_zz', 's_tt', 's_rz', 'e', 'S_w']
+   integer, parameter :: COLUMNS_OF_A_POINT = size(COLUMNS)   !< In histories.csv; the unknowns come first.
    character(*), parameter :: LEDGER_COLUMNS = 'time,dt,stage,iterations,'// &
       'error_u_r,error_u_z,error_p_w,error_p_c,first_u_r,first_u_z,first_p_w,first_p_c,reduction,correction,'// &
       'rates,kinetic,skeleton,pores,gravity,loads,supports,seepage,damping,imbalance,outflow,outflow_air,step_error'

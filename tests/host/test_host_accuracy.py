@@ -60,6 +60,16 @@ for accuracy in ("1e-1", "1e-2"):
 check("vibration: ten times the accuracy takes about sqrt(10) times the steps",
       1.5 < steps["1e-2"]/steps["1e-1"] < 5, steps)
 
+# --verify: the difference to a run at a quarter of the accuracy takes the estimate's place, and is close to the truth.
+done = run(scene, work / "verified", "--accuracy", "1e-2", "--verify")
+t, u = history(work / "verified", "time"), history(work / "verified", "top.u_z")
+true = np.max(np.abs(u - np.interp(t, t_fine, u_fine)))/np.ptp(u)
+check("--verify: runs twice", done.returncode == 0 and "Verified:" in done.stdout
+      and len(history(work / "verified/verify", "time")) > len(t), done.stdout + done.stderr)
+check("--verify: the difference is the error", 0.5 < true/estimated(work / "verified")["top.u_z"] < 2, true)
+done = run(scene, work / "verified", "--verify", "--restart", "nowhere.h5")
+check("--verify without --restart", done.returncode == 2 and "leave --restart out" in done.stderr, done.stderr)
+
 # What the scene sets by hand stays: steps, Newton's tolerance.
 done = run(written("hand", TERZAGHI.read_text().replace("dt = 1.0e-3", "dt = 1.0e-3\n   steps = 'given'")),
            work / "hand", "--accuracy", "1e-1")
