@@ -1,5 +1,5 @@
 """Is the estimated error of an answer the true one? Runs scenes with an accuracy, and with given fine steps on the same
-mesh as the reference, and writes honest.csv and the table of README.md. Resumable: a scene whose rows are there is left.
+mesh as the reference, and writes honest.csv. Resumable: a scene whose rows are there is left.
 
     python3 verification/studies/cost/honest.py [SCENE...]     MUD_BUILD_DIR: the build, default build/release
 """
@@ -70,7 +70,7 @@ def study(name):
     path, both, reference, accuracies = SCENES[name]
     beside = (root / path).parent
     text = changed((root / path).read_text(encoding="utf-8"), both)
-    # The controlled run chooses rho_inf and Newton's tolerance where the scene left them open; the reference keeps them.
+    # The controlled run of the indentation chooses what the paper's settings give by hand; the reference keeps those.
     free = text
     if name == "indentation":
         free = changed(text, [("   rho_inf = 0.8\n", ""), ("   tolerance = 1.0e-3\n", ""), ("   dt = 3.0e-5\n", "")])
