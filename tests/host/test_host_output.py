@@ -226,8 +226,8 @@ home = contents(work / "home")
 start = [host, scene, "--restart", work / "home/checkpoint.h5"]
 how = {"capture_output": True, "text": True, "env": environment, "cwd": work / "start"}
 done = subprocess.run([*start, "--check"], **how)
-check("check of a checkpoint", done.returncode == 0 and "checkpoint.h5 fits: stage" in done.stdout
-      and len(done.stdout.splitlines()) == 2 and contents(work / "home") == home, done.stdout + done.stderr)
+check("check of a checkpoint", done.returncode == 0 and "checkpoint.h5 fits: stage" in done.stdout.splitlines()[-1]
+      and "linear solves" not in done.stdout and contents(work / "home") == home, done.stdout + done.stderr)
 # Counters and lengths beyond 32 bits: a file with a hole is long and takes no room.
 long = work / "long"
 shutil.copytree(half, long)
