@@ -3,6 +3,7 @@
 import math
 import os
 import pathlib
+import subprocess
 import sys
 
 import numpy as np
@@ -378,6 +379,8 @@ for others, word in (({"held_out": ["X"]}, "there is no test X"), ({"held_out": 
     check(f"{others} is refused", word in told, told)
 
 # The command.
+listed = subprocess.run([sys.executable, root / "calibration/library.py", "--check"], capture_output=True, text=True)
+check("the page lists the library of materials as its files say", listed.returncode == 0, listed.stderr)
 code = main(["--name", "x", "--drained", str(work / "none.csv"), "--quiet"])
 check("the command refuses with exit code 2", code == 2)
 for name in ("karlsruhe", "toyoura_fitted", "hostun_retention"):
