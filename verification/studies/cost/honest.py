@@ -42,7 +42,7 @@ SCENES = {
                               ("1e-1", "1e-2")),
     "liakopoulos": (HOST + "liakopoulos/scene.nml", [], [(r"dt_growth = \S+", "dt_growth = 1.01")], ("1e-1", "1e-2")),
     "three_fields_of_mud": ("tests/host/scenes/restart.nml", [("checkpoint_steps = 2", "")],
-                            [("dt = 1.0e-3", "dt = 5e-5"), ("dt_growth = 1.3", "dt_growth = 1")], ("1e-1", "1e-2")),
+                            [("dt = 1.0e-3", "dt = 2e-4"), ("dt_growth = 1.3", "dt_growth = 1")], ("1e-1", "1e-2")),
     "indentation": ("verification/studies/indentation/indent_s030.nml", [], [], ("1e-1", "1e-2")),
 }
 
