@@ -234,6 +234,13 @@ contains
       real(wp) :: way
 
       way = sign(1.0_wp, now - before)
-      passes = floor(way*now/interval + ON_GRID) > floor(way*before/interval + ON_GRID)
+      passes = floored(way*now/interval + ON_GRID) > floored(way*before/interval + ON_GRID)
+   contains
+      !> The largest integer not above x, as a real: a count of tiny intervals has more digits than an integer.
+      pure real(wp) function floored(x)
+         real(wp), intent(in) :: x
+
+         floored = x - modulo(x, 1.0_wp)
+      end function floored
    end function passes
 end module triax_course

@@ -65,6 +65,10 @@ for stage, held, lead, end in CASES:
     check(f"{stage}: what leads", abs(lead(rows[-1]) - end) <= HELD*(NORM if abs(end) > 1 else 1), lead(rows[-1]))
     check(f"{stage}: something happens", rows[-1]["n_substep"] > 0)
 
+# As many intervals as no integer of four bytes counts: every increment has its row.
+rows, _ = run("control = 'undrained', eps_a_end = 0.02, increment = 1e-3, output_interval = 1e-12")
+check("the least output_interval gives every increment", len(rows) == 21, len(rows))
+
 rows, _ = run("control = 'drained', eps_a_end = 0.02", initial="p_eff = 100.0, void_ratio = 0.833, suction = 50.0")
 check("net radial stress is held", spread(rows, lambda r: net(r, "sigma_r")) <= HELD*100, "")
 check("and the effective one is not", spread(rows, lambda r: r["sigma_r"]) > 1e-3, "")
