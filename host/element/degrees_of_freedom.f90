@@ -6,7 +6,7 @@ module degrees_of_freedom
    use porous_domain, only: domain_t
    implicit none (type, external)
    private
-   public :: dofs_t, number_unknowns, tie
+   public :: dofs_t, number_unknowns, tie, tie_pairs
 
    type :: dofs_t
       integer :: n = 0                        !< Unknowns.
@@ -73,4 +73,24 @@ contains
 
       if (size(nodes) > 0) ties(field, nodes) = minval(nodes)
    end subroutine tie
+
+   !> Makes the nodes of every pair share their first unknowns, and those of the nodes that they are tied to already.
+   pure subroutine tie_pairs(pairs, fields_tied, ties)
+      integer, intent(in) :: pairs(:, :), fields_tied
+      integer, intent(inout) :: ties(:, :)
+      integer :: f, k, leader, i, old(2)
+
+      do k = 1, size(pairs, 2)
+         do f = 1, fields_tied
+            old = pairs(:, k)
+            where (ties(f, pairs(:, k)) > 0) old = ties(f, pairs(:, k))
+            leader = minval(old)
+            do i = 1, 2
+               where (ties(f, :) == old(i)) ties(f, :) = leader
+               ties(f, old(i)) = leader
+            end do
+            ties(f, pairs(:, k)) = leader
+         end do
+      end do
+   end subroutine tie_pairs
 end module degrees_of_freedom

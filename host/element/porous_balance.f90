@@ -8,7 +8,7 @@ module porous_balance
    use porous_domain, only: domain_t, region_t
    use permeability_laws, only: relative_t, relative_permeability
    use material_point, only: saturation_t
-   use generalised_alpha, only: scheme_t, rate_of, STATIC
+   use generalised_alpha, only: scheme_t, rate_of, STATIC, DYNAMIC
    implicit none (type, external)
    private
    public :: kinematics_t, pore_t, skeleton_t, point_response, PLACES, RR, ZZ, TT, RZ, U, PW, PC, GW, GA
@@ -142,9 +142,13 @@ contains
       logical, intent(in) :: with_tangent
       real(wp), intent(out) :: response(PLACES)
       real(wp), intent(inout) :: tangent(PLACES, PLACES)
-      real(wp) :: pressure, rho, rho_n, rho_s, accel(2), l
+      real(wp) :: pressure, rho, rho_n, rho_s, accel(2), l, l_s
 
       l = scheme%l_f
+      ! The stress of damping is in proportion to the rate of the effective stress, its increment over the step.
+      l_s = l
+      if (region%stiffness_damping > 0.0_wp .and. scheme%kind == DYNAMIC .and. scheme%c_v > 0.0_wp) &
+         l_s = l + region%stiffness_damping/scheme%dt
       associate (n => mix%n, s => mix%s, fluids => domain%fluids)
          pressure = mix%p_w + (1 - s)*mix%p_c
          rho_n = -region%rho_s
@@ -158,13 +162,13 @@ contains
          accel = k%accel + region%damping*k%speed
          accel(2) = accel(2) + domain%gravity
          response = 0.0_wp
-         response(1:4) = stress0(1:4) + l*(skeleton%stress - stress0(1:4))
+         response(1:4) = stress0(1:4) + l_s*(skeleton%stress - stress0(1:4))
          response(1:3) = response(1:3) - pressure
          response(U + 1:U + 2) = rho*accel - k%source(1:2)
          if (.not. with_tangent) return
-         tangent(1:4, 1:4) = l*skeleton%tangent
+         tangent(1:4, 1:4) = l_s*skeleton%tangent
          tangent(1:3, 1:3) = tangent(1:3, 1:3) + mix%p_c*mix%s_ev
-         tangent(1:4, PC) = l*skeleton%tangent_suction
+         tangent(1:4, PC) = l_s*skeleton%tangent_suction
          tangent(1:3, PC) = tangent(1:3, PC) - (1 - s)*l + mix%p_c*mix%s_pc
          tangent(1:3, PW) = -l
          tangent(U + 1, U + 1) = rho*(scheme%c_a + region%damping*scheme%c_v)

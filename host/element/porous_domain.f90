@@ -29,6 +29,7 @@ module porous_domain
       real(wp) :: rho_s = 0.0_wp        !< Density of the grains [Mg/m3]
       real(wp) :: void_ratio = 0.0_wp   !< Initially [-].
       real(wp) :: damping = 0.0_wp      !< Force against the velocity over mass, in dynamic stages [1/s].
+      real(wp) :: stiffness_damping = 0.0_wp  !< Stress of the skeleton over its rate, in dynamic stages [s].
    end type region_t
 
    !> Geometry at a quadrature point. Pressures use the first n_p of the shape functions m.

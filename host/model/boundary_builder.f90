@@ -4,10 +4,12 @@ module boundary_builder
    use faults, only: fault_t, raise, EXIT_INPUT
    use contact_types, only: contact_options_t, NODAL_GAP, POINTWISE_GAP, PRESSURE_WORK, ENERGY_SLOPE
    use exit_codes, only: EXIT_GROUP
-   use model_types, only: model_t, initial_t, fix_t, load_t, plate_t, contact_pair_t, PRESCRIBED_P_A
+   use model_types, only: model_t, initial_t, fix_t, load_t, plate_t, contact_pair_t, absorber_t, tie_t, &
+                          PRESCRIBED_P_A
    use name_search, only: mesh_group, defined_name
    use scene_types, only: scene_t, scene_initial_t, scene_fix_t, scene_load_t, scene_plate_t, scene_contact_t, &
-                          acts_in, place_of, FIX_P_W, FIX_P_C, LOAD_WATER, LOAD_AIR, LOAD_FORCE_R
+                          scene_absorber_t, scene_tie_t, acts_in, place_of, FIX_P_W, FIX_P_C, LOAD_WATER, LOAD_AIR, LOAD_FORCE_R
+   use texts, only: short, whole
    use triangle_mesh, only: find_group, add_group
    use unknown_fields, only: FIELD_NAMES, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
@@ -68,7 +70,8 @@ contains
       integer :: i
 
       allocate (model%initials(size(scene%initials)), model%fixes(size(scene%fixes)), model%loads(size(scene%loads)), &
-                model%contacts(size(scene%contacts)))
+                model%contacts(size(scene%contacts)), model%absorbers(size(scene%absorbers)), &
+                model%ties(size(scene%ties)))
       do i = 1, size(scene%initials)
          if (fault%code == 0) call build_initial(scene%initials(i), model, model%initials(i), fault)
       end do
@@ -80,6 +83,12 @@ contains
       end do
       do i = 1, size(scene%contacts)
          if (fault%code == 0) call build_contact(scene%contacts(i), model, model%contacts(i), fault)
+      end do
+      do i = 1, size(scene%absorbers)
+         if (fault%code == 0) call build_absorber(scene%absorbers(i), model, model%absorbers(i), fault)
+      end do
+      do i = 1, size(scene%ties)
+         if (fault%code == 0) call build_tie(scene%ties(i), model, model%ties(i), fault)
       end do
    end subroutine build_boundaries
 
@@ -114,6 +123,15 @@ contains
       if (fault%code == 0) fix%amplitude = amplitude_of(given%amplitude_name, place_of(given), model, fault)
       if (fault%code /= 0) return
       fix%field = FIELD_OF(given%field_number)
+      if (given%acceleration .and. (given%field_number >= FIX_P_W .or. given%hold .or. fix%amplitude == 0)) then
+         call raise(fault, EXIT_INPUT, place_of(given)//'motion = ''acceleration'' needs a displacement (u_r, u_z), '// &
+                    'a history, and not hold = ''yes''.')
+         return
+      else if (given%acceleration .and. model%effect_options%auto) then
+         call raise(fault, EXIT_INPUT, place_of(given)//'with motion = ''acceleration'' nothing can be derived; '// &
+                    'leave effects = ''auto'' out.')
+         return
+      end if
       if ((given%field_number == FIX_P_W .and. .not. model%domain%with_w) .or. &
           (given%field_number >= FIX_P_C .and. .not. model%domain%with_c)) call raise(fault, EXIT_INPUT, &
          place_of(given)//'the scene has no field '//WORD_OF(given%field_number)//'; see fields in &scene.')
@@ -180,4 +198,59 @@ contains
          axisymmetric=model%domain%axisymmetric, gap=merge(NODAL_GAP, POINTWISE_GAP, given%nodal_gap), &
          variation=merge(PRESSURE_WORK, ENERGY_SLOPE, given%pressure_work))
    end subroutine build_contact
+
+   subroutine build_absorber(given, model, absorber, fault)
+      type(scene_absorber_t), intent(in) :: given
+      type(model_t), intent(in) :: model
+      type(absorber_t), intent(inout) :: absorber
+      type(fault_t), intent(inout) :: fault
+
+      absorber%scene_absorber_t = given
+      if (model%effect_options%auto) then
+         call raise(fault, EXIT_INPUT, place_of(given)//'with an absorbing boundary nothing can be derived; leave '// &
+                    'effects = ''auto'' out.')
+         return
+      end if
+      absorber%group = mesh_group(model%domain%mesh, given%group_name, place_of(given), fault)
+      if (fault%code == 0) absorber%amplitude = amplitude_of(given%amplitude_name, place_of(given), model, fault)
+      if (fault%code /= 0) return
+      if (size(model%domain%mesh%groups(absorber%group)%edges, 2) == 0) call raise(fault, EXIT_GROUP, &
+         place_of(given)//'group '''//trim(given%group_name)//''' has no edges that waves could leave through.')
+   end subroutine build_absorber
+
+   !> Pairs of nodes at equal heights.
+   subroutine build_tie(given, model, tie, fault)
+      type(scene_tie_t), intent(in) :: given
+      type(model_t), intent(in) :: model
+      type(tie_t), intent(inout) :: tie
+      type(fault_t), intent(inout) :: fault
+      integer :: first, second, i, k
+      real(wp), parameter :: SAME_HEIGHT = 1.0e-6_wp   !< Share of the height of the boundary.
+      real(wp) :: near
+
+      tie%scene_tie_t = given
+      first = mesh_group(model%domain%mesh, given%first_name, place_of(given), fault)
+      if (fault%code == 0) second = mesh_group(model%domain%mesh, given%second_name, place_of(given), fault)
+      if (fault%code /= 0) return
+      associate (a => model%domain%mesh%groups(first)%nodes, b => model%domain%mesh%groups(second)%nodes, &
+                 z => model%domain%mesh%x(2, :))
+         if (first == second .or. size(a) /= size(b)) then
+            call raise(fault, EXIT_GROUP, place_of(given)//'''' //trim(given%first_name)//''' has '//whole(size(a))// &
+                       ' nodes and '''//trim(given%second_name)//''' '//whole(size(b))//'; a tie needs two '// &
+                       'boundaries with as many nodes, at the same heights.')
+            return
+         end if
+         near = SAME_HEIGHT*(maxval(z(a)) - minval(z(a)))
+         allocate (tie%pairs(2, size(a)))
+         do i = 1, size(a)
+            k = minloc(abs(z(b) - z(a(i))), dim=1)
+            if (abs(z(b(k)) - z(a(i))) > near .or. any(tie%pairs(2, :i - 1) == b(k))) then
+               call raise(fault, EXIT_GROUP, place_of(given)//'no node of '''//trim(given%second_name)//''' lies at '// &
+                          'the height '//short(z(a(i)))//' m of '''//trim(given%first_name)//'''.')
+               return
+            end if
+            tie%pairs(:, i) = [a(i), b(k)]
+         end do
+      end associate
+   end subroutine build_tie
 end module boundary_builder

@@ -3,14 +3,16 @@ module boundary_conditions
    use kinds, only: wp
    use contact_drainage, only: drainage_t, is_released
    use degrees_of_freedom, only: dofs_t
-   use generalised_alpha, only: STATIC
+   use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
    use model_types, only: model_t, stage_t, fix_t, factor_at, PRESCRIBED_P_A
+   use porous_domain, only: state_t
    use prescribed_values, only: constraint_t
    use scene_types, only: acts_in
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: new_constraint, constrain_step, prescribing_fixes
+   public :: new_constraint, constrain_step, follow_accelerations, starting_accelerations, &
+             prescribing_fixes
 
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
 contains
@@ -91,6 +93,71 @@ contains
       end do
       constraint%air = .false.
    end subroutine constrain_step
+
+   !> Displacements at the end of a step whose accelerations are prescribed: those that the scheme gives them, so that
+   !> inertia is exact and free of the ringing that a prescribed displacement has. Accelerations of the scheme belong to
+   !> the time (gamma - 1/2) dt before the end of the step. docs/theory/host.md section 7.5.
+   subroutine follow_accelerations(model, stage, dofs, scheme, state, constraint)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(dofs_t), intent(in) :: dofs
+      type(scheme_t), intent(in) :: scheme
+      type(state_t), intent(in) :: state   !< Before the step.
+      type(constraint_t), intent(inout) :: constraint
+      real(wp) :: a
+      integer :: i, k, at
+
+      do i = 1, size(model%fixes)
+         associate (fix => model%fixes(i))
+            if (.not. fix%acceleration .or. .not. acts(fix, stage, state%time + scheme%dt)) cycle
+            do k = 1, size(model%domain%mesh%groups(fix%group)%nodes)
+               associate (node => model%domain%mesh%groups(fix%group)%nodes(k), f => fix%field, dt => scheme%dt)
+                  at = dofs%of(f, node)
+                  if (at == 0) cycle
+                  constraint%target(at) = state%x(f, node)
+                  if (scheme%kind /= DYNAMIC) cycle
+                  a = acceleration_at(model, fix, node, scheme, state%time + dt)
+                  constraint%target(at) = state%x(f, node) + dt*state%v(f, node) &
+                                          + dt**2*((0.5_wp - scheme%beta)*state%a(f, node) + scheme%beta*a)
+               end associate
+            end do
+         end associate
+      end do
+   end subroutine follow_accelerations
+
+   !> Accelerations that prescribed ones have when a stage begins; 0 elsewhere.
+   subroutine starting_accelerations(model, stage, dofs, scheme, time, a)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(dofs_t), intent(in) :: dofs
+      type(scheme_t), intent(in) :: scheme   !< Of the first step.
+      real(wp), intent(in) :: time
+      real(wp), intent(out) :: a(:)
+      integer :: i, k, at
+
+      a = 0.0_wp
+      do i = 1, size(model%fixes)
+         associate (fix => model%fixes(i))
+            if (.not. fix%acceleration .or. .not. acts(fix, stage, time + scheme%dt)) cycle
+            do k = 1, size(model%domain%mesh%groups(fix%group)%nodes)
+               at = dofs%of(fix%field, model%domain%mesh%groups(fix%group)%nodes(k))
+               if (at > 0) a(at) = acceleration_at(model, fix, model%domain%mesh%groups(fix%group)%nodes(k), scheme, time)
+            end do
+         end associate
+      end do
+   end subroutine starting_accelerations
+
+   !> Of a node at a moment of the scheme [m/s2].
+   pure real(wp) function acceleration_at(model, fix, node, scheme, time) result(a)
+      type(model_t), intent(in) :: model
+      type(fix_t), intent(in) :: fix
+      integer, intent(in) :: node
+      type(scheme_t), intent(in) :: scheme
+      real(wp), intent(in) :: time
+
+      a = (fix%value + fix%value_slope*(model%domain%mesh%x(2, node) - fix%datum)) &
+          *factor_at(model, fix%amplitude, time + (0.5_wp - scheme%gamma)*scheme%dt)
+   end function acceleration_at
 
    pure logical function acts(fix, stage, time)
       type(fix_t), intent(in) :: fix

@@ -3,8 +3,8 @@ module boundary_loads
    use kinds, only: wp, PI
    use model_types, only: model_t, stage_t, load_t, plate_t, factor_at
    use scene_types, only: acts_in, LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_AIR, LOAD_FORCE_R
-   use unknown_fields, only: FIELDS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
-   use degrees_of_freedom, only: dofs_t, tie
+   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
+   use degrees_of_freedom, only: dofs_t, tie, tie_pairs
    use shape_functions, only: edge_quadratic, edge_rule
    implicit none (type, external)
    private
@@ -20,6 +20,9 @@ contains
       do i = 1, size(model%plates)
          if (model%plates(i)%group > 0) &
             call tie(model%domain%mesh%groups(model%plates(i)%group)%nodes, AT_U_Z, ties)
+      end do
+      do i = 1, size(model%ties)
+         call tie_pairs(model%ties(i)%pairs, merge(FIELDS, DISPLACEMENTS, model%ties(i)%pressures), ties)
       end do
    end function ties_of
 

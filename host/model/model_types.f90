@@ -10,11 +10,12 @@ module model_types
    use porous_domain, only: domain_t
    use unknown_fields, only: FIELDS
    use scene_types, only: scene_amplitude_t, scene_initial_t, scene_stage_t, scene_fix_t, scene_load_t, scene_plate_t, &
-                          scene_contact_t, scene_point_t, amplitude_at, NAME_LENGTH, FINGERPRINT_LENGTH
+                          scene_contact_t, scene_point_t, scene_absorber_t, scene_tie_t, amplitude_at, &
+                           NAME_LENGTH, FINGERPRINT_LENGTH
    implicit none (type, external)
    private
    public :: model_t, initial_t, stage_t, fix_t, load_t, plate_t, contact_pair_t, point_t, factor_at
-   public :: PRESCRIBED_P_A
+   public :: PRESCRIBED_P_A, absorber_t, tie_t
 
    integer, parameter :: PRESCRIBED_P_A = FIELDS + 1   !< "Field" of a prescribed air pressure.
 
@@ -53,6 +54,14 @@ module model_types
       type(contact_options_t) :: options
    end type contact_pair_t
 
+   type, extends(scene_absorber_t) :: absorber_t
+      integer :: group = 0, amplitude = 0
+   end type absorber_t
+
+   type, extends(scene_tie_t) :: tie_t
+      integer, allocatable :: pairs(:, :)   !< (2, n) nodes of the first and the second boundary.
+   end type tie_t
+
    type, extends(scene_point_t) :: point_t
       integer :: node = 0, gauss = 0        !< Nearest ones.
    end type point_t
@@ -78,6 +87,8 @@ module model_types
       type(load_t), allocatable :: loads(:)
       type(plate_t), allocatable :: plates(:)
       type(contact_pair_t), allocatable :: contacts(:)
+      type(absorber_t), allocatable :: absorbers(:)
+      type(tie_t), allocatable :: ties(:)
       type(point_t), allocatable :: points(:)
    end type model_t
 contains

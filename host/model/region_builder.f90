@@ -83,6 +83,7 @@ contains
          allocate (region%law, source=materials(k)%law)
          region%rho_s = given%rho_s
          region%damping = given%damping
+         region%stiffness_damping = given%stiffness_damping
          region%void_ratio = given%void_ratio
          if (given%void_ratio < 0.0_wp) region%void_ratio = region%law%default_void_ratio()
          if (domain%with_w .and. .not. region%void_ratio > 0.0_wp) call raise(fault, EXIT_INPUT, place_of(given)// &

@@ -76,6 +76,8 @@ contains
          run%monitor%memory], '-', 'indicators of the effects that are off, when they crossed [s], extremes')
       if (allocated(run%control%x_first)) call put(file, 'control', numbers_of(run%control), '-', &
          'control of the time step: see control_state')
+      if (allocated(run%constraint%dashpots)) call put(file, 'offset', run%constraint%offset, 'kN, m3/s', &
+                                                      'flow that is subtracted, forces that hold the ground')
       if (pairs_of(run) > 0) call put(file, 'pairs', reshape(run%system%contacts%extra, [2*pairs_of(run)]), '-', &
                                       'pairs of unknowns that contacts brought into the matrix')
       call write_file(file, tables%folder//'/'//CHECKPOINT, good)
@@ -124,6 +126,7 @@ contains
          call get(file, 'e', run%state%e)
          call get(file, 's', run%state%s)
          call get(file, 's_rate', run%state%s_rate)
+         if (allocated(run%constraint%dashpots)) call get(file, 'offset', run%constraint%offset)
          if (file%good .and. model%effect_options%auto) call take_monitor(file, run)
          if (any(model%stages(:nint(counters(1)))%controlled)) call take_control(file, model, run)
          if (file%good .and. counters(N_COUNTERS) > 0.5_wp) &

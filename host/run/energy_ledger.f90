@@ -5,6 +5,7 @@
 module energy_ledger
    use kinds, only: wp
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
+   use dashpots, only: work_of_dashpots
    use degrees_of_freedom, only: dofs_t
    use porous_domain, only: domain_t, state_t, mixture_density
    use permeability_laws, only: relative_t, relative_permeability
@@ -44,6 +45,8 @@ contains
       real(wp) :: change
       integer :: e, i
 
+      if (allocated(constraint%dashpots)) &
+         ledger%damping = ledger%damping + work_of_dashpots(constraint%dashpots, dofs, old, new)
       ledger%kinetic = kinetic_energy(domain, dofs, constraint%mass, new)
       do e = 1, size(domain%mesh%t6, 2)
          call book_element(domain, e, scheme, old, new, ledger)
@@ -52,6 +55,7 @@ contains
          if (dofs%field(i) <= DISPLACEMENTS) then
             change = new%x(dofs%field(i), dofs%node(i)) - old%x(dofs%field(i), dofs%node(i))
             ledger%loads = ledger%loads + 0.5_wp*(constraint%load_0(i) + constraint%load_1(i))*change
+            ledger%loads = ledger%loads - constraint%offset(i)*change
             if (constraint%fixed(i)) ledger%supports = ledger%supports + reaction(i)*change
          else if (scheme%kind /= STATIC) then
             if (dofs%field(i) == AT_P_W .and. constraint%fixed(i)) &
@@ -88,6 +92,9 @@ contains
                       dot_product(gp%dn(2, :), du(1, :)) + dot_product(gp%dn(1, :), du(2, :))]
             ledger%skeleton = ledger%skeleton + 0.5_wp*gp%weight*dot_product(old%stress(1:4, p) + new%stress(1:4, p), &
                                                                               strain)
+            if (region%stiffness_damping > 0.0_wp .and. scheme%kind == DYNAMIC) &
+               ledger%damping = ledger%damping + gp%weight*region%stiffness_damping/scheme%dt &
+                                *dot_product(new%stress(1:4, p) - old%stress(1:4, p), strain)
             s = 0.5_wp*(old%s(p) + new%s(p))
             n = 0.5_wp*(old%e(p)/(1 + old%e(p)) + new%e(p)/(1 + new%e(p)))
             p_w = dot_product(gp%m(:n_p), middle(AT_P_W, :n_p))

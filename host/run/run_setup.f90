@@ -1,20 +1,17 @@
-!> The start of a run: matrix pattern, initial state, contacts, and the flow that is to be subtracted.
+!> The start of a run: matrix pattern, initial state, contacts, absorbing boundaries, the flow that is to be subtracted.
 module run_setup
-   use kinds, only: wp
-   use faults, only: fault_t, raise
-   use texts, only: whole
+   use faults, only: fault_t
+   use absorbing_boundaries, only: prepare_absorbers
    use boundary_conditions, only: new_constraint
    use contact_drainage, only: prepare_drainage
    use contact_setup, only: prepare_contacts, seat_plates
    use effect_monitor, only: begin_monitor
-   use equation_assembly, only: make_assembly, assemble
-   use exit_codes, only: EXIT_MATERIAL
-   use generalised_alpha, only: make_scheme, DYNAMIC
+   use equation_assembly, only: make_assembly
+   use held_ground, only: keep_flow
    use initial_conditions, only: initial_state
    use model_types, only: model_t
    use run_state, only: run_t
    use sparsity_pattern, only: make_pattern
-   use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
    public :: prepare_run
@@ -33,25 +30,9 @@ contains
       if (fault%code == 0) call prepare_contacts(model, run%system%contacts, fault)
       if (fault%code == 0) call prepare_drainage(model, run%drainage, fault)
       if (fault%code == 0) call seat_plates(model, run%system%contacts, run%state)
+      if (fault%code == 0) call prepare_absorbers(model, run%state, run%constraint%dashpots, fault)
       run%next = run%state
       if (fault%code == 0 .and. model%effect_options%auto) call begin_monitor(model, run%state, run%monitor)
       if (fault%code == 0 .and. model%subtract_flow) call keep_flow(model, run, fault)
    end subroutine prepare_run
-
-   !> The flow of the initial state, to be subtracted from then on.
-   subroutine keep_flow(model, run, fault)
-      type(model_t), intent(in) :: model
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      call assemble(model%domain, model%dofs, run%pattern, make_scheme(DYNAMIC, 1.0_wp, 1.0_wp), run%state, run%next, &
-                    .false., run%assembly)
-      if (run%assembly%bad_element > 0) then
-         call raise(fault, EXIT_MATERIAL, 'The initial state is refused by the material of element '// &
-                    whole(run%assembly%bad_element)//'.')
-         return
-      end if
-      where (model%dofs%field > DISPLACEMENTS) run%constraint%offset = -run%assembly%residual
-      run%next = run%state
-   end subroutine keep_flow
 end module run_setup

@@ -3,13 +3,15 @@
 module step_attempt
    use kinds, only: wp
    use faults, only: fault_t
-   use boundary_conditions, only: constrain_step
+   use absorbing_boundaries, only: add_incoming, let_absorbers_act
+   use boundary_conditions, only: constrain_step, follow_accelerations, starting_accelerations
    use boundary_loads, only: load_at
    use contact_drainage, only: freeze_drainage
    use convergence, only: control_t, log_t
    use effect_monitor, only: begin_stage_of_monitor
    use energy_ledger, only: kinetic_energy
-   use generalised_alpha, only: make_scheme, DYNAMIC
+   use generalised_alpha, only: scheme_t, make_scheme, DYNAMIC
+   use held_ground, only: hold_ground
    use model_types, only: model_t, stage_t
    use newton_step, only: take_step, start_accelerations, CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
    use run_state, only: run_t, stage_state_t
@@ -30,6 +32,8 @@ contains
          call prescribe(model, stage, run%state%time, run, fault)
          if (fault%code /= 0) return
          run%system%factored = .false.
+         if (allocated(run%constraint%dashpots)) call hold_ground(model, number, run, fault)
+         if (fault%code /= 0) return
          call begin_stage_of_monitor(run%monitor)
          call begin_control(model, stage, run)
          if (stage%kind == DYNAMIC .and. stage%solve_start) call first_accelerations(model, stage, run, fault)
@@ -49,15 +53,23 @@ contains
       type(log_t), intent(out) :: log
       logical, intent(out) :: accepted
       type(fault_t), intent(inout) :: fault
+      type(scheme_t) :: scheme
 
       accepted = .false.
       run%constraint%load_0 = load_at(model, stage, model%dofs, run%state%time)
       run%constraint%load_1 = load_at(model, stage, model%dofs, run%state%time + dt)
+      if (allocated(run%constraint%dashpots)) then
+         call add_incoming(model, stage, run%constraint%dashpots, run%state%time, run%constraint%load_0)
+         call add_incoming(model, stage, run%constraint%dashpots, run%state%time + dt, run%constraint%load_1)
+      end if
       call prescribe(model, stage, run%state%time + dt, run, fault)
       if (fault%code /= 0) return
       call prepare_rates(stage, dt, run)
-      call take_step(model%domain, model%dofs, run%pattern, make_scheme(stage%kind, stage%rho_inf, dt), &
-                     run%constraint, control, run%state, run%next, run%assembly, run%system, log)
+      scheme = make_scheme(stage%kind, stage%rho_inf, dt)
+      if (any(model%fixes%acceleration)) call follow_accelerations(model, stage, model%dofs, scheme, run%state, &
+                                                                  run%constraint)
+      call take_step(model%domain, model%dofs, run%pattern, scheme, run%constraint, control, run%state, run%next, &
+                     run%assembly, run%system, log)
       run%iterations = run%iterations + log%iterations
       run%rate_evaluations = run%rate_evaluations + log%rate_evaluations
       accepted = log%outcome == CONVERGED
@@ -91,6 +103,7 @@ contains
       call freeze_drainage(model, run%drainage, run%system%contacts, run%state%x, fault)
       if (fault%code /= 0) return
       call constrain_step(model, stage, model%dofs, run%drainage, time, run%at%x_start, run%constraint)
+      if (allocated(run%constraint%dashpots)) call let_absorbers_act(model, stage, run%constraint%dashpots)
    end subroutine prescribe
 
    subroutine first_accelerations(model, stage, run, fault)
@@ -101,6 +114,13 @@ contains
       type(log_t) :: log
 
       run%constraint%load_0 = load_at(model, stage, model%dofs, run%state%time)
+      if (allocated(run%constraint%dashpots)) call add_incoming(model, stage, run%constraint%dashpots, run%state%time, &
+                                                               run%constraint%load_0)
+      if (any(model%fixes%acceleration)) then
+         if (.not. allocated(run%constraint%acceleration)) allocate (run%constraint%acceleration(model%dofs%n))
+         call starting_accelerations(model, stage, model%dofs, make_scheme(stage%kind, stage%rho_inf, stage%dt), &
+                                     run%state%time, run%constraint%acceleration)
+      end if
       call start_accelerations(model%domain, model%dofs, run%pattern, run%constraint, run%state, run%next, &
                                run%assembly, run%system, log)
       if (log%outcome /= CONVERGED) call explain_failure(model, stage, run, log, run%state%time, 0.0_wp, fault)

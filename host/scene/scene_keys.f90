@@ -76,6 +76,7 @@ module scene_keys
       key_t('region', 'rho_s', 'n', '2.65', 0, 1000, 'density of the grains [Mg/m3]'), &
       key_t('region', 'void_ratio', 'n', NONE, 0, 10, 'initial void ratio [-]; default: the material''s'), &
       key_t('region', 'damping', 'n', '0', 0, BIG, 'force against the velocity over mass, dynamic stages [1/s]'), &
+      key_t('region', 'stiffness_damping', 'n', '0', 0, BIG, 'stress of the skeleton from its rate, dynamic stages [s]'), &
       key_t('initial', 'group', 't', 'all', 0, 0, 'group of elements or nodes'), &
       key_t('initial', 'p_w', 'n', '0', -BIG, BIG, 'pore water pressure at the datum [kPa]'), &
       key_t('initial', 'p_w_slope', 'n', '0', -BIG, BIG, 'change of p_w with z [kPa/m]'), &
@@ -128,6 +129,8 @@ module scene_keys
       key_t('fix', 'datum', 'n', '0', -BIG, BIG, 'z of the datum [m]'), &
       key_t('fix', 'history', 't', NONE, 0, 0, 'factor on the value'), &
       key_t('fix', 'hold', 'w', 'no', 0, 0, 'yes: at its value at the start of the stage', 'no|yes'), &
+      key_t('fix', 'motion', 'w', 'value', 0, 0, &
+            'what the value of u_r, u_z is: displacement, or acceleration [m/s2]', 'value|acceleration'), &
       key_t('fix', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
       key_t('fix', 'from', 'n', NONE, -BIG, BIG, 'acts after this time [s]'), &
       key_t('fix', 'until', 'n', NONE, -BIG, BIG, 'acts up to this time [s]'), &
@@ -139,6 +142,17 @@ module scene_keys
       key_t('load', 'datum', 'n', '0', -BIG, BIG, 'z of the datum [m]'), &
       key_t('load', 'history', 't', NONE, 0, 0, 'factor on the value'), &
       key_t('load', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
+      key_t('absorbing', 'group', 't', REQUIRED, 0, 0, 'boundary that lets waves out, in dynamic stages'), &
+      key_t('absorbing', 'rho', 'n', NONE, TINY_, 1000, 'density of the ground behind it [Mg/m3]; default: the soil'), &
+      key_t('absorbing', 'c_p', 'n', NONE, TINY_, BIG, 'speed of its pressure waves [m/s]; default: the soil''s'), &
+      key_t('absorbing', 'c_s', 'n', NONE, TINY_, BIG, 'speed of its shear waves [m/s]; default: the soil''s'), &
+      key_t('absorbing', 'v_r', 'n', '0', -BIG, BIG, 'velocity along r of the wave that comes in [m/s]'), &
+      key_t('absorbing', 'v_z', 'n', '0', -BIG, BIG, 'velocity along z of the wave that comes in [m/s]'), &
+      key_t('absorbing', 'history', 't', NONE, 0, 0, 'factor on these velocities'), &
+      key_t('absorbing', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
+      key_t('tie', 'first', 't', REQUIRED, 0, 0, 'boundary; displacements at equal heights are one,'), &
+      key_t('tie', 'second', 't', REQUIRED, 0, 0, 'and that opposite, with nodes at the same heights'), &
+      key_t('tie', 'pressures', 'w', 'no', 0, 0, 'pore pressures are one as well', 'no|yes'), &
       key_t('plate', 'name', 't', REQUIRED, 0, 0, 'rigid plate, vertical; also a group for &fix and &load'), &
       key_t('plate', 'r', 'N', NONE, -BIG, BIG, 'where a flat face of its own begins and ends [m]; or:'), &
       key_t('plate', 'group', 't', NONE, 0, 0, 'boundary of the mesh that is joined to it and moves with it'), &

@@ -13,7 +13,7 @@ module scene_reader
    use scene_names, only: check_names
    use scene_types, only: scene_t, scene_item_t, scene_law_t, scene_amplitude_t, scene_region_t, scene_initial_t, &
                           scene_stage_t, scene_fix_t, scene_load_t, scene_plate_t, scene_contact_t, scene_point_t, &
-                          place_of
+                          scene_absorber_t, scene_tie_t, place_of
    implicit none (type, external)
    private
    public :: read_scene
@@ -37,7 +37,7 @@ contains
       scene%groups = sealed(groups)
       allocate (scene%materials(0), scene%retentions(0), scene%permeabilities(0), scene%regions(0), &
                 scene%initials(0), scene%amplitudes(0), scene%stages(0), scene%fixes(0), scene%loads(0), &
-                scene%plates(0), scene%contacts(0), scene%points(0))
+                scene%plates(0), scene%contacts(0), scene%absorbers(0), scene%ties(0), scene%points(0))
       do i = 1, size(groups)
          if (groups(i)%name == 'scene') call take_scene(groups(i), scene)
       end do
@@ -69,6 +69,10 @@ contains
                call take_plate(group, scene, fault)
             case ('contact')
                call take_contact(group, scene)
+            case ('absorbing')
+               call take_absorber(group, scene)
+            case ('tie')
+               call take_tie(group, scene)
             case ('point')
                call take_point(group, scene)
             case default
@@ -112,6 +116,9 @@ contains
       end do
       do i = 1, size(scene%loads)
          call check(scene%loads(i)%scene_item_t, scene%loads(i)%stages)
+      end do
+      do i = 1, size(scene%absorbers)
+         call check(scene%absorbers(i)%scene_item_t, scene%absorbers(i)%stages)
       end do
       do i = 1, size(scene%contacts)
          call check(scene%contacts(i)%scene_item_t, scene%contacts(i)%stages)
@@ -271,6 +278,7 @@ contains
       region%permeability_name = text_of(group, 'permeability')
       region%rho_s = number_of(group, 'rho_s')
       region%damping = number_of(group, 'damping')
+      region%stiffness_damping = number_of(group, 'stiffness_damping')
       if (given(group, 'void_ratio')) region%void_ratio = number_of(group, 'void_ratio')
       scene%regions = [scene%regions, region]
    end subroutine take_region
@@ -320,6 +328,7 @@ contains
       fix%value_slope = number_of(group, 'value_slope')
       fix%datum = number_of(group, 'datum')
       fix%hold = word_is(group, 'hold', 'yes')
+      fix%acceleration = word_is(group, 'motion', 'acceleration')
       fix%stages = texts_of(group, 'stages')
       if (given(group, 'from')) fix%from = number_of(group, 'from')
       if (given(group, 'until')) fix%until = number_of(group, 'until')
@@ -390,6 +399,34 @@ contains
       contact%stages = texts_of(group, 'stages')
       scene%contacts = [scene%contacts, contact]
    end subroutine take_contact
+
+   subroutine take_absorber(group, scene)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(inout) :: scene
+      type(scene_absorber_t) :: absorber
+
+      absorber%scene_item_t = item_of(group)
+      absorber%group_name = text_of(group, 'group')
+      absorber%amplitude_name = text_of(group, 'history')
+      absorber%rho = number_of(group, 'rho')
+      absorber%c_p = number_of(group, 'c_p')
+      absorber%c_s = number_of(group, 'c_s')
+      absorber%incoming = [number_of(group, 'v_r'), number_of(group, 'v_z')]
+      absorber%stages = texts_of(group, 'stages')
+      scene%absorbers = [scene%absorbers, absorber]
+   end subroutine take_absorber
+
+   subroutine take_tie(group, scene)
+      type(group_t), intent(in) :: group
+      type(scene_t), intent(inout) :: scene
+      type(scene_tie_t) :: tie
+
+      tie%scene_item_t = item_of(group)
+      tie%first_name = text_of(group, 'first')
+      tie%second_name = text_of(group, 'second')
+      tie%pressures = word_is(group, 'pressures', 'yes')
+      scene%ties = [scene%ties, tie]
+   end subroutine take_tie
 
    subroutine take_point(group, scene)
       type(group_t), intent(in) :: group

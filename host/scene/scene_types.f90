@@ -9,6 +9,7 @@ module scene_types
    private
    public :: scene_t, scene_item_t, scene_mesh_t, scene_fluids_t, scene_law_t, scene_region_t, scene_initial_t
    public :: scene_amplitude_t
+   public :: scene_absorber_t, scene_tie_t
    public :: scene_stage_t, scene_fix_t, scene_load_t, scene_plate_t, scene_contact_t, scene_point_t
    public :: NAME_LENGTH, FINGERPRINT_LENGTH, acts_in, place_of, amplitude_at
    public :: WITH_U, WITH_P_W, WITH_P_C, IS_STATIC, IS_QUASI_STATIC, IS_DYNAMIC, FIX_P_W, FIX_P_C, FIX_P_A
@@ -61,6 +62,7 @@ module scene_types
       real(wp) :: rho_s = 0.0_wp        !< Density of the grains [Mg/m3]
       real(wp) :: void_ratio = -1.0_wp  !< Initially [-]; below zero: that of the material.
       real(wp) :: damping = 0.0_wp      !< [1/s]
+      real(wp) :: stiffness_damping = 0.0_wp   !< [s]
    end type scene_region_t
 
    type, extends(scene_item_t) :: scene_initial_t
@@ -101,6 +103,7 @@ module scene_types
       real(wp) :: value = 0.0_wp                     !< At the datum [m, kPa]
       real(wp) :: value_slope = 0.0_wp, datum = 0.0_wp   !< Change with z [1/m of it], z of the datum [m].
       logical :: hold = .false.
+      logical :: acceleration = .false.              !< The value is one [m/s2].
       character(LENGTH), allocatable :: stages(:)    !< None: all.
       real(wp) :: from = -huge(1.0_wp), until = huge(1.0_wp)    !< [s]
    end type scene_fix_t
@@ -134,6 +137,20 @@ module scene_types
       logical :: drains_by_state = .false.           !< Covered nodes are impervious.
       character(LENGTH), allocatable :: stages(:)
    end type scene_contact_t
+
+   !> A boundary through which waves leave, and may come in.
+   type, extends(scene_item_t) :: scene_absorber_t
+      character(LENGTH) :: group_name = '', amplitude_name = ''
+      real(wp) :: rho = 0.0_wp, c_p = 0.0_wp, c_s = 0.0_wp   !< Of the ground behind it [Mg/m3, m/s]; 0: as the soil.
+      real(wp) :: incoming(2) = 0.0_wp               !< Velocity of the wave that comes in [m/s].
+      character(LENGTH), allocatable :: stages(:)
+   end type scene_absorber_t
+
+   !> Two boundaries whose nodes at equal heights move as one.
+   type, extends(scene_item_t) :: scene_tie_t
+      character(LENGTH) :: first_name = '', second_name = ''
+      logical :: pressures = .false.                 !< They have one pressure, too.
+   end type scene_tie_t
 
    type :: scene_point_t
       character(NAME_LENGTH) :: name = ''
@@ -172,6 +189,8 @@ module scene_types
       type(scene_load_t), allocatable :: loads(:)
       type(scene_plate_t), allocatable :: plates(:)
       type(scene_contact_t), allocatable :: contacts(:)
+      type(scene_absorber_t), allocatable :: absorbers(:)
+      type(scene_tie_t), allocatable :: ties(:)
       type(scene_point_t), allocatable :: points(:)
    end type scene_t
 contains

@@ -6,6 +6,7 @@ module newton_step
    use conjugate_residuals, only: solve_by_factors, INACCURATE
    use contact_interfaces, only: add_contacts
    use convergence, only: control_t, log_t, measure, good_enough, BY_FORCES
+   use dashpots, only: add_dashpots
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t, assemble
    use generalised_alpha, only: scheme_t, predict, advance_rates, DYNAMIC
@@ -115,6 +116,8 @@ contains
             return
          end if
          call add_bodies(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
+         if (allocated(constraint%dashpots)) call add_dashpots(constraint%dashpots, dofs, pattern, scheme, old, new, &
+                                                                   slopes, assembly)
          if (allocated(system%contacts%interfaces)) then
             call lap(system%seconds(T_REST), t0)
             call add_contacts(system%contacts, pattern, scheme%l_f, slopes, assembly%residual, assembly%scale, &
@@ -151,6 +154,7 @@ contains
       held = constraint
       held%fixed = constraint%fixed .or. dofs%field > DISPLACEMENTS
       held%target = 0.0_wp
+      if (allocated(constraint%acceleration)) held%target = constraint%acceleration
       held%air = .false.
       assembly%air = .false.
       state%a = 0.0_wp
@@ -166,6 +170,7 @@ contains
          return
       end if
       call add_bodies(dofs, pattern, scheme, held, state, work, .true., assembly)
+      if (allocated(held%dashpots)) call add_dashpots(held%dashpots, dofs, pattern, scheme, state, work, .true., assembly)
       if (allocated(system%contacts%interfaces)) call add_contacts(system%contacts, pattern, 0.0_wp, .false., &
                                                     assembly%residual, assembly%scale, assembly%values)
       rhs = held%load_0 - held%offset - assembly%residual

@@ -1,6 +1,7 @@
 !> What a step prescribes, and the rows of the equations that say so. docs/theory/host.md section 7.1.
 module prescribed_values
    use kinds, only: wp
+   use dashpots, only: dashpots_t
    use degrees_of_freedom, only: dofs_t
    use sparsity_pattern, only: pattern_t, place_of
    use unknown_fields, only: AT_P_W, AT_P_C
@@ -15,7 +16,9 @@ module prescribed_values
       logical, allocatable :: air(:)          !< Nodes with a prescribed air pressure
       real(wp), allocatable :: air_target(:)
       real(wp), allocatable :: load_0(:), load_1(:)   !< Loads before and after.
-      real(wp), allocatable :: offset(:)      !< Flow of the initial state that is subtracted.
+      real(wp), allocatable :: offset(:)      !< Flow of the initial state that is subtracted, forces that hold ground.
+      type(dashpots_t), allocatable :: dashpots(:)   !< Of absorbing boundaries.
+      real(wp), allocatable :: acceleration(:)   !< Prescribed ones where a stage begins, if there are any.
       real(wp), allocatable :: mass(:)        !< Of rigid bodies [Mg].
    end type constraint_t
 contains

@@ -1,0 +1,269 @@
+!> Absorbing boundaries (Lysmer & Kuhlemeyer 1969) as dashpots: impedances rho c_p and rho c_s of the ground behind the
+!> boundary, for pore pressures the outflow of a wave that goes on (its gradient is -1/c_p times its rate), and the force
+!> of a wave that comes in. Without keys of their own the impedances are those of the elements at the boundary in the
+!> initial state, undrained. docs/theory/host.md section 7.4.
+module absorbing_boundaries
+   use kinds, only: wp, PI
+   use dashpots, only: dashpots_t
+   use exit_codes, only: EXIT_MATERIAL
+   use faults, only: fault_t, raise
+   use generalised_alpha, only: DYNAMIC
+   use material_point, only: response_t
+   use model_types, only: model_t, stage_t, absorber_t, factor_at
+   use permeability_laws, only: relative_t, relative_permeability
+   use porous_domain, only: state_t, mixture_density
+   use scene_types, only: place_of, acts_in
+   use shape_functions, only: edge_quadratic, edge_rule
+   use texts, only: short, whole
+   use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
+   implicit none (type, external)
+   private
+   public :: prepare_absorbers, add_incoming, absorber_acts, let_absorbers_act
+
+   !> The ground behind an edge.
+   type :: ground_t
+      real(wp) :: normal = 0.0_wp, shear = 0.0_wp   !< Impedances rho c_p, rho c_s [kPa s/m].
+      real(wp) :: water = 0.0_wp, air = 0.0_wp      !< Outflow over the rate of the pressure, k/(eta c_p) [m/(kPa)].
+   end type ground_t
+contains
+   subroutine prepare_absorbers(model, state, list, fault)
+      type(model_t), intent(in) :: model
+      type(state_t), intent(in) :: state   !< The initial one.
+      type(dashpots_t), allocatable, intent(out) :: list(:)
+      type(fault_t), intent(inout) :: fault
+      integer :: i
+
+      if (size(model%absorbers) == 0) return
+      allocate (list(size(model%absorbers)))
+      do i = 1, size(list)
+         if (fault%code == 0) call prepare_one(model, model%absorbers(i), state, list(i), fault)
+      end do
+   end subroutine prepare_absorbers
+
+   subroutine prepare_one(model, absorber, state, one, fault)
+      type(model_t), intent(in) :: model
+      type(absorber_t), intent(in) :: absorber
+      type(state_t), intent(in) :: state
+      type(dashpots_t), intent(out) :: one
+      type(fault_t), intent(inout) :: fault
+      type(ground_t) :: ground
+      integer :: e, k, f
+
+      allocate (one%row(0), one%column(0), one%value(0))
+      allocate (one%held(model%dofs%n), source=.false.)
+      allocate (one%incoming(model%dofs%n), source=0.0_wp)
+      one%amplitude = absorber%amplitude
+      associate (edges => model%domain%mesh%groups(absorber%group)%edges)
+         do e = 1, size(edges, 2)
+            call ground_behind(model, absorber, edges(:, e), state, ground, fault)
+            if (fault%code /= 0) return
+            call add_edge(model, edges(:, e), ground, one)
+         end do
+      end associate
+      do k = 1, size(one%row)
+         f = model%dofs%field(one%column(k))
+         if (f > DISPLACEMENTS) cycle
+         one%held(one%row(k)) = .true.
+         ! The wave that comes in doubles at a rigid wall: its force is twice its impedance.
+         one%incoming(one%row(k)) = one%incoming(one%row(k)) + 2*one%value(k)*absorber%incoming(f)
+      end do
+   end subroutine prepare_one
+
+   !> Impedances: those of the scene, or of the element that the edge belongs to, mean of its points.
+   subroutine ground_behind(model, absorber, edge, state, ground, fault)
+      type(model_t), intent(in) :: model
+      type(absorber_t), intent(in) :: absorber
+      integer, intent(in) :: edge(3)
+      type(state_t), intent(in) :: state
+      type(ground_t), intent(out) :: ground
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: rho, c_p, c_s, modulus, shear, s, slope
+      type(relative_t) :: rel
+      integer :: e, i
+
+      e = findloc([(all([any(model%domain%mesh%t6(:, i) == edge(1)), any(model%domain%mesh%t6(:, i) == edge(2)), &
+                         any(model%domain%mesh%t6(:, i) == edge(3))]), i=1, size(model%domain%mesh%t6, 2))], &
+                  .true., dim=1)
+      call look_at_element(model, e, state, modulus, shear, s, slope, rho, fault)
+      if (fault%code /= 0) return
+      if (absorber%rho > 0.0_wp) rho = absorber%rho
+      if (model%domain%with_w) modulus = modulus + pore_stiffness(model, e, state, s, slope)
+      c_p = absorber%c_p
+      c_s = absorber%c_s
+      if ((.not. c_p > 0.0_wp .and. .not. modulus > 0.0_wp) .or. (.not. c_s > 0.0_wp .and. .not. shear > 0.0_wp)) then
+         call raise(fault, EXIT_MATERIAL, place_of(absorber)//'element '//whole(e)//' at the boundary has no stiffness '// &
+                    'in the initial state (shear modulus '//short(shear)//' kPa); give c_p and c_s of the ground.')
+         return
+      end if
+      if (.not. c_p > 0.0_wp) c_p = sqrt(modulus/rho)
+      if (.not. c_s > 0.0_wp) c_s = sqrt(shear/rho)
+      ground%normal = rho*c_p
+      ground%shear = rho*c_s
+      if (.not. model%domain%with_w) return
+      associate (law => model%domain%permeabilities(model%domain%regions(model%domain%region_of(e))%permeability), &
+                 f => model%domain%fluids)
+         rel = relative_permeability(law, s)
+         ground%water = law%intrinsic*rel%w/(f%eta_w*c_p)
+         if (model%domain%with_c) ground%air = law%intrinsic*rel%a/(f%eta_a*c_p)
+      end associate
+   end subroutine ground_behind
+
+   !> Means over the points of an element: constrained and shear modulus of the skeleton for a small strain [kPa],
+   !> saturation and its slope against suction, density.
+   subroutine look_at_element(model, e, state, modulus, shear, s, slope, rho, fault)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: e
+      type(state_t), intent(in) :: state
+      real(wp), intent(out) :: modulus, shear, s, slope, rho
+      type(fault_t), intent(inout) :: fault
+      type(response_t) :: response
+      real(wp) :: strain(6, model%domain%rule), suction(model%domain%rule), &
+                  after(size(state%state, 1), model%domain%rule), n
+      integer :: g, p, first, last
+
+      associate (m => model%domain, region => model%domain%regions(model%domain%region_of(e)))
+         first = (e - 1)*m%rule + 1
+         last = e*m%rule
+         strain = 0.0_wp
+         do g = 1, m%rule
+            suction(g) = dot_product(m%gauss(g, e)%m(:m%n_p), state%x(AT_P_C, m%mesh%t6(:m%n_p, e)))
+         end do
+         call region%law%update(m%rule, state%stress(:, first:last), state%state(:, first:last), strain, suction, &
+                                0*suction, .true., response, after)
+         if (response%report%code /= 0) then
+            call raise(fault, EXIT_MATERIAL, 'The material of element '//whole(e)//' at an absorbing boundary refuses '// &
+                       'the initial state.')
+            modulus = 0.0_wp
+            shear = 0.0_wp
+            s = 1.0_wp
+            slope = 0.0_wp
+            rho = 0.0_wp
+            return
+         end if
+         modulus = sum(response%dsig_deps(1, 1, :m%rule) + response%dsig_deps(2, 2, :m%rule))/(2*m%rule)
+         shear = sum(response%dsig_deps(4, 4, :m%rule))/m%rule
+         s = sum(state%s(first:last))/m%rule
+         slope = 0.0_wp
+         if (m%with_c) slope = sum(response%dsw_dpc(:m%rule))/m%rule
+         rho = 0.0_wp
+         do p = first, last
+            n = state%e(p)/(1 + state%e(p))
+            rho = rho + mixture_density(m, region%rho_s, n, state%s(p))/m%rule
+         end do
+      end associate
+   end subroutine look_at_element
+
+   !> What fluids that cannot leave add to the constrained modulus [kPa].
+   real(wp) function pore_stiffness(model, e, state, s, slope) result(stiffness)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: e
+      type(state_t), intent(in) :: state
+      real(wp), intent(in) :: s, slope   !< Saturation, its change with suction [1/kPa].
+      real(wp) :: n, c_ww, c_wc, c_cc
+
+      associate (m => model%domain, p => (e - 1)*model%domain%rule + 1)
+         n = state%e(p)/(1 + state%e(p))
+         c_wc = n*(1 - s)/m%fluids%k_a
+         if (.not. m%with_c) c_wc = 0.0_wp
+         c_ww = n*s/m%fluids%k_w + c_wc
+         c_cc = c_wc - n*slope
+         stiffness = 1/c_ww
+         if (m%with_c .and. c_cc > 0.0_wp .and. c_ww*c_cc > c_wc**2) &
+            stiffness = (c_cc - 2*(1 - s)*c_wc + (1 - s)**2*c_ww)/(c_ww*c_cc - c_wc**2)
+      end associate
+   end function pore_stiffness
+
+   !> Dashpots of an edge: integrals of N_i N_j with the impedances along its normal and tangent.
+   subroutine add_edge(model, edge, ground, one)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: edge(3)
+      type(ground_t), intent(in) :: ground
+      type(dashpots_t), intent(inout) :: one
+      real(wp) :: points(3), weights(3), n(3), dn(3), m(3), x(2, 3), at(2), normal(2), weight, block(2, 2)
+      real(wp) :: c(2, 2, 3, 3), h(3, 3)
+      integer :: g, i, j, a, b
+
+      x = model%domain%mesh%x(:, edge)
+      c = 0.0_wp
+      h = 0.0_wp
+      call edge_rule(points, weights)
+      do g = 1, 3
+         call edge_quadratic(points(g), n, dn)
+         m = n
+         if (model%domain%n_p == 3) m = [0.5_wp*(1 - points(g)), 0.5_wp*(1 + points(g)), 0.0_wp]
+         at = matmul(x, n)
+         normal = matmul(x, dn)
+         weight = weights(g)*norm2(normal)
+         normal = [normal(2), -normal(1)]/norm2(normal)
+         if (model%domain%axisymmetric) weight = weight*2*PI*at(1)
+         do b = 1, 2
+            do a = 1, 2
+               block(a, b) = (ground%normal - ground%shear)*normal(a)*normal(b) + merge(ground%shear, 0.0_wp, a == b)
+            end do
+         end do
+         do j = 1, 3
+            do i = 1, 3
+               c(:, :, i, j) = c(:, :, i, j) + weight*n(i)*n(j)*block
+               h(i, j) = h(i, j) + weight*m(i)*m(j)
+            end do
+         end do
+      end do
+      associate (of => model%dofs%of)
+         do j = 1, 3
+            do i = 1, 3
+               do b = 1, 2
+                  do a = 1, 2
+                     call add(of(a, edge(i)), of(b, edge(j)), c(a, b, i, j))
+                  end do
+               end do
+               call add(of(AT_P_W, edge(i)), of(AT_P_W, edge(j)), (ground%water + ground%air)*h(i, j))
+               call add(of(AT_P_W, edge(i)), of(AT_P_C, edge(j)), ground%air*h(i, j))
+               call add(of(AT_P_C, edge(i)), of(AT_P_W, edge(j)), ground%air*h(i, j))
+               call add(of(AT_P_C, edge(i)), of(AT_P_C, edge(j)), ground%air*h(i, j))
+            end do
+         end do
+      end associate
+   contains
+      subroutine add(row, column, value)
+         integer, intent(in) :: row, column
+         real(wp), intent(in) :: value
+
+         if (row == 0 .or. column == 0 .or. .not. abs(value) > 0.0_wp) return
+         one%row = [one%row, row]
+         one%column = [one%column, column]
+         one%value = [one%value, value]
+      end subroutine add
+   end subroutine add_edge
+
+   !> Adds the forces of the waves that come in at a time.
+   subroutine add_incoming(model, stage, list, time, load)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(dashpots_t), intent(in) :: list(:)
+      real(wp), intent(in) :: time
+      real(wp), intent(inout) :: load(:)
+      integer :: i
+
+      do i = 1, size(list)
+         if (absorber_acts(model%absorbers(i), stage)) load = load + factor_at(model, list(i)%amplitude, time)*list(i)%incoming
+      end do
+   end subroutine add_incoming
+
+   pure logical function absorber_acts(absorber, stage)
+      type(absorber_t), intent(in) :: absorber
+      type(stage_t), intent(in) :: stage
+
+      absorber_acts = stage%kind == DYNAMIC .and. acts_in(absorber%stages, stage%name)
+   end function absorber_acts
+
+   subroutine let_absorbers_act(model, stage, list)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(dashpots_t), intent(inout) :: list(:)
+      integer :: i
+
+      do i = 1, size(list)
+         list(i)%acts = absorber_acts(model%absorbers(i), stage)
+      end do
+   end subroutine let_absorbers_act
+end module absorbing_boundaries

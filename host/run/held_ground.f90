@@ -1,0 +1,73 @@
+!> The ground behind an absorbing boundary at rest: when the boundary begins to act, the forces that it held before stay,
+!> so that only what departs from that state leaves as a wave; and the flow of the initial state, where it is to be kept
+!> up. docs/theory/host.md sections 7.4 and 8.
+module held_ground
+   use kinds, only: wp
+   use absorbing_boundaries, only: absorber_acts
+   use boundary_loads, only: load_at
+   use equation_assembly, only: assemble
+   use exit_codes, only: EXIT_MATERIAL
+   use faults, only: fault_t, raise
+   use generalised_alpha, only: make_scheme, STATIC, DYNAMIC
+   use model_types, only: model_t
+   use porous_domain, only: copy_state
+   use run_state, only: run_t
+   use texts, only: whole
+   use unknown_fields, only: DISPLACEMENTS
+   implicit none (type, external)
+   private
+   public :: hold_ground, keep_flow
+contains
+   !> Sets the forces on boundaries that act in a stage and did not in the one before, and frees them of those that no
+   !> longer act.
+   subroutine hold_ground(model, number, run, fault)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: number      !< Of the stage that begins.
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+      logical :: now(size(model%absorbers)), before(size(model%absorbers))
+      real(wp), allocatable :: missing(:)
+      integer :: i
+
+      now = [(absorber_acts(model%absorbers(i), model%stages(number)), i=1, size(now))]
+      before = .false.
+      if (number > 1) before = [(absorber_acts(model%absorbers(i), model%stages(number - 1)), i=1, size(now))]
+      do i = 1, size(now)
+         if (before(i) .and. .not. now(i)) where (run%constraint%dashpots(i)%held) run%constraint%offset = 0.0_wp
+      end do
+      if (.not. any(now .and. .not. before)) return
+      call copy_state(run%state, run%next)
+      run%next%v = 0.0_wp
+      run%next%a = 0.0_wp
+      run%assembly%air = .false.
+      call assemble(model%domain, model%dofs, run%pattern, make_scheme(STATIC, 1.0_wp, 1.0_wp), run%state, run%next, &
+                    .false., run%assembly)
+      if (run%assembly%bad_element > 0) then
+         call raise(fault, EXIT_MATERIAL, 'Stage '//trim(model%stages(number)%name)//': the material of element '// &
+                    whole(run%assembly%bad_element)//' refuses its own state at rest.')
+         return
+      end if
+      missing = load_at(model, model%stages(number), model%dofs, run%state%time) - run%assembly%residual
+      do i = 1, size(now)
+         if (now(i) .and. .not. before(i)) where (run%constraint%dashpots(i)%held) run%constraint%offset = missing
+      end do
+      call copy_state(run%state, run%next)
+   end subroutine hold_ground
+
+   !> The flow of the initial state, to be subtracted from then on.
+   subroutine keep_flow(model, run, fault)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+
+      call assemble(model%domain, model%dofs, run%pattern, make_scheme(DYNAMIC, 1.0_wp, 1.0_wp), run%state, run%next, &
+                    .false., run%assembly)
+      if (run%assembly%bad_element > 0) then
+         call raise(fault, EXIT_MATERIAL, 'The initial state is refused by the material of element '// &
+                    whole(run%assembly%bad_element)//'.')
+         return
+      end if
+      where (model%dofs%field > DISPLACEMENTS) run%constraint%offset = -run%assembly%residual
+      run%next = run%state
+   end subroutine keep_flow
+end module held_ground

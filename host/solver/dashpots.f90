@@ -1,0 +1,76 @@
+!> Dashpots on a boundary: forces in proportion to velocities, and outflow in proportion to the rates of the pressures,
+!> through which waves leave the mesh. Without them nothing is allocated and nothing is done.
+!> docs/theory/host.md section 7.4.
+module dashpots
+   use kinds, only: wp
+   use degrees_of_freedom, only: dofs_t
+   use equation_assembly, only: assembly_t
+   use generalised_alpha, only: scheme_t, DYNAMIC
+   use porous_domain, only: state_t
+   use sparsity_pattern, only: pattern_t, place_of
+   use unknown_fields, only: DISPLACEMENTS
+   implicit none (type, external)
+   private
+   public :: dashpots_t, add_dashpots, work_of_dashpots
+
+   type :: dashpots_t
+      logical :: acts = .false.                  !< In the step under way.
+      integer, allocatable :: row(:), column(:)  !< Unknowns;
+      real(wp), allocatable :: value(:)          !< force over velocity [kN s/m], outflow over rate [m3/kPa].
+      logical, allocatable :: held(:)            !< (unknowns) Displacements of the boundary.
+      integer :: amplitude = 0                   !< Of the wave that comes in,
+      real(wp), allocatable :: incoming(:)       !< (unknowns) its force [kN] at a factor of 1.
+   end type dashpots_t
+contains
+   !> Adds forces and outflow at the levels of their rates, and the slopes.
+   subroutine add_dashpots(list, dofs, pattern, scheme, old, new, slopes, assembly)
+      type(dashpots_t), intent(in) :: list(:)
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(in) :: pattern
+      type(scheme_t), intent(in) :: scheme
+      type(state_t), intent(in) :: old, new
+      logical, intent(in) :: slopes
+      type(assembly_t), intent(inout) :: assembly
+      real(wp) :: force, level, slope
+      integer :: i, k, f, node, place
+
+      if (scheme%kind /= DYNAMIC) return
+      do i = 1, size(list)
+         if (.not. list(i)%acts) cycle
+         associate (row => list(i)%row, column => list(i)%column, value => list(i)%value)
+            do k = 1, size(row)
+               f = dofs%field(column(k))
+               node = dofs%node(column(k))
+               level = merge(scheme%l_v, scheme%l_p, f <= DISPLACEMENTS)
+               slope = merge(scheme%c_v, scheme%c_p, f <= DISPLACEMENTS)
+               force = value(k)*(old%v(f, node) + level*(new%v(f, node) - old%v(f, node)))
+               assembly%residual(row(k)) = assembly%residual(row(k)) + force
+               assembly%scale(row(k)) = assembly%scale(row(k)) + abs(force)
+               if (.not. slopes) cycle
+               place = place_of(pattern, row(k), column(k))
+               assembly%values(place) = assembly%values(place) + slope*value(k)
+            end do
+         end associate
+      end do
+   end subroutine add_dashpots
+
+   !> What the forces take out of a step, by the mean of the velocities at its ends [kJ].
+   pure real(wp) function work_of_dashpots(list, dofs, old, new) result(work)
+      type(dashpots_t), intent(in) :: list(:)
+      type(dofs_t), intent(in) :: dofs
+      type(state_t), intent(in) :: old, new
+      integer :: i, k
+
+      work = 0.0_wp
+      do i = 1, size(list)
+         if (.not. list(i)%acts) cycle
+         do k = 1, size(list(i)%row)
+            associate (f => dofs%field(list(i)%column(k)), node => dofs%node(list(i)%column(k)), &
+                       g => dofs%field(list(i)%row(k)), at => dofs%node(list(i)%row(k)))
+               if (f > DISPLACEMENTS) cycle
+               work = work + 0.5_wp*list(i)%value(k)*(old%v(f, node) + new%v(f, node))*(new%x(g, at) - old%x(g, at))
+            end associate
+         end do
+      end do
+   end function work_of_dashpots
+end module dashpots

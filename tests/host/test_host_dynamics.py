@@ -1,0 +1,148 @@
+"""Boundaries of dynamic stages in mud_host: base motion by acceleration, Rayleigh damping, tied sides, ground that stays
+at rest behind an absorbing boundary. Waves and transfer functions: verification/host/waves."""
+import os
+import pathlib
+import subprocess
+import sys
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from checking import build, check, finish, root, work  # noqa: E402
+
+sys.path.insert(0, str(root / "common"))
+import tables  # noqa: E402
+
+host = build / "host/mud_host"
+environment = {**os.environ, "OMP_NUM_THREADS": "1"}
+ROUNDING = 1e-10   # of a linear problem with hundreds of unknowns
+COLUMN = """&scene name = 'c' geometry = 'plane_strain' fields = '{fields}' gravity = {gravity} {more} /
+&mesh r = 0, 1 r_cells = 1 z = -4, 0 z_cells = {cells} /
+&elastic name = 'soil' young = 2.0e4 poisson = 0.25 /
+&permeability name = 'k' intrinsic = 1.0e-10 law = 'constant' /
+&region material = 'soil' rho_s = 2 void_ratio = {void} permeability = 'k' {damping} /
+&point name = 'top' r = 0 z = 0 /
+&point name = 'corner' r = 1 z = 0 /
+&point name = 'base' r = 0 z = -4 /
+"""
+
+
+def column(fields="u", gravity=0, more="", cells=4, void=0, damping=""):
+    return COLUMN.format(**locals())
+
+
+def start(text, name, *words):
+    scene, folder = work / f"{name}.nml", work / name
+    scene.write_text(text)
+    return subprocess.run([host, scene, "--output", folder, "--quiet", *words], capture_output=True, text=True,
+                          env=environment), folder
+
+
+def run(text, name, *words):
+    done, folder = start(text, name, *words)
+    check(f"{name} runs", done.returncode == 0, done.stderr)
+    return tables.columns(folder / "histories.csv"), folder
+
+
+def stage(name, duration, dt, rho_inf=1.0, more=""):
+    return (f"&stage name = '{name}' analysis = 'dynamic' duration = {duration} dt = {dt} rho_inf = {rho_inf} "
+            f"tolerance = 1e-6 {more} /\n")
+
+
+# The base has the acceleration that is given, through the end of a stage and past that of the history, and moves by its
+# double integral.
+TIED = "&tie first = 'left' second = 'right' /\n&fix group = 'all' field = 'u_z' /\n"
+MOVED = "&fix group = 'bottom' field = 'u_r' motion = 'acceleration' value = 3 history = 'h' /\n"
+shaken = column() + TIED + MOVED + "&history name = 'h' times = 0.1, 0.4, 0.5 values = 0, 1, 0.2 /\n"
+
+
+def exact(t):
+    """3 times the integral of the integral: 10/3 s from 0.1 on, then 1 - 8 (s - 0.3) for 0.1, then 0.2."""
+    s = t - 0.1
+    if s <= 0:
+        return 0.0
+    if s <= 0.3:
+        return 3 * s**3 / 0.3 / 6
+    x, v, r = 0.3**2 / 6, 0.15, min(s - 0.3, 0.1)
+    x, v, r = x + r * (v + r / 2 - 8 * r**2 / 6), v + r - 4 * r**2, s - 0.3 - r
+    return 3 * (x + r * v + 0.1 * r**2)
+
+
+for rho_inf in (1.0, 0.5):
+    h, _ = run(shaken + stage("a", 0.3, 0.01, rho_inf) + stage("b", 0.4, 0.005, rho_inf), "motion")
+    wanted = np.array([exact(t) for t in h["time"]])
+    # Second order: corners of the history cost (slope dt**2) of velocity each, and so 2e-3 of the path.
+    check(f"the base moves by the double integral, rho_inf {rho_inf}", np.abs(h["base.u_r"] - wanted).max()
+          < 2e-3 * wanted.max(), np.abs(h["base.u_r"] - wanted).max() / wanted.max())
+    # The scheme's accelerations belong to (gamma - 1/2) dt before the end of a step: (1 - rho)/(1 + rho) dt.
+    steps = np.diff(h["time"])
+    given = 3 * np.interp(h["time"][1:] - (1 - rho_inf) / (1 + rho_inf) * steps, [0.1, 0.4, 0.5], [0, 1, 0.2])
+    check(f"and has the acceleration, rho_inf {rho_inf}", np.abs(h["base.a_r"][1:] - given).max() < ROUNDING * 1e3,
+          np.abs(h["base.a_r"][1:] - given).max())
+check("tied sides move as one", (h["top.u_r"] == h["corner.u_r"]).all() and np.ptp(h["top.u_r"]) > 0)
+
+# Rayleigh: a column in its first mode, omega = pi c/(2 H), loses alpha/(2 omega) + beta omega/2 of critical.
+ALPHA, BETA, SPEED = 3.0, 2.0e-3, 1.0e-3
+omega = np.pi / 8 * np.sqrt(2.4e4 / 2)
+for name, alpha, beta in (("mass", ALPHA, 0), ("stiffness", 0, BETA), ("both", ALPHA, BETA)):
+    text = column(cells=8, damping=f"damping = {alpha} stiffness_damping = {beta}") + (
+        "&fix group = 'all' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' /\n"
+        f"&initial wave = {SPEED} wave_number = {np.pi / 8} datum = -4 /\n") + stage("swing", 0.6, 1e-3)
+    h, folder = run(text, f"rayleigh_{name}")
+    xi = alpha / 2 / omega + beta * omega / 2
+    free = omega * np.sqrt(1 - xi**2)
+    wanted = SPEED / free * np.exp(-xi * omega * h["time"]) * np.sin(free * h["time"])
+    # Steps of 1/146 of a period: (omega dt)**2/12 of the phase in four periods, and as much of the first step of beta.
+    check(f"Rayleigh damping, {name}", np.abs(h["top.u_z"] - wanted).max() < 5e-3 * wanted.max(),
+          np.abs(h["top.u_z"] - wanted).max() / wanted.max())
+    ledger = tables.columns(folder / "ledger.csv")
+    check(f"its loss is booked, {name}", np.abs(ledger["imbalance"]).max() < 5e-3 * 0.5 * 2 * 4 * SPEED**2 / 2
+          and ledger["damping"][-1] > 0, ledger["imbalance"][-1])
+
+# Ground at rest stays at rest when a side becomes absorbing: saturated, with weight, held by a support before.
+still = column("u-p_w", 9.81, void=0.6, more="{}") + (
+    "&initial p_w_slope = -9.81 stress = 'geostatic' k_0 = 0.6 surface = 0 surcharge = 10 /\n"
+    "&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 tolerance = 1e-10 /\n"
+    "&fix group = 'left' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' /\n&fix group = 'top' field = 'p_w' /\n"
+    "&fix group = 'right' field = 'u_r' stages = 'rest' /\n&absorbing group = 'right' /\n"
+    "&load group = 'top' kind = 'pressure' value = 10 {} /\n")
+quiet = still.format("", "") + stage("go", 0.1, 2e-3)
+h, _ = run(quiet, "still")
+check("ground behind an absorbing side stays at rest", max(np.abs(h[f"corner.{u}"]).max() for u in ("u_r", "u_z")) < 1e-9,
+      np.abs(h["corner.u_r"]).max())
+# Pushed, it moves, the balance of energy closes, and a run taken up from a checkpoint writes the same bytes.
+pushed = still.format("checkpoint_steps = 20", "history = 'push'") + stage("go", 0.1, 2e-3) + (
+    "&history name = 'push' times = 1, 1.02 values = 1, 2 /\n")
+h, whole = run(pushed, "pushed")
+ledger = tables.columns(whole / "ledger.csv")
+check("pushed, it moves", np.abs(h["corner.u_r"]).max() > 1e-6, h["corner.u_r"][-1])
+check("the dashpots' work is booked", np.abs(ledger["imbalance"][1:] - ledger["imbalance"][0]).max()
+      < 0.02 * np.abs(ledger["damping"]).max() and ledger["damping"][-1] > 0, ledger["imbalance"][-1])
+names = [p.name for p in whole.iterdir() if p.suffix == ".csv"]
+before = {name: (whole / name).read_bytes() for name in names}
+run(pushed, "pushed", "--restart", whole / "checkpoint.h5")
+check("restart with an absorbing side: same bytes", all((whole / name).read_bytes() == before[name] for name in names))
+
+# Pressures of tied sides are one where that is asked for, though one side alone has an inflow.
+flow = column("u-p_w", void=0.6) + ("&fix group = 'all' field = 'u_r' /\n&fix group = 'all' field = 'u_z' /\n"
+                                    "&fix group = 'bottom' field = 'p_w' /\n&stage name = 'q' analysis = 'quasi_static' "
+                                    "duration = 1 dt = 0.1 /\n&load group = 'left' kind = 'water' value = 1e-5 /\n"
+                                    "&tie first = 'left' second = 'right' {} /\n")
+for words, same in (("", False), ("pressures = 'yes'", True)):
+    h, _ = run(flow.format(words), f"flow_{same}")
+    check(f"pressures of tied sides {words}", (h["top.p_w"][-1] == h["corner.p_w"][-1]) is np.bool_(same)
+          and h["top.p_w"][-1] > 0, (h["top.p_w"][-1], h["corner.p_w"][-1]))
+
+for name, old, new, words in (
+        ("acceleration without a history", " history = 'h' /\n&history", " /\n&history", "needs a displacement"),
+        ("acceleration of a pressure", "'bottom' field = 'u_r' motion", "'bottom' field = 'p_w' motion", "needs a displacement"),
+        ("nothing can be derived", "name = 'c'", "name = 'c' effects = 'auto'", "nothing can be derived"),
+        ("a tie of unequal sides", "second = 'right'", "second = 'top'", "as many nodes"),
+        ("a tie of different heights", "first = 'left' second = 'right'", "first = 'top' second = 'bottom'",
+         "no node of 'bottom' lies at the height"),
+        ("no edges", "&tie", "&absorbing group = 'all' /\n&tie", "no edges")):
+    text = shaken.replace(old, new) + stage("a", 0.3, 0.02)
+    check(f"{name}: changed", text != shaken + stage("a", 0.3, 0.02))
+    done, _ = start(text, "refused")
+    check(f"refused: {name}", done.returncode in (2, 11) and words in done.stderr, done.stderr)
+finish()
