@@ -1,14 +1,14 @@
 !> Absorbing boundaries (Lysmer & Kuhlemeyer 1969) as dashpots: impedances rho c_p and rho c_s of the ground behind the
-!> boundary, for pore pressures the outflow of a wave that goes on (its gradient is -1/c_p times its rate), and the force
-!> of a wave that comes in. Without keys of their own the impedances are those of the elements at the boundary in the
-!> initial state, undrained. docs/theory/host.md section 7.4.
+!> boundary, for pore pressures the outflow of a wave that goes on (its gradient is -1/c_p times its rate), and the
+!> force of a wave that comes in. Without keys of their own the impedances are those of the elements at the boundary in
+!> the initial state, undrained. docs/theory/host.md section 7.4.
 module absorbing_boundaries
    use kinds, only: wp, PI
    use dashpots, only: dashpots_t
    use exit_codes, only: EXIT_MATERIAL
    use faults, only: fault_t, raise
    use generalised_alpha, only: DYNAMIC
-   use material_point, only: response_t
+   use material_point, only: response_t, report_t
    use model_types, only: model_t, stage_t, absorber_t, factor_at
    use permeability_laws, only: relative_t, relative_permeability
    use porous_domain, only: state_t, mixture_density
@@ -91,8 +91,8 @@ contains
       c_p = absorber%c_p
       c_s = absorber%c_s
       if ((.not. c_p > 0.0_wp .and. .not. modulus > 0.0_wp) .or. (.not. c_s > 0.0_wp .and. .not. shear > 0.0_wp)) then
-         call raise(fault, EXIT_MATERIAL, place_of(absorber)//'element '//whole(e)//' at the boundary has no stiffness '// &
-                    'in the initial state (shear modulus '//short(shear)//' kPa); give c_p and c_s of the ground.')
+         call raise(fault, EXIT_MATERIAL, place_of(absorber)//'element '//whole(e)//' at the boundary has no '// &
+                    'stiffness in the initial state (shear modulus '//short(shear)//' kPa); give c_p and c_s.')
          return
       end if
       if (.not. c_p > 0.0_wp) c_p = sqrt(modulus/rho)
@@ -117,6 +117,7 @@ contains
       real(wp), intent(out) :: modulus, shear, s, slope, rho
       type(fault_t), intent(inout) :: fault
       type(response_t) :: response
+      type(report_t) :: report
       real(wp) :: strain(6, model%domain%rule), suction(model%domain%rule), &
                   after(size(state%state, 1), model%domain%rule), n
       integer :: g, p, first, last
@@ -129,10 +130,10 @@ contains
             suction(g) = dot_product(m%gauss(g, e)%m(:m%n_p), state%x(AT_P_C, m%mesh%t6(:m%n_p, e)))
          end do
          call region%law%update(m%rule, state%stress(:, first:last), state%state(:, first:last), strain, suction, &
-                                0*suction, .true., response, after)
-         if (response%report%code /= 0) then
-            call raise(fault, EXIT_MATERIAL, 'The material of element '//whole(e)//' at an absorbing boundary refuses '// &
-                       'the initial state.')
+                                0*suction, .true., response, after, report)
+         if (report%code /= 0) then
+            call raise(fault, EXIT_MATERIAL, 'The material of element '//whole(e)//' at an absorbing boundary '// &
+                       'refuses the initial state.')
             modulus = 0.0_wp
             shear = 0.0_wp
             s = 1.0_wp
@@ -245,7 +246,8 @@ contains
       integer :: i
 
       do i = 1, size(list)
-         if (absorber_acts(model%absorbers(i), stage)) load = load + factor_at(model, list(i)%amplitude, time)*list(i)%incoming
+         if (absorber_acts(model%absorbers(i), stage)) &
+            load = load + factor_at(model, list(i)%amplitude, time)*list(i)%incoming
       end do
    end subroutine add_incoming
 

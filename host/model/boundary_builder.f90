@@ -8,7 +8,8 @@ module boundary_builder
                           PRESCRIBED_P_A
    use name_search, only: mesh_group, defined_name
    use scene_types, only: scene_t, scene_initial_t, scene_fix_t, scene_load_t, scene_plate_t, scene_contact_t, &
-                          scene_absorber_t, scene_tie_t, acts_in, place_of, FIX_P_W, FIX_P_C, LOAD_WATER, LOAD_AIR, LOAD_FORCE_R
+                          scene_absorber_t, scene_tie_t, acts_in, place_of, FIX_P_W, FIX_P_C, LOAD_WATER, LOAD_AIR, &
+                          LOAD_FORCE_R
    use texts, only: short, whole
    use triangle_mesh, only: find_group, add_group
    use unknown_fields, only: FIELD_NAMES, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
@@ -124,8 +125,8 @@ contains
       if (fault%code /= 0) return
       fix%field = FIELD_OF(given%field_number)
       if (given%acceleration .and. (given%field_number >= FIX_P_W .or. given%hold .or. fix%amplitude == 0)) then
-         call raise(fault, EXIT_INPUT, place_of(given)//'motion = ''acceleration'' needs a displacement (u_r, u_z), '// &
-                    'a history, and not hold = ''yes''.')
+         call raise(fault, EXIT_INPUT, place_of(given)//'motion = ''acceleration'' needs a displacement (u_r, '// &
+                    'u_z), a history, and not hold = ''yes''.')
          return
       else if (given%acceleration .and. model%effect_options%auto) then
          call raise(fault, EXIT_INPUT, place_of(given)//'with motion = ''acceleration'' nothing can be derived; '// &
@@ -245,8 +246,8 @@ contains
          do i = 1, size(a)
             k = minloc(abs(z(b) - z(a(i))), dim=1)
             if (abs(z(b(k)) - z(a(i))) > near .or. any(tie%pairs(2, :i - 1) == b(k))) then
-               call raise(fault, EXIT_GROUP, place_of(given)//'no node of '''//trim(given%second_name)//''' lies at '// &
-                          'the height '//short(z(a(i)))//' m of '''//trim(given%first_name)//'''.')
+               call raise(fault, EXIT_GROUP, place_of(given)//'no node of '''//trim(given%second_name)//''' lies '// &
+                          'at the height '//short(z(a(i)))//' m of '''//trim(given%first_name)//'''.')
                return
             end if
             tie%pairs(:, i) = [a(i), b(k)]

@@ -141,7 +141,8 @@ contains
             if (.not. fix%acceleration .or. .not. acts(fix, stage, time + scheme%dt)) cycle
             do k = 1, size(model%domain%mesh%groups(fix%group)%nodes)
                at = dofs%of(fix%field, model%domain%mesh%groups(fix%group)%nodes(k))
-               if (at > 0) a(at) = acceleration_at(model, fix, model%domain%mesh%groups(fix%group)%nodes(k), scheme, time)
+               if (at > 0) &
+                  a(at) = acceleration_at(model, fix, model%domain%mesh%groups(fix%group)%nodes(k), scheme, time)
             end do
          end associate
       end do

@@ -76,7 +76,8 @@ module scene_keys
       key_t('region', 'rho_s', 'n', '2.65', 0, 1000, 'density of the grains [Mg/m3]'), &
       key_t('region', 'void_ratio', 'n', NONE, 0, 10, 'initial void ratio [-]; default: the material''s'), &
       key_t('region', 'damping', 'n', '0', 0, BIG, 'force against the velocity over mass, dynamic stages [1/s]'), &
-      key_t('region', 'stiffness_damping', 'n', '0', 0, BIG, 'stress of the skeleton from its rate, dynamic stages [s]'), &
+      key_t('region', 'stiffness_damping', 'n', '0', 0, BIG, &
+            'stress of the skeleton from its rate, dynamic stages [s]'), &
       key_t('initial', 'group', 't', 'all', 0, 0, 'group of elements or nodes'), &
       key_t('initial', 'p_w', 'n', '0', -BIG, BIG, 'pore water pressure at the datum [kPa]'), &
       key_t('initial', 'p_w_slope', 'n', '0', -BIG, BIG, 'change of p_w with z [kPa/m]'), &

@@ -170,7 +170,8 @@ contains
          return
       end if
       call add_bodies(dofs, pattern, scheme, held, state, work, .true., assembly)
-      if (allocated(held%dashpots)) call add_dashpots(held%dashpots, dofs, pattern, scheme, state, work, .true., assembly)
+      if (allocated(held%dashpots)) call add_dashpots(held%dashpots, dofs, pattern, scheme, state, work, .true., &
+                                                     assembly)
       if (allocated(system%contacts%interfaces)) call add_contacts(system%contacts, pattern, 0.0_wp, .false., &
                                                     assembly%residual, assembly%scale, assembly%values)
       rhs = held%load_0 - held%offset - assembly%residual

@@ -1,5 +1,5 @@
-"""Boundaries of dynamic stages in mud_host: base motion by acceleration, Rayleigh damping, tied sides, ground that stays
-at rest behind an absorbing boundary. Waves and transfer functions: verification/host/waves."""
+"""Boundaries of dynamic stages in mud_host: base motion by acceleration, Rayleigh damping, tied sides, ground that
+stays at rest behind an absorbing boundary. Waves and transfer functions: verification/host/waves."""
 import os
 import pathlib
 import subprocess
@@ -108,7 +108,8 @@ still = column("u-p_w", 9.81, void=0.6, more="{}") + (
     "&load group = 'top' kind = 'pressure' value = 10 {} /\n")
 quiet = still.format("", "") + stage("go", 0.1, 2e-3)
 h, _ = run(quiet, "still")
-check("ground behind an absorbing side stays at rest", max(np.abs(h[f"corner.{u}"]).max() for u in ("u_r", "u_z")) < 1e-9,
+check("ground behind an absorbing side stays at rest",
+      max(np.abs(h[f"corner.{u}"]).max() for u in ("u_r", "u_z")) < 1e-9,
       np.abs(h["corner.u_r"]).max())
 # Pushed, it moves, the balance of energy closes, and a run taken up from a checkpoint writes the same bytes.
 pushed = still.format("checkpoint_steps = 20", "history = 'push'") + stage("go", 0.1, 2e-3) + (
@@ -125,8 +126,9 @@ check("restart with an absorbing side: same bytes", all((whole / name).read_byte
 
 # Pressures of tied sides are one where that is asked for, though one side alone has an inflow.
 flow = column("u-p_w", void=0.6) + ("&fix group = 'all' field = 'u_r' /\n&fix group = 'all' field = 'u_z' /\n"
-                                    "&fix group = 'bottom' field = 'p_w' /\n&stage name = 'q' analysis = 'quasi_static' "
-                                    "duration = 1 dt = 0.1 /\n&load group = 'left' kind = 'water' value = 1e-5 /\n"
+                                    "&fix group = 'bottom' field = 'p_w' /\n&stage name = 'q' "
+                                    "analysis = 'quasi_static' duration = 1 dt = 0.1 /\n"
+                                    "&load group = 'left' kind = 'water' value = 1e-5 /\n"
                                     "&tie first = 'left' second = 'right' {} /\n")
 for words, same in (("", False), ("pressures = 'yes'", True)):
     h, _ = run(flow.format(words), f"flow_{same}")
@@ -135,7 +137,8 @@ for words, same in (("", False), ("pressures = 'yes'", True)):
 
 for name, old, new, words in (
         ("acceleration without a history", " history = 'h' /\n&history", " /\n&history", "needs a displacement"),
-        ("acceleration of a pressure", "'bottom' field = 'u_r' motion", "'bottom' field = 'p_w' motion", "needs a displacement"),
+        ("acceleration of a pressure", "'bottom' field = 'u_r' motion", "'bottom' field = 'p_w' motion",
+         "needs a displacement"),
         ("nothing can be derived", "name = 'c'", "name = 'c' effects = 'auto'", "nothing can be derived"),
         ("a tie of unequal sides", "second = 'right'", "second = 'top'", "as many nodes"),
         ("a tie of different heights", "first = 'left' second = 'right'", "first = 'top' second = 'bottom'",
