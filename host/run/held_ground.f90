@@ -3,20 +3,20 @@
 !> be kept up. docs/theory/host.md sections 7.4 and 8.
 module held_ground
    use kinds, only: wp
-   use absorbing_boundaries, only: absorber_acts
+   use absorbing_boundaries, only: absorber_acts, let_absorbers_act, add_incoming
    use boundary_loads, only: load_at
    use equation_assembly, only: assemble
    use exit_codes, only: EXIT_MATERIAL
    use faults, only: fault_t, raise
    use generalised_alpha, only: make_scheme, STATIC, DYNAMIC
-   use model_types, only: model_t
+   use model_types, only: model_t, stage_t
    use porous_domain, only: copy_state
    use run_state, only: run_t
    use texts, only: whole
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: hold_ground, keep_flow
+   public :: hold_ground, let_waves_in, keep_flow
 contains
    !> Sets the forces on boundaries that act in a stage and did not in the one before, and frees them of those that no
    !> longer act.
@@ -53,6 +53,20 @@ contains
       end do
       call copy_state(run%state, run%next)
    end subroutine hold_ground
+
+   !> Which boundaries act in a step, and the forces of the waves that come in at its ends.
+   subroutine let_waves_in(model, stage, dt, run)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: dt   !< [s]
+      type(run_t), intent(inout) :: run
+
+      associate (c => run%constraint)
+         call let_absorbers_act(model, stage, c%dashpots)
+         call add_incoming(model, stage, c%dashpots, run%state%time, c%load_0)
+         call add_incoming(model, stage, c%dashpots, run%state%time + dt, c%load_1)
+      end associate
+   end subroutine let_waves_in
 
    !> The flow of the initial state, to be subtracted from then on.
    subroutine keep_flow(model, run, fault)

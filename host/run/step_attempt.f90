@@ -3,7 +3,6 @@
 module step_attempt
    use kinds, only: wp
    use faults, only: fault_t
-   use absorbing_boundaries, only: add_incoming, let_absorbers_act
    use boundary_conditions, only: constrain_step, follow_accelerations, starting_accelerations
    use boundary_loads, only: load_at
    use contact_drainage, only: freeze_drainage
@@ -11,7 +10,7 @@ module step_attempt
    use effect_monitor, only: begin_stage_of_monitor
    use energy_ledger, only: kinetic_energy
    use generalised_alpha, only: scheme_t, make_scheme, DYNAMIC
-   use held_ground, only: hold_ground
+   use held_ground, only: hold_ground, let_waves_in
    use model_types, only: model_t, stage_t
    use newton_step, only: take_step, start_accelerations, CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
    use run_state, only: run_t, stage_state_t
@@ -58,10 +57,7 @@ contains
       accepted = .false.
       run%constraint%load_0 = load_at(model, stage, model%dofs, run%state%time)
       run%constraint%load_1 = load_at(model, stage, model%dofs, run%state%time + dt)
-      if (allocated(run%constraint%dashpots)) then
-         call add_incoming(model, stage, run%constraint%dashpots, run%state%time, run%constraint%load_0)
-         call add_incoming(model, stage, run%constraint%dashpots, run%state%time + dt, run%constraint%load_1)
-      end if
+      if (allocated(run%constraint%dashpots)) call let_waves_in(model, stage, dt, run)
       call prescribe(model, stage, run%state%time + dt, run, fault)
       if (fault%code /= 0) return
       call prepare_rates(stage, dt, run)
@@ -103,7 +99,6 @@ contains
       call freeze_drainage(model, run%drainage, run%system%contacts, run%state%x, fault)
       if (fault%code /= 0) return
       call constrain_step(model, stage, model%dofs, run%drainage, time, run%at%x_start, run%constraint)
-      if (allocated(run%constraint%dashpots)) call let_absorbers_act(model, stage, run%constraint%dashpots)
    end subroutine prescribe
 
    subroutine first_accelerations(model, stage, run, fault)
@@ -114,8 +109,7 @@ contains
       type(log_t) :: log
 
       run%constraint%load_0 = load_at(model, stage, model%dofs, run%state%time)
-      if (allocated(run%constraint%dashpots)) call add_incoming(model, stage, run%constraint%dashpots, run%state%time, &
-                                                               run%constraint%load_0)
+      if (allocated(run%constraint%dashpots)) call let_waves_in(model, stage, 0.0_wp, run)
       if (any(model%fixes%acceleration)) then
          if (.not. allocated(run%constraint%acceleration)) allocate (run%constraint%acceleration(model%dofs%n))
          call starting_accelerations(model, stage, model%dofs, make_scheme(stage%kind, stage%rho_inf, stage%dt), &
