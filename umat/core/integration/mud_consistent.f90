@@ -6,9 +6,9 @@
 module mud_consistent
    use mud_kinds, only: wp
    use mud_cutoff, only: slide, change_of_slide
+   use mud_driving, only: driving_t, whole_increment, DIRECTIONS, AT_REST
    use mud_increment, only: increment_t, void_ratio_at, suction_at, loading_strain, change_of_loading_strain, &
       turn_of_loading_strain, has_aside, NY
-   use mud_elastic_domain, only: change_of_exit
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY
    use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, MAX_INTERRUPTED
@@ -20,28 +20,13 @@ module mud_consistent
    use mud_trial, only: trial_t, MODE_HELD
    implicit none (type, external)
    private
-   public :: sensitivity_t, no_sensitivity, enter_elastic_domain, leave_elastic_domain, propagate, jump_of_memory, &
-             change_with_size, change_along, change_of_ratio, linearise_stage, DIRECTIONS, AT_REST, &
-             JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
+   public :: sensitivity_t, no_sensitivity, propagate, jump_of_memory, change_with_size, change_along, &
+             change_of_ratio, linearise_stage, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
 
-   integer, parameter :: DIRECTIONS = 7   !< Six engineering strains and the suction at the end of the increment.
    integer, parameter :: JUMP_NONE = 0
    integer, parameter :: JUMP_REVERSAL = 1   !< A new process begins.
    integer, parameter :: JUMP_RETURN = 2     !< An interrupted process goes on.
    integer, parameter :: JUMP_NEW = 3        !< The tension cut-off let go: no past.
-
-   !> Derivatives of what drives the increment, or one of its phases, along the seven directions.
-   type :: driving_t
-      real(wp) :: d_strain(6, DIRECTIONS)    !< of its strain
-      real(wp) :: d_v(DIRECTIONS)            !< of its volume
-      real(wp) :: d_pc(DIRECTIONS)           !< of its suction step
-      real(wp) :: e0(DIRECTIONS)             !< of ln(1 + e) at its start
-      real(wp) :: p_c0(DIRECTIONS)           !< of its first suction
-      real(wp) :: from_centre(6, DIRECTIONS)     !< of the strain from the centre of the elastic domain at its start
-   end type driving_t
-
-   !> Nothing drives.
-   type(driving_t), parameter :: AT_REST = driving_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
 
    !> Derivatives along the seven directions.
    type :: sensitivity_t
@@ -67,70 +52,6 @@ contains
       sens%settled = depth
       sens%driving = whole_increment()
    end subroutine no_sensitivity
-
-   pure function whole_increment() result(driving)
-      type(driving_t) :: driving
-      integer :: j
-
-      driving%d_strain = 0.0_wp
-      do j = 1, 6
-         driving%d_strain(j, j) = merge(1.0_wp, 0.5_wp, j <= 3)
-      end do
-      driving%d_v = [1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
-      driving%d_pc = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp]
-      driving%e0 = 0.0_wp
-      driving%p_c0 = 0.0_wp
-      driving%from_centre = 0.0_wp
-   end function whole_increment
-
-   !> The share of the increment inside the elastic domain: it depends on the strain itself.
-   pure subroutine enter_elastic_domain(whole, share, sens)
-      type(increment_t), intent(in) :: whole
-      real(wp), intent(in) :: share
-      type(sensitivity_t), intent(inout) :: sens
-
-      call scale_driving(whole, share, 1.0_wp, sens%driving)
-   end subroutine enter_elastic_domain
-
-   !> The rest of the increment.
-   pure subroutine leave_elastic_domain(whole, share, sens)
-      type(increment_t), intent(in) :: whole
-      real(wp), intent(in) :: share
-      type(sensitivity_t), intent(inout) :: sens
-      type(driving_t) :: inside
-      integer :: j
-
-      inside = whole_increment()
-      call scale_driving(whole, share, 1.0_wp, inside)
-      sens%driving = whole_increment()
-      call scale_driving(whole, share, -1.0_wp, sens%driving)
-      do j = 1, DIRECTIONS
-         sens%driving%from_centre(:, j) = inside%d_strain(:, j)
-         sens%driving%e0(j) = -inside%d_v(j)
-         sens%driving%p_c0(j) = inside%d_pc(j)
-      end do
-   end subroutine leave_elastic_domain
-
-   !> Derivatives of share (side +1) or 1 - share (side -1) times the increment.
-   pure subroutine scale_driving(whole, share, side, driving)
-      type(increment_t), intent(in) :: whole
-      real(wp), intent(in) :: share, side
-      type(driving_t), intent(inout) :: driving
-      real(wp), parameter :: AT_REST(6) = 0.0_wp
-      real(wp) :: length, change
-      integer :: j
-
-      length = merge(share, 1.0_wp - share, side > 0.0_wp)
-      do j = 1, DIRECTIONS
-         change = 0.0_wp
-         if (share > 0.0_wp .and. share < 1.0_wp) then
-            change = side*change_of_exit(whole%from_centre, whole%d_strain, share, AT_REST, driving%d_strain(:, j))
-         end if
-         driving%d_strain(:, j) = length*driving%d_strain(:, j) + change*whole%d_strain
-         driving%d_v(j) = length*driving%d_v(j) + change*whole%d_v
-         driving%d_pc(j) = length*driving%d_pc(j) + change*whole%d_pc
-      end do
-   end subroutine scale_driving
 
    !> Carries the derivatives through an accepted substep h at whose end the pseudo-time is fixed (the last one of an
    !> increment or a phase) or not.

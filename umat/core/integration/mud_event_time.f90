@@ -3,9 +3,9 @@
 module mud_event_time
    use mud_kinds, only: wp
    use mud_bounding, only: change_of_state_parameter, change_of_bounding_ratio, change_of_excess
-   use mud_consistent, only: sensitivity_t, change_with_size, change_along, change_of_ratio, linearise_stage, &
-      DIRECTIONS, AT_REST
+   use mud_consistent, only: sensitivity_t, change_with_size, change_along, change_of_ratio, linearise_stage
    use mud_critical_state, only: bounding_ratio
+   use mud_driving, only: DIRECTIONS, AT_REST
    use mud_events, only: EVENT_OPENS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, closing_mode, &
       change_of_closing_rate, psi_at
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, NY

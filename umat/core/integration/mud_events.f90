@@ -9,12 +9,13 @@ module mud_events
    use mud_registry, only: RULE_AS_PUBLISHED
    use mud_return_point, only: beyond_target
    use mud_state, only: counters_t
+   use mud_substep, only: LARGEST_FACTOR
    use mud_tensor, only: ddot, trace, norm
    use mud_trial, only: trial_t, take_step, MODE_HELD
    implicit none (type, external)
    private
    public :: stop_at_event, closing_mode, closing_rate, change_of_closing_rate, psi_at, EVENT_TOLERANCE, LARGEST_EXCESS
-   public :: EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN
+   public :: EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, EVENT_MECHANISM
 
    integer, parameter :: EVENT_NONE = 0
    integer, parameter :: EVENT_OPENS = 1      !< p' falls to p_min.
@@ -22,6 +23,7 @@ module mud_events
    integer, parameter :: EVENT_BOUNDS = 3     !< r exceeds the bounding surface inside the elastic domain.
    integer, parameter :: EVENT_REVERSAL = 4   !< (r - r_in):n falls to -x_rev.
    integer, parameter :: EVENT_RETURN = 5     !< r reaches the target of an interrupted process.
+   integer, parameter :: EVENT_MECHANISM = 6  !< The isotropic mechanism begins or ends to act while suction changes.
 
    !> An open point closes when p' would rise by this share of the elastic rate: opening and closing at the same rate
    !> would chatter where the two pull the stress ratio to opposite sides [-].
@@ -31,14 +33,20 @@ module mud_events
    real(wp), parameter :: LARGEST_EXCESS = 0.2_wp
    !> Width of the bracket of an event, share of increment [-].
    real(wp), parameter :: EVENT_TOLERANCE = 1.0e-13_wp
-   real(wp), parameter :: EVENT_RESIDUAL = 1.0e-13_wp        !< An event's function this small is zero [-].
+   !> An event's function is zero below this share of its change over the substep, and below rounding [-].
+   real(wp), parameter :: EVENT_RESIDUAL = 1.0e-13_wp, ROUNDING = 4.0e-16_wp
    real(wp), parameter :: PROBE_BELOW = 0.5_wp   !< A minimum below this share of x_rev above -x_rev is looked at [-].
+   !> A kink is looked for where the error of a substep is above this share of the tolerance [-].
+   real(wp), parameter :: SHARP_KINK = 0.01_wp
+   !> A drive of the isotropic mechanism this much smaller than at the end of a substep is where it switched before [-].
+   real(wp), parameter :: AT_SWITCH = 1.0e-6_wp
    integer, parameter :: MAX_EVENT_ITERATIONS = 100          !< Bisection alone needs about 45.
 contains
    !> Shortens an accepted substep so that it lands where the first event happens that its mode knows.
-   pure subroutine stop_at_event(par, inc, h, trial, counters, event)
+   pure subroutine stop_at_event(par, inc, error, h, trial, counters, event)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: error        !< of the substep [-]
       real(wp), intent(inout) :: h
       type(trial_t), intent(inout) :: trial
       type(counters_t), intent(inout) :: counters
@@ -55,6 +63,9 @@ contains
          call land_on(par, inc, EVENT_BOUNDS, h, trial, counters, event)
          return
       end if
+      if (error > SHARP_KINK*par%tolerance) then
+         if (mechanism_switches(inc, trial)) call land_on(par, inc, EVENT_MECHANISM, h, trial, counters, event)
+      end if
       if (may_reverse(par, inc, trial)) then
          reversal = h
          call find_reversal(par, inc, trial, counters, reversal)
@@ -66,6 +77,20 @@ contains
       end if
       if (trial%watched > 0) call land_on(par, inc, EVENT_RETURN, h, trial, counters, event)
    end subroutine stop_at_event
+
+   !> True where the isotropic mechanism begins or ends to act inside the substep. Its rates have a kink there, which is
+   !> sharp while suction changes: a substep across it has an error that depends on where in it the kink lies, and
+   !> Newton's method in a host sees that as noise.
+   pure logical function mechanism_switches(inc, trial)
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+
+      mechanism_switches = inc%bonded .and. abs(inc%d_pc) > 0.0_wp
+      if (.not. mechanism_switches) return
+      associate (first => trial%w(1)%iso_drive, last => trial%w(inc%scheme%stages)%iso_drive)
+         mechanism_switches = first*last < 0.0_wp .and. abs(first) > AT_SWITCH*abs(last)
+      end associate
+   end function mechanism_switches
 
    !> True where a reversal inside the substep is possible: (r - r_in):n is negative at its end, where the last stage
    !> stands, or it falls at its start and is so small that it may have been negative in between. A process that drifts
@@ -86,12 +111,14 @@ contains
       end if
    end function may_reverse
 
-   !> True where (r - r_in):n was larger a substep ago and is below the floor.
+   !> True where (r - r_in):n was larger a substep ago, is below the floor, and would reach -x_rev within the substep if
+   !> it went on falling: the substep is at most twice the one before. A parabola of that slope falls a quarter as far.
    pure logical function falls(par, trial)
       type(params_t), intent(in) :: par
       type(trial_t), intent(in) :: trial
 
-      falls = trial%w(1)%x < par%x_floor .and. trial%w(1)%x < trial%x_previous
+      falls = trial%w(1)%x < par%x_floor .and. &
+              trial%w(1)%x + par%x_rev < LARGEST_FACTOR*(trial%x_previous - trial%w(1)%x)
    end function falls
 
    !> Shortens h to a place beyond the reversal where (r - r_in):n passes -x_rev and comes back within the substep: its
@@ -122,8 +149,9 @@ contains
       if (x_middle < 0.0_wp) h = lowest*h
    end subroutine find_reversal
 
-   !> Finds the end of the substep where the event's function turns negative (Illinois' variant of false position), and
-   !> leaves the trial there, just beyond.
+   !> Finds the end of the substep where the event's function turns negative (false position as Anderson and Bjoerck
+   !> accelerate it), and leaves the trial there, just beyond. A point that has just closed begins with p' = p_min and
+   !> rises: there the function over the size is looked at, which has no root at the start.
    pure subroutine land_on(par, inc, event, h, trial, counters, landed)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -132,40 +160,63 @@ contains
       type(trial_t), intent(inout) :: trial
       type(counters_t), intent(inout) :: counters
       integer, intent(inout) :: landed     !< becomes the event if it happens
-      real(wp) :: low, high, f_low, f_high, f, h_trial
-      integer :: iteration
+      real(wp) :: low, high, f_low, f_high, f, h_trial, width, zero
+      integer :: iteration, side
+      logical :: divided
 
       call event_function(par, inc, event, trial, trial%time + h, trial%y, counters, f_high)
       if (f_high >= 0.0_wp) return
       landed = event
       call event_function(par, inc, event, trial, trial%time, trial%y0, counters, f_low)
+      zero = max(EVENT_RESIDUAL*(f_low - f_high), ROUNDING)
+      divided = event == EVENT_OPENS .and. f_low <= zero .and. trial%w(1)%d_p > 0.0_wp
+      if (divided) then
+         f_low = trial%w(1)%d_p/par%p_min
+         f_high = f_high/h
+      end if
       low = 0.0_wp
       high = h
       h_trial = h
+      side = 0
+      width = h
       do iteration = 1, MAX_EVENT_ITERATIONS
          if (high - low <= EVENT_TOLERANCE .or. high <= par%h_min) exit
-         if (f_low > 0.0_wp) then
+         h_trial = 0.5_wp*(low + high)
+         if ((f_low > 0.0_wp .or. low > 0.0_wp) .and. (mod(iteration, 4) > 0 .or. high - low < 0.5_wp*width)) then
             h_trial = low + (high - low)*f_low/(f_low - f_high)
-            h_trial = min(max(h_trial, low + 0.01_wp*(high - low)), high - 0.01_wp*(high - low))
-         else
-            h_trial = 0.5_wp*(low + high)
+            h_trial = min(max(h_trial, low + 0.5_wp*EVENT_TOLERANCE), high - 0.5_wp*EVENT_TOLERANCE)
          end if
+         if (mod(iteration, 4) == 0) width = high - low
          call take_step(par, inc, h_trial, trial, counters)
          call event_function(par, inc, event, trial, trial%time + h_trial, trial%y, counters, f)
+         if (divided) f = f/h_trial
          if (f < 0.0_wp) then
-            if (f_low > 0.0_wp .and. high < h) f_low = 0.5_wp*f_low
+            if (side < 0) f_low = f_low*remaining(f, f_high)
             high = h_trial
             f_high = f
-            if (f > -EVENT_RESIDUAL) exit
+            side = -1
          else
-            f_high = 0.5_wp*f_high
+            if (side > 0) f_high = f_high*remaining(f, f_low)
             low = h_trial
             f_low = f
+            side = 1
+            ! at the event but for rounding; a held point must be beyond it, or it would not close
+            if (f < zero .and. event /= EVENT_CLOSES) high = low
          end if
+         if (f_high > -zero) exit
       end do
       if (abs(h_trial - high) > 0.0_wp) call take_step(par, inc, high, trial, counters)
       h = high
    end subroutine land_on
+
+   !> What Anderson and Bjoerck's false position leaves of the value at the end of the bracket that rests, after a new
+   !> value on the other side.
+   pure real(wp) function remaining(new, old)
+      real(wp), intent(in) :: new, old
+
+      remaining = 0.5_wp
+      if (abs(new) < abs(old)) remaining = 1.0_wp - new/old
+   end function remaining
 
    !> Function of an event, dimensionless, negative beyond it.
    pure subroutine event_function(par, inc, event, trial, time, y, counters, f)
@@ -188,6 +239,9 @@ contains
       case (EVENT_REVERSAL)
          call rate_of(par, inc, time, y, trial%r_in, trial%mode, w, counters)
          f = w%x + par%x_rev
+      case (EVENT_MECHANISM)
+         call rate_of(par, inc, time, y, trial%r_in, trial%mode, w, counters)
+         f = w%iso_drive/trial%w(1)%iso_drive
       case (EVENT_RETURN)
          f = -beyond_target(par, trial%process, r, bounding_ratio(par, psi_at(par, inc, time, p)))
       case default

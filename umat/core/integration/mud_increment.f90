@@ -141,8 +141,8 @@ contains
       type(increment_t) :: inc
 
       inc = whole
-      inc%from = from
-      inc%length = to - from
+      inc%from = whole%from + from*whole%length
+      inc%length = (to - from)*whole%length
       inc%d_strain = (to - from)*whole%d_strain
       inc%d_v = (to - from)*whole%d_v
       inc%d_pc = (to - from)*whole%d_pc

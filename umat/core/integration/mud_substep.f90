@@ -4,11 +4,13 @@ module mud_substep
    use mud_kinds, only: wp
    implicit none (type, external)
    private
-   public :: scheme_t, SCHEMES, MAX_STAGES, stage_point, solution, error_vector, step_factor
+   public :: scheme_t, SCHEMES, HIGHER_ORDER, MAX_STAGES, LARGEST_FACTOR, stage_point, solution, error_vector, &
+             step_factor
 
    integer, parameter :: MAX_STAGES = 7
    integer, parameter :: TRIANGLE = MAX_STAGES*(MAX_STAGES - 1)/2
-   real(wp), parameter :: SAFETY = 0.9_wp, SMALLEST_FACTOR = 0.1_wp, LARGEST_FACTOR = 2.0_wp
+   real(wp), parameter :: SAFETY = 0.9_wp, SMALLEST_FACTOR = 0.1_wp
+   real(wp), parameter :: LARGEST_FACTOR = 2.0_wp   !< On a step, from one to the next [-].
 
    !> An explicit pair with local extrapolation.
    type :: scheme_t
@@ -50,6 +52,9 @@ module mud_substep
       [0.0_wp, 1.0_wp/5, 3.0_wp/10, 4.0_wp/5, 8.0_wp/9, 1.0_wp, 1.0_wp])
 
    type(scheme_t), parameter :: SCHEMES(3) = [MODIFIED_EULER, BOGACKI_SHAMPINE, DORMAND_PRINCE]
+   !> What modified Euler hands over to where it would need many substeps: its steps grow with the third root of the
+   !> tolerance, and it is the most stable of the three for its rates.
+   type(scheme_t), parameter :: HIGHER_ORDER = BOGACKI_SHAMPINE
 contains
    !> Where stage i of a step h stands.
    pure subroutine stage_point(scheme, i, y0, rates, h, y)

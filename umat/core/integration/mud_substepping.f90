@@ -3,7 +3,7 @@ module mud_substepping
    use mud_kinds, only: wp
    use mud_consistent, only: sensitivity_t, propagate
    use mud_event_time, only: move_event
-   use mud_events, only: stop_at_event, EVENT_TOLERANCE, EVENT_NONE
+   use mud_events, only: stop_at_event, EVENT_TOLERANCE, EVENT_NONE, EVENT_MECHANISM
    use mud_increment, only: increment_t, void_ratio_at, suction_at
    use mud_params, only: params_t
    use mud_rates, only: MODE_ORDINARY
@@ -11,23 +11,32 @@ module mud_substepping
    use mud_state, only: state_t, counters_t
    use mud_status, only: mud_status_t, fail, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, &
       MUD_NOT_FINITE, ON_STRESS
-   use mud_substep, only: step_factor
+   use mud_substep, only: step_factor, SCHEMES, HIGHER_ORDER
    use mud_tensor, only: ddot, norm, is_finite
    use mud_trace, only: trace_t, record_substep, SUBSTEP_REJECTED, SUBSTEP_ACCEPTED, SUBSTEP_FAILED
    use mud_transitions, only: begin_substep, accept_substep
-   use mud_trial, only: trial_t, take_step, error_norm
+   use mud_trial, only: trial_t, take_step, error_norm, MODE_HELD
    implicit none (type, external)
    private
    public :: integrate
 
    real(wp), parameter :: ALIGNED = 1.0e-8_wp                !< Cosine this close to 1 is no turn [-].
-   real(wp), parameter :: TURN_PIECE = 0.7_wp   !< First substep where the domain turns, share of its radius [-].
+   !> From this on, some degrees, a turn of the domain is followed by the higher order: it is a transient that modified
+   !> Euler pays for with many substeps, and whose errors add up along turning paths [-].
+   real(wp), parameter :: SHARP = 1.0e-3_wp
+   !> First substep where the domain turns, share of its radius: a divisor of few round increments [-].
+   real(wp), parameter :: TURN_PIECE = 0.7_wp
+   !> The higher order's share of the tolerance: its steps are long, and their errors are what its estimate says, while
+   !> modified Euler's are smaller [-].
+   real(wp), parameter :: STRICTNESS = 0.3_wp
+   !> Modified Euler hands over to a higher order where more substeps than these are ahead: two rates each [-].
+   real(wp), parameter :: MANY_SUBSTEPS = 50.0_wp
    real(wp), parameter :: LAST_SLIVER = 1.0e-9_wp            !< A rest of this share joins the substep before it [-].
 contains
-   !> The loop over substeps.
+   !> The loop over substeps. On return inc has the scheme of the last one.
    pure subroutine integrate(par, inc, size, consistent, state, trial, sens, counters, reached, status, record)
       type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
+      type(increment_t), intent(inout) :: inc
       real(wp), intent(in) :: size                !< of the increment, in units of strain [-]
       logical, intent(in) :: consistent           !< derivatives are wanted
       type(state_t), intent(inout) :: state
@@ -37,7 +46,7 @@ contains
       real(wp), intent(out) :: reached
       type(mud_status_t), intent(out) :: status
       type(trace_t), intent(inout), optional :: record
-      real(wp) :: time, h, h_taken, error, factor
+      real(wp) :: time, h, h_taken, error, factor, tolerance
       integer :: elastic_substeps, jump, event
       logical :: may_grow, known
 
@@ -46,7 +55,8 @@ contains
       ! an elastic phase goes in one step if it can, and leaves the remembered step to the next plastic one
       if (state%last_step > 0.0_wp .and. state%last_step < size .and. .not. inc%inside) h = state%last_step/size
       ! a whole number of pieces, so that a small change of the strain does not change their size
-      if (turns(inc)) h = min(h, 1.0_wp/real(ceiling(min(norm(inc%d_strain)/(TURN_PIECE*inc%rho), 1.0e6_wp)), wp))
+      if (turns(inc, ALIGNED)) h = min(h, 1.0_wp/real(ceiling(min(norm(inc%d_strain)/(TURN_PIECE*inc%rho), 1.0e6_wp)), wp))
+      if (turns(inc, SHARP)) call raise_order(par, inc)
       may_grow = .true.
       elastic_substeps = 0
       known = .false.
@@ -66,6 +76,12 @@ contains
                return
             end if
             h = max(h, par%h_min)
+            if (MANY_SUBSTEPS*h < 1.0_wp - time) call raise_order(par, inc)
+            if (inc%scheme%order > SCHEMES(par%scheme)%order .and. trial%mode /= MODE_HELD) then
+               tolerance = STRICTNESS*par%tolerance
+            else
+               tolerance = par%tolerance
+            end if
             h_taken = h
             if (time + h*(1.0_wp + LAST_SLIVER) >= 1.0_wp) h_taken = 1.0_wp - time
             call take_step(par, inc, h_taken, trial, counters)
@@ -76,11 +92,11 @@ contains
                                    counters, record)
                return
             end if
-            factor = step_factor(inc%scheme, error, par%tolerance, may_grow)
-            if (error <= par%tolerance) exit attempts
+            factor = step_factor(inc%scheme, error, tolerance, may_grow)
+            if (error <= tolerance) exit attempts
             if (min(h, h_taken) <= par%h_min*(1.0_wp + LAST_SLIVER)) then
                if (.not. par%accept_minimum) then
-                  status = fail(MUD_MINIMUM_STEP, value=error, lower=0.0_wp, upper=par%tolerance)
+                  status = fail(MUD_MINIMUM_STEP, value=error, lower=0.0_wp, upper=tolerance)
                   call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), SUBSTEP_FAILED, jump, .false., &
                                       counters, record)
                   return
@@ -98,7 +114,7 @@ contains
          may_grow = .true.
 
          h = h_taken*factor
-         call stop_at_event(par, inc, h_taken, trial, counters, event)
+         call stop_at_event(par, inc, error, h_taken, trial, counters, event)
          if (trial%w(1)%no_root) elastic_substeps = elastic_substeps + 1
          if (elastic_substeps > 1 .and. par%memory_rule /= RULE_AS_PUBLISHED) then
             status = fail(MUD_NO_DIRECTION)
@@ -112,7 +128,10 @@ contains
          state%p_c = suction_at(inc, time)
          if (consistent) then
             call propagate(par, inc, trial, h_taken, time >= 1.0_wp, sens)
-            if (event /= EVENT_NONE .and. time < 1.0_wp) call move_event(par, inc, event, trial, h_taken, sens)
+            ! where the mechanism switches the rates are continuous: when that happens does not matter
+            if (event /= EVENT_NONE .and. event /= EVENT_MECHANISM .and. time < 1.0_wp) then
+               call move_event(par, inc, event, trial, h_taken, sens)
+            end if
          end if
          call accept_substep(par, inc, trial, state, counters)
          call record_substep(par, inc, trial, h_taken, error, state%sigma, SUBSTEP_ACCEPTED, jump, &
@@ -124,13 +143,23 @@ contains
       reached = 1.0_wp
    end subroutine integrate
 
-   !> True where the elastic domain turns at the start: the transient lasts about a radius of strain.
-   pure logical function turns(inc)
+   !> Modified Euler becomes the higher order for the rest of the increment or phase; the rule as_published keeps it.
+   pure subroutine raise_order(par, inc)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(inout) :: inc
+
+      if (inc%scheme%order < HIGHER_ORDER%order .and. par%memory_rule /= RULE_AS_PUBLISHED) inc%scheme = HIGHER_ORDER
+   end subroutine raise_order
+
+   !> True where the elastic domain turns at the start, its cosine with the strain below 1 - gap: the transient lasts
+   !> about a radius of strain.
+   pure logical function turns(inc, gap)
       type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: gap   !< [-]
 
       turns = .false.
       if (inc%rho > 0.0_wp .and. .not. inc%inside) then
-         turns = ddot(inc%from_centre, inc%d_strain) < (1.0_wp - ALIGNED)*inc%rho*norm(inc%d_strain)
+         turns = ddot(inc%from_centre, inc%d_strain) < (1.0_wp - gap)*inc%rho*norm(inc%d_strain)
       end if
    end function turns
 end module mud_substepping

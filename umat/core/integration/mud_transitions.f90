@@ -195,10 +195,24 @@ contains
       end if
       if (trial%mode == MODE_ORDINARY) then
          call stress_ratio(par, state%sigma, p, r)
-         call accept_process(par, trial%w(1)%loading, trial%w(1)%x, trial%w(1)%n, r, elastic_rate(inc, trial, r), &
-                             trial%y(13), state%memory)
+         associate (w => trial%w(latest_forwards(inc, trial)))
+            call accept_process(par, w%loading, w%x, w%n, r, elastic_rate(inc, trial, r), trial%y(13), state%memory)
+         end associate
       end if
    end subroutine accept_substep
+
+   !> The stage that tells how far a process has come: the last one of an ordinary substep, if it stands at its end and no
+   !> turn lies in between, otherwise the first.
+   pure integer function latest_forwards(inc, trial) result(stage)
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+
+      stage = 1
+      if (.not. inc%scheme%first_same_as_last) return
+      associate (last => trial%w(inc%scheme%stages))
+         if (last%loading .and. last%x >= 0.0_wp) stage = inc%scheme%stages
+      end associate
+   end function latest_forwards
 
    !> p' times the rate of the stress ratio if the whole strain were elastic. The part of the strain across the elastic
    !> domain turns the direction of loading, not the process: the whole strain tells where it goes.

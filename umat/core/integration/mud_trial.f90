@@ -14,6 +14,9 @@ module mud_trial
 
    integer, parameter :: MODE_HELD = 2   !< A substep held at p_min by the tension cut-off; see MODE_* of mud_rates.
    real(wp), parameter :: PLASTIC_SHEAR_SCALE = 0.01_wp   !< Of the error norm [-].
+   !> Errors of stresses below this share of p_atm count as if the stress were that large: 1e-5 of 0.1 kPa is nothing
+   !> that a host could see, and costs thousands of rates an update [-].
+   real(wp), parameter :: SMALL_STRESS = 0.01_wp
 
    !> A trial substep from one point.
    type :: trial_t
@@ -82,20 +85,22 @@ contains
       dy(13) = w%d_eps_q
    end subroutine store_rate
 
-   !> Relative error of a trial substep; the void ratio is exact.
+   !> Relative error of a trial substep; the void ratio is exact. A held point's is that of its stress, p_min times its
+   !> stress ratio.
    pure real(wp) function error_norm(par, scheme, trial, h) result(error)
       type(params_t), intent(in) :: par
       type(scheme_t), intent(in) :: scheme
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h
-      real(wp) :: delta(NY)
+      real(wp) :: delta(NY), smallest
 
+      smallest = max(par%p_min, SMALL_STRESS*par%p_atm)
       if (trial%mode == MODE_HELD) then
-         error = trial%held_error
+         error = trial%held_error*par%p_min/smallest
          return
       end if
       call error_vector(scheme, trial%rates, h, delta)
-      error = max(norm(delta(1:6))/max(norm(trial%y(1:6)), par%p_min), norm(delta(7:12))/par%z_max, &
+      error = max(norm(delta(1:6))/max(norm(trial%y(1:6)), smallest), norm(delta(7:12))/par%z_max, &
                   abs(delta(13))/PLASTIC_SHEAR_SCALE)
    end function error_norm
 end module mud_trial

@@ -70,7 +70,8 @@ contains
       w%k_e = w%k
       w%b_rate = 0.0_wp
       call load(par, d_v, d_e, d_norm, mode, w)
-      if (w%iso%a*w%d_p/w%p + w%iso%b*d_pc > 0.0_wp) then
+      w%iso_drive = w%iso%a*w%d_p/w%p + w%iso%b*d_pc
+      if (w%iso_drive > 0.0_wp) then
          w%iso_active = .true.
          w%k_e = w%k/(1.0_wp + w%k*w%iso%a/w%p)
          w%b_rate = w%iso%b*d_pc
