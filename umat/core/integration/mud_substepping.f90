@@ -96,7 +96,7 @@ contains
             if (error <= tolerance) exit attempts
             if (min(h, h_taken) <= par%h_min*(1.0_wp + LAST_SLIVER)) then
                if (.not. par%accept_minimum) then
-                  status = fail(MUD_MINIMUM_STEP, value=error, lower=0.0_wp, upper=tolerance)
+                  status = fail(MUD_MINIMUM_STEP, value=error, lower=0.0_wp, upper=par%tolerance)
                   call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), SUBSTEP_FAILED, jump, .false., &
                                       counters, record)
                   return

@@ -201,8 +201,8 @@ contains
       end if
    end subroutine accept_substep
 
-   !> The stage that tells how far a process has come: the last one of an ordinary substep, if it stands at its end and no
-   !> turn lies in between, otherwise the first.
+   !> The stage that tells how far a process has come: the last one of an ordinary substep, if it stands at its end and
+   !> no turn lies in between, otherwise the first.
    pure integer function latest_forwards(inc, trial) result(stage)
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
