@@ -12,6 +12,8 @@ FLOW, HARDENING, CRITICAL = "core/laws/mud_flow.f90", "core/laws/mud_hardening.f
 RETENTION, BONDING, ELASTIC = "core/laws/mud_retention.f90", "core/laws/mud_bonding.f90", "core/laws/mud_elastic.f90"
 PARAMS, REGISTRY, STATE = "core/base/mud_params.f90", "core/base/mud_registry.f90", "core/base/mud_state.f90"
 CONSISTENT = "core/integration/mud_consistent.f90"
+SUBSTEPPING = "core/integration/mud_substepping.f90"
+DRIVING = "core/integration/mud_driving.f90"
 
 MUTATIONS = [
     # those the issue names
@@ -62,8 +64,7 @@ MUTATIONS = [
     # rates and guards
     ("isotropic mechanism never rejected", (RATES, "w%b_rate < 0.0_wp) then", "w%b_rate < -huge(1.0_wp)) then")),
     ("isotropic mechanism acts in extension too",
-     (RATES, "if (w%iso%a*w%d_p/w%p + w%iso%b*d_pc > 0.0_wp) then",
-      "if (abs(w%iso%a*w%d_p/w%p + w%iso%b*d_pc) > 0.0_wp) then")),
+     (RATES, "if (w%iso_drive > 0.0_wp) then", "if (abs(w%iso_drive) > 0.0_wp) then")),
     ("no floor", (DIRECTION, "w%h_b = max(w%x, par%x_floor)/w%b_0", "w%h_b = max(w%x, 1.0e-15_wp)/w%b_0")),
     ("no contraction cap", (DIRECTION, "w%d = limit", "w%d = w%d")),
     ("softening cap twice as large", (DIRECTION, "w%h_b = limit\n", "w%h_b = 2.0_wp*limit\n")),
@@ -122,7 +123,10 @@ MUTATIONS = [
      (INCREMENT, "aside = inc%d_strain - loading", "aside = 0.0_wp*loading")),
     ("no bounding surface inside the elastic domain", (EVENTS, "LARGEST_EXCESS = 0.2_wp", "LARGEST_EXCESS = 1.0e9_wp")),
     ("the tangent does not know where the elastic domain ends",
-     (CONSISTENT, "change = side*change_of_exit", "change = 0.0_wp*side*change_of_exit")),
+     (DRIVING, "change(j) = change_of_exit", "change(j) = 0.0_wp*change_of_exit")),
+    # kinks of suction, and the step control
+    ("suction passes zero inside a substep", (PHASES, "share = -inc%p_c0/inc%d_pc", "share = 1.0_wp")),
+    ("modified Euler never hands over", (SUBSTEPPING, "MANY_SUBSTEPS = 50.0_wp", "MANY_SUBSTEPS = 1.0e9_wp")),
     # tables
     ("two parameters swapped", (PARAMS, "params%n_b = props(P_N_B)", "params%n_b = props(P_N_D)")),
     ("a default mistyped", (REGISTRY, "3370.0_wp", "3730.0_wp")),
