@@ -55,7 +55,9 @@ contains
       ! an elastic phase goes in one step if it can, and leaves the remembered step to the next plastic one
       if (state%last_step > 0.0_wp .and. state%last_step < size .and. .not. inc%inside) h = state%last_step/size
       ! a whole number of pieces, so that a small change of the strain does not change their size
-      if (turns(inc, ALIGNED)) h = min(h, 1.0_wp/real(ceiling(min(norm(inc%d_strain)/(TURN_PIECE*inc%rho), 1.0e6_wp)), wp))
+      if (turns(inc, ALIGNED)) then
+         h = min(h, 1.0_wp/real(ceiling(min(norm(inc%d_strain)/(TURN_PIECE*inc%rho), 1.0e6_wp)), wp))
+      end if
       if (turns(inc, SHARP)) call raise_order(par, inc)
       may_grow = .true.
       elastic_substeps = 0
