@@ -1,7 +1,7 @@
 !> Columns of the results: what they are called, what they mean, and their values at a point.
 module triax_columns
    use kinds, only: wp
-   use triax_course, only: course_t
+   use triax_stage_run, only: stage_run_t
    use triax_point, only: soil_t, point_t, void_ratio, saturation, state_value, mean_stress, deviator_stress, &
                           radial_stress, axial_strain, radial_strain, volumetric_strain, AXIAL
    implicit none (type, external)
@@ -76,10 +76,10 @@ contains
    end function columns_shown
 
    !> Values of all columns.
-   pure function values_of(soil, point, course, error, stage) result(values)
+   pure function values_of(soil, point, run, error, stage) result(values)
       type(soil_t), intent(in) :: soil
       type(point_t), intent(in) :: point
-      type(course_t), intent(in) :: course
+      type(stage_run_t), intent(in) :: run
       real(wp), intent(in) :: error      !< Largest of what is held since the row before, relative.
       integer, intent(in) :: stage
       real(wp) :: values(size(COLUMNS))
@@ -87,9 +87,9 @@ contains
       values = [axial_strain(point), volumetric_strain(point), mean_stress(point), deviator_stress(point), &
                 void_ratio(soil, point), saturation(soil, point), &
                 state_value(point, soil%i_n_substep), state_value(point, soil%i_n_reset), point%stress(AXIAL), &
-                radial_stress(point), radial_strain(point), point%suction, course%pressure, &
+                radial_stress(point), radial_strain(point), point%suction, run%pressure, &
                 state_value(point, soil%i_state_parameter), state_value(point, soil%i_n_rate), &
                 state_value(point, soil%i_n_reject), state_value(point, soil%i_n_guard), error, real(stage, wp), &
-                real(course%cycle, wp), course%r_u, point%stress, point%strain]
+                real(run%cycle, wp), run%r_u, point%stress, point%strain]
    end function values_of
 end module triax_columns

@@ -9,7 +9,7 @@ module triax_output
    use triax_case, only: case_t
    use triax_stage, only: general_control
    use triax_columns, only: column_t, COLUMNS, columns_shown, values_of
-   use triax_course, only: course_t
+   use triax_stage_run, only: stage_run_t
    use csv, only: csv_t, open_csv, write_line, close_csv
    use files, only: can_be_written
    use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, put, put_text
@@ -141,11 +141,11 @@ contains
       call remark(table, text(:index(text, ':') - 1), text(index(text, ':') + 2:), fault)
    end subroutine add_note
 
-   subroutine write_row(table, soil, point, course, error, stage, fault)
+   subroutine write_row(table, soil, point, run, error, stage, fault)
       type(table_t), intent(inout) :: table
       type(soil_t), intent(in) :: soil
       type(point_t), intent(in) :: point
-      type(course_t), intent(in) :: course
+      type(stage_run_t), intent(in) :: run
       real(wp), intent(in) :: error      !< Largest of what is held since the row before, relative.
       integer, intent(in) :: stage
       type(fault_t), intent(inout) :: fault
@@ -153,7 +153,7 @@ contains
       character(:), allocatable :: text
       integer :: i
 
-      values = values_of(soil, point, course, error, stage)
+      values = values_of(soil, point, run, error, stage)
       table%rows = table%rows + 1
       if (table%keeps) then
          call keep(table, values(table%shown))

@@ -1,11 +1,11 @@
-!> Runs a test: its stages one after the other, a row of the table where the course calls for one.
+!> Runs a test: its stages one after the other, a row of the table where a stage calls for one.
 module triax_run
    use faults, only: fault_t
    use kinds, only: wp
    use texts, only: whole
    use triax_case, only: case_t
    use triax_control, only: tally_t
-   use triax_course, only: course_t, begin_stage, next_increment, share_done
+   use triax_stage_run, only: stage_run_t, begin_stage, next_increment, share_done
    use triax_output, only: table_t, write_row, add_note, close_table
    use triax_point, only: point_t
    use triax_progress, only: timer_t, progress_is_due, show_progress
@@ -22,7 +22,7 @@ contains
       type(timer_t), intent(inout) :: timer
       type(point_t), intent(out) :: point     !< The sample at the end.
       type(fault_t), intent(inout) :: fault
-      type(course_t) :: course
+      type(stage_run_t) :: run
       type(fault_t) :: ending
       real(wp) :: pressure, share
       integer :: i
@@ -31,27 +31,27 @@ contains
       tally%max_updates = test%max_updates
       point = test%start
       pressure = 0.0_wp
-      call write_row(table, test%soil, point, course, 0.0_wp, 0, fault)
+      call write_row(table, test%soil, point, run, 0.0_wp, 0, fault)
       stages: do i = 1, size(test%stages)
          associate (stage => test%stages(i))
-            call begin_stage(test%soil, stage, point, pressure, course, fault)
+            call begin_stage(test%soil, stage, point, pressure, run, fault)
             if (fault%code /= 0) exit stages
-            do while (.not. course%finished)
-               call next_increment(test%soil, stage, course, point, tally, fault)
+            do while (.not. run%finished)
+               call next_increment(test%soil, stage, run, point, tally, fault)
                if (fault%code /= 0) exit stages
                tally%increments = tally%increments + 1
-               if (course%row) then
-                  call write_row(table, test%soil, point, course, tally%error, i, fault)
+               if (run%row) then
+                  call write_row(table, test%soil, point, run, tally%error, i, fault)
                   tally%error = 0.0_wp
                   if (fault%code /= 0) exit stages
                end if
-               share = (real(i - 1, wp) + share_done(course))/real(size(test%stages), wp)
+               share = (real(i - 1, wp) + share_done(run))/real(size(test%stages), wp)
                if (progress_is_due(timer, share)) call show_progress(timer, share, &
                   'stage '//whole(i)//' of '//whole(size(test%stages))//' ('// &
-                  trim(CONTROL_NAMES(stage%control))//')'//in_cycle(course))
+                  trim(CONTROL_NAMES(stage%control))//')'//in_cycle(run))
             end do
-            pressure = course%pressure
-            if (len_trim(course%note) > 0) call add_note(table, 'stage '//whole(i)//': '//trim(course%note), fault)
+            pressure = run%pressure
+            if (len_trim(run%note) > 0) call add_note(table, 'stage '//whole(i)//': '//trim(run%note), fault)
          end associate
       end do stages
 
@@ -64,11 +64,11 @@ contains
    end subroutine run_test
 
    !> ", cycle 3", or nothing.
-   pure function in_cycle(course) result(text)
-      type(course_t), intent(in) :: course
+   pure function in_cycle(run) result(text)
+      type(stage_run_t), intent(in) :: run
       character(:), allocatable :: text
 
       text = ''
-      if (course%cycle > 0) text = ', cycle '//whole(course%cycle)
+      if (run%cycle > 0) text = ', cycle '//whole(run%cycle)
    end function in_cycle
 end module triax_run

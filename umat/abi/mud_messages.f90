@@ -76,7 +76,7 @@ contains
          if (report%index < 1 .or. report%index > NPROPS) return
          text = 'parameter '//trim(PROPERTIES(report%index)%name)//' (PROPS '//trim(whole(report%index))//') is '// &
                 trim(number(report%value))//', allowed '//trim(lower)//' to '//trim(upper)
-         if (PROPERTIES(report%index)%kind /= KIND_REAL) text = trim(text)//', whole numbers only'
+         if (PROPERTIES(report%index)%kind /= KIND_REAL) text = trim(text)//', integers only'
          text = trim(text)//' (default '//trim(number(default_like(report)))//'): '//property_meaning(report%index)
       case (MUD_BAD_STATE)
          if (report%index < 1 .or. report%index > NSTATV) return

@@ -121,7 +121,7 @@ contains
       params%cutoff = whole(props(P_CUTOFF)) == 1 .and. .not. published
    end subroutine read_params
 
-   !> Names the first entry that is not finite, out of its bounds or not the whole number it should be.
+   !> Names the first entry that is not finite, out of its bounds or not the integer it should be.
    pure subroutine check_props(props, status)
       real(wp), intent(in) :: props(NPROPS)
       type(mud_status_t), intent(out) :: status
@@ -155,14 +155,14 @@ contains
                                (props(P_P_MIN) <= 0.0_wp .or. props(P_P_MIN) >= SMALLEST_MINIMUM)
    end function no_fault
 
-   !> The whole number nearest to one that is not negative: nint without a call.
+   !> The integer nearest to a number that is not negative: nint without a call.
    pure elemental integer function whole(value)
       real(wp), intent(in) :: value
 
       whole = int(value + 0.5_wp)
    end function whole
 
-   !> Finite, within the bounds and, for switches, options and counts, a whole number.
+   !> Finite, within the bounds and, for switches, options and counts, an integer.
    pure logical function acceptable(i, value, low, high)
       integer, intent(in) :: i
       real(wp), intent(in) :: value, low, high

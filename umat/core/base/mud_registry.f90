@@ -36,7 +36,7 @@ module mud_registry
       character(16) :: name    !< Name in input files and in the C interface.
       character(12) :: symbol  !< Symbol in the theory.
       character(10) :: unit    !< Unit, 1 if it has none.
-      integer :: kind          !< KIND_REAL, KIND_SWITCH (0 or 1), KIND_OPTION or KIND_COUNT (whole numbers).
+      integer :: kind          !< KIND_REAL, KIND_SWITCH (0 or 1), KIND_OPTION or KIND_COUNT (integers).
       real(wp) :: lower        !< Smallest allowed value (kPa, kPa^lambda: at the default p_atm).
       real(wp) :: upper        !< Largest allowed value, likewise.
       real(wp) :: default      !< Value of the paper, or ours; likewise.

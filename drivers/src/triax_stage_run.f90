@@ -1,8 +1,8 @@
-!> The course of a stage: one way, or the ways between the reversals of its cycles, and what ends it early.
+!> How a stage runs: one way, or the ways between the reversals of its cycles, and what ends it early.
 !>
 !> Strain cycles reverse at given strains. Stress cycles drive the strain until the stress is reached, which is found
 !> within the increment: a liquefied sample has no stiffness to solve with, but a strain can always be driven.
-module triax_course
+module triax_stage_run
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use faults, only: fault_t, raise, EXIT_RUN
    use texts, only: short, whole
@@ -11,7 +11,7 @@ module triax_course
    use triax_point, only: soil_t, point_t, AXIAL, RADIAL
    implicit none (type, external)
    private
-   public :: course_t, begin_stage, next_increment, share_done
+   public :: stage_run_t, begin_stage, next_increment, share_done
 
    !> A reversal stress is met to this share of the amplitude; the library's own tolerance is 1e-5 of the stress.
    real(wp), parameter :: REVERSAL_TOLERANCE = 1.0e-7_wp
@@ -20,7 +20,7 @@ module triax_course
    real(wp), parameter :: ON_GRID = 1.0e-6_wp              !< Share of an output interval that counts as none: rounding.
 
    !> Where a stage is.
-   type :: course_t
+   type :: stage_run_t
       type(plan_t) :: plan
       logical :: finished = .false.
       logical :: row = .false.             !< The last increment calls for a row of the output.
@@ -35,24 +35,24 @@ module triax_course
       real(wp) :: pressure_start = 0.0_wp
       real(wp) :: r_u = 0.0_wp             !< Pore pressure that has built up in this stage over `confining` [-].
       character(200) :: note = ''          !< How it ended, where that is not plain.
-   end type course_t
+   end type stage_run_t
 
 contains
    !> Lays out a stage from where the sample is.
-   subroutine begin_stage(soil, stage, point, pressure, course, fault)
+   subroutine begin_stage(soil, stage, point, pressure, run, fault)
       type(soil_t), intent(in) :: soil
       type(stage_t), intent(in) :: stage
       type(point_t), intent(in) :: point
       real(wp), intent(in) :: pressure   !< Excess pore pressure so far [kPa].
-      type(course_t), intent(out) :: course
+      type(stage_run_t), intent(out) :: run
       type(fault_t), intent(inout) :: fault
 
-      course%pressure = pressure
-      course%pressure_start = pressure
-      course%confining = confining_stress(stage, point)
-      course%sealed = sealed_control(stage%control) .and. point%suction <= 0.0_wp .and. &
+      run%pressure = pressure
+      run%pressure_start = pressure
+      run%confining = confining_stress(stage, point)
+      run%sealed = sealed_control(stage%control) .and. point%suction <= 0.0_wp .and. &
                       .not. (stage%moves_suction .and. stage%suction_end > 0.0_wp)
-      if (stage%stop_r_u > 0.0_wp .and. .not. course%sealed) then
+      if (stage%stop_r_u > 0.0_wp .and. .not. run%sealed) then
          call raise(fault, EXIT_RUN, 'stop_r_u needs a saturated sample; the suction is '//short(point%suction)// &
                     ' kPa.')
       else if (stage%keeps_water .and. point%suction <= 0.0_wp) then
@@ -60,121 +60,121 @@ contains
                     'A saturated sample keeps its water where its volume is held (undrained).')
       end if
       if (stage%cycles > 0) then
-         course%centre = quantity(soil, stage, stage%cycle_by, point)
-         if (stage%has_centre) course%centre = stage%centre
-         course%ways = 2*stage%cycles + 1
-         course%open = stage%cycle_by /= stage%lead
+         run%centre = quantity(soil, stage, stage%cycle_by, point)
+         if (stage%has_centre) run%centre = stage%centre
+         run%ways = 2*stage%cycles + 1
+         run%open = stage%cycle_by /= stage%lead
       end if
-      call next_way(soil, stage, point, course)
+      call next_way(soil, stage, point, run)
    end subroutine begin_stage
 
-   !> One increment; at its end the course knows whether it calls for a row and whether the stage is over.
-   subroutine next_increment(soil, stage, course, point, tally, fault)
+   !> One increment; at its end the run of the stage says whether it calls for a row and whether the stage is over.
+   subroutine next_increment(soil, stage, run, point, tally, fault)
       type(soil_t), intent(in) :: soil
       type(stage_t), intent(in) :: stage
-      type(course_t), intent(inout) :: course
+      type(stage_run_t), intent(inout) :: run
       type(point_t), intent(inout) :: point
       type(tally_t), intent(inout) :: tally
       type(fault_t), intent(inout) :: fault
       type(point_t) :: before
       logical :: arrived
 
-      course%k = course%k + 1
-      if (course%open) then
+      run%k = run%k + 1
+      if (run%open) then
          before = point
-         call advance(soil, course%plan, course%k, 1.0_wp, point, tally, fault)
+         call advance(soil, run%plan, run%k, 1.0_wp, point, tally, fault)
          if (fault%code /= 0) return
-         arrived = missing(soil, stage, course, point) <= 0.0_wp
-         if (arrived) call find_goal(soil, stage, course, before, point, tally, fault)
+         arrived = missing(soil, stage, run, point) <= 0.0_wp
+         if (arrived) call find_goal(soil, stage, run, before, point, tally, fault)
          if (fault%code /= 0) return
-         if (.not. arrived .and. course%k*stage%increment >= MAX_WAY) then
+         if (.not. arrived .and. run%k*stage%increment >= MAX_WAY) then
             call raise(fault, EXIT_RUN, trim(QUANTITIES(stage%cycle_by)%name)//' does not reach '// &
-                       short(course%goal)//' kPa in cycle '//whole(course%cycle)// &
+                       short(run%goal)//' kPa in cycle '//whole(run%cycle)// &
                        ': after a strain of '//short(MAX_WAY)//' it is '// &
                        short(quantity(soil, stage, stage%cycle_by, point))// &
                        ' kPa. Lower the amplitude, or end the stage with stop_r_u or stop_double_amplitude.')
             return
          end if
       else
-         call advance(soil, course%plan, course%k, 1.0_wp, point, tally, fault)
+         call advance(soil, run%plan, run%k, 1.0_wp, point, tally, fault)
          if (fault%code /= 0) return
-         arrived = course%k >= course%plan%increments
+         arrived = run%k >= run%plan%increments
       end if
-      course%row = arrived .or. passes(lead(course%plan, course%k - 1), lead(course%plan, course%k), stage%interval)
-      if (course%sealed) then
-         course%pressure = course%pressure_start + course%confining - confining_stress(stage, point)
-         course%r_u = (course%pressure - course%pressure_start)/course%confining
+      run%row = arrived .or. passes(lead(run%plan, run%k - 1), lead(run%plan, run%k), stage%interval)
+      if (run%sealed) then
+         run%pressure = run%pressure_start + run%confining - confining_stress(stage, point)
+         run%r_u = (run%pressure - run%pressure_start)/run%confining
       end if
-      if (arrived) call next_way(soil, stage, point, course)
-      if (course%sealed .and. stage%stop_r_u > 0.0_wp .and. course%r_u >= stage%stop_r_u) then
+      if (arrived) call next_way(soil, stage, point, run)
+      if (run%sealed .and. stage%stop_r_u > 0.0_wp .and. run%r_u >= stage%stop_r_u) then
          call stop_early('pore pressure ratio '//short(stage%stop_r_u))
       else if (stage%stop_double_amplitude > 0.0_wp .and. .not. arrived .and. &
-               abs(quantity(soil, stage, stage%lead, point) - course%plan%lead_start) >= &
+               abs(quantity(soil, stage, stage%lead, point) - run%plan%lead_start) >= &
                stage%stop_double_amplitude) then
          call stop_early('double amplitude '//short(stage%stop_double_amplitude))
-      else if (course%finished .and. stage%stop_r_u + stage%stop_double_amplitude > 0.0_wp) then
-         course%note = 'went to its end without being stopped'
+      else if (run%finished .and. stage%stop_r_u + stage%stop_double_amplitude > 0.0_wp) then
+         run%note = 'went to its end without being stopped'
       end if
    contains
       subroutine stop_early(what)
          character(*), intent(in) :: what
 
-         course%finished = .true.
-         course%row = .true.
-         course%note = what//' reached'
-         if (course%cycle > 0) course%note = what//' reached in cycle '//whole(course%cycle)
+         run%finished = .true.
+         run%row = .true.
+         run%note = what//' reached'
+         if (run%cycle > 0) run%note = what//' reached in cycle '//whole(run%cycle)
       end subroutine stop_early
    end subroutine next_increment
 
    !> Begins the next way, or finishes the stage after the last one.
-   subroutine next_way(soil, stage, point, course)
+   subroutine next_way(soil, stage, point, run)
       type(soil_t), intent(in) :: soil
       type(stage_t), intent(in) :: stage
       type(point_t), intent(in) :: point
-      type(course_t), intent(inout) :: course
+      type(stage_run_t), intent(inout) :: run
 
-      if (course%way == course%ways) then
-         course%finished = .true.
+      if (run%way == run%ways) then
+         run%finished = .true.
          return
       end if
-      course%way = course%way + 1
-      course%k = 0
-      course%goal = stage%target
+      run%way = run%way + 1
+      run%k = 0
+      run%goal = stage%target
       if (stage%cycles > 0) then
          ! Ways 1, 2, 3, ...: to +A, -A, +A, ...; the last one to the centre.
-         course%cycle = (course%way + 1)/2
-         course%goal = course%centre + merge(stage%amplitude, -stage%amplitude, mod(course%way, 2) == 1)
-         if (course%way == course%ways) then
-            course%goal = course%centre
-            course%cycle = stage%cycles
+         run%cycle = (run%way + 1)/2
+         run%goal = run%centre + merge(stage%amplitude, -stage%amplitude, mod(run%way, 2) == 1)
+         if (run%way == run%ways) then
+            run%goal = run%centre
+            run%cycle = stage%cycles
          end if
       end if
-      if (course%open) then
-         course%direction = sign(1.0_wp, course%goal - quantity(soil, stage, stage%cycle_by, point))
-         call plan_way(soil, stage, quantity(soil, stage, stage%lead, point) + course%direction*stage%increment, &
-                       point, course%plan)
-         course%plan%increments = 1
+      if (run%open) then
+         run%direction = sign(1.0_wp, run%goal - quantity(soil, stage, stage%cycle_by, point))
+         call plan_way(soil, stage, quantity(soil, stage, stage%lead, point) + run%direction*stage%increment, &
+                       point, run%plan)
+         run%plan%increments = 1
       else
-         call plan_way(soil, stage, course%goal, point, course%plan)
-         course%finished = course%plan%increments == 0
+         call plan_way(soil, stage, run%goal, point, run%plan)
+         run%finished = run%plan%increments == 0
       end if
    end subroutine next_way
 
    !> How far the stress of a cycle still has to go [kPa].
-   pure real(wp) function missing(soil, stage, course, point)
+   pure real(wp) function missing(soil, stage, run, point)
       type(soil_t), intent(in) :: soil
       type(stage_t), intent(in) :: stage
-      type(course_t), intent(in) :: course
+      type(stage_run_t), intent(in) :: run
       type(point_t), intent(in) :: point
 
-      missing = course%direction*(course%goal - quantity(soil, stage, stage%cycle_by, point))
+      missing = run%direction*(run%goal - quantity(soil, stage, stage%cycle_by, point))
    end function missing
 
    !> The part of an increment after which the stress of a cycle is reached: regula falsi with bisection (Illinois).
-   subroutine find_goal(soil, stage, course, before, point, tally, fault)
+   subroutine find_goal(soil, stage, run, before, point, tally, fault)
       type(soil_t), intent(in) :: soil
       type(stage_t), intent(in) :: stage
-      type(course_t), intent(inout) :: course
+      type(stage_run_t), intent(inout) :: run
       type(point_t), intent(in) :: before
       type(point_t), intent(inout) :: point
       type(tally_t), intent(inout) :: tally
@@ -183,18 +183,18 @@ contains
       integer :: i, last
 
       low = 0.0_wp
-      at_low = missing(soil, stage, course, before)
+      at_low = missing(soil, stage, run, before)
       high = 1.0_wp
-      at_high = missing(soil, stage, course, point)
+      at_high = missing(soil, stage, run, point)
       last = 0
       if (abs(at_high) <= REVERSAL_TOLERANCE*abs(stage%amplitude)) return
       do i = 1, MAX_SEARCH
          share = low + (high - low)*at_low/max(at_low - at_high, tiny(at_low))
          if (.not. (share > low .and. share < high)) share = 0.5_wp*(low + high)
          point = before
-         call advance(soil, course%plan, course%k, share, point, tally, fault)
+         call advance(soil, run%plan, run%k, share, point, tally, fault)
          if (fault%code /= 0) return
-         here = missing(soil, stage, course, point)
+         here = missing(soil, stage, run, point)
          if (abs(here) <= REVERSAL_TOLERANCE*abs(stage%amplitude)) exit
          if (here > 0.0_wp) then
             low = share
@@ -220,12 +220,12 @@ contains
    end function confining_stress
 
    !> Share of the stage that is done, for the progress report.
-   pure real(wp) function share_done(course)
-      type(course_t), intent(in) :: course
+   pure real(wp) function share_done(run)
+      type(stage_run_t), intent(in) :: run
 
-      share_done = real(course%way - 1, wp)
-      if (.not. course%open) share_done = share_done + real(course%k, wp)/real(max(course%plan%increments, 1), wp)
-      share_done = min(share_done/real(course%ways, wp), 1.0_wp)
+      share_done = real(run%way - 1, wp)
+      if (.not. run%open) share_done = share_done + real(run%k, wp)/real(max(run%plan%increments, 1), wp)
+      share_done = min(share_done/real(run%ways, wp), 1.0_wp)
    end function share_done
 
    !> True if a multiple of the interval lies after `before` and not after `now`, whichever way the lead goes.
@@ -243,4 +243,4 @@ contains
          floored = x - modulo(x, 1.0_wp)
       end function floored
    end function passes
-end module triax_course
+end module triax_stage_run
