@@ -37,7 +37,7 @@ def page(name):
 INDENTATION, CONTACT = page("indentation") + "indent_s030.nml", page("contact")
 SHORT = ("duration = 0.03999", "duration = 0.0012\n   fields = 20")
 IMPACT = ("times = 2, 2.014, 2.028", "times = 2, 2.0004, 2.0008")   # so that contact is lost within the short run
-RULE = ("toyoura.nml'", "toyoura.nml'\n   memory_rule = 1")
+RULE = ("toyoura.nml'", "toyoura.nml'\n   memory_rule = 1\n   rho_e = 0")
 SATURATED = [("= 'u-p_w-p_c'", "= 'u-p_w'"),
              ("p_w = -30\n   p_c = 30", "p_w = 0\n   p_w_slope = -9.78057\n   surcharge = 0.5"),
              ("   field = 'p_w'\n   value = -30", "   field = 'p_w'"),
