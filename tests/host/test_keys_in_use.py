@@ -1,4 +1,4 @@
-"""Every key of scenes and cases is used by a test, a page or a case, for one without use has no proof that it works; the
+"""Every key of scenes and cases is used by a test, a page or a case: one without use has no proof that it works. The
 orderings of the unknowns give one answer."""
 import pathlib
 import re
