@@ -27,8 +27,8 @@ program mud_host
    use faults, only: fault_t, raise, EXIT_INPUT
    use texts, only: short, whole
    implicit none (type, external)
-   character(*), parameter :: USAGE = 'usage: mud_host SCENE.nml [--output FOLDER] [--restart CHECKPOINT] '// &
-                              '[--accuracy SHARE] [--verify] [--quiet] [--check] | --template'
+   character(*), parameter :: USAGE = 'usage: mud_host SCENE.nml [--output FOLDER] [--restart FILE] '// &
+                              '[--accuracy A] [--verify] [--quiet] [--check] | --template'
    type(option_t) :: options(8) = [ &
       option_t('--help', letter='-h', answers=.true.), &
       option_t('--template', answers=.true.), &
@@ -101,8 +101,8 @@ contains
       character(*), parameter :: LINES(10) = [character(100) :: &
          '  --output FOLDER       where files go, made if missing; default: output, with --restart that of the', &
          '                        checkpoint', &
-         '  --restart CHECKPOINT  goes on from a checkpoint of the same scene', &
-         '  --accuracy SHARE      relative error wanted in the histories of the points; in place of the key', &
+         '  --restart FILE        goes on from a checkpoint of the same scene', &
+         '  --accuracy A          relative error wanted in the histories of the points; in place of the key', &
          '                        accuracy of &scene', &
          '  --verify              repeats the run at a quarter of the accuracy and tells the difference as the', &
          '                        error; needs points, controlled steps, no --restart', &
