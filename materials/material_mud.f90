@@ -41,6 +41,7 @@ module material_mud
       procedure :: saturation
       procedure :: retention
       procedure :: save_update
+      procedure :: elastic_tangent
       procedure :: remarks
    end type mud_t
 contains
@@ -212,6 +213,19 @@ contains
       sat = saturation_t()
       if (mud_saturation(self%prepared, p_c, e, sat%s, sat%ds_dpc, sat%ds_de) /= 0) sat = saturation_t()
    end function retention
+
+   subroutine elastic_tangent(self, stress, state, suction, tangent)
+      class(mud_t), intent(in) :: self
+      real(wp), intent(in) :: stress(6), state(:), suction
+      real(wp), intent(out) :: tangent(6, 6)
+      real(wp) :: no_strain(6), stress1(6), state1(self%n_state), dsig_dpc(6), dsw_deps(6), dsw_dpc
+      type(mud_report) :: report
+
+      no_strain = 0.0_wp
+      if (mud_update_prepared(self%prepared, stress, state(:self%n_state), self%n_state, no_strain, suction, 0.0_wp, &
+                              MUD_TANGENT_ELASTIC, stress1, state1, tangent, dsig_dpc, dsw_deps, dsw_dpc, report) /= 0) &
+         tangent = 0.0_wp
+   end subroutine elastic_tangent
 
    subroutine save_update(self, path, origin, stress, state, strain, suction, d_suction, text)
       class(mud_t), intent(in) :: self

@@ -64,6 +64,7 @@ module material_point
       procedure(of_state_i), deferred :: void_ratio
       procedure(of_state_i), deferred :: saturation
       procedure :: retention => retention_by_curve
+      procedure :: elastic_tangent => tangent_at_rest
       procedure :: save_update => cannot_save
       procedure :: remarks => no_remarks
    end type material_t
@@ -136,6 +137,22 @@ contains
       sat = saturation_t()
       if (allocated(self%curve)) sat = self%curve%at(p_c, e)
    end function retention_by_curve
+
+   !> d stress/d strain [kPa] of a point that would respond elastically: the stiffness to fall back on where the true one
+   !> vanishes. Of laws that do not know it, that of an increment without strain; zero where the law refuses.
+   subroutine tangent_at_rest(self, stress, state, suction, tangent)
+      class(material_t), intent(in) :: self
+      real(wp), intent(in) :: stress(6), state(:), suction   !< [kPa], n_state or more, [kPa]
+      real(wp), intent(out) :: tangent(6, 6)
+      type(response_t) :: response
+      real(wp) :: new_state(size(state), 1), no_strain(6, 1)
+
+      tangent = 0.0_wp
+      no_strain = 0.0_wp
+      call self%update(1, reshape(stress, [6, 1]), reshape(state, [size(state), 1]), no_strain, [suction], [0.0_wp], &
+                       WITH_TANGENT, response, new_state)
+      if (response%report%code == 0) tangent = response%dsig_deps(:, :, 1)
+   end subroutine tangent_at_rest
 
    !> Writes an update to a new file that can be run alone; `text` says why not. Laws that can override it.
    subroutine cannot_save(self, path, origin, stress, state, strain, suction, d_suction, text)

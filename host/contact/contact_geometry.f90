@@ -2,13 +2,16 @@
 !> do. docs/theory/contact.md section 2.
 module contact_geometry
    use contact_projection, only: edge_of, least_stretch
-   use contact_types, only: wp, NODAL_GAP, POINTWISE_GAP, PRESSURE_WORK, ENERGY_SLOPE, contact_options_t, &
+   use contact_types, only: wp, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, PRESSURE_WORK, ENERGY_SLOPE, contact_options_t, &
                             contact_status_t, contact_fail, is_finite, CONTACT_OK, CONTACT_BAD_OPTION, &
                             CONTACT_BAD_EDGE, CONTACT_BAD_SIZE, CONTACT_NOT_FINITE, CONTACT_BAD_RADIUS, &
                             CONTACT_DISTORTED_EDGE
    implicit none (type, external)
    private
    public :: contact_geometry_t, contact_prepare, check_coordinates
+
+   !> A tangent of this share of half the chord is none: rounding of a fold leaves 1e-8, the root of 1e-16.
+   real(wp), parameter :: LEAST_STRETCH_LENGTH = 1.0e-6_wp
 
    !> Two surfaces that may meet, prepared once. Unknowns are numbered 2 (node - 1) + direction, first the slave's
    !> nodes, then the master's.
@@ -55,7 +58,7 @@ contains
          status = contact_fail(CONTACT_BAD_OPTION, value=options%penalty)
       else if (options%search_radius < 0.0_wp) then
          status = contact_fail(CONTACT_BAD_OPTION, value=options%search_radius)
-      else if (all(options%gap /= [NODAL_GAP, POINTWISE_GAP])) then
+      else if (all(options%gap /= [NODAL_GAP, POINTWISE_GAP, COMBINED_GAP])) then
          status = contact_fail(CONTACT_BAD_OPTION, value=real(options%gap, wp))
       else if (all(options%variation /= [PRESSURE_WORK, ENERGY_SLOPE])) then
          status = contact_fail(CONTACT_BAD_OPTION, value=real(options%variation, wp))
@@ -134,7 +137,7 @@ contains
       end do
       do i = 1, size(edges, 2)
          stretch = least_stretch(edge_of(x(:, edges(:, i))))
-         if (stretch > 0.0_wp) cycle
+         if (stretch > LEAST_STRETCH_LENGTH) cycle
          status = contact_fail(CONTACT_DISTORTED_EDGE, i, master, stretch)
          return
       end do

@@ -12,7 +12,7 @@ module contact_interfaces
    implicit none (type, external)
    private
    public :: contacts_t, contact_interface_t, surface_t, surface_of, new_interface, plate_surface
-   public :: evaluate_contacts, probe_contacts, probe_interface, fit_pattern, add_contacts, work_of_contacts
+   public :: evaluate_contacts, probe_contacts, probe_interface, fit_pattern, add_contacts, contact_forces, work_of_contacts
 
    !> A boundary with numbers of its own.
    type :: surface_t
@@ -32,6 +32,7 @@ module contact_interfaces
       type(surface_t) :: slave, master
       integer, allocatable :: unknown(:)    !< Of every unknown of the kernel, or of slave and plate; 0: none.
       logical :: acts = .true.              !< In this stage.
+      logical :: told = .false.             !< Its warning has been given.
       ! Outcome of the last evaluation within a step.
       real(wp) :: thrust = 0.0_wp           !< Vertical force on the master, upwards [kN].
       real(wp) :: energy = 0.0_wp           !< Of the penalty [kJ].
@@ -263,19 +264,30 @@ contains
       type(contacts_t), intent(inout) :: contacts
       type(dofs_t), intent(in) :: dofs
       real(wp), intent(in) :: x0(:, :), x1(:, :)
-      real(wp) :: force(dofs%n)
+      real(wp), allocatable :: before(:), force(:)
       integer :: i
 
       work = 0.0_wp
-      force = 0.0_wp
-      if (.not. probe_contacts(contacts, x0)) return
-      call gather_probes()
-      if (.not. probe_contacts(contacts, x1)) return
-      call gather_probes()
+      if (.not. contact_forces(contacts, dofs, x0, before)) return
+      if (.not. contact_forces(contacts, dofs, x1, force)) return
+      force = before + force
       do i = 1, dofs%n
          if (dofs%field(i) > DISPLACEMENTS) cycle
          work = work + 0.5_wp*force(i)*(x1(dofs%field(i), dofs%node(i)) - x0(dofs%field(i), dofs%node(i)))
       end do
+   end function work_of_contacts
+
+   !> Forces of the contacts at given displacements, to be added to the internal ones; false if a kernel refuses them.
+   !> The outcome of the last evaluation within the step stays.
+   logical function contact_forces(contacts, dofs, x, force) result(good)
+      type(contacts_t), intent(inout) :: contacts
+      type(dofs_t), intent(in) :: dofs
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes)
+      real(wp), allocatable, intent(out) :: force(:)   !< Of every unknown [kN].
+
+      allocate (force(dofs%n), source=0.0_wp)
+      good = probe_contacts(contacts, x)
+      if (good) call gather_probes()
    contains
       subroutine gather_probes()
          integer :: c, n
@@ -303,5 +315,5 @@ contains
             if (u(k) > 0) force(u(k)) = force(u(k)) + f(k)
          end do
       end subroutine gather
-   end function work_of_contacts
+   end function contact_forces
 end module contact_interfaces

@@ -231,12 +231,14 @@ contains
 
    !> What a pair of edges adds to the three slave nodes: weight int M 2 pi r dGamma and weight times gap, their
    !> derivatives, and push(:, A) = int M (nu N_s, -nu N_m) 2 pi r ds, the nodal forces of a unit pressure at node A.
-   pure subroutine pair_gaps(x, overlap, axisymmetric, weight, weighted_gap, d_weight, d_weighted_gap, push, missed)
+   pure subroutine pair_gaps(x, overlap, axisymmetric, weight, weighted_gap, d_weight, d_weighted_gap, push, deepest, &
+                             missed)
       real(wp), intent(in) :: x(2, 6)
       type(overlap_t), intent(in) :: overlap
       logical, intent(in) :: axisymmetric
       real(wp), intent(out) :: weight(3), weighted_gap(3)                             !< [m2], [m3] (plane: m, m2)
       real(wp), intent(out) :: d_weight(12, 3), d_weighted_gap(12, 3), push(12, 3)
+      real(wp), intent(out) :: deepest   !< Least gap of the points, if below 0 [m].
       real(wp), intent(out) :: missed
       type(point_t) :: p
       real(wp) :: m(3), dm(3), unit_push(12)
@@ -247,12 +249,14 @@ contains
       d_weight = 0.0_wp
       d_weighted_gap = 0.0_wp
       push = 0.0_wp
+      deepest = 0.0_wp
       do segment = 1, overlap%segments
          do k = 1, POINTS
             call integration_point(x, overlap, segment, k, axisymmetric, p, missed)
             if (missed > 0.0_wp) return
             m = hats(p%s)
             dm = hat_slopes(p%s)
+            deepest = min(deepest, p%phi/p%length)
             unit_push(1:5:2) = p%t(2)*p%ns
             unit_push(2:6:2) = -p%t(1)*p%ns
             unit_push(7:11:2) = -p%t(2)*p%nm

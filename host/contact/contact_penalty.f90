@@ -6,19 +6,21 @@ module contact_penalty
    use contact_projection, only: edge_t, edge_of, place, tangent
    use contact_response, only: response_t, pair_response
    use contact_search, only: search_t, prepare_search, find_candidates
-   use contact_types, only: wp, TWO_PI, NODAL_GAP, POINTWISE_GAP, PRESSURE_WORK, contact_status_t, contact_fail, &
-                            CONTACT_OK, CONTACT_NO_PROJECTION
+   use contact_types, only: wp, TWO_PI, NODAL_GAP, POINTWISE_GAP, PRESSURE_WORK, contact_options_t, contact_status_t, &
+                            contact_fail, CONTACT_OK, CONTACT_NO_PROJECTION
    implicit none (type, external)
    private
    public :: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate
 
    integer, parameter :: FIRST_ROOM = 1024   !< Triplets to begin with.
+   real(wp), parameter :: POINTWISE_SHARE = 0.5_wp   !< Of the penalty, where both gaps are penalised [-].
 
    !> A slave edge with a master edge opposite.
    type :: pair_t
       integer :: slave = 0, master = 0
       type(overlap_t) :: overlap
       real(wp) :: d_weight(12, 3) = 0.0_wp, d_weighted_gap(12, 3) = 0.0_wp, push(12, 3) = 0.0_wp
+      real(wp) :: deepest = 0.0_wp              !< Least gap, if below 0 [m].
    end type pair_t
 
    !> Room for an evaluation; what it holds between two is of no meaning.
@@ -46,6 +48,8 @@ module contact_penalty
       real(wp), allocatable :: pressure(:)      !< p_A >= 0 [kPa]
       logical, allocatable :: active(:)         !< p_A > 0
       integer :: changed = 0                    !< Nodes whose `active` differs from the evaluation before.
+      real(wp) :: unpressed = 0.0_wp            !< Deepest penetration without pressure, over its edge [-],
+      real(wp) :: unpressed_at(2) = 0.0_wp      !< in the middle of this edge [m].
       integer :: pairs = 0                      !< Pairs of edges opposite each other.
       integer :: checks = 0                     !< Pairs of boxes the search compared.
    end type contact_result_t
@@ -161,7 +165,7 @@ contains
                pair%slave = e
                pair%master = master
                call pair_gaps(x, pair%overlap, geometry%options%axisymmetric, weight, weighted_gap, pair%d_weight, &
-                              pair%d_weighted_gap, pair%push, missed)
+                              pair%d_weighted_gap, pair%push, pair%deepest, missed)
                if (missed > 0.0_wp) then
                   status = contact_fail(CONTACT_NO_PROJECTION, e, .false., missed)
                   return
@@ -190,54 +194,115 @@ contains
       type(contact_workspace_t), intent(inout) :: work
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
-      type(response_t) :: response
-      real(wp) :: x(2, 6), missed
-      integer :: unknown(12), i, j
+      type(contact_options_t) :: nodal, pointwise
+      real(wp) :: x(2, 6)
+      integer :: i
 
       result%pressure = 0.0_wp
+      result%unpressed = 0.0_wp
       work%load = 0.0_wp
-      if (geometry%options%gap == NODAL_GAP) then
-         result%pressure = geometry%options%penalty*max(-result%gap, 0.0_wp)
-         result%energy = sum(0.5_wp*result%weight*result%pressure**2)/geometry%options%penalty
+      call share_penalty(geometry%options, nodal, pointwise)
+      if (nodal%penalty > 0.0_wp) then
+         result%pressure = nodal%penalty*max(-result%gap, 0.0_wp)
+         result%energy = sum(0.5_wp*result%weight*result%pressure**2)/nodal%penalty
       end if
       do i = 1, result%pairs
          associate (pair => work%pair(i), nodes => geometry%slave_edges(:, work%pair(i)%slave))
-            if (geometry%options%gap == NODAL_GAP .and. .not. any(result%pressure(nodes) > 0.0_wp)) cycle
             x(:, 1:3) = slave_x(:, nodes)
             x(:, 4:6) = master_x(:, geometry%master_edges(:, pair%master))
-            call pair_response(x, pair%overlap, geometry%options, result%pressure(nodes), with_tangent, response, &
-                               missed)
-            if (missed > 0.0_wp) then
-               status = contact_fail(CONTACT_NO_PROJECTION, pair%slave, .false., missed)
-               return
+            if (any(result%pressure(nodes) > 0.0_wp)) then
+               call add_pair(geometry, nodal, pair, x, with_tangent, work%load, result, status)
+            else if (.not. pointwise%penalty > 0.0_wp .and. pair%deepest < 0.0_wp) then
+               call note_unpressed(-pair%deepest, x, result)
             end if
-            unknown = unknowns_of(geometry, pair)
-            result%force(unknown) = result%force(unknown) + response%force
-            if (geometry%options%gap == POINTWISE_GAP) then
-               result%energy = result%energy + response%energy
-               work%load(nodes) = work%load(nodes) + response%load
-               if (response%energy <= 0.0_wp) cycle
-            end if
-            if (.not. with_tangent) cycle
-            call make_room(result, 144)
-            do j = 1, 12
-               call add_column(result, unknown, unknown(j), response%stiffness(:, j))
-            end do
+            if (pointwise%penalty > 0.0_wp .and. pair%deepest < 0.0_wp) &
+               call add_pair(geometry, pointwise, pair, x, with_tangent, work%load, result, status)
+            if (status%code /= CONTACT_OK) return
          end associate
       end do
-      if (geometry%options%gap == POINTWISE_GAP) then
-         where (result%weight > 0.0_wp) result%pressure = work%load/result%weight
-      else if (with_tangent) then
+      if (with_tangent) then
          do i = 1, geometry%slave_nodes
-            if (result%pressure(i) > 0.0_wp) call add_node(geometry, i, work, result)
+            if (result%pressure(i) > 0.0_wp) call add_node(geometry, nodal%penalty, i, work, result)
          end do
+      end if
+      if (pointwise%penalty > 0.0_wp) then
+         where (result%weight > 0.0_wp) result%pressure = result%pressure + work%load/result%weight
       end if
    end subroutine respond
 
+   !> What a pair adds to forces, energy and tangent.
+   pure subroutine add_pair(geometry, options, pair, x, with_tangent, work, result, status)
+      type(contact_geometry_t), intent(in) :: geometry
+      type(contact_options_t), intent(in) :: options   !< Of the nodal or of the pointwise form.
+      type(pair_t), intent(in) :: pair
+      real(wp), intent(in) :: x(2, 6)                  !< Local coordinates [m].
+      logical, intent(in) :: with_tangent
+      real(wp), intent(inout) :: work(:)               !< int M_A p 2 pi r dGamma [kN]
+      type(contact_result_t), intent(inout) :: result
+      type(contact_status_t), intent(inout) :: status
+      type(response_t) :: response
+      real(wp) :: missed
+      integer :: unknown(12), j
+
+      if (status%code /= CONTACT_OK) return
+      associate (nodes => geometry%slave_edges(:, pair%slave))
+         call pair_response(x, pair%overlap, options, result%pressure(nodes), with_tangent, response, missed)
+         if (missed > 0.0_wp) then
+            status = contact_fail(CONTACT_NO_PROJECTION, pair%slave, .false., missed)
+            return
+         end if
+         unknown = unknowns_of(geometry, pair)
+         result%force(unknown) = result%force(unknown) + response%force
+         if (options%gap == POINTWISE_GAP) then
+            result%energy = result%energy + response%energy
+            work(nodes) = work(nodes) + response%load
+         end if
+      end associate
+      if (.not. with_tangent) return
+      call make_room(result, 144)
+      do j = 1, 12
+         call add_column(result, unknown, unknown(j), response%stiffness(:, j))
+      end do
+   end subroutine add_pair
+
+   !> A penetration that no pressure answers.
+   pure subroutine note_unpressed(depth, x, result)
+      real(wp), intent(in) :: depth      !< [m]
+      real(wp), intent(in) :: x(2, 6)
+      type(contact_result_t), intent(inout) :: result
+      real(wp) :: share
+
+      share = depth/norm2(x(:, 2) - x(:, 1))
+      if (share <= result%unpressed) return
+      result%unpressed = share
+      result%unpressed_at = x(:, 3)
+   end subroutine note_unpressed
+
+   !> The penalty of either form; 0: it takes no part.
+   pure subroutine share_penalty(options, nodal, pointwise)
+      type(contact_options_t), intent(in) :: options
+      type(contact_options_t), intent(out) :: nodal, pointwise
+
+      nodal = options
+      nodal%gap = NODAL_GAP
+      pointwise = options
+      pointwise%gap = POINTWISE_GAP
+      select case (options%gap)
+      case (NODAL_GAP)
+         pointwise%penalty = 0.0_wp
+      case (POINTWISE_GAP)
+         nodal%penalty = 0.0_wp
+      case default
+         pointwise%penalty = POINTWISE_SHARE*options%penalty
+         nodal%penalty = options%penalty - pointwise%penalty
+      end select
+   end subroutine share_penalty
+
    !> The change of a nodal pressure: dp_A = -eps dg_A times what a unit of p_A pushes, over all unknowns that g_A
    !> depends on.
-   pure subroutine add_node(geometry, node, work, result)
+   pure subroutine add_node(geometry, penalty, node, work, result)
       type(contact_geometry_t), intent(in) :: geometry
+      real(wp), intent(in) :: penalty   !< Of nodal gaps [kN/m3].
       integer, intent(in) :: node
       type(contact_workspace_t), intent(inout) :: work
       type(contact_result_t), intent(inout) :: result
@@ -270,7 +335,7 @@ contains
             end associate
          end do
       end do
-      work%right(:n) = geometry%options%penalty/result%weight(node)*work%right(:n)
+      work%right(:n) = penalty/result%weight(node)*work%right(:n)
       call make_room(result, n*n)
       do j = 1, n
          work%position(work%touched(j)) = 0

@@ -67,16 +67,21 @@ contains
       t = edge%slope + 2.0_wp*s*edge%bend
    end function tangent
 
-   !> Smallest part of a tangent along the chord, over half the chord: 1 for a straight edge with its node in the
-   !> middle, 0 where a middle node at the quarter makes an end singular. Not above 0: the edge is unfit. A point has
-   !> -1.
+   !> Length of the shortest tangent over half the chord: 1 for a straight edge with its node in the middle, 0 where it
+   !> folds back on itself or a middle node at the quarter makes an end singular. A point has -1. A curved edge may lean
+   !> as much as it likes against its chord, as soil beside a plate that has sunk into it does.
    pure real(wp) function least_stretch(edge)
       type(edge_t), intent(in) :: edge
-      real(wp) :: square
+      real(wp) :: slope, bend, s
 
-      square = dot_product(edge%slope, edge%slope)
+      slope = norm2(edge%slope)
       least_stretch = -1.0_wp
-      if (square > 0.0_wp) least_stretch = 1.0_wp - 2.0_wp*abs(dot_product(edge%bend, edge%slope))/square
+      if (.not. slope > 0.0_wp) return
+      ! |t|**2 = |slope|**2 + 4 s slope.bend + 4 s**2 |bend|**2 is least at this s.
+      bend = norm2(edge%bend)
+      s = 0.0_wp
+      if (bend > 0.0_wp) s = -0.5_wp*dot_product(edge%slope, edge%bend/bend)/bend
+      least_stretch = norm2(tangent(edge, min(max(s, -1.0_wp), 1.0_wp)))/slope
    end function least_stretch
 
    !> Foot of a point on an edge: (point - x(s)).t(s) = 0. One foot as long as the point is nearer than the edge's

@@ -4,7 +4,7 @@ module contact_types
    use kinds, only: wp, PI
    implicit none (type, external)
    private
-   public :: wp, TWO_PI, NODAL_GAP, POINTWISE_GAP, PRESSURE_WORK, ENERGY_SLOPE
+   public :: wp, TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, PRESSURE_WORK, ENERGY_SLOPE
    public :: contact_options_t, contact_status_t, contact_fail, contact_message, is_finite
    public :: CONTACT_OK, CONTACT_BAD_OPTION, CONTACT_BAD_EDGE, CONTACT_BAD_SIZE, CONTACT_NOT_FINITE, &
              CONTACT_BAD_RADIUS, CONTACT_DISTORTED_EDGE, CONTACT_NO_PROJECTION
@@ -14,6 +14,7 @@ module contact_types
    ! Which gap is penalised.
    integer, parameter :: NODAL_GAP = 1        !< The mean gap under each hat.
    integer, parameter :: POINTWISE_GAP = 2    !< The gap itself, paper eq. (18).
+   integer, parameter :: COMBINED_GAP = 3     !< Half the penalty on each: smooth pressures, and no corner gets through.
    ! What is varied.
    integer, parameter :: PRESSURE_WORK = 1    !< The work of the pressure along the slave's normal: area not varied.
    integer, parameter :: ENERGY_SLOPE = 2     !< The energy with everything in it: the force is its exact derivative.
@@ -33,7 +34,7 @@ module contact_types
       real(wp) :: penalty = 1.0e8_wp          !< eps [kN/m3], > 0
       real(wp) :: search_radius = 0.0_wp      !< Edges farther apart do not meet [m]; 0: length of each slave edge
       logical :: axisymmetric = .true.        !< 2 pi r, otherwise plane strain of unit thickness
-      integer :: gap = NODAL_GAP              !< NODAL_GAP or POINTWISE_GAP
+      integer :: gap = COMBINED_GAP           !< NODAL_GAP, POINTWISE_GAP or COMBINED_GAP
       integer :: variation = PRESSURE_WORK    !< PRESSURE_WORK or ENERGY_SLOPE
    end type contact_options_t
 

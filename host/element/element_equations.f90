@@ -4,10 +4,11 @@ module element_equations
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
    use kinds, only: wp
    use material_point, only: response_t, report_t, MOST_POINTS
-   use porous_domain, only: domain_t, state_t, gauss_t
+   use porous_domain, only: domain_t, region_t, state_t, gauss_t, mixture_density
    use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, PLACES, RR, ZZ, TT, RZ, U, &
                              PW, PC, GW, GA
    use generalised_alpha, only: scheme_t, DYNAMIC
+   use tangent_fallback, only: stiffen, NO_FALLBACK
    implicit none (type, external)
    private
    public :: element_t, compute_element, element_size, MAX_DOF, STRAIN_TOO_LARGE
@@ -20,6 +21,10 @@ module element_equations
       real(wp) :: r(MAX_DOF) = 0.0_wp            !< Residual.
       real(wp) :: k(MAX_DOF, MAX_DOF) = 0.0_wp   !< d r / d new values.
       real(wp) :: stretch(MAX_DOF) = 0.0_wp      !< Volume balances: strain rates and fluxes, added up by magnitude.
+      integer :: fallback = NO_FALLBACK          !< What replaces soft tangents, see tangent_fallback;
+      integer :: replaced = 0                    !< how many points it replaced.
+      logical :: with_change = .false.            !< Whether `change` is wanted.
+      real(wp) :: change(MAX_DOF) = 0.0_wp       !< Displacements: what the step changes of r, inertia counted whole.
       type(report_t) :: bad                      !< Of the material, where a point failed.
       integer :: bad_point = 0                   !< Its number, 0: none.
       integer :: rate_evaluations = 0
@@ -51,8 +56,10 @@ contains
 
       out%r = 0.0_wp
       out%stretch = 0.0_wp
+      if (out%with_change) out%change = 0.0_wp
       out%k = 0.0_wp
       out%bad_point = 0
+      out%replaced = 0
       out%rate_evaluations = 0
       out%seconds = 0.0_wp
       call look_at_nodes(domain, element, scheme, old, new, k)
@@ -82,6 +89,9 @@ contains
          out%bad_point = report%point
          return
       end if
+      if (with_tangent .and. out%fallback /= NO_FALLBACK) &
+         call stiffen(domain%regions(domain%region_of(element))%law, out%fallback, domain%rule, &
+                      new%state(:, first:last), k%c1, material, out%replaced)
       call add_points(domain, element, scheme, k, material, old, new, with_tangent, out)
    end subroutine compute_element
 
@@ -153,6 +163,9 @@ contains
             new%s(p) = pore%s
             new%s_rate(p) = pore%s_rate
             call gather(gp, domain%n_p, n, gp%weight, response, out%r)
+            if (out%with_change) call gather(gp, domain%n_p, LAST_U, gp%weight, &
+               change_of(domain, region, k(g), old%stress(:, p), pore_t(old%e(p), old%s(p), old%s_rate(p)), response), &
+               out%change)
             rate = sum(abs(scheme%c_v*k(g)%strain(1:3)))*gp%weight
             associate (stretch => out%stretch(LAST_U + 1:LAST_U + domain%n_p))
                stretch = stretch + rate*abs(gp%m(:domain%n_p)) &
@@ -166,6 +179,24 @@ contains
       if (n > LAST_U + domain%n_p) &
          out%stretch(LAST_U + domain%n_p + 1:n) = out%stretch(LAST_U + 1:LAST_U + domain%n_p)
    end subroutine add_points
+
+   !> What a step changes of the total stress and of the weight at a point; inertia, sources and damping count whole.
+   pure function change_of(domain, region, k, stress0, old, response) result(change)
+      type(domain_t), intent(in) :: domain
+      type(region_t), intent(in) :: region
+      type(kinematics_t), intent(in) :: k
+      real(wp), intent(in) :: stress0(6)           !< Effective stress before the step [kPa].
+      type(pore_t), intent(in) :: old
+      real(wp), intent(in) :: response(PLACES)
+      real(wp) :: change(PLACES), pressure
+
+      change = 0.0_wp
+      pressure = k%w0 + (1 - old%s)*k%c0
+      change(RR:RZ) = response(RR:RZ) - stress0(:4)
+      change(RR:TT) = change(RR:TT) + pressure
+      change(U + 1:U + 2) = response(U + 1:U + 2)
+      change(U + 2) = change(U + 2) - mixture_density(domain, region%rho_s, old%e/(1 + old%e), old%s)*domain%gravity
+   end function change_of
 
    !> What the nodes say about a point.
    pure subroutine look(gp, n_p, scheme, x0, x1, v, a, k)

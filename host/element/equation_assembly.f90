@@ -5,10 +5,12 @@ module equation_assembly
    use kinds, only: wp
    use degrees_of_freedom, only: dofs_t
    use element_equations, only: element_t, compute_element
+   use tangent_fallback, only: NO_FALLBACK
    use material_point, only: report_t
    use porous_domain, only: domain_t, state_t
    use sparsity_pattern, only: pattern_t
    use generalised_alpha, only: scheme_t
+   use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
    integer, parameter :: WORTH_THREADS = 64   !< Elements below which waking threads costs more than it saves.
@@ -18,9 +20,15 @@ module equation_assembly
       real(wp), allocatable :: r(:, :), k(:, :, :)   !< Of every element.
       real(wp), allocatable :: stretch(:, :)         !< See element_t.
       real(wp), allocatable :: floor(:)              !< Its sum: what a volume balance is small against.
+      logical :: with_change = .false.               !< Whether a step is measured against what it changes.
+      real(wp), allocatable :: d_r(:, :)             !< With it: change of every element's r, see element_t,
+      real(wp), allocatable :: change(:)             !< and the sum of its magnitudes.
       real(wp), allocatable :: residual(:)
       real(wp), allocatable :: scale(:)              !< Sum of the magnitudes of the elements' contributions.
       real(wp), allocatable :: values(:)             !< The matrix, in the order of the pattern.
+      integer :: fallback = NO_FALLBACK              !< What replaces soft tangents, see tangent_fallback,
+      integer :: replaced = 0                        !< of how many points in the last pass with it,
+      integer, allocatable :: soft(:)                !< and of every element.
       logical, allocatable :: air(:)                 !< Nodes whose air pressure is prescribed.
       ! Outcome.
       integer :: bad_element = 0, bad_point = 0
@@ -65,9 +73,13 @@ contains
       seconds = 0.0_wp
       t0 = clock()
       threads = merge(domain%threads, 1, ne >= WORTH_THREADS)
+      if (assembly%fallback /= NO_FALLBACK .and. .not. allocated(assembly%soft)) allocate (assembly%soft(ne))
+      if (assembly%with_change .and. .not. allocated(assembly%d_r)) allocate (assembly%d_r(m, ne))
       !$omp parallel do num_threads(threads) schedule(dynamic, 8) default(shared) private(e) firstprivate(out) &
       !$omp reduction(+:seconds)
       do e = 1, ne
+         out%with_change = assembly%with_change
+         out%fallback = assembly%fallback
          call compute_element(domain, e, scheme, old, new, with_tangent, out)
          bad_point(e) = out%bad_point
          rate_evaluations(e) = out%rate_evaluations
@@ -75,6 +87,8 @@ contains
          if (domain%with_c) call balance_of_water(domain, assembly%air, e, m, with_tangent, out)
          assembly%r(:, e) = out%r(:m)
          assembly%stretch(:, e) = out%stretch(:m)
+         if (assembly%fallback /= NO_FALLBACK) assembly%soft(e) = out%replaced
+         if (assembly%with_change) assembly%d_r(:, e) = out%change(:m)
          if (with_tangent) assembly%k(:, :, e) = out%k(:m, :m)
       end do
       !$omp end parallel do
@@ -87,7 +101,10 @@ contains
          assembly%bad = out%bad
          return
       end if
+      assembly%replaced = 0
+      if (assembly%fallback /= NO_FALLBACK) assembly%replaced = sum(assembly%soft)
       call add_up(threads, pattern, with_tangent, assembly)
+      if (assembly%with_change) call add_up_change(dofs, pattern, assembly)
       ! The threads share the loop evenly.
       assembly%material = min(1.0_wp, seconds/threads/max(clock() - t0, tiny(1.0_wp)))
    end subroutine assemble
@@ -110,6 +127,23 @@ contains
          if (with_tangent) out%k(w, :m) = out%k(w, :m) - out%k(c, :m)
       end do
    end subroutine balance_of_water
+
+   !> What the step changes of the forces on every displacement. A balance of volume is made of rates: all of it counts.
+   subroutine add_up_change(dofs, pattern, assembly)
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(in) :: pattern
+      type(assembly_t), intent(inout), target :: assembly
+      real(wp), pointer, contiguous :: d_r(:)
+      integer :: i
+
+      d_r(1:size(assembly%d_r)) => assembly%d_r
+      if (.not. allocated(assembly%change)) allocate (assembly%change(pattern%n))
+      assembly%change = assembly%scale
+      do i = 1, pattern%n
+         if (dofs%field(i) <= DISPLACEMENTS) assembly%change(i) = &
+            sum(abs(d_r(pattern%r_source(pattern%r_first(i):pattern%r_first(i + 1) - 1))))
+      end do
+   end subroutine add_up_change
 
    subroutine add_up(threads, pattern, with_tangent, assembly)
       integer, intent(in) :: threads

@@ -2,7 +2,7 @@
 module boundary_builder
    use kinds, only: wp
    use faults, only: fault_t, raise, EXIT_INPUT
-   use contact_types, only: contact_options_t, NODAL_GAP, POINTWISE_GAP, PRESSURE_WORK, ENERGY_SLOPE
+   use contact_types, only: contact_options_t, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, PRESSURE_WORK, ENERGY_SLOPE
    use exit_codes, only: EXIT_GROUP
    use model_types, only: model_t, initial_t, fix_t, load_t, plate_t, contact_pair_t, absorber_t, tie_t, &
                           PRESCRIBED_P_A
@@ -17,6 +17,7 @@ module boundary_builder
    private
    public :: build_plates, build_boundaries
 
+   integer, parameter :: GAP_OF(*) = [NODAL_GAP, POINTWISE_GAP, COMBINED_GAP]   !< Of the words of &contact gap.
    character(3), parameter :: WORD_OF(*) = [FIELD_NAMES, 'p_a']
    integer, parameter :: FIELD_OF(*) = [AT_U_R, AT_U_Z, AT_P_W, AT_P_C, PRESCRIBED_P_A]   !< Of the words of &fix field.
 contains
@@ -196,7 +197,7 @@ contains
       if (given%drains_by_state .and. .not. model%domain%with_w) call raise(fault, EXIT_INPUT, place_of(given)// &
          'drainage = ''state'' needs pressures; see fields in &scene.')
       contact%options = contact_options_t(penalty=given%penalty, search_radius=given%search_radius, &
-         axisymmetric=model%domain%axisymmetric, gap=merge(NODAL_GAP, POINTWISE_GAP, given%nodal_gap), &
+         axisymmetric=model%domain%axisymmetric, gap=GAP_OF(given%gap_number), &
          variation=merge(PRESSURE_WORK, ENERGY_SLOPE, given%pressure_work))
    end subroutine build_contact
 

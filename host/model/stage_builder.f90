@@ -1,7 +1,7 @@
 !> Stages of a scene, their words translated, and the time integration that holds where the scene leaves it open.
 module stage_builder
    use kinds, only: wp
-   use convergence, only: BY_FORCES, BY_RESIDUAL, BY_CORRECTION
+   use convergence, only: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_KIND
    use generalised_alpha, only: STATIC, QUASI_STATIC, DYNAMIC
    use model_types, only: model_t, stage_t
    use scene_types, only: scene_stage_t, acts_in
@@ -11,7 +11,7 @@ module stage_builder
 
    ! Of the words of &stage analysis and measure.
    integer, parameter :: KIND_OF(*) = [STATIC, QUASI_STATIC, DYNAMIC]
-   integer, parameter :: MEASURE_OF(*) = [BY_FORCES, BY_RESIDUAL, BY_CORRECTION]
+   integer, parameter :: MEASURE_OF(*) = [BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_KIND]
    real(wp), parameter :: SMOOTH = 0.8_wp     !< rho_inf of a stage without contact.
    real(wp), parameter :: OPENING = 0.0_wp    !< With contact: it never gains energy where a penalty opens and closes,
                                               !< however long the step (docs/theory/host.md section 4.1).

@@ -78,7 +78,9 @@ contains
          at%cuts = at%cuts + 1
          at%good = 0
          run%system%factored = .false.
-         if (at%cuts > stage%cuts .or. log%outcome == BODY_FREE .or. log%outcome == SOLVER_FAILED) then
+         ! A shorter step helps a singular matrix only where it is points of the material that resist with nothing.
+         if (at%cuts > stage%cuts .or. log%outcome == SOLVER_FAILED .or. &
+             (log%outcome == BODY_FREE .and. run%assembly%replaced == 0)) then
             call explain_failure(model, stage, run, log, run%state%time + dt, dt, fault)
             return
          end if

@@ -3,8 +3,9 @@ module time_stepping
    use kinds, only: wp
    use wall_clock, only: clock, lap
    use faults, only: fault_t
+   use contact_alarm, only: tell_penetration
    use contact_setup, only: contacts_act
-   use convergence, only: control_t, log_t
+   use convergence, only: control_t, log_t, measure_in
    use generalised_alpha, only: scheme_t, make_scheme, step_error
    use model_types, only: model_t
    use porous_domain, only: copy_state
@@ -65,7 +66,8 @@ contains
       logical :: accepted
 
       associate (stage => model%stages(number), at => run%at)
-         control = control_t(stage%tolerance, stage%max_iterations, stage%no_predictor, stage%measure)
+         control = control_t(stage%tolerance, stage%max_iterations, stage%no_predictor, &
+                             measure_in(stage%measure, stage%kind))
          ! A run that is taken up again is in the middle of its stage.
          call contacts_act(model, stage, run%system%contacts)
          if (at%stage /= number) call begin_stage(model, number, run, fault)
@@ -106,6 +108,7 @@ contains
          scheme = make_scheme(stage%kind, stage%rho_inf, dt)
          at%step = at%step + 1
          run%steps = run%steps + 1
+         if (present(observer)) call tell_penetration(model, run%next%time, run%system%contacts)
          call book_accepted_step(model, scheme, run)
          report = step_report_t(number, dt, step_error(scheme, run%state%x, run%state%a, run%next%x, run%next%a), &
                                 at%t_start + stage%duration - run%next%time <= LAST_STEP*dt, log)

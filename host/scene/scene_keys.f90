@@ -113,8 +113,8 @@ module scene_keys
       key_t('stage', 'created_energy', 'n', '0.01', TINY_, BIG, &
             'energy created out of nothing that ends the run, share of the largest work [-]'), &
       key_t('stage', 'tolerance', 'n', '1.0e-3', 1.0e-14_wp, 0.1_wp, 'Newton: error that ends the iteration [-]'), &
-      key_t('stage', 'measure', 'w', 'forces', 0, 0, &
-            'measure of the error that ends the iteration, see README', 'forces|residual|correction'), &
+      key_t('stage', 'measure', 'w', 'auto', 0, 0, &
+            'measure of the error that ends the iteration, see README', 'forces|residual|correction|change|auto'), &
       key_t('stage', 'max_iterations', 'i', '12', 1, 1000, 'Newton: linear solves before the step is cut'), &
       key_t('stage', 'predictor', 'w', 'rates', 0, 0, 'start of the iteration', 'rates|none'), &
       key_t('stage', 'start', 'w', 'solve', 0, 0, 'accelerations at the start of a dynamic stage', 'solve|zero'), &
@@ -168,7 +168,8 @@ module scene_keys
       key_t('contact', 'slave', 't', REQUIRED, 0, 0, 'boundary that is integrated over: the softer or finer one'), &
       key_t('contact', 'master', 't', REQUIRED, 0, 0, 'boundary opposite, or name of a &plate'), &
       key_t('contact', 'penalty', 'n', '1.0e8', TINY_, BIG, 'pressure of a unit of penetration [kN/m3]'), &
-      key_t('contact', 'gap', 'w', 'nodal', 0, 0, 'gap that is penalised, see CONTACT.md', 'nodal|pointwise'), &
+      key_t('contact', 'gap', 'w', 'combined', 0, 0, 'gap that is penalised, see CONTACT.md', &
+            'nodal|pointwise|combined'), &
       key_t('contact', 'variation', 'w', 'pressure', 0, 0, &
             'what gives the contact force, see CONTACT.md', 'pressure|energy'), &
       key_t('contact', 'search_radius', 'n', '0', 0, BIG, &

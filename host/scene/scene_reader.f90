@@ -393,7 +393,7 @@ contains
       contact%master_name = text_of(group, 'master')
       contact%penalty = number_of(group, 'penalty')
       contact%search_radius = number_of(group, 'search_radius')
-      contact%nodal_gap = word_is(group, 'gap', 'nodal')
+      contact%gap_number = word_number(group, 'gap')
       contact%pressure_work = word_is(group, 'variation', 'pressure')
       contact%drains_by_state = word_is(group, 'drainage', 'state')
       contact%stages = texts_of(group, 'stages')

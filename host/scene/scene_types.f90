@@ -14,7 +14,8 @@ module scene_types
    public :: NAME_LENGTH, FINGERPRINT_LENGTH, acts_in, place_of, amplitude_at
    public :: WITH_U, WITH_P_W, WITH_P_C, IS_STATIC, IS_QUASI_STATIC, IS_DYNAMIC, FIX_P_W, FIX_P_C, FIX_P_A
    public :: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z
-   public :: MEASURE_FORCES, MEASURE_RESIDUAL, MEASURE_CORRECTION
+   public :: MEASURE_FORCES, MEASURE_RESIDUAL, MEASURE_CORRECTION, MEASURE_CHANGE, MEASURE_AUTO
+   public :: GAP_NODAL, GAP_POINTWISE, GAP_COMBINED
 
    integer, parameter :: NAME_LENGTH = 64         !< Longest name that a scene gives.
    integer, parameter :: FINGERPRINT_LENGTH = 16
@@ -22,7 +23,9 @@ module scene_types
    ! Numbers of words, in the order in which scene_keys lists those of the key (a test holds the two together).
    integer, parameter :: WITH_U = 1, WITH_P_W = 2, WITH_P_C = 3                         !< &scene fields
    integer, parameter :: IS_STATIC = 1, IS_QUASI_STATIC = 2, IS_DYNAMIC = 3             !< &stage analysis
-   integer, parameter :: MEASURE_FORCES = 1, MEASURE_RESIDUAL = 2, MEASURE_CORRECTION = 3   !< &stage measure
+   integer, parameter :: MEASURE_FORCES = 1, MEASURE_RESIDUAL = 2, MEASURE_CORRECTION = 3, &
+                         MEASURE_CHANGE = 4, MEASURE_AUTO = 5                           !< &stage measure
+   integer, parameter :: GAP_NODAL = 1, GAP_POINTWISE = 2, GAP_COMBINED = 3             !< &contact gap
    integer, parameter :: FIX_P_W = 3, FIX_P_C = 4, FIX_P_A = 5                          !< &fix field, after u_r, u_z
    integer, parameter :: LOAD_PRESSURE = 1    !< &load kind: against the outward normal [kPa],
    integer, parameter :: LOAD_SHEAR_R = 2, LOAD_SHEAR_Z = 3   !< along the axes [kPa],
@@ -92,7 +95,7 @@ module scene_types
       integer :: cuts = 10
       real(wp) :: rho_inf = -1.0_wp, tolerance = 1.0e-3_wp   !< rho_inf below zero: not given.
       real(wp) :: created_energy = 0.01_wp           !< Share of the largest work that ends the run [-].
-      integer :: measure_number = MEASURE_FORCES
+      integer :: measure_number = MEASURE_AUTO
       integer :: max_iterations = 12, every = 1, fields = 0
       logical :: no_predictor = .false., solve_start = .true., zero_displacements = .false.
    end type scene_stage_t
@@ -133,7 +136,8 @@ module scene_types
       character(LENGTH) :: slave_name = '', master_name = ''
       real(wp) :: penalty = 1.0e8_wp                 !< [kN/m3]
       real(wp) :: search_radius = 0.0_wp             !< [m]
-      logical :: nodal_gap = .true., pressure_work = .true.
+      integer :: gap_number = GAP_COMBINED
+      logical :: pressure_work = .true.
       logical :: drains_by_state = .false.           !< Covered nodes are impervious.
       character(LENGTH), allocatable :: stages(:)
    end type scene_contact_t

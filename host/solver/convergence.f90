@@ -1,6 +1,7 @@
 !> The error of an iteration, and whether it may end. The error of a field is |R_f| over the largest of |sum of the
 !> magnitudes of the elements' contributions|, 1e-6 of its largest value so far, and a floor, over the free unknowns; a
-!> rigid body counts by itself too. The floor of a volume balance is 1e-4 of the strain rates and of the parts of the
+!> rigid body counts by itself too. Measured by change, what counts of the contributions to a displacement is what the
+!> step changes: a weight that rests hides nothing. The floor of a volume balance is 1e-4 of the strain rates and of the parts of the
 !> fluxes in it: where nothing flows, or nothing can, the balance of every element is nothing but rounding.
 !> docs/theory/host.md section 5.1.
 module convergence
@@ -8,16 +9,19 @@ module convergence
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t
    use prescribed_values, only: constraint_t
+   use generalised_alpha, only: DYNAMIC
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_Z, AT_P_C
    implicit none (type, external)
    private
    public :: control_t, log_t, measure, good_enough, field_scales, body_scale, is_body
-   public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION
+   public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_KIND, measure_in
 
    integer, parameter :: BY_FORCES = 1       !< The errors of the fields, see above;
    integer, parameter :: BY_RESIDUAL = 2     !< |R|/|R_0| of all unknowns together, whatever their units,
                                              !< or |R|/|R_1| where R_1 is larger;
-   integer, parameter :: BY_CORRECTION = 3   !< |dx|/|x| of the worst field.
+   integer, parameter :: BY_CORRECTION = 3   !< |dx|/|x| of the worst field;
+   integer, parameter :: BY_CHANGE = 4       !< the errors of the fields against what the step changes;
+   integer, parameter :: BY_KIND = 5         !< by forces in dynamic stages, by change in others.
    real(wp), parameter :: HISTORY_SHARE = 1.0e-6_wp   !< Share of the largest scale so far that still counts.
    real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Of strain rates and parts of fluxes, see above.
    real(wp), parameter :: ABSOLUTE_FLOOR = 1.0e-12_wp   !< [kN] or [m3/s]: nothing smaller is a force.
@@ -40,6 +44,15 @@ module convergence
       integer :: rate_evaluations = 0                   !< Rate evaluations of the material.
    end type log_t
 contains
+   !> The measure of a stage of a kind: what BY_KIND stands for.
+   pure integer function measure_in(given, kind) result(measure)
+      integer, intent(in) :: given   !< BY_...
+      integer, intent(in) :: kind    !< STATIC, QUASI_STATIC, DYNAMIC
+
+      measure = given
+      if (given == BY_KIND) measure = merge(BY_FORCES, BY_CHANGE, kind == DYNAMIC)
+   end function measure_in
+
    !> Whether the iteration may end.
    pure logical function good_enough(control, log)
       type(control_t), intent(in) :: control
@@ -64,14 +77,15 @@ contains
       real(wp) :: scales(FIELDS)
       real(wp) :: s(FIELDS), floor(FIELDS)
 
-      call add_scales(dofs, constraint, assembly, s, floor)
+      call add_scales(dofs, constraint, assembly, assembly%with_change, s, floor)
       scales = max(sqrt(s), HISTORY_SHARE*largest, sqrt(floor), ABSOLUTE_FLOOR)
    end function field_scales
 
-   pure subroutine add_scales(dofs, constraint, assembly, s, floor)
+   pure subroutine add_scales(dofs, constraint, assembly, by_change, s, floor)
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint
       type(assembly_t), intent(in) :: assembly
+      logical, intent(in) :: by_change
       real(wp), intent(out) :: s(FIELDS), floor(FIELDS)
       integer :: i, f
 
@@ -80,7 +94,11 @@ contains
       do i = 1, dofs%n
          f = dofs%field(i)
          if (.not. counts(dofs, constraint, i)) cycle
-         s(f) = s(f) + assembly%scale(i)**2
+         if (by_change) then
+            s(f) = s(f) + assembly%change(i)**2
+         else
+            s(f) = s(f) + assembly%scale(i)**2
+         end if
          floor(f) = floor(f) + (RATE_SHARE*assembly%floor(i))**2
       end do
       ! The displacements are one field: a component without forces is no measure of its own.
@@ -100,7 +118,9 @@ contains
       real(wp), intent(in) :: largest(FIELDS)
       integer, intent(in) :: i
 
-      body_scale = max(assembly%scale(i), HISTORY_SHARE*largest(AT_U_Z), ABSOLUTE_FLOOR)
+      body_scale = assembly%scale(i)
+      if (assembly%with_change) body_scale = assembly%change(i)
+      body_scale = max(body_scale, HISTORY_SHARE*largest(AT_U_Z), ABSOLUTE_FLOOR)
    end function body_scale
 
    pure logical function counts(dofs, constraint, i)
@@ -128,7 +148,8 @@ contains
          if (counts(dofs, constraint, i)) r(dofs%field(i)) = r(dofs%field(i)) + rhs(i)**2
       end do
       r(:DISPLACEMENTS) = sum(r(:DISPLACEMENTS))
-      call add_scales(dofs, constraint, assembly, s, floor)
+      ! Always the forces themselves: their rounding is the floor of what changes.
+      call add_scales(dofs, constraint, assembly, .false., s, floor)
       largest = max(largest, sqrt(s))
       log%error = sqrt(r)/field_scales(dofs, constraint, assembly, largest)
       do i = 1, dofs%n

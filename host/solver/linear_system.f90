@@ -11,7 +11,7 @@ module linear_system
    use prescribed_values, only: constraint_t
    use sparse_factors, only: sparse_t, analyse, factorise, SOLVED
    use sparsity_pattern, only: pattern_t
-   use unknown_fields, only: FIELDS
+   use unknown_fields, only: FIELDS, DISPLACEMENTS
    implicit none (type, external)
    private
    public :: system_t, solve_step, look_at_contacts, MOST_STEPS
@@ -55,6 +55,8 @@ contains
 
       t0 = clock()
       scales = field_scales(dofs, constraint, assembly, system%largest)
+      ! What a step changes is not known before its first solution: the forces that it asks for tell.
+      if (assembly%with_change) scales = max(scales, asked_for(dofs, rhs))
       weight = 1/scales(dofs%field)
       do i = 1, dofs%n
          if (is_body(constraint, i)) weight(i) = 1/body_scale(assembly, system%largest, i)
@@ -87,6 +89,19 @@ contains
       if (status == INACCURATE) status = SOLVED
       call lap(system%seconds(T_SOLUTION), t0)
    end subroutine solve_step
+
+   !> Magnitude of the right side of every field, rows of prescribed values included; that of the displacements is one.
+   pure function asked_for(dofs, rhs) result(magnitude)
+      type(dofs_t), intent(in) :: dofs
+      real(wp), intent(in) :: rhs(:)
+      real(wp) :: magnitude(FIELDS)
+      integer :: f
+
+      do f = 1, FIELDS
+         magnitude(f) = norm2(pack(rhs, dofs%field == f))
+      end do
+      magnitude(:DISPLACEMENTS) = norm2(magnitude(:DISPLACEMENTS))
+   end function asked_for
 
    !> Contacts at given displacements, and room for them in the matrix; false if their kernels refuse.
    logical function look_at_contacts(system, dofs, pattern, x, slopes, assembly) result(good)

@@ -4,8 +4,8 @@ module newton_step
    use kinds, only: wp
    use wall_clock, only: clock, lap
    use conjugate_residuals, only: solve_by_factors, INACCURATE
-   use contact_interfaces, only: add_contacts
-   use convergence, only: control_t, log_t, measure, good_enough, BY_FORCES
+   use contact_interfaces, only: add_contacts, contact_forces
+   use convergence, only: control_t, log_t, measure, good_enough, BY_FORCES, BY_CHANGE
    use dashpots, only: add_dashpots
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t, assemble
@@ -16,6 +16,7 @@ module newton_step
    use prescribed_values, only: constraint_t, constrain, loads_of_water
    use sparse_factors, only: analyse, factorise, SOLVED, SINGULAR
    use sparsity_pattern, only: pattern_t, place_of
+   use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
    use unknown_fields, only: FIELDS, DISPLACEMENTS
    implicit none (type, external)
    private
@@ -41,6 +42,7 @@ contains
       type(system_t), intent(inout) :: system
       type(log_t), intent(out) :: log
       real(wp), allocatable :: rhs(:), dx(:)
+      real(wp), allocatable :: touched(:), touching(:)   !< Forces of contacts before; the residual without them.
       real(wp) :: norm, norm_0, t0
       integer :: status
       logical :: with_tangent
@@ -49,6 +51,14 @@ contains
       allocate (rhs(dofs%n), dx(dofs%n))
       new%time = old%time + scheme%dt
       assembly%air = constraint%air
+      assembly%with_change = control%measure == BY_CHANGE
+      assembly%fallback = NO_FALLBACK
+      if (assembly%with_change .and. allocated(system%contacts%interfaces)) then
+         if (.not. contact_forces(system%contacts, dofs, old%x, touched)) then
+            log%outcome = CONTACT_FAILED
+            return
+         end if
+      end if
       call predict(scheme, control%no_predictor, old%x, old%v, old%a, new%x)
       call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
       norm_0 = -1.0_wp
@@ -77,9 +87,16 @@ contains
          end if
          call constrain(dofs, pattern, constraint, new%x, assembly%values, rhs)
          ! Other measures may ask for more than a linear solution that is exact to a share of the forces.
-         if (control%measure /= BY_FORCES) system%factored = .false.
+         if (all(control%measure /= [BY_FORCES, BY_CHANGE])) system%factored = .false.
          call solve_step(dofs, pattern, constraint, assembly, merge(control%tolerance, 0.0_wp, &
-                         control%measure == BY_FORCES), rhs, system, dx, status)
+                         any(control%measure == [BY_FORCES, BY_CHANGE])), rhs, system, dx, status)
+         if (status == SINGULAR .and. assembly%fallback < SOFT_POINTS) then
+            ! Where nothing is loose some points resist with nothing: once more with a stiffness for these.
+            assembly%fallback = assembly%fallback + 1
+            with_tangent = .true.
+            t0 = clock()
+            cycle
+         end if
          if (status /= SOLVED) then
             log%outcome = merge(BODY_FREE, SOLVER_FAILED, status == SINGULAR)
             return
@@ -118,6 +135,7 @@ contains
          call add_bodies(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
          if (allocated(constraint%dashpots)) call add_dashpots(constraint%dashpots, dofs, pattern, scheme, old, new, &
                                                                    slopes, assembly)
+         if (allocated(touched)) touching = assembly%residual
          if (allocated(system%contacts%interfaces)) then
             call lap(system%seconds(T_REST), t0)
             call add_contacts(system%contacts, pattern, scheme%l_f, slopes, assembly%residual, assembly%scale, &
@@ -127,9 +145,20 @@ contains
          rhs = constraint%load_0 + scheme%l_f*(constraint%load_1 - constraint%load_0) - constraint%offset
          call loads_of_water(dofs, constraint%air, rhs)
          assembly%scale = assembly%scale + abs(rhs)
+         if (assembly%with_change) call add_outer_changes()
          rhs = rhs - assembly%residual
          system%reaction = -rhs
       end function pass
+
+      !> What the step changes of loads and contacts, beside that of the elements.
+      subroutine add_outer_changes()
+         if (allocated(touched)) assembly%change = assembly%change + abs(assembly%residual - touching - touched)
+         where (dofs%field <= DISPLACEMENTS)
+            assembly%change = assembly%change + scheme%l_f*abs(constraint%load_1 - constraint%load_0)
+         elsewhere
+            assembly%change = assembly%scale
+         end where
+      end subroutine add_outer_changes
    end subroutine take_step
 
    !> Accelerations that the loads and stresses of a state ask for, its displacements, velocities and pressures held.

@@ -1,0 +1,36 @@
+!> The word that a run says when a surface has got through another one without pressure.
+module contact_alarm
+   use, intrinsic :: iso_fortran_env, only: error_unit
+   use kinds, only: wp
+   use contact_interfaces, only: contacts_t
+   use model_types, only: model_t
+   use texts, only: short
+   implicit none (type, external)
+   private
+   public :: tell_penetration
+
+   !> Depth over the length of its edge that is said: a curved surface that rolls on leaves about the share of an edge in
+   !> its radius over eight, 1e-3 with a mesh that is fit for contact [-].
+   real(wp), parameter :: ALARMING_DEPTH = 1.0e-3_wp
+contains
+   !> After an accepted step; once for every contact, on standard error, also where the run is quiet.
+   subroutine tell_penetration(model, time, contacts)
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: time   !< [s]
+      type(contacts_t), intent(inout) :: contacts
+      integer :: i
+
+      if (.not. allocated(contacts%interfaces)) return
+      do i = 1, size(contacts%interfaces)
+         associate (t => contacts%interfaces(i))
+            if (.not. t%acts .or. t%told .or. t%result%unpressed <= ALARMING_DEPTH) cycle
+            t%told = .true.
+            write (error_unit, '(a)') 'mud_host: warning: contact '//trim(model%contacts(i)%name)//', time '// &
+               short(time)//' s: near ('//short(t%result%unpressed_at(1))//', '//short(t%result%unpressed_at(2))// &
+               ') m the surfaces have penetrated each other by '//short(100*t%result%unpressed)// &
+               ' % of an edge without pressure: its mean gaps are still open. Set gap = ''combined'' in &contact, '// &
+               'or refine the slave there.'
+         end associate
+      end do
+   end subroutine tell_penetration
+end module contact_alarm
