@@ -14,13 +14,17 @@ module contact_mortar
    implicit none (type, external)
    private
    public :: overlap_t, point_t, find_overlap, end_slope, integration_point, pair_gaps, hats, hat_slopes
-   public :: POINTS, POSITION, SHARE, LARGEST_SEGMENTS
+   public :: POINTS, POSITION, SHARE, END_POSITION, END_SHARE, LARGEST_SEGMENTS
 
    integer, parameter :: POINTS = 4   !< Gauss points of a segment.
    real(wp), parameter :: POSITION(POINTS) = [-0.861136311594052575224_wp, -0.339981043584856264803_wp, &
                                               0.339981043584856264803_wp, 0.861136311594052575224_wp]
    real(wp), parameter :: SHARE(POINTS) = [0.347854845137453857373_wp, 0.652145154862546142627_wp, &
                                            0.652145154862546142627_wp, 0.347854845137453857373_wp]
+   !> Lobatto's rule, which looks at both ends of a segment: a corner lies there.
+   real(wp), parameter :: END_POSITION(POINTS) = [-1.0_wp, -0.447213595499957939282_wp, &
+                                                  0.447213595499957939282_wp, 1.0_wp]
+   real(wp), parameter :: END_SHARE(POINTS) = [1.0_wp, 5.0_wp, 5.0_wp, 1.0_wp]/6.0_wp
    integer, parameter :: LARGEST_SEGMENTS = 3   !< Two ends, and the two middle nodes between them.
    !> Cosine of the steepest master edge that a slave edge sees: beyond 78 degrees nothing is pressed any more.
    real(wp), parameter :: LEAST_FACING = 0.2_wp
@@ -47,7 +51,7 @@ module contact_mortar
       real(wp) :: tm(2) = 0.0_wp                  !< Master tangent dx_m/dm [m].
       real(wp) :: tm_bend(2) = 0.0_wp             !< dtm/dm [m]
       real(wp) :: slip = 0.0_wp                   !< tm.t, < 0 [m2]
-      real(wp) :: area = 0.0_wp                   !< Gauss weight times half the segment times 2 pi r [m or 1]
+      real(wp) :: area = 0.0_wp                   !< Weight of the rule times half the segment times 2 pi r [m or 1]
       real(wp) :: ring = 1.0_wp, d_ring(12) = 0.0_wp    !< 2 pi r [m], or 1.
       real(wp) :: span = 0.0_wp, d_span(12) = 0.0_wp    !< Length of the segment on the edge [-].
       real(wp) :: phi = 0.0_wp, d_phi(12) = 0.0_wp      !< y.nu = gap |t| [m2]
@@ -163,11 +167,12 @@ contains
       d_s = d_s/(dot_product(t, t) - 2.0_wp*dot_product(y, slave%bend))
    end function end_slope
 
-   !> Gauss point k of a segment. `missed`: by how much of the master edge's length the normal misses it, 0 if it hits.
-   pure subroutine integration_point(x, overlap, segment, k, axisymmetric, p, missed)
+   !> A point of a segment. `missed`: by how much of the master edge's length the normal misses it, 0 if it hits.
+   pure subroutine integration_point(x, overlap, segment, position, share, axisymmetric, p, missed)
       real(wp), intent(in) :: x(2, 6)
       type(overlap_t), intent(in) :: overlap
-      integer, intent(in) :: segment, k
+      integer, intent(in) :: segment
+      real(wp), intent(in) :: position, share   !< Of the point in [-1, 1], and its part of 2.
       logical, intent(in) :: axisymmetric
       type(point_t), intent(out) :: p
       real(wp), intent(out) :: missed
@@ -177,8 +182,8 @@ contains
 
       slave = edge_of(x(:, 1:3))
       master = edge_of(x(:, 4:6))
-      a = 0.5_wp*(1.0_wp - POSITION(k))
-      b = 0.5_wp*(1.0_wp + POSITION(k))
+      a = 0.5_wp*(1.0_wp - position)
+      b = 0.5_wp*(1.0_wp + position)
       p%s = a*overlap%end(segment) + b*overlap%end(segment + 1)
       p%span = overlap%end(segment + 1) - overlap%end(segment)
       p%x = place(slave, p%s)
@@ -203,7 +208,7 @@ contains
       p%phi = p%y(1)*p%t(2) - p%y(2)*p%t(1)
       p%length = norm2(p%t)
       if (axisymmetric) p%ring = TWO_PI*p%x(1)
-      p%area = 0.5_wp*SHARE(k)*p%span*p%ring
+      p%area = 0.5_wp*share*p%span*p%ring
 
       p%d_s = a*overlap%d_end(:, segment) + b*overlap%d_end(:, segment + 1)
       p%d_span = overlap%d_end(:, segment + 1) - overlap%d_end(:, segment)
@@ -226,7 +231,7 @@ contains
                 + p%y(1)*p%d_t(2, :) - p%y(2)*p%d_t(1, :)
       p%d_length = (p%t(1)*p%d_t(1, :) + p%t(2)*p%d_t(2, :))/p%length
       if (axisymmetric) p%d_ring = TWO_PI*p%d_xs(1, :)
-      p%d_area = 0.5_wp*SHARE(k)*(p%ring*p%d_span + p%span*p%d_ring)
+      p%d_area = 0.5_wp*share*(p%ring*p%d_span + p%span*p%d_ring)
    end subroutine integration_point
 
    !> What a pair of edges adds to the three slave nodes: weight int M 2 pi r dGamma and weight times gap, their
@@ -252,7 +257,7 @@ contains
       deepest = 0.0_wp
       do segment = 1, overlap%segments
          do k = 1, POINTS
-            call integration_point(x, overlap, segment, k, axisymmetric, p, missed)
+            call integration_point(x, overlap, segment, POSITION(k), SHARE(k), axisymmetric, p, missed)
             if (missed > 0.0_wp) return
             m = hats(p%s)
             dm = hat_slopes(p%s)

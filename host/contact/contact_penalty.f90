@@ -6,8 +6,8 @@ module contact_penalty
    use contact_projection, only: edge_t, edge_of, place, tangent
    use contact_response, only: response_t, pair_response
    use contact_search, only: search_t, prepare_search, find_candidates
-   use contact_types, only: wp, TWO_PI, NODAL_GAP, POINTWISE_GAP, PRESSURE_WORK, contact_options_t, contact_status_t, &
-                            contact_fail, CONTACT_OK, CONTACT_NO_PROJECTION
+   use contact_types, only: wp, TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, PRESSURE_WORK, contact_options_t, &
+                            contact_status_t, contact_fail, CONTACT_OK, CONTACT_NO_PROJECTION
    implicit none (type, external)
    private
    public :: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate
@@ -215,7 +215,7 @@ contains
             else if (.not. pointwise%penalty > 0.0_wp .and. pair%deepest < 0.0_wp) then
                call note_unpressed(-pair%deepest, x, result)
             end if
-            if (pointwise%penalty > 0.0_wp .and. pair%deepest < 0.0_wp) &
+            if (pointwise%penalty > 0.0_wp) &
                call add_pair(geometry, pointwise, pair, x, with_tangent, work%load, result, status)
             if (status%code /= CONTACT_OK) return
          end associate
@@ -242,11 +242,14 @@ contains
       type(contact_status_t), intent(inout) :: status
       type(response_t) :: response
       real(wp) :: missed
+      logical :: at_ends
       integer :: unknown(12), j
 
       if (status%code /= CONTACT_OK) return
       associate (nodes => geometry%slave_edges(:, pair%slave))
-         call pair_response(x, pair%overlap, options, result%pressure(nodes), with_tangent, response, missed)
+         ! A corner lies at the end of a segment, where the rule of the pressures does not look.
+         at_ends = geometry%options%gap == COMBINED_GAP .and. options%gap == POINTWISE_GAP
+         call pair_response(x, pair%overlap, options, at_ends, result%pressure(nodes), with_tangent, response, missed)
          if (missed > 0.0_wp) then
             status = contact_fail(CONTACT_NO_PROJECTION, pair%slave, .false., missed)
             return
@@ -256,6 +259,7 @@ contains
          if (options%gap == POINTWISE_GAP) then
             result%energy = result%energy + response%energy
             work(nodes) = work(nodes) + response%load
+            if (response%energy <= 0.0_wp) return
          end if
       end associate
       if (.not. with_tangent) return

@@ -8,7 +8,7 @@
 !> docs/theory/contact.md section 3.
 module contact_response
    use contact_mortar, only: overlap_t, point_t, integration_point, hats, hat_slopes, POINTS, POSITION, SHARE, &
-                             LARGEST_SEGMENTS
+                             END_POSITION, END_SHARE, LARGEST_SEGMENTS
    use contact_projection, only: edge_t, edge_of, shapes, shape_slopes, place, tangent, SHAPE_BENDS
    use contact_types, only: wp, TWO_PI, contact_options_t, NODAL_GAP, PRESSURE_WORK
    implicit none (type, external)
@@ -34,24 +34,27 @@ module contact_response
    ! The fields a density depends on, in one list: x_s (1, 2), t (3, 4), x_m (5, 6), s (7).
    integer, parameter :: FIELDS = 7
 contains
-   pure subroutine pair_response(x, overlap, options, pressure, with_stiffness, response, missed)
+   pure subroutine pair_response(x, overlap, options, at_ends, pressure, with_stiffness, response, missed)
       real(wp), intent(in) :: x(2, 6)                   !< Local coordinates as in contact_mortar [m].
       type(overlap_t), intent(in) :: overlap
-      type(contact_options_t), intent(in) :: options
+      type(contact_options_t), intent(in) :: options    !< Of the nodal or the pointwise form.
+      logical, intent(in) :: at_ends                    !< Points at the ends of segments too.
       real(wp), intent(in) :: pressure(3)               !< Of the slave nodes [kPa]; not used by the pointwise form.
       logical, intent(in) :: with_stiffness
       type(response_t), intent(out) :: response
       real(wp), intent(out) :: missed
       type(point_t) :: p
       type(density_t) :: density
-      real(wp) :: end_force(LARGEST_SEGMENTS + 1)
+      real(wp) :: end_force(LARGEST_SEGMENTS + 1), position_of(POINTS), share_of(POINTS)
       integer :: segment, k
 
       end_force = 0.0_wp
       missed = 0.0_wp
+      position_of = merge(END_POSITION, POSITION, at_ends)
+      share_of = merge(END_SHARE, SHARE, at_ends)
       do segment = 1, overlap%segments
          do k = 1, POINTS
-            call integration_point(x, overlap, segment, k, options%axisymmetric, p, missed)
+            call integration_point(x, overlap, segment, position_of(k), share_of(k), options%axisymmetric, p, missed)
             if (missed > 0.0_wp) return
             call find_density(options, pressure, p, density)
             if (options%gap /= NODAL_GAP) then
@@ -62,7 +65,7 @@ contains
             if (options%variation == PRESSURE_WORK) then
                call add_work(p, density, with_stiffness, response)
             else
-               call add_slope(p, density, SHARE(k), merge(TWO_PI, 0.0_wp, options%axisymmetric), POSITION(k), &
+               call add_slope(p, density, share_of(k), merge(TWO_PI, 0.0_wp, options%axisymmetric), position_of(k), &
                               with_stiffness, response, end_force(segment:segment + 1))
             end if
          end do

@@ -15,12 +15,15 @@ module element_equations
 
    integer, parameter :: MAX_DOF = 24   !< 12 displacements (node by node), then p_w, then p_c.
    integer, parameter :: LAST_U = 12
+   !> Of momentum a step: accelerations are differences of velocities that large, 1e-6 leaves room for their rounding.
+   real(wp), parameter :: FLIGHT_SHARE = 1.0e-6_wp
    integer, parameter :: STRAIN_TOO_LARGE = 1000   !< Code of a strain beyond 1 in a step: no law is asked.
 
    type :: element_t
       real(wp) :: r(MAX_DOF) = 0.0_wp            !< Residual.
       real(wp) :: k(MAX_DOF, MAX_DOF) = 0.0_wp   !< d r / d new values.
-      real(wp) :: stretch(MAX_DOF) = 0.0_wp      !< Volume balances: strain rates and fluxes, added up by magnitude.
+      real(wp) :: stretch(MAX_DOF) = 0.0_wp      !< Added up by magnitude: strain rates and fluxes of volume balances;
+                                                 !< weight, and what rounding may take for inertia, of momentum.
       integer :: fallback = NO_FALLBACK          !< What replaces soft tangents, see tangent_fallback;
       integer :: replaced = 0                    !< how many points it replaced.
       logical :: with_change = .false.            !< Whether `change` is wanted.
@@ -116,6 +119,7 @@ contains
          associate (gp => domain%gauss(g, element), region => domain%regions(domain%region_of(element)))
             call look(gp, domain%n_p, scheme, x0, x1, v, a, k(g))
             k(g)%speed = 0.0_wp
+            if (scheme%kind == DYNAMIC) k(g)%velocity = matmul(old%v(:DISPLACEMENTS, node), gp%n)
             if (region%damping > 0.0_wp .and. scheme%kind == DYNAMIC) k(g)%speed = matmul(v(:DISPLACEMENTS, :), gp%n)
             k(g)%source = 0.0_wp
             if (associated(domain%source)) &
@@ -167,6 +171,7 @@ contains
                change_of(domain, region, k(g), old%stress(:, p), pore_t(old%e(p), old%s(p), old%s_rate(p)), response), &
                out%change)
             rate = sum(abs(scheme%c_v*k(g)%strain(1:3)))*gp%weight
+            if (scheme%kind == DYNAMIC) call add_flight(domain, region, k(g), scheme, skeleton, gp, out%stretch)
             associate (stretch => out%stretch(LAST_U + 1:LAST_U + domain%n_p))
                stretch = stretch + rate*abs(gp%m(:domain%n_p)) &
                          + gp%weight*matmul(drift, abs(gp%dm(:, :domain%n_p)))
@@ -179,6 +184,23 @@ contains
       if (n > LAST_U + domain%n_p) &
          out%stretch(LAST_U + domain%n_p + 1:n) = out%stretch(LAST_U + 1:LAST_U + domain%n_p)
    end subroutine add_points
+
+   !> A body in flight: its inertia is its weight and nothing is left that a residual could be small against.
+   pure subroutine add_flight(domain, region, k, scheme, skeleton, gp, stretch)
+      type(domain_t), intent(in) :: domain
+      type(region_t), intent(in) :: region
+      type(kinematics_t), intent(in) :: k
+      type(scheme_t), intent(in) :: scheme
+      type(skeleton_t), intent(in) :: skeleton
+      type(gauss_t), intent(in) :: gp
+      real(wp), intent(inout) :: stretch(:)
+      real(wp) :: force
+
+      force = mixture_density(domain, region%rho_s, skeleton%e/(1 + skeleton%e), skeleton%s) &
+              *(domain%gravity + FLIGHT_SHARE*norm2(k%velocity)/scheme%dt)
+      stretch(1:LAST_U:2) = stretch(1:LAST_U:2) + gp%weight*force*abs(gp%n)
+      stretch(2:LAST_U:2) = stretch(2:LAST_U:2) + gp%weight*force*abs(gp%n)
+   end subroutine add_flight
 
    !> What a step changes of the total stress and of the weight at a point; inertia, sources and damping count whole.
    pure function change_of(domain, region, k, stress0, old, response) result(change)

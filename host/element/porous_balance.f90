@@ -25,6 +25,7 @@ module porous_balance
       real(wp) :: strain(4)                     !< Increment of the step.
       real(wp) :: accel(2)                      !< At its level [m/s2].
       real(wp) :: speed(2)                      !< At its level, where it may be damped [m/s].
+      real(wp) :: velocity(2)                   !< Before, in dynamic stages [m/s].
       real(wp) :: div_v                         !< Rate of volume at its level [1/s].
       real(wp) :: w0, w1, c0, c1                !< p_w, p_c before and after [kPa].
       real(wp) :: w_dot, c_dot                  !< Their rates at their level [kPa/s].

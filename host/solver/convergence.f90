@@ -2,7 +2,8 @@
 !> magnitudes of the elements' contributions|, 1e-6 of its largest value so far, and a floor, over the free unknowns; a
 !> rigid body counts by itself too. Measured by change, what counts of the contributions to a displacement is what the
 !> step changes: a weight that rests hides nothing. The floor of a volume balance is 1e-4 of the strain rates and of the parts of the
-!> fluxes in it: where nothing flows, or nothing can, the balance of every element is nothing but rounding.
+!> fluxes in it, that of momentum 1e-4 of the weight: where nothing flows, or a body falls freely, the balance of every
+!> element is nothing but rounding.
 !> docs/theory/host.md section 5.1.
 module convergence
    use kinds, only: wp
@@ -103,6 +104,7 @@ contains
       end do
       ! The displacements are one field: a component without forces is no measure of its own.
       s(:DISPLACEMENTS) = sum(s(:DISPLACEMENTS))
+      floor(:DISPLACEMENTS) = sum(floor(:DISPLACEMENTS))
    end subroutine add_scales
 
    !> A rigid body that moves is measured by the forces on it: in the sum of its field it would be lost.
