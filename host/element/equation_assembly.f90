@@ -21,6 +21,7 @@ module equation_assembly
       real(wp), allocatable :: stretch(:, :)         !< See element_t.
       real(wp), allocatable :: floor(:)              !< Its sum: what a volume balance is small against.
       logical :: with_change = .false.               !< Whether a step is measured against what it changes.
+      real(wp) :: rounding_share = 0.0_wp            !< Then what changes counts as at least this share of all forces.
       real(wp), allocatable :: d_r(:, :)             !< With it: change of every element's r, see element_t,
       real(wp), allocatable :: change(:)             !< and the sum of its magnitudes.
       real(wp), allocatable :: residual(:)

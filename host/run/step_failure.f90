@@ -42,6 +42,14 @@ contains
             call contact_message(run%system%contacts%status, text)
             call raise(fault, EXIT_CONVERGENCE, place//trim(text)//'.')
          case (BODY_FREE)
+            if (run%assembly%replaced > 0) then
+               e = maxloc(run%assembly%soft, dim=1)
+               call raise(fault, EXIT_FREE_BODY, place//'the equations are singular, also with the elastic stiffness of '// &
+                          whole(run%assembly%replaced)//' points that resist some strain with nothing (tension '// &
+                          'cut-off or failure), most of them in element '//whole(e)//', '//point_of(model, e)// &
+                          ': add a surcharge or suction there, load in smaller steps, or look for a missing &fix.')
+               return
+            end if
             call raise(fault, EXIT_FREE_BODY, place//'the equations are singular: a body can move or a pressure is '// &
                        'undetermined; add a &fix, or look for a region without stiffness or a plate without contact.')
          case (SOLVER_FAILED)
@@ -56,6 +64,17 @@ contains
          end select
       end associate
    end subroutine explain_failure
+
+   !> Middle of an element [m].
+   function point_of(model, e) result(text)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: e
+      character(:), allocatable :: text
+      real(wp) :: x(2)
+
+      x = sum(model%domain%mesh%x(:, model%domain%mesh%t6(:3, e)), dim=2)/3
+      text = '('//short(x(1))//', '//short(x(2))//') m'
+   end function point_of
 
    !> Where a node is: the plate that it stands for, or an element and the point [m].
    function place_of(model, node) result(text)

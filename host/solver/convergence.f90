@@ -14,7 +14,7 @@ module convergence
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_Z, AT_P_C
    implicit none (type, external)
    private
-   public :: control_t, log_t, measure, good_enough, field_scales, body_scale, is_body
+   public :: control_t, log_t, measure, good_enough, field_scales, body_scale, is_body, ROUNDING_OF_SUMS
    public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_KIND, measure_in
 
    integer, parameter :: BY_FORCES = 1       !< The errors of the fields, see above;
@@ -24,6 +24,8 @@ module convergence
    integer, parameter :: BY_CHANGE = 4       !< the errors of the fields against what the step changes;
    integer, parameter :: BY_KIND = 5         !< by forces in dynamic stages, by change in others.
    real(wp), parameter :: HISTORY_SHARE = 1.0e-6_wp   !< Share of the largest scale so far that still counts.
+   !> Of all forces: what their sums leave, some hundred roundings. No tolerance of a change asks for less.
+   real(wp), parameter :: ROUNDING_OF_SUMS = 1.0e-13_wp
    real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Of strain rates and parts of fluxes, see above.
    real(wp), parameter :: ABSOLUTE_FLOOR = 1.0e-12_wp   !< [kN] or [m3/s]: nothing smaller is a force.
 
@@ -79,7 +81,7 @@ contains
       real(wp) :: s(FIELDS), floor(FIELDS)
 
       call add_scales(dofs, constraint, assembly, assembly%with_change, s, floor)
-      scales = max(sqrt(s), HISTORY_SHARE*largest, sqrt(floor), ABSOLUTE_FLOOR)
+      scales = max(sqrt(s), max(HISTORY_SHARE, assembly%rounding_share)*largest, sqrt(floor), ABSOLUTE_FLOOR)
    end function field_scales
 
    pure subroutine add_scales(dofs, constraint, assembly, by_change, s, floor)
@@ -122,7 +124,7 @@ contains
 
       body_scale = assembly%scale(i)
       if (assembly%with_change) body_scale = assembly%change(i)
-      body_scale = max(body_scale, HISTORY_SHARE*largest(AT_U_Z), ABSOLUTE_FLOOR)
+      body_scale = max(body_scale, max(HISTORY_SHARE, assembly%rounding_share)*largest(AT_U_Z), ABSOLUTE_FLOOR)
    end function body_scale
 
    pure logical function counts(dofs, constraint, i)
