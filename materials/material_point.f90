@@ -145,13 +145,14 @@ contains
       real(wp), intent(in) :: stress(6), state(:), suction   !< [kPa], n_state or more, [kPa]
       real(wp), intent(out) :: tangent(6, 6)
       type(response_t) :: response
+      type(report_t) :: report
       real(wp) :: new_state(size(state), 1), no_strain(6, 1)
 
       tangent = 0.0_wp
       no_strain = 0.0_wp
       call self%update(1, reshape(stress, [6, 1]), reshape(state, [size(state), 1]), no_strain, [suction], [0.0_wp], &
-                       WITH_TANGENT, response, new_state)
-      if (response%report%code == 0) tangent = response%dsig_deps(:, :, 1)
+                       WITH_TANGENT, response, new_state, report)
+      if (report%code == 0) tangent = response%dsig_deps(:, :, 1)
    end subroutine tangent_at_rest
 
    !> Writes an update to a new file that can be run alone; `text` says why not. Laws that can override it.
