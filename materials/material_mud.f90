@@ -223,8 +223,8 @@ contains
 
       no_strain = 0.0_wp
       if (mud_update_prepared(self%prepared, stress, state(:self%n_state), self%n_state, no_strain, suction, 0.0_wp, &
-                              MUD_TANGENT_ELASTIC, stress1, state1, tangent, dsig_dpc, dsw_deps, dsw_dpc, report) /= 0) &
-         tangent = 0.0_wp
+                              MUD_TANGENT_ELASTIC, stress1, state1, tangent, dsig_dpc, dsw_deps, dsw_dpc, report) &
+          /= 0) tangent = 0.0_wp
    end subroutine elastic_tangent
 
    subroutine save_update(self, path, origin, stress, state, strain, suction, d_suction, text)

@@ -138,8 +138,8 @@ contains
       if (allocated(self%curve)) sat = self%curve%at(p_c, e)
    end function retention_by_curve
 
-   !> d stress/d strain [kPa] of a point that would respond elastically: the stiffness to fall back on where the true one
-   !> vanishes. Of laws that do not know it, that of an increment without strain; zero where the law refuses.
+   !> d stress/d strain [kPa] of a point that would respond elastically: the stiffness to fall back on where the true
+   !> one vanishes. Of laws that do not know it, that of an increment without strain; zero where the law refuses.
    subroutine tangent_at_rest(self, stress, state, suction, tangent)
       class(material_t), intent(in) :: self
       real(wp), intent(in) :: stress(6), state(:), suction   !< [kPa], n_state or more, [kPa]

@@ -2,7 +2,8 @@
 !> do. docs/theory/contact.md section 2.
 module contact_geometry
    use contact_projection, only: edge_of, least_stretch
-   use contact_types, only: wp, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, PRESSURE_WORK, ENERGY_SLOPE, contact_options_t, &
+   use contact_types, only: wp, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, PRESSURE_WORK, ENERGY_SLOPE, &
+                            contact_options_t, &
                             contact_status_t, contact_fail, is_finite, CONTACT_OK, CONTACT_BAD_OPTION, &
                             CONTACT_BAD_EDGE, CONTACT_BAD_SIZE, CONTACT_NOT_FINITE, CONTACT_BAD_RADIUS, &
                             CONTACT_DISTORTED_EDGE

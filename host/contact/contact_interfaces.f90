@@ -12,7 +12,8 @@ module contact_interfaces
    implicit none (type, external)
    private
    public :: contacts_t, contact_interface_t, surface_t, surface_of, new_interface, plate_surface
-   public :: evaluate_contacts, probe_contacts, probe_interface, fit_pattern, add_contacts, contact_forces, work_of_contacts
+   public :: evaluate_contacts, probe_contacts, probe_interface, fit_pattern, add_contacts
+   public :: contact_forces, work_of_contacts
 
    !> A boundary with numbers of its own.
    type :: surface_t

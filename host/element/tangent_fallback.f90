@@ -1,6 +1,6 @@
-!> Stiffness of points that have none. A point at the tension cut-off, or one that fails, may have a tangent that resists
-!> some strain with nothing, and a mesh of such points has a singular matrix although nothing is loose. There the elastic
-!> tangent takes its place: the residual, and so what is converged to, is untouched.
+!> Stiffness of points that have none. A point at the tension cut-off, or one that fails, may resist some strain with
+!> nothing, and a mesh of such points has a singular matrix although nothing is loose. There the elastic tangent takes
+!> its place: the residual, and so what is converged to, is untouched.
 !> docs/theory/host.md section 5.3.
 module tangent_fallback
    use kinds, only: wp

@@ -9,8 +9,8 @@ module contact_alarm
    private
    public :: tell_penetration
 
-   !> Depth over the length of its edge that is said: a curved surface that rolls on leaves about the share of an edge in
-   !> its radius over eight, 1e-3 with a mesh that is fit for contact [-].
+   !> Depth over the length of its edge that is said: a curved surface that rolls on leaves about an eighth of the share
+   !> of an edge in its radius, 1e-3 with a mesh that is fit for contact [-].
    real(wp), parameter :: ALARMING_DEPTH = 1.0e-3_wp
 contains
    !> After an accepted step; once for every contact, on standard error, also where the run is quiet.

@@ -44,8 +44,9 @@ contains
          case (BODY_FREE)
             if (run%assembly%replaced > 0) then
                e = maxloc(run%assembly%soft, dim=1)
-               call raise(fault, EXIT_FREE_BODY, place//'the equations are singular, also with the elastic stiffness of '// &
-                          whole(run%assembly%replaced)//' points that resist some strain with nothing (tension '// &
+               call raise(fault, EXIT_FREE_BODY, place//'the equations are singular, also with the elastic '// &
+                          'stiffness of '//whole(run%assembly%replaced)// &
+                          ' points that resist some strain with nothing (tension '// &
                           'cut-off or failure), most of them in element '//whole(e)//', '//point_of(model, e)// &
                           ': add a surcharge or suction there, load in smaller steps, or look for a missing &fix.')
                return

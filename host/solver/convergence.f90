@@ -1,9 +1,9 @@
 !> The error of an iteration, and whether it may end. The error of a field is |R_f| over the largest of |sum of the
 !> magnitudes of the elements' contributions|, 1e-6 of its largest value so far, and a floor, over the free unknowns; a
 !> rigid body counts by itself too. Measured by change, what counts of the contributions to a displacement is what the
-!> step changes: a weight that rests hides nothing. The floor of a volume balance is 1e-4 of the strain rates and of the parts of the
-!> fluxes in it, that of momentum 1e-4 of the weight: where nothing flows, or a body falls freely, the balance of every
-!> element is nothing but rounding.
+!> step changes: a weight that rests hides nothing. The floor of a volume balance is 1e-4 of the strain
+!> rates and of the parts of the fluxes in it, that of momentum 1e-4 of the weight: where nothing flows, or a body falls
+!> freely, the balance of every element is nothing but rounding.
 !> docs/theory/host.md section 5.1.
 module convergence
    use kinds, only: wp
