@@ -5,7 +5,7 @@ module equation_assembly
    use kinds, only: wp
    use degrees_of_freedom, only: dofs_t
    use element_equations, only: element_t, compute_element
-   use tangent_fallback, only: NO_FALLBACK
+   use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
    use material_point, only: report_t
    use porous_domain, only: domain_t, state_t
    use sparsity_pattern, only: pattern_t
@@ -14,7 +14,7 @@ module equation_assembly
    implicit none (type, external)
    private
    integer, parameter :: WORTH_THREADS = 64   !< Elements below which waking threads costs more than it saves.
-   public :: assembly_t, make_assembly, assemble
+   public :: assembly_t, make_assembly, assemble, NO_FALLBACK, SOFT_POINTS
 
    type :: assembly_t
       real(wp), allocatable :: r(:, :), k(:, :, :)   !< Of every element.

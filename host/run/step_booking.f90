@@ -12,9 +12,10 @@ module step_booking
    use model_types, only: model_t
    use run_observer, only: run_observer_t, step_report_t
    use run_state, only: run_t
+   use contact_alarm, only: tell_penetration
    implicit none (type, external)
    private
-   public :: book_accepted_step, watch_effects, check_creation, tell_creation
+   public :: book_accepted_step, watch_effects, check_creation, tell_creation, tell_penetration
 contains
    subroutine book_accepted_step(model, scheme, run)
       type(model_t), intent(in) :: model

@@ -3,7 +3,6 @@ module time_stepping
    use kinds, only: wp
    use wall_clock, only: clock, lap
    use faults, only: fault_t
-   use contact_alarm, only: tell_penetration
    use contact_setup, only: contacts_act
    use convergence, only: control_t, log_t, measure_in
    use generalised_alpha, only: scheme_t, make_scheme, step_error
@@ -14,7 +13,7 @@ module time_stepping
    use sparse_factors, only: release
    use step_attempt, only: begin_stage, try_step
    use step_size, only: next_step, keep_step, is_over, LAST_STEP
-   use step_booking, only: book_accepted_step, watch_effects, check_creation, tell_creation
+   use step_booking, only: book_accepted_step, watch_effects, check_creation, tell_creation, tell_penetration
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private

@@ -9,7 +9,7 @@ module newton_step
                           BY_CHANGE
    use dashpots, only: add_dashpots
    use degrees_of_freedom, only: dofs_t
-   use equation_assembly, only: assembly_t, assemble
+   use equation_assembly, only: assembly_t, assemble, NO_FALLBACK, SOFT_POINTS
    use generalised_alpha, only: scheme_t, predict, advance_rates, DYNAMIC
    use linear_system, only: system_t, solve_step, look_at_contacts, MOST_STEPS, T_ASSEMBLY, T_REST, T_MATERIAL, &
                             T_CONTACT
@@ -17,7 +17,6 @@ module newton_step
    use prescribed_values, only: constraint_t, constrain, loads_of_water
    use sparse_factors, only: analyse, factorise, SOLVED, SINGULAR
    use sparsity_pattern, only: pattern_t, place_of
-   use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
    use unknown_fields, only: FIELDS, DISPLACEMENTS
    implicit none (type, external)
    private
