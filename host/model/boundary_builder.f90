@@ -231,6 +231,7 @@ contains
       real(wp) :: near
 
       tie%scene_tie_t = given
+      second = 0
       first = mesh_group(model%domain%mesh, given%first_name, place_of(given), fault)
       if (fault%code == 0) second = mesh_group(model%domain%mesh, given%second_name, place_of(given), fault)
       if (fault%code /= 0) return

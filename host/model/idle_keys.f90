@@ -172,9 +172,14 @@ contains
    subroutine add_warning(text, warnings)
       character(*), intent(in) :: text
       character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
-      character(WARNING_LENGTH) :: one
+      character(WARNING_LENGTH), allocatable :: more(:)
+      integer :: n
 
-      one = text(:min(len(text), WARNING_LENGTH))
-      warnings = [warnings, one]
+      n = 0
+      if (allocated(warnings)) n = size(warnings)
+      allocate (more(n + 1))
+      if (n > 0) more(:n) = warnings
+      more(n + 1) = text
+      call move_alloc(more, warnings)
    end subroutine add_warning
 end module idle_keys

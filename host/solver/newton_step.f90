@@ -42,7 +42,7 @@ contains
       type(system_t), intent(inout) :: system
       type(log_t), intent(out) :: log
       real(wp), allocatable :: rhs(:), dx(:)
-      real(wp), allocatable :: touched(:), touching(:)   !< Forces of contacts before; the residual without them.
+      real(wp), allocatable :: touched(:)   !< Forces of contacts before, where steps are measured by what they change.
       real(wp) :: norm, norm_0, t0
       integer :: status
       logical :: with_tangent
@@ -129,38 +129,53 @@ contains
          call lap(spent, t0)
          system%seconds(T_MATERIAL) = system%seconds(T_MATERIAL) + spent*assembly%material
          system%seconds(T_ASSEMBLY) = system%seconds(T_ASSEMBLY) + spent*(1 - assembly%material)
-         if (.not. pass) then
-            log%outcome = MATERIAL_FAILED
-            return
-         end if
-         call add_bodies(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
-         if (allocated(constraint%dashpots)) call add_dashpots(constraint%dashpots, dofs, pattern, scheme, old, new, &
-                                                                   slopes, assembly)
-         if (allocated(touched)) touching = assembly%residual
-         if (allocated(system%contacts%interfaces)) then
-            call lap(system%seconds(T_REST), t0)
-            call add_contacts(system%contacts, pattern, scheme%l_f, slopes, assembly%residual, assembly%scale, &
-                              assembly%values)
-            call lap(system%seconds(T_CONTACT), t0)
-         end if
-         rhs = constraint%load_0 + scheme%l_f*(constraint%load_1 - constraint%load_0) - constraint%offset
-         call loads_of_water(dofs, constraint%air, rhs)
-         assembly%scale = assembly%scale + abs(rhs)
-         if (assembly%with_change) call add_outer_changes()
-         rhs = rhs - assembly%residual
-         system%reaction = -rhs
+         if (.not. pass) log%outcome = MATERIAL_FAILED
+         if (.not. pass) return
+         call add_what_acts(dofs, pattern, scheme, constraint, old, new, slopes, touched, assembly, system, rhs, t0)
       end function pass
+   end subroutine take_step
 
-      !> What the step changes of loads and contacts, beside that of the elements.
-      subroutine add_outer_changes()
-         if (allocated(touched)) assembly%change = assembly%change + abs(assembly%residual - touching - touched)
+   !> Rigid bodies, boundaries, contacts and loads beside the elements; the residual, with minus sign, in rhs.
+   subroutine add_what_acts(dofs, pattern, scheme, constraint, old, new, slopes, touched, assembly, system, rhs, t0)
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(in) :: pattern
+      type(scheme_t), intent(in) :: scheme
+      type(constraint_t), intent(in) :: constraint
+      type(state_t), intent(in) :: old, new
+      logical, intent(in) :: slopes
+      real(wp), allocatable, intent(in) :: touched(:)   !< Forces of contacts before the step, if they are asked for.
+      type(assembly_t), intent(inout) :: assembly
+      type(system_t), intent(inout) :: system
+      real(wp), intent(out) :: rhs(:)
+      real(wp), intent(inout) :: t0
+      real(wp), allocatable :: without(:)   !< The residual without contacts.
+
+      call add_bodies(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
+      if (allocated(constraint%dashpots)) call add_dashpots(constraint%dashpots, dofs, pattern, scheme, old, new, &
+                                                            slopes, assembly)
+      allocate (without(merge(dofs%n, 0, allocated(touched))))
+      if (allocated(touched)) without(:) = assembly%residual
+      if (allocated(system%contacts%interfaces)) then
+         call lap(system%seconds(T_REST), t0)
+         call add_contacts(system%contacts, pattern, scheme%l_f, slopes, assembly%residual, assembly%scale, &
+                           assembly%values)
+         call lap(system%seconds(T_CONTACT), t0)
+      end if
+      rhs = constraint%load_0 + scheme%l_f*(constraint%load_1 - constraint%load_0) - constraint%offset
+      call loads_of_water(dofs, constraint%air, rhs)
+      assembly%scale = assembly%scale + abs(rhs)
+      if (assembly%with_change) then
+         ! What the step changes of loads and contacts, beside that of the elements.
+         if (allocated(touched)) assembly%change = assembly%change + abs(assembly%residual - without - touched)
          where (dofs%field <= DISPLACEMENTS)
             assembly%change = assembly%change + scheme%l_f*abs(constraint%load_1 - constraint%load_0)
          elsewhere
             assembly%change = assembly%scale
          end where
-      end subroutine add_outer_changes
-   end subroutine take_step
+      end if
+      rhs = rhs - assembly%residual
+      system%reaction = -rhs
+   end subroutine add_what_acts
 
    !> Accelerations that the loads and stresses of a state ask for, its displacements, velocities and pressures held.
    subroutine start_accelerations(domain, dofs, pattern, constraint, state, work, assembly, system, log)

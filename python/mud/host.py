@@ -78,7 +78,7 @@ class HostRun:
         return np.array([_read(path, "time")[0] for path in self._frames()])
 
     def field(self, name: str, frame: int = -1) -> np.ndarray:
-        """A field at a moment: (nodes,), (nodes, 2) for vectors, or (elements,)."""
+        """A field at a moment: (nodes,), (nodes, 3) for vectors, the last zero, or (elements,)."""
         path = self._frames()[frame]
         with _h5py().File(path) as file:
             for place in ("nodes", "cells"):

@@ -111,6 +111,18 @@ h, _ = run(quiet, "still")
 check("ground behind an absorbing side stays at rest",
       max(np.abs(h[f"corner.{u}"]).max() for u in ("u_r", "u_z")) < 1e-9,
       np.abs(h["corner.u_r"]).max())
+# The ground behind a side is that of the scene, or what rho, c_p and c_s say: given alike they give the same answer,
+# given softer another.
+behind = column() + "&fix group = 'left' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' /\n" + (
+    "&load group = 'top' kind = 'pressure' value = 10 history = 'h' /\n"
+    "&history name = 'h' times = 0, 0.02 values = 0, 1 /\n") + stage("go", 0.1, 2e-3)
+sides = {name: run(behind + f"&absorbing group = 'right' {given} /\n", f"behind_{name}")[0]["corner.u_r"]
+         for name, given in (("scene", ""), ("alike", f"rho = 2 c_p = {12000 ** 0.5!r} c_s = {4000 ** 0.5!r}"),
+                             ("softer", f"rho = 2 c_p = {3000 ** 0.5!r} c_s = {4000 ** 0.5!r}"))}
+check("ground behind a side, given alike", np.abs(sides["alike"] - sides["scene"]).max()
+      < ROUNDING * np.abs(sides["scene"]).max(), np.abs(sides["alike"] - sides["scene"]).max())
+check("softer ground behind a side gives way more", sides["softer"][-1] > 1.02 * sides["scene"][-1] > 0,
+      (sides["softer"][-1], sides["scene"][-1]))
 # Pushed, it moves, the balance of energy closes, and a run taken up from a checkpoint writes the same bytes.
 pushed = still.format("checkpoint_steps = 20", "history = 'push'") + stage("go", 0.1, 2e-3) + (
     "&history name = 'push' times = 1, 1.02 values = 1, 2 /\n")

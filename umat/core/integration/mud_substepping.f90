@@ -51,13 +51,7 @@ contains
       logical :: may_grow, known
 
       time = 0.0_wp
-      h = 1.0_wp
-      ! an elastic phase goes in one step if it can, and leaves the remembered step to the next plastic one
-      if (state%last_step > 0.0_wp .and. state%last_step < size .and. .not. inc%inside) h = state%last_step/size
-      ! a whole number of pieces, so that a small change of the strain does not change their size
-      if (turns(inc, ALIGNED)) then
-         h = min(h, 1.0_wp/real(ceiling(min(norm(inc%d_strain)/(TURN_PIECE*inc%rho), 1.0e6_wp)), wp))
-      end if
+      h = first_step(inc, state, size)
       if (turns(inc, SHARP)) call raise_order(par, inc)
       may_grow = .true.
       elastic_substeps = 0
@@ -79,11 +73,9 @@ contains
             end if
             h = max(h, par%h_min)
             if (MANY_SUBSTEPS*h < 1.0_wp - time) call raise_order(par, inc)
-            if (inc%scheme%order > SCHEMES(par%scheme)%order .and. trial%mode /= MODE_HELD) then
-               tolerance = STRICTNESS*par%tolerance
-            else
-               tolerance = par%tolerance
-            end if
+            tolerance = par%tolerance
+            if (inc%scheme%order > SCHEMES(par%scheme)%order .and. trial%mode /= MODE_HELD) &
+               tolerance = STRICTNESS*tolerance
             h_taken = h
             if (time + h*(1.0_wp + LAST_SLIVER) >= 1.0_wp) h_taken = 1.0_wp - time
             call take_step(par, inc, h_taken, trial, counters)
@@ -144,6 +136,22 @@ contains
       if (.not. inc%inside) state%last_step = h*size
       reached = 1.0_wp
    end subroutine integrate
+
+   !> The first substep as a share of the increment or phase [-].
+   pure real(wp) function first_step(inc, state, size)
+      type(increment_t), intent(in) :: inc
+      type(state_t), intent(in) :: state
+      real(wp), intent(in) :: size    !< of the increment, in units of strain [-]
+
+      first_step = 1.0_wp
+      ! an elastic phase goes in one step if it can, and leaves the remembered step to the next plastic one
+      if (state%last_step > 0.0_wp .and. state%last_step < size .and. .not. inc%inside) &
+         first_step = state%last_step/size
+      ! a whole number of pieces, so that a small change of the strain does not change their size
+      if (turns(inc, ALIGNED)) then
+         first_step = min(first_step, 1.0_wp/real(ceiling(min(norm(inc%d_strain)/(TURN_PIECE*inc%rho), 1.0e6_wp)), wp))
+      end if
+   end function first_step
 
    !> Modified Euler becomes the higher order for the rest of the increment or phase; the rule as_published keeps it.
    pure subroutine raise_order(par, inc)

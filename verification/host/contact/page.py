@@ -25,7 +25,8 @@ POINTWISE = ("penalty = 1.0e6", "penalty = 1.0e6\n   gap = 'pointwise'")
 PLANE = ("'axisymmetric'", "'plane_strain'")
 STATIC = [("analysis = 'dynamic'", "analysis = 'static'"), ("duration = 0.04", "duration = 0.014"),
           ("dt = 1.0e-4", "dt = 0.014"),
-          ("tolerance = 1.0e-5", "tolerance = 1.0e-9")]
+          # of all forces: what the stiffest plate changes is rounding of what it carries
+          ("tolerance = 1.0e-5", "tolerance = 1.0e-9\n   measure = 'forces'")]
 RIGID = [("master = 'plate_bottom'", "master = 'rigid'"), ("value = 91.95618934", "value = 0"),
          ("&history", """&plate name = 'rigid' r = 0, 0.15 mass = 0.011098231 weight = 'yes'
    force = -6.5 history = 'triangle' /
