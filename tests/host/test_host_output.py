@@ -46,8 +46,8 @@ duration = time.monotonic() - t0
 check("uninterrupted run", done.returncode == 0, done.stderr)
 whole = work / "whole"
 
-# SIGKILL at ten random moments (six in the slow builds); at least two of them in a checkpoint's write, which is seen by the unfinished file that
-# stays behind. Those are aimed at: the kill follows as soon as the unfinished file shows up.
+# SIGKILL at ten random moments (six in the slow builds); at least two of them in a checkpoint's write, which is seen by
+# the unfinished file that stays behind. Those are aimed at: the kill follows as soon as the unfinished file shows up.
 dice = random.Random(1)
 out = work / "killed"
 kills = in_write = starts = 0
