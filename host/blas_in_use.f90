@@ -3,6 +3,7 @@
 module blas_in_use
    use, intrinsic :: iso_c_binding, only: c_int, c_char, c_ptr, c_funptr, c_null_ptr, c_null_char, c_associated, &
                                           c_f_procpointer, c_f_pointer
+   use dynamic_loader, only: dlsym
    implicit none (type, external)
    private
    public :: blas_t, find_blas
@@ -39,14 +40,6 @@ module blas_in_use
          character(kind=c_char), intent(out) :: resolved(*)
          type(c_ptr) :: text
       end function realpath_i
-   end interface
-
-   interface
-      type(c_funptr) function dlsym(handle, name) bind(c)
-         import :: c_ptr, c_char, c_funptr
-         type(c_ptr), value :: handle
-         character(kind=c_char), intent(in) :: name(*)
-      end function dlsym
    end interface
 contains
    function find_blas() result(found)

@@ -2,8 +2,8 @@
 !> and memory that every factorisation needs anew is kept. Both are asked of what is there: another BLAS or C library
 !> just goes without.
 module process_settings
-   use, intrinsic :: iso_c_binding, only: c_int, c_char, c_ptr, c_funptr, c_null_ptr, c_null_char, c_associated, &
-                                          c_f_procpointer
+   use, intrinsic :: iso_c_binding, only: c_int, c_funptr, c_null_ptr, c_null_char, c_associated, c_f_procpointer
+   use dynamic_loader, only: dlsym
    implicit none (type, external)
    private
    public :: settle_process
@@ -21,14 +21,6 @@ module process_settings
          import :: c_int
          integer(c_int), value :: parameter, value
       end function set_memory
-   end interface
-
-   interface
-      type(c_funptr) function dlsym(handle, name) bind(c)
-         import :: c_ptr, c_char, c_funptr
-         type(c_ptr), value :: handle
-         character(kind=c_char), intent(in) :: name(*)
-      end function dlsym
    end interface
 contains
    subroutine settle_process()

@@ -2,13 +2,13 @@
 module umat_library
    use, intrinsic :: iso_c_binding, only: c_ptr, c_funptr, c_char, c_int, c_size_t, c_double, c_null_char, &
                                           c_associated, c_f_pointer, c_f_procpointer
+   use dynamic_loader, only: dlopen, dlsym, dlerror, RTLD_NOW
    use faults, only: fault_t, raise, EXIT_INPUT
    implicit none (type, external)
    private
    public :: umat_i, load_umat, CMNAME_LENGTH
 
    integer, parameter :: CMNAME_LENGTH = 80
-   integer(c_int), parameter :: RTLD_NOW = 2   ! all symbols at once, so that one that is missing is told here
    integer, parameter :: LONGEST_MESSAGE = 400
 
    abstract interface
@@ -26,24 +26,6 @@ module umat_library
          character(kind=c_char), intent(in) :: cmname(*)
          integer(c_size_t), value :: cmname_length
       end subroutine umat_i
-   end interface
-
-   interface
-      type(c_ptr) function dlopen(path, mode) bind(c)
-         import :: c_ptr, c_char, c_int
-         character(kind=c_char), intent(in) :: path(*)
-         integer(c_int), value :: mode
-      end function dlopen
-
-      type(c_funptr) function dlsym(handle, name) bind(c)
-         import :: c_ptr, c_funptr, c_char
-         type(c_ptr), value :: handle
-         character(kind=c_char), intent(in) :: name(*)
-      end function dlsym
-
-      type(c_ptr) function dlerror() bind(c)
-         import :: c_ptr
-      end function dlerror
    end interface
 contains
    !> The procedure of a library, which stays loaded as long as the program runs.
