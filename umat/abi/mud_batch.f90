@@ -52,16 +52,10 @@ contains
       type(c_ptr), value :: prepared, stress0, statev0, dstrain, suction0, dsuction, stress1, statev1, dsig_deps, &
                             dsig_dpc, dsw_deps, dsw_dpc, status_out, reports
       integer(c_int), value :: n, n_statev, tangent, threads
-      type(prepared_t), pointer :: material
-      type(mud_status_t) :: status
 
-      status = fault_of(n, n_statev, tangent, c_associated(prepared), c_associated(stress0), c_associated(statev0), &
-                        c_associated(dstrain), c_associated(stress1), c_associated(statev1), c_associated(status_out))
-      if (status%code == MUD_OK) call find_prepared(prepared, material, status)
-      mud_update_batch_prepared = status%code
-      if (status%code == MUD_OK) call update_points(material%par, n, c_null_ptr, stress0, statev0, n_statev, dstrain, &
+      mud_update_batch_prepared = mud_update_list(prepared, n, c_null_ptr, stress0, statev0, n_statev, dstrain, &
          suction0, dsuction, tangent, threads, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status_out, &
-         reports, c_null_ptr, mud_update_batch_prepared)
+         reports, c_null_ptr)
    end function mud_update_batch_prepared
 
    !> The same for the points of a list, with a summary.
