@@ -27,7 +27,7 @@ def with_reversals(size, events=100, to=0.01, levels=((0.8, 1.0), (0.8, 100.0), 
 
 
 def level_overshoot(runs):
-    """The largest overshoot over the stress levels [%]."""
+    """The largest overshoot over the stress levels or densities [%]."""
     levels = [label[6:] for label in runs if label.startswith("clean ")]
     return max(overshoot({"clean": runs[f"clean {p}"], "turned": runs[f"turned {p}"]}) for p in levels)
 
@@ -219,11 +219,6 @@ def pressure(runs):
     return max(100 * (last(rows).p / 100 - 1) for rows in runs.values())
 
 
-def dense_loose(runs):
-    """The larger overshoot of dense and loose [%]."""
-    return max(overshoot({"clean": runs[f"clean {e}"], "turned": runs[f"turned {e}"]}) for e in (DENSE, LOOSE))
-
-
 LOSES = "q later does not exceed that of the uninterrupted path [%]"
 
 CASES = (
@@ -233,15 +228,15 @@ CASES = (
     reversal_case(1e-4, level_overshoot, LOSES, NOISE),
     Case("reversals of 1e-2", "turns", "every leg passes the elastic domain, contraction and dilation in a few increments", BOUND, TRAIL,
          wide_reversals, bounded),
-    Case("noise of 1e-6 along", "turns", "reversals far below what sand feels", LOSES, NOISE, noise_paths(1e-6), dense_loose),
-    Case("noise of 5e-5 along", "turns", "reversals of the size of the elastic domain", LOSES, NOISE, noise_paths(5e-5), dense_loose),
+    Case("noise of 1e-6 along", "turns", "reversals far below what sand feels", LOSES, NOISE, noise_paths(1e-6), level_overshoot),
+    Case("noise of 5e-5 along", "turns", "reversals of the size of the elastic domain", LOSES, NOISE, noise_paths(5e-5), level_overshoot),
     Case("noise of 1e-5 across", "turns", "the direction of loading turns in every increment and never reverses", LOSES, NOISE,
-         noise_paths(1e-5, across=True), dense_loose),
+         noise_paths(1e-5, across=True), level_overshoot),
     Case("loops in softening", "turns", "the state lies outside the bounding surface, which shrinks: a reversal there has no image stress",
          LOSES, NOISE, softening_paths(1e-4), overshoot),
     Case("tiny loops in softening", "turns", "as before, loops inside the elastic domain", "stress that of the uninterrupted path [%]", 1.0,
          softening_paths(1e-5), off_the_clean),
-    Case("nine nested loops", "turns", "the memory has room for four", LOSES, NOISE, nested_paths, dense_loose),
+    Case("nine nested loops", "turns", "the memory has room for four", LOSES, NOISE, nested_paths, level_overshoot),
     Case("1000 symmetric cycles", "cycles", "any bias of the rule adds up", "asymmetry of tau over its range [%]", 0.3,
          symmetric_paths((1e-6, 1e-5, 1e-4, 3e-4), 1000), asymmetry),
     Case("1000 biased cycles", "cycles", "every cycle leaves a little strain, a rule that overshoots leaves none or too much",
