@@ -10,7 +10,7 @@ module tangent_fallback
    public :: stiffen, NO_FALLBACK, OPEN_POINTS, SOFT_POINTS
 
    integer, parameter :: NO_FALLBACK = 0   !< Tangents as they are;
-   integer, parameter :: OPEN_POINTS = 1   !< elastic where a change of volume meets next to nothing;
+   integer, parameter :: OPEN_POINTS = 1   !< elastic where the volumetric stiffness is almost zero;
    integer, parameter :: SOFT_POINTS = 2   !< elastic where any strain does, or is helped.
    real(wp), parameter :: NEXT_TO_NOTHING = 1.0e-3_wp   !< Share of the elastic stiffness [-].
    integer, parameter :: PLANE = 4         !< Components rr, zz, tt, rz.
