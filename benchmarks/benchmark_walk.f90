@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Paths that the benchmarks walk along, through the doors of mud.h and through the rate itself.
 module benchmark_walk
    use, intrinsic :: iso_c_binding, only: c_int, c_long, c_double, c_null_char

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Time of the host by phase, what each measure buys, and growth with the number of unknowns.
 
 Writes results/host.csv (every run) and results/host.md (tables). Runs of one comparison take turns; medians count.

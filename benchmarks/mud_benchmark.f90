@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Nanoseconds and rate evaluations per update: scheme x tolerance x tangent x path x threads, as CSV on the screen.
 !>
 !> mud_benchmark [ROUNDS]                                    everything; medians of so many rounds

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The tables of benchmarks/README.md from speed.csv and instructions.csv of a folder."""
 import pathlib
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Writes the table of the library of materials into calibration/README.md, from the heads of the files and the misfits."""
 
 import pathlib

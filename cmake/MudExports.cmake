@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # mud_read_header(HEADER FUNCTIONS ABI)
 # The functions that a C header of ours declares, and its ABI version: the header is the only list of either.
 function(mud_read_header header functions abi)

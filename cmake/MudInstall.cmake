@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # mud_install(TARGETS ... HEADERS ... MODULES ... RUNTIME ... DATA ...)
 # What `cmake --install` puts where. RUNTIME: the libraries below libmud.a, without -l. Components: library (what a
 # linked program needs), development, programs.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Debian packages by CPack: `cmake --build build/release --target package` writes them into the build folder.
 # libmud2 (2 is the ABI version) for linked programs, libmud-dev to link, mud-programs for the command line.
 # scripts/try_packages.sh installs and uses them in a root folder that has nothing else.

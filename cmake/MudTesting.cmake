@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Test suites, written once as pFUnit .pf files and built with pFUnit where it is installed,
 # otherwise with the runner in tests/support.
 

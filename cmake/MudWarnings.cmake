@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # mud_set_warnings(TARGET [TESTS])
 # The language standard and the warnings every target of ours is held to.
 # TESTS leaves out -Wuse-without-only, because .pf files say `use funit`.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The command line of a program: a list of options, and words that are none.
 module arguments
    use faults, only: fault_t, raise, EXIT_INPUT

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Tables of text whose every byte is accounted for: rows go through the C library, which tells of a full disk, whereas
 !> the Fortran runtime buffers formatted records and loses its refusal.
 module csv

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Small dense systems; the only module that knows LAPACK.
 module dense
    use kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The loader of the system (POSIX, dlfcn.h): libraries by their path, procedures of what is loaded by their name.
 module dynamic_loader
    use, intrinsic :: iso_c_binding, only: c_ptr, c_funptr, c_char, c_int

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> What went wrong: an exit code and a sentence that says what, where, the value, the allowed range and the remedy.
 module faults
    implicit none (type, external)

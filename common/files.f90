@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Files that are either whole or not there, and what else Fortran cannot ask the system for (POSIX).
 module files
    use, intrinsic :: iso_c_binding, only: c_int, c_int8_t, c_size_t, c_long, c_char, c_ptr, c_null_char, c_associated, &

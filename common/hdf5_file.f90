@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> HDF5 files of the host, the only module that knows the HDF5 library: datasets with the attributes `unit` and
 !> `description` and a checksum, texts as attributes of the file. A file is built in memory and written as a whole, so
 !> that a full disk or a killed run leaves no half of one. Without HDF5 the file of the same name beside it is built.

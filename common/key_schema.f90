@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Keys of input files: a program lists its keys once, with kind, default, range or words, and meaning; checks, readers,
 !> templates and help texts come from that list.
 module key_schema

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Precision and constants of the programs.
 module kinds
    use, intrinsic :: iso_fortran_env, only: wp => real64

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Reads files of namelist groups: `&name`, then `key = value` as often as needed, then `/`.
 !> A plain reader of its own instead of Fortran's namelist input, because the names of materials come from the
 !> library's registry and because every refusal has to say the file, the line and the nearest name.

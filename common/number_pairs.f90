@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Files of two numbers a line, as a history or a measured curve; `!` or `#` begins a comment.
 module number_pairs
    use kinds, only: wp

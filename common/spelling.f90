@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The nearest name to a misspelt one.
 module spelling
    use texts, only: lower_case

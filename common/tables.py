@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The one reader and writer of CSV tables for scripts: results of the programs, committed results, data from elsewhere.
 
 # begins a comment line. What cannot be read is a TableError that names the file, the line and the column.

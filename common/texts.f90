@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Words and numbers: reading and writing.
 module texts
    use, intrinsic :: iso_fortran_env, only: int32, int64

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Wall time.
 module wall_clock
    use, intrinsic :: iso_fortran_env, only: int64

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* mud_triax as a library: a case given as text, its table in memory. See drivers/README.md for cases and columns.
  *
  * Texts go into the caller's buffer of `len` bytes, cut to fit and always terminated. Nothing is printed, and no file is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """One page for a result of mud_triax (CSV or HDF5): plot_case.py FILE [FILE ...] [--output PICTURE]
 
 Several files are drawn over each other. The panels follow from what the test did: paths of stress and strain always,

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Which BLAS and LAPACK the process has loaded. Everything is asked of the dynamic linker at run time: where it cannot
 !> say, the answer is an empty text.
 module blas_in_use

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Exit codes of mud_host beside those of `faults`.
 module exit_codes
    implicit none (type, external)

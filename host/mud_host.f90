@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> mud_host SCENE.nml: coupled finite elements of unsaturated soil.
 program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit, int64

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Pictures of a run of mud_host: plot_run.py FOLDER [--fields NAME ...] [--times T ...] [--histories NAME ...]
 
 Writes fields.png (a row for every time, a column for every field) and histories.png (a panel for every quantity, a line

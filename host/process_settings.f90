@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> What the process asks of its libraries: the fronts of a factorisation are too small to be worth threads of the BLAS,
 !> and memory that every factorisation needs anew is kept. Both are asked of what is there: another BLAS or C library
 !> just goes without.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The tables of the MUD library: its parameters and state variables with their names, units and ranges.
 module library_tables
    use, intrinsic :: iso_c_binding, only: c_int, c_null_char

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Isotropic linear elasticity of the effective stress, beside a retention curve.
 module material_elastic
    use kinds, only: wp

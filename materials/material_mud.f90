@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> MUD through its public interface, its parameters checked and prepared once.
 module material_mud
    use, intrinsic :: iso_c_binding, only: c_int, c_null_char

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> A material point, the seam between programs and laws: host and drivers know this type alone, a law extends it.
 !> Conventions are those of a UMAT: tension positive, components 11, 22, 33, 12, 13, 23, engineering shear; stress is
 !> effective; suction p_c = p_a - p_w is positive where unsaturated. Degree of saturation and void ratio come from the

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The laws that programs offer by name. A new law is one new file and one line in `list_laws`.
 module material_registry
    use faults, only: fault_t, raise, at_line, EXIT_INPUT

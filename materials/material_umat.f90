@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> A law of others: any UMAT from a shared library, beside a retention curve unless its STATEV holds the saturation.
 !> Suction goes to it as PREDEF(1) and DPRED(1). The law must be rate-independent: a point has no time, so each update
 !> is one unit of it, and TIME counts the updates.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Parameters of MUD by name: a group, checked against the library's registry, fills PROPS.
 module parameter_groups
    use, intrinsic :: iso_c_binding, only: c_null_char

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Water retention: degree of saturation at a suction and a void ratio, with its slopes.
 module retention_curves
    use kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Retention curves from their groups.
 module retention_groups
    use kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> UMATs from shared libraries: the interface of Abaqus, and the loader of the system (POSIX).
 module umat_library
    use, intrinsic :: iso_c_binding, only: c_ptr, c_funptr, c_char, c_int, c_size_t, c_double, c_null_char, &

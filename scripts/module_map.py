@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Draws the map of the Fortran sources from their `use` lines: docs/architecture.svg.
 
 A box is a folder, a frame a part of the project. An arrow says that the folder above uses the one below, or one frame

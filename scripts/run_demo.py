@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Runs the model against Verdugo & Ishihara's triaxial tests on Toyoura sand, then one impact on unsaturated soil.
 
 Six drained tests beside their laboratory points, twelve undrained tests beside the closed-form steady state, through the

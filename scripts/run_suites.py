@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Run every test suite of a build folder and add up the single tests.
 
 Usage: run_suites.py BUILD_DIR [-j N]. The suites are those ctest knows. Each has to close with

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Does a change of the host leave its answers alone, to the last bit?
 
     scripts/same_answers.py record FOLDER      runs the scenes below and keeps their files

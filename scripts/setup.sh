@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Sourced by ./check and ./demo: makes sure that the tools are there. Quick when nothing is missing.
 # Leaves $root (the repository) and $venv_python. A missing tool that cannot be installed ends with code 3.
 

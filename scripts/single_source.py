@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Write the library as one Fortran source: usage single_source.py OUTPUT.
 
 The modules, in the order of umat/CMakeLists.txt, follow each other unchanged behind a comment that says what the file is

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # Makes the Debian packages of a build and uses them in a root folder that has nothing else: programs first, then a C
 # and a Fortran host against the development files. Needs root, debootstrap and a Debian mirror; takes some minutes and
 # 1 GB of a temporary folder. Not part of ./check.

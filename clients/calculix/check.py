@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """CalculiX with external behaviours: MUD loaded by name (@) and linked statically."""
 import os
 import pathlib

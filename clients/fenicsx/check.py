@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """FEniCSx, PETSc and MPI: points against mud_triax, ranks, restart, multigrid, a metre, a strip against mud_host."""
 import csv
 import json

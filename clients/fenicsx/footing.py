@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A footing on saturated MUD sand: a quarter of a square one in three dimensions, or half a strip in plane strain.
 
 The sand begins at an even effective stress, held by a surcharge; p_w is 0 at the top, the other sides are closed and on

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Points of one MUD material over NumPy arrays: the batch call of mud.h."""
 import ctypes
 import os

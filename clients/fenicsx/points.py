@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Points of the batch call alone. A JSON file with strains, suction, void_ratio, stress: four equal points follow it.
 An .npz that footing.py --record wrote: the last increment of every point again, compared bit by bit.
 """

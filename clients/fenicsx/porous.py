@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Displacement and pressure of the pore water in MUD sand, by FEniCSx, PETSc and MPI: quasi-static, small strains.
 
 Quadratic displacement, linear pressure, backward Euler, Newton with the consistent tangent of the batch call, line

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Processor time of the parts of a footing's first steps, the largest of all ranks. Options are those of footing.py.
 
 Processor time, not time on the clock: it can be told on a machine that others use too. A rank that waits for another in

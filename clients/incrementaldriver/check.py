@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """incrementalDriver: input and the numbers expected; compared if MUD_INCREMENTAL_DRIVER names the program with MUD."""
 import csv
 import os

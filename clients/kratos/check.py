@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Kratos GeoMechanics: a cube, a ring and a plane by UMAT and by UDSM."""
 import csv
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Writes a folder that Kratos runs: ProjectParameters.json and MaterialParameters.json beside a mesh of this folder."""
 import json
 

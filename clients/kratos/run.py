@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Runs a project of Kratos in the present folder and writes the stress of its first point at every step.
 
 usage: run.py [STRAINS.csv | --top]

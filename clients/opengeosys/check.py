@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """OpenGeoSys through the generic interface of MFront: mechanics, and the unsaturated process with a wetting."""
 import csv
 import ctypes

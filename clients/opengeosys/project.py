@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Writes projects of OpenGeoSys with MUD: a cube whose nodes all move by given strains, saturated or unsaturated."""
 POINTS = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
 CUBE = (0, 1, 3, 2, 4, 5, 7, 6)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the checks of all foreign programs share: the library, the expected answers, installation, comparison."""
 import csv
 import ctypes

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Stands in for ../io_hdf5.f90 where HDF5 is not installed: nothing is good, and who asks HAS_HDF5 first knows why.
 module hdf5_file
    use kinds, only: wp

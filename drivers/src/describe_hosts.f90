@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> A material as other programs read it: cards, JSON, XML and plain numbers. Every number is written with as many digits
 !> as bring back its bits.
 module describe_hosts

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Tables of the library as Markdown, and a namelist with every parameter.
 module describe_tables
    use, intrinsic :: iso_c_binding, only: c_int, c_double, c_null_char

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The library of materials: parameter sets by name, for mud_triax --material.
 module material_folder
    use, intrinsic :: iso_c_binding, only: c_char, c_size_t, c_null_char

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Prints the library's tables, and a material as another program reads it.
 program mud_describe
    use, intrinsic :: iso_fortran_env, only: output_unit, error_unit

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Runs a saved increment alone: its substeps, how it ends, whether it ends as it did, whether cutting it helps.
 program mud_replay
    use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit, error_unit

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Element tests on the MUD model: drained and undrained triaxial tests, compression, strain and suction paths.
 program mud_triax
    use, intrinsic :: iso_fortran_env, only: output_unit, error_unit

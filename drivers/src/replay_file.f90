@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Reads an increment that the library saved. The format is strict: every line in its place, with its name.
 module replay_file
    use, intrinsic :: iso_fortran_env, only: wp => real64, iostat_end

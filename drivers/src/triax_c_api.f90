@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The functions of mud_triax.h: a case given as text, its table in memory.
 module triax_c_api
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_char, c_double, c_size_t, c_null_ptr, c_null_char, c_loc, &

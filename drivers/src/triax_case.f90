@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Case files: what a test is, read and checked before anything runs.
 module triax_case
    use, intrinsic :: iso_fortran_env, only: wp => real64

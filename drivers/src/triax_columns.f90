@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Columns of the results: what they are called, what they mean, and their values at a point.
 module triax_columns
    use kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Mixed control: six linear constraints on strain and stress and one on suction, solved increment by increment with the
 !> library's tangent blocks. An increment that fails is cut and retried.
 module triax_control

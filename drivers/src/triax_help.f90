@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Texts on request: how to call the driver, and a case file that runs unchanged.
 module triax_help
    use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit

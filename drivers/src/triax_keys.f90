@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Keys of case files.
 module triax_keys
    use kinds, only: wp

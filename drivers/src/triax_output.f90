@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Results: rows of a CSV or HDF5 file.
 module triax_output
    use, intrinsic :: iso_fortran_env, only: int64

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The sample at a point, and the only module of the driver that knows the conventions of laws.
 !> Here compression is positive, components are 11, 22, 33, 12, 13, 23, shear strain is engineering shear;
 !> the axis of the sample is component 33, the radial components are 11 and 22.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> What a run tells on the screen: progress, and the summary at the end.
 module triax_progress
    use, intrinsic :: iso_fortran_env, only: output_unit, error_unit

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Runs a test: its stages one after the other, a row of the table where a stage calls for one.
 module triax_run
    use faults, only: fault_t

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Stages of a test: what leads them, and the six linear constraints that each named control stands for.
 !>
 !> A constraint reads strain_row . (change of strain) + stress_row . (change of stress) = its share of a change; stress

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> How a stage runs: one way, or the ways between the reversals of its cycles, and what ends it early.
 !>
 !> Strain cycles reverse at given strains. Stress cycles drive the strain until the stress is reached, which is found

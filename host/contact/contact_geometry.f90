@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Two surfaces that may come into contact: their edges, once per mesh, and whether given coordinates will
 !> do. docs/theory/contact.md section 2.
 module contact_geometry

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Contacts in the equations: current coordinates go to the kernels, their forces and slopes to the unknowns. Without
 !> contacts nothing is allocated and nothing is done.
 module contact_interfaces

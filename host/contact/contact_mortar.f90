@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Mortar integration between one slave edge and one master edge: the part of the slave edge that lies opposite, its
 !> segments and integration points with their derivatives, and what they add to the weights and gaps of the nodes.
 !>

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Frictionless mortar contact by penalty: weights, gaps and pressures of the slave nodes, energy, nodal forces and the
 !> consistent tangent of both surfaces: docs/theory/contact.md sections 2 and 3; host/CONTACT.md has the limits.
 module contact_penalty

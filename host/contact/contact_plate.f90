@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> A rigid plate as the master: its face follows one unknown, the vertical displacement, and the contact's forces and
 !> tangent are gathered on it. docs/theory/contact.md section 4.
 module contact_plate

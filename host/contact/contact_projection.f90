@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Quadratic edges (nodes: start, end, middle; the body on the left, so that the outward normal points to the right) and
 !> projections between them: of a point onto an edge, and along a given normal onto the edge opposite.
 module contact_projection

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Forces and stiffness of one pair of edges, with the nodal pressures given; what follows from their change is added
 !> where the nodes are known (contact_penalty).
 !>

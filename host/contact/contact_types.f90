@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Options and status of the contact kernels, and what a status says in words.
 module contact_types
    use, intrinsic :: iso_fortran_env, only: int64

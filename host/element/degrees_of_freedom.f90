@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Numbers of the unknowns: one per node and field that the scene has, shared where nodes move as one rigid body, and
 !> room for unknowns that belong to no node.
 module degrees_of_freedom

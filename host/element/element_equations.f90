@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Residual and exact tangent of one element: B^T response and B^T slope B over its quadrature points.
 module element_equations
    use wall_clock, only: clock, lap

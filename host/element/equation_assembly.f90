@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Residual, its scale and its tangent for the whole mesh. Elements are computed in parallel and summed in a fixed
 !> order, so that the result does not depend on the number of threads.
 module equation_assembly

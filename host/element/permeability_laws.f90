@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Relative permeabilities to water and air as functions of the degree of saturation, with floors so that no balance
 !> equation vanishes.
 !> docs/theory/host.md section 2.6.

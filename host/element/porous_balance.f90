@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The physics at one quadrature point: what the balances of momentum, water plus air, and air need, and its exact
 !> derivative. Both are arrays over the same twelve places: strain rr, zz, tt, rz | displacement | p_w | p_c |
 !> gradient of p_w | gradient of p_c, so that an element adds B^T response and B^T tangent B and knows no soil.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The discrete problem: mesh, geometry at the quadrature points, laws of every region, and what a state consists of.
 module porous_domain
    use exit_codes, only: EXIT_ELEMENT

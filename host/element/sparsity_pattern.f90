@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Sparsity pattern, row by row, and the list of element entries that add up to every place of it. The pattern is
 !> symmetric and knows nothing of boundary conditions, so these may change while it stays.
 module sparsity_pattern

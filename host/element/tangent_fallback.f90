@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Stiffness of points that have none. A point at the tension cut-off, or one that fails, may resist some strain with
 !> nothing, and a mesh of such points has a singular matrix although nothing is loose. There the elastic tangent takes
 !> its place: the residual, and so what is converged to, is untouched.

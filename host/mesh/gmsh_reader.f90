@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Reads Gmsh 4.1 text meshes of 6-node triangles; physical groups become groups of the mesh.
 module gmsh_reader
    use exit_codes, only: EXIT_MESH

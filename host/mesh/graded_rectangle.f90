@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Built-in mesh: a rectangle of blocks, each cut into cells whose size grows in a constant ratio, two triangles a cell.
 !> Boundaries left, right, bottom, top; the pieces between two breaks are top_1, top_2, ... (right_1 from the bottom).
 !> Regions: all, and block_I_J (I along r, J along z).

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Shape functions of 6-node and 3-node triangles and of 3-node edges, and quadrature rules.
 !> Nodes as in Gmsh: vertices 1, 2, 3, then the middles of 1-2, 2-3, 3-1; an edge is vertex, vertex, middle.
 module shape_functions

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Mesh of 6-node triangles with named regions and boundaries.
 module triangle_mesh
    use kinds, only: wp

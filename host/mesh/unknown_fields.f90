@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The unknown fields and their places in arrays over the nodes, as in x(AT_P_W, node).
 module unknown_fields
    implicit none (type, external)

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Absorbing boundaries (Lysmer & Kuhlemeyer 1969) as dashpots: impedances rho c_p and rho c_s of the ground behind the
 !> boundary, for pore pressures the outflow of a wave that goes on (its gradient is -1/c_p times its rate), and the
 !> force of a wave that comes in. Without keys of their own the impedances are those of the elements at the boundary in

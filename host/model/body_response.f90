@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> How the linearised body answers to what acts on it: strain energy under a load history, and under the forces that
 !> nothing balances at the start.
 module body_response

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Supports, loads, initial conditions, plates and contacts of a scene, with the groups of the mesh that they name.
 module boundary_builder
    use kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> What a step prescribes: displacements, pore pressures and air pressures at its end, and the masses of plates.
 module boundary_conditions
    use kinds, only: wp

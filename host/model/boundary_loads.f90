@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Load vectors: of a unit of every load once, of all loads at a moment.
 module boundary_loads
    use kinds, only: wp, PI

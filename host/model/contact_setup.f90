@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Contacts of a model at the start of a run and of a stage: set up, seated, switched.
 module contact_setup
    use kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Which effects a scene calls for: fields, inertia, relative acceleration, gravity. What the keys leave out is
 !> derived: an effect is off only where a bound of what it does is below the scene's tolerance. Bounds use the stiffness
 !> at the start; of a plastic material they keep a reserve (PLASTIC).

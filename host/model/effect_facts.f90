@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> What the decisions about the effects of a scene share: stiffness, extent, weight, what acts, and how fast.
 module effect_facts
    use kinds, only: wp

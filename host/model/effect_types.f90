@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Effects that a scene may or may not call for: the row of their table.
 module effect_types
    use kinds, only: wp

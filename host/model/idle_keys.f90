@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Keys of a scene that change nothing because another key says so, and definitions that nobody uses.
 module idle_keys
    use faults, only: at_line

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The state at the start of a scene: pressures, degree of saturation, effective stress.
 !> docs/theory/host.md section 8.
 module initial_conditions

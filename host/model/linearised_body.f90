@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The body at the start of a scene, taken as linear with its drained stiffness and its supports of a stage: the
 !> slowest free vibration.
 module linearised_body

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The load histories of a model: everything that acts on it, and how fast: jumps, slopes and their changes in every
 !> stage.
 module load_histories

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The mesh of a scene: read from a file, or made of graded blocks.
 module mesh_builder
    use kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Builds the model of a scene: mesh, materials, supports, loads and contacts with every name resolved, the effects
 !> that the scene leaves open decided, the unknowns numbered.
 module model_builder

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> A model: mesh, unknowns, materials, loads, supports, plates and contacts of a scene, its names resolved to places. A
 !> model is built once (model_builder); a run reads it and changes nothing in it.
 module model_types

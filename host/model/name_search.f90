@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Names that a scene uses for what is defined elsewhere in it, or in its mesh.
 module name_search
    use faults, only: fault_t, raise

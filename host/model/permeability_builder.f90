@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Relative permeabilities of a scene.
 module permeability_builder
    use faults, only: fault_t, raise, at_line, EXIT_INPUT

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Whether a scene calls for the fields of the pores: suction and pore water pressure.
 module pore_effects
    use kinds, only: wp, PI

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Regions of a scene: which material, with which retention curve, and which relative permeability every element has.
 module region_builder
    use kinds, only: wp

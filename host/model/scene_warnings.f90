@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> What a scene says that is allowed and most often a mistake: told at the start and by --check, never refused.
 module scene_warnings
    use kinds, only: wp

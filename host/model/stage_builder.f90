@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Stages of a scene, their words translated, and the time integration that holds where the scene leaves it open.
 module stage_builder
    use kinds, only: wp

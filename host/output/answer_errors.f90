@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The estimated error of every answer of a run whose steps are controlled, and what kept the steps short.
 !> docs/theory/host.md section 4.5.
 module answer_errors

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Two runs of a scene compared: how far the histories of the named points lie apart. docs/theory/host.md section 4.5.
 module answer_verification
    use kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Checkpoints: the complete state of a run in one HDF5 file, and a run from one. Loads, boundary conditions and the
 !> flow that is subtracted follow from the scene; the ordering of the equations from their pattern. The rest is here.
 module checkpoints

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Contacts and plates as rows of tables.
 module contact_rows
    use kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The table of effects, printed and as a file.
 module effects_table
    use kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Fields in HDF5, one file for the mesh and one for every moment, and results.xdmf, which ParaView opens. Every file is
 !> written as a whole: a run that is killed leaves whole files, and a restart writes the same ones again.
 module field_files

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Output: histories at points, the ledger, and the fields at the end of every stage and in between.
 module output_tables
    use kinds, only: wp

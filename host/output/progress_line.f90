@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The line that says how far a run is: rewritten in place on a terminal, now and then a line of its own elsewhere.
 module progress_line
    use, intrinsic :: iso_fortran_env, only: output_unit

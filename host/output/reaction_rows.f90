@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Reactions of supports, flow through prescribed pressures and thrust of loads, as rows of a table: one column for
 !> every group and direction, whatever number of &fix or &load of a stage name it. What holds an unknown belongs to the
 !> &fix that prescribes it, so that the columns add up to the whole. docs/theory/host.md section 9.1.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> What a run leaves behind while it goes on: tables, fields, checkpoints, the line of progress and warnings.
 module run_output
    use, intrinsic :: iso_fortran_env, only: output_unit

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The word that a run says when a surface has got through another one without pressure.
 module contact_alarm
    use, intrinsic :: iso_fortran_env, only: error_unit

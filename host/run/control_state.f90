@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> What the control of the time step carries from one step to the next, and what it has seen so far.
 module control_state
    use kinds, only: wp

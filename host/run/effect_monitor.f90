@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Monitors, after every accepted step, what the effects that are off would do, and says once when that crosses the
 !> threshold. A few sums over nodes and points; nothing is asked of the material.
 module effect_monitor

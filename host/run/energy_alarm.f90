@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Ends a run that has created energy: its answers may then be wrong by any factor, however well every step has
 !> converged. docs/theory/host.md section 9.
 module energy_alarm

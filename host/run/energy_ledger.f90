@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Ledger of a run: energies, work and flow through the boundary, summed step by step.
 !> Mechanical balance: loads + supports + gravity = change of kinetic + skeleton + pores + contact + damping
 !> (+ algorithmic damping).

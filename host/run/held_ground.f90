@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The ground behind an absorbing boundary at rest: when the boundary begins to act, the forces that it held before
 !> stay, so that only what departs from that state leaves as a wave; and the flow of the initial state, where it is to
 !> be kept up. docs/theory/host.md sections 7.4 and 8.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Who watches a run: output, progress and checkpoints extend this type, so that a run computes and writes nothing.
 module run_observer
    use kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The start of a run: matrix pattern, initial state, contacts, absorbing boundaries, the flow that is to be subtracted.
 module run_setup
    use faults, only: fault_t

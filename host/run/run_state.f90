@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> State of a run: everything that one step hands to the next.
 module run_state
    use, intrinsic :: iso_fortran_env, only: int64

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The start of a stage, and one attempt at a step: what it prescribes, its solution, and the size of the next attempt.
 !> docs/theory/host.md section 4.4.
 module step_attempt

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Books an accepted step that is not yet taken over: energies, work, outflow, work of the contacts.
 !> docs/theory/host.md section 9.
 module step_booking

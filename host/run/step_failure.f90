@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Why a step failed for good, in one sentence.
 module step_failure
    use kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Length of the steps of a stage: given, or chosen from the error of each step so that what the steps leave in all
 !> stays below the accuracy asked for. docs/theory/host.md section 4.5.
 module step_size

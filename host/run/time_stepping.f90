@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Runs the stages of a model: steps, cuts with exact restoration, ledger; an observer sees every step.
 module time_stepping
    use kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> What an accuracy asks of the keys that a scene leaves out: steps, Newton's tolerance, stress integration. What the
 !> scene sets by hand stays. docs/theory/host.md section 4.5.
 module scene_accuracy

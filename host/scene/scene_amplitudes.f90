@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Amplitudes of loads and supports (&history of a scene): times and factors from its keys, or from a file
 !> of its own with two numbers a line.
 module scene_amplitudes

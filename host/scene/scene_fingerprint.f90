@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Fingerprint of a scene: its groups, keys and values in their order, and the contents of the files that it names.
 !> Comments, spaces and what changes no result take no part.
 module scene_fingerprint

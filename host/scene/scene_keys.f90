@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Every key of a scene: kind, default, range or words, meaning. Checks, the template and the tables of the manual all
 !> come from this list.
 module scene_keys

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Names of a scene: what others name is there once, and what becomes a file or a column has a name fit for it.
 module scene_names
    use scene_types, only: NAME_LENGTH

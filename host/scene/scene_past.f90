@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> What of a scene has had its effect by a moment: a run may go on with a scene that says the same about the past and
 !> something else about the future: a longer stage, further stages, supports and loads of these alone, histories that
 !> go on. Everything else of a scene belongs to the past.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Reads a scene: groups in any order, every key checked against the list of keys, before anything is built.
 module scene_reader
    use kinds, only: wp

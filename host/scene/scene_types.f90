@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> A scene as its file says it: names, words and numbers, checked one by one, nothing resolved and nothing computed.
 !> A scene is read once and never changes; the model that is built from it names its values again by extending these
 !> types.

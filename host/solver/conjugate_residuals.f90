@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Linear systems by factors that may belong to an earlier matrix: generalised conjugate residuals (Eisenstat, Elman,
 !> Schultz 1983; the iterates are those of GMRES) with the factors as preconditioner. With the factors of the matrix
 !> itself the first step is the direct solution, the second an iterative refinement.

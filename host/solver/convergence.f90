@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The error of an iteration, and whether it may end. The error of a field is |R_f| over the largest of |sum of the
 !> magnitudes of the elements' contributions|, 1e-6 of its largest value so far, and a floor, over the free unknowns; a
 !> rigid body counts by itself too. Measured by change, what counts of the contributions to a displacement is what the

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Dashpots on a boundary: forces in proportion to velocities, and outflow in proportion to the rates of the pressures,
 !> through which waves leave the mesh. Without them nothing is allocated and nothing is done.
 !> docs/theory/host.md section 7.4.

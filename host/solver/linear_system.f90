@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The linear system of an iteration: contacts in its pattern, factors that are kept while they serve, and where the
 !> time goes. docs/theory/host.md section 6.
 module linear_system

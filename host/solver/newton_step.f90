@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> One time step by Newton-Raphson with the exact tangent. One linear solve is one iteration.
 !> docs/theory/host.md section 5.
 module newton_step

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> What a step prescribes, and the rows of the equations that say so. docs/theory/host.md section 7.1.
 module prescribed_values
    use kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Sparse direct solution by UMFPACK, the only module that knows it. Rows are given to it as columns of the transpose.
 module sparse_factors
    use, intrinsic :: iso_c_binding, only: c_int, c_double, c_ptr, c_null_ptr, c_associated

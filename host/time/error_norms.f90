@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Error that a step makes by itself, from the rates at its ends and those before.
 !>
 !> Generalised-alpha stores rates that belong not to the ends of a step but to a moment D dt off, with D = l_f - l_a for

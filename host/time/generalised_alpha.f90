@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Generalised-alpha with one spectral radius: Chung & Hulbert (1993) for accelerations, Jansen, Whiting & Hulbert
 !> (2000) for first-order rates. Residuals are formed from values, displacement rates and pressures at 1 - alpha_f,
 !> accelerations and first-order rates at their own levels.

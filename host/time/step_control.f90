@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Chooses the length of the next time step from the error of the last ones: a PI controller with rejection and a
 !> deadband (Gustafsson 1991; Soderlind 2003). It knows no equations: it is given ratios of error to allowance.
 !> docs/theory/host.md section 4.5.

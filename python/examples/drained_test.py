@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A drained triaxial test with a picture: drained_test.py [PICTURE.png]"""
 
 import sys

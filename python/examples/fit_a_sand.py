@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Fits two parameters of a sand to two of its tests, and looks at a third one: fit_a_sand.py [FOLDER]
 
 Few parameters and few evaluations, so that it takes seconds; calibration/README.md shows whole calibrations.

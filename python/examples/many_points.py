@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A thousand points sheared at once, in place, and the tangent of one of them: many_points.py
 
 Points follow the library's convention: tension positive, components 11, 22, 33, 12, 13, 23, engineering shear strain.

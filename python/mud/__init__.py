@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """MUD in Python: a bounding-surface model for unsaturated soil, its element tests, and results of its finite-element host.
 
     import mud

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The package's one reader of CSV tables: a wheel has nothing of the tree's common/."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The two shared libraries and what their headers say.
 
 Constants, the report of an update and the version of the interface are read from ``mud.h`` and ``mud_triax.h``, which lie

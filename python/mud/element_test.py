@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Element tests: every control of mud_triax, run in this process by the driver's own library."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Exceptions; what they say is the library's own sentence."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Results of the finite-element host: tables of a run with numpy alone, fields with h5py (extra ``host``)."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A material: named parameters, checked once, and updates of points made of it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Material files: one group ``&material`` with ``key = value`` lines; ``!`` begins a comment."""
 
 from __future__ import annotations

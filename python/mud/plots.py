@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Pictures of element tests and of the host's histories; they need matplotlib (extra ``plots``)."""
 
 from __future__ import annotations

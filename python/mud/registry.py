@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Parameters and state variables by name, as the library's registry lists them."""
 
 from __future__ import annotations

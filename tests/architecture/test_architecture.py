@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Layers and style that a compiler does not hold: reads the sources. Every rule is first shown a planted offence."""
 import os
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """One house: no source of any language is too long, no procedure does too much, tables have one reader, and
 documents name only what is there. Every rule is first shown a planted offence."""
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Layers of the whole tree, read from the `use` lines: which folder may use which, how much one module may know, how
 long a file may be, and where foreign libraries live. Every rule is first shown a planted offence."""
 import re

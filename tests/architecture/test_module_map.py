@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The map of the folders, docs/architecture.svg, is what the `use` lines say, and CONTRIBUTING.md shows it."""
 import pathlib
 import subprocess

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Every mutation finds its lines in the sources: a list that has fallen behind would say that nothing survives. Running
 them takes minutes and is not part of this."""
 import subprocess

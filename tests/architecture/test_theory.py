@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Texts find what they cite: sections of docs/theory, pages that Markdown links to, headings behind a #, files.
 
 Every rule is first shown a planted offence and its nearest innocent neighbour.

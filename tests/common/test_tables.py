@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """common/tables.py, the CSV reader of all scripts: what it reads, and what it says of a table that it cannot read."""
 import pathlib
 import sys

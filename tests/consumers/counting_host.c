@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Counts allocations of memory during updates: every malloc, calloc, realloc of the process passes through here, those
  * of the Fortran runtime as well. Usage: counting_host UPDATES. One line per variant; the last one is a control.
  * Compiled with -DSANITIZED it leaves the allocator to the sanitizers and counts nothing: they look for leaks. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A host whose increment fails, to see what is saved of it. Prints the status and, where asked for, the text.
  *    failing_host api FILE        saves the increment with mud_save_increment, FILE `NULL` stands for no name
  *    failing_host umat TIMES      lets umat_ fail so many times; the environment says whether that is saved

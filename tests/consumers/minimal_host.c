@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A minimal host: one point of dense sand, sheared without change of volume to 1 % axial strain. */
 #include <stdio.h>
 #include "mud.h"

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> A minimal host: one point of dense sand, sheared without change of volume to 1 % axial strain.
 program minimal_host
    use, intrinsic :: iso_c_binding, only: c_int, c_double, c_char, c_null_char

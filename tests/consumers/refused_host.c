@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Imitates what real hosts do to umat_, each over 100 increments of undrained compression to 1 % axial strain with a
  * known answer, and prints what it ends with; what the library says goes to standard error.
  *    refused_host kratos [STATEV]       fields, DROT and PNEWDT are NULL, element and point 0, a first call with dt 0;

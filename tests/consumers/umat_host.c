@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Calls umat_ as Abaqus does, with the hidden length of CMNAME last, and prints every bit of the answers. */
 #include <stddef.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Controls of mud_triax: what is held is held, what leads arrives, cycles turn where they should, stops stop."""
 import math
 import pathlib

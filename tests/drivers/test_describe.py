@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """mud_describe writes a material so that every host reads the same bits, and says what is wrong with its input."""
 import json
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Failed increments: saved by every door, replayed bit by bit, and every mistake on the way has its sentence."""
 import os
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """mud_triax as a user meets it: named cases give published numbers, held stresses are held, mistakes are explained."""
 import math
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """mud_triax as a library: a case given as text has the table that the program writes, mistakes come back as texts."""
 import ctypes
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """mud_triax with laws of others: UMATs from shared libraries against closed forms, MUD through its own UMAT."""
 import math
 import pathlib

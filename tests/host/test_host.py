@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """mud_host as a user meets it: mistakes with their own sentence and exit code. Known answers: tests/verification."""
 import os
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Accuracy asked of mud_host: steps follow their error, end at the breaks of what acts, are the same after a restart;
 estimated errors that are those of known answers within a band."""
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Boundaries of dynamic stages in mud_host: base motion by acceleration, Rayleigh damping, tied sides, ground that
 stays at rest behind an absorbing boundary. Waves and transfer functions: verification/host/waves."""
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Effects that mud_host derives from a scene: each on and off, by hand, the table, the monitored effects, restarts,
 and whether what is dropped is as small as promised."""
 import math

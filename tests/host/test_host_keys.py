@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Keys of a scene that no page of the verification uses, against answers known in closed form."""
 import os
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Scenes of nonsense: a clear refusal or a run, never a crash.
 
 1000 scenes in the check run (fewer in the slow builds, which only read them); `MUD_NONSENSE=100000` for a long run,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Output of mud_host: restarts after SIGKILL at random moments, refused checkpoints, full disks, files and pictures."""
 import os
 import pathlib

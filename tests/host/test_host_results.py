@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What people read from a run of mud_host: reactions, flow and thrust of every group against statics and Darcy; loads
 and supports that change with z; retention from files; a run that goes on with more stages or for longer."""
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """mud_host with laws of others: MUD through its own UMAT gives the files of &mud byte for byte; a foreign UMAT gives
 what the host's elastic law gives, and a Mohr-Coulomb one its strength."""
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What mud_host warns about at the start and with --check: a scene without a doubt draws nothing, every doubt its own
 sentence, and the run goes on."""
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Every key of scenes and cases is used by a test, a page or a case: one without use has no proof that it works. The
 orderings of the unknowns give one answer."""
 import pathlib

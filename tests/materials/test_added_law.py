@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A law of one file and one entry of the registry runs in a case of the driver and in a scene of the host."""
 import pathlib
 import subprocess

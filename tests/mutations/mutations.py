@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The mutations: (title, (file below umat, text that stands there once, its replacement), ...)."""
 
 TENSOR, RATES, POINT = "core/base/mud_tensor.f90", "core/rates/mud_rates.f90", "core/integration/mud_point.f90"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Change the library in one place at a time and see which tests notice.
 
 Usage: run_mutations.py [--contact] [-k WORD] [--readme] [--keep] [-j N]. Works on a copy of the source tree in a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Tables of a laboratory and what is wrong with them; the model at their rows; fits that find a material again."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The Python package: names of the registry, sentences of the library, updates without copies, the driver's tests."""
 
 import ctypes

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A host written in C: what only a C compiler can say about mud.h, and two threads. */
 #define _POSIX_C_SOURCE 200809L
 #include <pthread.h>

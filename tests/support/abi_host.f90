@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> A host of umat_ as foreign programs are: everything by address, any address may be NULL.
 module abi_host
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_loc, c_null_ptr

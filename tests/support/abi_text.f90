@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Texts of the C interface as Fortran has them.
 module abi_text
    use, intrinsic :: iso_c_binding, only: c_char, c_null_char

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the scripts share: where sources and build are, a folder that is gone at the end, checks that are counted."""
 import atexit
 import os

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Stand-in for pFUnit where it is not installed: the assertions and the runner behind the .pf files.
 module funit
    use, intrinsic :: iso_fortran_env, only: int32, int64, real64, output_unit

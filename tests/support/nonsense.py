@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Scenes of nonsense: a scene that works with some of its text replaced by a grammar's choice, or groups and keys
 thrown together.
 

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Tables of numbers in verification/material/reference of the source tree.
 module path_reference
    use mud_kinds, only: wp

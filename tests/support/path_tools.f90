@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Material, start and path of one point, as the contract tests use them.
 module path_tools
    use mud_bonding, only: is_bonded

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Turn one pFUnit .pf file into Fortran for the runner in funit.f90.
 
 Understood, each alone on one physical line, are @test, @assertEqual(...), @assertTrue(...) and

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Reproducible random states and increments for tests: the same on every machine and compiler.
 module random_states
    use, intrinsic :: iso_fortran_env, only: int64

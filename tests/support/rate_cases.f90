@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Random arguments of a rate, by kind of state, for tests of derivatives.
 module rate_cases
    use mud_kinds, only: wp

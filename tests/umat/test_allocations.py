@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """No memory is allocated in an update: a host that counts every malloc of its process, in all schemes and tangents."""
 import os
 import pathlib

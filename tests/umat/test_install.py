@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Installs library and programs and uses them as a stranger would: find_package, pkg-config, plain compilers."""
 import concurrent.futures
 import ctypes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Reads the symbols of both MFront behaviours as MGIS does when it loads a library: by name, the count first."""
 import ctypes
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The tables of umat/README.md are what the library says of itself, its programs those that test_install builds.
 
 Run with --write to renew both.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Refusals of umat_ are heard, once a process, by hosts like Kratos, CalculiX, incrementalDriver and Abaqus."""
 import os
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The library as one source file compiles alone and is, bit by bit, the library; called as Abaqus calls a UMAT."""
 import os
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The archive keeps nothing between calls but which sentences were said, and offers what mud.h promises."""
 import os
 import pathlib

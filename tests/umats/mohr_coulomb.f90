@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> A UMAT as others write it: Mohr-Coulomb, perfectly plastic, with a return to the plane, an edge or the apex in
 !> principal stresses. PROPS: Young's modulus, Poisson's ratio, cohesion, friction angle and dilation angle in degrees.
 !> DDSDDE is the elastic one.

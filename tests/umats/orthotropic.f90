@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> A UMAT as others write it: linear elasticity with a shear modulus of its own for each shear component in the order
 !> of the caller. PROPS: Young's modulus, Poisson's ratio, three shear moduli. STATEV(1) is the
 !> time at the end of the increment, STATEV(2) the strain 33 there.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Runs the pages of a section of the verification as the check run takes them: short versions, few in slow builds."""
 import sys
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Known answers of mud_host: the pages of verification/host as the check run takes them."""
 import pathlib
 import sys

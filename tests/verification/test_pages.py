@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The pages of verification/material and studies as the check run takes them; READMEs that say what the pages declare;
 and that the runner sees what is wrong."""
 import pathlib

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> What is allowed but doubtful in PROPS: a sentence, never a refusal.
 module mud_advice
    use mud_kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Many points at once: mud_update_batch, mud_update_batch_prepared, mud_update_list and mud_tangent_list of mud.h.
 module mud_batch
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_null_ptr, c_associated, c_f_pointer

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Many points begin, and the stresses of many points: mud_init_batch, mud_effective_stress, mud_total_stress and
 !> mud_total_blocks of mud.h.
 module mud_batch_start

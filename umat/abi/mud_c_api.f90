@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The functions of mud.h.
 module mud_c_api
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_associated, c_f_pointer

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The one door to the core: UMAT conventions (tension positive, engineering shear) outside, soil mechanics inside.
 !> umat_ and mud_update both end here.
 module mud_kernel

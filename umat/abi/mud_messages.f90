@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Sentences for status codes: what, where, value, allowed range, remedy.
 module mud_messages
    use mud_kinds, only: wp

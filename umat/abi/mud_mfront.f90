@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The generic interface of MFront, API version 1: the functions that MGIS looks up as BEHAVIOUR_HYPOTHESIS. Their
 !> description (names, types, counts) is written by umat/tables/mud_write_tables.f90. Sign and order of components are
 !> those of MUD; symmetric tensors are in Mandel's notation (shear times square root of 2), matrices row by row.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> One increment at one point for a C host: mud_update and mud_update_prepared of mud.h.
 module mud_one_point
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer

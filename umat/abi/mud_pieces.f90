@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> An increment for hosts that cannot cut it: a hard one is taken in equal pieces.
 module mud_pieces
    use mud_kernel, only: report_t, output_t, kernel_point

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> A material checked and named once, in storage of the caller, for any number of updates: mud_prepare of mud.h.
 module mud_prepared
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> A refusal of umat_ is heard: a sentence on standard error, once a process for each distinct failure, a request for a
 !> cut in PNEWDT or, where the host gives no PNEWDT, a STRESS that no solver takes for an answer. user_mod_ and vumat_
 !> say their sentences here too.

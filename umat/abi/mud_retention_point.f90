@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The retention curve of a prepared material for a C host: mud_saturation and mud_state_saturation of mud.h.
 module mud_retention_point
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> A failed increment as a small text file, which mud_replay runs alone. The only place of the library that writes a
 !> file, and only where it is asked to.
 module mud_save

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Texts and numbers into memory of a C host, and what every batch of points reads from it.
 module mud_to_host
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_associated, c_f_pointer

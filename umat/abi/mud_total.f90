@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Bishop's effective stress and total stress, and what becomes of the slopes. Tension positive; chi = S_w:
 !> sigma' = sigma + p_a I - S_w p_c I, docs/theory/material.md section 2.
 module mud_total

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> User-defined soil model as PLAXIS asks for it, with the symbols that gfortran would give: user_mod_, getparamcount_
 !> and so on. One model, number 1. Components 11, 22, 33, 12, 23, 13, tension positive, engineering shear, effective
 !> stress. Texts are Pascal's: a byte with the length, then the letters, into 256 bytes of the host. An increment cannot

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The UMAT: Abaqus' signature, symbol umat_, every argument a C pointer that some host leaves NULL.
 module mud_umat
    use, intrinsic :: iso_c_binding, only: c_ptr, c_double, c_associated, c_f_pointer

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The VUMAT of Abaqus/Explicit, symbol vumat_, in double precision: a block of points in one call, over the batch of
 !> mud_update_batch. Arrays have the points first: (nblock, components 11, 22, 33, 12, 23, 13); shear strain is that of
 !> the tensor.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* MUD: bounding-surface model for unsaturated soil dynamics. C interface.
  *
  * Conventions of every array here are those of a UMAT: tension positive, components 11, 22, 33, 12, 13, 23,

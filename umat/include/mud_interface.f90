@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Fortran view of mud.h, for hosts: interfaces only, nothing of the library's inside. Compile it with your code.
 !> Conventions, meanings and errors are those of mud.h; indices are those of C, from 0.
 module mud_interface

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Writes the tables that a linker sees, as C: names and units of PROPS and STATEV for mud.h, and what describes both
 !> behaviours for the generic interface of MFront. Run by the build: mud_write_tables VERSION > mud_tables.c
 program mud_write_tables

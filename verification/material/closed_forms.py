@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Closed forms of the model at a point, written from the theory (docs/theory/material.md) and not from the library."""
 import math
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Steps of strain paths and the comparison of their ends."""
 import math
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Paths of one point for mud_walk, and the program itself. Compression positive, engineering shear, kPa."""
 import concurrent.futures
 import dataclasses

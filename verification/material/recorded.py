@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Pages that state what the published parameter set gives: measured values are kept in results.csv with the commit that made them."""
 import math
 import os

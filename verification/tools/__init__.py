@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the pages of the verification share. `tables`, the reader of CSV tables, is that of all scripts in common/."""
 import pathlib
 import sys

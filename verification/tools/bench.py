@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What `check(bench)` of a page works with: runs cases and scenes of the built programs and records what was compared.
 
 All results go outside the source tree; cases and scenes are copied there with their relative paths made absolute.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a page of the verification declares.
 
 A page is a folder `verification/SECTION/NAME` with a README.md and a `page.py`, which holds

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """One style for the pictures of all pages."""
 COLOURS = ("#0b3c6f", "#c8553d", "#3a8f6a", "#8a5a9e", "#b58900")   # told apart in grey and by colour-blind readers
 STYLE = {"font.size": 9, "axes.titlesize": 10, "axes.grid": True, "grid.color": "#dddddd", "grid.linewidth": 0.6,

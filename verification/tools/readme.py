@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Parts of README files that the runner writes: between `<!-- made: MARK -->` and `<!-- end -->`."""
 import re
 

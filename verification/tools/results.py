@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Where a script that makes committed files of a page writes them: never into the source tree."""
 import os
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Runs pages of the verification.
 
     verification/run                          all pages

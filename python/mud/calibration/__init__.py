@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Fits parameters of MUD to laboratory tests; needs SciPy (extra ``calibrate``), pictures need matplotlib.
 
 from mud.calibration import calibrate, make_task, write_material, write_report

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The calibration from task to result."""
 
 from __future__ import annotations

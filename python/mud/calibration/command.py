@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The command mud_calibrate."""
 
 from __future__ import annotations

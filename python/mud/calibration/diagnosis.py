@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the tests determine: sensitivity, confidence, correlations, bounds, and whether the model stays in its range."""
 
 from __future__ import annotations

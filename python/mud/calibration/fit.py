@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The fit: critical state by regression, a quasi-random search, groups one after the other, then everything together."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Residuals of a material against tests: scaled by scatter, robust, each curve as much as any other."""
 
 from __future__ import annotations

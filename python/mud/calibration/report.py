@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a calibration leaves: the material file, a page in Markdown with pictures, and the misfits as a table."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the model answers to a laboratory test, at the rows of the laboratory."""
 
 from __future__ import annotations

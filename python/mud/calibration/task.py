@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A calibration as it is asked for: tables, what is known, what is held out; from Python or from a TOML file."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What is fitted: variables with physical bounds, in groups, and how parameters of the library follow from them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Surfaces for the tests of the contact kernels, and what every such test asks of an answer.
 module contact_scenes
    use, intrinsic :: iso_fortran_env, only: int64

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Small scenes for the tests of the host, written as text so that the reader of scenes takes part.
 module host_problems
    use, intrinsic :: iso_fortran_env, only: int64

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> A second law for the test of "how to add a law" (CONTRIBUTING.md): isotropic hypoelasticity whose stiffness is
 !> proportional to the mean stress where the increment begins, saturated unless there is a retention curve.
 module material_hypoelastic

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Working precision and the few numbers that several modules share.
 module mud_kinds
    use, intrinsic :: iso_c_binding, only: c_double

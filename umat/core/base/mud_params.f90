@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Material parameters: from PROPS to named values, checked against the registry.
 module mud_params
    use mud_kinds, only: wp, SQRT_6

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Every entry of PROPS and STATEV, once: index, name, symbol, unit, bounds, default, origin, meaning.
 !> Validation, queries of the C interface, tables of the documentation and input files all come from here.
 module mud_registry

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> State of an integration point, and its place in STATEV.
 module mud_state
    use mud_kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> What can go wrong. Negative: the caller's mistake. Positive: a hard increment, a smaller one may pass.
 module mud_status
    use mud_kinds, only: wp

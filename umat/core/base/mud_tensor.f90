@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Symmetric second-order tensors as six components 11, 22, 33, 12, 13, 23 with TENSOR shear (not engineering).
 !> Every contraction of the core goes through this module, for each shear component stands for two.
 module mud_tensor

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The unit of stress is the user's: PROPS that carry one, and every limit, follow p_atm. "Unit" below is the user's
 !> unit of stress, given as how many of it make 1 kPa: 1 for kPa, 1000 for Pa, 0.001 for MPa, 0.145 for psi.
 module mud_units

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Tangent blocks of an update that are not carried through its substeps: elastic, and continuum by the last rate.
 module mud_blocks
    use mud_kinds, only: wp

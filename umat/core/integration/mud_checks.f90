@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> What an increment may look like: finite and of a credible size. A NaN is never compared: a comparison would trap.
 module mud_checks
    use mud_kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Consistent tangent: the derivative of the algorithm, carried through the accepted substeps. The jumps of memory, the
 !> share of an increment inside the elastic domain and the times of events (mud_event_time) are differentiated. Sizes
 !> of substeps are frozen but for those that end at an event and for the last, which ends where the increment ends:

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Tension cut-off: a point whose mean stress has fallen to p_min is held there.
 !>
 !> p', fabric, memory and plastic shear rest. The stress ratio follows the strain elastically, but not beyond the

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Derivatives of what drives an increment - strain, volume, suction - along the seven directions of the consistent
 !> tangent, and how its parts share them: the part inside the elastic domain and the rest, the part without suction and
 !> the rest.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Elastic domain: a ball of radius rho in strain inside which sand is elastic (a play operator).
 !>
 !> d is the strain from the ball's centre, |d| <= rho. Inside, and while strain points inwards, only d moves. On the

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Derivative of the time of an event inside an increment, from the event's function: with it the substep that ends
 !> there changes its size.
 module mud_event_time

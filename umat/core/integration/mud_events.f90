@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Events inside a substep: where one happens, the substep is shortened to end just beyond it.
 module mud_events
    use mud_kinds, only: wp

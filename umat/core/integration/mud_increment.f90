@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Rates along an increment, or along one of its phases: void ratio, suction and the strain that loads at a pseudo-time.
 module mud_increment
    use mud_kinds, only: wp

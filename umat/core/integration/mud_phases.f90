@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The phases of an increment: with and without suction, inside an elastic domain and beyond it.
 module mud_phases
    use mud_kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> One increment at one integration point: substeps of rates, with the jumps of memory between them.
 module mud_point
    use mud_kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Return-point memory (ours; docs/theory/memory-rules.md): a loading process that is interrupted is remembered, and
 !> goes on where the path comes back to the point where it was left; a loop that closes is forgotten (Masing's second
 !> rule; wiping-out property of Preisach).

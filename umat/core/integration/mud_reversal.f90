@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Memory of loading processes: when a new one begins, and what each rule then does with the memory.
 !> Jumps only: they happen between substeps, never inside a rate.
 module mud_reversal

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Where a point starts, and what a state says of itself: degree of saturation, state parameter, tension.
 module mud_start
    use mud_kinds, only: wp

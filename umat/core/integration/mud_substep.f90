@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Embedded Runge-Kutta pairs and their step control. Knows no soil: vectors and rates only;
 !> docs/theory/integration.md sections 2 and 3.
 module mud_substep

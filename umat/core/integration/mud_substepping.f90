@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The loop over substeps of an increment, or of one of its phases.
 module mud_substepping
    use mud_kinds, only: wp

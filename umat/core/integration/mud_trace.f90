@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> A record of the substeps that an update tried, for those who ask why it failed.
 module mud_trace
    use, intrinsic :: iso_c_binding, only: c_int, c_double

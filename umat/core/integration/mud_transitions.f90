@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> What happens between substeps: the mode of the coming one, reversals and returns of the memory, opening and closing
 !> at p_min, and what an accepted substep leaves behind.
 module mud_transitions

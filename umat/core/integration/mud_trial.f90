@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> One trial substep: the scheme's stages and the error, or a step held by the tension cut-off.
 module mud_trial
    use mud_kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Bonding: how far suction shifts the critical state line and the compression line.
 !> docs/theory/material.md section 2.2.
 module mud_bonding

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Critical state line, state parameter, stress ratios that depend on it, Lode dependence, compression line;
 !> docs/theory/material.md sections 3.2 to 3.5.
 module mud_critical_state

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Elastic moduli; docs/theory/material.md section 3.1.
 module mud_elastic
    use mud_kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Plastic flow: dilatancy and fabric; docs/theory/material.md sections 4.2 and 4.3.
 module mud_flow
    use mud_kinds, only: wp, SQRT_2_3

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Hardening: the kinematic mechanism's modulus and the isotropic mechanism's compliance; docs/theory/material.md
 !> sections 3.5, 4.2 and 4.4.
 module mud_hardening

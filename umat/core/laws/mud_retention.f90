@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Water retention: how much of the pore space is water; docs/theory/material.md section 2.1.
 module mud_retention
    use mud_kinds, only: wp

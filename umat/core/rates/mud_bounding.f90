@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> State parameter and distance of a stress ratio from the bounding surface, with their changes.
 module mud_bounding
    use mud_kinds, only: wp, SQRT_2_3

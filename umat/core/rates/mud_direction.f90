@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> The loading direction of a rate: the root of one scalar equation on an arc.
 !>
 !> gamma n = t y + beta r, y = 1/(L h), so that n lies in the plane of t and r and one angle decides it:

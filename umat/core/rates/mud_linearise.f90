@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> What the derivatives of one rate share, whatever the direction in which its arguments change.
 module mud_linearise
    use mud_kinds, only: wp

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Continuous rates of the zero-elastic-range model at a frozen memory. Smooth: jumps live in mud_reversal.
 !>
 !> The stress ratio r is the back-stress. With t = 2G d e_dev - r K_e (d eps_v - B) the loading direction n obeys

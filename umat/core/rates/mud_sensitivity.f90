@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Derivative of one rate with respect to everything it depends on: state, memory, strain rate and suction rate.
 !> The consistent tangent carries it through the substeps; nothing is evaluated twice and nothing is perturbed;
 !> docs/theory/integration.md section 5.3.

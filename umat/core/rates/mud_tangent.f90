@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Continuum tangent: exact derivative of the rate with respect to the strain rate and the suction rate;
 !> docs/theory/integration.md section 5.2.
 module mud_tangent

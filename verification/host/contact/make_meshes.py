@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Meshes of this page in Gmsh 4.1: blocks of 6-node triangles. As a program it writes blocks.msh, split.msh, hertz.msh and
 plate.msh; page.py makes finer ones with the same functions."""
 import pathlib

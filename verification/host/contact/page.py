@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Contact: patch tests, punch, sphere and cylinder, refinement, deformable plate, drainage, bar, falling plate."""
 import shutil
 

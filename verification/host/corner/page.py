@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A tilted block that falls on its corner: when contact acts, how deep the corner gets, and what a run says of it."""
 import math
 import pathlib

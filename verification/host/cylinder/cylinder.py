@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Lame: thick cylinder in plane strain under internal pressure; and the same wall filled with water at steady flow."""
 import csv
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A thick elastic cylinder under internal pressure (Lame), with the observed order of convergence."""
 import numpy as np
 from tools import tables

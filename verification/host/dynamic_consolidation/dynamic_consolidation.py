@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Dynamic consolidation of a half space under a surface load, closed form; and of a column by its modes."""
 import csv
 import math

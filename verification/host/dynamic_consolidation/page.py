@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Dynamic consolidation of a half space in closed form: displacements at the surface and 1 m below."""
 import numpy as np
 from tools import tables

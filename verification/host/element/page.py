@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """One soil sample through the assembled equations against the element driver: effective stress and S_w."""
 import numpy as np
 from tools import tables

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A rough footing on sand: bearing pressure by the default tolerance against a tight one, before and after."""
 import math
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Liakopoulos' drainage test with mobile air: finite volumes in one dimension, second order in space and time.
 
 Unknowns at nodes of a uniform grid, z upwards from the base: p_w, p_c and the weight above. The strain follows from

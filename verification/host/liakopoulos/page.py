@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Liakopoulos' drainage with mobile air against OpenGeoSys (values, digitised profiles) and a finite-volume program."""
 import numpy as np
 from tools import tables

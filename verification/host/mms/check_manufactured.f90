@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Compares the module `manufactured` with samples.csv: prints the largest difference, stops with 1 above 1e-11.
 !> gfortran -std=f2018 manufactured.f90 check_manufactured.f90 && ./a.out samples.csv
 program check_manufactured

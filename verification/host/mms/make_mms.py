@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Manufactured solutions: writes manufactured.f90 and samples.csv.
 
 The Fortran module follows the chain rule by hand over derivatives that sympy writes into it. The samples take another

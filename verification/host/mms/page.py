@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Manufactured solutions: judged by the suite that compiles them into the host."""
 from tools.page import Page, Script, Tolerance
 

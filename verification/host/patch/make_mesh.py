@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Writes patch.msh: an irregular mesh of 6-node triangles on the unit square, one element turned clockwise, in Gmsh
 4.1."""
 import matplotlib.tri

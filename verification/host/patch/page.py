@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Patch tests: uniform stress, uniform pressure gradients, soil at rest."""
 import numpy as np
 from tools import tables

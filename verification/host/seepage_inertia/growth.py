@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Growth of plane longitudinal waves in the linearised u-p_w-p_c equations, with and without seepage inertia."""
 import csv
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Growth of a standing wave with seepage inertia against the roots of the linearised balance equations."""
 import numpy as np
 from tools import tables

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Terzaghi's series against the column: pressures and settlement."""
 import numpy as np
 from tools import tables

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Terzaghi's consolidation of a saturated column: series, checked by numerical inversion of the Laplace transform."""
 import csv
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Free vibration of one degree of freedom: frequency, energy, and the algorithm's damping against rho_inf."""
 import numpy as np
 from tools import tables

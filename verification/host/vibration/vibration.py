@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Generalised-alpha on single modes: spectral radius, damping and period error, and the very numbers of each step.
 
 The scheme: u, u', p at a_f = 1/(1+rho); u'' at a_m = (2-rho)/(1+rho); p' at a_p = (3-rho)/(2(1+rho)), all counted as

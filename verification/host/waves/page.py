@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Waves that leave a column, and layers that are shaken at the base, against closed forms."""
 import numpy as np
 from tools import tables

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Wetting and drying where only the bonding variable changes."""
 from closed_forms import PUBLISHED, ROUNDING, P, bonding, critical_void_ratio
 from tools.page import Page, Tolerance

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Isotropic and K0 compression against the compression line."""
 import math
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Undrained triaxial stress cycles beside a test on Ottawa F65 sand."""
 import math
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Cycles to liquefaction in undrained simple shear against the cyclic stress ratio."""
 import math
 

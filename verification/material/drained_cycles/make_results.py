@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Measures what the page states and writes results.csv."""
 import pathlib
 import sys

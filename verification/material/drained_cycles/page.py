@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Volumetric and axial strain of many drained stress cycles."""
 import recorded
 from point_steps import MIDDLE

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The paper's Fig. 1: a small reversal at axial strain 0.1 with every memory rule."""
 import variants
 from tools import tables

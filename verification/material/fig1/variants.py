@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Variants of the untreated reversal rule on the path of the paper's Fig. 1: does any jump upwards?
 
 The equations of the model in triaxial space (compression positive, undrained, saturated, no guard), written apart from

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Lateral stress in one-dimensional compression and unloading."""
 import math
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Cyclic mobility and liquefaction."""
 import math
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Strength in compression, extension and simple shear against the closed form."""
 import math
 

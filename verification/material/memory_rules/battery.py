@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The battery of memory rules: every row is a question that a rule answers with a few numbers.
 
    battery.py                                  all rows for the four standard rules

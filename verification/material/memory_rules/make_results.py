@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Runs the whole battery for the rules of the page and writes results.csv."""
 import os
 import pathlib

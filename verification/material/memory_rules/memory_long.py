@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Rows of stress paths, long histories and numerical robustness."""
 import math
 import random

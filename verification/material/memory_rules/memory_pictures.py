@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Pictures of the page: what every rule does with loops, cycles and noise."""
 from battery import parse_rule
 from memory_published import biased_path, noise_path

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Rows of the published table: cycles and noise along and across a path."""
 import math
 import random

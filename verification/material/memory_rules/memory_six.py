@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Rows in six components: loops and cycles that are not straight."""
 import math
 import random

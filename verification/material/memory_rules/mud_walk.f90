@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> One point of soil along the paths of standard input; a row of CSV on standard output where a path asks for one.
 !>
 !>    case NAME                       begins a path with the default material

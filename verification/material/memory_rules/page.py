@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Memory rules under cycles and noise: the battery for every rule, and what the default rule has to pass."""
 import math
 

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> One point of soil under mixed control, through the library's public interface.
 !> Compression positive, components 11, 22, 33, 12, 13, 23, engineering shear strain.
 module walk_point

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Writes paths.csv: general six-component, strain-driven paths integrated by mud_reference.py at tight tolerance."""
 import sys
 import time

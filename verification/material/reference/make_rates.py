@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Writes paths_rates.csv: 200 single evaluations of the rates of docs/theory/material.md section 4 (default parameters, memory held)."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Independent reference implementation of the soil model MUD: memory and integration along a path.
 
 Written from the equations of docs/theory and the paper alone, without sight of the library: void ratio in closed form

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """An independent implementation of the model, and the library against its numbers."""
 from tools.page import Page, Script, Tolerance
 

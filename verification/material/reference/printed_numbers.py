@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Runs what docs/theory/integration.md section 6 and the other chapters print as numbers; writes printed_numbers.csv."""
 import pathlib
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Independent reference implementation of the soil model MUD, the continuous part: the state at a point and its rates.
 
 Written from the equations of docs/theory and the paper alone, without sight of the library. It does things differently

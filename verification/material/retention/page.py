@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Retention curve and constant water content."""
 from closed_forms import PUBLISHED, ROUNDING, saturation
 from tools.page import Page, Tolerance

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Secant shear modulus and damping of the first cycle against shear strain, beside Darendeli's curves."""
 import math
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Undrained tests that end in the closed-form steady state, and tests that begin there."""
 import re
 

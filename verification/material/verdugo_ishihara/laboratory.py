@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The drained tests of Verdugo & Ishihara (1996) on Toyoura sand, and how a run is compared with them."""
 import pathlib
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Triaxial tests on Toyoura sand: the published parameters beside the laboratory and the closed-form steady state."""
 import re
 

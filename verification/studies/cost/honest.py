@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Is the estimated error of an answer the true one? Runs scenes with an accuracy, and with given fine steps on the same
 mesh as the reference, and writes honest.csv. Resumable: a scene whose rows are there is left.
 

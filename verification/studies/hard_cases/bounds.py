@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A bound that every state keeps, whatever the path: the stress ratio that its void ratio, pressure and suction allow."""
 import math
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Hard cases: the ends of the model: no stress, no suction, much suction, the compression line, large increments, other sands."""
 import random
 

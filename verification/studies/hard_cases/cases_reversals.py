@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Hard cases: turns of the path, from rounding to large cycles."""
 import math
 import random

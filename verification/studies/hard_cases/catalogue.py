@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a hard case is, the settings it is run with, and how it is judged.
 
 Every case is run as it is, with its first stress multiplied by 1 + 1e-9, and with scheme 3 and a tolerance of 1e-8. It passes if it comes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Hard cases at a point: every case with the library's defaults; the table of the other settings is made by study.py."""
 import report
 from catalogue import CONTINUITY, INTEGRATION, SETTINGS, evaluate

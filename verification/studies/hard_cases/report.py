@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Tables and pictures of the committed results."""
 import pathlib
 

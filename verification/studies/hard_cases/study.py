@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Every case with every setting. Resumable: what the table in the output folder holds already is not run again.
 
 Usage: study.py [NAME...]: cases or settings by name (all). Progress and time left go to standard output.

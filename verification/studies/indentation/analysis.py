@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The indentation benchmark as a function: scenes from indent_s030.nml, a queue that runs them, what a run tells."""
 import argparse
 import ctypes

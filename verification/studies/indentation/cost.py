@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the remedy costs: instructions of the stress integration with and without it on strain paths of the benchmark.
 
 Runs the indentation at three suctions with more points of output, takes the strain of three elements from their nodes

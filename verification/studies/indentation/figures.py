@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Pictures of the indentation benchmark: columns of histories in, files out."""
 from tools.pictures import pyplot
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Indentation of unsaturated soil by a rigid plate: balances of a run, and what the committed analyses say."""
 import analysis
 import cost

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the paper leaves open in its indentation benchmark, varied one by one: how far it moves each column of Table 1.
 
 At suctions 0, 30, 100 and 1000 kPa with and without the remedy: the standard set, about 190 analyses and five hours

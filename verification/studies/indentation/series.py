@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The paper's Table 1: eight suctions with and without the remedy, beside the paper's numbers, with Figs 2 to 5.
 
 `verification/run indentation --make --only series.py [--pass OPTION ...]` runs what is not finished (about ten

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The variations of the indentation: what the paper leaves open or states, one change of the scene each."""
 from collections.abc import Callable
 from typing import NamedTuple

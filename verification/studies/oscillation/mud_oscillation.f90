@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Runs the cases of standard input, a namelist &run each, and writes a line of CSV for each.
 program mud_oscillation
    use, intrinsic :: iso_fortran_env, only: input_unit, output_unit, iostat_end, int64

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Strain paths and the noise on them.
 module oscillation_path
    use, intrinsic :: iso_fortran_env, only: int64

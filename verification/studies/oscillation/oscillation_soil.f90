@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> One point of soil under mixed control, through the library's public interface. Compression positive, tensor shear.
 module oscillation_soil
    use, intrinsic :: iso_c_binding, only: c_int, c_null_char

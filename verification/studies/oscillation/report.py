@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Tables and pictures of the oscillation study from its CSV files."""
 import re
 import statistics

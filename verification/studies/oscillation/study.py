@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Noise on element-test paths: how far each memory rule is led away from the clean path, and at what cost.
 
 `verification/run oscillation --make [--pass --groups GROUP ...]` runs the cases (about ten minutes on two cores) and

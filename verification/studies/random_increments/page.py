@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Random increments: failures by size."""
 from tools.page import Page, Tolerance
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """How the misfit with the drained tests of Verdugo & Ishihara (1996) moves with h_0 and A_0."""
 import re
 

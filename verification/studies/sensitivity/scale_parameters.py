@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Runs the six drained tests with h_0 or A_0 scaled and writes sensitivity.csv. Nothing is tuned."""
 import os
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Writes reference.csv: ends of the paths of docs/theory/integration.md section 6.1 by verification/material/reference
 (full matrices, DOP853), with their own uncertainty: the largest change of either stress if the tolerance is ten times larger or the method is LSODA."""
 import sys

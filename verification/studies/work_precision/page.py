@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Work and precision of the integration schemes: picture and tables from the committed results."""
 import collections
 import math

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Error against work of the three schemes on the paths of docs/theory/integration.md section 6.1, as CSV on the screen.
 !>
 !> work_precision REFERENCE.csv   tolerances 1e-2 .. 1e-10: error, rate evaluations, substeps, nanoseconds, status
