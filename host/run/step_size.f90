@@ -9,25 +9,23 @@ module step_size
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, QUASI_STATIC, DYNAMIC
    use model_types, only: model_t, stage_t
    use run_state, only: run_t
-   use scene_types, only: acts_in
+   use step_landings, only: next_time, is_break, LAST_STEP, SHORTEST
    use step_control, only: new_controller, judge, LARGEST_FACTOR
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private
    public :: begin_control, next_step, prepare_rates, judge_step, shorten_step, keep_step, is_over, LAST_STEP
 
-   real(wp), parameter :: LAST_STEP = 1.0e-6_wp   !< A rest of a span below this share of a step is rounding.
-   integer, parameter :: MOST_TIMES = 200         !< A load history with more breaks is a record: no step ends there.
    integer, parameter :: SETTLED = 3              !< Steps after a sudden change until rates tell of the error again.
    real(wp), parameter :: START_UP_STEPS = 10.0_wp !< First steps in which changes are expected to grow yet.
-   real(wp), parameter :: EVENT = 0.01_wp         !< Least share of the allowance that a step may take: an impact or a
+   real(wp), parameter :: EVENT = 0.01_wp         !< Least share of what is left that a step may take: an impact or a
                                                   !< change of contact is not resolved for its own sake.
-   real(wp), parameter :: KNOCK = 0.3_wp          !< The same of the pressures in a dynamic stage.
-   real(wp), parameter :: DYNAMIC_SHARE = 0.3_wp  !< Errors of a vibration stay and add up, those of a flow fade.
+   real(wp), parameter :: RESERVE = 0.1_wp        !< Share of the accuracy that is left to steps when it has been used up.
+   real(wp), parameter :: KNOCK = 0.1_wp           !< The same of pressures in a dynamic stage, of the accuracy: they follow
+                                                  !< every knock and fade; ten such steps use it up.
    real(wp), parameter :: PEAK = 1.57_wp          !< Of a sine over the mean of its magnitude.
    real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Of its change that the second step after a sudden load errs by:
                                                   !< flow begins with the root of time.
-   real(wp), parameter :: SHORTEST = 1.0e-8_wp    !< Smallest step as a share of the stage.
    real(wp), parameter :: PLATE_SHARE = 0.1_wp    !< Of the way of a plate, as a least scale of the soil's.
    real(wp), parameter :: FLOOR = 1.0e-9_wp       !< Share of the largest value of a field that is no change of it.
 contains
@@ -66,7 +64,7 @@ contains
          dt = min(stage%dt, stage%dt_max)
          return
       end if
-      span = next_time(model, stage, run) - run%state%time
+      span = next_time(model, stage, run, stage%duration) - run%state%time
       select case (stage%kind)
       case (STATIC)
          dt = span
@@ -87,31 +85,6 @@ contains
       run%control%fresh = 0
       call forget(run%control%memory)
    end subroutine sudden
-
-   !> The next time that a step has to end at: a break of what acts, a support that comes or goes, a time of output,
-   !> the end of the stage [s].
-   real(wp) function next_time(model, stage, run) result(next)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      type(run_t), intent(in) :: run
-      real(wp) :: now, close
-      integer :: i
-
-      now = run%state%time
-      next = run%at%t_start + stage%duration
-      close = LAST_STEP*min(stage%duration, max(run%control%controller%dt, SHORTEST*stage%duration))
-      do i = 1, size(model%amplitudes)
-         if (size(model%amplitudes(i)%times) > MOST_TIMES) cycle
-         next = min(next, minval(model%amplitudes(i)%times, mask=model%amplitudes(i)%times > now + close))
-      end do
-      do i = 1, size(model%fixes)
-         if (.not. acts_in(model%fixes(i)%stages, stage%name)) cycle
-         if (model%fixes(i)%from > now + close) next = min(next, model%fixes(i)%from)
-         if (model%fixes(i)%until > now + close) next = min(next, model%fixes(i)%until)
-      end do
-      if (stage%output_dt > 0.0_wp) next = min(next, run%at%t_start &
-         + stage%output_dt*(aint((now - run%at%t_start + close)/stage%output_dt) + 1))
-   end function next_time
 
    !> Whether a stage has come to its end.
    pure logical function is_over(stage, run)
@@ -138,7 +111,7 @@ contains
          return
       end if
       dt = min(run%control%controller%dt, stage%dt_max)
-      left = next_time(model, stage, run) - run%state%time
+      left = next_time(model, stage, run, 2*dt) - run%state%time
       if (dt > left*(1 - LAST_STEP)) then
          dt = left
       else if (2*dt > left) then
@@ -183,7 +156,8 @@ contains
          norm = field_norms(error(:, :bodies))
          share = dt/elapsed
          if (stage%kind == DYNAMIC) then
-            share(:DISPLACEMENTS) = max(DYNAMIC_SHARE*dt/elapsed, EVENT)
+            share(:DISPLACEMENTS) = max(dt/(run%at%t_start + stage%duration - run%state%time), EVENT) &
+                                    *what_is_left(model, stage, run)
             ! Pressures follow every knock of a contact; such errors do not add up.
             share(DISPLACEMENTS + 1:) = max(dt/elapsed, KNOCK)
          end if
@@ -222,6 +196,27 @@ contains
          end associate
       end subroutine note_limit
    end subroutine judge_step
+
+   !> Errors of displacements without a flow stay and add up. So what the steps so far have left of the accuracy is
+   !> spread over the stages to come, and in a stage over its time: share of the accuracy for this stage's rest.
+   pure real(wp) function what_is_left(model, stage, run) result(left)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(in) :: run
+      real(wp) :: used
+      integer :: i, f
+
+      associate (c => run%control)
+         used = maxval(c%gathered(:DISPLACEMENTS)/max(c%scale(:DISPLACEMENTS), tiny(1.0_wp)))
+         ! An answer that hardly changes beside the others does not rule the steps.
+         do i = 1, size(model%points)
+            do f = 1, DISPLACEMENTS
+               used = max(used, c%point_gathered(f, i)/max(c%high(f, i) - c%low(f, i), c%scale(f), tiny(1.0_wp)))
+            end do
+         end do
+      end associate
+      left = max(1.0_wp - used/stage%accuracy, RESERVE)
+   end function what_is_left
 
    !> Displacements count as one field.
    pure function field_norms(values) result(norms)
@@ -315,22 +310,4 @@ contains
          end if
       end associate
    end subroutine keep_step
-
-   !> Whether something that acts breaks at a time.
-   logical function is_break(model, stage, time, dt)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: time, dt
-      integer :: i
-
-      is_break = .false.
-      do i = 1, size(model%amplitudes)
-         if (size(model%amplitudes(i)%times) <= MOST_TIMES) &
-            is_break = is_break .or. any(abs(model%amplitudes(i)%times - time) < LAST_STEP*dt)
-      end do
-      do i = 1, size(model%fixes)
-         if (acts_in(model%fixes(i)%stages, stage%name)) is_break = is_break &
-            .or. abs(model%fixes(i)%from - time) < LAST_STEP*dt .or. abs(model%fixes(i)%until - time) < LAST_STEP*dt
-      end do
-   end function is_break
 end module step_size

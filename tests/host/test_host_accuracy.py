@@ -19,6 +19,7 @@ VIBRATION = root / "verification/host/vibration/scene.nml"
 TERZAGHI = root / "verification/host/terzaghi/scene.nml"
 RESTART = root / "tests/host/scenes/restart.nml"
 BAND = 0.2, 5.0   # of the true error over the estimated one: what the manual promises
+ASKED = 1.5       # Times the accuracy: what the histories of these scenes keep to; a run that lets errors add up has 2.5.
 
 
 def run(scene, out, *words):
@@ -55,11 +56,26 @@ for accuracy in ("1e-1", "1e-2"):
     estimate = estimated(out)["top.u_z"]
     steps[accuracy] = len(t)
     check(f"vibration, {accuracy}: true error / estimated", BAND[0] < true/estimate < BAND[1], (true, estimate))
-    check(f"vibration, {accuracy}: what was asked for, within the band", true < BAND[1]*float(accuracy), true)
+    check(f"vibration, {accuracy}: what was asked for", true < ASKED*float(accuracy), true)
     check(f"vibration, {accuracy}: told", "top.u_z: " in done.stdout
           and "kept short by: error of the displacements" in done.stdout, done.stdout)
 check("vibration: ten times the accuracy takes about sqrt(10) times the steps",
       1.5 < steps["1e-2"]/steps["1e-1"] < 5, steps)
+
+# A record of many breaks: steps end at those that a straight line over them would miss, and at no others.
+wiggle = [0.5*i/400 for i in range(401)]
+flat = [1 + 1e-5*(-1)**i for i in range(401)]
+flat[123] = 0.2
+record = "\n".join(f"{t:.6g} {v:.7g}" for t, v in zip(wiggle, flat))
+(work / "record.txt").write_text(record + "\n")
+text = VIBRATION.read_text().replace("stages = 'press'\n", "history = 'record'\n").replace("rho_inf = 0.8", "") \
+    .replace("analysis = 'static'\n   duration = 1\n", "analysis = 'static'\n   duration = 1e-9\n") \
+    + f"&history name = 'record' file = '{work / 'record.txt'}' /\n"
+done = run(written("record", text), work / "record", "--accuracy", "1e-1")
+times = tables.columns(work / "record/ledger.csv")["time"] if done.returncode == 0 else np.array([9.0])
+check("a record of 401 breaks: a step ends at the one that matters", np.min(np.abs(times - wiggle[123])) < 1e-9,
+      (done.stderr, times))
+check("a record of 401 breaks: not at every one", len(times) < 300, len(times))
 
 # --verify: the difference to a run at a quarter of the accuracy takes the estimate's place, and is close to the truth.
 done = run(scene, work / "verified", "--accuracy", "1e-2", "--verify")

@@ -1,0 +1,103 @@
+! SPDX-License-Identifier: MIT
+!> Times that controlled steps end at: breaks of load histories, supports that come and go, output, end of the stage.
+!>
+!> Of a load history of a few breaks every one counts; of a record of thousands only those matter that a straight line
+!> over them would miss by more than a share of the accuracy. One rule serves both.
+!> docs/theory/host.md section 4.5.
+module step_landings
+   use kinds, only: wp
+   use model_types, only: model_t, stage_t
+   use run_state, only: run_t
+   use scene_types, only: scene_amplitude_t, amplitude_at, acts_in
+   implicit none (type, external)
+   private
+   public :: next_time, is_break, straight_until, LAST_STEP, SHORTEST, CHORD_SHARE
+
+   real(wp), parameter :: LAST_STEP = 1.0e-6_wp   !< A rest of a span below this share of a step is rounding.
+   real(wp), parameter :: SHORTEST = 1.0e-8_wp    !< Smallest step as a share of the stage.
+   real(wp), parameter :: CHORD_SHARE = 0.1_wp    !< Of the accuracy that a straight line may leave out of a history.
+contains
+   !> The next time that a step has to end at: a break of what acts, a support that comes or goes, a time of output,
+   !> the end of the stage [s].
+   real(wp) function next_time(model, stage, run, reach) result(next)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(in) :: run
+      real(wp), intent(in) :: reach   !< No step goes farther than this from the present time [s].
+      real(wp) :: now, close
+      integer :: i
+
+      now = run%state%time
+      next = run%at%t_start + stage%duration
+      close = LAST_STEP*min(stage%duration, max(run%control%controller%dt, SHORTEST*stage%duration))
+      do i = 1, size(model%amplitudes)
+         next = min(next, straight_until(model%amplitudes(i), now, close, min(next, now + reach), &
+                                         CHORD_SHARE*stage%accuracy))
+      end do
+      do i = 1, size(model%fixes)
+         if (.not. acts_in(model%fixes(i)%stages, stage%name)) cycle
+         if (model%fixes(i)%from > now + close) next = min(next, model%fixes(i)%from)
+         if (model%fixes(i)%until > now + close) next = min(next, model%fixes(i)%until)
+      end do
+      if (stage%output_dt > 0.0_wp) next = min(next, run%at%t_start &
+         + stage%output_dt*(aint((now - run%at%t_start + close)/stage%output_dt) + 1))
+   end function next_time
+
+   !> Break of a history up to which a straight line from the present time leaves out no more than a share of its
+   !> range: the one that the line to the horizon misses most, until no line misses one. Huge where none is in the way.
+   pure real(wp) function straight_until(amplitude, now, close, horizon, share) result(until)
+      type(scene_amplitude_t), intent(in) :: amplitude
+      real(wp), intent(in) :: now, close   !< Breaks nearer than `close` are the present time [s].
+      real(wp), intent(in) :: horizon      !< [s]
+      real(wp), intent(in) :: share        !< Of the range [-].
+      real(wp) :: line_end, start, slope, missed, most, allowed
+      integer :: first, last, k, worst
+
+      until = huge(1.0_wp)
+      associate (t => amplitude%times, v => amplitude%values)
+         first = count(t <= now + close) + 1
+         last = count(t < horizon - close)
+         allowed = share*(maxval(v) - minval(v))
+         start = amplitude_at(amplitude, now)
+         line_end = horizon
+         do
+            worst = 0
+            most = allowed
+            slope = (amplitude_at(amplitude, line_end) - start)/(line_end - now)
+            do k = first, last
+               missed = abs(v(k) - start - slope*(t(k) - now))
+               if (.not. missed > most) cycle
+               most = missed
+               worst = k
+            end do
+            if (worst == 0) exit
+            until = t(worst)
+            line_end = until
+            last = worst - 1
+         end do
+      end associate
+   end function straight_until
+
+   !> Whether something that acts breaks at the end of a step: a support comes or goes, or a history turns by more than
+   !> a share of its range within a step like the last.
+   pure logical function is_break(model, stage, time, dt)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: time, dt   !< [s]
+      real(wp) :: turn
+      integer :: i
+
+      is_break = .false.
+      do i = 1, size(model%amplitudes)
+         associate (h => model%amplitudes(i))
+            if (.not. any(abs(h%times - time) < LAST_STEP*dt)) cycle
+            turn = amplitude_at(h, time + dt) - 2*amplitude_at(h, time) + amplitude_at(h, time - dt)
+            is_break = is_break .or. abs(turn) > stage%accuracy*(maxval(h%values) - minval(h%values))
+         end associate
+      end do
+      do i = 1, size(model%fixes)
+         if (acts_in(model%fixes(i)%stages, stage%name)) is_break = is_break &
+            .or. abs(model%fixes(i)%from - time) < LAST_STEP*dt .or. abs(model%fixes(i)%until - time) < LAST_STEP*dt
+      end do
+   end function is_break
+end module step_landings
