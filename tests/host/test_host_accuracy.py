@@ -19,7 +19,7 @@ VIBRATION = root / "verification/host/vibration/scene.nml"
 TERZAGHI = root / "verification/host/terzaghi/scene.nml"
 RESTART = root / "tests/host/scenes/restart.nml"
 BAND = 0.2, 5.0   # of the true error over the estimated one: what the manual promises
-ASKED = 1.5       # Times the accuracy: what the histories of these scenes keep to; a run that lets errors add up has 2.5.
+ASKED = 1.5       # Times the accuracy: what the true error keeps to; where errors add up unseen it is 2.5.
 
 
 def run(scene, out, *words):
