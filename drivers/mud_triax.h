@@ -2,8 +2,8 @@
 /* mud_triax as a library: a case given as text, its table in memory. See drivers/README.md for cases and columns.
  *
  * Texts go into the caller's buffer of `len` bytes, cut to fit and always terminated. Nothing is printed, and no file is
- * written; files that the case names (materials, libraries of UMATs) are read. Calls are independent of each other,
- * but formatted output of gfortran's runtime is not safe between threads: run one test at a time in a process.
+ * written; files that the case names (materials, libraries of UMATs) are read. Calls are independent of each other;
+ * any thread may call mud_triax_run, and threads wait for each other there: for tests side by side take processes.
  */
 #ifndef MUD_TRIAX_H
 #define MUD_TRIAX_H

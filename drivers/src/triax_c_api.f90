@@ -29,11 +29,23 @@ module triax_c_api
    end interface
 contains
    !> Runs a case. A handle is given where there are rows: also after a test that stopped (3), not after one that was
-   !> refused (2).
+   !> refused (2). Threads wait for each other: gfortran keeps the length of a text that a function returns (deferred
+   !> length) in static storage, so that the readers and messages of two tests at once would cut each other's texts.
    integer(c_int) function triax_run_text(text, name, handle, message, length) bind(c, name='mud_triax_run')
       type(c_ptr), value :: text, name, message
       type(c_ptr), intent(out) :: handle
       integer(c_int), value :: length
+
+      !$omp critical (one_test)
+      call run_text(text, name, handle, message, length, triax_run_text)
+      !$omp end critical (one_test)
+   end function triax_run_text
+
+   subroutine run_text(text, name, handle, message, length, code)
+      type(c_ptr), intent(in) :: text, name, message
+      type(c_ptr), intent(out) :: handle
+      integer(c_int), intent(in) :: length
+      integer(c_int), intent(out) :: code
       type(result_t), pointer :: result
       type(group_t), allocatable :: groups(:)
       type(case_t) :: test
@@ -59,8 +71,8 @@ contains
          handle = c_loc(result)
       end if
       call put(trim(fault%text), message, length)
-      triax_run_text = fault%code
-   end function triax_run_text
+      code = fault%code
+   end subroutine run_text
 
    !> Number of rows, 0 without a handle.
    integer(c_int) function triax_rows(handle) bind(c, name='mud_triax_rows')

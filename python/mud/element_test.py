@@ -6,7 +6,6 @@ from __future__ import annotations
 import ctypes
 import os
 import pathlib
-import threading
 from collections.abc import Iterator, Mapping, Sequence
 from ctypes import byref
 
@@ -18,8 +17,6 @@ from .errors import InputError, TestStopped
 from .material import Material
 
 _DONE, _REFUSED = 0, 2
-# Formatted output of gfortran's runtime is not safe between threads: one test after the other in a process.
-_one_at_a_time = threading.Lock()
 
 
 class Stage:
@@ -126,8 +123,7 @@ def run_case(case: str, folder: str | os.PathLike = ".") -> TestResult:
     handle, message = ctypes.c_void_p(), ctypes.create_string_buffer(_native.TEXT)
     library = _native.mud_triax
     place = str(pathlib.Path(folder) / "case")
-    with _one_at_a_time:
-        code = library.mud_triax_run(case.encode(), place.encode(), byref(handle), message, len(message))
+    code = library.mud_triax_run(case.encode(), place.encode(), byref(handle), message, len(message))
     sentence = message.value.decode()
     if code == _REFUSED or not handle:
         raise InputError(sentence)

@@ -47,8 +47,8 @@ def _job(values: Mapping[str, float], number: int, thin: int) -> tuple[np.ndarra
 class Evaluator:
     """Evaluates sets of variables on tests, in parallel: one test under one set is a job for a worker process.
 
-    Processes and not threads, because formatted output of gfortran's runtime is not safe between threads. The answer does not
-    depend on their number.
+    Processes and not threads, because element tests of one process wait for each other. The answer does not depend on their
+    number.
     """
 
     def __init__(self, items: Sequence[Item], base: Mapping[str, float], fixed: Mapping[str, float], workers: int = 0):
