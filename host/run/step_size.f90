@@ -21,7 +21,7 @@ module step_size
    real(wp), parameter :: EVENT = 0.01_wp         !< Least share of what is left that a step may take: an impact or a
                                                   !< change of contact is not resolved for its own sake.
    real(wp), parameter :: RESERVE = 0.1_wp        !< Share of the accuracy that is left when it has been used up.
-   real(wp), parameter :: KNOCK = 0.1_wp           !< The same of pressures in a dynamic stage, of the accuracy: they follow
+   real(wp), parameter :: KNOCK = 0.1_wp          !< The same of pressures in dynamic stages, of the accuracy: they follow
                                                   !< every knock and fade; ten such steps use it up.
    real(wp), parameter :: PEAK = 1.57_wp          !< Of a sine over the mean of its magnitude.
    real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Of its change that the second step after a sudden load errs by:
