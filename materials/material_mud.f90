@@ -44,6 +44,7 @@ module material_mud
       procedure :: save_update
       procedure :: elastic_tangent
       procedure :: remarks
+      procedure :: integrate_to
    end type mud_t
 contains
    !> The law of a group: `file`, and parameters of the library by name.
@@ -78,6 +79,9 @@ contains
       law%tangent = max(law%given_tangent, MUD_TANGENT_ELASTIC)
       law%has_retention = .true.
       law%exact_tangent = law%tangent == MUD_TANGENT_CONSISTENT
+      law%tolerance = law%props(property_index('tolerance'))
+      law%given_tolerance = not_the_default('tolerance', law%tolerance)
+      law%given_scheme = not_the_default('scheme', law%props(property_index('scheme')))
       law%e_0 = law%props(property_index('e_0'))
       law%n_guards = size(GUARDS)
       law%guard_names(:size(GUARDS)) = GUARDS
@@ -92,6 +96,33 @@ contains
       if (min(law%place_e, law%place_s_w) < 1) call raise(fault, EXIT_INPUT, &
          'The library keeps no void_ratio or no saturation; program and library do not match.')
    end subroutine fill_mud
+
+   logical function not_the_default(name, value)
+      character(*), intent(in) :: name
+      real(wp), intent(in) :: value
+      real(wp) :: lower, upper, preset
+
+      call property_range(property_index(name), lower, upper, preset)
+      not_the_default = abs(value - preset) > epsilon(1.0_wp)*abs(preset)
+   end function not_the_default
+
+   !> Another tolerance and scheme of the stress integration. Both must lie in their ranges.
+   subroutine integrate_to(self, tolerance, scheme)
+      class(mud_t), intent(inout) :: self
+      real(wp), intent(in) :: tolerance   !< Relative.
+      integer, intent(in) :: scheme
+      character(BUFFER) :: text
+      real(wp) :: props(size(self%props)), prepared(size(self%prepared))
+
+      props = self%props
+      props(property_index('tolerance')) = tolerance
+      if (.not. self%given_scheme) props(property_index('scheme')) = real(scheme, wp)
+      text = c_null_char
+      if (mud_prepare(props, size(props), prepared, size(prepared), text, BUFFER) /= 0) return
+      self%props = props
+      self%prepared = prepared
+      self%tolerance = tolerance
+   end subroutine integrate_to
 
    subroutine initial_state(self, stress, suction, void_ratio, state, text)
       class(mud_t), intent(in) :: self

@@ -54,6 +54,8 @@ module material_point
       logical :: has_retention = .false.    !< It knows its saturation itself; no curve beside it.
       logical :: exact_tangent = .false.    !< d sigma'/d strain is the derivative of the update itself.
       integer :: n_guards = 0
+      real(wp) :: tolerance = 0.0_wp        !< Of the stress integration, relative; 0: the law has none.
+      logical :: given_tolerance = .false., given_scheme = .false.   !< Not the defaults: set by hand.
       character(NAME_LENGTH) :: guard_names(MOST_GUARDS) = ''
       character(NAME_LENGTH), allocatable :: state_names(:), state_units(:)
       class(retention_t), allocatable :: curve   !< Of a law that has no retention of its own; without: saturated.
@@ -68,6 +70,7 @@ module material_point
       procedure :: elastic_tangent => tangent_at_rest
       procedure :: save_update => cannot_save
       procedure :: remarks => no_remarks
+      procedure :: integrate_to => no_tolerance
    end type material_t
 
    !> One law of a list of different ones.
@@ -128,6 +131,15 @@ module material_point
       end function of_state_i
    end interface
 contains
+   !> Sets the tolerance and the scheme of the stress integration, where the law has such.
+   subroutine no_tolerance(self, tolerance, scheme)
+      class(material_t), intent(inout) :: self
+      real(wp), intent(in) :: tolerance   !< Relative, > 0
+      integer, intent(in) :: scheme       !< As the parameter of that name.
+
+      if (self%tolerance > 0.0_wp .and. scheme > 0) self%tolerance = tolerance
+   end subroutine no_tolerance
+
    !> Degree of saturation, and its slopes, at a suction [kPa] and a void ratio [-]; a law with a retention of its own
    !> overrides it.
    function retention_by_curve(self, p_c, e) result(sat)

@@ -2,8 +2,11 @@
 !> Element tests on the MUD model: drained and undrained triaxial tests, compression, strain and suction paths.
 program mud_triax
    use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
-   use faults, only: fault_t, raise, EXIT_OUTPUT
+   use faults, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
+   use kinds, only: wp
    use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
+   use triax_accuracy, only: accuracy_t, reach_accuracy, verify_accuracy, note_accuracy, accuracy_lines, is_met, &
+                             LINE_LENGTH
    use triax_case, only: case_t, read_case
    use library_tables, only: library_version
    use material_folder, only: material_path
@@ -15,7 +18,7 @@ program mud_triax
    use triax_help, only: print_help, print_template
    implicit none (type, external)
 
-   type(option_t) :: options(8) = [ &
+   type(option_t) :: options(10) = [ &
       option_t('--help', letter='-h', answers=.true.), &
       option_t('--version', answers=.true.), &
       option_t('--template', answers=.true.), &
@@ -23,6 +26,8 @@ program mud_triax
       option_t('--residuals'), &
       option_t('--output', 'the name of a file', '-o'), &
       option_t('--material', 'the name of a material'), &
+      option_t('--accuracy', 'a share, as 1e-2'), &
+      option_t('--verify'), &
       option_t('--save-failed', 'the name of a new file')]
    character(WORD_LENGTH) :: case_file
    type(fault_t) :: fault
@@ -53,12 +58,14 @@ contains
       type(point_t) :: point
       type(tally_t) :: tally
       character(:), allocatable :: output_file, save_file, material_file
+      type(accuracy_t) :: answer
       logical :: taken, quiet
 
       material_file = ''
       if (option_given(options, '--material')) &
          call material_path(option_value(options, '--material'), material_file, fault)
-      if (fault%code == 0) call read_case(file, material_file, test, fault)
+      if (fault%code == 0) call read_case(file, material_file, option_value(options, '--accuracy'), &
+                                          test, fault)
       if (fault%code /= 0) return
       quiet = option_given(options, '--quiet')
       output_file = option_value(options, '--output')
@@ -71,15 +78,41 @@ contains
                     'it is not overwritten; remove it or choose another name.')
          return
       end if
+      if (option_given(options, '--verify') .and. .not. test%accuracy > 0.0_wp) then
+         call raise(fault, EXIT_INPUT, '--verify measures what an accuracy has given: ask for one, with accuracy of '// &
+                    '&case or --accuracy.')
+         return
+      end if
       call open_table(output_file, test, table, fault)
       if (fault%code /= 0) return
 
       tally%residuals = option_given(options, '--residuals')
       tally%save_to = save_file
+      if (test%accuracy > 0.0_wp) call reach_accuracy(test, answer)
+      if (option_given(options, '--verify')) call verify_accuracy(test, answer)
+      if (test%accuracy > 0.0_wp) call note_accuracy(answer, table, fault)
       if (tally%residuals) write (output_unit, '(a)') 'increment,iteration,error'
       call start_timer(timer)
       if (.not. quiet) timer%shown = .true.
       call run_test(test, table, tally, timer, point, fault)
       if (.not. quiet) call show_summary(test, table, point, tally, timer)
+      if (fault%code == 0 .and. test%accuracy > 0.0_wp) call show_accuracy(answer, quiet .or. table%to_screen)
    end subroutine run
+
+   !> The estimates, and a warning, also where the run is quiet, where they are beyond what was asked for.
+   subroutine show_accuracy(answer, quiet)
+      type(accuracy_t), intent(in) :: answer
+      logical, intent(in) :: quiet
+      character(LINE_LENGTH), allocatable :: lines(:)
+      integer :: i
+
+      allocate (lines(0))
+      lines = accuracy_lines(answer)
+      do i = 1, merge(0, size(lines), quiet)
+         write (output_unit, '(a)') merge('   accuracy   ', '              ', i == 1)//trim(lines(i))
+      end do
+      if (.not. is_met(answer)) write (error_unit, '(a)') 'mud_triax: warning: the accuracy is not reached; what '// &
+         'limits it is '//trim(merge('the increments                 ', 'the tolerance of the stresses  ', &
+         answer%by_increments >= answer%by_tolerance))//' (given by hand, or not to be refined further).'
+   end subroutine show_accuracy
 end program mud_triax

@@ -5,6 +5,8 @@ module triax_c_api
                                           c_f_pointer, c_associated
    use faults, only: fault_t, raise, EXIT_INPUT
    use namelists, only: group_t, groups_of_text
+   use kinds, only: wp
+   use triax_accuracy, only: accuracy_t, reach_accuracy, note_accuracy
    use triax_case, only: case_t, make_case
    use triax_columns, only: COLUMNS
    use triax_control, only: tally_t
@@ -50,6 +52,7 @@ contains
       type(group_t), allocatable :: groups(:)
       type(case_t) :: test
       type(tally_t) :: tally
+      type(accuracy_t) :: answer
       type(timer_t) :: timer
       type(point_t) :: point
       type(fault_t) :: fault
@@ -67,6 +70,10 @@ contains
       if (fault%code == 0) then
          allocate (result)
          call open_memory_table(test, result%table, fault)
+         if (test%accuracy > 0.0_wp) then
+            call reach_accuracy(test, answer)
+            call note_accuracy(answer, result%table, fault)
+         end if
          call run_test(test, result%table, tally, timer, point, fault)
          handle = c_loc(result)
       end if

@@ -4,7 +4,7 @@ module triax_case
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use texts, only: lower_case, short, whole
-   use namelists, only: group_t, read_groups, groups_of_text, LENGTH
+   use namelists, only: group_t, read_groups, groups_of_text, set_entry, LENGTH
    use spelling, only: nearest_name
    use key_schema, only: check_entries, describe_key, get_text, get_number, get_numbers, line_of, given, word_is
    use triax_keys, only: CASE_KEYS
@@ -26,6 +26,7 @@ module triax_case
       type(point_t) :: start
       type(stage_t), allocatable :: stages(:)
       real(wp) :: control_tolerance = CONTROL_TOLERANCE   !< Of what is held, relative.
+      real(wp) :: accuracy = 0.0_wp      !< Relative error wanted in the histories; 0: none asked for.
       integer :: max_updates = huge(0)   !< The test stops after so many updates of the material.
    end type case_t
 
@@ -38,17 +39,36 @@ module triax_case
 
 contains
    !> Reads and checks a case with its material, and brings the sample to its start.
-   subroutine read_case(file, material, test, fault)
+   subroutine read_case(file, material, accuracy, test, fault)
       character(*), intent(in) :: file
       character(*), intent(in) :: material   !< File of a material that replaces that of the case; blank: none.
+      character(*), intent(in) :: accuracy   !< In place of that of the case; blank: none.
       type(case_t), intent(out) :: test
       type(fault_t), intent(inout) :: fault
       type(group_t), allocatable :: groups(:)
 
       call read_groups(file, groups, fault)
       if (fault%code == 0 .and. material /= '') call replace_material(material, groups, fault)
+      if (fault%code == 0 .and. accuracy /= '') call ask_accuracy(accuracy, groups)
       if (fault%code == 0) call make_case(groups, file, test, fault)
    end subroutine read_case
+
+   !> The accuracy of the command line, as if the case said it.
+   subroutine ask_accuracy(accuracy, groups)
+      character(*), intent(in) :: accuracy
+      type(group_t), allocatable, intent(inout) :: groups(:)
+      type(group_t), allocatable :: own(:)
+      type(fault_t) :: none
+      integer :: place
+
+      place = findloc(groups%name, 'case', dim=1)
+      if (place == 0) then
+         call groups_of_text('&case /', '--accuracy', own, none)
+         groups = [groups, own]
+         place = size(groups)
+      end if
+      call set_entry(groups(place), 'accuracy', accuracy)
+   end subroutine ask_accuracy
 
    !> The first &material of a case becomes a file; a case without one gets it.
    subroutine replace_material(material, groups, fault)
@@ -121,6 +141,7 @@ contains
          call get_text(groups(of_case), 'name', test%name)
          call get_text(groups(of_case), 'title', test%title)
          call get_number(groups(of_case), 'control_tolerance', test%control_tolerance, found)
+         call get_number(groups(of_case), 'accuracy', test%accuracy, found)
          number = 0.0_wp
          call get_number(groups(of_case), 'max_updates', number, found)
          if (found) test%max_updates = nint(number)
@@ -220,7 +241,7 @@ contains
          stage%increment = INCREMENTS(QUANTITIES(stage%lead)%unit)
          stage%interval = INTERVALS(QUANTITIES(stage%lead)%unit)
       end if
-      call get_number(group, 'increment', stage%increment, found)
+      call get_number(group, 'increment', stage%increment, stage%given_increment)
       call get_number(group, 'output_interval', stage%interval, found)
       call get_number(group, 'stop_r_u', stage%stop_r_u, found)
       if (found .and. .not. sealed_control(stage%control)) then

@@ -92,7 +92,7 @@ contains
          plan%lead_change = target - plan%lead_start
          plan%changes(ROWS) = plan%lead_change
       end select
-      plan%increments = ceiling(abs(plan%lead_change)/stage%increment*(1.0_wp - 1.0e-9_wp))
+      plan%increments = stage%parts*ceiling(abs(plan%lead_change)/stage%increment*(1.0_wp - 1.0e-9_wp))
 
       plan%given(SUCTION) = .not. stage%keeps_water
       if (stage%moves_suction) plan%given_change(SUCTION) = stage%suction_end - point%suction

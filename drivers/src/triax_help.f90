@@ -22,7 +22,7 @@ contains
 
       write (output_unit, '(a)') &
          'usage: mud_triax CASE.nml [--output FILE.csv|.h5] [--material NAME] [--quiet] [--residuals]', &
-         '                 [--save-failed FILE]', &
+         '                 [--accuracy A] [--verify] [--save-failed FILE]', &
          '       mud_triax --template > my_case.nml', &
          '       mud_triax --help | --version', &
          '', &
@@ -33,6 +33,10 @@ contains
          '                   a name that ends in .h5 or .hdf5 is written as HDF5', &
          '   --material NAME   replaces &material of the case by a set of the library of materials (toyoura, ', &
          '                   karlsruhe ...), or by a file whose name ends in .nml', &
+         '   --accuracy A    relative error wanted in the histories, in place of accuracy of &case: increments and', &
+         '                   the tolerance of the stress integration follow where they are not given', &
+         '   --verify        runs once more with a quarter of the increments and a sixteenth of the tolerance; the', &
+         '                   difference takes the place of the estimated errors', &
          '   --quiet         no summary, no progress', &
          '   --residuals     print the error of every iteration of a held stress', &
          '   --save-failed FILE   write the first update that the library refuses to a new file for mud_replay', &

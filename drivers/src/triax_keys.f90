@@ -14,6 +14,8 @@ module triax_keys
       key_t('case', 'title', 't', NONE, 0, 0, 'a line about the case'), &
       key_t('case', 'control_tolerance', 'n', NONE, 1.0e-12_wp, 1.0e-3_wp, &
             'what is held is met to this share of the effective stress; default 1e-10'), &
+      key_t('case', 'accuracy', 'n', NONE, 1.0e-8_wp, 0.5_wp, &
+            'relative error wanted in the histories; chooses increments and stress tolerance that are not given'), &
       key_t('case', 'max_updates', 'i', NONE, 1.0_wp, 1.0e9_wp, &
             'updates of the material after which the test stops, for fits that try anything; default: no limit'), &
       key_t('initial', 'p_eff', 'n', NONE, 1.0e-6_wp, 1.0e7_wp, &

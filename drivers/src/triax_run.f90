@@ -5,8 +5,10 @@ module triax_run
    use kinds, only: wp
    use texts, only: whole
    use triax_case, only: case_t
+   use triax_columns, only: values_of
    use triax_control, only: tally_t
    use triax_stage_run, only: stage_run_t, begin_stage, next_increment, share_done
+   use triax_moments, only: moments_t, note_moment
    use triax_output, only: table_t, write_row, add_note, close_table
    use triax_point, only: point_t
    use triax_progress, only: timer_t, progress_is_due, show_progress
@@ -16,17 +18,18 @@ module triax_run
    public :: run_test
 contains
    !> From the start of the test to its end, or to where it stops: rows so far are kept, and the table is closed.
-   subroutine run_test(test, table, tally, timer, point, fault)
+   subroutine run_test(test, table, tally, timer, point, fault, moments)
       type(case_t), intent(in) :: test
       type(table_t), intent(inout) :: table   !< Open.
       type(tally_t), intent(inout) :: tally
       type(timer_t), intent(inout) :: timer
       type(point_t), intent(out) :: point     !< The sample at the end.
       type(fault_t), intent(inout) :: fault
+      type(moments_t), intent(inout), optional :: moments   !< Every increment, for comparisons.
       type(stage_run_t) :: run
       type(fault_t) :: ending
       real(wp) :: pressure, share
-      integer :: i
+      integer :: i, way, k
 
       tally%tolerance = test%control_tolerance
       tally%max_updates = test%max_updates
@@ -38,9 +41,13 @@ contains
             call begin_stage(test%soil, stage, point, pressure, run, fault)
             if (fault%code /= 0) exit stages
             do while (.not. run%finished)
+               way = run%way
+               k = run%k + 1
                call next_increment(test%soil, stage, run, point, tally, fault)
                if (fault%code /= 0) exit stages
                tally%increments = tally%increments + 1
+               if (present(moments)) call note_moment(moments, [i, way, k], run%finished .or. run%way /= way, &
+                                                      values_of(test%soil, point, run, 0.0_wp, i))
                if (run%row) then
                   call write_row(table, test%soil, point, run, tally%error, i, fault)
                   tally%error = 0.0_wp

@@ -55,6 +55,8 @@ module triax_stage
       logical :: keeps_water = .false.       !< Water content S_w e is held, suction follows.
       real(wp) :: suction_end = 0.0_wp       !< [kPa]
       real(wp) :: increment = 0.0_wp         !< In the unit of what leads.
+      logical :: given_increment = .false.   !< By hand: an accuracy does not change it.
+      integer :: parts = 1                   !< Increments are divided into so many, for an accuracy.
       real(wp) :: interval = 0.0_wp          !< Between rows of the output, in the same unit.
       integer :: cycles = 0                  !< 0: one way
       integer :: cycle_by = 0                !< BY_*

@@ -88,7 +88,7 @@ contains
          arrived = missing(soil, stage, run, point) <= 0.0_wp
          if (arrived) call find_goal(soil, stage, run, before, point, tally, fault)
          if (fault%code /= 0) return
-         if (.not. arrived .and. run%k*stage%increment >= MAX_WAY) then
+         if (.not. arrived .and. run%k*stage%increment/stage%parts >= MAX_WAY) then
             call raise(fault, EXIT_RUN, trim(QUANTITIES(stage%cycle_by)%name)//' does not reach '// &
                        short(run%goal)//' kPa in cycle '//whole(run%cycle)// &
                        ': after a strain of '//short(MAX_WAY)//' it is '// &
@@ -152,7 +152,7 @@ contains
       end if
       if (run%open) then
          run%direction = sign(1.0_wp, run%goal - quantity(soil, stage, stage%cycle_by, point))
-         call plan_way(soil, stage, quantity(soil, stage, stage%lead, point) + run%direction*stage%increment, &
+         call plan_way(soil, stage, quantity(soil, stage, stage%lead, point) + run%direction*stage%increment/stage%parts, &
                        point, run%plan)
          run%plan%increments = 1
       else
