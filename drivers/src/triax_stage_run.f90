@@ -152,7 +152,8 @@ contains
       end if
       if (run%open) then
          run%direction = sign(1.0_wp, run%goal - quantity(soil, stage, stage%cycle_by, point))
-         call plan_way(soil, stage, quantity(soil, stage, stage%lead, point) + run%direction*stage%increment/stage%parts, &
+         call plan_way(soil, stage, &
+                       quantity(soil, stage, stage%lead, point) + run%direction*stage%increment/stage%parts, &
                        point, run%plan)
          run%plan%increments = 1
       else
