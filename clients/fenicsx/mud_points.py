@@ -33,6 +33,9 @@ class Material:
                                                   ctypes.c_void_p, ctypes.c_int, ctypes.c_int, REAL, REAL, REAL,
                                                   ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, INTEGER,
                                                   ctypes.c_void_p]
+        lib.mud_tangent_list.argtypes = [REAL, ctypes.c_int, ctypes.c_void_p, REAL, REAL, ctypes.c_int, ctypes.c_void_p,
+                                         ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int, REAL, ctypes.c_void_p,
+                                         ctypes.c_void_p, ctypes.c_void_p, INTEGER, ctypes.c_void_p]
         self.threads = threads
         self.n_state = lib.mud_count(MUD_STATEV)
         self.props = np.zeros(lib.mud_count(MUD_PROPS))
@@ -78,3 +81,18 @@ class Material:
             text = ctypes.create_string_buffer(400)
             self.library.mud_message(reports[first:].ctypes.data_as(ctypes.c_void_p), text, len(text))
             raise Refused(failed, float(reports["pnewdt"].min()), text.value.decode())
+
+    def slopes(self, stress, state, tangent, direction=None, suction=None):
+        """Slopes with which the present states go on along a direction of strain (None: as they strained last)."""
+        n = len(stress)
+        if n == 0:
+            return
+        status = np.zeros(n, np.int32)
+        failed = self.library.mud_tangent_list(
+            self.prepared, n, None, stress, state, self.n_state,
+            *(None if a is None else a.ctypes.data for a in (direction, suction)), None, self.threads, tangent, None,
+            None, None, status, None)
+        if failed:
+            text = ctypes.create_string_buffer(400)
+            self.library.mud_status_text(int(status[np.flatnonzero(status)[0]]), text, len(text))
+            raise Refused(failed, 0.5, text.value.decode())

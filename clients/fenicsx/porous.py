@@ -124,7 +124,10 @@ class Problem:
             factor = self.comm.allreduce(factor, MPI.MIN)
             sentence = next(s for s in self.comm.allgather(sentence) if s)
             raise mud_points.Refused(refused, factor, sentence)
-        self.stress_field.x.array.reshape(-1, 6)[self.rows] = self.stress1
+        self._to_fields(self.stress1)
+
+    def _to_fields(self, stress):
+        self.stress_field.x.array.reshape(-1, 6)[self.rows] = stress
         self.tangent_field.x.array.reshape(-1, 36)[self.tangent_rows] = self.tangent
 
     def _vector(self):
@@ -182,14 +185,11 @@ class Problem:
         self.ksp.setTolerances(rtol=self.control.linear_tolerance, max_it=500)
         self.ksp.setGMRESRestart(200)
         options = PETSc.Options()
-        for name, value in (("pc_fieldsplit_type", "schur"), ("pc_fieldsplit_schur_fact_type", "full"),
+        # One cycle for u and one for p precondition; p sees what the diagonal of u leaves of its Schur complement.
+        for name, value in (("pc_fieldsplit_type", "schur"), ("pc_fieldsplit_schur_fact_type", "lower"),
                             ("pc_fieldsplit_schur_precondition", "selfp"),
-                            ("fieldsplit_u_ksp_type", "gmres"), ("fieldsplit_u_ksp_rtol", 1e-2),
-                            ("fieldsplit_u_ksp_max_it", 30),
-                            ("fieldsplit_u_pc_type", "hypre"),
-                            ("fieldsplit_u_pc_hypre_boomeramg_nodal_coarsen", 4),  # nodes, not components
-                            ("fieldsplit_u_pc_hypre_boomeramg_vec_interp_variant", 2),  # keeps the rigid-body modes
-                            ("fieldsplit_u_pc_hypre_boomeramg_strong_threshold", 0.5),
+                            ("fieldsplit_u_ksp_type", "preonly"), ("fieldsplit_u_pc_type", "gamg"),
+                            ("fieldsplit_u_pc_gamg_threshold", 0.02),
                             ("fieldsplit_p_ksp_type", "preonly"), ("fieldsplit_p_pc_type", "hypre")):
             if not options.hasName(name):  # the command line goes first
                 options[name] = value
@@ -215,10 +215,16 @@ class Problem:
             vectors.append(vector)
         return PETSc.NullSpace().create(vectors=vectors, comm=self.comm)
 
+    def present(self):
+        """Stress of the start of the step, and the slopes with which the states go on as they strained last: those of a
+        zero increment would be elastic."""
+        self.material.slopes(self.stress0, self.state0, self.tangent)
+        self._to_fields(self.stress0)
+
     def _newton(self):
         control = self.control
         self._pack()
-        self.update()
+        self.present()
         self._vector()
         force = 0.0
         for iteration in range(1, control.iterations + 1):

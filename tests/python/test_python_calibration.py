@@ -92,6 +92,43 @@ hears(
     "compression",
     kind="oedometer",
 )
+def volumes(*values, name="eps_v_percent", last="e_0"):
+    """The good table with other volumetric strains, and no void ratio to compare them with."""
+    cells = [row.strip().split(",") for row in ROWS]
+    return f"test,eps_a_percent,{name},q_kPa,p_kPa,{last}\n" + "".join(
+        f"A,{c[1]},{v},{c[3]},{c[4]},0.8\n" for c, v in zip(cells, values)
+    )
+
+
+check("without e eps_v is believed", sentence(volumes(0, -1, -2, -3)) == "", sentence(volumes(0, -1, -2, -3)))
+hears("eps_v with the sign swapped, without e", volumes(0, -0.3, 1, 2), "contracts before", "swapped")
+hears("eps_v in per cent without unit", volumes(0, -0.3, -0.8, -1.2, name="eps_v"), ":5", "eps_v_percent")
+hears("eps_v as fractions under per cent", volumes(0, -0.01, -0.02, -0.03), "call the column eps_v")
+hears(
+    "eps_v a hundredth of what e tells",
+    HEAD + "".join(r.replace(",-", ",-0.0") for r in ROWS),
+    "0.01 times what e tells",
+    "call it eps_v",
+)
+hears("p and q exchanged", HEAD.replace("q_kPa,p_kPa", "p_kPa,q_kPa") + "".join(ROWS), "p - q/3", "exchanged")
+hears("stresses in MPa under kPa", "test,sigma_1_kPa,e\nA,0.01,0.8\nA,0.1,0.79\nA,0.4,0.78\n", "_MPa", kind="oedometer")
+hears("stresses in Pa under kPa", "test,sigma_1,e\nA,1e4,0.8\nA,1e5,0.79\nA,4e5,0.78\n", "_Pa", kind="oedometer")
+hears(
+    "a void ratio that grows under load",
+    "test,sigma_1_kPa,e\nA,10,0.78\nA,100,0.79\nA,400,0.8\n",
+    "e grows from 0.78",
+    kind="oedometer",
+)
+hears("S_w that grows with suction", "suction_kPa,S_w\n1,0.2\n5,0.6\n10,0.9\n", "must fall", kind="retention")
+hears("S_w in per cent", "suction_kPa,S_w\n1,98\n5,60\n10,20\n", "per cent?", kind="retention")
+hears(
+    "a total mean stress in an undrained test",
+    "test,eps_a_percent,q_kPa,p_kPa,e_0\nU,0,0,100,0.8\nU,5,90,130,0.8\nU,10,120,140,0.8\n",
+    "total mean stress",
+    kind="undrained",
+)
+hears("cells parted by semicolons", (HEAD + "".join(ROWS)).replace(",", ";"), "semicolons", "commas")
+hears("cells parted by tabulators", (HEAD + "".join(ROWS)).replace(",", "\t"), "tabulators")
 hears("a cell that is no number", HEAD + "".join(ROWS).replace("200", "2oo"), ":3", "2oo")
 hears("a cell that is missing", HEAD + "".join(ROWS).replace(",166", ""), ":3", "5 cells")
 hears("a void ratio in per cent", HEAD + "".join(r.rpartition(",")[0] + ",80\n" for r in ROWS), "per cent?")

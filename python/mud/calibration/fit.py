@@ -16,6 +16,7 @@ from .variables import GROUPS, P_CRITICAL, Variable, start_of
 
 STEP = 4e-3  # of a difference quotient, as a share of the bounds: far above the noise of the integration
 GROUP_EVALUATIONS = 4  # least squares of one group: it only has to come near
+FLAT = 1e-5  # change of the misfit, as a share, at which least squares end: valleys are long and flat
 THIN = 3  # rows of the search: every third
 FEW = 8  # tests of the search and of the groups, spread over the kinds
 
@@ -177,7 +178,7 @@ class Fit:
 
         start = np.clip([v.share(values[v.name]) for v in mine], 1e-3, 1 - 1e-3)
         answer = least_squares(
-            residual, start, jacobian, bounds=(0, 1), max_nfev=evaluations, ftol=1e-4, xtol=1e-4, gtol=1e-6
+            residual, start, jacobian, bounds=(0, 1), max_nfev=evaluations, ftol=FLAT, xtol=FLAT, gtol=1e-6
         )
         return at(answer.x), self._rms(answer.fun, coarse)
 

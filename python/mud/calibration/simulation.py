@@ -42,12 +42,13 @@ class Use:
     scatter: dict[str, tuple[float, float]]  #: quantity -> (absolute, share of the value): standard deviation
 
 
-# Standard deviation of what a laboratory measures: (absolute, as a share of the value). Stresses in kPa.
+# Standard deviation of what a laboratory measures: (absolute, as a share of the value). Stresses in kPa. Void ratio in
+# compression: its change since the start, which is given; a dial gauge tells 0.01 mm of a sample of 20 mm, 0.001 of void ratio.
 SCATTER = {
     "drained": {"q": (3.0, 0.05), "eps_v": (0.0025, 0.0)},
     "undrained": {"q": (3.0, 0.05), "p": (3.0, 0.05)},
-    "oedometer": {"e": (0.003, 0.0)},
-    "isotropic": {"e": (0.003, 0.0)},
+    "oedometer": {"e": (0.0015, 0.0)},
+    "isotropic": {"e": (0.0015, 0.0)},
     "cyclic": {"eps_v": (0.001, 0.1), "r_u": (0.05, 0.1)},
     "retention": {"S_w": (0.02, 0.0)},
 }

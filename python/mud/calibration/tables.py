@@ -48,11 +48,16 @@ NEEDS = {
     "retention": ("suction", "S_w"),
 }
 FEWEST_ROWS = {"cyclic": 1, "drained": 3, "undrained": 3, "oedometer": 3, "isotropic": 3, "retention": 3}
-LARGEST_FRACTION = 1.5  # a strain in fractions cannot be larger: more means per cent
+# A strain in fractions cannot be larger: more means per cent. Volume: from the densest to the loosest sand is 0.3.
+LARGEST_FRACTION = {"eps_a": 0.9, "eps_v": 0.3, "gamma": 1.5}
 SMALLEST_PERCENT = 0.6  # a shear test in per cent goes further: less means fractions
-TOO_SMALL = 1e-3  # [kPa]; a largest stress below it means another unit
+SMALLEST_VOLUME = 1e-3  # a drained test to eps_a of 0.05 or more changes its volume by more
+TOO_SMALL, TOO_LARGE = 2.0, 1.0e5  # [kPa]; a largest stress outside means another unit
+HELD = 0.15  # share by which p - q/3 may leave its median where the radial stress is held
+TOTAL = 0.02  # share of p at the start by which p - q/3 moves at least in an undrained test that is sheared
 RETURN = 1e-9  # a strain that steps back by less is rounding
 SLOPE_MISFIT = 0.5  # share of eps_v by which e may contradict it before the signs are doubted
+DILATES = 1e-3  # volumetric strain below its negative is dilatancy, not scatter
 
 
 @dataclasses.dataclass
@@ -135,6 +140,12 @@ def read_table(path: str | os.PathLike, kind: str) -> list[LaboratoryTest]:
     rows = rows_of(path)
     if len(rows) < 2:
         raise InputError(f"{path} has no rows of numbers below its line of names")
+    mark = next((word for word, mark in (("semicolons", ";"), ("tabulators", "\t")) if mark in rows[0][1][0]), "")
+    if mark:
+        raise InputError(
+            f"{path}:{rows[0][0]}: cells are parted by {mark}; save the table with commas between cells and a point as "
+            "decimal mark"
+        )
     head = _head(rows[0][1], path, rows[0][0])
     _need_columns(path, rows[0], kind, [name for name, _ in head])
     names = [name for name, _ in head]
@@ -186,10 +197,10 @@ def _test(
         if quantity in STRAINS:
             _check_percent(path, name, kind, quantity, titles[place], values, factor, numbers)
         largest = np.max(np.abs(values))
-        if quantity in ("q", "p", "sigma_a", "sigma_r") and largest * (factor or 1.0) < TOO_SMALL:
+        if quantity in ("q", "p", "sigma_a", "sigma_r") and not TOO_SMALL <= largest * (factor or 1.0) <= TOO_LARGE:
             raise InputError(
                 f"{path}, test {name}: the largest {titles[place]} is {largest:g}; stresses are in kPa unless the "
-                "name says _MPa or _Pa"
+                "name says _MPa or _Pa, and a test of soil reaches between 2 kPa and 100 MPa"
             )
         if quantity == "amplitude" and words["cycle_by"] in ("eps_a", "gamma") and factor not in (None, 0.01):
             raise InputError(f"{path}, test {name}: an amplitude of {words['cycle_by']} is a strain, not a stress")
@@ -228,7 +239,7 @@ def _check_percent(
     """A strain whose size contradicts its unit."""
     at = int(np.argmax(np.abs(values)))
     largest = abs(values[at])
-    if factor is None and largest > LARGEST_FRACTION:
+    if factor is None and largest > LARGEST_FRACTION[quantity]:
         raise InputError(
             f"{path}:{numbers[at]}: test {name}: {title} reaches {values[at]:g}, too much for a strain as a "
             f"fraction; if it is in per cent call the column {quantity}_percent"
@@ -274,14 +285,75 @@ def _check_values(path: pathlib.Path, test: LaboratoryTest) -> None:
     for quantity in ("p", "sigma_a", "sigma_r"):
         if quantity in test and np.median(test[quantity]) <= 0:
             raise InputError(f"{where}: {quantity} is negative: compression is positive")
-    if "eps_v" in test and "e" in test:
+    _check_stress(where, test)
+    _check_volume(where, test)
+
+
+def _check_stress(where: str, test: LaboratoryTest) -> None:
+    """The stress path that the kind of test prescribes, and where the curves must lead."""
+    if test.kind in ("drained", "undrained") and {"p", "q"} <= set(test.columns):
+        radial = test["p"] - test["q"] / 3
+        middle = float(np.median(radial))
+        if test.kind == "drained" and "sigma_r" not in test and np.max(np.abs(radial - middle)) > HELD * abs(middle):
+            raise InputError(
+                f"{where}: p - q/3 goes from {radial.min():g} to {radial.max():g} kPa; in a drained test it is the radial "
+                "stress, which is held. Are p and q exchanged, or is p not effective?"
+            )
+        start = float(test["p"][0])
+        if test.kind == "undrained" and np.ptp(radial) < TOTAL * start and np.ptp(test["q"]) > 0.5 * start:
+            raise InputError(
+                f"{where}: p - q/3 stays at {middle:g} kPa: p seems to be the total mean stress; an undrained test needs the "
+                "effective one"
+            )
+    if test.kind in ("oedometer", "isotropic"):
+        stress = test["sigma_a" if test.kind == "oedometer" else "p"]
+        first, last = int(np.argmin(stress[: int(np.argmax(stress)) + 1])), int(np.argmax(stress))
+        if last > first and test["e"][last] > test["e"][first]:
+            raise InputError(
+                f"{where}: e grows from {test['e'][first]:g} to {test['e'][last]:g} while the stress grows from "
+                f"{stress[first]:g} to {stress[last]:g} kPa: are the rows in the order of the test, and is e the void ratio?"
+            )
+    if test.kind == "retention":
+        driest, wettest = int(np.argmax(test["suction"])), int(np.argmin(test["suction"]))
+        if test["S_w"][driest] > test["S_w"][wettest]:
+            raise InputError(
+                f"{where}: S_w is {test['S_w'][driest]:g} at the largest suction and {test['S_w'][wettest]:g} at the smallest; "
+                "it must fall. Suction is positive; S_w is 1 where the pores are full"
+            )
+
+
+def _check_volume(where: str, test: LaboratoryTest) -> None:
+    """Volumetric strain against e and against what sand does: it contracts before it dilates."""
+    if "eps_v" not in test or test.kind == "cyclic":
+        return
+    change = test["eps_v"] - test["eps_v"][0]
+    if "e" in test:
         told = (test["e"][0] - test["e"]) / (1 + test["e"][0])
-        size = np.max(np.abs(told))
-        if size > 0 and np.max(np.abs(told + test["eps_v"] - test["eps_v"][0])) < SLOPE_MISFIT * size:
+        size = float(told @ told)
+        ratio = float(change @ told) / size if size > 0 else 1.0
+        if abs(ratio + 1) < SLOPE_MISFIT:
             raise InputError(
                 f"{where}: eps_v and e contradict each other: where the void ratio grows eps_v must fall. The sign of "
                 "eps_v is swapped; compression is positive"
             )
+        if abs(ratio - 1) > SLOPE_MISFIT:
+            raise InputError(
+                f"{where}: eps_v is {ratio:.3g} times what e tells, (e_0 - e)/(1 + e_0). A hundred times: per cent, call the "
+                "column eps_v_percent; a hundredth: fractions, call it eps_v"
+            )
+    if test.kind != "drained":
+        return
+    if abs(test["eps_a"][-1]) >= 0.05 and np.max(np.abs(change)) < SMALLEST_VOLUME:
+        raise InputError(
+            f"{where}: eps_v stays within {100 * np.max(np.abs(change)):.2g} per cent over a whole drained test; if it is a "
+            "fraction call the column eps_v"
+        )
+    lowest, highest = int(np.argmin(change)), int(np.argmax(change))
+    if change[lowest] < -DILATES and change[highest] > DILATES and lowest < highest and test["eps_a"][-1] > 0:
+        raise InputError(
+            f"{where}: eps_v falls to {change[lowest]:.3g} and rises to {change[highest]:.3g} later: sand contracts before it "
+            "dilates, so the sign of eps_v is swapped; compression is positive"
+        )
 
 
 def _complete_drained(test: LaboratoryTest) -> None:
