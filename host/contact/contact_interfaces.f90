@@ -14,7 +14,7 @@ module contact_interfaces
    private
    public :: contacts_t, contact_interface_t, surface_t, surface_of, new_interface, plate_surface
    public :: evaluate_contacts, probe_contacts, probe_interface, fit_pattern, add_contacts
-   public :: contact_forces, work_of_contacts
+   public :: contact_forces, mean_contact_forces
 
    !> A boundary with numbers of its own.
    type :: surface_t
@@ -260,24 +260,20 @@ contains
       end subroutine add
    end subroutine add_contacts
 
-   !> Work done on the penalty between two sets of displacements, by the mean of the forces [kJ]. The outcome of the
-   !> last evaluation within the step stays.
-   real(wp) function work_of_contacts(contacts, dofs, x0, x1) result(work)
+   !> Mean of the forces of the contacts at two sets of displacements, to be added to the internal ones; zero if a
+   !> kernel refuses them. The outcome of the last evaluation within the step stays.
+   function mean_contact_forces(contacts, dofs, x0, x1) result(force)
       type(contacts_t), intent(inout) :: contacts
       type(dofs_t), intent(in) :: dofs
-      real(wp), intent(in) :: x0(:, :), x1(:, :)
-      real(wp), allocatable :: before(:), force(:)
-      integer :: i
+      real(wp), intent(in) :: x0(:, :), x1(:, :)   !< (FIELDS, nodes)
+      real(wp) :: force(dofs%n)                    !< Of every unknown [kN].
+      real(wp), allocatable :: before(:), after(:)
 
-      work = 0.0_wp
+      force = 0.0_wp
       if (.not. contact_forces(contacts, dofs, x0, before)) return
-      if (.not. contact_forces(contacts, dofs, x1, force)) return
-      force = before + force
-      do i = 1, dofs%n
-         if (dofs%field(i) > DISPLACEMENTS) cycle
-         work = work + 0.5_wp*force(i)*(x1(dofs%field(i), dofs%node(i)) - x0(dofs%field(i), dofs%node(i)))
-      end do
-   end function work_of_contacts
+      if (.not. contact_forces(contacts, dofs, x1, after)) return
+      force = 0.5_wp*(before + after)
+   end function mean_contact_forces
 
    !> Forces of the contacts at given displacements, to be added to the internal ones; false if a kernel refuses them.
    !> The outcome of the last evaluation within the step stays.

@@ -7,7 +7,7 @@ module model_types
    use degrees_of_freedom, only: dofs_t
    use namelists, only: group_t
    use effect_types, only: effect_t, effect_options_t
-   use convergence, only: BY_KIND
+   use convergence, only: BY_STAGE
    use porous_domain, only: domain_t
    use unknown_fields, only: FIELDS
    use scene_types, only: scene_amplitude_t, scene_initial_t, scene_stage_t, scene_fix_t, scene_load_t, scene_plate_t, &
@@ -27,7 +27,7 @@ module model_types
 
    type, extends(scene_stage_t) :: stage_t
       integer :: kind = 0                   !< STATIC, QUASI_STATIC or DYNAMIC of generalised_alpha.
-      integer :: measure = BY_KIND          !< See convergence.
+      integer :: measure = BY_STAGE          !< See convergence.
       logical :: derived = .false.          !< Its kind is not given but derived.
    end type stage_t
 

@@ -2,7 +2,7 @@
 !> Stages of a scene, their words translated, and the time integration that holds where the scene leaves it open.
 module stage_builder
    use kinds, only: wp
-   use convergence, only: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_KIND
+   use convergence, only: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_STAGE, measure_in
    use generalised_alpha, only: STATIC, QUASI_STATIC, DYNAMIC
    use model_types, only: model_t, stage_t
    use scene_types, only: scene_stage_t, acts_in
@@ -12,7 +12,7 @@ module stage_builder
 
    ! Of the words of &stage analysis and measure.
    integer, parameter :: KIND_OF(*) = [STATIC, QUASI_STATIC, DYNAMIC]
-   integer, parameter :: MEASURE_OF(*) = [BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_KIND]
+   integer, parameter :: MEASURE_OF(*) = [BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_STAGE]
    real(wp), parameter :: SMOOTH = 0.8_wp     !< rho_inf of a stage without contact.
    real(wp), parameter :: OPENING = 0.0_wp    !< With contact: it never gains energy where a penalty opens and closes,
                                               !< however long the step (docs/theory/host.md section 4.1).
@@ -29,7 +29,7 @@ contains
       stage%measure = MEASURE_OF(given%measure_number)
    end function stage_of
 
-   !> rho_inf of the stages that the scene leaves it open in.
+   !> rho_inf and the measure of Newton's error of the stages that the scene leaves them open in.
    pure subroutine choose_schemes(model)
       type(model_t), intent(inout) :: model
       logical :: touching
@@ -37,11 +37,12 @@ contains
 
       do i = 1, size(model%stages)
          associate (stage => model%stages(i))
-            if (stage%rho_inf >= 0.0_wp) cycle
             touching = .false.
             do k = 1, size(model%contacts)
                touching = touching .or. acts_in(model%contacts(k)%stages, stage%name)
             end do
+            stage%measure = measure_in(stage%measure, stage%kind, touching)
+            if (stage%rho_inf >= 0.0_wp) cycle
             stage%rho_inf = SMOOTH
             if (stage%kind == DYNAMIC .and. touching) stage%rho_inf = OPENING
             ! Long steps of a flow: what they do not resolve is to go.

@@ -14,7 +14,8 @@ module energy_alarm
    private
    public :: check_creation, tell_creation
 
-   character(*), parameter :: REMEDY = 'shorten dt, or set rho_inf = 0 where a contact opens and closes'
+   character(*), parameter :: REMEDY = 'shorten dt, set rho_inf = 0 where a contact opens and closes, or '// &
+      'measure = ''change'' where weight rests'
 contains
    !> After every booked step: a fault where a dynamic stage has created more than it may.
    subroutine check_creation(stage, time, ledger, fault)

@@ -34,92 +34,201 @@ module energy_ledger
       real(wp) :: open_0 = 0.0_wp       !< What the balance left open where the present stage began [kJ].
       real(wp) :: most_created = 0.0_wp !< Largest energy that a dynamic stage has created, so far [kJ].
    end type ledger_t
+
+   !> Works of the mean forces of a step [kJ].
+   type :: work_t
+      real(wp) :: skeleton = 0.0_wp, pores = 0.0_wp, gravity = 0.0_wp, damping = 0.0_wp
+      real(wp) :: inertia = 0.0_wp   !< By the mean acceleration, the change of velocity over the step.
+   end type work_t
 contains
-   subroutine book_step(domain, dofs, scheme, constraint, reaction, old, new, ledger)
+   !> All works are those of mean forces of a step times its displacements. So is that of the supports: what they hold
+   !> is formed anew from the mean forces, since the reactions of the scheme hold at its own level, not half-way.
+   subroutine book_step(domain, dofs, scheme, constraint, reaction, contact_force, old, new, ledger)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
       type(scheme_t), intent(in) :: scheme
       type(constraint_t), intent(in) :: constraint
-      real(wp), intent(in) :: reaction(:)   !< Residual with every row kept.
+      real(wp), intent(in) :: reaction(:)        !< Residual with every row kept.
+      real(wp), intent(in) :: contact_force(:)   !< Mean forces of the contacts over the step, if there are any [kN].
       type(state_t), intent(in) :: old, new
       type(ledger_t), intent(inout) :: ledger
-      real(wp) :: change
-      integer :: e, i
+      type(work_t) :: work
+      real(wp), allocatable :: change(:, :), held(:, :)
+      integer :: e
 
-      if (allocated(constraint%dashpots)) &
-         ledger%damping = ledger%damping + work_of_dashpots(constraint%dashpots, dofs, old, new)
       ledger%kinetic = kinetic_energy(domain, dofs, constraint%mass, new)
+      allocate (change, source=new%x(:DISPLACEMENTS, :) - old%x(:DISPLACEMENTS, :))
+      allocate (held, source=moved_by_supports(dofs, constraint, change))
       do e = 1, size(domain%mesh%t6, 2)
-         call book_element(domain, e, scheme, old, new, ledger)
+         associate (node => domain%mesh%t6(:, e))
+            call add_work_of_element(domain, e, scheme, old, new, change(:, node), work)
+            ledger%supports = ledger%supports + work_to_move_element(domain, e, scheme, old, new, held(:, node))
+            if (domain%with_w .and. scheme%kind /= STATIC) call book_seepage(domain, e, scheme, old, new, ledger)
+         end associate
       end do
-      do i = 1, dofs%n
-         if (dofs%field(i) <= DISPLACEMENTS) then
-            change = new%x(dofs%field(i), dofs%node(i)) - old%x(dofs%field(i), dofs%node(i))
-            ledger%loads = ledger%loads + 0.5_wp*(constraint%load_0(i) + constraint%load_1(i))*change
-            ledger%loads = ledger%loads - constraint%offset(i)*change
-            if (constraint%fixed(i)) ledger%supports = ledger%supports + reaction(i)*change
-         else if (scheme%kind /= STATIC) then
-            if (dofs%field(i) == AT_P_W .and. constraint%fixed(i)) &
-               ledger%outflow = ledger%outflow - scheme%dt*reaction(i)
-            if (dofs%field(i) == AT_P_C .and. constraint%fixed(i)) &
-               ledger%outflow_air = ledger%outflow_air - scheme%dt*reaction(i)
-            if (dofs%field(i) == AT_P_C .and. constraint%air(dofs%node(i))) then
-               ledger%outflow_air = ledger%outflow_air - scheme%dt*reaction(i)
-               ledger%outflow = ledger%outflow - scheme%dt*reaction(i)
-            end if
-         end if
-      end do
+      if (allocated(constraint%dashpots)) then
+         work%damping = work%damping + work_of_dashpots(constraint%dashpots, dofs, old, new, change)
+         ledger%supports = ledger%supports + work_of_dashpots(constraint%dashpots, dofs, old, new, held)
+      end if
+      ledger%skeleton = ledger%skeleton + work%skeleton
+      ledger%pores = ledger%pores + work%pores
+      ledger%gravity = ledger%gravity + work%gravity
+      ledger%damping = ledger%damping + work%damping
+      call book_forces(dofs, scheme, constraint, contact_force, old, new, change, ledger)
+      call book_outflow(dofs, scheme, constraint, reaction, ledger)
    end subroutine book_step
 
-   subroutine book_element(domain, e, scheme, old, new, ledger)
+   !> The displacements of a step that supports prescribe, zero elsewhere [m].
+   pure function moved_by_supports(dofs, constraint, change) result(held)
+      type(dofs_t), intent(in) :: dofs
+      type(constraint_t), intent(in) :: constraint
+      real(wp), intent(in) :: change(:, :)   !< (2, nodes) of all [m]
+      real(wp) :: held(DISPLACEMENTS, size(change, 2))
+      integer :: f, k
+
+      held = 0.0_wp
+      do k = 1, size(change, 2)
+         do f = 1, DISPLACEMENTS
+            if (dofs%of(f, k) == 0) cycle
+            if (constraint%fixed(dofs%of(f, k))) held(f, k) = change(f, k)
+         end do
+      end do
+   end function moved_by_supports
+
+   !> Forces on nodes: loads, contacts, and the inertia of bodies that supports move.
+   subroutine book_forces(dofs, scheme, constraint, contact_force, old, new, change, ledger)
+      type(dofs_t), intent(in) :: dofs
+      type(scheme_t), intent(in) :: scheme
+      type(constraint_t), intent(in) :: constraint
+      real(wp), intent(in) :: contact_force(:)
+      type(state_t), intent(in) :: old, new
+      real(wp), intent(in) :: change(:, :)
+      type(ledger_t), intent(inout) :: ledger
+      real(wp) :: load, touch
+      integer :: i
+
+      touch = 0.0_wp
+      do i = 1, dofs%n
+         if (dofs%field(i) > DISPLACEMENTS) cycle
+         associate (f => dofs%field(i), k => dofs%node(i))
+            load = 0.5_wp*(constraint%load_0(i) + constraint%load_1(i)) - constraint%offset(i)
+            if (size(contact_force) > 0) touch = contact_force(i)
+            ledger%loads = ledger%loads + load*change(f, k)
+            ledger%contact = ledger%contact + touch*change(f, k)
+            if (.not. constraint%fixed(i)) cycle
+            ledger%supports = ledger%supports + (touch - load)*change(f, k)
+            if (scheme%kind == DYNAMIC) ledger%supports = ledger%supports &
+               + constraint%mass(i)*(new%v(f, k) - old%v(f, k))/scheme%dt*change(f, k)
+         end associate
+      end do
+   end subroutine book_forces
+
+   !> Flow out through prescribed pressures.
+   subroutine book_outflow(dofs, scheme, constraint, reaction, ledger)
+      type(dofs_t), intent(in) :: dofs
+      type(scheme_t), intent(in) :: scheme
+      type(constraint_t), intent(in) :: constraint
+      real(wp), intent(in) :: reaction(:)
+      type(ledger_t), intent(inout) :: ledger
+      integer :: i
+
+      if (scheme%kind == STATIC) return
+      do i = 1, dofs%n
+         if (dofs%field(i) == AT_P_W .and. constraint%fixed(i)) ledger%outflow = ledger%outflow - scheme%dt*reaction(i)
+         if (dofs%field(i) /= AT_P_C) cycle
+         if (constraint%fixed(i)) ledger%outflow_air = ledger%outflow_air - scheme%dt*reaction(i)
+         if (.not. constraint%air(dofs%node(i))) cycle
+         ledger%outflow_air = ledger%outflow_air - scheme%dt*reaction(i)
+         ledger%outflow = ledger%outflow - scheme%dt*reaction(i)
+      end do
+   end subroutine book_outflow
+
+   !> What moves an element as a step does, inertia included [kJ].
+   real(wp) function work_to_move_element(domain, e, scheme, old, new, du) result(total)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: e
+      type(scheme_t), intent(in) :: scheme
+      type(state_t), intent(in) :: old, new
+      real(wp), intent(in) :: du(DISPLACEMENTS, 6)   !< [m]
+      type(work_t) :: work
+
+      total = 0.0_wp
+      if (.not. any(abs(du) > 0.0_wp)) return
+      call add_work_of_element(domain, e, scheme, old, new, du, work)
+      total = work%skeleton + work%pores + work%damping + work%inertia - work%gravity
+   end function work_to_move_element
+
+   !> Work of the mean forces in an element at displacements of its nodes.
+   subroutine add_work_of_element(domain, e, scheme, old, new, du, work)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: e
+      type(scheme_t), intent(in) :: scheme
+      type(state_t), intent(in) :: old, new
+      real(wp), intent(in) :: du(DISPLACEMENTS, 6)   !< [m]
+      type(work_t), intent(inout) :: work
+      real(wp) :: strain(4), p_w, p_c, s, n, rho, push(DISPLACEMENTS)
+      integer :: g, p, node(6), n_p
+
+      node = domain%mesh%t6(:, e)
+      n_p = domain%n_p
+      do g = 1, domain%rule
+         p = (e - 1)*domain%rule + g
+         associate (gp => domain%gauss(g, e), region => domain%regions(domain%region_of(e)))
+            strain = [dot_product(gp%dn(1, :), du(1, :)), dot_product(gp%dn(2, :), du(2, :)), &
+                      dot_product(gp%n_over_r, du(1, :)), &
+                      dot_product(gp%dn(2, :), du(1, :)) + dot_product(gp%dn(1, :), du(2, :))]
+            work%skeleton = work%skeleton &
+               + 0.5_wp*gp%weight*dot_product(old%stress(1:4, p) + new%stress(1:4, p), strain)
+            s = 0.5_wp*(old%s(p) + new%s(p))
+            n = 0.5_wp*(old%e(p)/(1 + old%e(p)) + new%e(p)/(1 + new%e(p)))
+            p_w = 0.5_wp*dot_product(gp%m(:n_p), old%x(AT_P_W, node(:n_p)) + new%x(AT_P_W, node(:n_p)))
+            p_c = 0.5_wp*dot_product(gp%m(:n_p), old%x(AT_P_C, node(:n_p)) + new%x(AT_P_C, node(:n_p)))
+            work%pores = work%pores - gp%weight*(p_w + (1 - s)*p_c)*sum(strain(1:3))
+            rho = mixture_density(domain, region%rho_s, n, s)
+            work%gravity = work%gravity - gp%weight*rho*domain%gravity*dot_product(gp%n, du(2, :))
+            if (scheme%kind /= DYNAMIC) cycle
+            push = gp%weight*rho*matmul(du, gp%n)
+            work%inertia = work%inertia + dot_product(push, matmul(new%v(:DISPLACEMENTS, node) &
+                                                                   - old%v(:DISPLACEMENTS, node), gp%n))/scheme%dt
+            if (region%damping > 0.0_wp) work%damping = work%damping + region%damping &
+               *dot_product(push, 0.5_wp*matmul(old%v(:DISPLACEMENTS, node) + new%v(:DISPLACEMENTS, node), gp%n))
+            if (region%stiffness_damping > 0.0_wp) work%damping = work%damping + gp%weight/scheme%dt &
+               *region%stiffness_damping*dot_product(new%stress(1:4, p) - old%stress(1:4, p), strain)
+         end associate
+      end do
+   end subroutine add_work_of_element
+
+   !> What seepage dissipates in an element.
+   subroutine book_seepage(domain, e, scheme, old, new, ledger)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: e
       type(scheme_t), intent(in) :: scheme
       type(state_t), intent(in) :: old, new
       type(ledger_t), intent(inout) :: ledger
       type(relative_t) :: rel
-      real(wp) :: du(2, 6), strain(4), middle(4, 6), p_w, p_c, s, n, rho, drive(2), kappa
-      integer :: g, p, node(6), n_p
+      real(wp) :: middle(AT_P_W:AT_P_C, 6), drive(2), kappa
+      integer :: g, p, n_p
 
-      node = domain%mesh%t6(:, e)
       n_p = domain%n_p
-      du = new%x(:DISPLACEMENTS, node) - old%x(:DISPLACEMENTS, node)
-      middle = 0.5_wp*(old%x(:, node) + new%x(:, node))
+      associate (node => domain%mesh%t6(:, e))
+         middle = 0.5_wp*(old%x(AT_P_W:AT_P_C, node) + new%x(AT_P_W:AT_P_C, node))
+      end associate
       do g = 1, domain%rule
          p = (e - 1)*domain%rule + g
-         associate (gp => domain%gauss(g, e), region => domain%regions(domain%region_of(e)), f => domain%fluids)
-            strain = [dot_product(gp%dn(1, :), du(1, :)), dot_product(gp%dn(2, :), du(2, :)), &
-                      dot_product(gp%n_over_r, du(1, :)), &
-                      dot_product(gp%dn(2, :), du(1, :)) + dot_product(gp%dn(1, :), du(2, :))]
-            ledger%skeleton = ledger%skeleton + 0.5_wp*gp%weight*dot_product(old%stress(1:4, p) + new%stress(1:4, p), &
-                                                                              strain)
-            if (region%stiffness_damping > 0.0_wp .and. scheme%kind == DYNAMIC) &
-               ledger%damping = ledger%damping + gp%weight*region%stiffness_damping/scheme%dt &
-                                *dot_product(new%stress(1:4, p) - old%stress(1:4, p), strain)
-            s = 0.5_wp*(old%s(p) + new%s(p))
-            n = 0.5_wp*(old%e(p)/(1 + old%e(p)) + new%e(p)/(1 + new%e(p)))
-            p_w = dot_product(gp%m(:n_p), middle(AT_P_W, :n_p))
-            p_c = dot_product(gp%m(:n_p), middle(AT_P_C, :n_p))
-            ledger%pores = ledger%pores - gp%weight*(p_w + (1 - s)*p_c)*sum(strain(1:3))
-            rho = mixture_density(domain, region%rho_s, n, s)
-            ledger%gravity = ledger%gravity - gp%weight*rho*domain%gravity*dot_product(gp%n, du(2, :))
-            if (region%damping > 0.0_wp .and. scheme%kind == DYNAMIC) &
-               ledger%damping = ledger%damping + gp%weight*rho*region%damping &
-                                *dot_product(matmul(du, gp%n), 0.5_wp*matmul(old%v(:DISPLACEMENTS, node) &
-                                                                             + new%v(:DISPLACEMENTS, node), gp%n))
-            if (.not. domain%with_w .or. scheme%kind == STATIC) cycle
-            rel = relative_permeability(domain%permeabilities(region%permeability), s)
-            kappa = domain%permeabilities(region%permeability)%intrinsic*rel%w/f%eta_w
+         associate (gp => domain%gauss(g, e), f => domain%fluids, &
+                    law => domain%permeabilities(domain%regions(domain%region_of(e))%permeability))
+            rel = relative_permeability(law, 0.5_wp*(old%s(p) + new%s(p)))
+            kappa = law%intrinsic*rel%w/f%eta_w
             drive = matmul(gp%dm(:, :n_p), middle(AT_P_W, :n_p)) + [0.0_wp, f%rho_w*domain%gravity]
             ledger%seepage = ledger%seepage + scheme%dt*gp%weight*kappa*dot_product(drive, drive)
             if (.not. domain%with_c) cycle
-            kappa = domain%permeabilities(region%permeability)%intrinsic*rel%a/f%eta_a
+            kappa = law%intrinsic*rel%a/f%eta_a
             drive = matmul(gp%dm(:, :n_p), middle(AT_P_W, :n_p) + middle(AT_P_C, :n_p)) + [0.0_wp, &
                f%rho_a*domain%gravity]
             ledger%seepage = ledger%seepage + scheme%dt*gp%weight*kappa*dot_product(drive, drive)
          end associate
       end do
-   end subroutine book_element
+   end subroutine book_seepage
 
    real(wp) function kinetic_energy(domain, dofs, mass, state) result(energy)
       type(domain_t), intent(in) :: domain

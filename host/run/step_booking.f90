@@ -4,7 +4,7 @@
 module step_booking
    use kinds, only: wp
    use wall_clock, only: clock, lap
-   use contact_interfaces, only: work_of_contacts
+   use contact_interfaces, only: mean_contact_forces
    use effect_monitor, only: monitor_step, warning_of
    use energy_alarm, only: check_creation, tell_creation
    use energy_ledger, only: book_step, book_creation, imbalance
@@ -22,18 +22,19 @@ contains
       type(model_t), intent(in) :: model
       type(scheme_t), intent(in) :: scheme
       type(run_t), intent(inout) :: run
+      real(wp), allocatable :: contact_force(:)
       real(wp) :: t0
 
       ! the velocities of a stage without inertia are no motion: each stage begins its own account
       if (run%at%step == 1 .and. run%steps > 1) run%ledger%open_0 = imbalance(run%ledger)
-      call book_step(model%domain, model%dofs, scheme, run%constraint, run%system%reaction, run%state, run%next, &
-                     run%ledger)
+      t0 = clock()
+      allocate (contact_force(0))
       if (allocated(run%system%contacts%interfaces)) then
-         t0 = clock()
-         run%ledger%contact = run%ledger%contact &
-            + work_of_contacts(run%system%contacts, model%dofs, run%state%x, run%next%x)
+         contact_force = mean_contact_forces(run%system%contacts, model%dofs, run%state%x, run%next%x)
          call lap(run%system%seconds(T_CONTACT), t0)
       end if
+      call book_step(model%domain, model%dofs, scheme, run%constraint, run%system%reaction, contact_force, run%state, &
+                     run%next, run%ledger)
       call book_creation(scheme, run%ledger)
    end subroutine book_accepted_step
 

@@ -5,7 +5,7 @@ module time_stepping
    use wall_clock, only: clock, lap
    use faults, only: fault_t
    use contact_setup, only: contacts_act
-   use convergence, only: control_t, log_t, measure_in
+   use convergence, only: control_t, log_t
    use generalised_alpha, only: scheme_t, make_scheme, step_error
    use model_types, only: model_t
    use porous_domain, only: copy_state
@@ -66,8 +66,7 @@ contains
       logical :: accepted
 
       associate (stage => model%stages(number), at => run%at)
-         control = control_t(stage%tolerance, stage%max_iterations, stage%no_predictor, &
-                             measure_in(stage%measure, stage%kind))
+         control = control_t(stage%tolerance, stage%max_iterations, stage%no_predictor, stage%measure)
          ! A run that is taken up again is in the middle of its stage.
          call contacts_act(model, stage, run%system%contacts)
          if (at%stage /= number) call begin_stage(model, number, run, fault)

@@ -15,18 +15,21 @@ module convergence
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_Z, AT_P_C
    implicit none (type, external)
    private
-   public :: control_t, log_t, measure, good_enough, field_scales, body_scale, is_body, ROUNDING_OF_SUMS
-   public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_KIND, measure_in
+   public :: control_t, log_t, measure, good_enough, field_scales, body_scale, is_body, rounding_in
+   public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_STAGE, measure_in
 
    integer, parameter :: BY_FORCES = 1       !< The errors of the fields, see above;
    integer, parameter :: BY_RESIDUAL = 2     !< |R|/|R_0| of all unknowns together, whatever their units,
                                              !< or |R|/|R_1| where R_1 is larger;
    integer, parameter :: BY_CORRECTION = 3   !< |dx|/|x| of the worst field;
    integer, parameter :: BY_CHANGE = 4       !< the errors of the fields against what the step changes;
-   integer, parameter :: BY_KIND = 5         !< by forces in dynamic stages, by change in others.
+   integer, parameter :: BY_STAGE = 5        !< by forces in dynamic stages with contact, by change in others.
    real(wp), parameter :: HISTORY_SHARE = 1.0e-6_wp   !< Share of the largest scale so far that still counts.
    !> Of all forces: what their sums leave, some hundred roundings. No tolerance of a change asks for less.
    real(wp), parameter :: ROUNDING_OF_SUMS = 1.0e-13_wp
+   !> The same with inertia: accelerations are differences of displacements over dt**2, so that rounding leaves
+   !> 4/(omega dt)**2 epsilon of a motion; this has room for three thousand steps a period.
+   real(wp), parameter :: ROUNDING_OF_INERTIA = 1.0e-10_wp
    real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Of strain rates and parts of fluxes, see above.
    real(wp), parameter :: ABSOLUTE_FLOOR = 1.0e-12_wp   !< [kN] or [m3/s]: nothing smaller is a force.
 
@@ -48,14 +51,22 @@ module convergence
       integer :: rate_evaluations = 0                   !< Rate evaluations of the material.
    end type log_t
 contains
-   !> The measure of a stage of a kind: what BY_KIND stands for.
-   pure integer function measure_in(given, kind) result(measure)
-      integer, intent(in) :: given   !< BY_...
-      integer, intent(in) :: kind    !< STATIC, QUASI_STATIC, DYNAMIC
+   !> The measure of a stage: what BY_STAGE stands for.
+   pure integer function measure_in(given, kind, touching) result(measure)
+      integer, intent(in) :: given      !< BY_...
+      integer, intent(in) :: kind       !< STATIC, QUASI_STATIC, DYNAMIC
+      logical, intent(in) :: touching   !< Whether it has contacts.
 
       measure = given
-      if (given == BY_KIND) measure = merge(BY_FORCES, BY_CHANGE, kind == DYNAMIC)
+      if (given == BY_STAGE) measure = merge(BY_FORCES, BY_CHANGE, kind == DYNAMIC .and. touching)
    end function measure_in
+
+   !> Share of all forces below which no tolerance of a change asks for more.
+   pure real(wp) function rounding_in(kind) result(share)
+      integer, intent(in) :: kind   !< STATIC, QUASI_STATIC, DYNAMIC
+
+      share = merge(ROUNDING_OF_INERTIA, ROUNDING_OF_SUMS, kind == DYNAMIC)
+   end function rounding_in
 
    !> Whether the iteration may end.
    pure logical function good_enough(control, log)

@@ -55,11 +55,12 @@ contains
       end do
    end subroutine add_dashpots
 
-   !> What the forces take out of a step, by the mean of the velocities at its ends [kJ].
-   pure real(wp) function work_of_dashpots(list, dofs, old, new) result(work)
+   !> What the forces take out of a step, by the mean of the velocities at its ends, at given displacements [kJ].
+   pure real(wp) function work_of_dashpots(list, dofs, old, new, change) result(work)
       type(dashpots_t), intent(in) :: list(:)
       type(dofs_t), intent(in) :: dofs
       type(state_t), intent(in) :: old, new
+      real(wp), intent(in) :: change(:, :)   !< (2, nodes) [m]
       integer :: i, k
 
       work = 0.0_wp
@@ -69,7 +70,7 @@ contains
             associate (f => dofs%field(list(i)%column(k)), node => dofs%node(list(i)%column(k)), &
                        g => dofs%field(list(i)%row(k)), at => dofs%node(list(i)%row(k)))
                if (f > DISPLACEMENTS) cycle
-               work = work + 0.5_wp*list(i)%value(k)*(old%v(f, node) + new%v(f, node))*(new%x(g, at) - old%x(g, at))
+               work = work + 0.5_wp*list(i)%value(k)*(old%v(f, node) + new%v(f, node))*change(g, at)
             end associate
          end do
       end do

@@ -6,7 +6,7 @@ module newton_step
    use wall_clock, only: clock, lap
    use conjugate_residuals, only: solve_by_factors, INACCURATE
    use contact_interfaces, only: add_contacts, contact_forces
-   use convergence, only: control_t, log_t, measure, good_enough, ROUNDING_OF_SUMS, BY_FORCES, &
+   use convergence, only: control_t, log_t, measure, good_enough, rounding_in, BY_FORCES, &
                           BY_CHANGE
    use dashpots, only: add_dashpots
    use degrees_of_freedom, only: dofs_t
@@ -53,7 +53,7 @@ contains
       new%time = old%time + scheme%dt
       assembly%air = constraint%air
       assembly%with_change = control%measure == BY_CHANGE
-      assembly%rounding_share = merge(ROUNDING_OF_SUMS/control%tolerance, 0.0_wp, assembly%with_change)
+      assembly%rounding_share = merge(rounding_in(scheme%kind)/control%tolerance, 0.0_wp, assembly%with_change)
       assembly%fallback = NO_FALLBACK
       if (assembly%with_change .and. allocated(system%contacts%interfaces)) then
          if (.not. contact_forces(system%contacts, dofs, old%x, touched)) then
