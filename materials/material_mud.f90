@@ -5,7 +5,7 @@ module material_mud
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use key_schema, only: key_t, NONE
-   use library_tables, only: property_count, property_index, property_name, property_range, state_count, statev_index, &
+   use library_tables, only: property_count, property_index, property_name, property_range, range_for, state_count, statev_index, &
                              statev_name, statev_unit
    use material_point, only: material_t, response_t, report_t, remark_t, saturation_t, NAME_LENGTH
    use mud_interface, only: mud_report, mud_prepared_size, mud_prepare, mud_init_state, mud_update_prepared, &
@@ -13,12 +13,14 @@ module material_mud
                             MUD_TANGENT_CONSISTENT
    use namelists, only: group_t
    use parameter_groups, only: read_parameters
+   use stress_units, only: unit_of_atmosphere, KILOPASCAL
    use texts, only: from_c, short, whole
    implicit none (type, external)
    private
    public :: mud_t, new_mud, MUD_KEYS
 
    integer, parameter :: BUFFER = 1000
+   real(wp), parameter :: ROUNDING = 1.0e-6_wp   !< A default said in another unit is rounded.
    character(*), parameter :: GUARDS(9) = [character(NAME_LENGTH) :: 'floor', 'contraction cap', 'softening cap', &
       'hysteresis', 'isotropic kept off', 'no direction', 'minimum step', 'cut-off', 'tensile']
 
@@ -67,8 +69,9 @@ contains
       character(BUFFER) :: text
       integer :: i
 
-      call read_parameters(group, law%props, title, fault)
+      call read_parameters(group, law%props, title, law%doubt, fault)
       if (fault%code /= 0) return
+      law%unit = unit_of_atmosphere(law%props(property_index('p_atm')))
       allocate (law%prepared(mud_prepared_size()), source=0.0_wp)
       text = c_null_char
       if (mud_prepare(law%props, size(law%props), law%prepared, size(law%prepared), text, BUFFER) /= 0) then
@@ -282,8 +285,13 @@ contains
 
       allocate (list(0))
       do i = 1, property_count()
-         call property_range(i, lower, upper, preset)
-         if (abs(self%props(i) - preset) > 0.0_wp) list = [list, remark_t('not the default: '//property_name(i), &
+         ! an atmosphere of 100 kPa leaves the defaults in kPa as they are
+         if (self%unit%name == KILOPASCAL%name) then
+            call property_range(i, lower, upper, preset)
+         else
+            call range_for(self%props, i, lower, upper, preset)
+         end if
+         if (abs(self%props(i) - preset) > ROUNDING*abs(preset)) list = [list, remark_t('not the default: '//property_name(i), &
             short(self%props(i))//' (default '//short(preset)//')')]
       end do
    end subroutine remarks

@@ -6,14 +6,16 @@
 module material_point
    use kinds, only: wp
    use retention_curves, only: retention_t, saturation_t
+   use stress_units, only: stress_unit_t
    implicit none (type, external)
    private
    public :: material_t, material_slot_t, response_t, report_t, remark_t, saturation_t, state_index, swollen
-   public :: MOST_POINTS, MOST_GUARDS, NAME_LENGTH, WITHOUT_TANGENT, WITH_TANGENT
+   public :: MOST_POINTS, MOST_GUARDS, NAME_LENGTH, DOUBT_LENGTH, WITHOUT_TANGENT, WITH_TANGENT
 
    integer, parameter :: MOST_POINTS = 12   !< Of a batch: the quadrature points of an element.
    integer, parameter :: MOST_GUARDS = 16   !< Counters of a law beside the three that every law has.
    integer, parameter :: NAME_LENGTH = 24
+   integer, parameter :: DOUBT_LENGTH = 500
    logical, parameter :: WITHOUT_TANGENT = .false., WITH_TANGENT = .true.
 
    !> What a batch of updates did.
@@ -58,6 +60,8 @@ module material_point
       logical :: given_tolerance = .false., given_scheme = .false.   !< Not the defaults: set by hand.
       character(NAME_LENGTH) :: guard_names(MOST_GUARDS) = ''
       character(NAME_LENGTH), allocatable :: state_names(:), state_units(:)
+      character(DOUBT_LENGTH) :: doubt = ''      !< Of its parameters, allowed and most often a mistake: a sentence.
+      type(stress_unit_t) :: unit                !< Of its stresses; kPa in the comments of this module.
       class(retention_t), allocatable :: curve   !< Of a law that has no retention of its own; without: saturated.
    contains
       procedure(initial_state_i), deferred :: initial_state

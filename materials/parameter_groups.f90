@@ -9,27 +9,31 @@ module parameter_groups
    use namelists, only: group_t, entry_t, read_groups, find_entry, LENGTH
    use spelling, only: nearest_name
    use library_tables, only: property_count, property_index, property_name, property_unit, property_meaning, &
-                             property_option, property_range
+                             property_option, range_for
+   use stress_units, only: unit_of_atmosphere, in_unit
    implicit none (type, external)
    private
    public :: read_parameters
 
    integer, parameter :: BUFFER = 600
+   character(*), parameter :: WARNING = 'warning: '   !< The library's sentence begins with it.
    !> Keys that are not parameters.
    character(9), parameter :: TEXT_KEYS(3) = [character(9) :: 'file', 'name', 'reference']
 
 contains
    !> Fills PROPS from a group. Its `file`, if any, is read first; the group's own values replace those.
-   subroutine read_parameters(group, props, title, fault)
+   subroutine read_parameters(group, props, title, doubt, fault)
       type(group_t), intent(in) :: group
       real(wp), allocatable, intent(out) :: props(:)
       character(*), intent(out) :: title   !< Name of the material.
+      character(*), intent(out) :: doubt   !< What the library warns of, with its place; blank: nothing.
       type(fault_t), intent(inout) :: fault
       type(group_t), allocatable :: groups(:)
       character(:), allocatable :: path
       integer :: place
 
       title = 'defaults of the library'
+      doubt = ''
       allocate (props(property_count()))
       if (mud_default_props(props, size(props)) /= 0) then
          call raise(fault, EXIT_INPUT, 'The library refuses to fill its own defaults; program and '// &
@@ -55,11 +59,11 @@ contains
             call raise(fault, EXIT_INPUT, at_line(path, groups(1)%entries(find_entry(groups(1), 'file'))%line)// &
                        'a material file cannot name another file; copy the values instead.')
          else
-            call apply_group(groups(1), props, title, fault)
+            call apply_group(groups(1), props, title, doubt, fault)
          end if
          if (fault%code /= 0) return
       end if
-      call apply_group(group, props, title, fault)
+      call apply_group(group, props, title, doubt, fault)
    end subroutine read_parameters
 
    !> Folder of a file, with its closing slash; empty if the file is in the present one.
@@ -70,15 +74,18 @@ contains
       folder = file(:index(file, '/', back=.true.))
    end function folder_of
 
-   subroutine apply_group(group, props, title, fault)
+   subroutine apply_group(group, props, title, doubt, fault)
       type(group_t), intent(in) :: group
       real(wp), intent(inout) :: props(:)
       character(*), intent(inout) :: title
+      character(*), intent(out) :: doubt
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: sentence
       character(BUFFER) :: text
       integer :: i, line, first, at
+      logical :: allowed
 
+      doubt = ''
       do i = 1, group%count
          associate (item => group%entries(i))
             if (any(TEXT_KEYS == lower_case(item%key))) then
@@ -95,10 +102,16 @@ contains
          if (fault%code /= 0) return
       end do
 
+      ! the unit of the limits is known when p_atm is, which may stand behind them
+      do i = 1, group%count
+         call check_range(group%file, group%entries(i), props, fault)
+         if (fault%code /= 0) return
+      end do
+
       text = c_null_char
-      if (mud_validate_props(props, size(props), text, BUFFER) == 0) text = c_null_char
+      allowed = mud_validate_props(props, size(props), text, BUFFER) == 0
       sentence = from_c(text)
-      if (len(sentence) == 0) return
+      if (allowed .and. index(sentence, WARNING) /= 1) return
       line = group%line
       first = len(sentence) + 1
       do i = 1, group%count
@@ -107,7 +120,11 @@ contains
          first = at
          line = group%entries(i)%line
       end do
-      call raise(fault, EXIT_INPUT, at_line(group%file, line)//sentence)
+      if (allowed) then
+         doubt = at_line(group%file, line)//sentence(len(WARNING) + 1:)
+      else
+         call raise(fault, EXIT_INPUT, at_line(group%file, line)//sentence)
+      end if
    end subroutine apply_group
 
    subroutine set_property(file, item, props, fault)
@@ -115,7 +132,7 @@ contains
       type(entry_t), intent(in) :: item
       real(wp), intent(inout) :: props(:)
       type(fault_t), intent(inout) :: fault
-      real(wp) :: lower, upper, preset, value
+      real(wp) :: value
       integer :: place, near
       logical :: good
 
@@ -124,39 +141,52 @@ contains
          near = nearest_property(item%key)
          call raise(fault, EXIT_INPUT, at_line(file, item%line)//'there is no parameter '//trim(item%key)// &
                     '; the nearest is '// &
-                    property_name(near)//' ('//described_range(near)//').')
+                    property_name(near)//' ('//described_range(near, props)//').')
          return
       end if
       if (item%count /= 1) then
          call raise(fault, EXIT_INPUT, at_line(file, item%line)//property_name(place)//' takes one value, '// &
-                    whole(item%count)//' are given ('//described_range(place)//').')
+                    whole(item%count)//' are given ('//described_range(place, props)//').')
          return
       end if
       call read_number(item%values(1), value, good)
       if (.not. good) call property_option(place, item%values(1), value, good)
       if (.not. good) then
          call raise(fault, EXIT_INPUT, at_line(file, item%line)//property_name(place)//' = '//trim(item%values(1))// &
-                    ' is no number and no word it knows ('//described_range(place)//').')
-         return
-      end if
-      call property_range(place, lower, upper, preset)
-      if (value < lower .or. value > upper) then
-         call raise(fault, EXIT_INPUT, at_line(file, item%line)//property_name(place)//' = '//trim(item%values(1))// &
-                    ' is outside its range ('//described_range(place)//').')
+                    ' is no number and no word it knows ('//described_range(place, props)//').')
          return
       end if
       props(place) = value
    end subroutine set_property
 
+   !> Refuses a parameter outside its range in the unit of p_atm.
+   subroutine check_range(file, item, props, fault)
+      character(*), intent(in) :: file
+      type(entry_t), intent(in) :: item
+      real(wp), intent(in) :: props(:)
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: lower, upper, preset
+      integer :: place
+
+      place = property_index(item%key)
+      if (place < 1) return
+      call range_for(props, place, lower, upper, preset)
+      if (props(place) < lower .or. props(place) > upper) &
+         call raise(fault, EXIT_INPUT, at_line(file, item%line)//property_name(place)//' = '//trim(item%values(1))// &
+                    ' is outside its range ('//described_range(place, props)//').')
+   end subroutine check_range
+
    !> "from 0.001 to 10000, default 12: kinematic hardening constant, eq. (13)"
-   function described_range(place) result(text)
+   function described_range(place, props) result(text)
       integer, intent(in) :: place
+      real(wp), intent(in) :: props(:)   !< Of which p_atm tells the unit.
       character(:), allocatable :: text
       real(wp) :: lower, upper, preset
 
-      call property_range(place, lower, upper, preset)
+      call range_for(props, place, lower, upper, preset)
       text = 'from '//short(lower)//' to '//short(upper)
-      if (property_unit(place) /= '1') text = text//' '//property_unit(place)
+      if (property_unit(place) /= '1') text = text//' '//in_unit(property_unit(place), &
+                                                         unit_of_atmosphere(props(property_index('p_atm'))))
       text = text//', default '//short(preset)//': '//property_meaning(place)
    end function described_range
 

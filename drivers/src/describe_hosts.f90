@@ -11,10 +11,11 @@ module describe_hosts
    use mud_interface, only: mud_convert_props, MUD_STATEV, MUD_MEANING
    use namelists, only: group_t, read_groups
    use parameter_groups, only: read_parameters
+   use stress_units, only: stress_unit_t, unit_named, unit_of_atmosphere, in_unit, UNIT_NAMES
    use texts, only: whole
    implicit none (type, external)
    private
-   public :: named_material_t, read_material, print_host, HOSTS, UNITS
+   public :: named_material_t, read_material, print_host, HOSTS
 
    !> Words for the hosts, and what is printed.
    character(66), parameter :: HOSTS(2, 10) = reshape([character(66) :: &
@@ -28,8 +29,6 @@ module describe_hosts
       'incrementaldriver-start', 'initialconditions.inp at an isotropic stress of -100', &
       'udsm', 'number, name, unit and value of each PLAXIS parameter', &
       'plain', 'PROPS, a number a line'], [2, 10])
-   character(3), parameter :: UNITS(4) = ['kPa', 'Pa ', 'MPa', 'psi']
-   real(wp), parameter :: IN_A_KPA(4) = [1.0_wp, 1000.0_wp, 1.0e-3_wp, 0.1450377377302092_wp]
    integer, parameter :: A_LINE = 8          !< Numbers of a card.
    real(wp), parameter :: EXAMPLE_STRESS = -100.0_wp   !< [kPa]
 
@@ -37,21 +36,22 @@ module describe_hosts
    type :: named_material_t
       real(wp), allocatable :: props(:)
       character(200) :: title = ''
-      character(3) :: unit = 'kPa'
+      character(500) :: doubt = ''   !< What the library warns of; blank: nothing.
+      type(stress_unit_t) :: unit
    end type named_material_t
 contains
-   !> The &material group of a file (blank: the library's defaults), which is in kPa, in another unit of stress.
+   !> The &material group of a file (blank: the library's defaults), in its own or in another unit of stress.
    subroutine read_material(file, unit, material, fault)
-      character(*), intent(in) :: file, unit   !< Unit blank: kPa.
+      character(*), intent(in) :: file, unit   !< Unit blank: that of the file, which p_atm tells.
       type(named_material_t), intent(out) :: material
       type(fault_t), intent(inout) :: fault
       type(group_t), allocatable :: groups(:)
       type(group_t) :: none
-      integer :: k
+      type(stress_unit_t) :: wanted
 
       if (file == '') then
          allocate (none%entries(0))
-         call read_parameters(none, material%props, material%title, fault)
+         call read_parameters(none, material%props, material%title, material%doubt, fault)
       else
          call read_groups(trim(file), groups, fault)
          if (fault%code /= 0) return
@@ -62,19 +62,32 @@ contains
             call raise(fault, EXIT_INPUT, trim(file)//': the group is &'//trim(groups(1)%name)// &
                        '; a material file holds exactly one, &material.')
          else
-            call read_parameters(groups(1), material%props, material%title, fault)
+            call read_parameters(groups(1), material%props, material%title, material%doubt, fault)
          end if
       end if
-      if (fault%code /= 0 .or. unit == '') return
-      k = findloc(UNITS, unit, dim=1)
-      if (k == 0) then
-         call raise(fault, EXIT_INPUT, 'There is no unit '//trim(unit)//'; one of kPa, Pa, MPa, psi.')
-      else if (mud_convert_props(material%props, size(material%props), IN_A_KPA(k)) /= 0) then
+      if (fault%code /= 0) return
+      material%unit = unit_of_atmosphere(material%props(property_index('p_atm')))
+      if (unit == '') return
+      wanted = unit_named(unit)
+      if (.not. wanted%factor > 0.0_wp) then
+         call raise(fault, EXIT_INPUT, 'There is no unit '//trim(unit)//'; one of '//unit_list()//'.')
+      else if (mud_convert_props(material%props, size(material%props), wanted%factor/material%unit%factor) /= 0) then
          call raise(fault, EXIT_INPUT, 'The library refuses the material in '//trim(unit)//'.')
       else
-         material%unit = UNITS(k)
+         material%unit = wanted
       end if
    end subroutine read_material
+
+   !> "kPa, Pa, MPa ..."
+   pure function unit_list() result(list)
+      character(:), allocatable :: list
+      integer :: i
+
+      list = trim(UNIT_NAMES(1))
+      do i = 2, size(UNIT_NAMES)
+         list = list//', '//trim(UNIT_NAMES(i))
+      end do
+   end function unit_list
 
    !> Prints what a host reads. The word is one of HOSTS.
    subroutine print_host(host, material)
@@ -210,7 +223,7 @@ contains
       real(wp) :: stress
       integer :: i
 
-      stress = EXAMPLE_STRESS*IN_A_KPA(findloc(UNITS, material%unit, dim=1))
+      stress = EXAMPLE_STRESS*material%unit%factor
       write (output_unit, '(a)') '6', (exact(stress), i=1, 3), '0.0', '0.0', '0.0', whole(state_count())
       do i = 1, state_count()
          if (statev_name(i) == 'void_ratio') then
@@ -262,7 +275,7 @@ contains
       type(named_material_t), intent(in) :: material
       character(:), allocatable :: line
 
-      line = 'MUD '//version()//', '//trim(material%title)//', stresses in '//trim(material%unit)
+      line = 'MUD '//version()//', '//trim(material%title)//', stresses in '//trim(material%unit%name)
    end function headline
 
    !> Unit of a parameter, with the unit of stress of the material.
@@ -270,11 +283,8 @@ contains
       type(named_material_t), intent(in) :: material
       integer, intent(in) :: i
       character(:), allocatable :: unit
-      integer :: k
 
-      unit = property_unit(i)
-      k = index(unit, 'kPa')
-      if (k > 0) unit = unit(:k - 1)//trim(material%unit)//unit(k + 3:)
+      unit = in_unit(property_unit(i), material%unit)
       if (unit == '1') unit = '-'
    end function unit_of
 

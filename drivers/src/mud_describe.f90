@@ -8,7 +8,7 @@ program mud_describe
    use faults, only: fault_t, raise, EXIT_INPUT
    implicit none (type, external)
    character(*), parameter :: USAGE = 'usage: mud_describe props|statev|namelist, or mud_describe HOST '// &
-      '[material.nml] [--unit kPa|Pa|MPa|psi]; mud_describe --help names the hosts'
+      '[material.nml] [--unit kPa|Pa|MPa|psi|bar]; mud_describe --help names the hosts'
 
    type(option_t) :: options(2) = [option_t('--help', letter='-h', answers=.true.), &
                                    option_t('--unit', takes='a unit of stress')]
@@ -44,6 +44,8 @@ contains
          call print_namelist()
       else
          call read_material(trim(file), trim(option_value(options, '--unit')), material, fault)
+         if (fault%code == 0 .and. material%doubt /= '') &
+            write (error_unit, '(a)') 'mud_describe: warning: '//trim(material%doubt)
          if (fault%code == 0) call print_host(trim(word), material)
       end if
    end subroutine describe
@@ -58,6 +60,7 @@ contains
          '   namelist                  a &material group with every parameter at its default', '', &
          'A material (without a file: the defaults of the library) as another program reads it:'
       write (output_unit, '(3x, a26, a)') (HOSTS(1, i), trim(HOSTS(2, i)), i=1, size(HOSTS, 2))
-      write (output_unit, '(a)') '', '--unit kPa, Pa, MPa or psi: the file is in kPa, what is printed in this unit'
+      write (output_unit, '(a)') '', '--unit kPa, Pa, MPa, psi or bar: what is printed; the unit of a file is that '// &
+         'of its p_atm'
    end subroutine print_help
 end program mud_describe

@@ -67,6 +67,7 @@ contains
       if (fault%code == 0) call read_case(file, material_file, option_value(options, '--accuracy'), &
                                           test, fault)
       if (fault%code /= 0) return
+      if (test%soil%law%doubt /= '') write (error_unit, '(a)') 'mud_triax: warning: '//trim(test%soil%law%doubt)
       quiet = option_given(options, '--quiet')
       output_file = option_value(options, '--output')
       if (output_file == '') output_file = trim(test%name)//'.csv'
@@ -79,8 +80,8 @@ contains
          return
       end if
       if (option_given(options, '--verify') .and. .not. test%accuracy > 0.0_wp) then
-         call raise(fault, EXIT_INPUT, '--verify measures what an accuracy has given: ask for one, with accuracy of '// &
-                    '&case or --accuracy.')
+         call raise(fault, EXIT_INPUT, '--verify measures what an accuracy has given: ask for one, with accuracy '// &
+                    'of &case or --accuracy.')
          return
       end if
       call open_table(output_file, test, table, fault)

@@ -9,6 +9,7 @@ module triax_accuracy
    use kinds, only: wp
    use faults, only: fault_t
    use texts, only: short, whole
+   use stress_units, only: stress_unit_t, KILOPASCAL
    use triax_case, only: case_t
    use triax_columns, only: COLUMNS, columns_shown
    use triax_control, only: tally_t
@@ -39,6 +40,7 @@ module triax_accuracy
       logical :: verified = .false.
       real(wp) :: change(size(COLUMNS)) = 0.0_wp   !< Largest change of every answer.
       real(wp) :: error(size(COLUMNS)) = 0.0_wp    !< Estimated error of every answer over its change; < 0: no answer.
+      type(stress_unit_t) :: unit                  !< Of the changes of stresses.
       integer :: runs = 0, updates = 0             !< What the choice has cost.
    end type accuracy_t
 contains
@@ -52,6 +54,7 @@ contains
       integer :: refinements, tightenings, scheme
 
       answer%asked = test%accuracy
+      answer%unit = test%soil%law%unit
       scheme = merge(2, 1, test%accuracy < TIGHT)
       associate (law => test%soil%law, stages => test%stages)
          free_increments = .not. all(stages%given_increment)
@@ -203,7 +206,7 @@ contains
          if (answer%error(i) < 0.0_wp) cycle
          n = n + 1
          lines(n) = trim(COLUMNS(i)%name)//' '//short(100*answer%error(i))//' % of '//short(answer%change(i))// &
-                    trim(merge(' kPa', '    ', COLUMNS(i)%unit == 'kPa'))
+                    trim(merge(' '//answer%unit%name, '      ', COLUMNS(i)%unit == KILOPASCAL%name))
       end do
       if (answer%verified) then
          lines(n + 1) = 'difference to a run with a quarter of the increments and a sixteenth of the tolerance'

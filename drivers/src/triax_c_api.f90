@@ -7,6 +7,7 @@ module triax_c_api
    use namelists, only: group_t, groups_of_text
    use kinds, only: wp
    use triax_accuracy, only: accuracy_t, reach_accuracy, note_accuracy
+   use stress_units, only: in_unit
    use triax_case, only: case_t, make_case
    use triax_columns, only: COLUMNS
    use triax_control, only: tally_t
@@ -119,7 +120,7 @@ contains
          case (1)
             call put(trim(COLUMNS(column)%name), text, len)
          case (2)
-            call put(trim(COLUMNS(column)%unit), text, len)
+            call put(in_unit(trim(COLUMNS(column)%unit), result%table%unit), text, len)
          case (3)
             call put(trim(COLUMNS(column)%meaning), text, len)
          case default

@@ -144,6 +144,7 @@ contains
       type(tally_t), intent(inout) :: tally
       type(fault_t), intent(inout) :: fault
       type(fault_t) :: trouble
+      character(:), allocatable :: name
       real(wp) :: done, share
 
       done = 0.0_wp
@@ -168,11 +169,12 @@ contains
             tally%cuts = tally%cuts + 1
             share = 0.5_wp*share
             if (share < upto*0.5_wp**MAX_CUTS) then
+               name = ' '//trim(soil%law%unit%name)
                call raise(fault, EXIT_RUN, trim(CONTROL_NAMES(plan%control))//' stage, increment '//whole(k)//' of '// &
                           whole(plan%increments)//', at eps_a '//short(axial_strain(point))//', eps_v '// &
-                          short(volumetric_strain(point))//', p'' '//short(mean_stress(point))//' kPa, q '// &
-                          short(deviator_stress(point))//' kPa, suction '//short(point%suction)// &
-                          ' kPa; the increment was halved '//whole(MAX_CUTS)//' times. '//trim(trouble%text))
+                          short(volumetric_strain(point))//', p'' '//short(mean_stress(point))//name//', q '// &
+                          short(deviator_stress(point))//name//', suction '//short(point%suction)//name// &
+                          '; the increment was halved '//whole(MAX_CUTS)//' times. '//trim(trouble%text))
                return
             end if
          end if

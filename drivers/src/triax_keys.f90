@@ -2,10 +2,13 @@
 !> Keys of case files.
 module triax_keys
    use kinds, only: wp
-   use key_schema, only: key_t, described, NONE
+   use key_schema, only: key_t, check_entries, described, NONE
+   use faults, only: fault_t
+   use namelists, only: group_t
+   use stress_units, only: stress_unit_t, KILOPASCAL
    implicit none (type, external)
    private
-   public :: CASE_KEYS, print_keys
+   public :: CASE_KEYS, keys_in, check_keys, print_keys
 
    character, parameter :: DIGITS(6) = ['1', '2', '3', '4', '5', '6']
    integer, private :: i   ! of the implied loops below
@@ -68,7 +71,44 @@ module triax_keys
       key_t('stage', 'output_interval', 'n', NONE, 1.0e-12_wp, 1.0e6_wp, &
             'a row at each multiple of it: strain, default 1e-3; stress [kPa], 10; suction [kPa], 1; linear: 1e-2')]
 
+   !> Keys of stages whose value may be a stress or a strain.
+   character(15), parameter :: EITHER(*) = [character(15) :: 'amplitude', 'centre', 'increment', 'output_interval', &
+      [('change_'//DIGITS(i), i=1, 6)]]
 contains
+   !> The keys with their limits in another unit of stress.
+   pure function keys_in(unit) result(keys)
+      type(stress_unit_t), intent(in) :: unit
+      type(key_t) :: keys(size(CASE_KEYS))
+      integer :: k
+
+      keys = CASE_KEYS
+      do k = 1, size(keys)
+         if (keys(k)%unit == KILOPASCAL%name) then
+            keys(k)%lower = keys(k)%lower*unit%factor
+            keys(k)%upper = keys(k)%upper*unit%factor
+            keys(k)%unit = unit%name
+         else if (any(EITHER == keys(k)%name)) then
+            keys(k)%lower = min(keys(k)%lower, keys(k)%lower*unit%factor)
+            keys(k)%upper = max(keys(k)%upper, keys(k)%upper*unit%factor)
+         end if
+      end do
+   end function keys_in
+
+   !> Refuses unknown keys and values outside their range, which for stresses is in the unit of the material.
+   subroutine check_keys(groups, unit, fault)
+      type(group_t), intent(in) :: groups(:)
+      type(stress_unit_t), intent(in) :: unit
+      type(fault_t), intent(inout) :: fault
+      type(key_t) :: keys(size(CASE_KEYS))
+      integer :: i
+
+      keys = keys_in(unit)
+      do i = 1, size(groups)
+         if (any(keys%group == groups(i)%name)) call check_entries(keys, groups(i), .false., fault)
+         if (fault%code /= 0) return
+      end do
+   end subroutine check_keys
+
    !> A list of keys for the help text, under the heads of their groups.
    subroutine print_keys(unit, keys, remark)
       integer, intent(in) :: unit

@@ -11,6 +11,7 @@ module triax_output
    use triax_stage, only: general_control
    use triax_columns, only: column_t, COLUMNS, columns_shown, values_of
    use triax_stage_run, only: stage_run_t
+   use stress_units, only: stress_unit_t, in_unit
    use csv, only: csv_t, open_csv, write_line, close_csv
    use files, only: can_be_written
    use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, put, put_text
@@ -29,6 +30,7 @@ module triax_output
       logical :: closed = .true.
       integer, allocatable :: shown(:)      !< Numbers of the columns that are written.
       integer :: rows = 0
+      type(stress_unit_t) :: unit
       character(:), allocatable :: path
       real(wp), allocatable :: kept(:, :)   !< rows (room for more), columns
       character(:), allocatable :: remarks  !< Of a table in memory, a line each.
@@ -98,9 +100,11 @@ contains
       type(table_t), intent(inout) :: table
       type(fault_t), intent(inout) :: fault
       type(remark_t), allocatable :: remarks(:)
-      character(:), allocatable :: names
+      character(:), allocatable :: names, unit
       integer :: i
 
+      table%unit = test%soil%law%unit
+      unit = trim(table%unit%name)
       call remark(table, 'case', trim(test%name), fault)
       if (len_trim(test%title) > 0) call remark(table, 'title', trim(test%title), fault)
       call remark(table, 'material', trim(test%material), fault)
@@ -108,9 +112,11 @@ contains
       do i = 1, size(remarks)
          call remark(table, trim(remarks(i)%name), trim(remarks(i)%text), fault)
       end do
+      if (test%soil%law%doubt /= '') call remark(table, 'warning', trim(test%soil%law%doubt), fault)
       call remark(table, 'library', 'MUD '//library_version(), fault)
-      call remark(table, 'conventions', 'compression positive; stresses are effective [kPa], suction and u [kPa], '// &
-                  'strains and the rest [-]; control_error may be up to '//short(test%control_tolerance), fault)
+      call remark(table, 'conventions', 'compression positive; stresses are effective ['//unit//'], suction and u '// &
+                  '['//unit//'], strains and the rest [-]; control_error may be up to '// &
+                  short(test%control_tolerance), fault)
       names = trim(COLUMNS(table%shown(1))%name)
       do i = 2, size(table%shown)
          names = names//','//trim(COLUMNS(table%shown(i))%name)
@@ -213,7 +219,7 @@ contains
          call close_csv(table%csv, last)
       else if (table%hdf5) then
          do i = 1, size(table%shown)
-            call put_column(table%h5, COLUMNS(table%shown(i)), table%kept(:table%rows, i))
+            call put_column(table%h5, COLUMNS(table%shown(i)), table%unit, table%kept(:table%rows, i))
          end do
          call write_file(table%h5, table%path, good)
          if (.not. good) call raise(last, EXIT_OUTPUT, table%path//' cannot be written; is the disk full?')
@@ -221,15 +227,16 @@ contains
       if (fault%code == 0) fault = last
    end subroutine close_table
 
-   subroutine put_column(file, column, values)
+   subroutine put_column(file, column, unit, values)
       type(h5_t), intent(inout) :: file
       type(column_t), intent(in) :: column
+      type(stress_unit_t), intent(in) :: unit
       real(wp), intent(in) :: values(:)
 
       if (column%whole) then
-         call put(file, trim(column%name), nint(values), trim(column%unit), trim(column%meaning))
+         call put(file, trim(column%name), nint(values), in_unit(trim(column%unit), unit), trim(column%meaning))
       else
-         call put(file, trim(column%name), values, trim(column%unit), trim(column%meaning))
+         call put(file, trim(column%name), values, in_unit(trim(column%unit), unit), trim(column%meaning))
       end if
    end subroutine put_column
 end module triax_output

@@ -60,15 +60,16 @@ contains
       type(point_t), intent(in) :: point
       type(tally_t), intent(in) :: tally
       type(timer_t), intent(in) :: timer
-      character(:), allocatable :: guards
+      character(:), allocatable :: guards, name
       integer :: i
 
       if (table%to_screen) return
+      name = ' '//trim(test%soil%law%unit%name)
       associate (soil => test%soil)
          write (output_unit, '(a)') trim(test%name)//' ('//trim(test%material)//', MUD '//library_version()//')'
          write (output_unit, '(a)') '   end        eps_a '//short(axial_strain(point))//', eps_v '// &
-            short(volumetric_strain(point))//', p'' '//short(mean_stress(point))//' kPa, q '// &
-            short(deviator_stress(point))//' kPa, e '//short(void_ratio(soil, point))//', S_w '// &
+            short(volumetric_strain(point))//', p'' '//short(mean_stress(point))//name//', q '// &
+            short(deviator_stress(point))//name//', e '//short(void_ratio(soil, point))//', S_w '// &
             short(saturation(soil, point))//of_state(', psi ', soil%i_state_parameter, '')
          write (output_unit, '(a)') '   work       '//whole(tally%increments)//' increments ('//whole(tally%cuts)// &
             ' cuts), '//whole(tally%updates)//' updates; '//of_state('', soil%i_n_substep, ' substeps, ')// &

@@ -55,7 +55,7 @@ contains
                       .not. (stage%moves_suction .and. stage%suction_end > 0.0_wp)
       if (stage%stop_r_u > 0.0_wp .and. .not. run%sealed) then
          call raise(fault, EXIT_RUN, 'stop_r_u needs a saturated sample; the suction is '//short(point%suction)// &
-                    ' kPa.')
+                    ' '//trim(soil%law%unit%name)//'.')
       else if (stage%keeps_water .and. point%suction <= 0.0_wp) then
          call raise(fault, EXIT_RUN, 'water = ''constant'' needs a suction to follow; the sample is saturated. '// &
                     'A saturated sample keeps its water where its volume is held (undrained).')
@@ -90,10 +90,11 @@ contains
          if (fault%code /= 0) return
          if (.not. arrived .and. run%k*stage%increment/stage%parts >= MAX_WAY) then
             call raise(fault, EXIT_RUN, trim(QUANTITIES(stage%cycle_by)%name)//' does not reach '// &
-                       short(run%goal)//' kPa in cycle '//whole(run%cycle)// &
+                       short(run%goal)//' '//trim(soil%law%unit%name)//' in cycle '//whole(run%cycle)// &
                        ': after a strain of '//short(MAX_WAY)//' it is '// &
                        short(quantity(soil, stage, stage%cycle_by, point))// &
-                       ' kPa. Lower the amplitude, or end the stage with stop_r_u or stop_double_amplitude.')
+                       ' '//trim(soil%law%unit%name)//'. Lower the amplitude, or end the stage '// &
+                       'with stop_r_u or stop_double_amplitude.')
             return
          end if
       else

@@ -9,6 +9,7 @@ module scene_warnings
    use material_elastic, only: elastic_t
    use model_types, only: model_t, fix_t, PRESCRIBED_P_A
    use scene_types, only: scene_t, acts_in, place_of
+   use stress_units, only: KILOPASCAL
    use texts, only: short, whole
    use triangle_mesh, only: mesh_t
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, FIELD_NAMES
@@ -19,6 +20,7 @@ module scene_warnings
    real(wp), parameter :: SAME_PLACE = 1.0e-6_wp      !< Share of the mesh below which a point is a node.
    real(wp), parameter :: LARGE_MESH = 1.0e3_wp, SMALL_MESH = 1.0e-3_wp   !< [m]
    real(wp), parameter :: PERMEABLE = 1.0e-8_wp       !< [m2] Coarse gravel; above it a conductivity [m/s] is likely.
+   real(wp), parameter :: ATMOSPHERE = 101.325_wp     !< [kPa]
    real(wp), parameter :: STIFF = 1.0e9_wp            !< [kPa] Five times steel; above it a modulus in Pa is likely.
    character(3), parameter :: WORDS(*) = [FIELD_NAMES, 'p_a']
 contains
@@ -30,6 +32,7 @@ contains
 
       allocate (warnings(0))
       call look_at_sizes(scene, model, warnings)
+      call look_at_materials(scene, model, warnings)
       call look_at_points(model, warnings)
       call look_at_initials(model, tension, warnings)
       call look_at_fixes(model, warnings)
@@ -64,6 +67,24 @@ contains
          end select
       end do
    end subroutine look_at_sizes
+
+   !> What laws say of their parameters, and laws in another unit of stress: each material once.
+   subroutine look_at_materials(scene, model, warnings)
+      type(scene_t), intent(in) :: scene
+      type(model_t), intent(in) :: model
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      integer :: i
+
+      do i = 1, size(model%domain%regions)
+         associate (given => scene%regions(i), law => model%domain%regions(i)%law)
+            if (any(scene%regions(:i - 1)%material_name == given%material_name)) cycle
+            if (law%doubt /= '') call add_warning(trim(law%doubt), warnings)
+            if (law%unit%name /= KILOPASCAL%name) call add_warning(place_of(given)//'material '''// &
+               trim(given%material_name)//''' has a p_atm of '//short(ATMOSPHERE*law%unit%factor)//'; scenes are '// &
+               'in kPa, in which it is about '//short(ATMOSPHERE)//'.', warnings)
+         end associate
+      end do
+   end subroutine look_at_materials
 
    !> Largest side of the box around the elements [m].
    pure real(wp) function extent(mesh)

@@ -39,7 +39,7 @@ def card(text, keyword):
 
 
 # Numbers that need 17 digits, of either size.
-awkward = {"K_0": 1000.0/7.0, "e_0": 2.0/3.0, "tolerance": 1.0e-5/3.0, "P_a": 0.1 + 0.2, "theta": 0.2}
+awkward = {"K_0": 1000.0/7.0, "e_0": 2.0/3.0, "tolerance": 1.0e-5/3.0, "P_a": 0.7 + 0.1, "theta": 0.2}
 file = work / "sand.nml"
 entries = "".join(f"   {key} = {value!r}\n" for key, value in awkward.items())
 file.write_text(f"&material\n   name = 'Sand of the test'\n{entries}/\n", encoding="utf-8")
@@ -103,7 +103,7 @@ check("the stress of the start is in that unit",
 
 for words, sentence in ((["abaqs"], "There is no table and no host abaqs"), ([], "No table or host is named"),
                         (["plain", "none.nml"], "none.nml: cannot be read"), (["props", file], "no material"),
-                        (["plain", file, "--unit", "bar"], "There is no unit bar"),
+                        (["plain", file, "--unit", "atm"], "There is no unit atm"),
                         (["plain", file, "another"], "at a time"), (["plain", "--unit"], "--unit needs")):
     done = run(*words)
     check(f"{words} is a mistake with a sentence", done.returncode != 0 and sentence in done.stderr and not done.stdout,

@@ -26,7 +26,9 @@ from mutations import CONTACT, MUTATIONS
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 LEFT_OUT = {"test_random", "test_random_long"}  # minutes each
-TIMEOUT = 180  # s; the slowest suite takes 5 s, so a suite that takes longer hangs
+TIMEOUT = 180   # s; the slowest suite takes 5 s, so a suite that takes longer hangs
+PATIENCE = 4    # a page may take so many times what it takes unchanged
+UNCHANGED = 1800  # s, for a page unchanged, on a machine that has other work
 FAILED = re.compile(r"^FAILED (\w+) at", re.MULTILINE)
 
 
@@ -47,7 +49,8 @@ class Contact:
     """The host's contact, its suites and its page of known answers."""
     mutations, sources, table = CONTACT, "host", "CONTACT.md"
     command = "python3 tests/mutations/run_mutations.py --contact --readme"
-    judges = "the suites of contact and drainage in `tests/host` and `verification/run host/contact --quick`"
+    judges = ("the suites of contact and drainage in `tests/host`, and, where none of them notices, "
+              "`verification/run host/contact --quick`")
     patterns = ("tests/host/contact/*.pf", "tests/host/model/test_contact_drainage.pf")
     programs, pages = ["mud_host"], ["host/contact"]
 
@@ -60,9 +63,9 @@ def suites_of(tree):
     return [file.stem for file in files if file.stem not in LEFT_OUT]
 
 
-def build(tree, jobs):
+def build(tree, jobs, targets):
     """Output if the build fails, else None."""
-    done = run(["cmake", "--build", "build", "-j", str(jobs), "--target", *suites_of(tree), *subject.programs], tree)
+    done = run(["cmake", "--build", "build", "-j", str(jobs), "--target", *targets], tree)
     return done.stdout if done.returncode else None
 
 
@@ -80,13 +83,13 @@ def failures_of(tree, suite):
     return names
 
 
-def failures_of_page(tree, page):
-    """Whether a page of known answers fails, as page (k claims)."""
+def failures_of_page(tree, page, seconds):
+    """Whether a page of known answers fails within so many seconds, as page (k claims)."""
     venv = ROOT / "build/venv/bin/python3"
     environment = dict(os.environ, MUD_BUILD_DIR=str(tree / "build"))
     try:
         done = run([venv if venv.exists() else sys.executable, tree / "verification/tools/runner.py", page, "--quick"],
-                   tree, env=environment, timeout=TIMEOUT)
+                   tree, env=environment, timeout=seconds)
     except subprocess.TimeoutExpired:
         return [f"{page} (hangs)"]
     missed = len(re.findall("^ +FAILED ", done.stdout, re.MULTILINE))
@@ -95,10 +98,24 @@ def failures_of_page(tree, page):
     return [f"{page} ({missed} claims)" if re.search(r"^\d+ passed", done.stdout, re.MULTILINE) else f"{page} (stops)"]
 
 
-def all_failures(tree, jobs):
+def failures_of_suites(tree, jobs):
+    """What the suites notice; ValueError where they do not compile."""
+    problem = build(tree, jobs, suites_of(tree))
+    if problem:
+        raise ValueError("does not compile:\n" + problem[-2000:])
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         found = list(pool.map(lambda suite: failures_of(tree, suite), suites_of(tree)))
-    return sorted(set(sum(found + [failures_of_page(tree, page) for page in subject.pages], [])))
+    return sorted(set(sum(found, [])))
+
+
+def failures_of_pages(tree, jobs, seconds):
+    """What the pages notice, with the programs they need."""
+    if not subject.pages:
+        return []
+    problem = build(tree, jobs, subject.programs)
+    if problem:
+        raise ValueError("does not compile:\n" + problem[-2000:])
+    return sum((failures_of_page(tree, page, seconds) for page in subject.pages), [])
 
 
 def mutate(tree, changes):
@@ -132,6 +149,10 @@ def apply_all(tree):
     return 2 if broken else 0
 
 
+def commit():
+    return run(["git", "describe", "--always", "--exclude=*"], ROOT).stdout.strip()
+
+
 def write_readme(table, suites, seconds):
     survived = sum(not caught for _, caught in table)
     lines = [f"# Mutations{' of the contact' if subject is Contact else ''}", "",
@@ -139,7 +160,7 @@ def write_readme(table, suites, seconds):
              f"(`mutations.py`), builds it and runs {subject.judges}. It is not part of "
              "`./check`. \"(hangs)\" and \"(stops)\" mean that the suite's program did so.", "",
              f"Measured: {len(table)} mutations, {len(table) - survived} noticed, {survived} survived; {suites} "
-             f"suites, {seconds / 60:.0f} minutes on {os.cpu_count()} cores."
+             f"suites, {seconds / 60:.0f} minutes on {os.cpu_count()} cores; commit {commit()}."
              + (f" Left out: {', '.join(sorted(LEFT_OUT))}." if subject is Library else ""), "",
              "| mutation | tests | noticed by |", "|---|---|---|"]
     for title, caught in table:
@@ -171,13 +192,15 @@ def main():
         configured = run(["cmake", "-S", ".", "-B", "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                           "-DMUD_PRESET=release", "-DMUD_USE_PFUNIT=OFF", "-DMUD_WERROR=OFF",
                           "-DMUD_BUILD_DRIVERS=OFF", f"-DMUD_BUILD_HOST={'ON' if subject is Contact else 'OFF'}"], tree)
-        problem = configured.stdout if configured.returncode else build(tree, arguments.j)
-        if problem:
-            print(problem)
+        if configured.returncode:
+            print(configured.stdout)
             return 2
-        before = all_failures(tree, arguments.j)
-        print(f"unchanged: {len(suites_of(tree))} suites, failing {before or 'none'}", flush=True)
-        if any(name.split()[0] in subject.pages for name in before):
+        before = failures_of_suites(tree, arguments.j)
+        began = time.monotonic()
+        failing = failures_of_pages(tree, arguments.j, UNCHANGED)
+        allowed = max(TIMEOUT, PATIENCE*(time.monotonic() - began))
+        print(f"unchanged: {len(suites_of(tree))} suites, failing {before + failing or 'none'}", flush=True)
+        if failing:
             print("the page fails unchanged: does build/venv exist (./check makes it)?")
             return 2
         table, broken = [], 0
@@ -187,10 +210,9 @@ def main():
             originals = {}
             try:
                 originals = mutate(tree, changes)
-                problem = build(tree, arguments.j)
-                if problem:
-                    raise ValueError("does not compile:\n" + problem[-2000:])
-                caught = [name for name in all_failures(tree, arguments.j) if name not in before]
+                caught = [name for name in failures_of_suites(tree, arguments.j) if name not in before]
+                if not caught:
+                    caught = failures_of_pages(tree, arguments.j, allowed)
             except ValueError as error:
                 broken += 1
                 print(f"ERROR {title}: {error}", flush=True)
@@ -204,6 +226,9 @@ def main():
         if arguments.readme and not arguments.k:
             write_readme(table, len(suites_of(tree)), time.monotonic() - start)
         return 2 if broken else bool(survived)
+    except ValueError as problem:
+        print(f"unchanged: {problem}")
+        return 2
     finally:
         if arguments.keep:
             print(f"kept: {folder}")
