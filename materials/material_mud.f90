@@ -291,8 +291,9 @@ contains
          else
             call range_for(self%props, i, lower, upper, preset)
          end if
-         if (abs(self%props(i) - preset) > ROUNDING*abs(preset)) list = [list, remark_t('not the default: '//property_name(i), &
-            short(self%props(i))//' (default '//short(preset)//')')]
+         if (abs(self%props(i) - preset) <= ROUNDING*abs(preset)) cycle
+         list = [list, remark_t('not the default: '//property_name(i), &
+                                short(self%props(i))//' (default '//short(preset)//')')]
       end do
    end subroutine remarks
 end module material_mud
