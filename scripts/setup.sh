@@ -2,25 +2,10 @@
 # Sourced by ./check and ./demo: makes sure that the tools are there. Quick when nothing is missing.
 # Leaves $root (the repository) and $venv_python. A missing tool that cannot be installed ends with code 3.
 
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+# shellcheck source=scripts/python_environment.sh
+source "$(dirname "${BASH_SOURCE[0]}")/python_environment.sh"
 venv=$root/build/venv
 venv_python=$venv/bin/python3
-
-setup_fail() {
-   echo "setup: $*" >&2
-   exit 3
-}
-
-# numpy as pinned needs 3.11; a shim earlier on the PATH may be older than the system's own.
-find_python() {
-   local candidate
-   for candidate in python3 /usr/bin/python3; do
-      if "$candidate" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
-         echo "$candidate"
-         return
-      fi
-   done
-}
 
 # Any LAPACK that the linker finds, as CMake does.
 has_lapack() {
@@ -115,19 +100,6 @@ check_versions() {
       setup_fail "cmake 3.25 or later is needed, found $found"
 }
 
-# The stamp is a copy of the requirements, written last: an interrupted installation is redone.
-install_python_packages() {
-   if cmp -s "$root/requirements.txt" "$venv/requirements.stamp" && "$venv_python" -c '' 2>/dev/null; then
-      return 0
-   fi
-   echo "setup: installing the Python packages of requirements.txt in build/venv"
-   mkdir -p "$root/build"
-   "$(find_python)" -m venv --clear "$venv" || setup_fail "could not make the Python environment build/venv"
-   "$venv_python" -m pip install --quiet --disable-pip-version-check -r "$root/requirements.txt" ||
-      setup_fail "pip could not install requirements.txt (its own message is above)"
-   cp "$root/requirements.txt" "$venv/requirements.stamp"
-}
-
 # configure_and_build PRESET BUILD_DIR [CMAKE_ARGUMENT...]: logs beside the build, shown only if it fails.
 configure_and_build() {
    local preset=$1 dir=$2
@@ -150,4 +122,4 @@ configure_and_build() {
 install_packages
 install_wanted_packages
 check_versions
-install_python_packages
+install_requirements "$root/requirements.txt" "$venv"

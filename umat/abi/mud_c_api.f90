@@ -25,7 +25,7 @@ module mud_c_api
    public :: ABI_VERSION, VERSION
 
    integer, parameter :: ABI_VERSION = 2
-   character(*), parameter :: VERSION = '0.1.0'
+   character(*), parameter :: VERSION = '0.2.0'
    integer, parameter :: LIST_PROPS = 1, LIST_STATEV = 2
    integer, parameter :: FIELD_NAME = 1, FIELD_SYMBOL = 2, FIELD_UNIT = 3, FIELD_ORIGIN = 4, FIELD_MEANING = 5, &
                          FIELD_INITIAL = 6, FIELD_ROTATION = 7, FIELD_EVOLUTION = 8

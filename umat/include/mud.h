@@ -67,7 +67,7 @@ typedef struct mud_report {
 
 /* --- the library and its tables --------------------------------------------------------------------- */
 int mud_abi_version(void);
-int mud_version(char *text, int len);                       /* "0.1.0" */
+int mud_version(char *text, int len);                       /* such as "0.2.0" */
 int mud_count(int list);                                    /* entries of PROPS or STATEV; MUD_BAD_OPTION */
 int mud_index(int list, const char *name);                  /* index from 0; -1: no such name (case is ignored) */
 int mud_text(int list, int index, int field, char *text, int len);

@@ -16,12 +16,6 @@ module mud_units
    real(wp), parameter :: SMALLEST_MINIMUM = 1.0e-9_wp      !< Least p_min that may be given [kPa].
    real(wp), parameter :: MINIMUM_DIVISOR = 1000.0_wp       !< p_min = 0 means p_atm over this [-].
 
-   logical, parameter :: IS_STRESS(NPROPS) = PROPERTIES%unit == UNIT_STRESS
-   logical, parameter :: IS_STRESS_TO_LAMBDA(NPROPS) = PROPERTIES%unit == UNIT_STRESS_TO_LAMBDA
-   !> Bounds that do not follow p_atm: numbers without unit, and p_atm itself.
-   logical, parameter :: OWN_BOUNDS(NPROPS) = .not. (IS_STRESS .or. IS_STRESS_TO_LAMBDA) .or. &
-                                              PROPERTIES%index == P_P_ATM
-
    !> Usual ranges as shares of p_atm. Each is a factor of 1000 wide (void ratios: of 1000**0.37, the default lambda),
    !> so that a value in Pa, kPa or MPa beside a p_atm in another of them is outside, wherever in the range it belongs.
    !> P_a: coarse sand (0.3 kPa) to clayey silt (300 kPa); alpha_csl: 100 kPa to 100 MPa; p_min: around its default.
@@ -56,7 +50,7 @@ contains
 
       factors = factors_for(stress_unit(props), props)
       if (present(default)) default = PROPERTIES%default*factors
-      where (OWN_BOUNDS) factors = 1.0_wp
+      factors(P_P_ATM) = 1.0_wp
       lower = PROPERTIES%lower*factors
       upper = PROPERTIES%upper*factors
    end subroutine bounds_for
@@ -78,8 +72,8 @@ contains
       if (abs(unit - 1.0_wp) <= 0.0_wp) return
       power = 1.0_wp
       if (is_allowed(props, P_LAMBDA)) power = unit**props(P_LAMBDA)
-      where (IS_STRESS) factors = unit
-      where (IS_STRESS_TO_LAMBDA) factors = power
+      where (PROPERTIES%unit == UNIT_STRESS) factors = unit
+      where (PROPERTIES%unit == UNIT_STRESS_TO_LAMBDA) factors = power
    end function factors_for
 
    !> Within its own bounds. A NaN is not compared: a comparison would trap.

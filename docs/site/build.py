@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: MIT
+"""Builds the site into build/site/html: gathers the pages, runs FORD and Sphinx. Every warning is an error."""
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import ziamath
+
+import fortran_api
+import stage
+
+root = pathlib.Path(__file__).resolve().parents[2]
+work = root / "build/site"
+FONT = "STIXTwoMath-Regular.ttf"
+
+
+def main():
+    pages, html = work / "pages", work / "html"
+    stage.stage(root, pages)
+    fonts = pages / "_fonts"
+    fonts.mkdir()
+    shutil.copyfile(pathlib.Path(ziamath.__file__).parent / "fonts" / FONT, fonts / FONT)
+    shutil.rmtree(html, ignore_errors=True)
+    run = subprocess.run([sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", "-c", str(root / "docs/site"),
+                          "-d", str(work / "doctrees"), str(pages), str(html)])
+    if run.returncode:
+        return run.returncode
+    if "--without-fortran" not in sys.argv:
+        fortran_api.build(root, work, html / "fortran-api")
+    print(f"the site is in {html.relative_to(root)}/index.html")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: MIT
+"""Configuration of Sphinx. The pages are those that stage.py has gathered; everything a browser needs is in the output."""
+import pathlib
+import re
+import sys
+
+here = pathlib.Path(__file__).parent
+root = here.parents[1]
+sys.path[:0] = [str(here), str(root / "python")]
+
+project = "MUD"
+author = "the MUD contributors"
+release = re.search(r"project\(mud VERSION (\S+)", (root / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
+version = release
+
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml"]
+root_doc = "index"
+nitpicky = False
+templates_path = []
+
+# The pages are written for the viewer of a forge: its headings are link targets, and ```math is a formula.
+myst_enable_extensions = ["dollarmath"]
+myst_fence_as_directive = ["math"]
+myst_heading_anchors = 4
+myst_dmath_allow_digits = False
+myst_links_external_new_tab = False
+
+html_theme = "furo"
+html_title = f"MUD {release}"
+html_static_path = [str(here / "static"), str(root / "build/site/pages/_fonts")]
+html_css_files = ["site.css"]
+html_copy_source = False
+html_show_copyright = False
+html_show_sphinx = False
+highlight_language = "none"
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+autodoc_mock_imports = ["h5py", "matplotlib", "numpy", "scipy"]
