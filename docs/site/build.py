@@ -22,8 +22,8 @@ def main():
     fonts.mkdir()
     shutil.copyfile(pathlib.Path(ziamath.__file__).parent / "fonts" / FONT, fonts / FONT)
     shutil.rmtree(html, ignore_errors=True)
-    run = subprocess.run([sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", "-c", str(root / "docs/site"),
-                          "-d", str(work / "doctrees"), str(pages), str(html)])
+    run = subprocess.run([sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", "-c",
+                          str(root / "docs/site"), "-d", str(work / "doctrees"), str(pages), str(html)])
     if run.returncode:
         return run.returncode
     if "--without-fortran" not in sys.argv:

@@ -5,6 +5,10 @@ import re
 SECTION = re.compile(r"/\* --- (.*?) -*\s*\*/")
 FUNCTION = re.compile(r"(?:int|void|double)\s+\w+\s*\([^;{}]*\);")
 
+# What a compiler alone needs; structures and enumerations, or a line.
+FRAME = re.compile(r"#ifdef __cplusplus.*?#endif\n|#(?:ifndef|define) MUD_H\n|#endif\s*$|#endif\n", re.DOTALL)
+CODE = re.compile(r"(?:typedef struct|enum)[^{]*\{.*?\}[^;]*;(?:\n(?=enum).*?\};)?|[^\n]*\n", re.DOTALL)
+
 
 def escaped(text):
     return re.sub(r"([*_<>\[\]`$\\])", r"\\\1", text)
@@ -37,9 +41,9 @@ def pieces(text):
             yield "comment", found[0]
         elif found := FUNCTION.match(text):
             yield "function", found[0]
-        elif found := re.match(r"#ifdef __cplusplus.*?#endif\n|#(?:ifndef|define) MUD_H\n|#endif\s*$|#endif\n", text, re.DOTALL):
+        elif found := FRAME.match(text):
             pass
-        elif found := re.match(r"(?:typedef struct|enum)[^{]*\{.*?\}[^;]*;(?:\n(?=enum).*?\};)?|[^\n]*\n", text, re.DOTALL):
+        elif found := CODE.match(text):
             yield "code", found[0].rstrip()
         else:
             raise ValueError(f"mud.h: what is this? {text[:80]!r}")
@@ -51,8 +55,8 @@ def pieces(text):
 
 
 def page(header):
-    lines = ["# The C header", "", "`umat/include/mud.h`. A Fortran program uses `umat/include/mud_interface.f90`, whose procedures have the same "
-             "names and arguments.", ""]
+    lines = ["# The C header", "", "`umat/include/mud.h`. A Fortran program uses "
+             "`umat/include/mud_interface.f90`, whose procedures have the same names and arguments.", ""]
     first = True
     for kind, text in pieces(header.read_text(encoding="utf-8")):
         if kind == "section":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Configuration of Sphinx. The pages are those that stage.py has gathered; everything a browser needs is in the output."""
+"""Configuration of Sphinx. The pages are those of stage.py; the output holds all that a browser needs."""
 import pathlib
 import re
 import sys

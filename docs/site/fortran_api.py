@@ -38,7 +38,7 @@ def build(root, work, place):
     """Makes the folder `place`; SystemExit where FORD fails or warns."""
     output, project = work / "ford", work / "ford.md"
     version = re.search(r"project\(mud VERSION (\S+)", (root / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
-    folders = "\n".join(("src_dir: " if not number else "    ") + str(root / name) for number, name in enumerate(FOLDERS))
+    folders = "src_dir: " + "\n    ".join(str(root / name) for name in FOLDERS)
     project.write_text(PROJECT.format(version=version, folders=folders, output=output), encoding="utf-8")
     shutil.rmtree(output, ignore_errors=True)
     run = subprocess.run([str(pathlib.Path(sys.executable).parent / "ford"), "--quiet", str(project)], cwd=work,

@@ -40,15 +40,18 @@ def entry(root, folder):
     checks = rows(block(text, "checks"))
     if checks:
         lines += ["| check | measured or off by | allowed |", "|---|---|---|"]
-        lines += [f"| {check[0]} | {check[1] if not check[3] else check[3]} | {check[4]} |" for check in checks[:MOST_CHECKS]]
+        lines += [f"| {name} | {off or measured} | {allowed} |"
+                  for name, measured, _, off, allowed, *_ in checks[:MOST_CHECKS]]
         more = len(checks) - MOST_CHECKS
         lines += ["", f"{more} more on [its page]({link})." if more > 0 else "", ""]
     return "\n".join(lines)
 
 
 def page(root):
-    lines = ["# Gallery", "", "Every page of the verification: what it claims, how far the answer is off, what is allowed and why, and what "
-             "it takes. The numbers are those of the last whole run; [verification](verification/README.md) says how to repeat it.", ""]
+    lines = ["# Gallery", "",
+             "Every page of the verification: what it claims, how far the answer is off, what is allowed, and the time that "
+             "it takes. The numbers are those of the last whole run; [verification](verification/README.md) says how to "
+             "repeat it.", ""]
     for section, title in SECTIONS.items():
         lines += [f"## {title}", ""]
         for folder in sorted((root / "verification" / section).iterdir()):

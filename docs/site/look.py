@@ -10,8 +10,9 @@ import sys
 import tempfile
 
 work = pathlib.Path(__file__).resolve().parents[2] / "build/site"
-PAGES = ("index", "README", "gallery", "c_header", "python_package", "fortran-api/index", "docs/theory/material", "docs/theory/host",
-         "docs/theory/memory-rules", "docs/theory/contact", "docs/troubleshooting", "docs/tutorials/element_test", "umat/README", "host/README",
+PAGES = ("index", "README", "gallery", "c_header", "python_package", "fortran-api/index", "docs/theory/material",
+         "docs/theory/host", "docs/theory/memory-rules", "docs/theory/contact", "docs/troubleshooting",
+         "docs/tutorials/element_test", "umat/README", "host/README",
          "verification/studies/hard_cases/README", "verification/studies/cost/README")
 OFFLINE = "--host-resolver-rules=MAP * ~NOTFOUND"
 WIDTH, HEIGHT = 1280, 4200

@@ -71,7 +71,8 @@ def spaced(row):
         before = made[-1] if made else None
         if text in ("-", "−") and element.tag == "mo" and (before is None or starts_operand(before)):
             element.attrib.update(form="prefix", lspace="0", rspace="0")
-        if before is not None and is_function(before) and not text.startswith(tuple(OPENING)) and element.tag != "mspace":
+        opens = text.startswith(tuple(OPENING))
+        if before is not None and is_function(before) and not opens and element.tag != "mspace":
             made.append(ElementTree.Element("mspace", width=THIN))
         elif before is not None and is_function(element) and before.tag != "mspace" and not starts_operand(before):
             made.append(ElementTree.Element("mspace", width=THIN))

@@ -19,7 +19,8 @@ def committed(root):
     told = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", "*.md"], cwd=root,
                           capture_output=True, text=True)
     names = (told.stdout.split("\n") if told.returncode == 0 else
-             [str(path.relative_to(root)) for path in root.rglob("*.md") if "build" not in path.relative_to(root).parts])
+             [str(path.relative_to(root)) for path in root.rglob("*.md")
+              if "build" not in path.relative_to(root).parts])
     return sorted(name for name in set(names) if name and (root / name).is_file() and not name.startswith("docs/site/"))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One number for the version everywhere, a licence for every file, and the numbers of docs/release.md as the sources have them."""
+"""One version everywhere, a licence for every file, and the numbers of docs/release.md as the sources have them."""
 import pathlib
 import re
 import subprocess
@@ -20,8 +20,8 @@ def found(pattern, name):
 
 
 def committed():
-    told = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=root, capture_output=True,
-                          text=True)
+    told = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=root,
+                          capture_output=True, text=True)
     names = told.stdout.split("\n") if told.returncode == 0 else [
         str(path.relative_to(root)) for path in root.rglob("*") if "build" not in path.relative_to(root).parts]
     return [name for name in names if name and (root / name).is_file()]
@@ -30,7 +30,7 @@ def committed():
 def unlicensed(names, text_of):
     """Sources without a licence in their first five lines."""
     return [name for name in names if (pathlib.Path(name).suffix in SOURCES or pathlib.Path(name).name in SCRIPTS)
-            and not re.search(r"^\W+SPDX-License-Identifier: \S", "\n".join(text_of(name).splitlines()[:5]), re.MULTILINE)]
+            and not any(re.match(r"\W+SPDX-License-Identifier: \S", line) for line in text_of(name).splitlines()[:5])]
 
 
 version = found(r"^project\(mud VERSION (\S+)", "CMakeLists.txt")
@@ -41,11 +41,12 @@ told = {"pyproject.toml": tomllib.loads((root / "pyproject.toml").read_text(enco
 check("every file tells the version of CMakeLists.txt", set(told.values()) == {version}, f"{version}, but {told}")
 check("docs/release.md tells the ABI version of mud.h", found(r"^\| ABI version \| (\d+) \|", "docs/release.md")
       == found(r"^#define MUD_ABI_VERSION (\d+)", "umat/include/mud.h"))
-layout = (found(r"STATE_LAYOUT = (\d+)", "umat/core/base/mud_registry.f90"),
-          re.findall(r"^\| (\d+) \| `", re.search(r"<!-- mud_describe statev -->.*?<!-- end -->", (root / "umat/README.md").read_text(
-              encoding="utf-8"), re.DOTALL)[0], re.MULTILINE)[-1])
-check("docs/release.md tells layout and length of STATEV", layout == re.search(
-    r"^\| layout of STATEV \| (\d+), (\d+) entries", (root / "docs/release.md").read_text(encoding="utf-8"), re.MULTILINE).groups(), layout)
+entries = (root / "umat/README.md").read_text(encoding="utf-8").split("<!-- mud_describe statev -->")[1]
+entries = entries.split("<!--")[0]
+layout = found(r"STATE_LAYOUT = (\d+)", "umat/core/base/mud_registry.f90")
+length = re.findall(r"^\| (\d+) \| `", entries, re.MULTILINE)[-1]
+check("docs/release.md tells layout and length of STATEV", found(
+    r"^\| layout of STATEV \| (\d+, \d+) entries", "docs/release.md") == f"{layout}, {length}", f"{layout}, {length}")
 
 texts = {"a.f90": "module a", "b.f90": "! SPDX-License-Identifier: MIT\nmodule b", "c.md": "# c"}
 check("a source without a licence is seen, and nothing else", unlicensed(texts, texts.get) == ["a.f90"])
@@ -61,7 +62,7 @@ check("the text of every licence is there", licences == {path.stem for path in (
 # A table that says in its first lines whose data it holds is not ours to license.
 ours = {str(path.relative_to(root)) for one in annotations if one["SPDX-License-Identifier"] != "MIT"
         for pattern in one["path"] for path in root.glob(pattern)}
-foreign = [name for name in names if name.endswith(".csv") and re.search(r"(?i)\bCC-BY|digitised from|licen[cs]e:", "".join(
-    (root / name).read_text(encoding="utf-8").splitlines(True)[:3])) and name not in ours]
+foreign = [name for name in names if name.endswith(".csv") and name not in ours and re.search(
+    r"(?i)\bCC-BY|digitised from|licen[cs]e:", "".join((root / name).read_text(encoding="utf-8").splitlines(True)[:3]))]
 check("tables of other people keep their licence", not foreign and len(ours) >= 5, foreign)
 finish()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The pages of the manual: links and headings exist, commands name programs and options that there are, tutorials and recipes run
-as they are printed and say what is printed, and the snippet of README.md compiles.
+"""The pages of the manual: links and headings exist, commands have options that their programs know, tutorials
+and recipes run and say what is printed, troubleshooting quotes messages as they are, and the snippet of README.md
+compiles.
 
 `--heavy` also runs the blocks `console heavy` (a fit, an installation).
 """
@@ -28,8 +29,8 @@ PROGRAMS = {
     "plot_case.py": [sys.executable, root / "drivers/plot_case.py", "--help"],
     "plot_run.py": [sys.executable, root / "host/plot_run.py", "--help"]}
 COMMAND = re.compile(r"^(?:\$ |    )?(?:[A-Z_]+=\S+ )*(?:build/venv/bin/python3 |build/release/\w+/|\./)?"
-                     r"(?:(?!clients)[\w.]+/)*(mud_triax|mud_host|mud_replay|mud_describe|mud_calibrate|check|verification/run|plot_case\.py|plot_run\.py)"
-                     r"(?= )(?P<words>[^|>#!\n]*)", re.MULTILINE)
+                     r"(?:(?!clients)[\w.]+/)*(mud_triax|mud_host|mud_replay|mud_describe|mud_calibrate|check|"
+                     r"verification/run|plot_case\.py|plot_run\.py)(?= )(?P<words>[^|>#!\n]*)", re.MULTILINE)
 
 
 def files(*patterns):
@@ -60,7 +61,8 @@ def planted():
     return ([] if [one.split(":")[0] for one in found] == ["a.md#c", "b.md"] else [f"links: {found}"]) + [
         f"{expected} and {said!r}" for expected, said, good in (
             (["a", "..."], "a\nb\nc\n", True), (["a...c"], "abc", True), (["a", "c"], "a\nb\nc\n", False),
-            (["1.5 kPa"], "1x5 kPa", False), (["...", "c"], "a\nc\nd\n", False)) if pages.agrees(expected, said) != good] + [
+            (["1.5 kPa"], "1x5 kPa", False), (["...", "c"], "a\nc\nd\n", False))
+        if pages.agrees(expected, said) != good] + [
         "options: the offence is not seen" for _ in [0] if not unknown_options("    mud_triax a.nml --no-such x\n")]
 
 
@@ -74,12 +76,14 @@ def help_of(program, known={}):  # noqa: B006 (a cache)
 
 def unknown_options(text):
     return [f"{found[1]} has no {option}" for found in COMMAND.finditer(text.replace("\\\n", " "))
-            for option in OPTION.findall(found["words"].split("--pass ")[0]) if not re.search(re.escape(option) + r"(?![\w-])", help_of(found[1]))]
+            for option in OPTION.findall(found["words"].split("--pass ")[0])
+            if not re.search(re.escape(option) + r"(?![\w-])", help_of(found[1]))]
 
 
 def unsaid(text):
     """Messages that a page quotes in the first column of a table, and that no source holds."""
-    told = "".join((root / name).read_text(encoding="utf-8").replace("''", "'") for name in files("*.f90", "*.py", "*.sh"))
+    told = "".join((root / name).read_text(encoding="utf-8") for name in files("*.f90", "*.py", "*.sh"))
+    told = told.replace("''", "'")
     quoted = re.findall(r'"([^"]+)"', "".join(re.findall(r"^\| [^|]*", text, re.MULTILINE)))
     return [message for message in quoted if message not in told] if quoted else ["no message is quoted"]
 
@@ -114,8 +118,8 @@ def run_page(name, top):
             if command.startswith("export "):
                 variables += command + "\n"
                 continue
-            done = subprocess.run(["bash", "-c", "set -e -o pipefail\n" + variables + command], cwd=top, env=environment,
-                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            done = subprocess.run(["bash", "-c", "set -e -o pipefail\n" + variables + command], cwd=top,
+                                  env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
             if done.returncode or not pages.agrees(expected, done.stdout):
                 wrong.append(f"line {block.line}: {command}: exit code {done.returncode}, said\n{done.stdout}")
     return wrong, number
@@ -123,7 +127,8 @@ def run_page(name, top):
 
 def snippet_compiles():
     """The C of README.md, in a main program that prints its status."""
-    code = next(block.text for block in pages.blocks((root / "README.md").read_text(encoding="utf-8")) if block.words == ["c"])
+    text = (root / "README.md").read_text(encoding="utf-8")
+    code = next(block.text for block in pages.blocks(text) if block.words == ["c"])
     source, program = work / "snippet.c", work / "snippet"
     source.write_text('#include <stdio.h>\n#include "mud.h"\nint main(void)\n{\n' + code
                       + 'printf("%d %.6f\\n", status, report.reached);\nreturn 0;\n}\n')
