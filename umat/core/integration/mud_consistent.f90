@@ -13,6 +13,7 @@ module mud_consistent
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY
    use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, MAX_INTERRUPTED
+   use mud_relaxation, only: relax
    use mud_reversal, only: interrupted_share
    use mud_sensitivity, only: change_t, linearised_t, linearise, change_of_rate, changes_of_rate
    use mud_state, only: memory_t
@@ -171,6 +172,7 @@ contains
             if (abs(dh(j)) > 0.0_wp) then
                rates(NY*(j - 1) + 1:NY*j, i) = rates(NY*(j - 1) + 1:NY*j, i) + (dh(j)/h)*trial%rates(:, i)
             end if
+            if (trial%relaxation%speed > 0.0_wp) call relax(trial%relaxation, h, rates(NY*(j - 1) + 1:NY*j, 1:i))
          end do
       end do
       call solution(inc%scheme, y0(:size), rates(:size, :), h, y1)

@@ -29,6 +29,10 @@ module mud_events
    !> An open point closes when p' would rise by this share of the elastic rate: opening and closing at the same rate
    !> would chatter where the two pull the stress ratio to opposite sides [-].
    real(wp), parameter :: CLOSING = 0.01_wp
+   !> Each time a point opens again in the same increment the share is that many times larger, up to a limit: where
+   !> the rate without a past rises and that of the process that follows falls, it would open and close at every turn
+   !> [-].
+   real(wp), parameter :: CLOSING_GROWTH = 2.0_wp, LARGEST_CLOSING = 0.32_wp
    !> At a low stress an elastic strain of rho_e may be more than the whole strength: r may exceed the bounding surface
    !> by this share. Softening sand is some per cent beyond it and must be able to return where it came from [-].
    real(wp), parameter :: LARGEST_EXCESS = 0.2_wp
@@ -41,6 +45,8 @@ module mud_events
    real(wp), parameter :: SHARP_KINK = 0.01_wp
    !> A drive of the isotropic mechanism this much smaller than at the end of a substep is where it switched before [-].
    real(wp), parameter :: AT_SWITCH = 1.0e-6_wp
+   !> A function that has no zero by then jumps there, as (r - r_in):n does from one direction to another: bisection.
+   integer, parameter :: SMOOTH_ITERATIONS = 16
    integer, parameter :: MAX_EVENT_ITERATIONS = 100          !< Bisection alone needs about 45.
 contains
    !> Shortens an accepted substep so that it lands where the first event happens that its mode knows.
@@ -183,7 +189,8 @@ contains
       do iteration = 1, MAX_EVENT_ITERATIONS
          if (high - low <= EVENT_TOLERANCE .or. high <= par%h_min) exit
          h_trial = 0.5_wp*(low + high)
-         if ((f_low > 0.0_wp .or. low > 0.0_wp) .and. (mod(iteration, 4) > 0 .or. high - low < 0.5_wp*width)) then
+         if ((f_low > 0.0_wp .or. low > 0.0_wp) .and. iteration <= SMOOTH_ITERATIONS .and. &
+             (mod(iteration, 4) > 0 .or. high - low < 0.5_wp*width)) then
             h_trial = low + (high - low)*f_low/(f_low - f_high)
             h_trial = min(max(h_trial, low + 0.5_wp*EVENT_TOLERANCE), high - 0.5_wp*EVENT_TOLERANCE)
          end if
@@ -247,7 +254,7 @@ contains
          f = -beyond_target(par, trial%process, r, bounding_ratio(par, psi_at(par, inc, time, p)))
       case default
          call rate_of(par, inc, time, y, r, closing_mode(inc), w, counters)
-         f = -closing_rate(inc, w)/(w%k*norm(inc%d_strain) + abs(inc%d_pc))
+         f = -closing_rate(inc, trial, w)/(w%k*norm(inc%d_strain) + abs(inc%d_pc))
       end select
    end subroutine event_function
 
@@ -258,17 +265,26 @@ contains
       closing_mode = merge(MODE_ELASTIC, MODE_ORDINARY, inc%inside)
    end function closing_mode
 
+   !> Share of the elastic rate at which an open point closes [-].
+   pure real(wp) function closing_share(trial)
+      type(trial_t), intent(in) :: trial
+
+      closing_share = min(CLOSING*CLOSING_GROWTH**max(trial%openings - 1, 0), LARGEST_CLOSING)
+   end function closing_share
+
    !> How far the rate of p' is above the one at which an open point closes, positive if it closes [kPa].
-   pure real(wp) function closing_rate(inc, w)
+   pure real(wp) function closing_rate(inc, trial, w)
       type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
       type(rate_t), intent(in) :: w        !< at p_min, without a past
 
-      closing_rate = w%d_p - CLOSING*(w%k*norm(inc%d_strain) + abs(inc%d_pc))
+      closing_rate = w%d_p - closing_share(trial)*(w%k*norm(inc%d_strain) + abs(inc%d_pc))
    end function closing_rate
 
    !> Its change with the rate of p', the void ratio, the strain and the suction step [kPa].
-   pure real(wp) function change_of_closing_rate(inc, w, e, d_rate, de, d_strain, d_pc) result(change)
+   pure real(wp) function change_of_closing_rate(inc, trial, w, e, d_rate, de, d_strain, d_pc) result(change)
       type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: e, d_rate, de, d_strain(6), d_pc
       real(wp) :: length
@@ -276,7 +292,7 @@ contains
       length = norm(inc%d_strain)
       change = w%k*length*de*(1.0_wp/(1.0_wp + e) - 1.0_wp/e) + sign(1.0_wp, inc%d_pc)*d_pc
       if (length > 0.0_wp) change = change + w%k*ddot(inc%d_strain, d_strain)/length
-      change = d_rate - CLOSING*change
+      change = d_rate - closing_share(trial)*change
    end function change_of_closing_rate
 
    !> How far r may be beyond the bounding surface in a substep inside the elastic domain: from farther outside it is

@@ -5,8 +5,8 @@ module mud_substep
    use mud_kinds, only: wp
    implicit none (type, external)
    private
-   public :: scheme_t, SCHEMES, HIGHER_ORDER, MAX_STAGES, LARGEST_FACTOR, stage_point, solution, error_vector, &
-             step_factor
+   public :: scheme_t, SCHEMES, HIGHER_ORDER, LINEARLY_IMPLICIT, IMPLICIT_WEIGHTS, IMPLICIT_DIAGONAL, MAX_STAGES, &
+             LARGEST_FACTOR, stage_point, solution, error_vector, step_factor
 
    integer, parameter :: MAX_STAGES = 7
    integer, parameter :: TRIANGLE = MAX_STAGES*(MAX_STAGES - 1)/2
@@ -56,6 +56,20 @@ module mud_substep
    !> What modified Euler hands over to where it would need many substeps: its steps grow with the third root of the
    !> tolerance, and it is the most stable of the three for its rates.
    type(scheme_t), parameter :: HIGHER_ORDER = BOGACKI_SHAMPINE
+
+   !> Rosenbrock-W 3(2), ROS34PW2 of Rang & Angermann, BIT 45 (2005): of order 3 whatever matrix stands for the
+   !> Jacobian, and L-stable where it is the Jacobian. Its rates are those of explicit stages, changed by
+   !> mud_relaxation's dyad with the weights below.
+   type(scheme_t), parameter :: LINEARLY_IMPLICIT = scheme_t(4, 3, .false., &
+      [8.7173304301691801e-1_wp, 8.4457060015369423e-1_wp, -1.1299064236484185e-1_wp, 0.0_wp, 0.0_wp, 1.0_wp, ZERO(7:)], &
+      [2.4212380706095346e-1_wp, -1.2232505839045147_wp, 1.5452602553351020_wp, 4.3586652150845900e-1_wp, ZERO(5:7)], &
+      [-1.3598522439724023e-1_wp, -1.1272082916920915_wp, 1.0452602553351020_wp, 2.1793326075422950e-1_wp, &
+       ZERO(5:7)], &
+      [0.0_wp, 8.7173304301691801e-1_wp, 7.3157995778885238e-1_wp, 1.0_wp, ZERO(5:7)])
+   !> Weights of the earlier rates that the Jacobian multiplies, strict lower triangle row by row, and of the stage's own.
+   real(wp), parameter :: IMPLICIT_WEIGHTS(6) = [-8.7173304301691801e-1_wp, -9.0338057013044082e-1_wp, &
+      5.4180672388095326e-2_wp, 2.4212380706095346e-1_wp, -1.2232505839045147_wp, 5.4526025533510214e-1_wp]
+   real(wp), parameter :: IMPLICIT_DIAGONAL = 4.3586652150845900e-1_wp
 contains
    !> Where stage i of a step h stands.
    pure subroutine stage_point(scheme, i, y0, rates, h, y)

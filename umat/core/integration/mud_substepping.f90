@@ -4,7 +4,7 @@ module mud_substepping
    use mud_kinds, only: wp
    use mud_consistent, only: sensitivity_t, propagate
    use mud_event_time, only: move_event
-   use mud_events, only: stop_at_event, EVENT_TOLERANCE, EVENT_NONE, EVENT_MECHANISM
+   use mud_events, only: stop_at_event, EVENT_TOLERANCE, EVENT_NONE, EVENT_OPENS, EVENT_MECHANISM
    use mud_increment, only: increment_t, void_ratio_at, suction_at
    use mud_params, only: params_t
    use mud_rates, only: MODE_ORDINARY
@@ -12,7 +12,8 @@ module mud_substepping
    use mud_state, only: state_t, counters_t
    use mud_status, only: mud_status_t, fail, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, &
       MUD_NOT_FINITE, ON_STRESS
-   use mud_substep, only: step_factor, SCHEMES, HIGHER_ORDER
+   use mud_stiffness, only: choose_stepping, raise_order
+   use mud_substep, only: step_factor, SCHEMES
    use mud_tensor, only: ddot, norm, is_finite
    use mud_trace, only: trace_t, record_substep, SUBSTEP_REJECTED, SUBSTEP_ACCEPTED, SUBSTEP_FAILED
    use mud_transitions, only: begin_substep, accept_substep
@@ -60,6 +61,8 @@ contains
       event = EVENT_NONE
       trial%x_previous = state%memory%x_running
       trial%pressed = .false.
+      trial%relaxation%speed = 0.0_wp
+      trial%openings = 0
       substeps: do while (time < 1.0_wp)
          reached = time
          trial%time = time
@@ -67,6 +70,7 @@ contains
          trial%y0(7:12) = state%z
          trial%y0(13) = 0.0_wp
          call begin_substep(par, inc, event, known, consistent, state, trial, sens, jump, counters)
+         call choose_stepping(par, 1.0_wp - time, max(h, par%h_min), inc, trial)
          attempts: do
             if (counters%substep + counters%reject >= par%max_substeps) then
                status = fail(MUD_TOO_MANY_SUBSTEPS, value=real(par%max_substeps, wp))
@@ -110,6 +114,7 @@ contains
 
          h = h_taken*factor
          call stop_at_event(par, inc, error, h_taken, trial, counters, event)
+         if (event == EVENT_OPENS) trial%openings = trial%openings + 1
          if (trial%w(1)%no_root) elastic_substeps = elastic_substeps + 1
          if (elastic_substeps > 1 .and. par%memory_rule /= RULE_AS_PUBLISHED) then
             status = fail(MUD_NO_DIRECTION)
@@ -132,7 +137,8 @@ contains
          call record_substep(par, inc, trial, h_taken, error, state%sigma, SUBSTEP_ACCEPTED, jump, &
                              event /= EVENT_NONE, counters, record)
          trial%x_previous = trial%w(1)%x
-         known = inc%scheme%first_same_as_last .and. trial%mode == MODE_ORDINARY .and. event == EVENT_NONE
+         known = event == EVENT_NONE .and. &
+                 (trial%mode == MODE_HELD .or. (trial%mode == MODE_ORDINARY .and. inc%scheme%first_same_as_last))
       end do substeps
       if (.not. inc%inside) state%last_step = h*size
       reached = 1.0_wp
@@ -153,14 +159,6 @@ contains
          first_step = min(first_step, 1.0_wp/real(ceiling(min(norm(inc%d_strain)/(TURN_PIECE*inc%rho), 1.0e6_wp)), wp))
       end if
    end function first_step
-
-   !> Modified Euler becomes the higher order for the rest of the increment or phase; the rule as_published keeps it.
-   pure subroutine raise_order(par, inc)
-      type(params_t), intent(in) :: par
-      type(increment_t), intent(inout) :: inc
-
-      if (inc%scheme%order < HIGHER_ORDER%order .and. par%memory_rule /= RULE_AS_PUBLISHED) inc%scheme = HIGHER_ORDER
-   end subroutine raise_order
 
    !> True where the elastic domain turns at the start, its cosine with the strain below 1 - gap: the transient lasts
    !> about a radius of strain.

@@ -27,7 +27,7 @@ contains
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: event       !< At which the substep before ended.
-      logical, intent(in) :: known       !< The trial's last rate is that of this point.
+      logical, intent(in) :: known       !< The trial's last rate is that of this point; one held does not close.
       logical, intent(in) :: consistent  !< Derivatives are wanted.
       type(state_t), intent(inout) :: state
       type(trial_t), intent(inout) :: trial
@@ -43,6 +43,8 @@ contains
       trial%mode = MODE_ORDINARY
       trial%r_in = state%memory%r_in
       if (state%open) then
+         trial%mode = MODE_HELD
+         if (known) return
          call try_to_close(par, inc, r, consistent, state, trial, sens, jump, counters)
          return
       end if
@@ -162,7 +164,7 @@ contains
       trial%r_in = r
       trial%mode = closing_mode(inc)
       call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
-      state%open = closing_rate(inc, trial%w(1)) <= 0.0_wp
+      state%open = closing_rate(inc, trial, trial%w(1)) <= 0.0_wp
       trial%watched = 0
       if (state%open) then
          trial%mode = MODE_HELD

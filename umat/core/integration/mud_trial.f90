@@ -6,6 +6,7 @@ module mud_trial
    use mud_increment, only: increment_t, rate_of, NY
    use mud_params, only: params_t
    use mud_rates, only: rate_t
+   use mud_relaxation, only: relaxation_t, relax
    use mud_state, only: counters_t, interrupted_t
    use mud_substep, only: scheme_t, MAX_STAGES, stage_point, solution, error_vector
    use mud_tensor, only: IDENTITY, deviator, norm
@@ -30,6 +31,8 @@ module mud_trial
       real(wp) :: time              !< Pseudo-time of y0 [-].
       real(wp) :: x_previous        !< (r - r_in):n where the substep before began [-].
       logical :: advanced           !< The present process has had (r - r_in):n > 0: a reversal would end it.
+      integer :: openings           !< How often p' has fallen to p_min in this increment or phase.
+      type(relaxation_t) :: relaxation   !< Its stiff direction, of speed 0 where the substep is explicit.
       real(wp) :: held_error        !< Error of a held substep's stress ratio [-].
       integer :: watched            !< The interrupted process whose target is looked for, 0: none.
       type(interrupted_t) :: process   !< That process.
@@ -50,11 +53,13 @@ contains
          return
       end if
       call store_rate(trial%w(1), trial%rates(:, 1))
+      if (trial%relaxation%speed > 0.0_wp) call relax(trial%relaxation, h, trial%rates(:, 1:1))
       do i = 2, inc%scheme%stages
          call stage_point(inc%scheme, i, trial%y0, trial%rates, h, y)
          call rate_of(par, inc, trial%time + inc%scheme%node(i)*h, y, trial%r_in, trial%mode, trial%w(i), &
                       counters)
          call store_rate(trial%w(i), trial%rates(:, i))
+         if (trial%relaxation%speed > 0.0_wp) call relax(trial%relaxation, h, trial%rates(:, 1:i))
       end do
       call solution(inc%scheme, trial%y0, trial%rates, h, trial%y)
    end subroutine take_step
