@@ -115,7 +115,7 @@ MUTATIONS = [
     ("closing remembers the gap", (TRANSITIONS, "state%memory = new_memory(r)", "state%memory%depth = state%memory%depth")),
     ("open stress ratio beyond the bounding surface", (BOUNDING, "if (beyond > 0.0_wp) r_limited", "if (beyond > 1.0e9_wp) r_limited")),
     ("an open point never closes",
-     (TRANSITIONS, "closing_rate(inc, trial%w(1)) <= 0.0_wp", "closing_rate(inc, trial%w(1)) <= huge(1.0_wp)")),
+     (TRANSITIONS, "closing_rate(inc, trial, trial%w(1)) <= 0.0_wp", "closing_rate(inc, trial, trial%w(1)) <= huge(1.0_wp)")),
     ("tension is not reported", (POINT, "if (has_tension(state1%sigma)) counters%tensile = 1", "continue")),
     # elastic domain
     ("the elastic domain forgets the strain inside",

@@ -120,7 +120,8 @@ contains
          moved = change
          moved%r_in = dr
          call change_of_rate(par, w, lin, moved, d_sigma, d_z, d_eps_q, dn)
-         slope = change_of_closing_rate(inc, trial, w, lin%e, trace(d_sigma)/3.0_wp, change%e, strain_change, change%d_pc)
+         slope = change_of_closing_rate(inc, trial, w, lin%e, trace(d_sigma)/3.0_wp, change%e, strain_change, &
+                                        change%d_pc)
       end select
    end function slope_of_event
 end module mud_event_time

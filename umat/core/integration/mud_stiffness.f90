@@ -24,7 +24,7 @@ contains
    !> again where it would not. The rule as_published keeps its scheme.
    pure subroutine choose_stepping(par, rest, h, inc, trial)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: rest, h     !< what is left of the increment or phase; the size that error control proposes
+      real(wp), intent(in) :: rest, h     !< what is left; the size that error control proposes
       type(increment_t), intent(inout) :: inc
       type(trial_t), intent(inout) :: trial   !< with its first rate
       real(wp) :: speed

@@ -61,12 +61,13 @@ module mud_substep
    !> Jacobian, and L-stable where it is the Jacobian. Its rates are those of explicit stages, changed by
    !> mud_relaxation's dyad with the weights below.
    type(scheme_t), parameter :: LINEARLY_IMPLICIT = scheme_t(4, 3, .false., &
-      [8.7173304301691801e-1_wp, 8.4457060015369423e-1_wp, -1.1299064236484185e-1_wp, 0.0_wp, 0.0_wp, 1.0_wp, ZERO(7:)], &
+      [8.7173304301691801e-1_wp, 8.4457060015369423e-1_wp, -1.1299064236484185e-1_wp, 0.0_wp, 0.0_wp, 1.0_wp, &
+       ZERO(7:)], &
       [2.4212380706095346e-1_wp, -1.2232505839045147_wp, 1.5452602553351020_wp, 4.3586652150845900e-1_wp, ZERO(5:7)], &
       [-1.3598522439724023e-1_wp, -1.1272082916920915_wp, 1.0452602553351020_wp, 2.1793326075422950e-1_wp, &
        ZERO(5:7)], &
       [0.0_wp, 8.7173304301691801e-1_wp, 7.3157995778885238e-1_wp, 1.0_wp, ZERO(5:7)])
-   !> Weights of the earlier rates that the Jacobian multiplies, strict lower triangle row by row, and of the stage's own.
+   !> Weights of the earlier rates that the Jacobian multiplies, strict lower triangle row by row, and of the own one.
    real(wp), parameter :: IMPLICIT_WEIGHTS(6) = [-8.7173304301691801e-1_wp, -9.0338057013044082e-1_wp, &
       5.4180672388095326e-2_wp, 2.4212380706095346e-1_wp, -1.2232505839045147_wp, 5.4526025533510214e-1_wp]
    real(wp), parameter :: IMPLICIT_DIAGONAL = 4.3586652150845900e-1_wp

@@ -7,7 +7,6 @@ module mud_substepping
    use mud_events, only: stop_at_event, EVENT_TOLERANCE, EVENT_NONE, EVENT_OPENS, EVENT_MECHANISM
    use mud_increment, only: increment_t, void_ratio_at, suction_at
    use mud_params, only: params_t
-   use mud_rates, only: MODE_ORDINARY
    use mud_registry, only: RULE_AS_PUBLISHED
    use mud_state, only: state_t, counters_t
    use mud_status, only: mud_status_t, fail, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, &
@@ -16,7 +15,7 @@ module mud_substepping
    use mud_substep, only: step_factor, SCHEMES
    use mud_tensor, only: ddot, norm, is_finite
    use mud_trace, only: trace_t, record_substep, SUBSTEP_REJECTED, SUBSTEP_ACCEPTED, SUBSTEP_FAILED
-   use mud_transitions, only: begin_substep, accept_substep
+   use mud_transitions, only: begin_phase, begin_substep, accept_substep, rate_is_known
    use mud_trial, only: trial_t, take_step, error_norm, MODE_HELD
    implicit none (type, external)
    private
@@ -59,10 +58,7 @@ contains
       elastic_substeps = 0
       known = .false.
       event = EVENT_NONE
-      trial%x_previous = state%memory%x_running
-      trial%pressed = .false.
-      trial%relaxation%speed = 0.0_wp
-      trial%openings = 0
+      call begin_phase(state, trial)
       substeps: do while (time < 1.0_wp)
          reached = time
          trial%time = time
@@ -137,8 +133,7 @@ contains
          call record_substep(par, inc, trial, h_taken, error, state%sigma, SUBSTEP_ACCEPTED, jump, &
                              event /= EVENT_NONE, counters, record)
          trial%x_previous = trial%w(1)%x
-         known = event == EVENT_NONE .and. &
-                 (trial%mode == MODE_HELD .or. (trial%mode == MODE_ORDINARY .and. inc%scheme%first_same_as_last))
+         known = rate_is_known(inc, trial, event)
       end do substeps
       if (.not. inc%inside) state%last_step = h*size
       reached = 1.0_wp

@@ -5,7 +5,8 @@ module mud_transitions
    use mud_kinds, only: wp
    use mud_bounding, only: excess
    use mud_consistent, only: sensitivity_t, jump_of_memory, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
-   use mud_events, only: closing_mode, closing_rate, psi_at, LARGEST_EXCESS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN
+   use mud_events, only: closing_mode, closing_rate, psi_at, LARGEST_EXCESS, EVENT_NONE, EVENT_BOUNDS, &
+      EVENT_REVERSAL, EVENT_RETURN
    use mud_increment, only: increment_t, rate_of
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY, MODE_ELASTIC
@@ -17,10 +18,21 @@ module mud_transitions
    use mud_trial, only: trial_t, MODE_HELD
    implicit none (type, external)
    private
-   public :: begin_substep, accept_substep, AT_LIMIT
+   public :: begin_phase, begin_substep, accept_substep, rate_is_known, AT_LIMIT
 
    real(wp), parameter :: AT_LIMIT = 1.0e-9_wp               !< p' this close (relative) to p_min is at p_min [-].
 contains
+   !> What a trial holds before the first substep of an increment or phase.
+   pure subroutine begin_phase(state, trial)
+      type(state_t), intent(in) :: state
+      type(trial_t), intent(inout) :: trial
+
+      trial%x_previous = state%memory%x_running
+      trial%pressed = .false.
+      trial%relaxation%speed = 0.0_wp
+      trial%openings = 0
+   end subroutine begin_phase
+
    !> Decides what the coming substep is - ordinary, elastic or held by the tension cut-off - applies the memory rule,
    !> and leaves the first rate in the trial.
    pure subroutine begin_substep(par, inc, event, known, consistent, state, trial, sens, jump, counters)
@@ -76,6 +88,16 @@ contains
          end if
       end if
    end subroutine begin_substep
+
+   !> True after a substep whose last rate is the first of the next, or which is held and does not close at its end.
+   pure logical function rate_is_known(inc, trial, event)
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      integer, intent(in) :: event   !< At which it ended.
+
+      rate_is_known = event == EVENT_NONE .and. &
+                      (trial%mode == MODE_HELD .or. (trial%mode == MODE_ORDINARY .and. inc%scheme%first_same_as_last))
+   end function rate_is_known
 
    !> Returns and reversals where an ordinary substep begins; the trial holds the rate of the memory that results.
    pure subroutine apply_memory_rule(par, inc, event, r, consistent, state, trial, sens, jump, counters)
