@@ -6,14 +6,17 @@ module hdf5_file
    use, intrinsic :: iso_c_binding, only: c_int8_t, c_ptr, c_loc, c_null_ptr
    use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5eset_auto_f, h5fcreate_f, h5fopen_f, h5fclose_f, h5fflush_f, &
                    h5fget_file_image_f, h5pcreate_f, h5pclose_f, h5pset_fapl_core_f, h5pset_chunk_f, &
+                   h5pset_libver_bounds_f, H5F_LIBVER_V18_F, &
                    h5pset_fletcher32_f, h5pset_obj_track_times_f, h5pset_create_inter_group_f, h5screate_f, &
                    h5screate_simple_f, h5sclose_f, h5dcreate_f, h5dopen_f, h5dwrite_f, h5dread_f, h5dclose_f, &
                    h5dget_space_f, h5sget_simple_extent_ndims_f, h5sget_simple_extent_dims_f, h5tcopy_f, &
                    h5tset_size_f, h5tclose_f, h5acreate_f, h5aopen_f, h5awrite_f, h5aread_f, h5aclose_f, &
-                   H5F_ACC_TRUNC_F, H5F_ACC_RDONLY_F, H5F_SCOPE_GLOBAL_F, H5P_FILE_ACCESS_F, H5P_DATASET_CREATE_F, &
+                   H5F_ACC_TRUNC_F, H5F_ACC_RDONLY_F, H5F_SCOPE_GLOBAL_F, H5P_FILE_ACCESS_F, H5P_FILE_CREATE_F, &
+                   H5P_DATASET_CREATE_F, &
                    H5P_LINK_CREATE_F, H5S_SCALAR_F, H5T_NATIVE_DOUBLE, H5T_NATIVE_INTEGER, H5T_FORTRAN_S1
    use kinds, only: wp
    use files, only: write_whole
+   use hdf5_superblock, only: seal_superblock
    implicit none (type, external)
    private
    public :: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, get_text, extent_of
@@ -37,19 +40,30 @@ module hdf5_file
       module procedure get_real, get_real_2, get_integer
    end interface get
 contains
-   !> An empty file in memory.
-   subroutine new_file(file)
+   !> An empty file in memory. `guarded`: in the format of HDF5 1.8, which has checksums over its structure too; what
+   !> reads it must not be older.
+   subroutine new_file(file, guarded)
       type(h5_t), intent(out) :: file
-      integer(hid_t) :: access
+      logical, intent(in), optional :: guarded
+      integer(hid_t) :: access, creation
       integer :: status
 
       call begin(file)
+      call h5pcreate_f(H5P_FILE_CREATE_F, creation, status)
+      call note(file, status)
+      call h5pset_obj_track_times_f(creation, .false., status)   ! of the root group, in the later format
+      call note(file, status)
       call h5pcreate_f(H5P_FILE_ACCESS_F, access, status)
       call note(file, status)
       call h5pset_fapl_core_f(access, GROWTH, .false., status)
       call note(file, status)
-      call h5fcreate_f('memory', H5F_ACC_TRUNC_F, file%id, status, access_prp=access)
+      if (present(guarded)) then
+         if (guarded) call h5pset_libver_bounds_f(access, H5F_LIBVER_V18_F, H5F_LIBVER_V18_F, status)
+         call note(file, status)
+      end if
+      call h5fcreate_f('memory', H5F_ACC_TRUNC_F, file%id, status, creation, access)
       call note(file, status)
+      call h5pclose_f(creation, status)
       call h5pclose_f(access, status)
    end subroutine new_file
 
@@ -75,6 +89,7 @@ contains
       call note(file, status)
       good = file%good
       call close_file(file)
+      call seal_superblock(image)
       if (good) call write_whole(path, image, good)
    end subroutine write_file
 

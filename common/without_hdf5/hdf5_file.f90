@@ -20,10 +20,11 @@ module hdf5_file
       module procedure get_real, get_real_2, get_integer
    end interface get
 contains
-   subroutine new_file(file)
+   subroutine new_file(file, guarded)
       type(h5_t), intent(out) :: file
+      logical, intent(in), optional :: guarded
 
-      file%good = .false.
+      file%good = present(guarded) .and. .false.
    end subroutine new_file
 
    subroutine write_file(file, path, good)
@@ -44,7 +45,7 @@ contains
    subroutine close_file(file)
       type(h5_t), intent(inout) :: file
 
-      file%good = .false.
+      file%good = present(guarded) .and. .false.
    end subroutine close_file
 
    subroutine put_real(file, name, values, unit, meaning)

@@ -5,13 +5,14 @@ module gmsh_reader
    use kinds, only: wp
    use triangle_mesh, only: mesh_t, add_group, NAME_LENGTH
    use faults, only: fault_t, raise, at_line
-   use texts, only: whole
+   use texts, only: short, whole
    implicit none (type, external)
    private
    public :: read_gmsh
 
    integer, parameter :: LINE3 = 8, TRIANGLE6 = 9, POINT = 15   !< Gmsh's element types.
    integer, parameter :: LONGEST = 4096
+   real(wp), parameter :: FARTHEST = 1.0e15_wp   !< [m] Areas and Jacobians of such coordinates are still numbers.
 
    !> Name of a physical group.
    type :: physical_t
@@ -34,6 +35,7 @@ module gmsh_reader
    type :: reader_t
       character(:), allocatable :: file
       integer :: unit = 0, line = 0
+      integer :: bytes = 0   !< Of the file: what it announces beyond is not there.
       character(LONGEST) :: text = ''
    end type reader_t
 contains
@@ -55,6 +57,7 @@ contains
          call raise(fault, EXIT_MESH, trim(file)//': the mesh cannot be read; is the path right, seen from the scene?')
          return
       end if
+      inquire (unit=reader%unit, size=reader%bytes)
       do while (fault%code == 0)
          read (reader%unit, '(a)', iostat=status) reader%text
          if (status /= 0) exit
@@ -105,9 +108,29 @@ contains
 
       values = 0
       if (fault%code /= 0) return
-      read (reader%text, *, iostat=status) values
+      status = 1
+      if (only_numbers(reader)) read (reader%text, *, iostat=status) values
       if (status /= 0) call wrong(reader, 'expected '//whole(size(values))//' integers', fault)
    end subroutine integers
+
+   !> Whether the present line holds nothing but numbers: a slash or a star would end or repeat a list without a word.
+   pure logical function only_numbers(reader)
+      type(reader_t), intent(in) :: reader
+
+      only_numbers = verify(trim(reader%text), '0123456789+-.eEdD '//achar(9)//achar(13)) == 0
+   end function only_numbers
+
+   !> A number of lines, or a largest tag, that the file announces: not below 0, and no more than it has bytes, so that a
+   !> damaged number cannot ask for all memory.
+   subroutine check_announced(reader, what, number, fault)
+      type(reader_t), intent(in) :: reader
+      character(*), intent(in) :: what
+      integer, intent(in) :: number
+      type(fault_t), intent(inout) :: fault
+
+      if (number < 0 .or. number > reader%bytes) call wrong(reader, what//' is '//whole(number)// &
+         ', allowed 0 to '//whole(reader%bytes)//', the bytes of the file', fault)
+   end subroutine check_announced
 
    subroutine read_format(reader, fault)
       type(reader_t), intent(inout) :: reader
@@ -158,7 +181,10 @@ contains
             call next(reader, fault)
             if (fault%code /= 0) return
             one%dimension = dimension
-            read (reader%text, *, iostat=status) one%tag, box(:skip), tags
+            status = 1
+            if (only_numbers(reader)) read (reader%text, *, iostat=status) one%tag, box(:skip), tags
+            if (status == 0) call check_announced(reader, 'the number of physical groups of an entity', tags, fault)
+            if (fault%code /= 0) return
             if (status == 0) then
                if (allocated(one%physical)) deallocate (one%physical)
                allocate (one%physical(tags))
@@ -180,6 +206,9 @@ contains
 
       call next(reader, fault)
       call integers(reader, head, fault)
+      call check_announced(reader, 'the number of nodes', head(2), fault)
+      call check_announced(reader, 'the largest node tag', head(4), fault)
+      if (allocated(mesh%x)) call wrong(reader, 'there is a second section $Nodes', fault)
       if (fault%code /= 0) return
       allocate (mesh%x(2, head(2)), source=0.0_wp)
       deallocate (number_of)
@@ -188,7 +217,7 @@ contains
       do b = 1, head(1)
          call next(reader, fault)
          call integers(reader, block_head, fault)
-         if (fault%code == 0 .and. used + block_head(4) > head(2)) &
+         if (fault%code == 0 .and. (block_head(4) < 0 .or. block_head(4) > head(2) - used)) &
             call wrong(reader, 'more nodes than announced', fault)
          if (fault%code /= 0) return
          if (allocated(tags)) deallocate (tags)
@@ -204,9 +233,12 @@ contains
             call next(reader, fault)
             if (fault%code /= 0) return
             used = used + 1
+            if (number_of(tags(i)) /= 0) call wrong(reader, 'node '//whole(tags(i))//' comes twice', fault)
             number_of(tags(i)) = used
-            read (reader%text, *, iostat=status) mesh%x(:, used)
-            if (status /= 0) call wrong(reader, 'expected coordinates', fault)
+            status = 1
+            if (only_numbers(reader)) read (reader%text, *, iostat=status) mesh%x(:, used)
+            if (status /= 0 .or. .not. all(abs(mesh%x(:, used)) <= FARTHEST)) &
+               call wrong(reader, 'expected coordinates of at most '//short(FARTHEST)//' m', fault)
          end do
       end do
       if (used /= head(2)) call wrong(reader, 'fewer nodes than announced', fault)
@@ -218,15 +250,20 @@ contains
       type(block_t), allocatable, intent(inout) :: blocks(:)
       type(fault_t), intent(inout) :: fault
       type(block_t) :: one
-      integer :: head(4), block_head(4), b, i, n
+      integer :: head(4), block_head(4), b, i, n, used
       integer :: row(7)
 
       call next(reader, fault)
       call integers(reader, head, fault)
+      call check_announced(reader, 'the number of elements', head(2), fault)
+      used = 0
       do b = 1, head(1)
          call next(reader, fault)
          call integers(reader, block_head, fault)
+         if (fault%code == 0 .and. (block_head(4) < 0 .or. block_head(4) > head(2) - used)) &
+            call wrong(reader, 'more elements than announced', fault)
          if (fault%code /= 0) return
+         used = used + block_head(4)
          select case (block_head(3))
          case (POINT)
             n = 1
@@ -253,9 +290,11 @@ contains
                return
             end if
             one%nodes(:, i) = number_of(row(2:n + 1))
+            if (any(one%nodes(:, i) == 0)) call wrong(reader, 'an element names a node that is not there', fault)
          end do
          blocks = [blocks, one]
       end do
+      if (used /= head(2)) call wrong(reader, 'fewer elements than announced', fault)
    end subroutine read_elements
 
    !> Collects triangles, turns clockwise ones, and makes a group of every physical name.

@@ -29,6 +29,8 @@ module checkpoints
    character(*), parameter :: FORMAT = '6'      !< Grows with every change of what is stored.
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
    integer, parameter :: N_COUNTERS = 14
+   character(*), parameter :: DAMAGED = ' is damaged: an entry is missing, has another extent or a wrong '// &
+                                        'checksum; use an older copy, or start anew.'
    character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
                                         'contact, seepage, damping [kJ], outflow, outflow_air [m3], '// &
                                         'largest_work, open_0, most_created [kJ]'
@@ -44,7 +46,7 @@ contains
       ! What the checkpoint counts on comes first.
       call settle_tables(tables, fault)
       if (fault%code /= 0) return
-      call new_file(file)
+      call new_file(file, guarded=.true.)
       call put_text(file, 'kind', KIND_OF_FILE)
       call put_text(file, 'format', FORMAT)
       call put_text(file, 'library', library())
@@ -110,7 +112,9 @@ contains
       end if
       call check_origin(path, model, file, fault)
       if (fault%code == 0) then
+         counters = 0.0_wp
          call get(file, 'counters', counters)
+         if (.not. possible(counters, size(model%stages))) file%good = .false.
          call get(file, 'stage', stage)
          call get(file, 'ledger', ledger)
          call get(file, 'largest', run%system%largest)
@@ -129,7 +133,9 @@ contains
          call get(file, 's_rate', run%state%s_rate)
          if (allocated(run%constraint%dashpots)) call get(file, 'offset', run%constraint%offset)
          if (file%good .and. model%effect_options%auto) call take_monitor(file, run)
-         if (any(model%stages(:nint(counters(1)))%controlled)) call take_control(file, model, run)
+         if (file%good) then
+            if (any(model%stages(:nint(counters(1)))%controlled)) call take_control(file, model, run)
+         end if
          if (file%good .and. counters(N_COUNTERS) > 0.5_wp) &
             call take_pairs(file, nint(counters(N_COUNTERS)), model%dofs, run)
          if (file%good) then
@@ -144,8 +150,7 @@ contains
             tables%origin = origin(:len(tables%origin))
             call copy_state(run%state, run%next)
          else
-            call raise(fault, EXIT_RESTART, path//' is damaged: an entry is missing, has another extent or a wrong '// &
-                       'checksum; use an older copy, or start anew.')
+            call raise(fault, EXIT_RESTART, path//DAMAGED)
          end if
       end if
       call close_file(file)
@@ -225,7 +230,10 @@ contains
       stage = 0.0_wp
       call get(file, 'counters', counters)
       call get(file, 'stage', stage)
-      if (.not. file%good) return
+      if (.not. file%good .or. .not. possible(counters, huge(0))) then
+         call raise(fault, EXIT_RESTART, path//DAMAGED)
+         return
+      end if
       number = nint(counters(1))
       if (number > size(model%stages)) then
          call raise(fault, EXIT_RESTART, foreign()//'it stands in stage '//whole(number)//', and the scene has '// &
@@ -281,6 +289,17 @@ contains
                           tables%contact%bytes, tables%reactions%bytes, pairs_of(run)], wp)
       end associate
    end function counters_of
+
+   !> Whether counters may be those of a run: whole numbers, none below 0, a stage of `stages`.
+   pure logical function possible(counters, stages)
+      real(wp), intent(in) :: counters(N_COUNTERS)
+      integer, intent(in) :: stages
+      real(wp), parameter :: LARGEST(N_COUNTERS) = [spread(real(huge(0), wp), 1, 7), 2.0_wp**53, 1.0_wp, &
+                                                    spread(2.0_wp**53, 1, 4), real(huge(0), wp)/2]
+
+      possible = all(counters >= 0.0_wp .and. counters <= LARGEST)
+      if (possible) possible = counters(1) >= 0.5_wp .and. counters(1) <= stages
+   end function possible
 
    pure subroutine take_counters(counters, run, tables)
       real(wp), intent(in) :: counters(N_COUNTERS)

@@ -14,9 +14,11 @@ module step_booking
    use run_observer, only: run_observer_t, step_report_t
    use run_state, only: run_t
    use contact_alarm, only: tell_penetration
+   use pressure_alarm, only: tell_oscillation
    implicit none (type, external)
    private
-   public :: book_accepted_step, watch_effects, check_creation, tell_creation, tell_penetration
+   public :: book_accepted_step, watch_effects, check_creation, tell_creation, tell_penetration, &
+             tell_oscillation
 contains
    subroutine book_accepted_step(model, scheme, run)
       type(model_t), intent(in) :: model

@@ -14,7 +14,8 @@ module time_stepping
    use sparse_factors, only: release
    use step_attempt, only: begin_stage, try_step
    use step_size, only: next_step, keep_step, is_over, LAST_STEP
-   use step_booking, only: book_accepted_step, watch_effects, check_creation, tell_creation, tell_penetration
+   use step_booking, only: book_accepted_step, watch_effects, check_creation, tell_creation, tell_penetration, &
+                           tell_oscillation
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
@@ -108,6 +109,7 @@ contains
          at%step = at%step + 1
          run%steps = run%steps + 1
          if (present(observer)) call tell_penetration(model, run%next%time, run%system%contacts)
+         if (present(observer)) call tell_oscillation(model, stage, run%next%time, run%next%x, run%told_oscillation)
          call book_accepted_step(model, scheme, run)
          report = step_report_t(number, dt, step_error(scheme, run%state%x, run%state%a, run%next%x, run%next%a), &
                                 at%t_start + stage%duration - run%next%time <= LAST_STEP*dt, log)

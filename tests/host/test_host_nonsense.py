@@ -4,10 +4,12 @@
 1000 scenes in the check run (fewer in the slow builds, which only read them); `MUD_NONSENSE=100000` for a long run,
 `MUD_NONSENSE_FIRST` for where it begins.
 """
+import collections
 import concurrent.futures
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
@@ -18,6 +20,7 @@ from nonsense import Grammar  # noqa: E402
 HOST = build / "host/mud_host"
 TABLE = (root / "host/README.md").read_text(encoding="utf-8").split("## Exit codes")[1]
 CODES = {0, *map(int, re.findall(r"^\| (\d+) \|", TABLE, re.MULTILINE))}
+REFUSALS = {2, 10, 11, 12}
 CRASH = re.compile(r"Fortran runtime error|Backtrace|Sanitizer|runtime error:|SIG[A-Z]+|terminate called")
 SECONDS = 2   # a scene that still runs then is a run
 ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1"}
@@ -35,7 +38,7 @@ def bases():
 
 
 def judged(number, text):
-    """What is wrong with the answer to a scene; an empty text if nothing is."""
+    """What is wrong with the answer to a scene, an empty text if nothing is; and what the answer was."""
     folder = work / str(number)
     folder.mkdir()
     scene = folder / "scene.nml"
@@ -47,15 +50,17 @@ def judged(number, text):
                               timeout=SECONDS * (30 if check_only else 1),
                               env=ENVIRONMENT, cwd=folder, stdin=subprocess.DEVNULL)
     except subprocess.TimeoutExpired:
-        return "reading hangs" if check_only else ""
+        return ("reading hangs" if check_only else ""), "still running"
     told = done.stderr.decode(errors="replace")
+    shutil.rmtree(folder)
+    kind = "refused" if done.returncode in REFUSALS else "ended early" if done.returncode else "read" if check_only else "ran"
     if done.returncode not in CODES:
-        return f"exit code {done.returncode}: {told[:300]}"
+        return f"exit code {done.returncode}: {told[:300]}", kind
     if CRASH.search(told):
-        return f"crash: {told[:300]}"
+        return f"crash: {told[:300]}", kind
     if done.returncode and len(told.split()) < 4:
-        return f"exit code {done.returncode} without a sentence: {told!r}"
-    return ""
+        return f"exit code {done.returncode} without a sentence: {told!r}", kind
+    return "", kind
 
 
 def main():
@@ -64,12 +69,15 @@ def main():
           f"{grammar.groups.keys()}")
     texts = bases()
     passed = failed = 0
+    kinds = collections.Counter()
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         numbers = range(FIRST, FIRST + COUNT)
-        for number, wrong in zip(numbers, pool.map(lambda n: judged(n, grammar.scene(n, texts)), numbers)):
+        for number, (wrong, kind) in zip(numbers, pool.map(lambda n: judged(n, grammar.scene(n, texts)), numbers)):
+            kinds[kind] += 1
             passed, failed = passed + (not wrong), failed + bool(wrong)
             if wrong:
                 print(f"FAILED scene {number} (MUD_NONSENSE_FIRST={number} MUD_NONSENSE=1): {wrong}")
+    print("answers: " + ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items())))
     add(passed, failed)
     finish()
 

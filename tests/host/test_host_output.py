@@ -152,6 +152,20 @@ def flip():
     bad.write_bytes(data)
 
 
+def flip_structure():
+    """One bit of what says where the counters are and what they look like."""
+    with h5py.File(keep) as file:
+        place = h5py.h5o.get_info(file["counters"].id).addr
+    data = bytearray(raw)
+    data[place + 40] ^= 1
+    bad.write_bytes(data)
+
+
+def foreign_counters(number, value):
+    """Counters that no run writes, under a good checksum."""
+    return lambda: altered(lambda file: file["counters"].__setitem__(number, value))
+
+
 def drop(file):
     del file["stress"]
 
@@ -172,6 +186,11 @@ REFUSED = [
     ("other format", lambda: altered(lambda f: f.attrs.modify("format", np.bytes_("0"))), text, "another version"),
     ("other library", lambda: altered(lambda f: f.attrs.modify("library", np.bytes_("9.9"))), text, "another version"),
     ("damaged bit", flip, text, "damaged"),
+    ("damaged structure", flip_structure, text, "damaged"),
+    ("stage that is not there", foreign_counters(0, 7.0), text, "damaged"),
+    ("negative counter", foreign_counters(13, -1.0), text, "damaged"),
+    ("counter that is no number", foreign_counters(0, float("nan")), text, "damaged"),
+    ("no counters", lambda: altered(lambda file: file.__delitem__("counters")), text, "damaged"),
     ("missing entry", lambda: altered(drop), text, "damaged"),
     ("other extent", lambda: altered(shorten), text, "damaged"),
     ("other scene", lambda: bad.write_bytes(raw), other, "another scene"),

@@ -83,4 +83,28 @@ check("two supports of one value are no doubt", warnings(same, "--check") == [],
 doubtful = SCENE.replace("surface = 0", "surface = 0 sigma = 1, 1, 1")
 check("told at the start of a run", len(warnings(doubtful)) == 1)
 check("--quiet tells errors only", warnings(doubtful, "--quiet") == [])
+
+# Pressures that jump from node to node are told while the run goes on: a column that hardly drains, and its measure.
+COLUMN = """&scene name = 'column' fields = 'u-p_w' geometry = 'plane_strain' /
+&mesh r = 0, 0.25 r_cells = 1 z = 0, 1 z_cells = 8 /
+&elastic name = 'soil' young = 1e4 poisson = 0.25 /
+&permeability name = 'k' intrinsic = 1e-12 law = 'constant' /
+&region material = 'soil' permeability = 'k' void_ratio = 0.8 /
+&stage name = 'load' analysis = 'quasi_static' duration = 2e-3 dt = 1e-3 rho_inf = 0 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'top' field = 'p_w' /
+&load group = 'top' kind = 'pressure' value = 100 /
+"""
+for what, text, said in (("quadratic pressures without drainage", COLUMN, 1),
+                         ("linear pressures without drainage", COLUMN.replace("'u-p_w'", "'u-p_w' pressures = 'linear'"), 0),
+                         ("quadratic pressures that drain", COLUMN.replace("1e-12", "1e-8"), 0)):
+    (work / "scene.nml").write_text(text)
+    done = subprocess.run([host, work / "scene.nml", "--output", work / "out", "--quiet"], capture_output=True, text=True,
+                          env=environment)
+    lines = [line for line in done.stderr.splitlines() if "oscillate from node to node" in line]
+    check(f"{what}: warned {said} times", done.returncode == 0 and len(lines) == said, done.stderr)
+    check(f"{what}: the measure is named", not said or "pressures = 'linear'" in lines[0], lines)
+
 finish()

@@ -1,0 +1,73 @@
+! SPDX-License-Identifier: MIT
+!> The word that a run says when its pore water pressures jump from node to node. docs/theory/host.md section 3.1.
+module pressure_alarm
+   use, intrinsic :: iso_fortran_env, only: error_unit
+   use kinds, only: wp
+   use generalised_alpha, only: STATIC
+   use model_types, only: model_t, stage_t
+   use texts, only: short
+   use unknown_fields, only: AT_P_W
+   implicit none (type, external)
+   private
+   public :: tell_oscillation, outlier
+
+   !> By how much a corner may stand out from all sides around it, share of the range of all pressures: linear and
+   !> parabolic fields leave nothing, a field that the mesh follows little [-].
+   real(wp), parameter :: ALARMING_SHARE = 0.25_wp
+   real(wp), parameter :: SMALLEST_RANGE = 0.1_wp   !< [kPa] Of pressures that anybody looks at.
+contains
+   !> After an accepted step; once a run, on standard error, also where the run is quiet.
+   subroutine tell_oscillation(model, stage, time, x, told)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: time     !< [s]
+      real(wp), intent(in) :: x(:, :)  !< Unknowns of the nodes.
+      logical, intent(inout) :: told
+      real(wp) :: share
+      integer :: node
+
+      ! Linear pressures are those of the corners alone.
+      if (told .or. stage%kind == STATIC .or. model%domain%n_p < 6) return
+      associate (mesh => model%domain%mesh)
+         call outlier(mesh%t6, x(AT_P_W, :size(mesh%x, 2)), share, node)
+         if (share <= ALARMING_SHARE) return
+         told = .true.
+         write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//', time '//short(time)// &
+            ' s: the pore water pressure at ('//short(mesh%x(1, node))//', '//short(mesh%x(2, node))//') m, '// &
+            short(x(AT_P_W, node))//' kPa, stands out from all around it by '//short(100*share)// &
+            ' % of the range of all pressures. Pressures that oscillate from node to node are no answer: refine the '// &
+            'mesh there, take longer steps, or, where next to nothing drains, set pressures = ''linear'' in &scene.'
+      end associate
+   end subroutine tell_oscillation
+
+   !> The corner of the mesh that stands out most, and by which share of the range of all pressures; 0 where no corner does
+   !> or the range is too small to matter. A corner stands out by what it is above, or below, the middles of all sides
+   !> around it beyond what these differ from the other ends of their sides.
+   pure subroutine outlier(t6, p, share, node)
+      integer, intent(in) :: t6(:, :)
+      real(wp), intent(in) :: p(:)       !< At the nodes [kPa].
+      real(wp), intent(out) :: share
+      integer, intent(out) :: node
+      real(wp), allocatable :: lowest(:), highest(:)
+      integer :: e, k
+
+      share = 0.0_wp
+      node = 1
+      if (maxval(p) - minval(p) < SMALLEST_RANGE) return
+      allocate (lowest(size(p)), source=huge(1.0_wp))
+      allocate (highest(size(p)), source=-huge(1.0_wp))
+      do e = 1, size(t6, 2)
+         do k = 1, 3
+            associate (corner => t6(k, e), middles => p(t6([k + 3, mod(k + 1, 3) + 4], e)), &
+                       ends => p(t6([mod(k, 3) + 1, mod(k + 1, 3) + 1], e)))
+               lowest(corner) = min(lowest(corner), minval(middles - abs(middles - ends)))
+               highest(corner) = max(highest(corner), maxval(middles + abs(middles - ends)))
+            end associate
+         end do
+      end do
+      lowest = max(lowest - p, p - highest)
+      where (highest < -0.5_wp*huge(1.0_wp)) lowest = 0.0_wp   ! no corner
+      node = maxloc(lowest, 1)
+      share = max(0.0_wp, lowest(node)/(maxval(p) - minval(p)))
+   end subroutine outlier
+end module pressure_alarm
