@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Change the library in one place at a time and see which tests notice.
 
-Usage: run_mutations.py [--contact] [-k WORD] [--readme] [--keep] [-j N]. Works on a copy of the source tree in a
-temporary folder; builds release with our own runner. A mutation that no test notices survives: exit code 1. A mutation
+Usage: run_mutations.py [--contact] [-k WORD] [--fragile] [--readme] [--keep] [-j N]. Works on a copy of the source
+tree in a temporary folder; builds release with our own runner. A mutation that no test notices survives: exit code 1. A mutation
 that does not apply or does not compile is an error of mutations.py: exit code 2.
   --contact  mutations of the host's contact instead: its suites and the page verification/host/contact
   -k WORD    only mutations whose title contains it
-  --readme   write the table to README.md (CONTACT.md) beside this file
+  --fragile  only mutations that the table does not have yet, or that at most two tests noticed
+  --readme   write the table to README.md (CONTACT.md) beside this file; what was left out keeps its row
   --keep     keep the temporary folder
   --apply    only see whether every mutation applies: nothing is built or run
 """
@@ -27,6 +28,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 LEFT_OUT = {"test_random", "test_random_long"}  # minutes each
 TIMEOUT = 180   # s; the slowest suite takes 5 s, so a suite that takes longer hangs
+FEW = 2         # tests that notice a mutation which --fragile runs again
 PATIENCE = 4    # a page may take so many times what it takes unchanged
 UNCHANGED = 1800  # s, for a page unchanged, on a machine that has other work
 FAILED = re.compile(r"^FAILED (\w+) at", re.MULTILINE)
@@ -153,21 +155,35 @@ def commit():
     return run(["git", "describe", "--always", "--exclude=*"], ROOT).stdout.strip()
 
 
-def write_readme(table, suites, seconds):
-    survived = sum(not caught for _, caught in table)
-    lines = [f"# Mutations{' of the contact' if subject is Contact else ''}", "",
-             f"`{subject.command}` changes `{subject.sources}` in one place at a time "
-             f"(`mutations.py`), builds it and runs {subject.judges}. It is not part of "
-             "`./check`. \"(hangs)\" and \"(stops)\" mean that the suite's program did so.", "",
-             f"Measured: {len(table)} mutations, {len(table) - survived} noticed, {survived} survived; {suites} "
-             f"suites, {seconds / 60:.0f} minutes on {os.cpu_count()} cores; commit {commit()}."
-             + (f" Left out: {', '.join(sorted(LEFT_OUT))}." if subject is Library else ""), "",
-             "| mutation | tests | noticed by |", "|---|---|---|"]
+def rows_of_page():
+    """Lines of the present table by title."""
+    lines = (HERE / subject.table).read_text(encoding="utf-8").splitlines()
+    return {line.split("|")[1].strip(): line for line in lines if line.startswith("| ")}
+
+
+def tests_in(row):
+    """How many tests noticed the mutation of a line of the table, 0 without one."""
+    return int(row.split("|")[2]) if row else 0
+
+
+def write_readme(table, rows, suites, seconds):
     for title, caught in table:
         shown = ", ".join(f"`{name}`" for name in caught[:4])
         if len(caught) > 4:
             shown += f" and {len(caught) - 4} more"
-        lines.append(f"| {title} | {len(caught)} | {shown or '**none**'} |")
+        rows[title] = f"| {title} | {len(caught)} | {shown or '**none**'} |"
+    rows = [rows[title] for title, *_ in subject.mutations if title in rows]
+    survived = sum(not tests_in(row) for row in rows)
+    partly = "" if len(table) == len(rows) else f" {len(rows) - len(table)} rows are of earlier commits."
+    lines = [f"# Mutations{' of the contact' if subject is Contact else ''}", "",
+             f"`{subject.command}` changes `{subject.sources}` in one place at a time "
+             f"(`mutations.py`), builds it and runs {subject.judges}. It is not part of "
+             "`./check`. \"(hangs)\" and \"(stops)\" mean that the suite's program did so.", "",
+             f"Measured: {len(rows)} mutations, {len(rows) - survived} noticed, {survived} survived. At commit "
+             f"{commit()}: {len(table)} of them, {suites} suites, {seconds / 60:.0f} minutes on {os.cpu_count()} cores with other "
+             f"work.{partly}"
+             + (f" Left out: {', '.join(sorted(LEFT_OUT))}." if subject is Library else ""), "",
+             "| mutation | tests | noticed by |", "|---|---|---|", *rows]
     (HERE / subject.table).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
@@ -176,6 +192,7 @@ def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--contact", action="store_true")
     arguments.add_argument("-k", default="", metavar="WORD")
+    arguments.add_argument("--fragile", action="store_true")
     arguments.add_argument("--readme", action="store_true")
     arguments.add_argument("--keep", action="store_true")
     arguments.add_argument("--apply", action="store_true")
@@ -203,9 +220,9 @@ def main():
         if failing:
             print("the page fails unchanged: does build/venv exist (./check makes it)?")
             return 2
-        table, broken = [], 0
+        table, broken, rows = [], 0, rows_of_page()
         for title, *changes in subject.mutations:
-            if arguments.k not in title:
+            if arguments.k not in title or arguments.fragile and tests_in(rows.get(title, "")) > FEW:
                 continue
             originals = {}
             try:
@@ -223,8 +240,8 @@ def main():
             print(f"{'caught' if caught else 'SURVIVED'}: {title}: {len(caught)}: {', '.join(caught)}", flush=True)
         survived = [title for title, caught in table if not caught]
         print(f"{len(table)} mutations, {len(survived)} survived, {broken} not applicable")
-        if arguments.readme and not arguments.k:
-            write_readme(table, len(suites_of(tree)), time.monotonic() - start)
+        if arguments.readme:
+            write_readme(table, rows, len(suites_of(tree)), time.monotonic() - start)
         return 2 if broken else bool(survived)
     except ValueError as problem:
         print(f"unchanged: {problem}")
