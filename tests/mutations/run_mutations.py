@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Change the library in one place at a time and see which tests notice.
 
-Usage: run_mutations.py [--contact] [-k WORD] [--fragile] [--readme] [--keep] [-j N]. Works on a copy of the source
-tree in a temporary folder; builds release with our own runner. A mutation that no test notices survives: exit code 1. A mutation
+Usage: run_mutations.py [--contact] [-k WORD] [--most N] [--readme] [--keep] [-j N]. Works on a copy of the source tree
+in a temporary folder; builds release with our own runner. A mutation that no test notices survives: exit code 1. One
 that does not apply or does not compile is an error of mutations.py: exit code 2.
   --contact  mutations of the host's contact instead: its suites and the page verification/host/contact
   -k WORD    only mutations whose title contains it
-  --fragile  only mutations that the table does not have yet, or that at most two tests noticed
+  --most N   only mutations that at most N tests noticed when the table was written: 0, those it does not have
   --readme   write the table to README.md (CONTACT.md) beside this file; what was left out keeps its row
   --keep     keep the temporary folder
   --apply    only see whether every mutation applies: nothing is built or run
@@ -28,7 +28,6 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 LEFT_OUT = {"test_random", "test_random_long"}  # minutes each
 TIMEOUT = 180   # s; the slowest suite takes 5 s, so a suite that takes longer hangs
-FEW = 2         # tests that notice a mutation which --fragile runs again
 PATIENCE = 4    # a page may take so many times what it takes unchanged
 UNCHANGED = 1800  # s, for a page unchanged, on a machine that has other work
 FAILED = re.compile(r"^FAILED (\w+) at", re.MULTILINE)
@@ -180,8 +179,8 @@ def write_readme(table, rows, suites, seconds):
              f"(`mutations.py`), builds it and runs {subject.judges}. It is not part of "
              "`./check`. \"(hangs)\" and \"(stops)\" mean that the suite's program did so.", "",
              f"Measured: {len(rows)} mutations, {len(rows) - survived} noticed, {survived} survived. At commit "
-             f"{commit()}: {len(table)} of them, {suites} suites, {seconds / 60:.0f} minutes on {os.cpu_count()} cores with other "
-             f"work.{partly}"
+             f"{commit()}: {len(table)} of them, {suites} suites, {seconds / 60:.0f} minutes on {os.cpu_count()} cores "
+             f"with other work.{partly}"
              + (f" Left out: {', '.join(sorted(LEFT_OUT))}." if subject is Library else ""), "",
              "| mutation | tests | noticed by |", "|---|---|---|", *rows]
     (HERE / subject.table).write_text("\n".join(lines) + "\n", encoding="utf-8")
@@ -192,7 +191,7 @@ def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--contact", action="store_true")
     arguments.add_argument("-k", default="", metavar="WORD")
-    arguments.add_argument("--fragile", action="store_true")
+    arguments.add_argument("--most", type=int, metavar="N")
     arguments.add_argument("--readme", action="store_true")
     arguments.add_argument("--keep", action="store_true")
     arguments.add_argument("--apply", action="store_true")
@@ -222,7 +221,9 @@ def main():
             return 2
         table, broken, rows = [], 0, rows_of_page()
         for title, *changes in subject.mutations:
-            if arguments.k not in title or arguments.fragile and tests_in(rows.get(title, "")) > FEW:
+            if arguments.k not in title:
+                continue
+            if arguments.most is not None and tests_in(rows.get(title, "")) > arguments.most:
                 continue
             originals = {}
             try:
