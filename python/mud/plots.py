@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from .element_test import TestResult
     from .host import HostRun
 
@@ -43,7 +45,7 @@ def plot_test(
     tests: TestResult | Mapping[str, TestResult],
     output: str | os.PathLike | None = None,
     laboratory: Mapping[str, np.ndarray] | None = None,
-):
+) -> Figure:
     """Four panels of one test, or of several by label: q against axial strain and against p', volumetric strain, void ratio.
 
     laboratory : columns eps_a and eps_v (linear strain [-]), q, p [kPa], e; those that are there are drawn as points.
@@ -80,7 +82,7 @@ def plot_test(
     return figure
 
 
-def plot_histories(run: HostRun, columns: Sequence[str], output: str | os.PathLike | None = None):
+def plot_histories(run: HostRun, columns: Sequence[str], output: str | os.PathLike | None = None) -> Figure:
     """Histories of a run of the host against time [s], a panel for each column ("POINT.QUANTITY"). Returns the figure."""
     plt = pyplot()
     table = run.histories

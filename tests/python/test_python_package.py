@@ -2,6 +2,7 @@
 """The Python package: names of the registry, sentences of the library, updates without copies, the driver's tests."""
 
 import ctypes
+import inspect
 import os
 import pathlib
 import subprocess
@@ -21,6 +22,7 @@ os.environ["MUD_LIBRARY_DIR"] = str(build)
 os.environ.update(MPLBACKEND="Agg", OMP_WAIT_POLICY="passive", OMP_NUM_THREADS="2")
 sys.path[:0] = [str(root / "python"), str(root / "common")]
 import mud  # noqa: E402
+import mud.calibration  # noqa: E402
 import tables  # noqa: E402
 from mud import _native  # noqa: E402
 
@@ -329,6 +331,30 @@ if (build / "host/mud_host").exists():
             and np.allclose(run.field("displacement")[:, 2], 0.0)
             and elements.shape[1] == 6 and run.times()[-1] == 1.0,
         )
+
+# Every public function and method says what it takes, what it returns and what it is for.
+def public():
+    """(name, function) of what the package offers."""
+    for module in (mud, mud.calibration):
+        for name in module.__all__:
+            thing = getattr(module, name)
+            if inspect.isfunction(thing):
+                yield name, thing
+            if inspect.isclass(thing):
+                for own, member in vars(thing).items():
+                    function = member.fget if isinstance(member, property) else member
+                    if not own.startswith("_") and inspect.isfunction(function):
+                        yield f"{name}.{own}", function
+
+
+bare = []
+for name, function in public():
+    signature = inspect.signature(function)
+    hints = [p.annotation for p in signature.parameters.values() if p.name not in ("self", "cls")]
+    if not function.__doc__ or inspect.Signature.empty in (*hints, signature.return_annotation):
+        bare.append(name)
+check("public functions have type hints and a docstring", len(list(public())) > 40 and not bare, bare)
+check("type checkers are told that there are hints", (root / "python/mud/py.typed").exists())
 
 # Examples run as they stand.
 environment = {**os.environ, "PYTHONPATH": str(root / "python")}

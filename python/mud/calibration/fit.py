@@ -28,7 +28,7 @@ class Effort:
     samples: int = 64  #: points of the quasi-random search
     starts: int = 2  #: best of them that are followed through the groups
     rounds: int = 1  #: passes through the groups
-    joint: int = 20  #: evaluations with Jacobian of the joint least squares
+    joint: int = 40  #: evaluations with Jacobian of the joint least squares
 
 
 class Progress:

@@ -55,6 +55,7 @@ class Task:
                 raise InputError(f"bounds: {name} is not fitted; there are {', '.join(VARIABLES)}")
 
     def fitted(self) -> list[Item]:
+        """Tests that are not held out."""
         return [item for item in self.items if not item.test.held_out]
 
     def variables(self) -> list[Variable]:
@@ -73,7 +74,7 @@ class Task:
 
 
 def make_task(
-    name: str, tables: Sequence[Mapping], held_out: Sequence[str] = (), folder: str | os.PathLike = ".", **others
+    name: str, tables: Sequence[Mapping], held_out: Sequence[str] = (), folder: str | os.PathLike = ".", **others: object
 ) -> Task:
     """A task of tables: each a mapping of ``file`` and ``kind``, and if wanted ``first``, ``last`` (range of the leading
     quantity: strain as a fraction, stress in kPa), ``scatter`` ({"q": [3.0, 0.05]}: kPa or fraction, and share of the value),
