@@ -8,14 +8,15 @@ module mud_events
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY, MODE_ELASTIC
    use mud_registry, only: RULE_AS_PUBLISHED
-   use mud_return_point, only: beyond_target
+   use mud_return_point, only: place_t, forwardness, beyond_target
    use mud_state, only: counters_t
    use mud_substep, only: LARGEST_FACTOR
-   use mud_tensor, only: ddot, trace, norm
+   use mud_tensor, only: ddot, trace, norm, deviator
    use mud_trial, only: trial_t, take_step, MODE_HELD
    implicit none (type, external)
    private
-   public :: stop_at_event, closing_mode, closing_rate, change_of_closing_rate, psi_at, EVENT_TOLERANCE, LARGEST_EXCESS
+   public :: stop_at_event, find_turning_point, elastic_rate, closing_mode, closing_rate, change_of_closing_rate, &
+             psi_at, EVENT_TOLERANCE, LARGEST_EXCESS
    public :: EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, EVENT_MECHANISM
 
    integer, parameter :: EVENT_NONE = 0
@@ -25,6 +26,8 @@ module mud_events
    integer, parameter :: EVENT_REVERSAL = 4   !< (r - r_in):n falls to -x_rev.
    integer, parameter :: EVENT_RETURN = 5     !< r reaches the target of an interrupted process.
    integer, parameter :: EVENT_MECHANISM = 6  !< The isotropic mechanism begins or ends to act while suction changes.
+
+   integer, parameter :: EVENT_TURN = 7       !< A process ceases to go forwards; its substep goes on.
 
    !> An open point closes when p' would rise by this share of the elastic rate: opening and closing at the same rate
    !> would chatter where the two pull the stress ratio to opposite sides [-].
@@ -156,6 +159,58 @@ contains
       if (x_middle < 0.0_wp) h = lowest*h
    end subroutine find_reversal
 
+   !> Where in an accepted substep its process goes forwards last: at the end, or where it ceases to. That place belongs
+   !> to the path, while the end of the last substep of which it is true would depend on the sizes of substeps.
+   pure subroutine find_turning_point(par, inc, h, trial, counters, place, forwards)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: h
+      type(trial_t), intent(in) :: trial
+      type(counters_t), intent(inout) :: counters
+      type(place_t), intent(out) :: place
+      logical, intent(out) :: forwards       !< false: nowhere in it
+      type(trial_t) :: probe
+      type(rate_t) :: w
+      real(wp) :: size
+      integer :: landed
+
+      place = place_of(par, inc, trial%w(inc%scheme%stages), trial%y)
+      forwards = forwardness(par, trial%r_in, place) >= 0.0_wp
+      if (forwards) return
+      forwards = forwardness(par, trial%r_in, place_of(par, inc, trial%w(1), trial%y0)) >= 0.0_wp
+      if (.not. forwards) return
+      probe = trial
+      size = h
+      call land_on(par, inc, EVENT_TURN, size, probe, counters, landed)
+      call rate_of(par, inc, trial%time + size, probe%y, trial%r_in, trial%mode, w, counters)
+      place = place_of(par, inc, w, probe%y)
+   end subroutine find_turning_point
+
+   !> The place of a process at a rate.
+   pure function place_of(par, inc, w, y) result(place)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(rate_t), intent(in) :: w
+      real(wp), intent(in) :: y(NY)
+      type(place_t) :: place
+      real(wp) :: p
+
+      call stress_ratio(par, y(1:6), p, place%r)
+      place%loading = w%loading
+      place%n = w%n
+      place%t = elastic_rate(inc, w, place%r)
+   end function place_of
+
+   !> p' times the rate of the stress ratio if the whole strain were elastic. The part of the strain across the elastic
+   !> domain turns the direction of loading, not the process: the whole strain tells where it goes.
+   pure function elastic_rate(inc, w, r) result(t)
+      type(increment_t), intent(in) :: inc
+      type(rate_t), intent(in) :: w
+      real(wp), intent(in) :: r(6)
+      real(wp) :: t(6)   !< [stress]
+
+      t = (2.0_wp*w%g)*deviator(inc%d_strain) - (w%k*inc%d_v)*r
+   end function elastic_rate
    !> Finds the end of the substep where the event's function turns negative (false position as Anderson and Bjoerck
    !> accelerate it), and leaves the trial there, just beyond. A point that has just closed begins with p' = p_min and
    !> rises: there the function over the size is looked at, which has no root at the start.
@@ -250,6 +305,9 @@ contains
       case (EVENT_MECHANISM)
          call rate_of(par, inc, time, y, trial%r_in, trial%mode, w, counters)
          f = w%iso_drive/trial%w(1)%iso_drive
+      case (EVENT_TURN)
+         call rate_of(par, inc, time, y, trial%r_in, trial%mode, w, counters)
+         f = forwardness(par, trial%r_in, place_of(par, inc, w, y))
       case (EVENT_RETURN)
          f = -beyond_target(par, trial%process, r, bounding_ratio(par, psi_at(par, inc, time, p)))
       case default

@@ -11,7 +11,8 @@ module mud_return_point
    use mud_tensor, only: ddot, norm, square
    implicit none (type, external)
    private
-   public :: note_progress, interrupt, watched_process, beyond_target, target_limit, is_limited, resume_process
+   public :: place_t, note_progress, forwardness, interrupt, watched_process, beyond_target, target_limit, is_limited, &
+             resume_process
 
    !> A substep tells the direction of its process where its loading direction is within 45 degrees of the chord from
    !> the memory; without this bound circles about a biased state ratchet sideways [-].
@@ -19,23 +20,46 @@ module mud_return_point
    !> A target beyond the bounding surface is reached just inside it, because r approaches the surface but never
    !> arrives [-].
    real(wp), parameter :: SURFACE_MARGIN = 1.001_wp
+   !> Where a process is.
+   type :: place_t
+      logical :: loading   !< There is a loading direction.
+      real(wp) :: r(6)     !< stress ratio [-]
+      real(wp) :: n(6)     !< loading direction [-]
+      real(wp) :: t(6)     !< elastic rate of the stress ratio under the whole strain, of any length
+   end type place_t
 contains
-   !> After an accepted plastic substep with (r - r_in):n >= 0 that led to r: direction and target of the present
-   !> process. The chord from the memory counts, not the running direction: on a smoothly turned loop n follows the
-   !> turn, and no reversal would ever be found.
-   pure subroutine note_progress(par, r, n, memory)
+   !> Direction and target of the present process, where it goes forwards.
+   pure subroutine note_progress(par, place, memory)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: r(6), n(6)      !< stress ratio, loading direction [-]
+      type(place_t), intent(in) :: place
       type(memory_t), intent(inout) :: memory
       real(wp) :: chord(6), length
 
-      chord = r - memory%r_in + par%x_floor*n
+      chord = place%r - memory%r_in + par%x_floor*place%n
       length = norm(chord)
       if (length <= 0.0_wp) return
-      if (ddot(chord, n) < SMALLEST_COSINE*length) return
       memory%direction = chord/length
-      memory%target = ddot(r, memory%direction)
+      memory%target = ddot(place%r, memory%direction)
    end subroutine note_progress
+
+   !> Not negative where a process goes forwards: (r - r_in):n is not negative, the loading direction is near the chord
+   !> from the memory, and the whole strain leads along it. The chord counts, not the running direction: on a smoothly
+   !> turned loop n follows the turn, and no reversal would ever be found. The path may leave the elastic domain
+   !> sideways on its way back: then n still points forwards while r falls, which is no progress.
+   pure real(wp) function forwardness(par, r_in, place)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: r_in(6)
+      type(place_t), intent(in) :: place
+      real(wp) :: chord(6), x, strain
+
+      forwardness = -1.0_wp
+      strain = norm(place%t)
+      if (.not. place%loading .or. strain <= 0.0_wp) return
+      chord = place%r - r_in
+      x = ddot(chord, place%n)
+      chord = chord + par%x_floor*place%n
+      forwardness = min(x, x + par%x_floor - SMALLEST_COSINE*norm(chord), ddot(place%t, chord)/strain)
+   end function forwardness
 
    !> The present process is interrupted. A full stack drops its two newest entries, which are the smallest loop.
    pure subroutine interrupt(memory)

@@ -5,7 +5,7 @@ module mud_reversal
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT
-   use mud_return_point, only: interrupt, note_progress
+   use mud_return_point, only: interrupt
    use mud_state, only: memory_t
    use mud_tensor, only: ddot
    implicit none (type, external)
@@ -69,18 +69,13 @@ contains
       if (eps_q_p < par%eps_hat) m = 1.0_wp - (eps_q_p/par%eps_hat)**par%j_exp
    end function interrupted_share
 
-   !> After an accepted substep that began with (r - r_in):n = x in the direction n and led to the stress ratio r, with
-   !> an elastic rate of the stress ratio along t. The path may leave the elastic domain sideways on its way back: then
-   !> n still points forwards while r falls, which is no progress of the process.
-   pure subroutine accept_process(par, loading, x, n, r, t, d_eps_q, memory)
-      type(params_t), intent(in) :: par
-      logical, intent(in) :: loading
-      real(wp), intent(in) :: x, n(6), r(6), t(6), d_eps_q
+   !> After an accepted substep whose place that counts has (r - r_in):n = x.
+   pure subroutine accept_process(loading, x, d_eps_q, memory)
+      logical, intent(in) :: loading   !< There was a loading direction.
+      real(wp), intent(in) :: x, d_eps_q
       type(memory_t), intent(inout) :: memory
 
       memory%eps_q_p = memory%eps_q_p + d_eps_q
-      if (.not. loading .or. x < 0.0_wp) return
-      memory%x_running = x
-      if (par%memory_rule == RULE_RETURN_POINT .and. ddot(t, n) > 0.0_wp) call note_progress(par, r, n, memory)
+      if (loading .and. x >= 0.0_wp) memory%x_running = x
    end subroutine accept_process
 end module mud_reversal

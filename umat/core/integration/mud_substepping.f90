@@ -129,7 +129,7 @@ contains
                call move_event(par, inc, event, trial, h_taken, sens)
             end if
          end if
-         call accept_substep(par, inc, trial, state, counters)
+         call accept_substep(par, inc, h_taken, trial, state, counters)
          call record_substep(par, inc, trial, h_taken, error, state%sigma, SUBSTEP_ACCEPTED, jump, &
                              event /= EVENT_NONE, counters, record)
          trial%x_previous = trial%w(1)%x

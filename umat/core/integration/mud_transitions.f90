@@ -5,13 +5,13 @@ module mud_transitions
    use mud_kinds, only: wp
    use mud_bounding, only: excess
    use mud_consistent, only: sensitivity_t, jump_of_memory, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
-   use mud_events, only: closing_mode, closing_rate, psi_at, LARGEST_EXCESS, EVENT_NONE, EVENT_BOUNDS, &
-      EVENT_REVERSAL, EVENT_RETURN
+   use mud_events, only: find_turning_point, elastic_rate, closing_mode, closing_rate, psi_at, LARGEST_EXCESS, &
+      EVENT_NONE, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN
    use mud_increment, only: increment_t, rate_of
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY, MODE_ELASTIC
    use mud_registry, only: RULE_RETURN_POINT
-   use mud_return_point, only: watched_process, beyond_target, resume_process
+   use mud_return_point, only: place_t, note_progress, watched_process, beyond_target, resume_process
    use mud_reversal, only: new_memory, begin_process, accept_process
    use mud_state, only: memory_t, state_t, counters_t
    use mud_tensor, only: IDENTITY, ddot, trace, deviator
@@ -115,7 +115,7 @@ contains
       type(rate_t) :: trigger
       real(wp) :: t(6)
 
-      t = elastic_rate(inc, trial, r)
+      t = elastic_rate(inc, trial%w(1), r)
       if (par%memory_rule == RULE_RETURN_POINT) then
          call try_to_return(par, inc, event == EVENT_RETURN, r, t, consistent, state, trial, sens, jump, counters)
       end if
@@ -199,13 +199,15 @@ contains
    end subroutine try_to_close
 
    !> Takes over an accepted substep; state already has its void ratio and suction.
-   pure subroutine accept_substep(par, inc, trial, state, counters)
+   pure subroutine accept_substep(par, inc, h, trial, state, counters)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: h             !< its size
       type(trial_t), intent(in) :: trial
       type(state_t), intent(inout) :: state
       type(counters_t), intent(inout) :: counters
-      real(wp) :: p, r(6)
+      type(place_t) :: place
+      logical :: forwards
 
       counters%substep = counters%substep + 1
       state%sigma = trial%y(1:6)
@@ -219,10 +221,13 @@ contains
          state%sigma = deviator(state%sigma) + par%p_min*IDENTITY
       end if
       if (trial%mode == MODE_ORDINARY) then
-         call stress_ratio(par, state%sigma, p, r)
          associate (w => trial%w(latest_forwards(inc, trial)))
-            call accept_process(par, w%loading, w%x, w%n, r, elastic_rate(inc, trial, r), trial%y(13), state%memory)
+            call accept_process(w%loading, w%x, trial%y(13), state%memory)
          end associate
+         if (par%memory_rule == RULE_RETURN_POINT) then
+            call find_turning_point(par, inc, h, trial, counters, place, forwards)
+            if (forwards) call note_progress(par, place, state%memory)
+         end if
       end if
    end subroutine accept_substep
 
@@ -238,15 +243,4 @@ contains
          if (last%loading .and. last%x >= 0.0_wp) stage = inc%scheme%stages
       end associate
    end function latest_forwards
-
-   !> p' times the rate of the stress ratio if the whole strain were elastic. The part of the strain across the elastic
-   !> domain turns the direction of loading, not the process: the whole strain tells where it goes.
-   pure function elastic_rate(inc, trial, r) result(t)
-      type(increment_t), intent(in) :: inc
-      type(trial_t), intent(in) :: trial
-      real(wp), intent(in) :: r(6)
-      real(wp) :: t(6)   !< [stress]
-
-      t = (2.0_wp*trial%w(1)%g)*deviator(inc%d_strain) - (trial%w(1)%k*inc%d_v)*r
-   end function elastic_rate
 end module mud_transitions
