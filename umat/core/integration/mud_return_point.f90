@@ -11,8 +11,8 @@ module mud_return_point
    use mud_tensor, only: ddot, norm, square
    implicit none (type, external)
    private
-   public :: place_t, note_progress, forwardness, interrupt, watched_process, beyond_target, target_limit, is_limited, &
-             resume_process
+   public :: place_t, note_progress, note_farthest, forwardness, interrupt, watched_process, beyond_target, &
+             target_limit, is_limited, resume_process
 
    !> A substep tells the direction of its process where its loading direction is within 45 degrees of the chord from
    !> the memory; without this bound circles about a biased state ratchet sideways [-].
@@ -42,6 +42,15 @@ contains
       memory%target = ddot(place%r, memory%direction)
    end subroutine note_progress
 
+   !> A process that turns aside may go farther in its direction: the target is the farthest. Where r:direction is
+   !> largest the place hardly matters, so that the target does not hang on where exactly the process turned aside.
+   pure subroutine note_farthest(r, memory)
+      real(wp), intent(in) :: r(6)
+      type(memory_t), intent(inout) :: memory
+
+      memory%target = max(memory%target, ddot(r, memory%direction))
+   end subroutine note_farthest
+
    !> Not negative where a process goes forwards: (r - r_in):n is not negative, the loading direction is near the chord
    !> from the memory, and the whole strain leads along it. The chord counts, not the running direction: on a smoothly
    !> turned loop n follows the turn, and no reversal would ever be found. The path may leave the elastic domain
@@ -61,13 +70,18 @@ contains
       forwardness = min(x, x + par%x_floor - SMALLEST_COSINE*norm(chord), ddot(place%t, chord)/strain)
    end function forwardness
 
-   !> The present process is interrupted. A full stack drops its two newest entries, which are the smallest loop.
+   !> The present process is interrupted; the next has no direction yet. A full stack drops its two newest entries, which
+   !> are the smallest loop.
    pure subroutine interrupt(memory)
       type(memory_t), intent(inout) :: memory
 
       if (memory%depth == MAX_INTERRUPTED) memory%depth = MAX_INTERRUPTED - 2
       memory%depth = memory%depth + 1
       memory%interrupted(memory%depth) = interrupted_t(memory%r_in, memory%direction, memory%target)
+      memory%direction = 0.0_wp
+      memory%target = 0.0_wp
+      memory%direction = 0.0_wp
+      memory%target = 0.0_wp
    end subroutine interrupt
 
    !> Number of the interrupted process that the path may come back to, 0 if there is none: the newest while the path

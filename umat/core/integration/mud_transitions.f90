@@ -11,7 +11,8 @@ module mud_transitions
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY, MODE_ELASTIC
    use mud_registry, only: RULE_RETURN_POINT
-   use mud_return_point, only: place_t, note_progress, watched_process, beyond_target, resume_process
+   use mud_return_point, only: place_t, note_progress, note_farthest, watched_process, beyond_target, &
+      resume_process
    use mud_reversal, only: new_memory, begin_process, accept_process
    use mud_state, only: memory_t, state_t, counters_t
    use mud_tensor, only: IDENTITY, ddot, trace, deviator
@@ -207,6 +208,7 @@ contains
       type(state_t), intent(inout) :: state
       type(counters_t), intent(inout) :: counters
       type(place_t) :: place
+      real(wp) :: p, r(6)
       logical :: forwards
 
       counters%substep = counters%substep + 1
@@ -227,6 +229,8 @@ contains
          if (par%memory_rule == RULE_RETURN_POINT) then
             call find_turning_point(par, inc, h, trial, counters, place, forwards)
             if (forwards) call note_progress(par, place, state%memory)
+            call stress_ratio(par, state%sigma, p, r)
+            call note_farthest(r, state%memory)
          end if
       end if
    end subroutine accept_substep
