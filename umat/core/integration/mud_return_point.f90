@@ -20,6 +20,7 @@ module mud_return_point
    !> A target beyond the bounding surface is reached just inside it, because r approaches the surface but never
    !> arrives [-].
    real(wp), parameter :: SURFACE_MARGIN = 1.001_wp
+
    !> Where a process is.
    type :: place_t
       logical :: loading   !< There is a loading direction.
@@ -78,8 +79,6 @@ contains
       if (memory%depth == MAX_INTERRUPTED) memory%depth = MAX_INTERRUPTED - 2
       memory%depth = memory%depth + 1
       memory%interrupted(memory%depth) = interrupted_t(memory%r_in, memory%direction, memory%target)
-      memory%direction = 0.0_wp
-      memory%target = 0.0_wp
       memory%direction = 0.0_wp
       memory%target = 0.0_wp
    end subroutine interrupt
