@@ -52,6 +52,10 @@ module mud_events
    !> A function that has no zero by then jumps there, as (r - r_in):n does from one direction to another: bisection.
    integer, parameter :: SMOOTH_ITERATIONS = 16
    integer, parameter :: MAX_EVENT_ITERATIONS = 100          !< Bisection alone needs about 45.
+   !> A turning point ends no substep and need not be as exact; where the direction jumps, it is found to a thousandth
+   !> of the substep.
+   real(wp), parameter :: TURN_RESIDUAL = 1.0e-6_wp
+   integer, parameter :: TURN_ITERATIONS = 10
 contains
    !> Shortens an accepted substep so that it lands where the first event happens that its mode knows.
    pure subroutine stop_at_event(par, inc, error, h, trial, counters, event)
@@ -161,7 +165,8 @@ contains
    end subroutine find_reversal
 
    !> Where in an accepted substep its process goes forwards last: at the end, or where it ceases to. That place belongs
-   !> to the path, while the end of the last substep of which it is true would depend on the sizes of substeps.
+   !> to the path, while the end of the last substep of which it is true would depend on the sizes of substeps. A process
+   !> that begins where the substep does, and drifts backwards, has not gone forwards.
    pure subroutine find_turning_point(par, inc, h, trial, counters, place, forwards)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -178,7 +183,7 @@ contains
       place = place_of(par, inc, trial%w(inc%scheme%stages), trial%y)
       forwards = forwardness(par, trial%r_in, place) >= 0.0_wp
       if (forwards) return
-      forwards = forwardness(par, trial%r_in, place_of(par, inc, trial%w(1), trial%y0)) >= 0.0_wp
+      forwards = forwardness(par, trial%r_in, place_of(par, inc, trial%w(1), trial%y0)) > 0.0_wp
       if (.not. forwards) return
       probe = trial
       size = h
@@ -224,14 +229,15 @@ contains
       type(counters_t), intent(inout) :: counters
       integer, intent(inout) :: landed     !< becomes the event if it happens
       real(wp) :: low, high, f_low, f_high, f, h_trial, width, zero
-      integer :: iteration, side
+      integer :: iteration, side, most
       logical :: divided
 
       call event_function(par, inc, event, trial, trial%time + h, trial%y, counters, f_high)
       if (f_high >= 0.0_wp) return
       landed = event
       call event_function(par, inc, event, trial, trial%time, trial%y0, counters, f_low)
-      zero = max(EVENT_RESIDUAL*(f_low - f_high), ROUNDING)
+      most = merge(TURN_ITERATIONS, MAX_EVENT_ITERATIONS, event == EVENT_TURN)
+      zero = max(merge(TURN_RESIDUAL, EVENT_RESIDUAL, event == EVENT_TURN)*(f_low - f_high), ROUNDING)
       divided = event == EVENT_OPENS .and. f_low <= zero .and. trial%w(1)%d_p > 0.0_wp
       if (divided) then
          f_low = trial%w(1)%d_p/par%p_min
@@ -242,7 +248,7 @@ contains
       h_trial = h
       side = 0
       width = h
-      do iteration = 1, MAX_EVENT_ITERATIONS
+      do iteration = 1, most
          if (high - low <= EVENT_TOLERANCE .or. high <= par%h_min) exit
          h_trial = 0.5_wp*(low + high)
          if ((f_low > 0.0_wp .or. low > 0.0_wp) .and. iteration <= SMOOTH_ITERATIONS .and. &
