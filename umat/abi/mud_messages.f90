@@ -39,9 +39,9 @@ contains
       case (MUD_NULL_ARGUMENT)
          text = 'a pointer that must be given is NULL'
       case (MUD_BAD_VOID_RATIO)
-         text = 'the initial void ratio is out of its range: mend e_0 of PROPS or the preset in STATEV'
+         text = 'the initial void ratio is out of its range: correct e_0 of PROPS or the preset in STATEV'
       case (MUD_BAD_OPTION)
-         text = 'no such list, field, index or tangent kind'
+         text = 'unknown list, field, index or kind of tangent'
       case (MUD_NOT_WRITTEN)
          text = 'the file could not be written: choose a new name in a folder that exists, on a disk with room'
       case (MUD_NOT_PREPARED)
@@ -53,7 +53,7 @@ contains
       case (MUD_NO_DIRECTION)
          text = 'no admissible loading direction, again: cut the increment, or switch the guards x_0, cap_d, cap_h on'
       case (MUD_VOID_RATIO_LIMIT)
-         text = 'the increment would drive the void ratio out of its range: cut it, or mend the strain'
+         text = 'the increment would drive the void ratio out of its range: cut it, or correct the strain'
       case (MUD_NOT_FINITE)
          text = 'the result is not finite: cut the increment'
       case (MUD_INCREMENT_TOO_LARGE)
@@ -92,7 +92,7 @@ contains
                 ': '//text
       case (MUD_BAD_VOID_RATIO)
          text = 'void ratio '//trim(number(report%value))//trim(span(lower, upper))// &
-                ': mend e_0 of PROPS or the preset in STATEV'
+                ': correct e_0 of PROPS or the preset in STATEV'
       case (MUD_BAD_INPUT, MUD_INCREMENT_TOO_LARGE)
          if (report%subject == ON_STRESS .or. report%subject == ON_STRAIN .or. report%subject == ON_SUCTION) then
             if (report%status == MUD_BAD_INPUT) text = 'look at the host, which gives it'

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""What CHANGELOG.md says of older files is true: a name that is gone is refused by a message that says the new one, for every
+row of its tables that promises so."""
+import ctypes
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from checking import build, check, finish, root, work  # noqa: E402
+
+os.environ["MUD_LIBRARY_DIR"] = str(build)
+sys.path.insert(0, str(root / "python"))
+import numpy as np  # noqa: E402
+import mud  # noqa: E402
+
+PROMISE = re.compile(r"\berror\b|refuse[sd]|\bis -1\b")
+START = np.array([-100.0]*3 + [0.0]*3)   # stress [kPa], tension positive
+SCENE = """&scene name = 'old' fields = 'u-p_w-p_c' /
+&mesh r = 0, 1 r_cells = 1 z = 0, 1 z_cells = 1 /
+&stage name = 'a' analysis = 'static' duration = 1 dt = 1 /
+&fix group = 'left' field = 'u_r' /
+&permeability name = 'k' intrinsic = 1e-12 /
+"""
+ELASTIC = "&elastic name = 's' young = 1e4 poisson = 0.3 /\n&region material = 's' permeability = 'k' void_ratio = 0.8 /\n"
+MUD = "&mud name = 's' {} /\n&region material = 's' permeability = 'k' void_ratio = 0.8 {} /\n"
+
+
+def said(program, name, text, *words):
+    (work / name).write_text(text)
+    done = subprocess.run([build / program, work / name, *words], capture_output=True, text=True, cwd=work)
+    return f"exit code {done.returncode}: {done.stderr}"
+
+
+def scene(text):
+    return said("host/mud_host", "old.nml", SCENE + text, "--check")
+
+
+def case(material):
+    return said("drivers/mud_triax", "case.nml", f"&material {material} /\n&initial p_eff = 100 void_ratio = 0.8 /\n"
+                "&stage control = 'drained' eps_a_end = 0.01 increment = 1e-3 output_interval = 1e-3 /\n", "--quiet")
+
+
+def refusal(action):
+    """The message of the exception; empty if there is none."""
+    try:
+        action()
+    except mud.MudError as error:
+        return str(error)
+    return ""
+
+
+def old_layout():
+    sand = mud.Material("toyoura")
+    stress, statev = sand.initial_state(START)
+    statev[0] = 1
+    return refusal(lambda: sand.update(stress, statev, np.array([-1e-4]*3 + [0.0]*3)))
+
+
+def short_props():
+    """mud_validate_props of 45 entries: its code and its sentence."""
+    library = ctypes.CDLL(str(build / "umat/libmud.so"))
+    text = ctypes.create_string_buffer(600)
+    code = library.mud_validate_props((ctypes.c_double * 45)(), 45, text, len(text))
+    return f"{code}: {text.value.decode()}"
+
+
+def old_increment():
+    """A saved increment whose counter has its old name."""
+    trouble = "file = '{}' max_substeps = 2".format(root / "drivers/materials/toyoura.nml")
+    (work / "steps.nml").write_text(f"&material {trouble} /\n&initial p_eff = 100 void_ratio = 0.8 /\n&stage control = "
+                                    "'undrained' eps_a_end = 0.01 increment = 1e-2 output_interval = 1e-2 /\n")
+    subprocess.run([build / "drivers/mud_triax", "steps.nml", "--quiet", "--save-failed", "saved.txt"], cwd=work,
+                   capture_output=True)
+    text = (work / "saved.txt").read_text()
+    return said("drivers/mud_replay", "old.txt", text.replace("statev elastic_domain_11", "statev nucleus_11").replace(
+        "elastic_domain_11", "nucleus_11"))
+
+
+# What the first column of a row says: what the programs say of it today, and what has to be in that.
+CASES = {
+    "default `memory_rule` 3 `resume`": (lambda: case("memory_rule = 'resume'"), ["exit code 2", "return_point"]),
+    "STATEV layout 1": (old_layout, ["layout", "2"]),
+    "PROPS 45 entries": (short_props, ["-1", "45", "46"]),
+    "STATEV `nucleus_11`": (old_increment, ["exit code 2", "nucleus_11", "elastic_domain_11"]),
+    "`&rigid": (lambda: scene(ELASTIC + "&rigid group = 'top' mass = 1 /\n"), ["exit code 2", "&plate"]),
+    "`&contact reach`": (lambda: scene(ELASTIC + "&contact name = 'c' slave = 'top' master = 'bottom' reach = 1 /\n"),
+                         ["exit code 2", "search_radius"]),
+    "`&mud material_call`": (lambda: scene(MUD.format("material_call = 'umat'", "")), ["exit code 2", "&umat"]),
+    "a `&retention` of its own": (lambda: scene(MUD.format("", "retention = 'r'") + "&retention name = 'r' law = 'power' "
+                                               "a = 0.002 b = 1 /\n"), ["retention = 'material'"]),
+}
+ELSEWHERE = {"checkpoints of format 4": "tests/host/test_host_output.py"}   # tried where checkpoints are made
+
+rows = [[cell.strip() for cell in line.split(" | ")] for line in
+        (root / "CHANGELOG.md").read_text(encoding="utf-8").replace("|\n", "| \n").splitlines() if line.startswith("| ")]
+promised = [row[0].lstrip("| ") for row in rows if len(row) > 2 and PROMISE.search(row[2])]
+check("CHANGELOG.md has rows that promise a refusal", len(promised) >= 6, promised)
+covered = {one for one in promised if any(one.startswith(name) for name in [*CASES, *ELSEWHERE])}
+check("every promise is tried", covered == set(promised), set(promised) - covered)
+for name, (say, words) in CASES.items():
+    message = say()
+    check(f"{name}: the refusal names what is valid today", all(word in message for word in words), message)
+check("the library has no index for an old name", not any(name in mud.states for name in ("nucleus_11", "n_reseat")))
+message = refusal(lambda: mud.state(mud.Material("toyoura").initial_state(START)[1], "n_reseat"))
+check("Python names the state variable that is nearest to an old name", "n_reset" in message, message)
+finish()
