@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What CHANGELOG.md says of older files is true: a name that is gone is refused by a message that says the new one, for every
-row of its tables that promises so."""
+"""What CHANGELOG.md says of older files is true: a name that is gone is refused by a message that says the new
+one, for every row of its tables that promises so."""
 import ctypes
 import os
 import pathlib
@@ -11,6 +11,10 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
 from checking import build, check, finish, root, work  # noqa: E402
 
+if os.environ.get("MUD_PRESET") == "sanitize":
+    print("note: a Python without sanitizers cannot load a library with them; the other builds try the promises")
+    check("the promises need another build", True)
+    finish()
 os.environ["MUD_LIBRARY_DIR"] = str(build)
 sys.path.insert(0, str(root / "python"))
 import numpy as np  # noqa: E402
@@ -24,7 +28,10 @@ SCENE = """&scene name = 'old' fields = 'u-p_w-p_c' /
 &fix group = 'left' field = 'u_r' /
 &permeability name = 'k' intrinsic = 1e-12 /
 """
-ELASTIC = "&elastic name = 's' young = 1e4 poisson = 0.3 /\n&region material = 's' permeability = 'k' void_ratio = 0.8 /\n"
+ELASTIC = """&elastic name = 's' young = 1e4 poisson = 0.3 /
+&region material = 's' permeability = 'k' void_ratio = 0.8 /
+"""
+RETENTION = "&retention name = 'r' law = 'power' a = 0.002 b = 1 /\n"
 MUD = "&mud name = 's' {} /\n&region material = 's' permeability = 'k' void_ratio = 0.8 {} /\n"
 
 
@@ -81,7 +88,7 @@ def old_increment():
 
 # What the first column of a row says: what the programs say of it today, and what has to be in that.
 CASES = {
-    "default `memory_rule` 3 `resume`": (lambda: case("memory_rule = 'resume'"), ["exit code 2", "return_point"]),
+    "default `memory_rule` 3 `resume`": (lambda: case("memory_rule = 'resume'"), ["exit code 2", "return_point takes"]),
     "STATEV layout 1": (old_layout, ["layout", "2"]),
     "PROPS 45 entries": (short_props, ["-1", "45", "46"]),
     "STATEV `nucleus_11`": (old_increment, ["exit code 2", "nucleus_11", "elastic_domain_11"]),
@@ -89,13 +96,13 @@ CASES = {
     "`&contact reach`": (lambda: scene(ELASTIC + "&contact name = 'c' slave = 'top' master = 'bottom' reach = 1 /\n"),
                          ["exit code 2", "search_radius"]),
     "`&mud material_call`": (lambda: scene(MUD.format("material_call = 'umat'", "")), ["exit code 2", "&umat"]),
-    "a `&retention` of its own": (lambda: scene(MUD.format("", "retention = 'r'") + "&retention name = 'r' law = 'power' "
-                                               "a = 0.002 b = 1 /\n"), ["retention = 'material'"]),
+    "a `&retention` of its own": (lambda: scene(MUD.format("", "retention = 'r'") + RETENTION),
+                                  ["retention = 'material'"]),
 }
 ELSEWHERE = {"checkpoints of format 4": "tests/host/test_host_output.py"}   # tried where checkpoints are made
 
-rows = [[cell.strip() for cell in line.split(" | ")] for line in
-        (root / "CHANGELOG.md").read_text(encoding="utf-8").replace("|\n", "| \n").splitlines() if line.startswith("| ")]
+text = (root / "CHANGELOG.md").read_text(encoding="utf-8")
+rows = [[cell.strip() for cell in line.split(" | ")] for line in text.splitlines() if line.startswith("| ")]
 promised = [row[0].lstrip("| ") for row in rows if len(row) > 2 and PROMISE.search(row[2])]
 check("CHANGELOG.md has rows that promise a refusal", len(promised) >= 6, promised)
 covered = {one for one in promised if any(one.startswith(name) for name in [*CASES, *ELSEWHERE])}
