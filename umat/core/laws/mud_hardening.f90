@@ -11,7 +11,9 @@ module mud_hardening
    public :: kinematic_modulus, isotropic_t, isotropic_hardening, SMALLEST_VOID_TERM, NO_HARDENING
 
    real(wp), parameter :: SMALLEST_VOID_TERM = 0.01_wp   !< Guard: 1 - c_h e >= it [-].
-   real(wp), parameter :: SMALLEST_DELTA = 1.0e-8_wp     !< Below it |delta|^theta is a straight line through zero [-].
+   !> Below it |delta|^theta, whose slope at zero is infinite, is an odd polynomial of the same value, slope and bend
+   !> there: the compression line attracts, and how fast is that slope [-].
+   real(wp), parameter :: SMALLEST_DELTA = 1.0e-4_wp
    real(wp), parameter :: SMALLEST_COUPLING = 0.1_wp     !< Guard: 1 + C >= it [-].
 
    !> Compliance of the isotropic mechanism: d eps_v^iso = < a dp'/p' + b dp_c >.
@@ -51,20 +53,40 @@ contains
       real(wp), intent(in) :: eta2    !< eta squared [-]
       real(wp), intent(in) :: weight  !< w, the share of the mechanism that shear leaves (rebuilt) [-]
       type(isotropic_t) :: iso
-      real(wp) :: delta, distance
+      real(wp) :: delta
 
       iso%weight = weight
       iso%approach = p/compression_image(par, bond%f, e)
       iso%crowding = iso%approach*(1.0_wp + 2.0_wp*eta2/par%m_c**2)
       delta = 1.0_wp - iso%crowding
-      distance = max(abs(delta), SMALLEST_DELTA)
-      iso%f_slope = -distance**(par%theta - 1.0_wp)
-      iso%f = 1.0_wp + iso%f_slope*sign(min(abs(delta), distance), delta)
-      if (abs(delta) > SMALLEST_DELTA) iso%f_slope = par%theta*iso%f_slope
+      call signed_power(par%theta, delta, iso%f, iso%f_slope)
+      iso%f = 1.0_wp - iso%f
+      iso%f_slope = -iso%f_slope
       iso%c = -e*bond%df_de/bond%f*iso%f
       iso%floored = 1.0_wp + iso%c < SMALLEST_COUPLING
       iso%share = weight*e/(1.0_wp + e)/max(1.0_wp + iso%c, SMALLEST_COUPLING)
       iso%a = iso%share*((par%lambda - kappa)*iso%f - kappa*iso%c)
       iso%b = -iso%share*iso%f*bond%df_dpc/bond%f
    end function isotropic_hardening
+
+   !> sgn(delta) |delta|^theta and its slope, smooth through zero.
+   pure subroutine signed_power(theta, delta, power, slope)
+      real(wp), intent(in) :: theta, delta
+      real(wp), intent(out) :: power, slope
+      real(wp) :: u2, first, third, fifth
+
+      if (abs(delta) >= SMALLEST_DELTA) then
+         slope = abs(delta)**(theta - 1.0_wp)
+         power = slope*delta
+         slope = theta*slope
+      else
+         u2 = (delta/SMALLEST_DELTA)**2
+         fifth = (theta - 1.0_wp)*(theta - 3.0_wp)/8.0_wp
+         third = (theta - 1.0_wp)*(5.0_wp - theta)/4.0_wp
+         first = 1.0_wp - third - fifth
+         slope = SMALLEST_DELTA**(theta - 1.0_wp)
+         power = slope*delta*(first + u2*(third + u2*fifth))
+         slope = slope*(first + u2*(3.0_wp*third + u2*5.0_wp*fifth))
+      end if
+   end subroutine signed_power
 end module mud_hardening
