@@ -124,8 +124,9 @@ def write_report(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
         f"# {task.title or task.name}: calibration",
         "",
         f"Made by `mud_calibrate`: MUD {_version()}{_commit()}, seed {task.seed}, {len(task.fitted())} tests fitted and "
-        f"{len(task.items) - len(task.fitted())} held out, {result.simulations} simulations, {result.seconds:.0f} s with "
-        f"{result.workers} workers ({result.cpu_seconds:.0f} s of processor time).",
+        f"{len(task.items) - len(task.fitted())} held out, {result.simulations} simulations, "
+        f"{result.cpu_seconds:.0f} s of processor time, shared by {result.workers} workers ({result.seconds:.0f} s on the clock of a "
+        "machine that may have done other things too).",
         "",
         f"Tests: {task.reference}",
         "",
