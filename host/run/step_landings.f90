@@ -6,16 +6,19 @@
 !> docs/theory/host.md section 4.5.
 module step_landings
    use kinds, only: wp
+   use boundary_loads, only: load_at
    use model_types, only: model_t, stage_t
    use run_state, only: run_t
    use scene_types, only: scene_amplitude_t, amplitude_at, acts_in
+   use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: next_time, is_break, straight_until, LAST_STEP, SHORTEST, CHORD_SHARE
+   public :: next_time, is_break, begins_suddenly, straight_until, LAST_STEP, SHORTEST, CHORD_SHARE
 
    real(wp), parameter :: LAST_STEP = 1.0e-6_wp   !< A rest of a span below this share of a step is rounding.
    real(wp), parameter :: SHORTEST = 1.0e-8_wp    !< Smallest step as a share of the stage.
    real(wp), parameter :: CHORD_SHARE = 0.1_wp    !< Of the accuracy that a straight line may leave out of a history.
+   real(wp), parameter :: SAME = 1.0e-9_wp        !< Relative difference that is none.
 contains
    !> The next time that a step has to end at: a break of what acts, a support that comes or goes, a time of output,
    !> the end of the stage [s].
@@ -100,4 +103,32 @@ contains
             .or. abs(model%fixes(i)%from - time) < LAST_STEP*dt .or. abs(model%fixes(i)%until - time) < LAST_STEP*dt
       end do
    end function is_break
+
+   !> Whether a flow may begin at once where a stage does: loads or prescribed values jump, or it is the first one and
+   !> has weight or pressures that differ from node to node.
+   function begins_suddenly(model, run) result(at_once)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run   !< With what the stage prescribes at its start.
+      logical :: at_once
+      real(wp) :: load(model%dofs%n), before(model%dofs%n)
+      integer :: i, k
+
+      associate (x => run%state%x, c => run%constraint, number => run%at%stage)
+         load = load_at(model, model%stages(number), model%dofs, run%state%time)
+         before = 0.0_wp
+         if (number > 1) before = load_at(model, model%stages(number - 1), model%dofs, run%state%time)
+         at_once = norm2(load - before) > SAME*norm2(load)
+         if (number == 1) at_once = at_once .or. abs(model%domain%gravity) > 0.0_wp .or. &
+            any(abs(x(AT_P_W:AT_P_C, :) - spread(x(AT_P_W:AT_P_C, 1), 2, size(x, 2))) > SAME*maxval(abs(x(AT_P_W:, :))))
+         do i = 1, model%dofs%n
+            associate (f => model%dofs%field(i), node => model%dofs%node(i))
+               if (c%fixed(i)) at_once = at_once .or. abs(c%target(i) - x(f, node)) > SAME*maxval(abs(x(f, :)))
+            end associate
+         end do
+         do k = 1, size(c%air)
+            if (c%air(k)) at_once = at_once .or. &
+               abs(c%air_target(k) - x(AT_P_W, k) - x(AT_P_C, k)) > SAME*maxval(abs(x(AT_P_W:, :)))
+         end do
+      end associate
+   end function begins_suddenly
 end module step_landings

@@ -9,7 +9,7 @@ module step_size
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, QUASI_STATIC, DYNAMIC
    use model_types, only: model_t, stage_t
    use run_state, only: run_t
-   use step_landings, only: next_time, is_break, LAST_STEP, SHORTEST
+   use step_landings, only: next_time, is_break, begins_suddenly, LAST_STEP, SHORTEST
    use step_control, only: new_controller, judge, LARGEST_FACTOR
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
@@ -21,8 +21,8 @@ module step_size
    real(wp), parameter :: EVENT = 0.01_wp         !< Least share of what is left that a step may take: an impact or a
                                                   !< change of contact is not resolved for its own sake.
    real(wp), parameter :: RESERVE = 0.1_wp        !< Share of the accuracy that is left when it has been used up.
-   real(wp), parameter :: KNOCK = 0.1_wp          !< The same of pressures in dynamic stages, of the accuracy: they follow
-                                                  !< every knock and fade; ten such steps use it up.
+   real(wp), parameter :: KNOCK = 0.1_wp          !< The same of pressures in dynamic stages, of the accuracy: they
+                                                  !< follow every knock and fade; ten such steps use it up.
    real(wp), parameter :: PEAK = 1.57_wp          !< Of a sine over the mean of its magnitude.
    real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Of its change that the second step after a sudden load errs by:
                                                   !< flow begins with the root of time.
@@ -69,8 +69,9 @@ contains
       case (STATIC)
          dt = span
       case (QUASI_STATIC)
-         ! What a load leaves at once flows off with the root of time.
-         dt = span*min(0.01_wp, max(stage%accuracy**2, SHORTEST))
+         ! What a load leaves at once flows off with the root of time. Where nothing is sudden a step that short would
+         ! drown what it changes in rounding.
+         dt = span*min(0.01_wp, max(merge(stage%accuracy**2, stage%accuracy, begins_suddenly(model, run)), SHORTEST))
       case default
          dt = span*min(0.05_wp, 0.2_wp*sqrt(stage%accuracy))
       end select

@@ -35,7 +35,7 @@ module scene_keys
       key_t('scene', 'initial_flow', 'w', 'drain', 0, 0, 'subtract: flow at the start is kept up', 'drain|subtract'), &
       key_t('scene', 'accuracy', 'n', NONE, 1.0e-8_wp, 0.5_wp, &
             'relative error wanted in the histories of the points [-], see README'), &
-      key_t('scene', 'threads', 'i', '0', 0, 1024, 'threads of the element loop; 0: OMP_NUM_THREADS'), &
+      key_t('scene', 'threads', 'i', '0', 0, 1024, 'threads over elements; 0: by size, at most OMP_NUM_THREADS'), &
       key_t('scene', 'factors', 'w', 'reuse', 0, 0, &
             'factors of the matrix: reused while they serve, or new in every iteration', 'reuse|fresh'), &
       key_t('scene', 'ordering', 'w', 'amd', 0, 0, 'ordering of the unknowns; best tries several', 'amd|metis|best'), &
