@@ -63,7 +63,7 @@ contains
       call shape_loads(model, model%dofs)
    end subroutine build_model
 
-   !> Threads of the element loop: those asked for, or as many as have work enough each, within OMP_NUM_THREADS. A thread
+   !> Threads of the element loop: those asked for, or as many as have work enough, within OMP_NUM_THREADS. A thread
    !> that is woken for less than a slice of the scheduler costs more than it gives where other programs run.
    subroutine choose_threads(asked, domain)
       integer, intent(in) :: asked   !< 0: not asked for.
