@@ -155,7 +155,7 @@ contains
          bodies = size(run%state%x, 2) - size(model%domain%bodies)
          elapsed = run%next%time - c%t_sudden
          norm = field_norms(error(:, :bodies))
-         share = dt/elapsed
+         share = max(dt/elapsed, EVENT)
          if (stage%kind == DYNAMIC) then
             share(:DISPLACEMENTS) = max(dt/(run%at%t_start + stage%duration - run%state%time), EVENT) &
                                     *what_is_left(model, stage, run)
