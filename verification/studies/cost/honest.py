@@ -2,7 +2,7 @@
 """Is the estimated error of an answer the true one? Runs scenes and cases with an accuracy, and against what is known:
 a closed form, or given fine steps on the same mesh. Writes honest.csv; resumable, a scene whose rows are there is left.
 
-    verification/run cost --make --only honest.py       or      python3 honest.py [--all] [SCENE...]
+    python3 verification/studies/cost/honest.py [--all] [SCENE...]     MUD_BUILD_DIR: the build, default build/release
 
 References go to build/cost/honest and serve again. Two CPU minutes, the indentation four more.
 """
