@@ -142,6 +142,8 @@ def draw(bench, results, plt):
                             markersize=9 if style == "*" else 5)
         axis.set_title(f"suction {suction} kPa")
         axis.set_xlabel("CPU time [s]")
+        axis.set_xticks([2, 4, 8, 16], ["2", "4", "8", "16"], minor=False)
+        axis.set_xticks([], minor=True)
     first = axes[0] if len(there) > 1 else axes
     first.set_ylabel("error of peak and history [%]")
     first.legend(fontsize=7)
