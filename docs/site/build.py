@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Builds the site into build/site/html: gathers the pages, runs FORD and Sphinx. Every warning is an error."""
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -13,6 +14,8 @@ import stage
 root = pathlib.Path(__file__).resolve().parents[2]
 work = root / "build/site"
 FONT = "STIXTwoMath-Regular.ttf"
+# What a browser would fetch from elsewhere when it shows a page; links that a reader follows are no such thing.
+FETCH = re.compile(r"""<(?:script|img|iframe)[^>]*src="(?:https?:)?//|<link[^>]*href="(?:https?:)?//|url\(["']?https?:""")
 
 
 def main():
@@ -28,6 +31,10 @@ def main():
         return run.returncode
     if "--without-fortran" not in sys.argv:
         fortran_api.build(root, work, html / "fortran-api")
+    if fetched := [str(page.relative_to(html)) for page in sorted(html.rglob("*")) if page.suffix in (".html", ".css")
+                   and FETCH.search(page.read_text(encoding="utf-8"))]:
+        print("these pages would load something from the network:", *fetched, sep="\n   ", file=sys.stderr)
+        return 1
     print(f"the site is in {html.relative_to(root)}/index.html")
     return 0
 

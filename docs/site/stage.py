@@ -63,6 +63,13 @@ def staged(root, pages, name):
     return text
 
 
+def with_the_rest(index, names):
+    """The front page; pages that its lists do not name are reached by links, and belong to it all the same."""
+    named = {line.split("<")[-1].rstrip(">") for line in index.splitlines()}
+    rest = [name[:-3] for name in names if name[:-3] not in named]
+    return index + "\n```{toctree}\n:hidden:\n\n" + "\n".join(rest) + "\n```\n"
+
+
 def stage(root, pages):
     """Makes the folder `pages` anew."""
     shutil.rmtree(pages, ignore_errors=True)
@@ -74,6 +81,8 @@ def stage(root, pages):
     site = root / "docs/site"
     for page in sorted((site / "pages").glob("*.md")):
         shutil.copyfile(page, pages / page.name)
+    index = pages / "index.md"
+    index.write_text(with_the_rest(index.read_text(encoding="utf-8"), names), encoding="utf-8")
     (pages / "gallery.md").write_text(gallery.page(root), encoding="utf-8")
     (pages / "c_header.md").write_text(c_header.page(root / "umat/include/mud.h"), encoding="utf-8")
     return names
