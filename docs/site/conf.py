@@ -34,6 +34,28 @@ html_show_copyright = False
 html_show_sphinx = False
 highlight_language = "none"
 
+ARGUMENT = re.compile(r"^(\w[\w, ]*?) : (?=\S)")
+
+
+def list_of_arguments(app, what, name, thing, options, lines):
+    """Docstrings say `name : what it is` a line an argument: a list, with its further lines set in."""
+    made, within = [], False
+    for line in lines:
+        if ARGUMENT.match(line):
+            made += [] if within else [""]
+            line, within = "- " + ARGUMENT.sub(r"**\1**: ", line), True
+        elif within and line.strip():
+            line = "  " + line.strip()
+        elif within:
+            within = False
+        made.append(line)
+    lines[:] = made
+
+
+def setup(app):
+    app.connect("autodoc-process-docstring", list_of_arguments, priority=100)
+
+
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_mock_imports = ["h5py", "matplotlib", "numpy", "scipy"]

@@ -13,6 +13,7 @@ version: {version}
 summary: The Fortran sources of MUD
 {folders}
 output_dir: {output}
+css: {style}
 predocmark: >
 docmark: <
 docmark_alt: #
@@ -30,8 +31,10 @@ incl_src: false
 ---
 Modules, types and procedures. What a comment calls a section of docs/theory is a section of the theory of this site.
 """
-# What a page of FORD would fetch when it is viewed: MathJax, and links of its foot and head.
-FOREIGN = re.compile(r"<script[^>]*src=\"https?://[^>]*>\s*</script>|<link[^>]*href=\"https?://[^>]*>")
+# What a page of FORD would fetch when it is viewed (Bootstrap, MathJax): fortran.css stands for the one, and no comment
+# has formulas for the other.
+FOREIGN = re.compile(r"<script[^>]*src=\"https?://[^>]*>\s*</script>|<link[^>]*href=\"https?://[^>]*>"
+                     r"|<script type=\"text/x-mathjax-config\">.*?</script>", re.DOTALL)
 
 
 def build(root, work, place):
@@ -39,7 +42,8 @@ def build(root, work, place):
     output, project = work / "ford", work / "ford.md"
     version = re.search(r"project\(mud VERSION (\S+)", (root / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
     folders = "src_dir: " + "\n    ".join(str(root / name) for name in FOLDERS)
-    project.write_text(PROJECT.format(version=version, folders=folders, output=output), encoding="utf-8")
+    project.write_text(PROJECT.format(version=version, folders=folders, output=output,
+                                      style=root / "docs/site/static/fortran.css"), encoding="utf-8")
     shutil.rmtree(output, ignore_errors=True)
     run = subprocess.run([str(pathlib.Path(sys.executable).parent / "ford"), "--quiet", str(project)], cwd=work,
                          capture_output=True, text=True)

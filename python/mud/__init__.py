@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""MUD in Python: a bounding-surface model for unsaturated soil, its element tests, and results of its finite-element host.
+"""MUD in Python: a bounding-surface model for unsaturated soil, its element tests, and results of its finite-element host::
 
     import mud
     sand = mud.Material("toyoura")

@@ -92,13 +92,14 @@ def element_test(
 ) -> TestResult:
     """Runs a test on one point and returns its table.
 
-    - material: a ``Material``, a name or file of one, or the keys of a ``&material`` group for another law
-      (``{"law": "elastic", "young": 1e4, "poisson": 0.3}``).
-    - stages: one after the other.
-    - void_ratio: at the start [-].
-    - p_eff, or sigma_a and sigma_r: effective stress at the start [kPa]; suction at the start [kPa].
-    - control_tolerance: what is held is met to this share of the stress; None: the driver's 1e-10.
-    - max_updates: the test stops after so many updates of the material; None: no limit.
+    material : a ``Material``, a name or file of one, or the keys of a ``&material`` group for another law
+        (``{"law": "elastic", "young": 1e4, "poisson": 0.3}``).
+    stages : one after the other.
+    void_ratio : at the start [-].
+    p_eff, or sigma_a and sigma_r : effective stress at the start [kPa].
+    suction : at the start [kPa].
+    control_tolerance : what is held is met to this share of the stress; None: the driver's 1e-10.
+    max_updates : the test stops after so many updates of the material; None: no limit.
 
     Raises ``InputError`` if the driver refuses the case, ``TestStopped`` (with the rows so far) if the test stops.
     """

@@ -96,8 +96,6 @@ class Material(Mapping):
     >>> sand["G_0"]
     125.0
 
-    Parameters
-    ----------
     source : name of a material of the library, or a file ``*.nml``; None: the library's defaults.
     values : parameters by name, in the units of ``mud.parameters``; a word where the parameter has options.
 
