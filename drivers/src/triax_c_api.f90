@@ -88,8 +88,8 @@ contains
       type(result_t), pointer :: result
 
       triax_rows = 0
-      if (.not. c_associated(handle)) return
-      call c_f_pointer(handle, result)
+      result => result_of(handle)
+      if (.not. associated(result)) return
       triax_rows = result%table%rows
    end function triax_rows
 
@@ -99,8 +99,8 @@ contains
       type(result_t), pointer :: result
 
       triax_columns_ = 0
-      if (.not. c_associated(handle)) return
-      call c_f_pointer(handle, result)
+      result => result_of(handle)
+      if (.not. associated(result)) return
       triax_columns_ = size(result%table%shown, kind=c_int)
    end function triax_columns_
 
@@ -111,8 +111,8 @@ contains
       type(result_t), pointer :: result
 
       triax_column = -1
-      if (.not. c_associated(handle)) return
-      call c_f_pointer(handle, result)
+      result => result_of(handle)
+      if (.not. associated(result)) return
       if (index < 0 .or. index >= size(result%table%shown)) return
       triax_column = 0
       associate (column => result%table%shown(index + 1))
@@ -136,8 +136,8 @@ contains
       real(c_double), pointer :: room(:, :)
 
       triax_values = -1
-      if (.not. (c_associated(handle) .and. c_associated(values))) return
-      call c_f_pointer(handle, result)
+      result => result_of(handle)
+      if (.not. (associated(result) .and. c_associated(values))) return
       call c_f_pointer(values, room, [result%table%rows, size(result%table%shown)])
       room = result%table%kept(:result%table%rows, :)
       triax_values = 0
@@ -150,8 +150,8 @@ contains
       type(result_t), pointer :: result
 
       triax_remarks = 0
-      if (.not. c_associated(handle)) return
-      call c_f_pointer(handle, result)
+      result => result_of(handle)
+      if (.not. associated(result)) return
       call put(result%table%remarks, text, len)
       triax_remarks = length_of(result%table%remarks)
    end function triax_remarks
@@ -160,10 +160,19 @@ contains
       type(c_ptr), value :: handle
       type(result_t), pointer :: result
 
-      if (.not. c_associated(handle)) return
-      call c_f_pointer(handle, result)
+      result => result_of(handle)
+      if (.not. associated(result)) return
       deallocate (result)
    end subroutine triax_free
+
+   !> What a handle points to; nothing without one.
+   function result_of(handle) result(found)
+      type(c_ptr), intent(in) :: handle
+      type(result_t), pointer :: found
+
+      nullify (found)
+      if (c_associated(handle)) call c_f_pointer(handle, found)
+   end function result_of
 
    pure integer(c_int) function length_of(text)
       character(*), intent(in) :: text

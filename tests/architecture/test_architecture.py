@@ -175,6 +175,20 @@ def planted_offences():
             + [f"{name}: innocent text is blamed" for name, rule, _, good in cases if rule(good)])
 
 
+def report(checks):
+    """Prints rules that are broken, (rule, findings), and whether there is one."""
+    failed = 0
+    for name, findings in checks:
+        failed += bool(findings)
+        if findings:
+            print(f"FAILED {name}:")
+            print("\n".join("  " + finding for finding in findings[:SHOWN]))
+            if len(findings) > SHOWN:
+                print(f"  and {len(findings) - SHOWN} more")
+    print(f"{len(checks) - failed} passed, {failed} failed")
+    return failed > 0
+
+
 def main():
     core, abi = cmake_order()
     inside = core + abi
@@ -219,16 +233,7 @@ def main():
         (f"no line has more than {COLUMNS} columns",
          over(library + clients + helpers + suites + others, long_lines)),
         ("every test asserts something", over(suites, idle_tests))]
-    failed = 0
-    for name, findings in checks:
-        failed += bool(findings)
-        if findings:
-            print(f"FAILED {name}:")
-            print("\n".join("  " + finding for finding in findings[:SHOWN]))
-            if len(findings) > SHOWN:
-                print(f"  and {len(findings) - SHOWN} more")
-    print(f"{len(checks) - failed} passed, {failed} failed")
-    return failed > 0
+    return report(checks)
 
 
 if __name__ == "__main__":

@@ -4,11 +4,10 @@ long a file may be, and where foreign libraries live. Every rule is first shown 
 import re
 import sys
 
-from test_architecture import code_lines, root, sources, uses
+from test_architecture import code_lines, report, root, sources, uses
 
 LONGEST = 450       # lines of a source
 MOST_MODULES = 15   # that one module may use
-SHOWN = 30          # findings that are printed of one rule
 # Modules whose offence is known and is being taken apart: printed, not counted. To be empty.
 TO_GO = set()
 
@@ -221,16 +220,7 @@ def main():
         ("tests mirror the tree", misplaced([str(file.relative_to(root)) for file in sources("tests/**/test_*")],
                                          {str(folder.relative_to(root)) for folder in sources("*", "*/*", "*/*/*")
                                           if folder.is_dir() and folder.parts[len(root.parts)] != "tests"}))]
-    failed = 0
-    for name, findings in checks:
-        failed += bool(findings)
-        if findings:
-            print(f"FAILED {name}:")
-            print("\n".join("  " + finding for finding in findings[:SHOWN]))
-            if len(findings) > SHOWN:
-                print(f"  and {len(findings) - SHOWN} more")
-    print(f"{len(checks) - failed} passed, {failed} failed")
-    return failed > 0
+    return report(checks)
 
 
 if __name__ == "__main__":
