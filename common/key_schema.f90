@@ -26,7 +26,7 @@ module key_schema
       character(14) :: preset            !< Its default, or REQUIRED or NONE.
       real(wp) :: lower, upper           !< Range of a number.
       character(120) :: meaning
-      character(72) :: words = ''        !< Kind w: the words, divided by |.
+      character(184) :: words = ''       !< Kinds w, W: the words, divided by |.
       character(8) :: unit = ''          !< Shown behind the range, where the meaning does not say it.
       integer :: values = 0              !< How many values a list has, 0: any number.
    end type key_t
@@ -107,7 +107,7 @@ contains
             else if (value < key%lower .or. value > key%upper) then
                call refuse('is outside its range')
             end if
-         case ('w')
+         case ('w', 'W')
             if (.not. is_word(key%words, item%values(i))) call refuse('is not one of its words')
          end select
          if (fault%code /= 0) return

@@ -15,7 +15,7 @@ module texts
       module procedure whole_32, whole_64
    end interface whole
 contains
-   pure function lower_case(text) result(lower)
+   elemental function lower_case(text) result(lower)
       character(*), intent(in) :: text
       character(len(text)) :: lower
       integer :: i

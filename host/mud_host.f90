@@ -10,7 +10,9 @@ program mud_host
    use kinds, only: wp
    use wall_clock, only: clock
    use generalised_alpha, only: STATIC, DYNAMIC
-   use effects_table, only: print_effects
+   use effect_pilots, only: ask_effects, settle_scene, apply_effects, pilots_account_t
+   use effect_types, only: effect_t
+   use effects_table, only: print_effects, print_pilots, write_effects
    use model_builder, only: build_model
    use model_types, only: model_t
    use linear_system, only: T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST
@@ -24,19 +26,22 @@ program mud_host
    use scene_types, only: scene_t
    use scene_warnings, only: list_warnings, WARNING_LENGTH
    use time_stepping, only: run_stages
-   use files, only: limits_are_errors, folder_of
+   use files, only: limits_are_errors, folder_of, make_folder
    use faults, only: fault_t, raise, EXIT_INPUT
    use texts, only: short, whole
    implicit none (type, external)
    character(*), parameter :: USAGE = 'usage: mud_host SCENE.nml [--output FOLDER] [--restart FILE] '// &
-                              '[--accuracy A] [--verify] [--quiet] [--check] | --template'
-   type(option_t) :: options(8) = [ &
+                              '[--accuracy A] [--verify] [--effects | --ablate] [--quiet] [--check] | '// &
+                              '--template'
+   type(option_t) :: options(10) = [ &
       option_t('--help', letter='-h', answers=.true.), &
       option_t('--template', answers=.true.), &
       option_t('--quiet'), &
       option_t('--check'), &
       option_t('--output', 'a folder'), &
       option_t('--verify'), &
+      option_t('--effects'), &
+      option_t('--ablate'), &
       option_t('--accuracy', 'a share, as 1e-2'), &
       option_t('--restart', 'a checkpoint')]
    character(WORD_LENGTH) :: file
@@ -46,7 +51,9 @@ program mud_host
    type(run_t) :: run
    type(run_output_t) :: output
    type(fault_t) :: fault
-   logical :: quiet, only_check
+   type(pilots_account_t) :: pilots
+   type(effect_t), allocatable :: effects(:)
+   logical :: quiet, only_check, only_effects
    real(wp), parameter :: QUARTER_SHARE = 0.25_wp
    double precision :: t0
 
@@ -62,6 +69,7 @@ program mud_host
    end if
    quiet = option_given(options, '--quiet')
    only_check = option_given(options, '--check')
+   only_effects = option_given(options, '--effects') .or. option_given(options, '--ablate')
    restart = option_value(options, '--restart')
    folder = option_value(options, '--output')
    if (folder == '') then
@@ -72,6 +80,8 @@ program mud_host
       '--verify repeats a whole run: leave --restart out.')
    t0 = clock()
    if (fault%code == 0) call read_scene(trim(file), scene, fault, option_value(options, '--accuracy'))
+   if (fault%code == 0) call find_effects()
+   if (only_effects) call leave()
    if (fault%code == 0) call build_model(scene, model, fault)
    if (fault%code == 0) call prepare_run(model, run, fault)
    if (fault%code == 0 .and. .not. quiet) call announce()
@@ -91,15 +101,38 @@ program mud_host
       end if
    end if
    if (.not. (quiet .or. only_check) .and. run%steps > 0) call account()
-   ! A main program's variables are not freed at its end; a leak checker would report these two.
-   deallocate (folder, restart)
-   if (fault%code /= 0) then
-      write (error_unit, '(a)') trim(fault%text)
-      stop fault%code, quiet=.true.
-   end if
+   call leave()
 contains
+   !> Ends the program.
+   subroutine leave()
+      ! A main program's variables are not freed at its end; a leak checker would report these two.
+      deallocate (folder, restart)
+      if (fault%code /= 0) then
+         write (error_unit, '(a)') trim(fault%text)
+         stop fault%code, quiet=.true.
+      end if
+      stop
+   end subroutine leave
+
+   !> Asks the scene which effects it calls for, where it leaves that open or the command line wants to know, and
+   !> settles its keys.
+   subroutine find_effects()
+      if (only_effects .or. (scene%derive_effects .and. .not. only_check)) then
+         call ask_effects(scene, option_given(options, '--ablate'), quiet, effects, pilots, fault)
+         if (fault%code /= 0) return
+         if (.not. quiet) call print_pilots(output_unit, pilots)
+         if (.not. quiet .or. only_effects) call print_effects(output_unit, effects, scene%derive_effects)
+         if (only_effects) call make_folder(folder)
+         if (only_effects) call write_effects(folder, effects, fault)
+      end if
+      call settle_scene(scene, fault)
+      if (only_effects .or. .not. allocated(effects) .or. fault%code /= 0) return
+      scene%effects = effects
+      call apply_effects(effects, scene)
+   end subroutine find_effects
+
    subroutine print_help()
-      character(*), parameter :: LINES(10) = [character(100) :: &
+      character(*), parameter :: LINES(14) = [character(100) :: &
          '  --output FOLDER       where files go, made if missing; default: output, with --restart that of the', &
          '                        checkpoint', &
          '  --restart FILE        goes on from a checkpoint of the same scene', &
@@ -107,6 +140,10 @@ contains
          '                        accuracy of &scene', &
          '  --verify              repeats the run at a quarter of the accuracy and tells the difference as the', &
          '                        error; needs points, controlled steps, no --restart', &
+         '  --effects             runs pilots: the scene made cheap, with every effect and without each; tells', &
+         '                        what each changes in the answers, writes effects.csv, and ends', &
+         '  --ablate              the same with the whole scene instead of pilots, and with each effect that', &
+         '                        it does not have', &
          '  --check               reads and checks scene and checkpoint, runs nothing', &
          '  --quiet               prints errors only', &
          '  --template            prints every group and key of a scene']
@@ -139,7 +176,8 @@ contains
             trim(merge('dynamic     ', 'quasi_static', model%stages(i)%kind == DYNAMIC))//', rho_inf '// &
             short(model%stages(i)%rho_inf)//'.'
       end do
-      if (model%effect_options%auto) call print_effects(output_unit, run%monitor%table)
+      if (scene%derive_effects .and. only_check) write (output_unit, '(a)') 'effects = ''auto'': pilots find out '// &
+         'what the keys leave open when the run begins; --effects shows it without a run.'
       call list_warnings(scene, model, run%tension, warnings)
       do i = 1, size(warnings)
          write (output_unit, '(a)') 'Warning: '//trim(warnings(i))
@@ -157,6 +195,8 @@ contains
 
       write (quarter, '(es12.5)') QUARTER_SHARE*maxval(model%stages%accuracy, mask=model%stages%controlled)
       call read_scene(trim(file), fine_scene, fault, trim(adjustl(quarter)))
+      if (fault%code == 0) call settle_scene(fine_scene, fault)
+      if (fault%code == 0 .and. allocated(effects)) call apply_effects(effects, fine_scene)
       if (fault%code == 0) call build_model(fine_scene, fine_model, fault)
       if (fault%code == 0) call prepare_run(fine_model, fine_run, fault)
       if (fault%code /= 0) return
@@ -203,5 +243,7 @@ contains
          write (output_unit, '(3x,a,f12.3,a,f6.1,a)') PHASES(k), seconds(k), ' s', 100*seconds(k)/total, ' %'
       end do
       write (output_unit, '(3x,a,f12.3,a)') 'in all        ', total, ' s'
+      if (pilots%runs > 0) write (output_unit, '(3x,a)') 'of these '//short(pilots%seconds)//' s for pilots, '// &
+         short(100*pilots%seconds/max(total - pilots%seconds, tiny(1.0d0)))//' % of the rest.'
    end subroutine account
 end program mud_host

@@ -130,10 +130,6 @@ contains
          call raise(fault, EXIT_INPUT, place_of(given)//'motion = ''acceleration'' needs a displacement (u_r, '// &
                     'u_z), a history, and not hold = ''yes''.')
          return
-      else if (given%acceleration .and. model%effect_options%auto) then
-         call raise(fault, EXIT_INPUT, place_of(given)//'with motion = ''acceleration'' nothing can be derived; '// &
-                    'leave effects = ''auto'' out.')
-         return
       end if
       if ((given%field_number == FIX_P_W .and. .not. model%domain%with_w) .or. &
           (given%field_number >= FIX_P_C .and. .not. model%domain%with_c)) call raise(fault, EXIT_INPUT, &
@@ -209,11 +205,6 @@ contains
       type(fault_t), intent(inout) :: fault
 
       absorber%scene_absorber_t = given
-      if (model%effect_options%auto) then
-         call raise(fault, EXIT_INPUT, place_of(given)//'with an absorbing boundary nothing can be derived; leave '// &
-                    'effects = ''auto'' out.')
-         return
-      end if
       absorber%group = mesh_group(model%domain%mesh, given%group_name, place_of(given), fault)
       if (fault%code == 0) absorber%amplitude = amplitude_of(given%amplitude_name, place_of(given), model, fault)
       if (fault%code /= 0) return

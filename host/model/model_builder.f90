@@ -1,14 +1,12 @@
 ! SPDX-License-Identifier: MIT
-!> Builds the model of a scene: mesh, materials, supports, loads and contacts with every name resolved, the effects
-!> that the scene leaves open decided, the unknowns numbered.
+!> Builds the model of a scene: mesh, materials, supports, loads and contacts with every name resolved, the
+!> unknowns numbered.
 module model_builder
    use kinds, only: wp
    use faults, only: fault_t, raise, EXIT_INPUT
    use boundary_builder, only: build_plates, build_boundaries
    use boundary_loads, only: shape_loads, ties_of
    use degrees_of_freedom, only: number_unknowns
-   use effect_decisions, only: derive_effects
-   use effect_types, only: effect_options_t
    use mesh_builder, only: build_mesh
    use model_types, only: model_t, point_t
    use porous_domain, only: domain_t, fluids_t, prepare_domain
@@ -22,12 +20,11 @@ module model_builder
    private
    public :: build_model
 
-   real(wp), parameter :: EARTH = 9.81_wp   !< [m/s2] Where gravity is to be derived.
-
    ! A pass over an element of three fields and six points [s]: measured, rounded.
    real(wp), parameter :: OF_ELASTIC = 7.0e-6_wp, OF_PLASTIC = 5.0e-5_wp
    real(wp), parameter :: WORTH_A_THREAD = 4.0e-3_wp   !< A slice of Linux' scheduler [s].
 contains
+   !> The keys of the scene must be settled (effect_switches).
    subroutine build_model(scene, model, fault)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(out) :: model
@@ -43,8 +40,8 @@ contains
       model%checkpoint_steps = scene%checkpoint_steps
       model%checkpoint_seconds = scene%checkpoint_seconds
       model%checkpoint_end = scene%checkpoint_end
-      model%effect_options = effect_options_t(scene%derive_effects, scene%fields_by_hand, scene%gravity_by_hand, &
-                                              scene%seepage_by_hand, scene%effects_tolerance)
+      if (allocated(scene%effects)) model%effects = scene%effects
+      model%stop_on_warning = scene%stop_on_warning
       model%amplitudes = scene%amplitudes
       model%stages = [(stage_of(scene%stages(i)), i=1, size(scene%stages))]
       call build_domain(scene, model, fault)
@@ -55,9 +52,6 @@ contains
       if (fault%code == 0) call prepare_domain(model%domain, fault)
       if (fault%code /= 0) return
       model%points = [(point_of(scene%points(i), model), i=1, size(scene%points))]
-      allocate (model%effects(0))
-      if (scene%derive_effects) call derive_effects(model, fault)
-      if (fault%code /= 0) return
       call choose_schemes(model)
       call number_unknowns(model%domain, ties_of(model), model%dofs)
       call shape_loads(model, model%dofs)
@@ -92,15 +86,9 @@ contains
          domain%axisymmetric = scene%axisymmetric
          domain%with_c = scene%fields == WITH_P_C
          domain%with_w = domain%with_c .or. scene%fields == WITH_P_W
-         ! All that the regions have laws for; what of it matters is derived later.
-         if (.not. scene%fields_by_hand) then
-            domain%with_c = any(scene%regions%retention_name /= '')
-            domain%with_w = domain%with_c .or. any(scene%regions%permeability_name /= '')
-         end if
          domain%n_p = merge(3, 6, scene%linear_pressures)
          domain%rule = scene%quadrature
          domain%gravity = scene%gravity
-         if (.not. scene%gravity_by_hand) domain%gravity = EARTH
          domain%seepage_inertia = scene%seepage_inertia
          domain%full_rate = scene%full_saturation_rate
          domain%fluids = fluids_t(f%k_w, f%rho_w, f%eta_w, f%k_a, f%rho_a, f%eta_a, f%ideal_gas, f%p_ref)

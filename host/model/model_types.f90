@@ -6,7 +6,7 @@ module model_types
    use contact_types, only: contact_options_t
    use degrees_of_freedom, only: dofs_t
    use namelists, only: group_t
-   use effect_types, only: effect_t, effect_options_t
+   use effect_types, only: effect_t
    use convergence, only: BY_STAGE
    use porous_domain, only: domain_t
    use unknown_fields, only: FIELDS
@@ -28,7 +28,6 @@ module model_types
    type, extends(scene_stage_t) :: stage_t
       integer :: kind = 0                   !< STATIC, QUASI_STATIC or DYNAMIC of generalised_alpha.
       integer :: measure = BY_STAGE          !< See convergence.
-      logical :: derived = .false.          !< Its kind is not given but derived.
    end type stage_t
 
    type, extends(scene_fix_t) :: fix_t
@@ -73,8 +72,8 @@ module model_types
       type(group_t), allocatable :: groups(:)             !< Its words, see scene_past.
       type(domain_t) :: domain
       type(dofs_t) :: dofs
-      type(effect_options_t) :: effect_options
-      type(effect_t), allocatable :: effects(:)           !< What was derived; empty if nothing was to be.
+      type(effect_t), allocatable :: effects(:)           !< What pilots have found; not allocated: none ran.
+      logical :: stop_on_warning = .false.                !< See scene_types.
       logical :: subtract_flow = .false.
       logical :: reuse_factors = .true.
       integer :: ordering = 1                             !< See sparse_factors.

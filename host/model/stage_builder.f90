@@ -22,10 +22,7 @@ contains
       type(stage_t) :: stage
 
       stage%scene_stage_t = given
-      stage%derived = given%analysis == 0
-      ! A derived stage begins as the general one.
-      stage%kind = DYNAMIC
-      if (.not. stage%derived) stage%kind = KIND_OF(given%analysis)
+      stage%kind = KIND_OF(given%analysis)
       stage%measure = MEASURE_OF(given%measure_number)
    end function stage_of
 
@@ -45,8 +42,9 @@ contains
             if (stage%rho_inf >= 0.0_wp) cycle
             stage%rho_inf = SMOOTH
             if (stage%kind == DYNAMIC .and. touching) stage%rho_inf = OPENING
-            ! Long steps of a flow: what they do not resolve is to go.
-            if (stage%kind == QUASI_STATIC .and. stage%controlled) stage%rho_inf = OPENING
+            ! What the steps of a flow do not resolve, and forces that nothing balances at its start, are to go at once:
+            ! with rho_inf they fade as rho_inf to the power of the steps.
+            if (stage%kind == QUASI_STATIC) stage%rho_inf = OPENING
          end associate
       end do
    end subroutine choose_schemes

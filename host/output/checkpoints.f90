@@ -12,7 +12,6 @@ module checkpoints
    use energy_ledger, only: ledger_t
    use output_tables, only: tables_t, settle_tables
    use model_types, only: model_t
-   use effect_monitor, only: MEMORIES
    use porous_domain, only: copy_state
    use sparsity_pattern, only: make_pattern
    use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, &
@@ -75,8 +74,8 @@ contains
          call put(file, 's', s%s, '-', 'degree of saturation')
          call put(file, 's_rate', s%s_rate, '1/s', 'its rate')
       end associate
-      if (model%effect_options%auto) call put(file, 'monitor', [run%monitor%table%largest, run%monitor%table%crossed, &
-         run%monitor%memory], '-', 'indicators of the effects that are off, when they crossed [s], extremes')
+      if (allocated(model%effects)) call put(file, 'monitor', [run%monitor%table%largest, run%monitor%table%crossed], &
+         '-', 'indicators of the effects that pilots let go, when they passed their limits [s]')
       if (allocated(run%control%x_first)) call put(file, 'control', numbers_of(run%control), '-', &
          'control of the time step: see control_state')
       if (allocated(run%constraint%dashpots)) call put(file, 'offset', run%constraint%offset, 'kN, m3/s', &
@@ -132,7 +131,7 @@ contains
          call get(file, 's', run%state%s)
          call get(file, 's_rate', run%state%s_rate)
          if (allocated(run%constraint%dashpots)) call get(file, 'offset', run%constraint%offset)
-         if (file%good .and. model%effect_options%auto) call take_monitor(file, run)
+         if (file%good .and. allocated(model%effects)) call take_monitor(file, run)
          if (file%good) then
             if (any(model%stages(:nint(counters(1)))%controlled)) call take_control(file, model, run)
          end if
@@ -174,14 +173,13 @@ contains
    subroutine take_monitor(file, run)
       type(h5_t), intent(inout) :: file
       type(run_t), intent(inout) :: run
-      real(wp) :: seen(2*size(run%monitor%table) + MEMORIES)
+      real(wp) :: seen(2*size(run%monitor%table))
       integer :: n
 
       n = size(run%monitor%table)
       call get(file, 'monitor', seen)
       run%monitor%table%largest = seen(:n)
       run%monitor%table%crossed = seen(n + 1:2*n)
-      run%monitor%memory = seen(2*n + 1:)
    end subroutine take_monitor
 
    !> The matrix with all the room that contacts have asked for: its ordering, and so every digit, depends on it.
@@ -243,9 +241,9 @@ contains
                     'for threads and checkpoint_*; what may differ is the duration of the stage under way ('// &
                     trim(model%stages(number)%name)//'), later stages with the &fix and &load of these alone, and '// &
                     'histories after '//short(stage(1))//' s.')
-      else if (model%effect_options%auto) then
-         call raise(fault, EXIT_RESTART, foreign()//'with effects = ''auto'' what is left out was derived from '// &
-                    'the whole scene; set the effects by hand to go on with more stages or other durations.')
+      else if (allocated(model%effects)) then
+         call raise(fault, EXIT_RESTART, foreign()//'with effects = ''auto'' what is left out was found by '// &
+                    'pilots of the whole scene; set the effects by hand to go on with more stages or other durations.')
       else if (stage(2) + model%stages(number)%duration < stage(1)*(1 - ROUNDING)) then
          call raise(fault, EXIT_RESTART, foreign()//'the run stands at '//short(stage(1))//' s, after the end of '// &
                     'stage '//trim(model%stages(number)%name)//' at '// &

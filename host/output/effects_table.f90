@@ -2,97 +2,95 @@
 !> The table of effects, printed and as a file.
 module effects_table
    use kinds, only: wp
-   use effect_types, only: effect_t, UNBOUNDED, UNKNOWN, NEVER
+   use effect_pilots, only: pilots_account_t
+   use effect_types, only: effect_t, NEVER
    use csv, only: csv_t, new_csv, write_line, close_csv
    use faults, only: fault_t
    use texts, only: short, whole
    implicit none (type, external)
    private
-   public :: print_effects, write_effects
+   public :: print_effects, print_pilots, write_effects
 contains
-   !> The table for people.
-   subroutine print_effects(unit, table)
+   !> What the pilots cost, and how good they are.
+   subroutine print_pilots(unit, account)
+      integer, intent(in) :: unit
+      type(pilots_account_t), intent(in) :: account
+
+      write (unit, '(a)') whole(account%runs)//' pilots in '//short(account%seconds)//' s: cells '// &
+         whole(account%cells)//' times, steps '//whole(account%steps)//' times as long as those of the scene.'
+      if (account%own_error_known) write (unit, '(a)') 'The pilot''s own error, '// &
+         'against pilots with steps, and cells, twice as long: '// &
+         short(100*account%own_error%share)//' % of '//trim(account%own_error%answer)//'.'
+   end subroutine print_pilots
+
+   !> The table for people. `decided`: the run follows it.
+   subroutine print_effects(unit, table, decided)
       integer, intent(in) :: unit
       type(effect_t), intent(in) :: table(:)
-      character(8) :: cells(2)
-      logical :: doubtful
+      logical, intent(in) :: decided
+      character(12) :: cells(4)
       integer :: i
 
-      doubtful = .false.
-      write (unit, '(a,t30,a,t35,a,t41,a,t58,a,t75,a,t84,a,t92,a)') 'effect', 'is', 'by', 'estimate', 'threshold', &
-         'unknowns', 'entries', 'because'
+      write (unit, '(a,t34,a,t40,a,t48,a,t61,a,t74,a,t83,a,t90,a)') 'effect', 'is', 'by', 'influence', 'change', &
+         'unknowns', 'time', 'answer; remark'
       do i = 1, size(table)
          associate (t => table(i))
-            doubtful = doubtful .or. exceeds(t)
-            cells = [character(8) :: whole(t%unknowns), whole(t%entries)]
-            write (unit, '(a28,1x,a4,1x,a5,1x,2a17,2(a8,1x),a)') t%name, state_of(t), by(t), &
-               with_unit(t%estimate, t%unit), with_unit(t%threshold, t%unit), cells, trim(t%why)
+            cells = '-'
+            if (t%influence >= 0.0_wp) cells = [character(12) :: short(100*t%influence)//' %', short(t%change), &
+               whole(t%unknowns), short(t%seconds)]
+            write (unit, '(a32,1x,a5,1x,a7,1x,2a13,a9,a7,a)') t%name, state_of(t, decided), by(t), cells(1:2), &
+               cells(3)(:8), cells(4)(:6), trim(t%answer)//trim(merge('; ', '  ', t%answer /= '' .and. t%why /= ''))// &
+               ' '//trim(t%why)
          end associate
       end do
-      if (doubtful) write (unit, '(a)') 'off!: off although its estimate is above the threshold.'
-   contains
-      pure function with_unit(value, name) result(text)
-         real(wp), intent(in) :: value
-         character(*), intent(in) :: name
-         character(17) :: text
-
-         text = number(value)
-         if (text /= '-' .and. value < UNBOUNDED .and. name /= '-') text = trim(text)//' '//name
-      end function with_unit
+      write (unit, '(a)') 'Influence: largest change of an answer without the effect (with it where it is off), share '// &
+         'of the answer''s range; change in m or kPa;'
+      write (unit, '(a)') 'time: of the run without (with) it over that with all.'
    end subroutine print_effects
 
-   pure logical function exceeds(effect)
+   pure function state_of(effect, decided) result(text)
       type(effect_t), intent(in) :: effect
+      logical, intent(in) :: decided
+      character(5) :: text
 
-      exceeds = .not. effect%on .and. effect%estimate > effect%threshold
-   end function exceeds
-
-   pure function state_of(effect) result(text)
-      type(effect_t), intent(in) :: effect
-      character(4) :: text
-
-      text = merge('off!', merge('on  ', 'off ', effect%on), exceeds(effect))
+      text = merge('on   ', 'off  ', merge(effect%on, effect%present, decided))
    end function state_of
 
    pure function by(effect) result(text)
       type(effect_t), intent(in) :: effect
       character(5) :: text
 
-      text = merge('hand ', 'scene', effect%by_hand)
+      text = merge('hand ', 'pilot', effect%by_hand)
    end function by
-
-   pure function number(value) result(text)
-      real(wp), intent(in) :: value
-      character(17) :: text
-
-      if (value >= UNBOUNDED) then
-         text = 'not bounded'
-      else if (value <= UNKNOWN) then
-         text = '-'
-      else
-         text = short(value)
-      end if
-   end function number
 
    !> effects.csv: the table, and what the run has shown of the effects that are off.
    subroutine write_effects(folder, table, fault)
       character(*), intent(in) :: folder
       type(effect_t), intent(in) :: table(:)
       type(fault_t), intent(inout) :: fault
-      character(32) :: seen
+      character(:), allocatable :: row
       type(csv_t) :: file
       integer :: i
 
-      call new_csv(folder//'/effects.csv', 'effect,on,by,estimate,unit,threshold,unknowns,entries,largest_seen,'// &
-                     'crossed_at,because', file, fault)
+      call new_csv(folder//'/effects.csv', 'effect,in_scene,on,by,influence,change,answer,fewer_unknowns,time_ratio,'// &
+                   'limit,largest_seen,crossed_at,remark', file, fault)
       do i = 1, size(table)
          associate (t => table(i))
-            seen = ','
-            if (t%monitored) seen = short(t%largest)//','
-            if (t%crossed > NEVER) seen = trim(seen)//short(t%crossed)
-            call write_line(file, trim(t%name)//','//trim(state_of(t))//','//trim(by(t))//','// &
-               trim(number(t%estimate))//','//trim(t%unit)//','//trim(number(t%threshold))//','// &
-               whole(t%unknowns)//','//whole(t%entries)//','//trim(seen)//',"'//trim(t%why)//'"', fault)
+            row = trim(t%name)//','//trim(merge('yes', 'no ', t%present))//','//trim(merge('on ', 'off', t%on))//','// &
+                  trim(by(t))//','
+            if (t%influence >= 0.0_wp) then
+               row = row//short(t%influence)//','//short(t%change)//','//trim(t%answer)//','//whole(t%unknowns)//','// &
+                     short(t%seconds)//','
+            else
+               row = row//',,,,,'
+            end if
+            if (t%limit >= 0.0_wp) then
+               row = row//short(t%limit)//','//short(t%largest)//','
+               if (t%crossed > NEVER) row = row//short(t%crossed)
+            else
+               row = row//',,'
+            end if
+            call write_line(file, row//',"'//trim(t%why)//'"', fault)
          end associate
       end do
       call close_csv(file, fault)

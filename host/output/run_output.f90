@@ -55,7 +55,7 @@ contains
       self%progress%quiet = self%quiet
       self%last_checkpoint = clock()
       call open_tables(self%folder, model, self%resume, self%tables, fault)
-      if (fault%code == 0 .and. model%effect_options%auto) call write_effects(self%folder, run%monitor%table, fault)
+      if (fault%code == 0 .and. allocated(model%effects)) call write_effects(self%folder, run%monitor%table, fault)
       if (fault%code /= 0 .or. run%steps > 0) return
       call write_history(self%tables, model, run%state, fault)
       call write_frame(self%folder, model%domain, run%state, self%tables%frames, fault)
@@ -131,14 +131,14 @@ contains
       integer :: i
 
       call close_tables(self%tables, fault)
-      if (.not. model%effect_options%auto) return
+      if (.not. allocated(model%effects)) return
       call write_effects(self%folder, run%monitor%table, last)
       if (fault%code == 0) fault = last
       if (self%quiet .or. .not. any(run%monitor%table%crossed > NEVER)) return
-      write (output_unit, '(a)') 'Effects that are off and crossed their thresholds in this run:'
+      write (output_unit, '(a)') 'Effects that pilots let go and that showed themselves in this run:'
       do i = 1, size(run%monitor%table)
          if (run%monitor%table(i)%crossed > NEVER) &
-            write (output_unit, '(a)') '   '//warning_of(model, run%monitor%table(i))
+            write (output_unit, '(a)') '   '//warning_of(run%monitor%table(i))
       end do
    end subroutine run_ends
 

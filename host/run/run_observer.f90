@@ -20,6 +20,7 @@ module run_observer
    end type step_report_t
 
    type, abstract :: run_observer_t
+      logical :: silent = .false.          !< Nothing is said of what is seen, not even on standard error.
    contains
       procedure(run_i), deferred :: run_begins
       procedure(step_i), deferred :: step_done

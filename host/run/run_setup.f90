@@ -33,7 +33,7 @@ contains
       if (fault%code == 0) call seat_plates(model, run%system%contacts, run%state)
       if (fault%code == 0) call prepare_absorbers(model, run%state, run%constraint%dashpots, fault)
       run%next = run%state
-      if (fault%code == 0 .and. model%effect_options%auto) call begin_monitor(model, run%state, run%monitor)
+      if (fault%code == 0 .and. allocated(model%effects)) call begin_monitor(model, run%state, run%monitor)
       if (fault%code == 0 .and. model%subtract_flow) call keep_flow(model, run, fault)
    end subroutine prepare_run
 end module run_setup

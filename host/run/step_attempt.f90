@@ -8,7 +8,6 @@ module step_attempt
    use boundary_loads, only: load_at
    use contact_drainage, only: freeze_drainage
    use convergence, only: control_t, log_t
-   use effect_monitor, only: begin_stage_of_monitor
    use energy_ledger, only: kinetic_energy
    use generalised_alpha, only: scheme_t, make_scheme, DYNAMIC
    use held_ground, only: hold_ground, let_waves_in
@@ -34,7 +33,6 @@ contains
          run%system%factored = .false.
          if (allocated(run%constraint%dashpots)) call hold_ground(model, number, run, fault)
          if (fault%code /= 0) return
-         call begin_stage_of_monitor(run%monitor)
          call begin_control(model, stage, run)
          if (stage%kind == DYNAMIC .and. stage%solve_start) call first_accelerations(model, stage, run, fault)
          if (fault%code /= 0) return

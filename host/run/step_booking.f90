@@ -6,6 +6,8 @@ module step_booking
    use wall_clock, only: clock, lap
    use contact_interfaces, only: mean_contact_forces
    use effect_monitor, only: monitor_step, warning_of
+   use exit_codes, only: EXIT_EFFECT
+   use faults, only: fault_t, raise
    use energy_alarm, only: check_creation, tell_creation
    use energy_ledger, only: book_step, book_creation, imbalance
    use generalised_alpha, only: scheme_t
@@ -41,18 +43,21 @@ contains
    end subroutine book_accepted_step
 
    !> Monitors a step that is accepted but not yet taken over, and warns.
-   subroutine watch_effects(model, report, run, observer)
+   subroutine watch_effects(model, report, run, fault, observer)
       type(model_t), intent(in) :: model
       type(step_report_t), intent(in) :: report
       type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
       class(run_observer_t), intent(inout), optional :: observer
       logical :: news(size(run%monitor%table))
       integer :: i
 
-      call monitor_step(model, report%stage, report%dt, report%last, run%ledger, run%state, run%next, run%monitor, news)
-      if (.not. present(observer)) return
+      call monitor_step(model, report%stage, report%dt, run%state, run%next, run%monitor, news)
       do i = 1, size(news)
-         if (news(i)) call observer%warn(warning_of(model, run%monitor%table(i)))
+         if (.not. news(i)) cycle
+         if (model%stop_on_warning) call raise(fault, EXIT_EFFECT, warning_of(run%monitor%table(i))// &
+            ' effects_on_warning = ''stop'' ends the run.')
+         if (present(observer)) call observer%warn('Warning: '//warning_of(run%monitor%table(i)))
       end do
    end subroutine watch_effects
 end module step_booking

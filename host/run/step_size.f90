@@ -108,6 +108,7 @@ contains
       dt = run%at%nominal*run%at%factor
       left = run%at%t_start + stage%duration - run%state%time
       if (.not. stage%controlled) then
+         if (allocated(stage%ends)) dt = min(left, run%at%factor*(next_end(stage, run) - run%state%time))
          if (dt > left*(1 - LAST_STEP)) dt = left
          return
       end if
@@ -120,6 +121,17 @@ contains
          dt = 0.5_wp*left
       end if
    end function next_step
+
+   !> The next of the times that the steps of a pilot end at [s].
+   pure real(wp) function next_end(stage, run)
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(in) :: run
+
+      next_end = run%at%t_start + stage%duration
+      associate (ends => run%at%t_start + stage%ends)
+         next_end = min(next_end, minval(ends, mask=ends > run%state%time + LAST_STEP*run%at%nominal))
+      end associate
+   end function next_end
 
    !> Before an attempt: rates of the present state where the step expects them.
    subroutine prepare_rates(stage, dt, run)

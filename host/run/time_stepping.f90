@@ -39,7 +39,7 @@ contains
       call lap(run%seconds_output, t0)
       do i = max(1, run%at%stage), size(model%stages)
          call run_stage(model, i, run, fault, observer)
-         if (present(observer)) call tell_creation(model%stages(i), run%ledger)
+         if (speaks(observer)) call tell_creation(model%stages(i), run%ledger)
          t0 = clock()
          ! Also after a failure, which is reported, not what its last output may meet.
          last = fault_t()
@@ -108,12 +108,12 @@ contains
          scheme = make_scheme(stage%kind, stage%rho_inf, dt)
          at%step = at%step + 1
          run%steps = run%steps + 1
-         if (present(observer)) call tell_penetration(model, run%next%time, run%system%contacts)
-         if (present(observer)) call tell_oscillation(model, stage, run%next%time, run%next%x, run%told_oscillation)
+         if (speaks(observer)) call tell_penetration(model, run%next%time, run%system%contacts)
+         if (speaks(observer)) call tell_oscillation(model, stage, run%next%time, run%next%x, run%told_oscillation)
          call book_accepted_step(model, scheme, run)
          report = step_report_t(number, dt, step_error(scheme, run%state%x, run%state%a, run%next%x, run%next%a), &
                                 at%t_start + stage%duration - run%next%time <= LAST_STEP*dt, log)
-         if (model%effect_options%auto) call watch_effects(model, report, run, observer)
+         if (allocated(run%monitor%table)) call watch_effects(model, report, run, fault, observer)
          call keep_step(model, stage, dt, run)
          call copy_state(run%next, run%state)
          if (.not. stage%controlled) at%nominal = min(at%nominal*stage%dt_growth, max(stage%dt_max, stage%dt))
@@ -133,4 +133,12 @@ contains
       end if
       call check_creation(model%stages(number), run%state%time, run%ledger, fault)
    end subroutine close_step
+
+   !> Whether there is somebody who may say what is seen.
+   logical function speaks(observer)
+      class(run_observer_t), intent(in), optional :: observer
+
+      speaks = .false.
+      if (present(observer)) speaks = .not. observer%silent
+   end function speaks
 end module time_stepping

@@ -3,6 +3,7 @@
 !> come from this list.
 module scene_keys
    use kinds, only: wp
+   use effect_types, only: EFFECT_WORDS
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use key_schema, only: key_t, REQUIRED, NONE, UNBOUNDED, check_group, given, texts_of, numbers_of, &
                          line_of, words_of, place_of, &
@@ -27,8 +28,12 @@ module scene_keys
       key_t('scene', 'pressures', 'w', 'quadratic', 0, 0, 'interpolation (linear: Taylor-Hood)', 'quadratic|linear'), &
       key_t('scene', 'quadrature', 'i', '6', 3, 12, 'points of an element: 3, 6, 7 or 12'), &
       key_t('scene', 'gravity', 'n', '0', 0, 1000, 'acceleration towards -z [m/s2]'), &
-      key_t('scene', 'effects', 'w', 'given', 0, 0, 'auto derives what keys leave out, see README', 'given|auto'), &
+      key_t('scene', 'effects', 'w', 'given', 0, 0, &
+            'auto: pilots find out what the keys leave open, see README', 'given|auto'), &
       key_t('scene', 'effects_tolerance', 'n', '0.01', 1.0e-6_wp, 1, 'share that an effect left out may have [-]'), &
+      key_t('scene', 'effects_on_warning', 'w', 'warn', 0, 0, &
+            'when an effect that pilots let go shows itself in the run', 'warn|stop'), &
+      key_t('scene', 'without', 'W', NONE, 0, 0, 'effects that are taken out by hand', EFFECT_WORDS), &
       key_t('scene', 'seepage_inertia', 'w', 'no', 0, 0, 'acceleration of the skeleton in Darcy''s law', 'no|yes'), &
       key_t('scene', 'saturation_rate', 'w', 'full', 0, 0, &
             'rate of saturation with dS_w/de, or by suction alone', 'full|suction'), &

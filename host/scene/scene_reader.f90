@@ -12,6 +12,7 @@ module scene_reader
    use key_schema, only: get_text
    use scene_keys, only: check_keys, number_of, numbers_of, text_of, texts_of, word_is, word_number, given
    use scene_names, only: check_names
+   use texts, only: lower_case
    use scene_types, only: scene_t, scene_item_t, scene_law_t, scene_amplitude_t, scene_region_t, scene_initial_t, &
                           scene_stage_t, scene_fix_t, scene_load_t, scene_plate_t, scene_contact_t, scene_point_t, &
                           scene_absorber_t, scene_tie_t, place_of
@@ -189,6 +190,8 @@ contains
       scene%checkpoint_end = word_is(group, 'checkpoint_end', 'yes')
       scene%derive_effects = word_is(group, 'effects', 'auto')
       scene%effects_tolerance = number_of(group, 'effects_tolerance')
+      scene%stop_on_warning = word_is(group, 'effects_on_warning', 'stop')
+      scene%without = lower_case(texts_of(group, 'without'))
       scene%fields_by_hand = given(group, 'fields') .or. .not. scene%derive_effects
       scene%gravity_by_hand = given(group, 'gravity') .or. .not. scene%derive_effects
       scene%seepage_by_hand = given(group, 'seepage_inertia') .or. .not. scene%derive_effects
@@ -248,7 +251,7 @@ contains
       stage%analysis = word_number(group, 'analysis')
       if (stage%analysis == 0 .and. .not. scene%derive_effects) call raise(fault, EXIT_INPUT, &
          at_line(group%file, group%line)//'&stage needs analysis (static, quasi_static or dynamic); '// &
-         'effects = ''auto'' in &scene would derive it.')
+         'effects = ''auto'' in &scene would find it out.')
       stage%duration = number_of(group, 'duration')
       stage%dt_growth = number_of(group, 'dt_growth')
       if (given(group, 'dt_max')) stage%dt_max = number_of(group, 'dt_max')

@@ -4,6 +4,7 @@
 !> types.
 module scene_types
    use kinds, only: wp
+   use effect_types, only: effect_t
    use faults, only: at_line
    use namelists, only: group_t, LENGTH
    implicit none (type, external)
@@ -88,11 +89,12 @@ module scene_types
 
    type :: scene_stage_t
       character(NAME_LENGTH) :: name = ''
-      integer :: analysis = 0                        !< IS_...; 0: to be derived.
+      integer :: analysis = 0                        !< IS_...; 0: to be found by pilots.
       real(wp) :: duration = 0.0_wp, dt = 0.0_wp, dt_growth = 1.0_wp, dt_max = huge(1.0_wp)   !< [s, s, -, s]
       logical :: controlled = .false.                 !< Steps are chosen from their error.
       real(wp) :: accuracy = 0.0_wp                  !< Asked for, in the histories of the named points [-].
       real(wp) :: output_dt = 0.0_wp                 !< Steps end at its multiples [s]; 0: none.
+      real(wp), allocatable :: ends(:)               !< Steps end here, after the start of the stage [s]: of pilots.
       integer :: cuts = 10
       real(wp) :: rho_inf = -1.0_wp, tolerance = 1.0e-3_wp   !< rho_inf below zero: not given.
       real(wp) :: created_energy = 0.01_wp           !< Share of the largest work that ends the run [-].
@@ -180,8 +182,11 @@ module scene_types
       integer :: checkpoint_steps = 0
       real(wp) :: checkpoint_seconds = 0.0_wp
       logical :: checkpoint_end = .false.
-      logical :: derive_effects = .false.            !< What the keys leave out is derived;
+      logical :: derive_effects = .false.            !< What the keys leave out is found by pilots;
+      logical :: stop_on_warning = .false.           !< The watch over what they let go ends the run.
       real(wp) :: effects_tolerance = 0.01_wp
+      character(LENGTH), allocatable :: without(:)   !< Effects that are taken out by hand.
+      type(effect_t), allocatable :: effects(:)      !< What pilots have found; not allocated: none ran.
       logical :: fields_by_hand = .true., gravity_by_hand = .true., seepage_by_hand = .true.   !< these say it.
       type(scene_mesh_t) :: mesh
       type(scene_fluids_t) :: fluids

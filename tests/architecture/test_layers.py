@@ -13,7 +13,7 @@ TO_GO = set()
 
 # Folders, lowest first; a folder uses those above it in the list of its group and the groups named.
 HOST = ("host/time", "host/mesh", "host/element", "host/contact", "host/solver", "host/scene", "host/model", "host/run",
-        "host/output", "host")
+        "host/effects", "host/output", "host")
 GROUPS = {
     "umat/core": (("umat/core/base", "umat/core/laws", "umat/core/rates", "umat/core/integration"), ()),
     "umat/abi": (("umat/abi",), ("umat/core",)),

@@ -1,0 +1,287 @@
+! SPDX-License-Identifier: MIT
+!> Asks a scene which effects it calls for: pilots of it with every effect and without each, and what each changes in
+!> the answers. docs/theory/host.md section 11.
+module effect_pilots
+   use, intrinsic :: iso_fortran_env, only: output_unit
+   use kinds, only: wp
+   use effect_monitor, only: is_watched
+   use effect_switches, only: list_effects, settle_open_keys, switch, switch_by_hand
+   use effect_types, only: effect_t, OF_P_C, OF_SEEPAGE
+   use faults, only: fault_t, raise, EXIT_INPUT
+   use pilot_runs, only: pilot_t, run_pilot, difference_t, difference
+   use pilot_scenes, only: make_cheap, can_coarsen
+   use scene_types, only: scene_t, WITH_P_C
+   use texts, only: short, whole
+   implicit none (type, external)
+   private
+   public :: ask_effects, settle_scene, apply_effects, pilots_account_t
+
+   !> An influence is taken so many times as large, for the coarseness of the pilot.
+   real(wp), parameter :: PILOT_FACTOR = 2.0_wp
+   !> An indicator of the run may be so many times that of the pilot, besides the ratio of their steps.
+   real(wp), parameter :: SURPRISE = 2.0_wp
+   !> The steps of pilots are halved until that changes no answer by a larger share of its range; the first ones are
+   !> 2**LEVELS times as long as those of the scene.
+   real(wp), parameter :: GOOD_PILOT = 0.25_wp
+   integer, parameter :: LEVELS = 5
+   !> Above so many elements cells are twice, three and four times as long.
+   integer, parameter :: MANY_ELEMENTS(3) = [60, 1000, 4000]
+
+   !> The pilots as a whole.
+   type :: pilots_account_t
+      integer :: runs = 0
+      integer :: cells = 1, steps = 1      !< How much longer cells and steps were.
+      integer :: elements = 0, steps_taken = 0, unknowns = 0
+      real(wp) :: seconds = 0.0_wp
+      type(difference_t) :: own_error      !< Against pilots with steps, or cells, twice as long.
+      logical :: own_error_known = .false.
+   end type pilots_account_t
+contains
+   !> The scene with its open keys settled as the general case, and without what `without` names.
+   subroutine settle_scene(scene, fault)
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+      character(200) :: why
+
+      call settle_open_keys(scene)
+      call switch_by_hand(scene, why)
+      if (why /= '') call raise(fault, EXIT_INPUT, trim(scene%file)//': without = '//trim(why)//'.')
+   end subroutine settle_scene
+
+   !> A settled scene with the effects as a table says.
+   subroutine apply_effects(table, scene)
+      type(effect_t), intent(in) :: table(:)
+      type(scene_t), intent(inout) :: scene
+      character(200) :: why
+      integer :: i
+
+      do i = 1, size(table)
+         if (table(i)%on .neqv. table(i)%present) call switch(scene, table(i), table(i)%on, why)
+      end do
+   end subroutine apply_effects
+
+   !> Pilots of a scene as it was read. `whole_scene`: the pilots are the scene itself, neither coarser nor faster. The
+   !> table's `on` says what the run should have; only what no key says may differ from the scene.
+   subroutine ask_effects(scene, whole_scene, quiet, table, account, fault)
+      type(scene_t), intent(in) :: scene
+      logical, intent(in) :: whole_scene, quiet
+      type(effect_t), allocatable, intent(out) :: table(:)
+      type(pilots_account_t), intent(out) :: account
+      type(fault_t), intent(inout) :: fault
+      type(scene_t) :: settled, cheap
+      type(pilot_t) :: base
+      integer :: i
+
+      table = list_effects(scene)
+      settled = scene
+      call settle_scene(settled, fault)
+      if (fault%code /= 0) return
+      call find_base()
+      if (fault%code /= 0) return
+      call prescribe_steps(base, cheap)
+      do i = 1, size(table)
+         ! What the scene does not have, and a key says so, is tried with the whole scene alone.
+         if (.not. (table(i)%present .or. whole_scene) .and. table(i)%by_hand) cycle
+         call try_effect(cheap, base, table(i), account)
+         if (.not. quiet) write (output_unit, '(a)') '   pilot '//whole(account%runs)//', '// &
+            trim(merge('without', 'with   ', table(i)%present))//' '//trim(table(i)%name)//': '// &
+            told(table(i))
+      end do
+      call decide(cheap, base, scene%effects_tolerance, quiet, table, account)
+      call set_limits(base, real(account%steps, wp), scene%effects_tolerance, table)
+   contains
+      !> The pilot with every effect. Its steps are halved until that changes the answers little.
+      subroutine find_base()
+         type(pilot_t) :: finer
+         type(scene_t) :: finer_scene
+         type(difference_t) :: apart
+         integer :: k
+
+         account%cells = 1
+         if (.not. whole_scene) account%cells = cells_of(settled)
+         do k = merge(LEVELS, 0, .not. whole_scene), 0, -1
+            finer_scene = settled
+            if (.not. whole_scene) call make_cheap(account%cells, 2**k, finer_scene)
+            call run_pilot(finer_scene, 0, finer)
+            call book(finer, account)
+            if (.not. finer%done) cycle
+            if (base%done) apart = difference(finer, base)
+            account%own_error_known = base%done
+            account%own_error = apart
+            base = finer
+            cheap = finer_scene
+            account%steps = 2**k
+            if (account%own_error_known .and. apart%share <= GOOD_PILOT) exit
+         end do
+         if (.not. base%done) then
+            call raise(fault, EXIT_INPUT, trim(scene%file)//': the pilot with every effect fails, so that nothing '// &
+                       'can be said of any: '//trim(finer%why))
+            return
+         end if
+         account%elements = base%elements
+         account%unknowns = base%unknowns
+         account%steps_taken = base%steps
+         if (.not. quiet) write (output_unit, '(a)') 'Pilots: '//whole(base%elements)//' elements, '// &
+            whole(base%unknowns)//' unknowns, '//whole(base%steps)//' steps; with every effect '// &
+            short(base%seconds)//' s.'
+         if (whole_scene .or. size(settled%points) == 0 .or. .not. can_coarsen(cheap)) return
+         finer_scene = settled
+         call make_cheap(2*account%cells, account%steps, finer_scene)
+         call run_pilot(finer_scene, 0, finer)
+         call book(finer, account)
+         if (.not. finer%done) return
+         apart = difference(base, finer)
+         account%own_error_known = .true.
+         if (apart%share > account%own_error%share) account%own_error = apart
+      end subroutine find_base
+   end subroutine ask_effects
+
+   !> How much longer the cells of pilots are, so that few tens of elements are left of a small scene and some
+   !> hundreds of a large one.
+   pure integer function cells_of(scene) result(times)
+      type(scene_t), intent(in) :: scene
+
+      times = 1
+      if (.not. can_coarsen(scene)) return
+      times = 1 + count(2*sum(scene%mesh%r_cells)*sum(scene%mesh%z_cells) > MANY_ELEMENTS)
+   end function cells_of
+
+   !> All pilots take the steps of the first, so that they differ by nothing else than the effect.
+   subroutine prescribe_steps(base, scene)
+      type(pilot_t), intent(in) :: base
+      type(scene_t), intent(inout) :: scene
+      integer :: i
+
+      do i = 1, size(scene%stages)
+         if (.not. scene%stages(i)%controlled .or. size(base%ends(i)%times) == 0) cycle
+         scene%stages(i)%controlled = .false.
+         scene%stages(i)%ends = base%ends(i)%times
+         scene%stages(i)%dt = base%ends(i)%times(1)
+         scene%stages(i)%dt_growth = 1.0_wp
+         ! The default depends on who chooses the steps.
+         scene%stages(i)%rho_inf = base%rho_inf(i)
+      end do
+   end subroutine prescribe_steps
+
+   pure subroutine book(pilot, account)
+      type(pilot_t), intent(in) :: pilot
+      type(pilots_account_t), intent(inout) :: account
+
+      account%runs = account%runs + 1
+      account%seconds = account%seconds + pilot%seconds
+   end subroutine book
+
+   !> One pilot without (with) an effect.
+   subroutine try_effect(cheap, base, effect, account)
+      type(scene_t), intent(in) :: cheap
+      type(pilot_t), intent(in) :: base
+      type(effect_t), intent(inout) :: effect
+      type(pilots_account_t), intent(inout) :: account
+      type(scene_t) :: other
+      type(pilot_t) :: pilot
+      type(difference_t) :: apart
+      character(200) :: why
+
+      other = cheap
+      call switch(other, effect, .not. effect%present, why)
+      if (why == '') then
+         call run_pilot(other, base%steps, pilot)
+         call book(pilot, account)
+         why = pilot%why
+      end if
+      if (why /= '') then
+         effect%why = trim(merge('cannot be left out: ', 'cannot be put in:   ', effect%present))//' '//trim(why)
+         return
+      end if
+      apart = difference(base, pilot)
+      effect%influence = apart%share
+      effect%change = apart%change
+      effect%answer = apart%answer
+      effect%unknowns = base%unknowns - pilot%unknowns
+      effect%seconds = pilot%seconds/max(base%seconds, tiny(1.0_wp))
+      if (effect%present .and. is_watched(effect%kind)) effect%limit = maxval(pilot%indicators(effect%kind, :))
+   end subroutine try_effect
+
+   !> What no key says goes or stays; what is to go together is tried together.
+   subroutine decide(cheap, base, tolerance, quiet, table, account)
+      type(scene_t), intent(in) :: cheap
+      type(pilot_t), intent(in) :: base
+      real(wp), intent(in) :: tolerance
+      logical, intent(in) :: quiet
+      type(effect_t), intent(inout) :: table(:)
+      type(pilots_account_t), intent(inout) :: account
+      type(scene_t) :: other
+      type(pilot_t) :: pilot
+      type(difference_t) :: apart
+      logical :: going(size(table))
+      integer :: i
+
+      do i = 1, size(table)
+         associate (t => table(i))
+            if (t%influence < 0.0_wp .and. t%why == '') then
+               t%why = 'not tried: by hand'
+            else if (t%by_hand) then
+               t%why = trim(t%why)//trim(merge('; by hand', 'by hand  ', t%why /= ''))
+            else if (t%influence < 0.0_wp) then
+               t%on = t%present
+            else
+               t%on = PILOT_FACTOR*t%influence > tolerance
+               ! Relative acceleration makes waves grow in unsaturated soil.
+               if (t%kind == OF_SEEPAGE .and. t%on .and. cheap%fields == WITH_P_C) then
+                  t%on = .false.
+                  t%why = 'unstable in unsaturated soil: it stays off'
+               end if
+            end if
+         end associate
+      end do
+      do
+         going = table%present .and. .not. table%on
+         if (count(going) < 2) exit
+         other = cheap
+         call apply_effects(table, other)
+         call run_pilot(other, base%steps, pilot)
+         call book(pilot, account)
+         if (pilot%done) then
+            apart = difference(base, pilot)
+            if (.not. quiet) write (output_unit, '(a)') '   pilot '//whole(account%runs)//', without all that is to '// &
+               'go: '//short(100*apart%share)//' % of '//trim(apart%answer)
+            if (apart%share <= tolerance) exit
+         end if
+         ! Weak ones that are strong together come back, the strongest first.
+         i = maxloc(table%influence, dim=1, mask=going)
+         table(i)%on = .true.
+         table(i)%why = 'weak alone, but not together with the others that are to go'
+      end do
+   end subroutine decide
+
+   !> What the run may show of the effects that are gone.
+   pure subroutine set_limits(base, step_ratio, tolerance, table)
+      type(pilot_t), intent(in) :: base
+      real(wp), intent(in) :: step_ratio, tolerance
+      type(effect_t), intent(inout) :: table(:)
+      integer :: i
+
+      do i = 1, size(table)
+         associate (t => table(i))
+            if (t%on .or. .not. t%present .or. t%by_hand) t%limit = -1.0_wp
+            if (t%limit < 0.0_wp) cycle
+            t%limit = SURPRISE*step_ratio*t%limit
+            if (t%kind == OF_P_C) t%limit = max(t%limit, tolerance*base%stress)
+         end associate
+      end do
+   end subroutine set_limits
+
+   !> A row in a few words, while the pilots run.
+   function told(effect) result(text)
+      type(effect_t), intent(in) :: effect
+      character(:), allocatable :: text
+
+      if (effect%influence < 0.0_wp) then
+         text = trim(effect%why)
+      else if (effect%answer == '') then
+         text = 'nothing changes'
+      else
+         text = short(100*effect%influence)//' % of '//trim(effect%answer)
+      end if
+   end function told
+end module effect_pilots

@@ -1,0 +1,272 @@
+! SPDX-License-Identifier: MIT
+!> Runs a scene without files and words, and keeps what its answers did; compares two such runs.
+!> docs/theory/host.md section 11.
+module pilot_runs
+   use kinds, only: wp
+   use effect_monitor, only: indicator_of, mass_of_nodes
+   use effect_types, only: EFFECTS
+   use faults, only: fault_t, raise, EXIT_INPUT
+   use model_builder, only: build_model
+   use model_types, only: model_t
+   use porous_domain, only: state_t, copy_state
+   use run_observer, only: run_observer_t, step_report_t
+   use run_setup, only: prepare_run
+   use run_state, only: run_t
+   use scene_types, only: scene_t
+   use time_stepping, only: run_stages
+   use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS, AT_P_W, AT_P_C
+   use wall_clock, only: clock
+   implicit none (type, external)
+   private
+   public :: pilot_t, stage_ends_t, run_pilot, difference_t, difference
+
+   integer, parameter :: NODES_WITHOUT_POINTS = 50    !< Answers of a scene that names no points.
+   integer, parameter :: MOST_TIMES_THE_STEPS = 5     !< Of the whole scene's pilot, that another one may take.
+   real(wp), parameter :: NO_ANSWER = 1.0e-4_wp       !< A range below this share of its kind's largest is no answer,
+   real(wp), parameter :: NO_PRESSURE = 1.0e-3_wp     !< nor a pressure's below this share of the stresses' change.
+
+   type :: stage_ends_t
+      real(wp), allocatable :: times(:)               !< Ends of the steps, from the start of the stage [s].
+   end type stage_ends_t
+
+   !> What a pilot has shown.
+   type :: pilot_t
+      logical :: done = .false.
+      character(200) :: why = ''                      !< Where it is not done.
+      integer :: elements = 0, unknowns = 0, steps = 0
+      real(wp) :: seconds = 0.0_wp
+      real(wp) :: stress = 0.0_wp                     !< Largest change of an effective stress [kPa].
+      logical :: has(FIELDS) = .false.
+      character(72), allocatable :: names(:)          !< Of the points.
+      real(wp), allocatable :: time(:), x(:, :, :)    !< [s], (FIELDS, points, times) [m, kPa]
+      real(wp), allocatable :: indicators(:, :)       !< Largest, (EFFECTS, stages), see effect_monitor.
+      type(stage_ends_t), allocatable :: ends(:)      !< Of the stages.
+      real(wp), allocatable :: rho_inf(:)             !< Of the stages.
+   end type pilot_t
+
+   type, extends(run_observer_t) :: watcher_t
+      type(pilot_t) :: seen
+      type(state_t) :: first, before
+      real(wp), allocatable :: mass(:)
+      integer, allocatable :: nodes(:)
+      integer :: rows = 0
+      integer :: most_steps = huge(1)
+   contains
+      procedure :: run_begins
+      procedure :: step_done
+      procedure :: stage_done
+      procedure :: run_ends
+      procedure :: warn
+   end type watcher_t
+
+   !> How far two runs lie apart.
+   type :: difference_t
+      real(wp) :: share = 0.0_wp                      !< Of the answer's range [-],
+      real(wp) :: change = 0.0_wp                     !< second less first, where they are farthest apart [m, kPa].
+      character(72) :: answer = ''
+   end type difference_t
+contains
+   !> Runs a scene whose keys are settled. A failure is told in the pilot.
+   subroutine run_pilot(scene, most_steps, pilot)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: most_steps   !< Of a pilot that may take MOST_TIMES_THE_STEPS times as many; 0: any number.
+      type(pilot_t), intent(out) :: pilot
+      type(model_t) :: model
+      type(run_t) :: run
+      type(watcher_t) :: watcher
+      type(fault_t) :: fault
+      real(wp) :: t0
+
+      t0 = clock()
+      watcher%silent = .true.
+      if (most_steps > 0) watcher%most_steps = MOST_TIMES_THE_STEPS*most_steps
+      call build_model(scene, model, fault)
+      if (fault%code == 0) call prepare_run(model, run, fault)
+      if (fault%code == 0) call run_stages(model, run, fault, watcher)
+      pilot = watcher%seen
+      pilot%done = fault%code == 0
+      pilot%why = fault%text(:len(pilot%why))
+      pilot%seconds = clock() - t0
+      if (allocated(model%stages)) pilot%rho_inf = model%stages%rho_inf
+      pilot%steps = run%steps
+      if (.not. allocated(model%dofs%of)) return
+      pilot%elements = size(model%domain%mesh%t6, 2)
+      pilot%unknowns = model%dofs%n
+      pilot%has = any(model%dofs%of(:FIELDS, :) > 0, dim=2)
+      if (.not. pilot%done) return
+      pilot%time = pilot%time(:watcher%rows)
+      pilot%x = pilot%x(:, :, :watcher%rows)
+   end subroutine run_pilot
+
+   subroutine run_begins(self, model, run, fault)
+      class(watcher_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+      integer :: i, n
+
+      if (fault%code /= 0) return
+      n = size(model%domain%mesh%x, 2)
+      if (size(model%points) > 0) then
+         self%nodes = model%points%node
+         self%seen%names = model%points%name
+      else
+         self%nodes = [(1 + (i - 1)*(n - 1)/(min(n, NODES_WITHOUT_POINTS) - 1), i=1, min(n, NODES_WITHOUT_POINTS))]
+         allocate (self%seen%names(size(self%nodes)))
+         do i = 1, size(self%nodes)
+            write (self%seen%names(i), '(a,i0)') 'node', self%nodes(i)
+         end do
+      end if
+      self%mass = mass_of_nodes(model, run%state)
+      self%first = run%state
+      self%before = run%state
+      allocate (self%seen%indicators(EFFECTS, size(model%stages)), source=0.0_wp)
+      allocate (self%seen%ends(size(model%stages)))
+      do i = 1, size(model%stages)
+         allocate (self%seen%ends(i)%times(0))
+      end do
+      allocate (self%seen%time(1), self%seen%x(FIELDS, size(self%nodes), 1))
+      call keep(self, run)
+   end subroutine run_begins
+
+   !> A row of the histories.
+   subroutine keep(self, run)
+      class(watcher_t), intent(inout) :: self
+      type(run_t), intent(in) :: run
+      real(wp), allocatable :: time(:), x(:, :, :)
+
+      if (self%rows == size(self%seen%time)) then
+         allocate (time(2*self%rows), x(FIELDS, size(self%nodes), 2*self%rows))
+         time(:self%rows) = self%seen%time
+         x(:, :, :self%rows) = self%seen%x
+         call move_alloc(time, self%seen%time)
+         call move_alloc(x, self%seen%x)
+      end if
+      self%rows = self%rows + 1
+      self%seen%time(self%rows) = run%state%time
+      self%seen%x(:, :, self%rows) = run%state%x(:FIELDS, self%nodes)
+   end subroutine keep
+
+   subroutine step_done(self, model, run, report, checkpoint, fault)
+      class(watcher_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(step_report_t), intent(in) :: report
+      logical, intent(out) :: checkpoint
+      type(fault_t), intent(inout) :: fault
+      integer :: k
+
+      checkpoint = .false.
+      call keep(self, run)
+      self%seen%stress = max(self%seen%stress, maxval(abs(run%state%stress - self%first%stress)))
+      associate (s => report%stage)
+         do k = 1, EFFECTS
+            self%seen%indicators(k, s) = max(self%seen%indicators(k, s), &
+               indicator_of(k, s, model, s, report%dt, self%mass, self%before, run%state))
+         end do
+         self%seen%ends(s)%times = [self%seen%ends(s)%times, run%state%time - run%at%t_start]
+      end associate
+      call copy_state(run%state, self%before)
+      if (run%steps > self%most_steps) call raise(fault, EXIT_INPUT, 'its pilot takes many times as many steps')
+   end subroutine step_done
+
+   subroutine stage_done(self, model, run, stage, complete, fault)
+      class(watcher_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      integer, intent(in) :: stage
+      logical, intent(in) :: complete
+      type(fault_t), intent(inout) :: fault
+
+      if (fault%code /= 0 .or. .not. complete) return
+      ! Displacements may have been set to zero, and accelerations with them.
+      if (model%stages(stage)%zero_displacements) call copy_state(run%state, self%before)
+   end subroutine stage_done
+
+   subroutine run_ends(self, model, run, fault)
+      class(watcher_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+
+      ! Nothing to close.
+      if (fault%code /= 0 .or. run%steps == 0 .or. size(model%stages) == 0) return
+      self%seen%steps = run%steps
+   end subroutine run_ends
+
+   subroutine warn(self, text)
+      class(watcher_t), intent(inout) :: self
+      character(*), intent(in) :: text
+
+      ! The warnings of the run itself are told then.
+      if (len(text) == 0) self%seen%why = ''
+   end subroutine warn
+
+   !> How far the answers of two runs of one mesh lie apart, as shares of the range of each answer in the first; a field
+   !> that one of them lacks is measured by its change against the largest change of an effective stress.
+   pure function difference(one, two) result(worst)
+      type(pilot_t), intent(in) :: one, two
+      type(difference_t) :: worst
+      real(wp) :: range(FIELDS, size(one%names)), largest(2), scale, apart, change
+      integer :: f, i, of
+
+      range = maxval(one%x, dim=3) - minval(one%x, dim=3)
+      largest = [maxval(range(:DISPLACEMENTS, :)), maxval(range(DISPLACEMENTS + 1:, :))]
+      largest(2) = max(largest(2), NO_PRESSURE/NO_ANSWER*one%stress)
+      do i = 1, size(one%names)
+         do f = 1, FIELDS
+            of = merge(1, 2, f <= DISPLACEMENTS)
+            if (one%has(f) .and. two%has(f)) then
+               if (range(f, i) <= NO_ANSWER*largest(of)) cycle
+               scale = range(f, i)
+               call farthest(one, two, f, i, change)
+            else if (one%has(f)) then
+               call lost(one, f, i, change, scale)
+            else if (two%has(f)) then
+               call lost(two, f, i, change, scale)
+            else
+               cycle
+            end if
+            apart = abs(change)/max(scale, tiny(1.0_wp)/epsilon(1.0_wp))
+            if (.not. apart > worst%share) cycle
+            worst = difference_t(apart, change, trim(one%names(i))//'.'//trim(FIELD_NAMES(f)))
+         end do
+      end do
+   end function difference
+
+   !> Largest distance of two histories at the times of the first, straight lines between those of the second.
+   pure subroutine farthest(one, two, field, point, change)
+      type(pilot_t), intent(in) :: one, two
+      integer, intent(in) :: field, point
+      real(wp), intent(out) :: change
+      real(wp) :: share, here
+      integer :: i, k
+
+      change = 0.0_wp
+      k = 1
+      do i = 1, size(one%time)
+         do while (k < size(two%time) - 1 .and. two%time(k + 1) < one%time(i))
+            k = k + 1
+         end do
+         share = 0.0_wp
+         if (two%time(k + 1) > two%time(k)) share = (one%time(i) - two%time(k))/(two%time(k + 1) - two%time(k))
+         share = max(0.0_wp, min(1.0_wp, share))
+         here = two%x(field, point, k) + share*(two%x(field, point, k + 1) - two%x(field, point, k)) &
+                - one%x(field, point, i)
+         if (abs(here) > abs(change)) change = here
+      end do
+   end subroutine farthest
+
+   !> A pressure that is no unknown any more: its change; of suction that beyond zero alone.
+   pure subroutine lost(run, field, point, change, scale)
+      type(pilot_t), intent(in) :: run
+      integer, intent(in) :: field, point
+      real(wp), intent(out) :: change, scale   !< [kPa]
+
+      scale = run%stress
+      change = 0.0_wp
+      if (field == AT_P_W) change = -(maxval(run%x(field, point, :)) - minval(run%x(field, point, :)))
+      if (field == AT_P_C) change = -(maxval(max(0.0_wp, run%x(field, point, :))) &
+                                      - minval(max(0.0_wp, run%x(field, point, :))))
+   end subroutine lost
+end module pilot_runs

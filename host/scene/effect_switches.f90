@@ -1,0 +1,322 @@
+! SPDX-License-Identifier: MIT
+!> Effects of a scene taken out or put in, each by the keys that say it: the scene that results is one that a user
+!> could have written. docs/theory/host.md section 11.
+module effect_switches
+   use kinds, only: wp
+   use effect_types, only: effect_t, EFFECT_NAMES, EFFECTS, OF_INERTIA, OF_SEEPAGE, OF_P_W, OF_P_C, OF_GRAVITY, &
+      OF_CONTACT, OF_DAMPING, OF_ABSORBING, OF_DRAINAGE, OF_VOID_RATIO, OF_BONDING, OF_FABRIC, OF_ISOTROPIC, OF_LODE, &
+      OF_MEMORY, OF_ELASTIC_DOMAIN
+   use faults, only: fault_t
+   use key_schema, only: given
+   use library_tables, only: property_index
+   use namelists, only: set_entry
+   use parameter_groups, only: read_parameters
+   use scene_types, only: scene_t, NAME_LENGTH, WITH_U, WITH_P_W, WITH_P_C, IS_STATIC, IS_QUASI_STATIC, IS_DYNAMIC, &
+                          FIX_P_W, FIX_P_C, LOAD_WATER, LOAD_AIR
+   implicit none (type, external)
+   private
+   public :: list_effects, settle_open_keys, switch, switch_by_hand
+
+   real(wp), parameter :: EARTH = 9.81_wp             !< [m/s2] Where gravity is put in.
+   real(wp), parameter :: WORLD_DOMAIN = 2.0e-5_wp    !< rho_e where the elastic domain is put in, the default [-].
+   real(wp), parameter :: CLASSIC = 0.0_wp, RETURN_POINT = 3.0_wp   !< memory_rule without and with memory of loops.
+   real(wp), parameter :: ROUNDING = 1.0e-12_wp
+   !> Switches of the material, in the order of their effects.
+   character(11), parameter :: SWITCHES(OF_BONDING:OF_ELASTIC_DOMAIN) = [character(11) :: 'bonding', 'fabric', &
+      'isotropic', 'lode', 'memory_rule', 'rho_e']
+contains
+   !> What the scene leaves to be found out begins as the general case: all fields that the regions have laws for,
+   !> gravity, inertia.
+   pure subroutine settle_open_keys(scene)
+      type(scene_t), intent(inout) :: scene
+      integer :: i
+
+      if (.not. scene%gravity_by_hand) scene%gravity = EARTH
+      if (.not. scene%fields_by_hand) then
+         scene%fields = WITH_U
+         if (any(scene%regions%permeability_name /= '')) scene%fields = WITH_P_W
+         if (any(scene%regions%retention_name /= '')) scene%fields = WITH_P_C
+      end if
+      do i = 1, size(scene%stages)
+         if (scene%stages(i)%analysis == 0) scene%stages(i)%analysis = IS_DYNAMIC
+      end do
+   end subroutine settle_open_keys
+
+   !> The effects of a scene, in the order of the list: present or not, said by a key or left open. Inertia has a row a
+   !> stage. What has no meaning for the scene has no row. To be called before the open keys are settled.
+   function list_effects(scene) result(list)
+      type(scene_t), intent(in) :: scene
+      type(effect_t), allocatable :: list(:)
+      type(scene_t) :: settled
+      type(effect_t) :: row
+      integer :: kind, stage
+
+      settled = scene
+      call settle_open_keys(settled)
+      allocate (list(0))
+      do kind = 1, EFFECTS
+         do stage = 1, merge(size(scene%stages), 1, kind == OF_INERTIA)
+            row = effect_t(kind=kind, name=EFFECT_NAMES(kind))
+            if (kind == OF_INERTIA) then
+               row%stage = stage
+               row%name = trim(row%name)//' in '//scene%stages(stage)%name
+            end if
+            if (.not. has_meaning(settled, kind)) cycle
+            ! A static stage is a way to equilibrium, which has no time.
+            if (kind == OF_INERTIA .and. settled%stages(stage)%analysis == IS_STATIC) cycle
+            row%present = is_present(settled, kind, stage)
+            row%by_hand = .not. is_open(scene, kind, stage)
+            row%on = row%present
+            list = [list, row]
+         end do
+      end do
+   end function list_effects
+
+   !> Whether a row of the table would say anything.
+   logical function has_meaning(scene, kind)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: kind
+
+      select case (kind)
+      case (OF_SEEPAGE)
+         has_meaning = scene%fields /= WITH_U .and. any(scene%stages%analysis == IS_DYNAMIC)
+      case (OF_P_W)
+         has_meaning = any(scene%regions%permeability_name /= '')
+      case (OF_P_C)
+         has_meaning = any(scene%regions%retention_name /= '')
+      case (OF_CONTACT)
+         has_meaning = size(scene%contacts) > 0
+      case (OF_DRAINAGE)
+         has_meaning = size(scene%contacts) > 0 .and. scene%fields /= WITH_U
+      case (OF_DAMPING)
+         has_meaning = is_present(scene, kind, 1)
+      case (OF_ABSORBING)
+         has_meaning = size(scene%absorbers) > 0
+      case (OF_VOID_RATIO)
+         has_meaning = is_present(scene, kind, 1)
+      case (OF_BONDING:)
+         has_meaning = any_mud(scene)
+         ! Bonding is by suction.
+         if (kind == OF_BONDING) has_meaning = has_meaning .and. scene%fields == WITH_P_C
+      case default
+         has_meaning = .true.
+      end select
+   end function has_meaning
+
+   logical function is_present(scene, kind, stage) result(present)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: kind, stage
+      integer :: i
+
+      present = .false.
+      select case (kind)
+      case (OF_INERTIA)
+         present = scene%stages(stage)%analysis == IS_DYNAMIC
+      case (OF_SEEPAGE)
+         present = scene%seepage_inertia
+      case (OF_P_W)
+         present = scene%fields /= WITH_U
+      case (OF_P_C)
+         present = scene%fields == WITH_P_C
+      case (OF_GRAVITY)
+         present = scene%gravity > 0.0_wp
+      case (OF_CONTACT)
+         present = size(scene%contacts) > 0
+      case (OF_DAMPING)
+         present = any(scene%regions%damping > 0.0_wp .or. scene%regions%stiffness_damping > 0.0_wp)
+      case (OF_ABSORBING)
+         present = size(scene%absorbers) > 0
+      case (OF_DRAINAGE)
+         present = any(scene%contacts%drains_by_state)
+      case (OF_VOID_RATIO)
+         if (scene%fields == WITH_P_C) &
+            present = any([(parameter_of(scene, i, 'Omega') > 0.0_wp, i=1, size(scene%materials))])
+      case default
+         present = any([(parameter_of(scene, i, trim(SWITCHES(kind))) > 0.0_wp, i=1, size(scene%materials))])
+      end select
+   end function is_present
+
+   !> Whether no key says it.
+   logical function is_open(scene, kind, stage) result(open)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: kind, stage
+      integer :: i
+
+      open = .false.
+      if (any(scene%without == EFFECT_NAMES(kind))) return
+      select case (kind)
+      case (OF_INERTIA)
+         open = scene%stages(stage)%analysis == 0
+      case (OF_SEEPAGE)
+         open = .not. scene%seepage_by_hand
+      case (OF_P_W, OF_P_C)
+         open = .not. scene%fields_by_hand
+      case (OF_GRAVITY)
+         open = .not. scene%gravity_by_hand
+      case (OF_BONDING:)
+         open = scene%derive_effects .and. .not. any([(given(scene%materials(i)%group, trim(SWITCHES(kind))), &
+                                                       i=1, size(scene%materials))])
+      case default
+         ! The scene holds it because somebody wrote it down.
+      end select
+   end function is_open
+
+   !> The effects that the key `without` takes out.
+   subroutine switch_by_hand(scene, why)
+      type(scene_t), intent(inout) :: scene
+      character(*), intent(out) :: why   !< Why one of them cannot be; empty if all could.
+      integer :: i, k, stage
+
+      why = ''
+      do i = 1, size(scene%without)
+         k = findloc(EFFECT_NAMES, scene%without(i), dim=1)
+         do stage = 1, merge(size(scene%stages), 1, k == OF_INERTIA)
+            if (why == '') call switch(scene, effect_t(kind=k, stage=stage), .false., why)
+         end do
+         if (why /= '') then
+            why = trim(scene%without(i))//': '//trim(why)
+            return
+         end if
+      end do
+   end subroutine switch_by_hand
+
+   !> Takes an effect out of a scene whose keys are settled, or puts it in.
+   subroutine switch(scene, effect, on, why)
+      type(scene_t), intent(inout) :: scene
+      type(effect_t), intent(in) :: effect
+      logical, intent(in) :: on
+      character(*), intent(out) :: why   !< Why it cannot be; empty if it could.
+
+      why = ''
+      select case (effect%kind)
+      case (OF_INERTIA)
+         scene%stages(effect%stage)%analysis = merge(IS_DYNAMIC, IS_QUASI_STATIC, on)
+         if (.not. on .and. .not. any(scene%stages%analysis == IS_DYNAMIC)) scene%seepage_inertia = .false.
+      case (OF_SEEPAGE)
+         scene%seepage_inertia = on
+      case (OF_P_W)
+         if (on) then
+            if (any(scene%regions%permeability_name == '')) why = 'a region has no permeability'
+            if (why == '' .and. scene%fields == WITH_U) scene%fields = WITH_P_W
+         else
+            call drop_field(scene, FIX_P_W, LOAD_WATER)
+            scene%fields = WITH_U
+            scene%seepage_inertia = .false.
+            if (size(scene%contacts) > 0) scene%contacts%drains_by_state = .false.
+            if (size(scene%ties) > 0) scene%ties%pressures = .false.
+         end if
+      case (OF_P_C)
+         if (on) then
+            if (any(scene%regions%retention_name == '')) why = 'a region has no retention'
+            if (scene%fields == WITH_U) why = 'it needs p_w'
+            if (why == '') scene%fields = WITH_P_C
+         else
+            call drop_field(scene, FIX_P_C, LOAD_AIR)
+            scene%fields = min(scene%fields, WITH_P_W)
+         end if
+      case (OF_GRAVITY)
+         if (.not. on .and. (any(scene%initials%geostatic) .or. any(scene%plates%heavy))) &
+            why = 'the scene asks for weight: geostatic stress or a heavy plate'
+         if (why == '') scene%gravity = merge(EARTH, 0.0_wp, on)
+      case (OF_CONTACT)
+         if (.not. on) scene%contacts = scene%contacts(:0)
+      case (OF_DAMPING)
+         scene%regions%damping = 0.0_wp
+         scene%regions%stiffness_damping = 0.0_wp
+      case (OF_ABSORBING)
+         scene%absorbers = scene%absorbers(:0)
+      case (OF_DRAINAGE)
+         scene%contacts%drains_by_state = on
+      case (OF_VOID_RATIO)
+         call freeze_retention(scene, why)
+      case default
+         call set_switch(scene, effect%kind, on)
+      end select
+   end subroutine switch
+
+   !> Without the fixed values and the inflows of a field, and of those that need it.
+   pure subroutine drop_field(scene, first_field, first_load)
+      type(scene_t), intent(inout) :: scene
+      integer, intent(in) :: first_field, first_load
+
+      scene%fixes = pack(scene%fixes, scene%fixes%field_number < first_field)
+      scene%loads = pack(scene%loads, scene%loads%kind < first_load .or. scene%loads%kind > LOAD_AIR)
+   end subroutine drop_field
+
+   subroutine set_switch(scene, kind, on)
+      type(scene_t), intent(inout) :: scene
+      integer, intent(in) :: kind
+      logical, intent(in) :: on
+      real(wp) :: value
+      integer :: i
+
+      value = merge(1.0_wp, 0.0_wp, on)
+      if (kind == OF_ELASTIC_DOMAIN) value = merge(WORLD_DOMAIN, 0.0_wp, on)
+      if (kind == OF_MEMORY) value = merge(RETURN_POINT, CLASSIC, on)
+      do i = 1, size(scene%materials)
+         if (scene%materials(i)%group%name == 'mud') call set_number(scene, i, trim(SWITCHES(kind)), value)
+      end do
+   end subroutine set_switch
+
+   !> The retention curve that holds at the initial void ratio, whatever happens to it.
+   subroutine freeze_retention(scene, why)
+      type(scene_t), intent(inout) :: scene
+      character(*), intent(out) :: why
+      real(wp) :: e, e_other, omega, p_a
+      integer :: i, k
+
+      why = ''
+      do i = 1, size(scene%materials)
+         omega = parameter_of(scene, i, 'Omega')
+         if (.not. omega > 0.0_wp) cycle
+         e = 0.0_wp
+         do k = 1, size(scene%regions)
+            if (scene%regions(k)%material_name(:NAME_LENGTH) /= scene%materials(i)%name) cycle
+            e_other = scene%regions(k)%void_ratio
+            if (e_other < 0.0_wp) e_other = parameter_of(scene, i, 'e_0')
+            if (e > 0.0_wp .and. abs(e - e_other) > ROUNDING) &
+               why = 'material '//trim(scene%materials(i)%name)//' has regions of several void ratios'
+            e = e_other
+         end do
+         if (why /= '') return
+         if (.not. e > 0.0_wp) cycle
+         p_a = parameter_of(scene, i, 'P_a')*e**(-omega)
+         call set_number(scene, i, 'Omega', 0.0_wp)
+         call set_number(scene, i, 'P_a', p_a)
+      end do
+   end subroutine freeze_retention
+
+   subroutine set_number(scene, material, name, value)
+      type(scene_t), intent(inout) :: scene
+      integer, intent(in) :: material
+      character(*), intent(in) :: name
+      real(wp), intent(in) :: value
+      character(26) :: text
+
+      write (text, '(es24.16)') value
+      call set_entry(scene%materials(material)%group, name, trim(adjustl(text)))
+   end subroutine set_number
+
+   logical function any_mud(scene)
+      type(scene_t), intent(in) :: scene
+      integer :: i
+
+      any_mud = any([(scene%materials(i)%group%name == 'mud', i=1, size(scene%materials))])
+   end function any_mud
+
+   !> Value of a parameter of MUD, from the group, its file or the library; 0 of other laws, and where the group is
+   !> refused, which is told where the model is built.
+   real(wp) function parameter_of(scene, material, name) result(value)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: material
+      character(*), intent(in) :: name
+      real(wp), allocatable :: props(:)
+      character(256) :: title
+      type(fault_t) :: fault
+
+      value = 0.0_wp
+      if (scene%materials(material)%group%name /= 'mud') return
+      call read_parameters(scene%materials(material)%group, props, title, fault)
+      if (fault%code == 0) value = props(property_index(name))
+   end function parameter_of
+end module effect_switches

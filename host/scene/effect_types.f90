@@ -1,0 +1,43 @@
+! SPDX-License-Identifier: MIT
+!> Effects that a scene may or may not call for: their names, and the row of their table.
+module effect_types
+   use kinds, only: wp
+   implicit none (type, external)
+   private
+   public :: effect_t, EFFECT_NAMES, EFFECT_WORDS, EFFECTS, EFFECT_LENGTH, UNKNOWN, NEVER
+   public :: OF_INERTIA, OF_SEEPAGE, OF_P_W, OF_P_C, OF_GRAVITY, OF_CONTACT, OF_DAMPING, OF_ABSORBING, OF_DRAINAGE, &
+             OF_VOID_RATIO, OF_BONDING, OF_FABRIC, OF_ISOTROPIC, OF_LODE, OF_MEMORY, OF_ELASTIC_DOMAIN
+
+   integer, parameter :: EFFECTS = 16, EFFECT_LENGTH = 26
+   integer, parameter :: OF_INERTIA = 1, OF_SEEPAGE = 2, OF_P_W = 3, OF_P_C = 4, OF_GRAVITY = 5, OF_CONTACT = 6, &
+      OF_DAMPING = 7, OF_ABSORBING = 8, OF_DRAINAGE = 9, OF_VOID_RATIO = 10, OF_BONDING = 11, OF_FABRIC = 12, &
+      OF_ISOTROPIC = 13, OF_LODE = 14, OF_MEMORY = 15, OF_ELASTIC_DOMAIN = 16
+   !> The word of every effect: in tables, and in the key `without` of &scene (which takes those of the list below).
+   character(EFFECT_LENGTH), parameter :: EFFECT_NAMES(EFFECTS) = [character(EFFECT_LENGTH) :: 'inertia', &
+      'relative_acceleration', 'p_w', 'p_c', 'gravity', 'contact', 'damping', 'absorbing', 'contact_drainage', &
+      'void_ratio_in_retention', 'bonding', 'fabric', 'isotropic', 'lode', 'memory_rule', 'elastic_domain']
+   !> The same as one list of words.
+   character(*), parameter :: EFFECT_WORDS = 'inertia|relative_acceleration|p_w|p_c|gravity|contact|damping|'// &
+      'absorbing|contact_drainage|void_ratio_in_retention|bonding|fabric|isotropic|lode|memory_rule|elastic_domain'
+   real(wp), parameter :: UNKNOWN = -1.0_wp    !< No number: it was not tried, or has no meaning.
+   real(wp), parameter :: NEVER = -1.0e30_wp   !< A time.
+
+   type :: effect_t
+      integer :: kind = 0                      !< One of OF_...
+      integer :: stage = 0                     !< Number of the stage, of the inertia; 0: all.
+      character(96) :: name = ''
+      logical :: present = .false.             !< In the scene as it was given.
+      logical :: by_hand = .true.              !< A key says it, so that nothing else decides.
+      logical :: on = .false.                  !< In the run.
+      real(wp) :: influence = UNKNOWN          !< Largest change of an answer without it (or with it) [-],
+      real(wp) :: change = 0.0_wp              !< that change with its sign, in the unit of the answer,
+      character(72) :: answer = ''             !< and which answer.
+      integer :: unknowns = 0                  !< Fewer (more) without (with) it, in the pilot.
+      real(wp) :: seconds = UNKNOWN            !< Time of its pilot over that of the whole scene's pilot [-].
+      character(200) :: why = ''
+      ! Watched during the run where a pilot let it go.
+      real(wp) :: limit = UNKNOWN              !< Of the indicator, see effect_monitor.
+      real(wp) :: largest = 0.0_wp             !< Indicator so far,
+      real(wp) :: crossed = NEVER              !< time when it passed the limit [s].
+   end type effect_t
+end module effect_types

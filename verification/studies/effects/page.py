@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+"""What pilots keep and let go in scenes that a careless choice spoils, and what it costs and saves."""
+import pathlib
+import re
+import subprocess
+import sys
+import time
+
+import numpy as np
+from tools import tables
+from tools.bench import ROOT
+from tools.page import Page, Tolerance
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import scenes  # noqa: E402
+
+PAGE = Page(
+    claim="`effects = 'auto'` keeps what matters in ten scenes that a careless choice spoils, and lets go what does not in six",
+    kind=("robustness", "study"),
+    input="`scenes.py`: every scene leaves open what it can; compared are the run that `auto` chooses, the run with "
+          "everything (`effects_tolerance = 1e-6`), and the careless run (`without`)",
+    reference="the run with everything, at its end and on the way, as a share of the range of each answer",
+    seconds=90, quick=0, pictures=("effects.png",))
+
+COUNT = Tolerance("a count")
+CHANGED = Tolerance("what is let go may change an answer by the tolerance of the scene (1 %, 4 % where it says so), by the "
+                    "pilots' factor of 2 at most twice as much; steps are chosen anew, to 1 %", absolute=0.03)
+CARELESS = 0.05    # what a trap must err by, so that it is one
+
+
+def run(bench, scene, name, *edits):
+    """Seconds, table of effects and histories; None where the program refuses."""
+    text = scene.text.replace("{materials}", str(ROOT / "drivers/materials"))
+    for old, new in edits:
+        text = text.replace(old, new, 1)
+    folder = bench.folder()
+    path = folder / f"{name}.nml"
+    path.write_text(text)
+    began = time.monotonic()
+    done = subprocess.run([str(bench.build / "host/mud_host"), str(path), "--output", str(folder / name)],
+                          capture_output=True, text=True)
+    seconds = time.monotonic() - began
+    if done.returncode:
+        return None, done.stderr.strip(), seconds, 0
+    table = folder / name / "effects.csv"
+    rows = {row["effect"]: row for row in tables.rows(table)} if table.exists() else {}
+    pilots = re.search(r"of these (\S+) s for pilots", done.stdout)
+    return tables.columns(folder / name / "histories.csv"), rows, seconds, float(pilots[1]) if pilots else 0.0
+
+
+def apart(one, other):
+    """Largest distance of displacement histories at the named points, as a share of the largest range."""
+    columns = [name for name in one if name.endswith((".u_r", ".u_z"))]
+    scale = max(np.ptp(one[name]) for name in columns)
+    return max(float(np.max(np.abs(np.interp(one["time"], other["time"], other[name]) - one[name]))) for name in columns) / scale
+
+
+def check(bench):
+    results = []
+    for scene in scenes.TRAPS + scenes.EASY:
+        auto, table, seconds, pilots = run(bench, scene, "auto")
+        if auto is None:
+            bench.below(f"{scene.name}: runs", 1.0, Tolerance("a count"), table)
+            continue
+        full, _, all_seconds, all_pilots = run(bench, scene, "full", ("effects = 'auto'", "effects = 'auto' effects_tolerance = 1e-6")
+                                               if "effects_tolerance" not in scene.text else
+                                               ("effects_tolerance = 0.04", "effects_tolerance = 1e-6"))
+        row = {"name": scene.name, "what": scene.what, "auto": apart(full, auto), "seconds": seconds - pilots,
+               "pilots": pilots, "full": all_seconds - all_pilots, "careless": None,
+               "off": [name for name, r in table.items() if r["in_scene"] == "yes" and r["on"] == "off"]}
+        for name in scene.keeps:
+            bench.near(f"{scene.name}: keeps {name}", float(table[name]["on"] == "on"), 1.0, COUNT)
+        for name in scene.drops:
+            bench.near(f"{scene.name}: lets {name} go", float(table[name]["on"] == "off"), 1.0, COUNT)
+        bench.below(f"{scene.name}: what auto changes", row["auto"], CHANGED)
+        if scene.careless:
+            words = ", ".join(f"'{word}'" for word in scene.careless)
+            careless, refused, _, _ = run(bench, scene, "careless", ("effects = 'auto'", f"effects = 'auto' without = {words}"))
+            row["careless"] = "refused" if careless is None else apart(full, careless)
+            if careless is not None:
+                bench.below(f"{scene.name}: share that makes it a trap over the error of carelessness",
+                            CARELESS / row["careless"], Tolerance("a trap errs by more than 5 %", absolute=1.0))
+        bench.note(scene.name, f"auto {100 * row['auto']:.2g} %, careless "
+                   + (f"{100 * row['careless']:.3g} %" if isinstance(row["careless"], float) else str(row["careless"]))
+                   + f", off: {', '.join(row['off']) or 'nothing'}; {row['seconds']:.2f} s after {row['pilots']:.2f} s of pilots; "
+                   f"with everything {row['full']:.2f} s")
+        results.append(row)
+    return results
+
+
+def draw(bench, results, plt):
+    figure, axis = plt.subplots(figsize=(7, 5))
+    names = [r["name"] for r in results]
+    place = np.arange(len(names))
+    axis.barh(place + 0.2, [100 * max(r["auto"], 1e-6) for r in results], 0.4, label="auto")
+    axis.barh(place - 0.2, [100 * r["careless"] if isinstance(r["careless"], float) else np.nan for r in results], 0.4,
+              label="careless choice")
+    axis.axvline(1, color="k", lw=0.6)
+    axis.set_xscale("log")
+    axis.set_yticks(place, names)
+    axis.invert_yaxis()
+    axis.set_xlabel("largest error of a displacement, share of its range [%]")
+    axis.legend()
+    figure.tight_layout()
+    bench.save(figure, "effects.png")
