@@ -30,9 +30,7 @@ program mud_host
    use faults, only: fault_t, raise, EXIT_INPUT
    use texts, only: short, whole
    implicit none (type, external)
-   character(*), parameter :: USAGE = 'usage: mud_host SCENE.nml [--output FOLDER] [--restart FILE] '// &
-                              '[--accuracy A] [--verify] [--effects | --ablate] [--quiet] [--check] | '// &
-                              '--template'
+   character(*), parameter :: USAGE = 'usage: mud_host SCENE.nml [options] | --template | --help'
    type(option_t) :: options(10) = [ &
       option_t('--help', letter='-h', answers=.true.), &
       option_t('--template', answers=.true.), &

@@ -243,8 +243,8 @@ contains
          call book(pilot, account)
          if (pilot%done) then
             apart = difference(base, pilot)
-            if (.not. quiet) write (output_unit, '(a)') '   pilot '//whole(account%runs)//', without all that is to '// &
-               'go: '//short(100*apart%share)//' % of '//trim(apart%answer)
+            if (.not. quiet) write (output_unit, '(a)') '   pilot '//whole(account%runs)//', without all that is '// &
+               'to go: '//short(100*apart%share)//' % of '//trim(apart%answer)
             if (apart%share <= tolerance) exit
          end if
          ! Weak ones that are strong together come back, the strongest first.

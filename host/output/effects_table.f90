@@ -43,8 +43,8 @@ contains
                ' '//trim(t%why)
          end associate
       end do
-      write (unit, '(a)') 'Influence: largest change of an answer without the effect (with it where it is off), share '// &
-         'of the answer''s range; change in m or kPa;'
+      write (unit, '(a)') 'Influence: largest change of an answer without the effect (with it where it is off), '// &
+         'share of the answer''s range; change in m or kPa;'
       write (unit, '(a)') 'time: of the run without (with) it over that with all.'
    end subroutine print_effects
 
@@ -72,8 +72,8 @@ contains
       type(csv_t) :: file
       integer :: i
 
-      call new_csv(folder//'/effects.csv', 'effect,in_scene,on,by,influence,change,answer,fewer_unknowns,time_ratio,'// &
-                   'limit,largest_seen,crossed_at,remark', file, fault)
+      call new_csv(folder//'/effects.csv', 'effect,in_scene,on,by,influence,change,answer,fewer_unknowns,'// &
+                   'time_ratio,limit,largest_seen,crossed_at,remark', file, fault)
       do i = 1, size(table)
          associate (t => table(i))
             row = trim(t%name)//','//trim(merge('yes', 'no ', t%present))//','//trim(merge('on ', 'off', t%on))//','// &

@@ -312,11 +312,12 @@ contains
       character(*), intent(in) :: name
       real(wp), allocatable :: props(:)
       character(256) :: title
+      character(600) :: doubt
       type(fault_t) :: fault
 
       value = 0.0_wp
       if (scene%materials(material)%group%name /= 'mud') return
-      call read_parameters(scene%materials(material)%group, props, title, fault)
+      call read_parameters(scene%materials(material)%group, props, title, doubt, fault)
       if (fault%code == 0) value = props(property_index(name))
    end function parameter_of
 end module effect_switches

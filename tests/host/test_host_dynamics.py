@@ -163,7 +163,6 @@ for name, old, new, words in (
         ("acceleration without a history", " history = 'h' /\n&history", " /\n&history", "needs a displacement"),
         ("acceleration of a pressure", "'bottom' field = 'u_r' motion", "'bottom' field = 'p_w' motion",
          "needs a displacement"),
-        ("nothing can be derived", "name = 'c'", "name = 'c' effects = 'auto'", "nothing can be derived"),
         ("a tie of unequal sides", "second = 'right'", "second = 'top'", "as many nodes"),
         ("a tie of different heights", "first = 'left' second = 'right'", "first = 'top' second = 'bottom'",
          "no node of 'bottom' lies at the height"),
