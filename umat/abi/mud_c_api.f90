@@ -261,7 +261,7 @@ contains
       call put(report_text(report), text, len)
    end function mud_init_state
 
-   !> The update of mud_update told substep by substep; see mud.h.
+   !> Runs mud_update and reports every substep that it tries; see mud.h.
    integer(c_int) function mud_trace_increment(props, n_props, stress0, statev0, n_statev, dstrain, suction0, &
            dsuction, tangent, first, rows, n_rows, attempts, report_out) bind(c, name='mud_trace_increment')
       type(c_ptr), value :: props, stress0, statev0, dstrain, rows, attempts, report_out

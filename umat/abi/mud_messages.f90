@@ -25,7 +25,7 @@ contains
       case (MUD_OK)
          text = 'no error'
       case (MUD_BAD_NPROPS)
-         text = 'wrong number of PROPS: give every entry, mud_count tells how many'
+         text = 'wrong number of PROPS: give every entry; mud_count returns how many there are'
       case (MUD_BAD_NSTATV)
          text = 'too few STATEV: reserve at least mud_count(MUD_STATEV) per point (Abaqus: *Depvar)'
       case (MUD_BAD_NTENS)

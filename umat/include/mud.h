@@ -74,8 +74,8 @@ int mud_text(int list, int index, int field, char *text, int len);
 /* Entries of PROPS that stand for a choice: the number-th value, from 0, and its word. MUD_BAD_OPTION: no such value,
  * or the entry takes numbers. */
 int mud_option(int index, int number, double *value, char *word, int len);
-/* Bounds and default of an entry of PROPS. Those whose MUD_UNIT is kPa or kPa^lambda are told for p_atm = 101.325 and
- * scale with p_atm (and p_atm^lambda); only p_atm's own bounds do not. mud_bounds_for tells them for the p_atm and
+/* Bounds and default of an entry of PROPS. Those whose MUD_UNIT is kPa or kPa^lambda hold for p_atm = 101.325 and
+ * scale with p_atm (and p_atm^lambda); only p_atm's own bounds do not. mud_bounds_for gives them for the p_atm and
  * lambda of props. */
 int mud_bounds(int list, int index, double *lower, double *upper, double *preset);
 int mud_bounds_for(const double *props, int nprops, int index, double *lower, double *upper, double *preset);
@@ -87,7 +87,7 @@ int mud_convert_props(double *props, int nprops, double factor);
  * than p_atm, a sentence that begins with "warning: ". */
 int mud_validate_props(const double *props, int nprops, char *text, int len);
 
-/* The same names as constants, for tables of your own that the linker fills; entries as mud_count tells. They are those
+/* The same names as constants, for tables of your own that the linker fills; as many as mud_count says. They are those
  * of the library that is linked, so do not copy their number into code. */
 extern const int mud_props_count, mud_statev_count;
 extern const char *const mud_props_names[], *const mud_props_units[];
@@ -218,7 +218,7 @@ typedef struct mud_substep {
    double void_ratio, saturation, suction, stress[6];   /* where it led                                */
 } mud_substep;
 
-/* The update of mud_update told substep by substep: rows[i] is substep number first + i (from 1), as far as there are
+/* Runs mud_update and reports its substeps: rows[i] is substep number first + i (from 1), as far as there are
  * nrows; *attempts receives how many were tried. Only rows, attempts and report are written; each may be NULL.
  * Returns the status of the update. */
 int mud_trace_increment(const double *props, int nprops, const double *stress0, const double *statev0, int nstatev,
