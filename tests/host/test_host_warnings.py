@@ -98,11 +98,12 @@ COLUMN = """&scene name = 'column' fields = 'u-p_w' geometry = 'plane_strain' /
 &load group = 'top' kind = 'pressure' value = 100 /
 """
 for what, text, said in (("quadratic pressures without drainage", COLUMN, 1),
-                         ("linear pressures without drainage", COLUMN.replace("'u-p_w'", "'u-p_w' pressures = 'linear'"), 0),
+                         ("linear pressures without drainage",
+                          COLUMN.replace("'u-p_w'", "'u-p_w' pressures = 'linear'"), 0),
                          ("quadratic pressures that drain", COLUMN.replace("1e-12", "1e-8"), 0)):
     (work / "scene.nml").write_text(text)
-    done = subprocess.run([host, work / "scene.nml", "--output", work / "out", "--quiet"], capture_output=True, text=True,
-                          env=environment)
+    done = subprocess.run([host, work / "scene.nml", "--output", work / "out", "--quiet"], capture_output=True,
+                          text=True, env=environment)
     lines = [line for line in done.stderr.splitlines() if "oscillate from node to node" in line]
     check(f"{what}: warned {said} times", done.returncode == 0 and len(lines) == said, done.stderr)
     check(f"{what}: the measure is named", not said or "pressures = 'linear'" in lines[0], lines)
