@@ -142,6 +142,55 @@ def figure_eight_path(soil, size, n, cycles=20):
     return path.row()
 
 
+def closed_loops(soil, corners, loops=100):
+    """Loops of gamma_12, gamma_13 through corners, one increment a side, a row after each."""
+    path = Path(soil, MIDDLE)
+    for i in range(1, loops + 1):
+        for a, b in zip(corners, corners[1:]):
+            path.go(1, plus(times(b[0] - a[0], ACROSS), times(b[1] - a[1], OTHER)))
+        path.row(str(i))
+    return path
+
+
+def on_ellipse(radius, n, aspect=1.0):
+    """Corners of a polygon that begins and ends at the origin; tensor shear."""
+    return [(2 * radius * (1 - math.cos(2 * math.pi * i / n)), 2 * radius * aspect * math.sin(2 * math.pi * i / n)) for i in range(n + 1)]
+
+
+def on_eight(size, n):
+    return [(2 * size * math.sin(2 * math.pi * i / n), size * math.sin(4 * math.pi * i / n)) for i in range(n + 1)]
+
+
+TURNS = {"circle 5e-5, 80 sides": on_ellipse(5e-5, 80), "circle 1e-4, 80 sides": on_ellipse(1e-4, 80), "circle 2e-4, 80 sides": on_ellipse(2e-4, 80),
+         "circle 2e-4, 332 sides": on_ellipse(2e-4, 332), "circle 5e-4, 80 sides": on_ellipse(5e-4, 80),
+         "ellipse 2e-4, aspect 0.5": on_ellipse(2e-4, 80, 0.5), "ellipse 2e-4, aspect 0.2": on_ellipse(2e-4, 80, 0.2),
+         "square 2e-4": [(4e-4 * x, 4e-4 * y) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))],
+         "eight 1e-4, 80 sides": on_eight(1e-4, 80), "eight 2e-4, 80 sides": on_eight(2e-4, 80)}
+
+
+def tolerance_on_turns(walker, soil, turns=tuple(TURNS)):
+    """largest difference of stress after any of 100 undrained loops in two tensor shears between the tolerances 1e-5 and 1e-8 [%]"""
+    fine = soil.having(tolerance=1e-8, scheme=3)
+    runs = walker.run_all({(name, s): closed_loops(s, TURNS[name]) for name in turns for s in (soil, fine)})
+    return {name: max(distance([a], [b]) for a, b in zip(runs[name, soil], runs[name, fine])) for name in turns}
+
+
+def tolerance_on_random_turns(walker, soil, loops=100):
+    """that difference for 100 random loops (ellipses, squares, eights of 3e-5 to 6e-4) of 40 rounds: quantiles [%]; how many above 0.1 %"""
+    dice = random.Random(11)
+    fine = soil.having(tolerance=1e-8, scheme=3)
+    paths = {}
+    for i in range(loops):
+        size, n, aspect = 10 ** dice.uniform(-4.5, -3.2), dice.choice((40, 80, 120, 200, 332)), dice.uniform(0.1, 1.0)
+        corners = dice.choice((on_ellipse(size, n, aspect), on_ellipse(size, n), [(x, aspect * y) for x, y in on_eight(size, n)],
+                               [(2 * size * x, 2 * size * aspect * y) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))]))
+        for s in (soil, fine):
+            paths[i, s] = closed_loops(s, corners, 40)
+    runs = walker.run_all(paths)
+    off = sorted(max(distance([a], [b]) for a, b in zip(runs[i, soil], runs[i, fine])) for i in range(loops))
+    return {"median": off[loops // 2], "90 % quantile": off[round(0.9 * loops) - 1], "largest": off[-1], "above 0.1 %": sum(x > 0.1 for x in off)}
+
+
 def turning(walker, soil):
     """dependence of the end of 20 circles (2e-4, 5e-4) and eights (2e-4) on the tolerance (1e-5, 1e-8) and the polygon [%]"""
     fine = soil.having(tolerance=1e-8)
@@ -198,5 +247,5 @@ def random_walks(walker, soil, walks=40):
     return found
 
 
-ROWS = (turned, elliptic, lateral, squares, nested, suction_pulse, small_in_large, circles, sideways, turning,
-        rotating_axes, random_walks)
+ROWS = (turned, elliptic, lateral, squares, nested, suction_pulse, small_in_large, circles, sideways, tolerance_on_turns,
+        tolerance_on_random_turns, turning, rotating_axes, random_walks)
