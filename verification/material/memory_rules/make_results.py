@@ -2,7 +2,7 @@
 """Runs the battery for the rules of the page and writes results.csv.
 
    make_results.py                          all of it
-   make_results.py --rules return_point:0   these rules, and --rows NAME these rows for every rule; what was made before stays
+   make_results.py --rules return_point:0   these rules, and --rows NAME these rows for every rule; the rest is what results.csv holds
 """
 import argparse
 import os
@@ -36,8 +36,8 @@ def main():
     path = results.folder(__file__) / "results.csv"
     before, made = {}, [f"made by make_results.py at commit {commit}"]
     if not whole:
-        before = {(row["row"], row["quantity"], row["rule"]): row["value"] for row in tables.rows(path)}
-        made = [*tables.comments(path)[:1], f"renewed at commit {commit}: " + ", ".join([*options.rules, *(f"row {name}" for name in options.rows)])]
+        before = {(row["row"], row["quantity"], row["rule"]): row["value"] for row in tables.rows(HERE / "results.csv")}
+        made = [*tables.comments(HERE / "results.csv")[:1], f"renewed at commit {commit}: " + ", ".join([*options.rules, *(f"row {name}" for name in options.rows)])]
     lines = []
     for name, row in ROWS.items():
         for rule in rules_of(name):
