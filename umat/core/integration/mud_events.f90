@@ -8,14 +8,14 @@ module mud_events
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY, MODE_ELASTIC
    use mud_registry, only: RULE_AS_PUBLISHED
-   use mud_return_point, only: place_t, forwardness, beyond_target
-   use mud_state, only: counters_t
+   use mud_return_point, only: place_t, place_at, forwardness, note_progress, note_farthest, beyond_target
+   use mud_state, only: memory_t, counters_t
    use mud_substep, only: LARGEST_FACTOR
    use mud_tensor, only: ddot, trace, norm, deviator
    use mud_trial, only: trial_t, take_step, MODE_HELD
    implicit none (type, external)
    private
-   public :: stop_at_event, find_turning_point, elastic_rate, closing_mode, closing_rate, change_of_closing_rate, &
+   public :: stop_at_event, note_turning_point, elastic_rate, closing_mode, closing_rate, change_of_closing_rate, &
              psi_at, EVENT_TOLERANCE, LARGEST_EXCESS
    public :: EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, EVENT_MECHANISM
 
@@ -164,47 +164,51 @@ contains
       if (x_middle < 0.0_wp) h = lowest*h
    end subroutine find_reversal
 
-   !> Where in an accepted substep its process goes forwards last: at the end, or where it ceases to. That place belongs
-   !> to the path, while the end of the last substep of which it is true would depend on the sizes of substeps. A process
-   !> that begins where the substep does, and drifts backwards, has not gone forwards.
-   pure subroutine find_turning_point(par, inc, h, trial, counters, place, forwards)
+   !> The direction and target of the present process after an accepted substep: where it goes forwards last, at the end
+   !> or where it ceases to. That place belongs to the path, while the end of the last substep of which it is true would
+   !> depend on the sizes of substeps. A process that begins where the substep does, and drifts backwards, has not gone
+   !> forwards.
+   pure subroutine note_turning_point(par, inc, h, trial, memory, counters)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       real(wp), intent(in) :: h
       type(trial_t), intent(in) :: trial
+      type(memory_t), intent(inout) :: memory
       type(counters_t), intent(inout) :: counters
-      type(place_t), intent(out) :: place
-      logical, intent(out) :: forwards       !< false: nowhere in it
+      type(place_t) :: place
       type(trial_t) :: probe
       type(rate_t) :: w
       real(wp) :: size
       integer :: landed
 
-      place = place_of(par, inc, trial%w(inc%scheme%stages), trial%y)
-      forwards = forwardness(par, trial%r_in, place) >= 0.0_wp
-      if (forwards) return
-      forwards = forwardness(par, trial%r_in, place_of(par, inc, trial%w(1), trial%y0)) > 0.0_wp
-      if (.not. forwards) return
-      probe = trial
-      size = h
-      call land_on(par, inc, EVENT_TURN, size, probe, counters, landed)
-      call rate_of(par, inc, trial%time + size, probe%y, trial%r_in, trial%mode, w, counters)
-      place = place_of(par, inc, w, probe%y)
-   end subroutine find_turning_point
+      place = place_of(par, inc, trial, trial%w(inc%scheme%stages), trial%y)
+      if (forwardness(par, place) >= 0.0_wp) then
+         call note_progress(place, memory)
+         return
+      end if
+      if (forwardness(par, place_of(par, inc, trial, trial%w(1), trial%y0)) > 0.0_wp) then
+         probe = trial
+         size = h
+         call land_on(par, inc, EVENT_TURN, size, probe, counters, landed)
+         call rate_of(par, inc, trial%time + size, probe%y, trial%r_in, trial%mode, w, counters)
+         call note_progress(place_of(par, inc, trial, w, probe%y), memory)
+      end if
+      call note_farthest(place%r, memory)
+   end subroutine note_turning_point
 
-   !> The place of a process at a rate.
-   pure function place_of(par, inc, w, y) result(place)
+   !> The place of the trial's process at a rate.
+   pure function place_of(par, inc, trial, w, y) result(place)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: y(NY)
       type(place_t) :: place
-      real(wp) :: p
+      real(wp) :: p, r(6)
 
-      call stress_ratio(par, y(1:6), p, place%r)
-      place%loading = w%loading
-      place%n = w%n
-      place%t = elastic_rate(inc, w, place%r)
+      call stress_ratio(par, y(1:6), p, r)
+      place = place_at(par, trial%r_in, w%loading, r, w%n, elastic_rate(inc, w, r))
+      place%along = place%along/w%g   ! the same in every unit of stress
    end function place_of
 
    !> p' times the rate of the stress ratio if the whole strain were elastic. The part of the strain across the elastic
@@ -314,7 +318,7 @@ contains
          f = w%iso_drive/trial%w(1)%iso_drive
       case (EVENT_TURN)
          call rate_of(par, inc, time, y, trial%r_in, trial%mode, w, counters)
-         f = forwardness(par, trial%r_in, place_of(par, inc, w, y))
+         f = forwardness(par, place_of(par, inc, trial, w, y))
       case (EVENT_RETURN)
          f = -beyond_target(par, trial%process, r, bounding_ratio(par, psi_at(par, inc, time, p)))
       case default

@@ -11,8 +11,8 @@ module mud_return_point
    use mud_tensor, only: ddot, norm, square
    implicit none (type, external)
    private
-   public :: place_t, note_progress, note_farthest, forwardness, interrupt, watched_process, beyond_target, &
-             target_limit, is_limited, resume_process
+   public :: place_t, place_at, note_progress, note_farthest, forwardness, interrupt, watched_process, &
+             beyond_target, target_limit, is_limited, resume_process
 
    !> A substep tells the direction of its process where its loading direction is within 45 degrees of the chord from
    !> the memory; without this bound circles about a biased state ratchet sideways [-].
@@ -25,21 +25,36 @@ module mud_return_point
    type :: place_t
       logical :: loading   !< There is a loading direction.
       real(wp) :: r(6)     !< stress ratio [-]
-      real(wp) :: n(6)     !< loading direction [-]
-      real(wp) :: t(6)     !< elastic rate of the stress ratio under the whole strain, of any length
+      real(wp) :: x        !< (r - r_in):n [-]
+      real(wp) :: chord(6) !< from the memory, with the floor along n [-]
+      real(wp) :: length   !< of the chord [-]
+      real(wp) :: along    !< t:chord, t the elastic rate of the stress ratio under the whole strain, of any length
    end type place_t
 contains
-   !> Direction and target of the present process, where it goes forwards.
-   pure subroutine note_progress(par, place, memory)
+   !> The place of a process that began at r_in.
+   pure function place_at(par, r_in, loading, r, n, t) result(place)
       type(params_t), intent(in) :: par
+      real(wp), intent(in) :: r_in(6)
+      logical, intent(in) :: loading
+      real(wp), intent(in) :: r(6), n(6), t(6)
+      type(place_t) :: place
+
+      place%loading = loading
+      place%r = r
+      place%chord = r - r_in
+      place%x = ddot(place%chord, n)
+      place%chord = place%chord + par%x_floor*n
+      place%length = norm(place%chord)
+      place%along = ddot(t, place%chord)
+   end function place_at
+
+   !> Direction and target of the present process, where it goes forwards.
+   pure subroutine note_progress(place, memory)
       type(place_t), intent(in) :: place
       type(memory_t), intent(inout) :: memory
-      real(wp) :: chord(6), length
 
-      chord = place%r - memory%r_in + par%x_floor*place%n
-      length = norm(chord)
-      if (length <= 0.0_wp) return
-      memory%direction = chord/length
+      if (place%length <= 0.0_wp) return
+      memory%direction = place%chord/place%length
       memory%target = ddot(place%r, memory%direction)
    end subroutine note_progress
 
@@ -56,23 +71,17 @@ contains
    !> from the memory, and the whole strain leads along it. The chord counts, not the running direction: on a smoothly
    !> turned loop n follows the turn, and no reversal would ever be found. The path may leave the elastic domain
    !> sideways on its way back: then n still points forwards while r falls, which is no progress.
-   pure real(wp) function forwardness(par, r_in, place)
+   pure real(wp) function forwardness(par, place)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: r_in(6)
       type(place_t), intent(in) :: place
-      real(wp) :: chord(6), x, strain
 
       forwardness = -1.0_wp
-      strain = norm(place%t)
-      if (.not. place%loading .or. strain <= 0.0_wp) return
-      chord = place%r - r_in
-      x = ddot(chord, place%n)
-      chord = chord + par%x_floor*place%n
-      forwardness = min(x, x + par%x_floor - SMALLEST_COSINE*norm(chord), ddot(place%t, chord)/strain)
+      if (.not. place%loading .or. abs(place%along) <= 0.0_wp) return   ! suction alone tells nothing
+      forwardness = min(place%x, place%x + par%x_floor - SMALLEST_COSINE*place%length, place%along)
    end function forwardness
 
-   !> The present process is interrupted; the next has no direction yet. A full stack drops its two newest entries, which
-   !> are the smallest loop.
+   !> The present process is interrupted; the next has no direction yet. A full stack drops its two newest entries,
+   !> which are the smallest loop.
    pure subroutine interrupt(memory)
       type(memory_t), intent(inout) :: memory
 

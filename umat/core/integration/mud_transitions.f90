@@ -5,14 +5,13 @@ module mud_transitions
    use mud_kinds, only: wp
    use mud_bounding, only: excess
    use mud_consistent, only: sensitivity_t, jump_of_memory, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
-   use mud_events, only: find_turning_point, elastic_rate, closing_mode, closing_rate, psi_at, LARGEST_EXCESS, &
+   use mud_events, only: note_turning_point, elastic_rate, closing_mode, closing_rate, psi_at, LARGEST_EXCESS, &
       EVENT_NONE, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN
    use mud_increment, only: increment_t, rate_of
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY, MODE_ELASTIC
    use mud_registry, only: RULE_RETURN_POINT
-   use mud_return_point, only: place_t, note_progress, note_farthest, watched_process, beyond_target, &
-      resume_process
+   use mud_return_point, only: watched_process, beyond_target, resume_process
    use mud_reversal, only: new_memory, begin_process, accept_process
    use mud_state, only: memory_t, state_t, counters_t
    use mud_tensor, only: IDENTITY, ddot, trace, deviator
@@ -207,9 +206,6 @@ contains
       type(trial_t), intent(in) :: trial
       type(state_t), intent(inout) :: state
       type(counters_t), intent(inout) :: counters
-      type(place_t) :: place
-      real(wp) :: p, r(6)
-      logical :: forwards
 
       counters%substep = counters%substep + 1
       state%sigma = trial%y(1:6)
@@ -227,10 +223,7 @@ contains
             call accept_process(w%loading, w%x, trial%y(13), state%memory)
          end associate
          if (par%memory_rule == RULE_RETURN_POINT) then
-            call find_turning_point(par, inc, h, trial, counters, place, forwards)
-            if (forwards) call note_progress(par, place, state%memory)
-            call stress_ratio(par, state%sigma, p, r)
-            call note_farthest(r, state%memory)
+            call note_turning_point(par, inc, h, trial, state%memory, counters)
          end if
       end if
    end subroutine accept_substep
