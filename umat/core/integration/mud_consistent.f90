@@ -9,7 +9,7 @@ module mud_consistent
    use mud_cutoff, only: slide, change_of_slide
    use mud_driving, only: driving_t, whole_increment, DIRECTIONS, AT_REST
    use mud_increment, only: increment_t, void_ratio_at, suction_at, loading_strain, change_of_loading_strain, &
-      turn_of_loading_strain, has_aside, NY
+      turn_of_loading_strain, turning_t, turning_of, has_aside, NY
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY
    use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, MAX_INTERRUPTED
@@ -122,22 +122,23 @@ contains
       r_half = slide(par, inc, r0, trial%time, half)
       do j = 1, size(shift)
          strain = driving%d_strain(:, j) + (dh(j)/h)*inc%d_strain
-         call change_of_place(inc, j, middle, shift(j) + 0.5_wp*dh(j), driving, de, dp_c)
+         call change_of_place(inc, j, middle, void_ratio_at(inc, middle), shift(j) + 0.5_wp*dh(j), driving, de, dp_c)
          dr = change_of_slide(par, inc, r0, trial%time, half, deviator(y(1:6, j))/par%p_min, strain, de, dp_c)
-         call change_of_place(inc, j, trial%time + h, shift(j) + dh(j), driving, de, dp_c)
+         call change_of_place(inc, j, trial%time + h, void_ratio_at(inc, trial%time + h), shift(j) + dh(j), driving, &
+                              de, dp_c)
          y(1:6, j) = par%p_min*change_of_slide(par, inc, r_half, middle, half, dr, strain, de, dp_c)
       end do
    end subroutine through_held
 
    !> Derivatives of void ratio and suction at a pseudo-time that itself changes by dt.
-   pure subroutine change_of_place(inc, j, time, dt, driving, de, dp_c)
+   pure subroutine change_of_place(inc, j, time, e, dt, driving, de, dp_c)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: j
-      real(wp), intent(in) :: time, dt
+      real(wp), intent(in) :: time, e, dt   !< e: void ratio there
       type(driving_t), intent(in) :: driving
       real(wp), intent(out) :: de, dp_c
 
-      de = (1.0_wp + void_ratio_at(inc, time))*(driving%e0(j) - time*driving%d_v(j) - dt*inc%d_v)
+      de = (1.0_wp + e)*(driving%e0(j) - time*driving%d_v(j) - dt*inc%d_v)
       dp_c = driving%p_c0(j) + time*driving%d_pc(j) + dt*inc%d_pc
    end subroutine change_of_place
 
@@ -189,11 +190,15 @@ contains
       real(wp), intent(out) :: rates(NY, n)
       type(linearised_t) :: lin
       type(change_t) :: changes(DIRECTIONS)
+      type(turning_t) :: turning
+      real(wp) :: e
       integer :: j
 
-      call linearise_stage(par, inc, mode, w, point, time, void_ratio_at(inc, time), lin)
+      e = void_ratio_at(inc, time)
+      turning = turning_of(inc, mode, time)
+      call linearise_stage(par, inc, mode, w, point, time, e, lin)
       do j = 1, n
-         call change_along(inc, mode, j, time, dt(j), y(:, j), r_in(:, j), driving, changes(j))
+         call change_along(inc, mode, j, time, e, turning, dt(j), y(:, j), r_in(:, j), driving, changes(j))
       end do
       call changes_of_rate(par, w, lin, n, changes, rates)
    end subroutine change_of_stage
@@ -216,10 +221,11 @@ contains
    end subroutine linearise_stage
 
    !> How the arguments of a rate change along a direction, at a pseudo-time that itself changes by dt.
-   pure subroutine change_along(inc, mode, j, time, dt, y, r_in, driving, change)
+   pure subroutine change_along(inc, mode, j, time, e, turning, dt, y, r_in, driving, change)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode, j
-      real(wp), intent(in) :: time, dt, y(NY), r_in(6)
+      type(turning_t), intent(in) :: turning   !< of the elastic domain there
+      real(wp), intent(in) :: time, e, dt, y(NY), r_in(6)
       type(driving_t), intent(in) :: driving
       type(change_t), intent(inout) :: change
       real(wp) :: turn(6)
@@ -229,9 +235,9 @@ contains
       change%r_in = r_in
       change%d_strain = driving%d_strain(:, j)
       change%d_pc = driving%d_pc(j)
-      call change_of_place(inc, j, time, dt, driving, change%e, change%p_c)
+      call change_of_place(inc, j, time, e, dt, driving, change%e, change%p_c)
       if (.not. has_aside(inc, mode)) return
-      call change_of_loading_strain(inc, mode, time, driving%d_strain(:, j), driving%from_centre(:, j), &
+      call change_of_loading_strain(inc, mode, turning, driving%d_strain(:, j), driving%from_centre(:, j), &
                                     change%d_strain, change%d_aside)
       if (abs(dt) > 0.0_wp) then
          turn = dt*turn_of_loading_strain(inc, mode, time)
@@ -332,14 +338,17 @@ contains
       type(sensitivity_t), intent(inout) :: sens
       type(linearised_t) :: lin
       type(change_t) :: change
-      real(wp) :: m, dm, dn(6), d_sigma(6), d_z(6), d_eps_q
+      type(turning_t) :: turning
+      real(wp) :: m, dm, dn(6), d_sigma(6), d_z(6), d_eps_q, e
       integer :: j
 
       m = interrupted_share(par, before%eps_q_p)
-      call linearise_stage(par, inc, MODE_ORDINARY, trigger, trial%y0, trial%time, void_ratio_at(inc, trial%time), lin)
+      e = void_ratio_at(inc, trial%time)
+      turning = turning_of(inc, MODE_ORDINARY, trial%time)
+      call linearise_stage(par, inc, MODE_ORDINARY, trigger, trial%y0, trial%time, e, lin)
       do j = 1, DIRECTIONS
-         call change_along(inc, MODE_ORDINARY, j, trial%time, sens%shift(j), sens%y(:, j), sens%r_in(:, j), &
-                           sens%driving, change)
+         call change_along(inc, MODE_ORDINARY, j, trial%time, e, turning, sens%shift(j), sens%y(:, j), &
+                           sens%r_in(:, j), sens%driving, change)
          call change_of_rate(par, trigger, lin, change, d_sigma, d_z, d_eps_q, dn)
          dm = share_slope(par, before%eps_q_p)*sens%y(13, j)
          sens%r_before(:, j) = sens%r_in(:, j)

@@ -10,7 +10,18 @@ module mud_elastic_domain
    use mud_tensor, only: ddot, norm
    implicit none (type, external)
    private
-   public :: exit_share, change_of_exit, loading_direction, change_of_direction
+   public :: turning_t, exit_share, change_of_exit, loading_direction, change_of_direction, turning_at, &
+             change_of_turning
+
+   !> The direction nu at one pseudo-time.
+   type :: turning_t
+      real(wp) :: nu(6)
+      ! for its changes: nu is dividend over divisor
+      real(wp) :: dividend(6)
+      real(wp) :: d(6)           !< strain from the centre at the start [-]
+      real(wp) :: u(6), length   !< direction and size of the increment [-]
+      real(wp) :: rho, time, cosine, decay, share, divisor
+   end type turning_t
 contains
    !> Share of a strain increment after which the sphere is reached outwards; 1 if it is not.
    pure real(wp) function exit_share(rho, d, increment) result(share)
@@ -58,23 +69,46 @@ contains
    !> Change of nu with d (which stays on the sphere) and the increment.
    pure function change_of_direction(rho, d, increment, time, d_change, increment_change) result(change)
       real(wp), intent(in) :: rho, d(6), increment(6), time, d_change(6), increment_change(6)
-      real(wp) :: change(6), u(6), du(6), length, dlength, cosine, dcosine, decay, ddecay, divisor, ddivisor
-      real(wp) :: share, dshare
+      real(wp) :: change(6)
 
-      length = norm(increment)
-      u = increment/length
-      cosine = min(ddot(d, u)/rho, 1.0_wp)
-      decay = exp(-length*time/rho)
-      divisor = 1.0_wp + cosine + (1.0_wp - cosine)*decay**2
-      share = (1.0_wp - decay)*(1.0_wp + decay + cosine*(1.0_wp - decay))
-
-      dlength = ddot(u, increment_change)
-      du = (increment_change - dlength*u)/length
-      dcosine = (ddot(d_change, u) + ddot(d, du))/rho
-      ddecay = -decay*dlength*time/rho
-      ddivisor = dcosine*(1.0_wp - decay**2) + 2.0_wp*(1.0_wp - cosine)*decay*ddecay
-      dshare = -2.0_wp*ddecay*(decay + cosine*(1.0_wp - decay)) + dcosine*(1.0_wp - decay)**2
-      change = (2.0_wp*(ddecay*d + decay*d_change)/rho + dshare*u + share*du &
-                - (ddivisor/divisor)*(2.0_wp*decay*(d/rho) + share*u))/divisor
+      change = change_of_turning(turning_at(rho, d, increment, time), d_change, increment_change)
    end function change_of_direction
+
+   !> nu at a pseudo-time, and what its changes share.
+   pure function turning_at(rho, d, increment, time) result(turning)
+      real(wp), intent(in) :: rho, d(6), increment(6), time
+      type(turning_t) :: turning
+
+      turning%nu = loading_direction(rho, d, increment, time)
+      turning%d = d
+      turning%rho = rho
+      turning%time = time
+      turning%length = norm(increment)
+      turning%u = increment/turning%length
+      turning%cosine = min(ddot(d, turning%u)/rho, 1.0_wp)
+      turning%decay = exp(-turning%length*time/rho)
+      associate (cosine => turning%cosine, decay => turning%decay)
+         turning%divisor = 1.0_wp + cosine + (1.0_wp - cosine)*decay**2
+         turning%share = (1.0_wp - decay)*(1.0_wp + decay + cosine*(1.0_wp - decay))
+         turning%dividend = 2.0_wp*decay*(d/rho) + turning%share*turning%u
+      end associate
+   end function turning_at
+
+   !> Its change.
+   pure function change_of_turning(turning, d_change, increment_change) result(change)
+      type(turning_t), intent(in) :: turning
+      real(wp), intent(in) :: d_change(6), increment_change(6)
+      real(wp) :: change(6), du(6), dlength, dcosine, ddecay, ddivisor, dshare
+
+      associate (d => turning%d, u => turning%u, cosine => turning%cosine, decay => turning%decay)
+         dlength = ddot(u, increment_change)
+         du = (increment_change - dlength*u)/turning%length
+         dcosine = (ddot(d_change, u) + ddot(d, du))/turning%rho
+         ddecay = -decay*dlength*turning%time/turning%rho
+         ddivisor = dcosine*(1.0_wp - decay**2) + 2.0_wp*(1.0_wp - cosine)*decay*ddecay
+         dshare = -2.0_wp*ddecay*(decay + cosine*(1.0_wp - decay)) + dcosine*(1.0_wp - decay)**2
+         change = (2.0_wp*(ddecay*d + decay*d_change)/turning%rho + dshare*u + turning%share*du &
+                   - (ddivisor/turning%divisor)*turning%dividend)/turning%divisor
+      end associate
+   end function change_of_turning
 end module mud_elastic_domain

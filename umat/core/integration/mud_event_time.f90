@@ -9,7 +9,7 @@ module mud_event_time
    use mud_driving, only: DIRECTIONS, AT_REST
    use mud_events, only: EVENT_OPENS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, closing_mode, &
       change_of_closing_rate, psi_at
-   use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, NY
+   use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, turning_t, turning_of, NY
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio
    use mud_return_point, only: target_limit, is_limited
@@ -37,7 +37,8 @@ contains
       type(linearised_t) :: lin
       type(rate_t) :: w
       type(counters_t) :: uncounted
-      real(wp) :: with_size(NY), no_strain(6), no_memory(6), time, slope, slope_with_size, dh
+      type(turning_t) :: turning
+      real(wp) :: with_size(NY), no_strain(6), no_memory(6), e, time, slope, slope_with_size, dh
       integer :: j, mode
 
       time = trial%time + h
@@ -51,13 +52,16 @@ contains
          call linearise_stage(par, inc, mode, w, trial%y, time, void_ratio_at(inc, time), lin)
       end if
 
+      e = void_ratio_at(inc, time)
+      turning = turning_of(inc, mode, time)
       no_strain = 0.0_wp
       no_memory = 0.0_wp
       call change_with_size(par, inc, trial, h, with_size)
-      call change_along(inc, mode, 1, time, 1.0_wp, with_size, no_memory, AT_REST, change)
+      call change_along(inc, mode, 1, time, e, turning, 1.0_wp, with_size, no_memory, AT_REST, change)
       slope_with_size = slope_of_event(par, inc, event, trial, time, w, lin, change, no_strain)
       do j = 1, DIRECTIONS
-         call change_along(inc, mode, j, time, sens%shift(j), sens%y(:, j), sens%r_in(:, j), sens%driving, change)
+         call change_along(inc, mode, j, time, e, turning, sens%shift(j), sens%y(:, j), sens%r_in(:, j), sens%driving, &
+                           change)
          slope = slope_of_event(par, inc, event, trial, time, w, lin, change, sens%driving%d_strain(:, j))
          if (abs(slope_with_size) <= GRAZING*abs(slope)) cycle
          dh = -slope/slope_with_size

@@ -7,17 +7,20 @@ module mud_increment
    use mud_tensor, only: IDENTITY, ddot, trace, deviator, norm
    use mud_bonding, only: is_bonded
    use mud_rates, only: rate_t, rate_at, MODE_ORDINARY, MODE_ELASTIC
-   use mud_elastic_domain, only: loading_direction, change_of_direction
+   use mud_elastic_domain, only: turning_t, turning_at, change_of_turning, loading_direction
    use mud_substep, only: scheme_t, SCHEMES
    implicit none (type, external)
    private
    public :: increment_t, new_increment, phase_of, void_ratio_at, suction_at, rate_of, loading_strain, &
-             change_of_loading_strain, turn_of_loading_strain, has_aside, NY
+             change_of_loading_strain, turn_of_loading_strain, turning_t, turning_of, has_aside, NY
 
    integer, parameter :: NY = 13         !< Length of the integrated vector: sigma'(6), z(6), plastic shear.
    !> A strain across the elastic domain, whose part along nu is rounding of either sign, does not load: it would look
    !> like a reversal [-].
    real(wp), parameter :: ACROSS = 1.0e-12_wp
+
+   type(turning_t), parameter :: NO_TURNING = turning_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
+      0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
 
    !> What stays the same through an update; with an elastic domain, through one of its phases.
    type :: increment_t
@@ -84,21 +87,36 @@ contains
    end subroutine loading_strain
 
    !> Change of both parts with the strain rate and the elastic domain at the start.
-   pure subroutine change_of_loading_strain(inc, mode, time, strain_change, centre_change, loading, aside)
+   pure subroutine change_of_loading_strain(inc, mode, turning, strain_change, centre_change, loading, aside)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
-      real(wp), intent(in) :: time, strain_change(6), centre_change(6)
+      type(turning_t), intent(in) :: turning   !< of the pseudo-time; not used inside the domain
+      real(wp), intent(in) :: strain_change(6), centre_change(6)
       real(wp), intent(out) :: loading(6), aside(6)
-      real(wp) :: nu(6), change(6)
+      real(wp) :: change(6)
 
       loading = 0.0_wp
       if (mode /= MODE_ELASTIC) then
-         nu = loading_direction(inc%rho, inc%from_centre, inc%d_strain, time)
-         change = change_of_direction(inc%rho, inc%from_centre, inc%d_strain, time, centre_change, strain_change)
-         loading = (ddot(change, inc%d_strain) + ddot(nu, strain_change))*nu + ddot(nu, inc%d_strain)*change
+         change = change_of_turning(turning, centre_change, strain_change)
+         loading = (ddot(change, inc%d_strain) + ddot(turning%nu, strain_change))*turning%nu &
+                   + ddot(turning%nu, inc%d_strain)*change
       end if
       aside = strain_change - loading
    end subroutine change_of_loading_strain
+
+   !> How the elastic domain stands at a pseudo-time, where a part of the strain loads.
+   pure function turning_of(inc, mode, time) result(turning)
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: mode
+      real(wp), intent(in) :: time
+      type(turning_t) :: turning
+
+      if (has_aside(inc, mode) .and. mode /= MODE_ELASTIC) then
+         turning = turning_at(inc%rho, inc%from_centre, inc%d_strain, time)
+      else
+         turning = NO_TURNING
+      end if
+   end function turning_of
 
    !> Rate at which the part that loads turns with the domain, per unit of pseudo-time: nu' = (a - (nu:a) nu)/rho.
    pure function turn_of_loading_strain(inc, mode, time) result(turn)
