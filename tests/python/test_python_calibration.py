@@ -92,24 +92,18 @@ hears(
     "compression",
     kind="oedometer",
 )
-def volumes(*values, name="eps_v_percent", last="e_0"):
+def volumes(*values, name="eps_v_percent"):
     """The good table with other volumetric strains, and no void ratio to compare them with."""
-    cells = [row.strip().split(",") for row in ROWS]
-    return f"test,eps_a_percent,{name},q_kPa,p_kPa,{last}\n" + "".join(
-        f"A,{c[1]},{v},{c[3]},{c[4]},0.8\n" for c, v in zip(cells, values)
-    )
+    rows = zip((0, 5, 10, 20), values, (0, 200, 250, 240), (100, 166, 183, 180))
+    return f"test,eps_a_percent,{name},q_kPa,p_kPa,e_0\n" + "".join(f"A,{a},{v},{q},{p},0.8\n" for a, v, q, p in rows)
 
 
 check("without e eps_v is believed", sentence(volumes(0, -1, -2, -3)) == "", sentence(volumes(0, -1, -2, -3)))
 hears("eps_v with the sign swapped, without e", volumes(0, -0.3, 1, 2), "contracts before", "swapped")
 hears("eps_v in per cent without unit", volumes(0, -0.3, -0.8, -1.2, name="eps_v"), ":5", "eps_v_percent")
 hears("eps_v as fractions under per cent", volumes(0, -0.01, -0.02, -0.03), "call the column eps_v")
-hears(
-    "eps_v a hundredth of what e tells",
-    HEAD + "".join(r.replace(",-", ",-0.0") for r in ROWS),
-    "0.01 times what e tells",
-    "call it eps_v",
-)
+told = HEAD + "".join(r.replace(",-", ",-0.0") for r in ROWS)
+hears("eps_v a hundredth of what e tells", told, "0.01 times what e tells", "call it eps_v")
 hears("p and q exchanged", HEAD.replace("q_kPa,p_kPa", "p_kPa,q_kPa") + "".join(ROWS), "p - q/3", "exchanged")
 hears("stresses in MPa under kPa", "test,sigma_1_kPa,e\nA,0.01,0.8\nA,0.1,0.79\nA,0.4,0.78\n", "_MPa", kind="oedometer")
 hears("stresses in Pa under kPa", "test,sigma_1,e\nA,1e4,0.8\nA,1e5,0.79\nA,4e5,0.78\n", "_Pa", kind="oedometer")
