@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: MIT
+"""Tables and pictures of the committed results of the host."""
+import math
+import pathlib
+
+import host_cases
+import host_files
+import host_runs
+import tables
+from catalogue import CONTINUITY, SETTINGS
+from report import number
+
+HERE = pathlib.Path(__file__).resolve().parent
+CASES = host_cases.CASES + host_files.CASES
+NUDGED = ("default", "paper's remedy")   # the others are not asked for their continuity
+# With the defaults alone, in a few seconds together.
+QUICK = ("chatter", "permeability 1e-8 to 1e-14 m2, quadratic pressures", "permeability 1e-8 to 1e-14 m2, linear pressures", "impact at suction 100 kPa",
+         "slivers, distorted and graded meshes", "kill and restart at every tenth step", "damaged checkpoint", "damaged mesh")
+
+
+def settings_of(case):
+    return getattr(case, "settings", SETTINGS[:1])
+
+
+def outcome(case, setting, quick=False):
+    """One row: a case of files is judged by what its runs do, the others by their answers."""
+    with host_runs.temporary() as folder:
+        folder = pathlib.Path(folder)
+        if isinstance(case, host_files.FileCase):
+            return host_files.evaluate(case, setting, folder, quick)
+        return host_runs.evaluate(case, setting, folder, nudge=setting.name in NUDGED and not quick)
+
+
+def committed():
+    """(case, setting) -> row of host.csv."""
+    path = HERE / "host.csv"
+    return {(row["case"], row["setting"]): row for row in tables.rows(path)} if path.exists() else {}
+
+
+def verdict(row):
+    if row is None:
+        return ""
+    if row["finished"] != "True":
+        return f"**{row['told']}**"
+    value = number(row["value"]) if math.isfinite(float(row["value"])) else "-"
+    if row["passed"] == "True":
+        return value
+    return f"**{value}**" + (f" (nudge {number(row['continuity'])})" if float(row["continuity"]) > CONTINUITY else "")
+
+
+def case_table(results):
+    lines = []
+    for case in CASES:
+        row, paper = results.get((case.name, "default")), results.get((case.name, "paper's remedy"))
+        if row is None:
+            continue
+        nudge = float(row["continuity"])
+        told = row["told"] if isinstance(case, host_files.FileCase) else ""
+        lines.append((case.name, case.hard, f"{case.criterion}, at most {case.allowed:g}", verdict(paper), verdict(row) + (f": {told}" if told else ""),
+                      "" if math.isnan(nudge) else number(nudge), row["iterations"], row["cuts"]))
+    return tables.markdown(("case", "what makes it hard", "criterion", "paper's rules", "defaults", "nudge of 1e-9 [%]", "iterations or runs", "cuts"), lines)
+
+
+def setting_table(results):
+    shown = [case for case in CASES if len(settings_of(case)) > 2]
+    names = [setting.name for setting in SETTINGS]
+    return tables.markdown(("case", *names), [(case.name, *(verdict(results.get((case.name, name))) for name in names)) for case in shown])
+
+
+def limits():
+    return "\n".join(f"- **{case.name}**: {case.limit}." for case in CASES if case.limit) + "\n"

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: MIT
+"""100,000 scenes of nonsense in blocks of 1000, by the suite that runs 1000 of them in every check. Resumable; a row a block goes to nonsense.csv.
+
+Usage: nonsense_scenes.py [SCENES] (100000). Runs for an hour or two.
+"""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parents[1])]
+from tools import results, tables  # noqa: E402
+
+BLOCK = 1000
+KINDS = ("refused", "read", "ran", "ended early", "still running")
+NAMES = ("first", "scenes", "failed", *KINDS, "commit")
+SUITE = HERE.parents[2] / "tests/host/test_host_nonsense.py"
+
+
+def block(first):
+    done = subprocess.run([sys.executable, SUITE], capture_output=True, text=True,
+                          env={**os.environ, "MUD_PRESET": "release", "MUD_NONSENSE": str(BLOCK), "MUD_NONSENSE_FIRST": str(first)})
+    counts = {kind: int(number) for number, kind in re.findall(r"(\d+) (" + "|".join(KINDS) + ")", done.stdout.split("answers: ")[-1])}
+    failed = int(re.search(r"(\d+) failed\s*$", done.stdout)[1])
+    if failed:
+        print(done.stdout, flush=True)
+    return failed, counts
+
+
+def main(scenes):
+    path = results.folder(__file__) / "nonsense.csv"
+    rows = [tuple(row.values()) for row in tables.rows(path)] if path.exists() else []
+    commit = subprocess.run(["git", "describe", "--always"], cwd=HERE, capture_output=True, text=True).stdout.strip() or "unknown"
+    start, begun = time.monotonic(), len(rows)
+    for first in range(BLOCK * begun, scenes, BLOCK):
+        failed, counts = block(first)
+        rows.append((first, BLOCK, failed, *(counts.get(kind, 0) for kind in KINDS), commit))
+        tables.write(path, NAMES, rows, ("made by nonsense_scenes.py; scenes of each block by what became of them",))
+        left = (time.monotonic() - start) / (len(rows) - begun) * (scenes / BLOCK - len(rows))
+        print(f"{first + BLOCK} of {scenes} scenes, {sum(int(row[2]) for row in rows)} failed; about {left / 60:.0f} min left", flush=True)
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 100000)
