@@ -1,18 +1,24 @@
 # SPDX-License-Identifier: MIT
-"""Hard cases at a point: every case with the library's defaults; the table of the other settings is made by study.py."""
+"""Hard cases at a point and in the host: every case with the defaults; the tables of the other settings are made by study.py."""
+import os
+import pathlib
+
+import host_report
+import pictures
 import report
 from catalogue import CONTINUITY, INTEGRATION, SETTINGS, evaluate
 from point_walk import Walker
 from tools.page import Page, Script, Tolerance
 
 PAGE = Page(
-    claim="with its defaults the library comes to the end of every case of the catalogue, keeps its criterion in all but those that name a limit of the model, and answers the same after a nudge of 1e-9",
+    claim="with their defaults library and host come to the end of every case of the catalogue, keep its criterion in all but those that name a limit, and answer "
+          "the same after a nudge of 1e-9; damaged files and full disks are refused by a sentence, and nothing is lost",
     kind="robustness",
-    input="`cases_reversals.py` and `cases_limits.py`: paths of one point, written down case by case and run by `mud_walk`",
+    input="`cases_reversals.py` and `cases_limits.py`: paths of one point, run by `mud_walk`; `host_cases.py` and `host_files.py`: scenes, run by `mud_host`",
     reference="a criterion a case: a bound of the state, a closed form, or the same path without the event; the same path nudged by 1e-9; the same path "
               "with scheme 3 and tolerance 1e-8",
-    seconds=120, quick=6, pictures=("hard_cases.png",))
-MAKES = (Script("study.py", ("results.csv",), 1800),)
+    seconds=400, quick=14, pictures=("hard_cases.png", "point_cases.png", "host_cases.png"))
+MAKES = (Script("study.py", ("results.csv", "host.csv"), 3600), Script("nonsense_scenes.py", ("nonsense.csv",), 7200))
 
 # Cases of less than half a second each.
 QUICK = ("reversals of 1e-09", "reversals of 2e-05", "noise of 1e-6 along", "tiny loops in softening", "nine nested loops", "figure eights", "random walks",
@@ -39,10 +45,38 @@ def check(bench):
                         Tolerance("the answer is the model's, not the integrator's: one per cent", absolute=INTEGRATION))
 
 
+    check_host(bench)
+
+
+def check_host(bench):
+    """The host's part: the same, but for the distance from a tight tolerance."""
+    os.environ["MUD_BUILD_DIR"] = str(bench.build)
+    for case in host_report.CASES:
+        if bench.quick and case.name not in host_report.QUICK or case.name == "scenes of nonsense":
+            continue
+        outcome = host_report.outcome(case, SETTINGS[0], bench.quick)
+        if outcome.told:
+            bench.note(f"{case.name}: {outcome.told}")
+        if case.limit:
+            bench.below(f"{case.name}: {case.criterion}: by how much it falls short of what the page says", case.allowed - outcome.value,
+                        Tolerance(case.limit, absolute=0.0))
+        else:
+            bench.below(f"{case.name}: {case.criterion}", outcome.value, Tolerance(f"{case.group}: {case.hard}", absolute=case.allowed))
+        if outcome.continuity == outcome.continuity:
+            bench.below(f"{case.name}: change of the answer after a nudge of 1e-9 [%]", outcome.continuity,
+                        Tolerance("continuity: the third digit stays", absolute=CONTINUITY))
+
+
 def texts(bench):
     results = report.committed()
-    return {"README.md": {"summary": report.summary(results), "cases": report.case_table(results), "limits": report.limits(), "settings": report.setting_table(results)}}
+    host = host_report.committed()
+    return {"README.md": {"summary": report.summary(results), "cases": report.case_table(results), "limits": report.limits(), "settings": report.setting_table(results),
+                          "host cases": host_report.case_table(host), "host limits": host_report.limits(),
+                          "host settings": host_report.setting_table(host)}}
 
 
 def draw(bench, _, plt):
+    os.environ["MUD_BUILD_DIR"] = str(bench.build)
     bench.save(report.picture(report.committed(), plt), "hard_cases.png")
+    bench.save(pictures.point_sheet(report.CASES, Walker(bench.build), plt), "point_cases.png")
+    bench.save(pictures.host_sheet(host_report.host_cases.CASES, pathlib.Path(bench.folder()), plt), "host_cases.png")

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: MIT
+"""A picture a case: the stress path of every case at the point, what the runs of every case of the host did."""
+import copy
+import math
+
+import host_runs
+import numpy as np
+from catalogue import SETTINGS
+
+WANTED = 300    # states of a path that are drawn
+SHOWN = (SETTINGS[0], SETTINGS[2])   # defaults, paper's remedy
+
+
+def with_rows(path):
+    """The same path with a row after every few increments, so that its way can be drawn."""
+    steps = [int(line.split()[1]) for line in path.lines if line.startswith("go ")]
+    every, dense, count = max(1, len(steps) // WANTED), copy.copy(path), 0
+    dense.lines = []
+    for line in path.lines:
+        if not line.startswith("go "):
+            dense.lines.append(line)
+            continue
+        words = line.split()
+        n, change = int(words[1]), [float(word) for word in words[2:]]
+        pieces = max(1, min(n, round(WANTED * n / sum(steps))))
+        cuts = [round(n * i / pieces) for i in range(pieces + 1)]
+        for a, b in zip(cuts, cuts[1:]):
+            dense.lines.append(f"go {b - a} " + " ".join(repr(x * (b - a) / n) for x in change))
+            count += 1
+            if pieces > 1 or count % every == 0:
+                dense.lines.append("row way")
+    return dense
+
+
+def shear(row):
+    """Deviator stress, with the sign of sigma_1 - sigma_3."""
+    s, p = row["stress"], row.p
+    norm = math.sqrt(1.5 * (sum((x - p) ** 2 for x in s[:3]) + 2 * sum(x * x for x in s[3:])))
+    return math.copysign(norm, (s[0] - s[2]) or s[3] or 1.0)
+
+
+def sheet(plt, count, columns=6, size=1.75):
+    rows = -(-count // columns)
+    figure, axes = plt.subplots(rows, columns, figsize=(columns * size, rows * size))
+    for axis in axes.flat[count:]:
+        axis.axis("off")
+    for axis in axes.flat:
+        axis.tick_params(labelsize=5, length=2, pad=1)
+        axis.locator_params(nbins=4)
+    return figure, axes.flat
+
+
+def point_sheet(cases, walker, plt):
+    """Stress paths (p', q) [kPa] with the defaults and, in the other colour, the paper's remedy."""
+    figure, axes = sheet(plt, len(cases))
+    for axis, case in zip(axes, cases):
+        for colour, setting in zip(("#c8553d", "#0b3c6f"), reversed(SHOWN)):
+            for path in list(case.paths(setting).values())[:3]:
+                rows = [row for row in walker.run(with_rows(path)) if all(map(math.isfinite, row["stress"]))]
+                axis.plot([row.p for row in rows], [shear(row) for row in rows], lw=0.6, color=colour)
+        axis.set_title(case.name, fontsize=6, pad=2)
+    return figure
+
+
+def draw_run(axis, case, label, run):
+    """What tells most of a run: a profile, a mesh, a load-settlement curve, or a history."""
+    if case.group == "mesh":
+        nodes, k = run.table("nodes_press"), int(label_number(label))
+        axis.plot(nodes["r"] + 1.15 * (k % 2), nodes["z"] - 1.15 * (k // 2), ".", ms=1)
+    elif "column" in case.scenes(SETTINGS[0])[next(iter(case.scenes(SETTINGS[0])))][:40]:
+        nodes = run.table("nodes_load")
+        at = np.flatnonzero(np.abs(nodes["r"]) < 1e-9)
+        at = at[np.argsort(nodes["z"][at])]
+        axis.plot(nodes["p_w"][at], nodes["z"][at], lw=0.7)
+    elif case.group == "failure":
+        push = run.table("reactions_push")
+        axis.plot(run.histories["edge.u_z"][1:] * -100 if len(push["time"]) < len(run.histories["time"]) else run.histories["edge.u_z"] * -100,
+                  -push["top_1.force_z"], lw=0.8)
+    else:
+        history = run.histories
+        start = 2.0 if history["time"][-1] > 1.9 else 0.0
+        late = history["time"] >= start - 1e-9
+        axis.plot(1e3 * (history["time"][late] - start), 1e3 * history["centre.u_z"][late], lw=0.7)
+
+
+def label_number(label):
+    return ("regular", "slivers", "distorted", "graded").index(label)
+
+
+UNITS = {"mesh": "nodes of the four meshes", "failure": "force [kN] over settlement [cm]", "pore water": "", "contact": "u_z [mm] over t [ms]"}
+
+
+def host_sheet(cases, folder, plt):
+    """One panel a case, a line a run, with the defaults."""
+    figure, axes = sheet(plt, len(cases), columns=5, size=2.1)
+    for number, (axis, case) in enumerate(zip(axes, cases)):
+        for label, run in host_runs.run_all(case.scenes(SETTINGS[0]), folder / str(number)).items():
+            if run.folder.exists() and run.code in (0, 18):
+                draw_run(axis, case, label, run)
+        told = UNITS[case.group] or ("z [m] over p_w [kPa]" if "permeability" in case.name else "u_z [mm] over t [ms]")
+        axis.set_title(f"{case.name}\n{told}", fontsize=5, pad=2)
+    return figure
