@@ -120,8 +120,8 @@ contains
       only_numbers = verify(trim(reader%text), '0123456789+-.eEdD '//achar(9)//achar(13)) == 0
    end function only_numbers
 
-   !> A number of lines, or a largest tag, that the file announces: not below 0, and no more than it has bytes, so that a
-   !> damaged number cannot ask for all memory.
+   !> A number of lines, or a largest tag, that the file announces: not below 0, and no more than it has bytes, so that
+   !> a damaged number cannot ask for all memory.
    subroutine check_announced(reader, what, number, fault)
       type(reader_t), intent(in) :: reader
       character(*), intent(in) :: what

@@ -35,14 +35,14 @@ contains
          write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//', time '//short(time)// &
             ' s: the pore water pressure at ('//short(mesh%x(1, node))//', '//short(mesh%x(2, node))//') m, '// &
             short(x(AT_P_W, node))//' kPa, stands out from all around it by '//short(100*share)// &
-            ' % of the range of all pressures. Pressures that oscillate from node to node are no answer: refine the '// &
-            'mesh there, take longer steps, or, where next to nothing drains, set pressures = ''linear'' in &scene.'
+            ' % of the range of all pressures. Pressures that oscillate from node to node are no answer: refine '// &
+            'the mesh there, take longer steps, or, where next to nothing drains, set pressures = ''linear'' in &scene.'
       end associate
    end subroutine tell_oscillation
 
-   !> The corner of the mesh that stands out most, and by which share of the range of all pressures; 0 where no corner does
-   !> or the range is too small to matter. A corner stands out by what it is above, or below, the middles of all sides
-   !> around it beyond what these differ from the other ends of their sides.
+   !> The corner of the mesh that stands out most, and by which share of the range of all pressures; 0 where no corner
+   !> does or the range is too small to matter. A corner stands out by what it is above, or below, the middles of all
+   !> sides around it beyond what these differ from the other ends of their sides.
    pure subroutine outlier(t6, p, share, node)
       integer, intent(in) :: t6(:, :)
       real(wp), intent(in) :: p(:)       !< At the nodes [kPa].

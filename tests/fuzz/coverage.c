@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Coverage of Fortran for libFuzzer: gfortran calls __sanitizer_cov_trace_pc at every block
- * (-fsanitize-coverage=trace-pc), and
- * libFuzzer reads counters of ours. This file itself is compiled without that option. */
+/* Coverage of Fortran for libFuzzer: gfortran calls __sanitizer_cov_trace_pc in every block
+ * (-fsanitize-coverage=trace-pc), and libFuzzer reads counters of ours. This file itself is compiled without that
+ * option. */
 #include <stdint.h>
 
 enum { COUNTERS = 1 << 16 };

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* libFuzzer on every entry of mud.h and of the interfaces of other programs. The bytes choose entries, parameters,
- * states and
- * increments, from sound to absurd. Beyond what the sanitizers see, this must hold: a failed update writes nothing,
- * a good one
- * leaves finite numbers, what fails has a sentence, and one point is the same through every door, bit by bit. */
+ * states and increments, from sound to absurd. Beyond what the sanitizers see, this must hold: a failed update writes
+ * nothing, a good one leaves finite numbers, what fails has a sentence, and one point is the same through every door,
+ * bit by bit. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -31,37 +30,28 @@ typedef struct {
 } view_t;
 
 int MUD_Tridimensional(view_t *), MUD_PlaneStrain(view_t *), MUD_Axisymmetrical(view_t *),
-   MUD_GeneralisedPlaneStrain(view_t *),
-   MUD_StressSaturation_Tridimensional(view_t *), MUD_StressSaturation_PlaneStrain(view_t *),
-      MUD_StressSaturation_Axisymmetrical(view_t *);
+   MUD_GeneralisedPlaneStrain(view_t *), MUD_StressSaturation_Tridimensional(view_t *),
+   MUD_StressSaturation_PlaneStrain(view_t *), MUD_StressSaturation_Axisymmetrical(view_t *);
 void umat_(double *stress, double *statev, double *ddsdde, double *sse, double *spd, double *scd, double *rpl,
-   double *ddsddt, double *drplde,
-           double *drpldt, double *stran, double *dstran, double *time, double *dtime, double *temp, double *dtemp,
-              double *predef,
-           double *dpred, char *cmname, int *ndi, int *nshr, int *ntens, int *nstatv, double *props, int *nprops,
-              double *coords,
-           double *drot, double *pnewdt, double *celent, double *dfgrd0, double *dfgrd1, int *noel, int *npt,
-              int *layer, int *kspt,
-           int *kstep, int *kinc, size_t length);
+           double *ddsddt, double *drplde, double *drpldt, double *stran, double *dstran, double *time, double *dtime,
+           double *temp, double *dtemp, double *predef, double *dpred, char *cmname, int *ndi, int *nshr, int *ntens,
+           int *nstatv, double *props, int *nprops, double *coords, double *drot, double *pnewdt, double *celent,
+           double *dfgrd0, double *dfgrd1, int *noel, int *npt, int *layer, int *kspt, int *kstep, int *kinc,
+           size_t length);
 void vumat_(int *nblock, int *ndir, int *nshr, int *nstatev, int *nfieldv, int *nprops, int *lanneal,
-   double *step_time, double *total_time,
-            double *dt, char *cmname, double *coord, double *length, double *props, double *density,
-               double *strain_inc, double *spin,
-            double *temp_old, double *stretch_old, double *defgrad_old, double *field_old, double *stress_old,
-               double *state_old,
-            double *energy_old, double *inelastic_old, double *temp_new, double *stretch_new, double *defgrad_new,
-               double *field_new,
+            double *step_time, double *total_time, double *dt, char *cmname, double *coord, double *length,
+            double *props, double *density, double *strain_inc, double *spin, double *temp_old, double *stretch_old,
+            double *defgrad_old, double *field_old, double *stress_old, double *state_old, double *energy_old,
+            double *inelastic_old, double *temp_new, double *stretch_new, double *defgrad_new, double *field_new,
             double *stress_new, double *state_new, double *energy_new, double *inelastic_new);
 void user_mod_(int *idtask, int *imod, int *isundr, int *istep, int *iter, int *iel, int *integration, double *x,
-   double *y, double *z,
-               double *time0, double *dtime, double *props, double *sig0, double *swp0, double *stvar0, double *deps,
-                  double *d,
-               double *bulkw, double *sig, double *swp, double *stvar, int *ipl, int *nstat, int *nonsym,
-                  int *istrsdep, int *itimedep,
-               int *itang, int *iprjdir, int *iprjlen, int *iabort);
+               double *y, double *z, double *time0, double *dtime, double *props, double *sig0, double *swp0,
+               double *stvar0, double *deps, double *d, double *bulkw, double *sig, double *swp, double *stvar,
+               int *ipl, int *nstat, int *nonsym, int *istrsdep, int *itimedep, int *itang, int *iprjdir,
+               int *iprjlen, int *iabort);
 void getmodelname_(int *, char *), getparamname_(int *, int *, char *), getparamunit_(int *, int *, char *),
-   getstatevarname_(int *, int *, char *),
-   getstatevarunit_(int *, int *, char *), getparamcount_(int *, int *), getstatevarcount_(int *, int *);
+   getstatevarname_(int *, int *, char *), getstatevarunit_(int *, int *, char *), getparamcount_(int *, int *),
+   getstatevarcount_(int *, int *);
 
 static int nprops, nstatv;
 

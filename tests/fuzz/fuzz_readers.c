@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* libFuzzer on the readers: scenes (namelists, keys, names), cases, Gmsh meshes, lists of numbers. The first byte of
- * the input says
- * which; the rest is the file, in memory. */
+ * the input says which; the rest is the file, in memory. */
 #define _GNU_SOURCE
 #include <stdint.h>
 #include <stdio.h>

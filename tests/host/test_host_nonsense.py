@@ -53,7 +53,8 @@ def judged(number, text):
         return ("reading hangs" if check_only else ""), "still running"
     told = done.stderr.decode(errors="replace")
     shutil.rmtree(folder)
-    kind = "refused" if done.returncode in REFUSALS else "ended early" if done.returncode else "read" if check_only else "ran"
+    good = "read" if check_only else "ran"
+    kind = "refused" if done.returncode in REFUSALS else "ended early" if done.returncode else good
     if done.returncode not in CODES:
         return f"exit code {done.returncode}: {told[:300]}", kind
     if CRASH.search(told):

@@ -69,3 +69,26 @@ def setting_table(results):
 
 def limits():
     return "\n".join(f"- **{case.name}**: {case.limit}." for case in CASES if case.limit) + "\n"
+
+
+def peer_table():
+    """What others answer to some of the paths, as peers.py found it."""
+    path = HERE / "peers.csv"
+    rows = tables.rows(path) if path.exists() else []
+    schemes = list(dict.fromkeys(row["scheme"] for row in rows))
+    found = {(row["case"], row["scheme"]): row for row in rows}
+    lines = []
+    for case in dict.fromkeys(row["case"] for row in rows):
+        told = [found[case, scheme] for scheme in schemes]
+        lines.append((case, told[-1]["told"], *(row["value"] if row["value"] != "nan" else row["told"] for row in told)))
+    return tables.markdown(("path", "asked", *schemes), lines)
+
+
+def nonsense():
+    """One sentence on the record of scenes of nonsense."""
+    path = HERE / "nonsense.csv"
+    rows = tables.rows(path) if path.exists() else []
+    total = {key: sum(int(row[key]) for row in rows) for key in ("scenes", "failed", "refused", "read", "ran", "ended early", "still running")}
+    return (f"{total['scenes']:,} scenes of nonsense so far: {total['refused']:,} refused by a sentence, {total['read']:,} read (nine of ten are not run), "
+            f"{total['ran']:,} ran to their end, {total['ended early']:,} ended early with a sentence, {total['still running']:,} still ran after two seconds, "
+            f"{total['failed']:,} crashed, hung or ended without a word.\n")

@@ -18,7 +18,8 @@ PAGE = Page(
     reference="a criterion a case: a bound of the state, a closed form, or the same path without the event; the same path nudged by 1e-9; the same path "
               "with scheme 3 and tolerance 1e-8",
     seconds=400, quick=14, pictures=("hard_cases.png", "point_cases.png", "host_cases.png"))
-MAKES = (Script("study.py", ("results.csv", "host.csv"), 3600), Script("nonsense_scenes.py", ("nonsense.csv",), 7200))
+MAKES = (Script("study.py", ("results.csv", "host.csv"), 3600), Script("nonsense_scenes.py", ("nonsense.csv",), 7200),
+         Script("peers.py", ("peers.csv",), 600, "openseespy"))
 
 # Cases of less than half a second each.
 QUICK = ("reversals of 1e-09", "reversals of 2e-05", "noise of 1e-6 along", "tiny loops in softening", "nine nested loops", "figure eights", "random walks",
@@ -72,7 +73,8 @@ def texts(bench):
     host = host_report.committed()
     return {"README.md": {"summary": report.summary(results), "cases": report.case_table(results), "limits": report.limits(), "settings": report.setting_table(results),
                           "host cases": host_report.case_table(host), "host limits": host_report.limits(),
-                          "host settings": host_report.setting_table(host)}}
+                          "host settings": host_report.setting_table(host), "nonsense": host_report.nonsense(),
+                          "peers": host_report.peer_table()}}
 
 
 def draw(bench, _, plt):
