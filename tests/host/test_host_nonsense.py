@@ -10,6 +10,7 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 
@@ -22,7 +23,9 @@ TABLE = (root / "host/README.md").read_text(encoding="utf-8").split("## Exit cod
 CODES = {0, *map(int, re.findall(r"^\| (\d+) \|", TABLE, re.MULTILINE))}
 REFUSALS = {2, 10, 11, 12}
 CRASH = re.compile(r"Fortran runtime error|Backtrace|Sanitizer|runtime error:|SIG[A-Z]+|terminate called")
-SECONDS = 2   # a scene that still runs then is a run
+SECONDS = 2      # of the processor: a scene that still runs then is a run
+WAITING = 1200   # of the clock
+OUT_OF_TIME = {-signal.SIGXCPU, 128 + signal.SIGXCPU}
 ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1"}
 FIRST = int(os.environ.get("MUD_NONSENSE_FIRST", 0))
 COUNT = int(os.environ.get("MUD_NONSENSE", 100 if light else 1000))
@@ -46,10 +49,14 @@ def judged(number, text):
     # Reading and building alone for nine of ten; the slow builds trap overflow, which nonsense may well reach in a run.
     check_only = ("--check",) if light or number % 10 else ()
     try:
-        done = subprocess.run([HOST, scene, "--output", folder / "out", "--quiet", *check_only], capture_output=True,
-                              timeout=SECONDS * (30 if check_only else 1),
-                              env=ENVIRONMENT, cwd=folder, stdin=subprocess.DEVNULL)
+        # Seconds of the processor, so that a busy machine hangs nothing; of the clock only for what waits for ever.
+        limited = f'ulimit -S -t {SECONDS * (30 if check_only else 1)}; exec "$0" "$@"'
+        done = subprocess.run(["sh", "-c", limited, HOST, scene, "--output", folder / "out", "--quiet", *check_only],
+                              capture_output=True, timeout=WAITING, env=ENVIRONMENT, cwd=folder,
+                              stdin=subprocess.DEVNULL)
     except subprocess.TimeoutExpired:
+        return "waits for ever", "still running"
+    if done.returncode in OUT_OF_TIME:
         return ("reading hangs" if check_only else ""), "still running"
     told = done.stderr.decode(errors="replace")
     shutil.rmtree(folder)
