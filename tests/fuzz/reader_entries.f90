@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> The readers of the programs as C functions for the fuzzer: 0 read,
-   1 refused; a refusal without a sentence ends the process.
+!> The readers of the programs as C functions for the fuzzer: 0 read, 1 refused; a refusal without a sentence ends the
+!> process.
 module reader_entries
    use, intrinsic :: iso_c_binding, only: c_int, c_char
    use faults, only: fault_t

@@ -27,7 +27,8 @@ def commit():
 def work_off(path, comment, names, todo, run):
     """Runs what is not in the table yet; `run(case, setting)` gives a row under `names`."""
     done = {}
-    if path.exists() and tables.comments(path) == comment:
+    if path.exists():   # begun earlier: the comment tells by which commit
+        comment = tables.comments(path)
         done = {(row["case"], row["setting"]): tuple(row.values()) for row in tables.rows(path)}
     todo = [(case, setting) for case, setting in todo if (case.name, setting.name) not in done]
     start = time.monotonic()
