@@ -204,11 +204,13 @@ contains
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: y(NY)
       type(place_t) :: place
-      real(wp) :: p, r(6)
+      real(wp) :: p, r(6), t(6)
 
       call stress_ratio(par, y(1:6), p, r)
-      place = place_at(par, trial%r_in, w%loading, r, w%n, elastic_rate(inc, w, r))
-      place%along = place%along/w%g   ! the same in every unit of stress
+      t = elastic_rate(inc, w, r)
+      place = place_at(par, trial%r_in, w%loading, r, w%n, t)
+      ! of the size of the chord, as what it is compared with: the place could not be found otherwise
+      if (abs(place%along) > 0.0_wp) place%along = place%along/norm(t)
    end function place_of
 
    !> p' times the rate of the stress ratio if the whole strain were elastic. The part of the strain across the elastic
