@@ -3,13 +3,15 @@
 module library_tables
    use, intrinsic :: iso_c_binding, only: c_int, c_null_char
    use kinds, only: wp
-   use mud_interface, only: mud_version, mud_count, mud_index, mud_text, mud_option, mud_bounds, mud_bounds_for, MUD_PROPS, &
+   use mud_interface, only: mud_version, mud_count, mud_index, mud_text, mud_option, mud_bounds, mud_bounds_for, &
+                            MUD_PROPS, &
                             MUD_STATEV, MUD_NAME, MUD_UNIT, MUD_ORIGIN, MUD_MEANING
    use texts, only: from_c, lower_case
    implicit none (type, external)
    private
    public :: library_version, property_count, property_index, property_name, property_unit, property_origin, &
-             property_meaning, property_option, property_range, range_for, state_count, statev_index, statev_name, statev_unit
+             property_meaning, property_option, property_range, range_for, state_count, statev_index, statev_name, &
+             statev_unit
 
    integer, parameter :: BUFFER = 600
 contains

@@ -5,7 +5,8 @@ module material_mud
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use key_schema, only: key_t, NONE
-   use library_tables, only: property_count, property_index, property_name, property_range, range_for, state_count, statev_index, &
+   use library_tables, only: property_count, property_index, property_name, property_range, range_for, &
+                             state_count, statev_index, &
                              statev_name, statev_unit
    use material_point, only: material_t, response_t, report_t, remark_t, saturation_t, NAME_LENGTH
    use mud_interface, only: mud_report, mud_prepared_size, mud_prepare, mud_init_state, mud_update_prepared, &
