@@ -138,7 +138,7 @@ contains
       write (output_unit, '(a)') '** '//headline(material)
       write (output_unit, '(a)') '** @: CalculiX loads libMUD.so, a copy of libmud.so on LD_LIBRARY_PATH. Static:', &
          '** NAME=ABAQUS_MUD. Initial stress: *INITIAL CONDITIONS, TYPE=STRESS; void ratio and suction of a point:', &
-         '** TYPE=SOLUTION, state variables 2 and 4, the others 0. Its reader returns after one point where there are', &
+         '** TYPE=SOLUTION, state variables 2 and 4, the others 0. Its reader ends after one point where there are', &
          '** more than six: a card for every point, two lines long (six entries, then 0.). Warnings can be ignored.', &
          '*MATERIAL, NAME=@ABAQUS_MUD'
       write (output_unit, '(2a)') '*USER MATERIAL, CONSTANTS=', whole(size(material%props))

@@ -15,7 +15,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import scenes  # noqa: E402
 
 PAGE = Page(
-    claim="`effects = 'auto'` keeps what matters in ten scenes that a careless choice spoils, and lets go what does not in six",
+    claim="`effects = 'auto'` keeps what matters in ten scenes that a careless choice spoils, and lets go what does not matter in seven",
     kind=("robustness", "study"),
     input="`scenes.py`: every scene leaves open what it can; compared are the run that `auto` chooses, the run with "
           "everything (`effects_tolerance = 1e-6`), and the careless run (`without`)",
