@@ -3,15 +3,16 @@
 # Makes the Debian packages of a build and uses them in a root folder that has nothing else: programs first, then a C
 # and a Fortran host against the development files. Needs root, debootstrap and a Debian mirror; takes some minutes and
 # 1 GB of a temporary folder. Not part of ./check.
-# usage: scripts/try_packages.sh [BUILD]      (default build/release; MIRROR and SUITE from the environment)
+# usage: scripts/try_packages.sh [BUILD]      (default build/release; MIRROR, by default that of apt, and SUITE from the environment)
 set -eu
 source=$(cd "$(dirname "$0")/.." && pwd)
 build=$(cd "${1:-$source/build/release}" && pwd)
-mirror=${MIRROR:-http://deb.debian.org/debian}
+mirror=${MIRROR:-$(apt-get indextargets --format '$(SITE)' 2> /dev/null | head -n 1)}
 suite=${SUITE:-bookworm}
 say() { printf '%s\n' "$*"; }
 refuse() { say "try_packages: $*" >&2; exit 2; }
 [ "$(id -u)" = 0 ] || refuse "chroot needs root"
+[ -n "$mirror" ] || refuse "apt knows no mirror; name one: MIRROR=..."
 command -v debootstrap > /dev/null || refuse "there is no debootstrap (apt install debootstrap)"
 work=$(mktemp -d)
 root=$work/root
