@@ -224,8 +224,8 @@ contains
       t = (2.0_wp*w%g)*deviator(inc%d_strain) - (w%k*inc%d_v)*r
    end function elastic_rate
    !> Finds the end of the substep where the event's function turns negative (false position as Anderson and Bjoerck
-   !> accelerate it), and leaves the trial there, just beyond. A point that has just closed begins with p' = p_min and
-   !> rises: there the function over the size is looked at, which has no root at the start.
+   !> accelerate it), and leaves the trial there, just beyond or, at a kink, just before. A point that has just closed
+   !> begins with p' = p_min and rises: there the function over the size is looked at, which has no root at the start.
    pure subroutine land_on(par, inc, event, h, trial, counters, landed)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -234,7 +234,7 @@ contains
       type(trial_t), intent(inout) :: trial
       type(counters_t), intent(inout) :: counters
       integer, intent(inout) :: landed     !< becomes the event if it happens
-      real(wp) :: low, high, f_low, f_high, f, h_trial, width, zero
+      real(wp) :: low, high, f_low, f_high, f, h_trial, width, zero, before
       integer :: iteration, side, most
       logical :: divided
 
@@ -244,6 +244,15 @@ contains
       call event_function(par, inc, event, trial, trial%time, trial%y0, counters, f_low)
       most = merge(TURN_ITERATIONS, MAX_EVENT_ITERATIONS, event == EVENT_TURN)
       zero = max(merge(TURN_RESIDUAL, EVENT_RESIDUAL, event == EVENT_TURN)*(f_low - f_high), ROUNDING)
+      before = 0.0_wp
+      if (event == EVENT_MECHANISM) then
+         ! The last stage stands at a kink. Whatever the rounding, it must be on the side of its substep: its
+         ! derivatives are those of that side.
+         zero = 0.5_wp*zero
+         before = zero
+         f_low = f_low - before
+         f_high = f_high - before
+      end if
       divided = event == EVENT_OPENS .and. f_low <= zero .and. trial%w(1)%d_p > 0.0_wp
       if (divided) then
          f_low = trial%w(1)%d_p/par%p_min
@@ -266,6 +275,7 @@ contains
          call take_step(par, inc, h_trial, trial, counters)
          call event_function(par, inc, event, trial, trial%time + h_trial, trial%y, counters, f)
          if (divided) f = f/h_trial
+         f = f - before
          if (f < 0.0_wp) then
             if (side < 0) f_low = f_low*remaining(f, f_high)
             high = h_trial
