@@ -2,6 +2,7 @@
 !> Checkpoints: the complete state of a run in one HDF5 file, and a run from one. Loads, boundary conditions and the
 !> flow that is subtracted follow from the scene; the ordering of the equations from their pattern. The rest is here.
 module checkpoints
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_c_binding, only: c_char, c_null_char
    use, intrinsic :: iso_fortran_env, only: int64
    use mud_interface, only: mud_version
@@ -295,7 +296,9 @@ contains
       real(wp), parameter :: LARGEST(N_COUNTERS) = [spread(real(huge(0), wp), 1, 7), 2.0_wp**53, 1.0_wp, &
                                                     spread(2.0_wp**53, 1, 4), real(huge(0), wp)/2]
 
-      possible = all(counters >= 0.0_wp .and. counters <= LARGEST)
+      ! A comparison with what is no number may end the program.
+      possible = all(ieee_is_finite(counters))
+      if (possible) possible = all(counters >= 0.0_wp .and. counters <= LARGEST)
       if (possible) possible = counters(1) >= 0.5_wp .and. counters(1) <= stages
    end function possible
 

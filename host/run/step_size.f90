@@ -224,6 +224,7 @@ contains
          ! An answer that hardly changes beside the others does not rule the steps.
          do i = 1, size(model%points)
             do f = 1, DISPLACEMENTS
+               if (c%high(f, i) < c%low(f, i)) cycle   ! not looked at yet
                used = max(used, c%point_gathered(f, i)/max(c%high(f, i) - c%low(f, i), c%scale(f), tiny(1.0_wp)))
             end do
          end do

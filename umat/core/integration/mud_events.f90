@@ -43,7 +43,7 @@ module mud_events
    real(wp), parameter :: EVENT_TOLERANCE = 1.0e-13_wp
    !> An event's function is zero below this share of its change over the substep: far enough above rounding that
    !> rounding does not decide how many trials are made; and below rounding [-].
-   real(wp), parameter :: EVENT_RESIDUAL = 1.0e-11_wp, ROUNDING = 4.0e-16_wp
+   real(wp), parameter :: EVENT_RESIDUAL = 1.0e-12_wp, ROUNDING = 4.0e-16_wp
    real(wp), parameter :: PROBE_BELOW = 0.5_wp   !< A minimum below this share of x_rev above -x_rev is looked at [-].
    !> A kink is looked for where the error of a substep is above this share of the tolerance [-].
    real(wp), parameter :: SHARP_KINK = 0.01_wp
