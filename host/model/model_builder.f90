@@ -12,7 +12,7 @@ module model_builder
    use porous_domain, only: domain_t, fluids_t, prepare_domain
    use region_builder, only: build_regions
    use scene_types, only: scene_t, scene_point_t, WITH_P_W, WITH_P_C
-   use stage_builder, only: stage_of, choose_schemes
+   use stage_builder, only: build_stage, choose_schemes
    use shape_functions, only: RULES
    use texts, only: whole
    !$ use omp_lib, only: omp_get_max_threads
@@ -43,7 +43,10 @@ contains
       if (allocated(scene%effects)) model%effects = scene%effects
       model%stop_on_warning = scene%stop_on_warning
       model%amplitudes = scene%amplitudes
-      model%stages = [(stage_of(scene%stages(i)), i=1, size(scene%stages))]
+      allocate (model%stages(size(scene%stages)))
+      do i = 1, size(scene%stages)
+         call build_stage(scene%stages(i), model%stages(i))
+      end do
       call build_domain(scene, model, fault)
       if (fault%code == 0) call build_plates(scene, model, fault)
       if (fault%code == 0) call build_regions(scene, model%domain, fault)

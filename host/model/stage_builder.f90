@@ -8,7 +8,7 @@ module stage_builder
    use scene_types, only: scene_stage_t, acts_in
    implicit none (type, external)
    private
-   public :: stage_of, choose_schemes
+   public :: build_stage, choose_schemes
 
    ! Of the words of &stage analysis and measure.
    integer, parameter :: KIND_OF(*) = [STATIC, QUASI_STATIC, DYNAMIC]
@@ -17,14 +17,15 @@ module stage_builder
    real(wp), parameter :: OPENING = 0.0_wp    !< With contact: it never gains energy where a penalty opens and closes,
                                               !< however long the step (docs/theory/host.md section 4.1).
 contains
-   pure function stage_of(given) result(stage)
+   !> A subroutine, because gfortran 12 loses what a function result in a list of values has allocated.
+   pure subroutine build_stage(given, stage)
       type(scene_stage_t), intent(in) :: given
-      type(stage_t) :: stage
+      type(stage_t), intent(out) :: stage
 
       stage%scene_stage_t = given
       stage%kind = KIND_OF(given%analysis)
       stage%measure = MEASURE_OF(given%measure_number)
-   end function stage_of
+   end subroutine build_stage
 
    !> rho_inf and the measure of Newton's error of the stages that the scene leaves them open in.
    pure subroutine choose_schemes(model)

@@ -14,7 +14,7 @@ module mud_state
 
    real(wp), parameter :: E_LOWER = 0.01_wp, E_UPPER = 5.0_wp   !< Range of the void ratio [-].
 
-   real(wp), parameter :: LARGEST_RATIO = 1.0e12_wp       !< A stress ratio beyond it is no state [-].
+   real(wp), parameter :: LARGEST_RATIO = 1.0e11_wp       !< A stress ratio beyond it is no state [-].
    real(wp), parameter :: LARGEST_FABRIC = 1.0e6_wp       !< Likewise; z_max is at most 1e3 [-].
    real(wp), parameter :: LARGEST_FROM_CENTRE = 1.0_wp    !< Strain from the elastic domain's centre; rho_e <= 0.01 [-].
    real(wp), parameter :: LARGEST_DIRECTION = 1.01_wp     !< Components of a unit tensor [-].
