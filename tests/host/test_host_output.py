@@ -21,10 +21,12 @@ import tables  # noqa: E402 (checking knows its folder)
 
 host = build / "host/mud_host"
 environment = {**os.environ, "OMP_NUM_THREADS": "1"}
+NO_LEAKS = {**environment, "LSAN_OPTIONS": "detect_leaks=0"}   # HDF5 loses bytes of its own where a file is damaged
 
 
 def run(scene, out, *more, **how):
-    return subprocess.run([host, scene, "--output", out, *more], capture_output=True, text=True, env=environment, **how)
+    how = {"env": environment, "capture_output": True, "text": True, **how}
+    return subprocess.run([host, scene, "--output", out, *more], **how)
 
 
 def differences(one, other):
@@ -198,15 +200,12 @@ REFUSED = [
 for what, make, scene_text, words in REFUSED:
     make()
     scene.write_text(scene_text)
-    # With a damaged structure HDF5 loses some bytes of its own, which a leak checker would report.
-    done = subprocess.run([host, scene, "--output", half, "--quiet", "--restart", bad], capture_output=True, text=True,
-                          env={**environment, "LSAN_OPTIONS": "detect_leaks=0"})
+    done = run(scene, half, "--quiet", "--restart", bad, env=NO_LEAKS)
     check(f"checkpoint {what}: exit code", done.returncode == 17, f"{done.returncode}: {done.stderr}")
     check(f"checkpoint {what}: one sentence", words in done.stderr and len(done.stderr.splitlines()) == 1, done.stderr)
 scene.write_text(text)
 done = run(scene, work / "elsewhere", "--quiet", "--restart", keep)
 check("restart into another folder", done.returncode == 17 and "interrupted run" in done.stderr, done.stderr)
-
 # A restart that is refused changes nothing in the folder, nor does one make it.
 check("refused restart: no folder", not (work / "elsewhere").exists())
 
@@ -448,5 +447,4 @@ if shown is None:
     print("no pseudo-terminals on this machine: the progress line was not looked at")
 else:
     check("progress line", re.search(rb"\rStage \w+: step \d+, time \S+ s, \d+ %; about \d+ s left", shown), shown)
-
 finish()
