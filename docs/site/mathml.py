@@ -80,8 +80,8 @@ def spaced(row):
     return made
 
 
-def mended(element):
-    children = [mended(child) for child in element]
+def corrected(element):
+    children = [corrected(child) for child in element]
     if variant := element.attrib.get("mathvariant"):
         if variant.startswith("bold"):
             element.text = bold(element.text)
@@ -112,7 +112,7 @@ def mathml(source, display):
         raise ExtensionError(f"the formula cannot be read: {source!r}: {error}") from error
     if unknown := [one.text for one in tree.iter() if (one.text or "").startswith("\\")]:
         raise ExtensionError(f"the formula has an unknown command, {unknown[0]}: {source!r}")
-    return ElementTree.tostring(mended(tree), encoding="unicode")
+    return ElementTree.tostring(corrected(tree), encoding="unicode")
 
 
 def inline(writer, node):

@@ -31,7 +31,6 @@ module effect_pilots
    type :: pilots_account_t
       integer :: runs = 0
       integer :: cells = 1, steps = 1      !< How much longer cells and steps were.
-      integer :: elements = 0, steps_taken = 0, unknowns = 0
       real(wp) :: seconds = 0.0_wp
       type(difference_t) :: own_error      !< Against pilots with steps, or cells, twice as long.
       logical :: own_error_known = .false.
@@ -118,9 +117,6 @@ contains
                        'can be said of any: '//trim(finer%why))
             return
          end if
-         account%elements = base%elements
-         account%unknowns = base%unknowns
-         account%steps_taken = base%steps
          if (.not. quiet) write (output_unit, '(a)') 'Pilots: '//whole(base%elements)//' elements, '// &
             whole(base%unknowns)//' unknowns, '//whole(base%steps)//' steps; with every effect '// &
             short(base%seconds)//' s.'

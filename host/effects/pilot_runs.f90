@@ -2,10 +2,12 @@
 !> Runs a scene without files and words, and keeps what its answers did; compares two such runs.
 !> docs/theory/host.md section 11.
 module pilot_runs
+   use, intrinsic :: iso_fortran_env, only: output_unit
    use kinds, only: wp
    use effect_monitor, only: indicator_of, mass_of_nodes
    use effect_types, only: EFFECTS
    use faults, only: fault_t, raise, EXIT_INPUT
+   use history_distance, only: farthest
    use model_builder, only: build_model
    use model_types, only: model_t
    use porous_domain, only: state_t, copy_state
@@ -88,14 +90,10 @@ contains
       pilot%why = fault%text(:len(pilot%why))
       pilot%seconds = clock() - t0
       if (allocated(model%stages)) pilot%rho_inf = model%stages%rho_inf
-      pilot%steps = run%steps
       if (.not. allocated(model%dofs%of)) return
       pilot%elements = size(model%domain%mesh%t6, 2)
       pilot%unknowns = model%dofs%n
       pilot%has = any(model%dofs%of(:FIELDS, :) > 0, dim=2)
-      if (.not. pilot%done) return
-      pilot%time = pilot%time(:watcher%rows)
-      pilot%x = pilot%x(:, :, :watcher%rows)
    end subroutine run_pilot
 
    subroutine run_begins(self, model, run, fault)
@@ -189,17 +187,18 @@ contains
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      ! Nothing to close.
-      if (fault%code /= 0 .or. run%steps == 0 .or. size(model%stages) == 0) return
+      if (fault%code /= 0 .or. size(model%stages) == 0) return
       self%seen%steps = run%steps
+      self%seen%time = self%seen%time(:self%rows)
+      self%seen%x = self%seen%x(:, :, :self%rows)
    end subroutine run_ends
 
    subroutine warn(self, text)
       class(watcher_t), intent(inout) :: self
       character(*), intent(in) :: text
 
-      ! The warnings of the run itself are told then.
-      if (len(text) == 0) self%seen%why = ''
+      ! The run itself warns where it is needed.
+      if (.not. self%silent) write (output_unit, '(a)') text
    end subroutine warn
 
    !> How far the answers of two runs of one mesh lie apart, as shares of the range of each answer in the first; a field
@@ -219,7 +218,7 @@ contains
             if (one%has(f) .and. two%has(f)) then
                if (range(f, i) <= NO_ANSWER*largest(of)) cycle
                scale = range(f, i)
-               call farthest(one, two, f, i, change)
+               change = farthest(one%time, one%x(f, i, :), two%time, two%x(f, i, :))
             else if (one%has(f)) then
                call lost(one, f, i, change, scale)
             else if (two%has(f)) then
@@ -233,29 +232,6 @@ contains
          end do
       end do
    end function difference
-
-   !> Largest distance of two histories at the times of the first, straight lines between those of the second.
-   pure subroutine farthest(one, two, field, point, change)
-      type(pilot_t), intent(in) :: one, two
-      integer, intent(in) :: field, point
-      real(wp), intent(out) :: change
-      real(wp) :: share, here
-      integer :: i, k
-
-      change = 0.0_wp
-      k = 1
-      do i = 1, size(one%time)
-         do while (k < size(two%time) - 1 .and. two%time(k + 1) < one%time(i))
-            k = k + 1
-         end do
-         share = 0.0_wp
-         if (two%time(k + 1) > two%time(k)) share = (one%time(i) - two%time(k))/(two%time(k + 1) - two%time(k))
-         share = max(0.0_wp, min(1.0_wp, share))
-         here = two%x(field, point, k) + share*(two%x(field, point, k + 1) - two%x(field, point, k)) &
-                - one%x(field, point, i)
-         if (abs(here) > abs(change)) change = here
-      end do
-   end subroutine farthest
 
    !> A pressure that is no unknown any more: its change; of suction that beyond zero alone.
    pure subroutine lost(run, field, point, change, scale)

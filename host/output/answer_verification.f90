@@ -3,6 +3,7 @@
 module answer_verification
    use kinds, only: wp
    use faults, only: fault_t, raise, EXIT_OUTPUT
+   use history_distance, only: farthest
    use unknown_fields, only: FIELDS
    implicit none (type, external)
    private
@@ -55,20 +56,12 @@ contains
    pure function differences(one, two) result(apart)
       type(history_t), intent(in) :: one, two
       real(wp) :: apart(FIELDS, size(one%x, 2))
-      real(wp) :: share
-      integer :: i, k
+      integer :: i, f
 
-      apart = 0.0_wp
-      if (size(two%time) < 2) return
-      k = 1
-      do i = 1, size(one%time)
-         do while (k < size(two%time) - 1 .and. two%time(k + 1) < one%time(i))
-            k = k + 1
+      do i = 1, size(one%x, 2)
+         do f = 1, FIELDS
+            apart(f, i) = abs(farthest(one%time, one%x(f, i, :), two%time, two%x(f, i, :)))
          end do
-         share = 0.0_wp
-         if (two%time(k + 1) > two%time(k)) share = (one%time(i) - two%time(k))/(two%time(k + 1) - two%time(k))
-         share = max(0.0_wp, min(1.0_wp, share))
-         apart = max(apart, abs(one%x(:, :, i) - two%x(:, :, k) - share*(two%x(:, :, k + 1) - two%x(:, :, k))))
       end do
    end function differences
 end module answer_verification

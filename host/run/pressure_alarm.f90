@@ -36,7 +36,7 @@ contains
             ' s: the pore water pressure at ('//short(mesh%x(1, node))//', '//short(mesh%x(2, node))//') m, '// &
             short(x(AT_P_W, node))//' kPa, stands out from all around it by '//short(100*share)// &
             ' % of the range of all pressures. Pressures that oscillate from node to node are no answer: refine '// &
-            'the mesh there, take longer steps, or, where next to nothing drains, set pressures = ''linear'' in &scene.'
+            'the mesh there, take longer steps or, where hardly any water drains, set pressures = ''linear'' in &scene.'
       end associate
    end subroutine tell_oscillation
 

@@ -8,7 +8,7 @@ module effect_switches
       OF_MEMORY, OF_ELASTIC_DOMAIN
    use faults, only: fault_t
    use key_schema, only: given
-   use library_tables, only: property_index
+   use library_tables, only: property_index, property_range
    use namelists, only: set_entry
    use parameter_groups, only: read_parameters
    use scene_types, only: scene_t, NAME_LENGTH, WITH_U, WITH_P_W, WITH_P_C, IS_STATIC, IS_QUASI_STATIC, IS_DYNAMIC, &
@@ -18,10 +18,9 @@ module effect_switches
    public :: list_effects, settle_open_keys, switch, switch_by_hand
 
    real(wp), parameter :: EARTH = 9.81_wp             !< [m/s2] Where gravity is put in.
-   real(wp), parameter :: WORLD_DOMAIN = 2.0e-5_wp    !< rho_e where the elastic domain is put in, the default [-].
-   real(wp), parameter :: CLASSIC = 0.0_wp, RETURN_POINT = 3.0_wp   !< memory_rule without and with memory of loops.
    real(wp), parameter :: ROUNDING = 1.0e-12_wp
-   !> Switches of the material, in the order of their effects.
+   !> Switches of the material, in the order of their effects: 0 is off (of memory_rule: classic), the library's default
+   !> on.
    character(11), parameter :: SWITCHES(OF_BONDING:OF_ELASTIC_DOMAIN) = [character(11) :: 'bonding', 'fabric', &
       'isotropic', 'lode', 'memory_rule', 'rho_e']
 contains
@@ -247,12 +246,11 @@ contains
       type(scene_t), intent(inout) :: scene
       integer, intent(in) :: kind
       logical, intent(in) :: on
-      real(wp) :: value
+      real(wp) :: value, lower, upper
       integer :: i
 
-      value = merge(1.0_wp, 0.0_wp, on)
-      if (kind == OF_ELASTIC_DOMAIN) value = merge(WORLD_DOMAIN, 0.0_wp, on)
-      if (kind == OF_MEMORY) value = merge(RETURN_POINT, CLASSIC, on)
+      call property_range(property_index(trim(SWITCHES(kind))), lower, upper, value)
+      if (.not. on) value = 0.0_wp
       do i = 1, size(scene%materials)
          if (scene%materials(i)%group%name == 'mud') call set_number(scene, i, trim(SWITCHES(kind)), value)
       end do

@@ -17,8 +17,15 @@ module effect_types
       'relative_acceleration', 'p_w', 'p_c', 'gravity', 'contact', 'damping', 'absorbing', 'contact_drainage', &
       'void_ratio_in_retention', 'bonding', 'fabric', 'isotropic', 'lode', 'memory_rule', 'elastic_domain']
    !> The same as one list of words.
-   character(*), parameter :: EFFECT_WORDS = 'inertia|relative_acceleration|p_w|p_c|gravity|contact|damping|'// &
-      'absorbing|contact_drainage|void_ratio_in_retention|bonding|fabric|isotropic|lode|memory_rule|elastic_domain'
+   character(*), parameter :: EFFECT_WORDS = &
+      trim(EFFECT_NAMES(1))//'|'//trim(EFFECT_NAMES(2))//'|'// &
+      trim(EFFECT_NAMES(3))//'|'//trim(EFFECT_NAMES(4))//'|'// &
+      trim(EFFECT_NAMES(5))//'|'//trim(EFFECT_NAMES(6))//'|'// &
+      trim(EFFECT_NAMES(7))//'|'//trim(EFFECT_NAMES(8))//'|'// &
+      trim(EFFECT_NAMES(9))//'|'//trim(EFFECT_NAMES(10))//'|'// &
+      trim(EFFECT_NAMES(11))//'|'//trim(EFFECT_NAMES(12))//'|'// &
+      trim(EFFECT_NAMES(13))//'|'//trim(EFFECT_NAMES(14))//'|'// &
+      trim(EFFECT_NAMES(15))//'|'//trim(EFFECT_NAMES(16))
    real(wp), parameter :: UNKNOWN = -1.0_wp    !< No number: it was not tried, or has no meaning.
    real(wp), parameter :: NEVER = -1.0e30_wp   !< A time.
 

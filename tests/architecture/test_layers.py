@@ -217,7 +217,8 @@ def main():
          [f for f in too_long(files) if not known(f)]),
         ("HDF5, LAPACK and UMFPACK live in one file each", foreign(files)),
         ("every module that is used is there", strange_use(files)),
-        ("tests mirror the tree", misplaced([str(file.relative_to(root)) for file in sources("tests/**/test_*")],
+        ("tests mirror the tree", misplaced([str(file.relative_to(root)) for file in sources("tests/**/test_*")
+                                          if file.parent.name != "__pycache__"],
                                          {str(folder.relative_to(root)) for folder in sources("*", "*/*", "*/*/*")
                                           if folder.is_dir() and folder.parts[len(root.parts)] != "tests"}))]
     return report(checks)
