@@ -30,6 +30,7 @@ contains
       type(fault_t), intent(inout) :: fault
       type(group_t), allocatable :: groups(:)
       character(:), allocatable :: path
+      character(len(doubt)) :: doubt_of_file
       integer :: place
 
       title = 'defaults of the library'
@@ -63,8 +64,21 @@ contains
          end if
          if (fault%code /= 0) return
       end if
+      doubt_of_file = doubt
       call apply_group(group, props, title, doubt, fault)
+      if (place > 0 .and. .not. has_parameters(group)) doubt = doubt_of_file
    end subroutine read_parameters
+
+   !> Whether a group has entries beside its texts.
+   pure logical function has_parameters(group) result(has)
+      type(group_t), intent(in) :: group
+      integer :: i
+
+      has = .false.
+      do i = 1, group%count
+         has = has .or. all(TEXT_KEYS /= lower_case(group%entries(i)%key))
+      end do
+   end function has_parameters
 
    !> Folder of a file, with its closing slash; empty if the file is in the present one.
    pure function folder_of(file) result(folder)

@@ -16,10 +16,10 @@ UNITS = {"kPa": 1.0, "Pa": 1000.0, "MPa": 1.0e-3, "psi": 0.1450377377302092, "ba
 ALIKE = 1e-6   # of the largest value of a column; the rounding of the conversion (1e-16) grows on the way
 
 
-def call(text):
+def call(text, *words):
     (work / "case.nml").write_text(text)
-    return subprocess.run([triax, work / "case.nml", "--quiet", "--output", work / "case.csv"], capture_output=True,
-                          text=True, cwd=work)
+    return subprocess.run([triax, work / "case.nml", "--quiet", "--output", work / "case.csv", *words],
+                          capture_output=True, text=True, cwd=work)
 
 
 def said(*words):
@@ -99,6 +99,10 @@ done = call(f"&material\n file = '{TOYOURA}'\n P_a = 5000\n/\n&initial\n p_eff =
 check("it names the line", "case.nml:3: " in done.stderr and "P_a" in done.stderr, done.stderr)
 mixed = work / "mixed.nml"
 mixed.write_text("&material\n p_atm = 101325.0\n/\n")
+for how, words, text in (("--material", ["--material", mixed], "&material\n/\n"),
+                         ("file = ...", [], f"&material\n file = '{mixed}'\n/\n")):
+    done = call(text + f"&initial\n p_eff = 1e5\n{REST}", *words)
+    check(f"a file read by {how} is named with its line", f"mud_triax: warning: {mixed}:2: " in done.stderr, done.stderr)
 done = subprocess.run([describe, "plain", mixed], capture_output=True, text=True)
 check("mud_describe warns too", done.returncode == 0 and "mud_describe: warning: " in done.stderr, done.stderr)
 
