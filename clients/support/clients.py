@@ -20,6 +20,12 @@ MUD_PROPS, MUD_STATEV = 1, 2
 counted = {"passed": 0, "failed": 0}
 
 
+def commit():
+    """What git calls the present tree."""
+    done = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=root, capture_output=True, text=True)
+    return done.stdout.strip() or "a tree without git"
+
+
 def mud():
     library = ctypes.CDLL(str(library_file))
     library.mud_index.argtypes = [ctypes.c_int, ctypes.c_char_p]
