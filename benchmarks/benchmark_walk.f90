@@ -91,10 +91,11 @@ contains
       if (all(abs(path%from - path%to) <= 0.0_wp)) d_strain = strain*path%from
    end function strain_of
 
-   subroutine start(path, scheme, tolerance, props, n_props, stress, statev, n_statev)
+   subroutine start(path, scheme, tolerance, domain, props, n_props, stress, statev, n_statev)
       type(path_t), intent(in) :: path
       integer, intent(in) :: scheme
       real(wp), intent(in) :: tolerance
+      logical, intent(in) :: domain   !< With the elastic domain of the default material; otherwise without any.
       real(wp), intent(out) :: props(WORDS), stress(6), statev(WORDS)
       integer(c_int), intent(out) :: n_props, n_statev
       character :: text(1)
@@ -106,6 +107,7 @@ contains
       code = mud_default_props(props, n_props)
       props(mud_index(MUD_PROPS, 'scheme'//c_null_char) + 1) = real(scheme, wp)
       props(mud_index(MUD_PROPS, 'tolerance'//c_null_char) + 1) = tolerance
+      if (.not. domain) props(mud_index(MUD_PROPS, 'rho_e'//c_null_char) + 1) = 0.0_wp
       stress = path%stress
       statev = 0.0_wp
       code = mud_init_state(props, n_props, stress, path%suction, path%void_ratio, statev, n_statev, text, 0_c_int)
@@ -113,12 +115,13 @@ contains
    end subroutine start
 
    !> One point along a path, timed from its first update to its last.
-   subroutine walk(path, strain, scheme, tolerance, tangent, tally, prepared)
+   subroutine walk(path, strain, scheme, tolerance, tangent, tally, prepared, domain)
       type(path_t), intent(in) :: path
       real(wp), intent(in) :: strain, tolerance
       integer, intent(in) :: scheme, tangent
       type(tally_t), intent(out) :: tally
       logical, intent(in) :: prepared   !< PROPS are read once, not in every update.
+      logical, intent(in) :: domain     !< With the elastic domain of the default material; otherwise without any.
       real(wp) :: props(WORDS), stress(6), statev(WORDS), suction, d_suction, d_strain(6)
       real(wp) :: c(6, 6), c_pc(6), sw_e(6), sw_pc
       real(wp), allocatable :: steps(:, :), material(:)
@@ -128,7 +131,7 @@ contains
       integer(int64) :: before, after
       integer :: i
 
-      call start(path, scheme, tolerance, props, n_props, stress, statev, n_statev)
+      call start(path, scheme, tolerance, domain, props, n_props, stress, statev, n_statev)
       allocate (material(mud_prepared_size()))
       if (mud_prepare(props, n_props, material, size(material, kind=c_int), text, 0_c_int) /= 0) then
          error stop 'benchmark: a material is not accepted'
@@ -173,7 +176,7 @@ contains
       integer(int64) :: before, after
       integer :: i
 
-      call start(path, scheme, tolerance, props, n_props, one, state, n_statev)
+      call start(path, scheme, tolerance, .true., props, n_props, one, state, n_statev)
       allocate (stress(6, points), statev(n_statev, points), d_strain(6, points), c(6, 6, points), c_pc(6, points), &
                 sw_e(6, points), suction(points), d_suction(points), sw_pc(points), reports(points), status(points))
       c = 0.0_wp
@@ -217,7 +220,7 @@ contains
       integer(int64) :: before, after
       integer :: i, fabric, memory
 
-      call start(path, 1, 1.0e-5_wp, props, n_props, stress, statev, n_statev)
+      call start(path, 1, 1.0e-5_wp, .true., props, n_props, stress, statev, n_statev)
       d_strain = 1.0e-3_wp*path%from
       code = mud_update(props, n_props, stress, statev, n_statev, d_strain, path%suction, 0.0_wp, MUD_TANGENT_NONE, &
                         stress, statev, report=report)

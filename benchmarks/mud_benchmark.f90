@@ -3,7 +3,8 @@
 !>
 !> mud_benchmark [ROUNDS]                                    everything; medians of so many rounds
 !> mud_benchmark PATH STRAIN SCHEME TOLERANCE TANGENT WALKS  one variant, for a profiler; nothing is timed; a further
-!>                                                           argument, prepared, reads PROPS once
+!>                                                           argument, prepared, reads PROPS once; one more, plain,
+!>                                                           takes the elastic domain away (- or prepared before it)
 !>
 !> A round walks every variant once, one after the other, so that a disturbance of the machine falls on all alike; a
 !> ratio is the median of the rounds' own ratios. A batch is timed by the clock on the wall, which other programs on the
@@ -41,13 +42,15 @@ program mud_benchmark
 contains
    subroutine walk_one()
       type(tally_t) :: tally
-      character(24) :: name
+      character(24) :: name, reading, domain
       integer :: i
 
       call get_command_argument(1, name)
+      call get_command_argument(7, reading)
+      call get_command_argument(8, domain)
       do i = 1, nint(number(6))
          call walk(path_named(name), number(2), nint(number(3)), number(4), nint(number(5)), tally, &
-                   command_argument_count() > 6)
+                   reading == 'prepared', domain /= 'plain')
       end do
       print '(i0, a, i0, a)', tally%updates, ' updates and ', tally%rates, ' rates a walk'
    end subroutine walk_one
@@ -129,7 +132,8 @@ contains
                case ('batch')
                   call walk_batch(v%path, v%strain, v%scheme, v%tolerance, v%tangent, v%threads, POINTS, v%tally)
                case default
-                  call walk(v%path, v%strain, v%scheme, v%tolerance, v%tangent, v%tally, v%door == 'prepared')
+                  call walk(v%path, v%strain, v%scheme, v%tolerance, v%tangent, v%tally, v%door == 'prepared', &
+                            .true.)
                end select
                if (round > 0) v%ns(round) = real(v%tally%nanoseconds, wp)/v%tally%updates
             end associate

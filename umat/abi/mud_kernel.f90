@@ -11,12 +11,12 @@ module mud_kernel
    use mud_state, only: state_t, counters_t, pack_state, unpack_state, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_BAD_STATE, MUD_BAD_INPUT, MUD_BAD_OPTION, &
       MUD_NOT_FINITE, ON_STATEV, ON_STRESS, ON_STRAIN, ON_ARGUMENT
-   use mud_tensor, only: is_finite, rotate
+   use mud_tensor, only: is_finite, all_finite, rotate
    use mud_trace, only: trace_t
    implicit none (type, external)
    private
    public :: report_t, output_t, kernel_init, kernel_begin, kernel_update, kernel_point, kernel_tangent, &
-      rotate_statev, failed_report, TANGENT_FROM_PROPS
+      rotate_statev, failed_report, copy_statev, TANGENT_FROM_PROPS
 
    integer, parameter :: TANGENT_FROM_PROPS = -1   !< Take the tangent kind from PROPS.
    integer, parameter :: LAST_TANGENT = 3          !< Largest tangent kind.
@@ -80,7 +80,8 @@ contains
    !> One increment of a material as PROPS give it. On failure output is undefined.
    pure subroutine kernel_update(props, stress, statev, d_strain, suction, d_suction, tangent, output, report, trace)
       real(wp), intent(in), contiguous :: props(:)
-      real(wp), intent(in) :: stress(6), statev(:), d_strain(6), suction, d_suction
+      real(wp), intent(in) :: stress(6), d_strain(6), suction, d_suction
+      real(wp), intent(in), contiguous :: statev(:)
       integer, intent(in) :: tangent
       type(output_t), intent(inout) :: output
       type(report_t), intent(out) :: report
@@ -101,7 +102,7 @@ contains
    pure subroutine kernel_point(par, stress, statev, d_strain, suction, d_suction, tangent, output, report, trace)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: stress(6)       !< sigma' [kPa]
-      real(wp), intent(in) :: statev(:)       !< Initialised here where layout = 0.
+      real(wp), intent(in), contiguous :: statev(:)   !< Initialised here where layout = 0.
       real(wp), intent(in) :: d_strain(6)     !< Engineering shear [-].
       real(wp), intent(in) :: suction, d_suction   !< [kPa]
       integer, intent(in) :: tangent          !< TANGENT_* of mud_point or TANGENT_FROM_PROPS.
@@ -134,7 +135,8 @@ contains
    !> the state strained last, as far as its elastic domain remembers it. Only the blocks of output mean something.
    pure subroutine kernel_tangent(par, stress, statev, direction, suction, d_suction, output, report)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: stress(6), statev(:)
+      real(wp), intent(in) :: stress(6)
+      real(wp), intent(in), contiguous :: statev(:)
       real(wp), intent(in) :: direction(6)         !< Engineering shear [-].
       real(wp), intent(in) :: suction, d_suction   !< [kPa]
       type(output_t), intent(inout) :: output
@@ -184,7 +186,8 @@ contains
    !> State at the start of an increment, from an initialised STATEV or from nothing.
    pure subroutine read_state(par, stress, statev, suction, state, packed, status)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: stress(6), statev(:), suction
+      real(wp), intent(in) :: stress(6), suction
+      real(wp), intent(in), contiguous :: statev(:)
       type(state_t), intent(inout) :: state
       real(wp), intent(inout) :: packed(NSTATV)   !< Totals so far.
       type(mud_status_t), intent(out) :: status
@@ -201,11 +204,19 @@ contains
          call initialise(par, stress, suction, statev(S_VOID_RATIO), state, packed, status)
       else
          call unpack_state(statev, state, status)
-         packed = statev(1:NSTATV)
+         call copy_statev(statev, packed)
          state%sigma = -stress
          state%p_c = suction
       end if
    end subroutine read_state
+
+   !> All of STATEV at once: its length is known.
+   pure subroutine copy_statev(from, to)
+      real(wp), intent(in) :: from(NSTATV)
+      real(wp), intent(out) :: to(NSTATV)
+
+      to = from
+   end subroutine copy_statev
 
    !> A state without a past; a void ratio of zero means that of the parameters, stress zero means p_min.
    pure subroutine initialise(par, stress, suction, void_ratio, state, packed, status)
@@ -250,8 +261,7 @@ contains
       else
          output%statev(S_DSIGMA_DPC:S_DSIGMA_DPC + 5) = 0.0_wp
       end if
-      if (.not. (all(is_finite(output%stress)) .and. all(is_finite(output%statev)))) status = fail(MUD_NOT_FINITE, &
-         ON_STRESS)
+      if (.not. (all_finite(output%stress) .and. all_finite(output%statev))) status = fail(MUD_NOT_FINITE, ON_STRESS)
    end subroutine write_output
 
    !> Compression positive to tension positive; minus zero would only confuse.

@@ -2,7 +2,7 @@
 !> One increment at one point for a C host: mud_update and mud_update_prepared of mud.h.
 module mud_one_point
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
-   use mud_kernel, only: report_t, output_t, kernel_point, failed_report
+   use mud_kernel, only: report_t, output_t, kernel_point, failed_report, copy_statev
    use mud_kinds, only: wp
    use mud_params, only: params_t, read_params
    use mud_prepared, only: prepared_t, find_prepared
@@ -82,7 +82,7 @@ contains
       call c_f_pointer(stress1, array, [6])
       array = output%stress
       call c_f_pointer(statev1, array, [NSTATV])
-      array = output%statev
+      call copy_statev(output%statev, array)
       if (output%has_tangent) then
          if (c_associated(dsig_deps)) then
             call c_f_pointer(dsig_deps, matrix, [6, 6])

@@ -8,7 +8,7 @@ module mud_params
       P_BONDING, P_FABRIC, P_ISOTROPIC, P_LODE, P_MEMORY_RULE, P_EPS_HAT, P_J_EXP, P_X_0, P_X_REV, P_CAP_D, P_CAP_H, &
       P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, P_TANGENT, P_RHO_E, P_SHEAR_ORDER
    use mud_status, only: mud_status_t, fail, MUD_BAD_NPROPS, MUD_BAD_PROPS, ON_PROPS
-   use mud_tensor, only: is_finite
+   use mud_tensor, only: is_finite, all_finite
    use mud_units, only: stress_unit, bounds_for, minimum_stress, LARGEST_STRESS, LARGEST_SUCTION_STEP, SMALLEST_MINIMUM
    implicit none (type, external)
    private
@@ -130,7 +130,7 @@ contains
       integer :: i
 
       unit = stress_unit(props)
-      if (all(is_finite(props)) .and. abs(unit - 1.0_wp) <= 0.0_wp) then
+      if (all_finite(props) .and. abs(unit - 1.0_wp) <= 0.0_wp) then
          if (no_fault(props)) return
       end if
       call bounds_for(props, low, high)

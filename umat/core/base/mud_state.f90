@@ -7,7 +7,7 @@ module mud_state
       S_MEMORY, S_MEMORY_BEFORE, S_DIRECTION, S_N_RATE, S_N_SUBSTEP, S_N_REJECT, S_N_RESET, S_N_GUARD, S_N_NO_ROOT, &
       S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED
    use mud_status, only: mud_status_t, fail, MUD_BAD_STATE, MUD_BAD_NSTATV, ON_STATEV
-   use mud_tensor, only: is_finite
+   use mud_tensor, only: is_finite, all_finite
    implicit none (type, external)
    private
    public :: memory_t, interrupted_t, state_t, counters_t, guard_count, pack_state, unpack_state, E_LOWER, E_UPPER
@@ -61,7 +61,7 @@ module mud_state
 contains
    !> Reads a state from an initialised STATEV; the stress is set by the caller.
    pure subroutine unpack_state(statev, state, status)
-      real(wp), intent(in) :: statev(:)
+      real(wp), intent(in), contiguous :: statev(:)
       type(state_t), intent(inout) :: state
       type(mud_status_t), intent(out) :: status
       integer :: i
@@ -70,11 +70,11 @@ contains
          status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(size(statev), wp), real(NSTATV, wp), huge(1.0_wp))
          return
       end if
-      do i = 1, NSTATV
-         if (is_finite(statev(i))) cycle
+      if (.not. all_finite(statev(1:NSTATV))) then
+         i = findloc(is_finite(statev(1:NSTATV)), .false., dim=1)
          status = fail(MUD_BAD_STATE, ON_STATEV, i, statev(i), -huge(1.0_wp), huge(1.0_wp))
          return
-      end do
+      end if
       call require(statev, S_LAYOUT, real(STATE_LAYOUT, wp), real(STATE_LAYOUT, wp), status)
       call require(statev, S_VOID_RATIO, E_LOWER, E_UPPER, status)
       call require(statev, S_INTERRUPTED, 0.0_wp, real(MAX_INTERRUPTED, wp), status)

@@ -6,12 +6,14 @@ module mud_tensor
    use mud_kinds, only: wp
    implicit none (type, external)
    private
-   public :: IDENTITY, SHEAR_WEIGHT, ddot, trace, deviator, norm, square, is_finite, outer_add, rotate
+   public :: IDENTITY, SHEAR_WEIGHT, ddot, trace, deviator, norm, square, is_finite, all_finite, outer_add, rotate
 
    real(wp), parameter :: IDENTITY(6) = [1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
    !> How often a stored component stands in the 3 x 3 matrix.
    real(wp), parameter :: SHEAR_WEIGHT(6) = [1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp, 2.0_wp, 2.0_wp]
    integer(int64), parameter :: EXPONENT_BITS = int(z'7FF0000000000000', int64)   !< All set: NaN or infinity.
+   !> Added to the exponent's bits, one place to the right, it carries into the second bit of all if they are all set.
+   integer(int64), parameter :: CARRY = int(z'0008000000000000', int64), CARRIED = int(z'4000000000000000', int64)
 contains
    !> Full contraction a:b.
    pure real(wp) function ddot(a, b)
@@ -62,6 +64,19 @@ contains
 
       is_finite = iand(transfer(x, 0_int64), EXPONENT_BITS) /= EXPONENT_BITS
    end function is_finite
+
+   !> True if every number is finite, without a branch for each.
+   pure logical function all_finite(x)
+      real(wp), intent(in), contiguous :: x(:)
+      integer(int64) :: marks
+      integer :: i
+
+      marks = 0
+      do i = 1, size(x)
+         marks = ior(marks, ishft(iand(transfer(x(i), 0_int64), EXPONENT_BITS), -1) + CARRY)
+      end do
+      all_finite = iand(marks, CARRIED) == 0
+   end function all_finite
 
    !> c <- c + a (x) b for a map from ENGINEERING strain to stress: the factor two of b:eps and the one of
    !> gamma = 2 eps cancel, so plain products of components are right.

@@ -73,7 +73,9 @@ contains
          call land_on(par, inc, EVENT_CLOSES, h, trial, counters, event)
          return
       end if
-      if (par%cutoff) call land_on(par, inc, EVENT_OPENS, h, trial, counters, event)
+      if (par%cutoff) then
+         if (trace(trial%y(1:6)) < 3.0_wp*par%p_min) call land_on(par, inc, EVENT_OPENS, h, trial, counters, event)
+      end if
       if (trial%mode == MODE_ELASTIC) then
          call land_on(par, inc, EVENT_BOUNDS, h, trial, counters, event)
          return

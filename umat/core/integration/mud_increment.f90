@@ -11,7 +11,7 @@ module mud_increment
    use mud_substep, only: scheme_t, SCHEMES
    implicit none (type, external)
    private
-   public :: increment_t, new_increment, phase_of, void_ratio_at, suction_at, rate_of, loading_strain, &
+   public :: increment_t, new_increment, take_phase, void_ratio_at, suction_at, rate_of, loading_strain, &
              change_of_loading_strain, turn_of_loading_strain, turning_t, turning_of, has_aside, NY
 
    integer, parameter :: NY = 13         !< Length of the integrated vector: sigma'(6), z(6), plastic shear.
@@ -134,10 +134,10 @@ contains
    end function turn_of_loading_strain
 
    !> An increment of a point with void ratio e and suction p_c.
-   pure function new_increment(par, e, p_c, d_strain, d_pc) result(inc)
+   pure subroutine new_increment(par, e, p_c, d_strain, d_pc, inc)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: e, p_c, d_strain(6), d_pc
-      type(increment_t) :: inc
+      type(increment_t), intent(out) :: inc
 
       inc%d_strain = d_strain
       inc%d_pc = d_pc
@@ -151,13 +151,13 @@ contains
       inc%from = 0.0_wp
       inc%length = 1.0_wp
       inc%from_centre = 0.0_wp
-   end function new_increment
+   end subroutine new_increment
 
    !> The part of an increment between two pseudo-times as an increment of its own.
-   pure function phase_of(whole, from, to) result(inc)
+   pure subroutine take_phase(whole, from, to, inc)
       type(increment_t), intent(in) :: whole
       real(wp), intent(in) :: from, to
-      type(increment_t) :: inc
+      type(increment_t), intent(out) :: inc
 
       inc = whole
       inc%from = whole%from + from*whole%length
@@ -167,7 +167,7 @@ contains
       inc%d_pc = (to - from)*whole%d_pc
       inc%e0 = void_ratio_at(whole, from)
       inc%p_c0 = suction_at(whole, from)
-   end function phase_of
+   end subroutine take_phase
 
    !> Void ratio at a pseudo-time: 1 + e falls as exp(-eps_v), exactly.
    pure real(wp) function void_ratio_at(inc, time) result(e)

@@ -6,7 +6,7 @@ module mud_phases
    use mud_consistent, only: sensitivity_t
    use mud_driving, only: driving_t, parts_at_exit, parts_without_suction, end_in_domain
    use mud_elastic_domain, only: exit_share, loading_direction
-   use mud_increment, only: increment_t, phase_of
+   use mud_increment, only: increment_t, take_phase
    use mud_params, only: params_t
    use mud_state, only: state_t, counters_t
    use mud_status, only: mud_status_t, MUD_OK
@@ -46,14 +46,14 @@ contains
       end if
       whole = inc
       if (consistent) call parts_without_suction(whole, share, sens%driving, first, rest)
-      inc = phase_of(whole, 0.0_wp, share)
+      call take_phase(whole, 0.0_wp, share, inc)
       inc%bonded = is_bonded(par, whole%p_c0)
       if (consistent) sens%driving = first
       call integrate_part(par, inc, share*size, consistent, state, trial, sens, counters, reached, status, record)
       reached = share*reached
       if (status%code /= MUD_OK) return
       if (consistent) rest%from_centre = sens%driving%from_centre
-      inc = phase_of(whole, share, 1.0_wp)
+      call take_phase(whole, share, 1.0_wp, inc)
       inc%p_c0 = 0.0_wp
       inc%bonded = is_bonded(par, inc%d_pc)
       if (consistent) sens%driving = rest
@@ -105,7 +105,7 @@ contains
       if (consistent) call parts_at_exit(whole, share, sens%driving, inside, rest)
 
       if (share > 0.0_wp) then
-         inc = phase_of(whole, 0.0_wp, share)
+         call take_phase(whole, 0.0_wp, share, inc)
          inc%inside = .true.
          if (consistent) sens%driving = inside
          call integrate(par, inc, share*size, consistent, state, trial, sens, counters, reached, status, record)
@@ -115,7 +115,7 @@ contains
       state%from_centre = whole%from_centre + share*whole%d_strain
       if (consistent) sens%driving%from_centre = rest%from_centre
       if (share < 1.0_wp) then
-         inc = phase_of(whole, share, 1.0_wp)
+         call take_phase(whole, share, 1.0_wp, inc)
          inc%from_centre = (inc%rho/norm(state%from_centre))*state%from_centre
          if (consistent) sens%driving = rest
          call integrate(par, inc, (1.0_wp - share)*size, consistent, state, trial, sens, counters, reached, status, &

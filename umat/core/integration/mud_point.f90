@@ -46,7 +46,7 @@ contains
       reached = 0.0_wp
       call check_increment(par, state0, d_strain, d_pc, status)
       if (status%code /= MUD_OK) return
-      inc = new_increment(par, state0%e, state0%p_c, d_strain, d_pc)
+      call new_increment(par, state0%e, state0%p_c, d_strain, d_pc, inc)
       if (void_ratio_at(inc, 1.0_wp) <= E_LOWER .or. void_ratio_at(inc, 1.0_wp) >= E_UPPER) then
          status = fail(MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO, 0, void_ratio_at(inc, 1.0_wp), E_LOWER, E_UPPER)
          return
@@ -55,7 +55,8 @@ contains
       state1 = state0
       if (par%cutoff) call lift_to_limit(par, inc%bonded, state1)
       call stress_ratio(par, state1%sigma, p, r)
-      size = norm(d_strain) + abs(d_pc)/bulk_modulus(par, state1%e, p)
+      size = norm(d_strain)
+      if (abs(d_pc) > 0.0_wp) size = size + abs(d_pc)/bulk_modulus(par, state1%e, p)
       consistent = tangent == TANGENT_CONSISTENT .and. size > 0.0_wp
       if (consistent) call no_sensitivity(state1%memory%depth, sens)
       if (size > 0.0_wp) then

@@ -13,7 +13,7 @@ module mud_substepping
       MUD_NOT_FINITE, ON_STRESS
    use mud_stiffness, only: choose_stepping, raise_order
    use mud_substep, only: step_factor, SCHEMES
-   use mud_tensor, only: ddot, norm, is_finite
+   use mud_tensor, only: ddot, norm, is_finite, all_finite
    use mud_trace, only: trace_t, record_substep, SUBSTEP_REJECTED, SUBSTEP_ACCEPTED, SUBSTEP_FAILED
    use mud_transitions, only: begin_phase, begin_substep, accept_substep, rate_is_known
    use mud_trial, only: trial_t, take_step, error_norm, MODE_HELD
@@ -47,13 +47,14 @@ contains
       real(wp), intent(out) :: reached
       type(mud_status_t), intent(out) :: status
       type(trace_t), intent(inout), optional :: record
-      real(wp) :: time, h, h_taken, error, factor, tolerance
+      real(wp) :: time, h, h_taken, error, factor, tolerance, turn
       integer :: elastic_substeps, jump, event
       logical :: may_grow, known
 
       time = 0.0_wp
-      h = first_step(inc, state, size)
-      if (turns(inc, SHARP)) call raise_order(par, inc)
+      turn = turn_of(inc)
+      h = first_step(inc, state, size, turn > ALIGNED)
+      if (turn > SHARP) call raise_order(par, inc)
       may_grow = .true.
       elastic_substeps = 0
       known = .false.
@@ -81,7 +82,7 @@ contains
             if (time + h*(1.0_wp + LAST_SLIVER) >= 1.0_wp) h_taken = 1.0_wp - time
             call take_step(par, inc, h_taken, trial, counters)
             error = error_norm(par, inc%scheme, trial, h_taken)
-            if (.not. all(is_finite(trial%y)) .or. .not. is_finite(error)) then
+            if (.not. all_finite(trial%y) .or. .not. is_finite(error)) then
                status = fail(MUD_NOT_FINITE, ON_STRESS)
                call record_substep(par, inc, trial, h_taken, error, trial%y(1:6), SUBSTEP_FAILED, jump, .false., &
                                    counters, record)
@@ -140,30 +141,31 @@ contains
    end subroutine integrate
 
    !> The first substep as a share of the increment or phase [-].
-   pure real(wp) function first_step(inc, state, size)
+   pure real(wp) function first_step(inc, state, size, turns)
       type(increment_t), intent(in) :: inc
       type(state_t), intent(in) :: state
       real(wp), intent(in) :: size    !< of the increment, in units of strain [-]
+      logical, intent(in) :: turns    !< The elastic domain turns.
 
       first_step = 1.0_wp
       ! an elastic phase goes in one step if it can, and leaves the remembered step to the next plastic one
       if (state%last_step > 0.0_wp .and. state%last_step < size .and. .not. inc%inside) &
          first_step = state%last_step/size
       ! a whole number of pieces, so that a small change of the strain does not change their size
-      if (turns(inc, ALIGNED)) then
+      if (turns) then
          first_step = min(first_step, 1.0_wp/real(ceiling(min(norm(inc%d_strain)/(TURN_PIECE*inc%rho), 1.0e6_wp)), wp))
       end if
    end function first_step
 
-   !> True where the elastic domain turns at the start, its cosine with the strain below 1 - gap: the transient lasts
-   !> about a radius of strain.
-   pure logical function turns(inc, gap)
+   !> How far the elastic domain turns from its start on, 1 minus its cosine with the strain: the transient lasts about
+   !> a radius of strain.
+   pure real(wp) function turn_of(inc)
       type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: gap   !< [-]
+      real(wp) :: whole
 
-      turns = .false.
-      if (inc%rho > 0.0_wp .and. .not. inc%inside) then
-         turns = ddot(inc%from_centre, inc%d_strain) < (1.0_wp - gap)*inc%rho*norm(inc%d_strain)
-      end if
-   end function turns
+      turn_of = 0.0_wp
+      if (inc%rho <= 0.0_wp .or. inc%inside) return
+      whole = inc%rho*norm(inc%d_strain)
+      if (whole > 0.0_wp) turn_of = 1.0_wp - ddot(inc%from_centre, inc%d_strain)/whole
+   end function turn_of
 end module mud_substepping
