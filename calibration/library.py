@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Writes the table of the library of materials into calibration/README.md, from the heads of the files and the misfits."""
+"""Writes the table of the library of materials into calibration/README.md, from the heads of the files and the misfits.
+
+usage: calibration/library.py [--check]     --check: changes nothing, exit code 1 if the table is not up to date
+"""
 
 import pathlib
 import re
@@ -41,11 +44,14 @@ def table():
 
 
 def main():
+    if sys.argv[1:] not in ([], ["--check"]):
+        print(__doc__)
+        sys.exit(0 if sys.argv[1:] in (["-h"], ["--help"]) else 2)
     page = ROOT / "calibration/README.md"
     text = page.read_text(encoding="utf-8")
     new = text.split(BEGIN)[0] + BEGIN + "\n" + table() + "\n" + END + text.split(END)[1]
     if "--check" in sys.argv:
-        sys.exit("calibration/README.md is not what calibration/library.py writes" if new != text else 0)
+        sys.exit("calibration/README.md is out of date: run calibration/library.py" if new != text else 0)
     page.write_text(new, encoding="utf-8")
 
 

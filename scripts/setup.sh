@@ -84,13 +84,13 @@ install_wanted_packages() {
    { "${as_root[@]}" apt-get update -q -o DPkg::Lock::Timeout=300 &&
       "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
          apt-get install -q -y --no-install-recommends -o DPkg::Lock::Timeout=300 $packages; } >&2 ||
-      echo "setup: apt-get could not install $packages; everything works without, but slowly" >&2
+      echo "setup: apt-get could not install $packages; everything works without them, but more slowly" >&2
 }
 
 check_versions() {
    local compiler=${FC:-gfortran} found
    found=$("$compiler" -dumpversion 2>/dev/null) ||
-      setup_fail "the Fortran compiler '$compiler' is not there or does not run (FC chooses it)"
+      setup_fail "the Fortran compiler '$compiler' is not found or does not run (FC chooses it)"
    "$compiler" --version | head -n 1 | grep -qi 'gnu fortran' ||
       setup_fail "the Fortran compiler '$compiler' is not gfortran; set FC to gfortran 12 or later"
    [ "${found%%.*}" -ge 12 ] ||
@@ -105,13 +105,14 @@ configure_and_build() {
    local preset=$1 dir=$2
    shift 2
    mkdir -p "$dir"
-   # The presets of cmake are looked up in the present folder.
+   # cmake reads its presets from the current folder.
    if ! (cd "$root" && cmake --preset "$preset" -B "$dir" -DMUD_PYTHON="$venv_python" "$@") \
       >"$dir/configure.log" 2>&1; then
       cat "$dir/configure.log" >&2
       echo "configuring the $preset build failed: see above" >&2
       return 1
    fi
+   echo "setup: building the preset $preset, the first time for some minutes; log: ${dir#"$root"/}/build.log"
    if ! cmake --build "$dir" -- -k 0 >"$dir/build.log" 2>&1; then
       grep -v '^\[[0-9]*/[0-9]*\] \(Building\|Linking\|Generating\|Reading\)' "$dir/build.log" | head -n 200 >&2
       echo "the $preset build failed: see above; the whole log is $dir/build.log" >&2

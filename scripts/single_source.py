@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Write the library as one Fortran source: usage single_source.py OUTPUT.
+"""Writes the library as one Fortran source; usage: single_source.py OUTPUT.
 
 The modules, in the order of umat/CMakeLists.txt, follow each other unchanged behind a comment that says what the file is
 and how it is linked.
@@ -65,8 +65,9 @@ def single_source(files):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
+    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
+        print(__doc__)
+        sys.exit(0 if sys.argv[1:] in (["-h"], ["--help"]) else 2)
     try:
         source = single_source(cmake_order())
     except (OSError, ValueError) as problem:

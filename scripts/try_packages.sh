@@ -5,6 +5,9 @@
 # 1 GB of a temporary folder. Not part of ./check.
 # usage: scripts/try_packages.sh [BUILD]      (default build/release; MIRROR, by default that of apt, and SUITE from the environment)
 set -eu
+case ${1:-} in
+   -*) sed -n '3,6s/^# //p' "$0"; exit 0 ;;
+esac
 source=$(cd "$(dirname "$0")/.." && pwd)
 build=$(cd "${1:-$source/build/release}" && pwd)
 mirror=${MIRROR:-$(apt-get indextargets --format '$(SITE)' 2> /dev/null | head -n 1)}
