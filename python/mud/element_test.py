@@ -12,6 +12,7 @@ from ctypes import byref
 import numpy as np
 
 from . import _native
+from ._former_names import note_on
 from ._native import CONSTANTS as C
 from .errors import InputError, TestStopped
 from .material import Material
@@ -52,7 +53,8 @@ class TestResult(Mapping):
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self._columns:
-            raise KeyError(f"there is no column {name}; there are {', '.join(self._columns)}")
+            note = note_on(name) or f"there are {', '.join(self._columns)}"
+            raise KeyError(f"there is no column {name}; {note}")
         return self._columns[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -98,7 +100,7 @@ def element_test(
     void_ratio : at the start [-].
     p_eff, or sigma_a and sigma_r : effective stress at the start [kPa].
     suction : at the start [kPa].
-    control_tolerance : what is held is met to this share of the stress; None: the driver's 1e-10.
+    control_tolerance : relative error allowed in the prescribed stresses; None: the driver's 1e-10.
     max_updates : the test stops after so many updates of the material; None: no limit.
 
     Raises ``InputError`` if the driver refuses the case, ``TestStopped`` (with the rows so far) if the test stops.

@@ -11,6 +11,7 @@ from ctypes import byref, c_double
 import numpy as np
 
 from . import _native
+from ._former_names import note_on
 from ._native import CONSTANTS as C
 from .errors import UnknownName
 
@@ -53,7 +54,8 @@ class Registry(Mapping):
     def __getitem__(self, name: str):
         if name.lower() not in self._lower:
             near = difflib.get_close_matches(name.lower(), self._lower, 1, 0.0)
-            raise UnknownName(f"there is no {self._what} {name}; the nearest is {self._lower[near[0]]}")
+            note = note_on(name) or f"the nearest is {self._lower[near[0]]}"
+            raise UnknownName(f"there is no {self._what} {name}; {note}")
         return self._entries[self._lower[name.lower()]]
 
     def __contains__(self, name: object) -> bool:

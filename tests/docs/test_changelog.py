@@ -111,6 +111,18 @@ for name, (say, words) in CASES.items():
     message = say()
     check(f"{name}: the refusal names what is valid today", all(word in message for word in words), message)
 check("the library has no index for an old name", not any(name in mud.states for name in ("nucleus_11", "n_reseat")))
-message = refusal(lambda: mud.state(mud.Material("toyoura").initial_state(START)[1], "n_reseat"))
-check("Python names the state variable that is nearest to an old name", "n_reset" in message, message)
+STATEV = mud.Material("toyoura").initial_state(START)[1]
+# Every name of layout 1 that layout 2 does not have, and what its message has to name.
+for old, new in {"nucleus": "elastic_domain", "nucleus_23": "elastic_domain_23", "n_reseat": "n_reset",
+                 "way_back": "interrupted", "suspended": "interrupted", "turning_point_11": "target"}.items():
+    message = refusal(lambda: mud.state(STATEV, old))  # noqa: B023 (called at once)
+    check(f"Python: the message about {old} names {new}", f" {new}" in message, message)
+    check(f"{new} is a state variable", any(name in mud.states for name in (new, f"{new}_11", f"{new}_1")), new)
+test = mud.element_test("toyoura", mud.Stage("drained", eps_a_end=1e-3, increment=1e-3), p_eff=100.0, void_ratio=0.8)
+try:
+    test["n_reseat"]
+    message = ""
+except KeyError as error:
+    message = str(error)
+check("Python: the message about the column n_reseat names n_reset", "n_reset" in message, message)
 finish()
