@@ -7,7 +7,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
 from checking import check, finish, root  # noqa: E402
 
-HEAD = "| defect | was | is | held by |"
+HEAD = "| defect | was | is | test or page |"
 SUITES = {path.stem: path.read_text(encoding="utf-8") for path in (root / "tests").rglob("test_*.pf")}
 SCRIPTS = {path.name: path.read_text(encoding="utf-8") for path in (root / "tests").rglob("test_*.py")}
 
