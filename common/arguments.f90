@@ -41,8 +41,8 @@ contains
       call parse_words(words, options, subject, hint, operand, fault, second)
    end subroutine read_command_line
 
-   !> Sorts words into options with their values and one operand, which is there unless an option asks for a text; where
-   !> `second` is present, a second one may follow.
+   !> Sorts words into options with their values and one operand. The operand is required unless an option only prints a
+   !> text; where `second` is present, a second operand may follow.
    subroutine parse_words(words, options, subject, hint, operand, fault, second)
       character(*), intent(in) :: words(:)
       type(option_t), intent(inout) :: options(:)

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Tables of text whose every byte is accounted for: rows go through the C library, which tells of a full disk, whereas
-!> the Fortran runtime buffers formatted records and loses its refusal.
+!> Text tables, written through the C library, which reports a full disk; the Fortran runtime buffers formatted records
+!> and does not report that writing them failed.
 module csv
    use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_null_char, c_associated, c_size_t, c_long, c_loc
    use, intrinsic :: iso_fortran_env, only: int64
@@ -47,7 +47,7 @@ contains
          table%file = fopen(path//c_null_char, 'wb'//c_null_char)
       end if
       if (.not. is_open(table)) then
-         call raise(fault, EXIT_OUTPUT, table%path//' cannot be written; does the folder exist, is there space?')
+         call raise(fault, EXIT_OUTPUT, table%path//' cannot be written; does the folder exist, is the disk full?')
       end if
    end subroutine open_csv
 
@@ -64,7 +64,8 @@ contains
       is_open = c_associated(table%file)
    end function is_open
 
-   !> Whether a table of an interrupted run is there, as long as at its checkpoint, and can be written; changes nothing.
+   !> Checks that the table of an interrupted run exists, is as long as at the checkpoint and can be written; changes
+   !> nothing.
    subroutine check_csv(path, bytes, fault)
       character(*), intent(in) :: path
       integer(int64), intent(in) :: bytes
@@ -76,7 +77,7 @@ contains
       good = c_associated(file)
       if (good) good = fclose(file) == 0
       if (good) good = size_of(path) >= bytes
-      if (.not. good) call raise(fault, EXIT_RESTART, path//' is not there, shorter than at the checkpoint, '// &
+      if (.not. good) call raise(fault, EXIT_RESTART, path//' is missing, shorter than at the checkpoint, '// &
                                  'or cannot be written; --output must name the folder of the interrupted run.')
    end subroutine check_csv
 
@@ -131,7 +132,7 @@ contains
       end if
    end subroutine put_text
 
-   !> Brings what was written to the disk.
+   !> Flushes what was written to the disk.
    subroutine settle_csv(table, fault)
       type(csv_t), intent(inout) :: table
       type(fault_t), intent(inout) :: fault
@@ -144,7 +145,7 @@ contains
       end if
    end subroutine settle_csv
 
-   !> The last rows may meet a full disk as late as here.
+   !> Closes the table. A disk that is full for the last rows may be noticed only here.
    subroutine close_csv(table, fault)
       type(csv_t), intent(inout) :: table
       type(fault_t), intent(inout) :: fault

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Files that are either whole or not there, and what else Fortran cannot ask the system for (POSIX).
+!> Files that are written completely or not at all, and other calls of the system (POSIX) that Fortran lacks.
 module files
    use, intrinsic :: iso_c_binding, only: c_int, c_int8_t, c_size_t, c_long, c_char, c_ptr, c_null_char, c_associated, &
                                           c_loc, c_funptr, c_null_funptr, c_intptr_t
@@ -99,8 +99,8 @@ module files
       end function isatty
    end interface
 contains
-   !> Replaces a file at one stroke: whoever opens it, at whatever moment, finds all of the old one or all of the new.
-   !> Not before the data are on the disk does the new one get the name. On failure the old one stays.
+   !> Replaces a file atomically: a reader finds either the complete old file or the complete new one. The new file gets
+   !> the name only after its data are on the disk. On failure the old file stays.
    subroutine write_whole(path, bytes, good)
       character(*), intent(in) :: path
       integer(c_int8_t), intent(in), contiguous, target :: bytes(:)
@@ -191,7 +191,7 @@ contains
       status = mkdir(path//c_null_char, OPEN_TO_ALL)
    end subroutine make_folder
 
-   !> Asks the system to bring a file or a folder to the disk; where it cannot, nothing is lost but that.
+   !> Asks the system to flush a file or a folder to the disk. A failure of this request is ignored.
    subroutine settle_file(path)
       character(*), intent(in) :: path
       type(c_ptr) :: file

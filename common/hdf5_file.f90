@@ -93,7 +93,7 @@ contains
       if (good) call write_whole(path, image, good)
    end subroutine write_file
 
-   !> An existing file, to be read; not good if it is not there, no HDF5 file or cut off.
+   !> Opens an existing file for reading; not good if it is missing, no HDF5 file or truncated.
    subroutine open_file(path, file)
       character(*), intent(in) :: path
       type(h5_t), intent(out) :: file
@@ -247,7 +247,7 @@ contains
       call h5aclose_f(attribute, status)
    end function get_text
 
-   !> Length of a list, 0 if it is not there.
+   !> Length of a list, 0 if the file does not contain it.
    integer function extent_of(file, name) result(length)
       type(h5_t), intent(in) :: file
       character(*), intent(in) :: name

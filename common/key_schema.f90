@@ -31,7 +31,7 @@ module key_schema
       integer :: values = 0              !< How many values a list has, 0: any number.
    end type key_t
 contains
-   !> Refuses a group that is not among the keys; and, of one that is, what check_entries refuses, and a missing key.
+   !> Refuses an unknown group and, in a known one, a missing key and everything that check_entries refuses.
    subroutine check_group(keys, group, open, fault)
       type(key_t), intent(in) :: keys(:)
       type(group_t), intent(in) :: group

@@ -56,7 +56,7 @@ contains
          call groups_of_text(text, file, groups, fault)
       else
          allocate (groups(0))
-         call raise(fault, EXIT_INPUT, trim(file)//': cannot be read; is it there, is it a file?')
+         call raise(fault, EXIT_INPUT, trim(file)//': cannot be read; does the file exist?')
       end if
    end subroutine read_groups
 

@@ -7,7 +7,7 @@ module wall_clock
    private
    public :: clock, lap
 contains
-   !> Seconds since some moment.
+   !> Seconds since an arbitrary moment.
    real(wp) function clock()
       integer(int64) :: ticks, rate
 

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Which BLAS and LAPACK the process has loaded. Everything is asked of the dynamic linker at run time: where it cannot
-!> say, the answer is an empty text.
+!> Which BLAS and LAPACK the process has loaded, from the dynamic linker at run time; an empty text where the linker
+!> does not know.
 module blas_in_use
    use, intrinsic :: iso_c_binding, only: c_int, c_char, c_ptr, c_funptr, c_null_ptr, c_null_char, c_associated, &
                                           c_f_procpointer, c_f_pointer
@@ -81,7 +81,7 @@ contains
       end do
    end function is_reference
 
-   !> What a function without arguments answers; empty if it is not there.
+   !> The text that a function without arguments returns; empty if there is no such function.
    function words_of(symbol) result(text)
       character(*), intent(in) :: symbol
       character(:), allocatable :: text

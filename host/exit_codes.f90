@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Exit codes of mud_host beside those of `faults`.
+!> Exit codes of mud_host in addition to those of `faults`.
 module exit_codes
    implicit none (type, external)
    private

@@ -112,8 +112,8 @@ contains
       stop
    end subroutine leave
 
-   !> Asks the scene which effects it calls for, where it leaves that open or the command line wants to know, and
-   !> settles its keys.
+   !> Determines which effects the scene needs, where the scene leaves that open or the command line asks for it, and
+   !> sets its keys.
    subroutine find_effects()
       if (only_effects .or. (scene%derive_effects .and. .not. only_check)) then
          call ask_effects(scene, option_given(options, '--ablate'), quiet, effects, pilots, fault)
@@ -221,7 +221,7 @@ contains
          'to five times as long as with an optimised one (Debian: libopenblas0-serial).'
    end subroutine tell_libraries
 
-   !> Where the time went.
+   !> Time that each part of the run took.
    subroutine account()
       character(14), parameter :: PHASES(8) = [character(14) :: 'material', 'assembly', 'contact', 'factorisation', &
                                                'solution', 'rest of Newton', 'output', 'all else']

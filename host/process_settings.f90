@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> What the process asks of its libraries: the fronts of a factorisation are too small to be worth threads of the BLAS,
-!> and memory that every factorisation needs anew is kept. Both are asked of what is there: another BLAS or C library
-!> just goes without.
+!> and memory that every factorisation needs anew is kept. Both settings are
+!> optional: a BLAS or C library without them runs unchanged.
 module process_settings
    use, intrinsic :: iso_c_binding, only: c_int, c_funptr, c_null_ptr, c_null_char, c_associated, c_f_procpointer
    use dynamic_loader, only: dlsym

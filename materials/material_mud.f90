@@ -240,7 +240,7 @@ contains
       saturation = state(self%place_s_w)
    end function saturation
 
-   !> By the library's own curve; that of a void ratio that is none is empty of meaning and full of water.
+   !> By the library's own curve; for an invalid void ratio the result is full saturation and has no meaning.
    function retention(self, p_c, e) result(sat)
       class(mud_t), intent(in) :: self
       real(wp), intent(in) :: p_c, e

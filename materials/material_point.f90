@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> A material point, the seam between programs and laws: host and drivers know this type alone, a law extends it.
+!> A material point, the interface between programs and laws: host and drivers use this type only, a law extends it.
 !> Conventions are those of a UMAT: tension positive, components 11, 22, 33, 12, 13, 23, engineering shear; stress is
 !> effective; suction p_c = p_a - p_w is positive where unsaturated. Degree of saturation and void ratio come from the
 !> law alone.

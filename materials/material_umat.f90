@@ -32,7 +32,8 @@ module material_umat
    integer, parameter :: OWN_COUNT = 7, OWN_E = 8, OWN_S_W = 9   !< updates, void ratio, saturation.
 
    type(key_t), parameter :: UMAT_KEYS(*) = [ &
-      key_t('umat', 'library', 't', REQUIRED, 0, 0, 'shared library, seen from this file, or one the system finds'), &
+      key_t('umat', 'library', 't', REQUIRED, 0, 0, &
+            'shared library: path relative to this file, or a name that the system finds'), &
       key_t('umat', 'symbol', 't', 'umat_', 0, 0, 'symbol of the UMAT in the library'), &
       key_t('umat', 'props', 'N', NONE, -UNBOUNDED, UNBOUNDED, 'PROPS, in their order'), &
       key_t('umat', 'nstatv', 'i', '0', 0, 10000, 'number of STATEV; they start as zeros'), &
@@ -43,7 +44,7 @@ module material_umat
       key_t('umat', 'components', 'i', '6', 4, 6, 'NTENS: 6, or 4 for a UMAT of axisymmetry and plane strain'), &
       key_t('umat', 'tangent', 'w', 'approximate', 0, 0, &
             'consistent: DDSDDE is the derivative of the update itself', 'approximate|consistent'), &
-      key_t('umat', 'void_ratio_at', 'i', '0', 0, 10000, 'place in STATEV of the void ratio; 0: kept beside'), &
+      key_t('umat', 'void_ratio_at', 'i', '0', 0, 10000, 'place in STATEV of the void ratio; 0: kept outside STATEV'), &
       key_t('umat', 'saturation_at', 'i', '0', 0, 10000, 'place in STATEV of S_w; 0: from the retention curve'), &
       key_t('umat', 'saturation_slopes_at', 'i', '0', 0, 10000, &
             'with saturation_at: place of dS_w/dp_c, before that of dS_w/d eps_v (expansion positive)'), &

@@ -33,7 +33,7 @@ module retention_curves
       end function at_i
    end interface
 
-   !> Always full.
+   !> Always saturated.
    type, extends(retention_t) :: saturated_t
    contains
       procedure :: at => saturated_at

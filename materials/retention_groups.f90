@@ -31,7 +31,7 @@ module retention_groups
       key_t('retention', 'saturation', 'N', NONE, 0, 1, 'table: degrees of saturation [-]'), &
       key_t('retention', 'file', 't', NONE, 0, 0, 'table: text file with a suction and a saturation a line')]
 contains
-   !> Reads a curve and puts it beside a law that has none of its own.
+   !> Reads a curve and gives it to a law that has no retention curve of its own.
    subroutine give_retention(group, law, fault)
       type(group_t), intent(in) :: group   !< Checked against RETENTION_KEYS.
       class(material_t), intent(inout) :: law

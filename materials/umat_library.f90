@@ -13,7 +13,7 @@ module umat_library
    integer, parameter :: LONGEST_MESSAGE = 400
 
    abstract interface
-      !> As gfortran calls and is called: every argument by its address, the length of CMNAME behind the last one.
+      !> Calling convention of gfortran: every argument by its address, the length of CMNAME after the last one.
       subroutine umat_i(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, time, &
                         dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, coords, &
                         drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, kstep, kinc, &

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Stands in for ../io_hdf5.f90 where HDF5 is not installed: nothing is good, and who asks HAS_HDF5 first knows why.
+!> Replaces ../hdf5_file.f90 where HDF5 is not installed: every call fails; callers check HAS_HDF5 before they call.
 module hdf5_file
    use kinds, only: wp
    implicit none (type, external)

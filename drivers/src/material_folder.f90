@@ -55,7 +55,7 @@ contains
                  '; look there for the names, name a file with its .nml, or name the folder with '//VARIABLE//'.')
    end subroutine material_path
 
-   !> Folder of this program with its closing slash: where its file is, or as it was called.
+   !> Folder of this program with its closing slash: from the location of its file, or from how it was called.
    function program_folder() result(folder)
       character(:), allocatable :: folder
       character(kind=c_char) :: target(PATH_LENGTH)

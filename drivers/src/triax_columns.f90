@@ -37,7 +37,7 @@ module triax_columns
       column_t('n_rate', '1', 'rate evaluations since the start', .true.), &
       column_t('n_reject', '1', 'rejected substeps since the start', .true.), &
       column_t('n_guard', '1', 'rates in which a guard acted, since the start', .true.), &
-      column_t('control_error', '1', 'largest error of what is held since the row before, relative'), &
+      column_t('control_error', '1', 'largest relative error of prescribed stresses since the row before'), &
       column_t('stage', '1', 'stage, 0 is the start', .true.), &
       column_t('cycle', '1', 'cycle of the stage, 0: none', .true.), &
       column_t('r_u', '1', 'pore pressure of the stage over the effective confining stress at its start'), &

@@ -28,7 +28,7 @@ module triax_control
    integer, parameter :: NORMAL = 3            !< Components up to this are normal ones.
    real(wp), parameter :: IDENTITY(6) = [1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
 
-   !> One way, from where the sample is to where the constraints lead it in equal increments.
+   !> One path segment: from the present state of the sample to the target of the constraints, in equal increments.
    type :: plan_t
       integer :: control = 0
       integer :: increments = 0                   !< An open way has 1, and goes on beyond it.
@@ -58,7 +58,7 @@ module triax_control
    end type tally_t
 
 contains
-   !> Lays out a way of a stage from where the sample is.
+   !> Plans a path segment of a stage from the present state of the sample.
    subroutine plan_way(soil, stage, target, point, plan)
       type(soil_t), intent(in) :: soil
       type(stage_t), intent(in) :: stage
@@ -235,10 +235,10 @@ contains
          end if
          call solve(slope, -residual, step, good)
          if (.not. good) then
-            call raise(fault, EXIT_RUN, 'The slope of what is held is singular: the sample cannot be held'// &
-                       trim(merge(', perhaps because it became saturated at constant water content.', &
-                                  '.                                                               ', &
-                                  plan%keeps_water)))
+            call raise(fault, EXIT_RUN, 'The stiffness for the prescribed stresses is singular: the sample cannot '// &
+                       'carry them'//trim(merge(', perhaps because it became saturated at constant water content.', &
+                                                '.                                                               ', &
+                                                plan%keeps_water)))
             plan%rate = 0.0_wp
             return
          end if
@@ -249,9 +249,9 @@ contains
 
       if (.not. all(plan%given)) then
          if (iteration > MAX_ITERATIONS) then
-            call raise(fault, EXIT_RUN, 'What is held is off by '//short(error)//' of its value after '// &
-                       whole(MAX_ITERATIONS)//' iterations; allowed is '//short(tally%tolerance)// &
-                       '. A smaller increment may help, unless the sample cannot carry what is held any more.')
+            call raise(fault, EXIT_RUN, 'The prescribed stresses are missed by '//short(error)//' of their value '// &
+                       'after '//whole(MAX_ITERATIONS)//' iterations; allowed is '//short(tally%tolerance)// &
+                       '. A smaller increment may help, unless the sample cannot carry these stresses any more.')
             plan%rate = 0.0_wp
             return
          end if
@@ -267,7 +267,7 @@ contains
       tally%guards = tally%guards + report%guards
    end subroutine solve_part
 
-   !> How far the constraints are missed, and the largest such error relative to what the constraint speaks of.
+   !> Residuals of the constraints, and the largest one relative to the quantity that its constraint prescribes.
    subroutine find_residual(soil, plan, progress, x, before, after, residual, error)
       type(soil_t), intent(in) :: soil
       type(plan_t), intent(in) :: plan

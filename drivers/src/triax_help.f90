@@ -29,17 +29,17 @@ contains
          'Runs a laboratory test on a soil model at a point, MUD or another law, and writes a CSV or HDF5 file.', &
          'Compression is positive, stresses are effective, q = sigma_a - sigma_r is negative in extension.', &
          '', &
-         '   --output FILE   where to write; default: NAME.csv in the present folder; "-" is the screen;', &
+         '   --output FILE   where to write; default: NAME.csv in the current folder; "-" is the screen;', &
          '                   a name that ends in .h5 or .hdf5 is written as HDF5', &
-         '   --material NAME   replaces &material of the case by a set of the library of materials (toyoura, ', &
+         '   --material NAME   replaces &material of the case by a set of the library of materials (toyoura,', &
          '                   karlsruhe ...), or by a file whose name ends in .nml', &
          '   --accuracy A    relative error wanted in the histories, in place of accuracy of &case: increments and', &
          '                   the tolerance of the stress integration follow where they are not given', &
          '   --verify        runs once more with a quarter of the increments and a sixteenth of the tolerance; the', &
          '                   difference takes the place of the estimated errors', &
          '   --quiet         no summary, no progress', &
-         '   --residuals     print the error of every iteration of a held stress', &
-         '   --save-failed FILE   write the first update that the library refuses to a new file for mud_replay', &
+         '   --residuals     prints the error of every iteration for prescribed stresses', &
+         '   --save-failed FILE   writes the first update that the library refuses to a new file for mud_replay', &
          '   --template      prints a case that runs unchanged, with every parameter and its range', &
          '', &
          'Exit codes: 0 done; 2 input refused, nothing written; 3 the run stopped, rows so far are kept;', &
@@ -59,7 +59,7 @@ contains
       end do
       call print_keys(output_unit, RETENTION_KEYS, ' of a law that has none of its own')
       call print_keys(output_unit, CASE_KEYS, '')
-      write (output_unit, '(a)') '   Controls, and what may lead each of them:'
+      write (output_unit, '(a)') '   Controls, and the keys of which one ends the stage:'
       do i = 1, size(CONTROL_NAMES)
          write (output_unit, '(3a)') '      ', CONTROL_NAMES(i), leads_text(i)
       end do

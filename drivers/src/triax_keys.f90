@@ -16,11 +16,11 @@ module triax_keys
       key_t('case', 'name', 't', NONE, 0, 0, 'name of the case and of its output; default: name of the file'), &
       key_t('case', 'title', 't', NONE, 0, 0, 'a line about the case'), &
       key_t('case', 'control_tolerance', 'n', NONE, 1.0e-12_wp, 1.0e-3_wp, &
-            'what is held is met to this share of the effective stress; default 1e-10'), &
+            'error allowed in prescribed stresses over the effective stress; default 1e-10'), &
       key_t('case', 'accuracy', 'n', NONE, 1.0e-8_wp, 0.5_wp, &
             'relative error wanted in the histories; chooses increments and stress tolerance that are not given'), &
       key_t('case', 'max_updates', 'i', NONE, 1.0_wp, 1.0e9_wp, &
-            'updates of the material after which the test stops, for fits that try anything; default: no limit'), &
+            'most updates of the material; then the test stops (for fits); default: no limit'), &
       key_t('initial', 'p_eff', 'n', NONE, 1.0e-6_wp, 1.0e7_wp, &
             'mean effective stress of an isotropic start', unit='kPa'), &
       key_t('initial', 'sigma_a', 'n', NONE, 1.0e-6_wp, 1.0e7_wp, &
@@ -31,7 +31,7 @@ module triax_keys
       key_t('initial', 'suction', 'n', NONE, 0.0_wp, 1.0e6_wp, 'p_a - p_w; default 0, saturated', unit='kPa'), &
       key_t('stage', 'control', 't', NONE, 0, 0, 'see the list of controls'), &
       key_t('stage', 'stress', 'w', 'net', 0, 0, &
-            'stress that is held or led, default net; the same where there is no suction', 'net|effective'), &
+            'stress that is prescribed, default net; both are the same without suction', 'net|effective'), &
       key_t('stage', 'eps_a_end', 'n', NONE, -1.0_wp, 1.0_wp, 'axial strain at the end, from the start of the test'), &
       key_t('stage', 'eps_v_end', 'n', NONE, -1.0_wp, 1.0_wp, &
             'volumetric strain at the end, from the start of the test'), &
@@ -52,13 +52,13 @@ module triax_keys
       [(key_t('stage', 'change_'//DIGITS(i), 'n', NONE, -1.0e7_wp, 1.0e7_wp, &
               'change of the sum of constraint '//DIGITS(i)//' over the stage, default 0 (linear)'), i=1, 6)], &
       key_t('stage', 'suction_end', 'n', NONE, 0.0_wp, 1.0e6_wp, &
-            'suction at the end, reached in equal parts; without it suction stays', unit='kPa'), &
+            'suction at the end, reached in equal parts; default: suction is constant', unit='kPa'), &
       key_t('stage', 'water', 'w', 'free', 0, 0, &
-            'constant holds the water content S_w e, and suction follows; default free', 'free|constant'), &
+            'constant: the water content S_w e is constant and suction changes; default free', 'free|constant'), &
       key_t('stage', 'cycle_by', 't', NONE, 0, 0, &
             'eps_a or gamma (strain is reversed), q or tau (strain is driven until the stress is reached)'), &
       key_t('stage', 'amplitude', 'n', NONE, -1.0e7_wp, 1.0e7_wp, &
-            'amplitude of the cycles, in the unit of cycle_by; negative: the first way is backwards'), &
+            'amplitude of the cycles, in the unit of cycle_by; negative: the first half cycle is backwards'), &
       key_t('stage', 'centre', 'n', NONE, -1.0e7_wp, 1.0e7_wp, &
             'centre of the cycles; default: the value where the stage begins'), &
       key_t('stage', 'cycles', 'i', NONE, 1.0_wp, 1.0e6_wp, 'number of cycles'), &
@@ -67,7 +67,8 @@ module triax_keys
       key_t('stage', 'stop_double_amplitude', 'n', NONE, 1.0e-6_wp, 1.0_wp, &
             'strain eps_a or gamma between two reversals that ends the stage (cycles)'), &
       key_t('stage', 'increment', 'n', NONE, 1.0e-12_wp, 1.0e6_wp, &
-            'largest step of what leads: strain, default 1e-4; stress, 1 kPa; suction, 0.1 kPa; linear, 1e-3 of 1'), &
+            'largest step of the key that ends the stage: strain, default 1e-4; stress, 1 kPa; suction, 0.1 kPa; '// &
+            'linear, 1e-3 of 1'), &
       key_t('stage', 'output_interval', 'n', NONE, 1.0e-12_wp, 1.0e6_wp, &
             'a row at each multiple of it: strain, default 1e-3; stress [kPa], 10; suction [kPa], 1; linear: 1e-2')]
 
@@ -118,7 +119,7 @@ contains
 
       do k = 1, size(keys)
          if (.not. any(keys(:k - 1)%group == keys(k)%group)) write (unit, '(3a)') '   &', trim(keys(k)%group), remark
-         write (unit, '(3a)') '      ', keys(k)%name, described(keys(k))
+         write (unit, '(4a)') '      ', keys(k)%name, ' ', described(keys(k))
       end do
    end subroutine print_keys
 end module triax_keys

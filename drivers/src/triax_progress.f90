@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What a run tells on the screen: progress, and the summary at the end.
+!> What a run prints on the screen: progress, and the summary at the end.
 module triax_progress
    use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
    use kinds, only: wp
@@ -83,9 +83,8 @@ contains
          end do
          if (guards /= '') write (output_unit, '(a)') '   guards     '//guards
          if (tally%solved > 0) then
-            write (output_unit, '(a)') '   control    what is held is met within '//short(tally%worst)// &
-               ' of its value (allowed '// &
-               short(tally%tolerance)//')'
+            write (output_unit, '(a)') '   control    prescribed stresses are met within '//short(tally%worst)// &
+               ' of their value (allowed '//short(tally%tolerance)//')'
          end if
          if (tally%saved) write (output_unit, '(a)') '   saved      '//trim(tally%save_to)// &
             ', the first refused update, for mud_replay'

@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Stages of a test: what leads them, and the six linear constraints that each named control stands for.
+!> Stages of a test: the quantity that leads them (it is prescribed and its target ends the stage), and the six linear
+!> constraints that each named control stands for.
 !>
 !> A constraint reads strain_row . (change of strain) + stress_row . (change of stress) = its share of a change; stress
 !> is net (sigma' - S_w p_c on the normal components) or effective. The last one belongs to what leads.
@@ -116,7 +117,7 @@ contains
       shear_control = control == SHEAR_DRAINED .or. control == SHEAR_CONSTANT_VOLUME
    end function shear_control
 
-   !> True where axial, radial and volumetric values do not tell all: tables then have the six components.
+   !> True where axial, radial and volumetric values are not sufficient: tables then have the six components.
    elemental logical function general_control(control)
       integer, intent(in) :: control
 

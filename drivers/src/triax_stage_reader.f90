@@ -51,7 +51,7 @@ contains
       call get_number(group, 'output_interval', stage%interval, found)
       call get_number(group, 'stop_r_u', stage%stop_r_u, found)
       if (found .and. .not. sealed_control(stage%control)) then
-         call refuse(group, 'stop_r_u', 'means nothing in a stage of control '//name_of(stage%control)// &
+         call refuse(group, 'stop_r_u', 'has no effect with control '//name_of(stage%control)// &
                      ', in which no pore pressure builds up; remove it.', fault)
       else if (2.0_wp/stage%increment > MAX_INCREMENTS .and. QUANTITIES(stage%lead)%unit /= PER_PRESSURE) then
          call refuse(group, 'increment', '= '//short(stage%increment)//' could make more than '// &
@@ -138,7 +138,7 @@ contains
       allocate (leads(0))   ! or gfortran believes the assignment to read it
       leads = leads_of(stage%control)
       if (.not. any(leads == BY_EPS_A .or. leads == BY_GAMMA)) then
-         call refuse(group, 'cycle_by', 'means nothing in a stage of control '//name_of(stage%control)// &
+         call refuse(group, 'cycle_by', 'has no effect with control '//name_of(stage%control)// &
                      '; cycles run in drained, undrained, constant_p and in simple shear.', fault)
          return
       end if
@@ -182,14 +182,14 @@ contains
          associate (key => QUANTITIES(i)%key)
             if (.not. given(group, key) .or. (i == BY_SUCTION .and. .not. any(leads == i))) cycle
             if (stage%cycles > 0) then
-               call refuse(group, key, 'cannot go with cycles, which begin where the stage before ends; remove it.', &
+               call refuse(group, key, 'cannot be combined with cycles, which begin at the present state; remove it.', &
                            fault)
             else if (.not. any(leads == i)) then
-               call refuse(group, key, 'means nothing in a stage of control '//name_of(stage%control)// &
-                           ', which is led by '//choice//'; remove it.', fault)
+               call refuse(group, key, 'has no effect with control '//name_of(stage%control)// &
+                           ', which takes '//choice//'; remove it.', fault)
             else if (stage%lead > 0) then
-               call refuse(group, key, 'leads the stage together with '//trim(QUANTITIES(stage%lead)%key)// &
-                           '; keep one of them.', fault)
+               call refuse(group, key, 'cannot be combined with '//trim(QUANTITIES(stage%lead)%key)// &
+                           ': one of them ends the stage; remove the other.', fault)
             end if
             if (fault%code /= 0) return
             stage%lead = i
@@ -239,9 +239,11 @@ contains
       stage%keeps_water = word_is(CASE_KEYS, group, 'water', 'constant')
       call get_number(group, 'suction_end', stage%suction_end, stage%moves_suction)
       if (stage%moves_suction .and. stage%keeps_water) then
-         call refuse(group, 'suction_end', 'cannot go with a constant water content; remove one of them.', fault)
+         call refuse(group, 'suction_end', 'cannot be combined with a constant water content; remove one of them.', &
+                     fault)
       else if (stage%moves_suction .and. stage%cycles > 0) then
-         call refuse(group, 'suction_end', 'cannot go with cycles; move suction in a stage of its own.', fault)
+         call refuse(group, 'suction_end', 'cannot be combined with cycles; change the suction in a separate stage.', &
+                     fault)
       end if
    end subroutine read_water
 end module triax_stage_reader

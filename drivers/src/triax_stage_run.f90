@@ -39,7 +39,7 @@ module triax_stage_run
    end type stage_run_t
 
 contains
-   !> Lays out a stage from where the sample is.
+   !> Plans a stage from the present state of the sample.
    subroutine begin_stage(soil, stage, point, pressure, run, fault)
       type(soil_t), intent(in) :: soil
       type(stage_t), intent(in) :: stage

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Which master edges may lie opposite a slave edge: boxes around the edges, sorted into the cells of a grid, so that
 !> the work grows with the number of edges and not with its square. Cells are kept in a hashed list, so that their
-!> number does not matter; two cells that share a place in it cost a comparison and nothing else.
+!> number does not matter; two cells that share a place in it cost one comparison.
 module contact_search
    use, intrinsic :: iso_fortran_env, only: int64
    use contact_types, only: wp

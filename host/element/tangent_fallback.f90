@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Stiffness of points that have none. A point at the tension cut-off, or one that fails, may resist some strain with
-!> nothing, and a mesh of such points has a singular matrix although nothing is loose. There the elastic tangent takes
-!> its place: the residual, and so what is converged to, is untouched.
+!> Stiffness of points that have none. A point at the tension cut-off, or one that fails, may have no stiffness against
+!> some strain, and a mesh of such points has a singular matrix although every body is supported. There the elastic
+!> tangent is used instead; the residual, and so the solution, does not change.
 !> docs/theory/host.md section 5.3.
 module tangent_fallback
    use kinds, only: wp

@@ -54,7 +54,7 @@ contains
       allocate (names(0), entities(0), blocks(0), number_of(0))
       open (newunit=reader%unit, file=file, status='old', action='read', iostat=status)
       if (status /= 0) then
-         call raise(fault, EXIT_MESH, trim(file)//': the mesh cannot be read; is the path right, seen from the scene?')
+         call raise(fault, EXIT_MESH, trim(file)//': the mesh file cannot be read; its path is relative to the scene.')
          return
       end if
       inquire (unit=reader%unit, size=reader%bytes)
@@ -286,11 +286,11 @@ contains
             call integers(reader, row(:n + 1), fault)
             if (fault%code /= 0) return
             if (any(row(2:n + 1) < 1 .or. row(2:n + 1) > size(number_of))) then
-               call wrong(reader, 'an element names a node that is not there', fault)
+               call wrong(reader, 'an element refers to a node that does not exist', fault)
                return
             end if
             one%nodes(:, i) = number_of(row(2:n + 1))
-            if (any(one%nodes(:, i) == 0)) call wrong(reader, 'an element names a node that is not there', fault)
+            if (any(one%nodes(:, i) == 0)) call wrong(reader, 'an element refers to a node that does not exist', fault)
          end do
          blocks = [blocks, one]
       end do

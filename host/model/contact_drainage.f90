@@ -40,7 +40,7 @@ contains
             drainage%gives_way(f, c) = share_an_edge(model, model%contacts(c)%slave, model%fixes(f)%group)
          end do
          if (.not. any(drainage%gives_way(:, c))) call raise(fault, EXIT_INPUT, 'Contact '// &
-            trim(model%contacts(c)%name)//': drainage = ''state'' lets &fix of p_w, p_c or p_a on the slave go, '// &
+            trim(model%contacts(c)%name)//': drainage = ''state'' releases &fix of p_w, p_c or p_a on the slave, '// &
             'and there is none; prescribe the pressures on the whole boundary, or leave drainage out.')
       end do
    end subroutine prepare_drainage

@@ -17,7 +17,7 @@ module initial_conditions
 
    integer, parameter :: SLICES = 400   !< Of a column, for its weight: relative error 1/(24 SLICES**2) of its bend.
 
-   !> Points of MUD whose effective stress the scene gives a tensile component.
+   !> Points of MUD with a tensile component of the effective stress that the scene prescribes.
    type :: tension_t
       integer :: points = 0
       real(wp) :: largest = 0.0_wp   !< [kPa]

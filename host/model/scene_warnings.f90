@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> What a scene says that is allowed and most often a mistake: told at the start and by --check, never refused.
+!> Warnings about values of a scene that are allowed but usually mistakes: printed at the start and by --check, never
+!> refused.
 module scene_warnings
    use kinds, only: wp
    use faults, only: at_line

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> The estimated error of every answer of a run whose steps are controlled, and what kept the steps short.
+!> The estimated error of every answer of a run whose steps are controlled, and what limited the steps.
 !> docs/theory/host.md section 4.5.
 module answer_errors
    use kinds, only: wp
@@ -56,7 +56,7 @@ contains
       call close_csv(table, fault)
    end subroutine write_answers
 
-   !> The same in words, and what kept the steps short.
+   !> The same in words, and what limited the steps.
    subroutine print_answers(unit, model, control, verified)
       integer, intent(in) :: unit
       type(model_t), intent(in) :: model

@@ -106,7 +106,7 @@ contains
       end if
       call open_file(path, file)
       if (.not. file%good) then
-         call raise(fault, EXIT_RESTART, path//' is not there, no HDF5 file, or cut off; name the '//CHECKPOINT// &
+         call raise(fault, EXIT_RESTART, path//' is missing, no HDF5 file, or truncated; name the '//CHECKPOINT// &
                     ' of a run.')
          return
       end if

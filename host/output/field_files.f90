@@ -82,7 +82,7 @@ contains
 
       call open_file(folder//'/mesh.h5', file)
       if (.not. file%good) then
-         call raise(fault, EXIT_RESTART, folder//'/mesh.h5 is not there, or cut off; --output must name the folder '// &
+         call raise(fault, EXIT_RESTART, folder//'/mesh.h5 is missing or truncated; --output must name the folder '// &
                     'of the interrupted run. Nothing was changed.')
          return
       end if
@@ -276,6 +276,6 @@ contains
       character(*), intent(in) :: path
       type(fault_t), intent(inout) :: fault
 
-      call raise(fault, EXIT_OUTPUT, path//' cannot be written; is there space?')
+      call raise(fault, EXIT_OUTPUT, path//' cannot be written; is the disk full?')
    end subroutine complain
 end module field_files

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> The line that says how far a run is: rewritten in place on a terminal, now and then a line of its own elsewhere.
+!> Progress line of a run: rewritten in place on a terminal, otherwise a new line from time to time.
 module progress_line
    use, intrinsic :: iso_fortran_env, only: output_unit
    use wall_clock, only: clock
@@ -104,7 +104,7 @@ contains
       end associate
    end function steps_left
 
-   !> A span of time as one reads it.
+   !> A duration in hours, minutes or seconds, as text.
    pure function span_of(seconds) result(text)
       real(wp), intent(in) :: seconds
       character(:), allocatable :: text

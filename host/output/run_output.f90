@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What a run leaves behind while it goes on: tables, fields, checkpoints, the line of progress and warnings.
+!> Output during a run: tables, fields, checkpoints, the progress line and warnings.
 module run_output
    use, intrinsic :: iso_fortran_env, only: output_unit
    use kinds, only: wp

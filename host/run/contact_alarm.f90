@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> The word that a run says when a surface has got through another one without pressure.
+!> Warning of a run in which a surface has penetrated another one without contact pressure.
 module contact_alarm
    use, intrinsic :: iso_fortran_env, only: error_unit
    use kinds, only: wp
@@ -10,8 +10,8 @@ module contact_alarm
    private
    public :: tell_penetration
 
-   !> Depth over the length of its edge that is said: a curved surface that rolls on leaves about an eighth of the share
-   !> of an edge in its radius, 1e-3 with a mesh that is fit for contact [-].
+   !> Depth over the length of the edge from which the warning is given: a curved surface that rolls on leaves about an
+   !> eighth of the ratio of edge length to radius, 1e-3 with a mesh that is fine enough for contact [-].
    real(wp), parameter :: ALARMING_DEPTH = 1.0e-3_wp
 contains
    !> After an accepted step; once for every contact, on standard error, also where the run is quiet.

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Ends a run that has created energy: its answers may then be wrong by any factor, however well every step has
+!> Ends a run that has created energy: its results may then be wrong by any factor, although every step has
 !> converged. docs/theory/host.md section 9.
 module energy_alarm
    use, intrinsic :: iso_fortran_env, only: error_unit
@@ -27,7 +27,7 @@ contains
       if (stage%kind /= DYNAMIC .or. fault%code /= 0) return
       if (ledger%most_created <= stage%created_energy*ledger%largest_work) return
       call raise(fault, EXIT_ENERGY, 'Stage '//trim(stage%name)//', time '//short(time)//' s: the run has created '// &
-                 amount(ledger)//', allowed '//short(100*stage%created_energy)//' %. Its answers may be wrong by '// &
+                 amount(ledger)//', allowed '//short(100*stage%created_energy)//' %. Its results may be wrong by '// &
                  'any factor: '//REMEDY//'; created_energy of &stage allows more.')
    end subroutine check_creation
 
@@ -39,7 +39,7 @@ contains
       if (stage%kind /= DYNAMIC .or. ledger%most_created <= ALARMING_SHARE*ledger%largest_work) return
       if (ledger%most_created > stage%created_energy*ledger%largest_work) return
       write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//' has created '//amount(ledger)// &
-         '. Do not trust its answers: '//REMEDY//'.'
+         '. Do not use its results: '//REMEDY//'.'
    end subroutine tell_creation
 
    !> Energy in kJ and as a share.

@@ -16,8 +16,8 @@ module energy_ledger
    private
    public :: ledger_t, book_step, book_creation, kinetic_energy, imbalance, ALARMING_SHARE
 
-   !> Energy that a run creates out of nothing, as a share of the largest work done in it, beyond which its answers are
-   !> not to be trusted: the balances of the verified scenes close to 1e-3 and better [-].
+   !> Energy that a run creates out of nothing, as a share of the largest work done in it, beyond which its results are
+   !> unreliable: the balances of the verified scenes close to 1e-3 and better [-].
    real(wp), parameter :: ALARMING_SHARE = 0.01_wp
 
    type :: ledger_t

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> The word that a run says when its pore water pressures jump from node to node. docs/theory/host.md section 3.1.
+!> Warning of a run whose pore water pressures oscillate from node to node. docs/theory/host.md section 3.1.
 module pressure_alarm
    use, intrinsic :: iso_fortran_env, only: error_unit
    use kinds, only: wp
@@ -11,7 +11,7 @@ module pressure_alarm
    private
    public :: tell_oscillation, outlier
 
-   !> By how much a corner may stand out from all sides around it, share of the range of all pressures: linear and
+   !> By how much a corner may differ from all sides around it, share of the range of all pressures: linear and
    !> parabolic fields leave nothing, a field that the mesh follows little [-].
    real(wp), parameter :: ALARMING_SHARE = 0.25_wp
    real(wp), parameter :: SMALLEST_RANGE = 0.1_wp   !< [kPa] Of pressures that anybody looks at.
@@ -34,8 +34,8 @@ contains
          told = .true.
          write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//', time '//short(time)// &
             ' s: the pore water pressure at ('//short(mesh%x(1, node))//', '//short(mesh%x(2, node))//') m, '// &
-            short(x(AT_P_W, node))//' kPa, stands out from all around it by '//short(100*share)// &
-            ' % of the range of all pressures. Pressures that oscillate from node to node are no answer: refine '// &
+            short(x(AT_P_W, node))//' kPa, differs from those around it by '//short(100*share)// &
+            ' % of the range of all pressures. Pressures that oscillate from node to node are wrong: refine '// &
             'the mesh there, take longer steps or, where hardly any water drains, set pressures = ''linear'' in &scene.'
       end associate
    end subroutine tell_oscillation

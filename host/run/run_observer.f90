@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Who watches a run: output, progress and checkpoints extend this type, so that a run computes and writes nothing.
+!> Observer of a run: output, progress and checkpoints extend this type, so that the run itself writes nothing.
 module run_observer
    use kinds, only: wp
    use faults, only: fault_t

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Why a step failed for good, in one sentence.
+!> Message about a step that failed although it was cut as often as allowed.
 module step_failure
    use kinds, only: wp
    use faults, only: fault_t, raise
@@ -47,7 +47,7 @@ contains
                e = maxloc(run%assembly%soft, dim=1)
                call raise(fault, EXIT_FREE_BODY, place//'the equations are singular, also with the elastic '// &
                           'stiffness of '//whole(run%assembly%replaced)// &
-                          ' points that resist some strain with nothing (tension '// &
+                          ' points that have no stiffness against some strain (tension '// &
                           'cut-off or failure), most of them in element '//whole(e)//', '//point_of(model, e)// &
                           ': add a surcharge or suction there, load in smaller steps, or look for a missing &fix.')
                return
@@ -97,7 +97,7 @@ contains
       end associate
    end function place_of
 
-   !> What was to fall below the tolerance, and where it stands.
+   !> The error that should have fallen below the tolerance, with its present value.
    function what_is_left(stage, log) result(text)
       type(stage_t), intent(in) :: stage
       type(log_t), intent(in) :: log

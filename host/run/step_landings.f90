@@ -47,7 +47,7 @@ contains
    end function next_time
 
    !> Break of a history up to which a straight line from the present time leaves out no more than a share of its
-   !> range: the one that the line to the horizon misses most, until no line misses one. Huge where none is in the way.
+   !> range: the one that the line to the horizon misses most, until no line misses one. Huge if there is none.
    pure real(wp) function straight_until(amplitude, now, close, horizon, share) result(until)
       type(scene_amplitude_t), intent(in) :: amplitude
       real(wp), intent(in) :: now, close   !< Breaks nearer than `close` are the present time [s].

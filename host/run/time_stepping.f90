@@ -134,7 +134,7 @@ contains
       call check_creation(model%stages(number), run%state%time, run%ledger, fault)
    end subroutine close_step
 
-   !> Whether there is somebody who may say what is seen.
+   !> Whether there is an observer that may print warnings.
    logical function speaks(observer)
       class(run_observer_t), intent(in), optional :: observer
 

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Effects that a scene may or may not call for: their names, and the row of their table.
+!> Effects that a scene may or may not need: their names, and the row of their table.
 module effect_types
    use kinds, only: wp
    implicit none (type, external)

@@ -47,13 +47,13 @@ module scene_keys
       key_t('scene', 'checkpoint_steps', 'i', '0', 0, 1000000000, 'checkpoint.h5 after every so many steps; 0: none'), &
       key_t('scene', 'checkpoint_seconds', 'n', '0', 0, BIG, 'checkpoint.h5 after so much wall time [s]; 0: none'), &
       key_t('scene', 'checkpoint_end', 'w', 'no', 0, 0, 'checkpoint.h5 when the last stage ends', 'no|yes'), &
-      key_t('mesh', 'file', 't', NONE, 0, 0, 'Gmsh 4.1 text mesh, seen from the scene; or a built-in one:'), &
+      key_t('mesh', 'file', 't', NONE, 0, 0, 'Gmsh 4.1 text mesh, relative to the scene; or r and z:'), &
       key_t('mesh', 'r', 'N', NONE, -BIG, BIG, 'breaks along r [m], ascending'), &
       key_t('mesh', 'r_cells', 'I', NONE, 1, 100000, 'cells between two breaks'), &
-      key_t('mesh', 'r_ratio', 'N', NONE, 0.01_wp, 100, 'size of a cell over that before it; default 1'), &
+      key_t('mesh', 'r_ratio', 'N', NONE, 0.01_wp, 100, 'size of a cell over that of the previous one; default 1'), &
       key_t('mesh', 'z', 'N', NONE, -BIG, BIG, 'breaks along z [m], ascending'), &
       key_t('mesh', 'z_cells', 'I', NONE, 1, 100000, 'cells between two breaks'), &
-      key_t('mesh', 'z_ratio', 'N', NONE, 0.01_wp, 100, 'size of a cell over that before it; default 1'), &
+      key_t('mesh', 'z_ratio', 'N', NONE, 0.01_wp, 100, 'size of a cell over that of the previous one; default 1'), &
       key_t('fluids', 'k_w', 'n', '2.2e6', TINY_, BIG, 'bulk modulus of water [kPa]'), &
       key_t('fluids', 'rho_w', 'n', '1.0', 0, 1000, 'density of water [Mg/m3]'), &
       key_t('fluids', 'eta_w', 'n', '1.0e-6', TINY_, BIG, 'viscosity of water [kPa s]'), &
@@ -62,8 +62,8 @@ module scene_keys
       key_t('fluids', 'rho_a', 'n', '1.2e-3', 0, 1000, 'density of air (ideal: at p_ref) [Mg/m3]'), &
       key_t('fluids', 'eta_a', 'n', '1.8e-8', TINY_, BIG, 'viscosity of air [kPa s]'), &
       key_t('fluids', 'p_ref', 'n', '101.325', TINY_, BIG, 'absolute pressure where p_a = 0 [kPa]'), &
-      key_t('retention', 'name', 't', REQUIRED, 0, 0, 'name that regions call it by'), &
-      key_t('permeability', 'name', 't', REQUIRED, 0, 0, 'name that regions call it by'), &
+      key_t('retention', 'name', 't', REQUIRED, 0, 0, 'name, for the key of &region'), &
+      key_t('permeability', 'name', 't', REQUIRED, 0, 0, 'name, for the key of &region'), &
       key_t('permeability', 'intrinsic', 'n', REQUIRED, TINY_, 1, 'intrinsic permeability [m2]'), &
       key_t('permeability', 'law', 'w', 'corey', 0, 0, 'relative permeabilities', 'corey|mualem|power|constant'), &
       key_t('permeability', 's_min', 'n', '0.0', 0, 0.999_wp, 'S_w at which S_e = 0 [-]'), &
@@ -99,10 +99,10 @@ module scene_keys
       key_t('initial', 'surcharge', 'n', '0', 0, BIG, 'geostatic: pressure on it [kPa]'), &
       key_t('initial', 'k_0', 'n', '0.5', 0, 10, 'geostatic: horizontal over vertical stress'), &
       key_t('initial', 'k_0_of', 'w', 'net', 0, 0, 'stress that K_0 acts on where p_c > 0', 'net|effective'), &
-      key_t('history', 'name', 't', REQUIRED, 0, 0, 'name that loads call it by'), &
+      key_t('history', 'name', 't', REQUIRED, 0, 0, 'name, for the key history of loads'), &
       key_t('history', 'times', 'N', NONE, -BIG, BIG, 'ascending [s]; straight lines between, constant outside'), &
       key_t('history', 'values', 'N', NONE, -BIG, BIG, 'factors at these times [-]'), &
-      key_t('history', 'file', 't', NONE, 0, 0, 'instead: text file with a time and a factor a line'), &
+      key_t('history', 'file', 't', NONE, 0, 0, 'instead: text file, a time and a factor in every line'), &
       key_t('stage', 'name', 't', REQUIRED, 0, 0, 'name of the stage'), &
       key_t('stage', 'analysis', 'w', NONE, 0, 0, &
             'kind of the stage; needed unless effects = ''auto''', 'static|quasi_static|dynamic'), &

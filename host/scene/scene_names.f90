@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Names of a scene: what others name is there once, and what becomes a file or a column has a name fit for it.
+!> Names of a scene: a name that other groups refer to is unique, and a name that becomes a file or a column is valid
+!> for that.
 module scene_names
    use scene_types, only: NAME_LENGTH
    use faults, only: fault_t, raise, at_line, EXIT_INPUT

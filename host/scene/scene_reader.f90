@@ -103,7 +103,7 @@ contains
       end do
       do k = 1, size(NEEDED)
          if (.not. any([(groups(i)%name == NEEDED(k), i=1, size(groups))])) call raise(fault, EXIT_INPUT, trim(file)// &
-            ': there is no &'//trim(NEEDED(k))//'; mud_host --template prints every group.')
+            ': the group &'//trim(NEEDED(k))//' is missing; mud_host --template prints every group.')
       end do
    end subroutine check_counts
 

@@ -40,7 +40,7 @@ module linear_system
    end type system_t
 contains
    !> Solution to a small share of Newton's tolerance: by the factors of an earlier matrix as long as these serve and
-   !> nothing has come to be fixed, let go or touched, else by new ones.
+   !> nothing has been fixed, released or come into contact, otherwise by new ones.
    subroutine solve_step(dofs, pattern, constraint, assembly, tolerance, rhs, system, dx, status)
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(in) :: pattern

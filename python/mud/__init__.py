@@ -6,7 +6,7 @@
     test = mud.element_test(sand, mud.Stage("drained", eps_a_end=0.2), p_eff=100.0, void_ratio=0.8)
     mud.plot_test(test, "drained.png")          # needs matplotlib
 
-``mud.parameters`` and ``mud.states`` are the library's registry. ``mud.calibrate`` (needs SciPy) fits parameters to
+``mud.parameters`` and ``mud.states`` are the library's registry. ``mud.calibration`` (needs SciPy) fits parameters to
 laboratory tests. Points follow the library's convention (tension positive, engineering shear), element tests that of the
 laboratory (compression positive); both say so.
 """

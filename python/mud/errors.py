@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Exceptions; what they say is the library's own sentence."""
+"""Exceptions; their text is the message of the library."""
 
 from __future__ import annotations
 

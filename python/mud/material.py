@@ -54,7 +54,7 @@ class BatchResponse:
     dsw_dpc: np.ndarray | None  #: (n,)
 
     def sentence(self, point: int) -> str:
-        """What the library says about a point."""
+        """The message of the library about a point."""
         return _native.text_of(_native.mud.mud_status_text, int(self.status[point]))[1]
 
 
@@ -249,7 +249,7 @@ class Material(Mapping):
         tangent : as in ``update``. threads : 0 takes as many as OpenMP would.
         out : (stress, statev) to write to, may be the inputs themselves; None: new arrays.
 
-        Every array must be of float64 and contiguous (C order); one that is not is refused and not copied in silence.
+        Every array must be of float64 and contiguous (C order); any other is refused, never copied.
         A point that fails leaves its outputs as they were: see ``status`` of the answer.
         """
         kind, n = _tangent(tangent), len(stress)

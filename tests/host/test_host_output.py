@@ -179,7 +179,7 @@ def shorten(file):
 
 other = text.replace("void_ratio = 0.8", "void_ratio = 0.81")
 REFUSED = [
-    ("missing", lambda: bad.unlink(missing_ok=True), text, "is not there"),
+    ("missing", lambda: bad.unlink(missing_ok=True), text, "is missing"),
     ("empty", lambda: bad.write_bytes(b""), text, "cut off"),
     ("truncated", lambda: bad.write_bytes(raw[:len(raw)//2]), text, "cut off"),
     ("one byte short", lambda: bad.write_bytes(raw[:-1]), text, "cut off"),

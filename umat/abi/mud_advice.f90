@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What is allowed but doubtful in PROPS: a sentence, never a refusal.
+!> Values of PROPS that are allowed but doubtful: a warning, never a refusal.
 module mud_advice
    use mud_kinds, only: wp
    use mud_messages, only: number

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What hosts hand to umat_: NULL pointers, memory that was never set, orders of their own.
+!> What hosts pass to umat_: NULL pointers, memory that was never set, other orders of components.
 module mud_arguments
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
    use mud_kinds, only: wp

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> The one door to the core: UMAT conventions (tension positive, engineering shear) outside, soil mechanics inside.
+!> The only entry to the core: UMAT conventions (tension positive, engineering shear) outside, soil mechanics inside.
 !> umat_ and mud_update both end here.
 module mud_kernel
    use, intrinsic :: iso_c_binding, only: c_int, c_double

@@ -35,9 +35,9 @@ contains
       case (MUD_BAD_STATE)
          text = 'a state variable is not finite or impossible: was STATEV zeroed before the first call and kept since?'
       case (MUD_BAD_INPUT)
-         text = 'stress, strain, suction or DROT is not finite, absurdly large or no rotation: look at the host'
+         text = 'stress, strain, suction or DROT is not finite, too large or no rotation: check what the host passes'
       case (MUD_NULL_ARGUMENT)
-         text = 'a pointer that must be given is NULL'
+         text = 'a required pointer is NULL'
       case (MUD_BAD_VOID_RATIO)
          text = 'the initial void ratio is out of its range: correct e_0 of PROPS or the preset in STATEV'
       case (MUD_BAD_OPTION)
@@ -51,7 +51,7 @@ contains
       case (MUD_TOO_MANY_SUBSTEPS)
          text = 'too many substeps: cut the increment, or raise max_substeps'
       case (MUD_NO_DIRECTION)
-         text = 'no admissible loading direction, again: cut the increment, or switch the guards x_0, cap_d, cap_h on'
+         text = 'no admissible loading direction: cut the increment, or switch the guards x_0, cap_d, cap_h on'
       case (MUD_VOID_RATIO_LIMIT)
          text = 'the increment would drive the void ratio out of its range: cut it, or correct the strain'
       case (MUD_NOT_FINITE)
@@ -95,7 +95,7 @@ contains
                 ': correct e_0 of PROPS or the preset in STATEV'
       case (MUD_BAD_INPUT, MUD_INCREMENT_TOO_LARGE)
          if (report%subject == ON_STRESS .or. report%subject == ON_STRAIN .or. report%subject == ON_SUCTION) then
-            if (report%status == MUD_BAD_INPUT) text = 'look at the host, which gives it'
+            if (report%status == MUD_BAD_INPUT) text = 'check what the host passes'
             text = trim(quantity(report))//' is '//trim(number(report%value))//trim(span(lower, upper))//': '//text
          else if (report%subject == ON_ROTATION) then
             text = rotation_text(report)

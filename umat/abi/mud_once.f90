@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What umat_ has told the user already: the one thing that the library remembers between calls. A sentence of each
+!> Which messages umat_ has already printed: the one thing that the library remembers between calls. A message of each
 !> kind goes to standard error once a process, whichever thread comes first. Nothing else reads the memory, so no answer
 !> depends on it. Compiled with OpenMP for its atomic operations alone, which need no run-time library; without OpenMP
 !> two threads that fail at the same instant may both speak. A forked process inherits what was said before; the ranks

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> A refusal of umat_ is heard: a sentence on standard error, once a process for each distinct failure, a request for a
-!> cut in PNEWDT or, where the host gives no PNEWDT, a STRESS that no solver takes for an answer. user_mod_ and vumat_
+!> Reports a refusal of umat_: a message on standard error, once a process for each distinct failure, a request for a
+!> cut in PNEWDT or, where the host gives no PNEWDT, a STRESS of NaN that stops the solver. user_mod_ and vumat_
 !> say their sentences here too.
 module mud_refusals
    use, intrinsic :: iso_c_binding, only: c_ptr, c_double, c_null_ptr, c_associated, c_f_pointer
@@ -82,7 +82,7 @@ contains
       factor = report%pnewdt
    end subroutine ask_for_a_cut
 
-   !> Without PNEWDT a host takes the old stress for the answer and goes on. A NaN it cannot take for anything.
+   !> Without PNEWDT a host would continue with the old stress; a NaN stops it.
    subroutine spoil(stress, ntens)
       type(c_ptr), intent(in) :: stress
       integer, intent(in) :: ntens   !< As the host gives it: it may be what is wrong.

@@ -240,7 +240,7 @@ contains
       six = six(ORDER)
    end function read_six
 
-   !> The first number of an array whose length nobody knows becomes a NaN.
+   !> The first number of an array of unknown length becomes a NaN.
    subroutine spoil_first(array, n)
       type(c_ptr), intent(in) :: array
       integer, intent(in) :: n   !< Points of the block.

@@ -50,7 +50,7 @@ def calibrate(
     """Fits a material to the tests of a task that are not held out.
 
     effort : how much the search may do; the default is a whole calibration. workers : processes, 0: one a core; the answer does
-    not depend on it. write : takes lines of progress with the time left, None: silent. beside : material whose misfit is told
+    not depend on it. write : takes lines of progress with the time left, None: silent. beside : material whose misfit is reported
     too. Reproducible: the same task, seed and library give the same parameters.
     """
     try:

@@ -77,7 +77,7 @@ class Evaluator:
         self, sets: Sequence[Mapping[str, float]], numbers: Sequence[int] | None = None, thin: int = 1
     ) -> list[np.ndarray]:
         """Residual vectors of several sets of variables on tests by their number, and behind them what keeps Poisson's ratio;
-        thin : every so manieth row counts."""
+        thin : only every row of this number counts."""
         numbers = range(len(self.items)) if numbers is None else numbers
         jobs = [({**self.fixed, **values}, number, thin) for values in sets for number in numbers]
         if self._pool:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a calibration leaves: the material file, a page in Markdown with pictures, and the misfits as a table."""
+"""The results of a calibration as files: the material file, a page in Markdown with pictures, and the misfits as a table."""
 
 from __future__ import annotations
 

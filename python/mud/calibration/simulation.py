@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the model answers to a laboratory test, at the rows of the laboratory."""
+"""The response of the model to a laboratory test, at the rows of the laboratory."""
 
 from __future__ import annotations
 

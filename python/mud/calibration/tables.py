@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Laboratory tables: CSV files of tests, read and checked; what is wrong is told with file, line and remedy.
+"""Laboratory tables: CSV files of tests, read and checked; errors name file, line and remedy.
 
 A column is a quantity with its unit behind it: ``eps_a_percent``, ``q_kPa``, ``e``. ``#`` begins a comment. Compression is
 positive. Inside, strains are fractions and stresses kPa.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A calibration as it is asked for: tables, what is known, what is held out; from Python or from a TOML file."""
+"""The task of a calibration: tables, known values, held-out tests; from Python or from a TOML file."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Where a point starts, and what a state says of itself: degree of saturation, state parameter, tension.
+!> The initial state of a point, and what follows from a state: degree of saturation, state parameter, tension.
 module mud_start
    use mud_kinds, only: wp
    use mud_blocks, only: blocks_t

@@ -53,8 +53,8 @@ module mud_substep
       [0.0_wp, 1.0_wp/5, 3.0_wp/10, 4.0_wp/5, 8.0_wp/9, 1.0_wp, 1.0_wp])
 
    type(scheme_t), parameter :: SCHEMES(3) = [MODIFIED_EULER, BOGACKI_SHAMPINE, DORMAND_PRINCE]
-   !> What modified Euler hands over to where it would need many substeps: its steps grow with the third root of the
-   !> tolerance, and it is the most stable of the three for its rates.
+   !> Replaces modified Euler where that would need many substeps: its steps grow with the third root of the tolerance,
+   !> and it is the most stable of the three for its rates.
    type(scheme_t), parameter :: HIGHER_ORDER = BOGACKI_SHAMPINE
 
    !> Rosenbrock-W 3(2), ROS34PW2 of Rang & Angermann, BIT 45 (2005): of order 3 whatever matrix stands for the

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> A record of the substeps that an update tried, for those who ask why it failed.
+!> A record of the substeps that an update tried, to find out why it failed.
 module mud_trace
    use, intrinsic :: iso_c_binding, only: c_int, c_double
    use mud_kinds, only: wp
@@ -28,7 +28,7 @@ module mud_trace
       type(substep_t), pointer :: rows(:) => null()
    end type trace_t
 contains
-   !> Takes down one attempt.
+   !> Records one attempt.
    pure subroutine record_substep(par, inc, trial, h, error, sigma, outcome, jump, landed, counters, trace)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc

@@ -8,7 +8,7 @@ module mud_critical_state
    private
    public :: critical_void_ratio, bounding_ratio, dilatancy_ratio, lode_factor, lode_slope, compression_image
 
-   !> |n psi| and |ln alpha_hat| beyond these are held, lest something overflows: only absurd parameters get there [-].
+   !> |n psi| and |ln alpha_hat| are limited to these, to prevent overflow: only absurd parameters reach the limits [-].
    real(wp), parameter :: EXPONENT_LIMIT = 20.0_wp, IMAGE_LIMIT = 50.0_wp
 contains
    !> e_c [-] at a mean effective stress [kPa] and a bonding factor [-], paper eq. (8).

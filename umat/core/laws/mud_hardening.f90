@@ -12,7 +12,7 @@ module mud_hardening
 
    real(wp), parameter :: SMALLEST_VOID_TERM = 0.01_wp   !< Guard: 1 - c_h e >= it [-].
    !> Below it |delta|^theta, whose slope at zero is infinite, is an odd polynomial of the same value, slope and bend
-   !> there: the compression line attracts, and how fast is that slope [-].
+   !> there: this slope is the rate at which states approach the compression line [-].
    real(wp), parameter :: SMALLEST_DELTA = 1.0e-4_wp
    real(wp), parameter :: SMALLEST_COUPLING = 0.1_wp     !< Guard: 1 + C >= it [-].
 

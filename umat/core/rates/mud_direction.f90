@@ -22,7 +22,7 @@ module mud_direction
    real(wp), parameter :: NEGLIGIBLE = 1.0e-12_wp        !< Smaller divisors would only make a cap that never acts [-].
    real(wp), parameter :: NO_LIMIT = 1.0e100_wp          !< A cap that is off.
 
-   !> One rate and everything it went through, as mud_tangent needs it. Per unit of the pseudo-time of d_strain, d_pc.
+   !> One rate and its intermediate results, as mud_tangent needs them. Per unit of the pseudo-time of d_strain, d_pc.
    type :: rate_t
       ! the point
       real(wp) :: p                !< p' >= p_min [kPa]
@@ -73,7 +73,7 @@ module mud_direction
       real(wp) :: admissible        !< y |t|, positive if admissible [kPa]
    end type trial_t
 contains
-   !> The unit direction n and what hangs on it. Leaves w%loading false and sets w%no_root where none is admissible.
+   !> The unit direction n and what depends on it. Leaves w%loading false and sets w%no_root where none is admissible.
    pure subroutine find_direction(par, known, w)
       type(params_t), intent(in) :: par
       logical, intent(in) :: known          !< w%n is the direction for nearly the same t: a start of the iteration.
