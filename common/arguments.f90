@@ -115,6 +115,7 @@ contains
       place = 0
    end function place_of
 
+   !> Whether the command line has the option of this name.
    pure logical function option_given(options, name)
       type(option_t), intent(in) :: options(:)
       character(*), intent(in) :: name

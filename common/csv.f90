@@ -58,6 +58,7 @@ contains
       columns_of = 1 + count([(head(i:i) == ',', i=1, len(head))])
    end function columns_of
 
+   !> Whether the file of a table is open.
    pure logical function is_open(table)
       type(csv_t), intent(in) :: table
 
@@ -111,6 +112,7 @@ contains
       call put_text(table, table%row(:len_trim(table%row))//new_line('a'), fault)
    end subroutine write_row
 
+   !> Writes a text as one line; a fault if it cannot be written.
    subroutine write_line(table, text, fault)
       type(csv_t), intent(inout) :: table
       character(*), intent(in) :: text

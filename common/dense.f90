@@ -56,6 +56,7 @@ contains
       x = b(:, 1)
    end subroutine solve
 
+   !> Outer product a b^T.
    pure function outer(a, b) result(product)
       real(wp), intent(in) :: a(:), b(:)
       real(wp) :: product(size(a), size(b))

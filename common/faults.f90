@@ -18,6 +18,7 @@ module faults
    end type fault_t
 
 contains
+   !> Sets the exit code and the message of a fault; the message is complete: what, where, value, allowed range, remedy.
    subroutine raise(fault, code, text)
       type(fault_t), intent(inout) :: fault
       integer, intent(in) :: code

@@ -12,6 +12,7 @@ module files
    character(*), parameter :: PART = '.part'   !< Ends the name of a file that is being written.
 
    interface
+      !> Opens a file; a null pointer where it cannot be opened. path and mode end with a null character.
       type(c_ptr) function fopen(path, mode) bind(c)
          import :: c_ptr, c_char
          character(kind=c_char), intent(in) :: path(*), mode(*)
@@ -167,6 +168,7 @@ contains
       open_output = fdopen(dup(1_c_int), 'wb'//c_null_char)
    end function open_output
 
+   !> Folder of a path without its closing slash, '.' if the path has none.
    pure function folder_of(path) result(folder)
       character(*), intent(in) :: path
       character(:), allocatable :: folder
@@ -203,6 +205,7 @@ contains
       status = fclose(file)
    end subroutine settle_file
 
+   !> The characters of a text as bytes.
    pure function bytes_of(text) result(bytes)
       character(*), intent(in) :: text
       integer(c_int8_t) :: bytes(len(text))

@@ -104,6 +104,7 @@ contains
       call note(file, status)
    end subroutine open_file
 
+   !> Closes a file that was opened for reading.
    subroutine close_file(file)
       type(h5_t), intent(inout) :: file
       integer :: status

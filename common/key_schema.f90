@@ -182,6 +182,7 @@ contains
       text = text//trim(key%meaning)
    end function described
 
+   !> Whether a group gives a key.
    pure logical function given(group, name)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: name
@@ -226,6 +227,7 @@ contains
       if (place > 0) texts = group%entries(place)%values(:group%entries(place)%count)
    end function texts_of
 
+   !> Whether the value of a key (its default where it is not given) is this word; case is ignored.
    logical function word_is(keys, group, name, word)
       type(key_t), intent(in) :: keys(:)
       type(group_t), intent(in) :: group

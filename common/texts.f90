@@ -15,6 +15,7 @@ module texts
       module procedure whole_32, whole_64
    end interface whole
 contains
+   !> The text with ASCII letters in lower case.
    elemental function lower_case(text) result(lower)
       character(*), intent(in) :: text
       character(len(text)) :: lower

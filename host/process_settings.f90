@@ -24,6 +24,7 @@ module process_settings
       end function set_memory
    end interface
 contains
+   !> Applies the settings, once at the start of the program.
    subroutine settle_process()
       procedure(set_threads), pointer :: threads
       procedure(set_memory), pointer :: memory

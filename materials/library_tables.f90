@@ -15,6 +15,7 @@ module library_tables
 
    integer, parameter :: BUFFER = 600
 contains
+   !> Version of the library.
    function library_version() result(version)
       character(:), allocatable :: version
       character(BUFFER) :: text
@@ -26,10 +27,12 @@ contains
       if (code < 0) version = 'unknown'
    end function library_version
 
+   !> Number of entries of PROPS.
    integer function property_count()
       property_count = mud_count(MUD_PROPS)
    end function property_count
 
+   !> Number of entries of STATEV.
    integer function state_count()
       state_count = mud_count(MUD_STATEV)
    end function state_count
@@ -48,6 +51,7 @@ contains
       statev_index = mud_index(MUD_STATEV, trim(name)//c_null_char) + 1
    end function statev_index
 
+   !> Name of the entry of PROPS at a place from 1.
    function property_name(place) result(text)
       integer, intent(in) :: place
       character(:), allocatable :: text
@@ -55,6 +59,7 @@ contains
       text = table_text(MUD_PROPS, place, MUD_NAME)
    end function property_name
 
+   !> Unit of the entry of PROPS at a place from 1.
    function property_unit(place) result(text)
       integer, intent(in) :: place
       character(:), allocatable :: text
@@ -62,6 +67,7 @@ contains
       text = table_text(MUD_PROPS, place, MUD_UNIT)
    end function property_unit
 
+   !> Origin of the entry of PROPS at a place from 1: paper, mended, rebuilt, numerical or ours.
    function property_origin(place) result(text)
       integer, intent(in) :: place
       character(:), allocatable :: text
@@ -69,6 +75,7 @@ contains
       text = table_text(MUD_PROPS, place, MUD_ORIGIN)
    end function property_origin
 
+   !> Meaning of the entry of PROPS at a place from 1.
    function property_meaning(place) result(text)
       integer, intent(in) :: place
       character(:), allocatable :: text
@@ -76,6 +83,7 @@ contains
       text = table_text(MUD_PROPS, place, MUD_MEANING)
    end function property_meaning
 
+   !> Name of the entry of STATEV at a place from 1.
    function statev_name(place) result(text)
       integer, intent(in) :: place
       character(:), allocatable :: text
@@ -83,6 +91,7 @@ contains
       text = table_text(MUD_STATEV, place, MUD_NAME)
    end function statev_name
 
+   !> Unit of the entry of STATEV at a place from 1.
    function statev_unit(place) result(text)
       integer, intent(in) :: place
       character(:), allocatable :: text

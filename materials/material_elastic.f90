@@ -41,6 +41,7 @@ contains
                                       number_of(ELASTIC_KEYS, group, 'poisson')))
    end subroutine new_elastic
 
+   !> The law with Young's modulus [kPa] and Poisson's ratio [-]; saturated unless a retention curve is added.
    pure function isotropic(young, poisson) result(law)
       real(wp), intent(in) :: young, poisson
       type(elastic_t) :: law

@@ -58,6 +58,7 @@ contains
       end subroutine add
    end subroutine list_laws
 
+   !> Names of all laws.
    function law_names() result(names)
       character(12), allocatable :: names(:)
       type(law_t), allocatable :: list(:)
@@ -66,6 +67,7 @@ contains
       names = list%name
    end function law_names
 
+   !> Whether a law has this name.
    logical function is_law(name)
       character(*), intent(in) :: name
 

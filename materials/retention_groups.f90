@@ -45,6 +45,7 @@ contains
       call new_retention(group, law%curve, fault)
    end subroutine give_retention
 
+   !> Makes the curve of a group; a fault where its values contradict each other.
    subroutine new_retention(group, curve, fault)
       type(group_t), intent(in) :: group   !< Checked against RETENTION_KEYS.
       class(retention_t), allocatable, intent(out) :: curve

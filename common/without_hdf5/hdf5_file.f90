@@ -20,6 +20,7 @@ module hdf5_file
       module procedure get_real, get_real_2, get_integer
    end interface get
 contains
+   !> Fails: there is no HDF5.
    subroutine new_file(file, guarded)
       type(h5_t), intent(out) :: file
       logical, intent(in), optional :: guarded
@@ -27,6 +28,7 @@ contains
       file%good = present(guarded) .and. .false.
    end subroutine new_file
 
+   !> Fails: there is no HDF5.
    subroutine write_file(file, path, good)
       type(h5_t), intent(inout) :: file
       character(*), intent(in) :: path
@@ -35,6 +37,7 @@ contains
       good = file%good .and. len(path) < 0
    end subroutine write_file
 
+   !> Fails: there is no HDF5.
    subroutine open_file(path, file)
       character(*), intent(in) :: path
       type(h5_t), intent(out) :: file
@@ -42,6 +45,7 @@ contains
       file%good = len(path) < 0
    end subroutine open_file
 
+   !> Nothing is open without HDF5.
    subroutine close_file(file)
       type(h5_t), intent(inout) :: file
 
@@ -80,6 +84,7 @@ contains
       file%good = len(name) + len(unit) + len(meaning) + size(values) < 0
    end subroutine put_integer_2
 
+   !> Fails: there is no HDF5.
    subroutine put_text(file, name, text)
       type(h5_t), intent(inout) :: file
       character(*), intent(in) :: name, text
@@ -87,6 +92,7 @@ contains
       file%good = len(name) + len(text) < 0
    end subroutine put_text
 
+   !> Blank: there is no HDF5.
    function get_text(file, name) result(text)
       type(h5_t), intent(in) :: file
       character(*), intent(in) :: name
@@ -96,6 +102,7 @@ contains
       if (file%good) text = name
    end function get_text
 
+   !> Zero: there is no HDF5.
    integer function extent_of(file, name)
       type(h5_t), intent(in) :: file
       character(*), intent(in) :: name

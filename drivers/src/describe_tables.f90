@@ -11,6 +11,7 @@ module describe_tables
 
    integer, parameter :: BUFFER = 256
 contains
+   !> Prints the parameters of the library as a table in Markdown.
    subroutine print_props()
       integer(c_int) :: i
       real(c_double) :: lower, upper, preset
@@ -26,6 +27,7 @@ contains
       end do
    end subroutine print_props
 
+   !> Prints the state variables of the library as a table in Markdown, and their number.
    subroutine print_statev()
       integer(c_int) :: i
 
@@ -39,6 +41,7 @@ contains
       end do
    end subroutine print_statev
 
+   !> Prints a group &material with every parameter at its default.
    subroutine print_namelist()
       integer(c_int) :: i
       real(c_double) :: lower, upper, preset
@@ -65,6 +68,7 @@ contains
       string = from_c(raw)
    end function text
 
+   !> Version of the library.
    function version() result(string)
       character(:), allocatable :: string
       character(BUFFER) :: raw

@@ -29,6 +29,7 @@ module replay_file
       integer :: unit = -1, line = 0
    end type source_t
 contains
+   !> Reads a saved increment; a fault names file, line, what was found and what is expected.
    subroutine read_increment(file, increment, fault)
       character(*), intent(in) :: file
       type(increment_t), intent(out) :: increment

@@ -156,6 +156,7 @@ contains
       triax_remarks = length_of(result%table%remarks)
    end function triax_remarks
 
+   !> Frees a result; nothing without a handle.
    subroutine triax_free(handle) bind(c, name='mud_triax_free')
       type(c_ptr), value :: handle
       type(result_t), pointer :: result

@@ -15,6 +15,7 @@ module triax_help
    public :: print_help, print_template
 
 contains
+   !> Prints the usage, every key of a case and every control.
    subroutine print_help()
       character(12), allocatable :: laws(:)
       type(key_t), allocatable :: keys(:)
@@ -81,6 +82,7 @@ contains
       if (control == LINEAR) text = 'strain_i, stress_i and change_i of six constraints'
    end function leads_text
 
+   !> Prints a case that runs unchanged, with every parameter, its range and its origin.
    subroutine print_template()
       real(wp) :: lower, upper, preset
       integer :: i

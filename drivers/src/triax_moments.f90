@@ -17,12 +17,14 @@ module triax_moments
       real(wp), allocatable :: values(:, :)       !< (columns, n or more)
    end type moments_t
 contains
+   !> Empties the record; its memory is kept.
    pure subroutine forget_moments(moments)
       type(moments_t), intent(inout) :: moments
 
       moments%n = 0
    end subroutine forget_moments
 
+   !> Adds the columns (values) at the end of an increment, known by its tag; `ends_way` at the end of a path segment.
    pure subroutine note_moment(moments, tag, ends_way, values)
       type(moments_t), intent(inout) :: moments
       integer, intent(in) :: tag(PLACES)

@@ -148,6 +148,7 @@ contains
       call remark(table, text(:index(text, ':') - 1), text(index(text, ':') + 2:), fault)
    end subroutine add_note
 
+   !> Adds the row of a point after an increment of stage number `stage`.
    subroutine write_row(table, soil, point, run, error, stage, fault)
       type(table_t), intent(inout) :: table
       type(soil_t), intent(in) :: soil

@@ -137,12 +137,14 @@ contains
       sentence = trim(text)
    end function update_sentence
 
+   !> Mean effective stress, compression positive [unit of stress of the law].
    pure real(wp) function mean_stress(point)
       type(point_t), intent(in) :: point
 
       mean_stress = sum(point%stress(1:3))/3.0_wp
    end function mean_stress
 
+   !> Mean of the two radial effective stresses, compression positive [unit of stress of the law].
    pure real(wp) function radial_stress(point)
       type(point_t), intent(in) :: point
 
@@ -156,24 +158,28 @@ contains
       deviator_stress = point%stress(AXIAL) - radial_stress(point)
    end function deviator_stress
 
+   !> Natural axial strain since the start of the test, compression positive [-].
    pure real(wp) function axial_strain(point)
       type(point_t), intent(in) :: point
 
       axial_strain = point%strain(AXIAL)
    end function axial_strain
 
+   !> Mean of the two natural radial strains since the start of the test, compression positive [-].
    pure real(wp) function radial_strain(point)
       type(point_t), intent(in) :: point
 
       radial_strain = 0.5_wp*sum(point%strain(RADIAL))
    end function radial_strain
 
+   !> Natural volumetric strain since the start of the test, compression positive [-].
    pure real(wp) function volumetric_strain(point)
       type(point_t), intent(in) :: point
 
       volumetric_strain = sum(point%strain(1:3))
    end function volumetric_strain
 
+   !> Void ratio of the law's state [-].
    pure real(wp) function void_ratio(soil, point)
       type(soil_t), intent(in) :: soil
       type(point_t), intent(in) :: point

@@ -25,6 +25,7 @@ module triax_progress
    end type timer_t
 
 contains
+   !> Starts the clock of a run.
    subroutine start_timer(timer)
       type(timer_t), intent(out) :: timer
 

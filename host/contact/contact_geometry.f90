@@ -101,6 +101,8 @@ contains
       end do
    end subroutine list_edges
 
+   !> Refuses present coordinates (2, nodes) [m] of both surfaces that are not finite, not as many as prepared, left of
+   !> the axis, or whose edges are folded: status CONTACT_OK, or the first that is wrong.
    pure subroutine check_coordinates(geometry, slave_x, master_x, status)
       type(contact_geometry_t), intent(in) :: geometry
       real(wp), intent(in) :: slave_x(:, :), master_x(:, :)

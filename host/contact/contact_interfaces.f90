@@ -79,6 +79,7 @@ contains
       if (up) surface%x0 = surface%x0(:, [2, 1, 3])
    end function plate_surface
 
+   !> Prepares the interface of a slave and a master surface; the status says what is wrong with surfaces or options.
    subroutine new_interface(dofs, slave, master, plate, options, one, status)
       type(dofs_t), intent(in) :: dofs
       type(surface_t), intent(in) :: slave, master

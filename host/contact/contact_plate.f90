@@ -21,6 +21,7 @@ module contact_plate
       real(wp), allocatable, private :: right(:), below(:)   !< The plate's column and row.
    end type plate_response_t
 contains
+   !> Room for the forces and the tangent of a plate, sized for the slave of a geometry.
    pure function new_plate_response(geometry) result(plate)
       type(contact_geometry_t), intent(in) :: geometry
       type(plate_response_t) :: plate

@@ -28,6 +28,7 @@ module contact_projection
    !> A step of two units in the last place of 1 is rounding, not progress.
    real(wp), parameter :: ROUNDING = 2.0_wp*epsilon(1.0_wp)
 contains
+   !> Shape functions of an edge at s in [-1, 1]: start, end, middle.
    pure function shapes(s) result(n)
       real(wp), intent(in) :: s
       real(wp) :: n(3)
@@ -35,6 +36,7 @@ contains
       n = [-0.5_wp*s*(1.0_wp - s), 0.5_wp*s*(1.0_wp + s), (1.0_wp - s)*(1.0_wp + s)]
    end function shapes
 
+   !> Derivatives of the shape functions of an edge with respect to s.
    pure function shape_slopes(s) result(dn)
       real(wp), intent(in) :: s
       real(wp) :: dn(3)
@@ -42,6 +44,7 @@ contains
       dn = [s - 0.5_wp, s + 0.5_wp, -2.0_wp*s]
    end function shape_slopes
 
+   !> Polynomial of an edge through three nodes.
    pure function edge_of(x) result(edge)
       real(wp), intent(in) :: x(2, 3)   !< Start, end, middle [m].
       type(edge_t) :: edge
@@ -51,6 +54,7 @@ contains
       edge%bend = 0.5_wp*((x(:, 1) - x(:, 3)) + (x(:, 2) - x(:, 3)))
    end function edge_of
 
+   !> Coordinates of the point s of an edge [m].
    pure function place(edge, s) result(x)
       type(edge_t), intent(in) :: edge
       real(wp), intent(in) :: s

@@ -35,6 +35,8 @@ module contact_response
    ! The fields a density depends on, in one list: x_s (1, 2), t (3, 4), x_m (5, 6), s (7).
    integer, parameter :: FIELDS = 7
 contains
+   !> Forces (12) and, if wanted, stiffness (12, 12) of a pair of edges in local coordinates; `missed` is the largest
+   !> share of the master edge by which a normal misses it. docs/theory/contact.md section 3.
    pure subroutine pair_response(x, overlap, options, at_ends, pressure, with_stiffness, response, missed)
       real(wp), intent(in) :: x(2, 6)                   !< Local coordinates as in contact_mortar [m].
       type(overlap_t), intent(in) :: overlap

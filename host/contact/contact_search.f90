@@ -107,6 +107,7 @@ contains
       end do
    end subroutine edge_boxes
 
+   !> Whether two boxes (lower r, lower z, upper r, upper z) have a point in common.
    pure logical function boxes_meet(a, b)
       real(wp), intent(in) :: a(4), b(4)
 

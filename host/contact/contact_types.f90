@@ -48,6 +48,7 @@ module contact_types
 
    integer(int64), parameter :: EXPONENT_BITS = int(z'7FF0000000000000', int64)   !< All set: NaN or infinity.
 contains
+   !> A status with the place and the value that are wrong.
    pure function contact_fail(code, index, master, value) result(status)
       integer, intent(in) :: code
       integer, intent(in), optional :: index

@@ -39,6 +39,7 @@ module equation_assembly
       real(wp) :: material = 0.0_wp                  !< Share of the material in the time of the last pass.
    end type assembly_t
 contains
+   !> Room for residual, tangent and scales of a domain; the pattern must be that of its elements.
    subroutine make_assembly(domain, dofs, pattern, assembly)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs

@@ -31,6 +31,7 @@ module permeability_laws
       real(wp) :: dw, da   !< Their slopes against S_w [-].
    end type relative_t
 contains
+   !> Relative permeabilities of water and air [-] and their slopes at a degree of saturation [-].
    pure function relative_permeability(law, s_w) result(k)
       type(permeability_t), intent(in) :: law
       real(wp), intent(in) :: s_w

@@ -39,6 +39,7 @@ module gmsh_reader
       character(LONGEST) :: text = ''
    end type reader_t
 contains
+   !> Reads a mesh; a fault names file, line, what is wrong and what is expected.
    subroutine read_gmsh(file, mesh, fault)
       character(*), intent(in) :: file
       type(mesh_t), intent(out) :: mesh

@@ -36,6 +36,7 @@ contains
       end do
    end function graded_axis
 
+   !> Mesh of a rectangle from breaks [m], cells between two breaks and the ratio of neighbouring cells, along r and z.
    subroutine graded_mesh(r_breaks, r_cells, r_ratio, z_breaks, z_cells, z_ratio, mesh)
       real(wp), intent(in) :: r_breaks(:), r_ratio(:), z_breaks(:), z_ratio(:)
       integer, intent(in) :: r_cells(:), z_cells(:)

@@ -27,6 +27,7 @@ module absorbing_boundaries
       real(wp) :: water = 0.0_wp, air = 0.0_wp      !< Outflow over the rate of the pressure, k/(eta c_p) [m/(kPa)].
    end type ground_t
 contains
+   !> Dashpots of all absorbing boundaries; a fault where the ground has no stiffness or its material refuses.
    subroutine prepare_absorbers(model, state, list, fault)
       type(model_t), intent(in) :: model
       type(state_t), intent(in) :: state   !< The initial one.
@@ -252,6 +253,7 @@ contains
       end do
    end subroutine add_incoming
 
+   !> Whether an absorbing boundary acts in a stage: in dynamic ones that its `stages` name (all if it names none).
    pure logical function absorber_acts(absorber, stage)
       type(absorber_t), intent(in) :: absorber
       type(stage_t), intent(in) :: stage
@@ -259,6 +261,7 @@ contains
       absorber_acts = stage%kind == DYNAMIC .and. acts_in(absorber%stages, stage%name)
    end function absorber_acts
 
+   !> Switches the dashpots of the boundaries that act in a stage on, the others off.
    subroutine let_absorbers_act(model, stage, list)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage

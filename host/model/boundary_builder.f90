@@ -66,6 +66,8 @@ contains
       end associate
    end subroutine build_plate
 
+   !> Initial conditions, supports, loads, contacts, absorbing boundaries and ties of a scene; a fault names what cannot
+   !> be resolved.
    subroutine build_boundaries(scene, model, fault)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model

@@ -94,6 +94,7 @@ contains
       end do
    end subroutine freeze_drainage
 
+   !> Whether the contact has released the value that a &fix prescribes at a node.
    pure logical function is_released(drainage, fix, node)
       type(drainage_t), intent(in) :: drainage
       integer, intent(in) :: fix, node

@@ -14,6 +14,7 @@ module contact_setup
    private
    public :: prepare_contacts, seat_plates, contacts_act
 contains
+   !> Prepares the contacts of a model; a fault names the contact and what is wrong with its surfaces.
    subroutine prepare_contacts(model, contacts, fault)
       type(model_t), intent(in) :: model
       type(contacts_t), intent(out) :: contacts

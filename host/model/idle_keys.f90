@@ -71,6 +71,7 @@ module idle_keys
    character(*), parameter :: NEED_P_C(*) = [character(22) :: 'scene saturation_rate', 'region retention', &
       'fluids k_a', 'fluids rho_a', 'fluids eta_a', 'fluids gas', 'fluids p_ref', 'initial p_c', 'initial p_c_slope']
 contains
+   !> Adds a warning for every key and every definition of a scene that has no effect.
    subroutine list_idle_keys(scene, warnings)
       type(scene_t), intent(in) :: scene
       character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
@@ -170,6 +171,7 @@ contains
       end do
    end function name_of
 
+   !> Adds a text to the warnings.
    subroutine add_warning(text, warnings)
       character(*), intent(in) :: text
       character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)

@@ -24,6 +24,7 @@ module initial_conditions
       real(wp) :: z = 0.0_wp         !< Where it is [m].
    end type tension_t
 contains
+   !> State of a model at the start; a fault where a material refuses it. `tension`: points with a tensile stress.
    subroutine initial_state(model, state, fault, tension)
       type(model_t), intent(in) :: model
       type(state_t), intent(out) :: state

@@ -15,6 +15,7 @@ module mesh_builder
 
    real(wp), parameter :: MOST_ELEMENTS = 5.0e6_wp   !< Of a built-in mesh: entries of the matrix stay countable.
 contains
+   !> Reads or makes the mesh; a fault names what is wrong with the file or the breaks.
    subroutine build_mesh(scene, mesh, fault)
       type(scene_mesh_t), intent(in) :: scene
       type(mesh_t), intent(out) :: mesh

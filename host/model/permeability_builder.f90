@@ -10,6 +10,7 @@ module permeability_builder
    private
    public :: new_permeability
 contains
+   !> Relative permeability of a group whose keys were checked; a fault where values contradict each other.
    subroutine new_permeability(given, law, fault)
       type(scene_law_t), intent(in) :: given
       type(permeability_t), intent(out) :: law

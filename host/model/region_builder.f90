@@ -22,6 +22,7 @@ module region_builder
    !> Names of no curve: the material has a retention of its own. The second is that of older scenes.
    character(8), parameter :: OF_THE_MATERIAL(2) = [character(8) :: 'material', 'mud']
 contains
+   !> Materials, retention and permeability of every element; a fault names elements without a region and unknown names.
    subroutine build_regions(scene, domain, fault)
       type(scene_t), intent(in) :: scene
       type(domain_t), intent(inout) :: domain

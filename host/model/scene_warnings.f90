@@ -25,6 +25,7 @@ module scene_warnings
    real(wp), parameter :: STIFF = 1.0e9_wp            !< [kPa] Five times steel; above it a modulus in Pa is likely.
    character(3), parameter :: WORDS(*) = [FIELD_NAMES, 'p_a']
 contains
+   !> All warnings about a scene, in the order of their kinds; empty if there are none.
    subroutine list_warnings(scene, model, tension, warnings)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(in) :: model

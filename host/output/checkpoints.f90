@@ -35,6 +35,7 @@ module checkpoints
                                         'contact, seepage, damping [kJ], outflow, outflow_air [m3], '// &
                                         'largest_work, open_0, most_created [kJ]'
 contains
+   !> Writes the complete state of a run to checkpoint.h5 in the folder of the tables, in place of an older one.
    subroutine write_checkpoint(model, run, tables, fault)
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run

@@ -120,6 +120,7 @@ contains
       if (fault%code == 0 .and. is_open(tables%reactions)) call settle_csv(tables%reactions, fault)
    end subroutine settle_tables
 
+   !> A row of histories.csv: time and the columns of every named point.
    subroutine write_history(tables, model, state, fault)
       type(tables_t), intent(inout) :: tables
       type(model_t), intent(in) :: model
@@ -169,6 +170,7 @@ contains
       end associate
    end subroutine write_reactions
 
+   !> Path of the table of reactions of a stage.
    pure function reactions_of(folder, stage) result(path)
       character(*), intent(in) :: folder, stage
       character(:), allocatable :: path
@@ -185,6 +187,7 @@ contains
       tables%reactions%bytes = 0
    end subroutine close_reactions
 
+   !> A row of ledger.csv after a step that ends at a time [s].
    subroutine write_ledger(tables, time, report, ledger, fault)
       type(tables_t), intent(inout) :: tables
       real(wp), intent(in) :: time
@@ -202,6 +205,7 @@ contains
       call write_row(tables%ledger, fault)
    end subroutine write_ledger
 
+   !> A row of contact.csv after a step; nothing without contacts and plates.
    subroutine write_contacts(tables, model, contacts, dt, state, work, fault)
       type(tables_t), intent(inout) :: tables
       type(model_t), intent(in) :: model

@@ -35,6 +35,7 @@ module control_state
       real(wp), allocatable :: x_first(:, :)     !< Unknowns at the start of the stage.
    end type control_state_t
 contains
+   !> State of a control that has taken no step.
    pure function new_control_state(nodes, points, named) result(state)
       integer, intent(in) :: nodes, points, named   !< Nodes, quadrature points, named points.
       type(control_state_t) :: state
@@ -46,6 +47,7 @@ contains
       allocate (state%point_gathered(FIELDS, named), state%point_largest(FIELDS, named), source=0.0_wp)
    end function new_control_state
 
+   !> Length of the list of a checkpoint.
    pure integer function count_of_numbers(state) result(n)
       type(control_state_t), intent(in) :: state
 

@@ -19,6 +19,7 @@ module effect_monitor
       real(wp), allocatable :: mass(:)         !< Of nodes [Mg].
    end type monitor_t
 contains
+   !> Starts to monitor the effects of a model that are off.
    subroutine begin_monitor(model, state, monitor)
       type(model_t), intent(in) :: model
       type(state_t), intent(in) :: state

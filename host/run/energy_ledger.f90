@@ -230,6 +230,7 @@ contains
       end do
    end subroutine book_seepage
 
+   !> Kinetic energy of the soil and of the bodies with a mass [kJ].
    real(wp) function kinetic_energy(domain, dofs, mass, state) result(energy)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs

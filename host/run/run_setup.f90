@@ -17,6 +17,7 @@ module run_setup
    private
    public :: prepare_run
 contains
+   !> A run at its start; a fault where the initial state is refused.
    subroutine prepare_run(model, run, fault)
       type(model_t), intent(in) :: model
       type(run_t), intent(out) :: run

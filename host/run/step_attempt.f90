@@ -20,6 +20,8 @@ module step_attempt
    private
    public :: begin_stage, try_step
 contains
+   !> Sets a run at the start of stage `number`: prescribed values, absorbing boundaries, control of the steps, first
+   !> accelerations.
    subroutine begin_stage(model, number, run, fault)
       type(model_t), intent(in) :: model
       integer, intent(in) :: number

@@ -22,6 +22,7 @@ module step_booking
    public :: book_accepted_step, watch_effects, check_creation, tell_creation, tell_penetration, &
              tell_oscillation
 contains
+   !> Adds a step to the ledger: energies, work, outflow, contacts.
    subroutine book_accepted_step(model, scheme, run)
       type(model_t), intent(in) :: model
       type(scheme_t), intent(in) :: scheme

@@ -16,6 +16,7 @@ module step_failure
    private
    public :: explain_failure
 contains
+   !> Raises the fault of a step that failed: exit code, place, cause and remedy.
    subroutine explain_failure(model, stage, run, log, time, dt, fault)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage

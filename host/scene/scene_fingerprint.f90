@@ -20,6 +20,7 @@ module scene_fingerprint
       integer(int64) :: parts(2) = 1
    end type hash_t
 contains
+   !> Fingerprint of groups as 16 hexadecimal digits.
    function fingerprint_of(groups) result(text)
       type(group_t), intent(in) :: groups(:)
       character(FINGERPRINT_LENGTH) :: text
@@ -49,6 +50,7 @@ contains
       is_free = any(FREE == lower_case(key))
    end function is_free
 
+   !> A hash as 16 hexadecimal digits.
    pure function text_of_hash(hash) result(text)
       type(hash_t), intent(in) :: hash
       character(FINGERPRINT_LENGTH) :: text
@@ -77,6 +79,7 @@ contains
       end do
    end function sealed
 
+   !> Continues a hash by the characters of a text.
    pure subroutine add_text(text, hash)
       character(*), intent(in) :: text
       type(hash_t), intent(inout) :: hash

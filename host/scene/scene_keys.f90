@@ -257,6 +257,7 @@ contains
       text = schema_text_of(KEYS, group, name)
    end function text_of
 
+   !> Whether the value of a key (its default where it is not given) is this word; case is ignored.
    logical function word_is(group, name, word)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: name, word

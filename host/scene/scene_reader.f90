@@ -20,6 +20,7 @@ module scene_reader
    private
    public :: read_scene
 contains
+   !> Reads and checks a scene; a fault names file, line, value, range and the nearest name.
    subroutine read_scene(file, scene, fault, accuracy)
       character(*), intent(in) :: file
       type(scene_t), intent(out) :: scene

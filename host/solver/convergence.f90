@@ -129,6 +129,7 @@ contains
       is_body = constraint%mass(i) > 0.0_wp .and. .not. constraint%fixed(i)
    end function is_body
 
+   !> Force [kN] that the residual of rigid body i is small against.
    pure real(wp) function body_scale(assembly, largest, i)
       type(assembly_t), intent(in) :: assembly
       real(wp), intent(in) :: largest(FIELDS)

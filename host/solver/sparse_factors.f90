@@ -93,6 +93,7 @@ contains
       sparse%n_symbolic = sparse%n_symbolic + 1
    end subroutine analyse
 
+   !> Numeric factors of the matrix with these values; status SOLVED, SINGULAR or FAILED.
    subroutine factorise(sparse, values, status)
       type(sparse_t), intent(inout) :: sparse
       real(wp), intent(in) :: values(:)
@@ -143,6 +144,7 @@ contains
       end do
    end subroutine times
 
+   !> Frees the ordering and the factors.
    subroutine release(sparse)
       type(sparse_t), intent(inout) :: sparse
 

@@ -33,6 +33,7 @@ module error_norms
       real(wp), allocatable :: base_rate(:, :), base_s_rate(:)
    end type rate_memory_t
 contains
+   !> Memory without rates of earlier steps.
    pure function new_memory(fields, nodes, points) result(memory)
       integer, intent(in) :: fields, nodes, points
       type(rate_memory_t) :: memory
@@ -41,12 +42,14 @@ contains
       allocate (memory%base_rate(fields, nodes), memory%base_s_rate(points), source=0.0_wp)
    end function new_memory
 
+   !> C of the leading error of a step for accelerations [-].
    pure real(wp) function constant_of_accelerations(scheme) result(c)
       type(scheme_t), intent(in) :: scheme
 
       c = 1.0_wp/12 + 0.375_wp*(scheme%l_a - scheme%l_f)**2
    end function constant_of_accelerations
 
+   !> C of the leading error of a step for first-order rates [-].
    pure real(wp) function constant_of_rates(scheme) result(c)
       type(scheme_t), intent(in) :: scheme
 

@@ -26,6 +26,7 @@ module generalised_alpha
       real(wp) :: c_v = 0.0_wp, c_a = 0.0_wp, c_p = 0.0_wp   !< Slopes of those at their level against the new values.
    end type scheme_t
 contains
+   !> Coefficients of a step of kind STATIC, QUASI_STATIC or DYNAMIC.
    pure function make_scheme(kind, rho_inf, dt) result(scheme)
       integer, intent(in) :: kind
       real(wp), intent(in) :: rho_inf   !< 0 to 1

@@ -26,6 +26,7 @@ module step_control
       logical :: held = .false.         !< The last attempt was rejected: no growth.
    end type controller_t
 contains
+   !> A controller before its first step.
    pure function new_controller(dt) result(controller)
       real(wp), intent(in) :: dt   !< First step [s].
       type(controller_t) :: controller

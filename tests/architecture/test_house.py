@@ -19,6 +19,8 @@ END = re.compile(r"end (?:subroutine|function) (\w+)", re.IGNORECASE)
 READER = re.compile(r"\bcsv\.(reader|DictReader)\b|\b(loadtxt|genfromtxt|read_csv)\b|\.split\([\"'],[\"']\)")
 # Words of earlier versions: elastic domain, reset of the memory, did not converge, docs/theory/FILE.md, porous balance.
 OLD_WORDS = re.compile(r"nucleus|re-?seat|\b(goes|went) astray|theory[ ]page|\bfe_point\b", re.IGNORECASE)
+PROCEDURE = re.compile(r"(?!\s*end\b)\s*(?:(?:pure|elemental|recursive|impure|logical|integer|\w+\([^)]*\))\s+)*"
+                       r"(?:subroutine|function)\s+(?P<name>\w+)", re.IGNORECASE)
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
 TOPS = "common|umat|materials|host|drivers|tests|verification|scripts|docs|benchmarks|cmake"
 PLACE = re.compile(rf"`((?:{TOPS})/[\w./-]+)`")
@@ -49,6 +51,24 @@ def old_words(lines):
     return [f"{number}: {found[0]}" for number, line in enumerate(lines, 1) if (found := OLD_WORDS.search(line))]
 
 
+def statement(lines, number):
+    """The Fortran statement that begins in a line, with its continuation lines."""
+    last = next(i for i in range(number - 1, len(lines)) if not lines[i].rstrip().endswith("&"))
+    return "\n".join(lines[number - 1:last + 1])
+
+
+def uncommented(lines):
+    """Public procedures of a Fortran module without a comment `!>` directly above; those of C (bind) have theirs in mud.h,
+    mud_triax.h or the system."""
+    text = re.sub(r"&\s*\n\s*", "", "\n".join(lines))
+    public = {name.strip().lower() for found in re.finditer(r"^\s*public\s*::\s*([^!\n]*)", text, re.MULTILINE)
+              for name in found[1].split(chr(44))}
+    return [f"{number}: {found['name']} has no comment !> above it" for number, line in enumerate(lines, 1)
+            if (found := PROCEDURE.match(line)) and found["name"].lower() in public
+            and "bind(c" not in statement(lines, number)
+            and not lines[number - 2].lstrip().startswith("!>")]
+
+
 def gone(text, folder, exists):
     """Links of a document that lead nowhere, and places in backticks that are not there."""
     links = [target for target in LINK.findall(text) if "://" not in target and not target.startswith("mailto:")
@@ -70,6 +90,8 @@ def planted():
               ["   pure real(wp) function f(x)", *body, "x = 2", "   end function f"], head + body + tail),
              ("a reader of its own", own_readers, ["rows = csv.DictReader(file)"], ["rows = tables.rows(file)"]),
              ("a table taken apart", own_readers, ["a = line.split(',')"], ["a = line.split(';')"]),
+             ("a public procedure without a comment", uncommented, ["public :: a", "", "pure real(wp) function a(x)"],
+              ["public :: a", "!> What it is.", "pure real(wp) function a(x)", "end function a", "function b(x)"]),
              ("an old word", old_words, ["! the way out of the nucleus"], ["! the way out of the elastic domain"]),
              ("numpy's reader", own_readers, ["a = np.loadtxt(path)"], ["a = tables.columns(path)"])]
     documents = [("a link", "[a](b.md)", "[a](a.md#b) [c](https://x.org/y)"),
@@ -116,6 +138,8 @@ rule("texts say the words of today", over(
     [name for name in files(*LANGUAGES, ".md", ".nml")
      if name not in ("CHANGELOG.md", "tests/architecture/test_house.py", "tests/docs/test_changelog.py",
                      "python/mud/_former_names.py")], old_words))
+rule("public procedures have a comment", over(
+    [name for name in files(".f90") if name.split("/")[0] in ("common", "umat", "materials", "host", "drivers")], uncommented))
 rule("documents name only what is there", [
     f"{name}: {what}" for name in files(".md") if name != "CHANGELOG.md" and not name.startswith("docs/site/")
     for what in gone((root / name).read_text(encoding="utf-8"), (root / name).parent, pathlib.Path.exists)])

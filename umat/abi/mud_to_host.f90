@@ -25,6 +25,7 @@ contains
       letters(n + 1) = c_null_char
    end subroutine put
 
+   !> Writes a number to where a pointer of the host points; nothing where it is NULL.
    subroutine put_real(value, target_)
       real(wp), intent(in) :: value
       type(c_ptr), intent(in) :: target_

@@ -203,12 +203,14 @@ contains
       end if
    end subroutine stiffness_of
 
+   !> Number of models: 1.
    subroutine model_count(n) bind(c, name='getmodelcount_')
       integer(c_int), intent(out) :: n
 
       n = 1
    end subroutine model_count
 
+   !> Name of a model, empty if imod is not 1.
    subroutine model_name(imod, name) bind(c, name='getmodelname_')
       integer(c_int), intent(in) :: imod
       character(kind=c_char), intent(inout), target :: name(*)
@@ -217,6 +219,7 @@ contains
       if (imod /= 1) call put_pascal('', name)
    end subroutine model_name
 
+   !> Number of parameters of a model, 0 if imod is not 1.
    subroutine param_count(imod, n) bind(c, name='getparamcount_')
       integer(c_int), intent(in) :: imod
       integer(c_int), intent(out) :: n
@@ -224,6 +227,7 @@ contains
       n = merge(NPROPS, 0, imod == 1)
    end subroutine param_count
 
+   !> Name of parameter i from 1, empty if there is none.
    subroutine param_name(imod, i, name) bind(c, name='getparamname_')
       integer(c_int), intent(in) :: imod, i
       character(kind=c_char), intent(inout) :: name(*)
@@ -232,6 +236,7 @@ contains
       if (known(imod, i, NPROPS)) call put_pascal(PROPERTIES(i)%name, name)
    end subroutine param_name
 
+   !> Unit of parameter i from 1 in the letters of PLAXIS, empty if there is none.
    subroutine param_unit(imod, i, unit) bind(c, name='getparamunit_')
       integer(c_int), intent(in) :: imod, i
       character(kind=c_char), intent(inout) :: unit(*)
@@ -240,6 +245,7 @@ contains
       if (known(imod, i, NPROPS)) call put_pascal(unit_word(PROPERTIES(i)%unit), unit)
    end subroutine param_unit
 
+   !> Number of state variables of a model, 0 if imod is not 1.
    subroutine state_count(imod, n) bind(c, name='getstatevarcount_')
       integer(c_int), intent(in) :: imod
       integer(c_int), intent(out) :: n
@@ -247,6 +253,7 @@ contains
       n = merge(NSTATV, 0, imod == 1)
    end subroutine state_count
 
+   !> Name of state variable i from 1, empty if there is none.
    subroutine state_name(imod, i, name) bind(c, name='getstatevarname_')
       integer(c_int), intent(in) :: imod, i
       character(kind=c_char), intent(inout) :: name(*)
@@ -255,6 +262,7 @@ contains
       if (known(imod, i, NSTATV)) call put_pascal(statev_name(i), name)
    end subroutine state_name
 
+   !> Unit of state variable i from 1 in the letters of PLAXIS, empty if there is none.
    subroutine state_unit(imod, i, unit) bind(c, name='getstatevarunit_')
       integer(c_int), intent(in) :: imod, i
       character(kind=c_char), intent(inout) :: unit(*)

@@ -22,12 +22,14 @@ contains
       ddot = a(1)*b(1) + a(2)*b(2) + a(3)*b(3) + 2.0_wp*(a(4)*b(4) + a(5)*b(5) + a(6)*b(6))
    end function ddot
 
+   !> Trace of a.
    pure real(wp) function trace(a)
       real(wp), intent(in) :: a(6)
 
       trace = a(1) + a(2) + a(3)
    end function trace
 
+   !> Deviator of a, a - tr(a)/3 I.
    pure function deviator(a) result(s)
       real(wp), intent(in) :: a(6)
       real(wp) :: s(6), mean

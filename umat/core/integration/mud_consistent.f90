@@ -203,6 +203,8 @@ contains
       call changes_of_rate(par, w, lin, n, changes, rates)
    end subroutine change_of_stage
 
+   !> Prepares the derivative of the rate w of a stage, at a point of the integrated vector, a pseudo-time and a void
+   !> ratio.
    pure subroutine linearise_stage(par, inc, mode, w, point, time, e, lin)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc

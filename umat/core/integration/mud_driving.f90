@@ -25,6 +25,7 @@ module mud_driving
    !> Nothing drives.
    type(driving_t), parameter :: AT_REST = driving_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
 contains
+   !> The increment along the seven directions: unit engineering strains 1 to 6, unit suction step.
    pure function whole_increment() result(driving)
       type(driving_t) :: driving
       integer :: j
