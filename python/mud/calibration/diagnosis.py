@@ -170,7 +170,7 @@ def _sentences(findings: list[Finding], pairs: list[tuple[str, str, float]], tas
                 f"{'material ' + task.start if task.start else 'the library'}."
             )
     told += [
-        f"{a} and {b} are determined together only (correlation {c:+.3f}): another pair would do as well."
+        f"{a} and {b} are only determined together (correlation {c:+.3f}): another pair fits equally well."
         for a, b, c in pairs
     ]
     return told
@@ -180,8 +180,8 @@ def _warnings(
     findings: list[Finding], fit: Fit, values: Mapping[str, float], answers: Mapping[str, Answer]
 ) -> list[str]:
     told = [
-        f"{f.variable.name} = {f.value:.4g} sits on its {f.at_bound} bound ({f.variable.lower:g} to {f.variable.upper:g}): the "
-        "tests, or the model, want it beyond."
+        f"{f.variable.name} = {f.value:.4g} is at its {f.at_bound} bound ({f.variable.lower:g} to {f.variable.upper:g}): a "
+        "better fit of these tests with this model needs a value outside the bounds."
         for f in findings
         if f.at_bound
     ]
@@ -204,7 +204,7 @@ def _warnings(
             if np.sqrt(np.mean(z**2)) > 5:
                 told.append(
                     f"{item.test.name}: {quantity} is off by {np.sqrt(np.mean(z**2)):.1f} standard deviations (rms): the "
-                    "model cannot, or the test is special."
+                    "model cannot represent it, or the test is unusual."
                 )
     return told
 
@@ -216,7 +216,7 @@ def _out_of_range(name: str, material: Material, answer: Answer) -> list[str]:
         return told
     if np.min(1 - material["c_h"] * e) < SOFTEST:
         told.append(
-            f"{name}: 1 - c_h e comes to {np.min(1 - material['c_h']*e):.3f}: the hardening law is next to its guard."
+            f"{name}: 1 - c_h e falls to {np.min(1 - material['c_h']*e):.3f}: the hardening law is close to its limit 0."
         )
     poisson = poisson_ratio(material, e, p)
     if np.min(poisson) < POISSON[0] or np.max(poisson) > POISSON[1]:

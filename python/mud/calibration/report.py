@@ -16,7 +16,7 @@ from ..registry import parameters
 from .calibrate import Calibration
 from .diagnosis import POINTS, origin_of
 from .misfit import ROBUST, Misfit
-from .task import Item
+from .task import Item, Task
 
 PAGE = 6  # tests a picture
 
@@ -27,7 +27,7 @@ def write_material(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
     task, path = result.task, folder / f"{result.task.name}.nml"
     lines = [
         f"! {task.title or task.name}, fitted by mud_calibrate on {datetime.date.today().isoformat()}, MUD {_version()}.",
-        *_wrapped(f"Tests: {task.reference}" if task.reference else "Tests: see the report"),
+        *_wrapped(f"Tests: {_origin(task)}"),
         *_wrapped(_range_text(result)),
         *_wrapped(_misfit_text(result)),
         "&material",
@@ -58,6 +58,11 @@ def _wrapped(text: str) -> list[str]:
             line = "!"
         line += " " + word
     return [*lines, line]
+
+
+def _origin(task: Task) -> str:
+    """Where the tests come from: the reference of the task, or else its tables."""
+    return task.reference or ", ".join(sorted({item.test.source for item in task.items}))
 
 
 def _range_text(result: Calibration) -> str:
@@ -128,7 +133,7 @@ def write_report(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
         f"{result.cpu_seconds:.0f} s of processor time, shared by {result.workers} workers ({result.seconds:.0f} s on the clock of a "
         "machine that may have done other things too).",
         "",
-        f"Tests: {task.reference}",
+        f"Tests: {_origin(task)}",
         "",
     ]
     text += [f"- {note}" for note in task.notes] + [""]

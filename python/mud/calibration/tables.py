@@ -140,10 +140,10 @@ def read_table(path: str | os.PathLike, kind: str) -> list[LaboratoryTest]:
     rows = rows_of(path)
     if len(rows) < 2:
         raise InputError(f"{path} has no rows of numbers below its line of names")
-    mark = next((word for word, mark in (("semicolons", ";"), ("tabulators", "\t")) if mark in rows[0][1][0]), "")
+    mark = next((word for word, mark in (("semicolons", ";"), ("tabs", "\t")) if mark in rows[0][1][0]), "")
     if mark:
         raise InputError(
-            f"{path}:{rows[0][0]}: cells are parted by {mark}; save the table with commas between cells and a point as "
+            f"{path}:{rows[0][0]}: cells are separated by {mark}; save the table with commas between cells and a point as "
             "decimal mark"
         )
     head = _head(rows[0][1], path, rows[0][0])
@@ -165,10 +165,11 @@ def _need_columns(path: pathlib.Path, head: tuple[int, list[str]], kind: str, na
         if any(choice in names for choice in choices):
             continue
         near = difflib.get_close_matches(choices[0], head[1], 1, 0.5)
-        hint = f"; is {near[0]} meant? a unit is written behind the name, as in q_kPa or eps_a_percent" if near else ""
+        hint = f"; is {near[0]} meant?" if near else "."
         raise InputError(
             f"{path}:{head[0]}: a table of {kind} tests needs the column {' or '.join(choices)}; it has "
-            f"{', '.join(head[1])}{hint}"
+            f"{', '.join(head[1])}{hint} Name a column by its quantity with the unit behind it, as eps_a_percent, q_kPa, e_0: "
+            "calibration/README.md, section Tables"
         )
     if kind == "drained" and "sigma_r" not in names and not {"p", "q"} <= set(names):
         raise InputError(
