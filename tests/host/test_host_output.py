@@ -180,9 +180,9 @@ def shorten(file):
 other = text.replace("void_ratio = 0.8", "void_ratio = 0.81")
 REFUSED = [
     ("missing", lambda: bad.unlink(missing_ok=True), text, "is missing"),
-    ("empty", lambda: bad.write_bytes(b""), text, "cut off"),
-    ("truncated", lambda: bad.write_bytes(raw[:len(raw)//2]), text, "cut off"),
-    ("one byte short", lambda: bad.write_bytes(raw[:-1]), text, "cut off"),
+    ("empty", lambda: bad.write_bytes(b""), text, "truncated"),
+    ("truncated", lambda: bad.write_bytes(raw[:len(raw)//2]), text, "truncated"),
+    ("one byte short", lambda: bad.write_bytes(raw[:-1]), text, "truncated"),
     ("no HDF5", lambda: bad.write_bytes(b"checkpoint"*1000), text, "no HDF5"),
     ("foreign HDF5", lambda: shutil.copy(whole / "mesh.h5", bad), text, "no checkpoint"),
     ("other format", lambda: altered(lambda f: f.attrs.modify("format", np.bytes_("0"))), text, "another version"),
@@ -261,7 +261,7 @@ check("counter beyond 32 bits", done.returncode == 0 and told and int(told[1]) >
 altered(lambda f: f["counters"].__setitem__(9, float(FAR)))
 done = run(scene, long, "--check", "--restart", bad)
 check("length beyond 32 bits: too short", done.returncode == 17
-      and "histories.csv is not there, shorter" in done.stderr, done.stderr)
+      and "histories.csv is missing, shorter" in done.stderr, done.stderr)
 os.truncate(long / "histories.csv", FAR + 100)
 done = run(scene, long, "--check", "--restart", bad)
 check("length beyond 32 bits: long enough", done.returncode == 0 and " fits: stage" in done.stdout, done.stderr)
