@@ -49,7 +49,7 @@ def entry(root, folder):
 
 def page(root):
     lines = ["# Gallery", "",
-             "Every page of the verification: what it claims, how far the answer is off, what is allowed, and the time that "
+             "Every page of the verification: its claim, the measured deviation, what is allowed, and the time that "
              "it takes. The numbers are those of the last whole run; [verification](verification/README.md) says how to "
              "repeat it.", ""]
     for section, title in SECTIONS.items():

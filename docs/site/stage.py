@@ -11,6 +11,9 @@ import gallery
 
 LINK = re.compile(r"(!?\[[^\]]*\]\()([^)\s]+)(\))")
 PICTURES = (".png", ".svg")
+# Headings of the margin for pages that the front page does not list; the last takes what is left.
+REST = {"Evidence: element tests": "verification/material/", "Evidence: finite elements": "verification/host/",
+        "Evidence: studies": "verification/studies/", "Other programs": "clients/", "Further pages": ""}
 LANGUAGES = {".py": "python", ".f90": "fortran", ".pf": "none", ".h": "c", ".c": "c", ".toml": "toml"}
 
 
@@ -64,10 +67,15 @@ def staged(root, pages, name):
 
 
 def with_the_rest(index, names):
-    """The front page; pages that its lists do not name are reached by links, and belong to it all the same."""
+    """The front page, and below its lists, for the margin alone, the pages that these do not name, under headings."""
     named = {line.split("<")[-1].rstrip(">") for line in index.splitlines()}
     rest = [name[:-3] for name in names if name[:-3] not in named]
-    return index + "\n```{toctree}\n:hidden:\n\n" + "\n".join(rest) + "\n```\n"
+    for caption, folder in REST.items():
+        mine = [name for name in rest if name.startswith(folder)]
+        rest = [name for name in rest if name not in mine]
+        if mine:
+            index += f"\n```{{toctree}}\n:hidden:\n:caption: {caption}\n\n" + "\n".join(mine) + "\n```\n"
+    return index
 
 
 def stage(root, pages):

@@ -102,7 +102,8 @@ mixed.write_text("&material\n p_atm = 101325.0\n/\n")
 for how, words, text in (("--material", ["--material", mixed], "&material\n/\n"),
                          ("file = ...", [], f"&material\n file = '{mixed}'\n/\n")):
     done = call(text + f"&initial\n p_eff = 1e5\n{REST}", *words)
-    check(f"a file read by {how} is named with its line", f"mud_triax: warning: {mixed}:2: " in done.stderr, done.stderr)
+    check(f"a file read by {how} is named with its line", f"mud_triax: warning: {mixed}:2: " in done.stderr,
+          done.stderr)
 done = subprocess.run([describe, "plain", mixed], capture_output=True, text=True)
 check("mud_describe warns too", done.returncode == 0 and "mud_describe: warning: " in done.stderr, done.stderr)
 

@@ -34,7 +34,7 @@ from tools.bench import ROOT, Bench  # noqa: E402
 from tools.page import Tolerance  # noqa: E402
 
 SECTIONS = {"material": "element tests with mud_triax", "host": "scenes with mud_host",
-            "studies": "what the program says of itself, and of published results"}
+            "studies": "the program compared with itself and with published results"}
 SAME = Tolerance("generated from the committed files")
 
 

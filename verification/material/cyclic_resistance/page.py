@@ -13,7 +13,7 @@ PAGE = Page(
     claim="what the published set gives for the cycles to liquefaction in undrained simple shear",
     kind="regression",
     input="simple shear at constant volume, cycles of the shear stress of CSR times the vertical effective stress; sigma_v 100 kPa, K0 0.5, e 0.8",
-    reference="none: no laboratory test is at hand for this state of Toyoura sand; the numbers are stated, and held against those that were recorded",
+    reference="none: no laboratory test is available for this state of Toyoura sand; the numbers are stated, and compared with those that were recorded",
     seconds=20, quick=2, pictures=("cyclic_resistance.png",))
 MAKES = (Script("make_results.py", ("results.csv",), 20),)
 

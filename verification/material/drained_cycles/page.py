@@ -10,7 +10,7 @@ PAGE = Page(
     claim="what the published set accumulates in 1000 drained triaxial cycles",
     kind="regression",
     input="drained triaxial cycles of q = 0 +- 10 kPa and q = -30 +- 10 kPa about p' 100 kPa (lateral stress held), e 0.8, led by the axial stress in steps of 1 kPa",
-    reference="none: the numbers are stated, and held against those that were recorded",
+    reference="none: the numbers are stated, and compared with those that were recorded",
     seconds=4, quick=1, pictures=("drained_cycles.png",))
 MAKES = (Script("make_results.py", ("results.csv",), 3),)
 

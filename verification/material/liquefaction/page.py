@@ -8,7 +8,7 @@ from tools.page import Page, Tolerance
 from tools.pictures import COLOURS
 
 PAGE = Page(
-    claim="long cyclic tests run without trouble, and their answer is the model's and not the integrator's",
+    claim="long cyclic tests run to their end, and their results are those of the model and not of the integrator",
     kind=("code-to-code", "conservation"),
     input="without an elastic domain: `drivers/cases/cyclic_q_e833_p100` (q of 25 kPa to r_u 0.95), "
           "`cyclic_q_e833_p100_mobility` (60 cycles), "

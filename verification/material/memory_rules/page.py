@@ -12,7 +12,7 @@ from tools import tables
 from tools.page import Page, Script, Tolerance
 
 PAGE = Page(
-    claim="the default memory rule keeps symmetric cycles symmetric, closes loops and does not hear small noise; the published rules do not",
+    claim="the default memory rule keeps symmetric cycles symmetric, closes loops and is not affected by small noise; the published rules do not",
     kind="study",
     input="paths of one point of Toyoura sand, written down in `memory_published.py`, `memory_six.py` and `memory_long.py` and run by `mud_walk`",
     reference="the same path without the event; for cycles, the symmetry of the material; for the size of an effect, docs/theory/memory-rules.md",
