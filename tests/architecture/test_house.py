@@ -58,8 +58,8 @@ def statement(lines, number):
 
 
 def uncommented(lines):
-    """Public procedures of a Fortran module without a comment `!>` directly above; those of C (bind) have theirs in mud.h,
-    mud_triax.h or the system."""
+    """Public procedures of a Fortran module without a comment `!>` directly above; those of C (bind) have theirs in
+    mud.h, mud_triax.h or the system."""
     text = re.sub(r"&\s*\n\s*", "", "\n".join(lines))
     public = {name.strip().lower() for found in re.finditer(r"^\s*public\s*::\s*([^!\n]*)", text, re.MULTILINE)
               for name in found[1].split(chr(44))}
@@ -139,7 +139,8 @@ rule("texts say the words of today", over(
      if name not in ("CHANGELOG.md", "tests/architecture/test_house.py", "tests/docs/test_changelog.py",
                      "python/mud/_former_names.py")], old_words))
 rule("public procedures have a comment", over(
-    [name for name in files(".f90") if name.split("/")[0] in ("common", "umat", "materials", "host", "drivers")], uncommented))
+    [name for name in files(".f90") if name.split("/")[0] in ("common", "umat", "materials", "host", "drivers")],
+    uncommented))
 rule("documents name only what is there", [
     f"{name}: {what}" for name in files(".md") if name != "CHANGELOG.md" and not name.startswith("docs/site/")
     for what in gone((root / name).read_text(encoding="utf-8"), (root / name).parent, pathlib.Path.exists)])
