@@ -9,6 +9,7 @@ module element_equations
    use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, PLACES, RR, ZZ, TT, RZ, U, &
                              PW, PC, GW, GA
    use generalised_alpha, only: scheme_t, DYNAMIC
+   use carried_slopes, only: slopes_t, keep_slopes, follow_slopes, same_again, BY_MATERIAL, BY_SLOPES
    use tangent_fallback, only: stiffen, NO_FALLBACK
    implicit none (type, external)
    private
@@ -25,6 +26,7 @@ module element_equations
       real(wp) :: k(MAX_DOF, MAX_DOF) = 0.0_wp   !< d r / d new values.
       real(wp) :: stretch(MAX_DOF) = 0.0_wp      !< Added up by magnitude: strain rates and fluxes of volume balances;
                                                  !< weight, and what rounding may take for inertia, of momentum.
+      integer :: source = BY_MATERIAL            !< What answers at the points, see carried_slopes.
       integer :: fallback = NO_FALLBACK          !< What replaces soft tangents, see tangent_fallback;
       integer :: replaced = 0                    !< how many points it replaced.
       logical :: with_change = .false.            !< Whether `change` is wanted.
@@ -43,20 +45,20 @@ contains
    end function element_size
 
    !> Writes r (and k where `with_slope`), and the point data of `new`.
-   subroutine compute_element(domain, element, scheme, old, new, with_tangent, out)
+   subroutine compute_element(domain, element, scheme, old, new, with_tangent, slopes, out)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
       type(scheme_t), intent(in) :: scheme
       type(state_t), intent(in) :: old
       type(state_t), intent(inout) :: new
       logical, intent(in) :: with_tangent
+      type(slopes_t), intent(inout) :: slopes   !< Those of its points are read or written.
       type(element_t), intent(inout) :: out
       type(response_t) :: material
-      type(report_t) :: report
       type(kinematics_t) :: k(MOST_POINTS)
       real(wp), dimension(MOST_POINTS) :: suction, d_suction
-      real(wp) :: strain(6, MOST_POINTS), t0
-      integer :: g, n, first, last
+      real(wp) :: strain(6, MOST_POINTS)
+      integer :: g, n
 
       out%r = 0.0_wp
       out%stretch = 0.0_wp
@@ -81,11 +83,41 @@ contains
          suction(g) = k(g)%c0
          d_suction(g) = k(g)%c1 - k(g)%c0
       end do
+      call ask_points(domain, element, old, new, strain, suction, d_suction, with_tangent, slopes, material, out)
+      if (out%bad_point > 0) return
+      call add_points(domain, element, scheme, k, material, old, new, with_tangent, out)
+   end subroutine compute_element
+
+   !> Stress, saturation and void ratio at the points of an element, and their slopes.
+   subroutine ask_points(domain, element, old, new, strain, suction, d_suction, with_tangent, slopes, material, out)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: element
+      type(state_t), intent(in) :: old
+      type(state_t), intent(inout) :: new
+      real(wp), intent(in) :: strain(6, MOST_POINTS), suction(MOST_POINTS), d_suction(MOST_POINTS)
+      logical, intent(in) :: with_tangent
+      type(slopes_t), intent(inout) :: slopes
+      type(response_t), intent(inout) :: material
+      type(element_t), intent(inout) :: out
+      type(report_t) :: report
+      real(wp) :: t0
+      integer :: n, first, last
+
+      n = domain%rule
       first = (element - 1)*n + 1
       last = element*n
+      if (out%source == BY_SLOPES) then
+         call follow_slopes(n, first, slopes, old%stress(:, first:last), old%e(first:last), old%s(first:last), strain, &
+                            d_suction, material)
+         return
+      else if (out%source /= BY_MATERIAL) then
+         call same_again(n, first, slopes, new%stress(:, first:last), new%e(first:last), new%s(first:last), material)
+         return
+      end if
       t0 = clock()
       call domain%regions(domain%region_of(element))%law%update(n, old%stress(:, first:last), &
-         old%state(:, first:last), strain, suction, d_suction, with_tangent, material, new%state(:, first:last), report)
+         old%state(:, first:last), strain, suction, d_suction, with_tangent .or. slopes%kept, material, &
+         new%state(:, first:last), report)
       call lap(out%seconds, t0)
       out%rate_evaluations = report%n_rate
       if (report%code /= 0) then
@@ -93,11 +125,11 @@ contains
          out%bad_point = report%point
          return
       end if
+      if (slopes%kept) call keep_slopes(n, first, material, slopes)
       if (with_tangent .and. out%fallback /= NO_FALLBACK) &
-         call stiffen(domain%regions(domain%region_of(element))%law, out%fallback, domain%rule, &
-                      new%state(:, first:last), k%c1, material, out%replaced)
-      call add_points(domain, element, scheme, k, material, old, new, with_tangent, out)
-   end subroutine compute_element
+         call stiffen(domain%regions(domain%region_of(element))%law, out%fallback, n, new%state(:, first:last), &
+                      suction(:n) + d_suction(:n), material, out%replaced)
+   end subroutine ask_points
 
    !> What the nodes say about the points of an element.
    subroutine look_at_nodes(domain, element, scheme, old, new, k)

@@ -4,6 +4,7 @@
 module equation_assembly
    use wall_clock, only: clock
    use kinds, only: wp
+   use carried_slopes, only: slopes_t, new_slopes, BY_MATERIAL, BY_SLOPES, AS_BEFORE
    use degrees_of_freedom, only: dofs_t
    use element_equations, only: element_t, compute_element
    use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
@@ -15,7 +16,7 @@ module equation_assembly
    implicit none (type, external)
    private
    integer, parameter :: WORTH_THREADS = 64   !< Elements below which waking threads costs more than it saves.
-   public :: assembly_t, make_assembly, assemble, NO_FALLBACK, SOFT_POINTS
+   public :: assembly_t, make_assembly, assemble, follow_slopes_first, NO_FALLBACK, SOFT_POINTS, AS_BEFORE
 
    type :: assembly_t
       real(wp), allocatable :: r(:, :), k(:, :, :)   !< Of every element.
@@ -28,6 +29,8 @@ module equation_assembly
       real(wp), allocatable :: residual(:)
       real(wp), allocatable :: scale(:)              !< Sum of the magnitudes of the elements' contributions.
       real(wp), allocatable :: values(:)             !< The matrix, in the order of the pattern.
+      integer :: source = BY_MATERIAL                !< What answers at the points in the next pass;
+      type(slopes_t) :: slopes                       !< kept from one pass to others.
       integer :: fallback = NO_FALLBACK              !< What replaces soft tangents, see tangent_fallback,
       integer :: replaced = 0                        !< of how many points in the last pass with it,
       integer, allocatable :: soft(:)                !< and of every element.
@@ -55,7 +58,21 @@ contains
       allocate (assembly%air(size(domain%mesh%x, 2)), source=.false.)
    end subroutine make_assembly
 
-   !> Internal forces of the state `new`; loads are not in it.
+   !> Before the first pass of a step: whether it follows the slopes of the step before, where they are known. From
+   !> here on the slopes are those of this step's passes.
+   pure subroutine follow_slopes_first(domain, wanted, assembly)
+      type(domain_t), intent(in) :: domain
+      logical, intent(in) :: wanted   !< Else no pass keeps slopes.
+      type(assembly_t), intent(inout) :: assembly
+
+      if (wanted .and. .not. allocated(assembly%slopes%strain)) &
+         assembly%slopes = new_slopes(size(domain%mesh%t6, 2)*domain%rule)
+      assembly%source = merge(BY_SLOPES, BY_MATERIAL, wanted .and. assembly%slopes%known)
+      assembly%slopes%kept = wanted
+      assembly%slopes%known = .false.
+   end subroutine follow_slopes_first
+
+   !> Internal forces of the state `new`; loads are not in it. The next pass asks the material, whatever this one did.
    subroutine assemble(domain, dofs, pattern, scheme, old, new, with_tangent, assembly)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
@@ -68,13 +85,15 @@ contains
       integer, allocatable :: bad_point(:), rate_evaluations(:)
       real(wp) :: seconds, t0
       type(element_t) :: out
-      integer :: e, m, ne, threads
+      integer :: e, m, ne, threads, source
 
       m = size(dofs%element, 1)
       ne = size(dofs%element, 2)
       allocate (bad_point(ne), rate_evaluations(ne), source=0)
       seconds = 0.0_wp
       t0 = clock()
+      source = merge(BY_MATERIAL, assembly%source, assembly%fallback /= NO_FALLBACK)
+      assembly%source = BY_MATERIAL
       threads = merge(domain%threads, 1, ne >= WORTH_THREADS)
       if (assembly%fallback /= NO_FALLBACK .and. .not. allocated(assembly%soft)) allocate (assembly%soft(ne))
       if (assembly%with_change .and. .not. allocated(assembly%d_r)) allocate (assembly%d_r(m, ne))
@@ -83,7 +102,8 @@ contains
       do e = 1, ne
          out%with_change = assembly%with_change
          out%fallback = assembly%fallback
-         call compute_element(domain, e, scheme, old, new, with_tangent, out)
+         out%source = source
+         call compute_element(domain, e, scheme, old, new, with_tangent, assembly%slopes, out)
          bad_point(e) = out%bad_point
          rate_evaluations(e) = out%rate_evaluations
          seconds = seconds + out%seconds
@@ -99,7 +119,7 @@ contains
       assembly%bad_element = findloc(bad_point > 0, .true., dim=1)
       if (assembly%bad_element > 0) then
          ! Once more, for the answer of the first that failed: which is first does not depend on the threads.
-         call compute_element(domain, assembly%bad_element, scheme, old, new, with_tangent, out)
+         call compute_element(domain, assembly%bad_element, scheme, old, new, with_tangent, assembly%slopes, out)
          assembly%bad_point = out%bad_point
          assembly%bad = out%bad
          return

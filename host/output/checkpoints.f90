@@ -26,14 +26,14 @@ module checkpoints
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
    character(*), parameter :: KIND_OF_FILE = 'checkpoint of mud_host'
-   character(*), parameter :: FORMAT = '6'      !< Grows with every change of what is stored.
+   character(*), parameter :: FORMAT = '7'      !< Grows with every change of what is stored.
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
    integer, parameter :: N_COUNTERS = 14
    character(*), parameter :: DAMAGED = ' is damaged: an entry is missing, has another extent or a wrong '// &
                                         'checksum; use an older copy, or start anew.'
    character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
                                         'contact, seepage, damping [kJ], outflow, outflow_air [m3], '// &
-                                        'largest_work, open_0, most_created [kJ]'
+                                        'largest_work, open_0, most_created, tolerated [kJ]'
 contains
    !> Writes the complete state of a run to checkpoint.h5 in the folder of the tables, in place of an older one.
    subroutine write_checkpoint(model, run, tables, fault)

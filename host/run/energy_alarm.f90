@@ -4,7 +4,7 @@
 module energy_alarm
    use, intrinsic :: iso_fortran_env, only: error_unit
    use kinds, only: wp
-   use energy_ledger, only: ledger_t, ALARMING_SHARE
+   use energy_ledger, only: ledger_t, allowed_creation, ALARMING_SHARE
    use exit_codes, only: EXIT_ENERGY
    use faults, only: fault_t, raise
    use generalised_alpha, only: DYNAMIC
@@ -25,7 +25,7 @@ contains
       type(fault_t), intent(inout) :: fault
 
       if (stage%kind /= DYNAMIC .or. fault%code /= 0) return
-      if (ledger%most_created <= stage%created_energy*ledger%largest_work) return
+      if (ledger%most_created <= allowed_creation(stage%created_energy, ledger)) return
       call raise(fault, EXIT_ENERGY, 'Stage '//trim(stage%name)//', time '//short(time)//' s: the run has created '// &
                  amount(ledger)//', allowed '//short(100*stage%created_energy)//' %. Its results may be wrong by '// &
                  'any factor: '//REMEDY//'; created_energy of &stage allows more.')
@@ -36,8 +36,8 @@ contains
       type(stage_t), intent(in) :: stage
       type(ledger_t), intent(in) :: ledger
 
-      if (stage%kind /= DYNAMIC .or. ledger%most_created <= ALARMING_SHARE*ledger%largest_work) return
-      if (ledger%most_created > stage%created_energy*ledger%largest_work) return
+      if (stage%kind /= DYNAMIC .or. ledger%most_created <= allowed_creation(ALARMING_SHARE, ledger)) return
+      if (ledger%most_created > allowed_creation(stage%created_energy, ledger)) return
       write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//' has created '//amount(ledger)// &
          '. Do not use its results: '//REMEDY//'.'
    end subroutine tell_creation

@@ -14,7 +14,7 @@ module energy_ledger
    use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
    implicit none (type, external)
    private
-   public :: ledger_t, book_step, book_creation, kinetic_energy, imbalance, ALARMING_SHARE
+   public :: ledger_t, book_step, book_creation, allowed_creation, kinetic_energy, imbalance, ALARMING_SHARE
 
    !> Energy that a run creates out of nothing, as a share of the largest work done in it, beyond which its results are
    !> unreliable: the balances of the verified scenes close to 1e-3 and better [-].
@@ -33,6 +33,7 @@ module energy_ledger
       real(wp) :: largest_work = 0.0_wp !< Largest of the works and of the kinetic energy at the start, so far [kJ].
       real(wp) :: open_0 = 0.0_wp       !< What the balance left open where the present stage began [kJ].
       real(wp) :: most_created = 0.0_wp !< Largest energy that a dynamic stage has created, so far [kJ].
+      real(wp) :: tolerated = 0.0_wp    !< Most that residuals within Newton's tolerance can have done in a step [kJ].
    end type ledger_t
 
    !> Works of the mean forces of a step [kJ].
@@ -257,14 +258,34 @@ contains
 
    !> After a step is booked: the largest work so far and, in a dynamic stage, the most energy created, which is what
    !> the balance leaves open with the wrong sign.
-   pure subroutine book_creation(scheme, ledger)
+   pure subroutine book_creation(scheme, tolerance, dofs, scale, change, ledger)
       type(scheme_t), intent(in) :: scheme
+      real(wp), intent(in) :: tolerance      !< Newton's: a residual may be that share of the forces.
+      type(dofs_t), intent(in) :: dofs
+      real(wp), intent(in) :: scale(:)       !< Sum of the magnitudes of the forces on every unknown [kN].
+      real(wp), intent(in) :: change(:, :)   !< Of the unknowns in the step; displacements first [m].
       type(ledger_t), intent(inout) :: ledger
+      real(wp) :: work
+      integer :: i
 
       ledger%largest_work = max(ledger%largest_work, abs(ledger%loads), abs(ledger%supports), abs(ledger%gravity), &
                                 ledger%kinetic_0, -ledger%skeleton)
+      work = 0.0_wp
+      do i = 1, dofs%n
+         if (dofs%field(i) <= DISPLACEMENTS) work = work + scale(i)*abs(change(dofs%field(i), dofs%node(i)))
+      end do
+      ledger%tolerated = max(ledger%tolerated, tolerance*work)
       if (scheme%kind == DYNAMIC) ledger%most_created = max(ledger%most_created, ledger%open_0 - imbalance(ledger))
    end subroutine book_creation
+
+   !> Created energy up to which nothing is said: a share of the largest work, and what no balance can tell from zero.
+   !> Of a body at rest, or in a first step, the work is as small as that.
+   pure real(wp) function allowed_creation(share, ledger)
+      real(wp), intent(in) :: share   !< [-]
+      type(ledger_t), intent(in) :: ledger
+
+      allowed_creation = share*ledger%largest_work + ledger%tolerated
+   end function allowed_creation
 
    !> What the mechanical balance leaves open [kJ].
    pure real(wp) function imbalance(ledger)

@@ -33,6 +33,7 @@ contains
          call prescribe(model, stage, run%state%time, run, fault)
          if (fault%code /= 0) return
          run%system%factored = .false.
+         run%assembly%slopes%known = .false.
          if (allocated(run%constraint%dashpots)) call hold_ground(model, number, run, fault)
          if (fault%code /= 0) return
          call begin_control(model, stage, run)
@@ -72,6 +73,7 @@ contains
       accepted = log%outcome == CONVERGED
       if (accepted) then
          call judge_step(model, stage, dt, run, accepted)
+         if (.not. accepted) run%assembly%slopes%known = .false.
          return
       end if
       associate (at => run%at)

@@ -40,7 +40,8 @@ contains
       end if
       call book_step(model%domain, model%dofs, scheme, run%constraint, run%system%reaction, contact_force, run%state, &
                      run%next, run%ledger)
-      call book_creation(scheme, run%ledger)
+      call book_creation(scheme, model%stages(run%at%stage)%tolerance, model%dofs, run%assembly%scale, &
+                         run%next%x - run%state%x, run%ledger)
    end subroutine book_accepted_step
 
    !> Monitors a step that is accepted but not yet taken over, and warns.

@@ -18,11 +18,13 @@ module step_size
 
    integer, parameter :: SETTLED = 3              !< Steps after a sudden change until rates tell of the error again.
    real(wp), parameter :: START_UP_STEPS = 10.0_wp !< First steps in which changes are expected to grow yet.
+   real(wp), parameter :: FIRST_SHARE = 0.04_wp   !< Of the span to the first break, times the root of the accuracy.
    real(wp), parameter :: EVENT = 0.01_wp         !< Least share of what is left that a step may take: an impact or a
                                                   !< change of contact is not resolved for its own sake.
+   real(wp), parameter :: GROWTH = 0.5_wp         !< Of the accuracy: of what it adds to the scale a step may err by.
    real(wp), parameter :: RESERVE = 0.1_wp        !< Share of the accuracy that is left when it has been used up.
-   real(wp), parameter :: KNOCK = 0.1_wp          !< The same of pressures in dynamic stages, of the accuracy: they
-                                                  !< follow every knock and fade; ten such steps use it up.
+   real(wp), parameter :: KNOCK = 0.3_wp          !< The same of pressures in dynamic stages, of the accuracy: they
+                                                  !< follow every knock and fade; three such steps use it up.
    real(wp), parameter :: PEAK = 1.57_wp          !< Of a sine over the mean of its magnitude.
    real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Of its change that the second step after a sudden load errs by:
                                                   !< flow begins with the root of time.
@@ -73,7 +75,8 @@ contains
          ! drown what it changes in rounding.
          dt = span*min(0.01_wp, max(merge(stage%accuracy**2, stage%accuracy, begins_suddenly(model, run)), SHORTEST))
       case default
-         dt = span*min(0.05_wp, 0.2_wp*sqrt(stage%accuracy))
+         ! Nothing is there yet to compare its error with, and what it leaves is carried on by the soil's memory.
+         dt = span*FIRST_SHARE*sqrt(stage%accuracy)
       end select
       dt = min(dt, stage%dt_max)
    end function first_step
@@ -171,6 +174,8 @@ contains
          if (stage%kind == DYNAMIC) then
             share(:DISPLACEMENTS) = max(dt/(run%at%t_start + stage%duration - run%state%time), EVENT) &
                                     *what_is_left(model, stage, run)
+            ! Early errors are small beside what displacements grow to.
+            share(:DISPLACEMENTS) = max(share(:DISPLACEMENTS), GROWTH*added_share(run, bodies))
             ! Pressures follow every knock of a contact; such errors do not add up.
             share(DISPLACEMENTS + 1:) = max(dt/elapsed, KNOCK)
          end if
@@ -231,6 +236,16 @@ contains
       end associate
       left = max(1.0_wp - used/stage%accuracy, RESERVE)
    end function what_is_left
+
+   !> What the step under way adds to the scale of the displacements, as a share of it.
+   pure real(wp) function added_share(run, bodies) result(share)
+      type(run_t), intent(in) :: run
+      integer, intent(in) :: bodies
+      real(wp) :: now(FIELDS)
+
+      now = scales(run, bodies)
+      share = maxval(1 - run%control%scale(:DISPLACEMENTS)/now(:DISPLACEMENTS))
+   end function added_share
 
    !> Displacements count as one field.
    pure function field_norms(values) result(norms)

@@ -67,7 +67,8 @@ contains
       logical :: accepted
 
       associate (stage => model%stages(number), at => run%at)
-         control = control_t(stage%tolerance, stage%max_iterations, stage%no_predictor, stage%measure)
+         control = control_t(stage%tolerance, stage%max_iterations, stage%no_predictor, stage%measure, &
+                             stage%controlled)
          ! A run that is taken up again is in the middle of its stage.
          call contacts_act(model, stage, run%system%contacts)
          if (at%stage /= number) call begin_stage(model, number, run, fault)
@@ -127,8 +128,9 @@ contains
       if (present(observer)) then
          t0 = clock()
          call observer%step_done(model, run, report, checkpoint, fault)
-         ! A run that is taken up here has no factors.
+         ! A run that is taken up here has no factors and no slopes.
          if (checkpoint) run%system%factored = .false.
+         if (checkpoint) run%assembly%slopes%known = .false.
          call lap(run%seconds_output, t0)
       end if
       call check_creation(model%stages(number), run%state%time, run%ledger, fault)

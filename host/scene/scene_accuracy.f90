@@ -13,7 +13,7 @@ module scene_accuracy
 
    real(wp), parameter :: DEFAULT_ACCURACY = 1.0e-2_wp   !< Of stages without dt in scenes that ask for none.
    real(wp), parameter :: NEWTON_SHARE = 0.1_wp          !< Newton's tolerance as a share of the accuracy.
-   real(wp), parameter :: STRESS_SHARE = 1.0e-2_wp       !< Tolerance of MUD's stress integration, likewise.
+   real(wp), parameter :: STRESS_SHARE = 0.1_wp          !< Tolerance of MUD's stress integration, likewise.
    real(wp), parameter :: STRESS_LEAST = 1.0e-10_wp, STRESS_LARGEST = 1.0e-3_wp   !< Its bounds.
    real(wp), parameter :: TIGHT = 1.0e-3_wp              !< Below it the scheme of order 3 costs less.
 contains

@@ -16,7 +16,7 @@ module convergence
    implicit none (type, external)
    private
    public :: control_t, log_t, measure, good_enough, field_scales, body_scale, is_body, rounding_in
-   public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_STAGE, measure_in
+   public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_STAGE, measure_in, linear_tolerance
 
    integer, parameter :: BY_FORCES = 1       !< The errors of the fields, see above;
    integer, parameter :: BY_RESIDUAL = 2     !< |R|/|R_0| of all unknowns together, whatever their units,
@@ -30,6 +30,9 @@ module convergence
    !> The same with inertia: accelerations are differences of displacements over dt**2, so that rounding leaves
    !> 4/(omega dt)**2 epsilon of a motion; this has room for three thousand steps a period.
    real(wp), parameter :: ROUNDING_OF_INERTIA = 1.0e-10_wp
+   !> Of Newton's tolerance, left to the linear solution. Given steps repeat what was published; where the error of the
+   !> step rules, less does: the residual that counts is that of the whole equations.
+   real(wp), parameter :: LINEAR_SHARE = 1.0e-5_wp, CONTROLLED_SHARE = 1.0e-3_wp
    real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Of strain rates and parts of fluxes, see above.
    real(wp), parameter :: ABSOLUTE_FLOOR = 1.0e-12_wp   !< [kN] or [m3/s]: nothing smaller is a force.
 
@@ -38,6 +41,7 @@ module convergence
       integer :: max_iterations = 12
       logical :: no_predictor = .false.              !< Predict no change.
       integer :: measure = BY_FORCES          !< What has to fall below the tolerance.
+      logical :: carries_slopes = .false.     !< The first pass of a step follows the slopes of the one before.
    end type control_t
 
    !> What a step did.
@@ -67,6 +71,15 @@ contains
 
       share = merge(ROUNDING_OF_INERTIA, ROUNDING_OF_SUMS, kind == DYNAMIC)
    end function rounding_in
+
+   !> What the linear solution may leave of the errors of the fields; 0 where another measure counts: all it can.
+   pure real(wp) function linear_tolerance(control)
+      type(control_t), intent(in) :: control
+
+      linear_tolerance = 0.0_wp
+      if (any(control%measure == [BY_FORCES, BY_CHANGE])) linear_tolerance = control%tolerance &
+         *merge(CONTROLLED_SHARE, LINEAR_SHARE, control%carries_slopes)
+   end function linear_tolerance
 
    !> Whether the iteration may end.
    pure logical function good_enough(control, log)

@@ -20,7 +20,6 @@ module linear_system
 
    integer, parameter :: TIMERS = 6, T_ASSEMBLY = 1, T_FACTORISATION = 2, T_SOLUTION = 3, T_REST = 4, T_MATERIAL = 5, &
                          T_CONTACT = 6
-   real(wp), parameter :: LINEAR_SHARE = 1.0e-5_wp    !< Share of Newton's tolerance left to the linear solution.
    integer, parameter :: MOST_STEPS = 6               !< Of the linear solution with factors of an earlier matrix;
    integer, parameter :: WORN_STEPS = 5               !< after so many the next matrix is factorised again.
 
@@ -39,7 +38,7 @@ module linear_system
       integer :: n_pass = 0
    end type system_t
 contains
-   !> Solution to a small share of Newton's tolerance: by the factors of an earlier matrix as long as these serve and
+   !> Solution to a tolerance, a small share of Newton's: by the factors of an earlier matrix as long as these serve and
    !> nothing has been fixed, released or come into contact, otherwise by new ones.
    subroutine solve_step(dofs, pattern, constraint, assembly, tolerance, rhs, system, dx, status)
       type(dofs_t), intent(in) :: dofs
@@ -67,7 +66,7 @@ contains
       if (system%factored) system%factored = system%reuse .and. active == system%active &
          .and. all(constraint%fixed .eqv. system%fixed) .and. all(constraint%air .eqv. system%air)
       if (system%factored) then
-         call solve_by_factors(system%sparse, assembly%values, rhs, weight, LINEAR_SHARE*tolerance, MOST_STEPS, dx, &
+         call solve_by_factors(system%sparse, assembly%values, rhs, weight, tolerance, MOST_STEPS, dx, &
                                steps, status)
          call lap(system%seconds(T_SOLUTION), t0)
          system%factored = status == SOLVED .and. steps < WORN_STEPS
@@ -84,7 +83,7 @@ contains
       system%fixed = constraint%fixed
       system%air = constraint%air
       system%active = active
-      call solve_by_factors(system%sparse, assembly%values, rhs, weight, LINEAR_SHARE*tolerance, MOST_STEPS, dx, &
+      call solve_by_factors(system%sparse, assembly%values, rhs, weight, tolerance, MOST_STEPS, dx, &
                             steps, status)
       ! What rounding leaves is Newton's to judge.
       if (status == INACCURATE) status = SOLVED

@@ -6,11 +6,11 @@ module newton_step
    use wall_clock, only: clock, lap
    use conjugate_residuals, only: solve_by_factors, INACCURATE
    use contact_interfaces, only: add_contacts, contact_forces
-   use convergence, only: control_t, log_t, measure, good_enough, rounding_in, BY_FORCES, &
-                          BY_CHANGE
+   use convergence, only: control_t, log_t, measure, good_enough, linear_tolerance, rounding_in, &
+                          BY_FORCES, BY_CHANGE
    use dashpots, only: add_dashpots
    use degrees_of_freedom, only: dofs_t
-   use equation_assembly, only: assembly_t, assemble, NO_FALLBACK, SOFT_POINTS
+   use equation_assembly, only: assembly_t, assemble, follow_slopes_first, NO_FALLBACK, SOFT_POINTS, AS_BEFORE
    use generalised_alpha, only: scheme_t, predict, advance_rates, DYNAMIC
    use linear_system, only: system_t, solve_step, look_at_contacts, MOST_STEPS, T_ASSEMBLY, T_REST, T_MATERIAL, &
                             T_CONTACT
@@ -51,10 +51,7 @@ contains
       t0 = clock()
       allocate (rhs(dofs%n), dx(dofs%n))
       new%time = old%time + scheme%dt
-      assembly%air = constraint%air
-      assembly%with_change = control%measure == BY_CHANGE
-      assembly%rounding_share = merge(rounding_in(scheme%kind)/control%tolerance, 0.0_wp, assembly%with_change)
-      assembly%fallback = NO_FALLBACK
+      call begin_passes(domain, scheme, constraint, control, assembly)
       if (assembly%with_change .and. allocated(system%contacts%interfaces)) then
          if (.not. contact_forces(system%contacts, dofs, old%x, touched)) then
             log%outcome = CONTACT_FAILED
@@ -82,6 +79,7 @@ contains
             end if
             ! The slopes at the present values, where the last pass left them out.
             if (.not. with_tangent) then
+               if (control%carries_slopes) assembly%source = AS_BEFORE
                if (.not. pass(.true.)) return
             end if
          else
@@ -90,8 +88,7 @@ contains
          call constrain(dofs, pattern, constraint, new%x, assembly%values, rhs)
          ! Other measures may ask for more than a linear solution that is exact to a share of the forces.
          if (all(control%measure /= [BY_FORCES, BY_CHANGE])) system%factored = .false.
-         call solve_step(dofs, pattern, constraint, assembly, merge(control%tolerance, 0.0_wp, &
-                         any(control%measure == [BY_FORCES, BY_CHANGE])), rhs, system, dx, status)
+         call solve_step(dofs, pattern, constraint, assembly, linear_tolerance(control), rhs, system, dx, status)
          if (status == SINGULAR .and. assembly%fallback < SOFT_POINTS) then
             ! Where nothing is loose some points resist with nothing: once more with a stiffness for these.
             assembly%fallback = assembly%fallback + 1
@@ -107,9 +104,10 @@ contains
          log%iterations = log%iterations + 1
          call add_correction(dofs, dx, new%x, log%correction)
          call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
-         with_tangent = system%reassemble_tangent
+         with_tangent = system%reassemble_tangent .and. .not. control%carries_slopes
       end do
       system%reassemble_tangent = log%iterations > 1
+      assembly%slopes%known = control%carries_slopes
       call lap(system%seconds(T_REST), t0)
    contains
       !> Residual, with minus sign in rhs, and slopes; false if the material refuses.
@@ -135,6 +133,21 @@ contains
          call add_what_acts(dofs, pattern, scheme, constraint, old, new, slopes, touched, assembly, system, rhs, t0)
       end function pass
    end subroutine take_step
+
+   !> What the passes of a step over the elements are asked for.
+   pure subroutine begin_passes(domain, scheme, constraint, control, assembly)
+      type(domain_t), intent(in) :: domain
+      type(scheme_t), intent(in) :: scheme
+      type(constraint_t), intent(in) :: constraint
+      type(control_t), intent(in) :: control
+      type(assembly_t), intent(inout) :: assembly
+
+      assembly%air = constraint%air
+      assembly%with_change = control%measure == BY_CHANGE
+      assembly%rounding_share = merge(rounding_in(scheme%kind)/control%tolerance, 0.0_wp, assembly%with_change)
+      assembly%fallback = NO_FALLBACK
+      call follow_slopes_first(domain, control%carries_slopes, assembly)
+   end subroutine begin_passes
 
    !> Rigid bodies, boundaries, contacts and loads beside the elements; the residual, with minus sign, in rhs.
    subroutine add_what_acts(dofs, pattern, scheme, constraint, old, new, slopes, touched, assembly, system, rhs, t0)

@@ -62,15 +62,17 @@ contains
       type(rate_memory_t), intent(inout) :: memory
       real(wp), intent(inout) :: v(:, :), s_rate(:)
       real(wp) :: share
+      integer :: first
 
       if (.not. memory%based) then
          memory%base_rate = v
          memory%base_s_rate = s_rate
          memory%based = .true.
       end if
-      if (scheme%kind /= QUASI_STATIC .or. .not. memory%known) return
+      if (scheme%kind == STATIC .or. .not. memory%known) return
+      first = merge(1, 3, scheme%kind == QUASI_STATIC)
       share = (scheme%l_f - scheme%l_p)*(min(scheme%dt, LONGEST*memory%dt) - memory%dt)/memory%dt
-      v = memory%base_rate + share*(memory%base_rate - memory%rate)
+      v(first:, :) = memory%base_rate(first:, :) + share*(memory%base_rate(first:, :) - memory%rate(first:, :))
       s_rate = memory%base_s_rate + share*(memory%base_s_rate - memory%s_rate)
    end subroutine shift_rates
 
@@ -98,8 +100,7 @@ contains
             error(1:2, :) = constant_of_accelerations(scheme)*dt**2*(a1 - a0)
          end if
          if (.not. memory%known) return
-         off = 0.0_wp
-         if (scheme%kind == QUASI_STATIC) off = scheme%l_f - scheme%l_p
+         off = scheme%l_f - scheme%l_p
          error(first:, :) = constant_of_rates(scheme)*dt**3*((v1(first:, :) - v0(first:, :))/dt &
                             - (memory%base_rate(first:, :) - memory%rate(first:, :))/memory%dt) &
                             /(0.5_wp*(dt + memory%dt) + off*(min(dt, LONGEST*memory%dt) - memory%dt))

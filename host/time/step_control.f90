@@ -13,7 +13,7 @@ module step_control
    integer, parameter :: MOST_REJECTIONS = 3        !< In a row: then the step stands, whatever its error.
    real(wp), parameter :: SAFETY = 0.9_wp           !< Of the step that the error asks for.
    !> A longer step that gains less than this is not taken: the factors of the matrix serve equal steps.
-   real(wp), parameter :: DEADBAND = 1.5_wp
+   real(wp), parameter :: DEADBAND = 1.2_wp
    ! Error over allowance grows with the square of the step (second order, allowance in proportion to the step).
    real(wp), parameter :: ORDER = 2.0_wp
    real(wp), parameter :: INTEGRAL = 0.7_wp/ORDER, PROPORTIONAL = 0.4_wp/ORDER

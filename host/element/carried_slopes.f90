@@ -1,0 +1,101 @@
+! SPDX-License-Identifier: MIT
+!> Slopes of the material that outlive the pass which found them. The first pass of a step follows them from the state
+!> before the step, and a matrix that is wanted after a residual is formed with them: neither asks the material.
+!> docs/theory/host.md section 5.4.
+module carried_slopes
+   use kinds, only: wp
+   use material_point, only: response_t, swollen
+   implicit none (type, external)
+   private
+   public :: slopes_t, new_slopes, keep_slopes, follow_slopes, same_again, BY_MATERIAL, BY_SLOPES, AS_BEFORE
+
+   ! What answers in a pass over the elements.
+   integer, parameter :: BY_MATERIAL = 0   !< The material;
+   integer, parameter :: BY_SLOPES = 1     !< the kept slopes, from the state before the step;
+   integer, parameter :: AS_BEFORE = 2     !< the material's answer in the last pass, at the same unknowns.
+   integer, parameter :: PLANE = 4         !< Components rr, zz, tt, rz.
+
+   type :: slopes_t
+      logical :: kept = .false.              !< Whether passes by the material keep theirs.
+      logical :: known = .false.             !< Those of the state where the next step begins are here.
+      real(wp), allocatable :: strain(:, :, :)   !< (4, 4, points) d sigma'/d strain [kPa]
+      real(wp), allocatable :: suction(:, :)     !< (4, points) d sigma'/d p_c [-]
+      real(wp), allocatable :: water(:, :)       !< (2, points) d S_w/d volume strain [-], d S_w/d p_c [1/kPa]
+   end type slopes_t
+contains
+   !> Room for the slopes of all points of a mesh; none are known yet.
+   pure function new_slopes(points) result(slopes)
+      integer, intent(in) :: points
+      type(slopes_t) :: slopes
+
+      allocate (slopes%strain(PLANE, PLANE, points), slopes%suction(PLANE, points), slopes%water(2, points), &
+                source=0.0_wp)
+   end function new_slopes
+
+   !> Keeps the slopes of the points from `first` on.
+   pure subroutine keep_slopes(n, first, answer, slopes)
+      integer, intent(in) :: n, first
+      type(response_t), intent(in) :: answer   !< With tangent.
+      type(slopes_t), intent(inout) :: slopes
+      integer :: g
+
+      do g = 1, n
+         associate (p => first + g - 1)
+            slopes%strain(:, :, p) = answer%dsig_deps(:PLANE, :PLANE, g)
+            slopes%suction(:, p) = answer%dsig_dpc(:PLANE, g)
+            slopes%water(:, p) = [answer%dsw_dev(g), answer%dsw_dpc(g)]
+         end associate
+      end do
+   end subroutine keep_slopes
+
+   !> The answer that straight lines along the slopes give; the void ratio is exact.
+   pure subroutine follow_slopes(n, first, slopes, stress, e, s_w, strain, d_suction, answer)
+      integer, intent(in) :: n, first
+      type(slopes_t), intent(in) :: slopes
+      real(wp), intent(in) :: stress(:, :), e(:), s_w(:)        !< Of these points before the step.
+      real(wp), intent(in) :: strain(:, :), d_suction(:)        !< Increments of the step.
+      type(response_t), intent(inout) :: answer
+      real(wp) :: volume
+      integer :: g
+
+      do g = 1, n
+         associate (p => first + g - 1)
+            volume = sum(strain(1:3, g))
+            answer%stress(:, g) = stress(:, g)
+            answer%stress(:PLANE, g) = stress(:PLANE, g) + matmul(slopes%strain(:, :, p), strain(:PLANE, g)) &
+                                       + slopes%suction(:, p)*d_suction(g)
+            answer%void_ratio(g) = swollen(e(g), volume)
+            answer%s_w(g) = max(0.0_wp, min(1.0_wp, s_w(g) + slopes%water(1, p)*volume &
+                                            + slopes%water(2, p)*d_suction(g)))
+            call slopes_of(p, g, slopes, answer)
+         end associate
+      end do
+   end subroutine follow_slopes
+
+   !> The answer that a pass by the material left in the state at the end of the step, with the slopes it kept.
+   pure subroutine same_again(n, first, slopes, stress, e, s_w, answer)
+      integer, intent(in) :: n, first
+      type(slopes_t), intent(in) :: slopes
+      real(wp), intent(in) :: stress(:, :), e(:), s_w(:)
+      type(response_t), intent(inout) :: answer
+      integer :: g
+
+      do g = 1, n
+         answer%stress(:, g) = stress(:, g)
+         answer%void_ratio(g) = e(g)
+         answer%s_w(g) = s_w(g)
+         call slopes_of(first + g - 1, g, slopes, answer)
+      end do
+   end subroutine same_again
+
+   pure subroutine slopes_of(p, g, slopes, answer)
+      integer, intent(in) :: p, g
+      type(slopes_t), intent(in) :: slopes
+      type(response_t), intent(inout) :: answer
+
+      answer%dsig_deps(:PLANE, :PLANE, g) = slopes%strain(:, :, p)
+      answer%dsig_dpc(:PLANE, g) = slopes%suction(:, p)
+      answer%dsw_dev(g) = slopes%water(1, p)
+      answer%dsw_dpc(g) = slopes%water(2, p)
+   end subroutine slopes_of
+end module carried_slopes
