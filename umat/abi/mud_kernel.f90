@@ -7,7 +7,7 @@ module mud_kernel
    use mud_params, only: params_t, read_params
    use mud_point, only: blocks_t, initial_state, update_point, LAST_RATE => TANGENT_CONTINUUM
    use mud_registry, only: NSTATV, VARIABLES, S_LAYOUT, S_VOID_RATIO, S_SUCTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, &
-      S_ELASTIC_DOMAIN
+      S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE
    use mud_state, only: state_t, counters_t, pack_state, unpack_state, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_BAD_STATE, MUD_BAD_INPUT, MUD_BAD_OPTION, &
       MUD_NOT_FINITE, ON_STATEV, ON_STRESS, ON_STRAIN, ON_ARGUMENT
@@ -244,7 +244,10 @@ contains
       logical, intent(in) :: has_tangent
       type(output_t), intent(inout) :: output
       type(mud_status_t), intent(out) :: status
+      integer :: used
 
+      ! beyond the interrupted processes there are zeros
+      used = S_STACK - 1 + ENTRY_SIZE*state%memory%depth
       output%has_tangent = has_tangent
       output%stress = to_umat_stress(state%sigma)
       call pack_state(state, counters, output%statev)
@@ -261,7 +264,7 @@ contains
       else
          output%statev(S_DSIGMA_DPC:S_DSIGMA_DPC + 5) = 0.0_wp
       end if
-      if (.not. (all_finite(output%stress) .and. all_finite(output%statev))) status = fail(MUD_NOT_FINITE, ON_STRESS)
+      if (.not. (all_finite(output%stress) .and. all_finite(output%statev(1:used)))) status = fail(MUD_NOT_FINITE, ON_STRESS)
    end subroutine write_output
 
    !> Compression positive to tension positive; minus zero would only confuse.

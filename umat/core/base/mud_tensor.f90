@@ -6,8 +6,12 @@ module mud_tensor
    use mud_kinds, only: wp
    implicit none (type, external)
    private
-   public :: IDENTITY, SHEAR_WEIGHT, ddot, trace, deviator, norm, square, is_finite, all_finite, outer_add, rotate
+   public :: IDENTITY, SHEAR_WEIGHT, ddot, trace, deviator, norm, square, is_finite, all_finite, outer_add, rotate, &
+             LANES, contractions
 
+   !> Directions of a derivative that are worked on side by side: six strains, the suction and an idle one, for an even
+   !> number the compiler takes two at a time.
+   integer, parameter :: LANES = 8
    real(wp), parameter :: IDENTITY(6) = [1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
    !> How often a stored component stands in the 3 x 3 matrix.
    real(wp), parameter :: SHEAR_WEIGHT(6) = [1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp, 2.0_wp, 2.0_wp]
@@ -21,6 +25,15 @@ contains
 
       ddot = a(1)*b(1) + a(2)*b(2) + a(3)*b(3) + 2.0_wp*(a(4)*b(4) + a(5)*b(5) + a(6)*b(6))
    end function ddot
+
+   !> Contractions of tensors side by side with one.
+   pure function contractions(tensors, a) result(c)
+      real(wp), intent(in) :: tensors(LANES, 6), a(6)
+      real(wp) :: c(LANES)
+
+      c = a(1)*tensors(:, 1) + a(2)*tensors(:, 2) + a(3)*tensors(:, 3) &
+          + (2.0_wp*a(4))*tensors(:, 4) + (2.0_wp*a(5))*tensors(:, 5) + (2.0_wp*a(6))*tensors(:, 6)
+   end function contractions
 
    !> Trace of a.
    pure real(wp) function trace(a)

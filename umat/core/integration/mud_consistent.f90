@@ -8,36 +8,37 @@ module mud_consistent
    use mud_kinds, only: wp
    use mud_cutoff, only: slide, change_of_slide
    use mud_driving, only: driving_t, whole_increment, DIRECTIONS, AT_REST
-   use mud_increment, only: increment_t, void_ratio_at, suction_at, loading_strain, change_of_loading_strain, &
+   use mud_increment, only: increment_t, void_ratio_at, suction_at, loading_strain_of, changes_of_loading_strain, &
       turn_of_loading_strain, turning_t, turning_of, has_aside, NY
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY
    use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, MAX_INTERRUPTED
    use mud_relaxation, only: relax
    use mud_reversal, only: interrupted_share
-   use mud_sensitivity, only: change_t, linearised_t, linearise, change_of_rate, changes_of_rate
+   use mud_sensitivity, only: changes_t, linearised_t, linearise, changes_of_rate
    use mud_state, only: memory_t
    use mud_substep, only: MAX_STAGES, stage_point, solution
-   use mud_tensor, only: trace, deviator
+   use mud_tensor, only: IDENTITY, trace, deviator
    use mud_trial, only: trial_t, MODE_HELD
    implicit none (type, external)
    private
-   public :: sensitivity_t, no_sensitivity, propagate, jump_of_memory, change_with_size, change_along, &
-             change_of_ratio, linearise_stage, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
+   public :: sensitivity_t, no_sensitivity, propagate, jump_of_memory, change_with_size, changes_along, &
+             changes_of_ratio, linearise_stage, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
 
    integer, parameter :: JUMP_NONE = 0
    integer, parameter :: JUMP_REVERSAL = 1   !< A new process begins.
    integer, parameter :: JUMP_RETURN = 2     !< An interrupted process goes on.
    integer, parameter :: JUMP_NEW = 3        !< The tension cut-off let go: no past.
 
-   !> Derivatives along the seven directions.
+   !> Derivatives along the directions of driving_t.
    type :: sensitivity_t
-      real(wp) :: y(NY, DIRECTIONS)          !< of sigma', z and the plastic shear of the present process
-      real(wp) :: r_in(6, DIRECTIONS)        !< of the memory
-      real(wp) :: r_before(6, DIRECTIONS)    !< of the memory of the process before
+      logical :: at_rest                     !< the state does not depend on the increment yet: y, r_in, shift are zero
+      real(wp) :: y(DIRECTIONS, NY)          !< of sigma', z and the plastic shear of the present process
+      real(wp) :: r_in(DIRECTIONS, 6)        !< of the memory
+      real(wp) :: r_before(DIRECTIONS, 6)    !< of the memory of the process before
       real(wp) :: shift(DIRECTIONS)          !< of the pseudo-time where the next substep begins
       !> Of the memories of interrupted processes; those up to number `settled` were there when the increment began.
-      real(wp) :: interrupted(6, DIRECTIONS, MAX_INTERRUPTED)
+      real(wp) :: interrupted(DIRECTIONS, 6, MAX_INTERRUPTED)
       integer :: settled
       type(driving_t) :: driving
    end type sensitivity_t
@@ -47,6 +48,7 @@ contains
       integer, intent(in) :: depth           !< number of interrupted processes
       type(sensitivity_t), intent(inout) :: sens
 
+      sens%at_rest = .true.
       sens%y = 0.0_wp
       sens%r_in = 0.0_wp
       sens%r_before = 0.0_wp
@@ -68,7 +70,8 @@ contains
 
       dh = 0.0_wp
       if (last) dh = -sens%shift
-      call through_substep(par, inc, trial, h, sens%shift, dh, sens%r_in, sens%driving, sens%y)
+      call through_substep(par, inc, trial, h, sens%at_rest, sens%shift, dh, sens%r_in, sens%driving, sens%y)
+      sens%at_rest = .false.
       if (last) sens%shift = 0.0_wp
    end subroutine propagate
 
@@ -79,29 +82,31 @@ contains
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h
       real(wp), intent(out) :: change(NY)
-      real(wp) :: r_in(6, 1), y(NY, 1)
+      real(wp) :: none(DIRECTIONS), one(DIRECTIONS), r_in(DIRECTIONS, 6), y(DIRECTIONS, NY)
 
+      none = 0.0_wp
+      one = 1.0_wp
       r_in = 0.0_wp
       y = 0.0_wp
-      call through_substep(par, inc, trial, h, [0.0_wp], [1.0_wp], r_in, AT_REST, y)
-      change = y(:, 1)
+      call through_substep(par, inc, trial, h, .false., none, one, r_in, AT_REST, y)
+      change = y(1, :)
    end subroutine change_with_size
 
-   !> Derivatives across a substep along any number of directions: its start moves by `shift` in pseudo-time, its size
-   !> changes by dh.
-   pure subroutine through_substep(par, inc, trial, h, shift, dh, r_in, driving, y)
+   !> Derivatives across a substep: its start moves by `shift` in pseudo-time, its size changes by dh.
+   pure subroutine through_substep(par, inc, trial, h, at_rest, shift, dh, r_in, driving, y)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h
-      real(wp), intent(in), contiguous :: shift(:), dh(:), r_in(:, :)
+      logical, intent(in) :: at_rest
+      real(wp), intent(in) :: shift(DIRECTIONS), dh(DIRECTIONS), r_in(DIRECTIONS, 6)
       type(driving_t), intent(in) :: driving
-      real(wp), intent(inout), contiguous :: y(:, :)
+      real(wp), intent(inout) :: y(DIRECTIONS, NY)
 
       if (trial%mode == MODE_HELD) then
          call through_held(par, inc, trial, h, shift, dh, driving, y)
       else
-         call through_stages(par, inc, trial, h, size(shift), shift, dh, r_in, driving, y)
+         call through_stages(par, inc, trial, h, at_rest, shift, dh, r_in, driving, y)
       end if
    end subroutine through_substep
 
@@ -110,154 +115,189 @@ contains
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
-      real(wp), intent(in) :: h, shift(:), dh(:)
+      real(wp), intent(in) :: h, shift(DIRECTIONS), dh(DIRECTIONS)
       type(driving_t), intent(in) :: driving
-      real(wp), intent(inout) :: y(:, :)
-      real(wp) :: r0(6), r_half(6), dr(6), strain(6), de, dp_c, half, middle
+      real(wp), intent(inout) :: y(DIRECTIONS, NY)
+      real(wp), dimension(DIRECTIONS) :: de_half, dp_c_half, de, dp_c
+      real(wp) :: r0(6), r_half(6), dr(6), strain(6), half, middle
       integer :: j
 
       half = 0.5_wp*h
       middle = trial%time + half
       r0 = deviator(trial%y0(1:6))/par%p_min
       r_half = slide(par, inc, r0, trial%time, half)
-      do j = 1, size(shift)
-         strain = driving%d_strain(:, j) + (dh(j)/h)*inc%d_strain
-         call change_of_place(inc, j, middle, void_ratio_at(inc, middle), shift(j) + 0.5_wp*dh(j), driving, de, dp_c)
-         dr = change_of_slide(par, inc, r0, trial%time, half, deviator(y(1:6, j))/par%p_min, strain, de, dp_c)
-         call change_of_place(inc, j, trial%time + h, void_ratio_at(inc, trial%time + h), shift(j) + dh(j), driving, &
-                              de, dp_c)
-         y(1:6, j) = par%p_min*change_of_slide(par, inc, r_half, middle, half, dr, strain, de, dp_c)
+      call change_of_place(inc, middle, void_ratio_at(inc, middle), shift + 0.5_wp*dh, driving, de_half, dp_c_half)
+      call change_of_place(inc, trial%time + h, void_ratio_at(inc, trial%time + h), shift + dh, driving, de, dp_c)
+      do j = 1, DIRECTIONS
+         strain = driving%d_strain(j, :) + (dh(j)/h)*inc%d_strain
+         dr = change_of_slide(par, inc, r0, trial%time, half, deviator(y(j, 1:6))/par%p_min, strain, de_half(j), &
+                              dp_c_half(j))
+         y(j, 1:6) = par%p_min*change_of_slide(par, inc, r_half, middle, half, dr, strain, de(j), dp_c(j))
       end do
    end subroutine through_held
 
    !> Derivatives of void ratio and suction at a pseudo-time that itself changes by dt.
-   pure subroutine change_of_place(inc, j, time, e, dt, driving, de, dp_c)
+   pure subroutine change_of_place(inc, time, e, dt, driving, de, dp_c)
       type(increment_t), intent(in) :: inc
-      integer, intent(in) :: j
-      real(wp), intent(in) :: time, e, dt   !< e: void ratio there
+      real(wp), intent(in) :: time, e, dt(DIRECTIONS)   !< e: void ratio there
       type(driving_t), intent(in) :: driving
-      real(wp), intent(out) :: de, dp_c
+      real(wp), dimension(DIRECTIONS), intent(out) :: de, dp_c
 
-      de = (1.0_wp + e)*(driving%e0(j) - time*driving%d_v(j) - dt*inc%d_v)
-      dp_c = driving%p_c0(j) + time*driving%d_pc(j) + dt*inc%d_pc
+      de = (1.0_wp + e)*(driving%e0 - time*driving%d_v - inc%d_v*dt)
+      dp_c = driving%p_c0 + time*driving%d_pc + inc%d_pc*dt
    end subroutine change_of_place
 
    !> The scheme applied to all directions as one long vector.
-   pure subroutine through_stages(par, inc, trial, h, n, shift, dh, r_in, driving, y1)
+   pure subroutine through_stages(par, inc, trial, h, at_rest, shift, dh, r_in, driving, y1)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
-      integer, intent(in) :: n               !< number of directions
-      real(wp), intent(in) :: h, shift(n), dh(n), r_in(6, n)
+      real(wp), intent(in) :: h, shift(DIRECTIONS), dh(DIRECTIONS), r_in(DIRECTIONS, 6)
+      logical, intent(in) :: at_rest
       type(driving_t), intent(in) :: driving
-      real(wp), intent(inout) :: y1(NY*n)
-      real(wp) :: rates(NY*DIRECTIONS, MAX_STAGES), y0(NY*DIRECTIONS), y(NY*DIRECTIONS), point(NY), dt(DIRECTIONS)
-      integer :: i, j, last, size
+      real(wp), intent(inout) :: y1(DIRECTIONS*NY)
+      real(wp) :: rates(DIRECTIONS*NY, MAX_STAGES), y0(DIRECTIONS*NY), y(DIRECTIONS*NY), point(NY)
+      integer :: i, last
 
       ! the last stage of such a pair serves the error estimate and the next substep, not the solution
       last = inc%scheme%stages
       if (inc%scheme%first_same_as_last) last = last - 1
-      size = NY*n
-      y0(:size) = y1
-      y(:size) = y1
-      point = trial%y0
-      do i = 1, last
-         if (i > 1) then
-            call stage_point(inc%scheme, i, y0(:size), rates(:size, :), h, y(:size))
-            call stage_point(inc%scheme, i, trial%y0, trial%rates, h, point)
-         end if
-         dt(:n) = shift + inc%scheme%node(i)*dh
-         call change_of_stage(par, inc, trial%mode, trial%w(i), point, trial%time + inc%scheme%node(i)*h, n, &
-                              dt, r_in, driving, y, rates(:, i))
-         do j = 1, n
-            if (abs(dh(j)) > 0.0_wp) then
-               rates(NY*(j - 1) + 1:NY*j, i) = rates(NY*(j - 1) + 1:NY*j, i) + (dh(j)/h)*trial%rates(:, i)
-            end if
-            if (trial%relaxation%speed > 0.0_wp) call relax(trial%relaxation, h, rates(NY*(j - 1) + 1:NY*j, 1:i))
-         end do
+      y0 = y1
+      call change_of_stage(par, inc, trial%mode, trial%w(1), trial%y0, trial%time, at_rest, shift, r_in, driving, y1, &
+                           rates(:, 1))
+      call finish_stage(trial, h, 1, dh, rates)
+      do i = 2, last
+         call stage_point(inc%scheme, i, y0, rates, h, y)
+         call stage_point(inc%scheme, i, trial%y0, trial%rates, h, point)
+         call change_of_stage(par, inc, trial%mode, trial%w(i), point, trial%time + inc%scheme%node(i)*h, .false., &
+                              shift + inc%scheme%node(i)*dh, r_in, driving, y, rates(:, i))
+         call finish_stage(trial, h, i, dh, rates)
       end do
-      call solution(inc%scheme, y0(:size), rates(:size, :), h, y1)
+      call solution(inc%scheme, y0, rates, h, y1)
    end subroutine through_stages
 
+   !> What its size, which changes by dh, and the stiff direction add to stage i.
+   pure subroutine finish_stage(trial, h, i, dh, rates)
+      type(trial_t), intent(in) :: trial
+      integer, intent(in) :: i
+      real(wp), intent(in) :: h, dh(DIRECTIONS)
+      real(wp), intent(inout) :: rates(DIRECTIONS, NY, MAX_STAGES)
+      integer :: k
+
+      if (any(abs(dh) > 0.0_wp)) then
+         do k = 1, NY
+            rates(:, k, i) = rates(:, k, i) + (trial%rates(k, i)/h)*dh
+         end do
+      end if
+      if (trial%relaxation%speed > 0.0_wp) call relax_changes(trial, h, i, rates)
+   end subroutine finish_stage
+
+   !> The stiff direction of a linearly implicit stage i.
+   pure subroutine relax_changes(trial, h, i, rates)
+      type(trial_t), intent(in) :: trial
+      real(wp), intent(in) :: h
+      integer, intent(in) :: i
+      real(wp), intent(inout) :: rates(DIRECTIONS, NY, MAX_STAGES)
+      real(wp) :: along_one(NY, i)
+      integer :: j
+
+      do j = 1, DIRECTIONS
+         along_one = rates(j, :, 1:i)
+         call relax(trial%relaxation, h, along_one)
+         rates(j, :, i) = along_one(:, i)
+      end do
+   end subroutine relax_changes
+
    !> Derivatives of one stage's rates; its pseudo-time changes by dt.
-   pure subroutine change_of_stage(par, inc, mode, w, point, time, n, dt, r_in, driving, y, rates)
+   pure subroutine change_of_stage(par, inc, mode, w, point, time, at_rest, dt, r_in, driving, y, rates)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
-      integer, intent(in) :: mode, n
+      integer, intent(in) :: mode
       type(rate_t), intent(in) :: w
-      real(wp), intent(in) :: point(NY), time, dt(n), r_in(6, n), y(NY, n)
+      logical, intent(in) :: at_rest
+      real(wp), intent(in) :: point(NY), time, dt(DIRECTIONS), r_in(DIRECTIONS, 6), y(DIRECTIONS, NY)
       type(driving_t), intent(in) :: driving
-      real(wp), intent(out) :: rates(NY, n)
+      real(wp), intent(out) :: rates(DIRECTIONS, NY)
       type(linearised_t) :: lin
-      type(change_t) :: changes(DIRECTIONS)
+      type(changes_t) :: changes
       type(turning_t) :: turning
       real(wp) :: e
-      integer :: j
 
       e = void_ratio_at(inc, time)
       turning = turning_of(inc, mode, time)
-      call linearise_stage(par, inc, mode, w, point, time, e, lin)
-      do j = 1, n
-         call change_along(inc, mode, j, time, e, turning, dt(j), y(:, j), r_in(:, j), driving, changes(j))
-      end do
-      call changes_of_rate(par, w, lin, n, changes, rates)
+      call linearise_stage(par, inc, mode, w, point, time, e, turning, lin)
+      call changes_along(inc, mode, time, e, turning, dt, driving, changes)
+      call changes_of_rate(par, w, lin, at_rest .and. are_zero(changes), y, r_in, changes, rates)
    end subroutine change_of_stage
+
+   !> True where void ratio and suction do not change.
+   pure logical function are_zero(changes)
+      type(changes_t), intent(in) :: changes
+
+      are_zero = sum(abs(changes%e)) + sum(abs(changes%p_c)) <= 0.0_wp
+   end function are_zero
 
    !> Prepares the derivative of the rate w of a stage, at a point of the integrated vector, a pseudo-time and a void
    !> ratio.
-   pure subroutine linearise_stage(par, inc, mode, w, point, time, e, lin)
+   pure subroutine linearise_stage(par, inc, mode, w, point, time, e, turning, lin)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: point(NY), time, e
+      type(turning_t), intent(in) :: turning   !< of the elastic domain there
       type(linearised_t), intent(inout) :: lin
       real(wp) :: loading(6), aside(6)
 
       if (has_aside(inc, mode)) then
-         call loading_strain(inc, mode, time, loading, aside)
+         call loading_strain_of(inc, mode, turning, loading, aside)
          call linearise(par, inc%bonded, w, point(1:6), e, suction_at(inc, time), loading, inc%d_pc, lin, aside)
       else
          call linearise(par, inc%bonded, w, point(1:6), e, suction_at(inc, time), inc%d_strain, inc%d_pc, lin)
       end if
    end subroutine linearise_stage
 
-   !> How the arguments of a rate change along a direction, at a pseudo-time that itself changes by dt.
-   pure subroutine change_along(inc, mode, j, time, e, turning, dt, y, r_in, driving, change)
+   !> How the arguments of a rate change, beside stress, fabric and memory, at a pseudo-time that itself changes by dt.
+   pure subroutine changes_along(inc, mode, time, e, turning, dt, driving, changes)
       type(increment_t), intent(in) :: inc
-      integer, intent(in) :: mode, j
+      integer, intent(in) :: mode
       type(turning_t), intent(in) :: turning   !< of the elastic domain there
-      real(wp), intent(in) :: time, e, dt, y(NY), r_in(6)
+      real(wp), intent(in) :: time, e, dt(DIRECTIONS)
       type(driving_t), intent(in) :: driving
-      type(change_t), intent(inout) :: change
+      type(changes_t), intent(out) :: changes
       real(wp) :: turn(6)
+      integer :: i
 
-      change%sigma = y(1:6)
-      change%z = y(7:12)
-      change%r_in = r_in
-      change%d_strain = driving%d_strain(:, j)
-      change%d_pc = driving%d_pc(j)
-      call change_of_place(inc, j, time, e, dt, driving, change%e, change%p_c)
-      if (.not. has_aside(inc, mode)) return
-      call change_of_loading_strain(inc, mode, turning, driving%d_strain(:, j), driving%from_centre(:, j), &
-                                    change%d_strain, change%d_aside)
-      if (abs(dt) > 0.0_wp) then
-         turn = dt*turn_of_loading_strain(inc, mode, time)
-         change%d_strain = change%d_strain + turn
-         change%d_aside = change%d_aside - turn
+      changes%d_pc = driving%d_pc
+      call change_of_place(inc, time, e, dt, driving, changes%e, changes%p_c)
+      if (.not. has_aside(inc, mode)) then
+         changes%d_strain = driving%d_strain
+         return
       end if
-   end subroutine change_along
+      call changes_of_loading_strain(inc, mode, turning, driving%d_strain, driving%from_centre, changes%d_strain, &
+                                     changes%d_aside)
+      if (all(abs(dt) <= 0.0_wp)) return
+      turn = turn_of_loading_strain(inc, mode, turning)
+      do i = 1, 6
+         changes%d_strain(:, i) = changes%d_strain(:, i) + turn(i)*dt
+         changes%d_aside(:, i) = changes%d_aside(:, i) - turn(i)*dt
+      end do
+   end subroutine changes_along
 
-   !> Change of the stress ratio with the stress.
-   pure function change_of_ratio(par, sigma, d_sigma) result(dr)
+   !> Changes of the stress ratio with the stress.
+   pure function changes_of_ratio(par, sigma, y) result(dr)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: sigma(6), d_sigma(6)
-      real(wp) :: dr(6), p, r(6)
+      real(wp), intent(in) :: sigma(6), y(DIRECTIONS, NY)
+      real(wp) :: dr(DIRECTIONS, 6), p, r(6), mean(DIRECTIONS)
+      integer :: i
 
       call stress_ratio(par, sigma, p, r)
-      dr = deviator(d_sigma)/p
-      if (trace(sigma) >= 3.0_wp*par%p_min) dr = dr - (trace(d_sigma)/(3.0_wp*p))*r
-   end function change_of_ratio
+      mean = (y(:, 1) + y(:, 2) + y(:, 3))/3.0_wp
+      do i = 1, 6
+         dr(:, i) = (y(:, i) - IDENTITY(i)*mean)/p
+         if (trace(sigma) >= 3.0_wp*par%p_min) dr(:, i) = dr(:, i) - (r(i)/p)*mean
+      end do
+   end function changes_of_ratio
 
    !> Derivatives of the memory across its jump at the start of a substep; `before` is the memory ahead of it and
    !> `trigger` the rate that made it jump.
@@ -269,9 +309,10 @@ contains
       type(rate_t), intent(in) :: trigger
       type(trial_t), intent(in) :: trial
       type(sensitivity_t), intent(inout) :: sens
-      real(wp) :: p, r(6), dr(6), old_r_in(6)
+      real(wp) :: p, r(6), dr(DIRECTIONS, 6), old_r_in(DIRECTIONS, 6)
       integer :: j
 
+      sens%at_rest = .false.
       if (jump == JUMP_RETURN) then
          ! of the two memories the softer one was taken
          if (any(abs(after%r_in - before%r_in) > 0.0_wp)) then
@@ -279,7 +320,7 @@ contains
             if (after%depth >= sens%settled) sens%r_in = sens%interrupted(:, :, after%depth + 1)
          end if
          sens%settled = min(sens%settled, after%depth)
-         sens%y(13, :) = 0.0_wp
+         sens%y(:, 13) = 0.0_wp
          return
       end if
       if (jump == JUMP_REVERSAL .and. after%depth /= before%depth) then
@@ -292,20 +333,18 @@ contains
          return
       end if
       call stress_ratio(par, trial%y0(1:6), p, r)
-      do j = 1, DIRECTIONS
-         dr = change_of_ratio(par, trial%y0(1:6), sens%y(1:6, j))
-         old_r_in = sens%r_in(:, j)
-         sens%r_in(:, j) = dr
-         if (jump == JUMP_REVERSAL .and. par%memory_rule == RULE_THRESHOLD) then
-            ! a fall-back left r_in at r
-            if (any(abs(after%r_in - r) > 0.0_wp)) then
-               sens%r_in(:, j) = change_of_threshold(par, before, r, dr, sens%r_before(:, j), sens%y(13, j))
-            end if
-         end if
-         sens%r_before(:, j) = old_r_in
-         if (jump == JUMP_NEW) sens%r_before(:, j) = dr
-      end do
-      sens%y(13, :) = 0.0_wp
+      dr = changes_of_ratio(par, trial%y0(1:6), sens%y)
+      old_r_in = sens%r_in
+      sens%r_in = dr
+      ! a fall-back left r_in at r
+      if (jump == JUMP_REVERSAL .and. par%memory_rule == RULE_THRESHOLD .and. any(abs(after%r_in - r) > 0.0_wp)) then
+         do j = 1, DIRECTIONS
+            sens%r_in(j, :) = change_of_threshold(par, before, r, dr(j, :), sens%r_before(j, :), sens%y(j, 13))
+         end do
+      end if
+      sens%r_before = old_r_in
+      if (jump == JUMP_NEW) sens%r_before = dr
+      sens%y(:, 13) = 0.0_wp
    end subroutine jump_of_memory
 
    !> Change of r_in = r + m (r_before - r), rule threshold.
@@ -339,23 +378,23 @@ contains
       type(trial_t), intent(in) :: trial
       type(sensitivity_t), intent(inout) :: sens
       type(linearised_t) :: lin
-      type(change_t) :: change
+      type(changes_t) :: changes
       type(turning_t) :: turning
-      real(wp) :: m, dm, dn(6), d_sigma(6), d_z(6), d_eps_q, e
-      integer :: j
+      real(wp) :: rates(DIRECTIONS, NY), dn(DIRECTIONS, 6), dr(DIRECTIONS, 6), m, e
+      integer :: i
 
       m = interrupted_share(par, before%eps_q_p)
       e = void_ratio_at(inc, trial%time)
       turning = turning_of(inc, MODE_ORDINARY, trial%time)
-      call linearise_stage(par, inc, MODE_ORDINARY, trigger, trial%y0, trial%time, e, lin)
-      do j = 1, DIRECTIONS
-         call change_along(inc, MODE_ORDINARY, j, trial%time, e, turning, sens%shift(j), sens%y(:, j), &
-                           sens%r_in(:, j), sens%driving, change)
-         call change_of_rate(par, trigger, lin, change, d_sigma, d_z, d_eps_q, dn)
-         dm = share_slope(par, before%eps_q_p)*sens%y(13, j)
-         sens%r_before(:, j) = sens%r_in(:, j)
-         sens%r_in(:, j) = change_of_ratio(par, trial%y0(1:6), sens%y(1:6, j)) - before%x_before*(m*dn + dm*trigger%n)
-         sens%y(13, j) = 0.0_wp
+      call linearise_stage(par, inc, MODE_ORDINARY, trigger, trial%y0, trial%time, e, turning, lin)
+      call changes_along(inc, MODE_ORDINARY, trial%time, e, turning, sens%shift, sens%driving, changes)
+      call changes_of_rate(par, trigger, lin, .false., sens%y, sens%r_in, changes, rates, dn)
+      dr = changes_of_ratio(par, trial%y0(1:6), sens%y)
+      sens%r_before = sens%r_in
+      do i = 1, 6
+         sens%r_in(:, i) = dr(:, i) - before%x_before*(m*dn(:, i) &
+                                                       + (share_slope(par, before%eps_q_p)*trigger%n(i))*sens%y(:, 13))
       end do
+      sens%y(:, 13) = 0.0_wp
    end subroutine reposition
 end module mud_consistent

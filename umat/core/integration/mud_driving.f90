@@ -1,25 +1,24 @@
 ! SPDX-License-Identifier: MIT
-!> Derivatives of what drives an increment - strain, volume, suction - along the seven directions of the consistent
-!> tangent, and how its parts share them: the part inside the elastic domain and the rest, the part without suction and
-!> the rest.
+!> Derivatives of what drives an increment - strain, volume, suction - along the directions of the consistent tangent,
+!> and how its parts share them: the part inside the elastic domain and the rest, the part without suction and the rest.
 module mud_driving
    use mud_kinds, only: wp
-   use mud_elastic_domain, only: change_of_exit, change_of_direction
+   use mud_elastic_domain, only: changes_of_exit, changes_of_turning, turning_at
    use mud_increment, only: increment_t
+   use mud_tensor, only: DIRECTIONS => LANES
    implicit none (type, external)
    private
    public :: driving_t, whole_increment, parts_at_exit, parts_without_suction, end_in_domain, DIRECTIONS, AT_REST
 
-   integer, parameter :: DIRECTIONS = 7   !< Six engineering strains and the suction at the end of the increment.
-
-   !> Derivatives of what drives the increment, or one of its parts, along the seven directions.
+   !> Derivatives of what drives the increment, or one of its parts, along six engineering strains and the suction at the
+   !> end of the increment, side by side. The eighth direction is idle: along it nothing changes.
    type :: driving_t
-      real(wp) :: d_strain(6, DIRECTIONS)      !< of its strain
+      real(wp) :: d_strain(DIRECTIONS, 6)      !< of its strain
       real(wp) :: d_v(DIRECTIONS)              !< of its volume
       real(wp) :: d_pc(DIRECTIONS)             !< of its suction step
       real(wp) :: e0(DIRECTIONS)               !< of ln(1 + e) at its start
       real(wp) :: p_c0(DIRECTIONS)             !< of its first suction
-      real(wp) :: from_centre(6, DIRECTIONS)   !< of the strain from the centre of the elastic domain at its start
+      real(wp) :: from_centre(DIRECTIONS, 6)   !< of the strain from the centre of the elastic domain at its start
    end type driving_t
 
    !> Nothing drives.
@@ -46,19 +45,13 @@ contains
       type(driving_t), intent(in) :: driving   !< of the whole
       type(driving_t), intent(out) :: inside, rest
       real(wp) :: change(DIRECTIONS)
-      integer :: j
 
       change = 0.0_wp
       if (share > 0.0_wp .and. share < 1.0_wp) then
-         do j = 1, DIRECTIONS
-            change(j) = change_of_exit(whole%from_centre, whole%d_strain, share, driving%from_centre(:, j), &
-                                       driving%d_strain(:, j))
-         end do
+         change = changes_of_exit(whole%from_centre, whole%d_strain, share, driving%from_centre, driving%d_strain)
       end if
       call split(whole, share, change, driving, inside, rest)
-      do j = 1, DIRECTIONS
-         rest%from_centre(:, j) = driving%from_centre(:, j) + inside%d_strain(:, j)
-      end do
+      rest%from_centre = driving%from_centre + inside%d_strain
    end subroutine parts_at_exit
 
    !> Both parts of an increment whose suction passes zero at a share of it, which depends on the suction step.
@@ -77,32 +70,33 @@ contains
       real(wp), intent(in) :: share, change(DIRECTIONS)
       type(driving_t), intent(in) :: driving
       type(driving_t), intent(out) :: first, rest
-      integer :: j
+      integer :: i, j
 
-      first = driving
-      rest = driving
       do j = 1, DIRECTIONS
-         first%d_strain(:, j) = share*driving%d_strain(:, j) + change(j)*whole%d_strain
-         first%d_v(j) = share*driving%d_v(j) + change(j)*whole%d_v
-         first%d_pc(j) = share*driving%d_pc(j) + change(j)*whole%d_pc
-         rest%d_strain(:, j) = (1.0_wp - share)*driving%d_strain(:, j) - change(j)*whole%d_strain
-         rest%d_v(j) = (1.0_wp - share)*driving%d_v(j) - change(j)*whole%d_v
-         rest%d_pc(j) = (1.0_wp - share)*driving%d_pc(j) - change(j)*whole%d_pc
-         rest%e0(j) = driving%e0(j) - first%d_v(j)
-         rest%p_c0(j) = driving%p_c0(j) + first%d_pc(j)
+         do i = 1, 6
+            first%d_strain(j, i) = share*driving%d_strain(j, i) + whole%d_strain(i)*change(j)
+            rest%d_strain(j, i) = (1.0_wp - share)*driving%d_strain(j, i) - whole%d_strain(i)*change(j)
+         end do
       end do
+      first%d_v = share*driving%d_v + whole%d_v*change
+      first%d_pc = share*driving%d_pc + whole%d_pc*change
+      first%e0 = driving%e0
+      first%p_c0 = driving%p_c0
+      first%from_centre = driving%from_centre
+      rest%d_v = (1.0_wp - share)*driving%d_v - whole%d_v*change
+      rest%d_pc = (1.0_wp - share)*driving%d_pc - whole%d_pc*change
+      rest%e0 = driving%e0 - first%d_v
+      rest%p_c0 = driving%p_c0 + first%d_pc
+      rest%from_centre = driving%from_centre
    end subroutine split
 
    !> Derivatives of the strain from the centre of the elastic domain at the end of a part that began on the sphere.
    pure function end_in_domain(inc, driving) result(from_centre)
       type(increment_t), intent(in) :: inc
       type(driving_t), intent(in) :: driving
-      real(wp) :: from_centre(6, DIRECTIONS)
-      integer :: j
+      real(wp) :: from_centre(DIRECTIONS, 6)
 
-      do j = 1, DIRECTIONS
-         from_centre(:, j) = inc%rho*change_of_direction(inc%rho, inc%from_centre, inc%d_strain, 1.0_wp, &
-                                                         driving%from_centre(:, j), driving%d_strain(:, j))
-      end do
+      from_centre = inc%rho*changes_of_turning(turning_at(inc%rho, inc%from_centre, inc%d_strain, 1.0_wp), &
+                                               driving%from_centre, driving%d_strain)
    end function end_in_domain
 end module mud_driving

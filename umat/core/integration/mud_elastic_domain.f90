@@ -7,11 +7,11 @@
 !> increment is exact in two phases, whatever its size, and a large one is not cut into pieces.
 module mud_elastic_domain
    use mud_kinds, only: wp
-   use mud_tensor, only: ddot, norm
+   use mud_tensor, only: LANES, ddot, norm, contractions
    implicit none (type, external)
    private
-   public :: turning_t, exit_share, change_of_exit, loading_direction, change_of_direction, turning_at, &
-             change_of_turning
+   public :: turning_t, exit_share, changes_of_exit, loading_direction, turning_at, combination_t, &
+             combination_of_turning, changes_of_turning
 
    !> The direction nu at one pseudo-time.
    type :: turning_t
@@ -22,6 +22,15 @@ module mud_elastic_domain
       real(wp) :: u(6), length   !< direction and size of the increment [-]
       real(wp) :: rho, time, cosine, decay, share, divisor
    end type turning_t
+
+   !> Changes of nu as a sum: of_d times those of d, of_increment times those of the increment, and parts along d and u.
+   type :: combination_t
+      real(wp) :: of_d, of_increment
+      real(wp), dimension(LANES) :: along_d, along_u
+      ! contractions on the way there
+      real(wp), dimension(LANES) :: length           !< changes of the increment along u [-]
+      real(wp), dimension(LANES) :: d_on_u, increment_on_d
+   end type combination_t
 contains
    !> Share of a strain increment after which the sphere is reached outwards; 1 if it is not.
    pure real(wp) function exit_share(rho, d, increment) result(share)
@@ -44,14 +53,15 @@ contains
       end if
    end function exit_share
 
-   !> Change of that share with d and the increment.
-   pure real(wp) function change_of_exit(d, increment, share, d_change, increment_change) result(change)
-      real(wp), intent(in) :: d(6), increment(6), share, d_change(6), increment_change(6)
-      real(wp) :: at_exit(6)
+   !> Changes of that share with d and the increment.
+   pure function changes_of_exit(d, increment, share, d_changes, increment_changes) result(changes)
+      real(wp), intent(in) :: d(6), increment(6), share, d_changes(LANES, 6), increment_changes(LANES, 6)
+      real(wp) :: changes(LANES), at_exit(6)
 
       at_exit = d + share*increment
-      change = -ddot(at_exit, d_change + share*increment_change)/ddot(at_exit, increment)
-   end function change_of_exit
+      changes = -(contractions(d_changes, at_exit) + share*contractions(increment_changes, at_exit)) &
+                /ddot(at_exit, increment)
+   end function changes_of_exit
 
    !> nu at a share `time` of a strain increment that begins at d on the sphere and points outwards.
    pure function loading_direction(rho, d, increment, time) result(nu)
@@ -66,20 +76,11 @@ contains
             + ((1.0_wp - decay)*(1.0_wp + decay + cosine*(1.0_wp - decay))/length)*increment)/divisor
    end function loading_direction
 
-   !> Change of nu with d (which stays on the sphere) and the increment.
-   pure function change_of_direction(rho, d, increment, time, d_change, increment_change) result(change)
-      real(wp), intent(in) :: rho, d(6), increment(6), time, d_change(6), increment_change(6)
-      real(wp) :: change(6)
-
-      change = change_of_turning(turning_at(rho, d, increment, time), d_change, increment_change)
-   end function change_of_direction
-
    !> nu at a pseudo-time, and what its changes share.
    pure function turning_at(rho, d, increment, time) result(turning)
       real(wp), intent(in) :: rho, d(6), increment(6), time
       type(turning_t) :: turning
 
-      turning%nu = loading_direction(rho, d, increment, time)
       turning%d = d
       turning%rho = rho
       turning%time = time
@@ -91,24 +92,51 @@ contains
          turning%divisor = 1.0_wp + cosine + (1.0_wp - cosine)*decay**2
          turning%share = (1.0_wp - decay)*(1.0_wp + decay + cosine*(1.0_wp - decay))
          turning%dividend = 2.0_wp*decay*(d/rho) + turning%share*turning%u
+         turning%nu = turning%dividend/turning%divisor
       end associate
    end function turning_at
 
-   !> Its change.
-   pure function change_of_turning(turning, d_change, increment_change) result(change)
+   !> Its changes with d (which stays on the sphere) and the increment.
+   pure function changes_of_turning(turning, d_changes, increment_changes) result(changes)
       type(turning_t), intent(in) :: turning
-      real(wp), intent(in) :: d_change(6), increment_change(6)
-      real(wp) :: change(6), du(6), dlength, dcosine, ddecay, ddivisor, dshare
+      real(wp), intent(in) :: d_changes(LANES, 6), increment_changes(LANES, 6)
+      real(wp) :: changes(LANES, 6)
+      type(combination_t) :: by
+      integer :: i, j
 
-      associate (d => turning%d, u => turning%u, cosine => turning%cosine, decay => turning%decay)
-         dlength = ddot(u, increment_change)
-         du = (increment_change - dlength*u)/turning%length
-         dcosine = (ddot(d_change, u) + ddot(d, du))/turning%rho
-         ddecay = -decay*dlength*turning%time/turning%rho
-         ddivisor = dcosine*(1.0_wp - decay**2) + 2.0_wp*(1.0_wp - cosine)*decay*ddecay
-         dshare = -2.0_wp*ddecay*(decay + cosine*(1.0_wp - decay)) + dcosine*(1.0_wp - decay)**2
-         change = (2.0_wp*(ddecay*d + decay*d_change)/turning%rho + dshare*u + turning%share*du &
-                   - (ddivisor/turning%divisor)*turning%dividend)/turning%divisor
+      by = combination_of_turning(turning, d_changes, increment_changes)
+      do j = 1, LANES
+         do i = 1, 6
+            changes(j, i) = by%of_d*d_changes(j, i) + by%of_increment*increment_changes(j, i) &
+                            + by%along_d(j)*turning%d(i) + by%along_u(j)*turning%u(i)
+         end do
+      end do
+   end function changes_of_turning
+
+   !> What these changes are made of.
+   pure function combination_of_turning(turning, d_changes, increment_changes) result(by)
+      type(turning_t), intent(in) :: turning
+      real(wp), intent(in) :: d_changes(LANES, 6), increment_changes(LANES, 6)
+      type(combination_t) :: by
+      real(wp), dimension(LANES) :: dcosine, ddecay, ddivisor, dshare
+      real(wp) :: d_u, per_divisor
+
+      associate (d => turning%d, u => turning%u, cosine => turning%cosine, decay => turning%decay, &
+                 dlength => by%length)
+         d_u = ddot(d, u)
+         per_divisor = 1.0_wp/turning%divisor
+         dlength = contractions(increment_changes, u)
+         by%d_on_u = contractions(d_changes, u)
+         by%increment_on_d = contractions(increment_changes, d)
+         dcosine = (by%d_on_u + (by%increment_on_d - d_u*dlength)/turning%length)/turning%rho
+         ddecay = -(decay*turning%time/turning%rho)*dlength
+         ddivisor = (1.0_wp - decay**2)*dcosine + (2.0_wp*(1.0_wp - cosine)*decay)*ddecay
+         dshare = -(2.0_wp*(decay + cosine*(1.0_wp - decay)))*ddecay + (1.0_wp - decay)**2*dcosine
+         by%of_d = 2.0_wp*decay/turning%rho*per_divisor
+         by%of_increment = turning%share/turning%length*per_divisor
+         ! nu = dividend/divisor, the dividend a sum of d and u
+         by%along_d = (2.0_wp/turning%rho*per_divisor)*(ddecay - (decay*per_divisor)*ddivisor)
+         by%along_u = per_divisor*(dshare - turning%share*per_divisor*ddivisor) - by%of_increment*dlength
       end associate
-   end function change_of_turning
+   end function combination_of_turning
 end module mud_elastic_domain

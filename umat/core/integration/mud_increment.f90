@@ -4,15 +4,15 @@ module mud_increment
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_state, only: counters_t
-   use mud_tensor, only: IDENTITY, ddot, trace, deviator, norm
+   use mud_tensor, only: IDENTITY, LANES, ddot, trace, deviator, norm
    use mud_bonding, only: is_bonded
    use mud_rates, only: rate_t, rate_at, MODE_ORDINARY, MODE_ELASTIC
-   use mud_elastic_domain, only: turning_t, turning_at, change_of_turning, loading_direction
+   use mud_elastic_domain, only: turning_t, turning_at, combination_t, combination_of_turning, loading_direction
    use mud_substep, only: scheme_t, SCHEMES
    implicit none (type, external)
    private
    public :: increment_t, new_increment, take_phase, void_ratio_at, suction_at, rate_of, loading_strain, &
-             change_of_loading_strain, turn_of_loading_strain, turning_t, turning_of, has_aside, NY
+             loading_strain_of, changes_of_loading_strain, turn_of_loading_strain, turning_t, turning_of, has_aside, NY
 
    integer, parameter :: NY = 13         !< Length of the integrated vector: sigma'(6), z(6), plastic shear.
    !> A strain across the elastic domain, whose part along nu is rounding of either sign, does not load: it would look
@@ -86,23 +86,59 @@ contains
       aside = inc%d_strain - loading
    end subroutine loading_strain
 
-   !> Change of both parts with the strain rate and the elastic domain at the start.
-   pure subroutine change_of_loading_strain(inc, mode, turning, strain_change, centre_change, loading, aside)
+   !> The same, of a direction that is known.
+   pure subroutine loading_strain_of(inc, mode, turning, loading, aside)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
-      type(turning_t), intent(in) :: turning   !< of the pseudo-time; not used inside the domain
-      real(wp), intent(in) :: strain_change(6), centre_change(6)
+      type(turning_t), intent(in) :: turning   !< not used inside the domain
       real(wp), intent(out) :: loading(6), aside(6)
-      real(wp) :: change(6)
+      real(wp) :: along
 
       loading = 0.0_wp
       if (mode /= MODE_ELASTIC) then
-         change = change_of_turning(turning, centre_change, strain_change)
-         loading = (ddot(change, inc%d_strain) + ddot(turning%nu, strain_change))*turning%nu &
-                   + ddot(turning%nu, inc%d_strain)*change
+         along = ddot(turning%nu, inc%d_strain)
+         if (along > ACROSS*turning%length) loading = along*turning%nu
       end if
-      aside = strain_change - loading
-   end subroutine change_of_loading_strain
+      aside = inc%d_strain - loading
+   end subroutine loading_strain_of
+
+   !> Changes of both parts with the strain rate and the elastic domain at the start.
+   pure subroutine changes_of_loading_strain(inc, mode, turning, strain_changes, centre_changes, loading, aside)
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: mode
+      type(turning_t), intent(in) :: turning   !< of the pseudo-time; not used inside the domain
+      real(wp), intent(in) :: strain_changes(LANES, 6), centre_changes(LANES, 6)
+      real(wp), intent(out) :: loading(LANES, 6), aside(LANES, 6)
+      type(combination_t) :: by
+      real(wp), dimension(LANES) :: turn, along_d, along_u
+      real(wp) :: along, of_d, of_increment, per_divisor
+      integer :: i, j
+
+      if (mode == MODE_ELASTIC) then
+         loading = 0.0_wp
+         aside = strain_changes
+         return
+      end if
+      by = combination_of_turning(turning, centre_changes, strain_changes)
+      along = ddot(turning%nu, inc%d_strain)
+      per_divisor = 1.0_wp/turning%divisor
+      of_d = along*by%of_d
+      of_increment = along*by%of_increment
+      ! (dnu:a + nu:da) nu + (nu:a) dnu, with nu a sum of d and u and a along u
+      turn = turning%length*(by%of_d*by%d_on_u + by%of_increment*by%length + ddot(turning%d, turning%u)*by%along_d &
+                             + by%along_u) &
+             + (2.0_wp*turning%decay/turning%rho*per_divisor)*by%increment_on_d &
+             + (turning%share*per_divisor)*by%length
+      along_d = along*by%along_d + (2.0_wp*turning%decay/turning%rho*per_divisor)*turn
+      along_u = along*by%along_u + (turning%share*per_divisor)*turn
+      do j = 1, LANES
+         do i = 1, 6
+            loading(j, i) = of_d*centre_changes(j, i) + of_increment*strain_changes(j, i) + along_d(j)*turning%d(i) &
+                            + along_u(j)*turning%u(i)
+            aside(j, i) = strain_changes(j, i) - loading(j, i)
+         end do
+      end do
+   end subroutine changes_of_loading_strain
 
    !> How the elastic domain stands at a pseudo-time, where a part of the strain loads.
    pure function turning_of(inc, mode, time) result(turning)
@@ -119,18 +155,17 @@ contains
    end function turning_of
 
    !> Rate at which the part that loads turns with the domain, per unit of pseudo-time: nu' = (a - (nu:a) nu)/rho.
-   pure function turn_of_loading_strain(inc, mode, time) result(turn)
+   pure function turn_of_loading_strain(inc, mode, turning) result(turn)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
-      real(wp), intent(in) :: time
-      real(wp) :: turn(6), nu(6), nu_rate(6), along
+      type(turning_t), intent(in) :: turning
+      real(wp) :: turn(6), nu_rate(6), along
 
       turn = 0.0_wp
       if (mode == MODE_ELASTIC) return
-      nu = loading_direction(inc%rho, inc%from_centre, inc%d_strain, time)
-      along = ddot(nu, inc%d_strain)
-      nu_rate = (inc%d_strain - along*nu)/inc%rho
-      turn = ddot(nu_rate, inc%d_strain)*nu + along*nu_rate
+      along = ddot(turning%nu, inc%d_strain)
+      nu_rate = (inc%d_strain - along*turning%nu)/inc%rho
+      turn = ddot(nu_rate, inc%d_strain)*turning%nu + along*nu_rate
    end function turn_of_loading_strain
 
    !> An increment of a point with void ratio e and suction p_c.

@@ -91,6 +91,7 @@ contains
       type(increment_t) :: whole
       type(driving_t) :: inside, rest
       real(wp) :: share
+      logical :: divided   !< Derivatives are wanted, and there are two parts.
 
       if (inc%rho <= 0.0_wp) then
          call integrate(par, inc, size, consistent, state, trial, sens, counters, reached, status, record)
@@ -102,7 +103,8 @@ contains
       share = exit_share(inc%rho, whole%from_centre, inc%d_strain)
       if (share < WHOLE_PHASE) share = 0.0_wp
       if (1.0_wp - share < WHOLE_PHASE) share = 1.0_wp
-      if (consistent) call parts_at_exit(whole, share, sens%driving, inside, rest)
+      divided = consistent .and. share > 0.0_wp
+      if (divided) call parts_at_exit(whole, share, sens%driving, inside, rest)
 
       if (share > 0.0_wp) then
          call take_phase(whole, 0.0_wp, share, inc)
@@ -113,11 +115,11 @@ contains
          if (status%code /= MUD_OK) return
       end if
       state%from_centre = whole%from_centre + share*whole%d_strain
-      if (consistent) sens%driving%from_centre = rest%from_centre
+      if (divided) sens%driving%from_centre = rest%from_centre
       if (share < 1.0_wp) then
          call take_phase(whole, share, 1.0_wp, inc)
          inc%from_centre = (inc%rho/norm(state%from_centre))*state%from_centre
-         if (consistent) sens%driving = rest
+         if (divided) sens%driving = rest
          call integrate(par, inc, (1.0_wp - share)*size, consistent, state, trial, sens, counters, reached, status, &
                         record)
          reached = share + (1.0_wp - share)*reached

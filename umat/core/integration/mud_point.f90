@@ -70,8 +70,8 @@ contains
       if (has_tension(state1%sigma)) counters%tensile = 1
 
       if (consistent) then
-         blocks%dsig_deps = sens%y(1:6, 1:6)
-         blocks%dsig_dpc = sens%y(1:6, 7)
+         blocks%dsig_deps = transpose(sens%y(1:6, 1:6))
+         blocks%dsig_dpc = sens%y(7, 1:6)
       else if (tangent == TANGENT_CONTINUUM .and. size > 0.0_wp) then
          call continuum_blocks(par, inc, trial, state1, blocks)
       else if (tangent /= TANGENT_NONE) then

@@ -3,9 +3,10 @@
 module mud_start
    use mud_kinds, only: wp
    use mud_blocks, only: blocks_t
-   use mud_bonding, only: is_bonded
+   use mud_bonding, only: bonding_t, is_bonded, bonding, UNBONDED
    use mud_bounding, only: state_parameter, limited
    use mud_checks, only: check_stress
+   use mud_critical_state, only: critical_void_ratio
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio
    use mud_retention, only: saturation_t, saturation
@@ -69,11 +70,17 @@ contains
       type(state_t), intent(inout) :: state
       type(blocks_t), intent(inout), optional :: blocks
       type(saturation_t) :: sat
+      type(bonding_t) :: bond
 
-      sat = saturation(par, state%p_c, state%e)
+      bond = UNBONDED
+      if (is_bonded(par, state%p_c)) then
+         bond = bonding(par, state%p_c, state%e)
+         sat = bond%sat
+      else
+         sat = saturation(par, state%p_c, state%e)
+      end if
       state%s_w = sat%s_w
-      state%psi = state_parameter(par, is_bonded(par, state%p_c), state%e, state%p_c, &
-                                  max(trace(state%sigma)/3.0_wp, par%p_min))
+      state%psi = state%e - critical_void_ratio(par, bond%f, max(trace(state%sigma)/3.0_wp, par%p_min))
       if (.not. present(blocks)) return
       blocks%dsw_dpc = sat%ds_dpc
       blocks%dsw_dev = -(1.0_wp + state%e)*sat%ds_de

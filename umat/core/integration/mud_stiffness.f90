@@ -2,14 +2,15 @@
 !> Whether the coming substep is explicit or linearly implicit; docs/theory/integration.md section 2.1.
 module mud_stiffness
    use mud_consistent, only: linearise_stage
-   use mud_increment, only: increment_t, void_ratio_at
+   use mud_increment, only: increment_t, void_ratio_at, turning_of
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
    use mud_rates, only: MODE_ORDINARY
    use mud_registry, only: RULE_AS_PUBLISHED
    use mud_relaxation, only: relaxation_t, relaxation_speed, new_relaxation
-   use mud_sensitivity, only: change_t, linearised_t, changes_of_rate, NRATES
+   use mud_sensitivity, only: changes_t, linearised_t, changes_of_rate, NRATES
    use mud_substep, only: SCHEMES, HIGHER_ORDER, LINEARLY_IMPLICIT
+   use mud_tensor, only: LANES
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
@@ -50,17 +51,20 @@ contains
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(inout) :: trial
       type(linearised_t) :: lin
-      type(change_t) :: changes(6)
-      real(wp) :: rates(NRATES, 6)
+      type(changes_t) :: changes
+      real(wp) :: y(LANES, NRATES), r_in(LANES, 6), rates(LANES, NRATES)
       integer :: j
 
-      call linearise_stage(par, inc, trial%mode, trial%w(1), trial%y0, trial%time, void_ratio_at(inc, trial%time), lin)
+      call linearise_stage(par, inc, trial%mode, trial%w(1), trial%y0, trial%time, void_ratio_at(inc, trial%time), &
+                           turning_of(inc, trial%mode, trial%time), lin)
+      changes = changes_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
+      r_in = 0.0_wp
+      y = 0.0_wp
       do j = 1, 6
-         changes(j) = change_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
-         changes(j)%sigma(j) = 1.0_wp
+         y(j, j) = 1.0_wp
       end do
-      call changes_of_rate(par, trial%w(1), lin, 6, changes, rates)
-      trial%relaxation = new_relaxation(trial%w(1), rates(13, :)/SQRT_2_3)
+      call changes_of_rate(par, trial%w(1), lin, .false., y, r_in, changes, rates)
+      trial%relaxation = new_relaxation(trial%w(1), rates(1:6, 13)/SQRT_2_3)
    end subroutine find_relaxation
 
    !> Modified Euler becomes the higher order for the rest of the increment or phase; the rule as_published keeps it.

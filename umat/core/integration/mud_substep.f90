@@ -76,8 +76,9 @@ contains
    pure subroutine stage_point(scheme, i, y0, rates, h, y)
       type(scheme_t), intent(in) :: scheme
       integer, intent(in) :: i
-      real(wp), intent(in) :: y0(:), rates(:, :), h
-      real(wp), intent(out) :: y(:)
+      real(wp), intent(in), contiguous :: y0(:), rates(:, :)
+      real(wp), intent(in) :: h
+      real(wp), intent(out), contiguous :: y(:)
 
       call combine(scheme%a((i - 1)*(i - 2)/2 + 1:i*(i - 1)/2), y0, rates, h, y)
    end subroutine stage_point
@@ -85,8 +86,9 @@ contains
    !> The solution of a step h.
    pure subroutine solution(scheme, y0, rates, h, y)
       type(scheme_t), intent(in) :: scheme
-      real(wp), intent(in) :: y0(:), rates(:, :), h
-      real(wp), intent(out) :: y(:)
+      real(wp), intent(in), contiguous :: y0(:), rates(:, :)
+      real(wp), intent(in) :: h
+      real(wp), intent(out), contiguous :: y(:)
 
       call combine(scheme%b(1:scheme%stages), y0, rates, h, y)
    end subroutine solution
@@ -94,20 +96,33 @@ contains
    !> Solution minus embedded solution of a step h.
    pure subroutine error_vector(scheme, rates, h, error)
       type(scheme_t), intent(in) :: scheme
-      real(wp), intent(in) :: rates(:, :), h
-      real(wp), intent(out) :: error(:)
+      real(wp), intent(in), contiguous :: rates(:, :)
+      real(wp), intent(in) :: h
+      real(wp), intent(out), contiguous :: error(:)
 
       call combine(scheme%error(1:scheme%stages), ZERO(1:size(error)), rates, h, error)
    end subroutine error_vector
 
    !> y = y0 + h times the weighted sum of the first rates.
    pure subroutine combine(weights, y0, rates, h, y)
-      real(wp), intent(in) :: weights(:), y0(:), rates(:, :), h
-      real(wp), intent(out) :: y(:)
-      integer :: j
+      real(wp), intent(in), contiguous :: weights(:), y0(:), rates(:, :)
+      real(wp), intent(in) :: h
+      real(wp), intent(out), contiguous :: y(:)
+      real(wp) :: first, second
+      integer :: i, j
 
-      y = y0
-      do j = 1, size(weights)
+      first = h*weights(1)
+      if (size(weights) == 1) then
+         do i = 1, size(y)
+            y(i) = y0(i) + first*rates(i, 1)
+         end do
+         return
+      end if
+      second = h*weights(2)
+      do i = 1, size(y)
+         y(i) = y0(i) + first*rates(i, 1) + second*rates(i, 2)
+      end do
+      do j = 3, size(weights)
          if (abs(weights(j)) > 0.0_wp) y = y + (h*weights(j))*rates(:, j)
       end do
    end subroutine combine

@@ -26,7 +26,7 @@ module mud_direction
    type :: rate_t
       ! the point
       real(wp) :: p                !< p' >= p_min [kPa]
-      real(wp) :: r(6)             !< stress ratio [-]
+      real(wp) :: r(6), r_norm     !< stress ratio and its norm [-]
       real(wp) :: r_moved(6)       !< r - r_in [-]
       real(wp) :: z(6)             !< fabric [-]
       real(wp) :: k, g             !< elastic moduli K, G [kPa]
@@ -91,7 +91,7 @@ contains
       arc%z_t = ddot(w%z, n_t)
       t2 = square(n_t)
       arc%cubic(0) = ddot(t2, n_t)
-      if (arc%r_q <= PARALLEL*max(norm(w%r), 1.0e-3_wp)) then
+      if (arc%r_q <= PARALLEL*max(w%r_norm, 1.0e-3_wp)) then
          arc%r_q = 0.0_wp
          arc%x_q = 0.0_wp
          arc%z_q = 0.0_wp

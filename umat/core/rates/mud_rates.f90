@@ -97,9 +97,10 @@ contains
       logical, intent(in) :: bonded
       real(wp), intent(in) :: sigma(6), e, p_c, z(6), r_in(6)
       type(rate_t), intent(inout) :: w
-      real(wp) :: r_norm, weight
+      real(wp) :: weight
 
       call stress_ratio(par, sigma, w%p, w%r)
+      w%r_norm = norm(w%r)
       w%r_moved = w%r - r_in
       w%z = z
       w%k = bulk_modulus(par, e, w%p)
@@ -112,10 +113,9 @@ contains
       w%b_0 = kinematic_modulus(par, e, w%p)
       w%iso = NO_HARDENING
       if (par%isotropic) then
-         r_norm = norm(w%r)
-         weight = max(1.0_wp - (r_norm/bounding_norm(par, w%r, r_norm, w%m_b))**2, 0.0_wp)
+         weight = max(1.0_wp - (w%r_norm/bounding_norm(par, w%r, w%r_norm, w%m_b))**2, 0.0_wp)
          if (weight > 0.0_wp) then
-            w%iso = isotropic_hardening(par, w%bond, e, w%p, swelling_slope(w%k, e, w%p), 1.5_wp*r_norm**2, weight)
+            w%iso = isotropic_hardening(par, w%bond, e, w%p, swelling_slope(w%k, e, w%p), 1.5_wp*w%r_norm**2, weight)
          end if
       end if
    end subroutine evaluate_point
@@ -135,7 +135,7 @@ contains
       w%no_root = .false.
       known = w%loading
       w%loading = .false.
-      terms = 2.0_wp*w%g*d_norm + max(norm(w%r), SMALLEST_RATIO)*abs(volumetric)
+      terms = 2.0_wp*w%g*d_norm + max(w%r_norm, SMALLEST_RATIO)*abs(volumetric)
       if (mode /= MODE_ELASTIC .and. w%t_norm > PURE_VOLUMETRIC*terms) call find_direction(par, known, w)
       if (.not. w%loading) then
          w%n = 0.0_wp
