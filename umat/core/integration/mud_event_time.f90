@@ -13,7 +13,7 @@ module mud_event_time
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio
    use mud_return_point, only: target_limit, is_limited
-   use mud_sensitivity, only: changes_t, linearised_t, changes_of_rate
+   use mud_sensitivity, only: changes_t, linearised_t, changes_of_rate, changes_of_drive
    use mud_state, only: counters_t
    use mud_tensor, only: ddot, trace, contractions
    use mud_trial, only: trial_t, MODE_HELD
@@ -24,6 +24,9 @@ module mud_event_time
    !> An event whose function hardly changes along the path (relative to its change with the increment) has no definite
    !> time: it is taken as fixed [-].
    real(wp), parameter :: GRAZING = 1.0e-10_wp
+   !> A reversal beyond which (r - r_in):n is farther from -x_rev than this share of its change was not found but jumped
+   !> over: where it can be found it is to 1e-12 [-].
+   real(wp), parameter :: FOUND = 1.0e-6_wp
    integer, parameter :: BY_SIZE = DIRECTIONS   !< The idle direction serves as that of the substep's size.
 contains
    !> A substep has ended at an event: adds the derivative of its time to the derivatives at a fixed size.
@@ -107,8 +110,12 @@ contains
       case (EVENT_OPENS)
          slopes = y(:, 1) + y(:, 2) + y(:, 3)
       case (EVENT_REVERSAL)
-         call changes_of_rate(par, w, lin, .false., y, r_in, changes, rates, dn)
-         slopes = contractions(dr - r_in, w%n) + contractions(dn, r - trial%r_in)
+         if (jumps(par, trial, w)) then
+            slopes = changes_of_drive(par, w, lin, y, changes)
+         else
+            call changes_of_rate(par, w, lin, .false., y, r_in, changes, rates, dn)
+            slopes = contractions(dr - r_in, w%n) + contractions(dn, r - trial%r_in)
+         end if
       case (EVENT_BOUNDS, EVENT_RETURN)
          do j = 1, DIRECTIONS
             slopes(j) = slope_at_surface(par, inc, event, trial, time, y(j, :), dr(j, :), changes%e(j), changes%p_c(j))
@@ -121,6 +128,16 @@ contains
          end do
       end select
    end function slopes_of_event
+
+   !> True where (r - r_in):n passes -x_rev in a jump: t and r have one direction only, as in triaxial states, t passes
+   !> zero, and n becomes its opposite. The time of such a reversal is that of t, along n, at zero.
+   pure logical function jumps(par, trial, w)
+      type(params_t), intent(in) :: par
+      type(trial_t), intent(in) :: trial
+      type(rate_t), intent(in) :: w      !< at the event
+
+      jumps = -(w%x + par%x_rev) > FOUND*(abs(trial%w(1)%x) + par%x_rev)
+   end function jumps
 
    !> The same along one direction, where the event hangs on the bounding surface.
    pure real(wp) function slope_at_surface(par, inc, event, trial, time, y, dr, de, dp_c) result(slope)

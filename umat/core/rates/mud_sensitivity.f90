@@ -15,7 +15,7 @@ module mud_sensitivity
    use mud_tensor, only: IDENTITY, LANES, ddot, trace, deviator, contractions
    implicit none (type, external)
    private
-   public :: changes_t, linearised_t, linearise, changes_of_rate, NRATES
+   public :: changes_t, linearised_t, linearise, changes_of_rate, changes_of_drive, NRATES
 
    integer, parameter :: NRATES = 13   !< sigma'(6), z(6), plastic shear.
 
@@ -65,6 +65,22 @@ contains
       end if
       if (lin%beside) call add_aside(w, lin, changes, x, rates(:, 1:6))
    end subroutine changes_of_rate
+
+   !> Changes of n:t, t = 2 G e - V r the elastic rate of the stress ratio times p', for a rate that loads [kPa].
+   pure function changes_of_drive(par, w, lin, y, changes) result(c)
+      type(params_t), intent(in) :: par
+      type(rate_t), intent(in) :: w
+      type(linearised_t), intent(in) :: lin
+      real(wp), intent(in) :: y(LANES, NRATES)        !< of sigma', z and, without effect, plastic shear [kPa, -, -]
+      type(changes_t), intent(in) :: changes
+      real(wp) :: c(LANES)
+      type(lanes_t) :: x
+
+      x%v = changes%d_strain(:, 1) + changes%d_strain(:, 2) + changes%d_strain(:, 3)
+      call change_point(par, w, lin, y, changes, x)
+      c = (2.0_wp*w%g)*contractions(changes%d_strain, deviator(w%n)) + (2.0_wp*ddot(w%n, lin%d_e))*x%g &
+          - w%r_n*x%volumetric - (w%k_e*(lin%d_v - w%b_rate))*along_ratio(w, lin, y, x%p, w%n)
+   end function changes_of_drive
 
    !> What change_point leaves where only the strain rate and the suction rate change.
    pure subroutine rest(w, changes, x)
