@@ -264,7 +264,9 @@ contains
       else
          output%statev(S_DSIGMA_DPC:S_DSIGMA_DPC + 5) = 0.0_wp
       end if
-      if (.not. (all_finite(output%stress) .and. all_finite(output%statev(1:used)))) status = fail(MUD_NOT_FINITE, ON_STRESS)
+      if (.not. (all_finite(output%stress) .and. all_finite(output%statev(1:used)))) then
+         status = fail(MUD_NOT_FINITE, ON_STRESS)
+      end if
    end subroutine write_output
 
    !> Compression positive to tension positive; minus zero would only confuse.

@@ -103,7 +103,7 @@ contains
       call combine(scheme%error(1:scheme%stages), ZERO(1:size(error)), rates, h, error)
    end subroutine error_vector
 
-   !> y = y0 + h times the weighted sum of the first rates.
+   !> y = y0 + h times the weighted sum of the first rates; the first two in one go.
    pure subroutine combine(weights, y0, rates, h, y)
       real(wp), intent(in), contiguous :: weights(:), y0(:), rates(:, :)
       real(wp), intent(in) :: h
@@ -111,6 +111,10 @@ contains
       real(wp) :: first, second
       integer :: i, j
 
+      if (size(weights) == 0) then
+         y = y0
+         return
+      end if
       first = h*weights(1)
       if (size(weights) == 1) then
          do i = 1, size(y)
