@@ -10,8 +10,8 @@ module mud_driving
    private
    public :: driving_t, whole_increment, parts_at_exit, parts_without_suction, end_in_domain, DIRECTIONS, AT_REST
 
-   !> Derivatives of what drives the increment, or one of its parts, along six engineering strains and the suction at the
-   !> end of the increment, side by side. The eighth direction is idle: along it nothing changes.
+   !> Derivatives of what drives the increment, or one of its parts, along six engineering strains and the suction at
+   !> the end of the increment, side by side. The eighth direction is idle: along it nothing changes.
    type :: driving_t
       real(wp) :: d_strain(DIRECTIONS, 6)      !< of its strain
       real(wp) :: d_v(DIRECTIONS)              !< of its volume

@@ -151,7 +151,8 @@ contains
       call stress_ratio(par, trial%y(1:6), p, r)
       psi = psi_at(par, inc, time, p)
       dp = merge(trace(y(1:6))/3.0_wp, 0.0_wp, trace(trial%y(1:6)) >= 3.0_wp*par%p_min)
-      dpsi = change_of_state_parameter(par, inc%bonded, void_ratio_at(inc, time), suction_at(inc, time), p, de, dp_c, dp)
+      dpsi = change_of_state_parameter(par, inc%bonded, void_ratio_at(inc, time), suction_at(inc, time), p, de, &
+                                       dp_c, dp)
       if (event == EVENT_BOUNDS) then
          slope = change_of_excess(par, psi, r, dpsi, dr)
       else
