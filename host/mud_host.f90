@@ -130,18 +130,19 @@ contains
    end subroutine find_effects
 
    subroutine print_help()
-      character(*), parameter :: LINES(14) = [character(100) :: &
-         '  --output FOLDER       where files go, made if missing; default: output, with --restart that of the', &
-         '                        checkpoint', &
-         '  --restart FILE        goes on from a checkpoint of the same scene', &
+      character(*), parameter :: LINES(15) = [character(104) :: &
+         'Solves the boundary-value problem of a scene. Units m, s, kPa, Mg; tension positive.', &
+         '  --output FOLDER       folder of the results, made if missing; default: output, with --restart that of', &
+         '                        the checkpoint', &
+         '  --restart FILE        continues from a checkpoint of the same scene', &
          '  --accuracy A          relative error wanted in the histories of the points; in place of the key', &
          '                        accuracy of &scene', &
-         '  --verify              repeats the run at a quarter of the accuracy and tells the difference as the', &
-         '                        error; needs points, controlled steps, no --restart', &
-         '  --effects             runs pilots: the scene made cheap, with every effect and without each; tells', &
-         '                        what each changes in the answers, writes effects.csv, and ends', &
-         '  --ablate              the same with the whole scene instead of pilots, and with each effect that', &
-         '                        it does not have', &
+         '  --verify              repeats the run at a quarter of the accuracy and reports the difference as the', &
+         '                        error; needs points and controlled steps; not with --restart', &
+         '  --effects             runs coarse pilots of the scene, with every effect and without each; prints', &
+         '                        what each changes in the results, writes effects.csv, and ends', &
+         '  --ablate              the same with the full scene instead of pilots, and also with each effect', &
+         '                        that the scene does not have', &
          '  --check               reads and checks scene and checkpoint, runs nothing', &
          '  --quiet               prints errors only', &
          '  --template            prints every group and key of a scene']

@@ -41,6 +41,17 @@ def said(program, name, text, *words):
     return f"exit code {done.returncode}: {done.stderr}"
 
 
+def old_column():
+    """The message about a column of an element test by its old name."""
+    shear = mud.Stage("drained", eps_a_end=1e-3, increment=1e-3)
+    test = mud.element_test("toyoura", shear, p_eff=100.0, void_ratio=0.8)
+    try:
+        test["n_reseat"]
+    except KeyError as error:
+        return str(error)
+    return ""
+
+
 def scene(text):
     return said("host/mud_host", "old.nml", SCENE + text, "--check")
 
@@ -92,6 +103,7 @@ CASES = {
     "STATEV layout 1": (old_layout, ["layout", "2"]),
     "PROPS 45 entries": (short_props, ["-1", "45", "46"]),
     "STATEV `nucleus_11`": (old_increment, ["exit code 2", "nucleus_11", "elastic_domain_11"]),
+    "column `n_reseat` of `mud_triax`": (old_column, ["n_reseat", "n_reset"]),
     "`&rigid": (lambda: scene(ELASTIC + "&rigid group = 'top' mass = 1 /\n"), ["exit code 2", "&plate"]),
     "`&contact reach`": (lambda: scene(ELASTIC + "&contact name = 'c' slave = 'top' master = 'bottom' reach = 1 /\n"),
                          ["exit code 2", "search_radius"]),
@@ -118,11 +130,4 @@ for old, new in {"nucleus": "elastic_domain", "nucleus_23": "elastic_domain_23",
     message = refusal(lambda: mud.state(STATEV, old))  # noqa: B023 (called at once)
     check(f"Python: the message about {old} names {new}", f" {new}" in message, message)
     check(f"{new} is a state variable", any(name in mud.states for name in (new, f"{new}_11", f"{new}_1")), new)
-test = mud.element_test("toyoura", mud.Stage("drained", eps_a_end=1e-3, increment=1e-3), p_eff=100.0, void_ratio=0.8)
-try:
-    test["n_reseat"]
-    message = ""
-except KeyError as error:
-    message = str(error)
-check("Python: the message about the column n_reseat names n_reset", "n_reset" in message, message)
 finish()
