@@ -11,8 +11,8 @@ module csv
    public :: csv_t, open_csv, new_csv, check_csv, resume_csv, write_row, write_line, settle_csv, close_csv, is_open
    public :: NUMBERS
 
-   character(*), parameter :: NUMBERS = '(*(es24.16e3,:,","))'   !< A row of numbers,
-   integer, parameter :: CELL = 25                               !< and the room that each takes.
+   character(*), parameter :: NUMBERS = '(*(es24.16e3,:,","))'   !< Format of a row of numbers.
+   integer, parameter :: CELL = 25                               !< Characters of a number in such a row.
 
    type :: csv_t
       character(:), allocatable :: path

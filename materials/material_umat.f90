@@ -27,9 +27,9 @@ module material_umat
    real(wp), parameter :: UNIT(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, &
                                                 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
    real(wp), parameter :: STEP = 1.0_wp          !< DTIME of an update.
-   integer, parameter :: OWN = 9                 !< State variables behind those of the UMAT, at these places:
-   integer, parameter :: OWN_STRAIN = 0          !< six strains from the next place on, since the start,
-   integer, parameter :: OWN_COUNT = 7, OWN_E = 8, OWN_S_W = 9   !< updates, void ratio, saturation.
+   integer, parameter :: OWN = 9                 !< Number of state variables after those of the UMAT.
+   integer, parameter :: OWN_STRAIN = 0          !< Place before the six strains since the start, after the UMAT's.
+   integer, parameter :: OWN_COUNT = 7, OWN_E = 8, OWN_S_W = 9   !< Places: updates, void ratio, saturation.
 
    type(key_t), parameter :: UMAT_KEYS(*) = [ &
       key_t('umat', 'library', 't', REQUIRED, 0, 0, &

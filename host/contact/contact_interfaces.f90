@@ -27,10 +27,10 @@ module contact_interfaces
    type :: contact_interface_t
       type(contact_geometry_t) :: geometry
       type(contact_workspace_t) :: work
-      type(contact_result_t) :: result      !< Of the iterates of a step;
-      type(contact_result_t) :: probe       !< of other displacements, which leave the step alone.
-      type(plate_response_t) :: on_plate    !< The same where the master is a plate,
-      integer :: plate = 0                  !< whose node this is.
+      type(contact_result_t) :: result      !< Outcome at the iterates of a step.
+      type(contact_result_t) :: probe       !< Outcome at other displacements, independent of the step.
+      type(plate_response_t) :: on_plate    !< Forces where the master is a plate.
+      integer :: plate = 0                  !< Node of this plate, 0: the master is no plate.
       type(surface_t) :: slave, master
       integer, allocatable :: unknown(:)    !< Of every unknown of the kernel, or of slave and plate; 0: none.
       logical :: acts = .true.              !< In this stage.

@@ -49,8 +49,8 @@ module contact_penalty
       real(wp), allocatable :: pressure(:)      !< p_A >= 0 [kPa]
       logical, allocatable :: active(:)         !< p_A > 0
       integer :: changed = 0                    !< Nodes whose `active` differs from the evaluation before.
-      real(wp) :: unpressed = 0.0_wp            !< Deepest penetration without pressure, over its edge [-],
-      real(wp) :: unpressed_at(2) = 0.0_wp      !< in the middle of this edge [m].
+      real(wp) :: unpressed = 0.0_wp            !< Deepest penetration without pressure, over its edge [-].
+      real(wp) :: unpressed_at(2) = 0.0_wp      !< Middle of the edge with this penetration [m].
       integer :: pairs = 0                      !< Pairs of edges opposite each other.
       integer :: checks = 0                     !< Pairs of boxes the search compared.
    end type contact_result_t

@@ -24,8 +24,8 @@ module pilot_runs
 
    integer, parameter :: NODES_WITHOUT_POINTS = 50    !< Answers of a scene that names no points.
    integer, parameter :: MOST_TIMES_THE_STEPS = 5     !< Of the whole scene's pilot, that another one may take.
-   real(wp), parameter :: NO_ANSWER = 1.0e-4_wp       !< A range below this share of its kind's largest is no answer,
-   real(wp), parameter :: NO_PRESSURE = 1.0e-3_wp     !< nor a pressure's below this share of the stresses' change.
+   real(wp), parameter :: NO_ANSWER = 1.0e-4_wp       !< A smaller range, as share of its kind's largest, is no answer.
+   real(wp), parameter :: NO_PRESSURE = 1.0e-3_wp     !< The same of a pressure, as a share of the stresses' change.
 
    type :: stage_ends_t
       real(wp), allocatable :: times(:)               !< Ends of the steps, from the start of the stage [s].
@@ -63,8 +63,8 @@ module pilot_runs
 
    !> How far two runs lie apart.
    type :: difference_t
-      real(wp) :: share = 0.0_wp                      !< Of the answer's range [-],
-      real(wp) :: change = 0.0_wp                     !< second less first, where they are farthest apart [m, kPa].
+      real(wp) :: share = 0.0_wp                      !< Distance as a share of the answer's range [-].
+      real(wp) :: change = 0.0_wp                     !< Second run less first, where they differ most [m, kPa].
       character(72) :: answer = ''
    end type difference_t
 contains

@@ -9,10 +9,10 @@ module carried_slopes
    private
    public :: slopes_t, new_slopes, keep_slopes, follow_slopes, same_again, BY_MATERIAL, BY_SLOPES, AS_BEFORE
 
-   ! What answers in a pass over the elements.
-   integer, parameter :: BY_MATERIAL = 0   !< The material;
-   integer, parameter :: BY_SLOPES = 1     !< the kept slopes, from the state before the step;
-   integer, parameter :: AS_BEFORE = 2     !< the material's answer in the last pass, at the same unknowns.
+   ! What gives the response of the points in a pass over the elements.
+   integer, parameter :: BY_MATERIAL = 0   !< The material.
+   integer, parameter :: BY_SLOPES = 1     !< The kept slopes, from the state before the step.
+   integer, parameter :: AS_BEFORE = 2     !< The material's response in the last pass, at the same unknowns.
    integer, parameter :: PLANE = 4         !< Components rr, zz, tt, rz.
 
    type :: slopes_t

@@ -24,11 +24,11 @@ module element_equations
    type :: element_t
       real(wp) :: r(MAX_DOF) = 0.0_wp            !< Residual.
       real(wp) :: k(MAX_DOF, MAX_DOF) = 0.0_wp   !< d r / d new values.
-      real(wp) :: stretch(MAX_DOF) = 0.0_wp      !< Added up by magnitude: strain rates and fluxes of volume balances;
-                                                 !< weight, and what rounding may take for inertia, of momentum.
-      integer :: source = BY_MATERIAL            !< What answers at the points, see carried_slopes.
-      integer :: fallback = NO_FALLBACK          !< What replaces soft tangents, see tangent_fallback;
-      integer :: replaced = 0                    !< how many points it replaced.
+      real(wp) :: stretch(MAX_DOF) = 0.0_wp      !< Sums of magnitudes, of volume balances those of strain rates and
+                                                 !< fluxes, of momentum those of weight and of the rounding of inertia.
+      integer :: source = BY_MATERIAL            !< What gives the response of the points, see carried_slopes.
+      integer :: fallback = NO_FALLBACK          !< What replaces soft tangents, see tangent_fallback.
+      integer :: replaced = 0                    !< Number of points whose tangent was replaced.
       logical :: with_change = .false.            !< Whether `change` is wanted.
       real(wp) :: change(MAX_DOF) = 0.0_wp       !< Displacements: what the step changes of r, inertia counted whole.
       type(report_t) :: bad                      !< Of the material, where a point failed.

@@ -24,16 +24,16 @@ module equation_assembly
       real(wp), allocatable :: floor(:)              !< Its sum: what a volume balance is small against.
       logical :: with_change = .false.               !< Whether a step is measured against what it changes.
       real(wp) :: rounding_share = 0.0_wp            !< Then what changes counts as at least this share of all forces.
-      real(wp), allocatable :: d_r(:, :)             !< With it: change of every element's r, see element_t,
-      real(wp), allocatable :: change(:)             !< and the sum of its magnitudes.
+      real(wp), allocatable :: d_r(:, :)             !< With it: change of every element's r, see element_t.
+      real(wp), allocatable :: change(:)             !< With it: sum of the magnitudes of d_r.
       real(wp), allocatable :: residual(:)
       real(wp), allocatable :: scale(:)              !< Sum of the magnitudes of the elements' contributions.
       real(wp), allocatable :: values(:)             !< The matrix, in the order of the pattern.
-      integer :: source = BY_MATERIAL                !< What answers at the points in the next pass;
-      type(slopes_t) :: slopes                       !< kept from one pass to others.
-      integer :: fallback = NO_FALLBACK              !< What replaces soft tangents, see tangent_fallback,
-      integer :: replaced = 0                        !< of how many points in the last pass with it,
-      integer, allocatable :: soft(:)                !< and of every element.
+      integer :: source = BY_MATERIAL                !< What gives the response of the points in the next pass.
+      type(slopes_t) :: slopes                       !< Slopes that are kept between passes.
+      integer :: fallback = NO_FALLBACK              !< What replaces soft tangents, see tangent_fallback.
+      integer :: replaced = 0                        !< Points whose tangent was replaced in the last pass.
+      integer, allocatable :: soft(:)                !< Such points of every element.
       logical, allocatable :: air(:)                 !< Nodes whose air pressure is prescribed.
       ! Outcome.
       integer :: bad_element = 0, bad_point = 0

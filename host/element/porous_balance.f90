@@ -17,9 +17,9 @@ module porous_balance
    integer, parameter :: PLACES = 12
    ! Places, or places before the first; the strain comes first.
    integer, parameter :: RR = 1, ZZ = 2, TT = 3, RZ = 4
-   integer, parameter :: U = 4            !< Displacements are at U + 1, U + 2;
-   integer, parameter :: PW = 7, PC = 8   !< pressures;
-   integer, parameter :: GW = 8, GA = 10  !< their gradients at GW + 1, GW + 2 and GA + 1, GA + 2.
+   integer, parameter :: U = 4            !< Displacements are at U + 1, U + 2.
+   integer, parameter :: PW = 7, PC = 8   !< Water pressure, suction.
+   integer, parameter :: GW = 8, GA = 10  !< Gradients of p_w at GW + 1, GW + 2, of p_c at GA + 1, GA + 2.
 
    !> What the nodes say about a point.
    type :: kinematics_t

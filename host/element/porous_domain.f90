@@ -82,7 +82,7 @@ module porous_domain
       real(wp), allocatable :: state(:, :)    !< (n_state, points)
       real(wp), allocatable :: e(:)           !< void ratio
       real(wp), allocatable :: s(:)           !< degree of saturation
-      real(wp), allocatable :: s_rate(:)      !< its rate [1/s]
+      real(wp), allocatable :: s_rate(:)      !< rate of the degree of saturation [1/s]
    end type state_t
 contains
    !> Geometry of every quadrature point; the regions must be known.

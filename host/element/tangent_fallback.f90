@@ -10,9 +10,9 @@ module tangent_fallback
    private
    public :: stiffen, NO_FALLBACK, OPEN_POINTS, SOFT_POINTS
 
-   integer, parameter :: NO_FALLBACK = 0   !< Tangents as they are;
-   integer, parameter :: OPEN_POINTS = 1   !< elastic where the volumetric stiffness is almost zero;
-   integer, parameter :: SOFT_POINTS = 2   !< elastic where any strain does, or is helped.
+   integer, parameter :: NO_FALLBACK = 0   !< The tangents of the material are used.
+   integer, parameter :: OPEN_POINTS = 1   !< Elastic where the volumetric stiffness is almost zero.
+   integer, parameter :: SOFT_POINTS = 2   !< Elastic where any strain has almost no stiffness, or gains energy.
    real(wp), parameter :: NEXT_TO_NOTHING = 1.0e-3_wp   !< Share of the elastic stiffness [-].
    integer, parameter :: PLANE = 4         !< Components rr, zz, tt, rz.
 contains

@@ -37,8 +37,8 @@ module model_types
 
    type, extends(scene_load_t) :: load_t
       integer :: group = 0, amplitude = 0
-      real(wp), allocatable :: shape(:)     !< Vector of a unit value,
-      real(wp), allocatable :: rise(:)      !< and of z - datum, where the value changes with z.
+      real(wp), allocatable :: shape(:)     !< Load vector of a unit value.
+      real(wp), allocatable :: rise(:)      !< Load vector of the value z - datum, where the value changes with z.
    end type load_t
 
    type, extends(scene_plate_t) :: plate_t

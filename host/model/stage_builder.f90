@@ -14,8 +14,8 @@ module stage_builder
    integer, parameter :: KIND_OF(*) = [STATIC, QUASI_STATIC, DYNAMIC]
    integer, parameter :: MEASURE_OF(*) = [BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_STAGE]
    real(wp), parameter :: SMOOTH = 0.8_wp     !< rho_inf of a stage without contact.
-   real(wp), parameter :: OPENING = 0.0_wp    !< With contact: it never gains energy where a penalty opens and closes,
-                                              !< however long the step (docs/theory/host.md section 4.1).
+   real(wp), parameter :: OPENING = 0.0_wp    !< With contact: no energy is gained where a penalty opens and closes
+                                              !< (docs/theory/host.md section 4.1).
 contains
    !> A subroutine, because gfortran 12 loses what a function result in a list of values has allocated.
    pure subroutine build_stage(given, stage)

@@ -35,8 +35,8 @@ module output_tables
       type(csv_t) :: history, ledger, contact   !< The last is open if the scene has contacts or plates.
       type(csv_t) :: reactions                  !< Of the stage under way, if it prescribes or loads anything.
       type(frames_t) :: frames
-      character(FINGERPRINT_LENGTH) :: origin = ''   !< Fingerprint of the scene that began the run;
-      character(NAME_LENGTH) :: stage = ''           !< stage that was under way at the checkpoint.
+      character(FINGERPRINT_LENGTH) :: origin = ''   !< Fingerprint of the scene that began the run.
+      character(NAME_LENGTH) :: stage = ''           !< Stage that was under way at the checkpoint.
    end type tables_t
 contains
    !> New files; or, after a restart, those of the run as they were at its checkpoint.

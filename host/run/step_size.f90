@@ -26,8 +26,8 @@ module step_size
    real(wp), parameter :: KNOCK = 0.3_wp          !< The same of pressures in dynamic stages, of the accuracy: they
                                                   !< follow every knock and fade; three such steps use it up.
    real(wp), parameter :: PEAK = 1.57_wp          !< Of a sine over the mean of its magnitude.
-   real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Of its change that the second step after a sudden load errs by:
-                                                  !< flow begins with the root of time.
+   real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Share of its change by which the second step after a sudden load
+                                                  !< is in error, since flow begins with the root of time.
    real(wp), parameter :: PLATE_SHARE = 0.1_wp    !< Of the way of a plate, as a least scale of the soil's.
    real(wp), parameter :: FLOOR = 1.0e-9_wp       !< Share of the largest value of a field that is no change of it.
 contains

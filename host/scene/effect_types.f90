@@ -34,17 +34,17 @@ module effect_types
       integer :: stage = 0                     !< Number of the stage, of the inertia; 0: all.
       character(96) :: name = ''
       logical :: present = .false.             !< In the scene as it was given.
-      logical :: by_hand = .true.              !< A key says it, so that nothing else decides.
+      logical :: by_hand = .true.              !< A key sets it, so that nothing else decides.
       logical :: on = .false.                  !< In the run.
-      real(wp) :: influence = UNKNOWN          !< Largest change of an answer without it (or with it) [-],
-      real(wp) :: change = 0.0_wp              !< that change with its sign, in the unit of the answer,
-      character(72) :: answer = ''             !< and which answer.
+      real(wp) :: influence = UNKNOWN          !< Largest change of an answer without it (or with it) [-].
+      real(wp) :: change = 0.0_wp              !< The largest change with its sign, in the unit of the answer.
+      character(72) :: answer = ''             !< The answer that changes most.
       integer :: unknowns = 0                  !< Fewer (more) without (with) it, in the pilot.
       real(wp) :: seconds = UNKNOWN            !< Time of its pilot over that of the whole scene's pilot [-].
       character(200) :: why = ''
-      ! Watched during the run where a pilot let it go.
+      ! Monitored during the run where a pilot removed it.
       real(wp) :: limit = UNKNOWN              !< Of the indicator, see effect_monitor.
-      real(wp) :: largest = 0.0_wp             !< Indicator so far,
-      real(wp) :: crossed = NEVER              !< time when it passed the limit [s].
+      real(wp) :: largest = 0.0_wp             !< Largest value of the indicator so far.
+      real(wp) :: crossed = NEVER              !< Time when the indicator passed the limit [s].
    end type effect_t
 end module effect_types

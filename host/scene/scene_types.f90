@@ -29,10 +29,10 @@ module scene_types
                          MEASURE_CHANGE = 4, MEASURE_AUTO = 5                           !< &stage measure
    integer, parameter :: GAP_NODAL = 1, GAP_POINTWISE = 2, GAP_COMBINED = 3             !< &contact gap
    integer, parameter :: FIX_P_W = 3, FIX_P_C = 4, FIX_P_A = 5                          !< &fix field, after u_r, u_z
-   integer, parameter :: LOAD_PRESSURE = 1    !< &load kind: against the outward normal [kPa],
-   integer, parameter :: LOAD_SHEAR_R = 2, LOAD_SHEAR_Z = 3   !< along the axes [kPa],
-   integer, parameter :: LOAD_WATER = 4, LOAD_AIR = 5         !< inflow [m/s],
-   integer, parameter :: LOAD_FORCE_R = 6, LOAD_FORCE_Z = 7   !< on every node of a group [kN].
+   integer, parameter :: LOAD_PRESSURE = 1    !< &load kind: against the outward normal [kPa].
+   integer, parameter :: LOAD_SHEAR_R = 2, LOAD_SHEAR_Z = 3   !< &load kind: along the axes [kPa].
+   integer, parameter :: LOAD_WATER = 4, LOAD_AIR = 5         !< &load kind: inflow [m/s].
+   integer, parameter :: LOAD_FORCE_R = 6, LOAD_FORCE_Z = 7   !< &load kind: on every node of a group [kN].
 
    !> Where a group of the scene begins, for sentences about it.
    type :: scene_item_t
@@ -182,8 +182,8 @@ module scene_types
       integer :: checkpoint_steps = 0
       real(wp) :: checkpoint_seconds = 0.0_wp
       logical :: checkpoint_end = .false.
-      logical :: derive_effects = .false.            !< What the keys leave out is found by pilots;
-      logical :: stop_on_warning = .false.           !< The watch over what they let go ends the run.
+      logical :: derive_effects = .false.            !< Effects that the keys leave open are found by pilots.
+      logical :: stop_on_warning = .false.           !< A warning about a removed effect ends the run.
       real(wp) :: effects_tolerance = 0.01_wp
       character(LENGTH), allocatable :: without(:)   !< Effects that are taken out by hand.
       type(effect_t), allocatable :: effects(:)      !< What pilots have found; not allocated: none ran.

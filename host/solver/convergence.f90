@@ -18,12 +18,12 @@ module convergence
    public :: control_t, log_t, measure, good_enough, field_scales, body_scale, is_body, rounding_in
    public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_STAGE, measure_in, linear_tolerance
 
-   integer, parameter :: BY_FORCES = 1       !< The errors of the fields, see above;
-   integer, parameter :: BY_RESIDUAL = 2     !< |R|/|R_0| of all unknowns together, whatever their units,
-                                             !< or |R|/|R_1| where R_1 is larger;
-   integer, parameter :: BY_CORRECTION = 3   !< |dx|/|x| of the worst field;
-   integer, parameter :: BY_CHANGE = 4       !< the errors of the fields against what the step changes;
-   integer, parameter :: BY_STAGE = 5        !< by forces in dynamic stages with contact, by change in others.
+   integer, parameter :: BY_FORCES = 1       !< The errors of the fields, see above.
+   integer, parameter :: BY_RESIDUAL = 2     !< |R|/|R_0| of all unknowns together, whatever their units, or
+                                             !< |R|/|R_1| where R_1 is larger.
+   integer, parameter :: BY_CORRECTION = 3   !< |dx|/|x| of the worst field.
+   integer, parameter :: BY_CHANGE = 4       !< The errors of the fields against what the step changes.
+   integer, parameter :: BY_STAGE = 5        !< By forces in dynamic stages with contact, by change in others.
    real(wp), parameter :: HISTORY_SHARE = 1.0e-6_wp   !< Share of the largest scale so far that still counts.
    !> Of all forces: what their sums leave, some hundred roundings. No tolerance of a change asks for less.
    real(wp), parameter :: ROUNDING_OF_SUMS = 1.0e-13_wp

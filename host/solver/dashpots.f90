@@ -16,11 +16,11 @@ module dashpots
 
    type :: dashpots_t
       logical :: acts = .false.                  !< In the step under way.
-      integer, allocatable :: row(:), column(:)  !< Unknowns;
-      real(wp), allocatable :: value(:)          !< force over velocity [kN s/m], outflow over rate [m3/kPa].
+      integer, allocatable :: row(:), column(:)  !< Unknowns of an entry.
+      real(wp), allocatable :: value(:)          !< Entry: force over velocity [kN s/m], outflow over rate [m3/kPa].
       logical, allocatable :: held(:)            !< (unknowns) Displacements of the boundary.
-      integer :: amplitude = 0                   !< Of the wave that comes in,
-      real(wp), allocatable :: incoming(:)       !< (unknowns) its force [kN] at a factor of 1.
+      integer :: amplitude = 0                   !< Amplitude of the incoming wave, 0: none.
+      real(wp), allocatable :: incoming(:)       !< (unknowns) Force of the incoming wave [kN] at a factor of 1.
    end type dashpots_t
 contains
    !> Adds forces and outflow at the levels of their rates, and the slopes.

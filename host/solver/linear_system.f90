@@ -20,8 +20,8 @@ module linear_system
 
    integer, parameter :: TIMERS = 6, T_ASSEMBLY = 1, T_FACTORISATION = 2, T_SOLUTION = 3, T_REST = 4, T_MATERIAL = 5, &
                          T_CONTACT = 6
-   integer, parameter :: MOST_STEPS = 6               !< Of the linear solution with factors of an earlier matrix;
-   integer, parameter :: WORN_STEPS = 5               !< after so many the next matrix is factorised again.
+   integer, parameter :: MOST_STEPS = 6               !< Most steps of a solution with factors of an earlier matrix.
+   integer, parameter :: WORN_STEPS = 5               !< After so many steps the next matrix is factorised again.
 
    type :: system_t
       type(sparse_t) :: sparse
@@ -29,8 +29,8 @@ module linear_system
       logical :: analysed = .false.
       logical :: reuse = .true.               !< Factors may serve later matrices.
       logical :: factored = .false.           !< There are factors worth trying.
-      logical, allocatable :: fixed(:), air(:)   !< What was fixed when they were made,
-      integer :: active = 0                   !< and how many nodes were in contact.
+      logical, allocatable :: fixed(:), air(:)   !< What was fixed when the factors were made.
+      integer :: active = 0                   !< Nodes in contact when the factors were made.
       logical :: reassemble_tangent = .false.    !< In every iteration: the last step needed several.
       real(wp) :: largest(FIELDS) = 0.0_wp    !< Largest scale of every field so far.
       real(wp), allocatable :: reaction(:)    !< Residual with the constrained rows kept.

@@ -69,6 +69,13 @@ def uncommented(lines):
             and not lines[number - 2].lstrip().startswith("!>")]
 
 
+def unfinished(lines):
+    """Comments beside a declaration (`!<`) that go on beside the next one."""
+    return [f"{number}: {line.split('!<')[1].strip()}" for number, line in enumerate(lines, 1)
+            if re.search(r"!<.*[,;:]\s*$", line)
+            and not (number < len(lines) and lines[number].lstrip().startswith("!<"))]
+
+
 def gone(text, folder, exists):
     """Links of a document that lead nowhere, and places in backticks that are not there."""
     links = [target for target in LINK.findall(text) if "://" not in target and not target.startswith("mailto:")
@@ -92,6 +99,9 @@ def planted():
              ("a table taken apart", own_readers, ["a = line.split(',')"], ["a = line.split(';')"]),
              ("a public procedure without a comment", uncommented, ["public :: a", "", "pure real(wp) function a(x)"],
               ["public :: a", "!> What it is.", "pure real(wp) function a(x)", "end function a", "function b(x)"]),
+             ("a comment that goes on beside the next declaration", unfinished,
+              ["integer :: a   !< One number,", "integer :: b   !< and another."],
+              ["integer :: a   !< One number,", "               !< or more.", "integer :: b   !< Another: 2."]),
              ("an old word", old_words, ["! the way out of the nucleus"], ["! the way out of the elastic domain"]),
              ("numpy's reader", own_readers, ["a = np.loadtxt(path)"], ["a = tables.columns(path)"])]
     documents = [("a link", "[a](b.md)", "[a](a.md#b) [c](https://x.org/y)"),
@@ -141,6 +151,8 @@ rule("texts say the words of today", over(
 rule("public procedures have a comment", over(
     [name for name in files(".f90") if name.split("/")[0] in ("common", "umat", "materials", "host", "drivers")],
     uncommented))
+rule("a comment ends before the next declaration", over(
+    [name for name in files(".f90") if not name.startswith("tests/")], unfinished))
 rule("documents name only what is there", [
     f"{name}: {what}" for name in files(".md") if name != "CHANGELOG.md" and not name.startswith("docs/site/")
     for what in gone((root / name).read_text(encoding="utf-8"), (root / name).parent, pathlib.Path.exists)])

@@ -41,7 +41,7 @@ contains
    pure subroutine continuum_blocks(par, inc, trial, state, blocks)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc       !< the phase that ended the increment
-      type(trial_t), intent(in) :: trial         !< its last substep
+      type(trial_t), intent(in) :: trial         !< last substep of the increment
       type(state_t), intent(in) :: state         !< at its end
       type(blocks_t), intent(inout) :: blocks
 

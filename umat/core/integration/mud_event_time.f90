@@ -35,7 +35,7 @@ contains
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: event             !< EVENT_*, not EVENT_NONE
       type(trial_t), intent(in) :: trial       !< the substep
-      real(wp), intent(in) :: h                !< its size
+      real(wp), intent(in) :: h                !< size of the substep [-]
       type(sensitivity_t), intent(inout) :: sens
       type(changes_t) :: changes
       type(linearised_t) :: lin

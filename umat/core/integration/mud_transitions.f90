@@ -202,7 +202,7 @@ contains
    pure subroutine accept_substep(par, inc, h, trial, state, counters)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: h             !< its size
+      real(wp), intent(in) :: h             !< size of the substep [-]
       type(trial_t), intent(in) :: trial
       type(state_t), intent(inout) :: state
       type(counters_t), intent(inout) :: counters
