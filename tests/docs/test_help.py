@@ -7,7 +7,7 @@ import sys
 import pathlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish, root, work  # noqa: E402
+from checking import build, check, finish, light, root, work  # noqa: E402
 
 SECONDS = 60   # a help text takes less than one; more only on a machine that is very busy
 PROGRAMS = [build / name for name in ("drivers/mud_triax", "drivers/mud_replay", "drivers/mud_describe",
@@ -45,11 +45,12 @@ def helps(name, *command):
 
 for program in PROGRAMS:
     helps(program.name, program)
-for name in PYTHON:
-    helps(name, sys.executable, root / name)
-helps("mud_calibrate", sys.executable, "-m", "mud.calibration.command")
-for name in SHELL:
-    helps(name, root / name)
+if not light:   # scripts are the same in every build
+    for name in PYTHON:
+        helps(name, sys.executable, root / name)
+    helps("mud_calibrate", sys.executable, "-m", "mud.calibration.command")
+    for name in SHELL:
+        helps(name, root / name)
 missing = executables() - set(SHELL) - set(PYTHON)
 check("every executable script of the tree is tried here", not missing, sorted(missing))
 finish()
