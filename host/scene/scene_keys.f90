@@ -29,17 +29,19 @@ module scene_keys
       key_t('scene', 'quadrature', 'i', '6', 3, 12, 'points of an element: 3, 6, 7 or 12'), &
       key_t('scene', 'gravity', 'n', '0', 0, 1000, 'acceleration towards -z [m/s2]'), &
       key_t('scene', 'effects', 'w', 'given', 0, 0, &
-            'auto: pilots find out what the keys leave open, see README', 'given|auto'), &
-      key_t('scene', 'effects_tolerance', 'n', '0.01', 1.0e-6_wp, 1, 'share that an effect left out may have [-]'), &
+            'auto: pilots determine what the keys leave open, see host/README.md', 'given|auto'), &
+      key_t('scene', 'effects_tolerance', 'n', '0.01', 1.0e-6_wp, 1, &
+            'largest influence of an effect that is left out [-]'), &
       key_t('scene', 'effects_on_warning', 'w', 'warn', 0, 0, &
-            'when an effect that pilots let go shows itself in the run', 'warn|stop'), &
+            'action if an effect that pilots removed matters in the run', 'warn|stop'), &
       key_t('scene', 'without', 'W', NONE, 0, 0, 'effects that are taken out by hand', EFFECT_WORDS), &
       key_t('scene', 'seepage_inertia', 'w', 'no', 0, 0, 'acceleration of the skeleton in Darcy''s law', 'no|yes'), &
       key_t('scene', 'saturation_rate', 'w', 'full', 0, 0, &
-            'rate of saturation with dS_w/de, or by suction alone', 'full|suction'), &
-      key_t('scene', 'initial_flow', 'w', 'drain', 0, 0, 'subtract: flow at the start is kept up', 'drain|subtract'), &
+            'rate of saturation by void ratio and suction, or by suction alone', 'full|suction'), &
+      key_t('scene', 'initial_flow', 'w', 'drain', 0, 0, &
+            'subtract: the initial flow is maintained', 'drain|subtract'), &
       key_t('scene', 'accuracy', 'n', NONE, 1.0e-8_wp, 0.5_wp, &
-            'relative error wanted in the histories of the points [-], see README'), &
+            'relative error wanted in the histories of the points [-], see host/README.md'), &
       key_t('scene', 'threads', 'i', '0', 0, 1024, 'threads over elements; 0: by size, at most OMP_NUM_THREADS'), &
       key_t('scene', 'factors', 'w', 'reuse', 0, 0, &
             'factors of the matrix: reused while they serve, or new in every iteration', 'reuse|fresh'), &
@@ -49,10 +51,10 @@ module scene_keys
       key_t('scene', 'checkpoint_end', 'w', 'no', 0, 0, 'checkpoint.h5 when the last stage ends', 'no|yes'), &
       key_t('mesh', 'file', 't', NONE, 0, 0, 'Gmsh 4.1 text mesh, relative to the scene; or r and z:'), &
       key_t('mesh', 'r', 'N', NONE, -BIG, BIG, 'breaks along r [m], ascending'), &
-      key_t('mesh', 'r_cells', 'I', NONE, 1, 100000, 'cells between two breaks'), &
+      key_t('mesh', 'r_cells', 'I', NONE, 1, 100000, 'cells between two breaks of r'), &
       key_t('mesh', 'r_ratio', 'N', NONE, 0.01_wp, 100, 'size of a cell over that of the previous one; default 1'), &
       key_t('mesh', 'z', 'N', NONE, -BIG, BIG, 'breaks along z [m], ascending'), &
-      key_t('mesh', 'z_cells', 'I', NONE, 1, 100000, 'cells between two breaks'), &
+      key_t('mesh', 'z_cells', 'I', NONE, 1, 100000, 'cells between two breaks of z'), &
       key_t('mesh', 'z_ratio', 'N', NONE, 0.01_wp, 100, 'size of a cell over that of the previous one; default 1'), &
       key_t('fluids', 'k_w', 'n', '2.2e6', TINY_, BIG, 'bulk modulus of water [kPa]'), &
       key_t('fluids', 'rho_w', 'n', '1.0', 0, 1000, 'density of water [Mg/m3]'), &
@@ -109,7 +111,7 @@ module scene_keys
       key_t('stage', 'duration', 'n', REQUIRED, TINY_, BIG, 'duration [s]'), &
       key_t('stage', 'dt', 'n', NONE, TINY_, BIG, 'time step [s]; where steps are controlled the first one'), &
       key_t('stage', 'steps', 'w', NONE, 0, 0, &
-            'controlled: by their error; default with accuracy or without dt', 'given|controlled'), &
+            'given: dt; controlled: by their error, default with accuracy or without dt', 'given|controlled'), &
       key_t('stage', 'output_dt', 'n', NONE, TINY_, BIG, 'controlled steps end at multiples of it, with fields [s]'), &
       key_t('stage', 'dt_growth', 'n', '1', 1, 10, 'factor on the step after every accepted one'), &
       key_t('stage', 'dt_max', 'n', NONE, TINY_, BIG, 'largest step with dt_growth [s]'), &
@@ -120,7 +122,8 @@ module scene_keys
             'energy created out of nothing that ends the run, share of the largest work [-]'), &
       key_t('stage', 'tolerance', 'n', '1.0e-3', 1.0e-14_wp, 0.1_wp, 'Newton: error that ends the iteration [-]'), &
       key_t('stage', 'measure', 'w', 'auto', 0, 0, &
-            'measure of the error that ends the iteration, see README', 'forces|residual|correction|change|auto'), &
+            'measure of the error that ends the iteration, see host/README.md', &
+            'forces|residual|correction|change|auto'), &
       key_t('stage', 'max_iterations', 'i', '12', 1, 1000, 'Newton: linear solves before the step is cut'), &
       key_t('stage', 'predictor', 'w', 'rates', 0, 0, 'start of the iteration', 'rates|none'), &
       key_t('stage', 'start', 'w', 'solve', 0, 0, 'accelerations at the start of a dynamic stage', 'solve|zero'), &
@@ -135,7 +138,7 @@ module scene_keys
       key_t('fix', 'value_slope', 'n', '0', -BIG, BIG, 'change of the value with z [-, kPa/m]'), &
       key_t('fix', 'datum', 'n', '0', -BIG, BIG, 'z of the datum [m]'), &
       key_t('fix', 'history', 't', NONE, 0, 0, 'factor on the value'), &
-      key_t('fix', 'hold', 'w', 'no', 0, 0, 'yes: at its value at the start of the stage', 'no|yes'), &
+      key_t('fix', 'hold', 'w', 'no', 0, 0, 'yes: held at its value at the start of the stage', 'no|yes'), &
       key_t('fix', 'motion', 'w', 'value', 0, 0, &
             'what the value of u_r, u_z is: displacement, or acceleration [m/s2]', 'value|acceleration'), &
       key_t('fix', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
@@ -143,31 +146,34 @@ module scene_keys
       key_t('fix', 'until', 'n', NONE, -BIG, BIG, 'acts up to this time [s]'), &
       key_t('load', 'group', 't', REQUIRED, 0, 0, 'boundary (for force: node group)'), &
       key_t('load', 'kind', 'w', REQUIRED, 0, 0, &
-            'kind of load, see README', 'pressure|shear_r|shear_z|water|air|force_r|force_z'), &
+            'kind of load, see host/README.md', 'pressure|shear_r|shear_z|water|air|force_r|force_z'), &
       key_t('load', 'value', 'n', REQUIRED, -BIG, BIG, 'value of the load, at the datum [kPa, m/s, kN]'), &
       key_t('load', 'value_slope', 'n', '0', -BIG, BIG, 'change of the value with z [kPa/m, 1/s, kN/m]'), &
       key_t('load', 'datum', 'n', '0', -BIG, BIG, 'z of the datum [m]'), &
       key_t('load', 'history', 't', NONE, 0, 0, 'factor on the value'), &
       key_t('load', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
       key_t('absorbing', 'group', 't', REQUIRED, 0, 0, 'boundary that lets waves out, in dynamic stages'), &
-      key_t('absorbing', 'rho', 'n', NONE, TINY_, 1000, 'density of the ground behind it [Mg/m3]; default: the soil'), &
-      key_t('absorbing', 'c_p', 'n', NONE, TINY_, BIG, 'speed of its pressure waves [m/s]; default: the soil''s'), &
-      key_t('absorbing', 'c_s', 'n', NONE, TINY_, BIG, 'speed of its shear waves [m/s]; default: the soil''s'), &
-      key_t('absorbing', 'v_r', 'n', '0', -BIG, BIG, 'velocity along r of the wave that comes in [m/s]'), &
-      key_t('absorbing', 'v_z', 'n', '0', -BIG, BIG, 'velocity along z of the wave that comes in [m/s]'), &
-      key_t('absorbing', 'history', 't', NONE, 0, 0, 'factor on these velocities'), &
+      key_t('absorbing', 'rho', 'n', NONE, TINY_, 1000, &
+            'density of the ground behind the boundary [Mg/m3]; default: the soil'), &
+      key_t('absorbing', 'c_p', 'n', NONE, TINY_, BIG, &
+            'speed of pressure waves behind the boundary [m/s]; default: the soil''s'), &
+      key_t('absorbing', 'c_s', 'n', NONE, TINY_, BIG, &
+            'speed of shear waves behind the boundary [m/s]; default: the soil''s'), &
+      key_t('absorbing', 'v_r', 'n', '0', -BIG, BIG, 'velocity along r of the incoming wave [m/s]'), &
+      key_t('absorbing', 'v_z', 'n', '0', -BIG, BIG, 'velocity along z of the incoming wave [m/s]'), &
+      key_t('absorbing', 'history', 't', NONE, 0, 0, 'factor on v_r and v_z'), &
       key_t('absorbing', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
-      key_t('tie', 'first', 't', REQUIRED, 0, 0, 'boundary; displacements at equal heights are one,'), &
-      key_t('tie', 'second', 't', REQUIRED, 0, 0, 'and that opposite, with nodes at the same heights'), &
-      key_t('tie', 'pressures', 'w', 'no', 0, 0, 'pore pressures are one as well', 'no|yes'), &
+      key_t('tie', 'first', 't', REQUIRED, 0, 0, 'first boundary: nodes at equal heights move together'), &
+      key_t('tie', 'second', 't', REQUIRED, 0, 0, 'second boundary, with nodes at the same heights'), &
+      key_t('tie', 'pressures', 'w', 'no', 0, 0, 'pore pressures of the nodes are equal as well', 'no|yes'), &
       key_t('plate', 'name', 't', REQUIRED, 0, 0, 'rigid plate, vertical; also a group for &fix and &load'), &
-      key_t('plate', 'r', 'N', NONE, -BIG, BIG, 'where a flat face of its own begins and ends [m]; or:'), &
-      key_t('plate', 'group', 't', NONE, 0, 0, 'boundary of the mesh that is joined to it and moves with it'), &
-      key_t('plate', 'z', 'n', '0', -BIG, BIG, 'height of a face of its own at the start [m]'), &
-      key_t('plate', 'face', 'w', 'down', 0, 0, 'where a face of its own looks', 'down|up'), &
+      key_t('plate', 'r', 'N', NONE, -BIG, BIG, 'begin and end of the plate''s own flat face [m]; or give group'), &
+      key_t('plate', 'group', 't', NONE, 0, 0, 'boundary of the mesh that moves with the plate; or give r'), &
+      key_t('plate', 'z', 'n', '0', -BIG, BIG, 'height of the plate''s own face at the start [m]'), &
+      key_t('plate', 'face', 'w', 'down', 0, 0, 'direction of the plate''s own face', 'down|up'), &
       key_t('plate', 'mass', 'n', REQUIRED, TINY_, BIG, 'mass of the plate [Mg]'), &
       key_t('plate', 'weight', 'w', 'no', 0, 0, &
-            'its weight acts, and it starts seated on the penalty of its contact', 'no|yes'), &
+            'the weight acts, and the plate starts in balance on its contact', 'no|yes'), &
       key_t('plate', 'force', 'n', '0', -BIG, BIG, 'force on the plate, upwards [kN]'), &
       key_t('plate', 'history', 't', NONE, 0, 0, 'factor on the force'), &
       key_t('contact', 'name', 't', REQUIRED, 0, 0, 'name in contact.csv'), &
@@ -179,14 +185,14 @@ module scene_keys
       key_t('contact', 'variation', 'w', 'pressure', 0, 0, &
             'what gives the contact force, see CONTACT.md', 'pressure|energy'), &
       key_t('contact', 'search_radius', 'n', '0', 0, BIG, &
-            'edges farther apart do not meet [m]; 0: length of the slave edge'), &
+            'edges farther apart are not paired [m]; 0: length of the slave edge'), &
       key_t('contact', 'drainage', 'w', 'fixed', 0, 0, &
-            'state: &fix of pressures let touching nodes go', 'fixed|state'), &
+            'state: nodes in contact are released from &fix of pressures', 'fixed|state'), &
       key_t('contact', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
       key_t('point', 'name', 't', REQUIRED, 0, 0, 'name in histories.csv'), &
       key_t('point', 'r', 'n', REQUIRED, -BIG, BIG, 'the nearest node is taken [m]'), &
       key_t('point', 'z', 'n', REQUIRED, -BIG, BIG, 'the nearest node is taken [m]')]
-   character(*), parameter :: LAW_NAME = 'name that regions call the material by'
+   character(*), parameter :: LAW_NAME = 'name, for the key material of &region'
    type(key_t), parameter :: KEYS(*) = [key_t :: OWN_KEYS, RETENTION_KEYS]
 contains
    !> Refuses unknown groups and keys, missing ones, and values of the wrong kind or outside their range.
