@@ -75,15 +75,11 @@ contains
       integer, intent(in) :: mode
       real(wp), intent(in) :: time
       real(wp), intent(out) :: loading(6), aside(6)
-      real(wp) :: nu(6), along
+      real(wp) :: nu(6)
 
-      loading = 0.0_wp
-      if (mode /= MODE_ELASTIC) then
-         nu = loading_direction(inc%rho, inc%from_centre, inc%d_strain, time)
-         along = ddot(nu, inc%d_strain)
-         if (along > ACROSS*norm(inc%d_strain)) loading = along*nu
-      end if
-      aside = inc%d_strain - loading
+      nu = 0.0_wp
+      if (mode /= MODE_ELASTIC) nu = loading_direction(inc%rho, inc%from_centre, inc%d_strain, time)
+      call part(inc, nu, loading, aside)
    end subroutine loading_strain
 
    !> The same, of a direction that is known.
@@ -92,15 +88,25 @@ contains
       integer, intent(in) :: mode
       type(turning_t), intent(in) :: turning   !< not used inside the domain
       real(wp), intent(out) :: loading(6), aside(6)
+      real(wp) :: nu(6)
+
+      nu = 0.0_wp
+      if (mode /= MODE_ELASTIC) nu = turning%nu
+      call part(inc, nu, loading, aside)
+   end subroutine loading_strain_of
+
+   !> The part of the strain along a direction, if it is forwards, and the rest.
+   pure subroutine part(inc, nu, loading, aside)
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: nu(6)
+      real(wp), intent(out) :: loading(6), aside(6)
       real(wp) :: along
 
       loading = 0.0_wp
-      if (mode /= MODE_ELASTIC) then
-         along = ddot(turning%nu, inc%d_strain)
-         if (along > ACROSS*turning%length) loading = along*turning%nu
-      end if
+      along = ddot(nu, inc%d_strain)
+      if (along > ACROSS*norm(inc%d_strain)) loading = along*nu
       aside = inc%d_strain - loading
-   end subroutine loading_strain_of
+   end subroutine part
 
    !> Changes of both parts with the strain rate and the elastic domain at the start.
    pure subroutine changes_of_loading_strain(inc, mode, turning, strain_changes, centre_changes, loading, aside)

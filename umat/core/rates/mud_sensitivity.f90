@@ -224,8 +224,8 @@ contains
       x%gamma = 2.0_wp/3.0_wp*((r_b_1*w%m_b)*x%p + w%p*r_b) + 2.0_wp*(w%h_b*x%g + w%g*x%dh)
    end subroutine change_moduli
 
-   !> The direction's turn, gamma dn = y dt + beta dr + t dy - n dgamma + r dbeta, by its contractions: the scalars dy, a,
-   !> b of gamma dn = (y dt + beta dr) + t dy - n a + r b, and the changes of L and L D with them.
+   !> The turn of the direction, gamma dn = y dt + beta dr + t dy - n dgamma + r dbeta, by its contractions: scalars dy,
+   !> a, b of gamma dn = (y dt + beta dr) + t dy - n a + r b, and the changes of L and L D with them.
    pure subroutine turn_direction(w, lin, changes, x)
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
