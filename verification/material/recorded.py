@@ -43,7 +43,7 @@ def compare(bench, measured, tolerance=AGAIN, what="values"):
     recorded = read(bench)
     for column in dict.fromkeys(column for _, column in measured):
         pairs = [(value, recorded[key]) for key, value in measured.items() if key[1] == column]
-        bench.near(f"{what}, {column}: marks met now and not then, or the other way round", sum(math.isnan(a) != math.isnan(b) for a, b in pairs),
+        bench.near(f"{what}, {column}: marks reached in one of both runs only", sum(math.isnan(a) != math.isnan(b) for a, b in pairs),
                    0, NONE)
         both = [pair for pair in pairs if not any(map(math.isnan, pair))]
         if both:
