@@ -54,7 +54,8 @@ class Registry(Mapping):
     def __getitem__(self, name: str):
         if name.lower() not in self._lower:
             near = difflib.get_close_matches(name.lower(), self._lower, 1, 0.0)
-            note = note_on(name) or f"the nearest is {self._lower[near[0]]}"
+            former = note_on(name) if self._what == "state variable" else ""
+            note = former or f"the nearest is {self._lower[near[0]]}"
             raise UnknownName(f"there is no {self._what} {name}; {note}")
         return self._entries[self._lower[name.lower()]]
 
