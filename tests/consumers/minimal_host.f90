@@ -38,7 +38,7 @@ program minimal_host
    print '(a,f0.3,a,f0.3,a)', "p' ", -sum(stress(1:3))/3.0_c_double, ' kPa, q ', stress(2) - stress(1), ' kPa'
 contains
    !> One increment of undrained compression; components 11, 22, 33, 12, 13, 23, shear would be engineering shear.
-   !> Fortran wants outputs apart from inputs; the old values are then there for another try.
+   !> Outputs are separate from inputs, so that the old values remain if the increment must be repeated.
    subroutine update(axial)
       real(c_double), intent(in) :: axial
       real(c_double) :: dstrain(6), new_stress(6), new_statev(size(statev))
