@@ -20,6 +20,7 @@ program mud_host
    use process_settings, only: settle_process
    use run_output, only: run_output_t
    use run_setup, only: prepare_run
+   use run_size, only: size_of_run
    use run_state, only: run_t
    use scene_keys, only: print_template
    use scene_reader, only: read_scene
@@ -169,6 +170,7 @@ contains
       write (output_unit, '(a)') trim(model%name)//': '//whole(size(model%domain%mesh%t6, 2))//' elements, '// &
          whole(size(model%domain%mesh%x, 2))//' nodes, '//whole(model%dofs%n)//' unknowns, '// &
          whole(size(run%pattern%col))//' entries, '//whole(model%domain%threads)//' threads.'
+      write (output_unit, '(a)') size_of_run(model, run)
       call tell_libraries()
       do i = 1, size(model%stages)
          if (model%stages(i)%kind /= STATIC) write (output_unit, '(a)') 'Stage '//trim(model%stages(i)%name)//': '// &
@@ -238,6 +240,7 @@ contains
          whole(run%system%n_pass)//' passes over the elements, '//whole(run%system%sparse%n_numeric)// &
          ' factorisations ('//whole(nint(run%system%sparse%entries, int64))//' entries), '// &
          whole(run%system%sparse%n_solve)//' solutions by factors.'
+      write (output_unit, '(a)') size_of_run(model, run)
       do k = 1, size(PHASES)
          write (output_unit, '(3x,a,f12.3,a,f6.1,a)') PHASES(k), seconds(k), ' s', 100*seconds(k)/total, ' %'
       end do

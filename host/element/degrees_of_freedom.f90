@@ -12,7 +12,7 @@ module degrees_of_freedom
    type :: dofs_t
       integer :: n = 0                        !< Unknowns.
       integer, allocatable :: of(:, :)        !< (FIELDS, nodes), 0: no such unknown.
-      integer, allocatable :: element(:, :)   !< (unknowns of an element, elements)
+      integer, allocatable :: element(:, :)   !< (most unknowns of an element, elements), 0 behind those it has.
       integer, allocatable :: field(:)        !< Field of every unknown.
       integer, allocatable :: node(:)         !< A node of every unknown.
    end type dofs_t
@@ -23,15 +23,24 @@ contains
       integer, intent(in) :: ties(:, :)   !< (FIELDS, nodes): node whose unknown this node shares, 0 or itself: its own.
       type(dofs_t), intent(out) :: dofs
       logical :: has(FIELDS, size(domain%mesh%x, 2))
-      integer :: e, f, i, leader
+      integer :: e, f, i, leader, most
 
       has = .false.
       has(:DISPLACEMENTS, reshape(domain%mesh%t6, [size(domain%mesh%t6)])) = .true.
       do e = 1, size(domain%mesh%t6, 2)
-         has(AT_P_W, domain%mesh%t6(1:domain%n_p, e)) = domain%with_w
-         has(AT_P_C, domain%mesh%t6(1:domain%n_p, e)) = domain%with_c
+         associate (carriers => domain%carriers(:domain%n_carriers(e), e), &
+                    region => domain%regions(domain%region_of(e)))
+            has(AT_P_W, carriers) = region%with_w
+            has(AT_P_C, carriers) = region%with_c
+         end associate
       end do
       if (allocated(domain%bodies)) has(AT_U_Z, domain%bodies) = .true.
+      ! Tied nodes of two regions: where one has a pressure their common unknown is there.
+      do i = 1, size(has, 2)
+         do f = DISPLACEMENTS + 1, FIELDS
+            if (ties(f, i) > 0) has(f, ties(f, i)) = has(f, ties(f, i)) .or. has(f, i)
+         end do
+      end do
       allocate (dofs%of(FIELDS, size(has, 2)), source=0)
       do i = 1, size(has, 2)
          do f = 1, FIELDS
@@ -55,14 +64,19 @@ contains
             dofs%node(dofs%of(f, i)) = i
          end do
       end do
-      allocate (dofs%element(element_size(domain), size(domain%mesh%t6, 2)))
+      most = 0
       do e = 1, size(domain%mesh%t6, 2)
-         associate (node => domain%mesh%t6(:, e), n_p => domain%n_p)
+         most = max(most, element_size(domain, e))
+      end do
+      allocate (dofs%element(most, size(domain%mesh%t6, 2)), source=0)
+      do e = 1, size(domain%mesh%t6, 2)
+         associate (node => domain%mesh%t6(:, e), n_p => domain%n_carriers(e), carriers => domain%carriers(:, e), &
+                    region => domain%regions(domain%region_of(e)))
             do i = 1, 6
                dofs%element(2*i - 1:2*i, e) = dofs%of(:DISPLACEMENTS, node(i))
             end do
-            if (domain%with_w) dofs%element(13:12 + n_p, e) = dofs%of(AT_P_W, node(:n_p))
-            if (domain%with_c) dofs%element(13 + n_p:12 + 2*n_p, e) = dofs%of(AT_P_C, node(:n_p))
+            if (region%with_w) dofs%element(13:12 + n_p, e) = dofs%of(AT_P_W, carriers(:n_p))
+            if (region%with_c) dofs%element(13 + n_p:12 + 2*n_p, e) = dofs%of(AT_P_C, carriers(:n_p))
          end associate
       end do
    end subroutine number_unknowns

@@ -5,7 +5,7 @@ module element_equations
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
    use kinds, only: wp
    use material_point, only: response_t, report_t, MOST_POINTS
-   use porous_domain, only: domain_t, region_t, state_t, gauss_t, mixture_density
+   use porous_domain, only: domain_t, region_t, state_t, gauss_t, mixture_density, given_pressures_at, COUPLED
    use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, PLACES, RR, ZZ, TT, RZ, U, &
                              PW, PC, GW, GA
    use generalised_alpha, only: scheme_t, DYNAMIC
@@ -38,10 +38,13 @@ module element_equations
    end type element_t
 contains
    !> Unknowns of an element.
-   pure integer function element_size(domain)
+   pure integer function element_size(domain, element)
       type(domain_t), intent(in) :: domain
+      integer, intent(in) :: element
 
-      element_size = LAST_U + domain%n_p*count([domain%with_w, domain%with_c])
+      associate (region => domain%regions(domain%region_of(element)))
+         element_size = LAST_U + domain%n_carriers(element)*count([region%with_w, region%with_c])
+      end associate
    end function element_size
 
    !> Writes r (and k where `with_slope`), and the point data of `new`.
@@ -92,16 +95,17 @@ contains
    subroutine ask_points(domain, element, old, new, strain, suction, d_suction, with_tangent, slopes, material, out)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
-      type(state_t), intent(in) :: old
-      type(state_t), intent(inout) :: new
+      type(state_t), intent(in), target :: old
+      type(state_t), intent(inout), target :: new
       real(wp), intent(in) :: strain(6, MOST_POINTS), suction(MOST_POINTS), d_suction(MOST_POINTS)
       logical, intent(in) :: with_tangent
       type(slopes_t), intent(inout) :: slopes
       type(response_t), intent(inout) :: material
       type(element_t), intent(inout) :: out
       type(report_t) :: report
+      real(wp), pointer, contiguous :: before(:, :), after(:, :)   !< (n_state, points) of the law
       real(wp) :: t0
-      integer :: n, first, last
+      integer :: n, first, last, n_state
 
       n = domain%rule
       first = (element - 1)*n + 1
@@ -114,10 +118,14 @@ contains
          call same_again(n, first, slopes, new%stress(:, first:last), new%e(first:last), new%s(first:last), material)
          return
       end if
+      n_state = domain%regions(domain%region_of(element))%law%n_state
+      associate (from => domain%before_state(element) + 1, to => domain%before_state(element + 1))
+         before(1:n_state, 1:n) => old%state(from:to)
+         after(1:n_state, 1:n) => new%state(from:to)
+      end associate
       t0 = clock()
-      call domain%regions(domain%region_of(element))%law%update(n, old%stress(:, first:last), &
-         old%state(:, first:last), strain, suction, d_suction, with_tangent .or. slopes%kept, material, &
-         new%state(:, first:last), report)
+      call domain%regions(domain%region_of(element))%law%update(n, old%stress(:, first:last), before, strain, suction, &
+         d_suction, with_tangent .or. slopes%kept, material, after, report)
       call lap(out%seconds, t0)
       out%rate_evaluations = report%n_rate
       if (report%code /= 0) then
@@ -127,8 +135,8 @@ contains
       end if
       if (slopes%kept) call keep_slopes(n, first, material, slopes)
       if (with_tangent .and. out%fallback /= NO_FALLBACK) &
-         call stiffen(domain%regions(domain%region_of(element))%law, out%fallback, n, new%state(:, first:last), &
-                      suction(:n) + d_suction(:n), material, out%replaced)
+         call stiffen(domain%regions(domain%region_of(element))%law, out%fallback, n, after, suction(:n) + d_suction(:n), &
+                      material, out%replaced)
    end subroutine ask_points
 
    !> What the nodes say about the points of an element.
@@ -139,7 +147,7 @@ contains
       type(state_t), intent(in) :: old, new
       type(kinematics_t), intent(inout) :: k(:)   !< As many as points, or more.
       real(wp) :: x0(FIELDS, 6), x1(FIELDS, 6), v(FIELDS, 6), a(2, 6)
-      integer :: g, node(6)
+      integer :: g, node(6), n_p
 
       node = domain%mesh%t6(:, element)
       x0 = old%x(:, node)
@@ -148,9 +156,18 @@ contains
       v(:DISPLACEMENTS, :) = old%v(:DISPLACEMENTS, node) &
          + scheme%l_v*(new%v(:DISPLACEMENTS, node) - old%v(:DISPLACEMENTS, node))
       v(AT_P_W:, :) = old%v(AT_P_W:, node) + scheme%l_p*(new%v(AT_P_W:, node) - old%v(AT_P_W:, node))
+      n_p = domain%n_carriers(element)
+      if (domain%center(element) > 0) then
+         associate (center => domain%center(element))
+            x0(AT_P_W:, 1) = old%x(AT_P_W:, center)
+            x1(AT_P_W:, 1) = new%x(AT_P_W:, center)
+            v(AT_P_W:, 1) = old%v(AT_P_W:, center) + scheme%l_p*(new%v(AT_P_W:, center) - old%v(AT_P_W:, center))
+         end associate
+      end if
       do g = 1, domain%rule
          associate (gp => domain%gauss(g, element), region => domain%regions(domain%region_of(element)))
-            call look(gp, domain%n_p, scheme, x0, x1, v, a, k(g))
+            call look(gp, n_p, scheme, x0, x1, v, a, k(g))
+            if (region%drainage /= COUPLED) call add_given(given_pressures_at(domain, element, g), k(g))
             k(g)%speed = 0.0_wp
             if (scheme%kind == DYNAMIC) k(g)%velocity = matmul(old%v(:DISPLACEMENTS, node), gp%n)
             if (region%damping > 0.0_wp .and. scheme%kind == DYNAMIC) k(g)%speed = matmul(v(:DISPLACEMENTS, :), gp%n)
@@ -175,9 +192,10 @@ contains
       type(skeleton_t) :: skeleton
       type(pore_t) :: pore
       real(wp) :: response(PLACES), tangent(PLACES, PLACES), part(PLACES, MAX_DOF), rate, drift(2)
-      integer :: g, p, n
+      integer :: g, p, n, n_p
 
-      n = element_size(domain)
+      n = element_size(domain, element)
+      n_p = domain%n_carriers(element)
       do g = 1, domain%rule
          p = (element - 1)*domain%rule + g
          skeleton%stress = material%stress(1:4, g)
@@ -199,23 +217,21 @@ contains
             new%e(p) = pore%e
             new%s(p) = pore%s
             new%s_rate(p) = pore%s_rate
-            call gather(gp, domain%n_p, n, gp%weight, response, out%r)
-            if (out%with_change) call gather(gp, domain%n_p, LAST_U, gp%weight, &
+            call gather(gp, n_p, n, gp%weight, response, out%r)
+            if (out%with_change) call gather(gp, n_p, LAST_U, gp%weight, &
                change_of(domain, region, k(g), old%stress(:, p), pore_t(old%e(p), old%s(p), old%s_rate(p)), response), &
                out%change)
             rate = sum(abs(scheme%c_v*k(g)%strain(1:3)))*gp%weight
             if (scheme%kind == DYNAMIC) call add_flight(domain, region, k(g), scheme, skeleton, gp, out%stretch)
-            associate (stretch => out%stretch(LAST_U + 1:LAST_U + domain%n_p))
-               stretch = stretch + rate*abs(gp%m(:domain%n_p)) &
-                         + gp%weight*matmul(drift, abs(gp%dm(:, :domain%n_p)))
+            associate (stretch => out%stretch(LAST_U + 1:LAST_U + n_p))
+               stretch = stretch + rate*abs(gp%m(:n_p)) + gp%weight*matmul(drift, abs(gp%dm(:, :n_p)))
             end associate
             if (.not. with_tangent) cycle
-            call times_b(gp, domain%n_p, n, tangent, part)
-            call add_transposed(gp, domain%n_p, n, part, out%k)
+            call times_b(gp, n_p, n, tangent, part)
+            call add_transposed(gp, n_p, n, part, out%k)
          end associate
       end do
-      if (n > LAST_U + domain%n_p) &
-         out%stretch(LAST_U + domain%n_p + 1:n) = out%stretch(LAST_U + 1:LAST_U + domain%n_p)
+      if (n > LAST_U + n_p) out%stretch(LAST_U + n_p + 1:n) = out%stretch(LAST_U + 1:LAST_U + n_p)
    end subroutine add_points
 
    !> A body in flight: its inertia is its weight and nothing is left that a residual could be small against.
@@ -229,7 +245,7 @@ contains
       real(wp), intent(inout) :: stretch(:)
       real(wp) :: force
 
-      force = mixture_density(domain, region%rho_s, skeleton%e/(1 + skeleton%e), skeleton%s) &
+      force = mixture_density(domain, region, skeleton%e/(1 + skeleton%e), skeleton%s) &
               *(domain%gravity + FLIGHT_SHARE*norm2(k%velocity)/scheme%dt)
       stretch(1:LAST_U:2) = stretch(1:LAST_U:2) + gp%weight*force*abs(gp%n)
       stretch(2:LAST_U:2) = stretch(2:LAST_U:2) + gp%weight*force*abs(gp%n)
@@ -250,7 +266,7 @@ contains
       change(RR:RZ) = response(RR:RZ) - stress0(:4)
       change(RR:TT) = change(RR:TT) + pressure
       change(U + 1:U + 2) = response(U + 1:U + 2)
-      change(U + 2) = change(U + 2) - mixture_density(domain, region%rho_s, old%e/(1 + old%e), old%s)*domain%gravity
+      change(U + 2) = change(U + 2) - mixture_density(domain, region, old%e/(1 + old%e), old%s)*domain%gravity
    end function change_of
 
    !> What the nodes say about a point.
@@ -279,6 +295,17 @@ contains
       k%grad_w = matmul(gp%dm(:, :n_p), x(1, :n_p))
       k%grad_c = matmul(gp%dm(:, :n_p), x(2, :n_p))
    end subroutine look
+
+   !> Pressures that no unknown carries.
+   pure subroutine add_given(p, k)
+      real(wp), intent(in) :: p(2)   !< p_w, p_c [kPa]
+      type(kinematics_t), intent(inout) :: k
+
+      k%w0 = k%w0 + p(1)
+      k%w1 = k%w1 + p(1)
+      k%c0 = k%c0 + p(2)
+      k%c1 = k%c1 + p(2)
+   end subroutine add_given
 
    !> r = r + weight B^T response.
    pure subroutine gather(gp, n_p, n, weight, response, r)

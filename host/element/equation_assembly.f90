@@ -6,10 +6,10 @@ module equation_assembly
    use kinds, only: wp
    use carried_slopes, only: slopes_t, new_slopes, BY_MATERIAL, BY_SLOPES, AS_BEFORE
    use degrees_of_freedom, only: dofs_t
-   use element_equations, only: element_t, compute_element
+   use element_equations, only: element_t, compute_element, element_size
    use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
    use material_point, only: report_t
-   use porous_domain, only: domain_t, state_t
+   use porous_domain, only: domain_t, state_t, COUPLED
    use sparsity_pattern, only: pattern_t
    use generalised_alpha, only: scheme_t
    use unknown_fields, only: DISPLACEMENTS
@@ -19,7 +19,8 @@ module equation_assembly
    public :: assembly_t, make_assembly, assemble, follow_slopes_first, NO_FALLBACK, SOFT_POINTS, AS_BEFORE
 
    type :: assembly_t
-      real(wp), allocatable :: r(:, :), k(:, :, :)   !< Of every element.
+      real(wp), allocatable :: r(:, :)               !< Of every element.
+      real(wp), allocatable :: k(:)                  !< Its matrices, one behind the other, see pattern_t.
       real(wp), allocatable :: stretch(:, :)         !< See element_t.
       real(wp), allocatable :: floor(:)              !< Its sum: what a volume balance is small against.
       logical :: with_change = .false.               !< Whether a step is measured against what it changes.
@@ -51,7 +52,7 @@ contains
       integer :: m
 
       m = size(dofs%element, 1)
-      allocate (assembly%r(m, size(dofs%element, 2)), assembly%k(m, m, size(dofs%element, 2)), source=0.0_wp)
+      allocate (assembly%r(m, size(dofs%element, 2)), assembly%k(pattern%before(size(pattern%before))), source=0.0_wp)
       allocate (assembly%stretch(m, size(dofs%element, 2)), source=0.0_wp)
       allocate (assembly%residual(dofs%n), assembly%scale(dofs%n), assembly%floor(dofs%n), source=0.0_wp)
       allocate (assembly%values(size(pattern%col)), source=0.0_wp)
@@ -85,7 +86,7 @@ contains
       integer, allocatable :: bad_point(:), rate_evaluations(:)
       real(wp) :: seconds, t0
       type(element_t) :: out
-      integer :: e, m, ne, threads, source
+      integer :: e, m, n, ne, threads, source
 
       m = size(dofs%element, 1)
       ne = size(dofs%element, 2)
@@ -97,7 +98,7 @@ contains
       threads = merge(domain%threads, 1, ne >= WORTH_THREADS)
       if (assembly%fallback /= NO_FALLBACK .and. .not. allocated(assembly%soft)) allocate (assembly%soft(ne))
       if (assembly%with_change .and. .not. allocated(assembly%d_r)) allocate (assembly%d_r(m, ne))
-      !$omp parallel do num_threads(threads) schedule(dynamic, 8) default(shared) private(e) firstprivate(out) &
+      !$omp parallel do num_threads(threads) schedule(dynamic, 8) default(shared) private(e, n) firstprivate(out) &
       !$omp reduction(+:seconds)
       do e = 1, ne
          out%with_change = assembly%with_change
@@ -107,12 +108,13 @@ contains
          bad_point(e) = out%bad_point
          rate_evaluations(e) = out%rate_evaluations
          seconds = seconds + out%seconds
-         if (domain%with_c) call balance_of_water(domain, assembly%air, e, m, with_tangent, out)
+         n = element_size(domain, e)
+         if (domain%with_c) call balance_of_water(domain, assembly%air, e, n, with_tangent, out)
          assembly%r(:, e) = out%r(:m)
          assembly%stretch(:, e) = out%stretch(:m)
          if (assembly%fallback /= NO_FALLBACK) assembly%soft(e) = out%replaced
          if (assembly%with_change) assembly%d_r(:, e) = out%change(:m)
-         if (with_tangent) assembly%k(:, :, e) = out%k(:m, :m)
+         if (with_tangent) assembly%k(pattern%before(e) + 1:pattern%before(e + 1)) = reshape(out%k(:n, :n), [n*n])
       end do
       !$omp end parallel do
       assembly%rate_evaluations = sum(rate_evaluations)
@@ -142,6 +144,7 @@ contains
       type(element_t), intent(inout) :: out
       integer :: i, w, c
 
+      if (domain%regions(domain%region_of(e))%drainage /= COUPLED) return
       do i = 1, domain%n_p
          if (.not. air(domain%mesh%t6(i, e))) cycle
          w = 12 + i
@@ -173,13 +176,12 @@ contains
       type(pattern_t), intent(in) :: pattern
       logical, intent(in) :: with_tangent
       type(assembly_t), intent(inout), target :: assembly
-      real(wp), pointer, contiguous :: k(:), r(:), s(:)
+      real(wp), pointer, contiguous :: r(:), s(:)
       real(wp) :: total
       integer :: i, j
 
       r(1:size(assembly%r)) => assembly%r
       s(1:size(assembly%r)) => assembly%stretch
-      k(1:size(assembly%k)) => assembly%k
       !$omp parallel num_threads(threads) default(shared) private(i, j, total)
       !$omp do schedule(static)
       do i = 1, pattern%n
@@ -193,7 +195,7 @@ contains
          do i = 1, size(pattern%col)
             total = 0.0_wp
             do j = pattern%first(i), pattern%first(i + 1) - 1
-               total = total + k(pattern%source(j))
+               total = total + assembly%k(pattern%source(j))
             end do
             assembly%values(i) = total
          end do

@@ -6,7 +6,7 @@
 !> docs/theory/host.md sections 2 and 3.3.
 module porous_balance
    use kinds, only: wp
-   use porous_domain, only: domain_t, region_t
+   use porous_domain, only: domain_t, region_t, COUPLED, UNDRAINED
    use permeability_laws, only: relative_t, relative_permeability
    use material_point, only: saturation_t
    use generalised_alpha, only: scheme_t, rate_of, STATIC, DYNAMIC
@@ -79,9 +79,10 @@ contains
       if (with_tangent) tangent = 0.0_wp
       drift = 0.0_wp
       call add_momentum(domain, region, scheme, k, stress0, skeleton, mix, with_tangent, response, tangent)
-      if (.not. domain%with_w .or. scheme%kind == STATIC) return
+      if (.not. region%with_w .or. scheme%kind == STATIC) return
+      if (region%drainage /= COUPLED .and. region%drainage /= UNDRAINED) return
       call add_water(domain, region, scheme, k, mix, with_tangent, response, tangent, drift)
-      if (domain%with_c) call add_air(domain, region, scheme, k, mix, with_tangent, response, tangent, drift)
+      if (region%with_c) call add_air(domain, region, scheme, k, mix, with_tangent, response, tangent, drift)
       response(PW) = response(PW) - k%source(3)
    end subroutine point_response
 
@@ -110,7 +111,7 @@ contains
       mix%s_pc = 0.0_wp
       mix%rate_ev = 0.0_wp
       mix%rate_pc = 0.0_wp
-      if (domain%with_c) then
+      if (region%with_c) then
          new%s = skeleton%s
          mix%s_ev = l*skeleton%ds_dev
          mix%s_pc = l*skeleton%ds_dpc
@@ -155,10 +156,10 @@ contains
          pressure = mix%p_w + (1 - s)*mix%p_c
          rho_n = -region%rho_s
          rho_s = 0.0_wp
-         if (domain%with_w) then
+         if (region%with_w) then
             rho_n = rho_n + s*fluids%rho_w
-            if (domain%with_c) rho_n = rho_n + (1 - s)*mix%rho_a
-            if (domain%with_c) rho_s = n*(fluids%rho_w - mix%rho_a)
+            if (region%with_c) rho_n = rho_n + (1 - s)*mix%rho_a
+            if (region%with_c) rho_s = n*(fluids%rho_w - mix%rho_a)
          end if
          rho = region%rho_s + n*rho_n
          accel = k%accel + region%damping*k%speed
@@ -196,8 +197,15 @@ contains
 
       l = scheme%l_f
       inverse = 1/domain%fluids%k_w
-      body = body_force(domain, k)
       response(PW) = mix%n*mix%s*inverse*k%w_dot + k%div_v
+      if (with_tangent) then
+         tangent(PW, 1:3) = mix%s*inverse*k%w_dot*l*(1 - mix%n1) + mix%n*inverse*k%w_dot*mix%s_ev + scheme%c_v
+         tangent(PW, PW) = mix%n*mix%s*inverse*scheme%c_p
+         tangent(PW, PC) = mix%n*inverse*k%w_dot*mix%s_pc
+      end if
+      drift = 0.0_wp
+      if (region%drainage /= COUPLED) return
+      body = body_force(domain, k)
       rel = relative_permeability(domain%permeabilities(region%permeability), mix%s)
       kappa = domain%permeabilities(region%permeability)%intrinsic/domain%fluids%eta_w
       d_kappa = kappa*rel%dw
@@ -206,9 +214,6 @@ contains
       response(GW + 1:GW + 2) = kappa*drive
       drift = kappa*(abs(k%grad_w) + domain%fluids%rho_w*abs(body))
       if (.not. with_tangent) return
-      tangent(PW, 1:3) = mix%s*inverse*k%w_dot*l*(1 - mix%n1) + mix%n*inverse*k%w_dot*mix%s_ev + scheme%c_v
-      tangent(PW, PW) = mix%n*mix%s*inverse*scheme%c_p
-      tangent(PW, PC) = mix%n*inverse*k%w_dot*mix%s_pc
       call add_flux_slopes(domain, scheme, mix, GW, kappa, d_kappa, domain%fluids%rho_w, drive, tangent)
       tangent(GW + 1, GW + 1) = kappa*l
       tangent(GW + 2, GW + 2) = kappa*l
@@ -234,10 +239,14 @@ contains
          stored = n*(1 - s)/k_a*a_dot
          response(PW) = response(PW) + stored
          response(PC) = stored - n*mix%s_dot + (1 - s)*k%div_v - k%source(4)
-         rel = relative_permeability(domain%permeabilities(region%permeability), s)
-         kappa = domain%permeabilities(region%permeability)%intrinsic/domain%fluids%eta_a
-         d_kappa = kappa*rel%da
-         kappa = kappa*rel%a
+         kappa = 0.0_wp
+         d_kappa = 0.0_wp
+         if (region%drainage == COUPLED) then
+            rel = relative_permeability(domain%permeabilities(region%permeability), s)
+            kappa = domain%permeabilities(region%permeability)%intrinsic/domain%fluids%eta_a
+            d_kappa = kappa*rel%da
+            kappa = kappa*rel%a
+         end if
          drive = k%grad_w + k%grad_c + mix%rho_a*body
          response(GA + 1:GA + 2) = kappa*drive
          drift = drift + kappa*(abs(k%grad_w) + abs(k%grad_c) + mix%rho_a*abs(body))

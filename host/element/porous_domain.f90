@@ -13,7 +13,14 @@ module porous_domain
    implicit none (type, external)
    private
    public :: domain_t, region_t, fluids_t, gauss_t, state_t, source_i, prepare_domain, new_state_of, copy_state, &
-             mixture_density
+             mixture_density, given_pressures_at, pressures_at
+   public :: COUPLED, DRAINED, UNDRAINED, DRY
+
+   ! What the fluids in the pores of a region do, in the order of the words of &region drainage.
+   integer, parameter :: COUPLED = 1     !< Pressures are unknowns of the nodes, fluids flow;
+   integer, parameter :: DRAINED = 2     !< pressures stay as they are given at the start;
+   integer, parameter :: UNDRAINED = 3   !< every element keeps its fluids: it has one p_w and one p_c;
+   integer, parameter :: DRY = 4         !< there are no fluids.
 
    !> Pore fluids.
    type :: fluids_t
@@ -31,6 +38,8 @@ module porous_domain
       real(wp) :: void_ratio = 0.0_wp   !< Initially [-].
       real(wp) :: damping = 0.0_wp      !< Force against the velocity over mass, in dynamic stages [1/s].
       real(wp) :: stiffness_damping = 0.0_wp  !< Stress of the skeleton over its rate, in dynamic stages [s].
+      integer :: drainage = COUPLED
+      logical :: with_w = .false., with_c = .false.   !< Whether its pores hold water, and air at another pressure.
    end type region_t
 
    !> Geometry at a quadrature point. Pressures use the first n_p of the shape functions m.
@@ -65,8 +74,15 @@ module porous_domain
       type(permeability_t), allocatable :: permeabilities(:)
       type(region_t), allocatable :: regions(:)
       integer, allocatable :: region_of(:)            !< Of every element.
+      ! Where the pressures of an element are: the first n_carriers of its carriers, with the shape functions m.
+      integer, allocatable :: n_carriers(:)           !< n_p where coupled, 1 where undrained, else 0.
+      integer, allocatable :: carriers(:, :)          !< (6, elements) Nodes.
+      integer, allocatable :: center(:)               !< Node of an undrained element, in no other; else 0.
+      real(wp), allocatable :: given(:, :)            !< (2, nodes) p_w, p_c at the start, where a region is drained or
+                                                      !< undrained; of centers the mean over the element.
+      integer, allocatable :: open_nodes(:)           !< Where coupled and drained regions meet.
+      integer, allocatable :: before_state(:)         !< (elements + 1) State variables before those of an element.
       type(gauss_t), allocatable :: gauss(:, :)       !< (rule, elements)
-      integer :: n_state = 0                          !< State variables a point.
       integer :: threads = 1
       integer, allocatable :: bodies(:)               !< Nodes of rigid plates: the last ones, in no element, u_z alone.
       procedure(source_i), pointer, nopass :: source => null()
@@ -79,7 +95,7 @@ module porous_domain
       real(wp), allocatable :: v(:, :)        !< their rates
       real(wp), allocatable :: a(:, :)        !< (2, nodes) accelerations
       real(wp), allocatable :: stress(:, :)   !< (6, points) effective, tension positive [kPa]
-      real(wp), allocatable :: state(:, :)    !< (n_state, points)
+      real(wp), allocatable :: state(:)       !< State variables, element by element, see before_state.
       real(wp), allocatable :: e(:)           !< void ratio
       real(wp), allocatable :: s(:)           !< degree of saturation
       real(wp), allocatable :: s_rate(:)      !< rate of the degree of saturation [1/s]
@@ -91,8 +107,9 @@ contains
       type(fault_t), intent(inout) :: fault
       real(wp) :: points(2, domain%rule), weights(domain%rule), jacobian(2, 2), inverse(2, 2), det, x(2, 6), d(2, 6)
       real(wp) :: n3(3), d3(2, 3)
-      integer :: e, g, i
+      integer :: e, g
 
+      call place_pressures(domain)
       call triangle_rule(domain%rule, points, weights)
       if (allocated(domain%gauss)) deallocate (domain%gauss)
       allocate (domain%gauss(domain%rule, size(domain%mesh%t6, 2)))
@@ -131,14 +148,71 @@ contains
                   point%dm(:, 1:3) = matmul(inverse, d3)
                   point%dm(:, 4:6) = 0.0_wp
                end if
+               if (domain%center(e) > 0) then
+                  point%m = [1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
+                  point%dm = 0.0_wp
+               end if
             end associate
          end do
       end do
-      domain%n_state = 0
-      do i = 1, size(domain%regions)
-         domain%n_state = max(domain%n_state, domain%regions(i)%law%n_state)
+      if (allocated(domain%before_state)) deallocate (domain%before_state)
+      allocate (domain%before_state(size(domain%mesh%t6, 2) + 1), source=0)
+      do e = 1, size(domain%mesh%t6, 2)
+         domain%before_state(e + 1) = domain%before_state(e) &
+            + domain%rule*domain%regions(domain%region_of(e))%law%n_state
       end do
    end subroutine prepare_domain
+
+   !> Which nodes carry the pressures of every element. The centers of undrained elements must be nodes already.
+   subroutine place_pressures(domain)
+      type(domain_t), intent(inout) :: domain
+      integer :: e
+
+      if (.not. allocated(domain%center)) allocate (domain%center(size(domain%mesh%t6, 2)), source=0)
+      if (.not. allocated(domain%open_nodes)) allocate (domain%open_nodes(0))
+      domain%carriers = domain%mesh%t6
+      if (allocated(domain%n_carriers)) deallocate (domain%n_carriers)
+      allocate (domain%n_carriers(size(domain%mesh%t6, 2)), source=domain%n_p)
+      do e = 1, size(domain%mesh%t6, 2)
+         if (domain%regions(domain%region_of(e))%drainage == COUPLED) cycle
+         domain%n_carriers(e) = merge(1, 0, domain%center(e) > 0)
+         domain%carriers(1, e) = max(1, domain%center(e))
+      end do
+   end subroutine place_pressures
+
+   !> p_w and p_c at a quadrature point [kPa].
+   pure function pressures_at(domain, element, point, carried) result(p)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: element, point
+      real(wp), intent(in) :: carried(:, :)   !< (2, n_carriers) p_w, p_c of its carriers.
+      real(wp) :: p(2)
+      integer :: f
+
+      associate (n_p => domain%n_carriers(element), gp => domain%gauss(point, element))
+         do f = 1, 2
+            p(f) = dot_product(gp%m(:n_p), carried(f, :n_p))
+         end do
+      end associate
+      if (domain%regions(domain%region_of(element))%drainage /= COUPLED) &
+         p = p + given_pressures_at(domain, element, point)
+   end function pressures_at
+
+   !> What is given of p_w and p_c at a point: all of it where drained, in undrained elements what differs from their
+   !> mean, else nothing [kPa].
+   pure function given_pressures_at(domain, element, point) result(p)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: element, point
+      real(wp) :: p(2)
+
+      p = 0.0_wp
+      select case (domain%regions(domain%region_of(element))%drainage)
+      case (DRAINED)
+         p = matmul(domain%given(:, domain%mesh%t6(:, element)), domain%gauss(point, element)%n)
+      case (UNDRAINED)
+         p = matmul(domain%given(:, domain%mesh%t6(:, element)), domain%gauss(point, element)%n) &
+             - domain%given(:, domain%center(element))
+      end select
+   end function given_pressures_at
 
    !> A state of the right size, everything zero and saturated.
    function new_state_of(domain) result(state)
@@ -152,7 +226,7 @@ contains
       allocate (state%v(FIELDS, nodes), source=0.0_wp)
       allocate (state%a(2, nodes), source=0.0_wp)
       allocate (state%stress(6, points), source=0.0_wp)
-      allocate (state%state(domain%n_state, points), source=0.0_wp)
+      allocate (state%state(domain%before_state(size(domain%before_state))), source=0.0_wp)
       allocate (state%e(points), source=0.0_wp)
       allocate (state%s(points), source=1.0_wp)
       allocate (state%s_rate(points), source=0.0_wp)
@@ -162,13 +236,14 @@ contains
    end function new_state_of
 
    !> Density of soil with its fluids at a porosity and a degree of saturation [Mg/m3].
-   pure real(wp) function mixture_density(domain, rho_s, n, s)
+   pure real(wp) function mixture_density(domain, region, n, s)
       type(domain_t), intent(in) :: domain
-      real(wp), intent(in) :: rho_s, n, s
+      type(region_t), intent(in) :: region
+      real(wp), intent(in) :: n, s
 
-      mixture_density = (1 - n)*rho_s
-      if (domain%with_w) mixture_density = mixture_density + n*s*domain%fluids%rho_w
-      if (domain%with_c) mixture_density = mixture_density + n*(1 - s)*domain%fluids%rho_a
+      mixture_density = (1 - n)*region%rho_s
+      if (region%with_w) mixture_density = mixture_density + n*s*domain%fluids%rho_w
+      if (region%with_c) mixture_density = mixture_density + n*(1 - s)*domain%fluids%rho_a
    end function mixture_density
 
    !> Copies without allocating anew.
@@ -181,7 +256,7 @@ contains
       to%v(:, :) = from%v
       to%a(:, :) = from%a
       to%stress(:, :) = from%stress
-      to%state(:, :) = from%state
+      to%state(:) = from%state
       to%e(:) = from%e
       to%s(:) = from%s
       to%s_rate(:) = from%s_rate

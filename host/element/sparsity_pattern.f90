@@ -11,21 +11,28 @@ module sparsity_pattern
       integer, allocatable :: row(:)      !< (n + 1) where every row begins
       integer, allocatable :: col(:)      !< Ascending in every row.
       integer, allocatable :: first(:)    !< (entries + 1) where the sources of every entry begin
-      integer, allocatable :: source(:)   !< Place in the array k(m, m, elements), from 1
+      integer, allocatable :: source(:)   !< Place in the square matrices of the elements, one behind the other, from 1
+      integer, allocatable :: before(:)   !< (elements + 1) Entries of these before those of an element.
       integer, allocatable :: r_first(:), r_source(:)   !< The same for the vector r(m, elements).
    end type pattern_t
 contains
    !> Pattern of elements given by their unknowns; `extra`: further pairs of unknowns that meet (contact).
    subroutine make_pattern(n, element, extra, pattern)
       integer, intent(in) :: n
-      integer, intent(in) :: element(:, :)
+      integer, intent(in) :: element(:, :)   !< (m, elements) 0 behind the unknowns of an element.
       integer, intent(in) :: extra(:, :)   !< (2, pairs), each listed both ways round.
       type(pattern_t), intent(out) :: pattern
       integer, allocatable :: mark(:), where_is(:), users(:), start(:), list(:), count_of(:), more(:), partner(:)
       integer :: m, e, i, j, k, pass, used, a
+      integer :: m_of(size(element, 2))
 
       m = size(element, 1)
+      m_of = count(element > 0, dim=1)
       pattern%n = n
+      allocate (pattern%before(size(m_of) + 1), source=0)
+      do e = 1, size(m_of)
+         pattern%before(e + 1) = pattern%before(e) + m_of(e)**2
+      end do
       ! Elements of every unknown.
       call invert(n, element, start, list)
       call invert(n, extra(1:1, :), more, partner)
@@ -39,7 +46,7 @@ contains
             pattern%row(i) = used + 1
             do k = start(i), start(i + 1) - 1
                e = (list(k) - 1)/m + 1
-               do a = 1, m
+               do a = 1, m_of(e)
                   j = element(a, e)
                   if (mark(j) == i) cycle
                   mark(j) = i
@@ -83,12 +90,12 @@ contains
             do k = start(i), start(i + 1) - 1
                e = (list(k) - 1)/m + 1
                a = list(k) - (e - 1)*m
-               do j = 1, m
+               do j = 1, m_of(e)
                   associate (at => where_is(element(j, e)))
                      if (pass == 1) then
                         users(at) = users(at) + 1
                      else
-                        pattern%source(pattern%first(at) + count_of(at)) = a + m*(j - 1) + m*m*(e - 1)
+                        pattern%source(pattern%first(at) + count_of(at)) = a + m_of(e)*(j - 1) + pattern%before(e)
                         count_of(at) = count_of(at) + 1
                      end if
                   end associate
@@ -111,6 +118,7 @@ contains
       allocate (start(n + 1), source=0)
       do e = 1, size(element, 2)
          do a = 1, m
+            if (element(a, e) == 0) cycle
             start(element(a, e) + 1) = start(element(a, e) + 1) + 1
          end do
       end do
@@ -118,10 +126,11 @@ contains
       do a = 1, n
          start(a + 1) = start(a) + start(a + 1)
       end do
-      allocate (list(size(element)))
+      allocate (list(count(element > 0)))
       next = start(:n)
       do e = 1, size(element, 2)
          do a = 1, m
+            if (element(a, e) == 0) cycle
             list(next(element(a, e))) = (e - 1)*m + a
             next(element(a, e)) = next(element(a, e)) + 1
          end do

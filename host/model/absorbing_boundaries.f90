@@ -12,7 +12,7 @@ module absorbing_boundaries
    use material_point, only: response_t, report_t
    use model_types, only: model_t, stage_t, absorber_t, factor_at
    use permeability_laws, only: relative_t, relative_permeability
-   use porous_domain, only: state_t, mixture_density
+   use porous_domain, only: state_t, mixture_density, pressures_at, COUPLED, UNDRAINED
    use scene_types, only: place_of, acts_in
    use shape_functions, only: edge_quadratic, edge_rule
    use texts, only: short, whole
@@ -81,6 +81,7 @@ contains
       type(fault_t), intent(inout) :: fault
       real(wp) :: rho, c_p, c_s, modulus, shear, s, slope
       type(relative_t) :: rel
+      logical :: with_pores, with_flow
       integer :: e, i
 
       e = findloc([(all([any(model%domain%mesh%t6(:, i) == edge(1)), any(model%domain%mesh%t6(:, i) == edge(2)), &
@@ -89,7 +90,11 @@ contains
       call look_at_element(model, e, state, modulus, shear, s, slope, rho, fault)
       if (fault%code /= 0) return
       if (absorber%rho > 0.0_wp) rho = absorber%rho
-      if (model%domain%with_w) modulus = modulus + pore_stiffness(model, e, state, s, slope)
+      associate (region => model%domain%regions(model%domain%region_of(e)))
+         with_pores = region%with_w .and. (region%drainage == COUPLED .or. region%drainage == UNDRAINED)
+         with_flow = region%with_w .and. region%drainage == COUPLED
+      end associate
+      if (with_pores) modulus = modulus + pore_stiffness(model, e, state, s, slope)
       c_p = absorber%c_p
       c_s = absorber%c_s
       if ((.not. c_p > 0.0_wp .and. .not. modulus > 0.0_wp) .or. (.not. c_s > 0.0_wp .and. .not. shear > 0.0_wp)) then
@@ -101,7 +106,7 @@ contains
       if (.not. c_s > 0.0_wp) c_s = sqrt(shear/rho)
       ground%normal = rho*c_p
       ground%shear = rho*c_s
-      if (.not. model%domain%with_w) return
+      if (.not. with_flow) return
       associate (law => model%domain%permeabilities(model%domain%regions(model%domain%region_of(e))%permeability), &
                  f => model%domain%fluids)
          rel = relative_permeability(law, s)
@@ -120,8 +125,8 @@ contains
       type(fault_t), intent(inout) :: fault
       type(response_t) :: response
       type(report_t) :: report
-      real(wp) :: strain(6, model%domain%rule), suction(model%domain%rule), &
-                  after(size(state%state, 1), model%domain%rule), n
+      real(wp) :: strain(6, model%domain%rule), suction(model%domain%rule), pressures(2), n
+      real(wp), allocatable :: before(:, :), after(:, :)
       integer :: g, p, first, last
 
       associate (m => model%domain, region => model%domain%regions(model%domain%region_of(e)))
@@ -129,9 +134,12 @@ contains
          last = e*m%rule
          strain = 0.0_wp
          do g = 1, m%rule
-            suction(g) = dot_product(m%gauss(g, e)%m(:m%n_p), state%x(AT_P_C, m%mesh%t6(:m%n_p, e)))
+            pressures = pressures_at(m, e, g, state%x(AT_P_W:, m%carriers(:m%n_carriers(e), e)))
+            suction(g) = pressures(2)
          end do
-         call region%law%update(m%rule, state%stress(:, first:last), state%state(:, first:last), strain, suction, &
+         before = reshape(state%state(m%before_state(e) + 1:m%before_state(e + 1)), [region%law%n_state, m%rule])
+         after = before
+         call region%law%update(m%rule, state%stress(:, first:last), before, strain, suction, &
                                 0*suction, .true., response, after, report)
          if (report%code /= 0) then
             call raise(fault, EXIT_MATERIAL, 'The material of element '//whole(e)//' at an absorbing boundary '// &
@@ -147,11 +155,11 @@ contains
          shear = sum(response%dsig_deps(4, 4, :m%rule))/m%rule
          s = sum(state%s(first:last))/m%rule
          slope = 0.0_wp
-         if (m%with_c) slope = sum(response%dsw_dpc(:m%rule))/m%rule
+         if (region%with_c) slope = sum(response%dsw_dpc(:m%rule))/m%rule
          rho = 0.0_wp
          do p = first, last
             n = state%e(p)/(1 + state%e(p))
-            rho = rho + mixture_density(m, region%rho_s, n, state%s(p))/m%rule
+            rho = rho + mixture_density(m, region, n, state%s(p))/m%rule
          end do
       end associate
    end subroutine look_at_element

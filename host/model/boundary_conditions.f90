@@ -48,6 +48,16 @@ contains
 
       constraint%fixed = .false.
       constraint%air = .false.
+      ! Where drained regions begin pressures are theirs.
+      do k = 1, size(model%domain%open_nodes)
+         node = model%domain%open_nodes(k)
+         do i = AT_P_W, AT_P_C
+            at = dofs%of(i, node)
+            if (at == 0) cycle
+            constraint%fixed(at) = .true.
+            constraint%target(at) = model%domain%given(i - DISPLACEMENTS, node)
+         end do
+      end do
       do i = 1, size(model%fixes)
          associate (fix => model%fixes(i))
             if (.not. acts(fix, stage, time)) cycle

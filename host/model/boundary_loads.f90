@@ -2,6 +2,7 @@
 !> Load vectors: of a unit of every load once, of all loads at a moment.
 module boundary_loads
    use kinds, only: wp, PI
+   use given_pressures, only: edges_with_flow
    use model_types, only: model_t, stage_t, load_t, plate_t, factor_at
    use scene_types, only: acts_in, LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_AIR, LOAD_FORCE_R
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
@@ -54,11 +55,15 @@ contains
       type(load_t), intent(in) :: load
       real(wp), intent(in) :: base, slope
       real(wp), intent(inout) :: shape(:)
+      logical :: acts(size(model%domain%mesh%groups(load%group)%edges, 2))
       integer :: e, k, f
 
       associate (group => model%domain%mesh%groups(load%group))
          if (load%kind < LOAD_FORCE_R) then
+            acts = .true.
+            if (load%kind == LOAD_WATER .or. load%kind == LOAD_AIR) acts = edges_with_flow(model%domain, load%group)
             do e = 1, size(group%edges, 2)
+               if (.not. acts(e)) cycle
                call add_edge(model, dofs, group%edges(:, e), load%kind, base, slope, shape)
             end do
          else

@@ -43,6 +43,8 @@ module idle_keys
       rule_t('fluids', 'k_a', 'gas', '|constant|'), rule_t('scene', 'effects_tolerance', 'effects', '|auto|'), &
       rule_t('stage', 'rho_inf', 'analysis', '||quasi_static|dynamic|'), &
       rule_t('stage', 'start', 'analysis', '||dynamic|'), &
+      rule_t('region', 'permeability', 'drainage', '|coupled|'), &
+      rule_t('region', 'retention', 'drainage', '|coupled|drained|undrained|'), &
       rule_t('fix', 'value', 'hold', '|no|'), rule_t('fix', 'value_slope', 'hold', '|no|'), &
       rule_t('fix', 'history', 'hold', '|no|')]
 
@@ -66,8 +68,8 @@ module idle_keys
 
    !> Keys that need the field p_w, and those that need p_c.
    character(*), parameter :: NEED_P_W(*) = [character(22) :: 'scene pressures', 'scene seepage_inertia', &
-      'scene initial_flow', 'region permeability', 'fluids k_w', 'fluids rho_w', 'fluids eta_w', 'initial p_w', &
-      'initial p_w_slope']
+      'scene initial_flow', 'region permeability', 'region drainage', 'fluids k_w', 'fluids rho_w', 'fluids eta_w', &
+      'initial p_w', 'initial p_w_slope']
    character(*), parameter :: NEED_P_C(*) = [character(22) :: 'scene saturation_rate', 'region retention', &
       'fluids k_a', 'fluids rho_a', 'fluids eta_a', 'fluids gas', 'fluids p_ref', 'initial p_c', 'initial p_c_slope']
 contains

@@ -5,7 +5,8 @@ module initial_conditions
    use exit_codes, only: EXIT_MATERIAL
    use kinds, only: wp
    use model_types, only: model_t, initial_t
-   use porous_domain, only: state_t, new_state_of
+   use given_pressures, only: pressures_at_start, water, suction
+   use porous_domain, only: state_t, new_state_of, pressures_at, COUPLED, DRY
    use material_mud, only: mud_t
    use material_point, only: material_t, saturation_t
    use faults, only: fault_t, raise
@@ -33,7 +34,7 @@ contains
       type(initial_t), allocatable :: of_point(:)
       type(saturation_t) :: sat
       character(600) :: text
-      real(wp) :: p_c
+      real(wp) :: p_c, pressures(2)
       integer :: e, g, p, i, n
 
       state = new_state_of(model%domain)
@@ -43,17 +44,14 @@ contains
             do n = 1, size(group%nodes)
                state%v(AT_U_Z, group%nodes(n)) = one%v_z + one%wave*sin(one%wave_number &
                                                *(model%domain%mesh%x(2, group%nodes(n)) - one%datum))
-               if (any(model%domain%bodies == group%nodes(n))) cycle
-               if (model%domain%with_w) state%x(AT_P_W, group%nodes(n)) = water(one, model%domain%mesh%x(2, &
-                  group%nodes(n)))
-               if (model%domain%with_c) &
-                  state%x(AT_P_C, group%nodes(n)) = suction(one, model%domain%mesh%x(2, group%nodes(n)))
             end do
             do n = 1, size(group%elements)
                of_point((group%elements(n) - 1)*model%domain%rule + 1:group%elements(n)*model%domain%rule) = one
             end do
          end associate
       end do
+      state%x(AT_P_W:AT_P_C, :) = pressures_at_start(model)
+      call clear_dry_nodes(model, state%x)
       ! Pressures live on the vertices alone where they are linear.
       if (model%domain%n_p == 3) then
          do e = 1, size(model%domain%mesh%t6, 2)
@@ -64,20 +62,23 @@ contains
          associate (region => model%domain%regions(model%domain%region_of(e)))
             do g = 1, model%domain%rule
                p = (e - 1)*model%domain%rule + g
-               associate (gp => model%domain%gauss(g, e), n_p => model%domain%n_p)
-                  p_c = dot_product(gp%m(:n_p), state%x(AT_P_C, model%domain%mesh%t6(:n_p, e)))
-                  if (model%domain%with_c) then
+               associate (gp => model%domain%gauss(g, e))
+                  pressures = pressures_at(model%domain, e, g, state%x(AT_P_W:, &
+                     model%domain%carriers(:model%domain%n_carriers(e), e)))
+                  p_c = pressures(2)
+                  if (region%with_c) then
                      sat = region%law%retention(p_c, state%e(p))
                      state%s(p) = sat%s
                   end if
                   call set_stress(model, e, of_point(p), gp%x(2), state%s(p), state%stress(:, p))
                   if (present(tension)) call note_tension(region%law, state%stress(:, p), gp%x(2), tension)
                end associate
-               associate (own => state%state(:region%law%n_state, p))
+               associate (own => state%state(model%domain%before_state(e) + (g - 1)*region%law%n_state + 1: &
+                                             model%domain%before_state(e) + g*region%law%n_state))
                   call region%law%initial_state(state%stress(:, p), p_c, state%e(p), own, text)
                   if (text == '') then
                      state%e(p) = region%law%void_ratio(own)
-                     if (model%domain%with_c) state%s(p) = region%law%saturation(own)
+                     if (region%with_c) state%s(p) = region%law%saturation(own)
                      cycle
                   end if
                end associate
@@ -104,19 +105,27 @@ contains
       end select
    end subroutine note_tension
 
-   pure real(wp) function water(initial, z)
-      type(initial_t), intent(in) :: initial
-      real(wp), intent(in) :: z
+   !> Where no region has fluids there are no pressures; undrained elements begin with the means of theirs.
+   pure subroutine clear_dry_nodes(model, x)
+      type(model_t), intent(in) :: model
+      real(wp), intent(inout) :: x(:, :)   !< (FIELDS, nodes)
+      logical :: wet(size(x, 2))
+      integer :: e
 
-      water = initial%p_w + initial%p_w_slope*(z - initial%datum)
-   end function water
-
-   pure real(wp) function suction(initial, z)
-      type(initial_t), intent(in) :: initial
-      real(wp), intent(in) :: z
-
-      suction = initial%p_c + initial%p_c_slope*(z - initial%datum)
-   end function suction
+      associate (domain => model%domain)
+         if (all(domain%regions%drainage == COUPLED)) return
+         wet = .false.
+         do e = 1, size(domain%region_of)
+            if (domain%regions(domain%region_of(e))%drainage /= DRY) wet(domain%mesh%t6(:, e)) = .true.
+            if (domain%center(e) == 0) cycle
+            wet(domain%center(e)) = .true.
+            x(AT_P_W:AT_P_C, domain%center(e)) = domain%given(:, domain%center(e))
+         end do
+         do e = 1, size(x, 2)
+            if (.not. wet(e)) x(AT_P_W:AT_P_C, e) = 0.0_wp
+         end do
+      end associate
+   end subroutine clear_dry_nodes
 
    !> Effective stress, tension positive.
    subroutine set_stress(model, element, initial, z, s, stress)
@@ -129,8 +138,10 @@ contains
 
       if (initial%uniform) stress(1:3) = initial%sigma
       if (.not. initial%geostatic) return
-      p_w = merge(water(initial, z), 0.0_wp, model%domain%with_w)
-      p_c = merge(suction(initial, z), 0.0_wp, model%domain%with_c)
+      associate (region => model%domain%regions(model%domain%region_of(element)))
+         p_w = merge(water(initial, z), 0.0_wp, region%with_w)
+         p_c = merge(suction(initial, z), 0.0_wp, region%with_c)
+      end associate
       vertical = initial%surcharge + weight_above(model, element, initial, z)
       chi = s*max(p_c, 0.0_wp)
       vertical = vertical - (p_w + (1 - s)*p_c)   ! effective, compression positive
@@ -156,11 +167,11 @@ contains
          do i = 1, SLICES
             at = z + (i - 0.5_wp)*step
             weight = weight + (1 - n)*region%rho_s
-            if (m%with_c) sat = region%law%retention(suction(initial, at), region%void_ratio)
+            if (region%with_c) sat = region%law%retention(suction(initial, at), region%void_ratio)
             rho_a = m%fluids%rho_a
             p_a = water(initial, at) + suction(initial, at)
             if (m%fluids%ideal_gas) rho_a = rho_a*(1 + p_a/m%fluids%p_ref)
-            if (m%with_w) weight = weight + n*(sat%s*m%fluids%rho_w + (1 - sat%s)*rho_a)
+            if (region%with_w) weight = weight + n*(sat%s*m%fluids%rho_w + (1 - sat%s)*rho_a)
          end do
       end associate
       weight = weight*step*model%domain%gravity

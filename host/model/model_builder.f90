@@ -7,6 +7,7 @@ module model_builder
    use boundary_builder, only: build_plates, build_boundaries
    use boundary_loads, only: shape_loads, ties_of
    use degrees_of_freedom, only: number_unknowns
+   use given_pressures, only: add_centers, give_pressures, check_places
    use mesh_builder, only: build_mesh
    use model_types, only: model_t, point_t
    use porous_domain, only: domain_t, fluids_t, prepare_domain
@@ -48,10 +49,14 @@ contains
          call build_stage(scene%stages(i), model%stages(i))
       end do
       call build_domain(scene, model, fault)
-      if (fault%code == 0) call build_plates(scene, model, fault)
       if (fault%code == 0) call build_regions(scene, model%domain, fault)
+      ! Before plates become nodes: those are the last ones.
+      if (fault%code == 0) call add_centers(model%domain)
+      if (fault%code == 0) call build_plates(scene, model, fault)
       if (fault%code == 0) call choose_threads(scene%threads, model%domain)
       if (fault%code == 0) call build_boundaries(scene, model, fault)
+      if (fault%code == 0) call check_places(model, fault)
+      if (fault%code == 0) call give_pressures(model)
       if (fault%code == 0) call prepare_domain(model%domain, fault)
       if (fault%code /= 0) return
       model%points = [(point_of(scene%points(i), model), i=1, size(scene%points))]

@@ -11,7 +11,7 @@ module region_builder
    use name_search, only: mesh_group, defined_name
    use namelists, only: LENGTH
    use permeability_builder, only: new_permeability
-   use porous_domain, only: domain_t
+   use porous_domain, only: domain_t, COUPLED, DRAINED, UNDRAINED, DRY
    use retention_groups, only: new_retention
    use scene_types, only: scene_t, scene_region_t, place_of
    use texts, only: whole
@@ -21,6 +21,7 @@ module region_builder
 
    !> Names of no curve: the material has a retention of its own. The second is that of older scenes.
    character(8), parameter :: OF_THE_MATERIAL(2) = [character(8) :: 'material', 'mud']
+   integer, parameter :: DRAINAGE_OF(*) = [COUPLED, DRAINED, UNDRAINED, DRY]   !< Of the words of &region drainage.
 contains
    !> Materials, retention and permeability of every element; a fault names elements without a region and unknown names.
    subroutine build_regions(scene, domain, fault)
@@ -87,14 +88,18 @@ contains
          region%damping = given%damping
          region%stiffness_damping = given%stiffness_damping
          region%void_ratio = given%void_ratio
+         ! Without fluids in the scene there is no difference.
+         region%drainage = merge(DRAINAGE_OF(given%drainage), COUPLED, domain%with_w)
+         region%with_w = domain%with_w .and. region%drainage /= DRY
+         region%with_c = domain%with_c .and. region%drainage /= DRY
          if (given%void_ratio < 0.0_wp) region%void_ratio = region%law%default_void_ratio()
-         if (domain%with_w .and. .not. region%void_ratio > 0.0_wp) call raise(fault, EXIT_INPUT, place_of(given)// &
+         if (region%with_w .and. .not. region%void_ratio > 0.0_wp) call raise(fault, EXIT_INPUT, place_of(given)// &
             'the region needs a void_ratio: its pores hold the fluids.')
-         if (domain%with_w .and. fault%code == 0) region%permeability = defined_name('permeability', &
-            given%permeability_name, domain%permeabilities%name, place_of(given), fault)
+         if (region%with_w .and. region%drainage == COUPLED .and. fault%code == 0) region%permeability = &
+            defined_name('permeability', given%permeability_name, domain%permeabilities%name, place_of(given), fault)
+         domain%region_of(domain%mesh%groups(group)%elements) = number
+         if (region%with_c .and. fault%code == 0) call give_retention(scene, given, region%law, fault)
       end associate
-      domain%region_of(domain%mesh%groups(group)%elements) = number
-      if (domain%with_c .and. fault%code == 0) call give_retention(scene, given, domain%regions(number)%law, fault)
    end subroutine build_region
 
    !> A law has a retention of its own, or the curve that the region names: never two.

@@ -4,12 +4,13 @@
 module scene_warnings
    use kinds, only: wp
    use faults, only: at_line
+   use given_pressures, only: nodes_with_flow, edges_with_flow
    use idle_keys, only: list_idle_keys, add_warning, WARNING_LENGTH
    use initial_conditions, only: tension_t
    use key_schema, only: line_of
    use material_elastic, only: elastic_t
    use model_types, only: model_t, fix_t, PRESCRIBED_P_A
-   use scene_types, only: scene_t, acts_in, place_of
+   use scene_types, only: scene_t, acts_in, place_of, LOAD_WATER, LOAD_AIR
    use stress_units, only: KILOPASCAL
    use texts, only: short, whole
    use triangle_mesh, only: mesh_t
@@ -39,6 +40,7 @@ contains
       call look_at_initials(model, tension, warnings)
       call look_at_fixes(model, warnings)
       call look_at_retentions(scene, model, warnings)
+      call look_at_places(model, warnings)
       call list_idle_keys(scene, warnings)
    end subroutine list_warnings
 
@@ -225,6 +227,34 @@ contains
          if (a%hold .and. b%hold) differ = .false.
       end function differ
    end subroutine look_at_fixes
+
+   !> Supports of pressures and inflows that act on a part of their group alone.
+   subroutine look_at_places(model, warnings)
+      type(model_t), intent(in) :: model
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      logical :: flows(size(model%domain%mesh%x, 2))
+      integer :: i
+
+      flows = nodes_with_flow(model%domain)
+      do i = 1, size(model%fixes)
+         associate (one => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
+            if (one%field > DISPLACEMENTS .and. .not. all(flows(nodes))) call add_warning(place_of(one)// &
+               trim(WORDS(one%field))//' is prescribed on '//whole(count(flows(nodes)))//' of the '// &
+               whole(size(nodes))//' nodes of '''//trim(one%group_name)//''': the others lie in no region with '// &
+               'drainage = ''coupled''.', warnings)
+         end associate
+      end do
+      do i = 1, size(model%loads)
+         associate (one => model%loads(i))
+            if (one%kind /= LOAD_WATER .and. one%kind /= LOAD_AIR) cycle
+            associate (edges => edges_with_flow(model%domain, one%group))
+               if (.not. all(edges)) call add_warning(place_of(one)//'fluid flows in through '//whole(count(edges))// &
+                  ' of the '//whole(size(edges))//' edges of '''//trim(one%group_name)//''': the others belong to '// &
+                  'no region with drainage = ''coupled''.', warnings)
+            end associate
+         end associate
+      end do
+   end subroutine look_at_places
 
    !> Names of curves that are not looked up because the scene has no suction.
    subroutine look_at_retentions(scene, model, warnings)

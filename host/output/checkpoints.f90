@@ -71,7 +71,8 @@ contains
          call put(file, 'v', s%v, 'm/s, kPa/s', 'their rates')
          call put(file, 'a', s%a, 'm/s2', 'accelerations')
          call put(file, 'stress', s%stress, 'kPa', 'effective stress of every quadrature point, tension positive')
-         call put(file, 'state', s%state, 'of the material', 'state variables of every quadrature point')
+         call put(file, 'state', reshape(s%state, [state_rows(model), size(s%state)/max(1, state_rows(model))]), &
+                  'of the material', 'state variables of every quadrature point; one list where laws differ')
          call put(file, 'e', s%e, '-', 'void ratio')
          call put(file, 's', s%s, '-', 'degree of saturation')
          call put(file, 's_rate', s%s_rate, '1/s', 'its rate')
@@ -98,6 +99,7 @@ contains
       type(fault_t), intent(inout) :: fault
       type(h5_t) :: file
       real(wp) :: counters(N_COUNTERS)
+      real(wp), allocatable :: states(:, :)
       character(64) :: origin
       real(wp) :: stage(4), ledger(storage_size(run%ledger)/storage_size(0.0_wp))
 
@@ -128,7 +130,9 @@ contains
          call get(file, 'v', run%state%v)
          call get(file, 'a', run%state%a)
          call get(file, 'stress', run%state%stress)
-         call get(file, 'state', run%state%state)
+         states = reshape(run%state%state, [state_rows(model), size(run%state%state)/max(1, state_rows(model))])
+         call get(file, 'state', states)
+         run%state%state = reshape(states, [size(states)])
          call get(file, 'e', run%state%e)
          call get(file, 's', run%state%s)
          call get(file, 's_rate', run%state%s_rate)
@@ -156,6 +160,17 @@ contains
       end if
       call close_file(file)
    end subroutine read_checkpoint
+
+   !> State variables of a point where all have as many, else 1.
+   pure integer function state_rows(model) result(rows)
+      type(model_t), intent(in) :: model
+      integer :: e
+
+      rows = model%domain%regions(model%domain%region_of(1))%law%n_state
+      do e = 2, size(model%domain%region_of)
+         if (model%domain%regions(model%domain%region_of(e))%law%n_state /= rows) rows = 1
+      end do
+   end function state_rows
 
    !> The control of the time step.
    subroutine take_control(file, model, run)

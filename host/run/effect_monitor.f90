@@ -41,7 +41,7 @@ contains
          do e = 1, size(m%mesh%t6, 2)
             do g = 1, m%rule
                p = (e - 1)*m%rule + g
-               part = m%gauss(g, e)%weight/6*mixture_density(m, m%regions(m%region_of(e))%rho_s, &
+               part = m%gauss(g, e)%weight/6*mixture_density(m, m%regions(m%region_of(e)), &
                       state%e(p)/(1 + state%e(p)), state%s(p))
                mass(m%mesh%t6(:, e)) = mass(m%mesh%t6(:, e)) + part
             end do

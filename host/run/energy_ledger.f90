@@ -8,7 +8,7 @@ module energy_ledger
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use dashpots, only: work_of_dashpots
    use degrees_of_freedom, only: dofs_t
-   use porous_domain, only: domain_t, state_t, mixture_density
+   use porous_domain, only: domain_t, state_t, mixture_density, pressures_at, COUPLED
    use permeability_laws, only: relative_t, relative_permeability
    use prescribed_values, only: constraint_t
    use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
@@ -64,7 +64,9 @@ contains
          associate (node => domain%mesh%t6(:, e))
             call add_work_of_element(domain, e, scheme, old, new, change(:, node), work)
             ledger%supports = ledger%supports + work_to_move_element(domain, e, scheme, old, new, held(:, node))
-            if (domain%with_w .and. scheme%kind /= STATIC) call book_seepage(domain, e, scheme, old, new, ledger)
+            if (.not. domain%with_w .or. scheme%kind == STATIC) cycle
+            if (domain%regions(domain%region_of(e))%drainage == COUPLED) &
+               call book_seepage(domain, e, scheme, old, new, ledger)
          end associate
       end do
       if (allocated(constraint%dashpots)) then
@@ -167,25 +169,26 @@ contains
       type(state_t), intent(in) :: old, new
       real(wp), intent(in) :: du(DISPLACEMENTS, 6)   !< [m]
       type(work_t), intent(inout) :: work
-      real(wp) :: strain(4), p_w, p_c, s, n, rho, push(DISPLACEMENTS)
-      integer :: g, p, node(6), n_p
+      real(wp) :: strain(4), p(2), middle(2, 6), s, n, rho, push(DISPLACEMENTS)
+      integer :: g, at, node(6)
 
       node = domain%mesh%t6(:, e)
-      n_p = domain%n_p
+      associate (carriers => domain%carriers(:domain%n_carriers(e), e))
+         middle(:, :size(carriers)) = 0.5_wp*(old%x(AT_P_W:, carriers) + new%x(AT_P_W:, carriers))
+      end associate
       do g = 1, domain%rule
-         p = (e - 1)*domain%rule + g
+         at = (e - 1)*domain%rule + g
          associate (gp => domain%gauss(g, e), region => domain%regions(domain%region_of(e)))
             strain = [dot_product(gp%dn(1, :), du(1, :)), dot_product(gp%dn(2, :), du(2, :)), &
                       dot_product(gp%n_over_r, du(1, :)), &
                       dot_product(gp%dn(2, :), du(1, :)) + dot_product(gp%dn(1, :), du(2, :))]
             work%skeleton = work%skeleton &
-               + 0.5_wp*gp%weight*dot_product(old%stress(1:4, p) + new%stress(1:4, p), strain)
-            s = 0.5_wp*(old%s(p) + new%s(p))
-            n = 0.5_wp*(old%e(p)/(1 + old%e(p)) + new%e(p)/(1 + new%e(p)))
-            p_w = 0.5_wp*dot_product(gp%m(:n_p), old%x(AT_P_W, node(:n_p)) + new%x(AT_P_W, node(:n_p)))
-            p_c = 0.5_wp*dot_product(gp%m(:n_p), old%x(AT_P_C, node(:n_p)) + new%x(AT_P_C, node(:n_p)))
-            work%pores = work%pores - gp%weight*(p_w + (1 - s)*p_c)*sum(strain(1:3))
-            rho = mixture_density(domain, region%rho_s, n, s)
+               + 0.5_wp*gp%weight*dot_product(old%stress(1:4, at) + new%stress(1:4, at), strain)
+            s = 0.5_wp*(old%s(at) + new%s(at))
+            n = 0.5_wp*(old%e(at)/(1 + old%e(at)) + new%e(at)/(1 + new%e(at)))
+            p = pressures_at(domain, e, g, middle)
+            work%pores = work%pores - gp%weight*(p(1) + (1 - s)*p(2))*sum(strain(1:3))
+            rho = mixture_density(domain, region, n, s)
             work%gravity = work%gravity - gp%weight*rho*domain%gravity*dot_product(gp%n, du(2, :))
             if (scheme%kind /= DYNAMIC) cycle
             push = gp%weight*rho*matmul(du, gp%n)
@@ -194,7 +197,7 @@ contains
             if (region%damping > 0.0_wp) work%damping = work%damping + region%damping &
                *dot_product(push, 0.5_wp*matmul(old%v(:DISPLACEMENTS, node) + new%v(:DISPLACEMENTS, node), gp%n))
             if (region%stiffness_damping > 0.0_wp) work%damping = work%damping + gp%weight/scheme%dt &
-               *region%stiffness_damping*dot_product(new%stress(1:4, p) - old%stress(1:4, p), strain)
+               *region%stiffness_damping*dot_product(new%stress(1:4, at) - old%stress(1:4, at), strain)
          end associate
       end do
    end subroutine add_work_of_element
@@ -248,7 +251,7 @@ contains
             v = matmul(nodal, domain%gauss(g, e)%n)
             n = state%e(p)/(1 + state%e(p))
             energy = energy + 0.5_wp*domain%gauss(g, e)%weight*dot_product(v, v) &
-                     *mixture_density(domain, domain%regions(domain%region_of(e))%rho_s, n, state%s(p))
+                     *mixture_density(domain, domain%regions(domain%region_of(e)), n, state%s(p))
          end do
       end do
       do i = 1, dofs%n

@@ -5,6 +5,7 @@ module pressure_alarm
    use kinds, only: wp
    use generalised_alpha, only: STATIC
    use model_types, only: model_t, stage_t
+   use porous_domain, only: COUPLED
    use texts, only: short
    use unknown_fields, only: AT_P_W
    implicit none (type, external)
@@ -23,18 +24,25 @@ contains
       real(wp), intent(in) :: time     !< [s]
       real(wp), intent(in) :: x(:, :)  !< Unknowns of the nodes.
       logical, intent(inout) :: told
-      real(wp) :: share
-      integer :: node
+      real(wp) :: share, p(size(model%domain%mesh%x, 2))
+      integer :: node, e
 
       ! Linear pressures are those of the corners alone.
       if (told .or. stage%kind == STATIC .or. model%domain%n_p < 6) return
-      associate (mesh => model%domain%mesh)
-         call outlier(mesh%t6, x(AT_P_W, :size(mesh%x, 2)), share, node)
+      p = x(AT_P_W, :size(p))
+      associate (mesh => model%domain%mesh, flows => [(model%domain%regions(model%domain%region_of(e))%drainage == &
+                 COUPLED, e=1, size(model%domain%region_of))])
+         if (.not. any(flows)) return
+         ! Pressures that are no unknowns do not count.
+         do e = 1, size(p) - size(model%domain%bodies)
+            if (model%dofs%of(AT_P_W, e) == 0) p(e) = p(mesh%t6(1, findloc(flows, .true., dim=1)))
+         end do
+         call outlier(mesh%t6(:, pack([(e, e=1, size(flows))], flows)), p, share, node)
          if (share <= ALARMING_SHARE) return
          told = .true.
          write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//', time '//short(time)// &
             ' s: the pore water pressure at ('//short(mesh%x(1, node))//', '//short(mesh%x(2, node))//') m, '// &
-            short(x(AT_P_W, node))//' kPa, differs from those around it by '//short(100*share)// &
+            short(p(node))//' kPa, differs from those around it by '//short(100*share)// &
             ' % of the range of all pressures. Pressures that oscillate from node to node are wrong: refine '// &
             'the mesh there, take longer steps or, where hardly any water drains, set pressures = ''linear'' in &scene.'
       end associate

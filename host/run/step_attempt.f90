@@ -10,6 +10,7 @@ module step_attempt
    use convergence, only: control_t, log_t
    use energy_ledger, only: kinetic_energy
    use generalised_alpha, only: scheme_t, make_scheme, DYNAMIC
+   use given_pressures, only: follow_undrained
    use held_ground, only: hold_ground, let_waves_in
    use model_types, only: model_t, stage_t
    use newton_step, only: take_step, start_accelerations, CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
@@ -74,6 +75,7 @@ contains
       if (accepted) then
          call judge_step(model, stage, dt, run, accepted)
          if (.not. accepted) run%assembly%slopes%known = .false.
+         call follow_undrained(model%domain, model%dofs%of, run%next%x)
          return
       end if
       associate (at => run%at)

@@ -81,6 +81,9 @@ module scene_keys
       key_t('region', 'material', 't', REQUIRED, 0, 0, 'name of a material, as &mud or &elastic'), &
       key_t('region', 'retention', 't', NONE, 0, 0, 'name of a &retention, or "material": its own'), &
       key_t('region', 'permeability', 't', NONE, 0, 0, 'name of a &permeability'), &
+      key_t('region', 'drainage', 'w', 'coupled', 0, 0, &
+            'fluids flow, stay at given pressures, stay in every element, or are absent', &
+            'coupled|drained|undrained|dry'), &
       key_t('region', 'rho_s', 'n', '2.65', 0, 1000, 'density of the grains [Mg/m3]'), &
       key_t('region', 'void_ratio', 'n', NONE, 0, 10, 'initial void ratio [-]; default: the material''s'), &
       key_t('region', 'damping', 'n', '0', 0, BIG, 'force against the velocity over mass, dynamic stages [1/s]'), &

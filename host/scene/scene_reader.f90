@@ -281,6 +281,7 @@ contains
       region%material_name = text_of(group, 'material')
       region%retention_name = text_of(group, 'retention')
       region%permeability_name = text_of(group, 'permeability')
+      region%drainage = word_number(group, 'drainage')
       region%rho_s = number_of(group, 'rho_s')
       region%damping = number_of(group, 'damping')
       region%stiffness_damping = number_of(group, 'stiffness_damping')

@@ -17,7 +17,7 @@ module scene_types
    public :: WITH_U, WITH_P_W, WITH_P_C, IS_STATIC, IS_QUASI_STATIC, IS_DYNAMIC, FIX_P_W, FIX_P_C, FIX_P_A
    public :: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z
    public :: MEASURE_FORCES, MEASURE_RESIDUAL, MEASURE_CORRECTION, MEASURE_CHANGE, MEASURE_AUTO
-   public :: GAP_NODAL, GAP_POINTWISE, GAP_COMBINED
+   public :: GAP_NODAL, GAP_POINTWISE, GAP_COMBINED, IS_COUPLED, IS_DRAINED, IS_UNDRAINED, IS_DRY
 
    integer, parameter :: NAME_LENGTH = 64         !< Longest name that a scene gives.
    integer, parameter :: FINGERPRINT_LENGTH = 16
@@ -28,6 +28,7 @@ module scene_types
    integer, parameter :: MEASURE_FORCES = 1, MEASURE_RESIDUAL = 2, MEASURE_CORRECTION = 3, &
                          MEASURE_CHANGE = 4, MEASURE_AUTO = 5                           !< &stage measure
    integer, parameter :: GAP_NODAL = 1, GAP_POINTWISE = 2, GAP_COMBINED = 3             !< &contact gap
+   integer, parameter :: IS_COUPLED = 1, IS_DRAINED = 2, IS_UNDRAINED = 3, IS_DRY = 4   !< &region drainage
    integer, parameter :: FIX_P_W = 3, FIX_P_C = 4, FIX_P_A = 5                          !< &fix field, after u_r, u_z
    integer, parameter :: LOAD_PRESSURE = 1    !< &load kind: against the outward normal [kPa].
    integer, parameter :: LOAD_SHEAR_R = 2, LOAD_SHEAR_Z = 3   !< &load kind: along the axes [kPa].
@@ -68,6 +69,7 @@ module scene_types
       real(wp) :: void_ratio = -1.0_wp  !< Initially [-]; below zero: that of the material.
       real(wp) :: damping = 0.0_wp      !< [1/s]
       real(wp) :: stiffness_damping = 0.0_wp   !< [s]
+      integer :: drainage = IS_COUPLED
    end type scene_region_t
 
    type, extends(scene_item_t) :: scene_initial_t

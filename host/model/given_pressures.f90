@@ -1,0 +1,205 @@
+! SPDX-License-Identifier: MIT
+!> Pressures at the start, and where regions differ in what their fluids do: nodes of undrained elements, the pressures
+!> that stay as they are given, groups of supports, inflows and initial values that lie where nothing could have them.
+!> docs/theory/host.md section 3.5.
+module given_pressures
+   use kinds, only: wp
+   use exit_codes, only: EXIT_GROUP
+   use faults, only: fault_t, raise
+   use model_types, only: model_t, initial_t
+   use porous_domain, only: domain_t, COUPLED, DRAINED, UNDRAINED, DRY
+   use scene_types, only: place_of, LOAD_WATER, LOAD_AIR
+   use texts, only: whole
+   use unknown_fields, only: FIELD_NAMES, AT_P_W, AT_P_C, DISPLACEMENTS
+   implicit none (type, external)
+   private
+   public :: add_centers, give_pressures, pressures_at_start, check_places, nodes_with_flow, edges_with_flow
+   public :: follow_undrained, water, suction
+contains
+   !> A node in the middle of every undrained element: there its pressures are.
+   subroutine add_centers(domain)
+      type(domain_t), intent(inout) :: domain
+      real(wp), allocatable :: x(:, :)
+      integer :: e, n
+
+      allocate (domain%center(size(domain%mesh%t6, 2)), source=0)
+      if (.not. any(domain%regions%drainage == UNDRAINED)) return
+      n = size(domain%mesh%x, 2)
+      do e = 1, size(domain%center)
+         if (domain%regions(domain%region_of(e))%drainage /= UNDRAINED) cycle
+         n = n + 1
+         domain%center(e) = n
+      end do
+      allocate (x(2, n))
+      x(:, :size(domain%mesh%x, 2)) = domain%mesh%x
+      do e = 1, size(domain%center)
+         if (domain%center(e) > 0) x(:, domain%center(e)) = sum(domain%mesh%x(:, domain%mesh%t6(:3, e)), dim=2)/3
+      end do
+      call move_alloc(x, domain%mesh%x)
+   end subroutine add_centers
+
+   !> Pressures that are no unknowns, and the nodes where an unknown meets them.
+   subroutine give_pressures(model)
+      type(model_t), intent(inout) :: model
+      logical, dimension(size(model%domain%mesh%x, 2)) :: flows, drains
+      integer :: e, i
+
+      associate (domain => model%domain)
+         if (.not. any(domain%regions%drainage == DRAINED .or. domain%regions%drainage == UNDRAINED)) return
+         domain%given = pressures_at_start(model)
+         flows = nodes_with_flow(domain)
+         drains = .false.
+         do e = 1, size(domain%region_of)
+            associate (nodes => domain%mesh%t6(:, e))
+               ! The middle of a side lies between the ends where pressures are linear.
+               if (domain%n_p == 3) domain%given(:, nodes(4:6)) = &
+                  0.5_wp*(domain%given(:, nodes(1:3)) + domain%given(:, nodes([2, 3, 1])))
+               if (domain%regions(domain%region_of(e))%drainage == DRAINED) drains(nodes(:domain%n_p)) = .true.
+            end associate
+         end do
+         do e = 1, size(domain%region_of)
+            ! The mean of a quadratic field over a triangle is that of the middles of its sides.
+            if (domain%center(e) > 0) &
+               domain%given(:, domain%center(e)) = sum(domain%given(:, domain%mesh%t6(4:6, e)), dim=2)/3
+         end do
+         domain%open_nodes = pack([(i, i=1, size(drains))], drains .and. flows)
+      end associate
+   end subroutine give_pressures
+
+   !> p_w and p_c of every node as the &initial say, the later ones first [kPa]; 0 in plates.
+   function pressures_at_start(model) result(p)
+      type(model_t), intent(in) :: model
+      real(wp) :: p(2, size(model%domain%mesh%x, 2))
+      integer :: i, n
+
+      p = 0.0_wp
+      do i = 1, size(model%initials)
+         associate (one => model%initials(i), group => model%domain%mesh%groups(model%initials(i)%group))
+            do n = 1, size(group%nodes)
+               if (any(model%domain%bodies == group%nodes(n))) cycle
+               if (model%domain%with_w) p(1, group%nodes(n)) = water(one, model%domain%mesh%x(2, group%nodes(n)))
+               if (model%domain%with_c) p(2, group%nodes(n)) = suction(one, model%domain%mesh%x(2, group%nodes(n)))
+            end do
+         end associate
+      end do
+   end function pressures_at_start
+
+   pure real(wp) function water(initial, z)
+      type(initial_t), intent(in) :: initial
+      real(wp), intent(in) :: z
+
+      water = initial%p_w + initial%p_w_slope*(z - initial%datum)
+   end function water
+
+   pure real(wp) function suction(initial, z)
+      type(initial_t), intent(in) :: initial
+      real(wp), intent(in) :: z
+
+      suction = initial%p_c + initial%p_c_slope*(z - initial%datum)
+   end function suction
+
+   !> Nodes of elements whose fluids flow, middles of sides included.
+   pure function nodes_with_flow(domain) result(flows)
+      type(domain_t), intent(in) :: domain
+      logical :: flows(size(domain%mesh%x, 2))
+      integer :: e
+
+      flows = .false.
+      do e = 1, size(domain%region_of)
+         if (domain%regions(domain%region_of(e))%drainage == COUPLED) flows(domain%mesh%t6(:, e)) = .true.
+      end do
+   end function nodes_with_flow
+
+   !> Edges of a group through which fluids can flow in.
+   pure function edges_with_flow(domain, group) result(flows)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: group
+      logical :: flows(size(domain%mesh%groups(group)%edges, 2))
+      logical :: at(size(domain%mesh%x, 2))
+      integer :: e
+
+      at = nodes_with_flow(domain)
+      flows = [(all(at(domain%mesh%groups(group)%edges(:, e))), e=1, size(flows))]
+   end function edges_with_flow
+
+   !> Values, supports and inflows where no node or element of their group could have them.
+   subroutine check_places(model, fault)
+      type(model_t), intent(in) :: model
+      type(fault_t), intent(inout) :: fault
+      logical :: flows(size(model%domain%mesh%x, 2))
+      integer :: i
+
+      associate (domain => model%domain)
+         if (all(domain%regions%drainage == COUPLED)) return
+         flows = nodes_with_flow(domain)
+         do i = 1, size(model%fixes)
+            associate (fix => model%fixes(i))
+               if (fix%field <= DISPLACEMENTS) cycle
+               if (any(flows(domain%mesh%groups(fix%group)%nodes))) cycle
+               call raise(fault, EXIT_GROUP, place_of(fix)//'no node of '''//trim(fix%group_name)//''' lies in a '// &
+                          'region with drainage = ''coupled'', so that none has the unknown '// &
+                          trim(merge(FIELD_NAMES(min(fix%field, AT_P_C)), 'p_a', fix%field <= AT_P_C))// &
+                          '; leave this &fix out (drained regions keep their initial pressures), or couple '// &
+                          'the region.')
+               return
+            end associate
+         end do
+         do i = 1, size(model%loads)
+            associate (load => model%loads(i))
+               if (load%kind /= LOAD_WATER .and. load%kind /= LOAD_AIR) cycle
+               if (any(edges_with_flow(domain, load%group))) cycle
+               call raise(fault, EXIT_GROUP, place_of(load)//'no edge of '''//trim(load%group_name)//''' belongs '// &
+                          'to a region with drainage = ''coupled'': nothing can flow in; leave this &load out, or '// &
+                          'couple the region.')
+               return
+            end associate
+         end do
+         do i = 1, size(model%initials)
+            associate (one => model%initials(i), elements => &
+                       domain%mesh%groups(model%initials(i)%group)%elements)
+               if (size(elements) == 0 .or. .not. any(abs([one%p_w, one%p_w_slope, one%p_c, one%p_c_slope]) > 0.0_wp)) &
+                  cycle
+               if (any(domain%regions(domain%region_of(elements))%drainage /= DRY)) cycle
+               call raise(fault, EXIT_GROUP, place_of(one)//'all '//whole(size(elements))//' elements of '''// &
+                          trim(one%group_name)//''' are of regions with drainage = ''dry'': p_w and p_c have no '// &
+                          'meaning there; leave them out, or choose another drainage.')
+               return
+            end associate
+         end do
+      end associate
+   end subroutine check_places
+
+   !> Pressures of nodes that lie in undrained elements alone, for histories and fields: the mean of what these have
+   !> there. No element looks at them.
+   subroutine follow_undrained(domain, of, x)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: of(:, :)           !< (FIELDS, nodes) Unknowns, 0: none.
+      real(wp), intent(inout) :: x(:, :)        !< (FIELDS, nodes)
+      real(wp) :: total(2, size(x, 2))
+      logical :: given(size(x, 2))
+      integer :: users(size(x, 2)), e, k
+
+      if (.not. any(domain%center > 0)) return
+      total = 0.0_wp
+      users = 0
+      given = .false.
+      do e = 1, size(domain%center)
+         associate (center => domain%center(e))
+            ! An unknown, or a given value, stays.
+            if (domain%regions(domain%region_of(e))%drainage == DRAINED) given(domain%mesh%t6(:, e)) = .true.
+            if (center == 0) cycle
+            do k = 1, domain%n_p
+               associate (node => domain%mesh%t6(k, e))
+                  total(:, node) = total(:, node) + x(AT_P_W:AT_P_C, center) + domain%given(:, node) &
+                                   - domain%given(:, center)
+                  users(node) = users(node) + 1
+               end associate
+            end do
+         end associate
+      end do
+      do k = 1, size(x, 2)
+         if (users(k) == 0 .or. given(k) .or. of(AT_P_W, k) > 0) cycle
+         x(AT_P_W:AT_P_C, k) = total(:, k)/users(k)
+      end do
+   end subroutine follow_undrained
+end module given_pressures
