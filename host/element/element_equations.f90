@@ -135,8 +135,8 @@ contains
       end if
       if (slopes%kept) call keep_slopes(n, first, material, slopes)
       if (with_tangent .and. out%fallback /= NO_FALLBACK) &
-         call stiffen(domain%regions(domain%region_of(element))%law, out%fallback, n, after, suction(:n) + d_suction(:n), &
-                      material, out%replaced)
+         call stiffen(domain%regions(domain%region_of(element))%law, out%fallback, n, after, &
+                      suction(:n) + d_suction(:n), material, out%replaced)
    end subroutine ask_points
 
    !> What the nodes say about the points of an element.

@@ -17,10 +17,10 @@ module porous_domain
    public :: COUPLED, DRAINED, UNDRAINED, DRY
 
    ! What the fluids in the pores of a region do, in the order of the words of &region drainage.
-   integer, parameter :: COUPLED = 1     !< Pressures are unknowns of the nodes, fluids flow;
-   integer, parameter :: DRAINED = 2     !< pressures stay as they are given at the start;
-   integer, parameter :: UNDRAINED = 3   !< every element keeps its fluids: it has one p_w and one p_c;
-   integer, parameter :: DRY = 4         !< there are no fluids.
+   integer, parameter :: COUPLED = 1     !< Pressures are unknowns of the nodes, fluids flow.
+   integer, parameter :: DRAINED = 2     !< Pressures stay as they are given at the start.
+   integer, parameter :: UNDRAINED = 3   !< Every element keeps its fluids and has one p_w and one p_c.
+   integer, parameter :: DRY = 4         !< There are no fluids.
 
    !> Pore fluids.
    type :: fluids_t

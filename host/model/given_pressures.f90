@@ -84,6 +84,7 @@ contains
       end do
    end function pressures_at_start
 
+   !> Pore water pressure at the start at a height [kPa].
    pure real(wp) function water(initial, z)
       type(initial_t), intent(in) :: initial
       real(wp), intent(in) :: z
@@ -91,6 +92,7 @@ contains
       water = initial%p_w + initial%p_w_slope*(z - initial%datum)
    end function water
 
+   !> Suction at the start at a height [kPa].
    pure real(wp) function suction(initial, z)
       type(initial_t), intent(in) :: initial
       real(wp), intent(in) :: z
