@@ -15,7 +15,7 @@ module describe_hosts
    use texts, only: whole
    implicit none (type, external)
    private
-   public :: named_material_t, read_material, print_host, HOSTS
+   public :: named_material_t, read_material, shorten, print_host, HOSTS
 
    !> Words for the hosts, and what is printed.
    character(66), parameter :: HOSTS(2, 10) = reshape([character(66) :: &
@@ -29,6 +29,9 @@ module describe_hosts
       'incrementaldriver-start', 'initialconditions.inp at an isotropic stress of -100', &
       'udsm', 'number, name, unit and value of each PLAXIS parameter', &
       'plain', 'PROPS, a number a line'], [2, 10])
+   !> Of the hosts, those that take PROPS without hysteresis alone.
+   character(*), parameter :: WITHOUT_HYSTERESIS(4) = [character(len(HOSTS)) :: 'ogs', 'ogs-unsaturated', 'udsm', &
+      'kratos-udsm']
    integer, parameter :: A_LINE = 8          !< Numbers of a card.
    real(wp), parameter :: EXAMPLE_STRESS = -100.0_wp   !< [kPa]
 
@@ -77,6 +80,22 @@ contains
          material%unit = wanted
       end if
    end subroutine read_material
+
+   !> Leaves out what stands behind hysteresis where that is off: every host takes PROPS without it, and hosts that
+   !> name PROPS one by one (MFront) or have room for 50 (PLAXIS) take no others.
+   subroutine shorten(host, material, fault)
+      character(*), intent(in) :: host
+      type(named_material_t), intent(inout) :: material
+      type(fault_t), intent(inout) :: fault
+      integer :: place
+
+      place = property_index('hysteresis')
+      if (nint(material%props(place)) == 0) then
+         material%props = material%props(:place - 1)
+      else if (any(WITHOUT_HYSTERESIS == host)) then
+         call raise(fault, EXIT_INPUT, 'hysteresis is 1, and '//trim(host)//' takes PROPS without it; set it to 0.')
+      end if
+   end subroutine shorten
 
    !> "kPa, Pa, MPa ..."
    pure function unit_list() result(list)

@@ -3,7 +3,7 @@
 program mud_describe
    use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
    use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
-   use describe_hosts, only: named_material_t, read_material, print_host, HOSTS
+   use describe_hosts, only: named_material_t, read_material, shorten, print_host, HOSTS
    use describe_tables, only: print_props, print_statev, print_namelist
    use faults, only: fault_t, raise, EXIT_INPUT
    implicit none (type, external)
@@ -46,6 +46,7 @@ contains
          call read_material(trim(file), trim(option_value(options, '--unit')), material, fault)
          if (fault%code == 0 .and. material%doubt /= '') &
             write (error_unit, '(a)') 'mud_describe: warning: '//trim(material%doubt)
+         if (fault%code == 0) call shorten(trim(word), material, fault)
          if (fault%code == 0) call print_host(trim(word), material)
       end if
    end subroutine describe

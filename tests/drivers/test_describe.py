@@ -43,7 +43,8 @@ awkward = {"K_0": 1000.0/7.0, "e_0": 2.0/3.0, "tolerance": 1.0e-5/3.0, "P_a": 0.
 file = work / "sand.nml"
 entries = "".join(f"   {key} = {value!r}\n" for key, value in awkward.items())
 file.write_text(f"&material\n   name = 'Sand of the test'\n{entries}/\n", encoding="utf-8")
-names = [line.split("|")[2].strip(" `") for line in said("props").splitlines()[2:]]
+every = [line.split("|")[2].strip(" `") for line in said("props").splitlines()[2:]]
+names = every[:every.index("hysteresis")]   # what stands behind it is printed where it is on
 variables = [line.split("|")[2].strip(" `") for line in said("statev").splitlines()[2:]]
 plain = [float(line) for line in said("plain", file).split()]
 given = dict(zip(names, plain))
@@ -51,6 +52,15 @@ check("plain has every parameter once", len(plain) == len(names) > 40, str(len(p
 check("plain has the bits of the file", all(given[key] == value for key, value in awkward.items()), str(given))
 defaults = [float(line) for line in said("plain").split()]
 check("without a file it is the library's material", defaults[names.index("e_0")] == 0.8 and defaults != plain)
+
+hysteretic = work / "hysteresis.nml"
+hysteretic.write_text("&material\n   hysteresis = 1\n   P_aw = 2.0\n/\n", encoding="utf-8")
+longer = dict(zip(every, (float(line) for line in said("plain", hysteretic).split())))
+check("with hysteresis a host gets its parameters too", len(longer) == len(every) and longer["P_aw"] == 2.0, longer)
+for host in ("ogs", "ogs-unsaturated", "udsm", "kratos-udsm"):
+    done = subprocess.run([program, host, hysteretic], capture_output=True, text=True)
+    check(f"{host} refuses hysteresis by a sentence", done.returncode == 2 and "hysteresis is 1, and " in done.stderr,
+          done.stderr)
 
 abaqus = said("abaqus", file)
 check("Abaqus reads the same", numbers(card(abaqus, "*USER MATERIAL")) == plain

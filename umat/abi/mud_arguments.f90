@@ -3,7 +3,8 @@
 module mud_arguments
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
    use mud_kinds, only: wp
-   use mud_registry, only: NPROPS, NSTATV, P_SHEAR_ORDER, S_LAYOUT, S_SUCTION
+   use mud_params, only: completed, is_length
+   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NSTATV, P_SHEAR_ORDER, S_LAYOUT, S_SUCTION
    use mud_status, only: fail, mud_status_t, MUD_OK, MUD_BAD_NTENS, MUD_NULL_ARGUMENT, MUD_BAD_NPROPS, MUD_BAD_NSTATV, &
       MUD_BAD_INPUT, ON_ARGUMENT, ON_PROPS, ON_STATEV, ON_ROTATION
    use mud_tensor, only: is_finite
@@ -59,7 +60,8 @@ contains
          end if
       end if
       n = integer_at(nprops_)
-      if (n < 1) status = fail(MUD_BAD_NPROPS, ON_PROPS, 0, real(n, wp), real(NPROPS, wp), real(NPROPS, wp))
+      if (n < 1) status = fail(MUD_BAD_NPROPS, ON_PROPS, 0, real(n, wp), &
+                                    real(NPROPS_WITHOUT_HYSTERESIS, wp), real(NPROPS, wp))
       n = integer_at(nstatv_)
       if (n < NSTATV) status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n, wp), real(NSTATV, wp), huge(1.0_wp))
    end subroutine check_arguments
@@ -145,8 +147,8 @@ contains
       else if (.not. c_associated(predef)) then
          suction%start = stored
       else if (has_past(statev)) then
-         if (size(props) /= NPROPS) return
-         unit = stress_unit(props)
+         if (.not. is_length(size(props))) return
+         unit = stress_unit(completed(props))
          ! What is beyond the largest suction is refused as it is.
          if (.not. (within(suction%start, LARGEST_STRESS*unit) .and. within(stored, LARGEST_STRESS*unit))) return
          if (.not. is_finite(suction%change)) return
@@ -171,7 +173,7 @@ contains
       integer :: order(6)
 
       order = [1, 2, 3, 4, 5, 6]
-      if (size(props) /= NPROPS) return
+      if (.not. is_length(size(props))) return
       if (.not. is_finite(props(P_SHEAR_ORDER))) return
       if (nint(min(max(props(P_SHEAR_ORDER), 0.0_wp), 1.0_wp)) == 1) order = [1, 2, 3, 4, 6, 5]
    end function component_order

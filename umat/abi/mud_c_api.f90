@@ -6,10 +6,11 @@ module mud_c_api
    use mud_advice, only: advice_on, ADVICE_LENGTH
    use mud_kinds, only: wp
    use mud_messages, only: status_text, report_text
-   use mud_params, only: params_t, read_params, default_props
+   use mud_params, only: params_t, read_params, completed, is_length, check_bounds, default_props
    use mud_registry, only: OPTIONS, NPROPS, NSTATV, PROPERTIES, VARIABLES, property_index, property_meaning, &
       statev_index, statev_name, &
       statev_variable
+   use mud_scanning, only: check_curves
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, &
       MUD_BAD_OPTION, &
       MUD_BAD_PROPS, MUD_BAD_INPUT, ON_PROPS, ON_STATEV, ON_ARGUMENT
@@ -170,11 +171,11 @@ contains
       mud_bounds_for = MUD_NULL_ARGUMENT
       if (.not. c_associated(props)) return
       mud_bounds_for = MUD_BAD_NPROPS
-      if (n_props /= NPROPS) return
+      if (.not. is_length(n_props)) return
       mud_bounds_for = MUD_BAD_OPTION
       if (index < 0 .or. index >= NPROPS) return
-      call c_f_pointer(props, values, [NPROPS])
-      call bounds_for(values, low, high, default)
+      call c_f_pointer(props, values, [n_props])
+      call bounds_for(completed(values), low, high, default)
       call put_real(low(index + 1), lower)
       call put_real(high(index + 1), upper)
       call put_real(default(index + 1), preset)
@@ -199,9 +200,9 @@ contains
       call c_f_pointer(props, values, [max(n_props, 0)])
       call read_params(values, par, status)
       if (status%code == MUD_OK) then
-         converted = convert_props(values, factor)
+         converted = convert_props(completed(values), factor)
          call read_params(converted, par, status)
-         if (status%code == MUD_OK) values = converted
+         if (status%code == MUD_OK) values = converted(:size(values))
       end if
       mud_convert_props = status%code
    end function mud_convert_props
@@ -210,13 +211,15 @@ contains
       type(c_ptr), value :: props
       integer(c_int), value :: n_props
       real(c_double), pointer, contiguous :: values(:)
+      real(wp) :: full(NPROPS)
 
       mud_default_props = MUD_NULL_ARGUMENT
       if (.not. c_associated(props)) return
       mud_default_props = MUD_BAD_NPROPS
-      if (n_props /= NPROPS) return
-      call c_f_pointer(props, values, [NPROPS])
-      values = default_props()
+      if (.not. is_length(n_props)) return
+      call c_f_pointer(props, values, [n_props])
+      full = default_props()
+      values = full(:n_props)
       mud_default_props = MUD_OK
    end function mud_default_props
 
@@ -231,12 +234,14 @@ contains
       if (c_associated(props)) then
          call c_f_pointer(props, values, [max(n_props, 0)])
          call read_params(values, par, status)
+         if (status%code == MUD_OK) call check_bounds(completed(values), NPROPS, status)
+         if (status%code == MUD_OK .and. par%hysteresis) call check_curves(par, status)
       else
          status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
       end if
       mud_validate_props = status%code
       advice = ''
-      if (status%code == MUD_OK) advice = advice_on(values)
+      if (status%code == MUD_OK) advice = advice_on(completed(values))
       if (advice == '') advice = report_text(failed_report(status))
       call put(advice, text, len)
    end function mud_validate_props

@@ -6,8 +6,9 @@ module mud_kernel
    use mud_kinds, only: wp
    use mud_params, only: params_t, read_params
    use mud_point, only: blocks_t, initial_state, update_point, LAST_RATE => TANGENT_CONTINUUM
-   use mud_registry, only: NSTATV, VARIABLES, S_LAYOUT, S_VOID_RATIO, S_SUCTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, &
-      S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE
+   use mud_registry, only: NSTATV, VARIABLES, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION, S_DSIGMA_DPC, &
+      S_DSW_DPC, S_DSW_DEV, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE
+   use mud_scanning, only: check_curves
    use mud_state, only: state_t, counters_t, pack_state, unpack_state, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_BAD_STATE, MUD_BAD_INPUT, MUD_BAD_OPTION, &
       MUD_NOT_FINITE, ON_STATEV, ON_STRESS, ON_STRAIN, ON_ARGUMENT
@@ -70,7 +71,7 @@ contains
       real(wp) :: packed(NSTATV)
 
       if (size(statev) < NSTATV) status = wrong_nstatv(size(statev))
-      if (status%code == MUD_OK) call initialise(par, stress, suction, void_ratio, state, packed, status)
+      if (status%code == MUD_OK) call initialise(par, stress, suction, void_ratio, 0.0_wp, state, packed, status)
       report = failed_report(status)
       if (status%code /= MUD_OK) return
       stress = to_umat_stress(state%sigma)
@@ -201,7 +202,7 @@ contains
          return
       end if
       if (abs(statev(S_LAYOUT)) <= 0.0_wp) then
-         call initialise(par, stress, suction, statev(S_VOID_RATIO), state, packed, status)
+         call initialise(par, stress, suction, statev(S_VOID_RATIO), statev(S_SATURATION), state, packed, status)
       else
          call unpack_state(statev, state, status)
          call copy_statev(statev, packed)
@@ -219,9 +220,10 @@ contains
    end subroutine copy_statev
 
    !> A state without a past; a void ratio of zero means that of the parameters, stress zero means p_min.
-   pure subroutine initialise(par, stress, suction, void_ratio, state, packed, status)
+   pure subroutine initialise(par, stress, suction, void_ratio, s_w, state, packed, status)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: stress(6), suction, void_ratio
+      real(wp), intent(in) :: s_w   !< Read with hysteresis; 0: on the main drying curve.
       type(state_t), intent(inout) :: state
       real(wp), intent(out) :: packed(NSTATV)
       type(mud_status_t), intent(out) :: status
@@ -232,7 +234,9 @@ contains
          if (abs(e) <= 0.0_wp) e = par%e_0
       end if
       packed = 0.0_wp
-      call initial_state(par, -stress, e, suction, state, status)
+      if (par%hysteresis) call check_curves(par, status)
+      if (status%code /= MUD_OK) return
+      call initial_state(par, -stress, e, suction, state, status, s_w)
       if (status%code == MUD_OK) call pack_state(state, counters_t(), packed)
    end subroutine initialise
 

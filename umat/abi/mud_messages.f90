@@ -86,6 +86,8 @@ contains
                 ': was STATEV zeroed before the first call and kept since?'
       case (MUD_BAD_NPROPS, MUD_BAD_NSTATV)
          text = trim(text)//'; given '//trim(number(report%value))//', needed '//trim(lower)
+         ! Without and with the entries of hysteresis.
+         if (report%status == MUD_BAD_NPROPS .and. report%upper > report%lower) text = trim(text)//' or '//upper
       case (MUD_BAD_NTENS)
          ! Its range is 4 to 6, that of NDI is 3 alone.
          text = trim(merge('NDI  ', 'NTENS', report%upper <= report%lower))//' is '//trim(number(report%value))// &

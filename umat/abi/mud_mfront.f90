@@ -7,9 +7,9 @@ module mud_mfront
    use mud_kernel, only: report_t, output_t, kernel_point, kernel_tangent, failed_report
    use mud_kinds, only: wp
    use mud_messages, only: report_text
-   use mud_params, only: params_t, read_params
+   use mud_params, only: params_t, read_params, completed
    use mud_refusals, only: place_t, say_refusal, save_if_asked
-   use mud_registry, only: NPROPS, NSTATV, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION
+   use mud_registry, only: NPROPS_WITHOUT_HYSTERESIS, NSTATV, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION
    use mud_retention, only: saturation_t, saturation
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_INPUT, MUD_BAD_OPTION, ON_ARGUMENT, &
       ON_SUCTION
@@ -177,7 +177,7 @@ contains
                            output, report)
       end if
       if (report%status /= MUD_OK) then
-         call save_if_asked(point%props, stress, point%state0, strain, suction(1), suction(2) - suction(1), &
+         call save_if_asked(completed(point%props), stress, point%state0, strain, suction(1), suction(2) - suction(1), &
                             place_t(DOOR), report)
          return
       end if
@@ -298,7 +298,7 @@ contains
       call c_f_pointer(view%s1%gradients, point%gradient1, [n_forces])
       call c_f_pointer(view%s0%forces, point%force0, [n_forces])
       call c_f_pointer(view%s1%forces, point%force1, [n_forces])
-      call c_f_pointer(view%s1%material_properties, point%props, [NPROPS])
+      call c_f_pointer(view%s1%material_properties, point%props, [NPROPS_WITHOUT_HYSTERESIS])
       call c_f_pointer(view%s0%internal_state_variables, point%state0, [NSTATV])
       call c_f_pointer(view%s1%internal_state_variables, point%state1, [NSTATV])
    end subroutine find_arrays

@@ -7,6 +7,7 @@ module mud_prepared
    use mud_kinds, only: wp
    use mud_messages, only: report_text
    use mud_params, only: params_t, read_params
+   use mud_scanning, only: check_curves
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_NOT_PREPARED, ON_ARGUMENT
    use mud_to_host, only: put
    implicit none (type, external)
@@ -48,6 +49,7 @@ contains
          call c_f_pointer(props, values, [max(n_props, 0)])
          call c_f_pointer(prepared, material)
          call read_params(values, par, status)
+         if (status%code == MUD_OK .and. par%hysteresis) call check_curves(par, status)
          material%head = 0
          material%tail = 0
          if (status%code == MUD_OK) then

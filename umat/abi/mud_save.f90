@@ -8,6 +8,7 @@ module mud_save
    use mud_kernel, only: report_t, output_t, kernel_update
    use mud_kinds, only: wp
    use mud_messages, only: status_text, report_text
+   use mud_params, only: completed, is_length
    use mud_registry, only: NPROPS, NSTATV, PROPERTIES, statev_name
    use mud_status, only: MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_NOT_WRITTEN
    use mud_to_host, only: put
@@ -51,7 +52,7 @@ contains
       type(c_ptr), value :: path, origin, props, stress0, statev0, dstrain, text
       integer(c_int), value :: n_props, n_statev, tangent, len
       real(c_double), value :: suction0, dsuction
-      real(c_double), pointer :: props_in(:), stress_in(:), statev_in(:), dstrain_in(:)
+      real(c_double), pointer, contiguous :: props_in(:), stress_in(:), statev_in(:), dstrain_in(:)
       type(report_t) :: report
       type(output_t) :: output
       character(PATH_LENGTH) :: name
@@ -61,14 +62,14 @@ contains
 
       mud_save_increment = MUD_OK
       if (n_statev < NSTATV) mud_save_increment = MUD_BAD_NSTATV
-      if (n_props /= NPROPS) mud_save_increment = MUD_BAD_NPROPS
+      if (.not. is_length(n_props)) mud_save_increment = MUD_BAD_NPROPS
       if (tangent < 0 .or. tangent > LAST_TANGENT) mud_save_increment = MUD_BAD_OPTION
       if (.not. (c_associated(path) .and. c_associated(props) .and. c_associated(stress0) .and. &
                  c_associated(statev0) .and. c_associated(dstrain))) mud_save_increment = MUD_NULL_ARGUMENT
       call put(status_text(mud_save_increment), text, len)
       if (mud_save_increment /= MUD_OK) return
 
-      call c_f_pointer(props, props_in, [NPROPS])
+      call c_f_pointer(props, props_in, [n_props])
       call c_f_pointer(stress0, stress_in, [6])
       call c_f_pointer(statev0, statev_in, [NSTATV])
       call c_f_pointer(dstrain, dstrain_in, [6])
@@ -77,8 +78,8 @@ contains
       problem = 'the name of the file is empty or too long'
       if (whole .and. name /= '') then
          call kernel_update(props_in, stress_in, statev_in, dstrain_in, suction0, dsuction, tangent, output, report)
-         call write_increment(name, whence, props_in, stress_in, statev_in, dstrain_in, suction0, dsuction, tangent, &
-                              report, problem)
+         call write_increment(name, whence, completed(props_in), stress_in, statev_in, dstrain_in, suction0, dsuction, &
+                              tangent, report, problem)
       end if
       if (problem == '') return
       mud_save_increment = MUD_NOT_WRITTEN

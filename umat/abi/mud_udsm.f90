@@ -7,11 +7,11 @@ module mud_udsm
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_associated, c_f_pointer, c_loc
    use mud_kernel, only: report_t, output_t, kernel_point, kernel_init, failed_report
    use mud_kinds, only: wp
-   use mud_params, only: params_t, read_params
+   use mud_params, only: params_t, read_params, completed
    use mud_pieces, only: update_in_pieces
    use mud_refusals, only: place_t, say_refusal, save_if_asked
-   use mud_registry, only: NPROPS, NSTATV, PROPERTIES, VARIABLES, statev_name, statev_variable, S_LAYOUT, &
-      S_VOID_RATIO, S_SUCTION, S_OPEN, S_EPS_Q_P_TOTAL
+   use mud_registry, only: NPROPS_WITHOUT_HYSTERESIS, NSTATV, PROPERTIES, VARIABLES, statev_name, statev_variable, &
+      S_LAYOUT, S_VOID_RATIO, S_SUCTION, S_OPEN, S_EPS_Q_P_TOTAL
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, ON_ARGUMENT
    use mud_tensor, only: is_finite
    implicit none (type, external)
@@ -90,7 +90,7 @@ contains
          status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(imod, wp))
       else if (idtask /= HOW_MANY .and. idtask /= ATTRIBUTES) then
          if (c_associated(props) .and. c_associated(sig0) .and. c_associated(stvar0)) then
-            call c_f_pointer(props, values, [NPROPS])
+            call c_f_pointer(props, values, [NPROPS_WITHOUT_HYSTERESIS])
             call read_params(values, par, status)
          else
             status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
@@ -113,7 +113,7 @@ contains
       call c_f_pointer(stvar0, state, [NSTATV])
       if (.not. is_finite(state(S_LAYOUT))) return
       if (abs(state(S_LAYOUT)) > 0.0_wp) return
-      call c_f_pointer(props, values, [NPROPS])
+      call c_f_pointer(props, values, [NPROPS_WITHOUT_HYSTERESIS])
       call kernel_init(values, stress, state(S_SUCTION), state(S_VOID_RATIO), state, report)
    end subroutine initialise
 
@@ -140,8 +140,8 @@ contains
       call c_f_pointer(stvar0, state0, [NSTATV])
       call update_in_pieces(par, stress0, state0, strain, state0(S_SUCTION), 0.0_wp, 0, output, report)
       if (report%status /= MUD_OK) then
-         call c_f_pointer(props, values, [NPROPS])
-         call save_if_asked(values, stress0, state0, strain, state0(S_SUCTION), 0.0_wp, place, report)
+         call c_f_pointer(props, values, [NPROPS_WITHOUT_HYSTERESIS])
+         call save_if_asked(completed(values), stress0, state0, strain, state0(S_SUCTION), 0.0_wp, place, report)
          return
       end if
       if (c_associated(ipl)) then
@@ -224,7 +224,7 @@ contains
       integer(c_int), intent(in) :: imod
       integer(c_int), intent(out) :: n
 
-      n = merge(NPROPS, 0, imod == 1)
+      n = merge(NPROPS_WITHOUT_HYSTERESIS, 0, imod == 1)
    end subroutine param_count
 
    !> Name of parameter i from 1, empty if there is none.
@@ -233,7 +233,7 @@ contains
       character(kind=c_char), intent(inout) :: name(*)
 
       call put_pascal('', name)
-      if (known(imod, i, NPROPS)) call put_pascal(PROPERTIES(i)%name, name)
+      if (known(imod, i, NPROPS_WITHOUT_HYSTERESIS)) call put_pascal(PROPERTIES(i)%name, name)
    end subroutine param_name
 
    !> Unit of parameter i from 1 in the letters of PLAXIS, empty if there is none.
@@ -242,7 +242,7 @@ contains
       character(kind=c_char), intent(inout) :: unit(*)
 
       call put_pascal('', unit)
-      if (known(imod, i, NPROPS)) call put_pascal(unit_word(PROPERTIES(i)%unit), unit)
+      if (known(imod, i, NPROPS_WITHOUT_HYSTERESIS)) call put_pascal(unit_word(PROPERTIES(i)%unit), unit)
    end subroutine param_unit
 
    !> Number of state variables of a model, 0 if imod is not 1.

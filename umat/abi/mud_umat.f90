@@ -7,7 +7,8 @@ module mud_umat
    use mud_kernel, only: report_t, output_t, kernel_update, rotate_statev, failed_report, TANGENT_FROM_PROPS
    use mud_kinds, only: wp
    use mud_refusals, only: place_t, refuse, remark_on_suction, remark_on_props, save_if_asked
-   use mud_registry, only: NPROPS, NSTATV
+   use mud_params, only: completed, is_length
+   use mud_registry, only: NSTATV
    use mud_status, only: mud_status_t, MUD_OK
    implicit none (type, external)
    private
@@ -84,12 +85,13 @@ contains
       call kernel_update(props_in, stress6, statev0, dstran6, suction%start, suction%change, TANGENT_FROM_PROPS, &
                          output, report)
       if (report%status /= MUD_OK) then
-         if (n_props == NPROPS) then
-            call save_if_asked(props_in, stress6, statev0, dstran6, suction%start, suction%change, place, report)
+         if (is_length(n_props)) then
+            call save_if_asked(completed(props_in), stress6, statev0, dstran6, suction%start, suction%change, place, &
+                               report)
          end if
          return
       end if
-      if (.not. has_past(statev0)) call remark_on_props(props_in, place)
+      if (.not. has_past(statev0)) call remark_on_props(completed(props_in), place)
       output%stress = output%stress(order)
       stress_in = output%stress(1:ntens)
       statev_in(1:NSTATV) = output%statev

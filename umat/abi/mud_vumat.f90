@@ -11,10 +11,10 @@ module mud_vumat
    use mud_kernel, only: report_t, output_t, failed_report
    use mud_kinds, only: wp
    use mud_once, only: environment_is
-   use mud_params, only: params_t, read_params
+   use mud_params, only: params_t, read_params, completed, is_length
    use mud_pieces, only: update_in_pieces
    use mud_refusals, only: place_t, say_refusal, save_if_asked, KEEP_VARIABLE
-   use mud_registry, only: NPROPS, NSTATV, S_SUCTION
+   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NSTATV, S_SUCTION
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_NTENS, MUD_BAD_NSTATV, MUD_BAD_NPROPS, &
       ON_ARGUMENT, ON_STATEV, ON_PROPS
    use mud_tensor, only: is_finite
@@ -114,11 +114,11 @@ contains
          status = fail(MUD_BAD_NTENS, ON_ARGUMENT, 0, real(points%n_shear + 3, wp), 4.0_wp, 6.0_wp)
       else if (n_state < NSTATV) then
          status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n_state, wp), real(NSTATV, wp), huge(1.0_wp))
-      else if (integer_at(counts(5)) /= NPROPS) then
-         status = fail(MUD_BAD_NPROPS, ON_PROPS, 0, real(integer_at(counts(5)), wp), real(NPROPS, wp), &
-                       real(NPROPS, wp))
+      else if (.not. is_length(integer_at(counts(5)))) then
+         status = fail(MUD_BAD_NPROPS, ON_PROPS, 0, real(integer_at(counts(5)), wp), &
+                       real(NPROPS_WITHOUT_HYSTERESIS, wp), real(NPROPS, wp))
       else
-         call c_f_pointer(arrays(1), points%props, [NPROPS])
+         call c_f_pointer(arrays(1), points%props, [integer_at(counts(5))])
          call c_f_pointer(arrays(2), points%strain, [points%n, 3 + points%n_shear])
          call c_f_pointer(arrays(3), points%stress0, [points%n, 3 + points%n_shear])
          call c_f_pointer(arrays(4), points%stress1, [points%n, 3 + points%n_shear])
@@ -146,19 +146,19 @@ contains
       end do
       if (elastic_only) then
          still = 0.0_wp
-         failed = mud_update_batch(c_loc(points%props), NPROPS, int(n, c_int), c_loc(old%stress), c_loc(old%state), &
-                                   NSTATV, c_loc(still), c_loc(old%suction), c_null_ptr, ELASTIC, ONE_THREAD, &
-                                   c_loc(stress), c_loc(state), c_loc(slopes), c_null_ptr, c_null_ptr, c_null_ptr, &
-                                   c_loc(old%status), c_null_ptr)
+         failed = mud_update_batch(c_loc(points%props), size(points%props), int(n, c_int), c_loc(old%stress), &
+                                   c_loc(old%state), NSTATV, c_loc(still), c_loc(old%suction), c_null_ptr, ELASTIC, &
+                                   ONE_THREAD, c_loc(stress), c_loc(state), c_loc(slopes), c_null_ptr, c_null_ptr, &
+                                   c_null_ptr, c_loc(old%status), c_null_ptr)
          do i = 1, n
             stress(:, i) = old%stress(:, i) + matmul(slopes(:, :, i), old%strain(:, i))
          end do
          state(:, 1:n) = old%state(:, 1:n)
       else
-         failed = mud_update_batch(c_loc(points%props), NPROPS, int(n, c_int), c_loc(old%stress), c_loc(old%state), &
-                                   NSTATV, c_loc(old%strain), c_loc(old%suction), c_loc(old%d_suction), NONE, &
-                                   ONE_THREAD, c_loc(stress), c_loc(state), c_null_ptr, c_null_ptr, c_null_ptr, &
-                                   c_null_ptr, c_loc(old%status), c_null_ptr)
+         failed = mud_update_batch(c_loc(points%props), size(points%props), int(n, c_int), c_loc(old%stress), &
+                                   c_loc(old%state), NSTATV, c_loc(old%strain), c_loc(old%suction), &
+                                   c_loc(old%d_suction), NONE, ONE_THREAD, c_loc(stress), c_loc(state), &
+                                   c_null_ptr, c_null_ptr, c_null_ptr, c_null_ptr, c_loc(old%status), c_null_ptr)
       end if
       if (failed < 0) old%status = failed
       do i = 1, n
@@ -199,7 +199,7 @@ contains
          state = output%statev
          return
       end if
-      call save_if_asked(points%props, old%stress(:, i), old%state(:, i), old%strain(:, i), old%suction(i), &
+      call save_if_asked(completed(points%props), old%stress(:, i), old%state(:, i), old%strain(:, i), old%suction(i), &
                          old%d_suction(i), place_t('vumat_'), report)
       state = old%state(:, i)
       if (environment_is(KEEP_VARIABLE, 'keep')) then

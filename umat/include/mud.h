@@ -81,7 +81,7 @@ int mud_bounds(int list, int index, double *lower, double *upper, double *preset
 int mud_bounds_for(const double *props, int nprops, int index, double *lower, double *upper, double *preset);
 int mud_default_props(double *props, int nprops);           /* in kPa */
 /* The same material in another unit of stress, `factor` of which make one of the present unit (from kPa: 1000 Pa,
- * 0.001 MPa, 0.1450377 psi). Changes p_atm, alpha_csl, P_a, p_min and, by factor^lambda, N_c and N_l. */
+ * 0.001 MPa, 0.1450377 psi). Changes p_atm, alpha_csl, P_a, P_aw, p_min and, by factor^lambda, N_c and N_l. */
 int mud_convert_props(double *props, int nprops, double factor);
 /* Text: a sentence for the first fault; with MUD_OK "no error" or, where stresses of PROPS seem to have another unit
  * than p_atm, a sentence that begins with "warning: ". */
@@ -140,12 +140,13 @@ int mud_update_batch_prepared(const double *prepared, int n, const double *stres
                               double *dsw_deps, double *dsw_dpc, int *status, mud_report *reports);
 
 /* Degree of saturation of a prepared material at a suction and a void ratio (above 0), and its slopes against either at
- * constant other; each output may be NULL. The curve that updates use: their S_w is this one, bit by bit. */
+ * constant other; each output may be NULL. The curve that updates use: their S_w is this one, bit by bit; with
+ * hysteresis it is the main drying curve. */
 int mud_saturation(const double *prepared, double suction, double void_ratio, double *s_w, double *ds_dpc,
                    double *ds_de);
 
-/* The same for a point: statev tells its void ratio and its past (which the curve of today, without hysteresis, does
- * not read). ds_dev: slope against the volume strain, tension positive, like dsw_deps of mud_update. */
+/* The same for a point: statev tells its void ratio and, with hysteresis, from which S_w at which suction it goes on.
+ * ds_dev: slope against the volume strain, tension positive, like dsw_deps of mud_update. */
 int mud_state_saturation(const double *prepared, const double *statev, int nstatev, double suction, double *s_w,
                          double *ds_dpc, double *ds_dev);
 

@@ -2,17 +2,19 @@
 !> Material parameters: from PROPS to named values, checked against the registry.
 module mud_params
    use mud_kinds, only: wp, SQRT_6
-   use mud_registry, only: NPROPS, PROPERTIES, KIND_REAL, RULE_AS_PUBLISHED, &
+   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, PROPERTIES, KIND_REAL, RULE_AS_PUBLISHED, &
       P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, P_H_0, P_C_H, &
       P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, P_P_ATM, P_P_MIN, &
       P_BONDING, P_FABRIC, P_ISOTROPIC, P_LODE, P_MEMORY_RULE, P_EPS_HAT, P_J_EXP, P_X_0, P_X_REV, P_CAP_D, P_CAP_H, &
-      P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, P_TANGENT, P_RHO_E, P_SHEAR_ORDER
+      P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, P_TANGENT, P_RHO_E, P_SHEAR_ORDER, &
+      P_HYSTERESIS, P_P_AW, P_N_W, P_M_W, P_B_D, P_B_W
    use mud_status, only: mud_status_t, fail, MUD_BAD_NPROPS, MUD_BAD_PROPS, ON_PROPS
    use mud_tensor, only: is_finite, all_finite
    use mud_units, only: stress_unit, bounds_for, minimum_stress, LARGEST_STRESS, LARGEST_SUCTION_STEP, SMALLEST_MINIMUM
    implicit none (type, external)
    private
-   public :: params_t, read_params, default_props, FLOOR_AS_PUBLISHED
+   public :: params_t, scanning_t, read_params, completed, is_length, check_bounds, default_props
+   public :: FLOOR_AS_PUBLISHED, NOT_SCANNING
 
    real(wp), parameter :: FLOOR_AS_PUBLISHED = 1.0e-15_wp   !< The only floor of (r - r_in):n with the guard off [-].
 
@@ -22,7 +24,19 @@ module mud_params
    integer, parameter :: WHOLE_ENTRIES(*) = pack(PROPERTIES%index, PROPERTIES%kind /= KIND_REAL)
    real(wp), parameter :: NEARLY_WHOLE = 1.0e-9_wp   !< A number this close to a whole one is it [-].
 
-   !> Parameters of one material; names and units as in mud_registry.
+   !> Where S_w goes between the main curves, docs/theory/material.md section 2.1.1: the suction y of a main curve at
+   !> the same S_w follows y**q = x**q + offset**q.
+   type :: scanning_t
+      logical :: between      !< Off a main curve.
+      real(wp) :: q           !< 1 + b_d in drying, 1 - b_w in wetting [-].
+      real(wp) :: log_offset  !< q ln(offset/P_a), P_a that of the main curve [-].
+   end type scanning_t
+
+   type(scanning_t), parameter :: NOT_SCANNING = scanning_t(.false., 1.0_wp, 0.0_wp)
+   real(wp), parameter :: WETTING_SHARE = 0.5_wp   !< P_aw of P_a where it is not given [-].
+
+   !> Parameters of one material; names and units as in mud_registry. With hysteresis a phase of an increment has a copy
+   !> whose p_a, n_x, m_x are those of the main curve that its scanning curve approaches.
    type :: params_t
       real(wp) :: k_0, g_0, n_c, lambda, alpha_csl, n_l, theta, m_c, c, n_b, n_d, a_0, h_0, c_h, c_z, z_max
       real(wp) :: b_1, b_2, s_max, s_min, p_a, omega, n_x, m_x, e_0, p_atm, p_min
@@ -39,6 +53,9 @@ module mud_params
       integer :: shear_order   !< Of umat_ alone: 0 as 12, 13, 23, 1 as 12, 23, 13.
       real(wp) :: tolerance, h_min
       real(wp) :: rho_e     !< Radius of the elastic domain, 0: none [-].
+      logical :: hysteresis
+      real(wp) :: p_aw, n_w, m_w, b_d, b_w   !< Those left to others have their values.
+      type(scanning_t) :: scanning           !< Of a phase.
       real(wp) :: c4        !< c**4, for the Lode function [-].
       real(wp) :: lode_bend !< sqrt(6) (1 - c**4)/(8 c**4), for its slope [-].
       real(wp) :: largest_stress, largest_suction_step   !< Limits of input in the unit of p_atm.
@@ -51,17 +68,44 @@ contains
       props = PROPERTIES%default
    end function default_props
 
+   !> True of a number of PROPS that is taken: all of them, or those without hysteresis.
+   pure logical function is_length(n)
+      integer, intent(in) :: n
+
+      is_length = n == NPROPS .or. n == NPROPS_WITHOUT_HYSTERESIS
+   end function is_length
+
+   !> PROPS of an allowed length in full.
+   pure function completed(given) result(props)
+      real(wp), intent(in) :: given(:)
+      real(wp) :: props(NPROPS)
+
+      props(:size(given)) = given
+      props(size(given) + 1:) = PROPERTIES(size(given) + 1:)%default
+   end function completed
+
    !> Checks PROPS and names its values. On an error params is undefined and status names the first bad entry.
    pure subroutine read_params(props, params, status)
       real(wp), intent(in), contiguous :: props(:)
       type(params_t), intent(out) :: params
       type(mud_status_t), intent(out) :: status
+
+      if (size(props) == NPROPS) then
+         call read_all(props, params, status)
+      else if (is_length(size(props))) then
+         call read_all(completed(props), params, status)
+      else
+         status = fail(MUD_BAD_NPROPS, ON_PROPS, 0, real(size(props), wp), real(NPROPS_WITHOUT_HYSTERESIS, wp), &
+                       real(NPROPS, wp))
+      end if
+   end subroutine read_params
+
+   pure subroutine read_all(props, params, status)
+      real(wp), intent(in) :: props(NPROPS)
+      type(params_t), intent(out) :: params
+      type(mud_status_t), intent(out) :: status
       logical :: published
 
-      if (size(props) /= NPROPS) then
-         status = fail(MUD_BAD_NPROPS, ON_PROPS, 0, real(size(props), wp), real(NPROPS, wp), real(NPROPS, wp))
-         return
-      end if
       call check_props(props, status)
       if (status%code /= 0) return
 
@@ -108,6 +152,9 @@ contains
       params%tangent = whole(props(P_TANGENT))
       params%rho_e = props(P_RHO_E)
       params%shear_order = whole(props(P_SHEAR_ORDER))
+      params%hysteresis = whole(props(P_HYSTERESIS)) == 1
+      params%scanning = NOT_SCANNING
+      if (params%hysteresis) call read_wetting(props, params)
       params%c4 = params%c**4
       params%lode_bend = SQRT_6*(1.0_wp - params%c4)/(8.0_wp*params%c4)
 
@@ -120,37 +167,84 @@ contains
       params%cap_d = merge(0.0_wp, props(P_CAP_D), published)
       params%cap_h = merge(0.0_wp, props(P_CAP_H), published)
       params%cutoff = whole(props(P_CUTOFF)) == 1 .and. .not. published
-   end subroutine read_params
+   end subroutine read_all
 
-   !> Names the first entry that is not finite, out of its bounds or not the integer it should be.
+   !> The main wetting curve; what is zero follows the drying curve.
+   pure subroutine read_wetting(props, params)
+      real(wp), intent(in) :: props(NPROPS)
+      type(params_t), intent(inout) :: params
+
+      params%p_aw = props(P_P_AW)
+      if (params%p_aw <= 0.0_wp) params%p_aw = WETTING_SHARE*params%p_a
+      params%n_w = props(P_N_W)
+      if (params%n_w <= 0.0_wp) params%n_w = params%n_x
+      params%m_w = props(P_M_W)
+      if (params%m_w <= 0.0_wp) params%m_w = params%m_x
+      params%b_d = props(P_B_D)
+      params%b_w = props(P_B_W)
+   end subroutine read_wetting
+
+   !> Names the first entry that is not finite, out of its bounds or not the integer it should be. What stands behind
+   !> hysteresis is read, and looked at, where it is on.
    pure subroutine check_props(props, status)
       real(wp), intent(in) :: props(NPROPS)
       type(mud_status_t), intent(out) :: status
-      real(wp) :: low(NPROPS), high(NPROPS), unit
-      integer :: i
+      real(wp) :: unit
 
       unit = stress_unit(props)
-      if (all_finite(props) .and. abs(unit - 1.0_wp) <= 0.0_wp) then
-         if (no_fault(props)) return
+      if (all_finite(props(:P_HYSTERESIS)) .and. abs(unit - 1.0_wp) <= 0.0_wp) then
+         if (no_fault(props(:P_HYSTERESIS)) .and. props(P_HYSTERESIS) < 0.5_wp) return
       end if
+      call check_bounds(props, P_HYSTERESIS, status)
+      if (status%code /= 0) return
+      if (whole(props(P_HYSTERESIS)) == 1) call check_bounds(props, NPROPS, status)
+      if (status%code /= 0) return
+      if (props(P_P_MIN) > 0.0_wp .and. props(P_P_MIN) < SMALLEST_MINIMUM*unit) then
+         status = fail(MUD_BAD_PROPS, ON_PROPS, P_P_MIN, props(P_P_MIN), SMALLEST_MINIMUM*unit, UPPER(P_P_MIN)*unit)
+      else if (props(P_S_MIN) >= props(P_S_MAX)) then
+         status = fail(MUD_BAD_PROPS, ON_PROPS, P_S_MIN, props(P_S_MIN), 0.0_wp, props(P_S_MAX))
+      else if (whole(props(P_HYSTERESIS)) == 1) then
+         call check_wetting(props, status)
+      end if
+   end subroutine check_props
+
+   !> Names the first entry up to a last one that is not finite, out of its bounds or not the integer it should be.
+   pure subroutine check_bounds(props, last, status)
+      real(wp), intent(in) :: props(NPROPS)
+      integer, intent(in) :: last
+      type(mud_status_t), intent(inout) :: status
+      real(wp) :: low(NPROPS), high(NPROPS)
+      integer :: i
+
       call bounds_for(props, low, high)
-      do i = 1, NPROPS
+      do i = 1, last
          if (acceptable(i, props(i), low(i), high(i))) cycle
          status = fail(MUD_BAD_PROPS, ON_PROPS, i, props(i), low(i), high(i))
          return
       end do
-      if (props(P_P_MIN) > 0.0_wp .and. props(P_P_MIN) < SMALLEST_MINIMUM*unit) then
-         status = fail(MUD_BAD_PROPS, ON_PROPS, P_P_MIN, props(P_P_MIN), SMALLEST_MINIMUM*unit, high(P_P_MIN))
-      else if (props(P_S_MIN) >= props(P_S_MAX)) then
-         status = fail(MUD_BAD_PROPS, ON_PROPS, P_S_MIN, props(P_S_MIN), 0.0_wp, props(P_S_MAX))
-      end if
-   end subroutine check_props
+   end subroutine check_bounds
 
-   !> The same verdict on finite PROPS in kPa without a branch per entry: updates with good PROPS end here.
-   pure logical function no_fault(props)
+   !> Without these the main wetting curve is above the main drying curve at small or at large suctions. In between it
+   !> takes more than a comparison: see check_curves of mud_scanning.
+   pure subroutine check_wetting(props, status)
       real(wp), intent(in) :: props(NPROPS)
+      type(mud_status_t), intent(inout) :: status
 
-      no_fault = .not. any(props < LOWER .or. props > UPPER)
+      if (props(P_P_AW) > props(P_P_A)) then
+         status = fail(MUD_BAD_PROPS, ON_PROPS, P_P_AW, props(P_P_AW), 0.0_wp, props(P_P_A))
+      else if (props(P_N_W) > 0.0_wp .and. (props(P_N_W) < 1.0_wp .or. props(P_N_W) > props(P_N_X))) then
+         status = fail(MUD_BAD_PROPS, ON_PROPS, P_N_W, props(P_N_W), 1.0_wp, props(P_N_X))
+      else if (props(P_M_W) > 0.0_wp .and. props(P_M_W) < props(P_M_X)) then
+         status = fail(MUD_BAD_PROPS, ON_PROPS, P_M_W, props(P_M_W), props(P_M_X), UPPER(P_M_W))
+      end if
+   end subroutine check_wetting
+
+   !> The same verdict on finite PROPS in kPa, up to hysteresis, without a branch per entry: updates with good PROPS end
+   !> here.
+   pure logical function no_fault(props)
+      real(wp), intent(in) :: props(P_HYSTERESIS)
+
+      no_fault = .not. any(props < LOWER(:P_HYSTERESIS) .or. props > UPPER(:P_HYSTERESIS))
       if (no_fault) no_fault = all(abs(props(WHOLE_ENTRIES) - whole(props(WHOLE_ENTRIES))) < NEARLY_WHOLE) .and. &
                                props(P_S_MIN) < props(P_S_MAX) .and. &
                                (props(P_P_MIN) <= 0.0_wp .or. props(P_P_MIN) >= SMALLEST_MINIMUM)

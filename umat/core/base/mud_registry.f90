@@ -6,7 +6,7 @@ module mud_registry
    implicit none (type, external)
    private
    public :: property_t, variable_t, PROPERTIES, VARIABLES, NPROPS, NSTATV, NVARIABLES, STATE_LAYOUT
-   public :: UNIT_STRESS, UNIT_STRESS_TO_LAMBDA
+   public :: UNIT_STRESS, UNIT_STRESS_TO_LAMBDA, NPROPS_WITHOUT_HYSTERESIS
    public :: KIND_REAL, KIND_SWITCH, KIND_OPTION, KIND_COUNT
    public :: option_t, OPTIONS, property_meaning, property_index, statev_index, statev_name, statev_variable, COMPONENTS
    public :: RULE_CLASSIC, RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, RULE_AS_PUBLISHED
@@ -15,7 +15,7 @@ module mud_registry
              P_H_0, P_C_H, P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, &
              P_P_ATM, P_P_MIN, P_BONDING, P_FABRIC, P_ISOTROPIC, P_LODE, P_MEMORY_RULE, P_EPS_HAT, P_J_EXP, &
              P_X_0, P_X_REV, P_CAP_D, P_CAP_H, P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, &
-             P_TANGENT, P_RHO_E, P_SHEAR_ORDER
+             P_TANGENT, P_RHO_E, P_SHEAR_ORDER, P_HYSTERESIS, P_P_AW, P_N_W, P_M_W, P_B_D, P_B_W
    public :: S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION, S_STATE_PARAMETER, S_EPS_Q_P, S_EPS_Q_P_TOTAL, &
              S_X_BEFORE, S_X_RUNNING, S_TARGET, S_INTERRUPTED, S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, &
              S_MEMORY_BEFORE, S_DIRECTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, S_N_RATE, &
@@ -111,7 +111,10 @@ module mud_registry
    integer, parameter :: P_TANGENT = 44
    integer, parameter :: P_RHO_E = 45
    integer, parameter :: P_SHEAR_ORDER = 46
-   integer, parameter :: NPROPS = 46
+   integer, parameter :: P_HYSTERESIS = 47, P_P_AW = 48, P_N_W = 49, P_M_W = 50, P_B_D = 51, P_B_W = 52, NPROPS = 52
+   !> PROPS may end before hysteresis: it is off, and what follows has its default. Hosts with PROPS of that length, or
+   !> with no room for more (PLAXIS: 50), go on as they are.
+   integer, parameter :: NPROPS_WITHOUT_HYSTERESIS = P_HYSTERESIS - 1
 
    integer, parameter :: S_LAYOUT = 1
    integer, parameter :: S_VOID_RATIO = 2
@@ -241,7 +244,19 @@ module mud_registry
       property_t(P_RHO_E, 'rho_e', 'rho_e', '1', KIND_REAL, 0.0_wp, 0.01_wp, 2.0e-5_wp, 'ours', &
          'radius of the elastic domain, a norm of the strain tensor; 0: none, as in the paper'), &
       property_t(P_SHEAR_ORDER, 'shear_order', '-', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 0.0_wp, 'ours', &
-         'shear components of umat_: 0 as 12, 13, 23 (Abaqus, CalculiX), 1 as 12, 23, 13 (Kratos)')]
+         'shear components of umat_: 0 as 12, 13, 23 (Abaqus, CalculiX), 1 as 12, 23, 13 (Kratos)'), &
+      property_t(P_HYSTERESIS, 'hysteresis', '-', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 0.0_wp, 'ours', &
+         '1: S_w is a state between main drying (P_a, n_x, m_x) and main wetting (P_aw, n_w, m_w); 0: one curve'), &
+      property_t(P_P_AW, 'P_aw', 'P_aw', UNIT_STRESS, KIND_REAL, 0.0_wp, 1000000.0_wp, 0.0_wp, 'ours', &
+         'main wetting curve''s P_a, at most P_a; 0: half of P_a (Kool & Parker 1987); with hysteresis'), &
+      property_t(P_N_W, 'n_w', 'n_w', '1', KIND_REAL, 0.0_wp, 20.0_wp, 0.0_wp, 'ours', &
+         'main wetting curve''s inner exponent, 1 to n_x; 0: n_x; with hysteresis'), &
+      property_t(P_M_W, 'm_w', 'm_w', '1', KIND_REAL, 0.0_wp, 20.0_wp, 0.0_wp, 'ours', &
+         'main wetting curve''s outer exponent, at least m_x; 0: m_x; with hysteresis'), &
+      property_t(P_B_D, 'b_d', 'b_d', '1', KIND_REAL, 0.0_wp, 100.0_wp, 3.7_wp, 'ours', &
+         'how flat drying scanning curves begin (Zhou et al. 2012); with hysteresis'), &
+      property_t(P_B_W, 'b_w', 'b_w', '1', KIND_REAL, 1.001_wp, 100.0_wp, 2.9_wp, 'ours', &
+         'how flat wetting scanning curves begin; below 1 they would leave the main curves; with hysteresis')]
 
    type(variable_t), parameter :: VARIABLES(NVARIABLES) = [ &
       variable_t(S_LAYOUT, 1, 'layout', '-', '1', .false., 'ours', &
@@ -250,7 +265,8 @@ module mud_registry
          'void ratio; preset it (layout = 0) to override e_0', 'preset or e_0', &
          '1 + e falls with exp(-eps_v), exactly'), &
       variable_t(S_SATURATION, 1, 'saturation', 'S_w', '1', .false., 'paper', &
-         'degree of saturation, eq. (24)', 'eq. (24)', 'eq. (24) at the end of the increment'), &
+         'degree of saturation; with hysteresis a state: preset it (layout = 0) to start between the main curves', &
+         'preset or eq. (24)', 'eq. (24), with hysteresis along its branch, at the end'), &
       variable_t(S_SUCTION, 1, 'suction', 'p_c', 'kPa', .false., 'paper', &
          'suction at the end of the last increment', 'PREDEF(1) or preset', 'by DPRED(1)'), &
       variable_t(S_STATE_PARAMETER, 1, 'state_parameter', 'psi', '1', .false., 'paper', &
@@ -300,7 +316,7 @@ module mud_registry
       variable_t(S_N_RESET, 1, 'n_reset', '-', '1', .false., 'ours', &
          'total: resets of the memory', '0', 'adds up'), &
       variable_t(S_N_GUARD, 1, 'n_guard', '-', '1', .false., 'ours', &
-         'total: times the floor, a cap or the hysteresis acted, or the isotropic mechanism contradicted itself', &
+         'total: times the floor, a cap or x_rev acted, the isotropic mechanism contradicted itself, S_w was clipped', &
          '0', 'adds up'), &
       variable_t(S_N_NO_ROOT, 1, 'n_no_root', '-', '1', .false., 'ours', &
          'total: rates without an admissible direction, taken as elastic', '0', 'adds up'), &

@@ -56,7 +56,7 @@ module mud_state
    !> What an update did.
    type :: counters_t
       integer :: rate = 0, substep = 0, reject = 0, reset = 0, floor = 0, cap_d = 0, cap_h = 0, hysteresis = 0, &
-                 iso_kept = 0, no_root = 0, min_step = 0, open = 0, tensile = 0
+                 iso_kept = 0, no_root = 0, min_step = 0, open = 0, tensile = 0, clip = 0
    end type counters_t
 contains
    !> Reads a state from an initialised STATEV; the stress is set by the caller.
@@ -198,10 +198,12 @@ contains
       statev(S_N_TENSILE) = statev(S_N_TENSILE) + counters%tensile
    end subroutine pack_state
 
-   !> How often a guard acted: floor, caps, hysteresis, and the isotropic mechanism that contradicts itself.
+   !> How often a guard acted: floor, caps, hysteresis of the reversal test, the isotropic mechanism that contradicts
+   !> itself, and S_w clipped to its main curves.
    pure integer function guard_count(counters)
       type(counters_t), intent(in) :: counters
 
-      guard_count = counters%floor + counters%cap_d + counters%cap_h + counters%hysteresis + counters%iso_kept
+      guard_count = counters%floor + counters%cap_d + counters%cap_h + counters%hysteresis + counters%iso_kept &
+                    + counters%clip
    end function guard_count
 end module mud_state

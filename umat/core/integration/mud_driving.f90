@@ -1,14 +1,16 @@
 ! SPDX-License-Identifier: MIT
 !> Derivatives of what drives an increment - strain, volume, suction - along the directions of the consistent tangent,
-!> and how its parts share them: the part inside the elastic domain and the rest, the part without suction and the rest.
+!> and how its parts share them: the part inside the elastic domain and the rest, the part without suction and the rest,
+!> the drying part and the wetting part.
 module mud_driving
    use mud_kinds, only: wp
    use mud_elastic_domain, only: changes_of_exit, changes_of_turning, turning_at
-   use mud_increment, only: increment_t
+   use mud_increment, only: increment_t, void_ratio_at, suction_at
    use mud_tensor, only: DIRECTIONS => LANES
    implicit none (type, external)
    private
-   public :: driving_t, whole_increment, parts_at_exit, parts_without_suction, end_in_domain, DIRECTIONS, AT_REST
+   public :: driving_t, whole_increment, parts_at_exit, parts_without_suction, parts_at_turn, end_in_domain, &
+             DIRECTIONS, AT_REST
 
    !> Derivatives of what drives the increment, or one of its parts, along six engineering strains and the suction at
    !> the end of the increment, side by side. The eighth direction is idle: along it nothing changes.
@@ -63,6 +65,25 @@ contains
 
       call split(whole, share, -(driving%p_c0 + share*driving%d_pc)/whole%d_pc, driving, first, rest)
    end subroutine parts_without_suction
+
+   !> Both parts of an increment whose modified suction p_c e^Omega has its maximum at a share of it, where
+   !> h = dp_c - p_c Omega d_v (1 + e)/e vanishes.
+   pure subroutine parts_at_turn(whole, share, omega, driving, first, rest)
+      type(increment_t), intent(in) :: whole
+      real(wp), intent(in) :: share, omega
+      type(driving_t), intent(in) :: driving
+      type(driving_t), intent(out) :: first, rest
+      real(wp) :: e, p_c, per_volume, slope, change(DIRECTIONS)
+
+      e = void_ratio_at(whole, share)
+      p_c = suction_at(whole, share)
+      per_volume = (1.0_wp + e)/e
+      ! dh/dt where h = 0
+      slope = -omega*whole%d_v**2*p_c*per_volume*(omega*per_volume + 1.0_wp/e)
+      change = driving%d_pc - omega*per_volume*(whole%d_v*(driving%p_c0 + share*driving%d_pc) + p_c*driving%d_v) &
+               + omega*p_c*whole%d_v*(1.0_wp + e)/e**2*(driving%e0 - share*driving%d_v)
+      call split(whole, share, -change/slope, driving, first, rest)
+   end subroutine parts_at_turn
 
    !> Derivatives of share and 1 - share times the increment, the share changing by `change`.
    pure subroutine split(whole, share, change, driving, first, rest)

@@ -11,6 +11,7 @@ module mud_start
    use mud_rates, only: stress_ratio
    use mud_retention, only: saturation_t, saturation
    use mud_reversal, only: new_memory
+   use mud_scanning, only: branch_from, preset_saturation
    use mud_state, only: state_t, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_VOID_RATIO, ON_VOID_RATIO
    use mud_tensor, only: IDENTITY, trace, deviator, is_finite
@@ -22,11 +23,13 @@ module mud_start
 contains
    !> State of a point that starts at a stress, a void ratio and a suction without a past. A mean stress below p_min is
    !> lifted to p_min, its stress ratio limited to the bounding surface.
-   pure subroutine initial_state(par, sigma, e, p_c, state, status)
+   pure subroutine initial_state(par, sigma, e, p_c, state, status, preset)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: sigma(6), e, p_c   !< [kPa, -, kPa], compression positive
       type(state_t), intent(out) :: state
       type(mud_status_t), intent(out) :: status
+      real(wp), intent(in), optional :: preset   !< S_w, with hysteresis; none or 0: on the main drying curve [-].
+      type(params_t) :: branch
       real(wp) :: p, r(6)
 
       call check_stress(par, sigma, p_c, status)
@@ -47,10 +50,20 @@ contains
       state%eps_q_total = 0.0_wp
       state%last_step = 0.0_wp
       state%open = .false.
-      call lift_to_limit(par, is_bonded(par, p_c), state)
+      if (par%hysteresis) then
+         state%s_w = 0.0_wp
+         if (present(preset)) state%s_w = preset
+         call preset_saturation(par, p_c, e, state%s_w, status)
+         if (status%code /= MUD_OK) return
+         branch = branch_from(par, .true., p_c, e, state%s_w)
+         call lift_to_limit(branch, is_bonded(par, p_c), state)
+         call finish_state(branch, state)
+      else
+         call lift_to_limit(par, is_bonded(par, p_c), state)
+         call finish_state(par, state)
+      end if
       call stress_ratio(par, state%sigma, p, r)
       state%memory = new_memory(r)
-      call finish_state(par, state)
    end subroutine initial_state
 
    !> Mean stress below p_min, as at a free surface: p_min, with a stress ratio on or inside the bounding surface.

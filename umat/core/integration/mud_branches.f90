@@ -1,0 +1,186 @@
+! SPDX-License-Identifier: MIT
+!> Hydraulic hysteresis along an increment: where the modified suction x = p_c e^Omega turns, and the scanning curve on
+!> either side; docs/theory/material.md section 2.1.1. Void ratio and suction are known beforehand at every pseudo-time,
+!> so both are exact: nothing here depends on substeps.
+module mud_branches
+   use mud_kinds, only: wp
+   use mud_blocks, only: blocks_t
+   use mud_consistent, only: sensitivity_t
+   use mud_driving, only: driving_t, parts_at_turn
+   use mud_increment, only: increment_t, take_phase, void_ratio_at, suction_at
+   use mud_params, only: params_t
+   use mud_phases, only: integrate_phases
+   use mud_retention, only: saturation_t, saturation, scanning_weight
+   use mud_scanning, only: branch_from, clipped, main_curve
+   use mud_state, only: state_t, counters_t
+   use mud_status, only: mud_status_t, MUD_OK
+   use mud_trace, only: trace_t
+   use mud_trial, only: trial_t
+   implicit none (type, external)
+   private
+   public :: course_t, begin_course, integrate_course, end_course
+
+   integer, parameter :: HALVINGS = 60            !< Of an increment: more than a double can tell apart.
+   real(wp), parameter :: WHOLE_PHASE = 1.0e-9_wp !< A phase shorter than this share is left out [-].
+
+   !> The course of S_w through an increment.
+   type :: course_t
+      real(wp) :: turn        !< Share of the increment after which x no longer rises, 1 if it does not turn [-].
+      real(wp) :: s_w         !< At the start, between the main curves [-].
+      logical :: at_rest      !< x does not change.
+      real(wp) :: change_pc, change_v   !< Of S_w at the end with suction step and volume, through the turn [1/kPa, -].
+   end type course_t
+contains
+   !> Clips S_w of the state that an increment begins with and finds the first branch.
+   pure subroutine begin_course(par, inc, state, counters, course, branch)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(state_t), intent(inout) :: state
+      type(counters_t), intent(inout) :: counters
+      type(course_t), intent(out) :: course
+      type(params_t), intent(out) :: branch
+      logical :: dries
+
+      call clipped(par, inc%p_c0, inc%e0, state%s_w, counters%clip)
+      course%s_w = state%s_w
+      course%change_pc = 0.0_wp
+      course%change_v = 0.0_wp
+      course%at_rest = abs(inc%d_pc) <= 0.0_wp .and. abs(inc%d_v) <= 0.0_wp
+      course%turn = turn_of_suction(par%omega, inc)
+      dries = course%at_rest .or. rise(par%omega, inc, 0.0_wp) > 0.0_wp
+      branch = branch_from(par, dries, inc%p_c0, inc%e0, state%s_w)
+   end subroutine begin_course
+
+   !> e^-Omega dx/dt [kPa], t the share of the increment.
+   pure real(wp) function rise(omega, inc, time)
+      real(wp), intent(in) :: omega, time
+      type(increment_t), intent(in) :: inc
+      real(wp) :: e
+
+      e = void_ratio_at(inc, time)
+      rise = inc%d_pc - max(suction_at(inc, time), 0.0_wp)*omega*inc%d_v*(1.0_wp + e)/e
+   end function rise
+
+   !> Where x turns: suction is linear, and where x is stationary it has a maximum (its second derivative is negative
+   !> there), so there is one turn at most, from drying to wetting.
+   pure real(wp) function turn_of_suction(omega, inc) result(turn)
+      real(wp), intent(in) :: omega
+      type(increment_t), intent(in) :: inc
+      real(wp) :: before, middle
+      integer :: i
+
+      turn = 1.0_wp
+      if (.not. (rise(omega, inc, 0.0_wp) > 0.0_wp .and. rise(omega, inc, 1.0_wp) < 0.0_wp)) return
+      before = 0.0_wp
+      do i = 1, HALVINGS
+         middle = 0.5_wp*(before + turn)
+         if (rise(omega, inc, middle) > 0.0_wp) then
+            before = middle
+         else
+            turn = middle
+         end if
+      end do
+      if (1.0_wp - turn < WHOLE_PHASE) turn = 1.0_wp
+   end function turn_of_suction
+
+   !> integrate_phases with the branches. On return branch and inc are those that ended the increment.
+   pure subroutine integrate_course(par, course, inc, size, consistent, branch, state, trial, sens, counters, reached, &
+                                    status, record)
+      type(params_t), intent(in) :: par
+      type(course_t), intent(inout) :: course
+      type(increment_t), intent(inout) :: inc
+      real(wp), intent(in) :: size
+      logical, intent(in) :: consistent
+      type(params_t), intent(inout) :: branch
+      type(state_t), intent(inout) :: state
+      type(trial_t), intent(inout) :: trial
+      type(sensitivity_t), intent(inout) :: sens
+      type(counters_t), intent(inout) :: counters
+      real(wp), intent(out) :: reached
+      type(mud_status_t), intent(out) :: status
+      type(trace_t), intent(inout), optional :: record
+      type(increment_t) :: whole
+      type(driving_t) :: first, rest
+      type(saturation_t) :: at_turn
+      real(wp) :: share
+
+      share = course%turn
+      if (share >= 1.0_wp) then
+         call integrate_phases(branch, inc, size, consistent, state, trial, sens, counters, reached, status, record)
+         return
+      end if
+      whole = inc
+      if (consistent) then
+         call parts_at_turn(whole, share, par%omega, sens%driving, first, rest)
+         sens%driving = first
+      end if
+      call take_phase(whole, 0.0_wp, share, inc)
+      call integrate_phases(branch, inc, share*size, consistent, state, trial, sens, counters, reached, status, record)
+      reached = share*reached
+      if (status%code /= MUD_OK) return
+      if (consistent) then
+         rest%from_centre = sens%driving%from_centre
+         sens%driving = rest
+      end if
+      call take_phase(whole, share, 1.0_wp, inc)
+      at_turn = saturation(branch, inc%p_c0, inc%e0)
+      branch = branch_from(par, .false., inc%p_c0, inc%e0, at_turn%s_w)
+      call change_through_turn(par, share, inc, at_turn, branch, course)
+      call integrate_phases(branch, inc, (1.0_wp - share)*size, consistent, state, trial, sens, counters, reached, &
+                            status, record)
+      reached = share + (1.0_wp - share)*reached
+   end subroutine integrate_course
+
+   !> How S_w at the end changes with the suction where x turns: y**q = x**q + offset**q holds on the wetting branch
+   !> before and after, and S_w(y) at the turn changes along the drying branch.
+   pure subroutine change_through_turn(par, share, inc, at_turn, branch, course)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: share
+      type(increment_t), intent(in) :: inc           !< The phase behind the turn.
+      type(saturation_t), intent(in) :: at_turn      !< On the drying branch.
+      type(params_t), intent(in) :: branch           !< The wetting branch.
+      type(course_t), intent(inout) :: course
+      type(saturation_t) :: start, finish
+      real(wp) :: p_c, e, weights(2), log_ratio, slope
+
+      start = saturation(branch, inc%p_c0, inc%e0)
+      p_c = suction_at(inc, 1.0_wp)
+      e = void_ratio_at(inc, 1.0_wp)
+      finish = saturation(branch, p_c, e)
+      if (abs(start%ds_dpc) <= 0.0_wp .or. abs(finish%ds_dpc) <= 0.0_wp) return
+      ! y**q = x**q/weight, and y**q at the end changes as offset**q and that at the turn do beside x
+      weights = [scanning_weight(branch, inc%p_c0, inc%e0), scanning_weight(branch, p_c, e)]
+      log_ratio = log(weights(2)/weights(1)) &
+                  + branch%scanning%q*(log(inc%p_c0/p_c) + par%omega*log(inc%e0/e))
+      slope = finish%ds_dpc/weights(2)*p_c/(start%ds_dpc/weights(1)*inc%p_c0)*exp(log_ratio)
+      slope = slope*(at_turn%ds_dpc - start%ds_dpc)*share
+      course%change_pc = slope
+      course%change_v = -slope*par%omega*inc%p_c0*(1.0_wp + inc%e0)/inc%e0
+   end subroutine change_through_turn
+
+   !> S_w at the end, between the main curves, with the slopes of what it follows there.
+   pure subroutine end_course(par, course, state, counters, blocks)
+      type(params_t), intent(in) :: par
+      type(course_t), intent(in) :: course
+      type(state_t), intent(inout) :: state      !< e, p_c and, along the branch, s_w are those of the end.
+      type(counters_t), intent(inout) :: counters
+      type(blocks_t), intent(inout) :: blocks
+      type(saturation_t) :: curve
+      real(wp) :: s_w
+      integer :: count
+
+      if (course%at_rest) state%s_w = course%s_w
+      s_w = state%s_w
+      count = 0
+      call clipped(par, state%p_c, state%e, state%s_w, count)
+      if (count == 0) then
+         blocks%dsw_dpc = blocks%dsw_dpc + course%change_pc
+         blocks%dsw_dev = blocks%dsw_dev + course%change_v
+         return
+      end if
+      counters%clip = counters%clip + count
+      curve = saturation(main_curve(par, state%s_w < s_w), state%p_c, state%e)
+      blocks%dsw_dpc = curve%ds_dpc
+      blocks%dsw_dev = -(1.0_wp + state%e)*curve%ds_de
+   end subroutine end_course
+end module mud_branches
