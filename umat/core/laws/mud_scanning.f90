@@ -113,7 +113,8 @@ contains
       s_w = inside
    end subroutine clipped
 
-   !> S_w of a point that begins at a preset one of STATEV, which must lie between the main curves; 0: on the main drying curve.
+   !> S_w of a point that begins at a preset one of STATEV, which must lie between the main curves; 0: on the main
+   !> drying curve.
    pure subroutine preset_saturation(par, p_c, e, s_w, status)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: p_c, e
