@@ -3,6 +3,7 @@
 import pathlib
 
 import honest
+import numpy as np
 import study
 
 from tools import tables
@@ -12,8 +13,8 @@ PAGE = Page(
     claim="the error that a run with controlled steps estimates is its true one within a factor of five, and what was "
           "asked for is met within two; what an error costs in the indentation",
     kind=("study", "exact"),
-    input="sixteen scenes and four paths of the driver (`honest.py`); the indentation on a coarse mesh at suctions of "
-          "0, 30 and 1000 kPa, one contributor at a time (`study.py`)",
+    input="sixteen scenes and four paths of the driver (`honest.py`); the indentation at suctions of 0, 30 and 1000 "
+          "kPa, one contributor at a time on a coarse mesh, a user's choices on that of the benchmark (`study.py`)",
     reference="a closed form (vibration), else given fine steps on the same mesh",
     seconds=10, quick=6, pictures=("price.png",))
 
@@ -22,6 +23,7 @@ BAND = Tolerance("true over estimated error: what the manual promises", absolute
 OTHER = Tolerance("estimated over true error, likewise", absolute=1/LEAST)
 ASKED = Tolerance("true error over the accuracy: what the manual promises", absolute=2.0)
 MEASURED_HERE = ("vibration", "Mandel")
+MESHES = {"full": "mesh of the benchmark", "coarse": "coarse mesh"}
 SMALL_CHANGE = 0.05   # of the largest change of the field among the named points
 
 
@@ -77,48 +79,52 @@ def honest_text():
 
 def worst(row):
     """Largest of the errors of peak and history."""
-    return max(float(row["peak"]), float(row["history"]))
+    return max(float(row["peak"]), float(row["history"] or 0))
 
 
-def price_rows(suction):
-    return [r for r in of_table("price.csv") if r["suction"] == str(suction) and r["contributor"] != "reference"
-            and r["peak"]]
+def price_rows(suction, mesh):
+    """Rows of a table with errors; the first reference is that of the errors."""
+    return [r for r in of_table("price.csv") if (r["suction"], r["mesh"]) == (str(suction), mesh) and r["peak"]
+            and (r["contributor"], r["setting"]) != ("reference", "rho_inf 0")]
 
 
 def share(row):
-    paper = next(r for r in price_rows(row["suction"]) if r["contributor"] == "paper")
-    return float(row["seconds"])/float(paper["seconds"])
+    """Of the time of the paper's settings, where these were run."""
+    paper = [r for r in price_rows(row["suction"], row["mesh"]) if r["contributor"] == "paper"]
+    return f"{float(row['seconds'])/float(paper[0]['seconds']):.2f}" if paper else ""
+
+
+def parts_of_price():
+    """Suction and mesh of every part of the table."""
+    return list(dict.fromkeys((int(r["suction"]), r["mesh"]) for r in of_table("price.csv")))
 
 
 def price_text():
     parts = []
-    for suction in study.SUCTIONS:
-        reference = [r for r in of_table("price.csv")
-                     if r["suction"] == str(suction) and r["contributor"] == "reference"]
-        if not reference:
-            continue
-        first = reference[0]
-        parts.append(f"Suction {suction} kPa; reference: peak {first['peak']} mm at {first['peak_time']} ms, p_w "
-                     f"{first['p_w']} kPa ({first['seconds']} s)\n\n" + tables.markdown(
+    for suction, mesh in parts_of_price():
+        first = next(r for r in of_table("price.csv") if (r["suction"], r["mesh"]) == (str(suction), mesh)
+                     and r["contributor"] == "reference")
+        parts.append(f"Suction {suction} kPa, {MESHES[mesh]}; reference: peak {first['peak']} mm at "
+                     f"{first['peak_time']} ms, p_w {first['p_w']} kPa ({first['seconds']} s)\n\n" + tables.markdown(
                          ("contributor", "setting", "steps", "iterations", "rates [1e6]", "factorisations", "CPU [s]",
                           "of the paper's", "error of the peak", "of its time", "of p_w", "of the history"),
                          [(r["contributor"], r["setting"], r["steps"], r["iterations"], f"{float(r['rates'])/1e6:.2f}",
-                           r["factorisations"], r["seconds"], f"{share(r):.2f}", r["peak"], r["peak_time"], r["p_w"],
-                           r["history"]) for r in price_rows(suction)]))
+                           r["factorisations"], r["seconds"], share(r), r["peak"], r["peak_time"], r["p_w"],
+                           r["history"]) for r in price_rows(suction, mesh)]))
     return "\n".join(parts)
 
 
 def presets_text():
     names = {"accuracy 1e-1": "fast", "accuracy 1e-2": "balanced (the default)", "accuracy 1e-3": "accurate"}
     lines = []
-    for suction in study.SUCTIONS:
-        for r in price_rows(suction):
+    for suction, mesh in parts_of_price():
+        for r in price_rows(suction, mesh):
             if r["contributor"] == "accuracy":
                 key = r["setting"].replace("accuracy ", "`accuracy = ") + "`"
-                lines.append((names[r["setting"]], key, suction, r["steps"], r["peak"], r["history"], r["seconds"],
-                              f"{share(r):.2f}"))
-    return tables.markdown(("preset", "key", "suction [kPa]", "steps", "error of the peak", "of the history", "CPU [s]",
-                            "of the paper's settings"), lines)
+                lines.append((names[r["setting"]], key, suction, mesh, r["steps"], r["peak"], r["p_w"], r["history"],
+                              r["seconds"], share(r)))
+    return tables.markdown(("preset", "key", "suction [kPa]", "mesh", "steps", "error of the peak", "of p_w",
+                            "of the history", "CPU [s]", "of the paper's settings"), lines)
 
 
 def texts(bench):
@@ -129,22 +135,23 @@ def draw(bench, results, plt):
     from tools.pictures import COLOURS
     shown = {"step": ("o-", 0, "step alone"), "together": ("s-", 1, "step and stress tolerance"),
              "accuracy": ("D-", 2, "accuracy asked for"), "paper": ("*", 3, "the paper's settings"),
-             "stress": ("v", 4, "stress tolerance alone"), "quadrature": ("P", 3, "3 points"),
-             "mesh": ("X", 4, "mesh of half the size")}
-    there = [c for c in study.SUCTIONS if price_rows(c)]
+             "stress": ("v", 4, "stress tolerance alone"), "quadrature": ("P", 3, "3 points")}
+    there = parts_of_price()
     figure, axes = plt.subplots(1, len(there), figsize=(3.4*len(there) + 1, 3.2), sharey=True)
-    for axis, suction in zip(axes if len(there) > 1 else [axes], there):
+    for axis, (suction, mesh) in zip(axes if len(there) > 1 else [axes], there):
         for kind, (style, colour, label) in shown.items():
-            points = sorted((float(r["seconds"]), 100*worst(r)) for r in price_rows(suction)
+            points = sorted((float(r["seconds"]), 100*worst(r)) for r in price_rows(suction, mesh)
                             if r["contributor"] == kind and (kind == "paper" or "rho_inf 0.8" not in r["setting"]))
             if points:
                 axis.loglog(*zip(*points), style, color=COLOURS[colour], label=label,
                             markersize=9 if style == "*" else 5)
-        axis.set_title(f"suction {suction} kPa")
+        axis.set_title(f"{suction} kPa, {MESHES[mesh]}", fontsize=9)
         axis.set_xlabel("CPU time [s]")
-        axis.set_xticks([2, 4, 8, 16], ["2", "4", "8", "16"], minor=False)
+        axis.set_xticks([1, 2, 4, 8, 16, 32], ["1", "2", "4", "8", "16", "32"], minor=False)
         axis.set_xticks([], minor=True)
     first = axes[0] if len(there) > 1 else axes
     first.set_ylabel("error of peak and history [%]")
-    first.legend(fontsize=7)
+    # Of the part with most kinds of points.
+    most = max(np.atleast_1d(axes), key=lambda a: len(a.get_legend_handles_labels()[0]))
+    first.legend(*most.get_legend_handles_labels(), fontsize=6.5)
     bench.save(figure, "price.png")
