@@ -20,6 +20,20 @@ from point_walk import ROOT, Walker  # noqa: E402
 from tools import results  # noqa: E402
 
 
+class Remembering(Walker):
+    """Runs a path once: the settings of one rule share the run with the tight tolerance."""
+
+    def __init__(self, build):
+        super().__init__(build, jobs=1)
+        self.known = {}
+
+    def start(self, path):
+        text = "\n".join(path.lines)
+        if text not in self.known:
+            self.known[text] = super().start(path)
+        return self.known[text]
+
+
 def commit():
     return subprocess.run(["git", "describe", "--always", "--dirty"], cwd=HERE, capture_output=True, text=True).stdout.strip() or "unknown"
 
@@ -49,7 +63,7 @@ def main(names):
 
     folder = results.folder(__file__)
     if "point" in parts:
-        walker = Walker(os.environ.get("MUD_BUILD_DIR") or ROOT / "build/release")
+        walker = Remembering(os.environ.get("MUD_BUILD_DIR") or ROOT / "build/release")
         work_off(folder / "results.csv", [f"made by study.py at commit {commit()}; per cent but for rates and cuts"], report.NAMES,
                  [(case, setting) for case in report.CASES for setting in SETTINGS if asked(case, setting)],
                  lambda case, setting: evaluate(walker, case, setting))
