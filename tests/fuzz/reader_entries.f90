@@ -49,7 +49,7 @@ contains
       type(case_t) :: test
       type(fault_t) :: fault
 
-      call read_case(text_of(path, n), '', test, fault)
+      call read_case(text_of(path, n), '', '', test, fault)
       fuzz_case = outcome(fault)
    end function fuzz_case
 

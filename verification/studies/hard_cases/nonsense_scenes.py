@@ -15,6 +15,7 @@ sys.path[:0] = [str(HERE.parents[1])]
 from tools import results, tables  # noqa: E402
 
 BLOCK = 1000
+RUNNING = 1   # second of the processor for a scene that is run: longer is a run too
 KINDS = ("refused", "read", "ran", "ended early", "still running")
 NAMES = ("first", "scenes", "failed", *KINDS, "commit")
 SUITE = HERE.parents[2] / "tests/host/test_host_nonsense.py"
@@ -22,7 +23,8 @@ SUITE = HERE.parents[2] / "tests/host/test_host_nonsense.py"
 
 def block(first):
     done = subprocess.run([sys.executable, SUITE], capture_output=True, text=True,
-                          env={**os.environ, "MUD_PRESET": "release", "MUD_NONSENSE": str(BLOCK), "MUD_NONSENSE_FIRST": str(first)})
+                          env={**os.environ, "MUD_PRESET": "release", "MUD_NONSENSE": str(BLOCK), "MUD_NONSENSE_FIRST": str(first),
+                               "MUD_NONSENSE_SECONDS": str(RUNNING)})
     counts = {kind: int(number) for number, kind in re.findall(r"(\d+) (" + "|".join(KINDS) + ")", done.stdout.split("answers: ")[-1])}
     failed = int(re.search(r"(\d+) failed\s*$", done.stdout)[1])
     if failed:

@@ -6,6 +6,7 @@ import math
 import host_runs
 import numpy as np
 from catalogue import SETTINGS
+from point_views import VIEWS
 
 WANTED = 300    # states of a path that are drawn
 SHOWN = (SETTINGS[0], SETTINGS[2])   # defaults, paper's remedy
@@ -32,16 +33,9 @@ def with_rows(path):
     return dense
 
 
-def shear(row):
-    """Deviator stress, with the sign of sigma_1 - sigma_3."""
-    s, p = row["stress"], row.p
-    norm = math.sqrt(1.5 * (sum((x - p) ** 2 for x in s[:3]) + 2 * sum(x * x for x in s[3:])))
-    return math.copysign(norm, (s[0] - s[2]) or s[3] or 1.0)
-
-
-def sheet(plt, count, columns=6, size=1.75):
+def sheet(plt, count, columns, size, high=1.0):
     rows = -(-count // columns)
-    figure, axes = plt.subplots(rows, columns, figsize=(columns * size, rows * size))
+    figure, axes = plt.subplots(rows, columns, figsize=(columns * size, rows * size * high))
     for axis in axes.flat[count:]:
         axis.axis("off")
     for axis in axes.flat:
@@ -50,15 +44,31 @@ def sheet(plt, count, columns=6, size=1.75):
     return figure, axes.flat
 
 
+def draw_view(axis, view, runs, colour):
+    for x, y in view.curves(runs):
+        dots = view.marks or len(y) < 2
+        axis.plot(x, y, "." if dots else "-", ms=3, lw=0.6, color=colour)
+
+
 def point_sheet(cases, walker, plt):
-    """Stress paths (p', q) [kPa] with the defaults and, in the other colour, the paper's remedy."""
-    figure, axes = sheet(plt, len(cases))
+    """What each case claims, with the defaults and, in the other colour, the paper's remedy; dashed the bound of the criterion."""
+    figure, axes = sheet(plt, len(cases), columns=5, size=2.3, high=0.92)
     for axis, case in zip(axes, cases):
+        view = VIEWS[case.name]
         for colour, setting in zip(("#c8553d", "#0b3c6f"), reversed(SHOWN)):
-            for path in list(case.paths(setting).values())[:3]:
-                rows = [row for row in walker.run(with_rows(path)) if all(map(math.isfinite, row["stress"]))]
-                axis.plot([row.p for row in rows], [shear(row) for row in rows], lw=0.6, color=colour)
-        axis.set_title(case.name, fontsize=6, pad=2)
+            paths = {label: with_rows(path) for label, path in case.paths(setting).items()}
+            runs = {label: [row for row in rows if all(map(math.isfinite, row["stress"]))] for label, rows in walker.run_all(paths).items()}
+            draw_view(axis, view, runs, colour)
+        for x, y in view.lines(runs) if view.lines else ():
+            axis.plot(x, y, ":", lw=0.9, color="black")
+        for set_scale, scale in ((axis.set_yscale, view.scale), (axis.set_xscale, view.scale_across)):
+            set_scale(scale, **({"linthresh": 0.01 if set_scale == axis.set_yscale else 1.0} if scale == "symlog" else {}))
+        if view.bound is not None:
+            axis.axhline(view.bound, ls="--", lw=0.7, color="0.35")
+        axis.set_xlabel(view.across, fontsize=5.5, labelpad=1)
+        axis.set_ylabel(view.up, fontsize=5.5, labelpad=1)
+        axis.set_title(view.claim, fontsize=6.5, pad=3)
+    figure.tight_layout(pad=0.5, w_pad=0.4, h_pad=0.6)
     return figure
 
 
