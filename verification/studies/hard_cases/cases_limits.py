@@ -28,7 +28,7 @@ def tension(setting):
     found = {}
     for e in (DENSE, LOOSE):
         path = setting.start(e, 20.0)
-        rows_along(path, 100, times(-3e-3, ISOTROPIC)).go(100, times(2e-2, ACROSS)).row()
+        rows_along(path, 100, times(-1e-2, ISOTROPIC)).go(100, times(2e-2, ACROSS)).row()
         found[str(e)] = rows_along(path, 200, times(2e-2, ISOTROPIC))
     return found
 
@@ -37,7 +37,7 @@ def tension_cycles(setting):
     """30 cycles that reach the cut-off and leave it."""
     path = setting.start(MIDDLE, 20.0)
     for _ in range(30):
-        path.go(50, times(-4e-3, ISOTROPIC)).row().go(20, times(1e-3, ACROSS)).go(50, times(4e-3, ISOTROPIC)).row()
+        path.go(50, times(-8e-3, ISOTROPIC)).row().go(20, times(1e-3, ACROSS)).go(50, times(8e-3, ISOTROPIC)).row()
     return {"cycles": path}
 
 
@@ -60,7 +60,7 @@ def apex(setting):
 
 
 def tension_with_suction(setting):
-    path = setting.start(MIDDLE, 50.0, suction=100.0).go(100, times(-6e-3, ISOTROPIC)).row()
+    path = setting.start(MIDDLE, 50.0, suction=100.0).go(100, times(-1.2e-2, ISOTROPIC)).row()
     return {"bonded": rows_along(path.go(40, (0,) * 6, -100.0).row(), 200, times(2e-2, ISOTROPIC))}
 
 

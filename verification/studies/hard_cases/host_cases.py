@@ -61,7 +61,7 @@ def off_terzaghi(runs):
 
 def off_the_limit(runs):
     """Largest difference of settlement and of largest pore pressure between two permeabilities that are as good as none [%]."""
-    pairs = zip(*((settlement(run), float(run.histories["centre.p_w"].max())) for run in runs.values()))
+    pairs = zip(*((settlement(run), float(np.max(np.abs(run.histories["centre.p_w"])))) for run in runs.values()))
     return max(100 * abs(a / b - 1) for a, b in pairs)
 
 
@@ -96,7 +96,7 @@ def stresses(runs):
 
 
 def footing_case(name, hard, **soil):
-    return HostCase(name, FAILURE, hard, "force at 5 cm by 10 steps against 20 [%]", 5,
+    return HostCase(name, FAILURE, hard, "force at a settlement of 25 cm by 10 steps against 20 [%]", 5,
                     lambda setting: {"coarse": footing(setting, steps=10, **soil), "fine": footing(setting, steps=20, **soil)}, half_steps, forces)
 
 
@@ -104,23 +104,23 @@ def undrained(pressures, hard, **more):
     """Saturated soil under the plate with a permeability that is as good as none."""
     return HostCase(f"impact on undrained soil, {pressures} pressures", WATER, hard,
                     "settlement and pore pressure under the plate by k 1e-14 against 1e-13 m2 [%]", 2,
-                    lambda setting: {f"{k:.0e}": impact(setting, suction=0, k=k, pressures=pressures) for k in (1e-13, 1e-14)}, off_the_limit, settlements,
+                    lambda setting: {f"{k:.0e}": impact(setting, suction=0, k=k, pressures=pressures, duration=0.021) for k in (1e-13, 1e-14)}, off_the_limit, settlements,
                     **more)
 
 
 CASES = (
     HostCase("chatter", CONTACT, "a light plate on a stiff penalty opens and closes every few steps; a scheme that is not dissipative there makes energy", CREATED, 1,
-             lambda s: {str(dt): falling(s, penalty=1e8, dt=dt) for dt in (3e-6, 1e-5, 3e-5)}, created, settlements, BOTH),
+             lambda s: {str(dt): falling(s, penalty=1e8, dt=dt, duration=0.003) for dt in (3e-6, 1e-5, 3e-5)}, created, settlements, BOTH),
     HostCase("lift-off and re-impact", CONTACT, "the plate is thrown off by unsaturated soil, flies, and falls on it again and again", CREATED, 1,
-             lambda s: {"": impact(s, duration=0.1, pulse=0.01, force=3)}, created, last_settlement),
+             lambda s: {"": impact(s, duration=0.06, pulse=0.01, force=3)}, created, last_settlement),
     undrained("quadratic", "saturated, sealed, no volume may change: every element is a constraint",
               limit="as for the column: pore pressures oscillate from node to node, and the run warns of it; `pressures = 'linear'` is the measure"),
     undrained("linear", "as before, with pressures an order below displacements"),
     HostCase("impact at suction 100 kPa", CONTACT, "the paper's analysis breaks down here without its remedy: reloading is far too stiff", CREATED, 1,
-             lambda s: {"": impact(s, suction=100)}, created, settlements),
+             lambda s: {"": impact(s, suction=100, duration=0.03)}, created, settlements),
     HostCase("steps of 3e-6 to 3e-4 s", CONTACT, "a tenth to ten times the paper's step",
-             "settlement after 6 ms by up to ten times the paper's step against a tenth of it [%]", 5,
-             lambda s: {str(x): impact(s, dt=3e-5 * x, duration=0.006) for x in STEPS}, spread(("1", "10"), "0.1"), settlements),
+             "settlement after 1.5 ms by up to ten times the paper's step against a tenth of it [%]", 5,
+             lambda s: {str(x): impact(s, dt=3e-5 * x, duration=0.0015) for x in STEPS}, spread(("1", "10"), "0.1"), settlements),
     HostCase("steps of 3e-3 s", CONTACT, "a hundred times the paper's step: five steps to the peak of the load", CREATED, 1,
              lambda s: {"": impact(s, dt=3e-3)}, created, settlements, limit="the balance of energy of the first step is off by more than a hundredth of "
              "the little work done by then; the run says so and stops"),
@@ -135,7 +135,8 @@ CASES = (
              PRESSURE, 10, lambda s: {f"{k:.0e}": column(s, k, "linear") for k in PERMEABILITIES}, off_terzaghi, base_pressures, DEFAULT),
     footing_case("footing on loose sand", "the tangent of a softening or perfectly plastic soil is nearly singular", void_ratio=0.907),
     footing_case("footing on dense sand", "softening and dilation under the edge", void_ratio=0.75),
-    footing_case("footing on undrained sand", "no volume change, and loose sand loses its strength", void_ratio=0.907, undrained=True),
+    footing_case("footing on undrained sand", "no volume change, and loose sand loses its strength", void_ratio=0.907, undrained=True,
+                 pressures="linear"),
     footing_case("footing at suction 100 kPa", "a stiff, strong crust over a soft edge", void_ratio=0.907, suction=100),
     HostCase("slivers, distorted and graded meshes", MESH, "angles of 0.1 degrees, corners moved by 0.4 of an element, sizes over five decades",
              "stress anywhere against that of a regular mesh [%]", 0.01,

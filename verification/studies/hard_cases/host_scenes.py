@@ -53,11 +53,11 @@ def column(setting, k, pressures, dt=1e-3, steps=1):
 FOOTING_MESH = "&mesh r=0,0.5,4 r_cells=2,3 r_ratio=0.7,1.9 z=-4,-0.6,0 z_cells=2,2 z_ratio=0.4,0.7 /\n"
 
 
-def footing(setting, void_ratio, steps, settlement=0.05, suction=0, undrained=False):
+def footing(setting, void_ratio, steps, settlement=0.25, suction=0, undrained=False, pressures='quadratic'):
     """A rough circular footing of 1 m pushed into soil; 40 elements."""
     fields = "u-p_w" if undrained else "u-p_w-p_c" if suction else "u"
     water = suction or undrained
-    return (f"&scene name='footing' fields='{fields}' gravity=9.81 initial_flow='subtract' /\n{FOOTING_MESH}{sand(setting)}"
+    return (f"&scene name='footing' fields='{fields}' pressures='{pressures}' gravity=9.81 initial_flow='subtract' /\n{FOOTING_MESH}{sand(setting)}"
             + ("&permeability name='k' intrinsic=1e-12 /\n" if water else "")
             + f"&region material='sand' void_ratio={void_ratio} {'permeability=' + repr('k') if water else ''} "
             + ("retention='material'" if suction else "") + " /\n"

@@ -9,13 +9,14 @@ from catalogue import SETTINGS
 from point_views import VIEWS
 
 WANTED = 300    # states of a path that are drawn
+FINE = 3000     # of a path that others are held against
 SHOWN = (SETTINGS[0], SETTINGS[2])   # defaults, paper's remedy
 
 
-def with_rows(path):
-    """The same path with a row after every few increments, so that its way can be drawn."""
+def with_rows(path, wanted=WANTED):
+    """The same path with a row after every few increments, so that its way can be drawn; its label is the number of steps so far."""
     steps = [int(line.split()[1]) for line in path.lines if line.startswith("go ")]
-    every, dense, count = max(1, len(steps) // WANTED), copy.copy(path), 0
+    every, dense, count = max(2, len(steps) // wanted), copy.copy(path), 0
     dense.lines = []
     for line in path.lines:
         if not line.startswith("go "):
@@ -23,14 +24,22 @@ def with_rows(path):
             continue
         words = line.split()
         n, change = int(words[1]), [float(word) for word in words[2:]]
-        pieces = max(1, min(n, round(WANTED * n / sum(steps))))
+        pieces = max(1, min(n, round(wanted * n / sum(steps))))
         cuts = [round(n * i / pieces) for i in range(pieces + 1)]
+        count += 1
         for a, b in zip(cuts, cuts[1:]):
             dense.lines.append(f"go {b - a} " + " ".join(repr(x * (b - a) / n) for x in change))
-            count += 1
-            if pieces > 1 or count % every == 0:
-                dense.lines.append("row way")
+            if pieces > 1 or count % every < 2:   # two in a row: both ends of a cycle
+                dense.lines.append(f"row {count}")
     return dense
+
+
+def refined(path):
+    """A straight path in increments so small that what lies between two rows is a chord."""
+    steps, fine = [int(line.split()[1]) for line in path.lines if line.startswith("go ")], copy.copy(path)
+    times = max(1, round(FINE / sum(steps)))
+    fine.lines = [f"go {int(line.split()[1]) * times} " + " ".join(line.split()[2:]) if line.startswith("go ") else line for line in path.lines]
+    return with_rows(fine, FINE)
 
 
 def sheet(plt, count, columns, size, high=1.0):
@@ -47,7 +56,7 @@ def sheet(plt, count, columns, size, high=1.0):
 def draw_view(axis, view, runs, colour):
     for x, y in view.curves(runs):
         dots = view.marks or len(y) < 2
-        axis.plot(x, y, "." if dots else "-", ms=3, lw=0.6, color=colour)
+        axis.plot(x, y, "." if dots else "-", ms=4, lw=0.6, color=colour)
 
 
 def point_sheet(cases, walker, plt):
@@ -56,18 +65,23 @@ def point_sheet(cases, walker, plt):
     for axis, case in zip(axes, cases):
         view = VIEWS[case.name]
         for colour, setting in zip(("#c8553d", "#0b3c6f"), reversed(SHOWN)):
-            paths = {label: with_rows(path) for label, path in case.paths(setting).items()}
+            paths = {label: refined(path) if view.held_against and label.startswith("clean") else with_rows(path) for label, path in case.paths(setting).items()}
             runs = {label: [row for row in rows if all(map(math.isfinite, row["stress"]))] for label, rows in walker.run_all(paths).items()}
             draw_view(axis, view, runs, colour)
         for x, y in view.lines(runs) if view.lines else ():
             axis.plot(x, y, ":", lw=0.9, color="black")
         for set_scale, scale in ((axis.set_yscale, view.scale), (axis.set_xscale, view.scale_across)):
             set_scale(scale, **({"linthresh": 0.01 if set_scale == axis.set_yscale else 1.0} if scale == "symlog" else {}))
+        for ticks in (axis.xaxis, axis.yaxis):
+            ticks.set_minor_formatter(plt.NullFormatter())
         if view.bound is not None:
             axis.axhline(view.bound, ls="--", lw=0.7, color="0.35")
         axis.set_xlabel(view.across, fontsize=5.5, labelpad=1)
         axis.set_ylabel(view.up, fontsize=5.5, labelpad=1)
         axis.set_title(view.claim, fontsize=6.5, pad=3)
+    for text, colour, height in (("defaults", "#0b3c6f", 0.8), ("paper's remedy, no elastic domain", "#c8553d", 0.65), ("dashed: bound of the criterion", "black", 0.5),
+                                 ("dotted: closed form", "black", 0.35)):
+        axes[len(cases)].text(0.0, height, text, color=colour, fontsize=7, transform=axes[len(cases)].transAxes)
     figure.tight_layout(pad=0.5, w_pad=0.4, h_pad=0.6)
     return figure
 

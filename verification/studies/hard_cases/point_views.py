@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass
 from typing import Callable
 
+import numpy as np
 from bounds import TRAIL, beyond
 from catalogue import P_MIN
 from closed_forms import line_pressure, steady_pressure
@@ -25,6 +26,7 @@ class View:
     scale: str = "linear"       # of the vertical axis: linear, log, symlog
     scale_across: str = "linear"
     marks: bool = False         # single states instead of a line
+    held_against: bool = False  # the path without events, which has to be drawn finely
     lines: Callable = None      # further curves that the case is held against, dotted
 
 
@@ -77,44 +79,48 @@ def pairs(runs):
     return [(runs[label], runs["turned" + label[5:]]) for label in runs if label.startswith("clean")]
 
 
-def at_strain(rows, wanted):
-    """q of a straight path where its axial strain is the wanted one; None outside of what it covers."""
-    for a, b in zip(rows, rows[1:]):
-        if a["strain"][0] <= wanted <= b["strain"][0] and b["strain"][0] > a["strain"][0]:
-            part = (wanted - a["strain"][0]) / (b["strain"][0] - a["strain"][0])
-            return a.q + part * (b.q - a.q)
-    return None
-
-
 def against_clean(runs):
-    """q over that of the path without the events at the same axial strain [%]."""
+    """q over that of the path without the events at the same axial strain [%], where the strain is larger than ever before."""
     curves = []
     for clean, turned in pairs(runs):
-        found = [(100 * row["strain"][0], at_strain(clean, row["strain"][0]), row.q) for row in turned]
-        found = [(x, 100 * (q / reference - 1)) for x, reference, q in found if reference]
-        curves.append(tuple(zip(*found)))
+        forward = [row for i, row in enumerate(turned) if i == 0 or row["strain"][0] >= max(other["strain"][0] for other in turned[:i]) - 1e-9]
+        at = [row["strain"][0] for row in forward]
+        reference = np.interp(at, [row["strain"][0] for row in clean], [row.q for row in clean], left=math.nan)
+        curves.append(([100 * x for x in at], [100 * (row.q / q - 1) for row, q in zip(forward, reference)]))
     return curves
 
 
 def against_frame(runs):
     clean, turned = pairs(runs)[0]
-    return [(range(1, len(clean) + 1), [max(FLOOR, 100 * abs(b.p / a.p - 1)) for a, b in zip(clean, turned)])]
+    return [([1000 * (i + 1) / len(clean) for i in range(len(clean))], [max(FLOOR, 100 * abs(b.p / a.p - 1)) for a, b in zip(clean, turned)])]
+
+
+def cycle(row, steps):
+    """How many cycles of so many steps there were; the label of a row counts steps."""
+    return int(row["label"]) / steps if row["label"].isdigit() else None
 
 
 def asymmetry(runs):
-    """Largest |high + low| of tau over its first range, cycle by cycle [%]."""
+    """|high + low| of tau over its first range, cycle by cycle [%]."""
     curves = []
     for rows in runs.values():
         tau = [row["stress"][3] for row in rows]
-        size = max(tau[:4]) - min(tau[:4])
-        pairs_of = [(i // 2 + 1, 100 * abs(a + b) / size) for i, (a, b) in enumerate(zip(tau, tau[1:])) if a * b < 0]
-        curves.append(([i for i, _ in pairs_of], [max(1e-4, y) for _, y in pairs_of]))
+        size = max(tau[:3]) - min(tau[:3])
+        found = [(cycle(b, 2), 100 * abs(a["stress"][3] + b["stress"][3]) / size) for a, b in zip(rows, rows[1:])
+                 if cycle(a, 2) and cycle(b, 2) and int(b["label"]) == int(a["label"]) + 1]
+        curves.append(([n for n, _ in found], [max(1e-4, y) for _, y in found]))
     return curves
 
 
 def gained(runs):
-    """Axial strain gained since the first state [%]."""
-    return [([10 * i for i in range(len(rows))], [100 * (row["strain"][0] - rows[0]["strain"][0]) for row in rows]) for rows in runs.values()]
+    """Axial strain gained since the first state, at the end of each cycle [%]."""
+    rows = runs["biased"]
+    found = [(cycle(row, 2), 100 * (row["strain"][0] - rows[0]["strain"][0])) for row in rows if cycle(row, 2) and int(row["label"]) % 2 == 0]
+    return [tuple(zip(*found))]
+
+
+def by_cycle(y, steps=80):
+    return lambda runs: [tuple(zip(*[(cycle(row, steps), y(row)) for row in rows if cycle(row, steps)])) for rows in runs.values()]
 
 
 def margins(runs):
@@ -137,7 +143,7 @@ def single_states(runs):
 
 
 def noise(claim, bound=0.3):
-    return View(claim, "axial strain [%]", "q against that of the straight path [%]", against_clean, bound, "symlog")
+    return View(claim, "axial strain [%]", "q against that of the straight path [%]", against_clean, bound, "symlog", held_against=True)
 
 
 def margin(claim, x, told, scale_across="linear"):
@@ -159,10 +165,10 @@ VIEWS = {
     "nine nested loops": View("nested loops close, one after the other", AXIAL, Q, along(strain(0), shear)),
     "1000 symmetric cycles": View("1000 symmetric cycles stay symmetric", "cycle", "asymmetry of tau [%]", asymmetry, 0.3, "log", "log"),
     "1000 biased cycles": View("1000 biased cycles hardly creep", "cycle", "axial strain gained [%]", gained, 0.1, "symlog"),
-    "circles": View("circles of strain: p' never rises", "state", P, numbered(pressure), 100.0),
-    "figure eights": View("figure eights: p' never rises", "state", P, numbered(pressure), 100.0),
-    "100 rotations of the principal axes": View("turning axes: strain gathers evenly", "state", "volumetric strain [%]", numbered(volume)),
-    "a frame that turns ten times": View("a turning frame is not felt", "state", "p' against the frame at rest [%]", against_frame, 0.1, "log"),
+    "circles": View("circles of strain: p' never rises", "cycle", P, by_cycle(pressure), 100.0),
+    "figure eights": View("figure eights: p' never rises", "cycle", P, by_cycle(pressure), 100.0),
+    "100 rotations of the principal axes": View("turning axes: strain gathers evenly", "cycle", "volumetric strain [%]", by_cycle(volume)),
+    "a frame that turns ten times": View("a turning frame is not felt", "turn of 3.6 degrees", "p' against the frame at rest [%]", against_frame, 0.1, "log"),
     "random walks": View("random walks stay inside", P, Q, along(pressure, shear)),
     "10,000 increments of 1e-12": noise("10,000 increments of 1e-12: unchanged", 0.1),
     "tension and back": View("held at p_min, and let go", "volumetric strain [%]", P, along(volume, pressure), P_MIN, "log"),
@@ -186,8 +192,8 @@ VIEWS = {
                                         lines=compression_line),
     "p' 100 MPa": View("undrained from p' 100 MPa", P, Q, along(pressure, shear)),
     "10 % in one increment": View("10 % in one increment: inside", "path", "beyond the bounding surface [%]", margins, TRAIL, marks=True),
-    "one increment or a thousand": View("one increment (dots) or a thousand", P, Q, along(pressure, shear)),
+    "one increment or a thousand": View("one increment (dots) or a thousand", P, Q, along(pressure, shear), scale="log", scale_across="log"),
     "void ratio 0.02 to 4.5": View("void ratios of no sand", AXIAL, "beyond the bounding surface [%]", along(strain(0), beyond), TRAIL),
-    "parameters at their bounds": View("18 parameters at their bounds: ends", P, Q, single_states, marks=True),
+    "parameters at their bounds": View("18 parameters at their bounds: ends", P, Q, single_states, scale_across="log", marks=True),
     "40 other sands": View("40 other sands: sheared there and back", P, Q, along(pressure, shear)),
 }
