@@ -29,6 +29,8 @@ WAITING = 1200   # of the clock
 OUT_OF_TIME = {-signal.SIGXCPU, 128 + signal.SIGXCPU}
 ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1"}
 FIRST = int(os.environ.get("MUD_NONSENSE_FIRST", 0))
+EVERY = int(os.environ.get("MUD_NONSENSE_RUN", 10))
+TOGETHER = "MUD_NONSENSE_TOGETHER" in os.environ
 COUNT = int(os.environ.get("MUD_NONSENSE", 100 if light else 1000))
 
 
@@ -48,7 +50,7 @@ def judged(number, text):
     scene = folder / "scene.nml"
     scene.write_bytes(text.encode("utf-8"))
     # Reading and building alone for nine of ten; the slow builds trap overflow, which nonsense may well reach in a run.
-    check_only = ("--check",) if light or number % 10 else ()
+    check_only = ("--check",) if light or number % EVERY else ()
     try:
         # Seconds of the processor, so that a busy machine hangs nothing; of the clock only for what waits for ever.
         limited = f'ulimit -S -t {60 if check_only else SECONDS}; exec "$0" "$@"'
@@ -59,17 +61,47 @@ def judged(number, text):
         return "waits for ever", "still running"
     if done.returncode in OUT_OF_TIME:
         return ("reading hangs" if check_only else ""), "still running"
-    told = done.stderr.decode(errors="replace")
     shutil.rmtree(folder)
-    good = "read" if check_only else "ran"
-    kind = "refused" if done.returncode in REFUSALS else "ended early" if done.returncode else good
-    if done.returncode not in CODES:
-        return f"exit code {done.returncode}: {told[:300]}", kind
+    return verdict(done.returncode, done.stderr.decode(errors="replace"), "read" if check_only else "ran")
+
+
+def verdict(code, told, good):
+    """What is wrong with an exit code and what was said, and what kind of answer it is."""
+    kind = "refused" if code in REFUSALS else "ended early" if code else good
+    if code not in CODES:
+        return f"exit code {code}: {told[:300]}", kind
     if CRASH.search(told):
         return f"crash: {told[:300]}", kind
-    if done.returncode and len(told.split()) < 4:
-        return f"exit code {done.returncode} without a sentence: {told!r}", kind
+    if code and len(told.split()) < 4:
+        return f"exit code {code} without a sentence: {told!r}", kind
     return "", kind
+
+
+def read_together(texts):
+    """{number: (what is wrong, kind)} of scenes that are only read; one process goes on until a scene ends it."""
+    found, folder = {}, work / "together"
+    folder.mkdir()
+    for number, text in texts.items():
+        (folder / f"{number}.nml").write_bytes(text.encode("utf-8"))
+    while left := [number for number in texts if number not in found]:
+        try:
+            done = subprocess.run([build / "tests/check_scenes"], input="".join(f"{folder / f'{n}.nml'}\n" for n in left).encode(),
+                                  capture_output=True, timeout=WAITING, env=ENVIRONMENT, cwd=folder)
+            code, out, told = done.returncode, done.stdout, done.stderr.decode(errors="replace")
+        except subprocess.TimeoutExpired as late:
+            code, out, told = "hangs", late.stdout or b"", ""
+        for answer in out.decode(errors="replace").split("scene " + str(folder))[1:]:
+            name, _, answer = answer.partition("\n")
+            at = int(pathlib.Path(name.strip()).stem)
+            number, _, sentence = answer.strip().partition(" ")
+            if number:
+                found[at] = verdict(int(number), sentence, "read")
+            else:
+                found[at] = f"ends the process, {code}: {told[:300]}", "failed"
+        if not out:
+            raise SystemExit(f"check_scenes did nothing: {code} {told}")
+    shutil.rmtree(folder)
+    return found
 
 
 def main():
@@ -81,7 +113,9 @@ def main():
     kinds = collections.Counter()
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         numbers = range(FIRST, FIRST + COUNT)
-        for number, (wrong, kind) in zip(numbers, pool.map(lambda n: judged(n, grammar.scene(n, texts)), numbers)):
+        known = read_together({n: grammar.scene(n, texts) for n in numbers if n % EVERY}) if TOGETHER else {}
+        answers = pool.map(lambda n: known.get(n) or judged(n, grammar.scene(n, texts)), numbers)
+        for number, (wrong, kind) in zip(numbers, answers):
             kinds[kind] += 1
             passed, failed = passed + (not wrong), failed + bool(wrong)
             if wrong:

@@ -2,7 +2,7 @@
 """Hard cases: the ends of the model: no stress, no suction, much suction, the compression line, large increments, other sands."""
 import random
 
-from bounds import BOUND, TRAIL, bounded
+from bounds import BOUND, TRAIL, beyond, bounded
 from catalogue import Case, last
 from closed_forms import line_pressure, steady_pressure
 from point_steps import ACROSS, AXIAL, DENSE, LOOSE, MIDDLE, straight, times
@@ -136,6 +136,12 @@ def wetting_at_rest(setting):
     return {"rest": rows_along(path, 100, (0,) * 6, suction=-200.0)}
 
 
+def unmoved(runs):
+    """Change of the stress from the first state beyond the bounding surface to the end of the wetting [%]."""
+    held = [row["stress"] for row in runs["rest"] if beyond(row) > 0]
+    return max(100 * abs(a - b) / max(map(abs, held[0])) for a, b in zip(held[0], held[-1])) if len(held) > 3 else float("inf")
+
+
 def suction_pulses(setting):
     path = setting.start(MIDDLE, suction=100.0)
     for i in range(100):
@@ -232,8 +238,9 @@ CASES = (
          nothing),
     Case("the air-entry value 200 times", "suction", "a kink of S_w crossed in every increment", ANY, 0.0, sharp_retention, nothing),
     Case("wetting at rest", "suction", "no strain, all of the change comes from the bonding, at a high stress ratio", BOUND, TRAIL, wetting_at_rest, bounded,
-         limit="no mechanism of the model follows a bounding surface that shrinks under a stress at rest: the weight of the isotropic mechanism is "
-               "zero there, and shear needs strain"),
+         limit="at zero strain nothing but the isotropic mechanism answers to suction, and its weight w is zero from the bounding surface on "
+               "(docs/theory/material.md 4.4 to 4.7): B = 0, so t = 0, so L = 0, and the stress stays while the surface goes on shrinking",
+         proof=("change of the stress while the surface shrinks below it [%]", unmoved, 1e-12)),
     Case("pulses of suction", "suction", "suction changes without strain between increments of strain", BOUND, TRAIL, suction_pulses, bounded),
     Case("along the compression line", "compression line", "the isotropic mechanism becomes singular stiff or soft there", "p' above the line [%]", 0.5,
          on_the_line, off_the_line),

@@ -70,6 +70,7 @@ class Case:
     paths: Callable
     judge: Callable
     limit: str = ""    # why the case is not passed with the defaults: what the model itself does not do
+    proof: tuple = ()  # what shows that it is the model: (what is judged, judge, allowed)
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,7 @@ def case_table(results):
         told = row["told"] if isinstance(case, host_files.FileCase) else ""
         lines.append((case.name, case.hard, f"{case.criterion}, at most {case.allowed:g}", verdict(paper), verdict(row) + (f": {told}" if told else ""),
                       "" if math.isnan(nudge) else number(nudge), row["iterations"], row["cuts"]))
-    return tables.markdown(("case", "what makes it hard", "criterion", "paper's rules", "defaults", "nudge of 1e-9 [%]", "iterations or runs", "cuts"), lines)
+    return tables.markdown(("case", "what makes it hard", "criterion", "paper's remedy", "defaults", "nudge of 1e-9 [%]", "iterations or runs", "cuts"), lines)
 
 
 def setting_table(results):
@@ -90,5 +90,5 @@ def nonsense():
     rows = tables.rows(path) if path.exists() else []
     total = {key: sum(int(row[key]) for row in rows) for key in ("scenes", "failed", "refused", "read", "ran", "ended early", "still running")}
     return (f"{total['scenes']:,} scenes of nonsense so far: {total['refused']:,} refused by a sentence, {total['read']:,} read (nine of ten are not run), "
-            f"{total['ran']:,} ran to their end, {total['ended early']:,} ended early with a sentence, {total['still running']:,} still ran after two seconds, "
+            f"{total['ran']:,} ran to their end, {total['ended early']:,} ended early with a sentence, {total['still running']:,} still ran after two seconds (after one second from scene 16,000 on), "
             f"{total['failed']:,} crashed, hung or ended without a word.\n")

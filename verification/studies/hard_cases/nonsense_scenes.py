@@ -15,6 +15,7 @@ sys.path[:0] = [str(HERE.parents[1])]
 from tools import results, tables  # noqa: E402
 
 BLOCK = 1000
+EVERY = 40    # one scene in so many is run, the others are read and built
 RUNNING = 1   # second of the processor for a scene that is run: longer is a run too
 KINDS = ("refused", "read", "ran", "ended early", "still running")
 NAMES = ("first", "scenes", "failed", *KINDS, "commit")
@@ -24,7 +25,8 @@ SUITE = HERE.parents[2] / "tests/host/test_host_nonsense.py"
 def block(first):
     done = subprocess.run([sys.executable, SUITE], capture_output=True, text=True,
                           env={**os.environ, "MUD_PRESET": "release", "MUD_NONSENSE": str(BLOCK), "MUD_NONSENSE_FIRST": str(first),
-                               "MUD_NONSENSE_SECONDS": str(RUNNING)})
+                               "MUD_NONSENSE_SECONDS": str(RUNNING),
+                               "MUD_NONSENSE_RUN": str(EVERY), "MUD_NONSENSE_TOGETHER": "1"})
     counts = {kind: int(number) for number, kind in re.findall(r"(\d+) (" + "|".join(KINDS) + ")", done.stdout.split("answers: ")[-1])}
     failed = int(re.search(r"(\d+) failed\s*$", done.stdout)[1])
     if failed:

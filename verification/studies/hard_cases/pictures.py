@@ -91,36 +91,65 @@ def draw_run(axis, case, label, run):
     if case.group == "mesh":
         nodes, k = run.table("nodes_press"), int(label_number(label))
         axis.plot(nodes["r"] + 1.15 * (k % 2), nodes["z"] - 1.15 * (k // 2), ".", ms=1)
-    elif "column" in case.scenes(SETTINGS[0])[next(iter(case.scenes(SETTINGS[0])))][:40]:
+    elif "permeability" in case.name:
         nodes = run.table("nodes_load")
         at = np.flatnonzero(np.abs(nodes["r"]) < 1e-9)
         at = at[np.argsort(nodes["z"][at])]
-        axis.plot(nodes["p_w"][at], nodes["z"][at], lw=0.7)
+        axis.plot(nodes["p_w"][at], nodes["z"][at], lw=0.7, label=f"k {label}")
     elif case.group == "failure":
-        push = run.table("reactions_push")
-        axis.plot(run.histories["edge.u_z"][1:] * -100 if len(push["time"]) < len(run.histories["time"]) else run.histories["edge.u_z"] * -100,
-                  -push["top_1.force_z"], lw=0.8)
+        push, history = run.table("reactions_push"), run.histories
+        settled = np.interp(push["time"], history["time"], -100 * history["edge.u_z"])
+        axis.plot(settled, -push["top_1.force_z"], "-" if label == "fine" else ".", lw=0.8, ms=4, label={"fine": "20 steps", "coarse": "10"}[label])
     else:
         history = run.histories
         start = 2.0 if history["time"][-1] > 1.9 else 0.0
         late = history["time"] >= start - 1e-9
-        axis.plot(1e3 * (history["time"][late] - start), 1e3 * history["centre.u_z"][late], lw=0.7)
+        up = history["centre.p_w"] if case.name.startswith("impact on undrained") else 1e3 * history["centre.u_z"]
+        axis.plot(1e3 * (history["time"][late] - start), up[late], lw=0.7, label=told(case, label))
+
+
+def told(case, label):
+    unit = {"penalty": "{} kN/m3", "steps": "{} x 3e-5 s" if "to" in case.name else "{} s", "chatter": "{} s", "impact": "k {} m2"}
+    return unit.get(case.name.split()[0], "{}").format(label) if label else None
 
 
 def label_number(label):
     return ("regular", "slivers", "distorted", "graded").index(label)
 
 
-UNITS = {"mesh": "nodes of the four meshes", "failure": "force [kN] over settlement [cm]", "pore water": "", "contact": "u_z [mm] over t [ms]"}
+TIME, U_Z, P_W, Z, SETTLED, FORCE = "t [ms]", "u_z of the plate's centre [mm]", "p_w under the centre [kPa]", "z [m]", "settlement [cm]", "force [kN]"
+HOST_VIEWS = {   # claim, across, up
+    "chatter": ("chatter makes no energy, by any step", TIME, U_Z),
+    "lift-off and re-impact": ("thrown off, and back: no energy made", TIME, U_Z),
+    "impact on undrained soil, quadratic pressures": ("pressures of one order: the answer hangs on k", TIME, P_W),
+    "impact on undrained soil, linear pressures": ("an order below: it does not", TIME, P_W),
+    "impact at suction 100 kPa": ("suction 100 kPa without the remedy", TIME, U_Z),
+    "steps of 3e-6 to 3e-4 s": ("a tenth to ten times the paper's step", TIME, U_Z),
+    "steps of 3e-3 s": ("a hundred times: stops at the first step", TIME, U_Z),
+    "steps of 3e-3 s, energy alarm at 10 %": ("a hundred times, let go: what it would answer", TIME, U_Z),
+    "penalty 1e5 to 1e10 kN/m3": ("from 1e8 on the penalty is not seen", TIME, U_Z),
+    "permeability 1e-8 to 1e-14 m2, quadratic pressures": ("pressures of one order: from node to node", "p_w [kPa]", Z),
+    "permeability 1e-8 to 1e-14 m2, linear pressures": ("an order below: flat below the thin layer", "p_w [kPa]", Z),
+    "footing on loose sand": ("loose sand: the load levels out", SETTLED, FORCE),
+    "footing on dense sand": ("dense sand: beyond the peak", SETTLED, FORCE),
+    "footing on undrained sand": ("no drainage: it dilates and gains", SETTLED, FORCE),
+    "footing at suction 100 kPa": ("suction 100 kPa: close to failure", SETTLED, FORCE),
+    "slivers, distorted and graded meshes": ("four meshes, one stress to 1e-9 %", "", ""),
+}
 
 
 def host_sheet(cases, folder, plt):
     """One panel a case, a line a run, with the defaults."""
-    figure, axes = sheet(plt, len(cases), columns=5, size=2.1)
+    figure, axes = sheet(plt, len(cases), columns=4, size=2.8, high=0.85)
     for number, (axis, case) in enumerate(zip(axes, cases)):
         for label, run in host_runs.run_all(case.scenes(SETTINGS[0]), folder / str(number)).items():
             if run.folder.exists() and run.code in (0, 18):
                 draw_run(axis, case, label, run)
-        told = UNITS[case.group] or ("z [m] over p_w [kPa]" if "permeability" in case.name else "u_z [mm] over t [ms]")
-        axis.set_title(f"{case.name}\n{told}", fontsize=5, pad=2)
+        claim, across, up = HOST_VIEWS[case.name]
+        axis.set_title(claim, fontsize=7, pad=3)
+        axis.set_xlabel(across, fontsize=6, labelpad=1)
+        axis.set_ylabel(up, fontsize=6, labelpad=1)
+        if axis.get_legend_handles_labels()[1]:
+            axis.legend(fontsize=4.5, frameon=False)
+    figure.tight_layout(pad=0.5, w_pad=0.5, h_pad=0.7)
     return figure
