@@ -55,8 +55,8 @@ def sheet(plt, count, columns, size, high=1.0):
 
 def draw_view(axis, view, runs, colour):
     for x, y in view.curves(runs):
-        dots = view.marks or len(y) < 2
-        axis.plot(x, y, "." if dots else "-", ms=4, lw=0.6, color=colour)
+        dots = view.marks or len(y) <= 2
+        axis.plot(x, y, "." if dots else "-", ms=5, lw=0.6, color=colour)
 
 
 def point_sheet(cases, walker, plt):
@@ -81,7 +81,7 @@ def point_sheet(cases, walker, plt):
         axis.set_title(view.claim, fontsize=6.5, pad=3)
     for text, colour, height in (("defaults", "#0b3c6f", 0.8), ("paper's remedy, no elastic domain", "#c8553d", 0.65), ("dashed: bound of the criterion", "black", 0.5),
                                  ("dotted: closed form", "black", 0.35)):
-        axes[len(cases)].text(0.0, height, text, color=colour, fontsize=7, transform=axes[len(cases)].transAxes)
+        axes[-1].text(0.0, height, text, color=colour, fontsize=7, transform=axes[-1].transAxes)
     figure.tight_layout(pad=0.5, w_pad=0.4, h_pad=0.6)
     return figure
 

@@ -91,8 +91,11 @@ def against_clean(runs):
 
 
 def against_frame(runs):
+    """p' in the frame that turns against that in the frame at rest, which takes two steps for each of its turns [%]."""
     clean, turned = pairs(runs)[0]
-    return [([1000 * (i + 1) / len(clean) for i in range(len(clean))], [max(FLOOR, 100 * abs(b.p / a.p - 1)) for a, b in zip(clean, turned)])]
+    at = {int(row["label"]): row for row in clean if row["label"].isdigit()}
+    found = [(int(row["label"]), at[2 * int(row["label"])], row) for row in turned if row["label"].isdigit() and 2 * int(row["label"]) in at]
+    return [([n for n, _, _ in found], [max(FLOOR, 100 * abs(b.p / a.p - 1)) for _, a, b in found])]
 
 
 def cycle(row, steps):
