@@ -15,7 +15,7 @@ sys.path[:0] = [str(HERE.parents[1])]
 from tools import results, tables  # noqa: E402
 
 BLOCK = 1000
-EVERY = 40    # one scene in so many is run, the others are read and built
+EVERY = 100   # one scene in so many is run, the others are read and built
 RUNNING = 1   # second of the processor for a scene that is run: longer is a run too
 KINDS = ("refused", "read", "ran", "ended early", "still running")
 NAMES = ("first", "scenes", "failed", *KINDS, "commit")
