@@ -85,8 +85,9 @@ def read_together(texts):
         (folder / f"{number}.nml").write_bytes(text.encode("utf-8"))
     while left := [number for number in texts if number not in found]:
         try:
-            done = subprocess.run([build / "tests/check_scenes"], input="".join(f"{folder / f'{n}.nml'}\n" for n in left).encode(),
-                                  capture_output=True, timeout=WAITING, env=ENVIRONMENT, cwd=folder)
+            named = "".join(f"{folder / f'{n}.nml'}\n" for n in left).encode()
+            done = subprocess.run([build / "tests/check_scenes"], input=named, capture_output=True, timeout=WAITING,
+                                  env=ENVIRONMENT, cwd=folder)
             code, out, told = done.returncode, done.stdout, done.stderr.decode(errors="replace")
         except subprocess.TimeoutExpired as late:
             code, out, told = "hangs", late.stdout or b"", ""
