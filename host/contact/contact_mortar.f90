@@ -14,7 +14,8 @@ module contact_mortar
    use contact_types, only: wp, TWO_PI
    implicit none (type, external)
    private
-   public :: overlap_t, point_t, find_overlap, end_slope, integration_point, pair_gaps, hats, hat_slopes
+   public :: overlap_t, point_t, find_overlap, end_slope, integration_point, pair_gaps, penetration, hats, &
+             hat_slopes
    public :: POINTS, POSITION, SHARE, END_POSITION, END_SHARE, LARGEST_SEGMENTS
 
    integer, parameter :: POINTS = 4   !< Gauss points of a segment.
@@ -237,14 +238,12 @@ contains
 
    !> What a pair of edges adds to the three slave nodes: weight int M 2 pi r dGamma and weight times gap, their
    !> derivatives, and push(:, A) = int M (nu N_s, -nu N_m) 2 pi r ds, the nodal forces of a unit pressure at node A.
-   pure subroutine pair_gaps(x, overlap, axisymmetric, weight, weighted_gap, d_weight, d_weighted_gap, push, deepest, &
-                             missed)
+   pure subroutine pair_gaps(x, overlap, axisymmetric, weight, weighted_gap, d_weight, d_weighted_gap, push, missed)
       real(wp), intent(in) :: x(2, 6)
       type(overlap_t), intent(in) :: overlap
       logical, intent(in) :: axisymmetric
       real(wp), intent(out) :: weight(3), weighted_gap(3)                             !< [m2], [m3] (plane: m, m2)
       real(wp), intent(out) :: d_weight(12, 3), d_weighted_gap(12, 3), push(12, 3)
-      real(wp), intent(out) :: deepest   !< Least gap of the points, if below 0 [m].
       real(wp), intent(out) :: missed
       type(point_t) :: p
       real(wp) :: m(3), dm(3), unit_push(12)
@@ -255,14 +254,12 @@ contains
       d_weight = 0.0_wp
       d_weighted_gap = 0.0_wp
       push = 0.0_wp
-      deepest = 0.0_wp
       do segment = 1, overlap%segments
          do k = 1, POINTS
             call integration_point(x, overlap, segment, POSITION(k), SHARE(k), axisymmetric, p, missed)
             if (missed > 0.0_wp) return
             m = hats(p%s)
             dm = hat_slopes(p%s)
-            deepest = min(deepest, p%phi/p%length)
             unit_push(1:5:2) = p%t(2)*p%ns
             unit_push(2:6:2) = -p%t(1)*p%ns
             unit_push(7:11:2) = -p%t(2)*p%nm
@@ -280,4 +277,21 @@ contains
       end do
       missed = 0.0_wp
    end subroutine pair_gaps
+
+   !> Deepest penetration of a pair of edges [m], 0 if it is open: at the ends of the segments too, where corners are.
+   pure real(wp) function penetration(x, overlap) result(depth)
+      real(wp), intent(in) :: x(2, 6)
+      type(overlap_t), intent(in) :: overlap
+      type(point_t) :: p
+      real(wp) :: missed
+      integer :: segment, k
+
+      depth = 0.0_wp
+      do segment = 1, overlap%segments
+         do k = 1, POINTS
+            call integration_point(x, overlap, segment, END_POSITION(k), END_SHARE(k), .false., p, missed)
+            if (.not. missed > 0.0_wp) depth = max(depth, -p%phi/p%length)
+         end do
+      end do
+   end function penetration
 end module contact_mortar

@@ -3,7 +3,7 @@
 !> consistent tangent of both surfaces: docs/theory/contact.md sections 2 and 3; host/CONTACT.md has the limits.
 module contact_penalty
    use contact_geometry, only: contact_geometry_t, check_coordinates
-   use contact_mortar, only: overlap_t, find_overlap, pair_gaps, hats, POINTS, POSITION, SHARE
+   use contact_mortar, only: overlap_t, find_overlap, pair_gaps, penetration, hats, POINTS, POSITION, SHARE
    use contact_projection, only: edge_t, edge_of, place, tangent
    use contact_response, only: response_t, pair_response
    use contact_search, only: search_t, prepare_search, find_candidates
@@ -21,7 +21,6 @@ module contact_penalty
       integer :: slave = 0, master = 0
       type(overlap_t) :: overlap
       real(wp) :: d_weight(12, 3) = 0.0_wp, d_weighted_gap(12, 3) = 0.0_wp, push(12, 3) = 0.0_wp
-      real(wp) :: deepest = 0.0_wp              !< Least gap, if below 0 [m].
    end type pair_t
 
    !> Room for an evaluation; what it holds between two is of no meaning.
@@ -166,7 +165,7 @@ contains
                pair%slave = e
                pair%master = master
                call pair_gaps(x, pair%overlap, geometry%options%axisymmetric, weight, weighted_gap, pair%d_weight, &
-                              pair%d_weighted_gap, pair%push, pair%deepest, missed)
+                              pair%d_weighted_gap, pair%push, missed)
                if (missed > 0.0_wp) then
                   status = contact_fail(CONTACT_NO_PROJECTION, e, .false., missed)
                   return
@@ -196,7 +195,8 @@ contains
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
       type(contact_options_t) :: nodal, pointwise
-      real(wp) :: x(2, 6)
+      real(wp) :: x(2, 6), energy
+      logical :: pressed
       integer :: i
 
       result%pressure = 0.0_wp
@@ -211,14 +211,15 @@ contains
          associate (pair => work%pair(i), nodes => geometry%slave_edges(:, work%pair(i)%slave))
             x(:, 1:3) = slave_x(:, nodes)
             x(:, 4:6) = master_x(:, geometry%master_edges(:, pair%master))
-            if (any(result%pressure(nodes) > 0.0_wp)) then
-               call add_pair(geometry, nodal, pair, x, with_tangent, work%load, result, status)
-            else if (.not. pointwise%penalty > 0.0_wp .and. pair%deepest < 0.0_wp) then
-               call note_unpressed(-pair%deepest, x, result)
-            end if
+            energy = result%energy
+            pressed = any(result%pressure(nodes) > 0.0_wp)
+            if (pressed) call add_pair(geometry, nodal, pair, x, with_tangent, work%load, result, status)
             if (pointwise%penalty > 0.0_wp) &
                call add_pair(geometry, pointwise, pair, x, with_tangent, work%load, result, status)
             if (status%code /= CONTACT_OK) return
+            ! Combined gaps press wherever they look, and they look at the ends.
+            if (.not. (pressed .or. result%energy > energy .or. geometry%options%gap == COMBINED_GAP)) &
+               call note_unpressed(penetration(x, pair%overlap), x, result)
          end associate
       end do
       if (with_tangent) then

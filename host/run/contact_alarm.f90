@@ -29,8 +29,8 @@ contains
             write (error_unit, '(a)') 'mud_host: warning: contact '//trim(model%contacts(i)%name)//', time '// &
                short(time)//' s: near ('//short(t%result%unpressed_at(1))//', '//short(t%result%unpressed_at(2))// &
                ') m the surfaces have penetrated each other by '//short(100*t%result%unpressed)// &
-               ' % of an edge without pressure: its mean gaps are still open. Set gap = ''combined'' in &contact, '// &
-               'or refine the slave there.'
+               ' % of an edge without pressure, which its gaps do not see. Set gap = ''combined'' in &contact, or '// &
+               'refine the slave there.'
          end associate
       end do
    end subroutine tell_penetration

@@ -84,6 +84,40 @@ doubtful = SCENE.replace("surface = 0", "surface = 0 sigma = 1, 1, 1")
 check("told at the start of a run", len(warnings(doubtful)) == 1)
 check("--quiet tells errors only", warnings(doubtful, "--quiet") == [])
 
+# A corner that gets through a contact whose mean gaps are open: the top of a tilted block stands 2 mm in a plate at one
+# end and 60 mm below it at the other. The default gap presses it.
+TILTED = """&scene name = 'tilted' fields = 'u' geometry = 'plane_strain' /
+&mesh r = 0, 1 r_cells = 1 z = 0, 1 z_cells = 1 /
+&elastic name = 'rock' young = 1e4 poisson = 0 /
+&region material = 'rock' void_ratio = 0.1 /
+&plate name = 'plate' r = 0, 1 z = 1 mass = 1 /
+&contact name = 'face' slave = 'top' master = 'plate' gap = 'nodal' penalty = 1e3 /
+&stage name = 'push' analysis = 'static' duration = 1 dt = 1 tolerance = 1e-6 /
+&fix group = 'plate' field = 'u_z' /
+&fix group = 'bottom' field = 'u_r' /
+&fix group = 'left' field = 'u_z' value = 0.002 /
+&fix group = 'right' field = 'u_z' value = -0.06 /
+&load group = 'right' kind = 'pressure' value = 1 /
+"""
+
+
+def told_of_penetration(gap):
+    (work / "tilted.nml").write_text(TILTED.replace("'nodal'", f"'{gap}'"))
+    done = subprocess.run([host, work / "tilted.nml", "--output", work / f"tilted_{gap}"], capture_output=True,
+                          text=True, env=environment)
+    check(f"tilted block, {gap}: it runs", done.returncode == 0, done.stderr)
+    thrust = (work / f"tilted_{gap}/contact.csv").read_text().splitlines()
+    return ([line for line in done.stderr.splitlines() if "penetrated each other" in line],
+            float(thrust[-1].split(",")[thrust[0].split(",").index("face.thrust")]))
+
+
+told, thrust = told_of_penetration("nodal")
+check("a penetration without pressure is told once, with its place and share of the edge",
+      len(told) == 1 and "contact face" in told[0] and "near (0.5" in told[0] and "% of an edge" in told[0], told)
+check("mean gaps let the corner through", thrust == 0, thrust)
+told, thrust = told_of_penetration("combined")
+check("combined gaps press the corner, and tell nothing", not told and thrust != 0, (told, thrust))
+
 # Pressures that jump from node to node are told while the run goes on: a column that hardly drains, and its measure.
 COLUMN = """&scene name = 'column' fields = 'u-p_w' geometry = 'plane_strain' /
 &mesh r = 0, 0.25 r_cells = 1 z = 0, 1 z_cells = 8 /

@@ -4,8 +4,8 @@ module contact_scenes
    use, intrinsic :: iso_fortran_env, only: int64
    use contact_geometry, only: contact_geometry_t, contact_prepare
    use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate
-   use contact_types, only: wp, TWO_PI, NODAL_GAP, POINTWISE_GAP, PRESSURE_WORK, ENERGY_SLOPE, contact_options_t, &
-                            contact_status_t
+   use contact_types, only: wp, TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, PRESSURE_WORK, ENERGY_SLOPE, &
+                            contact_options_t, contact_status_t
    implicit none (type, external)
    private
    public :: random_t, uniform, surface_t, straight, curve, rough, flat_pair, contact_form, crossing_chains
@@ -13,6 +13,8 @@ module contact_scenes
 
    !> Penalty [kN/m3] of a contact_form: deep penetration, all terms count.
    real(wp), parameter, public :: SOFT_PENALTY = 1.0e3_wp
+   !> Each gap with each variation, in plane strain and axisymmetric.
+   integer, parameter, public :: FORMS = 12
 
    !> A generator of its own, the same on every machine (Park & Miller's minimal standard).
    type :: random_t
@@ -235,13 +237,14 @@ contains
 
    !> The eight forms of a contact.
    pure function contact_form(form) result(options)
-      integer, intent(in) :: form   !< 1 to 8
+      integer, intent(in) :: form   !< 1 to FORMS; those of the second half are axisymmetric.
       type(contact_options_t) :: options
+      integer, parameter :: GAPS(3) = [NODAL_GAP, POINTWISE_GAP, COMBINED_GAP]
 
       options%penalty = SOFT_PENALTY
-      options%gap = merge(NODAL_GAP, POINTWISE_GAP, mod(form, 2) == 1)
-      options%variation = merge(PRESSURE_WORK, ENERGY_SLOPE, mod((form - 1)/2, 2) == 0)
-      options%axisymmetric = form > 4
+      options%gap = GAPS(mod(form - 1, 3) + 1)
+      options%variation = merge(PRESSURE_WORK, ENERGY_SLOPE, mod((form - 1)/3, 2) == 0)
+      options%axisymmetric = form > FORMS/2
    end function contact_form
 
    !> Curved chains of three edges that cross each other; the master's ends lie inside slave edges.

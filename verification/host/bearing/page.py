@@ -13,8 +13,8 @@ PAGE = Page(
     kind="exact",
     input="`scene.nml`: radius 0.5 m, s_u 10 kPa, E 1e5 kPa, Poisson's ratio 0.49, 8 and 12 cells under the footing, graded "
           "towards its edge; the law is a UMAT of the tests (`tests/umats/tresca.f90`)",
-    reference="slip lines: 5.69 s_u smooth (Shield 1955), 6.05 s_u rough (Eason & Shield 1960); both in Cox, Eason & Hopkins "
-              "(1961) and, recomputed, Houlsby & Wroth (1982)",
+    reference="slip lines: 5.69 s_u smooth (Shield 1955), 6.05 s_u rough (Eason & Shield 1960); both factors as quoted by "
+              "Gourvenec, Randolph & Kingsnorth (2006)",
     seconds=40, quick=6, pictures=("bearing.png",))
 
 RADIUS, STRENGTH = 0.5, 10.0

@@ -1,0 +1,76 @@
+! SPDX-License-Identifier: MIT
+!> A law without stiffness, for the tests of what the host does about it: elastic as long as an increment is short; one
+!> that is longer meets nine tenths of the stress and a tangent of zero.
+module soft_laws
+   use kinds, only: wp
+   use material_elastic, only: elastic_t, isotropic
+   use material_point, only: material_t, response_t, report_t
+   use model_types, only: model_t
+   implicit none (type, external)
+   private
+   public :: soft_t, soften
+
+   real(wp), parameter :: LEFT = 0.9_wp   !< Share of the elastic change of stress in a long increment [-].
+
+   type, extends(elastic_t) :: soft_t
+      real(wp) :: limit = 0.0_wp        !< Largest strain of an increment that meets stiffness [-].
+      logical :: knows_elastic = .true. !< Whether it has an elastic tangent to fall back on.
+   contains
+      procedure :: update => soft_update
+      procedure :: elastic_tangent => soft_elastic_tangent
+   end type soft_t
+contains
+   !> Makes the elastic law of a region a soft one.
+   subroutine soften(model, region, limit, knows_elastic)
+      type(model_t), intent(inout) :: model
+      integer, intent(in) :: region
+      real(wp), intent(in) :: limit
+      logical, intent(in) :: knows_elastic
+      type(soft_t) :: soft
+
+      associate (one => model%domain%regions(region))
+         select type (law => one%law)
+         type is (elastic_t)
+            soft%elastic_t = law
+         class default
+            error stop 'only an elastic law can be made soft'
+         end select
+         soft%limit = limit
+         soft%knows_elastic = knows_elastic
+         deallocate (one%law)
+         allocate (one%law, source=soft)
+      end associate
+   end subroutine soften
+
+   subroutine soft_update(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state, &
+                          report)
+      class(soft_t), intent(in) :: self
+      integer, intent(in) :: n
+      real(wp), intent(in), contiguous :: stress(:, :), state(:, :), strain(:, :), suction(:), d_suction(:)
+      logical, intent(in) :: with_tangent
+      type(response_t), intent(inout) :: response
+      real(wp), intent(inout), contiguous :: new_state(:, :)
+      type(report_t), intent(out) :: report
+      integer :: g
+
+      call self%elastic_t%update(n, stress, state, strain, suction, d_suction, with_tangent, response, new_state, &
+                                report)
+      do g = 1, n
+         if (maxval(abs(strain(:, g))) < self%limit) cycle
+         response%stress(:, g) = stress(:, g) + LEFT*(response%stress(:, g) - stress(:, g))
+         if (with_tangent) response%dsig_deps(:, :, g) = 0.0_wp
+      end do
+   end subroutine soft_update
+
+   subroutine soft_elastic_tangent(self, stress, state, suction, tangent)
+      class(soft_t), intent(in) :: self
+      real(wp), intent(in) :: stress(6), state(:), suction
+      real(wp), intent(out) :: tangent(6, 6)
+      type(elastic_t) :: law
+
+      tangent = 0.0_wp
+      if (.not. self%knows_elastic) return
+      law = isotropic(self%young, self%poisson)
+      call law%elastic_tangent(stress, state, suction, tangent)
+   end subroutine soft_elastic_tangent
+end module soft_laws
