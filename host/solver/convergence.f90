@@ -163,11 +163,12 @@ contains
    end function counts
 
    !> Errors of the fields.
-   pure subroutine measure(dofs, constraint, assembly, rhs, largest, log)
+   pure subroutine measure(dofs, constraint, assembly, rhs, rounding, largest, log)
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint
       type(assembly_t), intent(in) :: assembly
       real(wp), intent(in) :: rhs(:)
+      real(wp), intent(in) :: rounding(FIELDS)   !< Scales of which the tolerance asks for no more than rounding.
       real(wp), intent(inout) :: largest(FIELDS)
       type(log_t), intent(inout) :: log
       real(wp) :: r(FIELDS), s(FIELDS), floor(FIELDS), worst
@@ -181,7 +182,7 @@ contains
       ! Always the forces themselves: their rounding is the floor of what changes.
       call add_scales(dofs, constraint, assembly, .false., s, floor)
       largest = max(largest, sqrt(s))
-      log%error = sqrt(r)/field_scales(dofs, constraint, assembly, largest)
+      log%error = sqrt(r)/max(field_scales(dofs, constraint, assembly, largest), rounding)
       do i = 1, dofs%n
          if (is_body(constraint, i)) &
             log%error(AT_U_Z) = max(log%error(AT_U_Z), abs(rhs(i))/body_scale(assembly, largest, i))

@@ -15,7 +15,7 @@ module linear_system
    use unknown_fields, only: FIELDS, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: system_t, solve_step, look_at_contacts, MOST_STEPS
+   public :: system_t, solve_step, asked_for, look_at_contacts, MOST_STEPS
    public :: T_ASSEMBLY, T_FACTORISATION, T_SOLUTION, T_REST, T_MATERIAL, T_CONTACT
 
    integer, parameter :: TIMERS = 6, T_ASSEMBLY = 1, T_FACTORISATION = 2, T_SOLUTION = 3, T_REST = 4, T_MATERIAL = 5, &

@@ -12,8 +12,8 @@ module newton_step
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t, assemble, follow_slopes_first, NO_FALLBACK, SOFT_POINTS, AS_BEFORE
    use generalised_alpha, only: scheme_t, predict, advance_rates, DYNAMIC
-   use linear_system, only: system_t, solve_step, look_at_contacts, MOST_STEPS, T_ASSEMBLY, T_REST, T_MATERIAL, &
-                            T_CONTACT
+   use linear_system, only: system_t, solve_step, asked_for, look_at_contacts, MOST_STEPS, T_ASSEMBLY, &
+                            T_REST, T_MATERIAL, T_CONTACT
    use porous_domain, only: domain_t, state_t
    use prescribed_values, only: constraint_t, constrain, loads_of_water
    use sparse_factors, only: analyse, factorise, SOLVED, SINGULAR
@@ -44,7 +44,7 @@ contains
       type(log_t), intent(out) :: log
       real(wp), allocatable :: rhs(:), dx(:)
       real(wp), allocatable :: touched(:)   !< Forces of contacts before, where steps are measured by what they change.
-      real(wp) :: norm, norm_0, t0
+      real(wp) :: norm, norm_0, asked(FIELDS), t0
       integer :: status
       logical :: with_tangent
 
@@ -61,11 +61,12 @@ contains
       call predict(scheme, control%no_predictor, old%x, old%v, old%a, new%x)
       call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
       norm_0 = -1.0_wp
+      asked = 0.0_wp
       with_tangent = .true.
       do
          if (.not. pass(with_tangent)) return
          if (log%iterations > 0) then
-            call measure(dofs, constraint, assembly, rhs, system%largest, log)
+            call measure(dofs, constraint, assembly, rhs, asked, system%largest, log)
             if (log%iterations == 1) log%first_error = log%error
             norm = norm2(pack(rhs, .not. constraint%fixed))
             ! Driven by prescribed values alone, a step begins without any to speak of.
@@ -86,6 +87,8 @@ contains
             norm_0 = norm2(pack(rhs, .not. constraint%fixed))
          end if
          call constrain(dofs, pattern, constraint, new%x, assembly%values, rhs)
+         ! A prescribed motion that strains nothing leaves the rounding of the forces that it asked for, and no other.
+         if (log%iterations == 0) asked = rounding_in(scheme%kind)/control%tolerance*asked_for(dofs, rhs)
          ! Other measures may ask for more than a linear solution that is exact to a share of the forces.
          if (all(control%measure /= [BY_FORCES, BY_CHANGE])) system%factored = .false.
          call solve_step(dofs, pattern, constraint, assembly, linear_tolerance(control), rhs, system, dx, status)
