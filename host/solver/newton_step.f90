@@ -44,7 +44,7 @@ contains
       type(log_t), intent(out) :: log
       real(wp), allocatable :: rhs(:), dx(:)
       real(wp), allocatable :: touched(:)   !< Forces of contacts before, where steps are measured by what they change.
-      real(wp) :: norm, norm_0, asked(FIELDS), t0
+      real(wp) :: norm, norm_0, t0
       integer :: status
       logical :: with_tangent
 
@@ -53,20 +53,17 @@ contains
       new%time = old%time + scheme%dt
       call begin_passes(domain, scheme, constraint, control, assembly)
       if (assembly%with_change .and. allocated(system%contacts%interfaces)) then
-         if (.not. contact_forces(system%contacts, dofs, old%x, touched)) then
-            log%outcome = CONTACT_FAILED
-            return
-         end if
+         log%outcome = merge(CONVERGED, CONTACT_FAILED, contact_forces(system%contacts, dofs, old%x, touched))
+         if (log%outcome /= CONVERGED) return
       end if
       call predict(scheme, control%no_predictor, old%x, old%v, old%a, new%x)
       call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
       norm_0 = -1.0_wp
-      asked = 0.0_wp
       with_tangent = .true.
       do
          if (.not. pass(with_tangent)) return
          if (log%iterations > 0) then
-            call measure(dofs, constraint, assembly, rhs, asked, system%largest, log)
+            call measure(dofs, constraint, assembly, rhs, system%rounding, system%largest, log)
             if (log%iterations == 1) log%first_error = log%error
             norm = norm2(pack(rhs, .not. constraint%fixed))
             ! Driven by prescribed values alone, a step begins without any to speak of.
@@ -88,7 +85,7 @@ contains
          end if
          call constrain(dofs, pattern, constraint, new%x, assembly%values, rhs)
          ! A prescribed motion that strains nothing leaves the rounding of the forces that it asked for, and no other.
-         if (log%iterations == 0) asked = rounding_in(scheme%kind)/control%tolerance*asked_for(dofs, rhs)
+         if (log%iterations == 0) system%rounding = rounding_in(scheme%kind)/control%tolerance*asked_for(dofs, rhs)
          ! Other measures may ask for more than a linear solution that is exact to a share of the forces.
          if (all(control%measure /= [BY_FORCES, BY_CHANGE])) system%factored = .false.
          call solve_step(dofs, pattern, constraint, assembly, linear_tolerance(control), rhs, system, dx, status)

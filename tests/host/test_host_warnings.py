@@ -9,6 +9,9 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
 from checking import build, check, finish, root, work  # noqa: E402
 
+sys.path.insert(0, str(root / "common"))
+import tables  # noqa: E402
+
 host = build / "host/mud_host"
 environment = {**os.environ, "OMP_NUM_THREADS": "1"}
 SCENE = f"""&scene name = 'clean' fields = 'u-p_w' gravity = 9.81 /
@@ -106,9 +109,8 @@ def told_of_penetration(gap):
     done = subprocess.run([host, work / "tilted.nml", "--output", work / f"tilted_{gap}"], capture_output=True,
                           text=True, env=environment)
     check(f"tilted block, {gap}: it runs", done.returncode == 0, done.stderr)
-    thrust = (work / f"tilted_{gap}/contact.csv").read_text().splitlines()
     return ([line for line in done.stderr.splitlines() if "penetrated each other" in line],
-            float(thrust[-1].split(",")[thrust[0].split(",").index("face.thrust")]))
+            float(tables.rows(work / f"tilted_{gap}/contact.csv")[-1]["face.thrust"]))
 
 
 told, thrust = told_of_penetration("nodal")
