@@ -5,6 +5,7 @@ import cost
 import numpy as np
 import sensitivity
 import series
+import settings
 from tools import tables
 from tools.bench import number
 from tools.page import Page, Script, Tolerance
@@ -15,13 +16,14 @@ PAGE = Page(
           "choices move, and what the remedy costs",
     kind=("study", "conservation", "regression"),
     input="`indent_s030.nml` (suction 30 kPa, with the remedy) is run; `results/` holds 54 analyses and 189 "
-          "variations, made by `series.py`, `sensitivity.py`, `cost.py`",
+          "variations, made by `series.py`, `sensitivity.py`, `settings.py`, `cost.py`",
     reference="published numbers and curves; balances of momentum and energy; eq. (24) for S_w; the committed analysis "
               "at 30 kPa",
     seconds=45, quick=3, pictures=("fig2_load.png", "fig3_interface.png", "fig4_errors.png", "fig5_displacement.png",
                                    "sensitivity.png"))
 MAKES = (Script("series.py", ("results/*.csv", "results/histories/*.csv"), 600),
          Script("sensitivity.py", ("results/sensitivity.csv",), 18000),
+         Script("settings.py", ("results/settings.csv",), 1200),
          Script("cost.py", ("results/cost.csv",), 600, "valgrind"))
 
 SEATED = Tolerance("the seat is in equilibrium to 1e-8 of all forces; the plate's weight is about 1e-3 of these",
@@ -77,7 +79,8 @@ def check(bench):
 
 def texts(bench):
     """Tables from the committed results."""
-    return {"README.md": {**series.texts(analysis.RESULTS), **cost.texts(analysis.RESULTS)},
+    return {"README.md": {**series.texts(analysis.RESULTS), **settings.texts(analysis.RESULTS),
+                          **cost.texts(analysis.RESULTS)},
             "SENSITIVITY.md": sensitivity.texts(analysis.RESULTS)}
 
 
