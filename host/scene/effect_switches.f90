@@ -12,7 +12,7 @@ module effect_switches
    use namelists, only: set_entry
    use parameter_groups, only: read_parameters
    use scene_types, only: scene_t, NAME_LENGTH, WITH_U, WITH_P_W, WITH_P_C, IS_STATIC, IS_QUASI_STATIC, IS_DYNAMIC, &
-                          FIX_P_W, FIX_P_C, LOAD_WATER, LOAD_AIR
+                          FIX_P_W, FIX_P_C, LOAD_WATER, LOAD_AIR, IS_COUPLED, IS_DRY
    implicit none (type, external)
    private
    public :: list_effects, settle_open_keys, switch, switch_by_hand
@@ -195,7 +195,8 @@ contains
          scene%seepage_inertia = on
       case (OF_P_W)
          if (on) then
-            if (any(scene%regions%permeability_name == '')) why = 'a region has no permeability'
+            if (any(scene%regions%permeability_name == '' .and. scene%regions%drainage == IS_COUPLED)) &
+               why = 'a region has no permeability'
             if (why == '' .and. scene%fields == WITH_U) scene%fields = WITH_P_W
          else
             call drop_field(scene, FIX_P_W, LOAD_WATER)
@@ -206,7 +207,8 @@ contains
          end if
       case (OF_P_C)
          if (on) then
-            if (any(scene%regions%retention_name == '')) why = 'a region has no retention'
+            if (any(scene%regions%retention_name == '' .and. scene%regions%drainage /= IS_DRY)) &
+               why = 'a region has no retention'
             if (scene%fields == WITH_U) why = 'it needs p_w'
             if (why == '') scene%fields = WITH_P_C
          else
