@@ -82,6 +82,7 @@ contains
       law%given_tangent = nint(law%props(property_index('tangent')), c_int)
       law%tangent = max(law%given_tangent, MUD_TANGENT_ELASTIC)
       law%has_retention = .true.
+      law%saturation_is_state = nint(law%props(property_index('hysteresis'))) == 1
       law%exact_tangent = law%tangent == MUD_TANGENT_CONSISTENT
       law%tolerance = law%props(property_index('tolerance'))
       law%given_tolerance = not_the_default('tolerance', law%tolerance)

@@ -54,6 +54,7 @@ module material_point
       integer :: n_state = 0                !< State variables a point.
       logical :: has_energy = .false.       !< The stress has a potential: an elastic law.
       logical :: has_retention = .false.    !< It knows its saturation itself; no curve beside it.
+      logical :: saturation_is_state = .false.   !< It has a history: retention() is where it starts, no more.
       logical :: exact_tangent = .false.    !< d sigma'/d strain is the derivative of the update itself.
       integer :: n_guards = 0
       real(wp) :: tolerance = 0.0_wp        !< Of the stress integration, relative; 0: the law has none.

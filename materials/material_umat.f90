@@ -103,6 +103,7 @@ contains
       if (word_is(UMAT_KEYS, group, 'shear_order', 'kratos')) law%order = KRATOS
       law%total = word_is(UMAT_KEYS, group, 'stress', 'total')
       law%has_retention = law%saturation_at > 0
+      law%saturation_is_state = law%has_retention
       law%exact_tangent = word_is(UMAT_KEYS, group, 'tangent', 'consistent')
       if (law%components == 5) call refuse('components', 'is 4 or 6.')
       call check_place('void_ratio_at', 1)

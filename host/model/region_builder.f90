@@ -102,7 +102,8 @@ contains
       end associate
    end subroutine build_region
 
-   !> A law has a retention of its own, or the curve that the region names: never two.
+   !> A law has a retention of its own, or the curve that the region names: never two. A rate of saturation by suction
+   !> alone needs a curve.
    subroutine give_retention(scene, given, law, fault)
       type(scene_t), intent(in) :: scene
       type(scene_region_t), intent(in) :: given
@@ -116,6 +117,11 @@ contains
          call raise(fault, EXIT_INPUT, place_of(given)//'material '''//trim(given%material_name)//''' has a '// &
                     'retention of its own: say retention = ''material'', and give its parameters there (of &mud: '// &
                     'P_a, Omega, n_x, m_x, S_max, S_min).')
+      else if (law%saturation_is_state .and. .not. scene%full_saturation_rate) then
+         call raise(fault, EXIT_INPUT, place_of(given)//'saturation_rate = ''suction'' of &scene takes the rate of '// &
+                    'saturation from a retention curve, but the saturation of material '''// &
+                    trim(given%material_name)//''' is a state variable (hysteresis = 1 of &mud, saturation_at of '// &
+                    '&umat): set saturation_rate = ''full''.')
       else if (asked .and. .not. law%has_retention) then
          call raise(fault, EXIT_INPUT, place_of(given)//'material '''//trim(given%material_name)//''' has no '// &
                     'retention of its own; name a &retention.')
