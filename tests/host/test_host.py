@@ -35,7 +35,7 @@ MISTAKES = [
      ("retention of its own", "P_a")),
     ("retention of MUD for another law", SUCTION, "material = 'sand'", "material = 'other'", 2,
      ("has no retention of its own",)),
-    ("rate of saturation by a curve where there is none", SUCTION.replace("&scene", "&scene saturation_rate = 'suction'"),
+    ("rate of saturation by a curve if it is a state", SUCTION.replace("&scene", "&scene saturation_rate = 'suction'"),
      "tangent = 3", "tangent = 3\n   hysteresis = 1", 2, ("saturation_rate = 'suction'", "hysteresis = 1", "'full'")),
     ("tangent without slopes", SUCTION, "tangent = 3", "tangent = 0", 2, ("gives no slopes",)),
     ("key of a law", SUCTION, "tangent = 3", "tangnt = 3", 2, ("tangnt", "tangent")),
