@@ -198,12 +198,12 @@ contains
       real(wp), intent(in) :: h
       integer, intent(in) :: i
       real(wp), intent(inout) :: rates(DIRECTIONS, NY, MAX_STAGES)
-      real(wp) :: along_one(NY, i)
+      real(wp) :: along_one(NY, MAX_STAGES)
       integer :: j
 
       do j = 1, DIRECTIONS
-         along_one = rates(j, :, 1:i)
-         call relax(trial%relaxation, h, along_one)
+         along_one(:, 1:i) = rates(j, :, 1:i)
+         call relax(trial%relaxation, h, along_one(:, 1:i))
          rates(j, :, i) = along_one(:, i)
       end do
    end subroutine relax_changes
