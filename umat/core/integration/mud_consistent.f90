@@ -130,8 +130,8 @@ contains
       call change_of_place(inc, trial%time + h, void_ratio_at(inc, trial%time + h), shift + dh, driving, de, dp_c)
       do j = 1, DIRECTIONS
          strain = driving%d_strain(j, :) + (dh(j)/h)*inc%d_strain
-         dr = change_of_slide(par, inc, r0, trial%time, half, deviator(y(j, 1:6))/par%p_min, strain, de_half(j), &
-                              dp_c_half(j))
+         dr = y(j, 1:6)
+         dr = change_of_slide(par, inc, r0, trial%time, half, deviator(dr)/par%p_min, strain, de_half(j), dp_c_half(j))
          y(j, 1:6) = par%p_min*change_of_slide(par, inc, r_half, middle, half, dr, strain, de(j), dp_c(j))
       end do
    end subroutine through_held
@@ -309,7 +309,7 @@ contains
       type(rate_t), intent(in) :: trigger
       type(trial_t), intent(in) :: trial
       type(sensitivity_t), intent(inout) :: sens
-      real(wp) :: p, r(6), dr(DIRECTIONS, 6), old_r_in(DIRECTIONS, 6)
+      real(wp) :: p, r(6), dr(DIRECTIONS, 6), old_r_in(DIRECTIONS, 6), dr_j(6), before_j(6)
       integer :: j
 
       sens%at_rest = .false.
@@ -339,7 +339,9 @@ contains
       ! a fall-back left r_in at r
       if (jump == JUMP_REVERSAL .and. par%memory_rule == RULE_THRESHOLD .and. any(abs(after%r_in - r) > 0.0_wp)) then
          do j = 1, DIRECTIONS
-            sens%r_in(j, :) = change_of_threshold(par, before, r, dr(j, :), sens%r_before(j, :), sens%y(j, 13))
+            dr_j = dr(j, :)
+            before_j = sens%r_before(j, :)
+            sens%r_in(j, :) = change_of_threshold(par, before, r, dr_j, before_j, sens%y(j, 13))
          end do
       end if
       sens%r_before = old_r_in

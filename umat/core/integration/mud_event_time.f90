@@ -102,6 +102,7 @@ contains
       type(driving_t), intent(in) :: driving
       type(changes_t), intent(in) :: changes
       real(wp) :: slopes(DIRECTIONS), rates(DIRECTIONS, NY), dn(DIRECTIONS, 6), dr(DIRECTIONS, 6), p, r(6)
+      real(wp) :: y_j(NY), dr_j(6), strain_j(6)
       integer :: j
 
       call stress_ratio(par, trial%y(1:6), p, r)
@@ -118,13 +119,17 @@ contains
          end if
       case (EVENT_BOUNDS, EVENT_RETURN)
          do j = 1, DIRECTIONS
-            slopes(j) = slope_at_surface(par, inc, event, trial, time, y(j, :), dr(j, :), changes%e(j), changes%p_c(j))
+            ! copies: a row that is passed as it is may be packed into memory of its own
+            y_j = y(j, :)
+            dr_j = dr(j, :)
+            slopes(j) = slope_at_surface(par, inc, event, trial, time, y_j, dr_j, changes%e(j), changes%p_c(j))
          end do
       case default
          call changes_of_rate(par, w, lin, .false., y, dr, changes, rates)
          do j = 1, DIRECTIONS
+            strain_j = driving%d_strain(j, :)
             slopes(j) = change_of_closing_rate(inc, trial, w, lin%e, (rates(j, 1) + rates(j, 2) + rates(j, 3))/3.0_wp, &
-                                               changes%e(j), driving%d_strain(j, :), changes%d_pc(j))
+                                               changes%e(j), strain_j, changes%d_pc(j))
          end do
       end select
    end function slopes_of_event
