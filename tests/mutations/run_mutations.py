@@ -177,7 +177,7 @@ def write_readme(table, rows, suites, seconds):
     lines = [f"# Mutations{' of the contact' if subject is Contact else ''}", "",
              f"`{subject.command}` changes `{subject.sources}` in one place at a time "
              f"(`mutations.py`), builds it and runs {subject.judges}. It is not part of "
-             "`./check`. \"(hangs)\" and \"(stops)\" mean that the suite's program did so.", "",
+             "`./check`. \"(hangs)\" and \"(stops)\" mean that the program of the suite hung or stopped.", "",
              f"Measured: {len(rows)} mutations, {len(rows) - survived} noticed, {survived} survived. At commit "
              f"{commit()}: {len(table)} of them, {suites} suites, {seconds / 60:.0f} minutes on {os.cpu_count()} cores "
              f"with other work.{partly}"

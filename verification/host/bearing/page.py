@@ -8,7 +8,7 @@ from tools.page import Page, Tolerance
 from tools.pictures import COLOURS
 
 PAGE = Page(
-    claim="the limit loads of a smooth and of a rough circular footing on Tresca soil go to the exact ones as the mesh is "
+    claim="the limit loads of a smooth and of a rough circular footing on Tresca soil converge to the exact ones as the mesh is "
           "refined",
     kind="exact",
     input="`scene.nml`: radius 0.5 m, s_u 10 kPa, E 1e5 kPa, Poisson's ratio 0.49, 8 and 12 cells under the footing, graded "

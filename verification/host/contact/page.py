@@ -9,10 +9,10 @@ from tools.bench import number
 from tools.page import Page, Script, Tolerance
 
 PAGE = Page(
-    claim="contacts carry a uniform pressure through meshes that do not match, press as the closed forms of punch, "
-          "sphere and cylinder, hold a deformable plate as its stiff limit "
-          "the rigid one, seal what they touch if drainage follows the contact, and take impacts with their momentum "
-          "and without gain of energy",
+    claim="contacts transmit a uniform pressure through meshes that do not match, reproduce the closed "
+          "forms of punch, sphere and cylinder, give the rigid plate as the stiff limit of a deformable "
+          "one, seal the surface in contact if drainage follows the contact, and conserve momentum in "
+          "impacts without gain of energy",
     kind=("exact", "conservation"),
     input="`patch.nml`, `split.nml`, `punch.nml`, `hertz.nml`, `steel.nml`, `drain.nml`, `bar.nml`, `fall.nml`; "
           "`make_meshes.py` wrote the meshes, finer ones are made as they are "

@@ -12,7 +12,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "contact"))
 import make_meshes  # noqa: E402
 
 PAGE = Page(
-    claim="a corner meets the contact in the step in which it arrives; mean gaps alone let it through and say so",
+    claim="a corner meets the contact in the step in which it arrives; mean gaps alone let it penetrate, with a warning",
     kind="exact",
     input="`scene.nml`: an elastic block of 0.1 by 0.05 m with edges of 50 mm, tilted by 6 degrees, 1 mm above a rigid "
           "floor, falling with 0.3 m/s under gravity; the mesh is made by `page.py`",

@@ -6,8 +6,8 @@ from tools.bench import CASES
 from tools.page import Page, Tolerance
 
 PAGE = Page(
-    claim="the host's u-p_w-p_c equations and the element driver, two programs over the same library, give the same "
-          "test",
+    claim="the host's u-p_w-p_c equations and the element driver, two programs over the same library, give "
+          "the same results of a test",
     kind="code-to-code",
     input="`saturated.nml` (undrained, e 0.735, p' 100 kPa, K_w 1e12, suction held at 0) and `suction.nml` (drained, e "
           "0.8, p_c 100 kPa, net radial stress held, pressures "

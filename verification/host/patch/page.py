@@ -5,8 +5,8 @@ from tools import tables
 from tools.page import Page, Script, Tolerance
 
 PAGE = Page(
-    claim="on an irregular mesh (12 corners, one element turned clockwise in the file) read from Gmsh 4.1, what the "
-          "elements can hold they give to rounding",
+    claim="on an irregular mesh (12 corners, one element turned clockwise in the file) read from Gmsh 4.1, "
+          "fields that the elements can represent are reproduced to rounding",
     kind="exact",
     input="`stress.nml` (axisymmetric and plane strain), `flow.nml` (skeleton held, steady; quadratic and linear "
           "pressures), `geostatic.nml` (MUD under its weight, "

@@ -5,7 +5,7 @@ from tools import tables
 from tools.page import Page, Script, Tolerance
 
 PAGE = Page(
-    claim="with the seepage inertia terms plane waves in unsaturated soil grow, as the equations say; without them "
+    claim="with the seepage inertia terms plane waves in unsaturated soil grow, as the equations predict; without them "
           "they do not at the wave numbers of a mesh",
     kind="exact",
     input="`scene.nml`: half a wave between two impermeable walls, v_z = v sin(k z) at the start, constrained modulus "

@@ -6,7 +6,7 @@ from tools.page import Page, Tolerance
 from tools.pictures import COLOURS
 
 PAGE = Page(
-    claim="a column of loose saturated sand between tied sides, shaken with 2 Hz and 0.1 g, liquefies: r_u goes to 1, the "
+    claim="a column of loose saturated sand between tied sides, shaken with 2 Hz and 0.1 g, liquefies: r_u approaches 1, the "
           "surface comes to rest, and momentum, volume and energy stay in balance, with the settings of the program",
     kind="conservation",
     input="`scene.nml`: 10 m, e 0.88, permeability 1e-11 m2, surcharge 5 kPa, 10 cells, steps of 10 ms; `shake.txt`",

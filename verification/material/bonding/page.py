@@ -5,8 +5,8 @@ from tools.page import Page, Tolerance
 from tools.pictures import COLOURS
 
 PAGE = Page(
-    claim="at constant effective stress suction acts through the bonding variable alone: drying strains nothing, "
-          "wetting on the line collapses along it",
+    claim="at constant effective stress suction acts through the bonding variable alone: drying causes no "
+          "strain, wetting on the compression line causes collapse along it",
     kind="exact",
     input="`drivers/cases/drying_constant_stress` (p' 100 kPa, e 0.8, suction 1 to 500 kPa) and `wetting_on_the_line` "
           "(e 0.8 on the compression line at "

@@ -7,7 +7,7 @@ from tools.page import Page, Tolerance
 from tools.pictures import COLOURS
 
 PAGE = Page(
-    claim="strength in compression, extension and simple shear depends on the Lode angle as M_c g says",
+    claim="strength in compression, extension and simple shear depends on the Lode angle as M_c g",
     kind="exact",
     input="`drivers/cases/lode_compression`, `lode_extension` (constant p' to strain 1), `lode_simple_shear` (constant "
           "volume to shear strain 2); "

@@ -3,7 +3,7 @@
 from tools.page import Page, Script, Tolerance
 
 PAGE = Page(
-    claim="rates and paths of the library are those of an implementation that shares nothing with it",
+    claim="rates and paths of the library are those of an implementation that shares no code with it",
     kind="code-to-code",
     input="200 single evaluations of the rates (`paths_rates.csv`), 29 six-component strain paths (`paths.csv`), "
           "numbers for single paths and states (`printed_numbers.csv`)",

@@ -15,9 +15,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import scenes  # noqa: E402
 
 PAGE = Page(
-    claim="`effects = 'auto'` keeps what matters in ten scenes that a careless choice spoils, and lets go what does not matter in seven",
+    claim="`effects = 'auto'` keeps the effects that matter in ten scenes where a careless choice gives wrong results, and removes effects that do not matter in seven",
     kind=("robustness", "study"),
-    input="`scenes.py`: every scene leaves open what it can; compared are the run that `auto` chooses, the run with "
+    input="`scenes.py`: every scene leaves all possible choices open; compared are the run that `auto` chooses, the run with "
           "everything (`effects_tolerance = 1e-6`), and the careless run (`without`)",
     reference="the run with everything, at its end and on the way, as a share of the range of each answer",
     seconds=90, quick=0, pictures=("effects.png",))

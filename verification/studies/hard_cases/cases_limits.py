@@ -221,7 +221,7 @@ def other_sands(setting):
 
 
 CASES = (
-    Case("tension and back", "little stress", "p' would become negative; the material is held at p_min and let go", BOUND, TRAIL, tension, bounded),
+    Case("tension and back", "little stress", "p' would become negative; the material is held at p_min and released", BOUND, TRAIL, tension, bounded),
     Case("30 cycles through the cut-off", "little stress", "reaching and leaving p_min are events inside increments", BOUND, TRAIL, tension_cycles, bounded),
     Case("reversals at the cut-off", "little stress", "the tangent of a point held at p_min", BOUND, TRAIL, reversals_at_the_cutoff, bounded),
     Case("shear at p' 0.2 kPa", "little stress", "stiffness changes with every substep; stress control", BOUND, TRAIL, low_shear, bounded),
@@ -229,7 +229,7 @@ CASES = (
     Case("tension under suction", "little stress", "bonding at p_min, then wetting there", BOUND, TRAIL, tension_with_suction, bounded),
     Case("static liquefaction", "liquefaction", "p' falls to less than a hundredth without a reversal", BOUND, TRAIL, static_liquefaction, bounded),
     Case("the steady state", "liquefaction", "60 % of shear at constant volume", "p' that of the closed form [%]", 2.0, steady, off_steady),
-    Case("cyclic mobility", "liquefaction", "p' through nothing twice a cycle, stiffness over three decades", BOUND, TRAIL, mobility, bounded),
+    Case("cyclic mobility", "liquefaction", "p' nearly vanishes twice a cycle, stiffness over three decades", BOUND, TRAIL, mobility, bounded),
     Case("50 % of shear", "liquefaction", "far beyond every peak", BOUND, TRAIL, large_shear, bounded),
     Case("wetting to saturation", "suction", "stiffness of bonding is lost, S_w reaches 1 at a kink", BOUND, TRAIL, wetting, bounded),
     Case("drying to 1e5 kPa", "suction", "five decades of suction through the air-entry value", "void ratio constant at constant effective stress [%]", 1e-6,
@@ -238,7 +238,7 @@ CASES = (
          nothing),
     Case("the air-entry value 200 times", "suction", "a kink of S_w crossed in every increment", ANY, 0.0, sharp_retention, nothing),
     Case("wetting at rest", "suction", "no strain, all of the change comes from the bonding, at a high stress ratio", BOUND, TRAIL, wetting_at_rest, bounded,
-         limit="at zero strain nothing but the isotropic mechanism answers to suction, and its weight w is zero from the bounding surface on "
+         limit="at zero strain only the isotropic mechanism responds to suction, and its weight w is zero from the bounding surface on "
                "(docs/theory/material.md 4.4 to 4.7): B = 0, so t = 0, so L = 0, and the stress stays while the surface goes on shrinking",
          proof=("change of the stress while the surface shrinks below it [%]", unmoved, 1e-12)),
     Case("pulses of suction", "suction", "suction changes without strain between increments of strain", BOUND, TRAIL, suction_pulses, bounded),
@@ -249,7 +249,7 @@ CASES = (
     Case("10 % in one increment", "increments", "peak, dilation and critical state inside one update", BOUND, TRAIL, one_increment, bounded),
     Case("one increment or a thousand", "increments", "the substeps have to find what the host did not resolve", "stress of 10 % in one increment against 1000 [%]",
          0.5, off_many, one_or_many),
-    Case("void ratio 0.02 to 4.5", "bounds", "far outside of every sand", BOUND, TRAIL, void_ratio_bounds, bounded),
+    Case("void ratio 0.02 to 4.5", "bounds", "far outside the range of any sand", BOUND, TRAIL, void_ratio_bounds, bounded),
     Case("parameters at their bounds", "bounds", "18 parameters, one at a time, at an end of the range that is accepted", ANY, 0.0, parameters_at_bounds, nothing),
     Case("40 other sands", "bounds", "parameters of no particular sand", ANY, 0.0, other_sands, nothing),
 )

@@ -39,7 +39,7 @@ def level_distance(runs):
 
 
 def reversal_case(size, judge, criterion, allowed):
-    return Case(f"reversals of {size:.0e}", "turns", "a reversal asks whether the memory is reset; at this size the answer hangs on "
+    return Case(f"reversals of {size:.0e}", "turns", "a reversal may reset the memory; at this size the answer depends on "
                 + ("rounding" if size < 1e-8 else "the tolerance" if size < 1e-6 else "the rule"), criterion, allowed,
                 with_reversals(size), judge)
 
@@ -229,7 +229,7 @@ CASES = (
     reversal_case(1e-4, level_overshoot, LOSES, NOISE),
     Case("reversals of 1e-2", "turns", "every leg passes the elastic domain, contraction and dilation in a few increments", BOUND, TRAIL,
          wide_reversals, bounded),
-    Case("noise of 1e-6 along", "turns", "reversals far below what sand feels", LOSES, NOISE, noise_paths(1e-6), level_overshoot),
+    Case("noise of 1e-6 along", "turns", "reversals far below the strain to which sand responds", LOSES, NOISE, noise_paths(1e-6), level_overshoot),
     Case("noise of 5e-5 along", "turns", "reversals of the size of the elastic domain", LOSES, NOISE, noise_paths(5e-5), level_overshoot),
     Case("noise of 1e-5 across", "turns", "the direction of loading turns in every increment and never reverses", LOSES, NOISE,
          noise_paths(1e-5, across=True), level_overshoot),
@@ -237,7 +237,7 @@ CASES = (
          LOSES, NOISE, softening_paths(1e-4), overshoot),
     Case("tiny loops in softening", "turns", "as before, loops inside the elastic domain", "stress that of the uninterrupted path [%]", 1.0,
          softening_paths(1e-5), off_the_clean),
-    Case("nine nested loops", "turns", "the memory has room for four", LOSES, NOISE, nested_paths, level_overshoot),
+    Case("nine nested loops", "turns", "the memory holds four", LOSES, NOISE, nested_paths, level_overshoot),
     Case("1000 symmetric cycles", "cycles", "any bias of the rule adds up", "asymmetry of tau over its range [%]", 0.3,
          symmetric_paths((1e-6, 1e-5, 1e-4, 3e-4), 1000), asymmetry),
     Case("1000 biased cycles", "cycles", "every cycle leaves a little strain, a rule that overshoots leaves none or too much",

@@ -109,12 +109,12 @@ def undrained(pressures, hard, **more):
 
 
 CASES = (
-    HostCase("chatter", CONTACT, "a light plate on a stiff penalty opens and closes every few steps; a scheme that is not dissipative there makes energy", CREATED, 1,
+    HostCase("chatter", CONTACT, "a light plate on a stiff penalty opens and closes every few steps; a scheme that is not dissipative there creates energy", CREATED, 1,
              lambda s: {str(dt): falling(s, penalty=1e8, dt=dt, duration=0.003) for dt in (3e-6, 1e-5, 3e-5)}, created, settlements, BOTH),
     HostCase("lift-off and re-impact", CONTACT, "the plate is thrown off by unsaturated soil, flies, and falls on it again and again", CREATED, 1,
              lambda s: {"": impact(s, duration=0.06, pulse=0.01, force=3)}, created, last_settlement),
     undrained("quadratic", "saturated, sealed, no volume may change: every element is a constraint",
-              limit="as for the column: pore pressures oscillate from node to node, and the run warns of it; `pressures = 'linear'` is the measure"),
+              limit="as for the column: pore pressures oscillate from node to node, and the run warns of it; `pressures = 'linear'` is the remedy"),
     undrained("linear", "as before, with pressures an order below displacements"),
     HostCase("impact at suction 100 kPa", CONTACT, "the paper's analysis breaks down here without its remedy: reloading is far too stiff", CREATED, 1,
              lambda s: {"": impact(s, suction=100, duration=0.03)}, created, settlements),
@@ -122,17 +122,17 @@ CASES = (
              "settlement after 1.5 ms by up to ten times the paper's step against a tenth of it [%]", 5,
              lambda s: {str(x): impact(s, dt=3e-5 * x, duration=0.0015) for x in STEPS}, spread(("1", "10"), "0.1"), settlements),
     HostCase("steps of 3e-3 s", CONTACT, "a hundred times the paper's step: five steps to the peak of the load", CREATED, 1,
-             lambda s: {"": impact(s, dt=3e-3)}, created, settlements, limit="the balance of energy of the first step is off by more than a hundredth of "
-             "the little work done by then; the run says so and stops. The next case shows what it is stopped from"),
+             lambda s: {"": impact(s, dt=3e-3)}, created, settlements, limit="the error of the energy balance in the first step is more than a hundredth of "
+             "the little work done by then; the run stops with an error message. The next case shows the result with a larger limit"),
     HostCase("steps of 3e-3 s, energy alarm at 10 %", CONTACT, "as before, with `created_energy = 0.1`", "settlement against that by steps of 3e-4 s [%]", 10,
              lambda s: {"3e-4": impact(s, duration=0.021), "3e-3": tolerant(impact(s, dt=3e-3, duration=0.021))}, spread(("3e-3",), "3e-4"), settlements),
-    HostCase("penalty 1e5 to 1e10 kN/m3", CONTACT, "a soft penalty is a cushion, a stiff one ill-conditions the matrix and rings",
+    HostCase("penalty 1e5 to 1e10 kN/m3", CONTACT, "a soft penalty is compliant, a stiff one makes the matrix ill-conditioned and oscillates",
              "settlement after 6 ms by 1e8 (the default) and 1e10 against 1e9 [%]", 5,
              lambda s: {f"{x:.0e}": impact(s, penalty=x, duration=0.006) for x in PENALTIES}, spread(("1e+08", "1e+10"), "1e+09"), settlements),
     HostCase("permeability 1e-8 to 1e-14 m2, quadratic pressures", WATER,
              "a layer that drains in the first step is thinner than an element; pressures of the order of displacements violate the inf-sup condition",
              PRESSURE, 10, lambda s: {f"{k:.0e}": column(s, k, "quadratic") for k in PERMEABILITIES}, off_terzaghi, base_pressures, DEFAULT,
-             limit="displacements and pressures of one order have no stable pressures without drainage: `pressures = 'linear'` is the measure"),
+             limit="displacements and pressures of one order have no stable pressures without drainage: `pressures = 'linear'` is the remedy"),
     HostCase("permeability 1e-8 to 1e-14 m2, linear pressures", WATER, "as before, with pressures an order below displacements",
              PRESSURE, 10, lambda s: {f"{k:.0e}": column(s, k, "linear") for k in PERMEABILITIES}, off_terzaghi, base_pressures, DEFAULT),
     footing_case("footing on loose sand", "the tangent of a softening or perfectly plastic soil is nearly singular", void_ratio=0.907),

@@ -189,12 +189,12 @@ def nonsense(folder, setting, quick):
 
 CASES = (
     FileCase("kill and restart at every tenth step", "files are half written, factors of the matrix are gone", "files that are not the same to the last bit", kills),
-    FileCase("full disk, by the size of a file", "every write may fail, the checkpoint's too", "runs without a sentence, or whose continuation is not the same to the last bit",
+    FileCase("full disk, by the size of a file", "every write may fail, that of the checkpoint too", "runs without a message, or whose continuation is not the same to the last bit",
              full_disks),
-    FileCase("full disk, by a small file system", "as before, with what the system itself says of a full disk", "runs as before", mounted),
-    FileCase("damaged checkpoint", "bits turned and ends cut off anywhere in a binary file", "answers that are neither a refusal by one sentence nor undamaged",
+    FileCase("full disk, by a small file system", "as before, with the error that the system reports for a full disk", "runs as before", mounted),
+    FileCase("damaged checkpoint", "bits turned and ends cut off anywhere in a binary file", "answers that are neither a refusal with one message nor undamaged",
              damaged_checkpoints),
-    FileCase("damaged mesh", "cut off anywhere, one character changed, an element that folds over", "answers that are neither a refusal by one sentence nor a mesh",
+    FileCase("damaged mesh", "cut off anywhere, one character changed, an element that folds over", "answers that are neither a refusal with one message nor a mesh",
              damaged_meshes),
-    FileCase("scenes of nonsense", "a grammar of all groups and keys, odd numbers, mistakes of every kind", "crashes, hangs, and refusals without a sentence", nonsense),
+    FileCase("scenes of nonsense", "a grammar of all groups and keys, odd numbers, mistakes of every kind", "crashes, hangs, and refusals without a message", nonsense),
 )

@@ -11,8 +11,8 @@ from point_walk import Walker
 from tools.page import Page, Script, Tolerance
 
 PAGE = Page(
-    claim="with their defaults library and host keep the criterion of every case of the catalogue but those that name a limit, and answer the same after a nudge of 1e-9; "
-          "damaged files and full disks are refused by a sentence, and nothing is lost",
+    claim="with their defaults library and host meet the criterion of every case of the catalogue except those that name a limit, and a nudge of 1e-9 does not change the answer; "
+          "damaged files and full disks are refused with a message, and nothing is lost",
     kind="robustness",
     input="`cases_reversals.py` and `cases_limits.py`: paths of one point, run by `mud_walk`; `host_cases.py` and `host_files.py`: scenes, run by `mud_host`",
     reference="a criterion a case: a bound of the state, a closed form, or the same path without the event; the same path nudged by 1e-9; the same path "

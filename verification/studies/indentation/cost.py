@@ -150,7 +150,7 @@ def sixteen(results):
     rows = [r for r in read_rows(results / "series.csv").values() if r["series"] in ("remedy", "as_published")
             and r["fields"] != "u-p_w"]
     whole = [r["cpu_s"] for r in rows if r["attempts"] == 1]
-    return (f"{len(whole)} of the {len(rows)} analyses of Table 1, those that ran in one go, took "
+    return (f"{len(whole)} of the {len(rows)} analyses of Table 1, those that ran without interruption, took "
             f"{sum(whole) / 60:.1f} min of the processor: "
             f"half of that on two cores that have nothing else to do, two at a time.")
 

@@ -11,9 +11,9 @@ from tools.bench import number
 from tools.page import Page, Script, Tolerance
 
 PAGE = Page(
-    claim="the paper's indentation at eight suctions with and without the remedy against stress overshooting: its "
-          "Table 1 and Figs 3 to 5 beside what is computed here, what its open "
-          "choices move, and what the remedy costs",
+    claim="the paper's indentation at eight suctions with and without the remedy against stress "
+          "overshooting: its Table 1 and Figs 3 to 5 beside the results of this program, the influence of "
+          "its open choices, and the cost of the remedy",
     kind=("study", "conservation", "regression"),
     input="`indent_s030.nml` (suction 30 kPa, with the remedy) is run; `results/` holds 54 analyses and 189 "
           "variations, made by `series.py`, `sensitivity.py`, `settings.py`, `cost.py`",

@@ -157,7 +157,7 @@ def table_1(rows):
                                         "tolerance 1e-3 and with 1e-5. "
                                      "Relative work: rate evaluations of the material with the remedy over those "
                                      "without; unlike CPU "
-                                     "times, which are single runs (-: not in one go), it does not depend on what else "
+                                     "times, which are single runs (-: interrupted), it does not depend on what else "
                                      "the machine does. "
                                      "Iterations include those of rejected steps."]
     for r in ordered(rows):

@@ -9,7 +9,7 @@ from tools.page import Page, Script, Tolerance
 
 PAGE = Page(
     claim="an outer half of the indentation's mesh that is drained, or elastic and drained, has fewer unknowns, smaller "
-          "matrices and less state; what that does to the answers",
+          "matrices and less state; how that changes the results",
     kind=("study", "regression"),
     input="`scene.nml`, the paper's indentation at suction 30 kPa on a mesh of two halves, with five outer halves (`study.py`)",
     reference="the outer half of sand with water and air that flow; for the regression `results.csv`",

@@ -7,7 +7,8 @@ from tools import tables
 from tools.page import Page, Script
 
 PAGE = Page(
-    claim="what accuracy costs with each of the three schemes; their measured orders on smooth paths and across kinks",
+    claim="the cost of accuracy with each of the three schemes; their measured orders on smooth paths and "
+          "across kinks",
     kind=("study", "code-to-code"),
     input="eight paths, each straight part one increment, tolerances 1e-2 to 1e-10 (`work_precision.csv`); fixed "
           "substeps (`orders.csv`): made by `scripts/benchmark`",
