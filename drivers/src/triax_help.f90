@@ -62,7 +62,7 @@ contains
       call print_keys(output_unit, CASE_KEYS, '')
       write (output_unit, '(a)') '   Controls, and the keys of which one ends the stage:'
       do i = 1, size(CONTROL_NAMES)
-         write (output_unit, '(3a)') '      ', CONTROL_NAMES(i), leads_text(i)
+         write (output_unit, '(4a)') '      ', CONTROL_NAMES(i), ' ', leads_text(i)
       end do
    end subroutine print_help
 
