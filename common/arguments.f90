@@ -20,7 +20,8 @@ module arguments
       character(WORD_LENGTH) :: value = ''
    end type option_t
 contains
-   !> The command line of this program; see parse_words.
+   !> The command line of this program; see parse_words. A word that is too long is a fault (EXIT_INPUT). options(:) are
+   !> all that the program knows, any number.
    subroutine read_command_line(options, subject, hint, operand, fault, second)
       type(option_t), intent(inout) :: options(:)
       character(*), intent(in) :: subject, hint
@@ -42,7 +43,8 @@ contains
    end subroutine read_command_line
 
    !> Sorts words into options with their values and one operand. The operand is required unless an option only prints a
-   !> text; where `second` is present, a second operand may follow.
+   !> text; where `second` is present, a second operand may follow. Mistakes are faults (EXIT_INPUT) that name the word
+   !> and the nearest option. words(:) and options(:) of any size; an option that is met is marked in options.
    subroutine parse_words(words, options, subject, hint, operand, fault, second)
       character(*), intent(in) :: words(:)
       type(option_t), intent(inout) :: options(:)
@@ -115,7 +117,7 @@ contains
       place = 0
    end function place_of
 
-   !> Whether the command line has the option of this name.
+   !> Whether the command line has the option of this name. The name must be one of options(:).
    pure logical function option_given(options, name)
       type(option_t), intent(in) :: options(:)
       character(*), intent(in) :: name
@@ -123,7 +125,7 @@ contains
       option_given = options(place_of(options, name))%given
    end function option_given
 
-   !> Value of an option, blank if it is not given.
+   !> Value of an option, blank if it is not given. The name must be one of options(:).
    pure function option_value(options, name) result(value)
       type(option_t), intent(in) :: options(:)
       character(*), intent(in) :: name

@@ -21,7 +21,7 @@ module csv
       type(c_ptr) :: file = c_null_ptr
    end type csv_t
 contains
-   !> A new file; its columns are named in `head`.
+   !> A new file; its columns are named in `head`. A fault (EXIT_OUTPUT) where it cannot be written.
    subroutine new_csv(path, head, table, fault)
       character(*), intent(in) :: path, head
       type(csv_t), intent(out) :: table
@@ -31,7 +31,7 @@ contains
       if (fault%code == 0) call write_line(table, head, fault)
    end subroutine new_csv
 
-   !> A new, empty file; '-' is the standard output.
+   !> A new, empty file; '-' is the standard output. A fault (EXIT_OUTPUT) where it cannot be made.
    subroutine open_csv(path, columns, table, fault)
       character(*), intent(in) :: path
       integer, intent(in) :: columns   !< For which a row has room.
@@ -66,7 +66,7 @@ contains
    end function is_open
 
    !> Checks that the table of an interrupted run exists, is as long as at the checkpoint and can be written; changes
-   !> nothing.
+   !> nothing. Length in bytes. What is wrong is a fault (EXIT_RESTART).
    subroutine check_csv(path, bytes, fault)
       character(*), intent(in) :: path
       integer(int64), intent(in) :: bytes
@@ -82,7 +82,8 @@ contains
                                  'or cannot be written; --output must name the folder of the interrupted run.')
    end subroutine check_csv
 
-   !> Opens a table that was checked and cuts off what follows its first `table%bytes`.
+   !> Opens a table that was checked and cuts off what follows its first `table%bytes`. A fault (EXIT_OUTPUT) where that
+   !> fails.
    subroutine resume_csv(path, head, table, fault)
       character(*), intent(in) :: path, head
       type(csv_t), intent(inout) :: table
@@ -104,7 +105,7 @@ contains
       inquire (file=path, size=bytes)
    end function size_of
 
-   !> The row that was composed in `table%row`, without the blanks at its end.
+   !> The row that was composed in `table%row`, without the blanks at its end. As write_line.
    subroutine write_row(table, fault)
       type(csv_t), intent(inout) :: table
       type(fault_t), intent(inout) :: fault
@@ -112,7 +113,8 @@ contains
       call put_text(table, table%row(:len_trim(table%row))//new_line('a'), fault)
    end subroutine write_row
 
-   !> Writes a text as one line; a fault if it cannot be written.
+   !> Writes a text as one line; a fault if it cannot be written. The fault is EXIT_OUTPUT; after an earlier one nothing
+   !> is written.
    subroutine write_line(table, text, fault)
       type(csv_t), intent(inout) :: table
       character(*), intent(in) :: text
@@ -134,7 +136,7 @@ contains
       end if
    end subroutine put_text
 
-   !> Flushes what was written to the disk.
+   !> Flushes what was written to the disk. A fault (EXIT_OUTPUT) where that fails; not of a pipe.
    subroutine settle_csv(table, fault)
       type(csv_t), intent(inout) :: table
       type(fault_t), intent(inout) :: fault
@@ -147,7 +149,8 @@ contains
       end if
    end subroutine settle_csv
 
-   !> Closes the table. A disk that is full for the last rows may be noticed only here.
+   !> Closes the table. A disk that is full for the last rows may be noticed only here. The fault is EXIT_OUTPUT, an
+   !> earlier one stays; a table that is not open is left alone.
    subroutine close_csv(table, fault)
       type(csv_t), intent(inout) :: table
       type(fault_t), intent(inout) :: fault

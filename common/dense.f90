@@ -28,7 +28,8 @@ module dense
    end interface
 contains
    !> Solves a square system: LU factors of the matrix whose rows are scaled to 1, with partial pivoting. `good` is
-   !> false, and x is zero, for a matrix that is singular or not finite.
+   !> false, and x is zero, for a matrix that is singular or not finite. matrix(n, n), right(n); x in the unit of right
+   !> over that of the matrix. LAPACK's dgetrf and dgetrs; a pivot of a scaled row below 1e-13 counts as zero.
    pure subroutine solve(matrix, right, x, good)
       real(wp), intent(in) :: matrix(:, :), right(:)
       real(wp), intent(out) :: x(size(right))
@@ -56,7 +57,7 @@ contains
       x = b(:, 1)
    end subroutine solve
 
-   !> Outer product a b^T.
+   !> Outer product a b^T. product(i, j) = a(i) b(j), in the product of their units.
    pure function outer(a, b) result(product)
       real(wp), intent(in) :: a(:), b(:)
       real(wp) :: product(size(a), size(b))

@@ -19,6 +19,7 @@ module faults
 
 contains
    !> Sets the exit code and the message of a fault; the message is complete: what, where, value, allowed range, remedy.
+   !> code is one of EXIT_*; an earlier fault is replaced.
    subroutine raise(fault, code, text)
       type(fault_t), intent(inout) :: fault
       integer, intent(in) :: code

@@ -18,6 +18,7 @@ module files
          character(kind=c_char), intent(in) :: path(*), mode(*)
       end function fopen
 
+      !> Writes count items of size bytes; how many were written, fewer after a failure.
       integer(c_size_t) function fwrite(data, size, count, file) bind(c)
          import :: c_ptr, c_size_t
          type(c_ptr), value :: data, file
@@ -35,21 +36,25 @@ module files
          type(c_ptr), value :: file
       end function ferror
 
+      !> Hands what is buffered to the system; 0, or not 0 after a failure.
       integer(c_int) function fflush(file) bind(c)
          import :: c_ptr, c_int
          type(c_ptr), value :: file
       end function fflush
 
+      !> Descriptor of an open file, -1 after a failure.
       integer(c_int) function fileno(file) bind(c)
          import :: c_ptr, c_int
          type(c_ptr), value :: file
       end function fileno
 
+      !> Closes a file; 0, or not 0 where its last bytes could not be written.
       integer(c_int) function fclose(file) bind(c)
          import :: c_ptr, c_int
          type(c_ptr), value :: file
       end function fclose
 
+      !> Waits until a file is on the disk; 0, or -1 after a failure.
       integer(c_int) function fsync(descriptor) bind(c)
          import :: c_int
          integer(c_int), value :: descriptor
@@ -65,6 +70,7 @@ module files
          character(kind=c_char), intent(in) :: path(*)
       end function c_remove
 
+      !> Cuts a file to a length in bytes; 0, or -1 after a failure. path ends with a null character.
       integer(c_int) function truncate(path, length) bind(c)
          import :: c_int, c_char, c_long
          character(kind=c_char), intent(in) :: path(*)
@@ -101,7 +107,8 @@ module files
    end interface
 contains
    !> Replaces a file atomically: a reader finds either the complete old file or the complete new one. The new file gets
-   !> the name only after its data are on the disk. On failure the old file stays.
+   !> the name only after its data are on the disk. On failure the old file stays. good is false then. bytes(:) of any
+   !> size.
    subroutine write_whole(path, bytes, good)
       character(*), intent(in) :: path
       integer(c_int8_t), intent(in), contiguous, target :: bytes(:)
@@ -125,7 +132,8 @@ contains
       end if
    end subroutine write_whole
 
-   !> A whole file as text. Not by a Fortran unit: two threads that read one file would be refused.
+   !> A whole file as text. Not by a Fortran unit: two threads that read one file would be refused. good is false, and
+   !> text is what was read, where that fails.
    subroutine read_whole(path, text, good)
       character(*), intent(in) :: path
       character(:), allocatable, intent(out) :: text
@@ -148,7 +156,8 @@ contains
       if (fclose(file) /= 0) good = .false.
    end subroutine read_whole
 
-   !> Whether write_whole could write a file of that name now; one that is there stays as it is.
+   !> Whether write_whole could write a file of that name now; one that is there stays as it is. False where the folder
+   !> does not exist or is write-protected.
    logical function can_be_written(path) result(good)
       character(*), intent(in) :: path
       character(:), allocatable :: temporary
@@ -162,7 +171,8 @@ contains
       if (c_remove(temporary) /= 0) good = .false.
    end function can_be_written
 
-   !> The standard output as a file of its own: to close it leaves the standard output open.
+   !> The standard output as a file of its own: to close it leaves the standard output open. A null pointer where that
+   !> fails.
    type(c_ptr) function open_output()
       flush (output_unit)
       open_output = fdopen(dup(1_c_int), 'wb'//c_null_char)
@@ -180,7 +190,7 @@ contains
       if (slash > 0) folder = path(:max(1, slash - 1))
    end function folder_of
 
-   !> Makes a folder and those above it; whether it is there then shows with the first file.
+   !> Makes a folder and those above it; whether it is there then shows with the first file. Nothing is reported.
    subroutine make_folder(path)
       character(*), intent(in) :: path
       integer(c_int), parameter :: OPEN_TO_ALL = int(o'777', c_int)   ! less the umask
@@ -214,6 +224,7 @@ contains
    end function bytes_of
 
    !> A file that reaches the limit of its size (ulimit) shall be an error like a full disk, not the end of the program.
+   !> Of the system's signal SIGXFSZ, for the whole process; nothing is reported.
    subroutine limits_are_errors()
       integer(c_int), parameter :: SIGXFSZ = 25                 ! Linux, BSD, macOS
       integer(c_intptr_t), parameter :: IGNORE = 1_c_intptr_t   ! SIG_IGN

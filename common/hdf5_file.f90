@@ -30,18 +30,20 @@ module hdf5_file
       logical :: good = .true.   !< False after the first call that failed.
    end type h5_t
 
-   !> An array as a dataset; its folders are made.
+   !> An array of any size, with one or two dimensions, as a dataset; its folders are made. An empty one is left out.
+   !> file%good is false after a failure. `unit` is that of the values.
    interface put
       module procedure put_real, put_real_2, put_integer, put_integer_2
    end interface put
 
-   !> A dataset into an array, which must have its extent.
+   !> A dataset into an array, which must have its extent, else file%good is false and the values stay. An empty array
+   !> is not read.
    interface get
       module procedure get_real, get_real_2, get_integer
    end interface get
 contains
    !> An empty file in memory. `guarded`: in the format of HDF5 1.8, which has checksums over its structure too; what
-   !> reads it must not be older.
+   !> reads it must not be older. file%good is false after a failure, of this call or any later one.
    subroutine new_file(file, guarded)
       type(h5_t), intent(out) :: file
       logical, intent(in), optional :: guarded
@@ -67,7 +69,8 @@ contains
       call h5pclose_f(access, status)
    end subroutine new_file
 
-   !> From memory to the disk; the file is closed.
+   !> From memory to the disk; the file is closed. good is false where this call or one before it failed; a file of that
+   !> name then stays.
    subroutine write_file(file, path, good)
       type(h5_t), intent(inout) :: file
       character(*), intent(in) :: path
@@ -93,7 +96,7 @@ contains
       if (good) call write_whole(path, image, good)
    end subroutine write_file
 
-   !> Opens an existing file for reading; not good if it is missing, no HDF5 file or truncated.
+   !> Opens an existing file for reading; not good if it is missing, no HDF5 file or truncated. file%good says so.
    subroutine open_file(path, file)
       character(*), intent(in) :: path
       type(h5_t), intent(out) :: file
@@ -197,7 +200,7 @@ contains
       call h5sclose_f(space, status)
    end subroutine put_raw
 
-   !> A fact about the whole file.
+   !> A fact about the whole file. file%good is false after a failure.
    subroutine put_text(file, name, text)
       type(h5_t), intent(inout) :: file
       character(*), intent(in) :: name, text
@@ -227,7 +230,7 @@ contains
       call h5tclose_f(kind, status)
    end subroutine put_attribute
 
-   !> A text of the file, blank if it has none of that name.
+   !> A text of the file, blank if it has none of that name. Cut to TEXT_LENGTH characters.
    function get_text(file, name) result(text)
       type(h5_t), intent(in) :: file
       character(*), intent(in) :: name
@@ -248,7 +251,7 @@ contains
       call h5aclose_f(attribute, status)
    end function get_text
 
-   !> Length of a list, 0 if the file does not contain it.
+   !> Length of a list, 0 if the file does not contain it or its rank is not 1.
    integer function extent_of(file, name) result(length)
       type(h5_t), intent(in) :: file
       character(*), intent(in) :: name

@@ -12,7 +12,8 @@ module hdf5_superblock
    integer, parameter :: COVERED = 44   !< Bytes before the checksum of four.
    integer(int64), parameter :: MASK = 4294967295_int64
 contains
-   !> Puts the checksum into an image whose superblock has version 2; leaves others alone.
+   !> Puts the checksum into an image whose superblock has version 2; leaves others alone. image(:) is the whole file,
+   !> byte by byte; one that is too short is left alone. HDF5 File Format Specification, II.A.
    pure subroutine seal_superblock(image)
       integer(c_int8_t), intent(inout) :: image(:)
       integer(int64) :: sum_of
@@ -32,7 +33,8 @@ contains
       byte = int(merge(value - 256, value, value > 127), c_int8_t)
    end function byte
 
-   !> Hash of some bytes, 0 to 2**32 - 1; arithmetic modulo 2**32.
+   !> Hash of some bytes, 0 to 2**32 - 1; arithmetic modulo 2**32. bytes(:) of any size above 0. Bob Jenkins, lookup3.c,
+   !> hashlittle with the initial value 0.
    pure integer(int64) function lookup3(bytes) result(hash)
       integer(c_int8_t), intent(in) :: bytes(:)
       integer(int64) :: a, b, c

@@ -31,7 +31,8 @@ module key_schema
       integer :: values = 0              !< How many values a list has, 0: any number.
    end type key_t
 contains
-   !> Refuses an unknown group and, in a known one, a missing key and everything that check_entries refuses.
+   !> Refuses an unknown group and, in a known one, a missing key and everything that check_entries refuses. Faults are
+   !> EXIT_INPUT with file and line. keys(:) are those of all groups that the program knows.
    subroutine check_group(keys, group, open, fault)
       type(key_t), intent(in) :: keys(:)
       type(group_t), intent(in) :: group
@@ -55,7 +56,8 @@ contains
       end do
    end subroutine check_group
 
-   !> Refuses unknown keys, and values of the wrong kind, number or range.
+   !> Refuses unknown keys, and values of the wrong kind, number or range. Faults are EXIT_INPUT with file and line;
+   !> ranges in the unit of the key. keys(:) of any size, of one group or several.
    subroutine check_entries(keys, group, open, fault)
       type(key_t), intent(in) :: keys(:)
       type(group_t), intent(in) :: group
@@ -128,7 +130,7 @@ contains
       is_word = index(BETWEEN//trim(words)//BETWEEN, BETWEEN//lower_case(trim(word))//BETWEEN) > 0
    end function is_word
 
-   !> The words of a key, one by one.
+   !> The words of a key, one by one. Empty where the key takes none. words(:) has as many entries as the key has words.
    pure function words_of(key) result(words)
       type(key_t), intent(in) :: key
       character(LONGEST_WORD), allocatable :: words(:)
@@ -145,7 +147,7 @@ contains
       end do
    end function words_of
 
-   !> Place of a key among the keys, case ignored, 0 if there is none of that name.
+   !> Place of a key among the keys, case ignored, 0 if there is none of that name. keys(:) of any size.
    pure integer function place_of(keys, group, name) result(place)
       type(key_t), intent(in) :: keys(:)
       character(*), intent(in) :: group, name
@@ -156,7 +158,7 @@ contains
       place = 0
    end function place_of
 
-   !> Range and meaning of a key, by its name.
+   !> Range and meaning of a key, by its name. There must be such a key. keys(:) of any size.
    pure function describe_key(keys, group, name) result(text)
       type(key_t), intent(in) :: keys(:)
       character(*), intent(in) :: group, name
@@ -165,7 +167,7 @@ contains
       text = described(keys(place_of(keys, group, name)))
    end function describe_key
 
-   !> "from 0.01 to 5: void ratio"
+   !> "from 0.01 to 5: void ratio", the range in the unit of the key.
    pure function described(key) result(text)
       type(key_t), intent(in) :: key
       character(:), allocatable :: text
@@ -199,7 +201,7 @@ contains
       if (given(group, name)) line = group%entries(find_entry(group, name))%line
    end function line_of
 
-   !> A text, or its default.
+   !> A text, or its default. The key must be one of keys(:).
    function text_of(keys, group, name) result(text)
       type(key_t), intent(in) :: keys(:)
       type(group_t), intent(in) :: group
@@ -215,7 +217,7 @@ contains
       end if
    end function text_of
 
-   !> Texts of a list; empty if it is not given.
+   !> Texts of a list; empty if it is not given. texts(:) has as many entries as the list has values.
    function texts_of(group, name) result(texts)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: name
@@ -227,7 +229,8 @@ contains
       if (place > 0) texts = group%entries(place)%values(:group%entries(place)%count)
    end function texts_of
 
-   !> Whether the value of a key (its default where it is not given) is this word; case is ignored.
+   !> Whether the value of a key (its default where it is not given) is this word; case is ignored. The word is in lower
+   !> case, the key one of keys(:).
    logical function word_is(keys, group, name, word)
       type(key_t), intent(in) :: keys(:)
       type(group_t), intent(in) :: group
@@ -236,7 +239,7 @@ contains
       word_is = lower_case(text_of(keys, group, name)) == word
    end function word_is
 
-   !> A number that was checked, or its default; 0 if it has none.
+   !> A number that was checked, or its default; 0 if it has none. In the unit of the key, which must be one of keys(:).
    real(wp) function number_of(keys, group, name)
       type(key_t), intent(in) :: keys(:)
       type(group_t), intent(in) :: group
@@ -246,7 +249,7 @@ contains
       call read_number(text_of(keys, group, name), number_of, good)
    end function number_of
 
-   !> Numbers of a list; empty if it is not given.
+   !> Numbers of a list; empty if it is not given. In the unit of the key; they must have passed check_entries.
    function numbers_of(group, name) result(values)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: name
@@ -276,7 +279,8 @@ contains
       if (place > 0) value = group%entries(place)%values(1)
    end subroutine get_text
 
-   !> A number that was checked; `value` stays where the group has none.
+   !> A number that was checked; `value` stays where the group has none. In the unit of the key; found tells whether the
+   !> group has it.
    subroutine get_number(group, name, value, found)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: name
@@ -289,7 +293,8 @@ contains
       if (found) call read_number(group%entries(place)%values(1), value, found)
    end subroutine get_number
 
-   !> Numbers that were checked, as many as there is room for; `values` stays where the group has none.
+   !> Numbers that were checked, as many as there is room for; `values` stays where the group has none. values(:) of any
+   !> size, in the unit of the key.
    subroutine get_numbers(group, name, values)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: name

@@ -43,7 +43,8 @@ module namelists
    end type word_t
 
 contains
-   !> All groups of a file, in their order.
+   !> All groups of a file, in their order. A file that cannot be read, or a mistake in it, is a fault (EXIT_INPUT) with
+   !> file and line; groups is empty if it cannot be read.
    subroutine read_groups(file, groups, fault)
       character(*), intent(in) :: file
       type(group_t), allocatable, intent(out) :: groups(:)
@@ -60,7 +61,8 @@ contains
       end if
    end subroutine read_groups
 
-   !> All groups of a text of several lines, in their order.
+   !> All groups of a text of several lines, in their order. A mistake is a fault (EXIT_INPUT) with file and line;
+   !> groups has those before it. groups(:) may be empty.
    subroutine groups_of_text(text, file, groups, fault)
       character(*), intent(in) :: text
       character(*), intent(in) :: file   !< What errors call it; its folder is where relative paths begin.
@@ -300,7 +302,7 @@ contains
       place = 0
    end function find_entry
 
-   !> Gives a key one value, in place of those that it had.
+   !> Gives a key one value, in place of those that it had. A key that is new is added; its line is that of the group.
    pure subroutine set_entry(group, key, value)
       type(group_t), intent(inout) :: group
       character(*), intent(in) :: key, value

@@ -6,7 +6,8 @@ module spelling
    private
    public :: nearest_name
 contains
-   !> Place of the name that looks most like a word, the first of equals; 0 if there are no names.
+   !> Place of the name that looks most like a word, the first of equals; 0 if there are no names. Edit distance of
+   !> Levenshtein, case ignored; letters that look alike count half. names(:) of any size, among(:) of the same.
    pure integer function nearest_name(word, names, among) result(best)
       character(*), intent(in) :: word, names(:)
       logical, intent(in), optional :: among(:)   !< Names that count; default: all.

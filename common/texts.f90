@@ -47,7 +47,7 @@ contains
       word_place = merge(0, word_place - 1, next == 0)
    end function word_place
 
-   !> A number with six significant digits and nothing superfluous.
+   !> A number with six significant digits and nothing superfluous. Without a unit; 'not finite' for NaN and infinity.
    pure function short(value) result(text)
       real(wp), intent(in) :: value
       character(:), allocatable :: text
@@ -102,7 +102,8 @@ contains
       text = trim(digits)
    end function whole_64
 
-   !> Reads a decimal number; anything that is not entirely one ('1.2.3', '1e999', 'nan') is refused.
+   !> Reads a decimal number; anything that is not entirely one ('1.2.3', '1e999', 'nan') is refused. value is then 0
+   !> and good false.
    subroutine read_number(text, value, good)
       character(*), intent(in) :: text
       real(wp), intent(out) :: value
@@ -148,7 +149,7 @@ contains
       looks_like_number = index(text(start:mark - 1), '.') == index(text(start:mark - 1), '.', back=.true.)
    end function looks_like_number
 
-   !> Text of a C buffer, up to its terminating null.
+   !> Text of a C buffer, up to its terminating null. Without one, up to the last character that is not blank.
    pure function from_c(buffer) result(text)
       character(*), intent(in) :: buffer
       character(:), allocatable :: text

@@ -15,7 +15,7 @@ contains
       clock = real(ticks, wp)/real(rate, wp)
    end function clock
 
-   !> Adds the time since t0 and starts anew.
+   !> Adds the time since t0 and starts anew. Both in seconds, of clock.
    subroutine lap(total, t0)
       real(wp), intent(inout) :: total, t0
       real(wp) :: now

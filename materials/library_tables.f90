@@ -15,7 +15,7 @@ module library_tables
 
    integer, parameter :: BUFFER = 600
 contains
-   !> Version of the library.
+   !> Version of the library. 'unknown' where the library does not answer.
    function library_version() result(version)
       character(:), allocatable :: version
       character(BUFFER) :: text
@@ -51,7 +51,7 @@ contains
       statev_index = mud_index(MUD_STATEV, trim(name)//c_null_char) + 1
    end function statev_index
 
-   !> Name of the entry of PROPS at a place from 1.
+   !> Name of the entry of PROPS at a place from 1. Empty where there is none.
    function property_name(place) result(text)
       integer, intent(in) :: place
       character(:), allocatable :: text
@@ -59,7 +59,7 @@ contains
       text = table_text(MUD_PROPS, place, MUD_NAME)
    end function property_name
 
-   !> Unit of the entry of PROPS at a place from 1.
+   !> Unit of the entry of PROPS at a place from 1. Empty where there is none.
    function property_unit(place) result(text)
       integer, intent(in) :: place
       character(:), allocatable :: text
@@ -67,7 +67,8 @@ contains
       text = table_text(MUD_PROPS, place, MUD_UNIT)
    end function property_unit
 
-   !> Origin of the entry of PROPS at a place from 1: paper, mended, rebuilt, numerical or ours.
+   !> Origin of the entry of PROPS at a place from 1: paper, mended, rebuilt, numerical or ours. Empty where there is
+   !> none.
    function property_origin(place) result(text)
       integer, intent(in) :: place
       character(:), allocatable :: text
@@ -75,7 +76,7 @@ contains
       text = table_text(MUD_PROPS, place, MUD_ORIGIN)
    end function property_origin
 
-   !> Meaning of the entry of PROPS at a place from 1.
+   !> Meaning of the entry of PROPS at a place from 1. Empty where there is none.
    function property_meaning(place) result(text)
       integer, intent(in) :: place
       character(:), allocatable :: text
@@ -83,7 +84,7 @@ contains
       text = table_text(MUD_PROPS, place, MUD_MEANING)
    end function property_meaning
 
-   !> Name of the entry of STATEV at a place from 1.
+   !> Name of the entry of STATEV at a place from 1. Empty where there is none.
    function statev_name(place) result(text)
       integer, intent(in) :: place
       character(:), allocatable :: text
@@ -91,7 +92,7 @@ contains
       text = table_text(MUD_STATEV, place, MUD_NAME)
    end function statev_name
 
-   !> Unit of the entry of STATEV at a place from 1.
+   !> Unit of the entry of STATEV at a place from 1. Empty where there is none.
    function statev_unit(place) result(text)
       integer, intent(in) :: place
       character(:), allocatable :: text
@@ -110,7 +111,8 @@ contains
       text = from_c(raw)
    end function table_text
 
-   !> The value of a parameter that a word stands for; `good` is false if it knows no such word. Case is ignored.
+   !> The value of a parameter that a word stands for; `good` is false if it knows no such word. Case is ignored. The
+   !> place is from 1; value is 0 where good is false.
    subroutine property_option(place, word, value, good)
       integer, intent(in) :: place
       character(*), intent(in) :: word
@@ -131,7 +133,8 @@ contains
       value = 0.0_wp
    end subroutine property_option
 
-   !> Bounds and default of a parameter, in kPa; zeros if there is none of that place.
+   !> Bounds and default of a parameter, in kPa; zeros if there is none of that place. The place is from 1; units as
+   !> property_unit says.
    subroutine property_range(place, lower, upper, preset)
       integer, intent(in) :: place
       real(wp), intent(out) :: lower, upper, preset
@@ -143,7 +146,8 @@ contains
       end if
    end subroutine property_range
 
-   !> The same in the unit of stress that the p_atm of given PROPS tells.
+   !> The same in the unit of stress that the p_atm of given PROPS tells. props(:) has as many entries as the library
+   !> takes; where it refuses them, those of property_range.
    subroutine range_for(props, place, lower, upper, preset)
       real(wp), intent(in) :: props(:)
       integer, intent(in) :: place

@@ -28,7 +28,8 @@ module material_elastic
       procedure :: saturation
    end type elastic_t
 contains
-   !> The law of a group that was checked against ELASTIC_KEYS.
+   !> The law of a group that was checked against ELASTIC_KEYS. title and fault stay as they are. Young's modulus in
+   !> kPa.
    subroutine new_elastic(group, law, title, fault)
       type(group_t), intent(in) :: group
       class(material_t), allocatable, intent(out) :: law
@@ -41,7 +42,8 @@ contains
                                       number_of(ELASTIC_KEYS, group, 'poisson')))
    end subroutine new_elastic
 
-   !> The law with Young's modulus [kPa] and Poisson's ratio [-]; saturated unless a retention curve is added.
+   !> The law with Young's modulus [kPa] and Poisson's ratio [-]; saturated unless a retention curve is added. Law of
+   !> Hooke; neither number is checked.
    pure function isotropic(young, poisson) result(law)
       real(wp), intent(in) :: young, poisson
       type(elastic_t) :: law

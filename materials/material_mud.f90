@@ -50,7 +50,8 @@ module material_mud
       procedure :: integrate_to
    end type mud_t
 contains
-   !> The law of a group: `file`, and parameters of the library by name.
+   !> The law of a group: `file`, and parameters of the library by name. title becomes the name of the material;
+   !> stresses in the unit of p_atm. A fault (EXIT_INPUT) where the file or a value is wrong; the law is then of no use.
    subroutine new_mud(group, law, title, fault)
       type(group_t), intent(in) :: group
       class(material_t), allocatable, intent(out) :: law

@@ -90,8 +90,8 @@ module material_point
       subroutine initial_state_i(self, stress, suction, void_ratio, state, text)
          import :: material_t, wp
          class(material_t), intent(in) :: self
-         real(wp), intent(inout) :: stress(6)
-         real(wp), intent(in) :: suction, void_ratio
+         real(wp), intent(inout) :: stress(6)            !< [kPa]
+         real(wp), intent(in) :: suction, void_ratio     !< [kPa, -]
          real(wp), intent(inout) :: state(:)   !< n_state
          character(*), intent(out) :: text
       end subroutine initial_state_i
@@ -196,7 +196,7 @@ contains
       allocate (list(0))
    end subroutine no_remarks
 
-   !> Place of a state variable, from 1; 0 if the law has none of that name.
+   !> Place of a state variable, from 1; 0 if the law has none of that name. Case counts.
    pure integer function state_index(law, name) result(place)
       class(material_t), intent(in) :: law
       character(*), intent(in) :: name
@@ -207,7 +207,8 @@ contains
       place = 0
    end function state_index
 
-   !> Void ratio after a volumetric strain, expansion positive: grains keep their volume, strain is natural.
+   !> Void ratio after a volumetric strain, expansion positive: grains keep their volume, strain is natural. Both [-];
+   !> docs/theory/material.md section 1.2, with the other sign of strain.
    pure real(wp) function swollen(e, volumetric_strain)
       real(wp), intent(in) :: e, volumetric_strain
 

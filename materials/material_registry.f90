@@ -58,7 +58,7 @@ contains
       end subroutine add
    end subroutine list_laws
 
-   !> Names of all laws.
+   !> Names of all laws. names(:) has an entry a law, in lower case.
    function law_names() result(names)
       character(12), allocatable :: names(:)
       type(law_t), allocatable :: list(:)
@@ -67,14 +67,14 @@ contains
       names = list%name
    end function law_names
 
-   !> Whether a law has this name.
+   !> Whether a law has this name, which is in lower case.
    logical function is_law(name)
       character(*), intent(in) :: name
 
       is_law = any(law_names() == name)
    end function is_law
 
-   !> Keys of a law, of a group of its name, but for those that all laws have.
+   !> Keys of a law, of a group of its name, but for those that all laws have. There must be such a law.
    function law_keys(name) result(keys)
       character(*), intent(in) :: name
       type(key_t), allocatable :: keys(:)
@@ -84,7 +84,8 @@ contains
       keys = list(findloc(list%name, name, dim=1))%keys
    end function law_keys
 
-   !> The law `name` with what a group gives, whatever the name of the group.
+   !> The law `name` with what a group gives, whatever the name of the group. A fault (EXIT_INPUT) names an unknown law,
+   !> key or value with file and line; law is then not allocated or of no use.
    subroutine new_material(name, group, law, title, fault)
       character(*), intent(in) :: name
       type(group_t), intent(in) :: group

@@ -70,7 +70,8 @@ module material_umat
       procedure :: remarks
    end type umat_t
 contains
-   !> The law of a group that was checked against UMAT_KEYS.
+   !> The law of a group that was checked against UMAT_KEYS. title stays as it is; stresses in the unit of the UMAT. A
+   !> fault (EXIT_INPUT) where values contradict each other or the library cannot be loaded; the law is then of no use.
    subroutine new_umat(group, law, title, fault)
       type(group_t), intent(in) :: group
       class(material_t), allocatable, intent(out) :: law

@@ -21,7 +21,9 @@ module parameter_groups
    character(9), parameter :: TEXT_KEYS(3) = [character(9) :: 'file', 'name', 'reference']
 
 contains
-   !> Fills PROPS from a group. Its `file`, if any, is read first; the group's own values replace those.
+   !> Fills PROPS from a group. Its `file`, if any, is read first; the group's own values replace those. props has as
+   !> many entries as the library, stresses in the unit of p_atm. A fault (EXIT_INPUT) names what is wrong with file and
+   !> line. On a fault props(:) is of no use.
    subroutine read_parameters(group, props, title, doubt, fault)
       type(group_t), intent(in) :: group
       real(wp), allocatable, intent(out) :: props(:)

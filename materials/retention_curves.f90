@@ -24,6 +24,8 @@ module retention_curves
    end type retention_slot_t
 
    abstract interface
+      !> Degree of saturation and its slopes, units as in saturation_t. Nothing is refused, e > 0 is not checked; the
+      !> source of each formula stands with its type.
       pure function at_i(self, p_c, e) result(sat)
          import :: retention_t, saturation_t, wp
          class(retention_t), intent(in) :: self

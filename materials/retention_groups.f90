@@ -31,7 +31,8 @@ module retention_groups
       key_t('retention', 'saturation', 'N', NONE, 0, 1, 'table: degrees of saturation [-]'), &
       key_t('retention', 'file', 't', NONE, 0, 0, 'table: text file with a suction and a saturation a line')]
 contains
-   !> Reads a curve and gives it to a law that has no retention curve of its own.
+   !> Reads a curve and gives it to a law that has no retention curve of its own. Suctions [kPa]. A fault (EXIT_INPUT)
+   !> where the law has its own, or the values contradict each other.
    subroutine give_retention(group, law, fault)
       type(group_t), intent(in) :: group   !< Checked against RETENTION_KEYS.
       class(material_t), intent(inout) :: law
@@ -45,7 +46,8 @@ contains
       call new_retention(group, law%curve, fault)
    end subroutine give_retention
 
-   !> Makes the curve of a group; a fault where its values contradict each other.
+   !> Makes the curve of a group; a fault where its values contradict each other. Suctions [kPa]; the fault is
+   !> EXIT_INPUT with file and line. Laws of retention_curves.
    subroutine new_retention(group, curve, fault)
       type(group_t), intent(in) :: group   !< Checked against RETENTION_KEYS.
       class(retention_t), allocatable, intent(out) :: curve

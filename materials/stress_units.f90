@@ -20,7 +20,8 @@ module stress_units
    !> A p_atm this close to an atmosphere is one, so that 100 kPa is kPa.
    real(wp), parameter :: NEAR = 0.05_wp
 contains
-   !> The unit in which an atmosphere is p_atm; one without a name where it is none of the known.
+   !> The unit in which an atmosphere is p_atm; one without a name where it is none of the known. Within 5 % of 101.325
+   !> kPa; otherwise the name is 'units' and the factor p_atm/101.325. p_atm > 0 is not checked.
    pure type(stress_unit_t) function unit_of_atmosphere(p_atm) result(unit)
       real(wp), intent(in) :: p_atm
       integer :: i
@@ -32,7 +33,7 @@ contains
       unit = stress_unit_t('units', p_atm/ATMOSPHERE)
    end function unit_of_atmosphere
 
-   !> The unit of a name of UNIT_NAMES; a factor of 0 where there is none.
+   !> The unit of a name of UNIT_NAMES; a factor of 0 where there is none. Case counts.
    pure type(stress_unit_t) function unit_named(name) result(unit)
       character(*), intent(in) :: name
       integer :: i
@@ -44,7 +45,7 @@ contains
       unit = stress_unit_t('', 0.0_wp)
    end function unit_named
 
-   !> A text that says kPa, said in the unit.
+   !> A text that says kPa, said in the unit. The first kPa alone; a text without one stays. No number is converted.
    pure function in_unit(text, unit) result(said)
       character(*), intent(in) :: text
       type(stress_unit_t), intent(in) :: unit

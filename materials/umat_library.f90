@@ -13,7 +13,8 @@ module umat_library
    integer, parameter :: LONGEST_MESSAGE = 400
 
    abstract interface
-      !> Calling convention of gfortran: every argument by its address, the length of CMNAME after the last one.
+      !> Calling convention of gfortran: every argument by its address, the length of CMNAME after the last one. Units
+      !> are the UMAT's own; tension positive, engineering shear, NTENS components.
       subroutine umat_i(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, time, &
                         dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, coords, &
                         drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, kstep, kinc, &
@@ -29,7 +30,8 @@ module umat_library
       end subroutine umat_i
    end interface
 contains
-   !> The procedure of a library, which stays loaded as long as the program runs.
+   !> The procedure of a library, which stays loaded as long as the program runs. A fault (EXIT_INPUT), and a null
+   !> pointer, where the library cannot be loaded or has no such symbol.
    subroutine load_umat(path, symbol, umat, fault)
       character(*), intent(in) :: path     !< Without a slash: looked up where the system keeps libraries.
       character(*), intent(in) :: symbol

@@ -20,7 +20,7 @@ module hdf5_file
       module procedure get_real, get_real_2, get_integer
    end interface get
 contains
-   !> Fails: there is no HDF5.
+   !> Fails, file%good is false: there is no HDF5.
    subroutine new_file(file, guarded)
       type(h5_t), intent(out) :: file
       logical, intent(in), optional :: guarded
@@ -28,7 +28,7 @@ contains
       file%good = present(guarded) .and. .false.
    end subroutine new_file
 
-   !> Fails: there is no HDF5.
+   !> Fails, good is false: there is no HDF5.
    subroutine write_file(file, path, good)
       type(h5_t), intent(inout) :: file
       character(*), intent(in) :: path
@@ -37,7 +37,7 @@ contains
       good = file%good .and. len(path) < 0
    end subroutine write_file
 
-   !> Fails: there is no HDF5.
+   !> Fails, file%good is false: there is no HDF5.
    subroutine open_file(path, file)
       character(*), intent(in) :: path
       type(h5_t), intent(out) :: file
@@ -84,7 +84,7 @@ contains
       file%good = len(name) + len(unit) + len(meaning) + size(values) < 0
    end subroutine put_integer_2
 
-   !> Fails: there is no HDF5.
+   !> Fails, file%good is false: there is no HDF5.
    subroutine put_text(file, name, text)
       type(h5_t), intent(inout) :: file
       character(*), intent(in) :: name, text

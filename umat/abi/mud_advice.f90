@@ -12,6 +12,7 @@ module mud_advice
    integer, parameter :: ADVICE_LENGTH = 640
 contains
    !> Names the entries of allowed PROPS that suggest another unit of stress than p_atm does; empty if there are none.
+   !> Stresses in the unit of p_atm; PROPS must have passed read_params. Usual ranges of mud_units.
    pure function advice_on(props) result(text)
       real(wp), intent(in) :: props(NPROPS)
       character(ADVICE_LENGTH) :: text

@@ -35,7 +35,9 @@ module mud_arguments
       real(wp) :: predef = 0.0_wp             !< What PREDEF(1) says [kPa].
    end type suction_t
 contains
-   !> NULL pointers, NTENS, and counts that would make the arrays unreadable.
+   !> NULL pointers, NTENS, and counts that would make the arrays unreadable. MUD_NULL_ARGUMENT with the place in
+   !> ARGUMENT_NAMES, MUD_BAD_NTENS (NTENS neither 6 nor 4, NDI not 3), MUD_BAD_NPROPS (below 1), MUD_BAD_NSTATV (too
+   !> small).
    subroutine check_arguments(stress, statev, dstran, ndi, ntens, nstatv_, props, nprops_, status)
       type(c_ptr), intent(in) :: stress, statev, dstran, ndi, ntens, nstatv_, props, nprops_
       type(mud_status_t), intent(out) :: status
@@ -66,7 +68,7 @@ contains
       if (n < NSTATV) status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n, wp), real(NSTATV, wp), huge(1.0_wp))
    end subroutine check_arguments
 
-   !> True of a STATEV that has been initialised, by whatever layout.
+   !> True of a STATEV that has been initialised, by whatever layout. A layout that is not finite is no past.
    pure logical function has_past(statev)
       real(wp), intent(in) :: statev(NSTATV)
 
@@ -75,7 +77,8 @@ contains
    end function has_past
 
    !> DROT as a matrix. None where it is NULL or zero, and where the point has no past that could be rotated: hosts
-   !> without finite rotations pass memory that was never set. Anything else that is no rotation is refused.
+   !> without finite rotations pass memory that was never set. Anything else that is no rotation is refused. Its status
+   !> is MUD_BAD_INPUT on ON_ROTATION; entries [-], orthogonality to a tolerance.
    subroutine read_rotation(drot, past, rotation, status)
       type(c_ptr), intent(in) :: drot
       logical, intent(in) :: past
@@ -112,7 +115,8 @@ contains
                     + a(1, 3)*(a(2, 1)*a(3, 2) - a(2, 2)*a(3, 1))
    end function determinant
 
-   !> True if there is something to rotate: a rotation that is not exactly none, and numbers.
+   !> True if there is something to rotate: a rotation that is not exactly none, and numbers. False for a STATEV that is
+   !> not finite: the update refuses it.
    pure logical function rotates(rotation, statev)
       real(wp), intent(in) :: rotation(3, 3), statev(NSTATV)
 
@@ -131,7 +135,9 @@ contains
    end function unit_matrix
 
    !> Suction and its change. The degree of saturation may not jump between two increments, so the suction that STATEV
-   !> holds is the start where PREDEF is NULL, where it was never set (CalculiX) and where it says otherwise.
+   !> holds is the start where PREDEF is NULL, where it was never set (CalculiX) and where it says otherwise. In the
+   !> unit of p_atm; props(:) of any size, of which p_atm counts. Nothing is refused: a suction that is not finite or
+   !> too large is handed on as it is.
    type(suction_t) function read_suction(predef, dpred, pnewdt, statev, props) result(suction)
       type(c_ptr), intent(in) :: predef, dpred, pnewdt
       real(wp), intent(in) :: statev(NSTATV), props(:)
@@ -167,7 +173,8 @@ contains
       enters_as_calculix = abs(real_at(pnewdt) - PNEWDT_OF_CALCULIX) <= 0.0_wp
    end function enters_as_calculix
 
-   !> Order in which a host has the components that MUD has as 11, 22, 33, 12, 13, 23. It is its own inverse.
+   !> Order in which a host has the components that MUD has as 11, 22, 33, 12, 13, 23. It is its own inverse. props(:)
+   !> of any size; the order of MUD where the size or shear_order is not good.
    pure function component_order(props) result(order)
       real(wp), intent(in) :: props(:)
       integer :: order(6)
@@ -178,7 +185,7 @@ contains
       if (nint(min(max(props(P_SHEAR_ORDER), 0.0_wp), 1.0_wp)) == 1) order = [1, 2, 3, 4, 6, 5]
    end function component_order
 
-   !> First number of an optional array, 0 where the host gives none.
+   !> First number of an optional array, 0 where the host gives none. The pointer is NULL or points to an int of C.
    integer function integer_at(pointer)
       type(c_ptr), intent(in) :: pointer
       integer(c_int), pointer :: value
@@ -189,7 +196,7 @@ contains
       integer_at = value
    end function integer_at
 
-   !> The same of a real array.
+   !> The same of a real array. The pointer is NULL or points to a double of C.
    real(wp) function real_at(pointer)
       type(c_ptr), intent(in) :: pointer
       real(c_double), pointer :: value

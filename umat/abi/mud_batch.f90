@@ -23,7 +23,10 @@ module mud_batch
       real(c_double) :: pnewdt = 1.0_wp, rates = 0.0_wp, substeps = 0.0_wp
    end type summary_t
 contains
-   !> n points of one material over contiguous arrays, each point as in mud_update; see mud.h.
+   !> n points of one material over contiguous arrays, each point as in mud_update; see mud.h. Tension positive,
+   !> engineering shear, stress in the unit of p_atm. Returns the number of failed points, their codes are in
+   !> status_out, or a negative code where nothing was done: MUD_NULL_ARGUMENT, MUD_BAD_NSTATV, MUD_BAD_OPTION (n or
+   !> tangent below 0) or that of read_params.
    integer(c_int) function mud_update_batch(props, n_props, n, stress0, statev0, n_statev, dstrain, suction0, &
            dsuction, tangent, threads, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status_out, &
            reports) bind(c, name='mud_update_batch')
@@ -46,7 +49,7 @@ contains
          reports, c_null_ptr, mud_update_batch)
    end function mud_update_batch
 
-   !> The same for a prepared material.
+   !> The same for a prepared material. MUD_NOT_PREPARED where the storage is no material.
    integer(c_int) function mud_update_batch_prepared(prepared, n, stress0, statev0, n_statev, dstrain, suction0, &
            dsuction, tangent, threads, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status_out, &
            reports) bind(c, name='mud_update_batch_prepared')
@@ -59,7 +62,8 @@ contains
          reports, c_null_ptr)
    end function mud_update_batch_prepared
 
-   !> The same for the points of a list, with a summary.
+   !> The same for the points of a list, with a summary. MUD_NOT_PREPARED where the storage is no material,
+   !> MUD_BAD_OPTION for a negative number in the list.
    integer(c_int) function mud_update_list(prepared, n, points, stress0, statev0, n_statev, dstrain, suction0, &
            dsuction, tangent, threads, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status_out, &
            reports, summary) bind(c, name='mud_update_list')
@@ -78,7 +82,8 @@ contains
          reports, summary, mud_update_list)
    end function mud_update_list
 
-   !> Slopes with which the points of a list go on; see kernel_tangent.
+   !> Slopes with which the points of a list go on; see kernel_tangent. d sigma'/d strain in the unit of p_atm
+   !> (engineering shear), d sigma'/d p_c [-], d S_w/d strain [-], d S_w/d p_c [1/unit]. Returns as mud_update_list.
    integer(c_int) function mud_tangent_list(prepared, n, points, stress, statev, n_statev, direction, suction, &
            dsuction, threads, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status_out, summary) &
            bind(c, name='mud_tangent_list')

@@ -17,7 +17,9 @@ module mud_batch_start
    public :: mud_init_batch, mud_effective_stress, mud_total_stress, mud_total_blocks
 
 contains
-   !> Fills STATEV of n points. A point that fails keeps its stress and STATEV.
+   !> Fills STATEV of n points. A point that fails keeps its stress and STATEV. Tension positive, stress and suction in
+   !> the unit of p_atm, void ratio [-]. Returns the number of failed points, their codes are in status_out, or a
+   !> negative code where nothing was done; see mud.h.
    integer(c_int) function mud_init_batch(prepared, n, points, stress, suction, void_ratio, statev, n_statev, lifted, &
            status_out) bind(c, name='mud_init_batch')
       type(c_ptr), value :: prepared, points, stress, suction, void_ratio, statev, lifted, status_out
@@ -68,7 +70,8 @@ contains
       if (all(is_finite(before))) is_lifted = any(abs(after - before) > 0.0_wp)
    end function is_lifted
 
-   !> sigma' = sigma + (p_a - S_w p_c) I of n points; effective may be total.
+   !> sigma' = sigma + (p_a - S_w p_c) I of n points; effective may be total. Tension positive, one unit of stress for
+   !> all, S_w [-]; MUD_BAD_OPTION for n < 0, MUD_NULL_ARGUMENT. docs/theory/material.md section 1.1.
    integer(c_int) function mud_effective_stress(n, total, air_pressure, s_w, suction, effective) &
       bind(c, name='mud_effective_stress')
       integer(c_int), value :: n
@@ -83,7 +86,8 @@ contains
       end do
    end function mud_effective_stress
 
-   !> sigma = sigma' - (p_a - S_w p_c) I of n points; total may be effective.
+   !> sigma = sigma' - (p_a - S_w p_c) I of n points; total may be effective. Tension positive, one unit of stress for
+   !> all, S_w [-]; MUD_BAD_OPTION for n < 0, MUD_NULL_ARGUMENT. docs/theory/material.md section 1.1.
    integer(c_int) function mud_total_stress(n, effective, air_pressure, s_w, suction, total) &
       bind(c, name='mud_total_stress')
       integer(c_int), value :: n
@@ -118,7 +122,8 @@ contains
       if (c_associated(air_pressure)) call c_f_pointer(air_pressure, air, [n])
    end subroutine find_stresses
 
-   !> Slopes of effective stress become those of total stress, in place; either may be NULL.
+   !> Slopes of effective stress become those of total stress, in place; either may be NULL. Units as in total_blocks of
+   !> mud_total; MUD_BAD_OPTION for n < 0, MUD_NULL_ARGUMENT where S_w, suction or the slopes of S_w are missing.
    integer(c_int) function mud_total_blocks(n, s_w, suction, dsw_deps, dsw_dpc, dsig_deps, dsig_dpc) &
       bind(c, name='mud_total_blocks')
       integer(c_int), value :: n

@@ -32,10 +32,12 @@ module mud_c_api
                          FIELD_INITIAL = 6, FIELD_ROTATION = 7, FIELD_EVOLUTION = 8
    real(wp), parameter :: SMALLEST_FACTOR = 1.0e-12_wp   !< Between two units of stress [-].
 contains
+   !> Version of the C interface, MUD_ABI_VERSION of mud.h.
    pure integer(c_int) function mud_abi_version() bind(c, name='mud_abi_version')
       mud_abi_version = ABI_VERSION
    end function mud_abi_version
 
+   !> Version of the library as text; always MUD_OK.
    integer(c_int) function mud_version(text, len) bind(c, name='mud_version')
       type(c_ptr), value :: text
       integer(c_int), value :: len
@@ -44,6 +46,7 @@ contains
       mud_version = MUD_OK
    end function mud_version
 
+   !> Number of entries of PROPS or STATEV; MUD_BAD_OPTION for another list.
    pure integer(c_int) function mud_count(list) bind(c, name='mud_count')
       integer(c_int), intent(in), value :: list
 
@@ -57,6 +60,7 @@ contains
       end select
    end function mud_count
 
+   !> Index of a name from 0, case ignored; -1 where there is no such name or list, or no name.
    integer(c_int) function mud_index(list, name) bind(c, name='mud_index')
       integer(c_int), value :: list
       type(c_ptr), value :: name
@@ -77,6 +81,8 @@ contains
       if (list == LIST_STATEV) mud_index = statev_index(word) - 1
    end function mud_index
 
+   !> A field of an entry, index from 0; MUD_BAD_OPTION for a list, index or field that is unknown. Fields of STATEV
+   !> alone are empty for PROPS.
    integer(c_int) function mud_text(list, index, field, text, len) bind(c, name='mud_text')
       integer(c_int), value :: list, index, field, len
       type(c_ptr), value :: text
@@ -129,7 +135,8 @@ contains
       end if
    end function mud_text
 
-   !> The number-th value, from 0, of a parameter that takes words, and its word.
+   !> The number-th value, from 0, of a parameter that takes words, and its word. MUD_BAD_OPTION where there is none.
+   !> index from 0, value [-].
    integer(c_int) function mud_option(index, number, value, word, len) bind(c, name='mud_option')
       integer(c_int), value :: index, number, len
       type(c_ptr), value :: value, word
@@ -148,7 +155,8 @@ contains
       end do
    end function mud_option
 
-   !> Bounds and default of a parameter where p_atm is an atmosphere in kPa; state variables have none.
+   !> Bounds and default of a parameter where p_atm is an atmosphere in kPa; state variables have none. index from 0;
+   !> units as MUD_UNIT says, stresses in kPa. MUD_BAD_OPTION for state variables and an unknown index.
    integer(c_int) function mud_bounds(list, index, lower, upper, preset) bind(c, name='mud_bounds')
       integer(c_int), value :: list, index
       type(c_ptr), value :: lower, upper, preset
@@ -161,7 +169,8 @@ contains
       mud_bounds = MUD_OK
    end function mud_bounds
 
-   !> The same in the unit of stress of a set of PROPS.
+   !> The same in the unit of stress of a set of PROPS. MUD_NULL_ARGUMENT without props, MUD_BAD_NPROPS, MUD_BAD_OPTION
+   !> for an unknown index; PROPS are not checked.
    integer(c_int) function mud_bounds_for(props, n_props, index, lower, upper, preset) bind(c, name='mud_bounds_for')
       type(c_ptr), value :: props, lower, upper, preset
       integer(c_int), value :: n_props, index
@@ -182,7 +191,9 @@ contains
       mud_bounds_for = MUD_OK
    end function mud_bounds_for
 
-   !> The same material in another unit of stress. On an error PROPS are untouched.
+   !> The same material in another unit of stress. On an error PROPS are untouched. `factor` of the new unit make one of
+   !> the present. MUD_NULL_ARGUMENT, MUD_BAD_INPUT for a factor outside 1e-12 to 1e12, else what read_params says of
+   !> the PROPS before or after.
    integer(c_int) function mud_convert_props(props, n_props, factor) bind(c, name='mud_convert_props')
       type(c_ptr), value :: props
       integer(c_int), value :: n_props
@@ -207,6 +218,7 @@ contains
       mud_convert_props = status%code
    end function mud_convert_props
 
+   !> Every default of the registry, stresses in kPa. MUD_NULL_ARGUMENT, or MUD_BAD_NPROPS for a wrong number.
    integer(c_int) function mud_default_props(props, n_props) bind(c, name='mud_default_props')
       type(c_ptr), value :: props
       integer(c_int), value :: n_props
@@ -223,6 +235,8 @@ contains
       mud_default_props = MUD_OK
    end function mud_default_props
 
+   !> Status of PROPS in the unit of p_atm and a sentence: the first fault, 'no error', or a warning where units seem
+   !> mixed. Codes of read_params and check_curves, MUD_NULL_ARGUMENT.
    integer(c_int) function mud_validate_props(props, n_props, text, len) bind(c, name='mud_validate_props')
       type(c_ptr), value :: props, text
       integer(c_int), value :: n_props, len
@@ -246,6 +260,8 @@ contains
       call put(advice, text, len)
    end function mud_validate_props
 
+   !> Initialises a point, as kernel_init: tension positive, stress and suction in the unit of p_atm, void ratio [-].
+   !> MUD_NULL_ARGUMENT, or the code of kernel_init; on an error nothing but text is written.
    integer(c_int) function mud_init_state(props, n_props, stress, suction, void_ratio, statev, n_statev, text, len) &
       bind(c, name='mud_init_state')
       type(c_ptr), value :: props, stress, statev, text
@@ -266,7 +282,8 @@ contains
       call put(report_text(report), text, len)
    end function mud_init_state
 
-   !> Runs mud_update and reports every substep that it tries; see mud.h.
+   !> Runs mud_update and reports every substep that it tries; see mud.h. Its rows have the stress tension positive.
+   !> MUD_NULL_ARGUMENT, MUD_BAD_OPTION for tangent < 0, first < 1 or n_rows < 0, else the status of the update.
    integer(c_int) function mud_trace_increment(props, n_props, stress0, statev0, n_statev, dstrain, suction0, &
            dsuction, tangent, first, rows, n_rows, attempts, report_out) bind(c, name='mud_trace_increment')
       type(c_ptr), value :: props, stress0, statev0, dstrain, rows, attempts, report_out
@@ -311,6 +328,7 @@ contains
       mud_trace_increment = report%status
    end function mud_trace_increment
 
+   !> A sentence for a code, also for one that is unknown; always MUD_OK.
    integer(c_int) function mud_status_text(code, text, len) bind(c, name='mud_status_text')
       integer(c_int), value :: code, len
       type(c_ptr), value :: text
@@ -319,6 +337,7 @@ contains
       mud_status_text = MUD_OK
    end function mud_status_text
 
+   !> A sentence for a report; MUD_NULL_ARGUMENT without one.
    integer(c_int) function mud_message(report_in, text, len) bind(c, name='mud_message')
       type(c_ptr), value :: report_in, text
       integer(c_int), value :: len

@@ -41,7 +41,9 @@ module mud_kernel
       logical :: has_tangent
    end type output_t
 contains
-   !> Initialises a point. stress and statev are written on success only.
+   !> Initialises a point. stress and statev are written on success only. Tension positive, stress and suction in the
+   !> unit of p_atm, void ratio [-]; statev(:) of at least NSTATV. Codes of read_params, else those of kernel_begin.
+   !> props(:) as read_params takes them.
    pure subroutine kernel_init(props, stress, suction, void_ratio, statev, report)
       real(wp), intent(in), contiguous :: props(:)
       real(wp), intent(inout) :: stress(6)     !< Lifted to p_min if its mean is below [kPa].
@@ -59,7 +61,8 @@ contains
       end if
    end subroutine kernel_init
 
-   !> The same for checked parameters.
+   !> The same for checked parameters. statev(:) has at least NSTATV entries, else MUD_BAD_NSTATV; otherwise the codes
+   !> of initial_state and check_curves.
    pure subroutine kernel_begin(par, stress, suction, void_ratio, statev, report)
       type(params_t), intent(in) :: par
       real(wp), intent(inout) :: stress(6)
@@ -78,7 +81,8 @@ contains
       statev(1:NSTATV) = packed
    end subroutine kernel_begin
 
-   !> One increment of a material as PROPS give it. On failure output is undefined.
+   !> One increment of a material as PROPS give it. On failure output is undefined. Arguments as in kernel_point. Codes
+   !> of read_params, else those of kernel_point. props(:) as read_params takes them, statev(:) of at least NSTATV.
    pure subroutine kernel_update(props, stress, statev, d_strain, suction, d_suction, tangent, output, report, trace)
       real(wp), intent(in), contiguous :: props(:)
       real(wp), intent(in) :: stress(6), d_strain(6), suction, d_suction
@@ -99,7 +103,9 @@ contains
       end if
    end subroutine kernel_update
 
-   !> The same for checked parameters.
+   !> The same for checked parameters. Tension positive; statev(:) of at least NSTATV entries, else MUD_BAD_NSTATV.
+   !> MUD_BAD_OPTION for an unknown tangent, codes of unpack_state or initial_state and of update_point. On failure
+   !> output is undefined.
    pure subroutine kernel_point(par, stress, statev, d_strain, suction, d_suction, tangent, output, report, trace)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: stress(6)       !< sigma' [kPa]
@@ -134,6 +140,8 @@ contains
 
    !> Slopes with which a state goes on in a direction of strain and suction of any length. No direction: that in which
    !> the state strained last, as far as its elastic domain remembers it. Only the blocks of output mean something.
+   !> Tension positive, stress in the unit of p_atm, statev(:) of at least NSTATV. MUD_BAD_INPUT for a direction that is
+   !> not finite, else the codes of kernel_point. docs/theory/integration.md sections 5.2 and 5.4.
    pure subroutine kernel_tangent(par, stress, statev, direction, suction, d_suction, output, report)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: stress(6)
@@ -163,7 +171,7 @@ contains
       end if
    end subroutine kernel_tangent
 
-   !> Rotates every tensor of STATEV by DROT, as Abaqus asks for.
+   !> Rotates every tensor of STATEV by DROT, as Abaqus asks for. That drot is a rotation is not checked.
    pure subroutine rotate_statev(drot, statev)
       real(wp), intent(in) :: drot(3, 3)
       real(wp), intent(inout) :: statev(NSTATV)
@@ -176,7 +184,7 @@ contains
       end do
    end subroutine rotate_statev
 
-   !> Report of a call that failed before it began.
+   !> Report of a call that failed before it began. Nothing was integrated: reached is 0.
    pure function failed_report(status) result(report)
       type(mud_status_t), intent(in) :: status
       type(report_t) :: report
@@ -211,7 +219,7 @@ contains
       end if
    end subroutine read_state
 
-   !> All of STATEV at once: its length is known.
+   !> All of STATEV at once: its length is known. Units as in mud_registry.
    pure subroutine copy_statev(from, to)
       real(wp), intent(in) :: from(NSTATV)
       real(wp), intent(out) :: to(NSTATV)

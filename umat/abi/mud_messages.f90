@@ -16,7 +16,7 @@ module mud_messages
    integer, parameter :: MESSAGE_LENGTH = 320
    character(2), parameter :: COMPONENT(6) = ['11', '22', '33', '12', '13', '23']
 contains
-   !> What a code means and what to do.
+   !> What a code means and what to do. An unknown code has a sentence too.
    pure function status_text(code) result(text)
       integer, intent(in) :: code
       character(MESSAGE_LENGTH) :: text
@@ -63,7 +63,8 @@ contains
       end select
    end function status_text
 
-   !> The same with the place, the value and the allowed range that a report carries.
+   !> The same with the place, the value and the allowed range that a report carries. Values in the unit that the report
+   !> has; nothing is refused.
    pure function report_text(report) result(text)
       type(report_t), intent(in) :: report
       character(MESSAGE_LENGTH) :: text
@@ -131,7 +132,7 @@ contains
    end function rotation_text
 
    !> A name for this kind of failure, fit for a file: the code in words, with the parameter, state variable or
-   !> component.
+   !> component. An unknown code has a name too.
    pure function failure_name(report) result(name)
       type(report_t), intent(in) :: report
       character(60) :: name
@@ -220,7 +221,8 @@ contains
       text = ', allowed '//trim(lower)//' to '//trim(upper)
    end function span
 
-   !> A number as a person would write it.
+   !> A number as a person would write it. Without a unit; 'not finite' for NaN and infinity, 'infinity' for a bound
+   !> that is none.
    pure function number(value) result(text)
       real(wp), intent(in) :: value
       character(16) :: text

@@ -49,60 +49,72 @@ module mud_mfront
                                              state1(:), k(:)
    end type point_t
 contains
+   !> Effective stress, 3D: one answer to K(1), strain to stress in Mandel's notation, stress in the unit of p_atm.
+   !> Returns 1, or -1 with the message and the factor on the time step alone written.
    integer(c_int) function mechanical_3d(view) bind(c, name='MUD_Tridimensional')
       type(view_t), intent(inout) :: view
 
       mechanical_3d = integrate(view, 6, .false.)
    end function mechanical_3d
 
+   !> As mechanical_3d for plane strain: four components 11, 22, 33, 12.
    integer(c_int) function mechanical_plane(view) bind(c, name='MUD_PlaneStrain')
       type(view_t), intent(inout) :: view
 
       mechanical_plane = integrate(view, 4, .false.)
    end function mechanical_plane
 
+   !> As mechanical_3d for axial symmetry: four components.
    integer(c_int) function mechanical_axial(view) bind(c, name='MUD_Axisymmetrical')
       type(view_t), intent(inout) :: view
 
       mechanical_axial = integrate(view, 4, .false.)
    end function mechanical_axial
 
+   !> As mechanical_3d for generalised plane strain: four components.
    integer(c_int) function mechanical_generalised(view) bind(c, name='MUD_GeneralisedPlaneStrain')
       type(view_t), intent(inout) :: view
 
       mechanical_generalised = integrate(view, 4, .false.)
    end function mechanical_generalised
 
+   !> As mechanical_3d for axial symmetry in one dimension: three direct components.
    integer(c_int) function mechanical_1d(view) bind(c, name='MUD_AxisymmetricalGeneralisedPlaneStrain')
       type(view_t), intent(inout) :: view
 
       mechanical_1d = integrate(view, 3, .false.)
    end function mechanical_1d
 
+   !> Total stress (air pressure 0, unit of p_atm) and S_w [-] from strain and suction, 3D; returns as mechanical_3d.
+   !> Stress by docs/theory/material.md section 1.1.
    integer(c_int) function unsaturated_3d(view) bind(c, name='MUD_StressSaturation_Tridimensional')
       type(view_t), intent(inout) :: view
 
       unsaturated_3d = integrate(view, 6, .true.)
    end function unsaturated_3d
 
+   !> As unsaturated_3d for plane strain: four components 11, 22, 33, 12.
    integer(c_int) function unsaturated_plane(view) bind(c, name='MUD_StressSaturation_PlaneStrain')
       type(view_t), intent(inout) :: view
 
       unsaturated_plane = integrate(view, 4, .true.)
    end function unsaturated_plane
 
+   !> As unsaturated_3d for axial symmetry: four components.
    integer(c_int) function unsaturated_axial(view) bind(c, name='MUD_StressSaturation_Axisymmetrical')
       type(view_t), intent(inout) :: view
 
       unsaturated_axial = integrate(view, 4, .true.)
    end function unsaturated_axial
 
+   !> As unsaturated_3d for generalised plane strain: four components.
    integer(c_int) function unsaturated_generalised(view) bind(c, name='MUD_StressSaturation_GeneralisedPlaneStrain')
       type(view_t), intent(inout) :: view
 
       unsaturated_generalised = integrate(view, 4, .true.)
    end function unsaturated_generalised
 
+   !> As unsaturated_3d for axial symmetry in one dimension: three direct components.
    integer(c_int) function unsaturated_1d(view) bind(c, name= &
                                                      'MUD_StressSaturation_AxisymmetricalGeneralisedPlaneStrain')
       type(view_t), intent(inout) :: view

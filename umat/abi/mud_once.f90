@@ -27,7 +27,7 @@ module mud_once
       end function c_write
    end interface
 contains
-   !> True for the first caller of a process that asks for this kind.
+   !> True for the first caller of a process that asks for this kind. False for a kind outside 0 to KINDS - 1.
    logical function first_time(kind)
       integer, intent(in) :: kind
       integer(int32) :: before
@@ -58,7 +58,7 @@ contains
       length = c_write(STANDARD_ERROR, trim(text)//new_line(text), length)
    end subroutine speak
 
-   !> True if an environment variable has this value.
+   !> True if an environment variable has this value. False where it is not set or longer than 32 characters.
    logical function environment_is(name, value)
       character(*), intent(in) :: name, value
       character(32) :: found

@@ -13,6 +13,8 @@ module mud_one_point
    private
    public :: mud_update, mud_update_prepared
 contains
+   !> One increment as kernel_point has it, see mud.h: tension positive, engineering shear, stress in the unit of p_atm.
+   !> Returns the status; on any failure only the report is written.
    integer(c_int) function mud_update(props, n_props, stress0, statev0, n_statev, dstrain, suction0, dsuction, &
            tangent, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, report_out) bind(c, name='mud_update')
       type(c_ptr), value :: props, stress0, statev0, dstrain, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, &
@@ -39,6 +41,7 @@ contains
       mud_update = report%status
    end function mud_update
 
+   !> As mud_update for a prepared material; MUD_NOT_PREPARED where the storage is none.
    integer(c_int) function mud_update_prepared(prepared, stress0, statev0, n_statev, dstrain, suction0, dsuction, &
            tangent, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, report_out) &
            bind(c, name='mud_update_prepared')

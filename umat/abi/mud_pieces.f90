@@ -14,6 +14,7 @@ module mud_pieces
 contains
    !> The whole increment, then two halves, four quarters ... until all pieces pass; the report of a failure is that of
    !> the last try. A tangent is that of the last piece. The caller's mistakes (negative codes) are not tried again.
+   !> Arguments, units and codes as in kernel_point.
    pure subroutine update_in_pieces(par, stress, statev, d_strain, suction, d_suction, tangent, output, report)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: stress(6), statev(NSTATV), d_strain(6), suction, d_suction

@@ -32,7 +32,9 @@ contains
       mud_prepared_size = ceiling(storage_size(material)/BITS_OF_A_DOUBLE, c_int)
    end function mud_prepared_size
 
-   !> Checks PROPS and writes the material; on an error the storage is no prepared material.
+   !> Checks PROPS and writes the material; on an error the storage is no prepared material. MUD_NULL_ARGUMENT,
+   !> MUD_NOT_PREPARED where size_ (doubles) is too small, else the codes of read_params and check_curves; text says
+   !> which. Stresses in the unit of p_atm.
    integer(c_int) function mud_prepare(props, n_props, prepared, size_, text, len) bind(c, name='mud_prepare')
       type(c_ptr), value :: props, prepared, text
       integer(c_int), value :: n_props, size_, len
@@ -62,7 +64,8 @@ contains
       call put(report_text(failed_report(status)), text, len)
    end function mud_prepare
 
-   !> The material behind a pointer, or why there is none.
+   !> The material behind a pointer, or why there is none. MUD_NULL_ARGUMENT, or MUD_NOT_PREPARED where no mud_prepare
+   !> of this library filled it.
    subroutine find_prepared(prepared, material, status)
       type(c_ptr), intent(in) :: prepared
       type(prepared_t), pointer, intent(out) :: material

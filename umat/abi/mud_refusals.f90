@@ -38,7 +38,8 @@ module mud_refusals
    integer, parameter :: FIRST_REMARK = CODES*SUBJECTS*ENTRIES   !< Remarks follow the failures.
    integer, parameter :: NOT_SAVED = FIRST_REMARK, ON_PROPS_UNITS = FIRST_REMARK + 3
 contains
-   !> Answers a host whose increment is refused. STATEV and DDSDDE stay as they are.
+   !> Answers a host whose increment is refused. STATEV and DDSDDE stay as they are. Pointers may be NULL; the report
+   !> has a status other than MUD_OK.
    subroutine refuse(report, place, stress, ntens, pnewdt, scd)
       type(report_t), intent(in) :: report
       type(place_t), intent(in) :: place
@@ -99,7 +100,8 @@ contains
                  + min(max(report%subject, 0), SUBJECTS - 1))*ENTRIES + min(max(report%index, 0), ENTRIES - 1)
    end function kind_of
 
-   !> Why an increment was refused and what becomes of it: the first time that this failure is met.
+   !> Why an increment was refused and what becomes of it: the first time that this failure is met. Values in the unit
+   !> that the report has.
    subroutine say_refusal(report, place, consequence)
       type(report_t), intent(in) :: report
       type(place_t), intent(in) :: place
@@ -117,7 +119,8 @@ contains
       call speak(trim(text)//consequence//CLOSING)
    end subroutine say_refusal
 
-   !> Says that the suction of STATEV was taken instead of PREDEF.
+   !> Says that the suction of STATEV was taken instead of PREDEF. In the unit of p_atm, once a process for each
+   !> reading.
    subroutine remark_on_suction(suction, place)
       type(suction_t), intent(in) :: suction
       type(place_t), intent(in) :: place
@@ -138,7 +141,8 @@ contains
       call speak('MUD: remark of umat_ at '//trim(place_text(place))//': '//trim(text)//CLOSING)
    end subroutine remark_on_suction
 
-   !> Passes the warning of mud_validate_props on: hosts of umat_ do not ask for it. Asked where a point begins.
+   !> Passes the warning of mud_validate_props on: hosts of umat_ do not ask for it. Asked where a point begins. PROPS
+   !> of an update that passed; in the unit of p_atm.
    subroutine remark_on_props(props, place)
       real(wp), intent(in) :: props(NPROPS)
       type(place_t), intent(in) :: place
@@ -178,6 +182,7 @@ contains
 
    !> Saves a failed increment, if the user has named a folder, under a name that belongs to this failure: one file of
    !> each, whichever thread or process meets it first. That nothing could be written is said and changes nothing.
+   !> Tension positive, engineering shear [-], stress and suction in the unit of p_atm.
    subroutine save_if_asked(props, stress, statev, d_strain, suction, d_suction, place, report)
       real(wp), intent(in) :: props(NPROPS), stress(6), statev(NSTATV), d_strain(6), suction, d_suction
       type(place_t), intent(in) :: place

@@ -17,7 +17,9 @@ module mud_retention_point
    private
    public :: mud_saturation, mud_state_saturation
 contains
-   !> Degree of saturation and its slopes, with hysteresis those of main drying; on an error nothing is written.
+   !> Degree of saturation and its slopes, with hysteresis those of main drying; on an error nothing is written. Suction
+   !> in the unit of p_atm, void ratio above 0 and S_w [-]; slopes [1/unit, -]. MUD_NOT_PREPARED, MUD_BAD_INPUT,
+   !> MUD_BAD_VOID_RATIO. docs/theory/material.md section 2.1.
    integer(c_int) function mud_saturation(prepared, suction, void_ratio, s_w, ds_dpc, ds_de) &
       bind(c, name='mud_saturation')
       type(c_ptr), value :: prepared, s_w, ds_dpc, ds_de
@@ -42,7 +44,9 @@ contains
    end function mud_saturation
 
    !> The same for a point with a past: its STATEV tells the void ratio (e_0 of the material before it began) and, with
-   !> hysteresis, from which S_w at which suction it goes on.
+   !> hysteresis, from which S_w at which suction it goes on. ds_dev is the slope against the volumetric strain, tension
+   !> positive [-]. MUD_NOT_PREPARED, MUD_NULL_ARGUMENT, MUD_BAD_NSTATV, MUD_BAD_INPUT, MUD_BAD_STATE.
+   !> docs/theory/material.md sections 2.1, 2.1.1.
    integer(c_int) function mud_state_saturation(prepared, statev, n_statev, suction, s_w, ds_dpc, ds_dev) &
       bind(c, name='mud_state_saturation')
       type(c_ptr), value :: prepared, statev, s_w, ds_dpc, ds_dev

@@ -46,7 +46,8 @@ module mud_save
       end function c_remove
    end interface
 contains
-   !> See mud.h. The increment is run once more, so that the file says how it ends.
+   !> See mud.h. The increment is run once more, so that the file says how it ends. Returns MUD_OK whatever that end is;
+   !> MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_NOT_WRITTEN.
    integer(c_int) function mud_save_increment(path, origin, props, n_props, stress0, statev0, n_statev, dstrain, &
            suction0, dsuction, tangent, text, len) bind(c, name='mud_save_increment')
       type(c_ptr), value :: path, origin, props, stress0, statev0, dstrain, text
@@ -86,7 +87,9 @@ contains
       call put(trim(problem)//': '//status_text(MUD_NOT_WRITTEN), text, len)
    end function mud_save_increment
 
-   !> Writes a new file or none: one of that name is never touched, one that cannot be finished is removed.
+   !> Writes a new file or none: one of that name is never touched, one that cannot be finished is removed. props(:) of
+   !> NPROPS, statev(:) of at least NSTATV; tension positive, engineering shear [-], stress and suction in the unit of
+   !> p_atm.
    subroutine write_increment(path, origin, props, stress, statev, d_strain, suction, d_suction, tangent, report, &
                               problem)
       character(*), intent(in) :: path, origin

@@ -8,7 +8,7 @@ module mud_to_host
    private
    public :: put, put_real, number_at, find_list
 contains
-   !> Text into a C buffer of `length` bytes, cut to fit, terminated.
+   !> Text into a C buffer of `length` bytes, cut to fit, terminated. Nothing where it is NULL or has no room.
    subroutine put(text, buffer, length)
       character(*), intent(in) :: text
       type(c_ptr), intent(in) :: buffer
@@ -36,7 +36,7 @@ contains
       place = value
    end subroutine put_real
 
-   !> Entry of an optional array, 0 where it is not given.
+   !> Entry of an optional array, 0 where it is not given. i from 1, not checked. array(:) has i entries or more.
    pure real(wp) function number_at(array, i)
       real(c_double), pointer, contiguous, intent(in) :: array(:)
       integer, intent(in) :: i
@@ -46,7 +46,8 @@ contains
    end function number_at
 
    !> The list of a batch, numbers from 0, unassociated where it is NULL (all points), and how many points the arrays
-   !> must have. A negative number is an error.
+   !> must have. A negative number is MUD_BAD_OPTION; n >= 0 is not checked. list(n) where it is given; the arrays of
+   !> the points have extent columns.
    subroutine find_list(points, n, list, extent, status)
       type(c_ptr), intent(in) :: points
       integer(c_int), intent(in) :: n

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Bishop's effective stress and total stress, and what becomes of the slopes. Tension positive; chi = S_w:
-!> sigma' = sigma + p_a I - S_w p_c I, docs/theory/material.md section 2.
+!> sigma' = sigma + p_a I - S_w p_c I, docs/theory/material.md section 1.1.
 module mud_total
    use mud_kinds, only: wp
    use mud_tensor, only: IDENTITY
@@ -9,7 +9,8 @@ module mud_total
    public :: effective_stress, total_stress, total_blocks
 
 contains
-   !> Effective stress of a total one [kPa].
+   !> Effective stress of a total one [kPa]. Tension positive, S_w [-], pressures in the unit of the stress.
+   !> docs/theory/material.md section 1.1.
    pure function effective_stress(total, air_pressure, s_w, suction) result(effective)
       real(wp), intent(in) :: total(6), air_pressure, s_w, suction   !< Air pressure positive in compression.
       real(wp) :: effective(6)
@@ -17,7 +18,8 @@ contains
       effective = total + (air_pressure - s_w*suction)*IDENTITY
    end function effective_stress
 
-   !> Total stress of an effective one [kPa].
+   !> Total stress of an effective one [kPa]. Tension positive, S_w [-], pressures in the unit of the stress.
+   !> docs/theory/material.md section 1.1.
    pure function total_stress(effective, air_pressure, s_w, suction) result(total)
       real(wp), intent(in) :: effective(6), air_pressure, s_w, suction
       real(wp) :: total(6)
@@ -27,6 +29,8 @@ contains
 
    !> Slopes of effective stress become those of total stress at constant air pressure:
    !> d sigma/d eps = d sigma'/d eps + p_c I (x) dS_w/d eps, d sigma/d p_c = d sigma'/d p_c + (S_w + p_c dS_w/d p_c) I.
+   !> Tension positive, engineering shear; dsw_deps [-], dsw_dpc [1/kPa]. Derivative of docs/theory/material.md section
+   !> 1.1.
    pure subroutine total_blocks(s_w, suction, dsw_deps, dsw_dpc, dsig_deps, dsig_dpc)
       real(wp), intent(in) :: s_w, suction, dsw_deps(6), dsw_dpc
       real(wp), intent(inout) :: dsig_deps(6, 6)   !< [kPa]

@@ -31,7 +31,9 @@ module mud_udsm
 
 contains
    !> IDTASK 1 initial state variables into STVAR0, 2 stresses, 3 stiffness, 4 number of state variables, 5 kind of
-   !> stiffness, 6 elastic stiffness. IABORT 1 where a task fails; a sentence says why.
+   !> stiffness, 6 elastic stiffness. IABORT 1 where a task fails; a sentence says why. Stress and stiffness in the unit
+   !> of p_atm, tension positive. PROPS without those of hysteresis. Codes as in kernel_point, besides MUD_BAD_OPTION
+   !> for an unknown task or model and MUD_NULL_ARGUMENT.
    subroutine user_mod(idtask, imod, isundr, istep, iter, iel, int, x, y, z, time0, dtime, props, sig0, swp0, stvar0, &
                        deps, d, bulkw, sig, swp, stvar, ipl, nstat, nonsym, istrsdep, itimedep, itang, iprjdir, &
                        iprjlen, iabort) bind(c, name='user_mod_')

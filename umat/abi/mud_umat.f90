@@ -16,7 +16,8 @@ module mud_umat
 contains
    !> Suction is PREDEF(1), its increment DPRED(1); STRESS is Bishop's effective stress. On failure only PNEWDT (a
    !> factor below 1) and SCD (the status code) are written; where PNEWDT is NULL, STRESS becomes NaN, so that no host
-   !> goes on with the old one. See umat/README.md for PROPS, STATEV and the pitfalls.
+   !> goes on with the old one. See umat/README.md for PROPS, STATEV and the pitfalls. Tension positive, engineering
+   !> shear, STRESS, DDSDDE and suction in the unit of p_atm. Codes of check_arguments, read_rotation and kernel_update.
    subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, time, dtime, &
                    temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv_, props, nprops, coords, drot, &
                    pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, kstep, kinc) bind(c, name='umat_')

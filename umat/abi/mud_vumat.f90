@@ -43,7 +43,9 @@ module mud_vumat
 contains
    !> The first call, at time 0, asks for the elastic response to a strain made up by the host; its state is not kept. A
    !> point that fails is taken in pieces; what fails then has a NaN in stressNew, to stop the analysis
-   !> (MUD_NO_PNEWDT=keep leaves the old stress), and its old state.
+   !> (MUD_NO_PNEWDT=keep leaves the old stress), and its old state. Stress in the unit of p_atm, tension positive.
+   !> Where the arguments or PROPS are wrong nothing is computed, a sentence says so, and the first number of stressNew
+   !> is NaN.
    subroutine vumat(nblock, ndir, nshr, nstatev, nfieldv, n_props, lanneal, step_time, total_time, dt, cmname, &
                     coord_mp, char_length, props, density, strain_inc, rel_spin_inc, temp_old, stretch_old, &
                     defgrad_old, field_old, stress_old, state_old, ener_intern_old, ener_inelas_old, temp_new, &

@@ -61,7 +61,7 @@ module mud_params
       real(wp) :: largest_stress, largest_suction_step   !< Limits of input in the unit of p_atm.
    end type params_t
 contains
-   !> The parameters of Tables 2 and 3 with every default of the registry.
+   !> The parameters of Tables 2 and 3 with every default of the registry. Stresses in kPa; units as in mud_registry.
    pure function default_props() result(props)
       real(wp) :: props(NPROPS)
 
@@ -75,7 +75,8 @@ contains
       is_length = n == NPROPS .or. n == NPROPS_WITHOUT_HYSTERESIS
    end function is_length
 
-   !> PROPS of an allowed length in full.
+   !> PROPS of an allowed length in full. The size of given(:) is one that is_length takes, which is not checked; what
+   !> is left out is the default of the registry.
    pure function completed(given) result(props)
       real(wp), intent(in) :: given(:)
       real(wp) :: props(NPROPS)
@@ -84,7 +85,9 @@ contains
       props(size(given) + 1:) = PROPERTIES(size(given) + 1:)%default
    end function completed
 
-   !> Checks PROPS and names its values. On an error params is undefined and status names the first bad entry.
+   !> Checks PROPS and names its values. On an error params is undefined and status names the first bad entry. props(:)
+   !> has NPROPS or NPROPS_WITHOUT_HYSTERESIS entries in the unit of p_atm, else MUD_BAD_NPROPS; a value that is not
+   !> allowed is MUD_BAD_PROPS.
    pure subroutine read_params(props, params, status)
       real(wp), intent(in), contiguous :: props(:)
       type(params_t), intent(out) :: params
@@ -209,6 +212,8 @@ contains
    end subroutine check_props
 
    !> Names the first entry up to a last one that is not finite, out of its bounds or not the integer it should be.
+   !> Stresses in the unit of p_atm. status becomes MUD_BAD_PROPS with entry, value and range, and stays as it is where
+   !> all are good.
    pure subroutine check_bounds(props, last, status)
       real(wp), intent(in) :: props(NPROPS)
       integer, intent(in) :: last

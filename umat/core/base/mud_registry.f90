@@ -374,7 +374,7 @@ module mud_registry
 contains
    !> What a parameter means, with its values and words if it is an option: 'tangent that umat_ returns: 0 none, ...'.
    pure function property_meaning(index) result(text)
-      integer, intent(in) :: index
+      integer, intent(in) :: index   !< From 1 to NPROPS, not checked.
       character(200) :: text
       character(2) :: gap
       character :: digit
@@ -416,7 +416,7 @@ contains
 
    !> Name of one place in STATEV.
    pure function statev_name(index) result(name)
-      integer, intent(in) :: index
+      integer, intent(in) :: index   !< From 1 to NSTATV, not checked.
       character(20) :: name
       integer :: variable
 
@@ -429,7 +429,7 @@ contains
 
    !> Entry of VARIABLES that a place in STATEV belongs to.
    pure integer function statev_variable(index) result(variable)
-      integer, intent(in) :: index
+      integer, intent(in) :: index   !< From 1 to NSTATV, not checked.
 
       do variable = 1, NVARIABLES
          if (index < VARIABLES(variable)%first + VARIABLES(variable)%size) return

@@ -59,7 +59,9 @@ module mud_state
                  iso_kept = 0, no_root = 0, min_step = 0, open = 0, tensile = 0, clip = 0
    end type counters_t
 contains
-   !> Reads a state from an initialised STATEV; the stress is set by the caller.
+   !> Reads a state from an initialised STATEV; the stress is set by the caller. statev(:) has at least NSTATV entries,
+   !> else MUD_BAD_NSTATV; units as in mud_registry, tensors with the sign of the core. MUD_BAD_STATE names the first
+   !> entry that is not finite or out of its range; the state is then of no use.
    pure subroutine unpack_state(statev, state, status)
       real(wp), intent(in), contiguous :: statev(:)
       type(state_t), intent(inout) :: state
@@ -162,7 +164,8 @@ contains
       status = fail(MUD_BAD_STATE, ON_STATEV, entry, statev(entry), lower, upper)
    end subroutine require
 
-   !> Writes a state and the sums of the counters to STATEV; the tangent outputs are the caller's.
+   !> Writes a state and the sums of the counters to STATEV; the tangent outputs are the caller's. statev(:) has at
+   !> least NSTATV entries, which is not checked; units as in mud_registry, tensors with the sign of the core.
    pure subroutine pack_state(state, counters, statev)
       type(state_t), intent(in) :: state
       type(counters_t), intent(in) :: counters

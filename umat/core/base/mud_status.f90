@@ -44,7 +44,8 @@ module mud_status
       real(wp) :: upper = 0.0_wp     !< Allowed range.
    end type mud_status_t
 contains
-   !> A status that says what is wrong and where. A value that is not finite is carried as it is.
+   !> A status that says what is wrong and where. A value that is not finite is carried as it is. value, lower and upper
+   !> have the unit of what subject and index name; what is not given stays zero.
    pure function fail(code, subject, index, value, lower, upper) result(status)
       integer, intent(in) :: code
       integer, intent(in), optional :: subject, index

@@ -19,14 +19,15 @@ module mud_tensor
    !> Added to the exponent's bits, one place to the right, it carries into the second bit of all if they are all set.
    integer(int64), parameter :: CARRY = int(z'0008000000000000', int64), CARRIED = int(z'4000000000000000', int64)
 contains
-   !> Full contraction a:b.
+   !> Full contraction a:b. In the unit of a times that of b.
    pure real(wp) function ddot(a, b)
       real(wp), intent(in) :: a(6), b(6)
 
       ddot = a(1)*b(1) + a(2)*b(2) + a(3)*b(3) + 2.0_wp*(a(4)*b(4) + a(5)*b(5) + a(6)*b(6))
    end function ddot
 
-   !> Contractions of tensors side by side with one.
+   !> Contractions of tensors side by side with one. Number i is tensors(i, :) : a, in the unit of the tensors times
+   !> that of a.
    pure function contractions(tensors, a) result(c)
       real(wp), intent(in) :: tensors(LANES, 6), a(6)
       real(wp) :: c(LANES)
@@ -35,14 +36,14 @@ contains
           + (2.0_wp*a(4))*tensors(:, 4) + (2.0_wp*a(5))*tensors(:, 5) + (2.0_wp*a(6))*tensors(:, 6)
    end function contractions
 
-   !> Trace of a.
+   !> Trace of a, in its unit.
    pure real(wp) function trace(a)
       real(wp), intent(in) :: a(6)
 
       trace = a(1) + a(2) + a(3)
    end function trace
 
-   !> Deviator of a, a - tr(a)/3 I.
+   !> Deviator of a, a - tr(a)/3 I, in the unit of a.
    pure function deviator(a) result(s)
       real(wp), intent(in) :: a(6)
       real(wp) :: s(6), mean
@@ -52,14 +53,14 @@ contains
       s(1:3) = s(1:3) - mean
    end function deviator
 
-   !> Frobenius norm, the square root of a:a.
+   !> Frobenius norm, the square root of a:a, in the unit of a.
    pure real(wp) function norm(a)
       real(wp), intent(in) :: a(6)
 
       norm = sqrt(ddot(a, a))
    end function norm
 
-   !> Matrix square a.a of a symmetric tensor; ddot(square(a), b) = tr(a a b).
+   !> Matrix square a.a of a symmetric tensor; ddot(square(a), b) = tr(a a b). In the unit of a squared.
    pure function square(a) result(c)
       real(wp), intent(in) :: a(6)
       real(wp) :: c(6)
@@ -80,7 +81,7 @@ contains
       is_finite = iand(transfer(x, 0_int64), EXPONENT_BITS) /= EXPONENT_BITS
    end function is_finite
 
-   !> True if every number is finite, without a branch for each.
+   !> True if every number is finite, without a branch for each. x(:) of any size; true of none.
    pure logical function all_finite(x)
       real(wp), intent(in), contiguous :: x(:)
       integer(int64) :: marks
@@ -94,7 +95,7 @@ contains
    end function all_finite
 
    !> c <- c + a (x) b for a map from ENGINEERING strain to stress: the factor two of b:eps and the one of
-   !> gamma = 2 eps cancel, so plain products of components are right.
+   !> gamma = 2 eps cancel, so plain products of components are right. c is in the unit of a times that of b.
    pure subroutine outer_add(a, b, c)
       real(wp), intent(in) :: a(6), b(6)
       real(wp), intent(inout) :: c(6, 6)
@@ -105,7 +106,7 @@ contains
       end do
    end subroutine outer_add
 
-   !> R a R^T for a rotation matrix R(3,3).
+   !> R a R^T for a rotation matrix R(3,3). b is in the unit of a; that r is a rotation is not checked.
    pure function rotate(a, r) result(b)
       real(wp), intent(in) :: a(6), r(3, 3)
       real(wp) :: b(6), full(3, 3)

@@ -33,7 +33,8 @@ module mud_units
       real(wp) :: value = 0.0_wp, usual(2) = 0.0_wp
    end type doubt_t
 contains
-   !> The user's unit, from p_atm; 1 where p_atm itself is out of its bounds.
+   !> The user's unit, from p_atm; 1 where p_atm itself is out of its bounds. It is p_atm over the default p_atm of
+   !> 101.325 kPa [user's units in a kPa].
    pure real(wp) function stress_unit(props) result(unit)
       real(wp), intent(in) :: props(NPROPS)
 
@@ -41,7 +42,8 @@ contains
       if (is_allowed(props, P_P_ATM)) unit = props(P_P_ATM)/PROPERTIES(P_P_ATM)%default
    end function stress_unit
 
-   !> Bounds and defaults of every entry in the user's unit; p_atm has its own bounds, its default is an atmosphere.
+   !> Bounds and defaults of every entry in the user's unit; p_atm has its own bounds, its default is an atmosphere. N_c
+   !> and N_l go with the unit to the power of lambda. Nothing is refused.
    pure subroutine bounds_for(props, lower, upper, default)
       real(wp), intent(in) :: props(NPROPS)   !< Of which p_atm and lambda count.
       real(wp), intent(out) :: lower(NPROPS), upper(NPROPS)
@@ -55,7 +57,9 @@ contains
       upper = PROPERTIES%upper*factors
    end subroutine bounds_for
 
-   !> The same material in another unit of stress, of which `unit` make one of the present unit.
+   !> The same material in another unit of stress, of which `unit` make one of the present unit. Entries with the unit
+   !> of stress are multiplied by it, N_c and N_l by its power lambda (docs/theory/material.md sections 3.2, 3.5).
+   !> Neither argument is checked.
    pure function convert_props(props, unit) result(converted)
       real(wp), intent(in) :: props(NPROPS), unit
       real(wp) :: converted(NPROPS)
@@ -85,7 +89,8 @@ contains
       if (is_allowed) is_allowed = props(i) >= PROPERTIES(i)%lower .and. props(i) <= PROPERTIES(i)%upper
    end function is_allowed
 
-   !> p_min [user's unit]: a forgotten one follows p_atm.
+   !> p_min [user's unit]: a forgotten one follows p_atm. It is p_atm/1000 where the entry is not above 0;
+   !> docs/theory/material.md section 6. PROPS are not checked.
    pure real(wp) function minimum_stress(props) result(p_min)
       real(wp), intent(in) :: props(NPROPS)
 
@@ -94,6 +99,7 @@ contains
    end function minimum_stress
 
    !> Entries of allowed PROPS that look as if p_atm had another unit. Zeros (no shift, p_min by default) have no unit.
+   !> PROPS must have passed read_params; a doubt that is not raised says nothing.
    pure function unit_doubts(props) result(doubts)
       real(wp), intent(in) :: props(NPROPS)
       type(doubt_t) :: doubts(NDOUBTS)

@@ -25,7 +25,8 @@ module mud_blocks
    end type blocks_t
 
 contains
-   !> Blocks of an elastic response at a state.
+   !> Blocks of an elastic response at a state. Units as in blocks_t; those of S_w stay as they are. Stress does not
+   !> follow suction. docs/theory/material.md section 3.1.
    pure subroutine elastic_blocks(par, state, blocks)
       type(params_t), intent(in) :: par
       type(state_t), intent(in) :: state
@@ -37,7 +38,8 @@ contains
       blocks%dsig_dpc = 0.0_wp
    end subroutine elastic_blocks
 
-   !> Blocks of the last rate of an increment.
+   !> Blocks of the last rate of an increment. Units as in blocks_t; those of S_w stay as they are.
+   !> docs/theory/integration.md sections 5.2 and 5.4.
    pure subroutine continuum_blocks(par, inc, trial, state, blocks)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc       !< the phase that ended the increment

@@ -31,7 +31,8 @@ module mud_branches
       real(wp) :: change_pc, change_v   !< Of S_w at the end with suction step and volume, through the turn [1/kPa, -].
    end type course_t
 contains
-   !> Clips S_w of the state that an increment begins with and finds the first branch.
+   !> Clips S_w of the state that an increment begins with and finds the first branch. branch are the parameters of that
+   !> branch; a saturation that was clipped is counted. docs/theory/material.md section 2.1.1.
    pure subroutine begin_course(par, inc, state, counters, course, branch)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -83,7 +84,8 @@ contains
       if (1.0_wp - turn < WHOLE_PHASE) turn = 1.0_wp
    end function turn_of_suction
 
-   !> integrate_phases with the branches. On return branch and inc are those that ended the increment.
+   !> integrate_phases with the branches. On return branch and inc are those that ended the increment. Arguments as
+   !> there; reached is the share of the whole increment [-]. After an error state is that of the last accepted substep.
    pure subroutine integrate_course(par, course, inc, size, consistent, branch, state, trial, sens, counters, reached, &
                                     status, record)
       type(params_t), intent(in) :: par
@@ -158,7 +160,8 @@ contains
       course%change_v = -slope*par%omega*inc%p_c0*(1.0_wp + inc%e0)/inc%e0
    end subroutine change_through_turn
 
-   !> S_w at the end, between the main curves, with the slopes of what it follows there.
+   !> S_w at the end, between the main curves, with the slopes of what it follows there. A saturation that was clipped
+   !> is counted and has the slopes of the main curve. docs/theory/material.md section 2.1.1.
    pure subroutine end_course(par, course, state, counters, blocks)
       type(params_t), intent(in) :: par
       type(course_t), intent(in) :: course

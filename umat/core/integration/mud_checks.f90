@@ -13,7 +13,8 @@ module mud_checks
 
    real(wp), parameter :: LARGEST_STRAIN = 1.0_wp            !< Larger increments are asked to be cut [-].
 contains
-   !> Stress and suction, or the first component that is no stress.
+   !> Stress and suction, or the first component that is no stress. In the unit of p_atm; one that is not finite, or
+   !> beyond 1e9 kPa in that unit, is MUD_BAD_INPUT.
    pure subroutine check_stress(par, sigma, p_c, status)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: sigma(6), p_c
@@ -30,7 +31,9 @@ contains
       end if
    end subroutine check_stress
 
-   !> The same of a state, its strain increment and its suction step.
+   !> The same of a state, its strain increment and its suction step. Strain [-], suction step in the unit of p_atm.
+   !> What is not finite is MUD_BAD_INPUT; a strain component beyond 1 or a suction step beyond 1e7 kPa in that unit is
+   !> MUD_INCREMENT_TOO_LARGE.
    pure subroutine check_increment(par, state, d_strain, d_pc, status)
       type(params_t), intent(in) :: par
       type(state_t), intent(in) :: state

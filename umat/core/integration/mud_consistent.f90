@@ -43,7 +43,7 @@ module mud_consistent
       type(driving_t) :: driving
    end type sensitivity_t
 contains
-   !> At the start of an increment nothing depends on it yet.
+   !> At the start of an increment nothing depends on it yet. docs/theory/integration.md section 5.3.
    pure subroutine no_sensitivity(depth, sens)
       integer, intent(in) :: depth           !< number of interrupted processes
       type(sensitivity_t), intent(inout) :: sens
@@ -58,7 +58,7 @@ contains
    end subroutine no_sensitivity
 
    !> Carries the derivatives through an accepted substep h at whose end the pseudo-time is fixed (the last one of an
-   !> increment or a phase) or not.
+   !> increment or a phase) or not. h is a share of inc [-]. docs/theory/integration.md section 5.3.
    pure subroutine propagate(par, inc, trial, h, last, sens)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -75,7 +75,8 @@ contains
       if (last) sens%shift = 0.0_wp
    end subroutine propagate
 
-   !> Derivative of the end of a substep with respect to its size.
+   !> Derivative of the end of a substep with respect to its size. Per unit of h, a share of inc; [kPa, -, -] for
+   !> sigma', z and plastic shear. docs/theory/integration.md section 4.3.
    pure subroutine change_with_size(par, inc, trial, h, change)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -238,7 +239,8 @@ contains
    end function are_zero
 
    !> Prepares the derivative of the rate w of a stage, at a point of the integrated vector, a pseudo-time and a void
-   !> ratio.
+   !> ratio. point has sigma' [kPa], z and plastic shear [-]; time is a share of inc, e the void ratio [-].
+   !> docs/theory/integration.md section 5.3.
    pure subroutine linearise_stage(par, inc, mode, w, point, time, e, turning, lin)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -258,6 +260,7 @@ contains
    end subroutine linearise_stage
 
    !> How the arguments of a rate change, beside stress, fabric and memory, at a pseudo-time that itself changes by dt.
+   !> time and dt are shares of inc, e is the void ratio [-]; units of the changes as in changes_t.
    pure subroutine changes_along(inc, mode, time, e, turning, dt, driving, changes)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
@@ -284,7 +287,8 @@ contains
       end do
    end subroutine changes_along
 
-   !> Changes of the stress ratio with the stress.
+   !> Changes of the stress ratio with the stress. sigma and y(:, 1:6) [kPa], dr [-]. Where p' is held at p_min its
+   !> change is left out. Derivative of docs/theory/material.md section 1.2.
    pure function changes_of_ratio(par, sigma, y) result(dr)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: sigma(6), y(DIRECTIONS, NY)
@@ -300,7 +304,8 @@ contains
    end function changes_of_ratio
 
    !> Derivatives of the memory across its jump at the start of a substep; `before` is the memory ahead of it and
-   !> `trigger` the rate that made it jump.
+   !> `trigger` the rate that made it jump. jump is one of JUMP_*, not JUMP_NONE. docs/theory/integration.md sections
+   !> 4.3, 5.3; rules of docs/theory/memory-rules.md section 2.
    pure subroutine jump_of_memory(par, inc, jump, before, after, trigger, trial, sens)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc

@@ -18,7 +18,8 @@ module mud_cutoff
 
    real(wp), parameter :: ON_SURFACE = 1.0e-12_wp   !< r this close (relative) to the bounding surface is on it [-].
 contains
-   !> Stress ratio of a held point after a step h that begins at r0 at a pseudo-time.
+   !> Stress ratio of a held point after a step h that begins at r0 at a pseudo-time. r0, r, time and h [-], the last
+   !> two shares of inc. docs/theory/material.md section 6.2.
    pure function slide(par, inc, r0, time, h) result(r)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -30,7 +31,8 @@ contains
       r = limited(par, state_parameter(par, inc%bonded, e, suction_at(inc, time + h), par%p_min), r)
    end function slide
 
-   !> Change of that stress ratio with r0, with the increment's strain and with void ratio and suction at the end.
+   !> Change of that stress ratio with r0, with the increment's strain and with void ratio and suction at the end. All
+   !> [-] but dp_c [kPa]; time and h are shares of inc. Derivative of docs/theory/material.md section 6.2.
    pure function change_of_slide(par, inc, r0, time, h, dr0, d_strain, de, dp_c) result(change)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -57,6 +59,7 @@ contains
    end function modulus_slope
 
    !> True where the stress ratio of a held point is on the bounding surface and an elastic rate would leave it.
+   !> docs/theory/material.md section 6.2, to 1e-12 of the surface.
    pure logical function slides(par, bonded, e, p_c, r, d_strain, d_pc)
       type(params_t), intent(in) :: par
       logical, intent(in) :: bonded
@@ -72,7 +75,8 @@ contains
    end function slides
 
    !> Rate of the stress ratio of a held point for a strain rate and a suction rate, linear in both: elastic, or along
-   !> the bounding surface.
+   !> the bounding surface. [-], per unit of pseudo-time. docs/theory/material.md section 6.2,
+   !> docs/theory/integration.md section 5.4.
    pure function held_rate(par, bonded, e, p_c, r, sliding, d_strain, d_pc) result(rate)
       type(params_t), intent(in) :: par
       logical, intent(in) :: bonded, sliding

@@ -26,7 +26,8 @@ module mud_driving
    !> Nothing drives.
    type(driving_t), parameter :: AT_REST = driving_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
 contains
-   !> The increment along the seven directions: unit engineering strains 1 to 6, unit suction step.
+   !> The increment along the seven directions: unit engineering strains 1 to 6, unit suction step. Strains [-], suction
+   !> in the unit of p_atm.
    pure function whole_increment() result(driving)
       type(driving_t) :: driving
       integer :: j
@@ -40,7 +41,7 @@ contains
    end function whole_increment
 
    !> Both parts of an increment whose strain from the centre of the elastic domain reaches the sphere at a share of it,
-   !> which depends on the strain itself. A share of 0 or 1 does not.
+   !> which depends on the strain itself. A share of 0 or 1 does not. docs/theory/memory-rules.md section 4.2.
    pure subroutine parts_at_exit(whole, share, driving, inside, rest)
       type(increment_t), intent(in) :: whole
       real(wp), intent(in) :: share
@@ -57,6 +58,7 @@ contains
    end subroutine parts_at_exit
 
    !> Both parts of an increment whose suction passes zero at a share of it, which depends on the suction step.
+   !> whole%d_pc is not 0, which is not checked. docs/theory/integration.md section 1.
    pure subroutine parts_without_suction(whole, share, driving, first, rest)
       type(increment_t), intent(in) :: whole
       real(wp), intent(in) :: share
@@ -67,7 +69,8 @@ contains
    end subroutine parts_without_suction
 
    !> Both parts of an increment whose modified suction p_c e^Omega has its maximum at a share of it, where
-   !> h = dp_c - p_c Omega d_v (1 + e)/e vanishes.
+   !> h = dp_c - p_c Omega d_v (1 + e)/e vanishes. share and Omega [-]; derivative of docs/theory/material.md section
+   !> 2.1.1.
    pure subroutine parts_at_turn(whole, share, omega, driving, first, rest)
       type(increment_t), intent(in) :: whole
       real(wp), intent(in) :: share, omega
@@ -111,7 +114,8 @@ contains
       rest%from_centre = driving%from_centre
    end subroutine split
 
-   !> Derivatives of the strain from the centre of the elastic domain at the end of a part that began on the sphere.
+   !> Derivatives of the strain from the centre of the elastic domain at the end of a part that began on the sphere. [-]
+   !> per unit of the directions. docs/theory/memory-rules.md section 4.2.
    pure function end_in_domain(inc, driving) result(from_centre)
       type(increment_t), intent(in) :: inc
       type(driving_t), intent(in) :: driving

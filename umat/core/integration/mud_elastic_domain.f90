@@ -33,6 +33,7 @@ module mud_elastic_domain
    end type combination_t
 contains
    !> Share of a strain increment after which the sphere is reached outwards; 1 if it is not.
+   !> docs/theory/memory-rules.md section 4.2.
    pure real(wp) function exit_share(rho, d, increment) result(share)
       real(wp), intent(in) :: rho            !< radius [-], > 0
       real(wp), intent(in) :: d(6)           !< strain from the centre, inside [-]
@@ -53,7 +54,8 @@ contains
       end if
    end function exit_share
 
-   !> Changes of that share with d and the increment.
+   !> Changes of that share with d and the increment. All [-]; the share is that of exit_share, below 1. Derivative of
+   !> docs/theory/memory-rules.md section 4.2.
    pure function changes_of_exit(d, increment, share, d_changes, increment_changes) result(changes)
       real(wp), intent(in) :: d(6), increment(6), share, d_changes(LANES, 6), increment_changes(LANES, 6)
       real(wp) :: changes(LANES), at_exit(6)
@@ -63,7 +65,8 @@ contains
                 /ddot(at_exit, increment)
    end function changes_of_exit
 
-   !> nu at a share `time` of a strain increment that begins at d on the sphere and points outwards.
+   !> nu at a share `time` of a strain increment that begins at d on the sphere and points outwards. All [-]; rho > 0
+   !> and an increment that is not 0 are not checked. Tractrix of docs/theory/memory-rules.md section 4.2.
    pure function loading_direction(rho, d, increment, time) result(nu)
       real(wp), intent(in) :: rho, d(6), increment(6), time
       real(wp) :: nu(6), length, cosine, decay, divisor
@@ -76,7 +79,8 @@ contains
             + ((1.0_wp - decay)*(1.0_wp + decay + cosine*(1.0_wp - decay))/length)*increment)/divisor
    end function loading_direction
 
-   !> nu at a pseudo-time, and what its changes share.
+   !> nu at a pseudo-time, and what its changes share. Arguments as in loading_direction, all [-].
+   !> docs/theory/memory-rules.md section 4.2.
    pure function turning_at(rho, d, increment, time) result(turning)
       real(wp), intent(in) :: rho, d(6), increment(6), time
       type(turning_t) :: turning
@@ -96,7 +100,8 @@ contains
       end associate
    end function turning_at
 
-   !> Its changes with d (which stays on the sphere) and the increment.
+   !> Its changes with d (which stays on the sphere) and the increment. All [-]. Derivative of
+   !> docs/theory/memory-rules.md section 4.2.
    pure function changes_of_turning(turning, d_changes, increment_changes) result(changes)
       type(turning_t), intent(in) :: turning
       real(wp), intent(in) :: d_changes(LANES, 6), increment_changes(LANES, 6)
@@ -113,7 +118,7 @@ contains
       end do
    end function changes_of_turning
 
-   !> What these changes are made of.
+   !> What these changes are made of. All [-]; docs/theory/memory-rules.md section 4.2.
    pure function combination_of_turning(turning, d_changes, increment_changes) result(by)
       type(turning_t), intent(in) :: turning
       real(wp), intent(in) :: d_changes(LANES, 6), increment_changes(LANES, 6)

@@ -30,6 +30,7 @@ module mud_event_time
    integer, parameter :: BY_SIZE = DIRECTIONS   !< The idle direction serves as that of the substep's size.
 contains
    !> A substep has ended at an event: adds the derivative of its time to the derivatives at a fixed size.
+   !> docs/theory/integration.md section 4.3. Where the event only grazes, its time is taken as fixed.
    pure subroutine move_event(par, inc, event, trial, h, sens)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc

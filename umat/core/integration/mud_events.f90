@@ -57,7 +57,8 @@ module mud_events
    real(wp), parameter :: TURN_RESIDUAL = 1.0e-6_wp
    integer, parameter :: TURN_ITERATIONS = 10
 contains
-   !> Shortens an accepted substep so that it lands where the first event happens that its mode knows.
+   !> Shortens an accepted substep so that it lands where the first event happens that its mode knows. h is a share of
+   !> inc [-]; it stays where there is no event. docs/theory/integration.md sections 4.1, 4.2.
    pure subroutine stop_at_event(par, inc, error, h, trial, counters, event)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -169,7 +170,8 @@ contains
    !> The direction and target of the present process after an accepted substep: where it goes forwards last, at the end
    !> or where it ceases to. That place belongs to the path, while the end of the last substep of which it is true would
    !> depend on the sizes of substeps. A process that begins where the substep does, and drifts backwards, has not gone
-   !> forwards.
+   !> forwards. h is a share of inc [-]. docs/theory/memory-rules.md section 3.2, docs/theory/integration.md section
+   !> 4.2.
    pure subroutine note_turning_point(par, inc, h, trial, memory, counters)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -216,7 +218,8 @@ contains
    end function place_of
 
    !> p' times the rate of the stress ratio if the whole strain were elastic. The part of the strain across the elastic
-   !> domain turns the direction of loading, not the process: the whole strain tells where it goes.
+   !> domain turns the direction of loading, not the process: the whole strain tells where it goes. r [-].
+   !> docs/theory/memory-rules.md section 3.3.
    pure function elastic_rate(inc, w, r) result(t)
       type(increment_t), intent(in) :: inc
       type(rate_t), intent(in) :: w
@@ -341,7 +344,8 @@ contains
       end select
    end subroutine event_function
 
-   !> How a held point would go on if it closed: inside the elastic domain without plastic dilatancy.
+   !> How a held point would go on if it closed: inside the elastic domain without plastic dilatancy. One of
+   !> MODE_ORDINARY and MODE_ELASTIC.
    pure integer function closing_mode(inc)
       type(increment_t), intent(in) :: inc
 
@@ -356,6 +360,7 @@ contains
    end function closing_share
 
    !> How far the rate of p' is above the one at which an open point closes, positive if it closes [kPa].
+   !> docs/theory/material.md sections 6.1, 6.3.
    pure real(wp) function closing_rate(inc, trial, w)
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
@@ -364,7 +369,8 @@ contains
       closing_rate = w%d_p - closing_share(trial)*(w%k*norm(inc%d_strain) + abs(inc%d_pc))
    end function closing_rate
 
-   !> Its change with the rate of p', the void ratio, the strain and the suction step [kPa].
+   !> Its change with the rate of p', the void ratio, the strain and the suction step [kPa]. e, de and d_strain [-],
+   !> d_rate and d_pc [kPa]; e is the void ratio at the place. Derivative of docs/theory/material.md sections 6.1, 6.3.
    pure real(wp) function change_of_closing_rate(inc, trial, w, e, d_rate, de, d_strain, d_pc) result(change)
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
@@ -390,7 +396,8 @@ contains
       allowed_excess = max(excess(par, psi_at(par, inc, trial%time, p), r), LARGEST_EXCESS)
    end function allowed_excess
 
-   !> State parameter at a pseudo-time and a mean stress [-].
+   !> State parameter at a pseudo-time and a mean stress [-]. time is a share of inc [-], p in the unit of p_atm.
+   !> docs/theory/material.md section 3.2.
    pure real(wp) function psi_at(par, inc, time, p)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc

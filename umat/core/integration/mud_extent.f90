@@ -12,7 +12,8 @@ module mud_extent
    private
    public :: extent_of
 contains
-   !> Size of an increment in units of strain [-]: suction counts with the bulk modulus.
+   !> Size of an increment in units of strain [-]: suction counts with the bulk modulus. docs/theory/integration.md
+   !> section 3.
    pure real(wp) function extent_of(par, inc, state) result(size)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc

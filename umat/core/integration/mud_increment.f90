@@ -33,7 +33,9 @@ module mud_increment
       type(scheme_t) :: scheme
    end type increment_t
 contains
-   !> Rate at a vector of the integration and a pseudo-time; void ratio and suction follow from the latter exactly.
+   !> Rate at a vector of the integration and a pseudo-time; void ratio and suction follow from the latter exactly. time
+   !> and r_in [-], y [kPa, -, -] for sigma', z and plastic shear; units of w as in rate_t. Guards that act are counted,
+   !> nothing is refused. docs/theory/integration.md section 1.
    pure subroutine rate_of(par, inc, time, y, r_in, mode, w, counters)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -62,6 +64,7 @@ contains
    end subroutine rate_of
 
    !> True if a part of the strain is elastic: all of it inside the elastic domain, some where that is pulled.
+   !> docs/theory/memory-rules.md section 4.1.
    pure logical function has_aside(inc, mode)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
@@ -69,7 +72,8 @@ contains
       has_aside = mode == MODE_ELASTIC .or. (inc%rho > 0.0_wp .and. .not. inc%inside .and. mode == MODE_ORDINARY)
    end function has_aside
 
-   !> The part of the strain rate that loads, along nu, and the elastic rest.
+   !> The part of the strain rate that loads, along nu, and the elastic rest. All [-]; docs/theory/memory-rules.md
+   !> section 4.1.
    pure subroutine loading_strain(inc, mode, time, loading, aside)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
@@ -82,7 +86,7 @@ contains
       call part(inc, nu, loading, aside)
    end subroutine loading_strain
 
-   !> The same, of a direction that is known.
+   !> The same, of a direction that is known. All [-]; docs/theory/memory-rules.md section 4.1.
    pure subroutine loading_strain_of(inc, mode, turning, loading, aside)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
@@ -108,7 +112,8 @@ contains
       aside = inc%d_strain - loading
    end subroutine part
 
-   !> Changes of both parts with the strain rate and the elastic domain at the start.
+   !> Changes of both parts with the strain rate and the elastic domain at the start. All [-]; derivative of
+   !> docs/theory/memory-rules.md sections 4.1, 4.2.
    pure subroutine changes_of_loading_strain(inc, mode, turning, strain_changes, centre_changes, loading, aside)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
@@ -146,7 +151,8 @@ contains
       end do
    end subroutine changes_of_loading_strain
 
-   !> How the elastic domain stands at a pseudo-time, where a part of the strain loads.
+   !> How the elastic domain stands at a pseudo-time, where a part of the strain loads. Zeros where no part is elastic
+   !> or all of it; time is a share of inc [-]. docs/theory/memory-rules.md section 4.2.
    pure function turning_of(inc, mode, time) result(turning)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
@@ -160,7 +166,8 @@ contains
       end if
    end function turning_of
 
-   !> Rate at which the part that loads turns with the domain, per unit of pseudo-time: nu' = (a - (nu:a) nu)/rho.
+   !> Rate at which the part that loads turns with the domain, per unit of pseudo-time: nu' = (a - (nu:a) nu)/rho. [-];
+   !> docs/theory/memory-rules.md section 4.2.
    pure function turn_of_loading_strain(inc, mode, turning) result(turn)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
@@ -174,7 +181,8 @@ contains
       turn = ddot(nu_rate, inc%d_strain)*turning%nu + along*nu_rate
    end function turn_of_loading_strain
 
-   !> An increment of a point with void ratio e and suction p_c.
+   !> An increment of a point with void ratio e and suction p_c. e and strain [-], tensor shear, compression positive;
+   !> p_c and d_pc in the unit of p_atm. Nothing is checked. docs/theory/integration.md section 1.
    pure subroutine new_increment(par, e, p_c, d_strain, d_pc, inc)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: e, p_c, d_strain(6), d_pc
@@ -194,7 +202,8 @@ contains
       inc%from_centre = 0.0_wp
    end subroutine new_increment
 
-   !> The part of an increment between two pseudo-times as an increment of its own.
+   !> The part of an increment between two pseudo-times as an increment of its own. from and to are shares of the whole
+   !> [-], not checked. docs/theory/memory-rules.md section 4.2.
    pure subroutine take_phase(whole, from, to, inc)
       type(increment_t), intent(in) :: whole
       real(wp), intent(in) :: from, to
@@ -210,7 +219,8 @@ contains
       inc%p_c0 = suction_at(whole, from)
    end subroutine take_phase
 
-   !> Void ratio at a pseudo-time: 1 + e falls as exp(-eps_v), exactly.
+   !> Void ratio at a pseudo-time: 1 + e falls as exp(-eps_v), exactly. time is a share of inc, the result [-].
+   !> docs/theory/material.md section 1.2.
    pure real(wp) function void_ratio_at(inc, time) result(e)
       type(increment_t), intent(in) :: inc
       real(wp), intent(in) :: time
@@ -219,7 +229,7 @@ contains
       if (abs(inc%d_v) > 0.0_wp) e = (1.0_wp + e)*exp(-inc%d_v*time) - 1.0_wp
    end function void_ratio_at
 
-   !> Suction at a pseudo-time [kPa].
+   !> Suction at a pseudo-time [kPa]. time is a share of inc [-].
    pure real(wp) function suction_at(inc, time) result(p_c)
       type(increment_t), intent(in) :: inc
       real(wp), intent(in) :: time

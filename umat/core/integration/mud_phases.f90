@@ -22,7 +22,8 @@ module mud_phases
 
 contains
    !> An increment. Where suction passes zero it is taken in two parts: bonding begins or ends there. On return inc is
-   !> the phase that ended the increment.
+   !> the phase that ended the increment. size in units of strain and reached, the share integrated [-]. Errors are
+   !> those of integrate; state is then that of the last accepted substep. docs/theory/integration.md section 1.
    pure subroutine integrate_phases(par, inc, size, consistent, state, trial, sens, counters, reached, status, record)
       type(params_t), intent(in) :: par
       type(increment_t), intent(inout) :: inc

@@ -22,7 +22,9 @@ module mud_point
    integer, parameter :: TANGENT_NONE = 0, TANGENT_ELASTIC = 1, TANGENT_CONTINUUM = 2, TANGENT_CONSISTENT = 3
 
 contains
-   !> Integrates d_strain and d_pc. On failure state1 and blocks are undefined and state0 is what it was.
+   !> Integrates d_strain and d_pc. On failure state1 and blocks are undefined and state0 is what it was. MUD_BAD_INPUT,
+   !> MUD_INCREMENT_TOO_LARGE and MUD_VOID_RATIO_LIMIT refuse the increment beforehand, MUD_TOO_MANY_SUBSTEPS,
+   !> MUD_MINIMUM_STEP, MUD_NOT_FINITE and MUD_NO_DIRECTION end it. docs/theory/integration.md section 1.
    pure subroutine update_point(par, state0, d_strain, d_pc, tangent, state1, blocks, counters, reached, status, &
                                 record)
       type(params_t), intent(in) :: par

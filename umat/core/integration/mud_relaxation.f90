@@ -22,7 +22,8 @@ module mud_relaxation
    end type relaxation_t
 contains
    !> How fast L relaxes per unit of pseudo-time, as far as it hangs on r:n alone: near the bounding surface by a few
-   !> per cent. 0 where nothing loads, or where the softening cap keeps L constant [-].
+   !> per cent. 0 where nothing loads, or where the softening cap keeps L constant [-]. docs/theory/integration.md
+   !> section 2.1.
    pure real(wp) function relaxation_speed(w) result(speed)
       type(rate_t), intent(in) :: w
 
@@ -32,7 +33,8 @@ contains
       end if
    end function relaxation_speed
 
-   !> The dyad of a rate that loads, from the slope of its L.
+   !> The dyad of a rate that loads, from the slope of its L. slope is dL/d sigma' by components [1/kPa]; L > 0 is not
+   !> checked. docs/theory/integration.md section 2.1.
    pure function new_relaxation(w, slope) result(relaxation)
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: slope(6)
@@ -47,7 +49,8 @@ contains
 
    !> Turns the last of some rates, explicit, into that of a linearly implicit stage of a substep h: it solves
    !> (1 - g h J) k_i = f_i + h J sum_j g_ij k_j with the dyad J by one scalar. What holds for rates holds for their
-   !> derivatives, the dyad being held.
+   !> derivatives, the dyad being held. rates(NY, stages so far), h a share of the increment [-].
+   !> docs/theory/integration.md section 2.1, after Rang & Angermann (2005).
    pure subroutine relax(relaxation, h, rates)
       type(relaxation_t), intent(in) :: relaxation
       real(wp), intent(in) :: h

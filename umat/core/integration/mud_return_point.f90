@@ -31,7 +31,8 @@ module mud_return_point
       real(wp) :: along    !< t:chord, t the elastic rate of the stress ratio under the whole strain, of any length
    end type place_t
 contains
-   !> The place of a process that began at r_in.
+   !> The place of a process that began at r_in. r_in, r and n [-], t of any length. docs/theory/memory-rules.md section
+   !> 3.2.
    pure function place_at(par, r_in, loading, r, n, t) result(place)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: r_in(6)
@@ -48,7 +49,8 @@ contains
       place%along = ddot(t, place%chord)
    end function place_at
 
-   !> Direction and target of the present process, where it goes forwards.
+   !> Direction and target of the present process, where it goes forwards. docs/theory/memory-rules.md section 3.2. A
+   !> place without a chord changes nothing.
    pure subroutine note_progress(place, memory)
       type(place_t), intent(in) :: place
       type(memory_t), intent(inout) :: memory
@@ -59,7 +61,8 @@ contains
    end subroutine note_progress
 
    !> A process that turns aside may go farther in its direction: the target is the farthest. Where r:direction is
-   !> largest the place hardly matters, so that the target does not hang on where exactly the process turned aside.
+   !> largest the place hardly matters, so that the target does not hang on where exactly the process turned aside. r
+   !> [-]; docs/theory/memory-rules.md section 3.2.
    pure subroutine note_farthest(r, memory)
       real(wp), intent(in) :: r(6)
       type(memory_t), intent(inout) :: memory
@@ -70,7 +73,9 @@ contains
    !> Not negative where a process goes forwards: (r - r_in):n is not negative, the loading direction is near the chord
    !> from the memory, and the whole strain leads along it. The chord counts, not the running direction: on a smoothly
    !> turned loop n follows the turn, and no reversal would ever be found. The path may leave the elastic domain
-   !> sideways on its way back: then n still points forwards while r falls, which is no progress.
+   !> sideways on its way back: then n still points forwards while r falls, which is no progress. Its sign counts: x and
+   !> length are [-], t:chord is in the unit of t. -1 without a loading direction. docs/theory/memory-rules.md section
+   !> 3.2.
    pure real(wp) function forwardness(par, place)
       type(params_t), intent(in) :: par
       type(place_t), intent(in) :: place
@@ -81,7 +86,7 @@ contains
    end function forwardness
 
    !> The present process is interrupted; the next has no direction yet. A full stack drops its two newest entries,
-   !> which are the smallest loop.
+   !> which are the smallest loop. docs/theory/memory-rules.md section 3.3.
    pure subroutine interrupt(memory)
       type(memory_t), intent(inout) :: memory
 
@@ -94,7 +99,7 @@ contains
 
    !> Number of the interrupted process that the path may come back to, 0 if there is none: the newest while the path
    !> leads back along it (the reversal is then still held back by the hysteresis or by the elastic domain), otherwise
-   !> the one before it, whose direction the present process shares.
+   !> the one before it, whose direction the present process shares. docs/theory/memory-rules.md section 3.4.
    pure integer function watched_process(memory, t) result(k)
       type(memory_t), intent(in) :: memory
       real(wp), intent(in) :: t(6)   !< elastic rate of the stress ratio, of any length
@@ -107,7 +112,8 @@ contains
       if (ddot(t, memory%interrupted(k)%direction) <= 0.0_wp) k = 0
    end function watched_process
 
-   !> How far r is beyond the target of an interrupted process, negative before it [-].
+   !> How far r is beyond the target of an interrupted process, negative before it [-]. docs/theory/memory-rules.md
+   !> section 3.4.
    pure real(wp) function beyond_target(par, process, r, m_b) result(distance)
       type(params_t), intent(in) :: par
       type(interrupted_t), intent(in) :: process
@@ -117,7 +123,8 @@ contains
       distance = ddot(r, process%direction) - min(process%target, target_limit(par, process)*m_b)
    end function beyond_target
 
-   !> Farthest target on the bounding surface in the direction of a process, over M^b [-].
+   !> Farthest target on the bounding surface in the direction of a process, over M^b [-]. docs/theory/memory-rules.md
+   !> section 3.4.
    pure real(wp) function target_limit(par, process) result(limit)
       type(params_t), intent(in) :: par
       type(interrupted_t), intent(in) :: process
@@ -125,7 +132,7 @@ contains
       limit = SQRT_2_3*lode_factor(par, ddot(square(process%direction), process%direction))/SURFACE_MARGIN
    end function target_limit
 
-   !> True where the bounding surface sets the target.
+   !> True where the bounding surface sets the target. m_b is M^b [-]; docs/theory/memory-rules.md section 3.4.
    pure logical function is_limited(par, process, m_b)
       type(params_t), intent(in) :: par
       type(interrupted_t), intent(in) :: process
@@ -135,7 +142,8 @@ contains
    end function is_limited
 
    !> Process k goes on; it and the loops above it leave the stack. The memory becomes the softer one of the present
-   !> process and of process k along t.
+   !> process and of process k along t. k is from 1 to the depth, not checked; r [-], t of any length.
+   !> docs/theory/memory-rules.md section 3.4.
    pure subroutine resume_process(k, r, t, memory)
       integer, intent(in) :: k
       real(wp), intent(in) :: r(6), t(6)

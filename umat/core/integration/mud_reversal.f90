@@ -12,7 +12,8 @@ module mud_reversal
    private
    public :: new_memory, begin_process, accept_process, interrupted_share
 contains
-   !> Memory of a point that starts at, or comes back without a past to, the stress ratio r.
+   !> Memory of a point that starts at, or comes back without a past to, the stress ratio r. r and all of the memory
+   !> [-]. docs/theory/material.md section 1.4.
    pure function new_memory(r) result(memory)
       real(wp), intent(in) :: r(6)
       type(memory_t) :: memory
@@ -27,7 +28,8 @@ contains
       memory%depth = 0
    end function new_memory
 
-   !> A new loading process begins at r in the direction n, with an elastic rate of the stress ratio along t.
+   !> A new loading process begins at r in the direction n, with an elastic rate of the stress ratio along t. r and n
+   !> [-], t of any length. docs/theory/memory-rules.md section 2.
    pure subroutine begin_process(par, r, n, t, memory)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: r(6), n(6), t(6)
@@ -60,7 +62,8 @@ contains
       memory%x_running = 0.0_wp
    end subroutine begin_process
 
-   !> m of paper eq. (16): 1 for a process that has hardly begun, 0 for a genuine one.
+   !> m of paper eq. (16): 1 for a process that has hardly begun, 0 for a genuine one. eps_q_p and m [-];
+   !> docs/theory/memory-rules.md section 2.3.
    pure real(wp) function interrupted_share(par, eps_q_p) result(m)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: eps_q_p
@@ -69,7 +72,8 @@ contains
       if (eps_q_p < par%eps_hat) m = 1.0_wp - (eps_q_p/par%eps_hat)**par%j_exp
    end function interrupted_share
 
-   !> After an accepted substep whose place that counts has (r - r_in):n = x.
+   !> After an accepted substep whose place that counts has (r - r_in):n = x. x and the plastic shear d_eps_q of the
+   !> substep [-]; x below 0 is not kept. docs/theory/memory-rules.md section 2.4.
    pure subroutine accept_process(loading, x, d_eps_q, memory)
       logical, intent(in) :: loading   !< There was a loading direction.
       real(wp), intent(in) :: x, d_eps_q

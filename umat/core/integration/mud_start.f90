@@ -22,7 +22,9 @@ module mud_start
 
 contains
    !> State of a point that starts at a stress, a void ratio and a suction without a past. A mean stress below p_min is
-   !> lifted to p_min, its stress ratio limited to the bounding surface.
+   !> lifted to p_min, its stress ratio limited to the bounding surface. MUD_BAD_INPUT for stress and suction,
+   !> MUD_BAD_VOID_RATIO outside (0.01, 5), MUD_BAD_STATE for the preset; the state is then of no use.
+   !> docs/theory/material.md section 1.4.
    pure subroutine initial_state(par, sigma, e, p_c, state, status, preset)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: sigma(6), e, p_c   !< [kPa, -, kPa], compression positive
@@ -66,7 +68,8 @@ contains
       state%memory = new_memory(r)
    end subroutine initial_state
 
-   !> Mean stress below p_min, as at a free surface: p_min, with a stress ratio on or inside the bounding surface.
+   !> Mean stress below p_min, as at a free surface: p_min, with a stress ratio on or inside the bounding surface. In
+   !> the unit of p_atm, compression positive. docs/theory/material.md section 1.4.
    pure subroutine lift_to_limit(par, bonded, state)
       type(params_t), intent(in) :: par
       logical, intent(in) :: bonded
@@ -77,7 +80,8 @@ contains
                                                   deviator(state%sigma)/par%p_min))
    end subroutine lift_to_limit
 
-   !> Saturation and state parameter of a state, and the saturation's slopes.
+   !> Saturation and state parameter of a state, and the saturation's slopes. S_w [-], psi [-]; slopes [-] against
+   !> volumetric strain, compression positive, and [1/kPa] against suction. docs/theory/material.md sections 2.1, 3.2.
    pure subroutine finish_state(par, state, blocks)
       type(params_t), intent(in) :: par
       type(state_t), intent(inout) :: state
@@ -99,7 +103,8 @@ contains
       blocks%dsw_dev = -(1.0_wp + state%e)*sat%ds_de
    end subroutine finish_state
 
-   !> True if a principal stress is negative (tensile): Sylvester's criterion fails.
+   !> True if a principal stress is negative (tensile): Sylvester's criterion fails. s is an effective stress,
+   !> compression positive, in any unit. docs/theory/material.md section 6.4.
    pure logical function has_tension(s)
       real(wp), intent(in) :: s(6)
       real(wp) :: minor

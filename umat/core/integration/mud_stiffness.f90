@@ -22,7 +22,8 @@ module mud_stiffness
    real(wp), parameter :: FEW_SUBSTEPS = 4.0_wp   !< So many more are explicit even where they are stiff [-].
 contains
    !> Makes the coming substep linearly implicit where stability alone would keep explicit ones short, and explicit
-   !> again where it would not. The rule as_published keeps its scheme.
+   !> again where it would not. The rule as_published keeps its scheme. Shares of inc [-]. docs/theory/integration.md
+   !> section 2.1.
    pure subroutine choose_stepping(par, rest, h, inc, trial)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: rest, h     !< what is left; the size that error control proposes
@@ -68,6 +69,7 @@ contains
    end subroutine find_relaxation
 
    !> Modified Euler becomes the higher order for the rest of the increment or phase; the rule as_published keeps it.
+   !> docs/theory/integration.md section 2.
    pure subroutine raise_order(par, inc)
       type(params_t), intent(in) :: par
       type(increment_t), intent(inout) :: inc

@@ -72,7 +72,8 @@ module mud_substep
       5.4180672388095326e-2_wp, 2.4212380706095346e-1_wp, -1.2232505839045147_wp, 5.4526025533510214e-1_wp]
    real(wp), parameter :: IMPLICIT_DIAGONAL = 4.3586652150845900e-1_wp
 contains
-   !> Where stage i of a step h stands.
+   !> Where stage i of a step h stands. y0(n), y(n), rates(n, i - 1 or more) per unit of time; h in that unit. Butcher's
+   !> form; docs/theory/integration.md section 2.
    pure subroutine stage_point(scheme, i, y0, rates, h, y)
       type(scheme_t), intent(in) :: scheme
       integer, intent(in) :: i
@@ -83,7 +84,8 @@ contains
       call combine(scheme%a((i - 1)*(i - 2)/2 + 1:i*(i - 1)/2), y0, rates, h, y)
    end subroutine stage_point
 
-   !> The solution of a step h.
+   !> The solution of a step h. y0(n), y(n), rates(n, stages or more) per unit of time; h in that unit.
+   !> docs/theory/integration.md section 2.
    pure subroutine solution(scheme, y0, rates, h, y)
       type(scheme_t), intent(in) :: scheme
       real(wp), intent(in), contiguous :: y0(:), rates(:, :)
@@ -93,7 +95,8 @@ contains
       call combine(scheme%b(1:scheme%stages), y0, rates, h, y)
    end subroutine solution
 
-   !> Solution minus embedded solution of a step h.
+   !> Solution minus embedded solution of a step h. error(n), n at most 21, rates(n, stages or more) per unit of time; h
+   !> in that unit. docs/theory/integration.md section 3.
    pure subroutine error_vector(scheme, rates, h, error)
       type(scheme_t), intent(in) :: scheme
       real(wp), intent(in), contiguous :: rates(:, :)
@@ -131,7 +134,8 @@ contains
       end do
    end subroutine combine
 
-   !> Factor on the step for an error of a tolerance; no growth right after a rejection.
+   !> Factor on the step for an error of a tolerance; no growth right after a rejection. error and tolerance in the same
+   !> unit, tolerance > 0; the factor [-] is from 0.1 to 2. docs/theory/integration.md section 3.
    pure real(wp) function step_factor(scheme, error, tolerance, may_grow) result(factor)
       type(scheme_t), intent(in) :: scheme
       real(wp), intent(in) :: error, tolerance

@@ -34,7 +34,9 @@ module mud_substepping
    real(wp), parameter :: MANY_SUBSTEPS = 50.0_wp
    real(wp), parameter :: LAST_SLIVER = 1.0e-9_wp            !< A rest of this share joins the substep before it [-].
 contains
-   !> The loop over substeps. On return inc has the scheme of the last one.
+   !> The loop over substeps. On return inc has the scheme of the last one. reached is 1, or after an error the share of
+   !> inc before the substep that failed [-]. Errors: MUD_TOO_MANY_SUBSTEPS, MUD_MINIMUM_STEP, MUD_NOT_FINITE,
+   !> MUD_NO_DIRECTION; state is then that of the last accepted substep. docs/theory/integration.md sections 1 to 4.
    pure subroutine integrate(par, inc, size, consistent, state, trial, sens, counters, reached, status, record)
       type(params_t), intent(in) :: par
       type(increment_t), intent(inout) :: inc

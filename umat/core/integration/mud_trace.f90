@@ -28,7 +28,7 @@ module mud_trace
       type(substep_t), pointer :: rows(:) => null()
    end type trace_t
 contains
-   !> Records one attempt.
+   !> Records one attempt. Compression positive; an attempt without a row is only counted.
    pure subroutine record_substep(par, inc, trial, h, error, sigma, outcome, jump, landed, counters, trace)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc

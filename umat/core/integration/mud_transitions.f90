@@ -22,7 +22,8 @@ module mud_transitions
 
    real(wp), parameter :: AT_LIMIT = 1.0e-9_wp               !< p' this close (relative) to p_min is at p_min [-].
 contains
-   !> What a trial holds before the first substep of an increment or phase.
+   !> What a trial holds before the first substep of an increment or phase. Its stress and rate are those of
+   !> begin_substep.
    pure subroutine begin_phase(state, trial)
       type(state_t), intent(in) :: state
       type(trial_t), intent(inout) :: trial
@@ -34,7 +35,8 @@ contains
    end subroutine begin_phase
 
    !> Decides what the coming substep is - ordinary, elastic or held by the tension cut-off - applies the memory rule,
-   !> and leaves the first rate in the trial.
+   !> and leaves the first rate in the trial. docs/theory/integration.md section 1, docs/theory/memory-rules.md section
+   !> 3.5, docs/theory/material.md section 6.
    pure subroutine begin_substep(par, inc, event, known, consistent, state, trial, sens, jump, counters)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -90,6 +92,7 @@ contains
    end subroutine begin_substep
 
    !> True after a substep whose last rate is the first of the next, or which is held and does not close at its end.
+   !> docs/theory/integration.md section 2.
    pure logical function rate_is_known(inc, trial, event)
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
@@ -198,7 +201,8 @@ contains
       if (consistent) call jump_of_memory(par, inc, jump, before, state%memory, trial%w(1), trial, sens)
    end subroutine try_to_close
 
-   !> Takes over an accepted substep; state already has its void ratio and suction.
+   !> Takes over an accepted substep; state already has its void ratio and suction. With the tension cut-off on, a mean
+   !> stress that landed below p_min is set to p_min. docs/theory/memory-rules.md section 3.2.
    pure subroutine accept_substep(par, inc, h, trial, state, counters)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc

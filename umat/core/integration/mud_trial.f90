@@ -38,7 +38,9 @@ module mud_trial
       type(interrupted_t) :: process   !< That process.
    end type trial_t
 contains
-   !> One trial substep from the first rate that the trial holds.
+   !> One trial substep from the first rate that the trial holds. h is a share of inc [-]. What is not finite stays in
+   !> trial%y: it is looked at by integrate. docs/theory/integration.md section 2, held docs/theory/material.md section
+   !> 6.2.
    pure subroutine take_step(par, inc, h, trial, counters)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -81,7 +83,7 @@ contains
       trial%held_error = norm(half - whole)
    end subroutine hold
 
-   !> A rate as one of the integrated vector.
+   !> A rate as one of the integrated vector. sigma' [kPa], z and plastic shear [-], per unit of pseudo-time.
    pure subroutine store_rate(w, dy)
       type(rate_t), intent(in) :: w
       real(wp), intent(out) :: dy(NY)
@@ -92,7 +94,7 @@ contains
    end subroutine store_rate
 
    !> Relative error of a trial substep; the void ratio is exact. A held point's is that of its stress, p_min times its
-   !> stress ratio.
+   !> stress ratio. [-]; h is the size of the trial, a share of its increment. docs/theory/integration.md section 3.
    pure real(wp) function error_norm(par, scheme, trial, h) result(error)
       type(params_t), intent(in) :: par
       type(scheme_t), intent(in) :: scheme

@@ -26,6 +26,7 @@ module mud_bonding
    real(wp), parameter :: FORCE_A = 10.7_wp, FORCE_B = 2.4_wp   !< g = 1 + t/(A + B t), Borja (2004).
 contains
    !> True if bonding acts at suctions up to p_c [kPa]: with S_max < 1 it does so without suction too.
+   !> docs/theory/material.md section 2.2.
    pure logical function is_bonded(par, p_c)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: p_c
@@ -34,7 +35,7 @@ contains
    end function is_bonded
 
    !> f(zeta) at a suction [kPa] and a void ratio [-]: paper eq. (1) for zeta, eq. (5) restored for f (mended; Gallipoli
-   !> et al. 2003), so that f(0) = 1.
+   !> et al. 2003), so that f(0) = 1. e > 0 is not checked; without suction the force of the menisci is 1.
    pure function bonding(par, p_c, e) result(bond)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: p_c, e
@@ -55,6 +56,7 @@ contains
    end function bonding
 
    !> Second derivatives [d2f/dp_c2 (1/kPa2), d2f/dp_c de (1/kPa), d2f/de2 (-)] at the suction and void ratio of bond.
+   !> Derivatives of docs/theory/material.md sections 2.1 and 2.2; bond is that of p_c [kPa] and e [-].
    pure function bonding_curvature(par, bond, p_c, e) result(curvature)
       type(params_t), intent(in) :: par
       type(bonding_t), intent(in) :: bond

@@ -7,7 +7,7 @@ module mud_flow
    private
    public :: dilatancy_factor, dilatancy, fabric_rate
 contains
-   !> A_d = A_0 (1 + <z:n>) [-]. Dafalias & Manzari (2004).
+   !> A_d = A_0 (1 + <z:n>) [-]. Dafalias & Manzari (2004). A_0 without fabric; docs/theory/material.md section 4.2.
    pure real(wp) function dilatancy_factor(par, z_n) result(a_d)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: z_n   !< z:n [-]
@@ -16,7 +16,8 @@ contains
       if (par%fabric) a_d = a_d*(1.0_wp + max(z_n, 0.0_wp))
    end function dilatancy_factor
 
-   !> D [-] of d eps^p = L (n + D/3 I): in triaxial compression exactly paper eq. (9).
+   !> D [-] of d eps^p = L (n + D/3 I): in triaxial compression exactly paper eq. (9). docs/theory/material.md section
+   !> 4.2.
    pure real(wp) function dilatancy(a_d, g, m_d, r_n) result(d)
       real(wp), intent(in) :: a_d   !< dilatancy factor [-]
       real(wp), intent(in) :: g     !< Lode factor [-]
@@ -26,7 +27,8 @@ contains
       d = a_d*(SQRT_2_3*g*m_d - r_n)
    end function dilatancy
 
-   !> dz = -c_z <-L D> (z_max n + z), Dafalias & Manzari (2004); grows in dilation only.
+   !> dz = -c_z <-L D> (z_max n + z), Dafalias & Manzari (2004); grows in dilation only. All [-], L of the rate >= 0; 0
+   !> without fabric and in contraction; docs/theory/material.md section 4.3.
    pure function fabric_rate(par, loading, d, n, z) result(dz)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: loading, d   !< L and D

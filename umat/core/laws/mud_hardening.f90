@@ -34,7 +34,8 @@ module mud_hardening
    type(isotropic_t), parameter :: NO_HARDENING = isotropic_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
       0.0_wp, 0.0_wp, .false.)
 contains
-   !> b_0 = h x [-], the numerator of the hardening modulus h, paper eq. (13).
+   !> b_0 = h x [-], the numerator of the hardening modulus h, paper eq. (13). e [-], p' > 0 [kPa], not checked; 1 - c_h
+   !> e is at least 0.01. docs/theory/material.md section 4.2.
    pure real(wp) function kinematic_modulus(par, e, p) result(b_0)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: e, p
@@ -43,7 +44,8 @@ contains
    end function kinematic_modulus
 
    !> Isotropic hardening, paper eqs (4), (6), (7) with the second term of (4) restored as the change of f at constant e
-   !> (mended): on the compression line ln e = ln N_l - lambda ln p' + ln f.
+   !> (mended): on the compression line ln e = ln N_l - lambda ln p' + ln f. docs/theory/material.md sections 3.5 and
+   !> 4.4; the arguments are not checked.
    pure function isotropic_hardening(par, bond, e, p, kappa, eta2, weight) result(iso)
       type(params_t), intent(in) :: par
       type(bonding_t), intent(in) :: bond

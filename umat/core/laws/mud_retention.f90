@@ -22,7 +22,7 @@ module mud_retention
    end type saturation_t
 contains
    !> Degree of saturation at a suction [kPa] and a void ratio [-], paper eqs (23), (24). No suction: S_max, zero
-   !> slopes.
+   !> slopes. On a scanning branch that of docs/theory/material.md section 2.1.1. e > 0 is not checked.
    pure function saturation(par, p_c, e) result(sat)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: p_c, e
@@ -53,7 +53,7 @@ contains
       sat%log_sum = log_sum
    end function saturation
 
-   !> ln(p*/P_a), paper eq. (23).
+   !> ln(p*/P_a), paper eq. (23). It is ln(p_c/P_a) + Omega ln e [-]; the signs are not checked.
    pure real(wp) function log_suction(par, p_c, e)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: p_c, e   !< [kPa, -], p_c > 0
@@ -61,7 +61,8 @@ contains
       log_suction = log(p_c/par%p_a) + par%omega*log(e)
    end function log_suction
 
-   !> d ln y/d ln x = (x/y)**q of a scanning curve, 1 on a main curve [-].
+   !> d ln y/d ln x = (x/y)**q of a scanning curve, 1 on a main curve [-]. docs/theory/material.md section 2.1.1; the
+   !> signs are not checked.
    pure real(wp) function scanning_weight(par, p_c, e) result(weight)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: p_c, e   !< [kPa, -], p_c > 0
@@ -91,6 +92,8 @@ contains
    end subroutine to_main_curve
 
    !> Second derivatives [d2S/dp_c2 (1/kPa2), d2S/dp_c de (1/kPa), d2S/de2 (-)] at the suction and void ratio of sat.
+   !> sat is that of p_c [kPa] and e [-]; zeros without suction. Derivatives of paper eqs (23), (24) and of
+   !> docs/theory/material.md section 2.1.1.
    pure function saturation_curvature(par, sat, p_c, e) result(curvature)
       type(params_t), intent(in) :: par
       type(saturation_t), intent(in) :: sat

@@ -24,7 +24,8 @@ module mud_scanning
    real(wp), parameter :: WET_END = -18.0_wp, DRY_END = 14.0_wp, AS_MUCH = 1.0e-6_wp
 contains
    !> Parameters of the phase that begins at (p_c, e, s_w) and dries or wets: their saturation is that along the
-   !> scanning curve. s_w lies between the main curves.
+   !> scanning curve. s_w lies between the main curves. Without suction, or with s_w on the main curve, they are those
+   !> of the main curve. Closed form of docs/theory/material.md section 2.1.1; nothing is refused.
    pure function branch_from(par, dries, p_c, e, s_w) result(branch)
       type(params_t), intent(in) :: par   !< Of the material.
       logical, intent(in) :: dries
@@ -89,7 +90,8 @@ contains
       bounds = [wet%s_w, dry%s_w]
    end function main_curves
 
-   !> Parameters with which saturation is that of main drying, or of main wetting.
+   !> Parameters with which saturation is that of main drying, or of main wetting. docs/theory/material.md section
+   !> 2.1.1.
    pure function main_curve(par, dries) result(curve)
       type(params_t), intent(in) :: par
       logical, intent(in) :: dries
@@ -99,7 +101,8 @@ contains
       curve = branch_from(par, dries, 0.0_wp, 1.0_wp, par%s_max)
    end function main_curve
 
-   !> S_w between the main curves; count grows by one where it was not.
+   !> S_w between the main curves; count grows by one where it was not. At a suction [kPa] and a void ratio [-];
+   !> docs/theory/material.md section 2.1.1.
    pure subroutine clipped(par, p_c, e, s_w, count)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: p_c, e
@@ -114,7 +117,8 @@ contains
    end subroutine clipped
 
    !> S_w of a point that begins at a preset one of STATEV, which must lie between the main curves; 0: on the main
-   !> drying curve.
+   !> drying curve. At a suction [kPa] and a void ratio [-]. One that is not finite, or outside by more than 1e-6 S_max,
+   !> is MUD_BAD_STATE; a good one leaves status as it is.
    pure subroutine preset_saturation(par, p_c, e, s_w, status)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: p_c, e
@@ -135,7 +139,8 @@ contains
    end subroutine preset_saturation
 
    !> The main wetting curve nowhere above the main drying curve, beyond what bounds of single parameters say: the
-   !> largest P_aw of which that is true at many suctions.
+   !> largest P_aw of which that is true at many suctions. A P_aw [kPa] above it is MUD_BAD_PROPS, with that limit;
+   !> otherwise status stays as it is. docs/theory/material.md section 2.1.1.
    pure subroutine check_curves(par, status)
       type(params_t), intent(in) :: par
       type(mud_status_t), intent(inout) :: status

@@ -12,7 +12,8 @@ module mud_bounding
    public :: state_parameter, change_of_state_parameter, change_of_bounding_ratio, excess, change_of_excess, limited, &
              change_of_limited
 contains
-   !> State parameter psi = e - e_c [-].
+   !> State parameter psi = e - e_c [-]. Been & Jefferies (1985), e_c of paper eq. (8); docs/theory/material.md section
+   !> 3.2. Without `bonded` f is 1.
    pure real(wp) function state_parameter(par, bonded, e, p_c, p) result(psi)
       type(params_t), intent(in) :: par
       logical, intent(in) :: bonded
@@ -21,7 +22,8 @@ contains
       psi = e - critical_void_ratio(par, factor_of(par, bonded, p_c, e), p)
    end function state_parameter
 
-   !> Change of psi with void ratio, suction and mean stress [-].
+   !> Change of psi with void ratio, suction and mean stress [-]. At e [-], p_c and p [kPa], for their changes de [-],
+   !> dp_c and dp [kPa]; derivative of docs/theory/material.md section 3.2.
    pure real(wp) function change_of_state_parameter(par, bonded, e, p_c, p, de, dp_c, dp) result(change)
       type(params_t), intent(in) :: par
       logical, intent(in) :: bonded
@@ -45,7 +47,8 @@ contains
       f = bond%f
    end function factor_of
 
-   !> Change of M^b with psi [-].
+   !> Change of M^b with psi [-]. m_b is that of psi, dpsi the change of psi [-]. Derivative of paper eq. (12), 0 for
+   !> psi >= 0; the bound of the exponent is left out.
    pure real(wp) function change_of_bounding_ratio(par, psi, m_b, dpsi) result(change)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: psi, m_b, dpsi
@@ -53,7 +56,8 @@ contains
       change = merge(-par%n_b*m_b*dpsi, 0.0_wp, psi < 0.0_wp)
    end function change_of_bounding_ratio
 
-   !> |r| over the norm of the bounding surface in its direction, minus 1 [-].
+   !> |r| over the norm of the bounding surface in its direction, minus 1 [-]. psi and r [-]; docs/theory/material.md
+   !> section 3.3. -1 for r = 0.
    pure real(wp) function excess(par, psi, r)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: psi, r(6)
@@ -63,7 +67,7 @@ contains
       excess = r_norm/bounding_norm(par, r, r_norm, bounding_ratio(par, psi)) - 1.0_wp
    end function excess
 
-   !> Its change with psi and r [-].
+   !> Its change with psi and r [-]. 0 for r = 0; derivative of docs/theory/material.md sections 3.3 and 3.4.
    pure real(wp) function change_of_excess(par, psi, r, dpsi, dr) result(change)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: psi, r(6), dpsi, dr(6)
@@ -91,7 +95,8 @@ contains
                          + g*change_of_bounding_ratio(par, psi, m_b, dpsi))
    end function change_of_limit
 
-   !> A stress ratio, shortened to the bounding surface where it is beyond.
+   !> A stress ratio, shortened to the bounding surface where it is beyond. psi, r and the result [-];
+   !> docs/theory/material.md section 6.2.
    pure function limited(par, psi, r) result(r_limited)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: psi, r(6)
@@ -103,7 +108,8 @@ contains
       if (beyond > 0.0_wp) r_limited = r/(1.0_wp + beyond)
    end function limited
 
-   !> Change of a stress ratio that is held on the bounding surface.
+   !> Change of a stress ratio that is held on the bounding surface. psi, r, their changes and the result [-]; r is on
+   !> the surface or beyond, which is not checked.
    pure function change_of_limited(par, psi, r, dpsi, dr) result(change)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: psi, r(6), dpsi, dr(6)

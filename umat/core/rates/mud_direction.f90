@@ -74,6 +74,8 @@ module mud_direction
    end type trial_t
 contains
    !> The unit direction n and what depends on it. Leaves w%loading false and sets w%no_root where none is admissible.
+   !> On entry w has r, r - r_in, z, moduli and t > 0 of the rate, units as in rate_t. docs/theory/material.md sections
+   !> 4.6, 5.
    pure subroutine find_direction(par, known, w)
       type(params_t), intent(in) :: par
       logical, intent(in) :: known          !< w%n is the direction for nearly the same t: a start of the iteration.

@@ -32,7 +32,9 @@ module mud_linearise
    end type linearised_t
 contains
    !> Prepares the derivative of a rate w that was evaluated at (sigma, e, p_c) for (d_strain, d_pc), with an elastic
-   !> strain rate d_aside beside it.
+   !> strain rate d_aside beside it. sigma' and p_c [kPa], compression positive; e and strain rates [-], tensor shear;
+   !> d_pc [kPa]. Of a rate that does not load the gradients and the inverse are not set. docs/theory/integration.md
+   !> sections 5.2, 5.3.
    pure subroutine linearise(par, bonded, w, sigma, e, p_c, d_strain, d_pc, lin, d_aside)
       type(params_t), intent(in) :: par
       logical, intent(in) :: bonded

@@ -25,7 +25,8 @@ module mud_rates
    !> not do.
    real(wp), parameter :: PURE_VOLUMETRIC = 1.0e-14_wp, SMALLEST_RATIO = 1.0e-3_wp
 contains
-   !> Stress ratio r = s/p' and p' >= p_min of a stress [kPa].
+   !> Stress ratio r = s/p' and p' >= p_min of a stress [kPa]. Compression positive; r [-], p' in the unit of sigma.
+   !> docs/theory/material.md section 1.2.
    pure subroutine stress_ratio(par, sigma, p, r)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: sigma(6)
@@ -35,7 +36,8 @@ contains
       r = deviator(sigma)/p
    end subroutine stress_ratio
 
-   !> Norm of the bounding stress ratio in the direction of r, sqrt(2/3) g(r/|r|) M^b [-].
+   !> Norm of the bounding stress ratio in the direction of r, sqrt(2/3) g(r/|r|) M^b [-]. r_norm = |r| and m_b = M^b
+   !> [-]; without a direction (r = 0) g is 1. docs/theory/material.md sections 3.3, 3.4.
    pure real(wp) function bounding_norm(par, r, r_norm, m_b)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: r(6), r_norm, m_b
@@ -46,7 +48,9 @@ contains
       bounding_norm = SQRT_2_3*g*m_b
    end function bounding_norm
 
-   !> Rates of stress, fabric and plastic shear for a strain rate and a suction rate.
+   !> Rates of stress, fabric and plastic shear for a strain rate and a suction rate. Compression positive, tensor
+   !> shear. docs/theory/material.md sections 4 and 5; nothing is refused, w%no_root tells that no direction was found
+   !> and the rate is elastic.
    pure subroutine rate_at(par, bonded, sigma, e, p_c, z, r_in, d_strain, d_pc, mode, w)
       type(params_t), intent(in) :: par
       logical, intent(in) :: bonded             !< Suction bonding acts in this update.

@@ -36,7 +36,8 @@ module mud_sensitivity
       real(wp), dimension(LANES) :: dl, flow         !< of L and of L D
    end type lanes_t
 contains
-   !> Changes of the rates of stress, fabric and plastic shear, and of the loading direction.
+   !> Changes of the rates of stress, fabric and plastic shear, and of the loading direction. Units of the results [kPa,
+   !> -, -], of dn [-]; lin is that of w. docs/theory/integration.md section 5.3.
    pure subroutine changes_of_rate(par, w, lin, at_rest, y, r_in, changes, rates, dn)
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
@@ -66,7 +67,8 @@ contains
       if (lin%beside) call add_aside(w, lin, changes, x, rates(:, 1:6))
    end subroutine changes_of_rate
 
-   !> Changes of n:t, t = 2 G e - V r the elastic rate of the stress ratio times p', for a rate that loads [kPa].
+   !> Changes of n:t, t = 2 G e - V r the elastic rate of the stress ratio times p', for a rate that loads [kPa]. Part
+   !> of docs/theory/integration.md section 4.3.
    pure function changes_of_drive(par, w, lin, y, changes) result(c)
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w

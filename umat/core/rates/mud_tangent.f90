@@ -10,7 +10,8 @@ module mud_tangent
    private
    public :: continuum_tangent, elastic_tangent, gradients, inverse_of
 contains
-   !> Elastic stiffness [kPa] at moduli K, G [kPa], a map from engineering strain.
+   !> Elastic stiffness [kPa] at moduli K, G [kPa], a map from engineering strain. Isotropic law of Hooke;
+   !> docs/theory/material.md section 4.5.
    pure function elastic_tangent(k, g) result(c)
       real(wp), intent(in) :: k, g
       real(wp) :: c(6, 6)
@@ -28,6 +29,7 @@ contains
    !>
    !> From gamma n = t y + beta r: gamma dn = y dt + t dy - n a + r b with a = gamma_n:dn, b = beta_n:dn, n:dn = 0,
    !> three scalar equations for dy, a, b. Everything is then n (x) something + r (x) something + a multiple of dt.
+   !> Compression positive; w is a rate of rate_at. docs/theory/integration.md section 5.2.
    pure subroutine continuum_tangent(par, w, c, c_pc)
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
@@ -92,7 +94,8 @@ contains
       end function on_suction
    end subroutine continuum_tangent
 
-   !> Derivatives of 1/h, D, beta and gamma with respect to n, their parts along n removed since n:dn = 0.
+   !> Derivatives of 1/h, D, beta and gamma with respect to n, their parts along n removed since n:dn = 0. Units [-, -,
+   !> kPa, kPa]; w is a rate that loads. Guards of docs/theory/material.md section 5 included.
    pure subroutine gradients(par, w, h_n, d_n, beta_n, gamma_n)
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
@@ -128,7 +131,7 @@ contains
       end function normal
    end subroutine gradients
 
-   !> Inverse of a 3 x 3 matrix by cofactors.
+   !> Inverse of a 3 x 3 matrix by cofactors. That m is regular is not checked.
    pure function inverse_of(m) result(inverse)
       real(wp), intent(in) :: m(3, 3)
       real(wp) :: inverse(3, 3)
