@@ -31,12 +31,12 @@ def edge_cell(cells, ratio):
 
 EDGE = {8: edge_cell(8, 0.72), 12: edge_cell(12, 0.75)}
 BELOW = 0.01   # What the cells below the footing and the third digit of the reference leave.
-WITHOUT_CELL = Tolerance("the error is in proportion to the cell at the edge; what is left is that of the cells below, of second "
-                         "order, and the third digit of the reference", relative=BELOW)
+WITHOUT_CELL = Tolerance("the error is in proportion to the cell at the edge; the remaining error is that of the cells "
+                         "below, of second order, and the third digit of the reference", relative=BELOW)
 ON_A_MESH = {cells: Tolerance("the stress jumps at the edge, within a cell: the footing is wider by up to the cell beside it, h, "
                               "its area larger by 2 h/R; the cells below 1 %", relative=2 * h / RADIUS + BELOW)
              for cells, h in EDGE.items()}
-PLATEAU = Tolerance("a limit load is one that grows no more: 1 % in the last fifth of the settlement", absolute=0.01)
+PLATEAU = Tolerance("a limit load no longer grows: 1 % in the last fifth of the settlement", absolute=0.01)
 
 
 def factor(bench, *changes):

@@ -45,7 +45,7 @@ NO_BOUNDARY = Tolerance("two domains give the value without the boundary; the me
                         "are far below", absolute=0.0025)
 CLOSED_APPROACH = Tolerance("the boundary makes the approach too small by a share of the order of a/L, measured 3 % at "
                             "20 a, 1.4 % at 40 a", absolute=1 / 40)
-OPEN_APPROACH = Tolerance("what is left of two domains is the second order, (1/40)**2, the penalty, 1e-3, and the "
+OPEN_APPROACH = Tolerance("the remaining error of two domains is the second order, (1/40)**2, the penalty, 1e-3, and the "
                           "sphere's own curve, L/R = 0.2", absolute=0.005)
 MEAN_ORDER = Tolerance("smooth inside, so that quadratic displacements and linear pressures should give 2; the edge of "
                        "the contact, where the pressure has a vertical tangent, "
@@ -69,7 +69,7 @@ MOMENTUM = Tolerance("Newton's tolerance of 1e-6 over 600 steps bounds what is m
 DAMPED = Tolerance("with damping no energy is gained, up to the tolerance of Newton", absolute=1e-6)
 OPENING = Tolerance("with little damping a step that opens or closes a contact makes an error of first order in the "
                     "step", absolute=1e-3)
-FIRST_ORDER = Tolerance("first order in the step: half, with room for which step hits an opening", absolute=0.6)
+FIRST_ORDER = Tolerance("first order in the step: half, with a margin for the step that contains an opening", absolute=0.6)
 
 
 def read(folder, *names):
@@ -206,7 +206,7 @@ def plates(bench):
                    c["interface.thrust"][-1] / (6.5 + 9.81 * 0.011098231), 1.0, EQUILIBRIUM)
     bench.note(f"steel plate: centre {pressed['2.1e8']:.2%} deeper than the rigid one, {bent['2.1e8']:.2%} deeper than "
                f"its rim")
-    second = Tolerance("what a nearly rigid plate bends is 1/E to first order; the next order is a share of the size "
+    second = Tolerance("the bending of a nearly rigid plate is 1/E to first order; the next order is a share of the size "
                        "of the bending itself: four times it", absolute=4 * bent["2.1e8"])
     bench.near("plate: bending of 2.1e9 kPa / a tenth of that of 2.1e8", 10 * bent["2.1e9"] / bent["2.1e8"], 1.0,
                second)
@@ -222,7 +222,7 @@ def plates(bench):
     centre = h["centre.u_z"][2:] - h["centre.u_z"][1]
     plate = c_rigid["rigid.u_z"][impact] - c_rigid["rigid.u_z"][~impact]
     peaks = [c["interface.thrust"].max() for c in (c_steel, c_rigid)]
-    bending = Tolerance("both plates are alike to what the steel bends at rest", absolute=bent["2.1e8"])
+    bending = Tolerance("both plates agree to the bending of the steel at rest", absolute=bent["2.1e8"])
     bench.near("impact: largest thrust, steel / rigid", peaks[0] / peaks[1], 1.0, bending)
     bench.near("impact: largest settlement of the centre, steel / rigid", centre.min() / plate.min(), 1.0, bending)
     return surfaces, (c_rigid["time"][impact] - 1, plate, centre)

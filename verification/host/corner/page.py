@@ -45,7 +45,7 @@ def check(bench):
         curves[gap] = history["time"], HEIGHT + history["corner.u_z"], first_touch(folder)
     bench.near("combined: contact acts from", curves["combined"][2], ARRIVAL, IN_ITS_STEP, "s")
     bench.below("combined: depth of the corner / that of mean gaps", -curves["combined"][1].min() / -curves["nodal"][1].min(),
-                Tolerance("mean gaps let it through until half an edge is in", absolute=0.25))
+                Tolerance("mean gaps let it penetrate until half an edge is inside", absolute=0.25))
     for gap, (_, z, touch) in curves.items():
         bench.note(gap, f"acts from {1e3 * touch:.2f} ms (arrival {1e3 * ARRIVAL:.2f} ms), depth {-1e3 * z.min():.2f} mm")
     return curves

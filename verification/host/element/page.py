@@ -16,8 +16,8 @@ PAGE = Page(
     reference="mud_triax: `drivers/cases/undrained_e735_p100.nml`, `drained_s100.nml`",
     seconds=4, quick=3, pictures=("element.png",))
 
-SAME = Tolerance("the same increments and the same library; what differs is Newton's tolerance and the flow of the "
-                 "interior", absolute=1e-4)
+SAME = Tolerance("the same increments and the same library; the differences are Newton's tolerance and the "
+                 "flow of the interior", absolute=1e-4)
 
 
 def check(bench):

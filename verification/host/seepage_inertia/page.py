@@ -21,7 +21,7 @@ FITTED = Tolerance("decaying roots and faster modes of the mesh, excited by roun
                    "elongation", absolute=0.01)
 DECAY = Tolerance("every root decays")
 NO_GROWTH = Tolerance("not more than at the start", absolute=1.0)
-GROWTH = Tolerance("the sign is claimed, no more")
+GROWTH = Tolerance("only the sign is claimed")
 
 
 def growth(k, p_c, modulus=1.3e4, inertia=True):

@@ -16,13 +16,13 @@ PAGE = Page(
 
 E, NU, VOIDS, LOAD, PULSE = 2e5, 0.25, 0.65, 10.0, 0.1
 SHEAR, CONSTRAINED = E / 2 / (1 + NU), E * (1 - NU) / (1 + NU) / (1 - 2 * NU)
-REFLECTED = Tolerance("at normal incidence the dashpots are exact; what is left are the short waves of the mesh (cells "
+REFLECTED = Tolerance("at normal incidence the dashpots are exact; the remaining error is the short waves of the mesh (cells "
                       "of 1/44 of the pulse, quadratic), and in saturated soil the water that flows against the "
                       "skeleton behind the front", absolute=0.01)
 ARRIVAL = Tolerance("fourth order in the cells, second in steps of 1/200 of the pulse: 1e-3 of the peak; in saturated "
                     "soil seepage adds as much", relative=3e-3)
 TRANSFER = Tolerance("steps of 1/50 of the shortest period that counts (10 Hz): (omega dt)**2/12 = 1.3e-3 of a "
-                     "frequency, times 1/(2 xi) = 6 on the flank of a peak; what is cut off after 4 s is below 1e-3",
+                     "frequency, times 1/(2 xi) = 6 on the flank of a peak; the part cut off after 4 s is below 1e-3",
                      absolute=8e-3)
 CONTENT = 0.02   # share of the largest amplitude of the input below which a ratio says nothing
 

@@ -16,7 +16,7 @@ PAGE = Page(
               "integrates to e = N_l f(zeta(e, p_c)) p'^(-lambda)",
     seconds=2, quick=1, every_build=True, pictures=("bonding.png",))
 
-NOTHING = Tolerance("nothing elastic happens, and nothing else")
+NOTHING = Tolerance("neither elastic nor plastic strain occurs")
 ROUNDED = Tolerance("a few thousand roundings", absolute=ROUNDING)
 COLLAPSE = Tolerance("ten times the integration's tolerance of 1e-5", absolute=1e-4)
 COLLAPSED = Tolerance("ten times the integration's tolerance of 1e-5", relative=1e-4)

@@ -22,7 +22,7 @@ CYCLES = {0.04: 100, 0.08: 40}   # else 20: the stress path then repeats itself
 VERTICAL = 100.0
 MARKS = {"r_u of the mean stress 0.8": ("p", 0.8), "r_u of the vertical stress 0.8": ("v", 0.8), "r_u of the vertical stress 0.95": ("v", 0.95),
          "double amplitude 7.5 %": ("d", 0.075)}
-HALF = Tolerance("a mark is met within a half cycle; where r_u only just reaches it, rounding may move it by one", absolute=1.0)
+HALF = Tolerance("a mark is met within a half cycle; where r_u barely reaches it, rounding may shift it by one", absolute=1.0)
 
 
 def case(name, ratio, cycles):

@@ -26,7 +26,7 @@ STOP = Tolerance("a stage stops at the first increment beyond its mark: r_u chan
 AMPLITUDE = Tolerance("a stage stops at the first increment beyond its mark, which is 5e-5 at most; ten of them",
                       absolute=5e-4)
 CUT_OFF = Tolerance("below p_min the tension cut-off holds p': rounding, with room for the units", absolute=1e-9)
-BOUND = Tolerance("beyond the surface softening brings the ratio back, though not at once; it was never seen beyond",
+BOUND = Tolerance("beyond the surface softening brings the ratio back, though not immediately; it was never observed beyond",
                   absolute=0.05)
 ROUNDED = Tolerance("a few thousand roundings", absolute=ROUNDING)
 

@@ -32,7 +32,7 @@ RANGE = Tolerance("the prototype's last digit, rounded, and the asymmetry that i
 LOOP = Tolerance(POINTS, absolute=0.3)
 SILENT = Tolerance("noise inside the elastic domain: the integration's tolerance of 1e-5 and what increments that end elsewhere add", absolute=5e-3)
 NUMBER = Tolerance("the prototype at tolerance 1e-5, other increments around the turn", relative=1e-4)
-TURNING = Tolerance("what is asked of turning paths: 1e-3 of the stress, a hundred tolerances", absolute=0.1)
+TURNING = Tolerance("the requirement on turning paths: 1e-3 of the stress, a hundred tolerances", absolute=0.1)
 QUICK_TURNS = ("circle 2e-4, 80 sides", "circle 2e-4, 332 sides", "square 2e-4", "eight 1e-4, 80 sides")
 
 # What the prototype of the default rule gave.
@@ -79,7 +79,7 @@ def check(bench):
     # A criterion that every rule meets would prove nothing about the default.
     for rule, least in SEEN.items():
         bench.below(f"{rule}: criteria short of {least} that it misses", least - misses(criteria(walker, parse_rule(rule))),
-                    Tolerance("the criteria see a rule that ratchets or overshoots", absolute=0.0))
+                    Tolerance("the criteria detect a rule that ratchets or overshoots", absolute=0.0))
         if bench.quick:
             break
     return walker

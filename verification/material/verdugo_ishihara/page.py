@@ -33,7 +33,7 @@ FAR = ((re.compile(r"eps_a_end = \S+"), "eps_a_end = 1.0"),)   # natural axial s
 HELD = Tolerance("the driver's promise for a held stress", absolute=1e-10)
 WHOLE_PERCENT = Tolerance("the other integration is known in whole per cent, its normalisation of q in part (below)",
                           absolute=1.0)
-TWO_DIGITS = Tolerance("the other integration is known to 0.01 points and does not say which rows it took",
+TWO_DIGITS = Tolerance("the other integration is known to 0.01 points and does not state which rows it used",
                        absolute=0.05)
 
 

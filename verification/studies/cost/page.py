@@ -73,7 +73,7 @@ def honest_text():
                             "in the band"), lines) + (
         f"\n{within} of {len(known)} answers lie in the band; {len(above)} have an error of more than five times the "
         f"estimate, the others outside are estimated too large. Of {len(met)} answers that change by more than 5 % of "
-        f"the largest change of their field {len(twice)} err by more than twice what was asked for"
+        f"the largest change of their field {len(twice)} have an error of more than twice the accuracy that was set"
         + "".join(f"; {r['scene']} {r['accuracy']} {r['answer']} ({r['true_error']})" for r in twice) + ".\n")
 
 

@@ -23,8 +23,8 @@ PAGE = Page(
     seconds=90, quick=0, pictures=("effects.png",))
 
 COUNT = Tolerance("a count")
-CHANGED = Tolerance("what is let go may change an answer by the tolerance of the scene (1 %, 4 % where it says so), by the "
-                    "pilots' factor of 2 at most twice as much; steps are chosen anew, to 1 %", absolute=0.03)
+CHANGED = Tolerance("removed effects may change an answer by the tolerance of the scene (1 %, 4 % where the scene "
+                    "sets it), by the pilots' factor of 2 at most twice as much; steps are chosen anew, to 1 %", absolute=0.03)
 CARELESS = 0.05    # what a trap must err by, so that it is one
 
 
@@ -79,7 +79,7 @@ def check(bench):
             row["careless"] = "refused" if careless is None else apart(full, careless)
             if careless is not None:
                 bench.below(f"{scene.name}: share that makes it a trap over the error of carelessness",
-                            CARELESS / row["careless"], Tolerance("a trap errs by more than 5 %", absolute=1.0))
+                            CARELESS / row["careless"], Tolerance("a trap has an error of more than 5 %", absolute=1.0))
         bench.note(scene.name, f"auto {100 * row['auto']:.2g} %, careless "
                    + (f"{100 * row['careless']:.3g} %" if isinstance(row["careless"], float) else str(row["careless"]))
                    + f", off: {', '.join(row['off']) or 'nothing'}; {row['seconds']:.2f} s after {row['pilots']:.2f} s of pilots; "

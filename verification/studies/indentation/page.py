@@ -29,9 +29,9 @@ MAKES = (Script("series.py", ("results/*.csv", "results/histories/*.csv"), 600),
 SEATED = Tolerance("the seat is in equilibrium to 1e-8 of all forces; the plate's weight is about 1e-3 of these",
                    absolute=1e-4)
 ROUNDED = Tolerance("one evaluation of eq. (24): a few thousand roundings", absolute=1e-12)
-IMPULSE = Tolerance("what the scheme leaves at the end is of the order of dt m times the last acceleration",
+IMPULSE = Tolerance("the error of the scheme at the end is of the order of dt m times the last acceleration",
                     absolute=1e-3)
-ENERGY = Tolerance("what the ledger leaves open, against its largest entry: second order in the step, and steps that "
+ENERGY = Tolerance("the imbalance of the ledger, against its largest entry: second order in the step, and steps that "
                    "open or close the contact", absolute=1e-3)
 UNCHANGED = Tolerance("the series is written with six digits; loading is smooth, rounding does not grow before the "
                       "first unloading", absolute=1e-4)

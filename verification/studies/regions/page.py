@@ -17,7 +17,7 @@ PAGE = Page(
 MAKES = (Script("study.py", ("results.csv",), 90),)
 
 COUNT = Tolerance("a count")
-SAME = Tolerance("rounding of another machine, and what Newton's tolerance of 1e-3 makes of it in 168 steps", relative=1e-3)
+SAME = Tolerance("rounding of another machine, and its growth within Newton's tolerance of 1e-3 in 168 steps", relative=1e-3)
 CHECKED = ("sand, coupled", "elastic, drained")
 EXACT = ("unknowns", "state of the points [MB]", "matrices of the elements [MB]")
 ANSWERS = ("largest indentation [mm]", "last indentation [mm]", "largest rise of p_w [kPa]")
