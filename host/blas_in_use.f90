@@ -43,7 +43,8 @@ module blas_in_use
       end function realpath_i
    end interface
 contains
-   !> Name and file of the BLAS and the file of the LAPACK in use; empty texts where they are not known.
+   !> Name and file of the BLAS and the file of the LAPACK in use; empty texts where they are not known. Raises no
+   !> fault.
    function find_blas() result(found)
       type(blas_t) :: found
       ! Symbols that betray a product.

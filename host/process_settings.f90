@@ -24,7 +24,8 @@ module process_settings
       end function set_memory
    end interface
 contains
-   !> Applies the settings, once at the start of the program.
+   !> Applies the settings, once at the start of the program. A setting that the libraries do not know is left out
+   !> without a word.
    subroutine settle_process()
       procedure(set_threads), pointer :: threads
       procedure(set_memory), pointer :: memory

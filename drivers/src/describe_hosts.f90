@@ -43,7 +43,9 @@ module describe_hosts
       type(stress_unit_t) :: unit
    end type named_material_t
 contains
-   !> The &material group of a file (blank: the library's defaults), in its own or in another unit of stress.
+   !> The &material group of a file (blank: the library's defaults), in its own or in another unit of stress. Fault
+   !> EXIT_INPUT: the file cannot be read, holds another group or more than one, the unit is unknown, or the library
+   !> refuses a value.
    subroutine read_material(file, unit, material, fault)
       character(*), intent(in) :: file, unit   !< Unit blank: that of the file, which p_atm tells.
       type(named_material_t), intent(out) :: material
@@ -82,7 +84,8 @@ contains
    end subroutine read_material
 
    !> Leaves out what stands behind hysteresis where that is off: every host takes PROPS without it, and hosts that
-   !> name PROPS one by one (MFront) or have room for 50 (PLAXIS) take no others.
+   !> name PROPS one by one (MFront) or have room for 50 (PLAXIS) take no others. Fault EXIT_INPUT: hysteresis is on,
+   !> and the host takes none.
    subroutine shorten(host, material, fault)
       character(*), intent(in) :: host
       type(named_material_t), intent(inout) :: material
@@ -108,7 +111,7 @@ contains
       end do
    end function unit_list
 
-   !> Prints what a host reads. The word is one of HOSTS.
+   !> Prints what a host reads. The word is one of HOSTS. Numbers in the unit of the material.
    subroutine print_host(host, material)
       character(*), intent(in) :: host
       type(named_material_t), intent(in) :: material

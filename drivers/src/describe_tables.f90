@@ -57,9 +57,9 @@ contains
       print '(a)', '/'
    end subroutine print_namelist
 
-   !> One text of the registry.
+   !> One text of the registry. Empty where there is none.
    function text(list, index, field) result(string)
-      integer(c_int), intent(in) :: list, index, field
+      integer(c_int), intent(in) :: list, index, field   !< MUD_PROPS or MUD_STATEV; from 0; MUD_NAME ...
       character(:), allocatable :: string
       character(BUFFER) :: raw
 
@@ -78,7 +78,8 @@ contains
       string = from_c(raw)
    end function version
 
-   !> The shortest of the usual ways to write a number.
+   !> The shortest of the usual ways to write a number. Large and small ones with three digits, others with six decimals
+   !> at most.
    pure function number(value) result(string)
       real(c_double), intent(in) :: value
       character(:), allocatable :: string

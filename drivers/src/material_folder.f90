@@ -23,7 +23,7 @@ module material_folder
    end interface
 contains
    !> File of a material: `word` itself where it is a path (it has a slash or ends in .nml), otherwise word.nml of the
-   !> library's folder. A word that is neither raises a fault that says where it was looked for.
+   !> library's folder. A word that is neither raises a fault that says where it was looked for. Fault EXIT_INPUT.
    subroutine material_path(word, path, fault)
       character(*), intent(in) :: word
       character(:), allocatable, intent(out) :: path

@@ -29,7 +29,9 @@ module replay_file
       integer :: unit = -1, line = 0
    end type source_t
 contains
-   !> Reads a saved increment; a fault names file, line, what was found and what is expected.
+   !> Reads a saved increment; a fault names file, line, what was found and what is expected. Fault EXIT_INPUT: the file
+   !> cannot be read, is no saved increment, or is of another version of the library. Stresses and suction: in the unit
+   !> of p_atm; stress and strain: tension positive.
    subroutine read_increment(file, increment, fault)
       character(*), intent(in) :: file
       type(increment_t), intent(out) :: increment

@@ -45,6 +45,7 @@ module triax_accuracy
    end type accuracy_t
 contains
    !> Sets increments, tolerance and scheme of a test that asks for an accuracy, and estimates the errors.
+   !> docs/theory/accuracy.md section 5. Raises no fault: a run that does not come to its end has the error UNKNOWN.
    subroutine reach_accuracy(test, answer)
       type(case_t), intent(inout) :: test
       type(accuracy_t), intent(out) :: answer
@@ -96,7 +97,8 @@ contains
       end associate
    end subroutine reach_accuracy
 
-   !> The test again with halved increments and a sixteenth of the tolerance: the difference takes the estimate's place.
+   !> The test again with a quarter of the increments and a sixteenth of the tolerance: the difference takes
+   !> the place of the estimate. docs/theory/accuracy.md section 5.
    subroutine verify_accuracy(test, answer)
       type(case_t), intent(inout) :: test
       type(accuracy_t), intent(inout) :: answer
@@ -176,7 +178,8 @@ contains
       is_met = answer%by_increments < UNKNOWN .and. maxval(answer%error) <= answer%asked
    end function is_met
 
-   !> Into the head of the results: what was asked for and what is estimated.
+   !> Into the head of the results: what was asked for and what is estimated. Fault EXIT_OUTPUT: the file cannot be
+   !> written.
    subroutine note_accuracy(answer, table, fault)
       type(accuracy_t), intent(in) :: answer
       type(table_t), intent(inout) :: table
@@ -191,7 +194,8 @@ contains
       end do
    end subroutine note_accuracy
 
-   !> What was asked for, what is estimated of every answer, what limits it.
+   !> What was asked for, what is estimated of every answer, what limits it. (answers + 2) Errors in %, changes in the
+   !> unit of their column.
    pure function accuracy_lines(answer) result(lines)
       type(accuracy_t), intent(in) :: answer
       character(LINE_LENGTH), allocatable :: lines(:)

@@ -34,6 +34,7 @@ contains
    !> Runs a case. A handle is given where there are rows: also after a test that stopped (3), not after one that was
    !> refused (2). Threads wait for each other: gfortran keeps the length of a text that a function returns (deferred
    !> length) in static storage, so that the readers and messages of two tests at once would cut each other's texts.
+   !> Codes, and what is NULL when: mud_triax.h.
    integer(c_int) function triax_run_text(text, name, handle, message, length) bind(c, name='mud_triax_run')
       type(c_ptr), value :: text, name, message
       type(c_ptr), intent(out) :: handle
@@ -104,7 +105,7 @@ contains
       triax_columns_ = size(result%table%shown, kind=c_int)
    end function triax_columns_
 
-   !> A text about a column: MUD_TRIAX_NAME, _UNIT or _MEANING.
+   !> A text about a column: MUD_TRIAX_NAME, _UNIT or _MEANING. -1: no handle, no such column (from 0) or field.
    integer(c_int) function triax_column(handle, index, field, text, len) bind(c, name='mud_triax_column')
       type(c_ptr), value :: handle, text
       integer(c_int), value :: index, field, len
@@ -129,7 +130,7 @@ contains
       end associate
    end function triax_column
 
-   !> All values, column after column.
+   !> All values, column after column. (rows, columns), in the units of triax_column; -1: no handle or no room.
    integer(c_int) function triax_values(handle, values) bind(c, name='mud_triax_values')
       type(c_ptr), value :: handle, values
       type(result_t), pointer :: result

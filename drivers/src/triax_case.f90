@@ -32,7 +32,8 @@ module triax_case
    real(wp), parameter :: LIFTED = 1.0e-12_wp   !< Far above rounding: the library has raised the stress to p_min.
 
 contains
-   !> Reads and checks a case with its material, and brings the sample to its start.
+   !> Reads and checks a case with its material, and brings the sample to its start. Fault EXIT_INPUT: a file cannot be
+   !> read; and as of make_case.
    subroutine read_case(file, material, accuracy, test, fault)
       character(*), intent(in) :: file
       character(*), intent(in) :: material   !< File of a material that replaces that of the case; blank: none.
@@ -80,10 +81,12 @@ contains
       if (place == 0) groups = [groups, own]
    end subroutine replace_material
 
-   !> Checks the groups of a case with its material, and brings the sample to its start.
+   !> Checks the groups of a case with its material, and brings the sample to its start. Stresses are in the unit of the
+   !> material. Fault EXIT_INPUT: a group is unknown, missing or given twice, a key or value is refused, or the law
+   !> refuses the start.
    subroutine make_case(groups, file, test, fault)
-      type(group_t), intent(in) :: groups(:)
-      character(*), intent(in) :: file
+      type(group_t), intent(in) :: groups(:)   !< (groups of the case)
+      character(*), intent(in) :: file   !< For messages, and for the name of the test.
       type(case_t), intent(out) :: test
       type(fault_t), intent(inout) :: fault
       integer :: i, of_case, of_material, of_retention, of_initial, n_stages

@@ -52,7 +52,7 @@ contains
    !> where the law has them.
    function columns_shown(soil, components) result(shown)
       type(soil_t), intent(in) :: soil
-      logical, intent(in) :: components
+      logical, intent(in) :: components   !< Those of tensors are wanted.
       integer, allocatable :: shown(:)
       integer :: i
 
@@ -76,13 +76,13 @@ contains
       end do
    end function columns_shown
 
-   !> Values of all columns.
+   !> Values of all columns. In the order of COLUMNS; stresses in the unit of the law, compression positive.
    pure function values_of(soil, point, run, error, stage) result(values)
       type(soil_t), intent(in) :: soil
       type(point_t), intent(in) :: point
       type(stage_run_t), intent(in) :: run
       real(wp), intent(in) :: error      !< Largest of what is held since the row before, relative.
-      integer, intent(in) :: stage
+      integer, intent(in) :: stage   !< Its number; 0: the start.
       real(wp) :: values(size(COLUMNS))
 
       values = [axial_strain(point), volumetric_strain(point), mean_stress(point), deviator_stress(point), &

@@ -58,11 +58,11 @@ module triax_control
    end type tally_t
 
 contains
-   !> Plans a path segment of a stage from the present state of the sample.
+   !> Plans a path segment of a stage from the present state of the sample. Constraints: see triax_stage.
    subroutine plan_way(soil, stage, target, point, plan)
       type(soil_t), intent(in) :: soil
       type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: target   !< Value of what leads, at the end.
+      real(wp), intent(in) :: target   !< Value of what leads, at the end. [-] or [unit of stress of the law].
       type(point_t), intent(in) :: point
       type(plan_t), intent(out) :: plan
       real(wp) :: strain(6)
@@ -111,15 +111,17 @@ contains
       end if
    end subroutine plan_way
 
-   !> The variable that leads a stage, after increment k: by value, or the share of a change.
+   !> The variable that leads a stage, after increment k: by value, or the share of a change. [-] or [unit of stress of
+   !> the law].
    pure real(wp) function lead(plan, k)
       type(plan_t), intent(in) :: plan
-      integer, intent(in) :: k
+      integer, intent(in) :: k   !< Its number.
 
       lead = plan%lead_start + plan%lead_change*real(k, wp)/real(max(plan%increments, 1), wp)
    end function lead
 
-   !> Present value of a quantity that can lead a stage, stress as the stage means it.
+   !> Present value of a quantity that can lead a stage, stress as the stage means it. [-] or [unit of stress of the
+   !> law], compression positive.
    pure real(wp) function quantity(soil, stage, which, point)
       type(soil_t), intent(in) :: soil
       type(stage_t), intent(in) :: stage
@@ -134,7 +136,9 @@ contains
    end function quantity
 
    !> Increment k of a way, or the part of it up to `upto`. A part that fails is halved and retried, and the next ones
-   !> grow again.
+   !> grow again. By Newton iterations, where slope_is_exact is false by those of Broyden (1965). Fault EXIT_RUN:
+   !> max_updates are done, or a part was halved MAX_CUTS times, with what the law or the control says of it;
+   !> EXIT_OUTPUT: the update that was refused cannot be saved.
    subroutine advance(soil, plan, k, upto, point, tally, fault)
       type(soil_t), intent(in) :: soil
       type(plan_t), intent(inout) :: plan

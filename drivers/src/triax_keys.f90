@@ -95,9 +95,10 @@ contains
       end do
    end function keys_in
 
-   !> Refuses unknown keys and values outside their range, which for stresses is in the unit of the material.
+   !> Refuses unknown keys and values outside their range, which for stresses is in the unit of the material. Fault
+   !> EXIT_INPUT, at the first.
    subroutine check_keys(groups, unit, fault)
-      type(group_t), intent(in) :: groups(:)
+      type(group_t), intent(in) :: groups(:)   !< (groups of the case)
       type(stress_unit_t), intent(in) :: unit
       type(fault_t), intent(inout) :: fault
       type(key_t) :: keys(size(CASE_KEYS))
@@ -112,8 +113,8 @@ contains
 
    !> A list of keys for the help text, under the heads of their groups.
    subroutine print_keys(unit, keys, remark)
-      integer, intent(in) :: unit
-      type(key_t), intent(in) :: keys(:)
+      integer, intent(in) :: unit   !< Number of a Fortran unit.
+      type(key_t), intent(in) :: keys(:)   !< (keys to print)
       character(*), intent(in) :: remark   !< Behind the head.
       integer :: k
 

@@ -27,9 +27,9 @@ contains
    !> Adds the columns (values) at the end of an increment, known by its tag; `ends_way` at the end of a path segment.
    pure subroutine note_moment(moments, tag, ends_way, values)
       type(moments_t), intent(inout) :: moments
-      integer, intent(in) :: tag(PLACES)
+      integer, intent(in) :: tag(PLACES)   !< Stage, way, increment of the way.
       logical, intent(in) :: ends_way
-      real(wp), intent(in) :: values(:)
+      real(wp), intent(in) :: values(:)   !< (columns)
       integer, allocatable :: tags(:, :)
       real(wp), allocatable :: more(:, :)
 
@@ -52,7 +52,8 @@ contains
    end subroutine note_moment
 
    !> Largest difference of every column, at the increments of the coarse run that the fine one has too: `parts` of its
-   !> make one. Ends of ways are compared with each other. Huge where a way of the one is not in the other.
+   !> make one. Ends of ways are compared with each other. Huge where a way of the one is not in the other. (columns),
+   !> each in its unit. For docs/theory/accuracy.md section 5.
    pure function differences(coarse, fine, parts) result(apart)
       type(moments_t), intent(in) :: coarse, fine
       integer, intent(in) :: parts
@@ -90,7 +91,7 @@ contains
       end do
    end function before
 
-   !> Largest change of every column.
+   !> Largest change of every column. (columns), each in its unit; 0 of an empty record.
    pure function ranges(moments) result(range)
       type(moments_t), intent(in) :: moments
       real(wp) :: range(size(COLUMNS))

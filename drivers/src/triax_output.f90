@@ -37,7 +37,8 @@ module triax_output
    end type table_t
 
 contains
-   !> Opens the file and writes its header.
+   !> Opens the file and writes its header. Fault EXIT_OUTPUT: it cannot be written, or is HDF5 and the program was
+   !> built without.
    subroutine open_table(path, test, table, fault)
       character(*), intent(in) :: path   !< '-' is the standard output.
       type(case_t), intent(in) :: test
@@ -67,7 +68,7 @@ contains
       call header(test, table, fault)
    end subroutine open_table
 
-   !> A table that stays in memory.
+   !> A table that stays in memory. Raises no fault.
    subroutine open_memory_table(test, table, fault)
       type(case_t), intent(in) :: test
       type(table_t), intent(out) :: table
@@ -139,16 +140,16 @@ contains
       end if
    end subroutine remark
 
-   !> How a stage ended, behind its rows.
+   !> How a stage ended, behind its rows. Fault EXIT_OUTPUT: the file cannot be written.
    subroutine add_note(table, text, fault)
       type(table_t), intent(inout) :: table
-      character(*), intent(in) :: text
+      character(*), intent(in) :: text   !< "name: sentence"
       type(fault_t), intent(inout) :: fault
 
       call remark(table, text(:index(text, ':') - 1), text(index(text, ':') + 2:), fault)
    end subroutine add_note
 
-   !> Adds the row of a point after an increment of stage number `stage`.
+   !> Adds the row of a point after an increment of stage number `stage`. Fault EXIT_OUTPUT: it cannot be written.
    subroutine write_row(table, soil, point, run, error, stage, fault)
       type(table_t), intent(inout) :: table
       type(soil_t), intent(in) :: soil
@@ -205,6 +206,7 @@ contains
    end function value_text
 
    !> Closes the file; a run that stopped early says so in a last comment line, so that a short file explains itself.
+   !> Fault EXIT_OUTPUT: it cannot be written; an earlier fault stays.
    subroutine close_table(table, stopped, fault)
       type(table_t), intent(inout) :: table
       character(*), intent(in) :: stopped   !< Why, empty if it did not.

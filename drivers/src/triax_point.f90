@@ -42,7 +42,7 @@ module triax_point
    end type tangent_t
 
 contains
-   !> Takes over a law.
+   !> Takes over a law. The caller has it no more.
    subroutine make_soil(law, soil)
       class(material_t), allocatable, intent(inout) :: law
       type(soil_t), intent(out) :: soil
@@ -56,11 +56,12 @@ contains
       soil%i_n_guard = state_index(soil%law, 'n_guard')
    end subroutine make_soil
 
-   !> A sample at rest under an effective stress.
+   !> A sample at rest under an effective stress. Compression positive. Fault EXIT_INPUT: the law refuses it, as its
+   !> sentence says.
    subroutine start_point(soil, stress, suction, ratio, point, fault)
       type(soil_t), intent(in) :: soil
-      real(wp), intent(in) :: stress(6)   !< [kPa]
-      real(wp), intent(in) :: suction     !< [kPa]
+      real(wp), intent(in) :: stress(6)   !< [unit of stress of the law]
+      real(wp), intent(in) :: suction     !< [unit of stress of the law]
       real(wp), intent(in) :: ratio       !< Void ratio [-].
       type(point_t), intent(out) :: point
       type(fault_t), intent(inout) :: fault
@@ -78,12 +79,13 @@ contains
       point%suction = suction
    end subroutine start_point
 
-   !> Integrates a strain and a change of suction. Where the report's code is not 0, only the report is of use.
+   !> Integrates a strain and a change of suction. Where the report's code is not 0, only the report is of use. Strain
+   !> compression positive.
    subroutine update_point(soil, before, strain, suction, after, tangent, report)
       type(soil_t), intent(in) :: soil
       type(point_t), intent(in) :: before
       real(wp), intent(in) :: strain(6)      !< Increment [-].
-      real(wp), intent(in) :: suction        !< Increment [kPa].
+      real(wp), intent(in) :: suction        !< Increment [unit of stress of the law].
       type(point_t), intent(inout) :: after
       type(tangent_t), intent(out) :: tangent
       type(report_t), intent(out) :: report
@@ -105,7 +107,8 @@ contains
       after%suction = before%suction + suction
    end subroutine update_point
 
-   !> Writes an update to a file that mud_replay runs.
+   !> Writes an update to a file that mud_replay runs. Fault EXIT_OUTPUT: there is such a file, it cannot be written, or
+   !> the law saves none.
    subroutine save_update(file, origin, soil, before, strain, suction, fault)
       character(*), intent(in) :: file, origin
       type(soil_t), intent(in) :: soil
@@ -151,7 +154,7 @@ contains
       radial_stress = 0.5_wp*sum(point%stress(RADIAL))
    end function radial_stress
 
-   !> q = sigma_a - sigma_r, negative in extension.
+   !> q = sigma_a - sigma_r, negative in extension. [unit of stress of the law]
    pure real(wp) function deviator_stress(point)
       type(point_t), intent(in) :: point
 
@@ -195,10 +198,10 @@ contains
       saturation = soil%law%saturation(point%state(:, 1))
    end function saturation
 
-   !> One state variable, by its place; 0 where the law has none.
+   !> One state variable, by its place; 0 where the law has none. In its own unit.
    pure real(wp) function state_value(point, place)
       type(point_t), intent(in) :: point
-      integer, intent(in) :: place
+      integer, intent(in) :: place   !< From 1; 0: none.
 
       state_value = 0.0_wp
       if (place > 0) state_value = point%state(place, 1)

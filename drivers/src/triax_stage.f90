@@ -74,9 +74,9 @@ module triax_stage
    real(wp), parameter :: DEVIATOR_ROW(6) = [-0.5_wp, -0.5_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
    real(wp), parameter :: SHEAR_ROW(6) = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp]     !< 13: the axis is 3.
 contains
-   !> What may lead a control.
+   !> What may lead a control. BY_*; where cycles can run, the strain first.
    pure function leads_of(control) result(leads)
-      integer, intent(in) :: control
+      integer, intent(in) :: control   !< Place in CONTROL_NAMES.
       integer, allocatable :: leads(:)
 
       select case (control)
@@ -105,29 +105,29 @@ contains
 
    !> True if the control holds the volume: a saturated sample then is undrained.
    pure logical function sealed_control(control)
-      integer, intent(in) :: control
+      integer, intent(in) :: control   !< Place in CONTROL_NAMES.
 
       sealed_control = control == UNDRAINED .or. control == SHEAR_CONSTANT_VOLUME
    end function sealed_control
 
    !> True for simple shear, led by the components 13.
    pure logical function shear_control(control)
-      integer, intent(in) :: control
+      integer, intent(in) :: control   !< Place in CONTROL_NAMES.
 
       shear_control = control == SHEAR_DRAINED .or. control == SHEAR_CONSTANT_VOLUME
    end function shear_control
 
    !> True where axial, radial and volumetric values are not sufficient: tables then have the six components.
    elemental logical function general_control(control)
-      integer, intent(in) :: control
+      integer, intent(in) :: control   !< Place in CONTROL_NAMES.
 
       general_control = control >= STRAIN_PATH .or. control == SHEAR_DRAINED .or. control == SHEAR_CONSTANT_VOLUME
    end function general_control
 
    !> How a quantity is made of strain and stress.
    pure subroutine quantity_rows(lead, strain_row, stress_row)
-      integer, intent(in) :: lead
-      real(wp), intent(out) :: strain_row(6), stress_row(6)
+      integer, intent(in) :: lead   !< BY_*; rows of suction and of changes are 0.
+      real(wp), intent(out) :: strain_row(6), stress_row(6)   !< Factors of 11, 22, 33, 12, 13, 23.
 
       strain_row = 0.0_wp
       stress_row = 0.0_wp
@@ -149,7 +149,8 @@ contains
       end select
    end subroutine quantity_rows
 
-   !> Fills the constraints of a named control; those of `linear`, and given changes, stand already.
+   !> Fills the constraints of a named control; those of `linear`, and given changes, stand already. Factors of 11, 22,
+   !> 33, 12, 13, 23 (engineering shear), compression positive.
    subroutine set_constraints(stage, lead)
       type(stage_t), intent(inout) :: stage
       integer, intent(in) :: lead   !< BY_*, what leads; for stress cycles the strain that is driven.

@@ -21,7 +21,8 @@ module triax_stage_reader
    real(wp), parameter :: SUCTION_INCREMENT = 0.1_wp, SUCTION_INTERVAL = 1.0_wp   ! [kPa]
    real(wp), parameter :: MAX_INCREMENTS = 1.0e8_wp
 contains
-   !> A stage from its group, whose entries were checked.
+   !> A stage from its group, whose entries were checked. Fault EXIT_INPUT: a control or word is unknown, or keys are
+   !> missing, contradict each other or have no effect.
    subroutine read_stage(group, unit, stage, fault)
       type(group_t), intent(in) :: group
       type(stress_unit_t), intent(in) :: unit   !< Of the material.

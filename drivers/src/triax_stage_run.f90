@@ -39,12 +39,13 @@ module triax_stage_run
    end type stage_run_t
 
 contains
-   !> Plans a stage from the present state of the sample.
+   !> Plans a stage from the present state of the sample. Fault EXIT_RUN: stop_r_u, or a constant water content, does
+   !> not fit the suction of the sample.
    subroutine begin_stage(soil, stage, point, pressure, run, fault)
       type(soil_t), intent(in) :: soil
       type(stage_t), intent(in) :: stage
       type(point_t), intent(in) :: point
-      real(wp), intent(in) :: pressure   !< Excess pore pressure so far [kPa].
+      real(wp), intent(in) :: pressure   !< Excess pore pressure so far [unit of stress of the law].
       type(stage_run_t), intent(out) :: run
       type(fault_t), intent(inout) :: fault
 
@@ -70,6 +71,7 @@ contains
    end subroutine begin_stage
 
    !> One increment; at its end the run of the stage says whether it calls for a row and whether the stage is over.
+   !> Faults: those of advance; EXIT_RUN: the stress of a cycle is not reached within a strain of MAX_WAY.
    subroutine next_increment(soil, stage, run, point, tally, fault)
       type(soil_t), intent(in) :: soil
       type(stage_t), intent(in) :: stage
@@ -222,7 +224,7 @@ contains
       if (shear_control(stage%control)) confining_stress = point%stress(AXIAL)
    end function confining_stress
 
-   !> Share of the stage that is done, for the progress report.
+   !> Share of the stage that is done, for the progress report. [-]
    pure real(wp) function share_done(run)
       type(stage_run_t), intent(in) :: run
 

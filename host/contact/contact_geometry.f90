@@ -26,11 +26,13 @@ module contact_geometry
    end type contact_geometry_t
 contains
    !> Prepares two surfaces: (3, edges) node numbers of each in the order start, end, middle, the body on the
-   !> left.
+   !> left. docs/theory/contact.md section 2. status: CONTACT_OK; CONTACT_BAD_OPTION, a penalty that is not > 0, a
+   !> search radius < 0, one that is not finite, or an unknown kind; CONTACT_BAD_EDGE, a node that does not exist, is in
+   !> more than two edges, or in two and the middle of one.
    pure subroutine contact_prepare(geometry, slave_nodes, slave_edges, master_nodes, master_edges, options, status)
       type(contact_geometry_t), intent(out) :: geometry
-      integer, intent(in) :: slave_nodes, master_nodes
-      integer, intent(in) :: slave_edges(:, :), master_edges(:, :)
+      integer, intent(in) :: slave_nodes, master_nodes   !< Their numbers.
+      integer, intent(in) :: slave_edges(:, :), master_edges(:, :)   !< (3, edges)
       type(contact_options_t), intent(in) :: options
       type(contact_status_t), intent(out) :: status
       integer, allocatable :: edges_of(:, :)
@@ -101,11 +103,13 @@ contains
       end do
    end subroutine list_edges
 
-   !> Refuses present coordinates (2, nodes) [m] of both surfaces that are not finite, not as many as prepared, left of
-   !> the axis, or whose edges are folded: status CONTACT_OK, or the first that is wrong.
+   !> Refuses present coordinates (2, nodes) [m] of both surfaces that are not finite, not as many as prepared, of
+   !> slave nodes left of the axis, or whose edges are folded: status CONTACT_OK, or the first that is wrong.
+   !> CONTACT_BAD_SIZE; CONTACT_NOT_FINITE; CONTACT_DISTORTED_EDGE; CONTACT_BAD_RADIUS, a slave node at r < 0 in axial
+   !> symmetry.
    pure subroutine check_coordinates(geometry, slave_x, master_x, status)
       type(contact_geometry_t), intent(in) :: geometry
-      real(wp), intent(in) :: slave_x(:, :), master_x(:, :)
+      real(wp), intent(in) :: slave_x(:, :), master_x(:, :)   !< (2, nodes) [m]
       type(contact_status_t), intent(out) :: status
       integer :: i
 

@@ -52,7 +52,7 @@ contains
    !> Surface of the edges of a boundary.
    function surface_of(edges, x) result(surface)
       integer, intent(in) :: edges(:, :)   !< (3, edges) nodes of the mesh: start, end, middle
-      real(wp), intent(in) :: x(:, :)      !< (2, nodes)
+      real(wp), intent(in) :: x(:, :)      !< (2, nodes) At the start [m].
       type(surface_t) :: surface
       integer, allocatable :: place(:)
       integer :: i
@@ -69,8 +69,8 @@ contains
 
    !> A flat face of one edge, body on the left.
    pure function plate_surface(r, z, up) result(surface)
-      real(wp), intent(in) :: r(2), z
-      logical, intent(in) :: up
+      real(wp), intent(in) :: r(2), z   !< Where it begins and ends, its height [m].
+      logical, intent(in) :: up   !< It looks upwards.
       type(surface_t) :: surface
 
       allocate (surface%node(0))
@@ -80,6 +80,7 @@ contains
    end function plate_surface
 
    !> Prepares the interface of a slave and a master surface; the status says what is wrong with surfaces or options.
+   !> status: as of contact_prepare.
    subroutine new_interface(dofs, slave, master, plate, options, one, status)
       type(dofs_t), intent(in) :: dofs
       type(surface_t), intent(in) :: slave, master
@@ -105,11 +106,12 @@ contains
       one%unknown = [one%unknown, dofs%of(AT_U_Z, plate)]
    end subroutine new_interface
 
-   !> Everything at given displacements; false if a kernel refuses them.
+   !> Everything at given displacements; false if a kernel refuses them. contacts%status then says why.
+   !> docs/theory/contact.md sections 2 to 4.
    logical function evaluate_contacts(contacts, x, with_tangent) result(good)
       type(contacts_t), intent(inout) :: contacts
-      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes)
-      logical, intent(in) :: with_tangent
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) At the level l_f; displacements first [m].
+      logical, intent(in) :: with_tangent   !< Slopes too.
       integer :: i
 
       good = .true.
@@ -137,7 +139,7 @@ contains
    !> step stays.
    logical function probe_contacts(contacts, x) result(good)
       type(contacts_t), intent(inout) :: contacts
-      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes)
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
       integer :: i
 
       good = .true.
@@ -151,12 +153,12 @@ contains
       end do
    end function probe_contacts
 
-   !> One pair of surfaces at given displacements.
+   !> One pair of surfaces at given displacements. status: as of contact_evaluate.
    subroutine probe_interface(geometry, slave, master, plate, x, with_tangent, work, result, status)
       type(contact_geometry_t), intent(in) :: geometry
       type(surface_t), intent(in) :: slave, master
-      integer, intent(in) :: plate
-      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes)
+      integer, intent(in) :: plate   !< Node of the plate that is the master, or 0.
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
       logical, intent(in) :: with_tangent
       type(contact_workspace_t), intent(inout) :: work
       type(contact_result_t), intent(inout) :: result
@@ -176,7 +178,7 @@ contains
       type(contacts_t), intent(inout) :: contacts
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(inout) :: pattern
-      logical, intent(out) :: changed
+      logical, intent(out) :: changed   !< It has grown.
       integer, allocatable :: missing(:, :)
       integer :: n, i
 
@@ -221,12 +223,13 @@ contains
    end subroutine fit_pattern
 
    !> Adds the last evaluation; `share` is the slope of the evaluated displacements against the new ones.
+   !> docs/theory/contact.md section 3.
    subroutine add_contacts(contacts, pattern, share, with_tangent, residual, scale, values)
       type(contacts_t), intent(in) :: contacts
       type(pattern_t), intent(in) :: pattern
-      real(wp), intent(in) :: share
+      real(wp), intent(in) :: share   !< l_f [-]
       logical, intent(in) :: with_tangent
-      real(wp), intent(inout) :: residual(:), scale(:), values(:)
+      real(wp), intent(inout) :: residual(:), scale(:), values(:)   !< (unknowns) [kN], twice; (entries).
       integer :: i
 
       do i = 1, size(contacts%interfaces)
@@ -266,7 +269,7 @@ contains
    function mean_contact_forces(contacts, dofs, x0, x1) result(force)
       type(contacts_t), intent(inout) :: contacts
       type(dofs_t), intent(in) :: dofs
-      real(wp), intent(in) :: x0(:, :), x1(:, :)   !< (FIELDS, nodes)
+      real(wp), intent(in) :: x0(:, :), x1(:, :)   !< (FIELDS, nodes) [m]
       real(wp) :: force(dofs%n)                    !< Of every unknown [kN].
       real(wp), allocatable :: before(:), after(:)
 
@@ -281,8 +284,8 @@ contains
    logical function contact_forces(contacts, dofs, x, force) result(good)
       type(contacts_t), intent(inout) :: contacts
       type(dofs_t), intent(in) :: dofs
-      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes)
-      real(wp), allocatable, intent(out) :: force(:)   !< Of every unknown [kN].
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
+      real(wp), allocatable, intent(out) :: force(:)   !< Of every unknown [kN]. (unknowns)
 
       allocate (force(dofs%n), source=0.0_wp)
       good = probe_contacts(contacts, x)

@@ -63,17 +63,17 @@ module contact_mortar
       real(wp) :: d_xs(2, 12) = 0.0_wp, d_t(2, 12) = 0.0_wp, d_xm(2, 12) = 0.0_wp
    end type point_t
 contains
-   !> Piecewise linear on the halves of a slave edge: start, end, middle.
+   !> Piecewise linear on the halves of a slave edge: start, end, middle. docs/theory/contact.md section 2.3.
    pure function hats(s) result(m)
-      real(wp), intent(in) :: s
+      real(wp), intent(in) :: s   !< In [-1, 1].
       real(wp) :: m(3)
 
       m = [max(-s, 0.0_wp), max(s, 0.0_wp), 1.0_wp - abs(s)]
    end function hats
 
-   !> Their slopes; a point never lies on the middle node, where segments end.
+   !> Their slopes; a point never lies on the middle node, where segments end. By s [-].
    pure function hat_slopes(s) result(dm)
-      real(wp), intent(in) :: s
+      real(wp), intent(in) :: s   !< In [-1, 1].
       real(wp) :: dm(3)
 
       if (s < 0.0_wp) then
@@ -85,7 +85,7 @@ contains
 
    !> The segments of a slave edge opposite a master edge. The bodies face each other, so the master edge runs against
    !> the slave edge: its end has the first foot. Segments end at the feet of the master's three nodes and at the
-   !> slave's.
+   !> slave's. None where they do not face each other within 78 degrees. docs/theory/contact.md section 2.2.
    pure subroutine find_overlap(x, free, overlap)
       real(wp), intent(in) :: x(2, 6)          !< Local coordinates [m].
       logical, intent(in) :: free(2)           !< The master's surface ends at the start, the end of its edge.
@@ -149,11 +149,12 @@ contains
       between = s - lower > SAME_PLACE .and. upper - s > SAME_PLACE
    end function between
 
-   !> How the foot s of master node j moves: the derivative of (x_j - x(s)).t(s) = 0.
+   !> How the foot s of master node j moves: the derivative of (x_j - x(s)).t(s) = 0. By the 12 local coordinates [1/m]:
+   !> docs/theory/contact.md section 3.3.
    pure function end_slope(x, slave, j, s) result(d_s)
-      real(wp), intent(in) :: x(2, 6), s
+      real(wp), intent(in) :: x(2, 6), s   !< Local coordinates [m], place in [-1, 1].
       type(edge_t), intent(in) :: slave
-      integer, intent(in) :: j
+      integer, intent(in) :: j   !< 1 to 3.
       real(wp) :: d_s(12), y(2), t(2), n(3), dn(3)
       integer :: i
 
@@ -169,15 +170,16 @@ contains
       d_s = d_s/(dot_product(t, t) - 2.0_wp*dot_product(y, slave%bend))
    end function end_slope
 
-   !> A point of a segment. `missed`: by how much of the master edge's length the normal misses it, 0 if it hits.
+   !> A point of a segment. `missed`: by how much of the master edge's length the normal misses it, 0 if it hits. Where
+   !> it misses, the rest of p is not filled. docs/theory/contact.md sections 2.1, 2.2 and 3.3.
    pure subroutine integration_point(x, overlap, segment, position, share, axisymmetric, p, missed)
-      real(wp), intent(in) :: x(2, 6)
+      real(wp), intent(in) :: x(2, 6)   !< Local coordinates [m].
       type(overlap_t), intent(in) :: overlap
       integer, intent(in) :: segment
       real(wp), intent(in) :: position, share   !< Of the point in [-1, 1], and its part of 2.
       logical, intent(in) :: axisymmetric
       type(point_t), intent(out) :: p
-      real(wp), intent(out) :: missed
+      real(wp), intent(out) :: missed   !< [-]
       type(edge_t) :: slave, master
       real(wp) :: a, b
       integer :: i, where_it_is
@@ -238,8 +240,9 @@ contains
 
    !> What a pair of edges adds to the three slave nodes: weight int M 2 pi r dGamma and weight times gap, their
    !> derivatives, and push(:, A) = int M (nu N_s, -nu N_m) 2 pi r ds, the nodal forces of a unit pressure at node A.
+   !> docs/theory/contact.md section 2.3. `missed` as of integration_point; where it is > 0 the rest is of no use.
    pure subroutine pair_gaps(x, overlap, axisymmetric, weight, weighted_gap, d_weight, d_weighted_gap, push, missed)
-      real(wp), intent(in) :: x(2, 6)
+      real(wp), intent(in) :: x(2, 6)   !< Local coordinates [m].
       type(overlap_t), intent(in) :: overlap
       logical, intent(in) :: axisymmetric
       real(wp), intent(out) :: weight(3), weighted_gap(3)                             !< [m2], [m3] (plane: m, m2)
@@ -279,8 +282,9 @@ contains
    end subroutine pair_gaps
 
    !> Deepest penetration of a pair of edges [m], 0 if it is open: at the ends of the segments too, where corners are.
+   !> docs/theory/contact.md sections 2.1 and 2.4.
    pure real(wp) function penetration(x, overlap) result(depth)
-      real(wp), intent(in) :: x(2, 6)
+      real(wp), intent(in) :: x(2, 6)   !< Local coordinates [m].
       type(overlap_t), intent(in) :: overlap
       type(point_t) :: p
       real(wp) :: missed

@@ -84,7 +84,9 @@ contains
    end function new_result
 
    !> Evaluates everything for current coordinates. If the status is not CONTACT_OK the answer is of no use, but
-   !> `active` is still that of the evaluation before.
+   !> `active` is still that of the evaluation before. docs/theory/contact.md sections 2 and 3, paper eqs (17), (18).
+   !> status: as of check_coordinates; CONTACT_NO_PROJECTION where a normal of the slave misses the master edge
+   !> opposite.
    pure subroutine contact_evaluate(geometry, slave_x, master_x, with_tangent, work, result, status)
       type(contact_geometry_t), intent(in) :: geometry
       real(wp), intent(in) :: slave_x(:, :), master_x(:, :)   !< (2, nodes): r and z, or x and y [m]

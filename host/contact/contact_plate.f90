@@ -32,7 +32,7 @@ contains
       allocate (plate%value(FIRST_ROOM), source=0.0_wp)
    end function new_plate_response
 
-   !> Nodes of the face at a vertical displacement.
+   !> Nodes of the face at a vertical displacement. docs/theory/contact.md section 4.
    pure function plate_positions(x0, u_z) result(x)
       real(wp), intent(in) :: x0(:, :)   !< (2, nodes) undisplaced [m]
       real(wp), intent(in) :: u_z        !< [m]
@@ -43,6 +43,7 @@ contains
    end function plate_positions
 
    !> Slope of the energy against the plate's displacement: minus the force that contact exerts on it, upwards [kN].
+   !> docs/theory/contact.md section 4.
    pure real(wp) function force_on_plate(geometry, result) result(force)
       type(contact_geometry_t), intent(in) :: geometry
       type(contact_result_t), intent(in) :: result
@@ -54,7 +55,8 @@ contains
       end do
    end function force_on_plate
 
-   !> Gathers an evaluation whose master is the face of the plate.
+   !> Gathers an evaluation whose master is the face of the plate. docs/theory/contact.md section 4. Forces of the
+   !> master along r are left out: the plate has no such unknown.
    pure subroutine gather_on_plate(geometry, result, plate)
       type(contact_geometry_t), intent(in) :: geometry
       type(contact_result_t), intent(in) :: result

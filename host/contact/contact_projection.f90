@@ -30,7 +30,7 @@ module contact_projection
 contains
    !> Shape functions of an edge at s in [-1, 1]: start, end, middle.
    pure function shapes(s) result(n)
-      real(wp), intent(in) :: s
+      real(wp), intent(in) :: s   !< In [-1, 1].
       real(wp) :: n(3)
 
       n = [-0.5_wp*s*(1.0_wp - s), 0.5_wp*s*(1.0_wp + s), (1.0_wp - s)*(1.0_wp + s)]
@@ -38,7 +38,7 @@ contains
 
    !> Derivatives of the shape functions of an edge with respect to s.
    pure function shape_slopes(s) result(dn)
-      real(wp), intent(in) :: s
+      real(wp), intent(in) :: s   !< In [-1, 1].
       real(wp) :: dn(3)
 
       dn = [s - 0.5_wp, s + 0.5_wp, -2.0_wp*s]
@@ -57,16 +57,16 @@ contains
    !> Coordinates of the point s of an edge [m].
    pure function place(edge, s) result(x)
       type(edge_t), intent(in) :: edge
-      real(wp), intent(in) :: s
+      real(wp), intent(in) :: s   !< In [-1, 1].
       real(wp) :: x(2)
 
       x = edge%middle + s*(edge%slope + s*edge%bend)
    end function place
 
-   !> dx/ds, not of unit length.
+   !> dx/ds, not of unit length. [m]
    pure function tangent(edge, s) result(t)
       type(edge_t), intent(in) :: edge
-      real(wp), intent(in) :: s
+      real(wp), intent(in) :: s   !< In [-1, 1].
       real(wp) :: t(2)
 
       t = edge%slope + 2.0_wp*s*edge%bend
@@ -74,7 +74,7 @@ contains
 
    !> Length of the shortest tangent over half the chord: 1 for a straight edge with its node in the middle, 0 where it
    !> folds back on itself or a middle node at the quarter makes an end singular. A point has -1. A curved edge may lean
-   !> as much as it likes against its chord, as soil beside a plate that has sunk into it does.
+   !> as much as it likes against its chord, as soil beside a plate that has sunk into it does. [-]
    pure real(wp) function least_stretch(edge)
       type(edge_t), intent(in) :: edge
       real(wp) :: slope, bend, s
@@ -90,12 +90,12 @@ contains
    end function least_stretch
 
    !> Foot of a point on an edge: (point - x(s)).t(s) = 0. One foot as long as the point is nearer than the edge's
-   !> centre of curvature, then the left side falls with s.
+   !> centre of curvature, then the left side falls with s. docs/theory/contact.md section 2.1.
    pure subroutine project_point(edge, point, s, where_it_is)
       type(edge_t), intent(in) :: edge
-      real(wp), intent(in) :: point(2)
-      real(wp), intent(out) :: s
-      integer, intent(out) :: where_it_is
+      real(wp), intent(in) :: point(2)   !< [m]
+      real(wp), intent(out) :: s   !< In [-1, 1].
+      integer, intent(out) :: where_it_is   !< BEFORE, INSIDE or BEYOND.
       real(wp) :: from(2)
 
       from = point - edge%middle
@@ -106,11 +106,12 @@ contains
    end subroutine project_point
 
    !> Where the line through `point` perpendicular to `t` meets an edge that runs against t: (x(s) - point).t = 0.
+   !> docs/theory/contact.md section 2.1.
    pure subroutine follow_normal(edge, point, t, s, where_it_is)
       type(edge_t), intent(in) :: edge
-      real(wp), intent(in) :: point(2), t(2)
-      real(wp), intent(out) :: s
-      integer, intent(out) :: where_it_is
+      real(wp), intent(in) :: point(2), t(2)   !< [m]
+      real(wp), intent(out) :: s   !< In [-1, 1].
+      integer, intent(out) :: where_it_is   !< BEFORE, INSIDE or BEYOND.
 
       call falling_root([dot_product(edge%middle - point, t), dot_product(edge%slope, t), &
                          dot_product(edge%bend, t), 0.0_wp], s, where_it_is)

@@ -36,7 +36,8 @@ module contact_response
    integer, parameter :: FIELDS = 7
 contains
    !> Forces (12) and, if wanted, stiffness (12, 12) of a pair of edges in local coordinates; `missed` is the largest
-   !> share of the master edge by which a normal misses it. docs/theory/contact.md section 3.
+   !> share of the master edge by which a normal misses it. docs/theory/contact.md section 3. Where `missed` > 0 the
+   !> response is of no use.
    pure subroutine pair_response(x, overlap, options, at_ends, pressure, with_stiffness, response, missed)
       real(wp), intent(in) :: x(2, 6)                   !< Local coordinates as in contact_mortar [m].
       type(overlap_t), intent(in) :: overlap
@@ -45,7 +46,7 @@ contains
       real(wp), intent(in) :: pressure(3)               !< Of the slave nodes [kPa]; not used by the pointwise form.
       logical, intent(in) :: with_stiffness
       type(response_t), intent(out) :: response
-      real(wp), intent(out) :: missed
+      real(wp), intent(out) :: missed   !< [-]
       type(point_t) :: p
       type(density_t) :: density
       real(wp) :: end_force(LARGEST_SEGMENTS + 1), position_of(POINTS), share_of(POINTS)

@@ -34,7 +34,7 @@ contains
    !> Makes room for so many edges.
    pure subroutine prepare_search(search, slaves, masters)
       type(search_t), intent(out) :: search
-      integer, intent(in) :: slaves, masters
+      integer, intent(in) :: slaves, masters   !< Their numbers.
 
       allocate (search%place_first(PLACES_PER_EDGE*max(masters, 1) + 3), search%seen_by(masters))
       allocate (search%first(slaves + 1), search%candidate(4*(slaves + masters)), search%entry(8*masters))
@@ -92,9 +92,9 @@ contains
 
    !> Box of the control polygon, which holds the curve: lower r, lower z, upper r, upper z.
    pure subroutine edge_boxes(x, edges, box)
-      real(wp), intent(in) :: x(:, :)
-      integer, intent(in) :: edges(:, :)
-      real(wp), intent(out) :: box(:, :)   !< (4, edges)
+      real(wp), intent(in) :: x(:, :)   !< (2, nodes) [m]
+      integer, intent(in) :: edges(:, :)   !< (3, edges) start, end, middle.
+      real(wp), intent(out) :: box(:, :)   !< (4, edges) [m]
       real(wp) :: a(2), b(2), control(2)
       integer :: e
 
@@ -109,7 +109,7 @@ contains
 
    !> Whether two boxes (lower r, lower z, upper r, upper z) have a point in common.
    pure logical function boxes_meet(a, b)
-      real(wp), intent(in) :: a(4), b(4)
+      real(wp), intent(in) :: a(4), b(4)   !< [m]
 
       boxes_meet = all(a(1:2) <= b(3:4)) .and. all(b(1:2) <= a(3:4))
    end function boxes_meet

@@ -53,7 +53,7 @@ contains
       integer, intent(in) :: code
       integer, intent(in), optional :: index
       logical, intent(in), optional :: master
-      real(wp), intent(in), optional :: value
+      real(wp), intent(in), optional :: value   !< In its own unit.
       type(contact_status_t) :: status
 
       status%code = code
@@ -62,7 +62,7 @@ contains
       if (present(value)) status%value = value
    end function contact_fail
 
-   !> A status in words: what, where, the value, what is allowed and what to do.
+   !> A status in words: what, where, the value, what is allowed and what to do. Cut to the length of the text.
    pure subroutine contact_message(status, text)
       type(contact_status_t), intent(in) :: status
       character(*), intent(out) :: text

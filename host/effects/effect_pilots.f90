@@ -36,7 +36,8 @@ module effect_pilots
       logical :: own_error_known = .false.
    end type pilots_account_t
 contains
-   !> The scene with its open keys settled as the general case, and without what `without` names.
+   !> The scene with its open keys settled as the general case, and without what `without` names. Fault EXIT_INPUT: an
+   !> effect of `without` cannot be taken out.
    subroutine settle_scene(scene, fault)
       type(scene_t), intent(inout) :: scene
       type(fault_t), intent(inout) :: fault
@@ -47,9 +48,9 @@ contains
       if (why /= '') call raise(fault, EXIT_INPUT, trim(scene%file)//': without = '//trim(why)//'.')
    end subroutine settle_scene
 
-   !> A settled scene with the effects as a table says.
+   !> A settled scene with the effects as a table says. An effect that cannot be switched stays as it is.
    subroutine apply_effects(table, scene)
-      type(effect_t), intent(in) :: table(:)
+      type(effect_t), intent(in) :: table(:)   !< (rows) As of list_effects.
       type(scene_t), intent(inout) :: scene
       character(200) :: why
       integer :: i
@@ -60,11 +61,13 @@ contains
    end subroutine apply_effects
 
    !> Pilots of a scene as it was read. `whole_scene`: the pilots are the scene itself, neither coarser nor faster. The
-   !> table's `on` says what the run should have; only what no key says may differ from the scene.
+   !> table's `on` says what the run should have; only what no key says may differ from the scene. docs/theory/host.md
+   !> section 11. Fault EXIT_INPUT: as of settle_scene, or the pilot with every effect fails; a failure of another pilot
+   !> stands in its row.
    subroutine ask_effects(scene, whole_scene, quiet, table, account, fault)
       type(scene_t), intent(in) :: scene
       logical, intent(in) :: whole_scene, quiet
-      type(effect_t), allocatable, intent(out) :: table(:)
+      type(effect_t), allocatable, intent(out) :: table(:)   !< (rows) As of list_effects.
       type(pilots_account_t), intent(out) :: account
       type(fault_t), intent(inout) :: fault
       type(scene_t) :: settled, cheap

@@ -68,7 +68,7 @@ module pilot_runs
       character(72) :: answer = ''
    end type difference_t
 contains
-   !> Runs a scene whose keys are settled. A failure is told in the pilot.
+   !> Runs a scene whose keys are settled. A failure is told in the pilot. docs/theory/host.md section 11.
    subroutine run_pilot(scene, most_steps, pilot)
       type(scene_t), intent(in) :: scene
       integer, intent(in) :: most_steps   !< Of a pilot that may take MOST_TIMES_THE_STEPS times as many; 0: any number.
@@ -96,6 +96,7 @@ contains
       pilot%has = any(model%dofs%of(:FIELDS, :) > 0, dim=2)
    end subroutine run_pilot
 
+   !> Chooses the nodes whose answers are kept, and keeps their values at the start. Raises no fault.
    subroutine run_begins(self, model, run, fault)
       class(watcher_t), intent(inout) :: self
       type(model_t), intent(in) :: model
@@ -145,6 +146,7 @@ contains
       self%seen%x(:, :, self%rows) = run%state%x(:FIELDS, self%nodes)
    end subroutine keep
 
+   !> Keeps answers, indicators and the end of the step. Fault EXIT_INPUT: more than most_steps.
    subroutine step_done(self, model, run, report, checkpoint, fault)
       class(watcher_t), intent(inout) :: self
       type(model_t), intent(in) :: model
@@ -168,6 +170,7 @@ contains
       if (run%steps > self%most_steps) call raise(fault, EXIT_INPUT, 'its pilot takes many times as many steps')
    end subroutine step_done
 
+   !> Takes over displacements that the end of the stage has set to zero. Raises no fault.
    subroutine stage_done(self, model, run, stage, complete, fault)
       class(watcher_t), intent(inout) :: self
       type(model_t), intent(in) :: model
@@ -181,6 +184,7 @@ contains
       if (model%stages(stage)%zero_displacements) call copy_state(run%state, self%before)
    end subroutine stage_done
 
+   !> Cuts the histories to the rows that are filled. Raises no fault.
    subroutine run_ends(self, model, run, fault)
       class(watcher_t), intent(inout) :: self
       type(model_t), intent(in) :: model
@@ -193,6 +197,7 @@ contains
       self%seen%x = self%seen%x(:, :, :self%rows)
    end subroutine run_ends
 
+   !> Prints a text, unless the watcher is silent.
    subroutine warn(self, text)
       class(watcher_t), intent(inout) :: self
       character(*), intent(in) :: text
@@ -203,6 +208,7 @@ contains
 
    !> How far the answers of two runs of one mesh lie apart, as shares of the range of each answer in the first; a field
    !> that one of them lacks is measured by its change against the largest change of an effective stress.
+   !> docs/theory/host.md section 11. Of the field and point that differ most.
    pure function difference(one, two) result(worst)
       type(pilot_t), intent(in) :: one, two
       type(difference_t) :: worst

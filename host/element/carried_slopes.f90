@@ -25,7 +25,7 @@ module carried_slopes
 contains
    !> Room for the slopes of all points of a mesh; none are known yet.
    pure function new_slopes(points) result(slopes)
-      integer, intent(in) :: points
+      integer, intent(in) :: points   !< Their number.
       type(slopes_t) :: slopes
 
       allocate (slopes%strain(PLANE, PLANE, points), slopes%suction(PLANE, points), slopes%water(2, points), &
@@ -34,7 +34,7 @@ contains
 
    !> Keeps the slopes of the points from `first` on.
    pure subroutine keep_slopes(n, first, answer, slopes)
-      integer, intent(in) :: n, first
+      integer, intent(in) :: n, first   !< Number of points; the first of them in the mesh.
       type(response_t), intent(in) :: answer   !< With tangent.
       type(slopes_t), intent(inout) :: slopes
       integer :: g
@@ -48,12 +48,14 @@ contains
       end do
    end subroutine keep_slopes
 
-   !> The answer that straight lines along the slopes give; the void ratio is exact.
+   !> The answer that straight lines along the slopes give; the void ratio is exact. docs/theory/host.md section 5.4;
+   !> the void ratio: section 3.2; S_w is kept between 0 and 1. n points of the mesh from `first` on.
    pure subroutine follow_slopes(n, first, slopes, stress, e, s_w, strain, d_suction, answer)
       integer, intent(in) :: n, first
       type(slopes_t), intent(in) :: slopes
-      real(wp), intent(in) :: stress(:, :), e(:), s_w(:)        !< Of these points before the step.
-      real(wp), intent(in) :: strain(:, :), d_suction(:)        !< Increments of the step.
+      real(wp), intent(in) :: stress(:, :), e(:), s_w(:)        !< Of these points before the step. (6, n) [kPa], (n),
+                                                                !< (n) [-].
+      real(wp), intent(in) :: strain(:, :), d_suction(:)        !< Increments of the step. (6, n) [-], (n) [kPa].
       type(response_t), intent(inout) :: answer
       real(wp) :: volume
       integer :: g
@@ -73,10 +75,11 @@ contains
    end subroutine follow_slopes
 
    !> The answer that a pass by the material left in the state at the end of the step, with the slopes it kept.
+   !> docs/theory/host.md section 5.4. n points of the mesh from `first` on.
    pure subroutine same_again(n, first, slopes, stress, e, s_w, answer)
       integer, intent(in) :: n, first
       type(slopes_t), intent(in) :: slopes
-      real(wp), intent(in) :: stress(:, :), e(:), s_w(:)
+      real(wp), intent(in) :: stress(:, :), e(:), s_w(:)   !< (6, n) [kPa], (n), (n) [-].
       type(response_t), intent(inout) :: answer
       integer :: g
 

@@ -17,7 +17,7 @@ module degrees_of_freedom
       integer, allocatable :: node(:)         !< A node of every unknown.
    end type dofs_t
 contains
-   !> Node by node, which keeps the fields of a node together.
+   !> Node by node, which keeps the fields of a node together. docs/theory/host.md sections 3.5, 7.3 and 7.6.
    subroutine number_unknowns(domain, ties, dofs)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: ties(:, :)   !< (FIELDS, nodes): node whose unknown this node shares, 0 or itself: its own.
@@ -83,16 +83,17 @@ contains
 
    !> Makes nodes share one unknown of a field.
    pure subroutine tie(nodes, field, ties)
-      integer, intent(in) :: nodes(:), field
-      integer, intent(inout) :: ties(:, :)
+      integer, intent(in) :: nodes(:), field   !< (n); one of AT_...
+      integer, intent(inout) :: ties(:, :)   !< As of number_unknowns.
 
       if (size(nodes) > 0) ties(field, nodes) = minval(nodes)
    end subroutine tie
 
    !> Makes the nodes of every pair share their first unknowns, and those of the nodes that they are tied to already.
+   !> docs/theory/host.md section 7.6.
    pure subroutine tie_pairs(pairs, fields_tied, ties)
-      integer, intent(in) :: pairs(:, :), fields_tied
-      integer, intent(inout) :: ties(:, :)
+      integer, intent(in) :: pairs(:, :), fields_tied   !< (2, n) nodes; number of fields.
+      integer, intent(inout) :: ties(:, :)   !< As of number_unknowns.
       integer :: f, k, leader, i, old(2)
 
       do k = 1, size(pairs, 2)

@@ -40,14 +40,16 @@ contains
    !> Unknowns of an element.
    pure integer function element_size(domain, element)
       type(domain_t), intent(in) :: domain
-      integer, intent(in) :: element
+      integer, intent(in) :: element   !< Its number.
 
       associate (region => domain%regions(domain%region_of(element)))
          element_size = LAST_U + domain%n_carriers(element)*count([region%with_w, region%with_c])
       end associate
    end function element_size
 
-   !> Writes r (and k where `with_slope`), and the point data of `new`.
+   !> Writes r (and k where `with_tangent`), and the point data of `new`. docs/theory/host.md sections 3.3 and 3.4. r:
+   !> [kN], balances of volume [m3/s]. Where a strain of the step is beyond 1 or the material refuses, out%bad_point > 0
+   !> and out%bad says why; the rest of `out` is then of no use.
    subroutine compute_element(domain, element, scheme, old, new, with_tangent, slopes, out)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element

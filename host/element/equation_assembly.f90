@@ -60,7 +60,7 @@ contains
    end subroutine make_assembly
 
    !> Before the first pass of a step: whether it follows the slopes of the step before, where they are known. From
-   !> here on the slopes are those of this step's passes.
+   !> here on the slopes are those of this step's passes. docs/theory/host.md section 5.4.
    pure subroutine follow_slopes_first(domain, wanted, assembly)
       type(domain_t), intent(in) :: domain
       logical, intent(in) :: wanted   !< Else no pass keeps slopes.
@@ -74,6 +74,8 @@ contains
    end subroutine follow_slopes_first
 
    !> Internal forces of the state `new`; loads are not in it. The next pass asks the material, whatever this one did.
+   !> docs/theory/host.md sections 3.3 and 3.4. Residual, scale, floor: [kN, m3/s]. Where a point fails, bad_element > 0
+   !> with bad_point and the report `bad` of the first; the sums are then those of the pass before.
    subroutine assemble(domain, dofs, pattern, scheme, old, new, with_tangent, assembly)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs

@@ -31,7 +31,9 @@ module permeability_laws
       real(wp) :: dw, da   !< Their slopes against S_w [-].
    end type relative_t
 contains
-   !> Relative permeabilities of water and air [-] and their slopes at a degree of saturation [-].
+   !> Relative permeabilities of water and air [-] and their slopes at a degree of saturation [-]. docs/theory/host.md
+   !> section 2.6; LAW_MUALEM: Mualem (1976) with van Genuchten (1980). Where a limit of S_e or the floor holds the
+   !> slope is 0.
    pure function relative_permeability(law, s_w) result(k)
       type(permeability_t), intent(in) :: law
       real(wp), intent(in) :: s_w

@@ -59,7 +59,10 @@ module porous_balance
       real(wp) :: rho_a, d_rho_a     !< Density of the air [t/m3] and its slope against p_a.
    end type mixture_t
 contains
-   !> Response of a point, its tangent where it is asked for, and its pores at the end of the step.
+   !> Response of a point, its tangent where it is asked for, and its pores at the end of the step. docs/theory/host.md
+   !> sections 2, 3.3 and 3.4. response: stress [kPa], force per volume [kN/m3], sources of volume [1/s], fluxes [m/s].
+   !> In static steps and in drained or dry regions the places of the fluids are 0; pressures act in the stress in any
+   !> case.
    subroutine point_response(domain, region, scheme, k, stress0, skeleton, old, new, with_tangent, response, tangent, &
                              drift)
       type(domain_t), intent(in) :: domain

@@ -56,8 +56,8 @@ module porous_domain
       !> air [1/s], at a place and time: for manufactured solutions.
       pure function source_i(x, t) result(value)
          import :: wp
-         real(wp), intent(in) :: x(2), t
-         real(wp) :: value(4)
+         real(wp), intent(in) :: x(2), t   !< [m], [s]
+         real(wp) :: value(4)   !< Force r, z; sum of the balances; air.
       end function source_i
    end interface
 
@@ -101,7 +101,8 @@ module porous_domain
       real(wp), allocatable :: s_rate(:)      !< rate of the degree of saturation [1/s]
    end type state_t
 contains
-   !> Geometry of every quadrature point; the regions must be known.
+   !> Geometry of every quadrature point; the regions must be known. docs/theory/host.md section 3.1. Fault
+   !> EXIT_ELEMENT: an element is inverted, or an axisymmetric mesh has a point at r <= 0.
    subroutine prepare_domain(domain, fault)
       type(domain_t), intent(inout) :: domain
       type(fault_t), intent(inout) :: fault
@@ -180,10 +181,10 @@ contains
       end do
    end subroutine place_pressures
 
-   !> p_w and p_c at a quadrature point [kPa].
+   !> p_w and p_c at a quadrature point [kPa]. docs/theory/host.md section 3.5.
    pure function pressures_at(domain, element, point, carried) result(p)
       type(domain_t), intent(in) :: domain
-      integer, intent(in) :: element, point
+      integer, intent(in) :: element, point   !< Numbers; the point within its element.
       real(wp), intent(in) :: carried(:, :)   !< (2, n_carriers) p_w, p_c of its carriers.
       real(wp) :: p(2)
       integer :: f
@@ -198,10 +199,10 @@ contains
    end function pressures_at
 
    !> What is given of p_w and p_c at a point: all of it where drained, in undrained elements what differs from their
-   !> mean, else nothing [kPa].
+   !> mean, else nothing [kPa]. docs/theory/host.md section 3.5.
    pure function given_pressures_at(domain, element, point) result(p)
       type(domain_t), intent(in) :: domain
-      integer, intent(in) :: element, point
+      integer, intent(in) :: element, point   !< Numbers; the point within its element.
       real(wp) :: p(2)
 
       p = 0.0_wp
@@ -214,7 +215,7 @@ contains
       end select
    end function given_pressures_at
 
-   !> A state of the right size, everything zero and saturated.
+   !> A state of the right size, everything zero and saturated. Void ratios are those of the regions.
    function new_state_of(domain) result(state)
       type(domain_t), intent(in) :: domain
       type(state_t) :: state
@@ -235,18 +236,19 @@ contains
       end do
    end function new_state_of
 
-   !> Density of soil with its fluids at a porosity and a degree of saturation [Mg/m3].
+   !> Density of soil with its fluids at a porosity and a degree of saturation [Mg/m3]. docs/theory/host.md section 2.1;
+   !> the density of the air is that of the fluids, whatever its pressure.
    pure real(wp) function mixture_density(domain, region, n, s)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
-      real(wp), intent(in) :: n, s
+      real(wp), intent(in) :: n, s   !< Porosity, degree of saturation [-].
 
       mixture_density = (1 - n)*region%rho_s
       if (region%with_w) mixture_density = mixture_density + n*s*domain%fluids%rho_w
       if (region%with_c) mixture_density = mixture_density + n*(1 - s)*domain%fluids%rho_a
    end function mixture_density
 
-   !> Copies without allocating anew.
+   !> Copies without allocating anew. Both must have the same extents.
    subroutine copy_state(from, to)
       type(state_t), intent(in) :: from
       type(state_t), intent(inout) :: to

@@ -18,7 +18,7 @@ module sparsity_pattern
 contains
    !> Pattern of elements given by their unknowns; `extra`: further pairs of unknowns that meet (contact).
    subroutine make_pattern(n, element, extra, pattern)
-      integer, intent(in) :: n
+      integer, intent(in) :: n   !< Number of unknowns.
       integer, intent(in) :: element(:, :)   !< (m, elements) 0 behind the unknowns of an element.
       integer, intent(in) :: extra(:, :)   !< (2, pairs), each listed both ways round.
       type(pattern_t), intent(out) :: pattern
@@ -152,7 +152,7 @@ contains
       end do
    end subroutine sort
 
-   !> Place of entry (i, j), 0 if the pattern has none.
+   !> Place of entry (i, j), 0 if the pattern has none. From 1, in pattern%col and in the values of the matrix.
    pure integer function place_of(pattern, i, j) result(place)
       type(pattern_t), intent(in) :: pattern
       integer, intent(in) :: i, j

@@ -16,15 +16,15 @@ module tangent_fallback
    real(wp), parameter :: NEXT_TO_NOTHING = 1.0e-3_wp   !< Share of the elastic stiffness [-].
    integer, parameter :: PLANE = 4         !< Components rr, zz, tt, rz.
 contains
-   !> Replaces the tangents of a batch of points that are too soft; counts them.
+   !> Replaces the tangents of a batch of points that are too soft; counts them. docs/theory/host.md section 5.3.
    subroutine stiffen(law, level, n, state, suction, response, replaced)
       class(material_t), intent(in) :: law
       integer, intent(in) :: level                 !< OPEN_POINTS or SOFT_POINTS
-      integer, intent(in) :: n
+      integer, intent(in) :: n   !< Number of points.
       real(wp), intent(in) :: state(:, :)          !< (n_state or more, n) after the increment
       real(wp), intent(in) :: suction(:)           !< (n) after it [kPa]
       type(response_t), intent(inout) :: response
-      integer, intent(out) :: replaced
+      integer, intent(out) :: replaced   !< How many.
       real(wp) :: elastic(6, 6)
       integer :: g
 

@@ -39,7 +39,8 @@ module gmsh_reader
       character(LONGEST) :: text = ''
    end type reader_t
 contains
-   !> Reads a mesh; a fault names file, line, what is wrong and what is expected.
+   !> Reads a mesh; a fault names file, line, what is wrong and what is expected. x, y of Gmsh are r, z [m]. Fault
+   !> EXIT_MESH: the file cannot be read, is no text of version 4.1, is damaged, or has no 6-node triangles.
    subroutine read_gmsh(file, mesh, fault)
       character(*), intent(in) :: file
       type(mesh_t), intent(out) :: mesh

@@ -11,10 +11,10 @@ module graded_rectangle
 contains
    !> Coordinates of the cell ends between breaks; `ratio` is the size of a cell over that of the one before it.
    pure function graded_axis(breaks, cells, ratio) result(x)
-      real(wp), intent(in) :: breaks(:)        !< Ascending [m].
-      integer, intent(in) :: cells(:)          !< Per piece, size(breaks) - 1 of them.
-      real(wp), intent(in) :: ratio(:)         !< Per piece, > 0.
-      real(wp), allocatable :: x(:)
+      real(wp), intent(in) :: breaks(:)        !< Ascending [m]. (pieces + 1)
+      integer, intent(in) :: cells(:)          !< Per piece, size(breaks) - 1 of them. (pieces)
+      real(wp), intent(in) :: ratio(:)         !< Per piece, > 0. (pieces)
+      real(wp), allocatable :: x(:)   !< (sum(cells) + 1) [m]
       real(wp) :: total, sum_so_far
       integer :: i, k, at
 
@@ -37,9 +37,10 @@ contains
    end function graded_axis
 
    !> Mesh of a rectangle from breaks [m], cells between two breaks and the ratio of neighbouring cells, along r and z.
+   !> Extents as of graded_axis.
    subroutine graded_mesh(r_breaks, r_cells, r_ratio, z_breaks, z_cells, z_ratio, mesh)
       real(wp), intent(in) :: r_breaks(:), r_ratio(:), z_breaks(:), z_ratio(:)
-      integer, intent(in) :: r_cells(:), z_cells(:)
+      integer, intent(in) :: r_cells(:), z_cells(:)   !< (pieces along r, along z)
       type(mesh_t), intent(out) :: mesh
       real(wp), allocatable :: r(:), z(:)
       integer, allocatable :: r_piece(:), z_piece(:)

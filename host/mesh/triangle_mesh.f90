@@ -37,7 +37,7 @@ contains
    subroutine add_group(mesh, name, elements, edges, nodes)
       type(mesh_t), intent(inout) :: mesh
       character(*), intent(in) :: name
-      integer, intent(in) :: elements(:), edges(:, :), nodes(:)
+      integer, intent(in) :: elements(:), edges(:, :), nodes(:)   !< (n), (3, n), (n): see group_of_t.
       type(group_of_t) :: group
       logical, allocatable :: member(:)
       integer :: i

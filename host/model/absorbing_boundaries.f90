@@ -28,10 +28,11 @@ module absorbing_boundaries
    end type ground_t
 contains
    !> Dashpots of all absorbing boundaries; a fault where the ground has no stiffness or its material refuses.
+   !> docs/theory/host.md section 7.4. Not allocated without such boundaries. Fault EXIT_MATERIAL.
    subroutine prepare_absorbers(model, state, list, fault)
       type(model_t), intent(in) :: model
       type(state_t), intent(in) :: state   !< The initial one.
-      type(dashpots_t), allocatable, intent(out) :: list(:)
+      type(dashpots_t), allocatable, intent(out) :: list(:)   !< (absorbing boundaries)
       type(fault_t), intent(inout) :: fault
       integer :: i
 
@@ -246,13 +247,13 @@ contains
       end subroutine add
    end subroutine add_edge
 
-   !> Adds the forces of the waves that come in at a time.
+   !> Adds the forces of the waves that come in at a time. Lysmer & Kuhlemeyer (1969): docs/theory/host.md section 7.4.
    subroutine add_incoming(model, stage, list, time, load)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      type(dashpots_t), intent(in) :: list(:)
-      real(wp), intent(in) :: time
-      real(wp), intent(inout) :: load(:)
+      type(dashpots_t), intent(in) :: list(:)   !< (absorbing boundaries)
+      real(wp), intent(in) :: time   !< [s]
+      real(wp), intent(inout) :: load(:)   !< (unknowns) [kN]
       integer :: i
 
       do i = 1, size(list)
@@ -273,7 +274,7 @@ contains
    subroutine let_absorbers_act(model, stage, list)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      type(dashpots_t), intent(inout) :: list(:)
+      type(dashpots_t), intent(inout) :: list(:)   !< (absorbing boundaries)
       integer :: i
 
       do i = 1, size(list)

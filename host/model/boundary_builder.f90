@@ -23,6 +23,8 @@ module boundary_builder
    integer, parameter :: FIELD_OF(*) = [AT_U_R, AT_U_Z, AT_P_W, AT_P_C, PRESCRIBED_P_A]   !< Of the words of &fix field.
 contains
    !> Plates come first: those with a face of their own become nodes of the mesh, and all become groups of it.
+   !> docs/theory/host.md section 7.3. Fault EXIT_GROUP: the name is that of a group of the mesh, or the boundary or
+   !> history of a plate does not exist.
    subroutine build_plates(scene, model, fault)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
@@ -67,7 +69,8 @@ contains
    end subroutine build_plate
 
    !> Initial conditions, supports, loads, contacts, absorbing boundaries and ties of a scene; a fault names what cannot
-   !> be resolved.
+   !> be resolved. Fault EXIT_GROUP: a group or history does not exist, or a group lacks the edges or nodes that are
+   !> needed. Fault EXIT_INPUT: a field that the scene lacks, or keys that contradict each other.
    subroutine build_boundaries(scene, model, fault)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model

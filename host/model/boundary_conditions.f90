@@ -17,7 +17,7 @@ module boundary_conditions
 
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
 contains
-   !> Nothing prescribed, nothing loaded; plates have their mass.
+   !> Nothing prescribed, nothing loaded; plates have their mass. Extents: see constraint_t.
    function new_constraint(model, dofs) result(constraint)
       type(model_t), intent(in) :: model
       type(dofs_t), intent(in) :: dofs
@@ -36,12 +36,13 @@ contains
    end function new_constraint
 
    !> Prescribed values at the end of a step; x_start: unknowns at the start of the stage, which some are held at.
+   !> docs/theory/host.md sections 3.5 and 7.1. Accelerations: see follow_accelerations.
    subroutine constrain_step(model, stage, dofs, drainage, time, x_start, constraint)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       type(dofs_t), intent(in) :: dofs
       type(drainage_t), intent(in) :: drainage
-      real(wp), intent(in) :: time, x_start(:, :)
+      real(wp), intent(in) :: time, x_start(:, :)   !< At its end [s]; (FIELDS, nodes) [m, kPa].
       type(constraint_t), intent(inout) :: constraint
       real(wp) :: value, factor
       integer :: i, k, node, at
@@ -136,14 +137,14 @@ contains
       end do
    end subroutine follow_accelerations
 
-   !> Accelerations that prescribed ones have when a stage begins; 0 elsewhere.
+   !> Accelerations that prescribed ones have when a stage begins; 0 elsewhere. docs/theory/host.md section 7.5.
    subroutine starting_accelerations(model, stage, dofs, scheme, time, a)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       type(dofs_t), intent(in) :: dofs
       type(scheme_t), intent(in) :: scheme   !< Of the first step.
-      real(wp), intent(in) :: time
-      real(wp), intent(out) :: a(:)
+      real(wp), intent(in) :: time   !< [s]
+      real(wp), intent(out) :: a(:)   !< (unknowns) [m/s2]
       integer :: i, k, at
 
       a = 0.0_wp
@@ -186,7 +187,7 @@ contains
       type(stage_t), intent(in) :: stage
       type(dofs_t), intent(in) :: dofs
       type(drainage_t), intent(in) :: drainage
-      real(wp), intent(in) :: time
+      real(wp), intent(in) :: time   !< At the end of a step [s].
       integer, intent(out) :: by(:), air_by(:)   !< (unknowns), (nodes)
       integer :: i, k, node, at
 

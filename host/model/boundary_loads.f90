@@ -12,7 +12,8 @@ module boundary_loads
    private
    public :: shape_loads, ties_of, load_at, plate_load
 contains
-   !> Nodes that plates make move together: those of the boundaries that they are joined to.
+   !> Nodes that plates make move together: those of the boundaries that they are joined to. And those of &tie. (FIELDS,
+   !> nodes), as number_unknowns takes them: docs/theory/host.md sections 7.3 and 7.6.
    function ties_of(model) result(ties)
       type(model_t), intent(in) :: model
       integer, allocatable :: ties(:, :)
@@ -28,7 +29,7 @@ contains
       end do
    end function ties_of
 
-   !> Vectors of unit loads.
+   !> Vectors of unit loads. (unknowns) of every load, per unit of its value: docs/theory/host.md section 7.2.
    subroutine shape_loads(model, dofs)
       type(model_t), intent(inout) :: model
       type(dofs_t), intent(in) :: dofs
@@ -126,12 +127,13 @@ contains
       end subroutine add
    end subroutine add_edge
 
-   !> Loads of a stage at a time.
+   !> Loads of a stage at a time. (unknowns) Forces of loads and plates [kN], inflows [m3/s]: docs/theory/host.md
+   !> sections 7.2 and 7.3.
    function load_at(model, stage, dofs, time) result(load)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       type(dofs_t), intent(in) :: dofs
-      real(wp), intent(in) :: time
+      real(wp), intent(in) :: time   !< [s]
       real(wp), allocatable :: load(:)
       integer :: i
 
@@ -153,11 +155,11 @@ contains
       end do
    end function load_at
 
-   !> Force on a plate and its weight, upwards [kN].
+   !> Force on a plate and its weight, upwards [kN]. docs/theory/host.md section 7.3.
    pure real(wp) function plate_load(model, plate, time)
       type(model_t), intent(in) :: model
       type(plate_t), intent(in) :: plate
-      real(wp), intent(in) :: time
+      real(wp), intent(in) :: time   !< [s]
 
       plate_load = factor_at(model, plate%amplitude, time)*plate%force
       if (plate%heavy) plate_load = plate_load - plate%mass*model%domain%gravity

@@ -23,7 +23,8 @@ module contact_drainage
 
    real(wp), parameter :: HALF = 0.5_wp*(1 - 1.0e-9_wp)   !< Up to rounding: half an edge may lie exactly opposite.
 contains
-   !> Which &fix give way to which contacts.
+   !> Which &fix give way to which contacts. Those that prescribe a pressure on all nodes of an edge of the slave. Fault
+   !> EXIT_INPUT: a contact whose drainage follows its state has none.
    subroutine prepare_drainage(model, drainage, fault)
       type(model_t), intent(in) :: model
       type(drainage_t), intent(out) :: drainage
@@ -63,11 +64,12 @@ contains
    end function share_an_edge
 
    !> The impervious nodes at given displacements. What the last evaluation of the contacts left behind stays.
+   !> docs/theory/contact.md section 5. Fault EXIT_CONVERGENCE: a kernel refuses the displacements.
    subroutine freeze_drainage(model, drainage, contacts, x, fault)
       type(model_t), intent(in) :: model
       type(drainage_t), intent(inout) :: drainage
       type(contacts_t), intent(inout) :: contacts
-      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) at the start of the step
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) at the start of the step [m, kPa]
       type(fault_t), intent(inout) :: fault
       character(400) :: text
       logical, allocatable :: sealed(:)
@@ -97,7 +99,7 @@ contains
    !> Whether the contact has released the value that a &fix prescribes at a node.
    pure logical function is_released(drainage, fix, node)
       type(drainage_t), intent(in) :: drainage
-      integer, intent(in) :: fix, node
+      integer, intent(in) :: fix, node   !< Numbers.
 
       is_released = .false.
       if (allocated(drainage%released)) is_released = drainage%released(fix, node)

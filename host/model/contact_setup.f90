@@ -14,7 +14,8 @@ module contact_setup
    private
    public :: prepare_contacts, seat_plates, contacts_act
 contains
-   !> Prepares the contacts of a model; a fault names the contact and what is wrong with its surfaces.
+   !> Prepares the contacts of a model; a fault names the contact and what is wrong with its surfaces. Fault EXIT_INPUT,
+   !> where contact_prepare refuses them. Without contacts nothing is allocated.
    subroutine prepare_contacts(model, contacts, fault)
       type(model_t), intent(in) :: model
       type(contacts_t), intent(out) :: contacts
@@ -50,7 +51,7 @@ contains
    end subroutine prepare_contacts
 
    !> A heavy plate starts where the penalty alone carries what acts on it downwards: so it is held from the first
-   !> iteration on.
+   !> iteration on. docs/theory/contact.md section 4. Sets u_z of plates with a face of their own that looks down.
    subroutine seat_plates(model, contacts, state)
       type(model_t), intent(in) :: model
       type(contacts_t), intent(in) :: contacts

@@ -16,7 +16,8 @@ module given_pressures
    public :: add_centers, give_pressures, pressures_at_start, check_places, nodes_with_flow, edges_with_flow
    public :: follow_undrained, water, suction
 contains
-   !> A node in the middle of every undrained element: there its pressures are.
+   !> A node in the middle of every undrained element: there its pressures are. docs/theory/host.md section 3.5. The
+   !> regions must be known; coordinates: mean of the vertices.
    subroutine add_centers(domain)
       type(domain_t), intent(inout) :: domain
       real(wp), allocatable :: x(:, :)
@@ -38,7 +39,8 @@ contains
       call move_alloc(x, domain%mesh%x)
    end subroutine add_centers
 
-   !> Pressures that are no unknowns, and the nodes where an unknown meets them.
+   !> Pressures that are no unknowns, and the nodes where an unknown meets them. docs/theory/host.md section 3.5. Sets
+   !> `given` [kPa] and open_nodes of the domain.
    subroutine give_pressures(model)
       type(model_t), intent(inout) :: model
       logical, dimension(size(model%domain%mesh%x, 2)) :: flows, drains
@@ -66,10 +68,11 @@ contains
       end associate
    end subroutine give_pressures
 
-   !> p_w and p_c of every node as the &initial say, the later ones first [kPa]; 0 in plates.
+   !> p_w and p_c of every node as the &initial say, of several the last one [kPa]; 0 in plates. docs/theory/host.md
+   !> section 8.
    function pressures_at_start(model) result(p)
       type(model_t), intent(in) :: model
-      real(wp) :: p(2, size(model%domain%mesh%x, 2))
+      real(wp) :: p(2, size(model%domain%mesh%x, 2))   !< (2, nodes)
       integer :: i, n
 
       p = 0.0_wp
@@ -84,18 +87,18 @@ contains
       end do
    end function pressures_at_start
 
-   !> Pore water pressure at the start at a height [kPa].
+   !> Pore water pressure at the start at a height [kPa]. Linear in z: docs/theory/host.md section 8.
    pure real(wp) function water(initial, z)
       type(initial_t), intent(in) :: initial
-      real(wp), intent(in) :: z
+      real(wp), intent(in) :: z   !< [m]
 
       water = initial%p_w + initial%p_w_slope*(z - initial%datum)
    end function water
 
-   !> Suction at the start at a height [kPa].
+   !> Suction at the start at a height [kPa]. Linear in z: docs/theory/host.md section 8.
    pure real(wp) function suction(initial, z)
       type(initial_t), intent(in) :: initial
-      real(wp), intent(in) :: z
+      real(wp), intent(in) :: z   !< [m]
 
       suction = initial%p_c + initial%p_c_slope*(z - initial%datum)
    end function suction
@@ -115,7 +118,7 @@ contains
    !> Edges of a group through which fluids can flow in.
    pure function edges_with_flow(domain, group) result(flows)
       type(domain_t), intent(in) :: domain
-      integer, intent(in) :: group
+      integer, intent(in) :: group   !< Its number in the mesh.
       logical :: flows(size(domain%mesh%groups(group)%edges, 2))
       logical :: at(size(domain%mesh%x, 2))
       integer :: e
@@ -124,7 +127,9 @@ contains
       flows = [(all(at(domain%mesh%groups(group)%edges(:, e))), e=1, size(flows))]
    end function edges_with_flow
 
-   !> Values, supports and inflows where no node or element of their group could have them.
+   !> Values, supports and inflows where no node or element of their group could have them. Fault EXIT_GROUP: a pressure
+   !> is prescribed on no node, or a fluid flows in through no edge, of a coupled region; or p_w, p_c are given for dry
+   !> regions alone. docs/theory/host.md section 3.5.
    subroutine check_places(model, fault)
       type(model_t), intent(in) :: model
       type(fault_t), intent(inout) :: fault
@@ -172,11 +177,11 @@ contains
    end subroutine check_places
 
    !> Pressures of nodes that lie in undrained elements alone, for histories and fields: the mean of what these have
-   !> there. No element looks at them.
+   !> there. No element looks at them. docs/theory/host.md section 3.5.
    subroutine follow_undrained(domain, of, x)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: of(:, :)           !< (FIELDS, nodes) Unknowns, 0: none.
-      real(wp), intent(inout) :: x(:, :)        !< (FIELDS, nodes)
+      real(wp), intent(inout) :: x(:, :)        !< (FIELDS, nodes) [m, kPa]
       real(wp) :: total(2, size(x, 2))
       logical :: given(size(x, 2))
       integer :: users(size(x, 2)), e, k

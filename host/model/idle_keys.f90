@@ -76,7 +76,7 @@ contains
    !> Adds a warning for every key and every definition of a scene that has no effect.
    subroutine list_idle_keys(scene, warnings)
       type(scene_t), intent(in) :: scene
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)   !< They grow. (warnings)
       integer :: g
 
       do g = 1, size(scene%groups)
@@ -176,7 +176,7 @@ contains
    !> Adds a text to the warnings.
    subroutine add_warning(text, warnings)
       character(*), intent(in) :: text
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)   !< They grow by one. (warnings)
       character(WARNING_LENGTH), allocatable :: more(:)
       integer :: n
 

@@ -26,6 +26,8 @@ module initial_conditions
    end type tension_t
 contains
    !> State of a model at the start; a fault where a material refuses it. `tension`: points with a tensile stress.
+   !> docs/theory/host.md section 8. Stresses: tension positive, pore pressures: compression positive [kPa]. Fault
+   !> EXIT_MATERIAL.
    subroutine initial_state(model, state, fault, tension)
       type(model_t), intent(in) :: model
       type(state_t), intent(out) :: state

@@ -15,7 +15,8 @@ module mesh_builder
 
    real(wp), parameter :: MOST_ELEMENTS = 5.0e6_wp   !< Of a built-in mesh: entries of the matrix stay countable.
 contains
-   !> Reads or makes the mesh; a fault names what is wrong with the file or the breaks.
+   !> Reads or makes the mesh; a fault names what is wrong with the file or the breaks. Fault EXIT_MESH: as of
+   !> read_gmsh; breaks that do not ascend or do not fit cells and ratios; more than MOST_ELEMENTS.
    subroutine build_mesh(scene, mesh, fault)
       type(scene_mesh_t), intent(in) :: scene
       type(mesh_t), intent(out) :: mesh

@@ -25,7 +25,9 @@ module model_builder
    real(wp), parameter :: OF_ELASTIC = 7.0e-6_wp, OF_PLASTIC = 5.0e-5_wp
    real(wp), parameter :: WORTH_A_THREAD = 4.0e-3_wp   !< A slice of Linux' scheduler [s].
 contains
-   !> The keys of the scene must be settled (effect_switches).
+   !> The keys of the scene must be settled (effect_switches). Mesh, regions, boundaries, unknowns and unit loads of a
+   !> scene. Faults: those of its parts; EXIT_INPUT: no quadrature rule of so many points; EXIT_ELEMENT: see
+   !> prepare_domain.
    subroutine build_model(scene, model, fault)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(out) :: model

@@ -92,11 +92,11 @@ module model_types
       type(point_t), allocatable :: points(:)
    end type model_t
 contains
-   !> Factor of an amplitude at a time; amplitude 0 is 1 throughout.
+   !> Factor of an amplitude at a time; amplitude 0 is 1 throughout. [-]
    pure real(wp) function factor_at(model, amplitude, time) result(factor)
       type(model_t), intent(in) :: model
       integer, intent(in) :: amplitude
-      real(wp), intent(in) :: time
+      real(wp), intent(in) :: time   !< [s]
 
       factor = 1.0_wp
       if (amplitude > 0) factor = amplitude_at(model%amplitudes(amplitude), time)

@@ -8,7 +8,7 @@ module name_search
    private
    public :: mesh_group, defined_name
 contains
-   !> Place of a group of the mesh; a fault names those that there are.
+   !> Place of a group of the mesh; a fault names those that there are. Fault EXIT_GROUP: there is none; 0 then.
    integer function mesh_group(mesh, name, place, fault) result(group)
       type(mesh_t), intent(in) :: mesh
       character(*), intent(in) :: name, place   !< Place: where the scene says it.
@@ -20,9 +20,9 @@ contains
                                  listed([(mesh%groups(i)%name, i=1, size(mesh%groups))])//'.')
    end function mesh_group
 
-   !> Place of a name among definitions.
+   !> Place of a name among definitions. Fault EXIT_GROUP: it is not among them; 0 then.
    integer function defined_name(key, name, names, place, fault) result(found)
-      character(*), intent(in) :: key, name, names(:), place
+      character(*), intent(in) :: key, name, names(:), place   !< For the fault: key, place. names: (definitions).
       type(fault_t), intent(inout) :: fault
 
       found = findloc(names == name, .true., dim=1)

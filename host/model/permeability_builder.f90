@@ -11,6 +11,7 @@ module permeability_builder
    public :: new_permeability
 contains
    !> Relative permeability of a group whose keys were checked; a fault where values contradict each other.
+   !> docs/theory/host.md section 2.6. Fault EXIT_INPUT: s_max is not above s_min.
    subroutine new_permeability(given, law, fault)
       type(scene_law_t), intent(in) :: given
       type(permeability_t), intent(out) :: law

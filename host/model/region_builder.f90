@@ -24,6 +24,9 @@ module region_builder
    integer, parameter :: DRAINAGE_OF(*) = [COUPLED, DRAINED, UNDRAINED, DRY]   !< Of the words of &region drainage.
 contains
    !> Materials, retention and permeability of every element; a fault names elements without a region and unknown names.
+   !> Fault EXIT_GROUP: an element without a region, or a name that is not defined. Fault EXIT_INPUT: no void ratio
+   !> where there are fluids, two retentions or none, saturation_rate = "suction" with a saturation that is a state,
+   !> tangent = 0; and what the laws refuse.
    subroutine build_regions(scene, domain, fault)
       type(scene_t), intent(in) :: scene
       type(domain_t), intent(inout) :: domain

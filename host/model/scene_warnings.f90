@@ -26,12 +26,12 @@ module scene_warnings
    real(wp), parameter :: STIFF = 1.0e9_wp            !< [kPa] Five times steel; above it a modulus in Pa is likely.
    character(3), parameter :: WORDS(*) = [FIELD_NAMES, 'p_a']
 contains
-   !> All warnings about a scene, in the order of their kinds; empty if there are none.
+   !> All warnings about a scene, in the order of their kinds; empty if there are none. Raises no fault.
    subroutine list_warnings(scene, model, tension, warnings)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(in) :: model
       type(tension_t), intent(in) :: tension   !< Of the initial state.
-      character(WARNING_LENGTH), allocatable, intent(out) :: warnings(:)
+      character(WARNING_LENGTH), allocatable, intent(out) :: warnings(:)   !< (warnings)
 
       allocate (warnings(0))
       call look_at_sizes(scene, model, warnings)

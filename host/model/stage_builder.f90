@@ -27,7 +27,8 @@ contains
       stage%measure = MEASURE_OF(given%measure_number)
    end subroutine build_stage
 
-   !> rho_inf and the measure of Newton's error of the stages that the scene leaves them open in.
+   !> rho_inf and the measure of Newton's error of the stages that the scene leaves them open in. docs/theory/host.md
+   !> sections 4.1, 5.1 and, of quasi-static stages, 11.
    pure subroutine choose_schemes(model)
       type(model_t), intent(inout) :: model
       logical :: touching

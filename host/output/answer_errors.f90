@@ -33,7 +33,8 @@ contains
       if (estimate) error = control%point_largest(field, point)/change
    end function estimate
 
-   !> answers.csv
+   !> answers.csv: largest change [m, kPa] and estimated error [-] of every answer: docs/theory/host.md section 4.5.
+   !> Fault EXIT_OUTPUT: it cannot be written.
    subroutine write_answers(folder, model, control, fault)
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model
@@ -58,7 +59,7 @@ contains
 
    !> The same in words, and what limited the steps.
    subroutine print_answers(unit, model, control, verified)
-      integer, intent(in) :: unit
+      integer, intent(in) :: unit   !< Number of a Fortran unit.
       type(model_t), intent(in) :: model
       type(control_state_t), intent(in) :: control
       logical, intent(in) :: verified   !< The errors are differences to a run at a quarter of the accuracy.

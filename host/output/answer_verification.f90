@@ -16,10 +16,10 @@ module answer_verification
       real(wp), allocatable :: x(:, :, :)          !< (FIELDS, points, rows)
    end type history_t
 contains
-   !> The histories that a run has written.
+   !> The histories that a run has written. Fault EXIT_OUTPUT: histories.csv of the folder cannot be read.
    subroutine read_history(folder, points, columns, history, fault)
       character(*), intent(in) :: folder
-      integer, intent(in) :: points, columns   !< Columns of a point.
+      integer, intent(in) :: points, columns   !< Number of points, and of the columns of one.
       type(history_t), intent(out) :: history
       type(fault_t), intent(inout) :: fault
       character(NUMBER_LENGTH*(1 + columns*points)) :: line
@@ -52,7 +52,8 @@ contains
          'cannot be read back for the comparison of the two runs.')
    end subroutine read_history
 
-   !> Largest distance of two histories at the times of the first, straight lines between the rows of the second.
+   !> Largest distance of two histories at the times of the first, straight lines between the rows of the second. [m,
+   !> kPa] docs/theory/host.md section 4.5.
    pure function differences(one, two) result(apart)
       type(history_t), intent(in) :: one, two
       real(wp) :: apart(FIELDS, size(one%x, 2))

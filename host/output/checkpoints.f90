@@ -35,7 +35,8 @@ module checkpoints
                                         'contact, seepage, damping [kJ], outflow, outflow_air [m3], '// &
                                         'largest_work, open_0, most_created, tolerated [kJ]'
 contains
-   !> Writes the complete state of a run to checkpoint.h5 in the folder of the tables, in place of an older one.
+   !> Writes the complete state of a run to checkpoint.h5 in the folder of the tables, in place of an older one. Fault
+   !> EXIT_OUTPUT: a table or the checkpoint cannot be written.
    subroutine write_checkpoint(model, run, tables, fault)
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
@@ -90,7 +91,8 @@ contains
                                  'disk full? The one before is untouched: make room and use --restart.')
    end subroutine write_checkpoint
 
-   !> Puts a prepared run where the checkpoint was written.
+   !> Puts a prepared run where the checkpoint was written. Fault EXIT_RESTART: no HDF5, no checkpoint, a damaged one,
+   !> one of another version, or of a scene with another past.
    subroutine read_checkpoint(path, model, run, tables, fault)
       character(*), intent(in) :: path
       type(model_t), intent(in) :: model

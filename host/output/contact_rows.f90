@@ -13,7 +13,7 @@ module contact_rows
    private
    public :: contact_columns, contact_row, contact_nodes
 contains
-   !> Columns of contact.csv.
+   !> Columns of contact.csv. Their units: see contact_row.
    function contact_columns(model) result(head)
       type(model_t), intent(in) :: model
       character(:), allocatable :: head
@@ -32,11 +32,13 @@ contains
       end do
    end function contact_columns
 
-   !> Its row after a step: contacts at the level of values within the step, plates at its end.
+   !> Its row after a step: contacts at the level of values within the step, plates at its end. time, dt [s], work [kJ];
+   !> of every contact thrust [kN], energy [kJ], area [m2], active nodes, sealed nodes; of every plate u_z [m], v_z
+   !> [m/s], a_z [m/s2], load [kN].
    function contact_row(model, contacts, dt, state, work) result(row)
       type(model_t), intent(in) :: model
       type(contacts_t), intent(in) :: contacts
-      real(wp), intent(in) :: dt, work
+      real(wp), intent(in) :: dt, work   !< [s], [kJ]
       type(state_t), intent(in) :: state
       real(wp), allocatable :: row(:)
       integer :: i
@@ -60,7 +62,7 @@ contains
       type(model_t), intent(in) :: model
       type(contacts_t), intent(in) :: contacts
       type(state_t), intent(in) :: state
-      real(wp), allocatable, intent(out) :: table(:, :)
+      real(wp), allocatable, intent(out) :: table(:, :)   !< (7, nodes) [-, m, m, m2, -, m, kPa]
       type(contact_workspace_t) :: work
       type(contact_result_t) :: found
       type(contact_status_t) :: status

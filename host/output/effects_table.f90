@@ -13,7 +13,7 @@ module effects_table
 contains
    !> What the pilots cost, and how good they are.
    subroutine print_pilots(unit, account)
-      integer, intent(in) :: unit
+      integer, intent(in) :: unit   !< Number of a Fortran unit.
       type(pilots_account_t), intent(in) :: account
 
       write (unit, '(a)') whole(account%runs)//' pilots in '//short(account%seconds)//' s: cells '// &
@@ -25,8 +25,8 @@ contains
 
    !> The table for people. `decided`: the run follows it.
    subroutine print_effects(unit, table, decided)
-      integer, intent(in) :: unit
-      type(effect_t), intent(in) :: table(:)
+      integer, intent(in) :: unit   !< Number of a Fortran unit.
+      type(effect_t), intent(in) :: table(:)   !< (rows)
       logical, intent(in) :: decided
       character(12) :: cells(4)
       integer :: i
@@ -63,10 +63,11 @@ contains
       text = merge('hand ', 'pilot', effect%by_hand)
    end function by
 
-   !> effects.csv: the table, and what the run has shown of the effects that are off.
+   !> effects.csv: the table, and what the run has shown of the effects that are off. Fault EXIT_OUTPUT: it cannot be
+   !> written.
    subroutine write_effects(folder, table, fault)
       character(*), intent(in) :: folder
-      type(effect_t), intent(in) :: table(:)
+      type(effect_t), intent(in) :: table(:)   !< (rows)
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: row
       type(csv_t) :: file

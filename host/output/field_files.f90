@@ -44,7 +44,8 @@ module field_files
       field_t('e', '-', 'void ratio', .false., 1), &
       field_t('S_w', '-', 'degree of saturation', .false., 1)]
 contains
-   !> mesh.h5: nodes, elements, quadrature points, region of every element.
+   !> mesh.h5: nodes, elements, quadrature points, region of every element. Nothing without HDF5. Fault EXIT_OUTPUT: it
+   !> cannot be written.
    subroutine write_mesh(folder, model, fingerprint, domain, fault)
       character(*), intent(in) :: folder, model, fingerprint   !< Name and fingerprint of the scene.
       type(domain_t), intent(in) :: domain
@@ -73,7 +74,8 @@ contains
       if (.not. good) call complain(folder//'/mesh.h5', fault)
    end subroutine write_mesh
 
-   !> Refuses a folder whose mesh is not that of the scene's run.
+   !> Refuses a folder whose mesh is not that of the scene's run. Fault EXIT_RESTART: mesh.h5 is missing, truncated, or
+   !> of another scene.
    subroutine check_mesh(folder, fingerprint, fault)
       character(*), intent(in) :: folder, fingerprint
       type(fault_t), intent(inout) :: fault
@@ -93,7 +95,8 @@ contains
       call close_file(file)
    end subroutine check_mesh
 
-   !> fields_NUMBER.h5 of a state, and results.xdmf up to it.
+   !> fields_NUMBER.h5 of a state, and results.xdmf up to it. Nothing without HDF5. Units: see LIST. Fault EXIT_OUTPUT:
+   !> they cannot be written.
    subroutine write_frame(folder, domain, state, frames, fault)
       character(*), intent(in) :: folder
       type(domain_t), intent(in) :: domain
@@ -186,11 +189,12 @@ contains
       write (name, '(a,i6.6,a)') 'fields_', number, '.h5'
    end function file_of
 
-   !> Unknowns of every node: pressures of the middles of sides too where only vertices have their own.
+   !> Unknowns of every node: pressures of the middles of sides too where only vertices have their own. By the mean of
+   !> the ends: docs/theory/host.md section 3.1.
    pure subroutine all_pressures(domain, state, x)
       type(domain_t), intent(in) :: domain
       type(state_t), intent(in) :: state
-      real(wp), intent(out) :: x(:, :)
+      real(wp), intent(out) :: x(:, :)   !< (FIELDS, nodes) [m, kPa]
       integer :: e, i
 
       x = state%x

@@ -39,7 +39,8 @@ module output_tables
       character(NAME_LENGTH) :: stage = ''           !< Stage that was under way at the checkpoint.
    end type tables_t
 contains
-   !> New files; or, after a restart, those of the run as they were at its checkpoint.
+   !> New files; or, after a restart, those of the run as they were at its checkpoint. Fault EXIT_OUTPUT: a file cannot
+   !> be written; EXIT_RESTART: as of check_tables.
    subroutine open_tables(folder, model, resume, tables, fault)
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model
@@ -74,7 +75,8 @@ contains
       end subroutine open_one
    end subroutine open_tables
 
-   !> Refuses a folder that does not hold the run of a checkpoint; changes nothing.
+   !> Refuses a folder that does not hold the run of a checkpoint; changes nothing. Fault EXIT_RESTART: its mesh is of
+   !> another scene, or a table is missing, too short or cannot be written.
    subroutine check_tables(folder, model, tables, fault)
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model
@@ -109,7 +111,7 @@ contains
       end do
    end function history_columns
 
-   !> Brings the tables to the disk.
+   !> Brings the tables to the disk. Fault EXIT_OUTPUT where that fails.
    subroutine settle_tables(tables, fault)
       type(tables_t), intent(inout) :: tables
       type(fault_t), intent(inout) :: fault
@@ -120,7 +122,8 @@ contains
       if (fault%code == 0 .and. is_open(tables%reactions)) call settle_csv(tables%reactions, fault)
    end subroutine settle_tables
 
-   !> A row of histories.csv: time and the columns of every named point.
+   !> A row of histories.csv: time and the columns of every named point. Units [s, m, kPa, m/s, m/s2, kPa, -, -],
+   !> stresses tension positive. Fault EXIT_OUTPUT: it cannot be written.
    subroutine write_history(tables, model, state, fault)
       type(tables_t), intent(inout) :: tables
       type(model_t), intent(in) :: model
@@ -143,7 +146,7 @@ contains
    end subroutine write_history
 
    !> A row of reactions_STAGE.csv after a step. The file belongs to the stage: it begins with its first row, or goes on
-   !> where it was at the checkpoint.
+   !> where it was at the checkpoint. Units: see reaction_row. Fault EXIT_OUTPUT: it cannot be written.
    subroutine write_reactions(tables, model, run, dt, fault)
       type(tables_t), intent(inout) :: tables
       type(model_t), intent(in) :: model
@@ -178,7 +181,7 @@ contains
       path = folder//'/reactions_'//trim(stage)//'.csv'
    end function reactions_of
 
-   !> Ends the table of a stage.
+   !> Ends the table of a stage. Fault EXIT_OUTPUT where that fails.
    subroutine close_reactions(tables, fault)
       type(tables_t), intent(inout) :: tables
       type(fault_t), intent(inout) :: fault
@@ -187,7 +190,8 @@ contains
       tables%reactions%bytes = 0
    end subroutine close_reactions
 
-   !> A row of ledger.csv after a step that ends at a time [s].
+   !> A row of ledger.csv after a step that ends at a time [s]. Works [kJ], outflow [m3]: docs/theory/host.md section 9.
+   !> Fault EXIT_OUTPUT: it cannot be written.
    subroutine write_ledger(tables, time, report, ledger, fault)
       type(tables_t), intent(inout) :: tables
       real(wp), intent(in) :: time
@@ -205,7 +209,8 @@ contains
       call write_row(tables%ledger, fault)
    end subroutine write_ledger
 
-   !> A row of contact.csv after a step; nothing without contacts and plates.
+   !> A row of contact.csv after a step; nothing without contacts and plates. Units: see contact_row. Fault EXIT_OUTPUT:
+   !> it cannot be written.
    subroutine write_contacts(tables, model, contacts, dt, state, work, fault)
       type(tables_t), intent(inout) :: tables
       type(model_t), intent(in) :: model
@@ -219,11 +224,12 @@ contains
       call write_row(tables%contact, fault)
    end subroutine write_contacts
 
-   !> nodes_STAGE.csv and points_STAGE.csv.
+   !> nodes_STAGE.csv and points_STAGE.csv. Units [m, kPa, m/s], weight [m3], stresses tension positive. Fault
+   !> EXIT_OUTPUT: they cannot be written.
    subroutine write_fields(folder, domain, stage, state, fault)
       character(*), intent(in) :: folder
       type(domain_t), intent(in) :: domain
-      character(*), intent(in) :: stage
+      character(*), intent(in) :: stage   !< Its name.
       type(state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
       real(wp) :: x(FIELDS, size(state%x, 2))
@@ -252,12 +258,13 @@ contains
       call close_csv(table, fault)
    end subroutine write_fields
 
-   !> contact_STAGE.csv: slave nodes of the contacts that act in the stage.
+   !> contact_STAGE.csv: slave nodes of the contacts that act in the stage. Units: see contact_nodes. Fault EXIT_OUTPUT:
+   !> it cannot be written.
    subroutine write_contact_nodes(folder, model, contacts, stage, state, fault)
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model
       type(contacts_t), intent(in) :: contacts
-      character(*), intent(in) :: stage
+      character(*), intent(in) :: stage   !< Its name.
       type(state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
       real(wp), allocatable :: values(:, :)
@@ -276,7 +283,7 @@ contains
       call close_csv(table, fault)
    end subroutine write_contact_nodes
 
-   !> Closes all tables; the first that fails is reported.
+   !> Closes all tables; the first that fails is reported. Fault EXIT_OUTPUT: a disk is full.
    subroutine close_tables(tables, fault)
       type(tables_t), intent(inout) :: tables
       type(fault_t), intent(inout) :: fault

@@ -24,7 +24,7 @@ module progress_line
       real(wp) :: pace = 0.0_wp             !< Seconds a step, the last ones counting most.
    end type progress_t
 contains
-   !> After every accepted step.
+   !> After every accepted step. Nothing where the run is quiet.
    subroutine show_progress(model, run, progress)
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
@@ -106,7 +106,7 @@ contains
 
    !> A duration in hours, minutes or seconds, as text.
    pure function span_of(seconds) result(text)
-      real(wp), intent(in) :: seconds
+      real(wp), intent(in) :: seconds   !< [s]
       character(:), allocatable :: text
       integer :: s
 

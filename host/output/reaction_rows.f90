@@ -20,7 +20,7 @@ module reaction_rows
                                                    'load_r', 'load_z', 'inflow_w', 'inflow_a']
    integer, parameter :: OUT_W = 3, OUT_A = 4, LOAD_R = 5, LOAD_Z = 6, IN_W = 7, IN_A = 8
 contains
-   !> Columns of a stage's table; empty where the stage prescribes and loads nothing.
+   !> Columns of a stage's table; empty where the stage prescribes and loads nothing. docs/theory/host.md section 9.1.
    function reaction_columns(model, stage) result(head)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
@@ -78,13 +78,14 @@ contains
       end subroutine add
    end subroutine list_columns
 
-   !> Row after a step. Forces hold where the step is in balance: at the level of its values.
+   !> Row after a step. Forces hold where the step is in balance: at the level of its values. Times [s], forces [kN],
+   !> flows [m3/s], in the order of reaction_columns: docs/theory/host.md section 9.1.
    function reaction_row(model, stage, drainage, constraint, reaction, time, dt) result(row)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       type(drainage_t), intent(in) :: drainage
       type(constraint_t), intent(in) :: constraint
-      real(wp), intent(in) :: reaction(:)   !< Residual with every row kept [kN, m3/s].
+      real(wp), intent(in) :: reaction(:)   !< Residual with every row kept [kN, m3/s]. (unknowns)
       real(wp), intent(in) :: time, dt      !< At the end of the step, and its length [s].
       real(wp), allocatable :: row(:)
       type(scheme_t) :: scheme

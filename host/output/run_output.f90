@@ -39,7 +39,8 @@ module run_output
       procedure :: warn
    end type run_output_t
 contains
-   !> Opens the files; a new run writes its start.
+   !> Opens the files; a new run writes its start. Fault EXIT_INPUT: checkpoints are asked for and there is no HDF5;
+   !> faults of open_tables, write_effects and write_frame.
    subroutine run_begins(self, model, run, fault)
       class(run_output_t), intent(inout) :: self
       type(model_t), intent(in) :: model
@@ -61,6 +62,8 @@ contains
       call write_frame(self%folder, model%domain, run%state, self%tables%frames, fault)
    end subroutine run_begins
 
+   !> Tables, fields and a checkpoint where they are due, and the progress line. Fault EXIT_OUTPUT: a file cannot be
+   !> written.
    subroutine step_done(self, model, run, report, checkpoint, fault)
       class(run_output_t), intent(inout) :: self
       type(model_t), intent(in) :: model
@@ -100,12 +103,12 @@ contains
       call show_progress(model, run, self%progress)
    end subroutine step_done
 
-   !> The end of a stage; after a failure too, for what was computed.
+   !> The end of a stage; after a failure too, for what was computed. Fault EXIT_OUTPUT: a file cannot be written.
    subroutine stage_done(self, model, run, stage, complete, fault)
       class(run_output_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
-      integer, intent(in) :: stage
+      integer, intent(in) :: stage   !< Its number.
       logical, intent(in) :: complete
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: name
@@ -121,7 +124,8 @@ contains
       if (fault%code == 0) call write_frame(self%folder, model%domain, run%state, self%tables%frames, fault)
    end subroutine stage_done
 
-   !> Closes the files and repeats what was seen of the effects that are off.
+   !> Closes the files and repeats what was seen of the effects that are off. Fault EXIT_OUTPUT: a file cannot be
+   !> written.
    subroutine run_ends(self, model, run, fault)
       class(run_output_t), intent(inout) :: self
       type(model_t), intent(in) :: model
@@ -142,6 +146,7 @@ contains
       end do
    end subroutine run_ends
 
+   !> Prints a text, unless the run is quiet.
    subroutine warn(self, text)
       class(run_output_t), intent(inout) :: self
       character(*), intent(in) :: text

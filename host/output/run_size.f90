@@ -13,7 +13,7 @@ module run_size
    real(wp), parameter :: MEGABYTE = 1.0e6_wp, OF_A_NUMBER = 8.0_wp   !< [bytes]
 contains
    !> One sentence; factors as large as the last ones made, 0 before a run. A run holds the state of the points twice,
-   !> before and after the step.
+   !> before and after the step. Memory in MB of 1e6 bytes.
    function size_of_run(model, run) result(text)
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run

@@ -14,7 +14,8 @@ module contact_alarm
    !> eighth of the ratio of edge length to radius, 1e-3 with a mesh that is fine enough for contact [-].
    real(wp), parameter :: ALARMING_DEPTH = 1.0e-3_wp
 contains
-   !> After an accepted step; once for every contact, on standard error, also where the run is quiet.
+   !> After an accepted step; once for every contact, on standard error, also where the run is quiet. From 1e-3 of the
+   !> length of an edge on: docs/theory/contact.md section 2.4. Raises no fault.
    subroutine tell_penetration(model, time, contacts)
       type(model_t), intent(in) :: model
       real(wp), intent(in) :: time   !< [s]

@@ -49,13 +49,13 @@ contains
 
    !> Length of the list of a checkpoint.
    pure integer function count_of_numbers(state) result(n)
-      type(control_state_t), intent(in) :: state
+      type(control_state_t), intent(in) :: state   !< After new_control_state.
 
       n = SCALARS + 3*FIELDS + LIMITS + size(state%x_first) + size(state%memory%rate) &
           + size(state%memory%s_rate) + 4*size(state%low)
    end function count_of_numbers
 
-   !> Everything as one list, for a checkpoint.
+   !> Everything as one list, for a checkpoint. Each number in its own unit, in the order that take_numbers reads.
    pure function numbers_of(state) result(list)
       type(control_state_t), intent(in) :: state
       real(wp) :: list(count_of_numbers(state))
@@ -70,7 +70,7 @@ contains
 
    !> The state again; its arrays must have their sizes.
    subroutine take_numbers(list, state)
-      real(wp), intent(in) :: list(:)
+      real(wp), intent(in) :: list(:)   !< (count_of_numbers)
       type(control_state_t), intent(inout) :: state
       integer :: at
 

@@ -29,7 +29,8 @@ contains
       monitor%mass = mass_of_nodes(model, state)
    end subroutine begin_monitor
 
-   !> Mass of the soil and of the plates, shared out to nodes [Mg].
+   !> Mass of the soil and of the plates, shared out to nodes [Mg]. Of every element an equal part to each of its six
+   !> nodes; of a plate all to its own. For indicator_of.
    function mass_of_nodes(model, state) result(mass)
       type(model_t), intent(in) :: model
       type(state_t), intent(in) :: state
@@ -54,19 +55,19 @@ contains
 
    !> Whether an effect leaves a trace in a run without it.
    pure logical function is_watched(kind)
-      integer, intent(in) :: kind
+      integer, intent(in) :: kind   !< One of OF_...
 
       is_watched = any([OF_INERTIA, OF_SEEPAGE, OF_P_W, OF_P_C, OF_GRAVITY] == kind)
    end function is_watched
 
-   !> Indicators of a step; `news` marks those that pass their limit with it.
+   !> Indicators of a step; `news` marks those that pass their limit with it. docs/theory/host.md section 11.
    subroutine monitor_step(model, stage, dt, old, new, monitor, news)
       type(model_t), intent(in) :: model
-      integer, intent(in) :: stage
-      real(wp), intent(in) :: dt
+      integer, intent(in) :: stage   !< Its number.
+      real(wp), intent(in) :: dt   !< [s]
       type(state_t), intent(in) :: old, new
       type(monitor_t), intent(inout) :: monitor
-      logical, intent(out) :: news(:)
+      logical, intent(out) :: news(:)   !< (rows of the table)
       real(wp) :: value
       integer :: i
 
@@ -85,12 +86,13 @@ contains
 
    !> What an effect would act on, in a step without it: of inertia the speed [kJ**(1/2)], of the relative acceleration
    !> the acceleration [m/s2], of p_w the rate of volume [1/s], of p_c the tension of the water [kPa], of gravity the
-   !> inverse of the least mean effective stress of a material that yields [1/kPa].
+   !> inverse of the least mean effective stress of a material that yields [1/kPa]. docs/theory/host.md section 11. 0 of
+   !> effects that leave no trace.
    real(wp) function indicator_of(kind, of_stage, model, stage, dt, mass, old, new) result(value)
       integer, intent(in) :: kind, of_stage   !< Effect, and stage of its inertia.
       type(model_t), intent(in) :: model
-      integer, intent(in) :: stage
-      real(wp), intent(in) :: dt, mass(:)
+      integer, intent(in) :: stage   !< Number of the present one.
+      real(wp), intent(in) :: dt, mass(:)   !< [s]; (nodes) [Mg], of mass_of_nodes.
       type(state_t), intent(in) :: old, new
       real(wp) :: least
       integer :: e

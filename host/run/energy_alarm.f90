@@ -17,7 +17,8 @@ module energy_alarm
    character(*), parameter :: REMEDY = 'shorten dt, set rho_inf = 0 where a contact opens and closes, or '// &
       'measure = ''change'' where weight rests'
 contains
-   !> After every booked step: a fault where a dynamic stage has created more than it may.
+   !> After every booked step: a fault where a dynamic stage has created more than it may. Fault EXIT_ENERGY.
+   !> docs/theory/host.md section 9.
    subroutine check_creation(stage, time, ledger, fault)
       type(stage_t), intent(in) :: stage
       real(wp), intent(in) :: time   !< At the end of the step [s].
@@ -32,6 +33,7 @@ contains
    end subroutine check_creation
 
    !> At the end of a dynamic stage that may create much: the warning, on standard error, also where the run is quiet.
+   !> From ALARMING_SHARE of the largest work on; nothing beyond what check_creation refuses.
    subroutine tell_creation(stage, ledger)
       type(stage_t), intent(in) :: stage
       type(ledger_t), intent(in) :: ledger

@@ -44,13 +44,15 @@ module energy_ledger
 contains
    !> All works are those of mean forces of a step times its displacements. So is that of the supports: what they hold
    !> is formed anew from the mean forces, since the reactions of the scheme hold at its own level, not half-way.
+   !> docs/theory/host.md section 9. All in [kJ], outflow in [m3].
    subroutine book_step(domain, dofs, scheme, constraint, reaction, contact_force, old, new, ledger)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
       type(scheme_t), intent(in) :: scheme
       type(constraint_t), intent(in) :: constraint
-      real(wp), intent(in) :: reaction(:)        !< Residual with every row kept.
+      real(wp), intent(in) :: reaction(:)        !< Residual with every row kept. (unknowns) [kN, m3/s]
       real(wp), intent(in) :: contact_force(:)   !< Mean forces of the contacts over the step, if there are any [kN].
+                                                 !< (unknowns) or (0).
       type(state_t), intent(in) :: old, new
       type(ledger_t), intent(inout) :: ledger
       type(work_t) :: work
@@ -234,11 +236,11 @@ contains
       end do
    end subroutine book_seepage
 
-   !> Kinetic energy of the soil and of the bodies with a mass [kJ].
+   !> Kinetic energy of the soil and of the bodies with a mass [kJ]. docs/theory/host.md section 9.
    real(wp) function kinetic_energy(domain, dofs, mass, state) result(energy)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
-      real(wp), intent(in) :: mass(:)
+      real(wp), intent(in) :: mass(:)   !< (unknowns) Of bodies [Mg].
       type(state_t), intent(in) :: state
       real(wp) :: nodal(DISPLACEMENTS, 6), v(DISPLACEMENTS), n
       integer :: e, g, p, i
@@ -260,13 +262,13 @@ contains
    end function kinetic_energy
 
    !> After a step is booked: the largest work so far and, in a dynamic stage, the most energy created, which is what
-   !> the balance leaves open with the wrong sign.
+   !> the balance leaves open with the wrong sign. docs/theory/host.md section 9.
    pure subroutine book_creation(scheme, tolerance, dofs, scale, change, ledger)
       type(scheme_t), intent(in) :: scheme
       real(wp), intent(in) :: tolerance      !< Newton's: a residual may be that share of the forces.
       type(dofs_t), intent(in) :: dofs
-      real(wp), intent(in) :: scale(:)       !< Sum of the magnitudes of the forces on every unknown [kN].
-      real(wp), intent(in) :: change(:, :)   !< Of the unknowns in the step; displacements first [m].
+      real(wp), intent(in) :: scale(:)       !< Sum of the magnitudes of the forces on every unknown [kN]. (unknowns)
+      real(wp), intent(in) :: change(:, :)   !< Of the unknowns in the step; displacements first [m]. (FIELDS, nodes)
       type(ledger_t), intent(inout) :: ledger
       real(wp) :: work
       integer :: i
@@ -282,7 +284,7 @@ contains
    end subroutine book_creation
 
    !> Created energy up to which nothing is said: a share of the largest work, and what no balance can tell from zero.
-   !> Of a body at rest, or in a first step, the work is as small as that.
+   !> Of a body at rest, or in a first step, the work is as small as that. [kJ] docs/theory/host.md section 9.
    pure real(wp) function allowed_creation(share, ledger)
       real(wp), intent(in) :: share   !< [-]
       type(ledger_t), intent(in) :: ledger
@@ -290,7 +292,7 @@ contains
       allowed_creation = share*ledger%largest_work + ledger%tolerated
    end function allowed_creation
 
-   !> What the mechanical balance leaves open [kJ].
+   !> What the mechanical balance leaves open [kJ]. docs/theory/host.md section 9; positive: energy is lost.
    pure real(wp) function imbalance(ledger)
       type(ledger_t), intent(in) :: ledger
 

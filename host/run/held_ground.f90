@@ -20,7 +20,7 @@ module held_ground
    public :: hold_ground, let_waves_in, keep_flow
 contains
    !> Sets the forces on boundaries that act in a stage and did not in the one before, and frees them of those that no
-   !> longer act.
+   !> longer act. docs/theory/host.md section 7.4. Fault EXIT_MATERIAL: a material refuses its own state at rest.
    subroutine hold_ground(model, number, run, fault)
       type(model_t), intent(in) :: model
       integer, intent(in) :: number      !< Of the stage that begins.
@@ -55,7 +55,8 @@ contains
       call copy_state(run%state, run%next)
    end subroutine hold_ground
 
-   !> Which boundaries act in a step, and the forces of the waves that come in at its ends.
+   !> Which boundaries act in a step, and the forces of the waves that come in at its ends. docs/theory/host.md section
+   !> 7.4.
    subroutine let_waves_in(model, stage, dt, run)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
@@ -69,7 +70,8 @@ contains
       end associate
    end subroutine let_waves_in
 
-   !> The flow of the initial state, to be subtracted from then on.
+   !> The flow of the initial state, to be subtracted from then on. docs/theory/host.md section 8. Fault EXIT_MATERIAL:
+   !> a material refuses the initial state.
    subroutine keep_flow(model, run, fault)
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run

@@ -17,12 +17,13 @@ module pressure_alarm
    real(wp), parameter :: ALARMING_SHARE = 0.25_wp
    real(wp), parameter :: SMALLEST_RANGE = 0.1_wp   !< [kPa] Of pressures that anybody looks at.
 contains
-   !> After an accepted step; once a run, on standard error, also where the run is quiet.
+   !> After an accepted step; once a run, on standard error, also where the run is quiet. Not in static stages, nor of
+   !> linear pressures. docs/theory/host.md section 3.1. Raises no fault.
    subroutine tell_oscillation(model, stage, time, x, told)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       real(wp), intent(in) :: time     !< [s]
-      real(wp), intent(in) :: x(:, :)  !< Unknowns of the nodes.
+      real(wp), intent(in) :: x(:, :)  !< Unknowns of the nodes. (FIELDS, nodes) [m, kPa]
       logical, intent(inout) :: told
       real(wp) :: share, p(size(model%domain%mesh%x, 2))
       integer :: node, e
@@ -50,11 +51,11 @@ contains
 
    !> The corner of the mesh that stands out most, and by which share of the range of all pressures; 0 where no corner
    !> does or the range is too small to matter. A corner stands out by what it is above, or below, the middles of all
-   !> sides around it beyond what these differ from the other ends of their sides.
+   !> sides around it beyond what these differ from the other ends of their sides. docs/theory/host.md section 3.1.
    pure subroutine outlier(t6, p, share, node)
-      integer, intent(in) :: t6(:, :)
-      real(wp), intent(in) :: p(:)       !< At the nodes [kPa].
-      real(wp), intent(out) :: share
+      integer, intent(in) :: t6(:, :)   !< (6, elements)
+      real(wp), intent(in) :: p(:)       !< At the nodes [kPa]. (nodes)
+      real(wp), intent(out) :: share   !< [-]
       integer, intent(out) :: node
       real(wp), allocatable :: lowest(:), highest(:)
       integer :: e, k

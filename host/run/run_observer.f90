@@ -30,6 +30,7 @@ module run_observer
    end type run_observer_t
 
    abstract interface
+      !> Before the first step; after the last one, also where the run has failed.
       subroutine run_i(self, model, run, fault)
          import :: run_observer_t, model_t, run_t, fault_t
          class(run_observer_t), intent(inout) :: self
@@ -38,27 +39,30 @@ module run_observer
          type(fault_t), intent(inout) :: fault
       end subroutine run_i
 
-      !> `checkpoint`: the run could be taken up from here, where there are no factors of an earlier matrix.
+      !> `checkpoint`: the run could be taken up from here, where there are no factors of an earlier matrix. Called
+      !> after an accepted step; a fault ends the run.
       subroutine step_i(self, model, run, report, checkpoint, fault)
          import :: run_observer_t, model_t, run_t, step_report_t, fault_t
          class(run_observer_t), intent(inout) :: self
          type(model_t), intent(in) :: model
          type(run_t), intent(in) :: run
          type(step_report_t), intent(in) :: report
-         logical, intent(out) :: checkpoint
+         logical, intent(out) :: checkpoint   !< For the run.
          type(fault_t), intent(inout) :: fault
       end subroutine step_i
 
+      !> After a stage; `complete`: it has come to its end. A fault ends the run, where none has ended it already.
       subroutine stage_i(self, model, run, stage, complete, fault)
          import :: run_observer_t, model_t, run_t, fault_t
          class(run_observer_t), intent(inout) :: self
          type(model_t), intent(in) :: model
          type(run_t), intent(in) :: run
-         integer, intent(in) :: stage
+         integer, intent(in) :: stage   !< Its number.
          logical, intent(in) :: complete
          type(fault_t), intent(inout) :: fault
       end subroutine stage_i
 
+      !> Takes a warning.
       subroutine warn_i(self, text)
          import :: run_observer_t
          class(run_observer_t), intent(inout) :: self

@@ -17,7 +17,8 @@ module run_setup
    private
    public :: prepare_run
 contains
-   !> A run at its start; a fault where the initial state is refused.
+   !> A run at its start; a fault where the initial state is refused. Faults: those of initial_state, prepare_contacts,
+   !> prepare_drainage, prepare_absorbers and keep_flow.
    subroutine prepare_run(model, run, fault)
       type(model_t), intent(in) :: model
       type(run_t), intent(out) :: run

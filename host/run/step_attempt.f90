@@ -22,7 +22,8 @@ module step_attempt
    public :: begin_stage, try_step
 contains
    !> Sets a run at the start of stage `number`: prescribed values, absorbing boundaries, control of the steps, first
-   !> accelerations.
+   !> accelerations. docs/theory/host.md section 4.1. Faults: those of freeze_drainage, hold_ground and, for the
+   !> accelerations, explain_failure.
    subroutine begin_stage(model, number, run, fault)
       type(model_t), intent(in) :: model
       integer, intent(in) :: number
@@ -46,14 +47,16 @@ contains
    end subroutine begin_stage
 
    !> From run%state to run%next; where it fails the next step is smaller, or the fault says why there is none.
+   !> docs/theory/host.md section 4.4. Faults: that of freeze_drainage; that of explain_failure where no cut is left,
+   !> the linear solver failed, or the matrix is singular by no soft point.
    subroutine try_step(model, stage, control, dt, run, log, accepted, fault)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       type(control_t), intent(in) :: control
-      real(wp), intent(in) :: dt
+      real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
       type(log_t), intent(out) :: log
-      logical, intent(out) :: accepted
+      logical, intent(out) :: accepted   !< False also where its error is too large.
       type(fault_t), intent(inout) :: fault
       type(scheme_t) :: scheme
 

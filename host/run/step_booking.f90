@@ -22,7 +22,7 @@ module step_booking
    public :: book_accepted_step, watch_effects, check_creation, tell_creation, tell_penetration, &
              tell_oscillation
 contains
-   !> Adds a step to the ledger: energies, work, outflow, contacts.
+   !> Adds a step to the ledger: energies, work, outflow, contacts. docs/theory/host.md section 9.
    subroutine book_accepted_step(model, scheme, run)
       type(model_t), intent(in) :: model
       type(scheme_t), intent(in) :: scheme
@@ -44,7 +44,8 @@ contains
                          run%next%x - run%state%x, run%ledger)
    end subroutine book_accepted_step
 
-   !> Monitors a step that is accepted but not yet taken over, and warns.
+   !> Monitors a step that is accepted but not yet taken over, and warns. docs/theory/host.md section 11. Fault
+   !> EXIT_EFFECT: one passes its limit and the scene says effects_on_warning = "stop".
    subroutine watch_effects(model, report, run, fault, observer)
       type(model_t), intent(in) :: model
       type(step_report_t), intent(in) :: report

@@ -16,7 +16,8 @@ module step_failure
    private
    public :: explain_failure
 contains
-   !> Raises the fault of a step that failed: exit code, place, cause and remedy.
+   !> Raises the fault of a step that failed: exit code, place, cause and remedy. Fault EXIT_MATERIAL, EXIT_CONVERGENCE
+   !> (also of contacts), EXIT_FREE_BODY or EXIT_SOLVER, by log%outcome.
    subroutine explain_failure(model, stage, run, log, time, dt, fault)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage

@@ -21,7 +21,7 @@ module step_landings
    real(wp), parameter :: SAME = 1.0e-9_wp        !< Relative difference that is none.
 contains
    !> The next time that a step has to end at: a break of what acts, a support that comes or goes, a time of output,
-   !> the end of the stage [s].
+   !> the end of the stage [s]. docs/theory/host.md section 4.5.
    real(wp) function next_time(model, stage, run, reach) result(next)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
@@ -47,7 +47,8 @@ contains
    end function next_time
 
    !> Break of a history up to which a straight line from the present time leaves out no more than a share of its
-   !> range: the one that the line to the horizon misses most, until no line misses one. Huge if there is none.
+   !> range: the one that the line to the horizon misses most, until no line misses one. Huge if there is none. [s]
+   !> docs/theory/host.md section 4.5.
    pure real(wp) function straight_until(amplitude, now, close, horizon, share) result(until)
       type(scene_amplitude_t), intent(in) :: amplitude
       real(wp), intent(in) :: now, close   !< Breaks nearer than `close` are the present time [s].
@@ -82,7 +83,8 @@ contains
    end function straight_until
 
    !> Whether something that acts breaks at the end of a step: a support comes or goes, or a history turns by more than
-   !> a share of its range within a step like the last.
+   !> a share of its range within a step like the last. The share is the accuracy of the stage: docs/theory/host.md
+   !> section 4.5.
    pure logical function is_break(model, stage, time, dt)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
@@ -105,7 +107,7 @@ contains
    end function is_break
 
    !> Whether a flow may begin at once where a stage does: loads or prescribed values jump, or it is the first one and
-   !> has weight or pressures that differ from node to node.
+   !> has weight or pressures that differ from node to node. docs/theory/host.md section 4.5.
    function begins_suddenly(model, run) result(at_once)
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run   !< With what the stage prescribes at its start.

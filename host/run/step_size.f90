@@ -31,7 +31,8 @@ module step_size
    real(wp), parameter :: PLATE_SHARE = 0.1_wp    !< Of the way of a plate, as a least scale of the soil's.
    real(wp), parameter :: FLOOR = 1.0e-9_wp       !< Share of the largest value of a field that is no change of it.
 contains
-   !> A stage begins.
+   !> A stage begins. First step and scales of a stage whose steps are controlled, else nothing: docs/theory/host.md
+   !> section 4.5.
    subroutine begin_control(model, stage, run)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
@@ -90,7 +91,7 @@ contains
       call forget(run%control%memory)
    end subroutine sudden
 
-   !> Whether a stage has come to its end.
+   !> Whether a stage has come to its end. Up to rounding.
    pure logical function is_over(stage, run)
       type(stage_t), intent(in) :: stage
       type(run_t), intent(in) :: run
@@ -101,7 +102,7 @@ contains
       is_over = run%at%t_start + stage%duration - run%state%time <= rounding
    end function is_over
 
-   !> Length of the next attempt [s].
+   !> Length of the next attempt [s]. docs/theory/host.md sections 4.4 and 4.5.
    real(wp) function next_step(model, stage, run) result(dt)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
@@ -136,10 +137,11 @@ contains
       end associate
    end function next_end
 
-   !> Before an attempt: rates of the present state where the step expects them.
+   !> Before an attempt: rates of the present state where the step expects them. docs/theory/host.md section 4.5;
+   !> nothing where steps are given.
    subroutine prepare_rates(stage, dt, run)
       type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: dt
+      real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
 
       if (.not. stage%controlled) return
@@ -148,10 +150,11 @@ contains
    end subroutine prepare_rates
 
    !> After a solution: whether its error lets it stand; the length of the next attempt follows from it.
+   !> docs/theory/host.md section 4.5; where steps are given every one stands.
    subroutine judge_step(model, stage, dt, run, accepted)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: dt
+      real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
       logical, intent(out) :: accepted
       real(wp) :: error(FIELDS, size(run%state%x, 2)), norm(FIELDS), share(FIELDS), ratios(FIELDS)
@@ -299,10 +302,11 @@ contains
       end associate
    end subroutine gather
 
-   !> After an attempt that failed: the share of it that is tried next becomes the step.
+   !> After an attempt that failed: the share of it that is tried next becomes the step. docs/theory/host.md section
+   !> 4.4; nothing where steps are given.
    subroutine shorten_step(stage, dt, run)
       type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: dt
+      real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
 
       if (.not. stage%controlled) return
@@ -317,10 +321,11 @@ contains
    end subroutine shorten_step
 
    !> After an accepted step, before it is taken over: rates for the next estimate, and what ends with the step.
+   !> docs/theory/host.md section 4.5; nothing where steps are given.
    subroutine keep_step(model, stage, dt, run)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: dt
+      real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
       type(scheme_t) :: scheme
 

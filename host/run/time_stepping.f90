@@ -23,7 +23,8 @@ module time_stepping
 
    integer, parameter :: GOOD_STEPS = 2           !< Accepted steps in a row after which a cut step grows back.
 contains
-   !> All stages, from where the run stands.
+   !> All stages, from where the run stands. docs/theory/host.md section 4. Faults: those of begin_stage, try_step,
+   !> watch_effects, check_creation and the observer; the first ends the run, and the observer is still told.
    subroutine run_stages(model, run, fault, observer)
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run

@@ -25,7 +25,7 @@ module effect_switches
       'isotropic', 'lode', 'memory_rule', 'rho_e']
 contains
    !> What the scene leaves to be found out begins as the general case: all fields that the regions have laws for,
-   !> gravity, inertia.
+   !> gravity, inertia. docs/theory/host.md section 11; gravity is 9.81 m/s2.
    pure subroutine settle_open_keys(scene)
       type(scene_t), intent(inout) :: scene
       integer :: i
@@ -43,6 +43,7 @@ contains
 
    !> The effects of a scene, in the order of the list: present or not, said by a key or left open. Inertia has a row a
    !> stage. What has no meaning for the scene has no row. To be called before the open keys are settled.
+   !> docs/theory/host.md section 11.
    function list_effects(scene) result(list)
       type(scene_t), intent(in) :: scene
       type(effect_t), allocatable :: list(:)

@@ -20,7 +20,7 @@ contains
    !> `cells` times as long cells, `steps` times as long steps, as far as at least LEAST_STEPS are left of a stage, or
    !> `steps` times the accuracy of those that are controlled. Long steps must not make a contact gain energy.
    pure subroutine make_cheap(cells, steps, scene)
-      integer, intent(in) :: cells, steps
+      integer, intent(in) :: cells, steps   !< Factors, at least 1.
       type(scene_t), intent(inout) :: scene
       real(wp) :: times
       integer :: i

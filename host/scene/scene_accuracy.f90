@@ -17,10 +17,10 @@ module scene_accuracy
    real(wp), parameter :: STRESS_LEAST = 1.0e-10_wp, STRESS_LARGEST = 1.0e-3_wp   !< Its bounds.
    real(wp), parameter :: TIGHT = 1.0e-3_wp              !< Below it the scheme of order 3 costs less.
 contains
-   !> The accuracy of the command line, as if the scene said it.
+   !> The accuracy of the command line, as if the scene said it. The key is checked with the others.
    pure subroutine ask_accuracy(accuracy, groups)
       character(*), intent(in) :: accuracy   !< Empty: none.
-      type(group_t), intent(inout) :: groups(:)
+      type(group_t), intent(inout) :: groups(:)   !< (groups of the scene)
       integer :: i
 
       if (accuracy == '') return
@@ -28,7 +28,7 @@ contains
       if (i > 0) call set_entry(groups(i), 'accuracy', accuracy)
    end subroutine ask_accuracy
 
-   !> Steps and tolerance of a stage.
+   !> Steps and tolerance of a stage. docs/theory/host.md section 4.5. Fault EXIT_INPUT: steps = "given" without dt.
    subroutine ask_steps(group, accuracy, stage, fault)
       type(group_t), intent(in) :: group
       real(wp), intent(in) :: accuracy   !< Of the scene; 0: not asked for.
@@ -49,9 +49,9 @@ contains
          stage%tolerance = min(stage%tolerance, NEWTON_SHARE*stage%accuracy)
    end subroutine ask_steps
 
-   !> Tolerance and scheme of MUD.
+   !> Tolerance and scheme of MUD. docs/theory/host.md section 4.5; nothing for other laws.
    subroutine ask_stress(accuracy, group)
-      real(wp), intent(in) :: accuracy
+      real(wp), intent(in) :: accuracy   !< Of the scene [-]; 0: nothing.
       type(group_t), intent(inout) :: group
       character(16) :: text
 

@@ -11,7 +11,8 @@ module scene_amplitudes
    private
    public :: read_amplitude
 contains
-   !> Reads an &history; a fault where times and factors do not match or times do not ascend.
+   !> Reads an &history; a fault where times and factors do not match or times do not ascend. Times [s], factors [-].
+   !> Fault EXIT_INPUT, also where its file cannot be read.
    subroutine read_amplitude(group, amplitude, fault)
       type(group_t), intent(in) :: group
       type(scene_amplitude_t), intent(out) :: amplitude

@@ -20,9 +20,9 @@ module scene_fingerprint
       integer(int64) :: parts(2) = 1
    end type hash_t
 contains
-   !> Fingerprint of groups as 16 hexadecimal digits.
+   !> Fingerprint of groups as 16 hexadecimal digits. A file that cannot be read counts by its name alone.
    function fingerprint_of(groups) result(text)
-      type(group_t), intent(in) :: groups(:)
+      type(group_t), intent(in) :: groups(:)   !< (groups of the scene)
       character(FINGERPRINT_LENGTH) :: text
       type(hash_t) :: hash
       integer :: g, i, k
@@ -60,7 +60,7 @@ contains
 
    !> Groups with a fingerprint of the files that they name in place of the names, so that nothing has to be read again.
    function sealed(groups) result(copies)
-      type(group_t), intent(in) :: groups(:)
+      type(group_t), intent(in) :: groups(:)   !< (groups of the scene)
       type(group_t), allocatable :: copies(:)
       type(hash_t) :: hash
       integer :: g, i

@@ -198,9 +198,10 @@ module scene_keys
    character(*), parameter :: LAW_NAME = 'name, for the key material of &region'
    type(key_t), parameter :: KEYS(*) = [key_t :: OWN_KEYS, RETENTION_KEYS]
 contains
-   !> Refuses unknown groups and keys, missing ones, and values of the wrong kind or outside their range.
+   !> Refuses unknown groups and keys, missing ones, and values of the wrong kind or outside their range. Fault
+   !> EXIT_INPUT, at the first. Keys of laws are checked where they are built.
    subroutine check_keys(groups, fault)
-      type(group_t), intent(in) :: groups(:)
+      type(group_t), intent(in) :: groups(:)   !< (groups of the scene)
       type(fault_t), intent(inout) :: fault
       character(12), allocatable :: names(:)
       integer :: g
@@ -249,7 +250,7 @@ contains
       number = findloc(words_of(KEYS(place_of(KEYS, group%name, name))), lower_case(text_of(group, name)), dim=1)
    end function word_number
 
-   !> Value of a number, or its default (0 if it has none).
+   !> Value of a number, or its default (0 if it has none). In the unit of the key.
    real(wp) function number_of(group, name)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: name
@@ -276,7 +277,7 @@ contains
 
    !> Every key with its default and meaning, as a scene to start from.
    subroutine print_template(unit)
-      integer, intent(in) :: unit
+      integer, intent(in) :: unit   !< Number of a Fortran unit.
       type(key_t), allocatable :: all_keys(:)
       character(12), allocatable :: laws(:)
       integer :: g, k

@@ -15,8 +15,8 @@ module scene_past
 contains
    !> Fingerprint of the first stages of a scene, the last of them up to a time.
    function past_fingerprint(groups, amplitudes, stages, time) result(text)
-      type(group_t), intent(in) :: groups(:)       !< Of the scene, sealed.
-      type(scene_amplitude_t), intent(in) :: amplitudes(:)
+      type(group_t), intent(in) :: groups(:)       !< Of the scene, sealed. (groups)
+      type(scene_amplitude_t), intent(in) :: amplitudes(:)   !< All of the scene. (histories)
       integer, intent(in) :: stages                !< That have begun.
       real(wp), intent(in) :: time                 !< [s]
       character(FINGERPRINT_LENGTH) :: text

@@ -20,7 +20,8 @@ module scene_reader
    private
    public :: read_scene
 contains
-   !> Reads and checks a scene; a fault names file, line, value, range and the nearest name.
+   !> Reads and checks a scene; a fault names file, line, value, range and the nearest name. Fault EXIT_INPUT: the file
+   !> cannot be read, or a group, key or value is refused; EXIT_GROUP: a stage that nobody defines.
    subroutine read_scene(file, scene, fault, accuracy)
       character(*), intent(in) :: file
       type(scene_t), intent(out) :: scene

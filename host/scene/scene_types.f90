@@ -214,10 +214,10 @@ contains
       place = at_line(item%file, item%line)
    end function place_of
 
-   !> Factor of an amplitude at a time: straight lines between its pairs, constant outside.
+   !> Factor of an amplitude at a time: straight lines between its pairs, constant outside. [-]
    pure real(wp) function amplitude_at(amplitude, time) result(factor)
       type(scene_amplitude_t), intent(in) :: amplitude
-      real(wp), intent(in) :: time
+      real(wp), intent(in) :: time   !< [s]
       integer :: low, high, i
 
       associate (t => amplitude%times, v => amplitude%values)
@@ -242,7 +242,7 @@ contains
 
    !> Whether something limited to stages takes part in one; an empty list means every stage.
    pure logical function acts_in(stages, name)
-      character(*), intent(in) :: stages(:), name
+      character(*), intent(in) :: stages(:), name   !< Names of stages. (stages named) or (0).
 
       acts_in = size(stages) == 0 .or. any(stages == name)
    end function acts_in

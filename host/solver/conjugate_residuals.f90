@@ -15,14 +15,14 @@ module conjugate_residuals
    real(wp), parameter :: ROUNDING = 1.0e-14_wp   !< Share of the right side that no step gets below.
 contains
    !> x with |W (b - A x)| <= target, W = diag(weight), in at most `most` steps. After INACCURATE x is the best found;
-   !> after FAILED it is of no use.
+   !> after FAILED it is of no use. Eisenstat, Elman, Schultz (1983): docs/theory/host.md section 6.
    subroutine solve_by_factors(sparse, values, b, weight, target, most, x, steps, status)
       type(sparse_t), intent(inout) :: sparse
-      real(wp), intent(in) :: values(:), b(:), weight(:)
+      real(wp), intent(in) :: values(:), b(:), weight(:)   !< (entries) of A; (n); (n), > 0.
       real(wp), intent(in) :: target
       integer, intent(in) :: most
-      real(wp), intent(out) :: x(:)
-      integer, intent(out) :: steps, status
+      real(wp), intent(out) :: x(:)   !< (n)
+      integer, intent(out) :: steps, status   !< Steps taken; SOLVED, INACCURATE or FAILED.
       real(wp) :: z(size(b), most), w(size(b), most), r(size(b)), share, enough, left
       integer :: j
 

@@ -55,7 +55,7 @@ module convergence
       integer :: rate_evaluations = 0                   !< Rate evaluations of the material.
    end type log_t
 contains
-   !> The measure of a stage: what BY_STAGE stands for.
+   !> The measure of a stage: what BY_STAGE stands for. docs/theory/host.md section 5.1.
    pure integer function measure_in(given, kind, touching) result(measure)
       integer, intent(in) :: given      !< BY_...
       integer, intent(in) :: kind       !< STATIC, QUASI_STATIC, DYNAMIC
@@ -65,14 +65,15 @@ contains
       if (given == BY_STAGE) measure = merge(BY_FORCES, BY_CHANGE, kind == DYNAMIC .and. touching)
    end function measure_in
 
-   !> Share of all forces below which no tolerance of a change asks for more.
+   !> Share of all forces below which no tolerance of a change asks for more. [-] docs/theory/host.md section 5.1.
    pure real(wp) function rounding_in(kind) result(share)
       integer, intent(in) :: kind   !< STATIC, QUASI_STATIC, DYNAMIC
 
       share = merge(ROUNDING_OF_INERTIA, ROUNDING_OF_SUMS, kind == DYNAMIC)
    end function rounding_in
 
-   !> What the linear solution may leave of the errors of the fields; 0 where another measure counts: all it can.
+   !> What the linear solution may leave of the errors of the fields; 0 where another measure counts: all it can. [-]
+   !> docs/theory/host.md section 6.
    pure real(wp) function linear_tolerance(control)
       type(control_t), intent(in) :: control
 
@@ -81,7 +82,7 @@ contains
          *merge(CONTROLLED_SHARE, LINEAR_SHARE, control%carries_slopes)
    end function linear_tolerance
 
-   !> Whether the iteration may end.
+   !> Whether the iteration may end. By the measure of the control: docs/theory/host.md section 5.1.
    pure logical function good_enough(control, log)
       type(control_t), intent(in) :: control
       type(log_t), intent(in) :: log
@@ -96,7 +97,8 @@ contains
       end select
    end function good_enough
 
-   !> What a residual of a field is small against; rows of prescribed unknowns do not count.
+   !> What a residual of a field is small against; rows of prescribed unknowns do not count. docs/theory/host.md section
+   !> 5.1. Of displacements [kN], of pressures [m3/s].
    pure function field_scales(dofs, constraint, assembly, largest) result(scales)
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint
@@ -134,7 +136,7 @@ contains
       floor(:DISPLACEMENTS) = sum(floor(:DISPLACEMENTS))
    end subroutine add_scales
 
-   !> A rigid body that moves is measured by the forces on it: in the sum of its field it would be lost.
+   !> A rigid body that moves is measured by the forces on it: in the sum of its field it would be lost. i: an unknown.
    pure logical function is_body(constraint, i)
       type(constraint_t), intent(in) :: constraint
       integer, intent(in) :: i
@@ -142,10 +144,10 @@ contains
       is_body = constraint%mass(i) > 0.0_wp .and. .not. constraint%fixed(i)
    end function is_body
 
-   !> Force [kN] that the residual of rigid body i is small against.
+   !> Force [kN] that the residual of rigid body i is small against. docs/theory/host.md section 5.1.
    pure real(wp) function body_scale(assembly, largest, i)
       type(assembly_t), intent(in) :: assembly
-      real(wp), intent(in) :: largest(FIELDS)
+      real(wp), intent(in) :: largest(FIELDS)   !< As of field_scales.
       integer, intent(in) :: i
 
       body_scale = assembly%scale(i)
@@ -162,12 +164,13 @@ contains
       if (counts .and. dofs%field(i) == AT_P_C) counts = .not. constraint%air(dofs%node(i))
    end function counts
 
-   !> Errors of the fields.
+   !> Errors of the fields. docs/theory/host.md section 5.1. Updates `largest`, and in the log the errors [-], the worst
+   !> field and its worst unknown.
    pure subroutine measure(dofs, constraint, assembly, rhs, rounding, largest, log)
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint
       type(assembly_t), intent(in) :: assembly
-      real(wp), intent(in) :: rhs(:)
+      real(wp), intent(in) :: rhs(:)   !< (unknowns) Residual [kN, m3/s].
       real(wp), intent(in) :: rounding(FIELDS)   !< Scales of which the tolerance asks for no more than rounding.
       real(wp), intent(inout) :: largest(FIELDS)
       type(log_t), intent(inout) :: log

@@ -23,9 +23,11 @@ module dashpots
       real(wp), allocatable :: incoming(:)       !< (unknowns) Force of the incoming wave [kN] at a factor of 1.
    end type dashpots_t
 contains
-   !> Adds forces and outflow at the levels of their rates, and the slopes.
+   !> Adds forces and outflow at the levels of their rates, and the slopes. docs/theory/host.md section 7.4. Nothing in
+   !> steps that are not dynamic. Into residual and scale [kN, m3/s] and the matrix, whose pattern must have their
+   !> places.
    subroutine add_dashpots(list, dofs, pattern, scheme, old, new, slopes, assembly)
-      type(dashpots_t), intent(in) :: list(:)
+      type(dashpots_t), intent(in) :: list(:)   !< (absorbing boundaries)
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(in) :: pattern
       type(scheme_t), intent(in) :: scheme
@@ -56,8 +58,9 @@ contains
    end subroutine add_dashpots
 
    !> What the forces take out of a step, by the mean of the velocities at its ends, at given displacements [kJ].
+   !> docs/theory/host.md section 9. Those that act; their outflow does no work.
    pure real(wp) function work_of_dashpots(list, dofs, old, new, change) result(work)
-      type(dashpots_t), intent(in) :: list(:)
+      type(dashpots_t), intent(in) :: list(:)   !< (absorbing boundaries)
       type(dofs_t), intent(in) :: dofs
       type(state_t), intent(in) :: old, new
       real(wp), intent(in) :: change(:, :)   !< (2, nodes) [m]

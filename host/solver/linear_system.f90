@@ -40,16 +40,17 @@ module linear_system
    end type system_t
 contains
    !> Solution to a tolerance, a small share of Newton's: by the factors of an earlier matrix as long as these serve and
-   !> nothing has been fixed, released or come into contact, otherwise by new ones.
+   !> nothing has been fixed, released or come into contact, otherwise by new ones. docs/theory/host.md section 6.
+   !> status: SOLVED; SINGULAR or FAILED as of factorise; FAILED where numbers are not finite.
    subroutine solve_step(dofs, pattern, constraint, assembly, tolerance, rhs, system, dx, status)
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(in) :: pattern
       type(constraint_t), intent(in) :: constraint
       type(assembly_t), intent(in) :: assembly
-      real(wp), intent(in) :: tolerance
-      real(wp), intent(in) :: rhs(:)
+      real(wp), intent(in) :: tolerance   !< Of the errors of the fields [-]; 0: what rounding leaves.
+      real(wp), intent(in) :: rhs(:)   !< (unknowns) [kN, m3/s]
       type(system_t), intent(inout) :: system
-      real(wp), intent(out) :: dx(:)
+      real(wp), intent(out) :: dx(:)   !< (unknowns) [m, kPa]
       integer, intent(out) :: status
       real(wp) :: weight(dofs%n), scales(FIELDS), t0
       integer :: steps, active, i
@@ -92,9 +93,10 @@ contains
    end subroutine solve_step
 
    !> Magnitude of the right side of every field, rows of prescribed values included; that of the displacements is one.
+   !> docs/theory/host.md section 5.1.
    pure function asked_for(dofs, rhs) result(magnitude)
       type(dofs_t), intent(in) :: dofs
-      real(wp), intent(in) :: rhs(:)
+      real(wp), intent(in) :: rhs(:)   !< (unknowns) [kN, m3/s]
       real(wp) :: magnitude(FIELDS)
       integer :: f
 
@@ -105,11 +107,12 @@ contains
    end function asked_for
 
    !> Contacts at given displacements, and room for them in the matrix; false if their kernels refuse.
+   !> system%contacts%status then says why.
    logical function look_at_contacts(system, dofs, pattern, x, slopes, assembly) result(good)
       type(system_t), intent(inout) :: system
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(inout) :: pattern
-      real(wp), intent(in) :: x(:, :)
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) [m, kPa]
       logical, intent(in) :: slopes
       type(assembly_t), intent(inout) :: assembly
       logical :: changed

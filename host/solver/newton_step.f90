@@ -29,7 +29,10 @@ module newton_step
    real(wp), parameter :: ROUNDING = 1.0e-12_wp       !< Of all contributions: no residual to begin with is smaller.
    real(wp), parameter :: HOPELESS = 1.0e10_wp        !< Error beyond which no further iteration helps.
 contains
-   !> From `old` to `new` over scheme%dt; `new` is of use only after CONVERGED.
+   !> From `old` to `new` over scheme%dt; `new` is of use only after CONVERGED. docs/theory/host.md section 5.
+   !> log%outcome says how it ends: CONVERGED; NOT_CONVERGED after max_iterations or beyond an error of 1e10;
+   !> MATERIAL_FAILED or CONTACT_FAILED where these refuse the iterate (see assembly, contacts); BODY_FREE with a
+   !> singular matrix; SOLVER_FAILED.
    subroutine take_step(domain, dofs, pattern, scheme, constraint, control, old, new, assembly, system, log)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
@@ -192,6 +195,7 @@ contains
    end subroutine add_what_acts
 
    !> Accelerations that the loads and stresses of a state ask for, its displacements, velocities and pressures held.
+   !> docs/theory/host.md section 4.1. Into `a` of both states [m/s2]. Outcomes as of take_step, but for NOT_CONVERGED.
    subroutine start_accelerations(domain, dofs, pattern, constraint, state, work, assembly, system, log)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs

@@ -23,13 +23,14 @@ module prescribed_values
       real(wp), allocatable :: mass(:)        !< Of rigid bodies [Mg].
    end type constraint_t
 contains
-   !> Rows of prescribed unknowns say what is missing of their value; the diagonal keeps its size.
+   !> Rows of prescribed unknowns say what is missing of their value; the diagonal keeps its size. docs/theory/host.md
+   !> section 7.1.
    subroutine constrain(dofs, pattern, constraint, x, values, rhs)
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(in) :: pattern
       type(constraint_t), intent(in) :: constraint
-      real(wp), intent(in) :: x(:, :)
-      real(wp), intent(inout) :: values(:), rhs(:)
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) [m, kPa]
+      real(wp), intent(inout) :: values(:), rhs(:)   !< (entries) of the matrix; (unknowns).
       real(wp) :: size_of
       integer :: i, k
 
@@ -61,11 +62,12 @@ contains
       end subroutine clear
    end subroutine constrain
 
-   !> Where the air pressure is prescribed the first balance is that of the water: so are its loads.
+   !> Where the air pressure is prescribed the first balance is that of the water: so are its loads. docs/theory/host.md
+   !> sections 2.3 and 7.1.
    pure subroutine loads_of_water(dofs, air, load)
       type(dofs_t), intent(in) :: dofs
-      logical, intent(in) :: air(:)
-      real(wp), intent(inout) :: load(:)
+      logical, intent(in) :: air(:)   !< (nodes) Whether the air pressure is prescribed.
+      real(wp), intent(inout) :: load(:)   !< (unknowns) [kN, m3/s]
       integer :: i
 
       do i = 1, size(air)

@@ -76,9 +76,10 @@ module sparse_factors
    end interface
 contains
    !> Ordering, once per pattern and by the pattern alone: a run that is taken up again finds the same one.
+   !> docs/theory/host.md section 6. Earlier factors are freed. status: SOLVED or FAILED.
    subroutine analyse(sparse, row, col, status)
       type(sparse_t), intent(inout) :: sparse
-      integer, intent(in) :: row(:), col(:)   !< From 1.
+      integer, intent(in) :: row(:), col(:)   !< From 1. row: (n + 1), col: (entries), as of pattern_t.
       integer, intent(out) :: status
 
       call release(sparse)
@@ -93,10 +94,12 @@ contains
       sparse%n_symbolic = sparse%n_symbolic + 1
    end subroutine analyse
 
-   !> Numeric factors of the matrix with these values; status SOLVED, SINGULAR or FAILED.
+   !> Numeric factors of the matrix with these values; status SOLVED, SINGULAR or FAILED. SINGULAR: a pivot is 0 or the
+   !> smallest is below 1e-13 of the largest (docs/theory/host.md section 6); FAILED: any other refusal of UMFPACK, as
+   !> by lack of memory. To be called after analyse.
    subroutine factorise(sparse, values, status)
       type(sparse_t), intent(inout) :: sparse
-      real(wp), intent(in) :: values(:)
+      real(wp), intent(in) :: values(:)   !< (entries)
       integer, intent(out) :: status
       integer(c_int) :: code
 
@@ -115,11 +118,11 @@ contains
       sparse%n_numeric = sparse%n_numeric + 1
    end subroutine factorise
 
-   !> By the factors as they are; `values` is not looked at.
+   !> By the factors as they are; `values` is not looked at. status: SOLVED or FAILED. To be called after factorise.
    subroutine backsolve(sparse, values, b, x, status)
       type(sparse_t), intent(inout) :: sparse
-      real(wp), intent(in) :: values(:), b(:)
-      real(wp), intent(out) :: x(:)
+      real(wp), intent(in) :: values(:), b(:)   !< (entries); (n).
+      real(wp), intent(out) :: x(:)   !< (n)
       integer, intent(out) :: status
 
       status = merge(SOLVED, FAILED, umfpack_di_solve(TRANSPOSED, sparse%start, sparse%index, values, x, b, &
@@ -130,8 +133,8 @@ contains
    !> y = A x.
    pure subroutine times(sparse, values, x, y)
       type(sparse_t), intent(in) :: sparse
-      real(wp), intent(in) :: values(:), x(:)
-      real(wp), intent(out) :: y(:)
+      real(wp), intent(in) :: values(:), x(:)   !< (entries) of A; (n).
+      real(wp), intent(out) :: y(:)   !< (n)
       real(wp) :: total
       integer :: i, k
 

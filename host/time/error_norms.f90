@@ -35,32 +35,36 @@ module error_norms
 contains
    !> Memory without rates of earlier steps.
    pure function new_memory(fields, nodes, points) result(memory)
-      integer, intent(in) :: fields, nodes, points
+      integer, intent(in) :: fields, nodes, points   !< Extents of its arrays.
       type(rate_memory_t) :: memory
 
       allocate (memory%rate(fields, nodes), memory%s_rate(points), source=0.0_wp)
       allocate (memory%base_rate(fields, nodes), memory%base_s_rate(points), source=0.0_wp)
    end function new_memory
 
-   !> C of the leading error of a step for accelerations [-].
+   !> C of the leading error of a step for accelerations [-]. 1/12 + 3/8 (l_a - l_f)**2: docs/theory/host.md section
+   !> 4.5; for rho_inf = 1 Zienkiewicz & Xie (1991).
    pure real(wp) function constant_of_accelerations(scheme) result(c)
       type(scheme_t), intent(in) :: scheme
 
       c = 1.0_wp/12 + 0.375_wp*(scheme%l_a - scheme%l_f)**2
    end function constant_of_accelerations
 
-   !> C of the leading error of a step for first-order rates [-].
+   !> C of the leading error of a step for first-order rates [-]. 1/12 + (l_p - l_f)**2: docs/theory/host.md section
+   !> 4.5.
    pure real(wp) function constant_of_rates(scheme) result(c)
       type(scheme_t), intent(in) :: scheme
 
       c = 1.0_wp/12 + (scheme%l_p - scheme%l_f)**2
    end function constant_of_rates
 
-   !> Moves the rates of the present state to where a step of another length expects them.
+   !> Moves the rates of the present state to where a step of another length expects them. docs/theory/host.md section
+   !> 4.5. Rates stay in static steps and where none are known from before; in dynamic steps those of the displacements
+   !> stay.
    pure subroutine shift_rates(scheme, memory, v, s_rate)
       type(scheme_t), intent(in) :: scheme   !< Of the step to come.
       type(rate_memory_t), intent(inout) :: memory
-      real(wp), intent(inout) :: v(:, :), s_rate(:)
+      real(wp), intent(inout) :: v(:, :), s_rate(:)   !< (fields, nodes) rates [m/s, kPa/s]; (points) rate of S_w [1/s].
       real(wp) :: share
       integer :: first
 
@@ -76,13 +80,15 @@ contains
       s_rate = memory%base_s_rate + share*(memory%base_s_rate - memory%s_rate)
    end subroutine shift_rates
 
-   !> Errors of all unknowns in a step from x0 to x1; `known` says of which fields.
+   !> Errors of all unknowns in a step from x0 to x1; `known` says of which fields. docs/theory/host.md section 4.5. x,
+   !> v: (FIELDS, nodes) values and rates [m, kPa, per s]; a: (2, nodes) accelerations [m/s2]; at the start (0) and the
+   !> end (1) of the step.
    pure subroutine local_errors(scheme, memory, x0, v0, a0, x1, v1, a1, error, known)
       type(scheme_t), intent(in) :: scheme
       type(rate_memory_t), intent(in) :: memory
       real(wp), intent(in) :: x0(:, :), v0(:, :), a0(:, :), x1(:, :), v1(:, :), a1(:, :)
-      real(wp), intent(out) :: error(:, :)
-      logical, intent(out) :: known(:)
+      real(wp), intent(out) :: error(:, :)   !< (FIELDS, nodes) [m, kPa]; 0 where not known.
+      logical, intent(out) :: known(:)   !< (FIELDS)
       real(wp) :: off
       integer :: first
 
@@ -107,7 +113,9 @@ contains
       end associate
    end subroutine local_errors
 
-   !> Keeps the rates of the start of an accepted step.
+   !> Keeps the rates of the start of an accepted step. x: (fields, nodes) values at both ends of the step [m, kPa]; v0:
+   !> their rates at its start [1/s of it]; s_rate: (points) rate of S_w there [1/s]. In static steps the rates are
+   !> those of the straight step.
    pure subroutine remember(scheme, memory, x0, x1, v0, s_rate)
       type(scheme_t), intent(in) :: scheme
       type(rate_memory_t), intent(inout) :: memory
@@ -128,7 +136,7 @@ contains
       memory%known = .false.
    end subroutine forget
 
-   !> Root mean square over the nodes.
+   !> Root mean square over the nodes. values: (components, nodes); the squares of all components are added up.
    pure real(wp) function rms(values)
       real(wp), intent(in) :: values(:, :)
 

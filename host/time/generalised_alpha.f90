@@ -26,7 +26,8 @@ module generalised_alpha
       real(wp) :: c_v = 0.0_wp, c_a = 0.0_wp, c_p = 0.0_wp   !< Slopes of those at their level against the new values.
    end type scheme_t
 contains
-   !> Coefficients of a step of kind STATIC, QUASI_STATIC or DYNAMIC.
+   !> Coefficients of a step of kind STATIC, QUASI_STATIC or DYNAMIC. Chung & Hulbert (1993), Jansen et al. (2000):
+   !> docs/theory/host.md section 4.1, gamma_1 section 4.2.
    pure function make_scheme(kind, rho_inf, dt) result(scheme)
       integer, intent(in) :: kind
       real(wp), intent(in) :: rho_inf   !< 0 to 1
@@ -53,12 +54,14 @@ contains
       scheme%c_a = scheme%l_a/(scheme%beta*dt**2)
    end function make_scheme
 
-   !> First guess of the new values: constant acceleration, constant pressure rates; or, with `still`, no change.
+   !> First guess of the new values: constant acceleration, constant pressure rates; or, with `no_predictor`, no change.
+   !> docs/theory/host.md section 4.1.
    pure subroutine predict(scheme, no_predictor, x0, v0, a0, x1)
       type(scheme_t), intent(in) :: scheme
       logical, intent(in) :: no_predictor
-      real(wp), intent(in) :: x0(:, :), v0(:, :), a0(:, :)
-      real(wp), intent(out) :: x1(:, :)
+      real(wp), intent(in) :: x0(:, :), v0(:, :), a0(:, :)   !< (FIELDS, nodes) [m, kPa], rates [1/s of it], (2, nodes)
+                                                             !< [m/s2].
+      real(wp), intent(out) :: x1(:, :)   !< As x0.
 
       x1 = x0
       if (no_predictor .or. scheme%kind == STATIC) return
@@ -66,7 +69,8 @@ contains
       if (scheme%kind == DYNAMIC) x1(1:2, :) = x1(1:2, :) + 0.5_wp*scheme%dt**2*a0
    end subroutine predict
 
-   !> New rates and accelerations that belong to new values.
+   !> New rates and accelerations that belong to new values. docs/theory/host.md sections 4.1 and 4.2; 0 in static
+   !> steps. x, v: (FIELDS, nodes) [m, kPa] and [m/s, kPa/s]; a: (2, nodes) [m/s2], 0 in quasi-static steps.
    pure subroutine advance_rates(scheme, x0, v0, a0, x1, v1, a1)
       type(scheme_t), intent(in) :: scheme
       real(wp), intent(in) :: x0(:, :), v0(:, :), a0(:, :), x1(:, :)
@@ -83,7 +87,8 @@ contains
       end associate
    end subroutine advance_rates
 
-   !> First-order rate at the end of the step.
+   !> First-order rate at the end of the step. docs/theory/host.md section 4.2; 0 in static steps. x: values at the ends
+   !> of the step, v0: rate at its start [unit of x per s].
    elemental real(wp) function rate_of(scheme, x0, v0, x1)
       type(scheme_t), intent(in) :: scheme
       real(wp), intent(in) :: x0, v0, x1
@@ -94,7 +99,9 @@ contains
    end function rate_of
 
    !> Estimate of a dynamic step's own error as a share of its change (Zienkiewicz & Xie 1991): what linear
-   !> accelerations would have given besides. A hook for a step control; it is written to the ledger.
+   !> accelerations would have given besides. A hook for a step control; it is written to the ledger. x: (2 or more,
+   !> nodes), displacements first [m]; a: (2, nodes) [m/s2]. The norm of all nodes [-]; 0 where the step is not dynamic
+   !> or nothing moves.
    pure real(wp) function step_error(scheme, x0, a0, x1, a1)
       type(scheme_t), intent(in) :: scheme
       real(wp), intent(in) :: x0(:, :), a0(:, :), x1(:, :), a1(:, :)

@@ -8,10 +8,10 @@ module history_distance
 
 contains
    !> The second less the first, where they are farthest apart at the times of the first: straight lines between the
-   !> times of the second, constant outside them. 0 where the second has fewer than two.
+   !> times of the second, constant outside them. 0 where the second has fewer than two. In the unit of the values.
    pure real(wp) function farthest(time, values, other_time, other_values) result(apart)
-      real(wp), intent(in) :: time(:), values(:)               !< Ascending [s]
-      real(wp), intent(in) :: other_time(:), other_values(:)
+      real(wp), intent(in) :: time(:), values(:)               !< Ascending [s] (times)
+      real(wp), intent(in) :: other_time(:), other_values(:)   !< As many each; times ascending [s].
       real(wp) :: share, here
       integer :: i, k
 

@@ -35,12 +35,13 @@ contains
    end function new_controller
 
    !> Whether a step stands, and the length of the next attempt. A ratio below zero says that nothing is known of the
-   !> error: the step stands and the next is no longer.
+   !> error: the step stands and the next is no longer. Gustafsson (1991), Soderlind (2003): docs/theory/host.md section
+   !> 4.5.
    pure subroutine judge(controller, dt, ratio, accepted)
       type(controller_t), intent(inout) :: controller
       real(wp), intent(in) :: dt      !< That was tried; shorter than asked where it had to end at a given time [s].
       real(wp), intent(in) :: ratio   !< Its error over what is allowed [-].
-      logical, intent(out) :: accepted
+      logical, intent(out) :: accepted   !< Also after MOST_REJECTIONS in a row.
       real(wp) :: factor, r
 
       ! Where something begins out of rest nothing is there yet to compare its error with.
