@@ -34,7 +34,8 @@ def mud():
 
 
 def props(**changes):
-    """PROPS in their order: the defaults of the library of the day, but for the changes."""
+    """PROPS in their order up to the last that every interface takes (without hysteresis): the defaults of the library of
+    the day, but for the changes."""
     library = mud()
     values = (ctypes.c_double*library.mud_count(MUD_PROPS))()
     if library.mud_default_props(values, len(values)) != 0:
@@ -44,7 +45,7 @@ def props(**changes):
         if index < 0:
             sys.exit(f"PROPS have no entry {name}")
         values[index] = value
-    return list(values)
+    return values[:library.mud_index(MUD_PROPS, b"hysteresis")]
 
 
 def statev(**presets):

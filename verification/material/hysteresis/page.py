@@ -16,7 +16,7 @@ PAGE = Page(
     input="the suctions of the laboratory at constant volume; ten cycles between two suctions; `scene.nml`, suction "
           "cycles of a block of sand",
     reference="the scanning rule integrated apart from the library (Runge-Kutta, docs/theory/material.md section "
-              "2.1.1); [laboratory](../../../calibration/data/README.md): Lins, Zou & Schanz (2007)",
+              "2.1.1); the laboratory: Lins, Zou & Schanz (2007), `calibration/data`",
     seconds=6, quick=6, pictures=("hysteresis.png",))
 
 DATA = ROOT / "calibration/data/hostun_sand_retention_loops.csv"
