@@ -13,7 +13,7 @@ module step_landings
    use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: next_time, is_break, begins_suddenly, straight_until, LAST_STEP, SHORTEST, CHORD_SHARE
+   public :: next_time, is_break, begins_suddenly, changes_within, straight_until, LAST_STEP, SHORTEST, CHORD_SHARE
 
    real(wp), parameter :: LAST_STEP = 1.0e-6_wp   !< A rest of a span below this share of a step is rounding.
    real(wp), parameter :: SHORTEST = 1.0e-8_wp    !< Smallest step as a share of the stage.
@@ -105,6 +105,24 @@ contains
             .or. abs(model%fixes(i)%from - time) < LAST_STEP*dt .or. abs(model%fixes(i)%until - time) < LAST_STEP*dt
       end do
    end function is_break
+
+   !> Whether a load history changes or a support comes or goes between two times [s]. docs/theory/host.md section 4.5.
+   pure logical function changes_within(model, from, until) result(changes)
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: from, until
+      real(wp) :: first
+      integer :: i
+
+      changes = any(model%fixes%from > from .and. model%fixes%from < until) .or. &
+                any(model%fixes%until > from .and. model%fixes%until < until)
+      do i = 1, size(model%amplitudes)
+         associate (h => model%amplitudes(i))
+            first = amplitude_at(h, from)
+            changes = changes .or. abs(amplitude_at(h, until) - first) > 0.0_wp .or. &
+                      any(h%times > from .and. h%times < until .and. abs(h%values - first) > 0.0_wp)
+         end associate
+      end do
+   end function changes_within
 
    !> Whether a flow may begin at once where a stage does: loads or prescribed values jump, or it is the first one and
    !> has weight or pressures that differ from node to node. docs/theory/host.md section 4.5.

@@ -9,9 +9,9 @@ module step_size
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, QUASI_STATIC, DYNAMIC
    use model_types, only: model_t, stage_t
    use run_state, only: run_t
-   use step_landings, only: next_time, is_break, begins_suddenly, LAST_STEP, SHORTEST
+   use step_landings, only: next_time, is_break, begins_suddenly, changes_within, LAST_STEP, SHORTEST
    use step_control, only: new_controller, judge, LARGEST_FACTOR
-   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_Z, AT_P_W, AT_P_C
+   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private
    public :: begin_control, next_step, prepare_rates, judge_step, shorten_step, keep_step, is_over, LAST_STEP
@@ -19,6 +19,7 @@ module step_size
    integer, parameter :: SETTLED = 3              !< Steps after a sudden change until rates tell of the error again.
    real(wp), parameter :: START_UP_STEPS = 10.0_wp !< First steps in which changes are expected to grow yet.
    real(wp), parameter :: FIRST_SHARE = 0.04_wp   !< Of the span to the first break, times the root of the accuracy.
+   real(wp), parameter :: FIRST_STATIC = 0.05_wp  !< Largest share of that span that a first static step takes.
    real(wp), parameter :: EVENT = 0.01_wp         !< Least share of what is left that a step may take: an impact or a
                                                   !< change of contact is not resolved for its own sake.
    real(wp), parameter :: GROWTH = 0.5_wp         !< Of the accuracy: of what it adds to the scale a step may err by.
@@ -70,7 +71,10 @@ contains
       span = next_time(model, stage, run, stage%duration) - run%state%time
       select case (stage%kind)
       case (STATIC)
+         ! The answer of a material with a memory depends on the way there; nothing tells of the error of a single step.
          dt = span
+         if (depends_on_path(model) .and. changes_within(model, run%state%time, run%state%time + stage%duration)) &
+            dt = span*min(FIRST_STATIC, max(stage%accuracy, SHORTEST))
       case (QUASI_STATIC)
          ! What a load leaves at once flows off with the root of time. Where nothing is sudden a step that short would
          ! drown what it changes in rounding.
@@ -81,6 +85,17 @@ contains
       end select
       dt = min(dt, stage%dt_max)
    end function first_step
+
+   !> Whether a material of the model has a memory: its stress is no function of its strain.
+   pure logical function depends_on_path(model)
+      type(model_t), intent(in) :: model
+      integer :: i
+
+      depends_on_path = .false.
+      do i = 1, size(model%domain%regions)
+         depends_on_path = depends_on_path .or. .not. model%domain%regions(i)%law%has_energy
+      end do
+   end function depends_on_path
 
    subroutine sudden(time, run)
       real(wp), intent(in) :: time
@@ -194,6 +209,8 @@ contains
             return
          end if
          if (.not. any(known)) c%controller%dt = asked
+         if (.not. (known(AT_U_R) .or. stage%kind == QUASI_STATIC .and. c%fresh == 1) .and. depends_on_path(model)) &
+            c%unseen = c%unseen + field_norms(run%next%x(:, :bodies) - run%state%x(:, :bodies))
          call gather(model, stage, error, norm, elapsed - dt, elapsed, run)
          call note_limit()
       end associate
@@ -316,7 +333,8 @@ contains
          run%state%v = run%control%memory%base_rate
          run%state%s_rate = run%control%memory%base_s_rate
       end if
-      call forget(run%control%memory)
+      ! The rate of a static step before holds still; a flow may have failed where something begins.
+      if (stage%kind /= STATIC) call forget(run%control%memory)
       run%at%factor = 1.0_wp
    end subroutine shorten_step
 
@@ -334,7 +352,8 @@ contains
       associate (c => run%control)
          call remember(scheme, c%memory, run%state%x, run%next%x, run%state%v, run%state%s_rate)
          c%fresh = c%fresh + 1
-         if (c%fresh < SETTLED .and. .not. stage%kind == STATIC) c%memory%known = .false.
+         ! A first static step may have taken at once what acts from the start: its rate is none.
+         if (c%fresh < merge(2, SETTLED, stage%kind == STATIC)) c%memory%known = .false.
          run%at%cuts = max(0, run%at%cuts - 1)
          run%at%nominal = c%controller%dt
          if (stage%kind /= DYNAMIC .and. is_break(model, stage, run%next%time, dt)) then

@@ -16,10 +16,10 @@ module error_norms
    implicit none (type, external)
    private
    public :: rate_memory_t, new_memory, shift_rates, local_errors, remember, forget, constant_of_accelerations, &
-             constant_of_rates, rms
+             constant_of_rates, rms, PATH
 
-   !> Share of the curvature of a path that a straight step leaves out (deviation in the middle of the step).
    real(wp), parameter :: LONGEST = 2.0_wp   !< Times the last step: no rate is carried over a longer one.
+   !> Share of the curvature of a path that a straight step leaves out (deviation in the middle of the step).
    real(wp), parameter :: PATH = 0.125_wp
 
    !> Rates one step back.

@@ -109,6 +109,39 @@ for word, said in (("0", "accuracy"), ("fine", "not a number"), ("2", "outside")
     done = run(TERZAGHI, work / "none", "--accuracy", word)
     check(f"--accuracy {word}: refused", done.returncode == 2 and said in done.stderr, done.stderr)
 
+# A static stage of a material with a memory takes steps even where all that moves at a named point is prescribed, and
+# tells what nothing estimates; a prescribed value is no answer.
+FOOTING = '''&scene name = 'push' fields = 'u' /
+&mesh r = 0, 0.5, 2 r_cells = 2, 3 z = -2, 0 z_cells = 3 /
+&mud name = 'sand' e_0 = 0.735 /
+&region material = 'sand' /
+&initial stress = 'uniform' sigma = -20, -20, -20 /
+&history name = 'ramp' times = 0, 1 values = 0, 1 /
+&stage name = 'push' analysis = 'static' duration = 1 /
+&fix group = 'left' field = 'u_r' / &fix group = 'right' field = 'u_r' / &fix group = 'bottom' field = 'u_z' /
+&fix group = 'top_1' field = 'u_z' value = -0.005 HISTORY /
+&load group = 'top_2' kind = 'pressure' value = 20 /
+&point name = 'plate' r = 0 z = 0 /
+'''
+RAMP = FOOTING.replace("HISTORY", "history = 'ramp'")
+forces = {}
+for name, words in (("1e-1", ("--accuracy", "1e-1")), ("1e-2", ("--accuracy", "1e-2")), ("fine", ())):
+    text = RAMP if words else RAMP.replace("duration = 1 ", "duration = 1 dt = 0.005 tolerance = 1e-6 ")
+    done = run(written(f"push{name}", text), work / f"push{name}", *words)
+    check(f"prescribed displacement, {name}: runs", done.returncode == 0, done.stderr)
+    forces[name] = tables.columns(work / f"push{name}/reactions_push.csv")["top_1.force_z"]
+    if words:
+        check(f"prescribed displacement, {name}: is no answer", not estimated(work / f"push{name}")
+              and "all nodes, displacements" in done.stdout and "Not estimated" not in done.stdout, done.stdout)
+for name in ("1e-1", "1e-2"):
+    miss = abs(forces[name][-1]/forces["fine"][-1] - 1)
+    check(f"prescribed displacement, {name}: force", miss < 0.5*float(name), (miss, len(forces[name])))
+check("static steps: more for more accuracy", 4 < len(forces["1e-1"]) < len(forces["1e-2"]) < 40,
+      {name: len(force) for name, force in forces.items()})
+done = run(written("at_once", FOOTING.replace("HISTORY", "")), work / "at_once")
+check("what acts at once is told of", done.returncode == 0 and "Not estimated: 100 %" in done.stdout,
+      done.stdout + done.stderr)
+
 # Steps end where a load history breaks, where a support comes or goes, and at the times of output; and a run that is
 # taken up from a checkpoint takes the same steps, byte for byte.
 text = RESTART.read_text().replace("   fields = 7\n", "   output_dt = 0.125\n").replace("   dt_growth = 1.3\n", "") \
