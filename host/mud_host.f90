@@ -3,7 +3,7 @@
 program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit, int64
    use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
-   use answer_verification, only: history_t, read_history, differences
+   use answer_verification, only: history_t, read_history, differences, force_error_t, compare_forces
    use answer_errors, only: write_answers, print_answers
    use blas_in_use, only: blas_t, find_blas
    use checkpoints, only: read_checkpoint
@@ -52,6 +52,7 @@ program mud_host
    type(fault_t) :: fault
    type(pilots_account_t) :: pilots
    type(effect_t), allocatable :: effects(:)
+   type(force_error_t), allocatable :: forces(:)
    logical :: quiet, only_check, only_effects
    real(wp), parameter :: QUARTER_SHARE = 0.25_wp
    double precision :: t0
@@ -83,6 +84,7 @@ program mud_host
    if (only_effects) call leave()
    if (fault%code == 0) call build_model(scene, model, fault)
    if (fault%code == 0) call prepare_run(model, run, fault)
+   if (fault%code == 0 .and. option_given(options, '--verify')) call check_verifiable()
    if (fault%code == 0 .and. .not. quiet) call announce()
    if (fault%code == 0 .and. only_check .and. restart /= '') then
       call check_restart()
@@ -93,10 +95,11 @@ program mud_host
       if (output%resume) call read_checkpoint(restart, model, run, output%tables, fault)
       if (fault%code == 0) call run_stages(model, run, fault, output)
       if (fault%code == 0 .and. allocated(run%control%x_first)) then
+         allocate (forces(0))
          if (option_given(options, '--verify')) call verify()
-         if (fault%code == 0) call write_answers(folder, model, run%control, fault)
+         if (fault%code == 0) call write_answers(folder, model, run%control, forces, fault)
          if (fault%code == 0 .and. .not. quiet) call print_answers(output_unit, model, run%control, &
-                                                                   option_given(options, '--verify'))
+                                                                   option_given(options, '--verify'), forces)
       end if
    end if
    if (.not. (quiet .or. only_check) .and. run%steps > 0) call account()
@@ -139,7 +142,7 @@ contains
          '  --accuracy A          relative error wanted in the histories of the points; in place of the key', &
          '                        accuracy of &scene', &
          '  --verify              repeats the run at a quarter of the accuracy and reports the difference as the', &
-         '                        error; needs points and controlled steps; not with --restart', &
+         '                        error of points and forces; needs controlled steps; not with --restart', &
          '  --effects             runs coarse pilots of the scene, with every effect and without each; prints', &
          '                        what each changes in the results, writes effects.csv, and ends', &
          '  --ablate              the same with the full scene instead of pilots, and also with each effect', &
@@ -185,6 +188,12 @@ contains
       end do
    end subroutine announce
 
+   !> What --verify compares must be there before two runs are spent on it.
+   subroutine check_verifiable()
+      if (.not. any(model%stages%controlled)) call raise(fault, EXIT_INPUT, '--verify repeats a run with shorter '// &
+         'steps, but every stage gives its steps: leave dt out, or give accuracy, or compare with a smaller dt.')
+   end subroutine check_verifiable
+
    !> The run again at a quarter of the accuracy, in a folder of its own: the difference takes the estimate's place.
    subroutine verify()
       type(scene_t) :: fine_scene
@@ -207,6 +216,7 @@ contains
       if (fault%code == 0) call read_history(folder, size(model%points), COLUMNS_OF_A_POINT, one, fault)
       if (fault%code == 0) call read_history(folder//'/verify', size(model%points), COLUMNS_OF_A_POINT, two, fault)
       if (fault%code == 0) run%control%point_largest = differences(one, two)
+      if (fault%code == 0) call compare_forces(folder, folder//'/verify', model%stages, forces, fault)
    end subroutine verify
 
    !> The libraries that a factorisation spends its time in.

@@ -3,6 +3,7 @@
 !> docs/theory/host.md section 4.5.
 module answer_errors
    use kinds, only: wp
+   use answer_verification, only: force_error_t
    use control_state, only: control_state_t, LIMIT_NAMES
    use csv, only: csv_t, new_csv, write_row, close_csv
    use faults, only: fault_t
@@ -61,10 +62,11 @@ contains
 
    !> answers.csv: largest change [m, kPa] and estimated error [-] of every answer: docs/theory/host.md section 4.5.
    !> Fault EXIT_OUTPUT: it cannot be written.
-   subroutine write_answers(folder, model, control, fault)
+   subroutine write_answers(folder, model, control, forces, fault)
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model
       type(control_state_t), intent(in) :: control
+      type(force_error_t), intent(in) :: forces(:)   !< As compare_forces gives them; none without a second run.
       type(fault_t), intent(inout) :: fault
       type(csv_t) :: table
       real(wp) :: change, error
@@ -80,15 +82,21 @@ contains
             call write_row(table, fault)
          end do
       end do
+      do i = 1, size(forces)
+         if (fault%code /= 0) exit
+         write (table%row, '(a,2(",",es14.6e3))') trim(forces(i)%name), forces(i)%change, forces(i)%error
+         call write_row(table, fault)
+      end do
       call close_csv(table, fault)
    end subroutine write_answers
 
    !> The same in words, and what limited the steps.
-   subroutine print_answers(unit, model, control, verified)
+   subroutine print_answers(unit, model, control, verified, forces)
       integer, intent(in) :: unit   !< Number of a Fortran unit.
       type(model_t), intent(in) :: model
       type(control_state_t), intent(in) :: control
       logical, intent(in) :: verified   !< The errors are differences to a run at a quarter of the accuracy.
+      type(force_error_t), intent(in) :: forces(:)   !< As compare_forces gives them.
       real(wp) :: change, error, share
       integer :: i, f
 
@@ -102,7 +110,12 @@ contains
                ', '//short(100*error)//' %'
          end do
       end do
+      do i = 1, size(forces)
+         write (unit, '(a)') '   '//trim(forces(i)%name)//': '//short(forces(i)%change)//' kN, '// &
+            short(100*forces(i)%error)//' %'
+      end do
       do f = DISPLACEMENTS, FIELDS
+         if (verified) exit
          if (control%largest(f) > 0.0_wp .and. control%scale(f) > 0.0_wp) write (unit, '(a)') '   all nodes, '// &
             trim(OF_ALL(f))//', root mean square: '//short(control%scale(f))// &
             trim(merge(' m  ', ' kPa', f <= DISPLACEMENTS))//', '//short(100*control%largest(f)/control%scale(f))//' %'

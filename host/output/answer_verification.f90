@@ -1,20 +1,32 @@
 ! SPDX-License-Identifier: MIT
-!> Two runs of a scene compared: how far the histories of the named points lie apart. docs/theory/host.md section 4.5.
+!> Two runs of a scene compared: how far the histories of the named points, and the forces of the supports, lie apart.
+!> docs/theory/host.md section 4.5.
 module answer_verification
    use kinds, only: wp
    use faults, only: fault_t, raise, EXIT_OUTPUT
+   use files, only: read_whole
    use history_distance, only: farthest
+   use model_types, only: stage_t
+   use output_tables, only: reactions_of
    use unknown_fields, only: FIELDS
    implicit none (type, external)
    private
-   public :: history_t, read_history, differences
+   public :: history_t, read_history, differences, force_error_t, compare_forces
 
-   integer, parameter :: NUMBER_LENGTH = 26        !< Characters that a number and its comma take at most.
+   integer, parameter :: NAME_LENGTH = 160         !< Characters of the name of a column.
+   integer, parameter :: TIME_OF_FORCES = 2        !< Column of a table of reactions.
+   real(wp), parameter :: NO_FORCE = 1.0e-3_wp     !< Share of the stage's largest change of a force that is none.
 
    type :: history_t
       real(wp), allocatable :: time(:)             !< [s]
       real(wp), allocatable :: x(:, :, :)          !< (FIELDS, points, rows)
    end type history_t
+
+   !> A force of a support in two runs.
+   type :: force_error_t
+      character(NAME_LENGTH) :: name = ''          !< "stage: group.force_z".
+      real(wp) :: change = 0.0_wp, error = 0.0_wp  !< Largest change [kN]; largest distance as a share of it [-].
+   end type force_error_t
 contains
    !> The histories that a run has written. Fault EXIT_OUTPUT: histories.csv of the folder cannot be read.
    subroutine read_history(folder, points, columns, history, fault)
@@ -22,35 +34,83 @@ contains
       integer, intent(in) :: points, columns   !< Number of points, and of the columns of one.
       type(history_t), intent(out) :: history
       type(fault_t), intent(inout) :: fault
-      character(NUMBER_LENGTH*(1 + columns*points)) :: line
-      real(wp) :: numbers(1 + columns*points)
-      integer :: unit, status, rows, pass, i
+      character(NAME_LENGTH), allocatable :: names(:)
+      real(wp), allocatable :: numbers(:, :)
+      integer :: i
 
-      open (newunit=unit, file=folder//'/histories.csv', status='old', action='read', iostat=status)
-      do pass = 1, 2
-         if (status /= 0) exit
-         rewind (unit)
-         read (unit, '(a)', iostat=status)
-         rows = 0
-         do while (status == 0)
-            read (unit, '(a)', iostat=status) line
-            if (status /= 0) exit
-            rows = rows + 1
-            if (pass == 1) cycle
-            read (line, *, iostat=status) numbers
-            if (status /= 0) exit
-            history%time(rows) = numbers(1)
-            do i = 1, points
-               history%x(:, i, rows) = numbers(2 + (i - 1)*columns:1 + (i - 1)*columns + FIELDS)
-            end do
-         end do
-         ! The end of the file is what a pass comes to.
-         if (status < 0) status = 0
-         if (pass == 1 .and. status == 0) allocate (history%time(rows), history%x(FIELDS, points, rows))
+      call read_numbers(folder//'/histories.csv', names, numbers, fault)
+      if (fault%code /= 0) return
+      history%time = numbers(1, :)
+      allocate (history%x(FIELDS, points, size(numbers, 2)))
+      do i = 1, points
+         history%x(:, i, :) = numbers(2 + (i - 1)*columns:1 + (i - 1)*columns + FIELDS, :)
       end do
-      if (status /= 0 .or. .not. allocated(history%time)) call raise(fault, EXIT_OUTPUT, folder//'/histories.csv '// &
-         'cannot be read back for the comparison of the two runs.')
    end subroutine read_history
+
+   !> Names and numbers of a table that a run has written. Fault EXIT_OUTPUT: it cannot be read.
+   subroutine read_numbers(path, names, numbers, fault)
+      character(*), intent(in) :: path
+      character(NAME_LENGTH), allocatable, intent(out) :: names(:)   !< (columns)
+      real(wp), allocatable, intent(out) :: numbers(:, :)            !< (columns, rows)
+      type(fault_t), intent(inout) :: fault
+      character(:), allocatable :: text
+      logical :: good
+      integer :: first, last, row, status, i
+
+      call read_whole(path, text, good)
+      if (good) good = index(text, new_line('a')) > 0
+      if (good) then
+         last = index(text, new_line('a'))
+         allocate (names(1 + count([(text(i:i) == ',', i=1, last)])))
+         read (text(:last - 1), *, iostat=status) names
+         allocate (numbers(size(names), count([(text(i:i) == new_line('a'), i=last + 1, len(text))])))
+         do row = 1, size(numbers, 2)
+            if (status /= 0) exit
+            first = last + 1
+            last = last + index(text(first:), new_line('a'))
+            read (text(first:last - 1), *, iostat=status) numbers(:, row)
+         end do
+         good = status == 0
+      end if
+      if (.not. good) call raise(fault, EXIT_OUTPUT, path//' cannot be read back for the comparison of the two runs.')
+   end subroutine read_numbers
+
+   !> Forces of the supports of every stage with controlled steps, from two runs of a scene: largest change, and
+   !> largest distance as a share of it, at the times that the forces hold for. docs/theory/host.md section 4.5.
+   !> Fault EXIT_OUTPUT: reactions_STAGE.csv cannot be read.
+   subroutine compare_forces(folder, other_folder, stages, forces, fault)
+      character(*), intent(in) :: folder, other_folder
+      type(stage_t), intent(in) :: stages(:)
+      type(force_error_t), allocatable, intent(out) :: forces(:)
+      type(fault_t), intent(inout) :: fault
+      character(NAME_LENGTH), allocatable :: names(:)
+      real(wp), allocatable :: one(:, :), two(:, :), change(:)
+      logical :: there
+      integer :: i, k
+
+      allocate (forces(0))
+      do i = 1, size(stages)
+         inquire (file=reactions_of(folder, stages(i)%name), exist=there)
+         if (.not. (there .and. stages(i)%controlled)) cycle
+         call read_numbers(reactions_of(folder, stages(i)%name), names, one, fault)
+         if (fault%code == 0) call read_numbers(reactions_of(other_folder, stages(i)%name), names, two, fault)
+         if (fault%code /= 0) return
+         change = maxval(one, dim=2) - minval(one, dim=2)
+         where (.not. is_force(names)) change = 0.0_wp
+         do k = 1, size(names)
+            if (.not. change(k) > NO_FORCE*maxval(change)) cycle
+            forces = [forces, force_error_t(trim(stages(i)%name)//': '//names(k), change(k), &
+               abs(farthest(one(TIME_OF_FORCES, :), one(k, :), two(TIME_OF_FORCES, :), two(k, :)))/change(k))]
+         end do
+      end do
+   end subroutine compare_forces
+
+   !> Whether a column is a force of a support.
+   elemental logical function is_force(name)
+      character(*), intent(in) :: name
+
+      is_force = index(name, '.force_') > 0
+   end function is_force
 
    !> Largest distance of two histories at the times of the first, straight lines between the rows of the second. [m,
    !> kPa] docs/theory/host.md section 4.5.

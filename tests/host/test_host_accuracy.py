@@ -138,6 +138,12 @@ for name in ("1e-1", "1e-2"):
     check(f"prescribed displacement, {name}: force", miss < 0.5*float(name), (miss, len(forces[name])))
 check("static steps: more for more accuracy", 4 < len(forces["1e-1"]) < len(forces["1e-2"]) < 40,
       {name: len(force) for name, force in forces.items()})
+done = run(written("push1e-2", RAMP), work / "pushed", "--accuracy", "1e-2", "--verify")
+true = abs(forces["1e-2"][-1]/forces["fine"][-1] - 1)
+check("--verify: forces of supports are compared", done.returncode == 0 and "push: top_1.force_z: " in done.stdout
+      and BAND[0] < true/estimated(work / "pushed").get("push: top_1.force_z", 1) < 2, (true, done.stderr))
+done = run(written("pushfine", RAMP.replace("duration = 1 ", "duration = 1 dt = 0.005 ")), work / "none", "--verify")
+check("--verify of given steps", done.returncode == 2 and "every stage gives its steps" in done.stderr, done.stderr)
 done = run(written("at_once", FOOTING.replace("HISTORY", "")), work / "at_once")
 check("what acts at once is told of", done.returncode == 0 and "Not estimated: 100 %" in done.stdout,
       done.stdout + done.stderr)
