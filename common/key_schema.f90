@@ -26,7 +26,7 @@ module key_schema
       character(14) :: preset            !< Its default, or REQUIRED or NONE.
       real(wp) :: lower, upper           !< Range of a number.
       character(120) :: meaning
-      character(184) :: words = ''       !< Kinds w, W: the words, divided by |.
+      character(208) :: words = ''       !< Kinds w, W: the words, divided by |.
       character(8) :: unit = ''          !< Shown behind the range, where the meaning does not say it.
       integer :: values = 0              !< How many values a list has, 0: any number.
    end type key_t

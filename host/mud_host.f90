@@ -12,7 +12,7 @@ program mud_host
    use generalised_alpha, only: STATIC, DYNAMIC
    use effect_pilots, only: ask_effects, settle_scene, apply_effects, pilots_account_t
    use effect_types, only: effect_t
-   use effects_table, only: print_effects, print_pilots, write_effects
+   use effects_table, only: print_effects, print_pilots, write_effects, write_influences
    use model_builder, only: build_model
    use model_types, only: model_t
    use linear_system, only: T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST
@@ -126,6 +126,7 @@ contains
          if (.not. quiet .or. only_effects) call print_effects(output_unit, effects, scene%derive_effects)
          if (only_effects) call make_folder(folder)
          if (only_effects) call write_effects(folder, effects, fault)
+         if (only_effects) call write_influences(folder, effects, pilots, fault)
       end if
       call settle_scene(scene, fault)
       if (only_effects .or. .not. allocated(effects) .or. fault%code /= 0) return

@@ -12,6 +12,7 @@ module contact_penalty
    implicit none (type, external)
    private
    public :: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate
+   public :: find_whole, share_penalty, add_column, make_room
 
    integer, parameter :: FIRST_ROOM = 1024   !< Triplets to begin with.
    real(wp), parameter :: POINTWISE_SHARE = 0.5_wp   !< Of the penalty, where both gaps are penalised [-].
@@ -115,10 +116,11 @@ contains
       result%active = result%pressure > 0.0_wp
    end subroutine contact_evaluate
 
-   !> Weights of the whole slave edges. The hats bend at the middle node, so both halves are integrated.
+   !> Weights of the whole slave edges. The hats bend at the middle node, so both halves are integrated. Sets
+   !> result%whole. docs/theory/contact.md section 2.3.
    pure subroutine find_whole(geometry, slave_x, result)
       type(contact_geometry_t), intent(in) :: geometry
-      real(wp), intent(in) :: slave_x(:, :)
+      real(wp), intent(in) :: slave_x(:, :)   !< (2, nodes) [m]
       type(contact_result_t), intent(inout) :: result
       type(edge_t) :: edge
       real(wp) :: s, ring, x(2)
@@ -286,9 +288,9 @@ contains
       result%unpressed_at = x(:, 3)
    end subroutine note_unpressed
 
-   !> The penalty of either form; 0: it takes no part.
+   !> The penalty of either form; 0: it takes no part. docs/theory/contact.md section 2.4.
    pure subroutine share_penalty(options, nodal, pointwise)
-      type(contact_options_t), intent(in) :: options
+      type(contact_options_t), intent(in) :: options   !< As the caller gave them.
       type(contact_options_t), intent(out) :: nodal, pointwise
 
       nodal = options
@@ -361,11 +363,11 @@ contains
       unknown(2:12:2) = unknown(1:11:2) + 1
    end function unknowns_of
 
-   !> Entries of one column of the tangent; exact zeros are left out.
+   !> Entries of one column of the tangent; exact zeros are left out. There must be room for them.
    pure subroutine add_column(result, rows, column, values)
       type(contact_result_t), intent(inout) :: result
-      integer, intent(in) :: rows(:), column
-      real(wp), intent(in) :: values(:)
+      integer, intent(in) :: rows(:), column   !< Numbers of unknowns. (entries)
+      real(wp), intent(in) :: values(:)        !< (entries) [kN/m]
       integer :: i
 
       do i = 1, size(rows)
@@ -380,7 +382,7 @@ contains
    !> Room for more triplets: it doubles, so that it soon stays as it is.
    pure subroutine make_room(result, more)
       type(contact_result_t), intent(inout) :: result
-      integer, intent(in) :: more
+      integer, intent(in) :: more   !< Triplets.
       integer, allocatable :: row(:), column(:)
       real(wp), allocatable :: value(:)
       integer :: n

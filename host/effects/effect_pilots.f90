@@ -8,7 +8,7 @@ module effect_pilots
    use effect_switches, only: list_effects, settle_open_keys, switch, switch_by_hand
    use effect_types, only: effect_t, OF_P_C, OF_SEEPAGE
    use faults, only: fault_t, raise, EXIT_INPUT
-   use pilot_runs, only: pilot_t, run_pilot, difference_t, difference
+   use pilot_runs, only: pilot_t, run_pilot, difference_t, difference, influence_t
    use pilot_scenes, only: make_cheap, can_coarsen
    use scene_types, only: scene_t, WITH_P_C
    use texts, only: short, whole
@@ -34,6 +34,7 @@ module effect_pilots
       real(wp) :: seconds = 0.0_wp
       type(difference_t) :: own_error      !< Against pilots with steps, or cells, twice as long.
       logical :: own_error_known = .false.
+      type(influence_t), allocatable :: influences(:)   !< Of every effect that was tried on every answer.
    end type pilots_account_t
 contains
    !> The scene with its open keys settled as the general case, and without what `without` names. Fault EXIT_INPUT: an
@@ -81,10 +82,11 @@ contains
       call find_base()
       if (fault%code /= 0) return
       call prescribe_steps(base, cheap)
+      allocate (account%influences(0))
       do i = 1, size(table)
          ! What the scene does not have, and a key says so, is tried with the whole scene alone.
          if (.not. (table(i)%present .or. whole_scene) .and. table(i)%by_hand) cycle
-         call try_effect(cheap, base, table(i), account)
+         call try_effect(cheap, base, i, table(i), account)
          if (.not. quiet) write (output_unit, '(a)') '   pilot '//whole(account%runs)//', '// &
             trim(merge('without', 'with   ', table(i)%present))//' '//trim(table(i)%name)//': '// &
             told(table(i))
@@ -107,7 +109,7 @@ contains
             call run_pilot(finer_scene, 0, finer)
             call book(finer, account)
             if (.not. finer%done) cycle
-            if (base%done) apart = difference(finer, base)
+            if (base%done) call difference(finer, base, apart)
             account%own_error_known = base%done
             account%own_error = apart
             base = finer
@@ -129,7 +131,7 @@ contains
          call run_pilot(finer_scene, 0, finer)
          call book(finer, account)
          if (.not. finer%done) return
-         apart = difference(base, finer)
+         call difference(base, finer, apart)
          account%own_error_known = .true.
          if (apart%share > account%own_error%share) account%own_error = apart
       end subroutine find_base
@@ -171,11 +173,13 @@ contains
    end subroutine book
 
    !> One pilot without (with) an effect.
-   subroutine try_effect(cheap, base, effect, account)
+   subroutine try_effect(cheap, base, row, effect, account)
       type(scene_t), intent(in) :: cheap
       type(pilot_t), intent(in) :: base
+      integer, intent(in) :: row   !< Of the effect.
       type(effect_t), intent(inout) :: effect
       type(pilots_account_t), intent(inout) :: account
+      type(influence_t), allocatable :: influences(:)
       type(scene_t) :: other
       type(pilot_t) :: pilot
       type(difference_t) :: apart
@@ -192,7 +196,9 @@ contains
          effect%why = trim(merge('cannot be left out: ', 'cannot be put in:   ', effect%present))//' '//trim(why)
          return
       end if
-      apart = difference(base, pilot)
+      call difference(base, pilot, apart, influences)
+      influences%effect = row
+      account%influences = [account%influences, influences]
       effect%influence = apart%share
       effect%change = apart%change
       effect%answer = apart%answer
@@ -241,7 +247,7 @@ contains
          call run_pilot(other, base%steps, pilot)
          call book(pilot, account)
          if (pilot%done) then
-            apart = difference(base, pilot)
+            call difference(base, pilot, apart)
             if (.not. quiet) write (output_unit, '(a)') '   pilot '//whole(account%runs)//', without all that is '// &
                'to go: '//short(100*apart%share)//' % of '//trim(apart%answer)
             if (apart%share <= tolerance) exit

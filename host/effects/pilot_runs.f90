@@ -20,7 +20,7 @@ module pilot_runs
    use wall_clock, only: clock
    implicit none (type, external)
    private
-   public :: pilot_t, stage_ends_t, run_pilot, difference_t, difference
+   public :: pilot_t, stage_ends_t, run_pilot, difference_t, difference, influence_t
 
    integer, parameter :: NODES_WITHOUT_POINTS = 50    !< Answers of a scene that names no points.
    integer, parameter :: MOST_TIMES_THE_STEPS = 5     !< Of the whole scene's pilot, that another one may take.
@@ -67,6 +67,15 @@ module pilot_runs
       real(wp) :: change = 0.0_wp                     !< Second run less first, where they differ most [m, kPa].
       character(72) :: answer = ''
    end type difference_t
+
+   !> What an effect changes in one answer.
+   type :: influence_t
+      integer :: effect = 0                           !< Row of the table of effects.
+      character(72) :: answer = ''
+      real(wp) :: range = 0.0_wp                      !< What the share is of [m, kPa].
+      real(wp) :: change = 0.0_wp                     !< Second run less first, where they differ most [m, kPa].
+      real(wp) :: share = 0.0_wp                      !< [-]
+   end type influence_t
 contains
    !> Runs a scene whose keys are settled. A failure is told in the pilot. docs/theory/host.md section 11.
    subroutine run_pilot(scene, most_steps, pilot)
@@ -208,13 +217,17 @@ contains
 
    !> How far the answers of two runs of one mesh lie apart, as shares of the range of each answer in the first; a field
    !> that one of them lacks is measured by its change against the largest change of an effective stress.
-   !> docs/theory/host.md section 11. Of the field and point that differ most.
-   pure function difference(one, two) result(worst)
+   !> docs/theory/host.md section 11. `worst` is that of the field and point that differ most; `influences` lists all
+   !> answers that either run has.
+   pure subroutine difference(one, two, worst, influences)
       type(pilot_t), intent(in) :: one, two
-      type(difference_t) :: worst
+      type(difference_t), intent(out) :: worst
+      type(influence_t), allocatable, intent(out), optional :: influences(:)   !< (answers)
+      type(influence_t) :: all(FIELDS*size(one%names))
       real(wp) :: range(FIELDS, size(one%names)), largest(2), scale, apart, change
-      integer :: f, i, of
+      integer :: f, i, of, n
 
+      n = 0
       range = maxval(one%x, dim=3) - minval(one%x, dim=3)
       largest = [maxval(range(:DISPLACEMENTS, :)), maxval(range(DISPLACEMENTS + 1:, :))]
       largest(2) = max(largest(2), NO_PRESSURE/NO_ANSWER*one%stress)
@@ -233,11 +246,13 @@ contains
                cycle
             end if
             apart = abs(change)/max(scale, tiny(1.0_wp)/epsilon(1.0_wp))
-            if (.not. apart > worst%share) cycle
-            worst = difference_t(apart, change, trim(one%names(i))//'.'//trim(FIELD_NAMES(f)))
+            n = n + 1
+            all(n) = influence_t(0, trim(one%names(i))//'.'//trim(FIELD_NAMES(f)), scale, change, apart)
+            if (apart > worst%share) worst = difference_t(apart, change, all(n)%answer)
          end do
       end do
-   end function difference
+      if (present(influences)) influences = all(:n)
+   end subroutine difference
 
    !> A pressure that is no unknown any more: its change; of suction that beyond zero alone.
    pure subroutine lost(run, field, point, change, scale)

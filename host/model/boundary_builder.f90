@@ -200,7 +200,7 @@ contains
          'drainage = ''state'' needs pressures; see fields in &scene.')
       contact%options = contact_options_t(penalty=given%penalty, search_radius=given%search_radius, &
          axisymmetric=model%domain%axisymmetric, gap=GAP_OF(given%gap_number), &
-         variation=merge(PRESSURE_WORK, ENERGY_SLOPE, given%pressure_work))
+         variation=merge(PRESSURE_WORK, ENERGY_SLOPE, given%pressure_work), fixed=given%fixed_geometry)
    end subroutine build_contact
 
    subroutine build_absorber(given, model, absorber, fault)

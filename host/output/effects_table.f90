@@ -9,7 +9,7 @@ module effects_table
    use texts, only: short, whole
    implicit none (type, external)
    private
-   public :: print_effects, print_pilots, write_effects
+   public :: print_effects, print_pilots, write_effects, write_influences
 contains
    !> What the pilots cost, and how good they are.
    subroutine print_pilots(unit, account)
@@ -96,4 +96,24 @@ contains
       end do
       call close_csv(file, fault)
    end subroutine write_effects
+
+   !> effects_answers.csv: what every effect that was tried changes in every answer. Fault EXIT_OUTPUT: it cannot be
+   !> written.
+   subroutine write_influences(folder, table, account, fault)
+      character(*), intent(in) :: folder
+      type(effect_t), intent(in) :: table(:)   !< (rows)
+      type(pilots_account_t), intent(in) :: account
+      type(fault_t), intent(inout) :: fault
+      type(csv_t) :: file
+      integer :: i
+
+      call new_csv(folder//'/effects_answers.csv', 'effect,in_scene,answer,range,change,influence', file, fault)
+      do i = 1, size(account%influences)
+         associate (t => account%influences(i), effect => table(account%influences(i)%effect))
+            call write_line(file, trim(effect%name)//','//trim(merge('yes', 'no ', effect%present))//','// &
+                            trim(t%answer)//','//short(t%range)//','//short(t%change)//','//short(t%share), fault)
+         end associate
+      end do
+      call close_csv(file, fault)
+   end subroutine write_influences
 end module effects_table

@@ -4,8 +4,8 @@
 module effect_switches
    use kinds, only: wp
    use effect_types, only: effect_t, EFFECT_NAMES, EFFECTS, OF_INERTIA, OF_SEEPAGE, OF_P_W, OF_P_C, OF_GRAVITY, &
-      OF_CONTACT, OF_DAMPING, OF_ABSORBING, OF_DRAINAGE, OF_VOID_RATIO, OF_BONDING, OF_FABRIC, OF_ISOTROPIC, OF_LODE, &
-      OF_MEMORY, OF_ELASTIC_DOMAIN
+      OF_CONTACT, OF_DAMPING, OF_ABSORBING, OF_DRAINAGE, OF_GEOMETRY, OF_VOID_RATIO, OF_HYSTERESIS, OF_BONDING, &
+      OF_ELASTIC_DOMAIN
    use faults, only: fault_t
    use key_schema, only: given
    use library_tables, only: property_index, property_range
@@ -20,9 +20,10 @@ module effect_switches
    real(wp), parameter :: EARTH = 9.81_wp             !< [m/s2] Where gravity is put in.
    real(wp), parameter :: ROUNDING = 1.0e-12_wp
    !> Switches of the material, in the order of their effects: 0 is off (of memory_rule: classic), the library's default
-   !> on.
-   character(11), parameter :: SWITCHES(OF_BONDING:OF_ELASTIC_DOMAIN) = [character(11) :: 'bonding', 'fabric', &
-      'isotropic', 'lode', 'memory_rule', 'rho_e']
+   !> on; of hysteresis, whose default is off, SWITCHED_ON.
+   character(11), parameter :: SWITCHES(OF_HYSTERESIS:OF_ELASTIC_DOMAIN) = [character(11) :: 'hysteresis', 'bonding', &
+      'fabric', 'isotropic', 'lode', 'memory_rule', 'rho_e']
+   real(wp), parameter :: SWITCHED_ON = 1.0_wp
 contains
    !> What the scene leaves to be found out begins as the general case: all fields that the regions have laws for,
    !> gravity, inertia. docs/theory/host.md section 11; gravity is 9.81 m/s2.
@@ -84,7 +85,7 @@ contains
          has_meaning = any(scene%regions%permeability_name /= '')
       case (OF_P_C)
          has_meaning = any(scene%regions%retention_name /= '')
-      case (OF_CONTACT)
+      case (OF_CONTACT, OF_GEOMETRY)
          has_meaning = size(scene%contacts) > 0
       case (OF_DRAINAGE)
          has_meaning = size(scene%contacts) > 0 .and. scene%fields /= WITH_U
@@ -94,6 +95,9 @@ contains
          has_meaning = size(scene%absorbers) > 0
       case (OF_VOID_RATIO)
          has_meaning = is_present(scene, kind, 1)
+      case (OF_HYSTERESIS)
+         ! The library's own curve alone has main curves.
+         has_meaning = any_mud(scene) .and. scene%fields == WITH_P_C
       case (OF_BONDING:)
          has_meaning = any_mud(scene)
          ! Bonding is by suction.
@@ -128,6 +132,8 @@ contains
          present = size(scene%absorbers) > 0
       case (OF_DRAINAGE)
          present = any(scene%contacts%drains_by_state)
+      case (OF_GEOMETRY)
+         present = .not. all(scene%contacts%fixed_geometry)
       case (OF_VOID_RATIO)
          if (scene%fields == WITH_P_C) &
             present = any([(parameter_of(scene, i, 'Omega') > 0.0_wp, i=1, size(scene%materials))])
@@ -229,6 +235,8 @@ contains
          scene%absorbers = scene%absorbers(:0)
       case (OF_DRAINAGE)
          scene%contacts%drains_by_state = on
+      case (OF_GEOMETRY)
+         scene%contacts%fixed_geometry = .not. on
       case (OF_VOID_RATIO)
          call freeze_retention(scene, why)
       case default
@@ -253,6 +261,7 @@ contains
       integer :: i
 
       call property_range(property_index(trim(SWITCHES(kind))), lower, upper, value)
+      if (kind == OF_HYSTERESIS) value = SWITCHED_ON
       if (.not. on) value = 0.0_wp
       do i = 1, size(scene%materials)
          if (scene%materials(i)%group%name == 'mud') call set_number(scene, i, trim(SWITCHES(kind)), value)

@@ -191,6 +191,8 @@ module scene_keys
             'edges farther apart are not paired [m]; 0: length of the slave edge'), &
       key_t('contact', 'drainage', 'w', 'fixed', 0, 0, &
             'state: nodes in contact are released from &fix of pressures', 'fixed|state'), &
+      key_t('contact', 'geometry', 'w', 'moving', 0, 0, &
+            'fixed: overlap and normals of the start, for small displacements', 'moving|fixed'), &
       key_t('contact', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
       key_t('point', 'name', 't', REQUIRED, 0, 0, 'name in histories.csv'), &
       key_t('point', 'r', 'n', REQUIRED, -BIG, BIG, 'the nearest node is taken [m]'), &

@@ -403,6 +403,7 @@ contains
       contact%gap_number = word_number(group, 'gap')
       contact%pressure_work = word_is(group, 'variation', 'pressure')
       contact%drains_by_state = word_is(group, 'drainage', 'state')
+      contact%fixed_geometry = word_is(group, 'geometry', 'fixed')
       contact%stages = texts_of(group, 'stages')
       scene%contacts = [scene%contacts, contact]
    end subroutine take_contact

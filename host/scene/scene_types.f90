@@ -144,6 +144,7 @@ module scene_types
       integer :: gap_number = GAP_COMBINED
       logical :: pressure_work = .true.
       logical :: drains_by_state = .false.           !< Covered nodes are impervious.
+      logical :: fixed_geometry = .false.            !< Overlap and normals of the start.
       character(LENGTH), allocatable :: stages(:)
    end type scene_contact_t
 

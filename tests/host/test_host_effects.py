@@ -104,6 +104,65 @@ done = start(heavy.replace("effects = 'auto'", ""), "weightless")
 check("without gravity, but geostatic: refused with the reason",
       done.returncode == 2 and "gravity" in done.stderr and "geostatic" in done.stderr, done.stderr)
 
+# Every effect is one key, and its word in `without` is that key: the same bytes, and another answer than with it.
+TOUCH = "&contact name = 'c' slave = 'top' master = 'plate' geometry = 'moving' drainage = 'state' penalty = 1e6 /"
+WHOLE = """&scene name = 'whole' fields = 'u-p_w-p_c' gravity = 9.81 seepage_inertia = 'yes' /
+&mesh r = 0, 0.2 r_cells = 2 z = -0.2, 0 z_cells = 2 /
+&mud name = 'sand' file = '{materials}/toyoura.nml' hysteresis = 1 fabric = 1 bonding = 1 isotropic = 1 lode = 1
+     memory_rule = 'return_point' rho_e = 2e-5 /
+&permeability name = 'k' intrinsic = 1e-10 /
+&region material = 'sand' retention = 'material' permeability = 'k' void_ratio = 0.7 damping = 5 /
+&initial p_w = -30 p_c = 30 stress = 'uniform' sigma = -20, -20, -20 /
+&history name = 'cycles' times = 0, 0.004, 0.008, 0.012 values = 0, 1, 0.1, 0.5 /
+&plate name = 'plate' r = 0, 0.1 z = -1e-6 mass = 0.01 force = -8 history = 'cycles' /
+{contact}
+&absorbing group = 'right' /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'top' field = 'p_w' value = -30 /
+&fix group = 'top' field = 'p_c' value = 30 /
+&stage name = 'shake' analysis = 'dynamic' duration = 0.012 dt = 1e-3 rho_inf = 0 created_energy = 1e9 /
+&point name = 'centre' r = 0 z = 0 /
+&point name = 'base' r = 0 z = -0.2 /
+""".replace("{contact}", TOUCH)
+WET = (("&fix group = 'top' field = 'p_c' value = 30 /", ""), ("fields = 'u-p_w-p_c'", "fields = 'u-p_w'"))
+KEYS = {
+    "inertia": (("'dynamic'", "'quasi_static'"), ("'yes'", "'no'")),
+    "relative_acceleration": (("'yes'", "'no'"),),
+    "p_w": (*WET, ("&fix group = 'top' field = 'p_w' value = -30 /", ""), ("fields = 'u-p_w'", "fields = 'u'"),
+            ("'yes'", "'no'"), ("'state'", "'fixed'")),
+    "p_c": WET,
+    "gravity": (("gravity = 9.81", "gravity = 0"),),
+    "contact": ((TOUCH, ""),),
+    "damping": (("damping = 5", "damping = 0"),),
+    "absorbing": (("&absorbing group = 'right' /", ""),),
+    "contact_drainage": (("'state'", "'fixed'"),),
+    "contact_geometry": (("'moving'", "'fixed'"),),
+    "void_ratio_in_retention": (("lode = 1", f"lode = 1 Omega = 0 P_a = {5.0 * 0.7**-2.0:.16e}"),),
+    "hysteresis": (("hysteresis = 1", "hysteresis = 0"),),
+    "bonding": (("bonding = 1", "bonding = 0"),),
+    "fabric": (("fabric = 1", "fabric = 0"),),
+    "isotropic": (("isotropic = 1", "isotropic = 0"),),
+    "lode": (("lode = 1", "lode = 0"),),
+    "memory_rule": (("'return_point'", "'classic'"),),
+    "elastic_domain": (("rho_e = 2e-5", "rho_e = 0"),),
+}
+run(WHOLE, "whole")
+whole = (work / "whole/histories.csv").read_bytes()
+for word in list(KEYS)[:6 if light else None]:
+    by_key = WHOLE
+    for old, new in KEYS[word]:
+        check(f"{word}: '{old}' is in the scene", old in by_key)
+        by_key = by_key.replace(old, new)
+    run(WHOLE.replace("gravity = 9.81", f"without = '{word}' gravity = 9.81"), "by_word")
+    run(by_key, "by_key")
+    without = (work / "by_word/histories.csv").read_bytes()
+    check(f"without {word}: as by its key, byte for byte", without == (work / "by_key/histories.csv").read_bytes())
+    check(f"without {word}: another answer", without != whole)
+said = start(WHOLE.replace("gravity = 9.81", "without = 'wind' gravity = 9.81"), "words").stderr
+words = max(re.findall(r"[\w|]+", said), key=len).split("|")
+check("the words of without are these effects", set(words) == set(KEYS), said)
+
 # A pulse between the steps of the pilots: they cannot see it, the watch does; `stop` ends the run.
 missed = dict(times="0, 5.012, 5.02, 5.028", values="0, 0, 1, 0", stage="duration = 10 dt = 0.004")
 said, table = run(column("gravity = 0", **missed), "missed")
@@ -138,6 +197,29 @@ check("ablate: gravity was put in",
       table["gravity"]["in_scene"] == "no" and float(table["gravity"]["influence"]) > 0.1, table)
 check("ablate: so was inertia",
       table["inertia in load"]["in_scene"] == "no" and table["inertia in load"]["influence"] != "", table)
+
+# Of an effect every answer is told; those of one effect are the rows of the other table.
+answers = tables.rows(work / "ledger/effects_answers.csv")
+for effect in ("gravity", "inertia in load"):
+    rows = {row["answer"]: float(row["influence"]) for row in answers if row["effect"] == effect}
+    worst = max(rows, key=rows.get)
+    check(f"ablate: answers of {effect}, the worst as in the table", len(rows) > 1
+          and (worst, rows[worst]) == (table[effect]["answer"], float(table[effect]["influence"])), rows)
+
+# Hysteresis, which a scene does not have unless it says so, is put in by --ablate alone, and never by auto.
+wetted = column("gravity = 0", "analysis = 'quasi_static' duration = 1 dt = 0.25", load=0, cells=1, soil=scenes.SAND,
+                laws=WATER.format(k="1e-11"), region="void_ratio = 0.8 retention = 'material' permeability = 'k'",
+                more=scenes.STRESS.format(100) + """
+&initial p_w = -30 p_c = 30 /
+&history name = 'w' times = 0, 1 values = 1, 0.5 /
+&fix group = 'all' field = 'p_a' /
+&fix group = 'all' field = 'p_w' value = -30 history = 'w' /""")
+_, table = run(wetted, "wetted", "--effects", "--quiet")
+is_on("wetted", table, "hysteresis", False, "hand")
+check("wetted: hysteresis is not tried by --effects", table["hysteresis"]["influence"] == "", table["hysteresis"])
+_, table = run(wetted.replace("effects = 'auto'", "fields = 'u-p_w-p_c'"), "wetted_ledger", "--ablate", "--quiet")
+check("ablate: hysteresis was put in, and matters where soil is wetted", table["hysteresis"]["in_scene"] == "no"
+      and float(table["hysteresis"]["influence"] or 0) > 0.01, table["hysteresis"])
 
 # Mistakes.
 for what, text, words in [("no analysis", column("gravity = 0").replace("effects = 'auto'", ""),
