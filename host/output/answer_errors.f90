@@ -120,9 +120,9 @@ contains
             trim(OF_ALL(f))//', root mean square: '//short(control%scale(f))// &
             trim(merge(' m  ', ' kPa', f <= DISPLACEMENTS))//', '//short(100*control%largest(f)/control%scale(f))//' %'
       end do
-      share = maxval(control%unseen/max(control%scale, tiny(1.0_wp)), mask=control%scale > 0.0_wp)
+      share = maxval(control%unseen(:DISPLACEMENTS)/max(control%scale(:DISPLACEMENTS), tiny(1.0_wp)))
       if (PATH*share > minval(model%stages%accuracy, mask=model%stages%controlled)) write (unit, '(a)') &
-         '   Not estimated: '//short(100*min(share, 1.0_wp))//' % of the largest change came in single steps, '// &
+         '   Not estimated: '//short(100*min(share, 1.0_wp))//' % of the displacements came in single steps, '// &
          'since loads or prescribed values act at once; the response of a material with a memory may depend on how '// &
          'they are applied. Give them a &history.'
       i = maxloc(control%limits, 1)
