@@ -229,7 +229,7 @@ contains
          call find_residual(soil, plan, progress, x, point, after, residual, error)
          if (tally%residuals) write (output_unit, '(i0, a, i0, a, es10.3)') k, ',', iteration, ',', error
          if (error <= tally%tolerance) exit
-         ! In the slope suction is counted in strains: [kPa] over a stiffness.
+         ! In the slope suction is counted in strains: a stress over a stiffness.
          if (iteration == 1 .or. slope_is_exact(soil)) then
             stiffness = max(maxval(abs(tangent%dsig_deps)), tiny(stiffness)**0.5_wp)
             slope = slope_of(soil, plan, tangent, after)
@@ -328,7 +328,7 @@ contains
       end if
    end function slope_of
 
-   !> The stress that a plan speaks of: net, sigma' - S_w p_c on the normal components, or effective [kPa].
+   !> The stress that a plan speaks of: net, sigma' - S_w p_c on the normal components, or effective [unit of stress].
    pure function controlled_stress(soil, plan, point) result(stress)
       type(soil_t), intent(in) :: soil
       type(plan_t), intent(in) :: plan

@@ -27,18 +27,18 @@ module triax_point
 
    !> A sample at one moment.
    type :: point_t
-      real(wp) :: stress(6) = 0.0_wp   !< Effective stress [kPa].
+      real(wp) :: stress(6) = 0.0_wp   !< Effective stress [unit of stress of the law].
       real(wp) :: strain(6) = 0.0_wp   !< Strain since the start [-].
-      real(wp) :: suction = 0.0_wp     !< [kPa]
+      real(wp) :: suction = 0.0_wp     !< [unit of stress of the law]
       real(wp), allocatable :: state(:, :)   !< One column.
    end type point_t
 
    !> Slopes of an update, in the driver's conventions.
    type :: tangent_t
-      real(wp) :: dsig_deps(6, 6) = 0.0_wp   !< Effective stress by strain [kPa].
+      real(wp) :: dsig_deps(6, 6) = 0.0_wp   !< Effective stress by strain [unit of stress of the law].
       real(wp) :: dsig_dpc(6) = 0.0_wp       !< Effective stress by suction [-].
       real(wp) :: dsw_deps(6) = 0.0_wp       !< Degree of saturation by strain [-].
-      real(wp) :: dsw_dpc = 0.0_wp           !< Degree of saturation by suction [1/kPa].
+      real(wp) :: dsw_dpc = 0.0_wp           !< Degree of saturation by suction [1/unit of stress of the law].
    end type tangent_t
 
 contains

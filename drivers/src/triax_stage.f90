@@ -19,7 +19,7 @@ module triax_stage
    !> What can lead a stage.
    integer, parameter :: BY_EPS_A = 1, BY_EPS_V = 2, BY_GAMMA = 3, BY_SIGMA_A = 4, BY_P = 5, BY_Q = 6, BY_TAU = 7, &
                          BY_SUCTION = 8, BY_D_EPS = 9, BY_D_SIGMA = 10, BY_CHANGES = 11
-   integer, parameter :: PER_STRAIN = 1, PER_PRESSURE = 2, PER_SHARE = 3   !< Unit of increments: [-], [kPa], of 1.
+   integer, parameter :: PER_STRAIN = 1, PER_PRESSURE = 2, PER_SHARE = 3   !< Unit of increments: [-], stress, of 1.
 
    type :: quantity_t
       character(16) :: key       !< That gives its value at the end.
@@ -54,7 +54,7 @@ module triax_stage
       logical :: effective = .false.         !< Stress rows speak of effective stress, not of net stress.
       logical :: moves_suction = .false.
       logical :: keeps_water = .false.       !< Water content S_w e is held, suction follows.
-      real(wp) :: suction_end = 0.0_wp       !< [kPa]
+      real(wp) :: suction_end = 0.0_wp       !< [unit of stress]
       real(wp) :: increment = 0.0_wp         !< In the unit of what leads.
       logical :: given_increment = .false.   !< By hand: an accuracy does not change it.
       integer :: parts = 1                   !< Increments are divided into so many, for an accuracy.

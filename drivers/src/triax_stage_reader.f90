@@ -15,7 +15,7 @@ module triax_stage_reader
    private
    public :: read_stage
 
-   !> Defaults by the unit of what leads (PER_*), suction apart; stresses in kPa.
+   !> Defaults by the unit of what leads (PER_*), suction apart; stresses in kPa, converted to the unit of the material.
    real(wp), parameter :: INCREMENTS(3) = [1.0e-4_wp, 1.0_wp, 1.0e-3_wp]
    real(wp), parameter :: INTERVALS(3) = [1.0e-3_wp, 10.0_wp, 1.0e-2_wp]
    real(wp), parameter :: SUCTION_INCREMENT = 0.1_wp, SUCTION_INTERVAL = 1.0_wp   ! [kPa]

@@ -31,8 +31,8 @@ module triax_stage_run
       logical :: open = .false.            !< The way ends where a stress is reached.
       real(wp) :: centre = 0.0_wp, goal = 0.0_wp, direction = 1.0_wp
       logical :: sealed = .false.          !< Undrained and saturated: pore pressure is what changes.
-      real(wp) :: confining = 0.0_wp       !< Effective stress under constant total stress, at the start [kPa].
-      real(wp) :: pressure = 0.0_wp        !< Excess pore pressure [kPa].
+      real(wp) :: confining = 0.0_wp       !< Effective stress under constant total stress, at the start [unit of stress].
+      real(wp) :: pressure = 0.0_wp        !< Excess pore pressure [unit of stress].
       real(wp) :: pressure_start = 0.0_wp
       real(wp) :: r_u = 0.0_wp             !< Pore pressure that has built up in this stage over `confining` [-].
       character(200) :: note = ''          !< How it ended, where that is not plain.
@@ -165,7 +165,7 @@ contains
       end if
    end subroutine next_way
 
-   !> How far the stress of a cycle still has to go [kPa].
+   !> How far the stress of a cycle still has to go [unit of stress of the law].
    pure real(wp) function missing(soil, stage, run, point)
       type(soil_t), intent(in) :: soil
       type(stage_t), intent(in) :: stage
@@ -215,7 +215,7 @@ contains
       end do
    end subroutine find_goal
 
-   !> Effective stress whose total is constant in an undrained test: radial, or vertical in simple shear [kPa].
+   !> Effective stress whose total is constant in an undrained test: radial, or vertical in simple shear [unit of stress].
    pure real(wp) function confining_stress(stage, point)
       type(stage_t), intent(in) :: stage
       type(point_t), intent(in) :: point

@@ -231,6 +231,7 @@ contains
    subroutine check_renamed(group, fault)
       type(group_t), intent(in) :: group
       type(fault_t), intent(inout) :: fault
+      character(:), allocatable :: key
 
       if (group%name == 'rigid') then
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&rigid is &plate now: &plate name = ... '// &
@@ -238,9 +239,11 @@ contains
       else if (group%name == 'contact' .and. given(group, 'reach')) then
          call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, 'reach'))//'the key reach of &contact is '// &
                     'search_radius now.')
-      else if (group%name == 'mud' .and. given(group, 'material_call')) then
-         call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, 'material_call'))//'the key '// &
-                    'material_call of &mud is gone: leave it out, or load a UMAT with &umat.')
+      else if (group%name == 'mud' .and. (given(group, 'material_call') .or. given(group, 'call'))) then
+         key = 'call'
+         if (given(group, 'material_call')) key = 'material_call'
+         call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, key))//'the key '//key// &
+                    ' of &mud no longer exists: leave it out, or load a UMAT with &umat.')
       end if
    end subroutine check_renamed
 

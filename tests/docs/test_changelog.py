@@ -107,6 +107,7 @@ CASES = {
     "`&rigid": (lambda: scene(ELASTIC + "&rigid group = 'top' mass = 1 /\n"), ["exit code 2", "&plate"]),
     "`&contact reach`": (lambda: scene(ELASTIC + "&contact name = 'c' slave = 'top' master = 'bottom' reach = 1 /\n"),
                          ["exit code 2", "search_radius"]),
+    "`&mud call`": (lambda: scene(MUD.format("call = 'umat'", "")), ["exit code 2", "the key call", "&umat"]),
     "`&mud material_call`": (lambda: scene(MUD.format("material_call = 'umat'", "")), ["exit code 2", "&umat"]),
     "a `&retention` of its own": (lambda: scene(MUD.format("", "retention = 'r'") + RETENTION),
                                   ["retention = 'material'"]),

@@ -42,6 +42,7 @@ MISTAKES = [
     ("group of older scenes", SCENE, "&elastic", "&rigid group = 'top' mass = 1 /\n&elastic", 2,
      ("&rigid is &plate now",)),
     ("key of older materials", SUCTION, "tangent = 3", "material_call = 'umat'", 2, ("material_call", "&umat")),
+    ("key of the first materials", SUCTION, "tangent = 3", "call = 'umat'", 2, ("the key call of &mud", "&umat")),
     ("key of older scenes", FALL, "penalty = 1.0e7", "reach = 1", 2, ("reach", "search_radius now")),
     ("plate without a place", FALL, "   r = 0, 0.15\n   z = 1.0e-5", "", 2, ("give one of the two",)),
     ("plate with two places", FALL, "   z = 1.0e-5", "   group = 'top'", 2, ("give one of the two",)),

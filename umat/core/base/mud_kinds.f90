@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Working precision and the few numbers that several modules share.
+!> In comments of the core [kPa] stands for the unit of stress of p_atm, whichever it is.
 module mud_kinds
    use, intrinsic :: iso_c_binding, only: c_double
    implicit none (type, external)
