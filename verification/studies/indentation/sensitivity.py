@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the paper leaves open in its indentation benchmark, varied one by one: how far it moves each column of Table 1.
+"""What the paper leaves open in its indentation benchmark, varied one by one, and what each changes in Table 1.
 
 At suctions 0, 30, 100 and 1000 kPa with and without the remedy: the standard set, about 190 analyses and five hours
 on one core, the most
@@ -133,7 +133,7 @@ def cells(a, b):
 
 
 def report(rows, base):
-    text = ["## What moves the table most", "", *strongest(rows, base), ""]
+    text = ["## Largest changes of Table 1", "", *strongest(rows, base), ""]
     for s in SUCTIONS:
         paper, missing = PUBLISHED[s], []
         text += [f"## Suction {s} kPa", "", "| | relative CPU time | relative work | relative difference of "
@@ -150,7 +150,7 @@ def report(rows, base):
     further = [v.what for name, v in VARIATIONS.items() if not any(ran(rows, s, name) for s in SUCTIONS)
                and name not in STANDARD]
     if further:
-        text += [f"Not run, but there for `--only`: {'; '.join(further)}.", ""]
+        text += [f"Not run; available by `--only`: {'; '.join(further)}.", ""]
     text += [f"Made by commit {made_by(rows)}, like the series.", "", "## Noise", "", *noise(rows, base), "",
              "## Towards the paper", "",
              *towards(rows, base), "", "## Failures", "",
@@ -223,12 +223,11 @@ def is_noise(rows, base, suction):
 
 def noise(rows, base):
     """A column that the step or the mesh moves by more than the remedy does, says nothing about the remedy."""
-    text = ["If a tenth of the time step, half the size of the elements or a linear solution by fresh instead of "
-            "earlier factors "
-            "moves the final displacement by more than the remedy does, its relative difference says nothing about the "
-            "remedy: noise. Two numbers: with and "
+    text = ["If a tenth of the time step, half the size of the elements or a linear solution by new instead of "
+            "earlier factors changes the final displacement by more than the remedy does, the relative difference says "
+            "nothing about the remedy: noise. Two numbers: with and "
             "without the remedy [mm].", "",
-            "| suction | the remedy moves it by | " + " | ".join(what for _, what in NUMERICS) + " | the column is |",
+            "| suction | change by the remedy | " + " | ".join(what for _, what in NUMERICS) + " | the column is |",
             "|" + 6 * "---|"]
     for s in SUCTIONS:
         effect, by = moves(rows, base, s)
@@ -248,11 +247,10 @@ COLUMN_NAMES = {"work": (0, "relative CPU time (ours: work, CPU)", 0.05, ("work"
 
 def towards(rows, base):
     """Which variation brings a column closest to the paper's figure; what none brings there is unexplained."""
-    text = ["Met: within 0.05 of the paper's ratios, within 2 % of its iterations. Explained: something that the paper "
-            "leaves open, varied "
-            "alone, meets the figure, the series does not, and an exact linear solution moves it less. Else "
-            "unexplained. CPU times depend on what "
-            "else the machine did: work chooses the closest, and both must meet the paper's.", "",
+    text = ["Met: within 0.05 of the paper's ratios, within 2 % of its iterations. Explained: one variation of a choice "
+            "that the paper leaves open meets the value, the series does not, and an exact linear solution changes it "
+            "less. Otherwise unexplained. CPU times depend on the load of the machine: the closest variation is chosen "
+            "by work, and both must meet the paper's.", "",
             "| suction | column | paper | series | closest variation | its value | |", "|" + 7 * "---|"]
     for s in SUCTIONS:
         found = {name: c for name, c in tried(rows, base, s).items() if VARIATIONS[name].open}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Noise on element-test paths: how far each memory rule is led away from the clean path, and at what cost."""
+"""Noise on element-test paths: how far it moves the response of each memory rule away from the path without noise, and at what cost."""
 import report
 from tools.page import Page, Script
 

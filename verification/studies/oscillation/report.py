@@ -29,7 +29,7 @@ def size_text(value):
 
 
 def worst(rows):
-    """Largest distance, with the number of runs that did not get to the end."""
+    """Largest distance, with the number of runs that did not reach their end."""
     ends = [r["distance"] for r in rows if r["failed"] == 0]
     failed = len(rows) - len(ends)
     return (short(max(ends)) if ends else "-") + (f" ({failed} failed)" if failed else "")
