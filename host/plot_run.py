@@ -72,7 +72,7 @@ def moves(values):
 
 
 def tells(run, frame, name):
-    """Whether a field is worth a panel: a component of a vector must not be next to nothing beside the other."""
+    """Whether a field is worth a panel: a component of a vector must not be negligible beside the other."""
     values = run.field(frame, name)[0]
     if name not in COMPONENTS:
         return moves(values)

@@ -25,7 +25,7 @@ module process_settings
    end interface
 contains
    !> Applies the settings, once at the start of the program. A setting that the libraries do not know is left out
-   !> without a word.
+   !> without a message.
    subroutine settle_process()
       procedure(set_threads), pointer :: threads
       procedure(set_memory), pointer :: memory

@@ -60,7 +60,7 @@ def programs():
         if clients.run(["make", f"-j{os.cpu_count()}", f"CFLAGS={flags}", "FFLAGS=-w -O1 -fallow-argument-mismatch",
                         "LDFLAGS=-ldl -rdynamic"], source / "make.log", cwd=source) != 0:
             sys.exit(1)
-    # -u umat_: otherwise the linker takes CalculiX' own umat_ without a word.
+    # -u umat_: otherwise the linker takes CalculiX' own umat_ without a message.
     libraries = "-lspooles -lpthread -larpack -llapack -lblas -lm -fopenmp -ldl".split()
     if clients.run(["gfortran", "-o", static, source / f"ccx_{VERSION}.o", "-Wl,-u,umat_",
                     clients.build / "umat/libmud.a", source / f"ccx_{VERSION}.a", *libraries],

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""mud.h as a page: its comments as text, its functions as entries of the index, everything else as it stands."""
+"""mud.h as a page: its comments as text, its functions as entries of the index, everything else unchanged."""
 import re
 
 SECTION = re.compile(r"/\* --- (.*?) -*\s*\*/")

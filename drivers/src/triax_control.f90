@@ -15,7 +15,7 @@ module triax_control
    private
    public :: plan_t, tally_t, plan_way, advance, lead, quantity, CONTROL_TOLERANCE
 
-   !> Constraints are met to this unless a case says otherwise, relative to the effective stress they speak of: a
+   !> Constraints are met to this unless a case says otherwise, relative to the effective stress they prescribe: a
    !> hundred thousand times below the library's own default tolerance, and far above rounding (1e-16 times the ratio
    !> of stiffness to stress, about 1e3).
    real(wp), parameter :: CONTROL_TOLERANCE = 1.0e-10_wp
@@ -328,7 +328,7 @@ contains
       end if
    end function slope_of
 
-   !> The stress that a plan speaks of: net, sigma' - S_w p_c on the normal components, or effective [unit of stress].
+   !> The stress that a plan prescribes: net, sigma' - S_w p_c on the normal components, or effective [unit of stress].
    pure function controlled_stress(soil, plan, point) result(stress)
       type(soil_t), intent(in) :: soil
       type(plan_t), intent(in) :: plan

@@ -31,7 +31,7 @@ module triax_stage_run
       logical :: open = .false.            !< The way ends where a stress is reached.
       real(wp) :: centre = 0.0_wp, goal = 0.0_wp, direction = 1.0_wp
       logical :: sealed = .false.          !< Undrained and saturated: pore pressure is what changes.
-      real(wp) :: confining = 0.0_wp       !< Effective stress under constant total stress, at the start [unit of stress].
+      real(wp) :: confining = 0.0_wp       !< Effective stress where the total one is constant, at the start [stress].
       real(wp) :: pressure = 0.0_wp        !< Excess pore pressure [unit of stress].
       real(wp) :: pressure_start = 0.0_wp
       real(wp) :: r_u = 0.0_wp             !< Pore pressure that has built up in this stage over `confining` [-].
@@ -215,7 +215,7 @@ contains
       end do
    end subroutine find_goal
 
-   !> Effective stress whose total is constant in an undrained test: radial, or vertical in simple shear [unit of stress].
+   !> Effective stress whose total is constant in an undrained test: radial, vertical in simple shear [unit of stress].
    pure real(wp) function confining_stress(stage, point)
       type(stage_t), intent(in) :: stage
       type(point_t), intent(in) :: point

@@ -154,7 +154,7 @@ contains
             return
          end if
          step = 0.5_wp*(lower + upper) - s
-         ! The comparison without a division: no overflow where the slope is next to nothing.
+         ! The comparison without a division: no overflow where the slope is almost zero.
          if (slope < 0.0_wp) then
             if (abs(value) <= 0.5_wp*last*abs(slope)) then
                if (s - value/slope >= lower .and. s - value/slope <= upper) step = -value/slope

@@ -115,7 +115,7 @@ contains
       if (status /= 0) call wrong(reader, 'expected '//whole(size(values))//' integers', fault)
    end subroutine integers
 
-   !> Whether the present line holds nothing but numbers: a slash or a star would end or repeat a list without a word.
+   !> Whether the present line holds nothing but numbers: a slash or a star would end or repeat a list without an error.
    pure logical function only_numbers(reader)
       type(reader_t), intent(in) :: reader
 

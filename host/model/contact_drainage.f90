@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Drainage that follows a contact: while a node of the slave presses and at least half of it is covered, it is
-!> impervious, and the &fix of pressures along the slave let go of it. Decided at the start of a step from the
+!> impervious, and the &fix of pressures along the slave do not act on it. Decided at the start of a step from the
 !> displacements there, so that a step is smooth and a restart decides the same.
 !> docs/theory/contact.md section 5.
 module contact_drainage

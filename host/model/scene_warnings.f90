@@ -175,7 +175,7 @@ contains
       end do
    end subroutine look_at_initials
 
-   !> Two that prescribe an unknown of a stage differently: the later one wins; and p_w, p_c and p_a all at once.
+   !> Two that prescribe an unknown of a stage differently: the later one applies; and p_w, p_c and p_a all at once.
    subroutine look_at_fixes(model, warnings)
       type(model_t), intent(in) :: model
       character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)

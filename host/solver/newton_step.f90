@@ -69,7 +69,7 @@ contains
             call measure(dofs, constraint, assembly, rhs, system%rounding, system%largest, log)
             if (log%iterations == 1) log%first_error = log%error
             norm = norm2(pack(rhs, .not. constraint%fixed))
-            ! Driven by prescribed values alone, a step begins without any to speak of.
+            ! A step that is driven by prescribed values alone begins with a residual that is almost zero.
             if (log%iterations == 1) norm_0 = max(norm_0, norm, ROUNDING*norm2(assembly%scale))
             log%reduction = norm/max(norm_0, tiny(1.0_wp))
             if (good_enough(control, log)) exit

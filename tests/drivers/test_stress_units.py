@@ -58,7 +58,7 @@ for unit, factor in UNITS.items():
            f"&stage\n control = 'simple_shear_drained'\n tau_end = {stresses(15.0)}\n/\n")
     for name, path in (("wet", wet), ("dry", dry)):
         done = call(material(unit) + path)
-        check(f"{name} in {unit} runs without a word", done.returncode == 0 and not done.stderr, done.stderr)
+        check(f"{name} in {unit} runs without a message", done.returncode == 0 and not done.stderr, done.stderr)
         if done.returncode == 0:
             ends[name, unit] = tables.numbers(work / "case.csv")
             check(f"{name}: its stresses are in {unit}",

@@ -65,7 +65,7 @@ rows, _ = run(BLOCK.format(2, 0.5) + held + "&fix group = 'top' field = 'u_z' va
               "&load group = 'top' kind = 'pressure' value = 12 /\n", "until")
 moved = {float(row["time"]): float(row["corner.u_z"]) for row in rows}
 near("a support holds up to `until`", moved.get(1.0, 0), -2e-3)
-near("and lets go after it", moved.get(1.5, 0), -1e-3)
+near("and releases it afterwards", moved.get(1.5, 0), -1e-3)
 
 # Wall time: shorter than any step, so that there is one after every step; the last one is whole and goes on.
 text = BLOCK.format(1, 0.25).replace("fields = 'u'", "fields = 'u' checkpoint_seconds = 1e-9") + held + \

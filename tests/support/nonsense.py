@@ -52,7 +52,7 @@ class Grammar:
         if dice.random() < 0.125:
             return "".join(self.group(dice) for _ in range(dice.randint(0, 12)))
         text = dice.choice(bases)
-        if dice.random() < 0.5:   # read without a word: what it asks for is what is odd
+        if dice.random() < 0.5:   # accepted without a message: only the values are odd
             for _ in range(dice.choice((1, 1, 2, 3))):
                 text = self.odd_number(dice, text)
             return text

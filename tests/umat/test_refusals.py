@@ -79,7 +79,7 @@ for name, number, status, words in (("kratos", 60, "-2", ("given 60, needed 112"
                                     ("abaqus", 3, "-3", ("NTENS is 3", "6 (solid) or 4"))):
     done = run(host, name, number)
     told = sentences(done)
-    check(f"{name} hears of {number}", len(told) == 1 and told[0] and told[0][1] == status and
+    check(f"{name} receives the message of {number}", len(told) == 1 and told[0] and told[0][1] == status and
           all(word in told[0][2] for word in words), done.stderr)
     check(f"{name} stops with {number}", done.returncode == 1 and re.search("step 1 (did not converge|cut by 0.1)",
                                                                             done.stdout), done.stdout)

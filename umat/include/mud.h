@@ -207,7 +207,7 @@ enum mud_mode {
 };
 enum mud_jump {   /* of the memory, where the substep begins */
    MUD_JUMP_NONE = 0, MUD_JUMP_REVERSAL = 1 /* a new process begins */, MUD_JUMP_RETURN = 2 /* an old one goes on */,
-   MUD_JUMP_NEW = 3 /* the cut-off let go */
+   MUD_JUMP_NEW = 3 /* the point leaves the tension cut-off */
 };
 typedef struct mud_substep {
    int outcome, mode, jump; /* enumerations above                                                      */

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """One style for the pictures of all pages."""
-COLOURS = ("#0b3c6f", "#c8553d", "#3a8f6a", "#8a5a9e", "#b58900")   # told apart in grey and by colour-blind readers
+COLOURS = ("#0b3c6f", "#c8553d", "#3a8f6a", "#8a5a9e", "#b58900")   # distinct in grey and for colour-blind readers
 STYLE = {"font.size": 9, "axes.titlesize": 10, "axes.grid": True, "grid.color": "#dddddd", "grid.linewidth": 0.6,
          "axes.axisbelow": True, "legend.frameon": False, "lines.linewidth": 1.2, "figure.constrained_layout.use": True}
 

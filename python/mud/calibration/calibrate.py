@@ -60,7 +60,7 @@ def calibrate(
     begin, used = time.monotonic(), _cpu()
     fit = Fit(task, effort or Effort(), workers, write)
     if not fit.variables:
-        raise InputError("there is nothing to fit: everything that these tests speak of is known")
+        raise InputError("there is nothing to fit: every parameter that these tests depend on is known")
     try:
         values = fit.run()
         answers = answers_of(fit.evaluator.material(values, **SETTINGS), task.items)

@@ -36,7 +36,7 @@ def write_material(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
     ]
     for name, entry in parameters.items():
         value = result.material[name]
-        # Switches and numerical settings are left to the library, as a material file does not speak of them.
+        # Switches and numerical settings are left to the library, as a material file does not contain them.
         if (
             entry.origin in ("paper", "mended")
             and not entry.options

@@ -38,7 +38,7 @@ class Task:
     reference: str = ""  #: where the tests come from
     start: str | None = None  #: material whose values are the start, and stay where nothing is fitted
     known: dict[str, float] = dataclasses.field(default_factory=dict)
-    groups: list[str] | None = None  #: groups that are fitted; None: those the tests speak of
+    groups: list[str] | None = None  #: groups that are fitted; None: those that the tests depend on
     bounds: dict[str, tuple[float, float]] = dataclasses.field(default_factory=dict)  #: in place of the usual ones
     seed: int = 1
     notes: list[str] = dataclasses.field(default_factory=list)  #: sentences for the report

@@ -62,7 +62,7 @@ GROUPS = (
     "retention",
     "bonding",
 )
-# Group -> kinds of tests that speak of it.
+# Group -> kinds of tests that depend on it.
 SPEAKS = {
     "critical state": {"drained", "undrained"},
     "elasticity and compression": {"oedometer", "isotropic", "drained"},
@@ -203,7 +203,7 @@ def known_parameters(known: Mapping[str, float], base: Mapping[str, float]) -> t
 def chosen(
     kinds: set[str], unsaturated: bool, known: Sequence[str], groups: Sequence[str] | None = None
 ) -> list[Variable]:
-    """Variables that are fitted: of groups that the tests speak of, without what is known."""
+    """Variables that are fitted: of groups that the tests depend on, without what is known."""
     if groups is not None:
         for group in groups:
             if group not in GROUPS:

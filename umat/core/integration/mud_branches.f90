@@ -23,7 +23,7 @@ module mud_branches
    integer, parameter :: HALVINGS = 60            !< Of an increment: more than a double can tell apart.
    real(wp), parameter :: WHOLE_PHASE = 1.0e-9_wp !< A phase shorter than this share is left out [-].
 
-   !> The course of S_w through an increment.
+   !> How S_w changes through an increment.
    type :: course_t
       real(wp) :: turn        !< Share of the increment after which x no longer rises, 1 if it does not turn [-].
       real(wp) :: s_w         !< At the start, between the main curves [-].

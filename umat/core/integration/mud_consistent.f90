@@ -28,7 +28,7 @@ module mud_consistent
    integer, parameter :: JUMP_NONE = 0
    integer, parameter :: JUMP_REVERSAL = 1   !< A new process begins.
    integer, parameter :: JUMP_RETURN = 2     !< An interrupted process goes on.
-   integer, parameter :: JUMP_NEW = 3        !< The tension cut-off let go: no past.
+   integer, parameter :: JUMP_NEW = 3        !< The point leaves the tension cut-off: no past.
 
    !> Derivatives along the directions of driving_t.
    type :: sensitivity_t

@@ -97,7 +97,7 @@ contains
       integer, intent(in) :: event
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: time
-      type(rate_t), intent(in) :: w            !< where the event hangs on a rate
+      type(rate_t), intent(in) :: w            !< where the event depends on a rate
       type(linearised_t), intent(in) :: lin
       real(wp), intent(in) :: y(DIRECTIONS, NY), r_in(DIRECTIONS, 6)   !< changes of state and memory
       type(driving_t), intent(in) :: driving
@@ -145,7 +145,7 @@ contains
       jumps = -(w%x + par%x_rev) > FOUND*(abs(trial%w(1)%x) + par%x_rev)
    end function jumps
 
-   !> The same along one direction, where the event hangs on the bounding surface.
+   !> The same along one direction, where the event depends on the bounding surface.
    pure real(wp) function slope_at_surface(par, inc, event, trial, time, y, dr, de, dp_c) result(slope)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc

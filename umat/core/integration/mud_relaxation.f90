@@ -21,7 +21,7 @@ module mud_relaxation
       real(wp) :: slope(6)   !< dL/d sigma' by components [1/kPa]
    end type relaxation_t
 contains
-   !> How fast L relaxes per unit of pseudo-time, as far as it hangs on r:n alone: near the bounding surface by a few
+   !> How fast L relaxes per unit of pseudo-time, as far as it depends on r:n alone: near the bounding surface by a few
    !> per cent. 0 where nothing loads, or where the softening cap keeps L constant [-]. docs/theory/integration.md
    !> section 2.1.
    pure real(wp) function relaxation_speed(w) result(speed)

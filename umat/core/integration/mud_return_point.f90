@@ -61,8 +61,8 @@ contains
    end subroutine note_progress
 
    !> A process that turns aside may go farther in its direction: the target is the farthest. Where r:direction is
-   !> largest the place hardly matters, so that the target does not hang on where exactly the process turned aside. r
-   !> [-]; docs/theory/memory-rules.md section 3.2.
+   !> largest the place hardly matters, so that the target does not depend on where exactly the process turned aside.
+   !> r [-]; docs/theory/memory-rules.md section 3.2.
    pure subroutine note_farthest(r, memory)
       real(wp), intent(in) :: r(6)
       type(memory_t), intent(inout) :: memory
@@ -73,9 +73,9 @@ contains
    !> Not negative where a process goes forwards: (r - r_in):n is not negative, the loading direction is near the chord
    !> from the memory, and the whole strain leads along it. The chord counts, not the running direction: on a smoothly
    !> turned loop n follows the turn, and no reversal would ever be found. The path may leave the elastic domain
-   !> sideways on its way back: then n still points forwards while r falls, which is no progress. Its sign counts: x and
-   !> length are [-], t:chord is in the unit of t. -1 without a loading direction. docs/theory/memory-rules.md section
-   !> 3.2.
+   !> sideways while it reloads: n then still points forwards while r falls, which is no progress. Its sign counts: x
+   !> and length are [-], t:chord is in the unit of t. -1 without a loading direction. docs/theory/memory-rules.md
+   !> section 3.2.
    pure real(wp) function forwardness(par, place)
       type(params_t), intent(in) :: par
       type(place_t), intent(in) :: place

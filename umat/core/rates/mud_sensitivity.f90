@@ -3,7 +3,7 @@
 !> The consistent tangent carries it through the substeps; nothing is evaluated twice and nothing is perturbed;
 !> docs/theory/integration.md section 5.3.
 !>
-!> Directions stand side by side, in the first index of every array. What a rate hangs on enters through a few
+!> Directions stand side by side, in the first index of every array. What a rate depends on enters through a few
 !> contractions; its change is then, component by component, a sum of the changes of strain rate and stress and of
 !> a few fixed tensors, whatever lies in between. Loops over components stand inside those over directions: of those the
 !> compiler then takes two at once.

@@ -8,7 +8,7 @@ PAGE = Page(
     claim="the host's generalised-alpha has the spectral radius, damping and period error of the scheme with the given "
           "rho_inf",
     kind=("exact", "code-to-code", "conservation"),
-    input="`scene.nml`: a mass of 3 Mg on a column of 3e-7 of its mass, let go from 1 mm: one degree of freedom, 20 "
+    input="`scene.nml`: a mass of 3 Mg on a column of 3e-7 of its mass, released from 1 mm: one degree of freedom, 20 "
           "steps a period; rho_inf 1, 0.8, 0.5, 0",
     reference="the scheme of Chung & Hulbert written for one degree of freedom, step by step; cos(omega t)",
     seconds=3, quick=3, every_build=True, pictures=("vibration.png",))
