@@ -46,11 +46,7 @@ contains
             call raise(fault, EXIT_CONVERGENCE, place//trim(text)//'.')
          case (BODY_FREE)
             if (run%assembly%replaced > 0) then
-               e = maxloc(run%assembly%soft, dim=1)
-               call raise(fault, EXIT_FREE_BODY, place//'the equations are singular, also with the elastic '// &
-                          'stiffness of '//whole(run%assembly%replaced)// &
-                          ' points that have no stiffness against some strain (tension '// &
-                          'cut-off or failure), most of them in element '//whole(e)//', '//point_of(model, e)// &
+               call raise(fault, EXIT_FREE_BODY, place//'the equations are singular'//soft_points(model, run)// &
                           ': add a surcharge or suction there, load in smaller steps, or look for a missing &fix.')
                return
             end if
@@ -63,11 +59,27 @@ contains
             node = 1
             if (log%worst_unknown > 0) node = model%dofs%node(log%worst_unknown)
             call raise(fault, EXIT_CONVERGENCE, place//'no convergence after '//whole(log%iterations)// &
-                       ' iterations; '//what_is_left(stage, log)//' (allowed '//short(stage%tolerance)// &
-                       '), worst at '//place_of(model, node)//'; use a smaller dt, more cuts or a better tangent.')
+                       ' iterations'//soft_points(model, run)//'; '//what_is_left(stage, log)//' (allowed '// &
+                       short(stage%tolerance)//'), worst at '//place_of(model, node)// &
+                       '; use a smaller dt, more cuts or a better tangent.')
          end select
       end associate
    end subroutine explain_failure
+
+   !> How many points were given the elastic stiffness in the last pass, and where most of them are; nothing if none.
+   function soft_points(model, run) result(text)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      character(:), allocatable :: text
+      integer :: e
+
+      text = ''
+      if (run%assembly%replaced == 0) return
+      e = maxloc(run%assembly%soft, dim=1)
+      text = ', also with the elastic stiffness of '//whole(run%assembly%replaced)//' points that have no stiffness '// &
+             'against some strain (tension cut-off or failure), most of them in element '//whole(e)//', '// &
+             point_of(model, e)
+   end function soft_points
 
    !> Middle of an element [m].
    function point_of(model, e) result(text)

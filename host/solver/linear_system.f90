@@ -30,6 +30,7 @@ module linear_system
       logical :: reuse = .true.               !< Factors may serve later matrices.
       logical :: factored = .false.           !< There are factors worth trying.
       logical, allocatable :: fixed(:), air(:)   !< What was fixed when the factors were made.
+      logical :: indefinite = .false.         !< The last solution found its matrix so, see factorise.
       integer :: active = 0                   !< Nodes in contact when the factors were made.
       logical :: reassemble_tangent = .false.    !< In every iteration: the last step needed several.
       real(wp) :: largest(FIELDS) = 0.0_wp    !< Largest scale of every field so far.
@@ -41,7 +42,8 @@ module linear_system
 contains
    !> Solution to a tolerance, a small share of Newton's: by the factors of an earlier matrix as long as these serve and
    !> nothing has been fixed, released or come into contact, otherwise by new ones. docs/theory/host.md section 6.
-   !> status: SOLVED; SINGULAR or FAILED as of factorise; FAILED where numbers are not finite.
+   !> status: SOLVED; SINGULAR or FAILED as of factorise; FAILED where numbers are not finite. system%indefinite is known
+   !> only of a matrix that was factorised.
    subroutine solve_step(dofs, pattern, constraint, assembly, tolerance, rhs, system, dx, status)
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(in) :: pattern
@@ -64,6 +66,7 @@ contains
          if (is_body(constraint, i)) weight(i) = 1/body_scale(assembly, system%largest, i)
       end do
       active = 0
+      system%indefinite = .false.
       if (allocated(system%contacts%interfaces)) active = sum(system%contacts%interfaces%active)
       if (system%factored) system%factored = system%reuse .and. active == system%active &
          .and. all(constraint%fixed .eqv. system%fixed) .and. all(constraint%air .eqv. system%air)
@@ -82,6 +85,7 @@ contains
       call lap(system%seconds(T_FACTORISATION), t0)
       system%factored = status == SOLVED
       if (status /= SOLVED) return
+      system%indefinite = system%sparse%indefinite
       system%fixed = constraint%fixed
       system%air = constraint%air
       system%active = active

@@ -92,9 +92,7 @@ contains
          ! Other measures may ask for more than a linear solution that is exact to a share of the forces.
          if (all(control%measure /= [BY_FORCES, BY_CHANGE])) system%factored = .false.
          call solve_step(dofs, pattern, constraint, assembly, linear_tolerance(control), rhs, system, dx, status)
-         if (status == SINGULAR .and. assembly%fallback < SOFT_POINTS) then
-            ! Where nothing is loose some points resist with nothing: once more with a stiffness for these.
-            assembly%fallback = assembly%fallback + 1
+         if (stiffer(status)) then
             with_tangent = .true.
             t0 = clock()
             cycle
@@ -113,6 +111,18 @@ contains
       assembly%slopes%known = control%carries_slopes
       call lap(system%seconds(T_REST), t0)
    contains
+      !> Whether the matrix is to be made once more, with a stiffness for points that have none: all such points where it
+      !> is singular, the open ones where it is indefinite. docs/theory/host.md section 5.3.
+      logical function stiffer(status)
+         integer, intent(in) :: status
+
+         stiffer = (status == SINGULAR .and. assembly%fallback < SOFT_POINTS) .or. &
+                   (system%indefinite .and. assembly%fallback == NO_FALLBACK)
+         if (.not. stiffer) return
+         assembly%fallback = assembly%fallback + 1
+         system%factored = .false.
+      end function stiffer
+
       !> Residual, with minus sign in rhs, and slopes; false if the material refuses.
       logical function pass(slopes)
          logical, intent(in) :: slopes
