@@ -76,9 +76,9 @@ contains
       text = ''
       if (run%assembly%replaced == 0) return
       e = maxloc(run%assembly%soft, dim=1)
-      text = ', also with the elastic stiffness of '//whole(run%assembly%replaced)//' points that have no stiffness '// &
-             'against some strain (tension cut-off or failure), most of them in element '//whole(e)//', '// &
-             point_of(model, e)
+      text = ', also with the elastic stiffness of '//whole(run%assembly%replaced)// &
+             ' points that have no stiffness against some strain (tension cut-off or failure), '// &
+             'most of them in element '//whole(e)//', '//point_of(model, e)
    end function soft_points
 
    !> Middle of an element [m].

@@ -42,8 +42,8 @@ module linear_system
 contains
    !> Solution to a tolerance, a small share of Newton's: by the factors of an earlier matrix as long as these serve and
    !> nothing has been fixed, released or come into contact, otherwise by new ones. docs/theory/host.md section 6.
-   !> status: SOLVED; SINGULAR or FAILED as of factorise; FAILED where numbers are not finite. system%indefinite is known
-   !> only of a matrix that was factorised.
+   !> status: SOLVED; SINGULAR or FAILED as of factorise; FAILED where numbers are not finite. system%indefinite is
+   !> known only of a matrix that was factorised.
    subroutine solve_step(dofs, pattern, constraint, assembly, tolerance, rhs, system, dx, status)
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(in) :: pattern

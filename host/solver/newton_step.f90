@@ -92,7 +92,7 @@ contains
          ! Other measures may ask for more than a linear solution that is exact to a share of the forces.
          if (all(control%measure /= [BY_FORCES, BY_CHANGE])) system%factored = .false.
          call solve_step(dofs, pattern, constraint, assembly, linear_tolerance(control), rhs, system, dx, status)
-         if (stiffer(status)) then
+         if (needs_stiffness(status, system, assembly%fallback)) then
             with_tangent = .true.
             t0 = clock()
             cycle
@@ -111,18 +111,6 @@ contains
       assembly%slopes%known = control%carries_slopes
       call lap(system%seconds(T_REST), t0)
    contains
-      !> Whether the matrix is to be made once more, with a stiffness for points that have none: all such points where it
-      !> is singular, the open ones where it is indefinite. docs/theory/host.md section 5.3.
-      logical function stiffer(status)
-         integer, intent(in) :: status
-
-         stiffer = (status == SINGULAR .and. assembly%fallback < SOFT_POINTS) .or. &
-                   (system%indefinite .and. assembly%fallback == NO_FALLBACK)
-         if (.not. stiffer) return
-         assembly%fallback = assembly%fallback + 1
-         system%factored = .false.
-      end function stiffer
-
       !> Residual, with minus sign in rhs, and slopes; false if the material refuses.
       logical function pass(slopes)
          logical, intent(in) :: slopes
@@ -146,6 +134,21 @@ contains
          call add_what_acts(dofs, pattern, scheme, constraint, old, new, slopes, touched, assembly, system, rhs, t0)
       end function pass
    end subroutine take_step
+
+   !> Whether the matrix is to be made once more, with a stiffness for points that have none: for the open ones where it
+   !> is singular or indefinite, for all where it stays singular; `fallback` is then of the next level.
+   !> docs/theory/host.md section 5.3.
+   logical function needs_stiffness(status, system, fallback) result(needs)
+      integer, intent(in) :: status   !< Of solve_step.
+      type(system_t), intent(inout) :: system
+      integer, intent(inout) :: fallback
+
+      needs = (status == SINGULAR .and. fallback < SOFT_POINTS) .or. &
+              (system%indefinite .and. fallback == NO_FALLBACK)
+      if (.not. needs) return
+      fallback = fallback + 1
+      system%factored = .false.
+   end function needs_stiffness
 
    !> What the passes of a step over the elements are asked for.
    pure subroutine begin_passes(domain, scheme, constraint, control, assembly)

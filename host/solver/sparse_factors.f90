@@ -104,8 +104,8 @@ contains
 
    !> Numeric factors of the matrix with these values; status SOLVED, SINGULAR or FAILED. SINGULAR: a pivot is 0 or the
    !> smallest is below 1e-13 of the largest (docs/theory/host.md section 6); FAILED: any other refusal of UMFPACK, as
-   !> by lack of memory. An odd number of negative eigenvalues makes sparse%indefinite true; a stable soil has none, also
-   !> with pore pressures (docs/theory/host.md section 5.3). To be called after analyse.
+   !> by lack of memory. An odd number of negative real eigenvalues makes sparse%indefinite true; a stable soil has
+   !> none, also with pore pressures (docs/theory/host.md section 5.3). To be called after analyse.
    subroutine factorise(sparse, values, status)
       type(sparse_t), intent(inout) :: sparse
       real(wp), intent(in) :: values(:)   !< (entries)
