@@ -8,7 +8,8 @@ module material_mud
    use library_tables, only: property_count, property_index, property_name, property_range, range_for, &
                              state_count, statev_index, &
                              statev_name, statev_unit
-   use material_point, only: material_t, response_t, report_t, remark_t, saturation_t, NAME_LENGTH
+   use material_point, only: material_t, response_t, report_t, remark_t, saturation_t, NAME_LENGTH, NO_PRESET, &
+                             WITHOUT_TANGENT
    use mud_interface, only: mud_report, mud_prepared_size, mud_prepare, mud_init_state, mud_update_prepared, &
                             mud_saturation, mud_save_increment, mud_message, MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, &
                             MUD_TANGENT_CONSISTENT
@@ -44,6 +45,7 @@ module material_mud
       procedure :: void_ratio
       procedure :: saturation
       procedure :: retention
+      procedure :: preset_saturation
       procedure :: save_update
       procedure :: elastic_tangent
       procedure :: remarks
@@ -130,6 +132,20 @@ contains
       self%tolerance = tolerance
    end subroutine integrate_to
 
+   subroutine preset_saturation(self, s_w, state, text)
+      class(mud_t), intent(in) :: self
+      real(wp), intent(in) :: s_w
+      real(wp), intent(inout) :: state(:)
+      character(*), intent(out) :: text
+
+      text = ''
+      if (self%saturation_is_state) then
+         state(self%place_s_w) = s_w
+      else
+         text = NO_PRESET
+      end if
+   end subroutine preset_saturation
+
    subroutine initial_state(self, stress, suction, void_ratio, state, text)
       class(mud_t), intent(in) :: self
       real(wp), intent(inout) :: stress(6)
@@ -137,13 +153,47 @@ contains
       real(wp), intent(inout) :: state(:)
       character(*), intent(out) :: text
       character(BUFFER) :: raw
+      real(wp) :: preset
 
       text = ''
       raw = c_null_char
+      preset = 0.0_wp
+      if (self%saturation_is_state) preset = state(self%place_s_w)
       state = 0.0_wp
-      if (mud_init_state(self%props, size(self%props), stress, suction, void_ratio, state, self%n_state, raw, BUFFER) &
-          /= 0) text = from_c(raw)
+      if (preset > 0.0_wp) then
+         call begin_between(self, preset, stress, suction, void_ratio, state, text)
+      else if (mud_init_state(self%props, size(self%props), stress, suction, void_ratio, state, self%n_state, raw, &
+                              BUFFER) /= 0) then
+         text = from_c(raw)
+      end if
    end subroutine initial_state
+
+   !> A start between the main curves: an update by nothing of a state that has presets alone.
+   subroutine begin_between(self, s_w, stress, suction, void_ratio, state, text)
+      class(mud_t), intent(in) :: self
+      real(wp), intent(in) :: s_w, suction, void_ratio
+      real(wp), intent(inout) :: stress(6), state(:)
+      character(*), intent(out) :: text
+      integer, parameter :: LONGEST_QUOTE = 400
+      real(wp) :: new_state(size(state), 1)
+      type(response_t) :: response
+      type(report_t) :: report
+
+      text = ''
+      new_state = 0.0_wp
+      state(self%place_e) = void_ratio
+      state(self%place_s_w) = s_w
+      call self%update(1, reshape(stress, [6, 1]), reshape(state, [size(state), 1]), &
+                       reshape(spread(0.0_wp, 1, 6), [6, 1]), [suction], [0.0_wp], WITHOUT_TANGENT, response, &
+                       new_state, report)
+      if (report%code /= 0) then
+         call self%message(report, text)
+         text = 'saturation of &initial must lie between the main curves at this suction: '//text(:LONGEST_QUOTE)
+         return
+      end if
+      stress = response%stress(:, 1)
+      state = new_state(:, 1)
+   end subroutine begin_between
 
    !> Point by point: the library's batch would start a team of threads for every element, and programs have theirs.
    subroutine update(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state, &

@@ -10,13 +10,16 @@ module material_point
    implicit none (type, external)
    private
    public :: material_t, material_slot_t, response_t, report_t, remark_t, saturation_t, state_index, swollen
-   public :: MOST_POINTS, MOST_GUARDS, NAME_LENGTH, DOUBT_LENGTH, WITHOUT_TANGENT, WITH_TANGENT
+   public :: MOST_POINTS, MOST_GUARDS, NAME_LENGTH, DOUBT_LENGTH, WITHOUT_TANGENT, WITH_TANGENT, NO_PRESET
 
    integer, parameter :: MOST_POINTS = 12   !< Of a batch: the quadrature points of an element.
    integer, parameter :: MOST_GUARDS = 16   !< Counters of a law beside the three that every law has.
    integer, parameter :: NAME_LENGTH = 24
    integer, parameter :: DOUBT_LENGTH = 500
    logical, parameter :: WITHOUT_TANGENT = .false., WITH_TANGENT = .true.
+   !> Where a law's degree of saturation has no history.
+   character(*), parameter :: NO_PRESET = 'the degree of saturation of this material follows from the suction: '// &
+      'leave saturation out of &initial, or give the material hysteresis = 1 (&mud)'
 
    !> What a batch of updates did.
    type :: report_t
@@ -72,6 +75,7 @@ module material_point
       procedure(of_state_i), deferred :: void_ratio
       procedure(of_state_i), deferred :: saturation
       procedure :: retention => retention_by_curve
+      procedure :: preset_saturation => cannot_preset
       procedure :: elastic_tangent => tangent_at_rest
       procedure :: save_update => cannot_save
       procedure :: remarks => no_remarks
@@ -155,6 +159,19 @@ contains
       sat = saturation_t()
       if (allocated(self%curve)) sat = self%curve%at(p_c, e)
    end function retention_by_curve
+
+   !> Sets the degree of saturation that initial_state is to start from, in a state that is still zero; `text` says why
+   !> not. Laws whose saturation has a history, and that can start from any, override it.
+   subroutine cannot_preset(self, s_w, state, text)
+      class(material_t), intent(in) :: self
+      real(wp), intent(in) :: s_w              !< [-]
+      real(wp), intent(inout) :: state(:)      !< n_state
+      character(*), intent(out) :: text
+
+      associate (u1 => self, u2 => s_w, u3 => state)
+      end associate
+      text = NO_PRESET
+   end subroutine cannot_preset
 
    !> d stress/d strain [kPa] of a point that would respond elastically: the stiffness to fall back on where the true
    !> one vanishes. Of laws that do not know it, that of an increment without strain; zero where the law refuses.

@@ -191,7 +191,7 @@ contains
       type(soil_t), intent(in) :: soil
       type(point_t), intent(out) :: start
       type(fault_t), intent(inout) :: fault
-      real(wp) :: p_eff, sigma_a, sigma_r, ratio, suction, stress(6)
+      real(wp) :: p_eff, sigma_a, sigma_r, ratio, suction, s_w, stress(6)
       character(:), allocatable :: name
       logical :: has_p, has_a, has_r, found
 
@@ -199,11 +199,13 @@ contains
       sigma_a = 0.0_wp
       sigma_r = 0.0_wp
       suction = 0.0_wp
+      s_w = 0.0_wp
       ratio = 0.0_wp
       call get_number(group, 'p_eff', p_eff, has_p)
       call get_number(group, 'sigma_a', sigma_a, has_a)
       call get_number(group, 'sigma_r', sigma_r, has_r)
       call get_number(group, 'suction', suction, found)
+      call get_number(group, 'saturation', s_w, found)
       call get_number(group, 'void_ratio', ratio, found)
       if (.not. found) then
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&initial lacks void_ratio ('// &
@@ -220,7 +222,7 @@ contains
       stress = 0.0_wp
       stress(AXIAL) = merge(p_eff, sigma_a, has_p)
       stress(RADIAL) = merge(p_eff, sigma_r, has_p)
-      call start_point(soil, stress, suction, ratio, start, fault)
+      call start_point(soil, stress, suction, ratio, s_w, start, fault)
       if (fault%code /= 0) then
          fault%text = at_line(group%file, group%line)//fault%text
       else if (mean_stress(start) > (1.0_wp + LIFTED)*sum(stress(1:3))/3.0_wp) then

@@ -29,6 +29,8 @@ module triax_keys
             'radial effective stress, with sigma_a', unit='kPa'), &
       key_t('initial', 'void_ratio', 'n', NONE, 0.01_wp, 5.0_wp, 'void ratio'), &
       key_t('initial', 'suction', 'n', NONE, 0.0_wp, 1.0e6_wp, 'p_a - p_w; default 0, saturated', unit='kPa'), &
+      key_t('initial', 'saturation', 'n', NONE, 1.0e-6_wp, 1.0_wp, &
+            'degree of saturation between the main curves, with hysteresis = 1; default: on the main drying curve'), &
       key_t('stage', 'control', 't', NONE, 0, 0, 'see the list of controls'), &
       key_t('stage', 'stress', 'w', 'net', 0, 0, &
             'stress that is prescribed, default net; both are the same without suction', 'net|effective'), &

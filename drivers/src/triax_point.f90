@@ -57,12 +57,13 @@ contains
    end subroutine make_soil
 
    !> A sample at rest under an effective stress. Compression positive. Fault EXIT_INPUT: the law refuses it, as its
-   !> sentence says.
-   subroutine start_point(soil, stress, suction, ratio, point, fault)
+   !> sentence says. Where s_w > 0 the law starts from that degree of saturation.
+   subroutine start_point(soil, stress, suction, ratio, s_w, point, fault)
       type(soil_t), intent(in) :: soil
       real(wp), intent(in) :: stress(6)   !< [unit of stress of the law]
       real(wp), intent(in) :: suction     !< [unit of stress of the law]
       real(wp), intent(in) :: ratio       !< Void ratio [-].
+      real(wp), intent(in) :: s_w         !< Degree of saturation [-]; 0: that of the law.
       type(point_t), intent(out) :: point
       type(fault_t), intent(inout) :: fault
       real(wp) :: tension(6)
@@ -70,7 +71,9 @@ contains
 
       allocate (point%state(soil%law%n_state, 1), source=0.0_wp)
       tension = -stress
-      call soil%law%initial_state(tension, suction, ratio, point%state(:, 1), text)
+      text = ''
+      if (s_w > 0.0_wp) call soil%law%preset_saturation(s_w, point%state(:, 1), text)
+      if (text == '') call soil%law%initial_state(tension, suction, ratio, point%state(:, 1), text)
       if (text /= '') then
          call raise(fault, EXIT_INPUT, trim(text))
          return

@@ -71,7 +71,8 @@ module idle_keys
       'scene initial_flow', 'region permeability', 'region drainage', 'fluids k_w', 'fluids rho_w', 'fluids eta_w', &
       'initial p_w', 'initial p_w_slope']
    character(*), parameter :: NEED_P_C(*) = [character(22) :: 'scene saturation_rate', 'region retention', &
-      'fluids k_a', 'fluids rho_a', 'fluids eta_a', 'fluids gas', 'fluids p_ref', 'initial p_c', 'initial p_c_slope']
+      'fluids k_a', 'fluids rho_a', 'fluids eta_a', 'fluids gas', 'fluids p_ref', 'initial p_c', 'initial p_c_slope', &
+      'initial saturation']
 contains
    !> Adds a warning for every key and every definition of a scene that has no effect.
    subroutine list_idle_keys(scene, warnings)

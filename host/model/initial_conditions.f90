@@ -71,13 +71,17 @@ contains
                   if (region%with_c) then
                      sat = region%law%retention(p_c, state%e(p))
                      state%s(p) = sat%s
+                     if (of_point(p)%saturation > 0.0_wp) state%s(p) = of_point(p)%saturation
                   end if
                   call set_stress(model, e, of_point(p), gp%x(2), state%s(p), state%stress(:, p))
                   if (present(tension)) call note_tension(region%law, state%stress(:, p), gp%x(2), tension)
                end associate
                associate (own => state%state(model%domain%before_state(e) + (g - 1)*region%law%n_state + 1: &
                                              model%domain%before_state(e) + g*region%law%n_state))
-                  call region%law%initial_state(state%stress(:, p), p_c, state%e(p), own, text)
+                  text = ''
+                  if (region%with_c .and. of_point(p)%saturation > 0.0_wp) &
+                     call region%law%preset_saturation(of_point(p)%saturation, own, text)
+                  if (text == '') call region%law%initial_state(state%stress(:, p), p_c, state%e(p), own, text)
                   if (text == '') then
                      state%e(p) = region%law%void_ratio(own)
                      if (region%with_c) state%s(p) = region%law%saturation(own)
@@ -170,6 +174,7 @@ contains
             at = z + (i - 0.5_wp)*step
             weight = weight + (1 - n)*region%rho_s
             if (region%with_c) sat = region%law%retention(suction(initial, at), region%void_ratio)
+            if (region%with_c .and. initial%saturation > 0.0_wp) sat%s = initial%saturation
             rho_a = m%fluids%rho_a
             p_a = water(initial, at) + suction(initial, at)
             if (m%fluids%ideal_gas) rho_a = rho_a*(1 + p_a/m%fluids%p_ref)

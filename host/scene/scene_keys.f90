@@ -94,6 +94,8 @@ module scene_keys
       key_t('initial', 'p_w_slope', 'n', '0', -BIG, BIG, 'change of p_w with z [kPa/m]'), &
       key_t('initial', 'p_c', 'n', '0', -BIG, BIG, 'suction at the datum [kPa]'), &
       key_t('initial', 'p_c_slope', 'n', '0', -BIG, BIG, 'change of p_c with z [kPa/m]'), &
+      key_t('initial', 'saturation', 'n', NONE, 1.0e-6_wp, 1, &
+            'S_w between the main curves, with hysteresis [-]; default: on the main drying curve'), &
       key_t('initial', 'datum', 'n', '0', -BIG, BIG, 'z of the datum [m]'), &
       key_t('initial', 'v_z', 'n', '0', -BIG, BIG, 'vertical velocity at the start [m/s]'), &
       key_t('initial', 'wave', 'n', '0', -BIG, BIG, 'v_z = wave sin(wave_number (z - datum)) at the start [m/s]'), &

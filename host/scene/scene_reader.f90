@@ -302,6 +302,7 @@ contains
       initial%p_w_slope = number_of(group, 'p_w_slope')
       initial%p_c = number_of(group, 'p_c')
       initial%p_c_slope = number_of(group, 'p_c_slope')
+      initial%saturation = number_of(group, 'saturation')
       initial%datum = number_of(group, 'datum')
       initial%v_z = number_of(group, 'v_z')
       initial%wave = number_of(group, 'wave')

@@ -75,6 +75,7 @@ module scene_types
    type, extends(scene_item_t) :: scene_initial_t
       character(LENGTH) :: group_name = ''
       real(wp) :: p_w = 0.0_wp, p_w_slope = 0.0_wp, p_c = 0.0_wp, p_c_slope = 0.0_wp   !< [kPa, kPa/m]
+      real(wp) :: saturation = 0.0_wp   !< Preset where the material has hysteresis [-]; 0: main drying curve.
       real(wp) :: datum = 0.0_wp                                                       !< [m]
       real(wp) :: v_z = 0.0_wp, wave = 0.0_wp, wave_number = 0.0_wp                    !< [m/s, m/s, 1/m]
       logical :: uniform = .false., geostatic = .false.

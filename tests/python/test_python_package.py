@@ -289,7 +289,7 @@ check(
 )
 check(
     "the library has what its page lists",
-    {"toyoura", "toyoura_fitted", "karlsruhe", "hostun_retention"} <= set(mud.materials()),
+    {"toyoura", "toyoura_fitted", "karlsruhe", "hostun_retention", "hostun_hysteresis"} <= set(mud.materials()),
 )
 for name in mud.materials():
     material = mud.Material(name)

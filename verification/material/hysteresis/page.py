@@ -20,8 +20,9 @@ PAGE = Page(
     seconds=6, quick=6, pictures=("hysteresis.png",))
 
 DATA = ROOT / "calibration/data/hostun_sand_retention_loops.csv"
-HOSTUN = {"P_a": 1.650, "n_x": 9.274, "m_x": 1.031, "P_aw": 0.756, "n_w": 2.900, "m_w": 1.699, "S_min": 0.0,
-          "S_max": 0.980, "b_d": 3.706, "b_w": 2.919, "Omega": 0.0}
+FITTED = CASES.parent / "materials/hostun_hysteresis.nml"
+HOSTUN = {name: parameters(FITTED)[name] for name in ("P_a", "n_x", "m_x", "P_aw", "n_w", "m_w", "S_min", "S_max", "b_d",
+                                                      "b_w", "Omega")}
 LOOP = slice(16, 37)   # points 17 to 37 of the laboratory: the scanning loop
 RK_STEPS = 400         # of the reference, between two rows
 
