@@ -197,6 +197,10 @@ contains
          return
       end if
       call difference(base, pilot, apart, influences)
+      if (size(influences) == 0) then
+         effect%why = 'no point and no force of a moving support changes: nothing to judge by'
+         return
+      end if
       influences%effect = row
       account%influences = [account%influences, influences]
       effect%influence = apart%share

@@ -27,6 +27,8 @@ module pilot_runs
    real(wp), parameter :: NO_ANSWER = 1.0e-4_wp       !< A smaller range, as share of its kind's largest, is no answer.
    real(wp), parameter :: NO_PRESSURE = 1.0e-3_wp     !< The same of a pressure, as a share of the stresses' change.
 
+   character(7), parameter :: FORCES(DISPLACEMENTS) = ['force_r', 'force_z']
+
    type :: stage_ends_t
       real(wp), allocatable :: times(:)               !< Ends of the steps, from the start of the stage [s].
    end type stage_ends_t
@@ -41,6 +43,8 @@ module pilot_runs
       logical :: has(FIELDS) = .false.
       character(72), allocatable :: names(:)          !< Of the points.
       real(wp), allocatable :: time(:), x(:, :, :)    !< [s], (FIELDS, points, times) [m, kPa]
+      character(72), allocatable :: supports(:)       !< Those that move, with the direction.
+      real(wp), allocatable :: force(:, :)            !< (supports, times) [kN]
       real(wp), allocatable :: indicators(:, :)       !< Largest, (EFFECTS, stages), see effect_monitor.
       type(stage_ends_t), allocatable :: ends(:)      !< Of the stages.
       real(wp), allocatable :: rho_inf(:)             !< Of the stages.
@@ -51,6 +55,7 @@ module pilot_runs
       type(state_t) :: first, before
       real(wp), allocatable :: mass(:)
       integer, allocatable :: nodes(:)
+      integer, allocatable :: moving(:)               !< Supports of which the force is kept, places in model%fixes.
       integer :: rows = 0
       integer :: most_steps = huge(1)
    contains
@@ -133,26 +138,64 @@ contains
       do i = 1, size(model%stages)
          allocate (self%seen%ends(i)%times(0))
       end do
-      allocate (self%seen%time(1), self%seen%x(FIELDS, size(self%nodes), 1))
-      call keep(self, run)
+      call find_moving(model, self%moving, self%seen%supports)
+      n = size(self%moving)
+      allocate (self%seen%time(1), self%seen%x(FIELDS, size(self%nodes), 1), self%seen%force(n, 1))
+      self%seen%force = 0.0_wp
+      call keep(self, model, run)
    end subroutine run_begins
 
-   !> A row of the histories.
-   subroutine keep(self, run)
+   !> Supports that move a body: where a displacement is prescribed, the answer is the force.
+   pure subroutine find_moving(model, moving, names)
+      type(model_t), intent(in) :: model
+      integer, allocatable, intent(out) :: moving(:)          !< Places in model%fixes.
+      character(72), allocatable, intent(out) :: names(:)     !< As the columns of reactions_STAGE.csv.
+      integer :: i
+
+      allocate (moving(0))
+      do i = 1, size(model%fixes)
+         associate (fix => model%fixes(i))
+            if (fix%field > DISPLACEMENTS .or. fix%acceleration) cycle
+            if (abs(fix%value) + abs(fix%value_slope) > 0.0_wp) moving = [moving, i]
+         end associate
+      end do
+      allocate (names(size(moving)))
+      do i = 1, size(moving)
+         associate (fix => model%fixes(moving(i)))
+            names(i) = trim(model%domain%mesh%groups(fix%group)%name)//'.'//trim(FORCES(fix%field))
+         end associate
+      end do
+   end subroutine find_moving
+
+   !> A row of the histories. Before the first step no force is known: it gets that of the first.
+   subroutine keep(self, model, run)
       class(watcher_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
-      real(wp), allocatable :: time(:), x(:, :, :)
+      real(wp), allocatable :: time(:), x(:, :, :), force(:, :)
+      integer :: i
 
       if (self%rows == size(self%seen%time)) then
-         allocate (time(2*self%rows), x(FIELDS, size(self%nodes), 2*self%rows))
+         allocate (time(2*self%rows), x(FIELDS, size(self%nodes), 2*self%rows), force(size(self%moving), 2*self%rows))
          time(:self%rows) = self%seen%time
          x(:, :, :self%rows) = self%seen%x
+         force(:, :self%rows) = self%seen%force
          call move_alloc(time, self%seen%time)
          call move_alloc(x, self%seen%x)
+         call move_alloc(force, self%seen%force)
       end if
       self%rows = self%rows + 1
       self%seen%time(self%rows) = run%state%time
       self%seen%x(:, :, self%rows) = run%state%x(:FIELDS, self%nodes)
+      if (self%rows == 1) return
+      do i = 1, size(self%moving)
+         associate (fix => model%fixes(self%moving(i)))
+            associate (at => model%dofs%of(fix%field, model%domain%mesh%groups(fix%group)%nodes))
+               self%seen%force(i, self%rows) = sum(run%system%reaction(pack(at, at > 0)))
+            end associate
+         end associate
+      end do
+      if (self%rows == 2) self%seen%force(:, 1) = self%seen%force(:, 2)
    end subroutine keep
 
    !> Keeps answers, indicators and the end of the step. Fault EXIT_INPUT: more than most_steps.
@@ -166,7 +209,7 @@ contains
       integer :: k
 
       checkpoint = .false.
-      call keep(self, run)
+      call keep(self, model, run)
       self%seen%stress = max(self%seen%stress, maxval(abs(run%state%stress - self%first%stress)))
       associate (s => report%stage)
          do k = 1, EFFECTS
@@ -204,6 +247,7 @@ contains
       self%seen%steps = run%steps
       self%seen%time = self%seen%time(:self%rows)
       self%seen%x = self%seen%x(:, :, :self%rows)
+      self%seen%force = self%seen%force(:, :self%rows)
    end subroutine run_ends
 
    !> Prints a text, unless the watcher is silent.
@@ -217,14 +261,15 @@ contains
 
    !> How far the answers of two runs of one mesh lie apart, as shares of the range of each answer in the first; a field
    !> that one of them lacks is measured by its change against the largest change of an effective stress.
-   !> docs/theory/host.md section 11. `worst` is that of the field and point that differ most; `influences` lists all
+   !> docs/theory/host.md section 11. The force of a support that
+   !> moves is an answer too. `worst` is the answer that differs most; `influences` lists all
    !> answers that either run has.
-   pure subroutine difference(one, two, worst, influences)
+   subroutine difference(one, two, worst, influences)
       type(pilot_t), intent(in) :: one, two
       type(difference_t), intent(out) :: worst
       type(influence_t), allocatable, intent(out), optional :: influences(:)   !< (answers)
-      type(influence_t) :: all(FIELDS*size(one%names))
-      real(wp) :: range(FIELDS, size(one%names)), largest(2), scale, apart, change
+      type(influence_t) :: all(FIELDS*size(one%names) + size(one%supports))
+      real(wp) :: range(FIELDS, size(one%names)), force_range(size(one%supports)), largest(2), scale, apart, change
       integer :: f, i, of, n
 
       n = 0
@@ -245,13 +290,26 @@ contains
             else
                cycle
             end if
-            apart = abs(change)/max(scale, tiny(1.0_wp)/epsilon(1.0_wp))
-            n = n + 1
-            all(n) = influence_t(0, trim(one%names(i))//'.'//trim(FIELD_NAMES(f)), scale, change, apart)
-            if (apart > worst%share) worst = difference_t(apart, change, all(n)%answer)
+            call compare(trim(one%names(i))//'.'//trim(FIELD_NAMES(f)))
          end do
       end do
+      force_range = maxval(one%force, dim=2) - minval(one%force, dim=2)
+      do i = 1, size(one%supports)
+         if (force_range(i) <= NO_ANSWER*maxval(force_range)) cycle
+         scale = force_range(i)
+         change = farthest(one%time, one%force(i, :), two%time, two%force(i, :))
+         call compare(trim(one%supports(i)))
+      end do
       if (present(influences)) influences = all(:n)
+   contains
+      subroutine compare(answer)
+         character(*), intent(in) :: answer
+
+         apart = abs(change)/max(scale, tiny(1.0_wp)/epsilon(1.0_wp))
+         n = n + 1
+         all(n) = influence_t(0, answer, scale, change, apart)
+         if (apart > worst%share) worst = difference_t(apart, change, all(n)%answer)
+      end subroutine compare
    end subroutine difference
 
    !> A pressure that is no unknown any more: its change; of suction that beyond zero alone.

@@ -31,20 +31,20 @@ contains
       character(12) :: cells(4)
       integer :: i
 
-      write (unit, '(a,t34,a,t40,a,t48,a,t61,a,t74,a,t83,a,t90,a)') 'effect', 'is', 'by', 'influence', 'change', &
+      write (unit, '(a,t34,a,t40,a,t48,a,t61,a,t74,a,t83,a,t91,a)') 'effect', 'is', 'by', 'influence', 'change', &
          'unknowns', 'time', 'answer; remark'
       do i = 1, size(table)
          associate (t => table(i))
             cells = '-'
             if (t%influence >= 0.0_wp) cells = [character(12) :: short(100*t%influence)//' %', short(t%change), &
                whole(t%unknowns), short(t%seconds)]
-            write (unit, '(a32,1x,a5,1x,a7,1x,2a13,a9,a7,a)') t%name, state_of(t, decided), by(t), cells(1:2), &
+            write (unit, '(a32,1x,a5,1x,a7,1x,2a13,a9,a7,1x,a)') t%name, state_of(t, decided), by(t), cells(1:2), &
                cells(3)(:8), cells(4)(:6), trim(t%answer)//trim(merge('; ', '  ', t%answer /= '' .and. t%why /= ''))// &
                ' '//trim(t%why)
          end associate
       end do
       write (unit, '(a)') 'Influence: largest change of an answer without the effect (with it where it is off), '// &
-         'share of the answer''s range; change in m or kPa;'
+         'share of the answer''s range; change in m, kPa or kN;'
       write (unit, '(a)') 'time: of the run without (with) it over that with all.'
    end subroutine print_effects
 

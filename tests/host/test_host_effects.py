@@ -163,8 +163,8 @@ said = start(WHOLE.replace("gravity = 9.81", "without = 'wind' gravity = 9.81"),
 words = max(re.findall(r"[\w|]+", said), key=len).split("|")
 check("the words of without are these effects", set(words) == set(KEYS), said)
 
-# A pulse between the steps of the pilots: they cannot see it, the watch does; `stop` ends the run.
-missed = dict(times="0, 5.012, 5.02, 5.028", values="0, 0, 1, 0", stage="duration = 10 dt = 0.004")
+# A pulse on a slow load, between the steps of the pilots: they cannot see it, the watch does; `stop` ends the run.
+missed = dict(times="0, 5, 5.012, 5.02, 5.028", values="0, 0.05, 0.05, 1, 0.05", stage="duration = 10 dt = 0.004")
 said, table = run(column("gravity = 0", **missed), "missed")
 row = table["inertia in load"]
 is_on("missed", table, "inertia in load", False)
@@ -220,6 +220,25 @@ check("wetted: hysteresis is not tried by --effects", table["hysteresis"]["influ
 _, table = run(wetted.replace("effects = 'auto'", "fields = 'u-p_w-p_c'"), "wetted_ledger", "--ablate", "--quiet")
 check("ablate: hysteresis was put in, and matters where soil is wetted", table["hysteresis"]["in_scene"] == "no"
       and float(table["hysteresis"]["influence"] or 0) > 0.01, table["hysteresis"])
+
+# Where the named points are prescribed, the forces of the supports that move are the answers; where nothing changes
+# there is nothing to judge by, and nothing goes.
+pushed = (
+    "&scene name = 'push' fields = 'u' effects = 'auto' /\n&mesh r = 0, 0.5, 2 r_cells = 2, 3 z = -2, 0 z_cells = 3 /\n"
+    "&mud name = 'sand' e_0 = 0.735 /\n&region material = 'sand' /\n"
+    "&initial stress = 'uniform' sigma = -20, -20, -20 /\n&history name = 'ramp' times = 0, 1 values = 0, 1 /\n"
+    "&stage name = 'push' analysis = 'static' duration = 1 dt = 0.1 /\n&fix group = 'left' field = 'u_r' /\n"
+    "&fix group = 'right' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' /\n"
+    "&fix group = 'top_1' field = 'u_z' value = -0.005 history = 'ramp' /\n"
+    "&load group = 'top_2' kind = 'pressure' value = 20 /\n&point name = 'plate' r = 0 z = 0 /\n")
+_, table = run(pushed, "pushed", "--effects")
+check("a prescribed plate: its force is the answer", table["lode"]["answer"] == "top_1.force_z"
+      and float(table["lode"]["influence"]) > 0.01, table["lode"])
+is_on("a prescribed plate", table, "lode", True, by=table["lode"]["by"])
+_, table = run(pushed.replace("value = -0.005 ", ""), "still", "--effects")
+check("a scene at rest: nothing to judge by", all(row["influence"] == "" for row in table.values()), table)
+check("a scene at rest: nothing goes", all((row["on"] == "on") == (row["in_scene"] == "yes")
+                                           for row in table.values()), table)
 
 # Mistakes.
 for what, text, words in [("no analysis", column("gravity = 0").replace("effects = 'auto'", ""),
