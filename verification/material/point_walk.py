@@ -3,6 +3,8 @@
 import concurrent.futures
 import dataclasses
 import pathlib
+import resource
+import signal
 import subprocess
 import sys
 
@@ -59,6 +61,10 @@ class Path:
         return self
 
 
+COLUMNS = ("label", "s11", "s22", "s33", "s12", "s13", "s23", "e11", "e22", "e33", "g12", "g13", "g23", "e", "suction", "rates", "substeps", "resets", "cuts",
+           "iterations")
+
+
 class Row(dict):
     """A state: stress, strain (lists), e, suction, counters, label, failed."""
 
@@ -85,9 +91,10 @@ class Row(dict):
 
 
 class Walker:
-    """Runs paths with the program of a build, at most `jobs` at a time."""
+    """Runs paths with the program of a build, at most `jobs` at a time. A path that takes more than `seconds` of the processor has failed."""
 
-    def __init__(self, build=ROOT / "build/release", jobs=2):
+    def __init__(self, build=ROOT / "build/release", jobs=2, seconds=None):
+        self.seconds = seconds
         self.program = pathlib.Path(build) / "verification/material/memory_rules/mud_walk"
         if not self.program.exists():
             raise SystemExit(f"there is no {self.program}: build the target mud_walk first")
@@ -108,7 +115,11 @@ class Walker:
 
     def _run(self, path):
         text = "\n".join(["case walk", *path.lines]) + "\n"
-        done = subprocess.run([self.program], input=text, capture_output=True, text=True, check=False)
+        limited = self.seconds and (lambda: resource.setrlimit(resource.RLIMIT_CPU, (self.seconds, self.seconds + 5)))
+        done = subprocess.run([self.program], input=text, capture_output=True, text=True, check=False, preexec_fn=limited)
+        if self.seconds and done.returncode in (-signal.SIGXCPU, 128 + signal.SIGXCPU, -signal.SIGKILL):
+            rows = [Row(cells) for cells in tables.parsed(done.stdout.rpartition("\n")[0])] if "\n" in done.stdout else []
+            return [*rows, Row({**dict.fromkeys(COLUMNS, "0"), "status": "1"})]
         if done.returncode != 0:
             raise SystemExit(f"mud_walk: {done.stdout.splitlines()[-1:]} {done.stderr}")
         return [Row(cells) for cells in tables.parsed(done.stdout)]

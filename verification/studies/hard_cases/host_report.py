@@ -8,11 +8,10 @@ import host_files
 import host_runs
 import tables
 from catalogue import CONTINUITY, SETTINGS
-from report import number
+from report import largest_change, number
 
 HERE = pathlib.Path(__file__).resolve().parent
 CASES = host_cases.CASES + host_files.CASES
-NUDGED = ("default",)   # the others are not asked for their continuity
 # With the defaults alone, in a few seconds together.
 QUICK = ("chatter", "permeability 1e-8 to 1e-14 m2, quadratic pressures", "permeability 1e-8 to 1e-14 m2, linear pressures", "impact at suction 100 kPa",
          "slivers, distorted and graded meshes", "kill and restart at every tenth step", "damaged checkpoint", "damaged mesh")
@@ -28,7 +27,7 @@ def outcome(case, setting, quick=False):
         folder = pathlib.Path(folder)
         if isinstance(case, host_files.FileCase):
             return host_files.evaluate(case, setting, folder, quick)
-        return host_runs.evaluate(case, setting, folder, nudge=setting.name in NUDGED and not quick)
+        return host_runs.evaluate(case, setting, folder, nudge=not quick)
 
 
 def committed():
@@ -65,6 +64,17 @@ def setting_table(results):
     shown = [case for case in CASES if len(settings_of(case)) > 2]
     names = [setting.name for setting in SETTINGS]
     return tables.markdown(("case", *names), [(case.name, *(verdict(results.get((case.name, name))) for name in names)) for case in shown])
+
+
+def summary(results):
+    """Of the cases that a memory rule, a scheme or a tolerance can change."""
+    asked = [case for case in CASES if len(settings_of(case)) > 2]
+    lines = []
+    for setting in SETTINGS:
+        rows = [results[case.name, setting.name] for case in asked if (case.name, setting.name) in results]
+        lines.append((setting.name, len(rows), sum(row["passed"] == "True" for row in rows), sum(row["finished"] != "True" for row in rows), largest_change(rows),
+                      sum(int(row["iterations"]) for row in rows), sum(int(row["cuts"]) for row in rows)))
+    return tables.markdown(("setting", "cases", "passed", "stopped with a message", "largest change after a nudge [%]", "iterations", "cuts"), lines)
 
 
 def limits():

@@ -37,12 +37,13 @@ def block(first):
 def main(scenes):
     path = results.folder(__file__) / "nonsense.csv"
     rows = [tuple(row.values()) for row in tables.rows(path)] if path.exists() else []
+    comment = tables.comments(path) if rows else ("made by nonsense_scenes.py; scenes of each block by what became of them",)
     commit = subprocess.run(["git", "describe", "--always"], cwd=HERE, capture_output=True, text=True).stdout.strip() or "unknown"
     start, begun = time.monotonic(), len(rows)
     for first in range(BLOCK * begun, scenes, BLOCK):
         failed, counts = block(first)
         rows.append((first, BLOCK, failed, *(counts.get(kind, 0) for kind in KINDS), commit))
-        tables.write(path, NAMES, rows, ("made by nonsense_scenes.py; scenes of each block by what became of them",))
+        tables.write(path, NAMES, rows, comment)
         left = (time.monotonic() - start) / (len(rows) - begun) * (scenes / BLOCK - len(rows))
         print(f"{first + BLOCK} of {scenes} scenes, {sum(int(row[2]) for row in rows)} failed; about {left / 60:.0f} min left", flush=True)
 

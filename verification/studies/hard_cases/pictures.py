@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""A picture a case: the stress path of every case at the point, what the runs of every case of the host did."""
+"""A picture a case: the stress path of every case at the point, what the runs of every case of the host did; and the table of all settings."""
 import copy
 import math
 
+import host_files
 import host_runs
 import numpy as np
 from catalogue import SETTINGS
@@ -119,28 +120,59 @@ def label_number(label):
 
 TIME, U_Z, P_W, Z, SETTLED, FORCE = "t [ms]", "u_z of the plate's centre [mm]", "p_w under the centre [kPa]", "z [m]", "settlement [cm]", "force [kN]"
 HOST_VIEWS = {   # claim, across, up
-    "chatter": ("chatter makes no energy, by any step", TIME, U_Z),
-    "lift-off and re-impact": ("thrown off, and back: no energy made", TIME, U_Z),
-    "impact on undrained soil, quadratic pressures": ("pressures of one order: the answer hangs on k", TIME, P_W),
-    "impact on undrained soil, linear pressures": ("an order below: it does not", TIME, P_W),
-    "impact at suction 100 kPa": ("suction 100 kPa without the remedy", TIME, U_Z),
-    "steps of 3e-6 to 3e-4 s": ("a tenth to ten times the paper's step", TIME, U_Z),
-    "steps of 3e-3 s": ("a hundred times: stops at the first step", TIME, U_Z),
-    "steps of 3e-3 s, energy alarm at 10 %": ("a hundred times, let go: what it would answer", TIME, U_Z),
-    "penalty 1e5 to 1e10 kN/m3": ("from 1e8 on the penalty is not seen", TIME, U_Z),
-    "permeability 1e-8 to 1e-14 m2, quadratic pressures": ("pressures of one order: from node to node", "p_w [kPa]", Z),
-    "permeability 1e-8 to 1e-14 m2, linear pressures": ("an order below: flat below the thin layer", "p_w [kPa]", Z),
+    "chatter": ("chatter creates no energy at any step size", TIME, U_Z),
+    "lift-off and re-impact": ("lift-off and re-impact create no energy", TIME, U_Z),
+    "impact on undrained soil, quadratic pressures": ("quadratic pressures: they depend on k", TIME, P_W),
+    "impact on undrained soil, linear pressures": ("linear pressures: they do not depend on k", TIME, P_W),
+    "impact at suction 100 kPa": ("suction 100 kPa without the paper's remedy", TIME, U_Z),
+    "steps of 3e-6 to 3e-4 s": ("0.1 to 10 times the paper's step", TIME, U_Z),
+    "steps of 3e-3 s": ("100 times: stops after the first step", TIME, U_Z),
+    "steps of 3e-3 s, energy alarm at 10 %": ("100 times, energy alarm at 10 %", TIME, U_Z),
+    "penalty 1e5 to 1e10 kN/m3": ("from 1e8 kN/m3 on the penalty has no effect", TIME, U_Z),
+    "permeability 1e-8 to 1e-14 m2, quadratic pressures": ("quadratic pressures oscillate from node to node", "p_w [kPa]", Z),
+    "permeability 1e-8 to 1e-14 m2, linear pressures": ("linear pressures: uniform below the thin layer", "p_w [kPa]", Z),
     "footing on loose sand": ("loose sand: the load levels out", SETTLED, FORCE),
-    "footing on dense sand": ("dense sand: beyond the peak", SETTLED, FORCE),
-    "footing on undrained sand": ("no drainage: it dilates and gains", SETTLED, FORCE),
+    "footing on dense sand": ("dense sand: the load passes its peak", SETTLED, FORCE),
+    "footing on undrained sand": ("undrained sand: it dilates, the force grows", SETTLED, FORCE),
     "footing at suction 100 kPa": ("suction 100 kPa: close to failure", SETTLED, FORCE),
-    "slivers, distorted and graded meshes": ("four meshes, one stress to 1e-9 %", "", ""),
+    "slivers, distorted and graded meshes": ("four meshes: the same stress to 1e-9 %", "", ""),
 }
 
 
-def host_sheet(cases, folder, plt):
-    """One panel a case, a line a run, with the defaults."""
-    figure, axes = sheet(plt, len(cases), columns=4, size=2.8, high=0.85)
+FILE_CLAIMS = {
+    "kill and restart at every tenth step": "killed at every tenth step: the same files",
+    "full disk, by the size of a file": "a file cannot grow: message, nothing lost",
+    "full disk, by a small file system": "small file system: message, nothing lost",
+    "damaged checkpoint": "damaged checkpoint: refused",
+    "damaged mesh": "damaged mesh: refused, or another mesh",
+    "scenes of nonsense": "scenes of nonsense: refused, read or run",
+}
+
+
+def draw_record(axis, case, record):
+    """What became of every try, by where the damage was; of scenes of nonsense the share of each answer, by blocks."""
+    if case.name == "scenes of nonsense":
+        for kind in host_files.KINDS:
+            axis.plot([at for at, answer, _ in record if answer == kind], [share for _, answer, share in record if answer == kind], lw=0.7, label=kind)
+        axis.set_ylabel("share of a block of scenes [%]", fontsize=6, labelpad=1)
+        axis.legend(fontsize=4.5, frameon=False)
+    else:
+        answers = sorted({answer for _, answer in record} | {host_files.WRONG})
+        for row, answer in enumerate(answers):
+            places = [at for at, found in record if found == answer]
+            axis.plot(places, [row] * len(places), "|" if len(record) > 50 else "o", ms=5, color="#c8553d" if answer == host_files.WRONG else "#0b3c6f")
+        axis.set_yticks(range(len(answers)), ["wrong: none" if answer == host_files.WRONG and all(found != answer for _, found in record) else answer for answer in answers],
+                        fontsize=4.5)
+        axis.set_ylim(-0.6, len(answers) - 0.4)
+    axis.set_xlabel(case.place, fontsize=6, labelpad=1)
+    axis.set_title(FILE_CLAIMS[case.name], fontsize=7, pad=3)
+
+
+def host_sheet(cases, records, folder, plt):
+    """One panel a case, with the defaults: a line a run, or of a case of files what became of its tries (`records`: by its name)."""
+    figure, axes = sheet(plt, len(cases) + len(host_files.CASES), columns=4, size=2.8, high=0.85)
+    for axis, case in zip(axes[len(cases):], host_files.CASES):
+        draw_record(axis, case, records[case.name])
     for number, (axis, case) in enumerate(zip(axes, cases)):
         for label, run in host_runs.run_all(case.scenes(SETTINGS[0]), folder / str(number)).items():
             if run.folder.exists() and run.code in (0, 18):
@@ -152,4 +184,29 @@ def host_sheet(cases, folder, plt):
         if axis.get_legend_handles_labels()[1]:
             axis.legend(fontsize=4.5, frameon=False)
     figure.tight_layout(pad=0.5, w_pad=0.5, h_pad=0.7)
+    return figure
+
+
+COLOURS = {"passed": (0.75, 0.88, 0.75), "failed": (0.96, 0.72, 0.55), "ended": (0.75, 0.25, 0.25), "none": (0.93, 0.93, 0.93)}
+
+
+def setting_sheet(cases, results, plt):
+    """Cases down, settings across: passed, missed a criterion, did not end or was stopped, makes no difference."""
+    def colour(row):
+        return COLOURS["none" if not row else "ended" if row["finished"] != "True" else "passed" if row["passed"] == "True" else "failed"]
+    figure, axes = plt.subplots(figsize=(9.5, 0.2 * len(cases) + 1.6))
+    axes.imshow([[colour(results.get((case.name, setting.name))) for setting in SETTINGS] for case in cases], aspect="auto")
+    axes.grid(False)
+    axes.tick_params(length=0)
+    axes.set_yticks(range(len(cases)), [case.name for case in cases], fontsize=7)
+    axes.set_xticks(range(len(SETTINGS)), [setting.name for setting in SETTINGS], fontsize=7, rotation=30, ha="left")
+    axes.xaxis.tick_top()
+    axes.set_xticks([i - 0.5 for i in range(1, len(SETTINGS))], minor=True)
+    axes.set_yticks([i - 0.5 for i in range(1, len(cases))], minor=True)
+    axes.grid(which="minor", color="white", lw=0.8)
+    axes.tick_params(which="minor", length=0)
+    handles = [plt.Rectangle((0, 0), 1, 1, color=shade) for shade in COLOURS.values()]
+    axes.legend(handles, ("passed", "misses a criterion", "does not come to its end, or is stopped with a message", "the setting makes no difference"),
+                loc="upper center", bbox_to_anchor=(0.5, -0.005), ncol=4, fontsize=7, frameon=False)
+    figure.tight_layout()
     return figure

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Tables and pictures of the committed results."""
+import math
 import pathlib
 
 import cases_limits
@@ -62,27 +63,14 @@ def summary(results):
     for setting in SETTINGS:
         rows = [results[case.name, setting.name] for case in CASES if (case.name, setting.name) in results]
         lines.append((setting.name, len(rows), sum(row["passed"] == "True" for row in rows), sum(row["finished"] != "True" for row in rows),
-                      sum(int(row["rates"]) for row in rows), sum(int(row["cuts"]) for row in rows)))
-    return tables.markdown(("setting", "cases", "passed", "did not end", "rates", "cuts"), lines)
+                      largest_change(rows), sum(int(row["rates"]) for row in rows), sum(int(row["cuts"]) for row in rows)))
+    return tables.markdown(("setting", "cases", "passed", "did not end", "largest change after a nudge [%]", "rates", "cuts"), lines)
 
 
-def picture(results, plt):
-    """Cases down, settings across: passed, failed its criterion, did not end."""
-    colours = {"passed": (0.75, 0.88, 0.75), "failed": (0.96, 0.72, 0.55), "ended": (0.75, 0.25, 0.25), "none": (0.93, 0.93, 0.93)}
-    figure, axes = plt.subplots(figsize=(9.5, 0.2 * len(CASES) + 1.6))
-    image = []
-    for case in CASES:
-        line = []
-        for setting in SETTINGS:
-            row = results.get((case.name, setting.name))
-            line.append(colours["none" if not row else "ended" if row["finished"] != "True" else "passed" if row["passed"] == "True" else "failed"])
-        image.append(line)
-    axes.imshow(image, aspect="auto")
-    axes.set_yticks(range(len(CASES)), [case.name for case in CASES], fontsize=7)
-    axes.set_xticks(range(len(SETTINGS)), [setting.name for setting in SETTINGS], fontsize=7, rotation=30, ha="left")
-    axes.xaxis.tick_top()
-    handles = [plt.Rectangle((0, 0), 1, 1, color=colours[key]) for key in ("passed", "failed", "ended")]
-    axes.legend(handles, ("passed", "misses a criterion", "does not come to its end"), loc="upper center", bbox_to_anchor=(0.5, -0.01), ncol=3,
-                fontsize=7, frameon=False)
-    figure.tight_layout()
-    return figure
+def largest_change(rows):
+    """Of all cases that came to their end and were nudged [%], and which case it is."""
+    asked = [(float(row["continuity"]), row["case"]) for row in rows if row["finished"] == "True" and not math.isnan(float(row["continuity"]))]
+    if not asked:
+        return ""
+    value, case = max(asked)
+    return f"{number(value)} ({case})"

@@ -23,11 +23,14 @@ from tools import results  # noqa: E402
 HOST_ORDER = sorted(SETTINGS, key=lambda setting: {"default": 0, "paper's remedy": 1, "scheme 3": 3, "tight": 4}.get(setting.name, 2))
 
 
+SECONDS = 30   # of the processor, for one path; with the defaults the longest takes about three
+
+
 class Remembering(Walker):
-    """Runs a path once: the settings of one rule share the run with the tight tolerance."""
+    """Runs a path once: the settings of one rule share the run with the tight tolerance. One that takes too long did not end."""
 
     def __init__(self, build):
-        super().__init__(build, jobs=1)
+        super().__init__(build, jobs=1, seconds=SECONDS)
         self.known = {}
 
     def start(self, path):
