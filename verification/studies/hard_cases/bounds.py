@@ -18,7 +18,7 @@ def beyond(row):
     deviator = [s[0] - p, s[1] - p, s[2] - p, *s[3:]]
     norm = math.sqrt(sum(d * d for d in deviator[:3]) + 2 * sum(d * d for d in deviator[3:]))
     low = max(-100.0, 100 * (1 - p / P_MIN))
-    if norm <= 1e-12 * p:
+    if p <= 0 or norm <= 1e-12 * p:   # without the guards p' may be negative
         return low
     a, b, c, ab, ac, bc = (d / norm for d in deviator)
     third = 3 * math.sqrt(6) * (a * (b * c - bc * bc) - ab * (ab * c - ac * bc) + ac * (ab * bc - b * ac))
