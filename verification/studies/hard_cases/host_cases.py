@@ -97,7 +97,8 @@ def stresses(runs):
 
 def footing_case(name, hard, **soil):
     return HostCase(name, FAILURE, hard, "force at a settlement of 25 cm by 10 steps against 20 [%]", 5,
-                    lambda setting: {"coarse": footing(setting, steps=10, **soil), "fine": footing(setting, steps=20, **soil)}, half_steps, forces)
+                    lambda setting: {"coarse": footing(setting, steps=10, **soil), "fine": footing(setting, steps=20, **soil)}, half_steps, forces,
+                    nudged=("coarse",))
 
 
 def undrained(pressures, hard, **more):
@@ -122,8 +123,7 @@ CASES = (
              "settlement after 1.5 ms by up to ten times the paper's step against a tenth of it [%]", 5,
              lambda s: {str(x): impact(s, dt=3e-5 * x, duration=0.0015) for x in STEPS}, spread(("1", "10"), "0.1"), settlements),
     HostCase("steps of 3e-3 s", CONTACT, "a hundred times the paper's step: five steps to the peak of the load", CREATED, 1,
-             lambda s: {"": impact(s, dt=3e-3)}, created, settlements, limit="the error of the energy balance in the first step is more than a hundredth of "
-             "the little work done by then; the run stops with an error message. The next case shows the result with a larger limit"),
+             lambda s: {"": impact(s, dt=3e-3)}, created, settlements),
     HostCase("steps of 3e-3 s, energy alarm at 10 %", CONTACT, "as before, with `created_energy = 0.1`", "settlement against that by steps of 3e-4 s [%]", 10,
              lambda s: {"3e-4": impact(s, duration=0.021), "3e-3": tolerant(impact(s, dt=3e-3, duration=0.021))}, spread(("3e-3",), "3e-4"), settlements),
     HostCase("penalty 1e5 to 1e10 kN/m3", CONTACT, "a soft penalty is compliant, a stiff one makes the matrix ill-conditioned and oscillates",

@@ -99,6 +99,6 @@ def nonsense():
     path = HERE / "nonsense.csv"
     rows = tables.rows(path) if path.exists() else []
     total = {key: sum(int(row[key]) for row in rows) for key in ("scenes", "failed", "refused", "read", "ran", "ended early", "still running")}
-    return (f"{total['scenes']:,} scenes of nonsense so far: {total['refused']:,} refused with a message, {total['read']:,} read and not run, "
+    return (f"{total['scenes']:,} scenes of nonsense: {total['refused']:,} refused with a message, {total['read']:,} read and not run, "
             f"{total['ran']:,} ran to their end, {total['ended early']:,} ended early with a message, {total['still running']:,} still ran after two seconds (after one second from scene 16,000 on), "
             f"{total['failed']:,} crashed, hung or ended without a message.\n")

@@ -68,6 +68,7 @@ class HostCase:
     judge: Callable
     answer: Callable = None
     settings: tuple = SETTINGS
+    nudged: tuple = ()     # labels of the scenes that are nudged; none: all
     limit: str = ""        # why it is not passed with the defaults
     remedy: str = ""       # setting or key that passes it
     picture: Callable = None
@@ -160,10 +161,11 @@ def evaluate(case, setting, folder, nudge=True):
     value = case.judge(runs) if done else math.inf
     continuity = math.nan
     if nudge and done and case.answer:
-        other = run_all(case.scenes(setting.nudged()), folder / "nudged")
+        nudged = {label: scene for label, scene in case.scenes(setting.nudged()).items() if not case.nudged or label in case.nudged}
+        other = run_all(nudged, folder / "nudged")
         continuity = math.inf
         if all(r.code == 0 for r in other.values()):
-            a, b = case.answer(runs), case.answer(other)
+            a, b = case.answer({label: runs[label] for label in other}), case.answer(other)
             continuity = 100 * max(abs(x - y) / max(abs(x), 1e-300) for x, y in zip(a, b))
     good = done and value <= case.allowed and not continuity > CONTINUITY
     return HostOutcome(case.name, setting.name, done, value, case.allowed, continuity, sum(r.counted("iterations") for r in runs.values()),
