@@ -14,5 +14,5 @@ module exit_codes
    integer, parameter :: EXIT_MATERIAL = 15     !< The material refuses the smallest step.
    integer, parameter :: EXIT_SOLVER = 16       !< The linear solver ran out of memory.
    integer, parameter :: EXIT_ENERGY = 18       !< The run created energy (17 is EXIT_RESTART of `faults`).
-   integer, parameter :: EXIT_EFFECT = 19       !< An effect that pilots let go shows itself.
+   integer, parameter :: EXIT_EFFECT = 19       !< An effect that the pilots removed exceeds its limit.
 end module exit_codes

@@ -79,7 +79,7 @@ contains
          call put(file, 's_rate', s%s_rate, '1/s', 'its rate')
       end associate
       if (allocated(model%effects)) call put(file, 'monitor', [run%monitor%table%largest, run%monitor%table%crossed], &
-         '-', 'indicators of the effects that pilots let go, when they passed their limits [s]')
+         '-', 'indicators of the effects that the pilots removed, times at which they passed their limits [s]')
       if (allocated(run%control%x_first)) call put(file, 'control', numbers_of(run%control), '-', &
          'control of the time step: see control_state')
       if (allocated(run%constraint%dashpots)) call put(file, 'offset', run%constraint%offset, 'kN, m3/s', &

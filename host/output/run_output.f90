@@ -139,7 +139,7 @@ contains
       call write_effects(self%folder, run%monitor%table, last)
       if (fault%code == 0) fault = last
       if (self%quiet .or. .not. any(run%monitor%table%crossed > NEVER)) return
-      write (output_unit, '(a)') 'Effects that pilots let go and that showed themselves in this run:'
+      write (output_unit, '(a)') 'Effects that the pilots removed and that exceeded their limits in this run:'
       do i = 1, size(run%monitor%table)
          if (run%monitor%table(i)%crossed > NEVER) &
             write (output_unit, '(a)') '   '//warning_of(run%monitor%table(i))

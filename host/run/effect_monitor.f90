@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Monitors, after every accepted step, what the pilots could not see: an indicator of every effect that they let go,
+!> Monitors, after every accepted step, what the pilots could not see: an indicator of every effect that they removed,
 !> against the largest value that it had in the pilot without the effect. A few sums over nodes and points; nothing is
 !> asked of the material. docs/theory/host.md section 11.
 module effect_monitor

@@ -66,7 +66,7 @@ run(scenes.CANTILEVER, "beam")
 tip = tables.numbers(work / "beam/histories.csv")[-1]["tip.u_z"]
 check("beam: its tip, as by the theory of slender beams to 2 %", abs(-tip / deflection - 1) < 0.02, (tip, deflection))
 
-# What auto chooses is the scene that a user would have written, byte for byte; what it lets go is told.
+# What auto chooses is the scene that a user would have written, byte for byte; what it removes is printed.
 wet = dict(times="0, 1000", laws=WATER.format(k="1e-10") + "\n" + CURVE, region=SOAKED,
            more=DRAINED + "\n&fix group = 'top' field = 'p_a' /")
 said, table = run(column("gravity = 0", "duration = 1000 dt = 10", **wet), "wet")
