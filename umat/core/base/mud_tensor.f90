@@ -7,11 +7,21 @@ module mud_tensor
    implicit none (type, external)
    private
    public :: IDENTITY, SHEAR_WEIGHT, ddot, trace, deviator, norm, square, is_finite, all_finite, outer_add, rotate, &
-             LANES, contractions
+             LANES, contractions, tensors_t, contracted, traces, ZERO_TENSORS, UNIT_STRAINS, ANY_TENSORS
 
    !> Directions of a derivative that are worked on side by side: six strains, the suction and an idle one, for an even
    !> number the compiler takes two at a time.
    integer, parameter :: LANES = 8
+   integer, parameter :: ZERO_TENSORS = 0   !< All are zero.
+   integer, parameter :: UNIT_STRAINS = 1   !< The first six are unit engineering strains, the others zero.
+   integer, parameter :: ANY_TENSORS = 2    !< Nothing is known of them.
+
+   !> Tensors side by side, such as the changes of a strain along some directions, and what spares a contraction.
+   type :: tensors_t
+      real(wp) :: of(LANES, 6)
+      integer :: kind
+   end type tensors_t
+
    real(wp), parameter :: IDENTITY(6) = [1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
    !> How often a stored component stands in the 3 x 3 matrix.
    real(wp), parameter :: SHEAR_WEIGHT(6) = [1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp, 2.0_wp, 2.0_wp]
@@ -35,6 +45,39 @@ contains
       c = a(1)*tensors(:, 1) + a(2)*tensors(:, 2) + a(3)*tensors(:, 3) &
           + (2.0_wp*a(4))*tensors(:, 4) + (2.0_wp*a(5))*tensors(:, 5) + (2.0_wp*a(6))*tensors(:, 6)
    end function contractions
+
+   !> The same of tensors of which something is known. In the unit of the tensors times that of a.
+   pure function contracted(tensors, a) result(c)
+      type(tensors_t), intent(in) :: tensors
+      real(wp), intent(in) :: a(6)
+      real(wp) :: c(LANES)
+
+      select case (tensors%kind)
+      case (ZERO_TENSORS)
+         c = 0.0_wp
+      case (UNIT_STRAINS)
+         c(1:6) = a
+         c(7:) = 0.0_wp
+      case default
+         c = contractions(tensors%of, a)
+      end select
+   end function contracted
+
+   !> Traces of tensors side by side, in their unit.
+   pure function traces(tensors) result(c)
+      type(tensors_t), intent(in) :: tensors
+      real(wp) :: c(LANES)
+
+      select case (tensors%kind)
+      case (ZERO_TENSORS)
+         c = 0.0_wp
+      case (UNIT_STRAINS)
+         c(1:3) = 1.0_wp
+         c(4:) = 0.0_wp
+      case default
+         c = tensors%of(:, 1) + tensors%of(:, 2) + tensors%of(:, 3)
+      end select
+   end function traces
 
    !> Trace of a, in its unit.
    pure real(wp) function trace(a)

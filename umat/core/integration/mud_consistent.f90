@@ -6,10 +6,10 @@
 !> (f_before - f_after) (x) dt/d increment; docs/theory/integration.md section 5.
 module mud_consistent
    use mud_kinds, only: wp
+   use mud_loading, only: loading_t
    use mud_cutoff, only: slide, change_of_slide
    use mud_driving, only: driving_t, whole_increment, DIRECTIONS, AT_REST
-   use mud_increment, only: increment_t, void_ratio_at, suction_at, loading_strain_of, changes_of_loading_strain, &
-      turn_of_loading_strain, turning_t, turning_of, has_aside, NY
+   use mud_increment, only: increment_t, void_ratio_at, suction_at, changes_of_loading_strain, turning_t, turning_of, NY
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY
    use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, MAX_INTERRUPTED
@@ -18,7 +18,7 @@ module mud_consistent
    use mud_sensitivity, only: changes_t, linearised_t, linearise, changes_of_rate
    use mud_state, only: memory_t
    use mud_substep, only: MAX_STAGES, stage_point, solution
-   use mud_tensor, only: IDENTITY, trace, deviator
+   use mud_tensor, only: IDENTITY, trace, deviator, tensors_t, ZERO_TENSORS, ANY_TENSORS
    use mud_trial, only: trial_t, MODE_HELD
    implicit none (type, external)
    private
@@ -30,11 +30,14 @@ module mud_consistent
    integer, parameter :: JUMP_RETURN = 2     !< An interrupted process goes on.
    integer, parameter :: JUMP_NEW = 3        !< The point leaves the tension cut-off: no past.
 
+   real(wp), parameter :: WHOLE = 1.0_wp - 1.0e-12_wp   !< A phase that ends beyond is the last, but for rounding [-].
+   integer, parameter :: STRESSES = 6*DIRECTIONS   !< That many derivatives are those of the stress: they stand first.
+
    !> Derivatives along the directions of driving_t.
    type :: sensitivity_t
       logical :: at_rest                     !< the state does not depend on the increment yet: y, r_in, shift are zero
       real(wp) :: y(DIRECTIONS, NY)          !< of sigma', z and the plastic shear of the present process
-      real(wp) :: r_in(DIRECTIONS, 6)        !< of the memory
+      type(tensors_t) :: r_in                !< of the memory
       real(wp) :: r_before(DIRECTIONS, 6)    !< of the memory of the process before
       real(wp) :: shift(DIRECTIONS)          !< of the pseudo-time where the next substep begins
       !> Of the memories of interrupted processes; those up to number `settled` were there when the increment began.
@@ -50,11 +53,12 @@ contains
 
       sens%at_rest = .true.
       sens%y = 0.0_wp
-      sens%r_in = 0.0_wp
+      sens%r_in%of = 0.0_wp
+      sens%r_in%kind = ZERO_TENSORS
       sens%r_before = 0.0_wp
       sens%shift = 0.0_wp
       sens%settled = depth
-      sens%driving = whole_increment()
+      call whole_increment(sens%driving)
    end subroutine no_sensitivity
 
    !> Carries the derivatives through an accepted substep h at whose end the pseudo-time is fixed (the last one of an
@@ -67,10 +71,13 @@ contains
       logical, intent(in) :: last
       type(sensitivity_t), intent(inout) :: sens
       real(wp) :: dh(DIRECTIONS)
+      logical :: ends
 
       dh = 0.0_wp
       if (last) dh = -sens%shift
-      call through_substep(par, inc, trial, h, sens%at_rest, sens%shift, dh, sens%r_in, sens%driving, sens%y)
+      ! at the end of the whole increment only the stress is asked for
+      ends = last .and. inc%from + inc%length > WHOLE
+      call through_substep(par, inc, trial, h, sens%at_rest, ends, sens%shift, dh, sens%r_in, sens%driving, sens%y)
       sens%at_rest = .false.
       if (last) sens%shift = 0.0_wp
    end subroutine propagate
@@ -83,31 +90,31 @@ contains
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h
       real(wp), intent(out) :: change(NY)
-      real(wp) :: none(DIRECTIONS), one(DIRECTIONS), r_in(DIRECTIONS, 6), y(DIRECTIONS, NY)
+      real(wp) :: none(DIRECTIONS), one(DIRECTIONS), y(DIRECTIONS, NY)
 
       none = 0.0_wp
       one = 1.0_wp
-      r_in = 0.0_wp
       y = 0.0_wp
-      call through_substep(par, inc, trial, h, .false., none, one, r_in, AT_REST, y)
+      call through_substep(par, inc, trial, h, .false., .false., none, one, AT_REST%d_strain, AT_REST, y)
       change = y(1, :)
    end subroutine change_with_size
 
    !> Derivatives across a substep: its start moves by `shift` in pseudo-time, its size changes by dh.
-   pure subroutine through_substep(par, inc, trial, h, at_rest, shift, dh, r_in, driving, y)
+   pure subroutine through_substep(par, inc, trial, h, at_rest, ends, shift, dh, r_in, driving, y)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h
-      logical, intent(in) :: at_rest
-      real(wp), intent(in) :: shift(DIRECTIONS), dh(DIRECTIONS), r_in(DIRECTIONS, 6)
+      logical, intent(in) :: at_rest, ends
+      real(wp), intent(in) :: shift(DIRECTIONS), dh(DIRECTIONS)
+      type(tensors_t), intent(in) :: r_in
       type(driving_t), intent(in) :: driving
       real(wp), intent(inout) :: y(DIRECTIONS, NY)
 
       if (trial%mode == MODE_HELD) then
          call through_held(par, inc, trial, h, shift, dh, driving, y)
       else
-         call through_stages(par, inc, trial, h, at_rest, shift, dh, r_in, driving, y)
+         call through_stages(par, inc, trial, h, at_rest, ends, shift, dh, r_in, driving, y)
       end if
    end subroutine through_substep
 
@@ -130,7 +137,7 @@ contains
       call change_of_place(inc, middle, void_ratio_at(inc, middle), shift + 0.5_wp*dh, driving, de_half, dp_c_half)
       call change_of_place(inc, trial%time + h, void_ratio_at(inc, trial%time + h), shift + dh, driving, de, dp_c)
       do j = 1, DIRECTIONS
-         strain = driving%d_strain(j, :) + (dh(j)/h)*inc%d_strain
+         strain = driving%d_strain%of(j, :) + (dh(j)/h)*inc%d_strain
          dr = y(j, 1:6)
          dr = change_of_slide(par, inc, r0, trial%time, half, deviator(dr)/par%p_min, strain, de_half(j), dp_c_half(j))
          y(j, 1:6) = par%p_min*change_of_slide(par, inc, r_half, middle, half, dr, strain, de(j), dp_c(j))
@@ -149,43 +156,52 @@ contains
    end subroutine change_of_place
 
    !> The scheme applied to all directions as one long vector.
-   pure subroutine through_stages(par, inc, trial, h, at_rest, shift, dh, r_in, driving, y1)
+   pure subroutine through_stages(par, inc, trial, h, at_rest, ends, shift, dh, r_in, driving, y1)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
-      real(wp), intent(in) :: h, shift(DIRECTIONS), dh(DIRECTIONS), r_in(DIRECTIONS, 6)
-      logical, intent(in) :: at_rest
+      real(wp), intent(in) :: h, shift(DIRECTIONS), dh(DIRECTIONS)
+      type(tensors_t), intent(in) :: r_in
+      logical, intent(in) :: at_rest, ends
       type(driving_t), intent(in) :: driving
       real(wp), intent(inout) :: y1(DIRECTIONS*NY)
       real(wp) :: rates(DIRECTIONS*NY, MAX_STAGES), y0(DIRECTIONS*NY), y(DIRECTIONS*NY), point(NY)
       integer :: i, last
+      logical :: moves
 
       ! the last stage of such a pair serves the error estimate and the next substep, not the solution
       last = inc%scheme%stages
       if (inc%scheme%first_same_as_last) last = last - 1
-      y0 = y1
-      call change_of_stage(par, inc, trial%mode, trial%w(1), trial%y0, trial%time, at_rest, shift, r_in, driving, y1, &
-                           rates(:, 1))
-      call finish_stage(trial, h, 1, dh, rates)
+      moves = any(abs(dh) > 0.0_wp)
+      call change_of_stage(par, inc, trial%mode, trial%w(1), trial%y0, trial%time, at_rest, .false., shift, r_in, &
+                           driving, y1, rates(:, 1))
+      call finish_stage(trial, h, 1, moves, dh, rates)
       do i = 2, last
-         call stage_point(inc%scheme, i, y0, rates, h, y)
+         call stage_point(inc%scheme, i, y1, rates, h, y)
          call stage_point(inc%scheme, i, trial%y0, trial%rates, h, point)
          call change_of_stage(par, inc, trial%mode, trial%w(i), point, trial%time + inc%scheme%node(i)*h, .false., &
-                              shift + inc%scheme%node(i)*dh, r_in, driving, y, rates(:, i))
-         call finish_stage(trial, h, i, dh, rates)
+                              ends .and. i == last, shift + inc%scheme%node(i)*dh, r_in, driving, y, rates(:, i))
+         call finish_stage(trial, h, i, moves, dh, rates)
       end do
-      call solution(inc%scheme, y0, rates, h, y1)
+      if (ends) then
+         y0(1:STRESSES) = y1(1:STRESSES)
+         call solution(inc%scheme, y0(1:STRESSES), rates, h, y1(1:STRESSES))
+      else
+         y0 = y1
+         call solution(inc%scheme, y0, rates, h, y1)
+      end if
    end subroutine through_stages
 
    !> What its size, which changes by dh, and the stiff direction add to stage i.
-   pure subroutine finish_stage(trial, h, i, dh, rates)
+   pure subroutine finish_stage(trial, h, i, moves, dh, rates)
       type(trial_t), intent(in) :: trial
       integer, intent(in) :: i
+      logical, intent(in) :: moves   !< dh is not zero
       real(wp), intent(in) :: h, dh(DIRECTIONS)
       real(wp), intent(inout) :: rates(DIRECTIONS, NY, MAX_STAGES)
       integer :: k
 
-      if (any(abs(dh) > 0.0_wp)) then
+      if (moves) then
          do k = 1, NY
             rates(:, k, i) = rates(:, k, i) + (trial%rates(k, i)/h)*dh
          end do
@@ -210,25 +226,30 @@ contains
    end subroutine relax_changes
 
    !> Derivatives of one stage's rates; its pseudo-time changes by dt.
-   pure subroutine change_of_stage(par, inc, mode, w, point, time, at_rest, dt, r_in, driving, y, rates)
+   pure subroutine change_of_stage(par, inc, mode, w, point, time, at_rest, stress_only, dt, r_in, driving, y, rates)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
       type(rate_t), intent(in) :: w
-      logical, intent(in) :: at_rest
-      real(wp), intent(in) :: point(NY), time, dt(DIRECTIONS), r_in(DIRECTIONS, 6), y(DIRECTIONS, NY)
+      logical, intent(in) :: at_rest, stress_only
+      real(wp), intent(in) :: point(NY), time, dt(DIRECTIONS), y(DIRECTIONS, NY)
+      type(tensors_t), intent(in) :: r_in
       type(driving_t), intent(in) :: driving
       real(wp), intent(out) :: rates(DIRECTIONS, NY)
       type(linearised_t) :: lin
       type(changes_t) :: changes
       type(turning_t) :: turning
       real(wp) :: e
+      logical :: rests
 
       e = void_ratio_at(inc, time)
       turning = turning_of(inc, mode, time)
-      call linearise_stage(par, inc, mode, w, point, time, e, turning, lin)
       call changes_along(inc, mode, time, e, turning, dt, driving, changes)
-      call changes_of_rate(par, w, lin, at_rest .and. are_zero(changes), y, r_in, changes, rates)
+      call linearise_stage(par, inc, w, point, time, e, changes%loading, lin)
+      rests = at_rest
+      if (at_rest) rests = are_zero(changes)
+      call changes_of_rate(par, w, lin, rests, y, r_in, driving%d_strain, driving%from_centre, &
+                           changes, stress_only, rates)
    end subroutine change_of_stage
 
    !> True where void ratio and suction do not change.
@@ -241,22 +262,15 @@ contains
    !> Prepares the derivative of the rate w of a stage, at a point of the integrated vector, a pseudo-time and a void
    !> ratio. point has sigma' [kPa], z and plastic shear [-]; time is a share of inc, e the void ratio [-].
    !> docs/theory/integration.md section 5.3.
-   pure subroutine linearise_stage(par, inc, mode, w, point, time, e, turning, lin)
+   pure subroutine linearise_stage(par, inc, w, point, time, e, loading, lin)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
-      integer, intent(in) :: mode
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: point(NY), time, e
-      type(turning_t), intent(in) :: turning   !< of the elastic domain there
+      type(loading_t), intent(in) :: loading   !< of the strain rate there
       type(linearised_t), intent(inout) :: lin
-      real(wp) :: loading(6), aside(6)
 
-      if (has_aside(inc, mode)) then
-         call loading_strain_of(inc, mode, turning, loading, aside)
-         call linearise(par, inc%bonded, w, point(1:6), e, suction_at(inc, time), loading, inc%d_pc, lin, aside)
-      else
-         call linearise(par, inc%bonded, w, point(1:6), e, suction_at(inc, time), inc%d_strain, inc%d_pc, lin)
-      end if
+      call linearise(par, inc%bonded, w, point(1:6), e, suction_at(inc, time), loading, inc%d_pc, lin)
    end subroutine linearise_stage
 
    !> How the arguments of a rate change, beside stress, fabric and memory, at a pseudo-time that itself changes by dt.
@@ -267,24 +281,11 @@ contains
       type(turning_t), intent(in) :: turning   !< of the elastic domain there
       real(wp), intent(in) :: time, e, dt(DIRECTIONS)
       type(driving_t), intent(in) :: driving
-      type(changes_t), intent(out) :: changes
-      real(wp) :: turn(6)
-      integer :: i
+      type(changes_t), intent(inout) :: changes   !< all of it is set
 
       changes%d_pc = driving%d_pc
       call change_of_place(inc, time, e, dt, driving, changes%e, changes%p_c)
-      if (.not. has_aside(inc, mode)) then
-         changes%d_strain = driving%d_strain
-         return
-      end if
-      call changes_of_loading_strain(inc, mode, turning, driving%d_strain, driving%from_centre, changes%d_strain, &
-                                     changes%d_aside)
-      if (all(abs(dt) <= 0.0_wp)) return
-      turn = turn_of_loading_strain(inc, mode, turning)
-      do i = 1, 6
-         changes%d_strain(:, i) = changes%d_strain(:, i) + turn(i)*dt
-         changes%d_aside(:, i) = changes%d_aside(:, i) - turn(i)*dt
-      end do
+      call changes_of_loading_strain(inc, mode, turning, driving%d_strain, driving%from_centre, dt, changes%loading)
    end subroutine changes_along
 
    !> Changes of the stress ratio with the stress. sigma and y(:, 1:6) [kPa], dr [-]. Where p' is held at p_min its
@@ -318,18 +319,19 @@ contains
       integer :: j
 
       sens%at_rest = .false.
+      sens%r_in%kind = ANY_TENSORS
       if (jump == JUMP_RETURN) then
          ! of the two memories the softer one was taken
          if (any(abs(after%r_in - before%r_in) > 0.0_wp)) then
-            sens%r_in = 0.0_wp
-            if (after%depth >= sens%settled) sens%r_in = sens%interrupted(:, :, after%depth + 1)
+            sens%r_in%of = 0.0_wp
+            if (after%depth >= sens%settled) sens%r_in%of = sens%interrupted(:, :, after%depth + 1)
          end if
          sens%settled = min(sens%settled, after%depth)
          sens%y(:, 13) = 0.0_wp
          return
       end if
       if (jump == JUMP_REVERSAL .and. after%depth /= before%depth) then
-         sens%interrupted(:, :, after%depth) = sens%r_in
+         sens%interrupted(:, :, after%depth) = sens%r_in%of
          sens%settled = min(sens%settled, after%depth - 1)
       end if
       if (jump == JUMP_NEW) sens%settled = 0
@@ -339,14 +341,14 @@ contains
       end if
       call stress_ratio(par, trial%y0(1:6), p, r)
       dr = changes_of_ratio(par, trial%y0(1:6), sens%y)
-      old_r_in = sens%r_in
-      sens%r_in = dr
+      old_r_in = sens%r_in%of
+      sens%r_in%of = dr
       ! a fall-back left r_in at r
       if (jump == JUMP_REVERSAL .and. par%memory_rule == RULE_THRESHOLD .and. any(abs(after%r_in - r) > 0.0_wp)) then
          do j = 1, DIRECTIONS
             dr_j = dr(j, :)
             before_j = sens%r_before(j, :)
-            sens%r_in(j, :) = change_of_threshold(par, before, r, dr_j, before_j, sens%y(j, 13))
+            sens%r_in%of(j, :) = change_of_threshold(par, before, r, dr_j, before_j, sens%y(j, 13))
          end do
       end if
       sens%r_before = old_r_in
@@ -393,13 +395,14 @@ contains
       m = interrupted_share(par, before%eps_q_p)
       e = void_ratio_at(inc, trial%time)
       turning = turning_of(inc, MODE_ORDINARY, trial%time)
-      call linearise_stage(par, inc, MODE_ORDINARY, trigger, trial%y0, trial%time, e, turning, lin)
       call changes_along(inc, MODE_ORDINARY, trial%time, e, turning, sens%shift, sens%driving, changes)
-      call changes_of_rate(par, trigger, lin, .false., sens%y, sens%r_in, changes, rates, dn)
+      call linearise_stage(par, inc, trigger, trial%y0, trial%time, e, changes%loading, lin)
+      call changes_of_rate(par, trigger, lin, .false., sens%y, sens%r_in, sens%driving%d_strain, &
+                           sens%driving%from_centre, changes, .false., rates, dn)
       dr = changes_of_ratio(par, trial%y0(1:6), sens%y)
-      sens%r_before = sens%r_in
+      sens%r_before = sens%r_in%of
       do i = 1, 6
-         sens%r_in(:, i) = dr(:, i) - before%x_before*(m*dn(:, i) &
+         sens%r_in%of(:, i) = dr(:, i) - before%x_before*(m*dn(:, i) &
                                                        + (share_slope(par, before%eps_q_p)*trigger%n(i))*sens%y(:, 13))
       end do
       sens%y(:, 13) = 0.0_wp

@@ -6,7 +6,7 @@ module mud_driving
    use mud_kinds, only: wp
    use mud_elastic_domain, only: changes_of_exit, changes_of_turning, turning_at
    use mud_increment, only: increment_t, void_ratio_at, suction_at
-   use mud_tensor, only: DIRECTIONS => LANES
+   use mud_tensor, only: DIRECTIONS => LANES, tensors_t, ZERO_TENSORS, UNIT_STRAINS, ANY_TENSORS
    implicit none (type, external)
    private
    public :: driving_t, whole_increment, parts_at_exit, parts_without_suction, parts_at_turn, end_in_domain, &
@@ -15,30 +15,37 @@ module mud_driving
    !> Derivatives of what drives the increment, or one of its parts, along six engineering strains and the suction at
    !> the end of the increment, side by side. The eighth direction is idle: along it nothing changes.
    type :: driving_t
-      real(wp) :: d_strain(DIRECTIONS, 6)      !< of its strain
+      type(tensors_t) :: d_strain              !< of its strain
       real(wp) :: d_v(DIRECTIONS)              !< of its volume
       real(wp) :: d_pc(DIRECTIONS)             !< of its suction step
       real(wp) :: e0(DIRECTIONS)               !< of ln(1 + e) at its start
       real(wp) :: p_c0(DIRECTIONS)             !< of its first suction
-      real(wp) :: from_centre(DIRECTIONS, 6)   !< of the strain from the centre of the elastic domain at its start
+      type(tensors_t) :: from_centre           !< of the strain from the centre of the elastic domain at its start
    end type driving_t
 
    !> Nothing drives.
-   type(driving_t), parameter :: AT_REST = driving_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
+   type(tensors_t), parameter :: NO_CHANGES = tensors_t(0.0_wp, ZERO_TENSORS)
+   type(driving_t), parameter :: AT_REST = driving_t(NO_CHANGES, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, NO_CHANGES)
 contains
    !> The increment along the seven directions: unit engineering strains 1 to 6, unit suction step. Strains [-], suction
    !> in the unit of p_atm.
-   pure function whole_increment() result(driving)
-      type(driving_t) :: driving
+   pure subroutine whole_increment(driving)
+      type(driving_t), intent(inout) :: driving
       integer :: j
 
-      driving = AT_REST
+      driving%d_strain%of = 0.0_wp
       do j = 1, 6
-         driving%d_strain(j, j) = merge(1.0_wp, 0.5_wp, j <= 3)
+         driving%d_strain%of(j, j) = merge(1.0_wp, 0.5_wp, j <= 3)
       end do
+      driving%d_strain%kind = UNIT_STRAINS
       driving%d_v(1:3) = 1.0_wp
+      driving%d_v(4:) = 0.0_wp
+      driving%d_pc = 0.0_wp
       driving%d_pc(7) = 1.0_wp
-   end function whole_increment
+      driving%e0 = 0.0_wp
+      driving%p_c0 = 0.0_wp
+      driving%from_centre = NO_CHANGES
+   end subroutine whole_increment
 
    !> Both parts of an increment whose strain from the centre of the elastic domain reaches the sphere at a share of it,
    !> which depends on the strain itself. A share of 0 or 1 does not. docs/theory/memory-rules.md section 4.2.
@@ -54,7 +61,8 @@ contains
          change = changes_of_exit(whole%from_centre, whole%d_strain, share, driving%from_centre, driving%d_strain)
       end if
       call split(whole, share, change, driving, inside, rest)
-      rest%from_centre = driving%from_centre + inside%d_strain
+      rest%from_centre%of = driving%from_centre%of + inside%d_strain%of
+      rest%from_centre%kind = ANY_TENSORS
    end subroutine parts_at_exit
 
    !> Both parts of an increment whose suction passes zero at a share of it, which depends on the suction step.
@@ -98,10 +106,12 @@ contains
 
       do j = 1, DIRECTIONS
          do i = 1, 6
-            first%d_strain(j, i) = share*driving%d_strain(j, i) + whole%d_strain(i)*change(j)
-            rest%d_strain(j, i) = (1.0_wp - share)*driving%d_strain(j, i) - whole%d_strain(i)*change(j)
+            first%d_strain%of(j, i) = share*driving%d_strain%of(j, i) + whole%d_strain(i)*change(j)
+            rest%d_strain%of(j, i) = (1.0_wp - share)*driving%d_strain%of(j, i) - whole%d_strain(i)*change(j)
          end do
       end do
+      first%d_strain%kind = ANY_TENSORS
+      rest%d_strain%kind = ANY_TENSORS
       first%d_v = share*driving%d_v + whole%d_v*change
       first%d_pc = share*driving%d_pc + whole%d_pc*change
       first%e0 = driving%e0
@@ -119,9 +129,10 @@ contains
    pure function end_in_domain(inc, driving) result(from_centre)
       type(increment_t), intent(in) :: inc
       type(driving_t), intent(in) :: driving
-      real(wp) :: from_centre(DIRECTIONS, 6)
+      type(tensors_t) :: from_centre
 
-      from_centre = inc%rho*changes_of_turning(turning_at(inc%rho, inc%from_centre, inc%d_strain, 1.0_wp), &
+      from_centre%kind = ANY_TENSORS
+      from_centre%of = inc%rho*changes_of_turning(turning_at(inc%rho, inc%from_centre, inc%d_strain, 1.0_wp), &
                                                driving%from_centre, driving%d_strain)
    end function end_in_domain
 end module mud_driving

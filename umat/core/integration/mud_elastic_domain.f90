@@ -7,7 +7,7 @@
 !> increment is exact in two phases, whatever its size, and a large one is not cut into pieces.
 module mud_elastic_domain
    use mud_kinds, only: wp
-   use mud_tensor, only: LANES, ddot, norm, contractions
+   use mud_tensor, only: LANES, ddot, norm, tensors_t, contracted
    implicit none (type, external)
    private
    public :: turning_t, exit_share, changes_of_exit, loading_direction, turning_at, combination_t, &
@@ -57,11 +57,12 @@ contains
    !> Changes of that share with d and the increment. All [-]; the share is that of exit_share, below 1. Derivative of
    !> docs/theory/memory-rules.md section 4.2.
    pure function changes_of_exit(d, increment, share, d_changes, increment_changes) result(changes)
-      real(wp), intent(in) :: d(6), increment(6), share, d_changes(LANES, 6), increment_changes(LANES, 6)
+      real(wp), intent(in) :: d(6), increment(6), share
+      type(tensors_t), intent(in) :: d_changes, increment_changes
       real(wp) :: changes(LANES), at_exit(6)
 
       at_exit = d + share*increment
-      changes = -(contractions(d_changes, at_exit) + share*contractions(increment_changes, at_exit)) &
+      changes = -(contracted(d_changes, at_exit) + share*contracted(increment_changes, at_exit)) &
                 /ddot(at_exit, increment)
    end function changes_of_exit
 
@@ -71,6 +72,8 @@ contains
       real(wp), intent(in) :: rho, d(6), increment(6), time
       real(wp) :: nu(6), length, cosine, decay, divisor
 
+      nu = d/rho
+      if (time <= 0.0_wp) return
       length = norm(increment)
       cosine = min(ddot(d, increment)/(rho*length), 1.0_wp)
       decay = exp(-length*time/rho)
@@ -91,7 +94,8 @@ contains
       turning%length = norm(increment)
       turning%u = increment/turning%length
       turning%cosine = min(ddot(d, turning%u)/rho, 1.0_wp)
-      turning%decay = exp(-turning%length*time/rho)
+      turning%decay = 1.0_wp
+      if (time > 0.0_wp) turning%decay = exp(-turning%length*time/rho)
       associate (cosine => turning%cosine, decay => turning%decay)
          turning%divisor = 1.0_wp + cosine + (1.0_wp - cosine)*decay**2
          turning%share = (1.0_wp - decay)*(1.0_wp + decay + cosine*(1.0_wp - decay))
@@ -104,44 +108,54 @@ contains
    !> docs/theory/memory-rules.md section 4.2.
    pure function changes_of_turning(turning, d_changes, increment_changes) result(changes)
       type(turning_t), intent(in) :: turning
-      real(wp), intent(in) :: d_changes(LANES, 6), increment_changes(LANES, 6)
+      type(tensors_t), intent(in) :: d_changes, increment_changes
       real(wp) :: changes(LANES, 6)
       type(combination_t) :: by
       integer :: i, j
 
-      by = combination_of_turning(turning, d_changes, increment_changes)
+      call combination_of_turning(turning, d_changes, increment_changes, by)
       do j = 1, LANES
          do i = 1, 6
-            changes(j, i) = by%of_d*d_changes(j, i) + by%of_increment*increment_changes(j, i) &
+            changes(j, i) = by%of_d*d_changes%of(j, i) + by%of_increment*increment_changes%of(j, i) &
                             + by%along_d(j)*turning%d(i) + by%along_u(j)*turning%u(i)
          end do
       end do
    end function changes_of_turning
 
    !> What these changes are made of. All [-]; docs/theory/memory-rules.md section 4.2.
-   pure function combination_of_turning(turning, d_changes, increment_changes) result(by)
+   pure subroutine combination_of_turning(turning, d_changes, increment_changes, by)
       type(turning_t), intent(in) :: turning
-      real(wp), intent(in) :: d_changes(LANES, 6), increment_changes(LANES, 6)
-      type(combination_t) :: by
-      real(wp), dimension(LANES) :: dcosine, ddecay, ddivisor, dshare
-      real(wp) :: d_u, per_divisor
+      type(tensors_t), intent(in) :: d_changes, increment_changes
+      type(combination_t), intent(inout) :: by
+      real(wp) :: per_divisor, per_rho, per_length, d_u, decay_slope, divisor_cosine, divisor_decay, share_cosine, &
+         share_decay, on_d, dcosine, ddecay, ddivisor, dshare
+      integer :: j
 
-      associate (d => turning%d, u => turning%u, cosine => turning%cosine, decay => turning%decay, &
-                 dlength => by%length)
-         d_u = ddot(d, u)
-         per_divisor = 1.0_wp/turning%divisor
-         dlength = contractions(increment_changes, u)
-         by%d_on_u = contractions(d_changes, u)
-         by%increment_on_d = contractions(increment_changes, d)
-         dcosine = (by%d_on_u + (by%increment_on_d - d_u*dlength)/turning%length)/turning%rho
-         ddecay = -(decay*turning%time/turning%rho)*dlength
-         ddivisor = (1.0_wp - decay**2)*dcosine + (2.0_wp*(1.0_wp - cosine)*decay)*ddecay
-         dshare = -(2.0_wp*(decay + cosine*(1.0_wp - decay)))*ddecay + (1.0_wp - decay)**2*dcosine
-         by%of_d = 2.0_wp*decay/turning%rho*per_divisor
-         by%of_increment = turning%share/turning%length*per_divisor
-         ! nu = dividend/divisor, the dividend a sum of d and u
-         by%along_d = (2.0_wp/turning%rho*per_divisor)*(ddecay - (decay*per_divisor)*ddivisor)
-         by%along_u = per_divisor*(dshare - turning%share*per_divisor*ddivisor) - by%of_increment*dlength
+      per_divisor = 1.0_wp/turning%divisor
+      per_rho = 1.0_wp/turning%rho
+      per_length = 1.0_wp/turning%length
+      d_u = ddot(turning%d, turning%u)
+      by%length = contracted(increment_changes, turning%u)
+      by%d_on_u = contracted(d_changes, turning%u)
+      by%increment_on_d = contracted(increment_changes, turning%d)
+      associate (cosine => turning%cosine, decay => turning%decay)
+         by%of_d = 2.0_wp*decay*per_rho*per_divisor
+         by%of_increment = turning%share*per_length*per_divisor
+         decay_slope = -decay*turning%time*per_rho
+         divisor_cosine = 1.0_wp - decay**2
+         divisor_decay = 2.0_wp*(1.0_wp - cosine)*decay
+         share_cosine = (1.0_wp - decay)**2
+         share_decay = -2.0_wp*(decay + cosine*(1.0_wp - decay))
+         on_d = 2.0_wp*per_rho*per_divisor
+         do j = 1, LANES
+            dcosine = (by%d_on_u(j) + (by%increment_on_d(j) - d_u*by%length(j))*per_length)*per_rho
+            ddecay = decay_slope*by%length(j)
+            ddivisor = divisor_cosine*dcosine + divisor_decay*ddecay
+            dshare = share_decay*ddecay + share_cosine*dcosine
+            ! nu = dividend/divisor, the dividend a sum of d and u
+            by%along_d(j) = on_d*(ddecay - (decay*per_divisor)*ddivisor)
+            by%along_u(j) = per_divisor*(dshare - (turning%share*per_divisor)*ddivisor) - by%of_increment*by%length(j)
+         end do
       end associate
-   end function combination_of_turning
+   end subroutine combination_of_turning
 end module mud_elastic_domain

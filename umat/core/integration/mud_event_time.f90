@@ -15,7 +15,7 @@ module mud_event_time
    use mud_return_point, only: target_limit, is_limited
    use mud_sensitivity, only: changes_t, linearised_t, changes_of_rate, changes_of_drive
    use mud_state, only: counters_t
-   use mud_tensor, only: ddot, trace, contractions
+   use mud_tensor, only: ddot, trace, contractions, tensors_t, ANY_TENSORS
    use mud_trial, only: trial_t, MODE_HELD
    implicit none (type, external)
    private
@@ -43,7 +43,8 @@ contains
       type(rate_t) :: w
       type(counters_t) :: uncounted
       type(turning_t) :: turning
-      real(wp) :: with_size(NY), y(DIRECTIONS, NY), r_in(DIRECTIONS, 6), dt(DIRECTIONS), slopes(DIRECTIONS), e, time, dh
+      type(tensors_t) :: r_in
+      real(wp) :: with_size(NY), y(DIRECTIONS, NY), dt(DIRECTIONS), slopes(DIRECTIONS), e, time, dh
       integer :: j, mode
 
       time = trial%time + h
@@ -56,18 +57,17 @@ contains
       else if (trial%mode == MODE_HELD) then
          call rate_without_past(par, inc, time, trial%y, w)
       end if
-      if (event == EVENT_REVERSAL .or. trial%mode == MODE_HELD) then
-         call linearise_stage(par, inc, mode, w, trial%y, time, e, turning, lin)
-      end if
-
       call change_with_size(par, inc, trial, h, with_size)
       y = sens%y
       y(BY_SIZE, :) = with_size
       r_in = sens%r_in
-      r_in(BY_SIZE, :) = 0.0_wp
+      r_in%of(BY_SIZE, :) = 0.0_wp
       dt = sens%shift
       dt(BY_SIZE) = 1.0_wp
       call changes_along(inc, mode, time, e, turning, dt, sens%driving, changes)
+      if (event == EVENT_REVERSAL .or. trial%mode == MODE_HELD) then
+         call linearise_stage(par, inc, w, trial%y, time, e, changes%loading, lin)
+      end if
       slopes = slopes_of_event(par, inc, event, trial, time, w, lin, y, r_in, sens%driving, changes)
       do j = 1, DIRECTIONS - 1
          if (abs(slopes(BY_SIZE)) <= GRAZING*abs(slopes(j))) cycle
@@ -99,7 +99,8 @@ contains
       real(wp), intent(in) :: time
       type(rate_t), intent(in) :: w            !< where the event depends on a rate
       type(linearised_t), intent(in) :: lin
-      real(wp), intent(in) :: y(DIRECTIONS, NY), r_in(DIRECTIONS, 6)   !< changes of state and memory
+      real(wp), intent(in) :: y(DIRECTIONS, NY)   !< changes of state
+      type(tensors_t), intent(in) :: r_in         !< and memory
       type(driving_t), intent(in) :: driving
       type(changes_t), intent(in) :: changes
       real(wp) :: slopes(DIRECTIONS), rates(DIRECTIONS, NY), dn(DIRECTIONS, 6), dr(DIRECTIONS, 6), p, r(6)
@@ -113,10 +114,11 @@ contains
          slopes = y(:, 1) + y(:, 2) + y(:, 3)
       case (EVENT_REVERSAL)
          if (jumps(par, trial, w)) then
-            slopes = changes_of_drive(par, w, lin, y, changes)
+            slopes = changes_of_drive(par, w, lin, y, driving%d_strain, driving%from_centre, changes)
          else
-            call changes_of_rate(par, w, lin, .false., y, r_in, changes, rates, dn)
-            slopes = contractions(dr - r_in, w%n) + contractions(dn, r - trial%r_in)
+            call changes_of_rate(par, w, lin, .false., y, r_in, driving%d_strain, driving%from_centre, changes, &
+                                 .false., rates, dn)
+            slopes = contractions(dr - r_in%of, w%n) + contractions(dn, r - trial%r_in)
          end if
       case (EVENT_BOUNDS, EVENT_RETURN)
          do j = 1, DIRECTIONS
@@ -126,9 +128,10 @@ contains
             slopes(j) = slope_at_surface(par, inc, event, trial, time, y_j, dr_j, changes%e(j), changes%p_c(j))
          end do
       case default
-         call changes_of_rate(par, w, lin, .false., y, dr, changes, rates)
+         call changes_of_rate(par, w, lin, .false., y, tensors_t(dr, ANY_TENSORS), driving%d_strain, &
+                              driving%from_centre, changes, .false., rates)
          do j = 1, DIRECTIONS
-            strain_j = driving%d_strain(j, :)
+            strain_j = driving%d_strain%of(j, :)
             slopes(j) = change_of_closing_rate(inc, trial, w, lin%e, (rates(j, 1) + rates(j, 2) + rates(j, 3))/3.0_wp, &
                                                changes%e(j), strain_j, changes%d_pc(j))
          end do

@@ -4,7 +4,8 @@ module mud_increment
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_state, only: counters_t
-   use mud_tensor, only: IDENTITY, LANES, ddot, trace, deviator, norm
+   use mud_tensor, only: IDENTITY, LANES, ddot, trace, deviator, norm, tensors_t
+   use mud_loading, only: loading_t, no_strain, whole_strain
    use mud_bonding, only: is_bonded
    use mud_rates, only: rate_t, rate_at, MODE_ORDINARY, MODE_ELASTIC
    use mud_elastic_domain, only: turning_t, turning_at, combination_t, combination_of_turning, loading_direction
@@ -12,7 +13,7 @@ module mud_increment
    implicit none (type, external)
    private
    public :: increment_t, new_increment, take_phase, void_ratio_at, suction_at, rate_of, loading_strain, &
-             loading_strain_of, changes_of_loading_strain, turn_of_loading_strain, turning_t, turning_of, has_aside, NY
+             changes_of_loading_strain, turning_t, turning_of, has_aside, NY
 
    integer, parameter :: NY = 13         !< Length of the integrated vector: sigma'(6), z(6), plastic shear.
    !> A strain across the elastic domain, whose part along nu is rounding of either sign, does not load: it would look
@@ -86,19 +87,6 @@ contains
       call part(inc, nu, loading, aside)
    end subroutine loading_strain
 
-   !> The same, of a direction that is known. All [-]; docs/theory/memory-rules.md section 4.1.
-   pure subroutine loading_strain_of(inc, mode, turning, loading, aside)
-      type(increment_t), intent(in) :: inc
-      integer, intent(in) :: mode
-      type(turning_t), intent(in) :: turning   !< not used inside the domain
-      real(wp), intent(out) :: loading(6), aside(6)
-      real(wp) :: nu(6)
-
-      nu = 0.0_wp
-      if (mode /= MODE_ELASTIC) nu = turning%nu
-      call part(inc, nu, loading, aside)
-   end subroutine loading_strain_of
-
    !> The part of the strain along a direction, if it is forwards, and the rest.
    pure subroutine part(inc, nu, loading, aside)
       type(increment_t), intent(in) :: inc
@@ -112,42 +100,51 @@ contains
       aside = inc%d_strain - loading
    end subroutine part
 
-   !> Changes of both parts with the strain rate and the elastic domain at the start. All [-]; derivative of
-   !> docs/theory/memory-rules.md sections 4.1, 4.2.
-   pure subroutine changes_of_loading_strain(inc, mode, turning, strain_changes, centre_changes, loading, aside)
+   !> Changes of the part that loads with the strain rate and the elastic domain at the start, at a pseudo-time that
+   !> itself changes by dt. All [-]; derivative of docs/theory/memory-rules.md sections 4.1, 4.2.
+   pure subroutine changes_of_loading_strain(inc, mode, turning, strain, centre, dt, loading)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
       type(turning_t), intent(in) :: turning   !< of the pseudo-time; not used inside the domain
-      real(wp), intent(in) :: strain_changes(LANES, 6), centre_changes(LANES, 6)
-      real(wp), intent(out) :: loading(LANES, 6), aside(LANES, 6)
+      type(tensors_t), intent(in) :: strain, centre   !< changes of both
+      real(wp), intent(in) :: dt(LANES)
+      type(loading_t), intent(inout) :: loading
       type(combination_t) :: by
-      real(wp), dimension(LANES) :: turn, along_d, along_u
-      real(wp) :: along, of_d, of_increment, per_divisor
-      integer :: i, j
+      real(wp) :: along, per_rho, nu(2), nu_rate(2), turn_rate, turn, on_d, on_length, d_on_u
+      integer :: j
 
-      if (mode == MODE_ELASTIC) then
-         loading = 0.0_wp
-         aside = strain_changes
+      if (.not. has_aside(inc, mode)) then
+         call whole_strain(inc%d_strain, loading)
+         return
+      else if (mode == MODE_ELASTIC) then
+         call no_strain(inc%d_strain, loading)
          return
       end if
-      by = combination_of_turning(turning, centre_changes, strain_changes)
+      call combination_of_turning(turning, centre, strain, by)
       along = ddot(turning%nu, inc%d_strain)
-      per_divisor = 1.0_wp/turning%divisor
-      of_d = along*by%of_d
-      of_increment = along*by%of_increment
-      ! (dnu:a + nu:da) nu + (nu:a) dnu, with nu a sum of d and u and a along u
-      turn = turning%length*(by%of_d*by%d_on_u + by%of_increment*by%length + ddot(turning%d, turning%u)*by%along_d &
-                             + by%along_u) &
-             + (2.0_wp*turning%decay/turning%rho*per_divisor)*by%increment_on_d &
-             + (turning%share*per_divisor)*by%length
-      along_d = along*by%along_d + (2.0_wp*turning%decay/turning%rho*per_divisor)*turn
-      along_u = along*by%along_u + (turning%share*per_divisor)*turn
+      ! nu as a sum of d and u
+      nu(1) = 2.0_wp*turning%decay/(turning%rho*turning%divisor)
+      nu(2) = turning%share/turning%divisor
+      loading%basis(:, 1) = turning%d
+      loading%basis(:, 2) = turning%u
+      loading%part = along*nu
+      loading%whole = [0.0_wp, turning%length]
+      loading%of_strain = along*by%of_increment
+      loading%of_centre = along*by%of_d
+      ! the domain turns with the pseudo-time, nu' = (a - (nu:a) nu)/rho: rate of (nu:a) nu
+      per_rho = 1.0_wp/turning%rho
+      turn_rate = (turning%length**2 - 2.0_wp*along**2)*per_rho
+      nu_rate(1) = turn_rate*nu(1)
+      nu_rate(2) = turn_rate*nu(2) + along*turning%length*per_rho
+      on_d = turning%length*by%of_d
+      on_length = turning%length*by%of_increment + nu(2)
+      d_on_u = turning%length*ddot(turning%d, turning%u)
       do j = 1, LANES
-         do i = 1, 6
-            loading(j, i) = of_d*centre_changes(j, i) + of_increment*strain_changes(j, i) + along_d(j)*turning%d(i) &
-                            + along_u(j)*turning%u(i)
-            aside(j, i) = strain_changes(j, i) - loading(j, i)
-         end do
+         ! (dnu:a + nu:da) nu + (nu:a) dnu with a along u
+         turn = on_d*by%d_on_u(j) + on_length*by%length(j) + d_on_u*by%along_d(j) + turning%length*by%along_u(j) &
+                + nu(1)*by%increment_on_d(j)
+         loading%along(j, 1) = along*by%along_d(j) + nu(1)*turn + nu_rate(1)*dt(j)
+         loading%along(j, 2) = along*by%along_u(j) + nu(2)*turn + nu_rate(2)*dt(j)
       end do
    end subroutine changes_of_loading_strain
 
@@ -165,21 +162,6 @@ contains
          turning = NO_TURNING
       end if
    end function turning_of
-
-   !> Rate at which the part that loads turns with the domain, per unit of pseudo-time: nu' = (a - (nu:a) nu)/rho. [-];
-   !> docs/theory/memory-rules.md section 4.2.
-   pure function turn_of_loading_strain(inc, mode, turning) result(turn)
-      type(increment_t), intent(in) :: inc
-      integer, intent(in) :: mode
-      type(turning_t), intent(in) :: turning
-      real(wp) :: turn(6), nu_rate(6), along
-
-      turn = 0.0_wp
-      if (mode == MODE_ELASTIC) return
-      along = ddot(turning%nu, inc%d_strain)
-      nu_rate = (inc%d_strain - along*turning%nu)/inc%rho
-      turn = ddot(nu_rate, inc%d_strain)*turning%nu + along*nu_rate
-   end function turn_of_loading_strain
 
    !> An increment of a point with void ratio e and suction p_c. e and strain [-], tensor shear, compression positive;
    !> p_c and d_pc in the unit of p_atm. Nothing is checked. docs/theory/integration.md section 1.

@@ -2,7 +2,7 @@
 !> Whether the coming substep is explicit or linearly implicit; docs/theory/integration.md section 2.1.
 module mud_stiffness
    use mud_consistent, only: linearise_stage
-   use mud_increment, only: increment_t, void_ratio_at, turning_of
+   use mud_increment, only: increment_t, void_ratio_at, turning_t, turning_of, changes_of_loading_strain
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
    use mud_rates, only: MODE_ORDINARY
@@ -10,7 +10,7 @@ module mud_stiffness
    use mud_relaxation, only: relaxation_t, relaxation_speed, new_relaxation
    use mud_sensitivity, only: changes_t, linearised_t, changes_of_rate, NRATES
    use mud_substep, only: SCHEMES, HIGHER_ORDER, LINEARLY_IMPLICIT
-   use mud_tensor, only: LANES
+   use mud_tensor, only: LANES, tensors_t, ZERO_TENSORS
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
@@ -19,6 +19,7 @@ module mud_stiffness
    !> A substep is linearly implicit where the stiff direction would relax by more than this in it, as a rate: explicit
    !> pairs are unstable from 2 to 3.3 on. It remains so down to less [-].
    real(wp), parameter :: STIFF = 1.5_wp, NO_LONGER_STIFF = 0.7_wp
+   type(tensors_t), parameter :: REST = tensors_t(0.0_wp, ZERO_TENSORS)
    real(wp), parameter :: FEW_SUBSTEPS = 4.0_wp   !< So many more are explicit even where they are stiff [-].
 contains
    !> Makes the coming substep linearly implicit where stability alone would keep explicit ones short, and explicit
@@ -53,18 +54,24 @@ contains
       type(trial_t), intent(inout) :: trial
       type(linearised_t) :: lin
       type(changes_t) :: changes
-      real(wp) :: y(LANES, NRATES), r_in(LANES, 6), rates(LANES, NRATES)
+      type(turning_t) :: turning
+      real(wp) :: y(LANES, NRATES), rates(LANES, NRATES), unmoved(LANES)
       integer :: j
 
-      call linearise_stage(par, inc, trial%mode, trial%w(1), trial%y0, trial%time, void_ratio_at(inc, trial%time), &
-                           turning_of(inc, trial%mode, trial%time), lin)
-      changes = changes_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
-      r_in = 0.0_wp
+      turning = turning_of(inc, trial%mode, trial%time)
+      ! the strain rate is held
+      unmoved = 0.0_wp
+      changes%e = 0.0_wp
+      changes%p_c = 0.0_wp
+      changes%d_pc = 0.0_wp
+      call changes_of_loading_strain(inc, trial%mode, turning, REST, REST, unmoved, changes%loading)
+      call linearise_stage(par, inc, trial%w(1), trial%y0, trial%time, void_ratio_at(inc, trial%time), &
+                           changes%loading, lin)
       y = 0.0_wp
       do j = 1, 6
          y(j, j) = 1.0_wp
       end do
-      call changes_of_rate(par, trial%w(1), lin, .false., y, r_in, changes, rates)
+      call changes_of_rate(par, trial%w(1), lin, .false., y, REST, REST, REST, changes, .false., rates)
       trial%relaxation = new_relaxation(trial%w(1), rates(1:6, 13)/SQRT_2_3)
    end subroutine find_relaxation
 

@@ -84,7 +84,7 @@ contains
       call combine(scheme%a((i - 1)*(i - 2)/2 + 1:i*(i - 1)/2), y0, rates, h, y)
    end subroutine stage_point
 
-   !> The solution of a step h. y0(n), y(n), rates(n, stages or more) per unit of time; h in that unit.
+   !> The solution of a step h. y0(n), y(n), rates(n or more, stages or more) per unit of time; h in that unit.
    !> docs/theory/integration.md section 2.
    pure subroutine solution(scheme, y0, rates, h, y)
       type(scheme_t), intent(in) :: scheme
@@ -130,7 +130,7 @@ contains
          y(i) = y0(i) + first*rates(i, 1) + second*rates(i, 2)
       end do
       do j = 3, size(weights)
-         if (abs(weights(j)) > 0.0_wp) y = y + (h*weights(j))*rates(:, j)
+         if (abs(weights(j)) > 0.0_wp) y = y + (h*weights(j))*rates(1:size(y), j)
       end do
    end subroutine combine
 

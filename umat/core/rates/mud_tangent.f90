@@ -45,7 +45,8 @@ contains
       on_p_pc = -w%k_e*b_pc
       drag = 0.0_wp
       if (w%loading) then
-         call gradients(par, w, h_n, d_n, beta_n, gamma_n)
+         call gradients(par, w, h_n, d_n, gamma_n)
+         beta_n = w%k_e*(w%d*h_n + w%h_b*d_n)
          m(1, :) = [ddot(w%t, w%n), -1.0_wp, w%r_n]
          m(2, :) = [ddot(gamma_n, w%t), -w%gamma, ddot(gamma_n, w%r)]
          m(3, :) = [ddot(beta_n, w%t), 0.0_wp, ddot(beta_n, w%r) - w%gamma]
@@ -94,12 +95,12 @@ contains
       end function on_suction
    end subroutine continuum_tangent
 
-   !> Derivatives of 1/h, D, beta and gamma with respect to n, their parts along n removed since n:dn = 0. Units [-, -,
-   !> kPa, kPa]; w is a rate that loads. Guards of docs/theory/material.md section 5 included.
-   pure subroutine gradients(par, w, h_n, d_n, beta_n, gamma_n)
+   !> Derivatives of 1/h, D and gamma with respect to n, their parts along n removed since n:dn = 0; that of beta is K_e
+   !> (D h_n + d_n/h). Units [-, -, kPa]; w is a rate that loads. Guards of docs/theory/material.md section 5 included.
+   pure subroutine gradients(par, w, h_n, d_n, gamma_n)
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
-      real(wp), dimension(6), intent(out) :: h_n, d_n, beta_n, gamma_n
+      real(wp), dimension(6), intent(out) :: h_n, d_n, gamma_n
       real(wp) :: g_n(6), r_b_n(6), r(6), stiffness
 
       r = normal(w%r)
@@ -120,7 +121,6 @@ contains
       else
          h_n = normal(w%r_moved)/w%b_0
       end if
-      beta_n = w%k_e*(w%d*h_n + w%h_b*d_n)
       gamma_n = (2.0_wp/3.0_wp*w%p)*r_b_n + (2.0_wp*w%g)*h_n
    contains
       pure function normal(a) result(b)
