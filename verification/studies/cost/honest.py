@@ -33,7 +33,7 @@ STEPS_OF_LIAKOPOULOS = [(r"dt = 0.1\n", "dt = 0.01\n"), (r"dt = 1\n", "dt = 0.1\
 
 
 def swing(time):
-    """Free vibration of verification/host/vibration: let go at t = 1 s from 12 kN on a spring of 12000 kN/m, 3 Mg."""
+    """Free vibration of verification/host/vibration: released at t = 1 s from 12 kN on a spring of 12000 kN/m, 3 Mg."""
     return {"top.u_z": np.where(time < 1, -time, -np.cos(np.sqrt(4000.0)*(time - 1)))*1e-3}
 
 

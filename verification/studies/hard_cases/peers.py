@@ -6,7 +6,7 @@ Usage: peers.py; needs openseespy of PyPI (measured with 3.7.1.2), which no chec
 One SSPbrick, or one SSPquad in plane strain for PM4Sand, all of its displacements prescribed, so that the material alone answers: nothing is sought but its
 stress. Parameters are those of Toyoura sand in the paper of Dafalias & Manzari, and a relative density of 0.55 with the ordinary G_o and h_po of that density for PM4Sand; start at
 p' 100 kPa (e 0.735), isotropic in the directions that the model knows. A change of volume is shared by three directions, or by the two of the plane. The paths and what is asked of them are those of the point: a reversal may not
-change what comes later, the answer may not hang on the size of the increments, tension ends in a state that can be loaded again.
+change what comes later, the answer may not depend on the size of the increments, tension ends in a state that can be loaded again.
 """
 import math
 import os
