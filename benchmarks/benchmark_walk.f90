@@ -91,13 +91,14 @@ contains
       if (all(abs(path%from - path%to) <= 0.0_wp)) d_strain = strain*path%from
    end function strain_of
 
-   subroutine start(path, scheme, tolerance, domain, props, n_props, stress, statev, n_statev)
+   subroutine start(path, scheme, tolerance, domain, props, n_props, stress, statev, n_statev, zero)
       type(path_t), intent(in) :: path
       integer, intent(in) :: scheme
       real(wp), intent(in) :: tolerance
       logical, intent(in) :: domain   !< With the elastic domain of the default material; otherwise without any.
       real(wp), intent(out) :: props(WORDS), stress(6), statev(WORDS)
       integer(c_int), intent(out) :: n_props, n_statev
+      character(*), intent(in), optional :: zero   !< Name of a parameter that is 0.
       character :: text(1)
       integer(c_int) :: code
 
@@ -108,6 +109,11 @@ contains
       props(mud_index(MUD_PROPS, 'scheme'//c_null_char) + 1) = real(scheme, wp)
       props(mud_index(MUD_PROPS, 'tolerance'//c_null_char) + 1) = tolerance
       if (.not. domain) props(mud_index(MUD_PROPS, 'rho_e'//c_null_char) + 1) = 0.0_wp
+      if (present(zero)) then
+         code = mud_index(MUD_PROPS, trim(zero)//c_null_char)
+         if (code < 0 .and. zero /= '-' .and. zero /= '') error stop 'benchmark: there is no such parameter'
+         if (code >= 0) props(code + 1) = 0.0_wp
+      end if
       stress = path%stress
       statev = 0.0_wp
       code = mud_init_state(props, n_props, stress, path%suction, path%void_ratio, statev, n_statev, text, 0_c_int)
@@ -115,13 +121,14 @@ contains
    end subroutine start
 
    !> One point along a path, timed from its first update to its last.
-   subroutine walk(path, strain, scheme, tolerance, tangent, tally, prepared, domain)
+   subroutine walk(path, strain, scheme, tolerance, tangent, tally, prepared, domain, zero)
       type(path_t), intent(in) :: path
       real(wp), intent(in) :: strain, tolerance
       integer, intent(in) :: scheme, tangent
       type(tally_t), intent(out) :: tally
       logical, intent(in) :: prepared   !< PROPS are read once, not in every update.
       logical, intent(in) :: domain     !< With the elastic domain of the default material; otherwise without any.
+      character(*), intent(in), optional :: zero   !< Name of a parameter that is 0.
       real(wp) :: props(WORDS), stress(6), statev(WORDS), suction, d_suction, d_strain(6)
       real(wp) :: c(6, 6), c_pc(6), sw_e(6), sw_pc
       real(wp), allocatable :: steps(:, :), material(:)
@@ -131,7 +138,7 @@ contains
       integer(int64) :: before, after
       integer :: i
 
-      call start(path, scheme, tolerance, domain, props, n_props, stress, statev, n_statev)
+      call start(path, scheme, tolerance, domain, props, n_props, stress, statev, n_statev, zero)
       allocate (material(mud_prepared_size()))
       if (mud_prepare(props, n_props, material, size(material, kind=c_int), text, 0_c_int) /= 0) then
          error stop 'benchmark: a material is not accepted'

@@ -4,7 +4,8 @@
 !> mud_benchmark [ROUNDS]                                    everything; medians of so many rounds
 !> mud_benchmark PATH STRAIN SCHEME TOLERANCE TANGENT WALKS  one variant, for a profiler; nothing is timed; a further
 !>                                                           argument, prepared, reads PROPS once; one more, plain,
-!>                                                           takes the elastic domain away (- or prepared before it)
+!>                                                           takes the elastic domain away (- or prepared before it);
+!>                                                           one more names a parameter that is 0 (- or plain before it)
 !>
 !> A round walks every variant once, one after the other, so that a disturbance of the machine falls on all alike; a
 !> ratio is the median of the rounds' own ratios. A batch is timed by the clock on the wall, which other programs on the
@@ -42,15 +43,16 @@ program mud_benchmark
 contains
    subroutine walk_one()
       type(tally_t) :: tally
-      character(24) :: name, reading, domain
+      character(24) :: name, reading, domain, zero
       integer :: i
 
       call get_command_argument(1, name)
       call get_command_argument(7, reading)
       call get_command_argument(8, domain)
+      call get_command_argument(9, zero)
       do i = 1, nint(number(6))
          call walk(path_named(name), number(2), nint(number(3)), number(4), nint(number(5)), tally, &
-                   reading == 'prepared', domain /= 'plain')
+                   reading == 'prepared', domain /= 'plain', trim(zero))
       end do
       print '(i0, a, i0, a)', tally%updates, ' updates and ', tally%rates, ' rates a walk'
    end subroutine walk_one
