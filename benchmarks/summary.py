@@ -20,6 +20,8 @@ TANGENTS = ["none", "elastic", "continuum", "consistent"]
 for line in (folder / "speed.csv").read_text(encoding="utf-8").splitlines():
     if line[:1] == "#":
         print(line[1:].strip() + "  ")
+if counted:
+    print("Instructions: " + (folder / "instructions.csv").read_text(encoding="utf-8").split(";")[0][1:].strip() + "  ")
 
 print("\n| one rate evaluation | ns |\n|---|---|")
 for r in speed:
