@@ -71,14 +71,16 @@ def copy_to(folder):
         shutil.copy2(ROOT / name, folder / name)
 
 
-def patched(source, changes):
-    """Answers the question in every source of the library; the originals, to be put back."""
+def patched(source, changes, under="umat", left_alone=()):
+    """Answers the question in every source below a folder; the originals, to be put back."""
     originals = {}
-    for path in sorted((source / "umat").rglob("*.f90")):
+    for path in sorted((source / under).rglob("*.f90")):
+        if path.relative_to(source).as_posix().startswith(tuple(left_alone)):
+            continue
         text = path.read_text(encoding="utf-8")
         new = text
         for old, by in changes:
-            new = re.sub(old, by, new)
+            new = re.sub(old, by, new, flags=re.MULTILINE)
         if new != text:
             originals[path] = text
             path.write_text(new, encoding="utf-8")

@@ -154,11 +154,13 @@ contains
       node = domain%mesh%t6(:, element)
       x0 = old%x(:, node)
       x1 = new%x(:, node)
-      a = old%a(:, node) + scheme%l_a*(new%a(:, node) - old%a(:, node))
+      a = 0.0_wp
+      if (scheme%kind == DYNAMIC) a = old%a(:, node) + scheme%l_a*(new%a(:, node) - old%a(:, node))
       v(:DISPLACEMENTS, :) = old%v(:DISPLACEMENTS, node) &
          + scheme%l_v*(new%v(:DISPLACEMENTS, node) - old%v(:DISPLACEMENTS, node))
-      v(AT_P_W:, :) = old%v(AT_P_W:, node) + scheme%l_p*(new%v(AT_P_W:, node) - old%v(AT_P_W:, node))
       n_p = domain%n_carriers(element)
+      v(AT_P_W:, :) = 0.0_wp
+      if (n_p > 0) v(AT_P_W:, :) = old%v(AT_P_W:, node) + scheme%l_p*(new%v(AT_P_W:, node) - old%v(AT_P_W:, node))
       if (domain%center(element) > 0) then
          associate (center => domain%center(element))
             x0(AT_P_W:, 1) = old%x(AT_P_W:, center)
@@ -168,7 +170,7 @@ contains
       end if
       do g = 1, domain%rule
          associate (gp => domain%gauss(g, element), region => domain%regions(domain%region_of(element)))
-            call look(gp, n_p, scheme, x0, x1, v, a, k(g))
+            call look(gp, n_p, region%with_c, scheme, x0, x1, v, a, k(g))
             if (region%drainage /= COUPLED) call add_given(given_pressures_at(domain, element, g), k(g))
             k(g)%speed = 0.0_wp
             if (scheme%kind == DYNAMIC) k(g)%velocity = matmul(old%v(:DISPLACEMENTS, node), gp%n)
@@ -272,9 +274,10 @@ contains
    end function change_of
 
    !> What the nodes say about a point.
-   pure subroutine look(gp, n_p, scheme, x0, x1, v, a, k)
+   pure subroutine look(gp, n_p, with_c, scheme, x0, x1, v, a, k)
       type(gauss_t), intent(in) :: gp
       integer, intent(in) :: n_p
+      logical, intent(in) :: with_c   !< Else the suction of the carriers is 0, and nothing is spent on it.
       type(scheme_t), intent(in) :: scheme
       real(wp), intent(in) :: x0(FIELDS, 6), x1(FIELDS, 6), v(FIELDS, 6), a(2, 6)
       type(kinematics_t), intent(inout) :: k
@@ -286,15 +289,26 @@ contains
                   dot_product(gp%dn(2, :), du(1, :)) + dot_product(gp%dn(1, :), du(2, :))]
       k%div_v = dot_product(gp%dn(1, :), v(1, :)) + dot_product(gp%dn(2, :), v(2, :)) &
                 + dot_product(gp%n_over_r, v(1, :))
-      k%accel = matmul(a, gp%n)
+      k%accel = 0.0_wp
+      if (scheme%kind == DYNAMIC) k%accel = matmul(a, gp%n)
+      k%w0 = 0.0_wp
+      k%w1 = 0.0_wp
+      k%c0 = 0.0_wp
+      k%c1 = 0.0_wp
+      k%w_dot = 0.0_wp
+      k%c_dot = 0.0_wp
+      k%grad_w = 0.0_wp
+      k%grad_c = 0.0_wp
+      if (n_p == 0) return
       x = x0(AT_P_W:, :) + scheme%l_f*(x1(AT_P_W:, :) - x0(AT_P_W:, :))
       k%w0 = dot_product(gp%m(:n_p), x0(AT_P_W, :n_p))
       k%w1 = dot_product(gp%m(:n_p), x1(AT_P_W, :n_p))
+      k%w_dot = dot_product(gp%m(:n_p), v(AT_P_W, :n_p))
+      k%grad_w = matmul(gp%dm(:, :n_p), x(1, :n_p))
+      if (.not. with_c) return
       k%c0 = dot_product(gp%m(:n_p), x0(AT_P_C, :n_p))
       k%c1 = dot_product(gp%m(:n_p), x1(AT_P_C, :n_p))
-      k%w_dot = dot_product(gp%m(:n_p), v(AT_P_W, :n_p))
       k%c_dot = dot_product(gp%m(:n_p), v(AT_P_C, :n_p))
-      k%grad_w = matmul(gp%dm(:, :n_p), x(1, :n_p))
       k%grad_c = matmul(gp%dm(:, :n_p), x(2, :n_p))
    end subroutine look
 

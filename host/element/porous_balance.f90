@@ -173,13 +173,14 @@ contains
          response(U + 1:U + 2) = rho*accel - k%source(1:2)
          if (.not. with_tangent) return
          tangent(1:4, 1:4) = l_s*skeleton%tangent
-         tangent(1:3, 1:3) = tangent(1:3, 1:3) + mix%p_c*mix%s_ev
-         tangent(1:4, PC) = l_s*skeleton%tangent_suction
-         tangent(1:3, PC) = tangent(1:3, PC) - (1 - s)*l + mix%p_c*mix%s_pc
          tangent(1:3, PW) = -l
          tangent(U + 1, U + 1) = rho*(scheme%c_a + region%damping*scheme%c_v)
          tangent(U + 2, U + 2) = tangent(U + 1, U + 1)
          tangent(U + 1:U + 2, 1:3) = spread(accel*(rho_n*l*(1 - mix%n1) + rho_s*mix%s_ev), 2, 3)
+         if (.not. region%with_c) return
+         tangent(1:3, 1:3) = tangent(1:3, 1:3) + mix%p_c*mix%s_ev
+         tangent(1:4, PC) = l_s*skeleton%tangent_suction
+         tangent(1:3, PC) = tangent(1:3, PC) - (1 - s)*l + mix%p_c*mix%s_pc
          tangent(U + 1:U + 2, PC) = accel*(rho_s*mix%s_pc + n*(1 - s)*mix%d_rho_a*l)
          tangent(U + 1:U + 2, PW) = accel*n*(1 - s)*mix%d_rho_a*l
       end associate

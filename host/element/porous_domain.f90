@@ -75,7 +75,7 @@ module porous_domain
       type(region_t), allocatable :: regions(:)
       integer, allocatable :: region_of(:)            !< Of every element.
       ! Where the pressures of an element are: the first n_carriers of its carriers, with the shape functions m.
-      integer, allocatable :: n_carriers(:)           !< n_p where coupled, 1 where undrained, else 0.
+      integer, allocatable :: n_carriers(:)           !< n_p where coupled with water, 1 where undrained, else 0.
       integer, allocatable :: carriers(:, :)          !< (6, elements) Nodes.
       integer, allocatable :: center(:)               !< Node of an undrained element, in no other; else 0.
       real(wp), allocatable :: given(:, :)            !< (2, nodes) p_w, p_c at the start, where a region is drained or
@@ -175,7 +175,9 @@ contains
       if (allocated(domain%n_carriers)) deallocate (domain%n_carriers)
       allocate (domain%n_carriers(size(domain%mesh%t6, 2)), source=domain%n_p)
       do e = 1, size(domain%mesh%t6, 2)
-         if (domain%regions(domain%region_of(e))%drainage == COUPLED) cycle
+         associate (region => domain%regions(domain%region_of(e)))
+            if (region%with_w .and. region%drainage == COUPLED) cycle
+         end associate
          domain%n_carriers(e) = merge(1, 0, domain%center(e) > 0)
          domain%carriers(1, e) = max(1, domain%center(e))
       end do
