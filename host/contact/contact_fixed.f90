@@ -5,9 +5,10 @@
 module contact_fixed
    use kinds, only: wp
    use contact_geometry, only: contact_geometry_t, check_coordinates
-   use contact_mortar, only: overlap_t, point_t, find_overlap, integration_point, pair_gaps, hats, POINTS, POSITION, &
-                             SHARE, END_POSITION, END_SHARE
-   use contact_penalty, only: contact_result_t, new_result, find_whole, share_penalty, add_column, make_room
+   use contact_mortar, only: overlap_t, point_t, find_overlap, integration_point, unit_push, pair_gaps, hats, POINTS, &
+                             POSITION, SHARE, END_POSITION, END_SHARE
+   use contact_penalty, only: contact_result_t, new_result, find_whole, share_penalty, unknowns_of, add_column, &
+                              make_room
    use contact_search, only: search_t, prepare_search, find_candidates
    use contact_types, only: contact_options_t, contact_status_t, contact_fail, is_finite, COMBINED_GAP, CONTACT_OK, &
                             CONTACT_NO_PROJECTION, CONTACT_NOT_OPPOSITE, CONTACT_NOT_FINITE
@@ -78,7 +79,7 @@ contains
                if (overlap%segments == 0) cycle
                call pair_gaps(x, overlap, geometry%options%axisymmetric, weight, weighted_gap, d_weight, &
                               d_weighted_gap, push, missed)
-               unknown = unknowns_of(slave, master)
+               unknown = unknowns_of(geometry, e, search%candidate(c))
                do a = 1, 3
                   if (missed > 0.0_wp) exit
                   fixed%rows(slave(a))%weight = fixed%rows(slave(a))%weight + weight(a)
@@ -105,15 +106,6 @@ contains
          if (i > geometry%slave_nodes) fixed%rows(i)%part = fixed%rows(i)%part &
                                                            /max(fixed%weight(fixed%rows(i)%node), tiny(1.0_wp))
       end do
-   contains
-      pure function unknowns_of(slave, master) result(unknown)
-         integer, intent(in) :: slave(3), master(3)
-         integer :: unknown(12)
-
-         unknown(1:5:2) = 2*slave - 1
-         unknown(7:11:2) = 2*(geometry%slave_nodes + master) - 1
-         unknown(2:12:2) = unknown(1:11:2) + 1
-      end function unknowns_of
    end subroutine fix_geometry
 
    !> A row of its own for every integration point of a pair.
@@ -127,7 +119,6 @@ contains
       real(wp), intent(out) :: missed
       type(row_t), allocatable :: more(:)
       type(point_t) :: p
-      real(wp) :: push(12)
       integer :: segment, k, n
 
       missed = 0.0_wp
@@ -140,17 +131,13 @@ contains
                                    merge(END_SHARE(k), SHARE(k), at_ends), options%axisymmetric, p, missed)
             if (missed > 0.0_wp) return
             n = n + 1
-            push(1:5:2) = p%t(2)*p%ns
-            push(2:6:2) = -p%t(1)*p%ns
-            push(7:11:2) = -p%t(2)*p%nm
-            push(8:12:2) = p%t(1)*p%nm
             more(n)%penalty = options%penalty
             more(n)%q = p%area*p%phi
             more(n)%weight = p%area*p%length
             more(n)%node = slave
             more(n)%part = p%area*p%length*hats(p%s)
             allocate (more(n)%unknown(0), more(n)%push(0))
-            call add_push(more(n), unknown, p%area*push)
+            call add_push(more(n), unknown, p%area*unit_push(p))
          end do
       end do
       call move_alloc(more, fixed%rows)

@@ -14,8 +14,8 @@ module contact_mortar
    use contact_types, only: wp, TWO_PI
    implicit none (type, external)
    private
-   public :: overlap_t, point_t, find_overlap, end_slope, integration_point, pair_gaps, penetration, hats, &
-             hat_slopes
+   public :: overlap_t, point_t, find_overlap, end_slope, integration_point, unit_push, pair_gaps, penetration, &
+             hats, hat_slopes
    public :: POINTS, POSITION, SHARE, END_POSITION, END_SHARE, LARGEST_SEGMENTS
 
    integer, parameter :: POINTS = 4   !< Gauss points of a segment.
@@ -249,7 +249,7 @@ contains
       real(wp), intent(out) :: d_weight(12, 3), d_weighted_gap(12, 3), push(12, 3)
       real(wp), intent(out) :: missed
       type(point_t) :: p
-      real(wp) :: m(3), dm(3), unit_push(12)
+      real(wp) :: m(3), dm(3), of_point(12)
       integer :: segment, k, a
 
       weight = 0.0_wp
@@ -263,10 +263,7 @@ contains
             if (missed > 0.0_wp) return
             m = hats(p%s)
             dm = hat_slopes(p%s)
-            unit_push(1:5:2) = p%t(2)*p%ns
-            unit_push(2:6:2) = -p%t(1)*p%ns
-            unit_push(7:11:2) = -p%t(2)*p%nm
-            unit_push(8:12:2) = p%t(1)*p%nm
+            of_point = unit_push(p)
             do a = 1, 3
                if (m(a) <= 0.0_wp) cycle
                weight(a) = weight(a) + p%area*m(a)*p%length
@@ -274,12 +271,24 @@ contains
                d_weight(:, a) = d_weight(:, a) + (m(a)*p%d_area + p%area*dm(a)*p%d_s)*p%length + p%area*m(a)*p%d_length
                d_weighted_gap(:, a) = d_weighted_gap(:, a) + (m(a)*p%d_area + p%area*dm(a)*p%d_s)*p%phi &
                                       + p%area*m(a)*p%d_phi
-               push(:, a) = push(:, a) + p%area*m(a)*unit_push
+               push(:, a) = push(:, a) + p%area*m(a)*of_point
             end do
          end do
       end do
       missed = 0.0_wp
    end subroutine pair_gaps
+
+   !> Forces on the nodes of a pair [-], slave first, of a unit force that pushes the surfaces apart at a point.
+   !> docs/theory/contact.md section 2.3.
+   pure function unit_push(p) result(push)
+      type(point_t), intent(in) :: p
+      real(wp) :: push(12)
+
+      push(1:5:2) = p%t(2)*p%ns
+      push(2:6:2) = -p%t(1)*p%ns
+      push(7:11:2) = -p%t(2)*p%nm
+      push(8:12:2) = p%t(1)*p%nm
+   end function unit_push
 
    !> Deepest penetration of a pair of edges [m], 0 if it is open: at the ends of the segments too, where corners are.
    !> docs/theory/contact.md sections 2.1 and 2.4.

@@ -12,7 +12,7 @@ module contact_penalty
    implicit none (type, external)
    private
    public :: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate
-   public :: find_whole, share_penalty, add_column, make_room
+   public :: find_whole, share_penalty, unknowns_of, add_column, make_room
 
    integer, parameter :: FIRST_ROOM = 1024   !< Triplets to begin with.
    real(wp), parameter :: POINTWISE_SHARE = 0.5_wp   !< Of the penalty, where both gaps are penalised [-].
@@ -260,7 +260,7 @@ contains
             status = contact_fail(CONTACT_NO_PROJECTION, pair%slave, .false., missed)
             return
          end if
-         unknown = unknowns_of(geometry, pair)
+         unknown = unknowns_of(geometry, pair%slave, pair%master)
          result%force(unknown) = result%force(unknown) + response%force
          if (options%gap == POINTWISE_GAP) then
             result%energy = result%energy + response%energy
@@ -325,7 +325,7 @@ contains
          if (edge == 0) cycle
          do i = work%first_pair(edge), work%first_pair(edge + 1) - 1
             a = findloc(geometry%slave_edges(:, work%pair(i)%slave), node, dim=1)
-            unknown = unknowns_of(geometry, work%pair(i))
+            unknown = unknowns_of(geometry, work%pair(i)%slave, work%pair(i)%master)
             do j = 1, 12
                if (work%position(unknown(j)) > 0) cycle
                n = n + 1
@@ -353,13 +353,14 @@ contains
       end do
    end subroutine add_node
 
-   pure function unknowns_of(geometry, pair) result(unknown)
+   !> Numbers of the displacements of a pair of edges: first those of the slave's nodes, then those of the master's.
+   pure function unknowns_of(geometry, slave, master) result(unknown)
       type(contact_geometry_t), intent(in) :: geometry
-      type(pair_t), intent(in) :: pair
+      integer, intent(in) :: slave, master   !< Numbers of the edges.
       integer :: unknown(12)
 
-      unknown(1:5:2) = 2*geometry%slave_edges(:, pair%slave) - 1
-      unknown(7:11:2) = 2*(geometry%slave_nodes + geometry%master_edges(:, pair%master)) - 1
+      unknown(1:5:2) = 2*geometry%slave_edges(:, slave) - 1
+      unknown(7:11:2) = 2*(geometry%slave_nodes + geometry%master_edges(:, master)) - 1
       unknown(2:12:2) = unknown(1:11:2) + 1
    end function unknowns_of
 
