@@ -9,7 +9,7 @@ module csv
    implicit none (type, external)
    private
    public :: csv_t, open_csv, new_csv, check_csv, resume_csv, write_row, write_line, settle_csv, close_csv, is_open
-   public :: NUMBERS
+   public :: columns_of, NUMBERS
 
    character(*), parameter :: NUMBERS = '(*(es24.16e3,:,","))'   !< Format of a row of numbers.
    integer, parameter :: CELL = 25                               !< Characters of a number in such a row.
@@ -51,6 +51,7 @@ contains
       end if
    end subroutine open_csv
 
+   !> Number of columns that the first line of a table names.
    pure integer function columns_of(head)
       character(*), intent(in) :: head
       integer :: i

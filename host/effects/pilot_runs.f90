@@ -69,7 +69,7 @@ module pilot_runs
    !> How far two runs lie apart.
    type :: difference_t
       real(wp) :: share = 0.0_wp                      !< Distance as a share of the answer's range [-].
-      real(wp) :: change = 0.0_wp                     !< Second run less first, where they differ most [m, kPa].
+      real(wp) :: change = 0.0_wp                     !< Second run less first, where they differ most [m, kPa, kN].
       character(72) :: answer = ''
    end type difference_t
 
@@ -77,8 +77,8 @@ module pilot_runs
    type :: influence_t
       integer :: effect = 0                           !< Row of the table of effects.
       character(72) :: answer = ''
-      real(wp) :: range = 0.0_wp                      !< What the share is of [m, kPa].
-      real(wp) :: change = 0.0_wp                     !< Second run less first, where they differ most [m, kPa].
+      real(wp) :: range = 0.0_wp                      !< What the share is of [m, kPa, kN].
+      real(wp) :: change = 0.0_wp                     !< Second run less first, where they differ most [m, kPa, kN].
       real(wp) :: share = 0.0_wp                      !< [-]
    end type influence_t
 contains
@@ -261,9 +261,8 @@ contains
 
    !> How far the answers of two runs of one mesh lie apart, as shares of the range of each answer in the first; a field
    !> that one of them lacks is measured by its change against the largest change of an effective stress.
-   !> docs/theory/host.md section 11. The force of a support that
-   !> moves is an answer too. `worst` is the answer that differs most; `influences` lists all
-   !> answers that either run has.
+   !> docs/theory/host.md section 11. The force of a support that moves is an answer too. `worst` is the answer that
+   !> differs most; `influences` lists all answers that either run has.
    subroutine difference(one, two, worst, influences)
       type(pilot_t), intent(in) :: one, two
       type(difference_t), intent(out) :: worst

@@ -11,7 +11,7 @@ module answer_errors
    use model_types, only: model_t
    use scene_types, only: acts_in
    use texts, only: short, whole
-   use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
+   use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS, AT_U_R
    implicit none (type, external)
    private
    public :: write_answers, print_answers
@@ -120,7 +120,7 @@ contains
             trim(OF_ALL(f))//', root mean square: '//short(control%scale(f))// &
             trim(merge(' m  ', ' kPa', f <= DISPLACEMENTS))//', '//short(100*control%largest(f)/control%scale(f))//' %'
       end do
-      share = maxval(control%unseen(:DISPLACEMENTS)/max(control%scale(:DISPLACEMENTS), tiny(1.0_wp)))
+      share = control%unseen/max(control%scale(AT_U_R), tiny(1.0_wp))
       if (PATH*share > minval(model%stages%accuracy, mask=model%stages%controlled)) write (unit, '(a)') &
          '   Not estimated: '//short(100*min(share, 1.0_wp))//' % of the displacements came in single steps, '// &
          'since loads or prescribed values act at once; the response of a material with a memory may depend on how '// &

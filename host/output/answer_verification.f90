@@ -3,6 +3,7 @@
 !> docs/theory/host.md section 4.5.
 module answer_verification
    use kinds, only: wp
+   use csv, only: columns_of
    use faults, only: fault_t, raise, EXIT_OUTPUT
    use files, only: read_whole
    use history_distance, only: farthest
@@ -55,16 +56,20 @@ contains
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: text
       logical :: good
-      integer :: first, last, row, status, i
+      integer :: first, last, row, rows, status, i
 
       call read_whole(path, text, good)
       if (good) good = index(text, new_line('a')) > 0
       if (good) then
          last = index(text, new_line('a'))
-         allocate (names(1 + count([(text(i:i) == ',', i=1, last)])))
+         allocate (names(columns_of(text(:last))))
          read (text(:last - 1), *, iostat=status) names
-         allocate (numbers(size(names), count([(text(i:i) == new_line('a'), i=last + 1, len(text))])))
-         do row = 1, size(numbers, 2)
+         rows = 0
+         do i = last + 1, len(text)
+            if (text(i:i) == new_line('a')) rows = rows + 1
+         end do
+         allocate (numbers(size(names), rows))
+         do row = 1, rows
             if (status /= 0) exit
             first = last + 1
             last = last + index(text(first:), new_line('a'))

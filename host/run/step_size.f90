@@ -210,7 +210,7 @@ contains
          end if
          if (.not. any(known)) c%controller%dt = asked
          if (.not. (known(AT_U_R) .or. stage%kind == QUASI_STATIC .and. c%fresh == 1) .and. depends_on_path(model)) &
-            c%unseen = c%unseen + field_norms(run%next%x(:, :bodies) - run%state%x(:, :bodies))
+            c%unseen = c%unseen + rms(run%next%x(:DISPLACEMENTS, :bodies) - run%state%x(:DISPLACEMENTS, :bodies))
          call gather(model, stage, error, norm, elapsed - dt, elapsed, run)
          call note_limit()
       end associate
