@@ -50,22 +50,23 @@ def command(*words, **keys):
     return done.stdout + done.stderr
 
 
-def build(source):
-    """The benchmark of a tree of sources."""
+def build(source, target, *options):
+    """A program of a tree of sources, by its place in the build folder."""
     folder = source / "build"
     if not (folder / "build.ninja").exists():
-        command("cmake", "-S", source, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_Fortran_FLAGS_RELEASE=-O3",
-                "-DMUD_BUILD_BENCHMARKS=ON", "-DMUD_BUILD_TESTS=OFF", "-DMUD_BUILD_HOST=OFF", "-DMUD_BUILD_DRIVERS=OFF",
-                "-DMUD_BUILD_SHARED=OFF", "-DMUD_WERROR=OFF")
-    command("ninja", "-j1", "-C", folder, "mud_benchmark")
-    return folder / "benchmarks/mud_benchmark"
+        command("cmake", "-S", source, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                "-DCMAKE_Fortran_FLAGS_RELEASE=-O3",
+                "-DMUD_BUILD_TESTS=OFF", "-DMUD_BUILD_DRIVERS=OFF", "-DMUD_BUILD_SHARED=OFF", "-DMUD_WERROR=OFF", *options)
+    command("ninja", "-j1", "-C", folder, pathlib.Path(target).name)
+    return folder / target
 
 
-def copy_to(folder):
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
+def copy_to(folder, *places):
+    """The sources that every build needs, and those at the places; nothing if they are there."""
+    if folder.exists():
+        return
     names = command("git", "-C", ROOT, "ls-files", "CMakeLists.txt", "CMakePresets.json", "cmake", "common", "umat", "materials",
-                    "benchmarks", "verification/studies/work_precision", "drivers", "LICENSE", "README.md").split()
+                    "drivers", "LICENSE", "README.md", *places).split()
     for name in names:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(ROOT / name, folder / name)
@@ -98,38 +99,52 @@ def instructions(program, path, tangent, parameter):
     return (count(3) - count(1)) / 2 / UPDATES
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--only", nargs="+", choices=list(EFFECTS), default=list(EFFECTS))
-    parser.add_argument("--folder", type=pathlib.Path, default=ROOT / "build/effects_off")
+def measure(description, effects, columns, folder, make, count):
+    """The program of both scripts: a build with everything, and for every effect one without its code. make(source) builds
+    a program, count(effect, whole, without) gives the rows of an effect; effects: changes and what else patched takes."""
+    parser = argparse.ArgumentParser(description=description.split("\n")[0])
+    parser.add_argument("--only", nargs="+", choices=list(effects), default=list(effects))
+    parser.add_argument("--folder", type=pathlib.Path, default=ROOT / "build" / folder)
     parser.add_argument("--keep", action="store_true")
     args = parser.parse_args()
-    source = args.folder.resolve() / "source"
-    if not source.exists():
-        copy_to(source)
-    whole = args.folder.resolve() / "with"
-    shutil.copy2(build(source), whole)
-    results = (ROOT / "benchmarks/results" if args.keep else args.folder.resolve()) / "effects_off.csv"
+    place = args.folder.resolve()
+    place.mkdir(parents=True, exist_ok=True)
+    source, whole = place / "source", place / "with"
+    shutil.copy2(make(source), whole)
+    results = (ROOT / "benchmarks/results" if args.keep else place) / f"{folder}.csv"
     rows = [tuple(row.values()) for row in (tables.rows(results) if results.exists() else [])
             if row["effect"] not in args.only]
     for effect in args.only:
-        parameter, changes = EFFECTS[effect]
-        originals = patched(source, changes)
+        originals = patched(source, *effects[effect])
         try:
-            without = build(source)
-            for path in PATHS:
-                for tangent, name in TANGENTS.items():
-                    off, bare = (instructions(program, path, tangent, parameter) for program in (whole, without))
-                    rows.append((effect, parameter, path, name, f"{off:.0f}", f"{bare:.0f}", f"{100 * (off / bare - 1):.2f}"))
-                    print(*rows[-1], flush=True)
+            for row in count(effect, whole, make(source)):
+                rows.append(row)
+                print(*row, flush=True)
         finally:
             for file, text in originals.items():
                 file.write_text(text, encoding="utf-8")
         with open(results, "w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(COLUMNS)
-            writer.writerows(sorted(rows, key=lambda row: list(EFFECTS).index(row[0])))
+            writer.writerow(columns)
+            writer.writerows(sorted(rows, key=lambda row: list(effects).index(row[0])))
+
+
+def percent(off, bare):
+    return f"{off:.0f}", f"{bare:.0f}", f"{100 * (off / bare - 1):.2f}"
+
+
+def make(source):
+    copy_to(source, "benchmarks", "verification/studies/work_precision")
+    return build(source, "benchmarks/mud_benchmark", "-DMUD_BUILD_BENCHMARKS=ON", "-DMUD_BUILD_HOST=OFF")
+
+
+def count(effect, whole, without):
+    parameter = EFFECTS[effect][0]
+    for path in PATHS:
+        for tangent, name in TANGENTS.items():
+            yield (effect, parameter, path, name,
+                   *percent(*(instructions(program, path, tangent, parameter) for program in (whole, without))))
 
 
 if __name__ == "__main__":
-    main()
+    measure(__doc__, {effect: (changes,) for effect, (_, changes) in EFFECTS.items()}, COLUMNS, "effects_off", make, count)

@@ -9,15 +9,14 @@ compiler removes its code, and where the effect is a term that is 0 when off, th
 small elastic scene with the effect off, and their histories must be the same bytes. Needs valgrind; a minute of one core
 an effect after the first build. --keep writes results/host_effects_off.csv.
 """
-import argparse
-import csv
 import os
 import pathlib
 import re
 import shutil
 import sys
+import tempfile
 
-from effects_off import ROOT, command, patched, tables
+from effects_off import build, command, copy_to, measure, percent
 
 STEPS = (20, 60)   # of the two runs whose difference is counted
 DT = 1.0e-3        # [s]
@@ -93,22 +92,9 @@ def scene(fields, analysis, contact, gravity, steps):
     return text + "&load group = 'top' kind = 'pressure' value = 10 /\n"
 
 
-def build(source):
-    folder = source / "build"
-    if not (folder / "build.ninja").exists():
-        command("cmake", "-S", source, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_Fortran_FLAGS_RELEASE=-O3",
-                "-DMUD_BUILD_HOST=ON", "-DMUD_BUILD_TESTS=OFF", "-DMUD_BUILD_DRIVERS=OFF", "-DMUD_BUILD_SHARED=OFF",
-                "-DMUD_WERROR=OFF")
-    command("ninja", "-j1", "-C", folder, "mud_host")
-    return folder / "host/mud_host"
-
-
-def copy_to(folder):
-    names = command("git", "-C", ROOT, "ls-files", "CMakeLists.txt", "CMakePresets.json", "cmake", "common", "umat", "materials",
-                    "host", "drivers", "LICENSE", "README.md").split()
-    for name in names:
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy2(ROOT / name, folder / name)
+def make(source):
+    copy_to(source, "host")
+    return build(source, "host/mud_host", "-DMUD_BUILD_HOST=ON")
 
 
 def run(program, folder, effect):
@@ -126,39 +112,16 @@ def run(program, folder, effect):
     return (counts[1] - counts[0]) / (STEPS[1] - STEPS[0]), (folder / "out/histories.csv").read_bytes()
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--only", nargs="+", choices=list(EFFECTS), default=list(EFFECTS))
-    parser.add_argument("--folder", type=pathlib.Path, default=ROOT / "build/host_effects_off")
-    parser.add_argument("--keep", action="store_true")
-    args = parser.parse_args()
-    folder = args.folder.resolve()
-    source = folder / "source"
-    if not source.exists():
-        copy_to(source)
-    whole = folder / "with"
-    shutil.copy2(build(source), whole)
-    results = (ROOT / "benchmarks/results" if args.keep else folder) / "host_effects_off.csv"
-    rows = [tuple(row.values()) for row in (tables.rows(results) if results.exists() else [])
-            if row["effect"] not in args.only]
-    for effect in args.only:
-        fields, analysis, _, changes = EFFECTS[effect]
-        originals = patched(source, changes, "host", BUILDERS)
-        try:
-            bare, bare_said = run(build(source), folder / "run", effect)
-        finally:
-            for file, text in originals.items():
-                file.write_text(text, encoding="utf-8")
-        off, said = run(whole, folder / "run", effect)
-        if said != bare_said:
-            sys.exit(f"{effect}: the build without its code answers otherwise")
-        rows.append((effect, fields, analysis, f"{off:.0f}", f"{bare:.0f}", f"{100 * (off / bare - 1):.2f}"))
-        print(*rows[-1], flush=True)
-        with open(results, "w", encoding="utf-8", newline="") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(COLUMNS)
-            writer.writerows(sorted(rows, key=lambda row: list(EFFECTS).index(row[0])))
+def count(effect, whole, without):
+    fields, analysis, _, _ = EFFECTS[effect]
+    with tempfile.TemporaryDirectory() as folder:
+        bare, bare_said = run(without, pathlib.Path(folder) / "run", effect)
+        off, said = run(whole, pathlib.Path(folder) / "run", effect)
+    if said != bare_said:
+        sys.exit(f"{effect}: the build without its code answers otherwise")
+    yield effect, fields, analysis, *percent(off, bare)
 
 
 if __name__ == "__main__":
-    main()
+    measure(__doc__, {effect: (changes, "host", BUILDERS) for effect, (_, _, _, changes) in EFFECTS.items()}, COLUMNS,
+            "host_effects_off", make, count)
