@@ -51,7 +51,7 @@ module triax_stage
       real(wp) :: target = 0.0_wp            !< Value of what leads at the end; 1 where changes are given.
       real(wp) :: strain_rows(6, ROWS) = 0.0_wp, stress_rows(6, ROWS) = 0.0_wp   !< Column i: constraint i.
       real(wp) :: changes(ROWS) = 0.0_wp     !< Right sides; that of a lead by its value is set when the stage begins.
-      logical :: effective = .false.         !< Stress rows prescribe effective stress, not of net stress.
+      logical :: effective = .false.         !< Stress rows prescribe effective stress, not net stress.
       logical :: moves_suction = .false.
       logical :: keeps_water = .false.       !< Water content S_w e is held, suction follows.
       real(wp) :: suction_end = 0.0_wp       !< [unit of stress]

@@ -85,7 +85,7 @@ MUTATIONS = [
     ("return_point notes every direction", (RETURN_POINT, "SMALLEST_COSINE = 0.7_wp", "SMALLEST_COSINE = -2.0_wp")),
     ("return_point notes its turning point where a substep ends",
      (EVENTS, "call land_on(par, inc, EVENT_TURN, size, probe, counters, landed)", "landed = 0")),
-    ("return_point notes progress on the way back", (RETURN_POINT, "along = ddot(t, place%chord)", "along = abs(ddot(t, place%chord))")),
+    ("return_point notes progress against its chord", (RETURN_POINT, "along = ddot(t, place%chord)", "along = abs(ddot(t, place%chord))")),
     ("return_point forgets how far it came",
      (RETURN_POINT, "max(memory%target, ddot(r, memory%direction))", "max(memory%target, 0.0_wp*r(1))")),
     ("return_point hands its direction to the next process",

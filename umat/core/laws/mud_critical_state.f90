@@ -62,7 +62,7 @@ contains
       if (par%lode) slope = par%lode_bend*g**5
    end function lode_slope
 
-   !> Image alpha_hat [kPa] of a void ratio on the compression line, paper eq. (7) with the factor f mended. Void ratio
+   !> Image alpha_hat [kPa] of a void ratio on the compression line, paper eq. (7) with f corrected. Void ratio
    !> and f [-]; ln alpha_hat is kept within -50 and 50; docs/theory/material.md section 3.5.
    pure real(wp) function compression_image(par, f, e) result(alpha)
       type(params_t), intent(in) :: par
