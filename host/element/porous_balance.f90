@@ -174,7 +174,8 @@ contains
          if (.not. with_tangent) return
          tangent(1:4, 1:4) = l_s*skeleton%tangent
          tangent(1:3, PW) = -l
-         tangent(U + 1, U + 1) = rho*(scheme%c_a + region%damping*scheme%c_v)
+         tangent(U + 1, U + 1) = rho*scheme%c_a
+         if (scheme%kind == DYNAMIC) tangent(U + 1, U + 1) = rho*(scheme%c_a + region%damping*scheme%c_v)
          tangent(U + 2, U + 2) = tangent(U + 1, U + 1)
          tangent(U + 1:U + 2, 1:3) = spread(accel*(rho_n*l*(1 - mix%n1) + rho_s*mix%s_ev), 2, 3)
          if (.not. region%with_c) return
