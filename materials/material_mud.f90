@@ -5,9 +5,8 @@ module material_mud
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use key_schema, only: key_t, NONE
-   use library_tables, only: property_count, property_index, property_name, property_range, range_for, &
-                             state_count, statev_index, &
-                             statev_name, statev_unit
+   use library_tables, only: property_count, property_index, property_name, property_option, property_range, &
+                             range_for, state_count, statev_index, statev_name, statev_unit
    use material_point, only: material_t, response_t, report_t, remark_t, saturation_t, NAME_LENGTH, NO_PRESET, &
                              WITHOUT_TANGENT
    use mud_interface, only: mud_report, mud_prepared_size, mud_prepare, mud_init_state, mud_update_prepared, &
@@ -90,6 +89,7 @@ contains
       law%tolerance = law%props(property_index('tolerance'))
       law%given_tolerance = not_the_default('tolerance', law%tolerance)
       law%given_scheme = not_the_default('scheme', law%props(property_index('scheme')))
+      law%unguarded = lets_pressure_go(law%props)
       law%e_0 = law%props(property_index('e_0'))
       law%n_guards = size(GUARDS)
       law%guard_names(:size(GUARDS)) = GUARDS
@@ -104,6 +104,20 @@ contains
       if (min(law%place_e, law%place_s_w) < 1) call raise(fault, EXIT_INPUT, &
          'The library keeps no void_ratio or no saturation; program and library do not match.')
    end subroutine fill_mud
+
+   !> Whether nothing keeps p' above zero: without the tension cut-off, which the rule as_published switches off too.
+   logical function lets_pressure_go(props)
+      real(wp), intent(in) :: props(:)
+      real(wp) :: published
+      integer :: rule, guard
+      logical :: known
+
+      rule = property_index('memory_rule')
+      call property_option(rule, 'as_published', published, known)
+      lets_pressure_go = known .and. nint(props(rule)) == nint(published)
+      guard = property_index('cutoff')
+      lets_pressure_go = lets_pressure_go .or. nint(props(guard)) == 0
+   end function lets_pressure_go
 
    logical function not_the_default(name, value)
       character(*), intent(in) :: name

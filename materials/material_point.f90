@@ -10,6 +10,7 @@ module material_point
    implicit none (type, external)
    private
    public :: material_t, material_slot_t, response_t, report_t, remark_t, saturation_t, state_index, swollen
+   public :: lost_pressure, PRESSURE_LOST
    public :: MOST_POINTS, MOST_GUARDS, NAME_LENGTH, DOUBT_LENGTH, WITHOUT_TANGENT, WITH_TANGENT, NO_PRESET
 
    integer, parameter :: MOST_POINTS = 12   !< Of a batch: the quadrature points of an element.
@@ -20,6 +21,10 @@ module material_point
    !> Where a law's degree of saturation has no history.
    character(*), parameter :: NO_PRESET = 'the degree of saturation of this material follows from the suction: '// &
       'leave saturation out of &initial, or give the material hysteresis = 1 (&mud)'
+
+   !> What a user is told of a point without mean effective stress. The library says it to hosts of umat_.
+   character(*), parameter :: PRESSURE_LOST = 'the model has no meaning below 0, and its tension cut-off is off. '// &
+      'Do not use the results from here on; set cutoff = 1, with a memory_rule other than ''as_published''.'
 
    !> What a batch of updates did.
    type :: report_t
@@ -58,6 +63,7 @@ module material_point
       logical :: has_energy = .false.       !< The stress has a potential: an elastic law.
       logical :: has_retention = .false.    !< It knows its saturation itself; no curve beside it.
       logical :: saturation_is_state = .false.   !< It has a history: retention() is where it starts, no more.
+      logical :: unguarded = .false.        !< Made for a mean effective stress above 0, and nothing keeps it there.
       logical :: exact_tangent = .false.    !< d sigma'/d strain is the derivative of the update itself.
       integer :: n_guards = 0
       real(wp) :: tolerance = 0.0_wp        !< Of the stress integration, relative; 0: the law has none.
@@ -212,6 +218,14 @@ contains
       end associate
       allocate (list(0))
    end subroutine no_remarks
+
+   !> Whether a law that is made for compression has been left by its mean effective stress.
+   pure logical function lost_pressure(law, stress)
+      class(material_t), intent(in) :: law
+      real(wp), intent(in) :: stress(6)   !< Effective, tension positive [kPa].
+
+      lost_pressure = law%unguarded .and. sum(stress(:3)) > 0.0_wp
+   end function lost_pressure
 
    !> Place of a state variable, from 1; 0 if the law has none of that name. Case counts.
    pure integer function state_index(law, name) result(place)

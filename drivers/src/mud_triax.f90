@@ -4,12 +4,14 @@ program mud_triax
    use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
    use faults, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
    use kinds, only: wp
+   use material_point, only: PRESSURE_LOST
    use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
    use triax_accuracy, only: accuracy_t, reach_accuracy, verify_accuracy, note_accuracy, accuracy_lines, is_met, &
                              LINE_LENGTH
    use triax_case, only: case_t, read_case
    use library_tables, only: library_version
    use material_folder, only: material_path
+   use texts, only: short
    use triax_point, only: point_t
    use triax_control, only: tally_t
    use triax_output, only: table_t, open_table
@@ -96,6 +98,9 @@ contains
       call start_timer(timer)
       if (.not. quiet) timer%shown = .true.
       call run_test(test, table, tally, timer, point, fault)
+      if (test%soil%law%unguarded .and. tally%least_pressure < 0.0_wp) write (error_unit, '(a)') &
+         'mud_triax: warning: the mean effective stress p'' fell to '//short(tally%least_pressure)//' '// &
+         trim(test%soil%law%unit%name)//': '//PRESSURE_LOST
       if (.not. quiet) call show_summary(test, table, point, tally, timer)
       if (fault%code == 0 .and. test%accuracy > 0.0_wp) call show_accuracy(answer, quiet .or. table%to_screen)
    end subroutine run

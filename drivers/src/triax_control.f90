@@ -52,6 +52,7 @@ module triax_control
       logical :: residuals = .false.         !< Print the error of every iteration.
       character(256) :: save_to = ''         !< File for the first update that the library refuses; blank: none.
       logical :: saved = .false.
+      real(wp) :: least_pressure = huge(1.0_wp)   !< Smallest p' after an increment, of the unit of the law.
       integer :: guards(MOST_GUARDS) = 0     !< How often each guard of the law acted.
       real(wp) :: error = 0.0_wp             !< Largest error of a constraint since the caller set it to 0, relative.
       real(wp) :: worst = 0.0_wp             !< The same, of the whole run.
@@ -268,6 +269,7 @@ contains
       where (plan%given(:6)) after%strain = plan%strain_start + plan%given_change(:6)*progress
       if (plan%given(SUCTION)) after%suction = plan%suction_start + plan%given_change(SUCTION)*progress
       point = after
+      tally%least_pressure = min(tally%least_pressure, mean_stress(point))
       tally%guards = tally%guards + report%guards
    end subroutine solve_part
 

@@ -1,16 +1,18 @@
 ! SPDX-License-Identifier: MIT
-!> Warning of a run whose pore water pressures oscillate from node to node. docs/theory/host.md section 3.1.
+!> Warnings of a run whose pore water pressures oscillate from node to node (docs/theory/host.md section 3.1), or in
+!> which a material made for compression has lost its mean effective stress and has no guard that would have kept it.
 module pressure_alarm
    use, intrinsic :: iso_fortran_env, only: error_unit
    use kinds, only: wp
    use generalised_alpha, only: STATIC
+   use material_point, only: lost_pressure, PRESSURE_LOST
    use model_types, only: model_t, stage_t
    use porous_domain, only: COUPLED
    use texts, only: short
    use unknown_fields, only: AT_P_W
    implicit none (type, external)
    private
-   public :: tell_oscillation, outlier
+   public :: tell_oscillation, tell_lost_pressure, outlier
 
    !> By how much a corner may differ from all sides around it, share of the range of all pressures: linear and
    !> parabolic fields leave nothing, a field that the mesh follows little [-].
@@ -48,6 +50,32 @@ contains
             'the mesh there, take longer steps or, where hardly any water drains, set pressures = ''linear'' in &scene.'
       end associate
    end subroutine tell_oscillation
+
+   !> After an accepted step; once a run, on standard error, also where the run is quiet. docs/theory/memory-rules.md
+   !> section 2.2. Raises no fault.
+   subroutine tell_lost_pressure(model, time, stress, told)
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: time           !< [s]
+      real(wp), intent(in) :: stress(:, :)   !< Effective, of the Gauss points, tension positive. (6, points) [kPa]
+      logical, intent(inout) :: told
+      integer :: e, g, p
+
+      if (told) return
+      do e = 1, size(model%domain%region_of)
+         associate (law => model%domain%regions(model%domain%region_of(e))%law)
+            if (.not. law%unguarded) cycle
+            do g = 1, model%domain%rule
+               p = (e - 1)*model%domain%rule + g
+               if (.not. lost_pressure(law, stress(:, p))) cycle
+               told = .true.
+               write (error_unit, '(a)') 'mud_host: warning: time '//short(time)// &
+                  ' s: the mean effective stress p'' at ('//short(model%domain%gauss(g, e)%x(1))//', '// &
+                  short(model%domain%gauss(g, e)%x(2))//') m is '//short(-sum(stress(:3, p))/3)//' kPa: '//PRESSURE_LOST
+               return
+            end do
+         end associate
+      end do
+   end subroutine tell_lost_pressure
 
    !> The corner of the mesh that stands out most, and by which share of the range of all pressures; 0 where no corner
    !> does or the range is too small to matter. A corner stands out by what it is above, or below, the middles of all

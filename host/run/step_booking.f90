@@ -16,11 +16,11 @@ module step_booking
    use run_observer, only: run_observer_t, step_report_t
    use run_state, only: run_t
    use contact_alarm, only: tell_penetration
-   use pressure_alarm, only: tell_oscillation
+   use pressure_alarm, only: tell_oscillation, tell_lost_pressure
    implicit none (type, external)
    private
    public :: book_accepted_step, watch_effects, check_creation, tell_creation, tell_penetration, &
-             tell_oscillation
+             tell_oscillation, tell_lost_pressure
 contains
    !> Adds a step to the ledger: energies, work, outflow, contacts. docs/theory/host.md section 9.
    subroutine book_accepted_step(model, scheme, run)

@@ -15,7 +15,7 @@ module time_stepping
    use step_attempt, only: begin_stage, try_step
    use step_size, only: next_step, keep_step, is_over, LAST_STEP
    use step_booking, only: book_accepted_step, watch_effects, check_creation, tell_creation, tell_penetration, &
-                           tell_oscillation
+                           tell_oscillation, tell_lost_pressure
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
@@ -112,6 +112,7 @@ contains
          run%steps = run%steps + 1
          if (speaks(observer)) call tell_penetration(model, run%next%time, run%system%contacts)
          if (speaks(observer)) call tell_oscillation(model, stage, run%next%time, run%next%x, run%told_oscillation)
+         if (speaks(observer)) call tell_lost_pressure(model, run%next%time, run%next%stress, run%told_pressure)
          call book_accepted_step(model, scheme, run)
          report = step_report_t(number, dt, step_error(scheme, run%state%x, run%state%a, run%next%x, run%next%a), &
                                 at%t_start + stage%duration - run%next%time <= LAST_STEP*dt, log)

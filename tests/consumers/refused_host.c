@@ -10,6 +10,7 @@
  *    refused_host contradiction         PREDEF is the suction at the end of the increment
  *    refused_host null                  DSTRAN and NPROPS are NULL, one after the other
  *    refused_host units                 p_atm in Pa, everything else in kPa
+ *    refused_host tension RULE          expands by 2 % from p' = 20 kPa with this memory_rule, at two points
  *    refused_host threads               eight threads fail a thousand times each, in two ways
  *    refused_host fork                  fails, forks; the child fails in the same way, then in another one */
 #define _POSIX_C_SOURCE 200809L
@@ -163,6 +164,29 @@ static int null(void)
    return pnewdt < 1.0 ? 0 : 1;
 }
 
+static int tension(int rule)
+{
+   host_t h;
+   double pnewdt = 1.0;
+   for (int point = 1; point <= 2; point++) {
+      set_up(&h);
+      h.pnewdt = &pnewdt, h.point = point;
+      h.props[mud_index(MUD_PROPS, "memory_rule")] = rule;
+      for (int i = 0; i < 3; i++)
+         h.stress[i] = -20.0;
+      for (int step = 0; step < STEPS; step++) {
+         int ndi = 3, nshr = 3;
+         for (int i = 0; i < 3; i++)
+            h.dstrain[i] = 0.02 / STEPS / 3.0;
+         h.increment++;
+         umat_(h.stress, h.statev, h.tangent, NULL, NULL, &h.scd, NULL, NULL, NULL, NULL, NULL, h.dstrain, NULL, NULL,
+               NULL, NULL, NULL, NULL, NULL, &ndi, &nshr, &h.ntens, &h.nstatv, h.props, &h.nprops, NULL, NULL,
+               h.pnewdt, NULL, NULL, NULL, &h.element, &h.point, NULL, NULL, &h.step, &h.increment);
+      }
+   }
+   return tell(&h);
+}
+
 static void *fail_often(void *argument)
 {
    for (int i = 0; i < 1000; i++)
@@ -221,6 +245,8 @@ int main(int argc, char **argv)
       return null();
    if (strcmp(task, "units") == 0)
       return fail(1.0e-6, 0, 101325.0) + fail(1.0e-6, 0, 101325.0);
+   if (strcmp(task, "tension") == 0)
+      return tension(number);
    if (strcmp(task, "threads") == 0)
       return threads();
    if (strcmp(task, "fork") == 0)

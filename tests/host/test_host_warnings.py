@@ -144,4 +144,26 @@ for what, text, said in (("quadratic pressures without drainage", COLUMN, 1),
     check(f"{what}: warned {said} times", done.returncode == 0 and len(lines) == said, done.stderr)
     check(f"{what}: the measure is named", not said or "pressures = 'linear'" in lines[0], lines)
 
+# A point that is expanded: without the tension cut-off p' falls below zero, which is told once, with its place.
+EXPANDED = """&scene name = 'expanded' geometry = 'plane_strain' /
+&mesh r = 0, 1 r_cells = 1 z = 0, 1 z_cells = 1 /
+&mud name = 'sand' {} /
+&region material = 'sand' /
+&initial stress = 'uniform' sigma = -20, -20, -20 /
+&stage name = 'pull' analysis = 'static' duration = 1 dt = 0.05 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'top' field = 'u_z' value = 0.01 history = 'ramp' /
+&history name = 'ramp' times = 0, 1 values = 0, 1 /
+"""
+for what, keys, said in (("as published", "memory_rule = 'as_published'", 1), ("with the cut-off", "", 0),
+                         ("without it", "cutoff = 0", 1)):
+    (work / "scene.nml").write_text(EXPANDED.format(keys))
+    done = subprocess.run([host, work / "scene.nml", "--output", work / "out", "--quiet"], capture_output=True,
+                          text=True, env=environment)
+    lines = [line for line in done.stderr.splitlines() if "the mean effective stress p' at (" in line]
+    check(f"{what}, p' below zero is told {said} times", len(lines) == said and done.returncode == 0,
+          f"{done.returncode} {done.stderr}")
+
 finish()

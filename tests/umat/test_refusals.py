@@ -104,6 +104,15 @@ done = run(host, "units")
 check("PROPS in mixed units draw a warning", done.returncode == 0 and done.stderr.count("\n") == 1 and
       "do all PROPS have the unit of stress of p_atm?" in done.stderr, f"{done.returncode} {done.stderr}")
 
+# A mean effective stress below zero, where the guard that prevents it is off: said once, of the first point.
+done = run(host, "tension", 4)
+check("as_published lets p' fall below zero, and says so once", done.stdout.startswith("p' -") and
+      done.stderr.count("\n") == 1 and "remark of umat_ at element 12, point 1, step 2" in done.stderr and
+      "p' is -" in done.stderr and "set cutoff = 1" in done.stderr, done.stdout + done.stderr)
+done = run(host, "tension", 3)
+check("with the tension cut-off it stays above, in silence", done.stdout.startswith("p' 0.1") and done.stderr == "",
+      done.stdout + done.stderr)
+
 # Once a process: eight threads with a thousand failures of two kinds each; a forked child knows what was said.
 done = run(host, "threads")
 told = sentences(done)

@@ -17,7 +17,8 @@ module mud_refusals
    use mud_tensor, only: is_finite
    implicit none (type, external)
    private
-   public :: KEEP_VARIABLE, place_t, refuse, say_refusal, remark_on_suction, remark_on_props, save_if_asked
+   public :: KEEP_VARIABLE, place_t, refuse, say_refusal, remark_on_suction, remark_on_props, remark_on_pressure, &
+             save_if_asked
 
    !> KSTEP, KINC, NOEL and NPT of the host; each may be NULL.
    type :: place_t
@@ -36,7 +37,7 @@ module mud_refusals
    ! Kinds of sentences: a status code, what it is about, and the entry of that array.
    integer, parameter :: SUBJECTS = 9, ENTRIES = 128, CODES = 17
    integer, parameter :: FIRST_REMARK = CODES*SUBJECTS*ENTRIES   !< Remarks follow the failures.
-   integer, parameter :: NOT_SAVED = FIRST_REMARK, ON_PROPS_UNITS = FIRST_REMARK + 3
+   integer, parameter :: NOT_SAVED = FIRST_REMARK, ON_PROPS_UNITS = FIRST_REMARK + 3, ON_PRESSURE = FIRST_REMARK + 4
 contains
    !> Answers a host whose increment is refused. STATEV and DDSDDE stay as they are. Pointers may be NULL; the report
    !> has a status other than MUD_OK.
@@ -154,6 +155,19 @@ contains
          call speak('MUD: remark of umat_ at '//trim(place_text(place))//': '//trim(advice)//CLOSING)
       end if
    end subroutine remark_on_props
+
+   !> Says that p' fell below zero, which the tension cut-off prevents where it is on. `stress`: effective, at the end
+   !> of an update that passed, tension positive, in the unit of p_atm.
+   subroutine remark_on_pressure(stress, place)
+      real(wp), intent(in) :: stress(6)
+      type(place_t), intent(in) :: place
+
+      if (.not. sum(stress(1:3)) > 0.0_wp) return
+      if (first_time(ON_PRESSURE)) call speak('MUD: remark of '//trim(place%door)//' at '//trim(place_text(place))// &
+         ': the mean effective stress p'' is '//trim(number(-sum(stress(1:3))/3.0_wp))//'. The model has no '// &
+         'meaning below 0, and its tension cut-off is off: do not use the results from here on; set cutoff = 1, '// &
+         'with a memory_rule other than 4 (as_published)'//CLOSING)
+   end subroutine remark_on_pressure
 
    !> Where an increment is, as far as the host says.
    function place_text(place) result(text)

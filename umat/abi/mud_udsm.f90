@@ -9,7 +9,7 @@ module mud_udsm
    use mud_kinds, only: wp
    use mud_params, only: params_t, read_params, completed
    use mud_pieces, only: update_in_pieces
-   use mud_refusals, only: place_t, say_refusal, save_if_asked
+   use mud_refusals, only: place_t, say_refusal, remark_on_pressure, save_if_asked
    use mud_registry, only: NPROPS_WITHOUT_HYSTERESIS, NSTATV, PROPERTIES, VARIABLES, statev_name, statev_variable, &
       S_LAYOUT, S_VOID_RATIO, S_SUCTION, S_OPEN, S_EPS_Q_P_TOTAL
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, ON_ARGUMENT
@@ -146,6 +146,7 @@ contains
          call save_if_asked(completed(values), stress0, state0, strain, state0(S_SUCTION), 0.0_wp, place, report)
          return
       end if
+      call remark_on_pressure(output%stress, place)
       if (c_associated(ipl)) then
          call c_f_pointer(ipl, plastic)
          plastic = 0

@@ -6,7 +6,8 @@ module mud_umat
       component_order, integer_at, SUCTION_AS_GIVEN
    use mud_kernel, only: report_t, output_t, kernel_update, rotate_statev, failed_report, TANGENT_FROM_PROPS
    use mud_kinds, only: wp
-   use mud_refusals, only: place_t, refuse, remark_on_suction, remark_on_props, save_if_asked
+   use mud_refusals, only: place_t, refuse, remark_on_suction, remark_on_props, remark_on_pressure, &
+                           save_if_asked
    use mud_params, only: completed, is_length
    use mud_registry, only: NSTATV
    use mud_status, only: mud_status_t, MUD_OK
@@ -93,6 +94,7 @@ contains
          return
       end if
       if (.not. has_past(statev0)) call remark_on_props(completed(props_in), place)
+      call remark_on_pressure(output%stress, place)
       output%stress = output%stress(order)
       stress_in = output%stress(1:ntens)
       statev_in(1:NSTATV) = output%statev

@@ -13,7 +13,7 @@ module mud_vumat
    use mud_once, only: environment_is
    use mud_params, only: params_t, read_params, completed, is_length
    use mud_pieces, only: update_in_pieces
-   use mud_refusals, only: place_t, say_refusal, save_if_asked, KEEP_VARIABLE
+   use mud_refusals, only: place_t, say_refusal, remark_on_pressure, save_if_asked, KEEP_VARIABLE
    use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NSTATV, S_SUCTION
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_NTENS, MUD_BAD_NSTATV, MUD_BAD_NPROPS, &
       ON_ARGUMENT, ON_STATEV, ON_PROPS
@@ -165,6 +165,7 @@ contains
       if (failed < 0) old%status = failed
       do i = 1, n
          if (old%status(i) /= MUD_OK) call try_in_pieces(points, par, old, i, stress(:, i), state(:, i))
+         if (.not. elastic_only) call remark_on_pressure(stress(:, i), place_t('vumat_'))
          call write_point(points, first + i - 1, old%strain(:, i), stress(:, i), state(:, i))
       end do
    end subroutine update_chunk
