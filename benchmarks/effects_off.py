@@ -10,6 +10,7 @@ of one core an effect. --keep writes results/effects_off.csv.
 """
 import argparse
 import csv
+import filecmp
 import pathlib
 import re
 import shutil
@@ -39,7 +40,9 @@ EFFECTS = {
     "lode": ("lode", never("lode")),
     "memory_rule": ("memory_rule", ((r"\b(material%)?par%memory_rule\b", "0"),)),
     "elastic_domain": ("rho_e", ((r"\binc%rho <= 0\.0_wp", ".true."), (r"\binc%rho > 0\.0_wp", ".false."))),
-    "void_ratio_in_retention": ("Omega", ((r" \+ par%omega\*log\(e\)", ""), (r"= slope\*par%omega/e\b", "= 0.0_wp"))),
+    "void_ratio_in_retention": ("Omega", (
+        (r"\bpar%omega > 0\.0_wp", ".false."), (r"= slope\*par%omega/e\b", "= 0.0_wp"),
+        (r"bend\*par%omega/\(p_c\*e\), \(bend\*par%omega - slope\)\*par%omega/e\*\*2", "0.0_wp, 0.0_wp"))),
 }
 
 
@@ -62,14 +65,13 @@ def build(source, target, *options):
 
 
 def copy_to(folder, *places):
-    """The sources that every build needs, and those at the places; nothing if they are there."""
-    if folder.exists():
-        return
+    """The sources that every build needs, and those at the places, as they are now."""
     names = command("git", "-C", ROOT, "ls-files", "CMakeLists.txt", "CMakePresets.json", "cmake", "common", "umat", "materials",
                     "drivers", "LICENSE", "README.md", *places).split()
     for name in names:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy2(ROOT / name, folder / name)
+        if not (folder / name).exists() or not filecmp.cmp(ROOT / name, folder / name, shallow=False):
+            shutil.copy(ROOT / name, folder / name)
 
 
 def patched(source, changes, under="umat", left_alone=()):
@@ -99,9 +101,10 @@ def instructions(program, path, tangent, parameter):
     return (count(3) - count(1)) / 2 / UPDATES
 
 
-def measure(description, effects, columns, folder, make, count):
-    """The program of both scripts: a build with everything, and for every effect one without its code. make(source) builds
-    a program, count(effect, whole, without) gives the rows of an effect; effects: changes and what else patched takes."""
+def measure(description, effects, columns, folder, places, make, count):
+    """The program of both scripts: a build with everything, and for every effect one without its code, of the sources of
+    today. places: what a build needs beside the library; make(source) builds a program; count(effect, whole, without)
+    gives the rows of an effect; effects: changes and what else patched takes."""
     parser = argparse.ArgumentParser(description=description.split("\n")[0])
     parser.add_argument("--only", nargs="+", choices=list(effects), default=list(effects))
     parser.add_argument("--folder", type=pathlib.Path, default=ROOT / "build" / folder)
@@ -110,6 +113,7 @@ def measure(description, effects, columns, folder, make, count):
     place = args.folder.resolve()
     place.mkdir(parents=True, exist_ok=True)
     source, whole = place / "source", place / "with"
+    copy_to(source, *places)
     shutil.copy2(make(source), whole)
     results = (ROOT / "benchmarks/results" if args.keep else place) / f"{folder}.csv"
     rows = [tuple(row.values()) for row in (tables.rows(results) if results.exists() else [])
@@ -134,7 +138,6 @@ def percent(off, bare):
 
 
 def make(source):
-    copy_to(source, "benchmarks", "verification/studies/work_precision")
     return build(source, "benchmarks/mud_benchmark", "-DMUD_BUILD_BENCHMARKS=ON", "-DMUD_BUILD_HOST=OFF")
 
 
@@ -147,4 +150,5 @@ def count(effect, whole, without):
 
 
 if __name__ == "__main__":
-    measure(__doc__, {effect: (changes,) for effect, (_, changes) in EFFECTS.items()}, COLUMNS, "effects_off", make, count)
+    measure(__doc__, {effect: (changes,) for effect, (_, changes) in EFFECTS.items()}, COLUMNS, "effects_off",
+            ("benchmarks", "verification/studies/work_precision"), make, count)

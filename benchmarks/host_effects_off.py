@@ -16,7 +16,7 @@ import shutil
 import sys
 import tempfile
 
-from effects_off import build, command, copy_to, measure, percent
+from effects_off import build, command, measure, percent
 
 STEPS = (20, 60)   # of the two runs whose difference is counted
 DT = 1.0e-3        # [s]
@@ -93,7 +93,6 @@ def scene(fields, analysis, contact, gravity, steps):
 
 
 def make(source):
-    copy_to(source, "host")
     return build(source, "host/mud_host", "-DMUD_BUILD_HOST=ON")
 
 
@@ -124,4 +123,4 @@ def count(effect, whole, without):
 
 if __name__ == "__main__":
     measure(__doc__, {effect: (changes, "host", BUILDERS) for effect, (_, _, _, changes) in EFFECTS.items()}, COLUMNS,
-            "host_effects_off", make, count)
+            "host_effects_off", ("host",), make, count)

@@ -352,8 +352,18 @@ contains
       integer, intent(in) :: n_p, n
       real(wp), intent(in) :: tangent(PLACES, PLACES)
       real(wp), intent(out) :: part(PLACES, MAX_DOF)
-      integer :: i, at
+      integer :: i, p, at
 
+      if (n_p == 0) then   ! those of the pressures are not read
+         do i = 1, 6
+            do p = RR, U + 2
+               part(p, 2*i - 1) = gp%dn(1, i)*tangent(p, RR) + gp%n_over_r(i)*tangent(p, TT) &
+                                  + gp%dn(2, i)*tangent(p, RZ) + gp%n(i)*tangent(p, U + 1)
+               part(p, 2*i) = gp%dn(2, i)*tangent(p, ZZ) + gp%dn(1, i)*tangent(p, RZ) + gp%n(i)*tangent(p, U + 2)
+            end do
+         end do
+         return
+      end if
       do i = 1, 6
          part(:, 2*i - 1) = gp%dn(1, i)*tangent(:, RR) + gp%n_over_r(i)*tangent(:, TT) + gp%dn(2, i)*tangent(:, RZ) &
                             + gp%n(i)*tangent(:, U + 1)

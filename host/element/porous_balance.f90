@@ -55,6 +55,7 @@ module porous_balance
       real(wp) :: s_ev, s_pc         !< Slopes of s against volume strain [-] and suction [1/kPa]
       real(wp) :: rate_ev, rate_pc   !< Those of its rate, over that of the scheme.
       real(wp) :: p_w, p_c           !< [kPa]
+      ! where there is air:
       real(wp) :: k_a, d_k_a         !< Bulk modulus of the air [kPa] and its slope against p_a [-]
       real(wp) :: rho_a, d_rho_a     !< Density of the air [t/m3] and its slope against p_a.
    end type mixture_t
@@ -133,7 +134,7 @@ contains
       mix%s_dot = old%s_rate + scheme%l_p*(new%s_rate - old%s_rate)
       mix%p_w = k%w0 + l*(k%w1 - k%w0)
       mix%p_c = k%c0 + l*(k%c1 - k%c0)
-      call air(domain, mix%p_w + mix%p_c, mix%k_a, mix%d_k_a, mix%rho_a, mix%d_rho_a)
+      if (region%with_c) call air(domain, mix%p_w + mix%p_c, mix%k_a, mix%d_k_a, mix%rho_a, mix%d_rho_a)
    end subroutine fill_pores
 
    !> Momentum of the mixture: total stress, inertia, weight.

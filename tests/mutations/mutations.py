@@ -36,8 +36,8 @@ MUTATIONS = [
     ("no smallest mean stress in the stress ratio",
      (RATES, "p = max(trace(sigma)/3.0_wp, par%p_min)", "p = trace(sigma)/3.0_wp + 0.0_wp*par%p_min")),
     # critical state and flow
-    ("sign of the dilatancy", (FLOW, "d = a_d*(SQRT_2_3*g*m_d - r_n)", "d = -a_d*(SQRT_2_3*g*m_d - r_n)")),
-    ("dilatancy without the Lode factor", (FLOW, "SQRT_2_3*g*m_d - r_n", "SQRT_2_3*m_d - r_n + 0.0_wp*g")),
+    ("sign of the dilatancy", (FLOW, "d = a_d*(r_d - r_n)", "d = -a_d*(r_d - r_n)")),
+    ("dilatancy without the Lode factor", (DIRECTION, "r_d = SQRT_2_3*w%lode*w%m_d", "r_d = SQRT_2_3*w%m_d")),
     ("fabric also grows in contraction", (FLOW, ".and. d < 0.0_wp) dz", ") dz")),
     ("fabric acts in every direction", (FLOW, "max(z_n, 0.0_wp)", "z_n")),
     ("drop the Lode slope", (CRITICAL, "slope = par%lode_bend*g**5", "slope = 0.0_wp*par%lode_bend*g**5")),
@@ -61,7 +61,7 @@ MUTATIONS = [
      (BONDING, "divisor = FORCE_A + FORCE_B*t", "divisor = FORCE_A + 0.0_wp*FORCE_B*t")),
     ("retention without Omega in dS_w/de", (RETENTION, "sat%ds_de = slope*par%omega/e", "sat%ds_de = slope/e")),
     ("retention without the void ratio",
-     (RETENTION, "log(p_c/par%p_a) + par%omega*log(e)", "log(p_c/par%p_a) + 0.0_wp*log(e)")),
+     (RETENTION, "log_suction + par%omega*log(e)", "log_suction + 0.0_wp*log(e)")),
     # rates and guards
     ("isotropic mechanism never rejected", (RATES, "w%b_rate < 0.0_wp) then", "w%b_rate < -huge(1.0_wp)) then")),
     ("isotropic mechanism acts in extension too",

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Plastic flow: dilatancy and fabric; docs/theory/material.md sections 4.2 and 4.3.
 module mud_flow
-   use mud_kinds, only: wp, SQRT_2_3
+   use mud_kinds, only: wp
    use mud_params, only: params_t
    implicit none (type, external)
    private
@@ -18,13 +18,12 @@ contains
 
    !> D [-] of d eps^p = L (n + D/3 I): in triaxial compression exactly paper eq. (9). docs/theory/material.md section
    !> 4.2.
-   pure real(wp) function dilatancy(a_d, g, m_d, r_n) result(d)
+   pure real(wp) function dilatancy(a_d, r_d, r_n) result(d)
       real(wp), intent(in) :: a_d   !< dilatancy factor [-]
-      real(wp), intent(in) :: g     !< Lode factor [-]
-      real(wp), intent(in) :: m_d   !< M^d [-]
+      real(wp), intent(in) :: r_d   !< sqrt(2/3) g M^d: |r| of the dilatancy surface in the direction n [-]
       real(wp), intent(in) :: r_n   !< r:n [-]
 
-      d = a_d*(SQRT_2_3*g*m_d - r_n)
+      d = a_d*(r_d - r_n)
    end function dilatancy
 
    !> dz = -c_z <-L D> (z_max n + z), Dafalias & Manzari (2004); grows in dilation only. All [-], L of the rate >= 0; 0

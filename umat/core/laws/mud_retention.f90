@@ -58,7 +58,8 @@ contains
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: p_c, e   !< [kPa, -], p_c > 0
 
-      log_suction = log(p_c/par%p_a) + par%omega*log(e)
+      log_suction = log(p_c/par%p_a)
+      if (par%omega > 0.0_wp) log_suction = log_suction + par%omega*log(e)
    end function log_suction
 
    !> d ln y/d ln x = (x/y)**q of a scanning curve, 1 on a main curve [-]. docs/theory/material.md section 2.1.1; the

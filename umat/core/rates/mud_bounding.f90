@@ -88,11 +88,12 @@ contains
       real(wp), intent(in) :: psi, m_b, u(6), r_norm, dpsi, dr(6)
       real(wp) :: u2(6), g, turn(6)
 
+      change = SQRT_2_3*change_of_bounding_ratio(par, psi, m_b, dpsi)
+      if (.not. par%lode) return
       u2 = square(u)
       g = lode_factor(par, ddot(u2, u))
       turn = (dr - ddot(u, dr)*u)/r_norm
-      change = SQRT_2_3*(m_b*lode_slope(par, g)*3.0_wp*ddot(u2, turn) &
-                         + g*change_of_bounding_ratio(par, psi, m_b, dpsi))
+      change = g*change + SQRT_2_3*(m_b*lode_slope(par, g)*3.0_wp*ddot(u2, turn))
    end function change_of_limit
 
    !> A stress ratio, shortened to the bounding surface where it is beyond. psi, r and the result [-];

@@ -4,9 +4,10 @@
 !> gamma n = t y + beta r, y = 1/(L h), so that n lies in the plane of t and r and one angle decides it:
 !> docs/theory/material.md section 4, guards section 5. The angle, phi there, is w here.
 module mud_direction
+   use mud_arc, only: arc_t, arc_through, add_fabric, add_cube, trace_cube, trace_cube_slope, positive, larger, smaller
    use mud_kinds, only: wp, SQRT_2_3, SQRT_6
    use mud_params, only: params_t
-   use mud_tensor, only: ddot, norm, square
+   use mud_tensor, only: ddot
    use mud_bonding, only: bonding_t
    use mud_critical_state, only: lode_factor, lode_slope
    use mud_flow, only: dilatancy_factor, dilatancy
@@ -48,6 +49,8 @@ module mud_direction
       real(wp) :: h_b              !< 1/h [-]
       real(wp) :: x                !< (r - r_in):n, not floored [-]
       real(wp) :: lode, lode_slope !< g [-] and dg/d tr(n^3)
+      real(wp) :: r_b, r_d         !< |r| on the bounding and dilatancy surfaces in the direction of n [-]
+      real(wp) :: dr_b, dr_d       !< their slopes by the angle of n [-]
       real(wp) :: r_n, z_n         !< r:n, z:n [-]
       real(wp) :: a_d, d           !< A_d, D [-]
       real(wp) :: beta, gamma      !< coefficients of the direction equation [kPa]
@@ -59,11 +62,6 @@ module mud_direction
       real(wp) :: d_z(6)           !< [-]
       real(wp) :: d_eps_q          !< plastic shear, sqrt(2/3) L [-]
    end type rate_t
-
-   !> Everything along the arc n = cos(w) t/|t| + sin(w) q is a polynomial in cos(w), sin(w) with these coefficients.
-   type :: arc_t
-      real(wp) :: r_t, r_q, x_t, x_q, z_t, z_q, cubic(0:3)
-   end type arc_t
 
    !> The direction equation at one angle.
    type :: trial_t
@@ -82,33 +80,26 @@ contains
       type(rate_t), intent(inout) :: w
       type(arc_t) :: arc
       type(trial_t) :: at
-      real(wp) :: n_t(6), q(6), t2(6), q2(6), start, tau
+      real(wp) :: n_t(6), q(6), start, tau
       logical :: found
 
       n_t = w%t/w%t_norm
-      arc%r_t = ddot(w%r, n_t)
-      q = w%r - arc%r_t*n_t
-      arc%r_q = norm(q)
-      arc%x_t = ddot(w%r_moved, n_t)
-      arc%z_t = ddot(w%z, n_t)
-      t2 = square(n_t)
-      arc%cubic(0) = ddot(t2, n_t)
-      if (arc%r_q <= PARALLEL*max(w%r_norm, 1.0e-3_wp)) then
-         arc%r_q = 0.0_wp
-         arc%x_q = 0.0_wp
-         arc%z_q = 0.0_wp
-         arc%cubic(1:3) = 0.0_wp
+      call arc_through(w%r, w%r_moved, n_t, PARALLEL*max(w%r_norm, 1.0e-3_wp), arc, q)
+      if (par%fabric) call add_fabric(w%z, n_t, q, arc)
+      if (par%lode) call add_cube(n_t, q, arc)
+      w%z_n = 0.0_wp
+      w%a_d = par%a_0
+      w%lode = 1.0_wp
+      w%lode_slope = 0.0_wp
+      w%r_b = SQRT_2_3*w%m_b
+      w%r_d = SQRT_2_3*w%m_d
+      w%dr_b = 0.0_wp
+      w%dr_d = 0.0_wp
+      if (arc%r_q <= 0.0_wp) then
          w%n = n_t
          call evaluate_direction(par, arc, 0.0_wp, w, at)
          found = at%admissible > 0.0_wp
       else
-         q = q/arc%r_q
-         q2 = square(q)
-         arc%x_q = ddot(w%r_moved, q)
-         arc%z_q = ddot(w%z, q)
-         arc%cubic(1) = ddot(t2, q)
-         arc%cubic(2) = ddot(q2, n_t)
-         arc%cubic(3) = ddot(q2, q)
          start = -1.0_wp
          if (known) then
             ! a direction against t has no half angle
@@ -120,7 +111,6 @@ contains
       w%loading = found
       w%no_root = .not. found
       if (.not. found) return
-      w%lode_slope = lode_slope(par, w%lode)
       w%y = at%admissible/w%t_norm
       w%l = w%h_b/w%y
    end subroutine find_direction
@@ -283,64 +273,55 @@ contains
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: side, from, step
       real(wp), intent(out) :: f(POINTS), above(POINTS)
-      real(wp) :: c4, fabric, most_d, least_h, r_b_1, d_1, p_23, stiff_min, per_b_0
-      real(wp) :: tau, c, s, r_n, x, z_n, trace_cube, cos_3t, g, d, limit, h_b, r_b, stiffness, beta, gamma, residual
+      real(wp) :: most_d, least_h, p_23, stiff_min, per_b_0
+      real(wp), dimension(POINTS) :: cosine, sine, r_b, r_d, a_d
+      real(wp) :: tau, c, s, r_n, x, cos_3t, g, d, limit, h_b, stiffness, beta, gamma, residual
       integer :: i
 
-      c4 = merge(par%c4, 1.0_wp, par%lode)
-      fabric = merge(par%a_0, 0.0_wp, par%fabric)
+      do i = 1, POINTS
+         tau = side*(from + i*step)
+         cosine(i) = 2.0_wp/(1.0_wp + tau*tau) - 1.0_wp
+         sine(i) = tau*(1.0_wp + cosine(i))
+      end do
+      r_b = SQRT_2_3*w%m_b
+      r_d = SQRT_2_3*w%m_d
+      if (par%lode) then
+         do i = 1, POINTS
+            cos_3t = smaller(larger(SQRT_6*trace_cube(arc, cosine(i), sine(i)), -1.0_wp), 1.0_wp)
+            g = sqrt(sqrt(2.0_wp*par%c4/(1.0_wp + par%c4 - (1.0_wp - par%c4)*cos_3t)))
+            r_b(i) = r_b(i)*g
+            r_d(i) = r_d(i)*g
+         end do
+      end if
+      a_d = par%a_0
+      if (par%fabric) then
+         do i = 1, POINTS
+            a_d(i) = par%a_0 + par%a_0*positive(cosine(i)*arc%z_t + sine(i)*arc%z_q)
+         end do
+      end if
       most_d = merge(par%cap_d*2.0_wp*w%g/w%k_e, NO_LIMIT, par%cap_d > 0.0_wp)
       p_23 = 2.0_wp/3.0_wp*w%p
       least_h = merge(p_23/(1.0_wp - par%cap_h), 0.0_wp, par%cap_h > 0.0_wp)
       stiff_min = NEGLIGIBLE*w%g
       per_b_0 = 1.0_wp/w%b_0
-      r_b_1 = SQRT_2_3*w%m_b
-      d_1 = SQRT_2_3*w%m_d
       do i = 1, POINTS
-         tau = side*(from + i*step)
-         c = 2.0_wp/(1.0_wp + tau*tau) - 1.0_wp
-         s = tau*(1.0_wp + c)
+         c = cosine(i)
+         s = sine(i)
          r_n = c*arc%r_t + s*arc%r_q
          x = c*arc%x_t + s*arc%x_q
-         z_n = c*arc%z_t + s*arc%z_q
-         trace_cube = c*(c*(c*arc%cubic(0) + 3.0_wp*s*arc%cubic(1)) + 3.0_wp*s*s*arc%cubic(2)) + s*s*s*arc%cubic(3)
-         cos_3t = smaller(larger(SQRT_6*trace_cube, -1.0_wp), 1.0_wp)
-         g = sqrt(sqrt(2.0_wp*c4/(1.0_wp + c4 - (1.0_wp - c4)*cos_3t)))
-         r_b = r_b_1*g
-         d = (par%a_0 + fabric*positive(z_n))*(d_1*g - r_n)
+         d = a_d(i)*(r_d(i) - r_n)
          d = smaller(d, most_d/larger(r_n, NEGLIGIBLE))
          stiffness = 2.0_wp*w%g - w%k_e*d*r_n
          h_b = larger(x, par%x_floor)*per_b_0
-         limit = least_h*positive(r_n - r_b)/larger(stiffness, stiff_min)
+         limit = least_h*positive(r_n - r_b(i))/larger(stiffness, stiff_min)
          h_b = larger(h_b, limit*(0.5_wp + sign(0.5_wp, stiffness)))
          beta = p_23 + h_b*w%k_e*d
-         gamma = p_23*r_b + 2.0_wp*w%g*h_b
+         gamma = p_23*r_b(i) + 2.0_wp*w%g*h_b
          residual = side*(gamma*s - beta*arc%r_q)
          f(i) = residual
          above(i) = smaller(residual + ROOT_TOLERANCE*(gamma + abs(beta)*arc%r_q), gamma*c - beta*arc%r_t)
       end do
    end subroutine residuals
-
-   !> max(a, 0) without a comparison.
-   pure real(wp) function positive(a)
-      real(wp), intent(in) :: a
-
-      positive = 0.5_wp*(a + abs(a))
-   end function positive
-
-   !> max(a, b), where the rounding of b does not matter if a is the larger one by far.
-   pure real(wp) function larger(a, b)
-      real(wp), intent(in) :: a, b
-
-      larger = b + positive(a - b)
-   end function larger
-
-   !> min(a, b), likewise.
-   pure real(wp) function smaller(a, b)
-      real(wp), intent(in) :: a, b
-
-      smaller = a - positive(a - b)
-   end function smaller
 
    !> The direction equation at the angle whose half has the tangent tau, with the guards that bound hardening and
    !> dilatancy.
@@ -350,7 +331,7 @@ contains
       real(wp), intent(in) :: tau
       type(rate_t), intent(inout) :: w
       type(trial_t), intent(out) :: at
-      real(wp) :: c, s, trace_cube, r_b, limit
+      real(wp) :: c, s, limit
 
       at%cosine = 2.0_wp/(1.0_wp + tau*tau) - 1.0_wp
       at%sine = tau*(1.0_wp + at%cosine)
@@ -358,12 +339,12 @@ contains
       s = at%sine
       w%r_n = c*arc%r_t + s*arc%r_q
       w%x = c*arc%x_t + s*arc%x_q
-      w%z_n = c*arc%z_t + s*arc%z_q
-      trace_cube = c*(c*(c*arc%cubic(0) + 3.0_wp*s*arc%cubic(1)) + 3.0_wp*s*s*arc%cubic(2)) + s*s*s*arc%cubic(3)
-      w%lode = lode_factor(par, trace_cube)
-
-      w%a_d = dilatancy_factor(par, w%z_n)
-      w%d = dilatancy(w%a_d, w%lode, w%m_d, w%r_n)
+      if (par%fabric) then
+         w%z_n = c*arc%z_t + s*arc%z_q
+         w%a_d = dilatancy_factor(par, w%z_n)
+      end if
+      if (par%lode) call add_lode(par, arc, c, s, w)
+      w%d = dilatancy(w%a_d, w%r_d, w%r_n)
       w%capped_d = .false.
       if (par%cap_d > 0.0_wp .and. w%r_n > 0.0_wp) then
          limit = par%cap_d*2.0_wp*w%g/(w%k_e*w%r_n)
@@ -373,20 +354,36 @@ contains
 
       w%floored = w%x < par%x_floor
       w%h_b = max(w%x, par%x_floor)/w%b_0
-      r_b = SQRT_2_3*w%lode*w%m_b
       w%capped_h = .false.
-      if (par%cap_h > 0.0_wp .and. w%r_n > r_b) then
+      if (par%cap_h > 0.0_wp .and. w%r_n > w%r_b) then
          limit = softening_limit(par, w)
          w%capped_h = w%h_b < limit
          if (w%capped_h) w%h_b = limit
       end if
 
       w%beta = 2.0_wp/3.0_wp*w%p + w%h_b*w%k_e*w%d
-      w%gamma = 2.0_wp/3.0_wp*w%p*r_b + 2.0_wp*w%g*w%h_b
+      w%gamma = 2.0_wp/3.0_wp*w%p*w%r_b + 2.0_wp*w%g*w%h_b
       at%residual = w%gamma*s - w%beta*arc%r_q
       at%scale = w%gamma + abs(w%beta)*arc%r_q
       at%admissible = w%gamma*c - w%beta*arc%r_t
    end subroutine evaluate_direction
+
+   !> The bounding and dilatancy surfaces in the direction of n, and their slopes by its angle.
+   pure subroutine add_lode(par, arc, c, s, w)
+      type(params_t), intent(in) :: par
+      type(arc_t), intent(in) :: arc
+      real(wp), intent(in) :: c, s   !< cosine and sine of the angle
+      type(rate_t), intent(inout) :: w
+      real(wp) :: turn
+
+      w%lode = lode_factor(par, trace_cube(arc, c, s))
+      w%lode_slope = lode_slope(par, w%lode)
+      turn = w%lode_slope*trace_cube_slope(arc, c, s)
+      w%r_b = SQRT_2_3*w%lode*w%m_b
+      w%r_d = SQRT_2_3*w%lode*w%m_d
+      w%dr_b = SQRT_2_3*w%m_b*turn
+      w%dr_d = SQRT_2_3*w%m_d*turn
+   end subroutine add_lode
 
    !> Least 1/h of the softening cap [-]; 0 where it does not apply.
    pure real(wp) function softening_limit(par, w) result(limit)
@@ -397,7 +394,7 @@ contains
       limit = 0.0_wp
       stiffness = 2.0_wp*w%g - w%k_e*w%d*w%r_n
       if (stiffness > 0.0_wp) then
-         limit = 2.0_wp/3.0_wp*w%p/((1.0_wp - par%cap_h)*stiffness)*(w%r_n - SQRT_2_3*w%lode*w%m_b)
+         limit = 2.0_wp/3.0_wp*w%p/((1.0_wp - par%cap_h)*stiffness)*(w%r_n - w%r_b)
       end if
    end function softening_limit
 
@@ -407,32 +404,27 @@ contains
       type(arc_t), intent(in) :: arc
       type(rate_t), intent(in) :: w
       type(trial_t), intent(in) :: at
-      real(wp) :: c, s, dr, dx, dg, da, dd, dh, dr_b, stiffness, d_stiffness, d_beta, d_gamma
+      real(wp) :: c, s, dr, dx, dd, dh, stiffness, d_stiffness, d_beta, d_gamma
 
       c = at%cosine
       s = at%sine
       dr = c*arc%r_q - s*arc%r_t
       dx = c*arc%x_q - s*arc%x_t
-      dg = lode_slope(par, w%lode)*3.0_wp*(c*c*(c*arc%cubic(1) - s*arc%cubic(0)) &
-                                           + 2.0_wp*c*s*(c*arc%cubic(2) - s*arc%cubic(1)) &
-                                           + s*s*(c*arc%cubic(3) - s*arc%cubic(2)))
       if (w%capped_d) then
          dd = -w%d/w%r_n*dr
       else
-         da = 0.0_wp
-         if (par%fabric .and. w%z_n > 0.0_wp) da = par%a_0*(c*arc%z_q - s*arc%z_t)
-         dd = da*(SQRT_2_3*w%lode*w%m_d - w%r_n) + w%a_d*(SQRT_2_3*w%m_d*dg - dr)
+         dd = w%a_d*(w%dr_d - dr)
+         if (w%z_n > 0.0_wp) dd = dd + par%a_0*(c*arc%z_q - s*arc%z_t)*(w%r_d - w%r_n)
       end if
-      dr_b = SQRT_2_3*w%m_b*dg
       if (w%capped_h) then
          stiffness = 2.0_wp*w%g - w%k_e*w%d*w%r_n
          d_stiffness = -w%k_e*(dd*w%r_n + w%d*dr)
-         dh = 2.0_wp/3.0_wp*w%p/((1.0_wp - par%cap_h)*stiffness)*(dr - dr_b) - w%h_b*d_stiffness/stiffness
+         dh = 2.0_wp/3.0_wp*w%p/((1.0_wp - par%cap_h)*stiffness)*(dr - w%dr_b) - w%h_b*d_stiffness/stiffness
       else
          dh = merge(0.0_wp, dx/w%b_0, w%floored)
       end if
       d_beta = w%k_e*(dh*w%d + w%h_b*dd)
-      d_gamma = 2.0_wp/3.0_wp*w%p*dr_b + 2.0_wp*w%g*dh
+      d_gamma = 2.0_wp/3.0_wp*w%p*w%dr_b + 2.0_wp*w%g*dh
       slope = d_gamma*s + w%gamma*c - d_beta*arc%r_q
    end function slope_of_residual
 end module mud_direction

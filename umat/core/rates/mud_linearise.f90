@@ -72,7 +72,7 @@ contains
          lin%r_cube_slope = 0.0_wp
          lin%lode_r = 1.0_wp
          lin%lode_slope_r = 0.0_wp
-         if (lin%r_norm > 0.0_wp) then
+         if (par%lode .and. lin%r_norm > 0.0_wp) then
             r2 = square(w%r)
             cube = ddot(r2, w%r)/lin%r_norm**3
             lin%lode_r = lode_factor(par, cube)

@@ -44,7 +44,7 @@ contains
       real(wp) :: g
 
       g = 1.0_wp
-      if (r_norm > 0.0_wp) g = lode_factor(par, ddot(square(r), r)/r_norm**3)
+      if (par%lode .and. r_norm > 0.0_wp) g = lode_factor(par, ddot(square(r), r)/r_norm**3)
       bounding_norm = SQRT_2_3*g*m_b
    end function bounding_norm
 

@@ -104,7 +104,8 @@ contains
       real(wp) :: g_n(6), r_b_n(6), r(6), stiffness
 
       r = normal(w%r)
-      g_n = normal(deviator((3.0_wp*w%lode_slope)*square(w%n)))
+      g_n = 0.0_wp
+      if (par%lode) g_n = normal(deviator((3.0_wp*w%lode_slope)*square(w%n)))
       r_b_n = (SQRT_2_3*w%m_b)*g_n
       if (w%capped_d) then
          d_n = -(w%d/w%r_n)*r
