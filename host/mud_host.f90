@@ -4,7 +4,7 @@ program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit, int64
    use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
    use answer_verification, only: history_t, read_history, differences, force_error_t, compare_forces
-   use answer_errors, only: write_answers, print_answers
+   use answer_errors, only: write_answers, print_answers, tell_answers
    use blas_in_use, only: blas_t, find_blas
    use checkpoints, only: read_checkpoint
    use kinds, only: wp
@@ -22,6 +22,7 @@ program mud_host
    use run_setup, only: prepare_run
    use run_size, only: size_of_run
    use run_state, only: run_t
+   use scene_accuracy, only: shorten_given_steps
    use scene_keys, only: print_template
    use scene_reader, only: read_scene
    use scene_types, only: scene_t
@@ -84,7 +85,6 @@ program mud_host
    if (only_effects) call leave()
    if (fault%code == 0) call build_model(scene, model, fault)
    if (fault%code == 0) call prepare_run(model, run, fault)
-   if (fault%code == 0 .and. option_given(options, '--verify')) call check_verifiable()
    if (fault%code == 0 .and. .not. quiet) call announce()
    if (fault%code == 0 .and. only_check .and. restart /= '') then
       call check_restart()
@@ -100,6 +100,7 @@ program mud_host
          if (fault%code == 0) call write_answers(folder, model, run%control, forces, fault)
          if (fault%code == 0 .and. .not. quiet) call print_answers(output_unit, model, run%control, &
                                                                    option_given(options, '--verify'), forces)
+         if (fault%code == 0) call tell_answers(model, run%control, option_given(options, '--verify'), forces)
       end if
    end if
    if (.not. (quiet .or. only_check) .and. run%steps > 0) call account()
@@ -142,8 +143,8 @@ contains
          '  --restart FILE        continues from a checkpoint of the same scene', &
          '  --accuracy A          relative error wanted in the histories of the points; in place of the key', &
          '                        accuracy of &scene', &
-         '  --verify              repeats the run at a quarter of the accuracy and reports the difference as the', &
-         '                        error of points and forces; needs controlled steps; not with --restart', &
+         '  --verify              repeats the run at a quarter of the accuracy, given steps a quarter as long, and', &
+         '                        reports the difference as the error of points and forces; not with --restart', &
          '  --effects             runs coarse pilots of the scene, with every effect and without each; prints', &
          '                        what each changes in the results, writes effects.csv, and ends', &
          '  --ablate              the same with the full scene instead of pilots, and also with each effect', &
@@ -189,13 +190,8 @@ contains
       end do
    end subroutine announce
 
-   !> What --verify compares must be there before two runs are spent on it.
-   subroutine check_verifiable()
-      if (.not. any(model%stages%controlled)) call raise(fault, EXIT_INPUT, '--verify repeats a run with shorter '// &
-         'steps, but every stage gives its steps: leave dt out, or give accuracy, or compare with a smaller dt.')
-   end subroutine check_verifiable
-
-   !> The run again at a quarter of the accuracy, in a folder of its own: the difference takes the estimate's place.
+   !> The run again at a quarter of the accuracy, given steps a quarter as long, in a folder of its own: the difference
+   !> takes the estimate's place.
    subroutine verify()
       type(scene_t) :: fine_scene
       type(model_t) :: fine_model
@@ -204,10 +200,13 @@ contains
       type(history_t) :: one, two
       character(16) :: quarter
 
-      write (quarter, '(es12.5)') QUARTER_SHARE*maxval(model%stages%accuracy, mask=model%stages%controlled)
+      quarter = ''
+      if (any(model%stages%controlled)) write (quarter, '(es12.5)') &
+         QUARTER_SHARE*maxval(model%stages%accuracy, mask=model%stages%controlled)
       call read_scene(trim(file), fine_scene, fault, trim(adjustl(quarter)))
       if (fault%code == 0) call settle_scene(fine_scene, fault)
       if (fault%code == 0 .and. allocated(effects)) call apply_effects(effects, fine_scene)
+      if (fault%code == 0) call shorten_given_steps(fine_scene%stages, QUARTER_SHARE)
       if (fault%code == 0) call build_model(fine_scene, fine_model, fault)
       if (fault%code == 0) call prepare_run(fine_model, fine_run, fault)
       if (fault%code /= 0) return

@@ -1,23 +1,37 @@
 ! SPDX-License-Identifier: MIT
-!> The estimated error of every answer of a run whose steps are controlled, and what limited the steps.
+!> The estimated error of every answer of a run, and what limited the steps where they are controlled.
 !> docs/theory/host.md section 4.5.
 module answer_errors
+   use, intrinsic :: iso_fortran_env, only: error_unit
    use kinds, only: wp
    use answer_verification, only: force_error_t
    use control_state, only: control_state_t, LIMIT_NAMES
    use csv, only: csv_t, new_csv, write_row, close_csv
    use faults, only: fault_t
    use error_norms, only: PATH
+   use generalised_alpha, only: DYNAMIC
    use model_types, only: model_t
    use scene_types, only: acts_in
    use texts, only: short, whole
-   use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS, AT_U_R
+   use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: write_answers, print_answers
+   public :: write_answers, print_answers, tell_answers
 
    real(wp), parameter :: NO_CHANGE = 1.0e-9_wp   !< Share of the field's largest change that is no change of an answer.
+   !> Of an answer: the warning is given from here on. In dynamic stages the magnitudes of errors add up, to ten times
+   !> the true one in long shaking.
+   real(wp), parameter :: ALARMING_ERROR = 0.1_wp, ALARMING_IN_MOTION = 0.3_wp
+   real(wp), parameter :: BEYOND = 3.0_wp            !< Or from this multiple of the accuracy that was asked for.
+   real(wp), parameter :: HARDLY = 0.1_wp            !< Share of the field's largest change below which an answer's own
+                                                     !< is too small to be judged by, and such a pressure [kPa].
+   real(wp), parameter :: LEAST_PRESSURE = 0.01_wp
    character(18), parameter :: OF_ALL(DISPLACEMENTS:FIELDS) = [character(18) :: 'displacements', 'p_w', 'p_c']
+   character(170), parameter :: UNSEEN(DISPLACEMENTS:FIELDS) = [character(170) :: &
+      ', since loads or prescribed values act at once; the response of a material with a memory may depend on how '// &
+      'they are applied. Give them a &history.', &
+      ': right if the flow has come to rest at the end, else wrong; take more steps.', &
+      ': right if the flow has come to rest at the end, else wrong; take more steps.']
 contains
    !> Largest change of a field at a named point, and its estimated error as a share of it; false where nothing happens.
    logical function estimate(model, control, point, field, change, error)
@@ -38,7 +52,7 @@ contains
       if (estimate) error = control%point_largest(field, point)/change
    end function estimate
 
-   !> Whether every stage with controlled steps prescribes an unknown throughout: then it is no answer.
+   !> Whether every stage prescribes an unknown throughout: then it is no answer.
    pure logical function is_prescribed(model, node, field) result(prescribed)
       type(model_t), intent(in) :: model
       integer, intent(in) :: node, field
@@ -47,7 +61,6 @@ contains
 
       prescribed = .true.
       do i = 1, size(model%stages)
-         if (.not. model%stages(i)%controlled) cycle
          held = .false.
          do k = 1, size(model%fixes)
             associate (fix => model%fixes(k))
@@ -59,6 +72,55 @@ contains
          prescribed = prescribed .and. held
       end do
    end function is_prescribed
+
+   !> Warns on standard error, also where the run is quiet, of the answer whose estimated error is largest, if that is
+   !> more than 10 % (30 % with dynamic stages) and three times the accuracy that was asked for; of the field where no
+   !> point is named. docs/theory/host.md section 4.5.
+   subroutine tell_answers(model, control, verified, forces)
+      type(model_t), intent(in) :: model
+      type(control_state_t), intent(in) :: control
+      logical, intent(in) :: verified   !< The errors are differences to a finer run.
+      type(force_error_t), intent(in) :: forces(:)   !< As compare_forces gives them.
+      character(*), parameter :: SHORTER(2) = [character(120) :: &
+         'Leave dt out (steps are then controlled by their error) or shorten it; --verify measures the error.', &
+         'Ask for a smaller accuracy, or give none of dt, dt_max and steps; --verify measures the error.']
+      character(:), allocatable :: worst
+      real(wp) :: change, error, largest
+      integer :: i, f
+
+      largest = ALARMING_ERROR
+      if (any(model%stages%kind == DYNAMIC) .and. .not. verified) largest = ALARMING_IN_MOTION
+      if (any(model%stages%controlled)) largest = max(largest, BEYOND*maxval(model%stages%accuracy, &
+                                                                             mask=model%stages%controlled))
+      worst = ''
+      do f = 1, FIELDS
+         do i = 1, size(model%points)
+            if (.not. estimate(model, control, i, f, change, error)) cycle
+            if (change > HARDLY*control%scale(f) .and. (f <= DISPLACEMENTS .or. change > LEAST_PRESSURE)) &
+               call compare(trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f)), error)
+         end do
+         if (size(model%points) > 0 .or. f < DISPLACEMENTS .or. .not. control%scale(f) > 0.0_wp) cycle
+         if (f > DISPLACEMENTS .and. .not. control%scale(f) > LEAST_PRESSURE) cycle
+         call compare('the '//trim(OF_ALL(max(f, DISPLACEMENTS)))//' (root mean square of all nodes)', &
+                      control%largest(f)/control%scale(f))
+      end do
+      do i = 1, size(forces)
+         call compare(trim(forces(i)%name), forces(i)%error)
+      end do
+      if (worst == '') return
+      write (error_unit, '(a)') 'mud_host: warning: the steps in time are too long: the '// &
+         trim(merge('measured ', 'estimated', verified))//' error of '//worst//' is '//short(100*largest)// &
+         ' % of its largest change. '//trim(merge(SHORTER(2), SHORTER(1), any(model%stages%controlled)))
+   contains
+      subroutine compare(name, error)
+         character(*), intent(in) :: name
+         real(wp), intent(in) :: error
+
+         if (error <= largest) return
+         worst = name
+         largest = error
+      end subroutine compare
+   end subroutine tell_answers
 
    !> answers.csv: largest change [m, kPa] and estimated error [-] of every answer: docs/theory/host.md section 4.5.
    !> Fault EXIT_OUTPUT: it cannot be written.
@@ -120,11 +182,13 @@ contains
             trim(OF_ALL(f))//', root mean square: '//short(control%scale(f))// &
             trim(merge(' m  ', ' kPa', f <= DISPLACEMENTS))//', '//short(100*control%largest(f)/control%scale(f))//' %'
       end do
-      share = control%unseen/max(control%scale(AT_U_R), tiny(1.0_wp))
-      if (PATH*share > minval(model%stages%accuracy, mask=model%stages%controlled)) write (unit, '(a)') &
-         '   Not estimated: '//short(100*min(share, 1.0_wp))//' % of the displacements came in single steps, '// &
-         'since loads or prescribed values act at once; the response of a material with a memory may depend on how '// &
-         'they are applied. Give them a &history.'
+      do f = DISPLACEMENTS, FIELDS
+         share = control%unseen(f)/max(control%scale(f), tiny(1.0_wp))
+         if (PATH*share <= minval(model%stages%accuracy)) cycle
+         write (unit, '(a)') '   Not estimated: '//short(100*min(share, 1.0_wp))//' % of '//trim(OF_ALL(f))// &
+            ' came in single steps'//trim(UNSEEN(f))
+      end do
+      if (.not. any(model%stages%controlled)) return
       i = maxloc(control%limits, 1)
       write (unit, '(a)') '   Steps were kept short by: '//trim(LIMIT_NAMES(i))//' ('// &
          whole(nint(control%limits(i)))//' of '//whole(nint(sum(control%limits)))//'); '// &

@@ -80,7 +80,7 @@ contains
       if (.not. good) call raise(fault, EXIT_OUTPUT, path//' cannot be read back for the comparison of the two runs.')
    end subroutine read_numbers
 
-   !> Forces of the supports of every stage with controlled steps, from two runs of a scene: largest change, and
+   !> Forces of the supports of every stage, from two runs of a scene: largest change, and
    !> largest distance as a share of it, at the times that the forces hold for. docs/theory/host.md section 4.5.
    !> Fault EXIT_OUTPUT: reactions_STAGE.csv cannot be read.
    subroutine compare_forces(folder, other_folder, stages, forces, fault)
@@ -96,7 +96,7 @@ contains
       allocate (forces(0))
       do i = 1, size(stages)
          inquire (file=reactions_of(folder, stages(i)%name), exist=there)
-         if (.not. (there .and. stages(i)%controlled)) cycle
+         if (.not. there) cycle
          call read_numbers(reactions_of(folder, stages(i)%name), names, one, fault)
          if (fault%code == 0) call read_numbers(reactions_of(other_folder, stages(i)%name), names, two, fault)
          if (fault%code /= 0) return

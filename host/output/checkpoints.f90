@@ -26,7 +26,7 @@ module checkpoints
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
    character(*), parameter :: KIND_OF_FILE = 'checkpoint of mud_host'
-   character(*), parameter :: FORMAT = '7'      !< Grows with every change of what is stored.
+   character(*), parameter :: FORMAT = '8'      !< Grows with every change of what is stored.
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
    integer, parameter :: N_COUNTERS = 14
    character(*), parameter :: DAMAGED = ' is damaged: an entry is missing, has another extent or a wrong '// &
@@ -80,8 +80,7 @@ contains
       end associate
       if (allocated(model%effects)) call put(file, 'monitor', [run%monitor%table%largest, run%monitor%table%crossed], &
          '-', 'indicators of the effects that the pilots removed, times at which they passed their limits [s]')
-      if (allocated(run%control%x_first)) call put(file, 'control', numbers_of(run%control), '-', &
-         'control of the time step: see control_state')
+      call put(file, 'control', numbers_of(run%control), '-', 'control of the time step: see control_state')
       if (allocated(run%constraint%dashpots)) call put(file, 'offset', run%constraint%offset, 'kN, m3/s', &
                                                       'flow that is subtracted, forces that hold the ground')
       if (pairs_of(run) > 0) call put(file, 'pairs', reshape(run%system%contacts%extra, [2*pairs_of(run)]), '-', &
@@ -140,9 +139,7 @@ contains
          call get(file, 's_rate', run%state%s_rate)
          if (allocated(run%constraint%dashpots)) call get(file, 'offset', run%constraint%offset)
          if (file%good .and. allocated(model%effects)) call take_monitor(file, run)
-         if (file%good) then
-            if (any(model%stages(:nint(counters(1)))%controlled)) call take_control(file, model, run)
-         end if
+         if (file%good) call take_control(file, model, run)
          if (file%good .and. counters(N_COUNTERS) > 0.5_wp) &
             call take_pairs(file, nint(counters(N_COUNTERS)), model%dofs, run)
          if (file%good) then

@@ -29,8 +29,9 @@ module control_state
       real(wp) :: scale(FIELDS) = 0.0_wp         !< Largest change of the fields in the run [m, kPa].
       real(wp) :: gathered(FIELDS) = 0.0_wp      !< Error of the fields that the steps have left [m, kPa].
       real(wp) :: largest(FIELDS) = 0.0_wp       !< The largest so far.
-      real(wp) :: unseen = 0.0_wp                !< Displacement in steps whose error nothing estimates, where the
-                                                 !< material has a memory [m].
+      real(wp) :: unseen(FIELDS) = 0.0_wp        !< Change in steps whose error nothing estimates [m, kPa]: of
+                                                 !< displacements where the material has a memory, of pressures
+                                                 !< in a stage of one step.
       real(wp) :: limits(LIMITS) = 0.0_wp        !< Steps by what kept them short.
       ! Of the fields at the named points, (FIELDS, points).
       real(wp), allocatable :: low(:, :), high(:, :), point_gathered(:, :), point_largest(:, :)
@@ -53,7 +54,7 @@ contains
    pure integer function count_of_numbers(state) result(n)
       type(control_state_t), intent(in) :: state   !< After new_control_state.
 
-      n = SCALARS + 3*FIELDS + LIMITS + size(state%x_first) + size(state%memory%rate) &
+      n = SCALARS + 4*FIELDS + LIMITS + size(state%x_first) + size(state%memory%rate) &
           + size(state%memory%s_rate) + 4*size(state%low)
    end function count_of_numbers
 
@@ -65,8 +66,8 @@ contains
       associate (c => state%controller, m => state%memory)
          list = [c%dt, c%last_ratio, merge(1.0_wp, 0.0_wp, c%held), state%t_sudden, real(state%fresh, wp), &
                  state%start_up, real(state%rejected, wp), merge(1.0_wp, 0.0_wp, m%known), m%dt, &
-                 state%unseen, state%scale, state%gathered, state%largest, state%limits, state%x_first, m%rate, &
-                 m%s_rate, state%low, state%high, state%point_gathered, state%point_largest]
+                 m%span, state%unseen, state%scale, state%gathered, state%largest, state%limits, state%x_first, &
+                 m%rate, m%s_rate, state%low, state%high, state%point_gathered, state%point_largest]
       end associate
    end function numbers_of
 
@@ -86,8 +87,9 @@ contains
          state%rejected = nint(list(7))
          m%known = list(8) > 0.5_wp
          m%dt = list(9)
-         state%unseen = list(10)
+         m%span = list(10)
          at = SCALARS
+         call take_row(state%unseen)
          call take_row(state%scale)
          call take_row(state%gathered)
          call take_row(state%largest)

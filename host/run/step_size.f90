@@ -1,11 +1,11 @@
 ! SPDX-License-Identifier: MIT
 !> Length of the steps of a stage: given, or chosen from the error of each step so that what the steps leave in all
-!> stays below the accuracy asked for. docs/theory/host.md section 4.5.
+!> stays below the accuracy asked for. The errors of given steps are estimated too. docs/theory/host.md section 4.5.
 module step_size
    use kinds, only: wp
    use control_state, only: control_state_t, new_control_state, BY_DISPLACEMENTS, BY_PRESSURE, BY_SUCTION, BY_TIMES, &
                             BY_LARGEST, BY_SMALLEST, BY_GROWTH
-   use error_norms, only: shift_rates, local_errors, remember, forget, rms
+   use error_norms, only: keep_rates, shift_rates, local_errors, remember, forget, rms
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, QUASI_STATIC, DYNAMIC
    use model_types, only: model_t, stage_t
    use run_state, only: run_t
@@ -29,18 +29,17 @@ module step_size
    real(wp), parameter :: PEAK = 1.57_wp          !< Of a sine over the mean of its magnitude.
    real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Share of its change by which the second step after a sudden load
                                                   !< is in error, since flow begins with the root of time.
+   real(wp), parameter :: FIRST_TWO = 0.5_wp      !< The same of given steps, for the first two together.
    real(wp), parameter :: PLATE_SHARE = 0.1_wp    !< Of the way of a plate, as a least scale of the soil's.
    real(wp), parameter :: FLOOR = 1.0e-9_wp       !< Share of the largest value of a field that is no change of it.
 contains
-   !> A stage begins. First step and scales of a stage whose steps are controlled, else nothing: docs/theory/host.md
-   !> section 4.5.
+   !> A stage begins: scales, and the first step where steps are controlled. docs/theory/host.md section 4.5.
    subroutine begin_control(model, stage, run)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       type(run_t), intent(inout) :: run
       integer :: rejected
 
-      if (.not. stage%controlled) return
       associate (c => run%control)
          if (.not. allocated(c%x_first)) then
             c = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(model%points))
@@ -51,9 +50,10 @@ contains
             c%rejected = rejected
          end if
          c%x_first = run%state%x
+         call sudden(run%state%time, run)
+         if (.not. stage%controlled) return
          c%controller = new_controller(first_step(model, stage, run))
          c%start_up = START_UP_STEPS*c%controller%dt
-         call sudden(run%state%time, run)
       end associate
    end subroutine begin_control
 
@@ -110,12 +110,20 @@ contains
    pure logical function is_over(stage, run)
       type(stage_t), intent(in) :: stage
       type(run_t), intent(in) :: run
+
+      is_over = is_over_at(stage, run, run%state%time)
+   end function is_over
+
+   pure logical function is_over_at(stage, run, time)
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(in) :: run
+      real(wp), intent(in) :: time   !< [s]
       real(wp) :: rounding
 
       rounding = LAST_STEP*run%at%nominal*run%at%factor
-      if (stage%controlled) rounding = max(LAST_STEP*SHORTEST*stage%duration, 4*spacing(run%state%time))
-      is_over = run%at%t_start + stage%duration - run%state%time <= rounding
-   end function is_over
+      if (stage%controlled) rounding = max(LAST_STEP*SHORTEST*stage%duration, 4*spacing(time))
+      is_over_at = run%at%t_start + stage%duration - time <= rounding
+   end function is_over_at
 
    !> Length of the next attempt [s]. docs/theory/host.md sections 4.4 and 4.5.
    real(wp) function next_step(model, stage, run) result(dt)
@@ -152,42 +160,104 @@ contains
       end associate
    end function next_end
 
-   !> Before an attempt: rates of the present state where the step expects them. docs/theory/host.md section 4.5;
-   !> nothing where steps are given.
+   !> Before an attempt: rates of the present state where the step expects them. docs/theory/host.md section 4.5; where
+   !> steps are given they stay.
    subroutine prepare_rates(stage, dt, run)
       type(stage_t), intent(in) :: stage
       real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
 
-      if (.not. stage%controlled) return
+      if (.not. stage%controlled) then
+         run%control%memory%moves = .false.
+         call keep_rates(run%control%memory, run%state%v, run%state%s_rate)
+         return
+      end if
       call shift_rates(make_scheme(stage%kind, stage%rho_inf, dt), run%control%memory, run%state%v, &
                        run%state%s_rate)
    end subroutine prepare_rates
 
    !> After a solution: whether its error lets it stand; the length of the next attempt follows from it.
-   !> docs/theory/host.md section 4.5; where steps are given every one stands.
+   !> docs/theory/host.md section 4.5. Where steps are given every one stands, and its error is added up.
    subroutine judge_step(model, stage, dt, run, accepted)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
       logical, intent(out) :: accepted
-      real(wp) :: error(FIELDS, size(run%state%x, 2)), norm(FIELDS), share(FIELDS), ratios(FIELDS)
-      real(wp) :: ratio, elapsed, asked
+      real(wp) :: error(FIELDS, size(run%state%x, 2)), norm(FIELDS), elapsed
       logical :: known(FIELDS)
       integer :: bodies
 
+      call estimate_error(model, stage, dt, run, error, known)
+      ! Plates with a face of their own come last: their vibration on a penalty is no answer.
+      bodies = size(run%state%x, 2) - size(model%domain%bodies)
+      norm = field_norms(error(:, :bodies))
+      elapsed = run%next%time - run%control%t_sudden
       accepted = .true.
-      if (.not. stage%controlled) return
+      if (stage%controlled) call weigh_error(model, stage, dt, elapsed, norm, known, run, accepted)
+      if (.not. accepted) return
+      associate (c => run%control, change => field_norms(run%next%x(:, :bodies) - run%state%x(:, :bodies)))
+         if (.not. (known(AT_U_R) .or. stage%kind == QUASI_STATIC .and. c%fresh == 1) .and. depends_on_path(model)) &
+            c%unseen(:DISPLACEMENTS) = c%unseen(:DISPLACEMENTS) + change(:DISPLACEMENTS)
+         ! Where a flow is at rest at the end of its only step it is right, and else it is not: nothing tells.
+         if (stage%kind == QUASI_STATIC .and. c%fresh == 0 .and. is_over_at(stage, run, run%next%time)) &
+            c%unseen(DISPLACEMENTS + 1:) = c%unseen(DISPLACEMENTS + 1:) + change(DISPLACEMENTS + 1:)
+      end associate
+      call gather(model, stage, error, norm, elapsed - dt, elapsed, run)
+   end subroutine judge_step
+
+   !> Errors of all unknowns in the step under way, and of which fields they are known.
+   subroutine estimate_error(model, stage, dt, run, error, known)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: dt   !< [s]
+      type(run_t), intent(in) :: run
+      real(wp), intent(out) :: error(:, :)   !< (FIELDS, nodes) [m, kPa]; 0 where not known.
+      logical, intent(out) :: known(FIELDS)
+      integer :: kind
+
+      associate (c => run%control, change => run%next%x - run%state%x)
+         kind = kind_of_error(model, stage)
+         call local_errors(make_scheme(kind, stage%rho_inf, dt), c%memory, run%state%x, run%state%v, run%state%a, &
+                           run%next%x, run%next%v, run%next%a, error, known)
+         if (kind == DYNAMIC) error = PEAK*error
+         if (kind == QUASI_STATIC .and. c%fresh == 1) then
+            error = ROOT_SHARE*change
+            ! Given steps need not be short here: what the first one left is told by the second.
+            if (.not. stage%controlled) error = FIRST_TWO*change
+         end if
+         if (stage%controlled .or. kind /= STATIC .or. depends_on_path(model)) return
+         ! Without a memory and without a flow the answer does not depend on the steps.
+         error = 0.0_wp
+         known = .true.
+      end associate
+   end subroutine estimate_error
+
+   !> Whose errors the steps of a stage make: a quasi-static stage without pressures is static. Controlled steps of it
+   !> are chosen as those of a flow all the same.
+   pure integer function kind_of_error(model, stage) result(kind)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+
+      kind = stage%kind
+      if (kind == QUASI_STATIC .and. .not. stage%controlled .and. .not. any(model%dofs%field > DISPLACEMENTS)) &
+         kind = STATIC
+   end function kind_of_error
+
+   !> Whether the error of a controlled step lets it stand, the length of the next attempt, and what limits it.
+   subroutine weigh_error(model, stage, dt, elapsed, norm, known, run, accepted)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: dt, elapsed    !< Step, and the time since the last sudden change at its end [s].
+      real(wp), intent(in) :: norm(FIELDS)   !< Of the errors [m, kPa].
+      logical, intent(in) :: known(FIELDS)
+      type(run_t), intent(inout) :: run
+      logical, intent(out) :: accepted
+      real(wp) :: share(FIELDS), ratios(FIELDS), ratio, asked
+      integer :: bodies, by
+
       associate (c => run%control)
-         call local_errors(make_scheme(stage%kind, stage%rho_inf, dt), c%memory, run%state%x, run%state%v, &
-                           run%state%a, run%next%x, run%next%v, run%next%a, error, known)
-         if (stage%kind == DYNAMIC) error = PEAK*error
-         if (stage%kind == QUASI_STATIC .and. c%fresh == 1) error = ROOT_SHARE*(run%next%x - run%state%x)
-         ! Plates with a face of their own come last: their vibration on a penalty is no answer.
          bodies = size(run%state%x, 2) - size(model%domain%bodies)
-         elapsed = run%next%time - c%t_sudden
-         norm = field_norms(error(:, :bodies))
          share = max(dt/elapsed, EVENT)
          if (stage%kind == DYNAMIC) then
             share(:DISPLACEMENTS) = max(dt/(run%at%t_start + stage%duration - run%state%time), EVENT) &
@@ -209,31 +279,20 @@ contains
             return
          end if
          if (.not. any(known)) c%controller%dt = asked
-         if (.not. (known(AT_U_R) .or. stage%kind == QUASI_STATIC .and. c%fresh == 1) .and. depends_on_path(model)) &
-            c%unseen = c%unseen + rms(run%next%x(:DISPLACEMENTS, :bodies) - run%state%x(:DISPLACEMENTS, :bodies))
-         call gather(model, stage, error, norm, elapsed - dt, elapsed, run)
-         call note_limit()
+         if (dt < asked*(1 - LAST_STEP) .and. dt < stage%dt_max) then
+            by = BY_TIMES
+         else if (dt >= stage%dt_max) then
+            by = BY_LARGEST
+         else if (dt <= SHORTEST*stage%duration) then
+            by = BY_SMALLEST
+         else if (c%controller%dt > asked .or. ratio < 0.0_wp) then
+            by = BY_GROWTH
+         else
+            by = maxloc([maxval(ratios(:DISPLACEMENTS)), ratios(AT_P_W), ratios(AT_P_C)], 1)
+         end if
+         c%limits(by) = c%limits(by) + 1
       end associate
-   contains
-      subroutine note_limit()
-         integer :: by
-
-         associate (c => run%control)
-            if (dt < asked*(1 - LAST_STEP) .and. dt < stage%dt_max) then
-               by = BY_TIMES
-            else if (dt >= stage%dt_max) then
-               by = BY_LARGEST
-            else if (dt <= SHORTEST*stage%duration) then
-               by = BY_SMALLEST
-            else if (c%controller%dt > asked .or. ratio < 0.0_wp) then
-               by = BY_GROWTH
-            else
-               by = maxloc([maxval(ratios(:DISPLACEMENTS)), ratios(AT_P_W), ratios(AT_P_C)], 1)
-            end if
-            c%limits(by) = c%limits(by) + 1
-         end associate
-      end subroutine note_limit
-   end subroutine judge_step
+   end subroutine weigh_error
 
    !> Errors of displacements without a flow stay and add up. So what the steps so far have left of the accuracy is
    !> spread over the stages to come, and in a stage over its time: share of the accuracy for this stage's rest.
@@ -339,25 +398,27 @@ contains
    end subroutine shorten_step
 
    !> After an accepted step, before it is taken over: rates for the next estimate, and what ends with the step.
-   !> docs/theory/host.md section 4.5; nothing where steps are given.
+   !> docs/theory/host.md section 4.5. Where steps are given their length does not follow.
    subroutine keep_step(model, stage, dt, run)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
       type(scheme_t) :: scheme
+      logical :: breaks
 
-      if (.not. stage%controlled) return
-      scheme = make_scheme(stage%kind, stage%rho_inf, dt)
+      scheme = make_scheme(kind_of_error(model, stage), stage%rho_inf, dt)
+      breaks = stage%kind /= DYNAMIC .and. is_break(model, stage, run%next%time, dt)
       associate (c => run%control)
          call remember(scheme, c%memory, run%state%x, run%next%x, run%state%v, run%state%s_rate)
          c%fresh = c%fresh + 1
          ! A first static step may have taken at once what acts from the start: its rate is none.
          if (c%fresh < merge(2, SETTLED, stage%kind == STATIC)) c%memory%known = .false.
+         if (breaks) call sudden(run%next%time, run)
+         if (.not. stage%controlled) return
          run%at%cuts = max(0, run%at%cuts - 1)
          run%at%nominal = c%controller%dt
-         if (stage%kind /= DYNAMIC .and. is_break(model, stage, run%next%time, dt)) then
-            call sudden(run%next%time, run)
+         if (breaks) then
             c%controller%dt = min(c%controller%dt, max(dt*stage%accuracy, SHORTEST*stage%duration*LARGEST_FACTOR))
             c%start_up = START_UP_STEPS*c%controller%dt
          end if

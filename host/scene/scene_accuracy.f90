@@ -9,7 +9,7 @@ module scene_accuracy
    use scene_types, only: scene_stage_t
    implicit none (type, external)
    private
-   public :: ask_accuracy, ask_steps, ask_stress
+   public :: ask_accuracy, ask_steps, ask_stress, shorten_given_steps
 
    real(wp), parameter :: DEFAULT_ACCURACY = 1.0e-2_wp   !< Of stages without dt in scenes that ask for none.
    real(wp), parameter :: NEWTON_SHARE = 0.1_wp          !< Newton's tolerance as a share of the accuracy.
@@ -48,6 +48,20 @@ contains
       if (stage%controlled .and. .not. given(group, 'tolerance')) &
          stage%tolerance = min(stage%tolerance, NEWTON_SHARE*stage%accuracy)
    end subroutine ask_steps
+
+   !> Shortens the given steps of stages to a share of their length; growing ones grow as much in the same time.
+   pure subroutine shorten_given_steps(stages, share)
+      type(scene_stage_t), intent(inout) :: stages(:)
+      real(wp), intent(in) :: share   !< 0 to 1
+      integer :: i
+
+      do i = 1, size(stages)
+         if (stages(i)%controlled) cycle
+         stages(i)%dt = share*stages(i)%dt
+         if (stages(i)%dt_max < huge(1.0_wp)) stages(i)%dt_max = share*stages(i)%dt_max
+         stages(i)%dt_growth = stages(i)%dt_growth**share
+      end do
+   end subroutine shorten_given_steps
 
    !> Tolerance and scheme of MUD. docs/theory/host.md section 4.5; nothing for other laws.
    subroutine ask_stress(accuracy, group)

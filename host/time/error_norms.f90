@@ -2,8 +2,9 @@
 !> Error that a step makes by itself, from the rates at its ends and those before.
 !>
 !> Generalised-alpha stores rates that belong not to the ends of a step but to a moment D dt off, with D = l_f - l_a for
-!> accelerations and l_f - l_p for first-order rates. Where the step of a flow changes, the stored rates are moved there
-!> first: so second order is kept. Accelerations stay as they are: what their change of place errs by is of third order,
+!> accelerations and l_f - l_p for first-order rates. Where a controlled step of a flow changes, the stored rates are
+!> moved there first: so second order is kept. Given steps leave them where they are, and what that errs by is
+!> estimated too. Accelerations stay as they are: what their change of place errs by is of third order,
 !> and to extrapolate them would multiply the jumps of a contact.
 !>
 !> The leading error of a step is C dt**3 times the third derivative, C = 1/12 + 3/8 D**2 for accelerations and
@@ -15,8 +16,8 @@ module error_norms
    use generalised_alpha, only: scheme_t, STATIC, QUASI_STATIC, DYNAMIC
    implicit none (type, external)
    private
-   public :: rate_memory_t, new_memory, shift_rates, local_errors, remember, forget, constant_of_accelerations, &
-             constant_of_rates, rms, PATH
+   public :: rate_memory_t, new_memory, keep_rates, shift_rates, local_errors, remember, forget, &
+             constant_of_accelerations, constant_of_rates, rms, PATH
 
    real(wp), parameter :: LONGEST = 2.0_wp   !< Times the last step: no rate is carried over a longer one.
    !> Share of the curvature of a path that a straight step leaves out (deviation in the middle of the step).
@@ -25,7 +26,9 @@ module error_norms
    !> Rates one step back.
    type :: rate_memory_t
       logical :: known = .false.            !< There are such rates, with nothing sudden since.
+      logical :: moves = .false.            !< Rates are moved where a step of another length expects them.
       real(wp) :: dt = 0.0_wp               !< Step from them to the present ones, which both belong to [s].
+      real(wp) :: span = 0.0_wp             !< Time between the moments that they belong to: dt where moved [s].
       real(wp), allocatable :: rate(:, :)   !< (fields, nodes)
       real(wp), allocatable :: s_rate(:)    !< (points)
       ! The present ones as the last step left them; attempts of different length move them from here.
@@ -58,6 +61,17 @@ contains
       c = 1.0_wp/12 + (scheme%l_p - scheme%l_f)**2
    end function constant_of_rates
 
+   !> Keeps the rates of the present state as the last step left them. v: (fields, nodes); s_rate: (points).
+   pure subroutine keep_rates(memory, v, s_rate)
+      type(rate_memory_t), intent(inout) :: memory
+      real(wp), intent(in) :: v(:, :), s_rate(:)   !< [m/s, kPa/s], [1/s]
+
+      if (memory%based) return
+      memory%base_rate = v
+      memory%base_s_rate = s_rate
+      memory%based = .true.
+   end subroutine keep_rates
+
    !> Moves the rates of the present state to where a step of another length expects them. docs/theory/host.md section
    !> 4.5. Rates stay in static steps and where none are known from before; in dynamic steps those of the displacements
    !> stay.
@@ -68,11 +82,8 @@ contains
       real(wp) :: share
       integer :: first
 
-      if (.not. memory%based) then
-         memory%base_rate = v
-         memory%base_s_rate = s_rate
-         memory%based = .true.
-      end if
+      call keep_rates(memory, v, s_rate)
+      memory%moves = .true.
       if (scheme%kind == STATIC .or. .not. memory%known) return
       first = merge(1, 3, scheme%kind == QUASI_STATIC)
       share = (scheme%l_f - scheme%l_p)*(min(scheme%dt, LONGEST*memory%dt) - memory%dt)/memory%dt
@@ -89,7 +100,7 @@ contains
       real(wp), intent(in) :: x0(:, :), v0(:, :), a0(:, :), x1(:, :), v1(:, :), a1(:, :)
       real(wp), intent(out) :: error(:, :)   !< (FIELDS, nodes) [m, kPa]; 0 where not known.
       logical, intent(out) :: known(:)   !< (FIELDS)
-      real(wp) :: off
+      real(wp) :: off, span
       integer :: first
 
       error = 0.0_wp
@@ -107,6 +118,14 @@ contains
          end if
          if (.not. memory%known) return
          off = scheme%l_f - scheme%l_p
+         if (.not. memory%moves) then
+            ! The second part: rates that stay where a step of another length left them.
+            span = dt + off*(dt - memory%dt)
+            error(first:, :) = constant_of_rates(scheme)*dt**3*((v1(first:, :) - v0(first:, :))/span &
+                               - (v0(first:, :) - memory%rate(first:, :))/memory%span)/(0.5_wp*(span + memory%span)) &
+                               - (scheme%l_f - 0.5_wp)*off*dt*(dt - memory%dt)*(v1(first:, :) - v0(first:, :))/span
+            return
+         end if
          error(first:, :) = constant_of_rates(scheme)*dt**3*((v1(first:, :) - v0(first:, :))/dt &
                             - (memory%base_rate(first:, :) - memory%rate(first:, :))/memory%dt) &
                             /(0.5_wp*(dt + memory%dt) + off*(min(dt, LONGEST*memory%dt) - memory%dt))
@@ -121,6 +140,9 @@ contains
       type(rate_memory_t), intent(inout) :: memory
       real(wp), intent(in) :: x0(:, :), x1(:, :), v0(:, :), s_rate(:)
 
+      memory%span = scheme%dt
+      if (memory%known .and. .not. memory%moves) &
+         memory%span = scheme%dt + (scheme%l_f - scheme%l_p)*(scheme%dt - memory%dt)
       memory%rate = v0
       if (scheme%kind == STATIC) memory%rate = (x1 - x0)/scheme%dt
       memory%s_rate = s_rate

@@ -92,7 +92,7 @@ done = run(written("hand", TERZAGHI.read_text().replace("dt = 1.0e-3", "dt = 1.0
            work / "hand", "--accuracy", "1e-1")
 run(TERZAGHI, work / "plain")
 check("given steps stay", (work / "hand/ledger.csv").read_bytes() == (work / "plain/ledger.csv").read_bytes()
-      and "Answers:" not in done.stdout)
+)
 # Without dt a stage is controlled, and without accuracy at 1e-2: six decades of time in few steps.
 free = TERZAGHI.read_text().replace("   dt = 1.0e-3\n   dt_growth = 1.03\n   dt_max = 1\n", "")
 done = run(written("free", free), work / "free")
@@ -142,8 +142,38 @@ done = run(written("push1e-2", RAMP), work / "pushed", "--accuracy", "1e-2", "--
 true = abs(forces["1e-2"][-1]/forces["fine"][-1] - 1)
 check("--verify: forces of supports are compared", done.returncode == 0 and "push: top_1.force_z: " in done.stdout
       and BAND[0] < true/estimated(work / "pushed").get("push: top_1.force_z", 1) < 2, (true, done.stderr))
-done = run(written("pushfine", RAMP.replace("duration = 1 ", "duration = 1 dt = 0.005 ")), work / "none", "--verify")
-check("--verify of given steps", done.returncode == 2 and "every stage gives its steps" in done.stderr, done.stderr)
+# The errors of given steps are estimated too, told where they are large, and measured by --verify.
+SWING = VIBRATION.read_text().replace("rho_inf = 0.8", "")
+DRAIN = TERZAGHI.read_text().replace("   dt_growth = 1.03\n   dt_max = 1\n", "") \
+    .replace("duration = 100", "duration = 20")
+
+
+def consolidation(times):
+    """p_w at the base of Terzaghi's column, drained at its top: E_oed 12,000 kPa, k/eta 1e-6 m2/(kPa s) [kPa]."""
+    odd = np.arange(1, 400, 2)*np.pi/2
+    return 100*np.array([np.sum(2/odd*np.sin(odd)*np.exp(-odd**2*0.012*t)) for t in times])
+
+
+for name, text, words, long in (
+        ("swing", SWING.replace("dt = 0.005", "dt = 0.0025"), "top.u_z", False),
+        ("longer", SWING.replace("dt = 0.005", "dt = 0.02"), "top.u_z", True),
+        ("drain", DRAIN.replace("dt = 1.0e-3", "dt = 4"), "base.p_w", True),
+        ("growing", TERZAGHI.read_text().replace("dt_growth = 1.03", "dt_growth = 1.3")
+         .replace("dt_max = 1\n", "dt_max = 10\n").replace("dt = 1.0e-3", "dt = 0.05"), "base.p_w", False)):
+    out = work / f"given_{name}"
+    done = run(written(f"given_{name}", text), out)
+    t, x = history(out, "time"), history(out, words)
+    known = np.interp(t, t_fine, u_fine) if words == "top.u_z" else np.append(0, consolidation(t[1:]))
+    true, estimate = np.max(np.abs(x - known))/np.ptp(x), estimated(out)[words]
+    check(f"given steps, {name}: true error / estimated", BAND[0] < true/estimate < BAND[1], (true, estimate))
+    check(f"given steps, {name}: large errors are told, small ones are not",
+          ("the steps in time are too long" in done.stderr) == long, (estimate, done.stderr))
+    done = run(work / f"given_{name}.nml", work / "verified", "--verify")
+    check(f"given steps, {name}: --verify measures", done.returncode == 0 and
+          0.5 < estimated(work / "verified")[words]/true < 1.5, (true, estimated(work / "verified"), done.stderr))
+done = run(written("single", DRAIN.replace("dt = 1.0e-3", "dt = 20")), work / "single")
+check("one step for a flow is not estimated, which is told", done.returncode == 0 and
+      "Not estimated: 100 % of p_w came in single steps" in done.stdout, done.stdout)
 done = run(written("at_once", FOOTING.replace("HISTORY", "")), work / "at_once")
 check("what acts at once is told of", done.returncode == 0 and "Not estimated: 100 %" in done.stdout,
       done.stdout + done.stderr)
@@ -166,4 +196,10 @@ done = run(scene, half, "--restart", half / "checkpoint.h5")
 check("restart: goes on", done.returncode == 0, done.stderr)
 for file in ("ledger.csv", "histories.csv", "answers.csv"):
     check(f"restart: same bytes of {file}", (whole / file).read_bytes() == (half / file).read_bytes())
+# So do the estimates of given steps.
+run(RESTART, work / "given_whole")
+shutil.copytree(work / "given_whole", work / "given_half")
+done = run(RESTART, work / "given_half", "--restart", work / "given_half/checkpoint.h5")
+check("restart of given steps: same estimates", done.returncode == 0 and
+      (work / "given_whole/answers.csv").read_bytes() == (work / "given_half/answers.csv").read_bytes(), done.stderr)
 finish()
