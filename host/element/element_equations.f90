@@ -5,9 +5,9 @@ module element_equations
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
    use kinds, only: wp
    use material_point, only: response_t, report_t, MOST_POINTS
-   use porous_domain, only: domain_t, region_t, state_t, gauss_t, mixture_density, given_pressures_at, COUPLED
-   use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, PLACES, RR, ZZ, TT, RZ, U, &
-                             PW, PC, GW, GA
+   use element_sums, only: sums_t, shapes_t, shapes_of, clear_sums, add_response, add_tangent, residual_of, matrix_of
+   use porous_domain, only: domain_t, region_t, state_t, mixture_density, given_pressures_at, COUPLED
+   use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, PLACES, RR, TT, RZ, U
    use generalised_alpha, only: scheme_t, DYNAMIC
    use carried_slopes, only: slopes_t, keep_slopes, follow_slopes, same_again, BY_MATERIAL, BY_SLOPES
    use tangent_fallback, only: stiffen, NO_FALLBACK
@@ -62,18 +62,18 @@ contains
       type(response_t) :: material
       type(kinematics_t) :: k(MOST_POINTS)
       real(wp), dimension(MOST_POINTS) :: suction, d_suction
+      type(shapes_t) :: shapes(MOST_POINTS)
       real(wp) :: strain(6, MOST_POINTS)
       integer :: g, n
 
-      out%r = 0.0_wp
-      out%stretch = 0.0_wp
-      if (out%with_change) out%change = 0.0_wp
-      out%k = 0.0_wp
       out%bad_point = 0
       out%replaced = 0
       out%rate_evaluations = 0
       out%seconds = 0.0_wp
-      call look_at_nodes(domain, element, scheme, old, new, k)
+      do g = 1, domain%rule
+         call shapes_of(domain%gauss(g, element), domain%n_carriers(element), shapes(g))
+      end do
+      call look_at_nodes(domain, element, scheme, old, new, shapes, k)
       do g = 1, domain%rule
          ! Also where it is not a number.
          if (all(abs(k(g)%strain) <= 1.0_wp)) cycle
@@ -90,7 +90,7 @@ contains
       end do
       call ask_points(domain, element, old, new, strain, suction, d_suction, with_tangent, slopes, material, out)
       if (out%bad_point > 0) return
-      call add_points(domain, element, scheme, k, material, old, new, with_tangent, out)
+      call add_points(domain, element, scheme, shapes, k, material, old, new, with_tangent, out)
    end subroutine compute_element
 
    !> Stress, saturation and void ratio at the points of an element, and their slopes.
@@ -142,12 +142,13 @@ contains
    end subroutine ask_points
 
    !> What the nodes say about the points of an element.
-   subroutine look_at_nodes(domain, element, scheme, old, new, k)
+   subroutine look_at_nodes(domain, element, scheme, old, new, shapes, k)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
       type(scheme_t), intent(in) :: scheme
       type(state_t), intent(in) :: old, new
-      type(kinematics_t), intent(inout) :: k(:)   !< As many as points, or more.
+      type(shapes_t), intent(in) :: shapes(:)     !< As many as points, or more.
+      type(kinematics_t), intent(inout) :: k(:)   !< Likewise.
       real(wp) :: x0(FIELDS, 6), x1(FIELDS, 6), v(FIELDS, 6), a(2, 6)
       integer :: g, node(6), n_p
 
@@ -170,7 +171,7 @@ contains
       end if
       do g = 1, domain%rule
          associate (gp => domain%gauss(g, element), region => domain%regions(domain%region_of(element)))
-            call look(gp, n_p, region%with_c, scheme, x0, x1, v, a, k(g))
+            call look(shapes(g), n_p > 0, region%with_c, scheme, x0, x1, v, a, k(g))
             if (region%drainage /= COUPLED) call add_given(given_pressures_at(domain, element, g), k(g))
             k(g)%speed = 0.0_wp
             if (scheme%kind == DYNAMIC) k(g)%velocity = matmul(old%v(:DISPLACEMENTS, node), gp%n)
@@ -183,10 +184,11 @@ contains
    end subroutine look_at_nodes
 
    !> The balances at the points, added up over the element.
-   subroutine add_points(domain, element, scheme, k, material, old, new, with_tangent, out)
+   subroutine add_points(domain, element, scheme, shapes, k, material, old, new, with_tangent, out)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
       type(scheme_t), intent(in) :: scheme
+      type(shapes_t), intent(in) :: shapes(:)
       type(kinematics_t), intent(in) :: k(:)
       type(response_t), intent(in) :: material
       type(state_t), intent(in) :: old
@@ -195,11 +197,17 @@ contains
       type(element_t), intent(inout) :: out
       type(skeleton_t) :: skeleton
       type(pore_t) :: pore
-      real(wp) :: response(PLACES), tangent(PLACES, PLACES), part(PLACES, MAX_DOF), rate, drift(2)
-      integer :: g, p, n, n_p
+      type(sums_t) :: sums
+      real(wp) :: response(PLACES), tangent(PLACES, PLACES), change(6, 4), rate, drift(2)
+      integer :: g, i, p, n, n_p, n_fields
 
       n = element_size(domain, element)
       n_p = domain%n_carriers(element)
+      n_fields = DISPLACEMENTS
+      if (n_p > 0) n_fields = DISPLACEMENTS + (n - LAST_U)/n_p
+      call clear_sums(with_tangent, sums)
+      out%stretch = 0.0_wp
+      if (out%with_change) change = 0.0_wp
       do g = 1, domain%rule
          p = (element - 1)*domain%rule + g
          skeleton%stress = material%stress(1:4, g)
@@ -221,38 +229,47 @@ contains
             new%e(p) = pore%e
             new%s(p) = pore%s
             new%s_rate(p) = pore%s_rate
-            call gather(gp, n_p, n, gp%weight, response, out%r)
-            if (out%with_change) call gather(gp, n_p, LAST_U, gp%weight, &
+            call add_response(shapes(g), n_fields, response, sums%r)
+            if (out%with_change) call add_response(shapes(g), DISPLACEMENTS, &
                change_of(domain, region, k(g), old%stress(:, p), pore_t(old%e(p), old%s(p), old%s_rate(p)), response), &
-               out%change)
+               change)
             rate = sum(abs(scheme%c_v*k(g)%strain(1:3)))*gp%weight
-            if (scheme%kind == DYNAMIC) call add_flight(domain, region, k(g), scheme, skeleton, gp, out%stretch)
-            associate (stretch => out%stretch(LAST_U + 1:LAST_U + n_p))
-               stretch = stretch + rate*abs(gp%m(:n_p)) + gp%weight*matmul(drift, abs(gp%dm(:, :n_p)))
-            end associate
-            if (.not. with_tangent) cycle
-            call times_b(gp, n_p, n, tangent, part)
-            call add_transposed(gp, n_p, n, part, out%k)
+            if (scheme%kind == DYNAMIC) call add_flight(domain, region, k(g), scheme, skeleton, shapes(g), out%stretch)
+            do i = 1, n_p
+               out%stretch(LAST_U + i) = out%stretch(LAST_U + i) + rate*abs(shapes(g)%m(i)) &
+                  + gp%weight*(drift(1)*abs(shapes(g)%m_r(i)) + drift(2)*abs(shapes(g)%m_z(i)))
+            end do
+            if (with_tangent) call add_tangent(shapes(g), n_fields, tangent, sums%k)
          end associate
       end do
-      if (n > LAST_U + n_p) out%stretch(LAST_U + n_p + 1:n) = out%stretch(LAST_U + 1:LAST_U + n_p)
+      out%r(n + 1:) = 0.0_wp
+      call residual_of(sums%r, n_fields, n_p, out%r)
+      if (out%with_change) call residual_of(change, DISPLACEMENTS, n_p, out%change)
+      if (with_tangent) call matrix_of(sums%k, n_fields, n_p, out%k)
+      do i = LAST_U + n_p + 1, n
+         out%stretch(i) = out%stretch(i - n_p)
+      end do
    end subroutine add_points
 
    !> A body in flight: its inertia is its weight and nothing is left that a residual could be small against.
-   pure subroutine add_flight(domain, region, k, scheme, skeleton, gp, stretch)
+   pure subroutine add_flight(domain, region, k, scheme, skeleton, s, stretch)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
       type(kinematics_t), intent(in) :: k
       type(scheme_t), intent(in) :: scheme
       type(skeleton_t), intent(in) :: skeleton
-      type(gauss_t), intent(in) :: gp
+      type(shapes_t), intent(in) :: s
       real(wp), intent(inout) :: stretch(:)
-      real(wp) :: force
+      real(wp) :: force, part
+      integer :: i
 
       force = mixture_density(domain, region, skeleton%e/(1 + skeleton%e), skeleton%s) &
               *(domain%gravity + FLIGHT_SHARE*norm2(k%velocity)/scheme%dt)
-      stretch(1:LAST_U:2) = stretch(1:LAST_U:2) + gp%weight*force*abs(gp%n)
-      stretch(2:LAST_U:2) = stretch(2:LAST_U:2) + gp%weight*force*abs(gp%n)
+      do i = 1, size(s%n)
+         part = s%weight*force*abs(s%n(i))
+         stretch(2*i - 1) = stretch(2*i - 1) + part
+         stretch(2*i) = stretch(2*i) + part
+      end do
    end subroutine add_flight
 
    !> What a step changes of the total stress and of the weight at a point; inertia, sources and damping count whole.
@@ -274,23 +291,34 @@ contains
    end function change_of
 
    !> What the nodes say about a point.
-   pure subroutine look(gp, n_p, with_c, scheme, x0, x1, v, a, k)
-      type(gauss_t), intent(in) :: gp
-      integer, intent(in) :: n_p
+   pure subroutine look(s, with_w, with_c, scheme, x0, x1, v, a, k)
+      type(shapes_t), intent(in) :: s
+      logical, intent(in) :: with_w   !< Whether nodes carry pressures.
       logical, intent(in) :: with_c   !< Else the suction of the carriers is 0, and nothing is spent on it.
       type(scheme_t), intent(in) :: scheme
       real(wp), intent(in) :: x0(FIELDS, 6), x1(FIELDS, 6), v(FIELDS, 6), a(2, 6)
       type(kinematics_t), intent(inout) :: k
-      real(wp) :: du(2, 6), x(2, 6)
+      real(wp) :: du(DISPLACEMENTS), slopes(DISPLACEMENTS, DISPLACEMENTS), hoop, rates(3)
+      integer :: i
 
-      du = x1(:DISPLACEMENTS, :) - x0(:DISPLACEMENTS, :)
-      k%strain = [dot_product(gp%dn(1, :), du(1, :)), dot_product(gp%dn(2, :), du(2, :)), &
-                  dot_product(gp%n_over_r, du(1, :)), &
-                  dot_product(gp%dn(2, :), du(1, :)) + dot_product(gp%dn(1, :), du(2, :))]
-      k%div_v = dot_product(gp%dn(1, :), v(1, :)) + dot_product(gp%dn(2, :), v(2, :)) &
-                + dot_product(gp%n_over_r, v(1, :))
+      slopes = 0.0_wp
+      hoop = 0.0_wp
+      rates = 0.0_wp
+      do i = 1, 6
+         du = x1(:DISPLACEMENTS, i) - x0(:DISPLACEMENTS, i)
+         slopes(:, 1) = slopes(:, 1) + s%d_r(i)*du
+         slopes(:, 2) = slopes(:, 2) + s%d_z(i)*du
+         hoop = hoop + s%n_r(i)*du(1)
+         rates = rates + [s%d_r(i)*v(1, i), s%d_z(i)*v(2, i), s%n_r(i)*v(1, i)]
+      end do
+      k%strain = [slopes(1, 1), slopes(2, 2), hoop, slopes(1, 2) + slopes(2, 1)]
+      k%div_v = sum(rates)
       k%accel = 0.0_wp
-      if (scheme%kind == DYNAMIC) k%accel = matmul(a, gp%n)
+      if (scheme%kind == DYNAMIC) then
+         do i = 1, 6
+            k%accel = k%accel + a(:, i)*s%n(i)
+         end do
+      end if
       k%w0 = 0.0_wp
       k%w1 = 0.0_wp
       k%c0 = 0.0_wp
@@ -299,18 +327,28 @@ contains
       k%c_dot = 0.0_wp
       k%grad_w = 0.0_wp
       k%grad_c = 0.0_wp
-      if (n_p == 0) return
-      x = x0(AT_P_W:, :) + scheme%l_f*(x1(AT_P_W:, :) - x0(AT_P_W:, :))
-      k%w0 = dot_product(gp%m(:n_p), x0(AT_P_W, :n_p))
-      k%w1 = dot_product(gp%m(:n_p), x1(AT_P_W, :n_p))
-      k%w_dot = dot_product(gp%m(:n_p), v(AT_P_W, :n_p))
-      k%grad_w = matmul(gp%dm(:, :n_p), x(1, :n_p))
-      if (.not. with_c) return
-      k%c0 = dot_product(gp%m(:n_p), x0(AT_P_C, :n_p))
-      k%c1 = dot_product(gp%m(:n_p), x1(AT_P_C, :n_p))
-      k%c_dot = dot_product(gp%m(:n_p), v(AT_P_C, :n_p))
-      k%grad_c = matmul(gp%dm(:, :n_p), x(2, :n_p))
+      if (with_w) call look_at_pressure(s, scheme%l_f, x0(AT_P_W, :), x1(AT_P_W, :), v(AT_P_W, :), k%w0, k%w1, k%w_dot, &
+                                        k%grad_w)
+      if (with_w .and. with_c) call look_at_pressure(s, scheme%l_f, x0(AT_P_C, :), x1(AT_P_C, :), v(AT_P_C, :), k%c0, &
+                                                     k%c1, k%c_dot, k%grad_c)
    end subroutine look
+
+   !> A pressure before and after, its rate and its gradient at the level of values; they are zero on entry.
+   pure subroutine look_at_pressure(s, level, p0, p1, rate, before, after, p_dot, gradient)
+      type(shapes_t), intent(in) :: s
+      real(wp), intent(in) :: level, p0(6), p1(6), rate(6)
+      real(wp), intent(inout) :: before, after, p_dot, gradient(2)
+      real(wp) :: p
+      integer :: i
+
+      do i = 1, 6
+         p = p0(i) + level*(p1(i) - p0(i))
+         before = before + s%m(i)*p0(i)
+         after = after + s%m(i)*p1(i)
+         p_dot = p_dot + s%m(i)*rate(i)
+         gradient = gradient + [s%m_r(i), s%m_z(i)]*p
+      end do
+   end subroutine look_at_pressure
 
    !> Pressures that no unknown carries.
    pure subroutine add_given(p, k)
@@ -322,73 +360,4 @@ contains
       k%c0 = k%c0 + p(2)
       k%c1 = k%c1 + p(2)
    end subroutine add_given
-
-   !> r = r + weight B^T response.
-   pure subroutine gather(gp, n_p, n, weight, response, r)
-      type(gauss_t), intent(in) :: gp
-      integer, intent(in) :: n_p, n
-      real(wp), intent(in) :: weight, response(PLACES)
-      real(wp), intent(inout) :: r(MAX_DOF)
-      integer :: i, at
-
-      do i = 1, 6
-         r(2*i - 1) = r(2*i - 1) + weight*(gp%dn(1, i)*response(RR) + gp%n_over_r(i)*response(TT) &
-                                           + gp%dn(2, i)*response(RZ) + gp%n(i)*response(U + 1))
-         r(2*i) = r(2*i) + weight*(gp%dn(2, i)*response(ZZ) + gp%dn(1, i)*response(RZ) + gp%n(i)*response(U + 2))
-      end do
-      do i = 1, n_p
-         at = LAST_U + i
-         if (at <= n) r(at) = r(at) + weight*(gp%m(i)*response(PW) + gp%dm(1, i)*response(GW + 1) &
-                                              + gp%dm(2, i)*response(GW + 2))
-         at = at + n_p
-         if (at <= n) r(at) = r(at) + weight*(gp%m(i)*response(PC) + gp%dm(1, i)*response(GA + 1) &
-                                              + gp%dm(2, i)*response(GA + 2))
-      end do
-   end subroutine gather
-
-   !> part = slope B.
-   pure subroutine times_b(gp, n_p, n, tangent, part)
-      type(gauss_t), intent(in) :: gp
-      integer, intent(in) :: n_p, n
-      real(wp), intent(in) :: tangent(PLACES, PLACES)
-      real(wp), intent(out) :: part(PLACES, MAX_DOF)
-      integer :: i, p, at
-
-      if (n_p == 0) then   ! those of the pressures are not read
-         do i = 1, 6
-            do p = RR, U + 2
-               part(p, 2*i - 1) = gp%dn(1, i)*tangent(p, RR) + gp%n_over_r(i)*tangent(p, TT) &
-                                  + gp%dn(2, i)*tangent(p, RZ) + gp%n(i)*tangent(p, U + 1)
-               part(p, 2*i) = gp%dn(2, i)*tangent(p, ZZ) + gp%dn(1, i)*tangent(p, RZ) + gp%n(i)*tangent(p, U + 2)
-            end do
-         end do
-         return
-      end if
-      do i = 1, 6
-         part(:, 2*i - 1) = gp%dn(1, i)*tangent(:, RR) + gp%n_over_r(i)*tangent(:, TT) + gp%dn(2, i)*tangent(:, RZ) &
-                            + gp%n(i)*tangent(:, U + 1)
-         part(:, 2*i) = gp%dn(2, i)*tangent(:, ZZ) + gp%dn(1, i)*tangent(:, RZ) + gp%n(i)*tangent(:, U + 2)
-      end do
-      do i = 1, n_p
-         at = LAST_U + i
-         if (at <= n) part(:, at) = gp%m(i)*tangent(:, PW) + gp%dm(1, i)*tangent(:, GW + 1) &
-                                    + gp%dm(2, i)*tangent(:, GW + 2)
-         at = at + n_p
-         if (at <= n) part(:, at) = gp%m(i)*tangent(:, PC) + gp%dm(1, i)*tangent(:, GA + 1) &
-                                    + gp%dm(2, i)*tangent(:, GA + 2)
-      end do
-   end subroutine times_b
-
-   !> k = k + weight B^T part.
-   pure subroutine add_transposed(gp, n_p, n, part, k)
-      type(gauss_t), intent(in) :: gp
-      integer, intent(in) :: n_p, n
-      real(wp), intent(in) :: part(PLACES, MAX_DOF)
-      real(wp), intent(inout) :: k(MAX_DOF, MAX_DOF)
-      integer :: j
-
-      do j = 1, n
-         call gather(gp, n_p, n, gp%weight, part(:, j), k(:, j))
-      end do
-   end subroutine add_transposed
 end module element_equations

@@ -88,7 +88,7 @@ contains
       integer, allocatable :: bad_point(:), rate_evaluations(:)
       real(wp) :: seconds, t0
       type(element_t) :: out
-      integer :: e, m, n, ne, threads, source
+      integer :: e, i, m, n, ne, threads, source
 
       m = size(dofs%element, 1)
       ne = size(dofs%element, 2)
@@ -100,7 +100,7 @@ contains
       threads = merge(domain%threads, 1, ne >= WORTH_THREADS)
       if (assembly%fallback /= NO_FALLBACK .and. .not. allocated(assembly%soft)) allocate (assembly%soft(ne))
       if (assembly%with_change .and. .not. allocated(assembly%d_r)) allocate (assembly%d_r(m, ne))
-      !$omp parallel do num_threads(threads) schedule(dynamic, 8) default(shared) private(e, n) firstprivate(out) &
+      !$omp parallel do num_threads(threads) schedule(dynamic, 8) default(shared) private(e, i, n) firstprivate(out) &
       !$omp reduction(+:seconds)
       do e = 1, ne
          out%with_change = assembly%with_change
@@ -116,7 +116,11 @@ contains
          assembly%stretch(:, e) = out%stretch(:m)
          if (assembly%fallback /= NO_FALLBACK) assembly%soft(e) = out%replaced
          if (assembly%with_change) assembly%d_r(:, e) = out%change(:m)
-         if (with_tangent) assembly%k(pattern%before(e) + 1:pattern%before(e + 1)) = reshape(out%k(:n, :n), [n*n])
+         if (with_tangent) then
+            do i = 1, n
+               assembly%k(pattern%before(e) + (i - 1)*n + 1:pattern%before(e) + i*n) = out%k(:n, i)
+            end do
+         end if
       end do
       !$omp end parallel do
       assembly%rate_evaluations = sum(rate_evaluations)
@@ -162,14 +166,17 @@ contains
       type(pattern_t), intent(in) :: pattern
       type(assembly_t), intent(inout), target :: assembly
       real(wp), pointer, contiguous :: d_r(:)
-      integer :: i
+      integer :: i, j
 
       d_r(1:size(assembly%d_r)) => assembly%d_r
       if (.not. allocated(assembly%change)) allocate (assembly%change(pattern%n))
       assembly%change = assembly%scale
       do i = 1, pattern%n
-         if (dofs%field(i) <= DISPLACEMENTS) assembly%change(i) = &
-            sum(abs(d_r(pattern%r_source(pattern%r_first(i):pattern%r_first(i + 1) - 1))))
+         if (dofs%field(i) > DISPLACEMENTS) cycle
+         assembly%change(i) = 0.0_wp
+         do j = pattern%r_first(i), pattern%r_first(i + 1) - 1
+            assembly%change(i) = assembly%change(i) + abs(d_r(pattern%r_source(j)))
+         end do
       end do
    end subroutine add_up_change
 
@@ -179,17 +186,26 @@ contains
       logical, intent(in) :: with_tangent
       type(assembly_t), intent(inout), target :: assembly
       real(wp), pointer, contiguous :: r(:), s(:)
-      real(wp) :: total
+      real(wp) :: total, magnitudes, stretches
       integer :: i, j
 
       r(1:size(assembly%r)) => assembly%r
       s(1:size(assembly%r)) => assembly%stretch
-      !$omp parallel num_threads(threads) default(shared) private(i, j, total)
+      !$omp parallel num_threads(threads) default(shared) private(i, j, total, magnitudes, stretches)
       !$omp do schedule(static)
       do i = 1, pattern%n
-         assembly%residual(i) = sum(r(pattern%r_source(pattern%r_first(i):pattern%r_first(i + 1) - 1)))
-         assembly%floor(i) = sum(s(pattern%r_source(pattern%r_first(i):pattern%r_first(i + 1) - 1)))
-         assembly%scale(i) = sum(abs(r(pattern%r_source(pattern%r_first(i):pattern%r_first(i + 1) - 1))))
+         total = 0.0_wp
+         magnitudes = 0.0_wp
+         stretches = 0.0_wp
+         ! One loop: sums of parts that a list of places picks would copy these parts to the heap.
+         do j = pattern%r_first(i), pattern%r_first(i + 1) - 1
+            total = total + r(pattern%r_source(j))
+            magnitudes = magnitudes + abs(r(pattern%r_source(j)))
+            stretches = stretches + s(pattern%r_source(j))
+         end do
+         assembly%residual(i) = total
+         assembly%scale(i) = magnitudes
+         assembly%floor(i) = stretches
       end do
       !$omp end do
       if (with_tangent) then

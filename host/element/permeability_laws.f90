@@ -15,6 +15,7 @@ module permeability_laws
    integer, parameter :: LAW_POWER = 4      !< k_rw = 1 - a (1 - S_w)**b, k_ra as Corey.
    !> Mualem's slopes are infinite at S_e = 0 and 1: S_e is kept this far from both.
    real(wp), parameter :: MARGIN = 1.0e-9_wp
+   real(wp), parameter :: MOST_FACTORS = 16.0_wp   !< Whole exponents up to it are multiplied out.
 
    type :: permeability_t
       character(64) :: name = ''
@@ -47,16 +48,17 @@ contains
       k = relative_t(law%k_rw, law%k_ra, 0.0_wp, 0.0_wp)
       select case (law%law)
       case (LAW_COREY, LAW_POWER)
-         k%a = (1 - s)**2*(1 - s**law%c)
-         k%da = -slope*(1 - s)*(2*(1 - s**law%c) + (1 - s)*law%c*s**(law%c - 1))
+         t = power(s, law%c)
+         k%a = (1 - s)**2*(1 - t)
+         k%da = -slope*(1 - s)*(2*(1 - t) + (1 - s)*law%c*power(s, law%c - 1))
          if (law%law == LAW_COREY) then
-            k%w = s**law%b
-            k%dw = slope*law%b*s**(law%b - 1)
+            k%w = power(s, law%b)
+            k%dw = slope*law%b*power(s, law%b - 1)
          else
             t = min(max(1 - s_w, 0.0_wp), 1.0_wp)
-            k%w = 1 - law%a*t**law%b
+            k%w = 1 - law%a*power(t, law%b)
             k%dw = 0.0_wp
-            if (t > 0.0_wp) k%dw = law%a*law%b*t**(law%b - 1)
+            if (t > 0.0_wp) k%dw = law%a*law%b*power(t, law%b - 1)
          end if
       case (LAW_MUALEM)
          if (s < MARGIN .or. s > 1 - MARGIN) slope = 0.0_wp
@@ -71,6 +73,20 @@ contains
       call keep_above(law%floor, k%w, k%dw)
       call keep_above(law%floor, k%a, k%da)
    end function relative_permeability
+
+   !> x to a power, by multiplications where the exponent is a small whole number, as those of the defaults are.
+   pure real(wp) function power(x, exponent)
+      real(wp), intent(in) :: x, exponent
+      integer :: n
+
+      n = 0
+      if (exponent > 0.0_wp .and. exponent <= MOST_FACTORS) n = nint(exponent)
+      if (n > 0 .and. abs(exponent - n) <= 0.0_wp) then
+         power = x**n
+      else
+         power = x**exponent
+      end if
+   end function power
 
    pure subroutine keep_above(lowest, value, slope)
       real(wp), intent(in) :: lowest

@@ -58,6 +58,7 @@ module porous_balance
       ! where there is air:
       real(wp) :: k_a, d_k_a         !< Bulk modulus of the air [kPa] and its slope against p_a [-]
       real(wp) :: rho_a, d_rho_a     !< Density of the air [t/m3] and its slope against p_a.
+      type(relative_t) :: rel        !< Relative permeabilities, where fluids flow.
    end type mixture_t
 contains
    !> Response of a point, its tangent where it is asked for, and its pores at the end of the step. docs/theory/host.md
@@ -85,6 +86,8 @@ contains
       call add_momentum(domain, region, scheme, k, stress0, skeleton, mix, with_tangent, response, tangent)
       if (.not. region%with_w .or. scheme%kind == STATIC) return
       if (region%drainage /= COUPLED .and. region%drainage /= UNDRAINED) return
+      if (region%drainage == COUPLED) &
+         mix%rel = relative_permeability(domain%permeabilities(region%permeability), mix%s)
       call add_water(domain, region, scheme, k, mix, with_tangent, response, tangent, drift)
       if (region%with_c) call add_air(domain, region, scheme, k, mix, with_tangent, response, tangent, drift)
       response(PW) = response(PW) - k%source(3)
@@ -150,6 +153,7 @@ contains
       real(wp), intent(out) :: response(PLACES)
       real(wp), intent(inout) :: tangent(PLACES, PLACES)
       real(wp) :: pressure, rho, rho_n, rho_s, accel(2), l, l_s
+      integer :: i
 
       l = scheme%l_f
       ! The stress of damping is in proportion to the rate of the effective stress, its increment over the step.
@@ -178,7 +182,9 @@ contains
          tangent(U + 1, U + 1) = rho*scheme%c_a
          if (scheme%kind == DYNAMIC) tangent(U + 1, U + 1) = rho*(scheme%c_a + region%damping*scheme%c_v)
          tangent(U + 2, U + 2) = tangent(U + 1, U + 1)
-         tangent(U + 1:U + 2, 1:3) = spread(accel*(rho_n*l*(1 - mix%n1) + rho_s*mix%s_ev), 2, 3)
+         do i = 1, 3
+            tangent(U + 1:U + 2, i) = accel*(rho_n*l*(1 - mix%n1) + rho_s*mix%s_ev)
+         end do
          if (.not. region%with_c) return
          tangent(1:3, 1:3) = tangent(1:3, 1:3) + mix%p_c*mix%s_ev
          tangent(1:4, PC) = l_s*skeleton%tangent_suction
@@ -198,7 +204,6 @@ contains
       logical, intent(in) :: with_tangent
       real(wp), intent(inout) :: response(PLACES), tangent(PLACES, PLACES)
       real(wp), intent(out) :: drift(2)
-      type(relative_t) :: rel
       real(wp) :: drive(2), body(2), kappa, d_kappa, inverse, l
 
       l = scheme%l_f
@@ -212,10 +217,9 @@ contains
       drift = 0.0_wp
       if (region%drainage /= COUPLED) return
       body = body_force(domain, k)
-      rel = relative_permeability(domain%permeabilities(region%permeability), mix%s)
       kappa = domain%permeabilities(region%permeability)%intrinsic/domain%fluids%eta_w
-      d_kappa = kappa*rel%dw
-      kappa = kappa*rel%w
+      d_kappa = kappa*mix%rel%dw
+      kappa = kappa*mix%rel%w
       drive = k%grad_w + domain%fluids%rho_w*body
       response(GW + 1:GW + 2) = kappa*drive
       drift = kappa*(abs(k%grad_w) + domain%fluids%rho_w*abs(body))
@@ -234,7 +238,6 @@ contains
       type(mixture_t), intent(in) :: mix
       logical, intent(in) :: with_tangent
       real(wp), intent(inout) :: response(PLACES), tangent(PLACES, PLACES), drift(2)
-      type(relative_t) :: rel
       real(wp) :: drive(2), body(2), kappa, d_kappa, a_dot, stored, d_stored, l
       integer :: i
 
@@ -248,10 +251,9 @@ contains
          kappa = 0.0_wp
          d_kappa = 0.0_wp
          if (region%drainage == COUPLED) then
-            rel = relative_permeability(domain%permeabilities(region%permeability), s)
             kappa = domain%permeabilities(region%permeability)%intrinsic/domain%fluids%eta_a
-            d_kappa = kappa*rel%da
-            kappa = kappa*rel%a
+            d_kappa = kappa*mix%rel%da
+            kappa = kappa*mix%rel%a
          end if
          drive = k%grad_w + k%grad_c + mix%rho_a*body
          response(GA + 1:GA + 2) = kappa*drive
