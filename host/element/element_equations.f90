@@ -327,10 +327,10 @@ contains
       k%c_dot = 0.0_wp
       k%grad_w = 0.0_wp
       k%grad_c = 0.0_wp
-      if (with_w) call look_at_pressure(s, scheme%l_f, x0(AT_P_W, :), x1(AT_P_W, :), v(AT_P_W, :), k%w0, k%w1, k%w_dot, &
-                                        k%grad_w)
-      if (with_w .and. with_c) call look_at_pressure(s, scheme%l_f, x0(AT_P_C, :), x1(AT_P_C, :), v(AT_P_C, :), k%c0, &
-                                                     k%c1, k%c_dot, k%grad_c)
+      if (.not. with_w) return
+      call look_at_pressure(s, scheme%l_f, x0(AT_P_W, :), x1(AT_P_W, :), v(AT_P_W, :), k%w0, k%w1, k%w_dot, k%grad_w)
+      if (.not. with_c) return
+      call look_at_pressure(s, scheme%l_f, x0(AT_P_C, :), x1(AT_P_C, :), v(AT_P_C, :), k%c0, k%c1, k%c_dot, k%grad_c)
    end subroutine look
 
    !> A pressure before and after, its rate and its gradient at the level of values; they are zero on entry.

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Sums over the quadrature points of an element: B^T response and B^T slope B. The unknowns are kept field by field, all
-!> six nodes of a field side by side, so that the compiler takes several nodes at once.
+!> Sums over the quadrature points of an element: B^T response and B^T slope B. The unknowns are kept field by field,
+!> all six nodes of a field side by side, so that the compiler takes several nodes at once.
 module element_sums
    use kinds, only: wp
    use porous_balance, only: PLACES, RR, ZZ, TT, RZ, U, PW, PC, GW, GA
@@ -11,7 +11,7 @@ module element_sums
 
    integer, parameter :: NODES = 6
    integer, parameter :: U_R = 1, U_Z = 2, WATER = 3, SUCTION = 4   !< Fields of an element.
-   integer, parameter :: BOTH = 8         !< Places before the fluxes: what a pressure itself, not its gradient, changes.
+   integer, parameter :: BOTH = 8         !< Places before the fluxes: gradients of pressure change none of them.
    integer, parameter :: LAST_U = 2*NODES
 
    !> Shape functions of a point, side by side; those of the pressures are 0 behind the nodes that carry them.

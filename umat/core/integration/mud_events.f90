@@ -131,12 +131,14 @@ contains
 
    !> True where (r - r_in):n was larger a substep ago, is below the floor, and would reach -x_rev within the substep if
    !> it went on falling: the substep is at most twice the one before. A parabola of that slope falls a quarter as far.
+   !> The first substep may be any number of times the last one of the increment before.
    pure logical function falls(par, trial)
       type(params_t), intent(in) :: par
       type(trial_t), intent(in) :: trial
 
-      falls = trial%w(1)%x < par%x_floor .and. &
-              trial%w(1)%x + par%x_rev < LARGEST_FACTOR*(trial%x_previous - trial%w(1)%x)
+      falls = trial%w(1)%x < par%x_floor .and. trial%w(1)%x < trial%x_previous
+      if (trial%time > 0.0_wp) falls = falls .and. &
+         trial%w(1)%x + par%x_rev < LARGEST_FACTOR*(trial%x_previous - trial%w(1)%x)
    end function falls
 
    !> Shortens h to a place beyond the reversal where (r - r_in):n passes -x_rev and comes back within the substep: its

@@ -12,7 +12,7 @@ module mud_substepping
    use mud_status, only: mud_status_t, fail, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, &
       MUD_NOT_FINITE, ON_STRESS
    use mud_stiffness, only: choose_stepping, raise_order
-   use mud_substep, only: step_factor, SCHEMES
+   use mud_substep, only: step_factor, SCHEMES, LARGEST_FACTOR
    use mud_tensor, only: ddot, norm, is_finite, all_finite
    use mud_trace, only: trace_t, record_substep, SUBSTEP_REJECTED, SUBSTEP_ACCEPTED, SUBSTEP_FAILED
    use mud_transitions, only: begin_phase, begin_substep, accept_substep, rate_is_known
@@ -49,13 +49,14 @@ contains
       real(wp), intent(out) :: reached
       type(mud_status_t), intent(out) :: status
       type(trace_t), intent(inout), optional :: record
-      real(wp) :: time, h, h_taken, error, factor, tolerance, turn
+      real(wp) :: time, h, h_taken, planned, error, factor, tolerance, turn
       integer :: elastic_substeps, jump, event
       logical :: may_grow, known
 
       time = 0.0_wp
       turn = turn_of(inc)
       h = first_step(inc, state, size, turn > ALIGNED)
+      planned = state%last_step
       if (turn > SHARP) call raise_order(par, inc)
       may_grow = .true.
       elastic_substeps = 0
@@ -77,9 +78,7 @@ contains
             end if
             h = max(h, par%h_min)
             if (MANY_SUBSTEPS*h < 1.0_wp - time) call raise_order(par, inc)
-            tolerance = par%tolerance
-            if (inc%scheme%order > SCHEMES(par%scheme)%order .and. trial%mode /= MODE_HELD) &
-               tolerance = STRICTNESS*tolerance
+            tolerance = allowed_error(par, inc, trial)
             h_taken = h
             if (time + h*(1.0_wp + LAST_SLIVER) >= 1.0_wp) h_taken = 1.0_wp - time
             call take_step(par, inc, h_taken, trial, counters)
@@ -108,6 +107,7 @@ contains
                                 counters, record)
             may_grow = .false.
             h = h_taken*min(factor, 0.9_wp)
+            planned = h*size
          end do attempts
          may_grow = .true.
 
@@ -123,6 +123,7 @@ contains
          end if
          time = time + h_taken
          if (1.0_wp - time < EVENT_TOLERANCE) time = 1.0_wp
+         if (time < 1.0_wp) planned = h*size
          state%e = void_ratio_at(inc, time)
          state%p_c = suction_at(inc, time)
          if (consistent) then
@@ -138,7 +139,7 @@ contains
          trial%x_previous = trial%w(1)%x
          known = rate_is_known(inc, trial, event)
       end do substeps
-      if (.not. inc%inside) state%last_step = h*size
+      if (.not. inc%inside) state%last_step = proposal(inc, planned, h*size, factor)
       reached = 1.0_wp
    end subroutine integrate
 
@@ -158,6 +159,32 @@ contains
          first_step = min(first_step, 1.0_wp/real(ceiling(min(norm(inc%d_strain)/(TURN_PIECE*inc%rho), 1.0e6_wp)), wp))
       end if
    end function first_step
+
+   !> The first substep of the next increment, in units of strain, 0: all of it. The last substep ends where the
+   !> increment does: where its error let it grow as far as a substep may, it says nothing against the step that was
+   !> planned, and nothing at all where none was. A higher order's estimate sees less of what a long first step hides:
+   !> its steps grow from what was taken. docs/theory/integration.md section 3.
+   pure real(wp) function proposal(inc, planned, grown, factor)
+      type(increment_t), intent(in) :: inc   !< With the scheme of its last substep.
+      real(wp), intent(in) :: planned   !< Before the increment cut it short; 0: none [-]
+      real(wp), intent(in) :: grown     !< By the last substep and its error [-]
+      real(wp), intent(in) :: factor    !< Of that growth [-]
+
+      proposal = grown
+      if (factor < LARGEST_FACTOR .or. inc%scheme%order > SCHEMES(1)%order) return
+      proposal = max(planned, grown)
+      if (planned <= 0.0_wp) proposal = 0.0_wp
+   end function proposal
+
+   !> What the error of the coming substep may be [-].
+   pure real(wp) function allowed_error(par, inc, trial) result(tolerance)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+
+      tolerance = par%tolerance
+      if (inc%scheme%order > SCHEMES(par%scheme)%order .and. trial%mode /= MODE_HELD) tolerance = STRICTNESS*tolerance
+   end function allowed_error
 
    !> How far the elastic domain turns from its start on, 1 minus its cosine with the strain: the transient lasts about
    !> a radius of strain.
