@@ -51,6 +51,7 @@ contains
       s%weight = gp%weight
    end subroutine shapes_of
 
+   !> Sums of no point yet.
    pure subroutine clear_sums(with_tangent, sums)
       logical, intent(in) :: with_tangent   !< Else the matrix stays as it is.
       type(sums_t), intent(inout) :: sums
