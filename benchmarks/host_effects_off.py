@@ -27,8 +27,7 @@ BUILDERS = ("host/scene/", "host/model/model_builder.f90", "host/model/region_bu
 DRAINAGE = r"domain%regions\(domain%region_of\((?:e|element)\)\)%drainage|region%drainage"
 NO_SUCTION = (
     (r"\b(?:model%)?(?:region|domain|m)%with_c\b", ".false."),
-    (r"k%c0 = dot_product\(.*", "k%c0 = 0.0_wp"), (r"k%c1 = dot_product\(.*", "k%c1 = 0.0_wp"),
-    (r"k%c_dot = dot_product\(.*", "k%c_dot = 0.0_wp"), (r"k%grad_c = matmul\(.*", "k%grad_c = 0.0_wp"),
+    (r"\n *if \(\.not\. with_c\) return\n.*", ""),
     (r" \+ \(1 - s\)\*mix%p_c$", ""), (r"mix%p_c = k%c0 .*", "mix%p_c = 0.0_wp"), (r" \+ mix%p_c\*mix%s_ev$", ""),
     (r" *tangent\(1:4, PC\) = .*\n *tangent\(1:3, PC\) = .*\n", ""),
     (r" *tangent\(U \+ 1:U \+ 2, PC\) = .*\n *tangent\(U \+ 1:U \+ 2, PW\) = .*\n", ""))
@@ -40,8 +39,7 @@ EFFECTS = {
     "relative_acceleration": ("u-p_w", "dynamic", False, ((r"\bdomain%seepage_inertia\b", ".false."),)),
     "p_w": ("u", "dynamic", False, NO_SUCTION + (
         (r"\b(?:model%)?(?:region|domain)%with_w\b", ".false."),
-        (r"k%w0 = dot_product\(.*", "k%w0 = 0.0_wp"), (r"k%w1 = dot_product\(.*", "k%w1 = 0.0_wp"),
-        (r"k%w_dot = dot_product\(.*", "k%w_dot = 0.0_wp"), (r"k%grad_w = matmul\(.*", "k%grad_w = 0.0_wp"),
+        (r"\n *if \(\.not\. with_w\) return\n.*", ""),
         (r"\n *response\(1:3\) = response\(1:3\) - pressure", ""), (r"\n *tangent\(1:3, PW\) = -l", ""))),
     "p_c": ("u-p_w", "dynamic", False, NO_SUCTION),
     "gravity": ("u-p_w", "dynamic", False, (

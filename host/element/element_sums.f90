@@ -5,6 +5,7 @@ module element_sums
    use kinds, only: wp
    use porous_balance, only: PLACES, RR, ZZ, TT, RZ, U, PW, PC, GW, GA
    use porous_domain, only: gauss_t
+   use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
    public :: sums_t, shapes_t, shapes_of, clear_sums, add_response, add_tangent, residual_of, matrix_of
@@ -12,6 +13,7 @@ module element_sums
    integer, parameter :: NODES = 6
    integer, parameter :: U_R = 1, U_Z = 2, WATER = 3, SUCTION = 4   !< Fields of an element.
    integer, parameter :: BOTH = 8         !< Places before the fluxes: gradients of pressure change none of them.
+   integer, parameter :: FORCES = U + 2   !< Places of stress and force, before those of the fluids.
    integer, parameter :: LAST_U = 2*NODES
 
    !> Shape functions of a point, side by side; those of the pressures are 0 behind the nodes that carry them.
@@ -85,12 +87,15 @@ contains
       real(wp) :: part(PLACES)
       integer :: j
 
+      if (fields < WATER) then
+         call add_tangent_of_skeleton(s, tangent(:FORCES, :FORCES), k)
+         return
+      end if
       do j = 1, NODES
          part = s%d_r(j)*tangent(:, RR) + s%n_r(j)*tangent(:, TT) + s%d_z(j)*tangent(:, RZ) + s%n(j)*tangent(:, U + 1)
          call add_response(s, fields, part, k(:, :, j, U_R))
          part = s%d_z(j)*tangent(:, ZZ) + s%d_r(j)*tangent(:, RZ) + s%n(j)*tangent(:, U + 2)
          call add_response(s, fields, part, k(:, :, j, U_Z))
-         if (fields < WATER) cycle
          call slopes_of_pressure(s, j, PW, GW, tangent, part)
          call add_response(s, fields, part, k(:, :, j, WATER))
          if (fields < SUCTION) cycle
@@ -98,6 +103,24 @@ contains
          call add_response(s, fields, part, k(:, :, j, SUCTION))
       end do
    end subroutine add_tangent
+
+   !> The same without pressures: nothing is spent on their places.
+   pure subroutine add_tangent_of_skeleton(s, tangent, k)
+      type(shapes_t), intent(in) :: s
+      real(wp), intent(in) :: tangent(FORCES, FORCES)
+      real(wp), intent(inout) :: k(NODES, 4, NODES, 4)
+      real(wp) :: part(PLACES)
+      integer :: j
+
+      part = 0.0_wp
+      do j = 1, NODES
+         part(:FORCES) = s%d_r(j)*tangent(:, RR) + s%n_r(j)*tangent(:, TT) + s%d_z(j)*tangent(:, RZ) &
+                         + s%n(j)*tangent(:, U + 1)
+         call add_response(s, DISPLACEMENTS, part, k(:, :, j, U_R))
+         part(:FORCES) = s%d_z(j)*tangent(:, ZZ) + s%d_r(j)*tangent(:, RZ) + s%n(j)*tangent(:, U + 2)
+         call add_response(s, DISPLACEMENTS, part, k(:, :, j, U_Z))
+      end do
+   end subroutine add_tangent_of_skeleton
 
    !> How the response changes with a pressure at node j.
    pure subroutine slopes_of_pressure(s, j, value, gradient, tangent, part)
