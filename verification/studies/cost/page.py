@@ -97,6 +97,23 @@ def scenes_text():
                 ("scene", "accuracies", "answers in the band", "true/estimated", "all of them"), lines))
 
 
+def given_text():
+    """Estimated and true errors of given steps."""
+    rows = of_table("given.csv")
+    known = [r for r in rows if r["ratio"]]
+    within = [r for r in known if LEAST <= float(r["ratio"]) <= MOST]
+    above = [float(r["true_error"]) for r in known if float(r["ratio"]) > MOST]
+    said = f"\n{len(within)} of {len(known)} answers lie in the band. "
+    if above:
+        said += (f"{len(above)} have an error of more than five times the estimate, and the largest of these errors is "
+                 f"{max(above):.2g}. ")
+    names = ("scene", "steps that are given", "number", "answer", "true error", "estimated", "true/estimated",
+             "in the band")
+    return tables.markdown(names, [
+        (r["scene"], r["steps_given"], r["steps"], r["answer"], r["true_error"], r["estimated_error"], r["ratio"],
+         "yes" if r in within else "**no**") for r in rows]) + said + "The others outside are estimated too large.\n"
+
+
 def worst(row):
     """Largest of the errors of the answers: peak, p_w and history."""
     return max(float(row[name] or 0) for name in ("peak", "p_w", "history"))
@@ -241,8 +258,9 @@ def table_1_text():
 
 
 def texts(bench):
-    return {"README.md": {"scenes": scenes_text(), "honest": honest_text(), "price": price_text(),
-                          "mesh": mesh_text(), "presets": presets_text(), "table_1": table_1_text()}}
+    return {"README.md": {"scenes": scenes_text(), "honest": honest_text(), "given": given_text(),
+                          "price": price_text(), "mesh": mesh_text(), "presets": presets_text(),
+                          "table_1": table_1_text()}}
 
 
 def draw(bench, results, plt):
