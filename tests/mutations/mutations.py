@@ -99,6 +99,8 @@ MUTATIONS = [
     ("return_point takes the harder memory", (RETURN_POINT, ">= ddot(r - memory%r_in, t))", "< ddot(r - memory%r_in, t))")),
     ("return_point restores no target", (RETURN_POINT, "memory%target = process%target", "memory%target = memory%target")),
     ("no reversal inside a substep", (EVENTS, "may_reverse = last%loading .and.", "may_reverse = .false. .and.")),
+    ("reversals are looked for wherever x is below zero",
+     (EVENTS, "(last%x < -par%x_rev .or.", "(last%x < 0.0_wp .or.")),
     ("an event's time is frozen", (EVENT_TIME, "dh = -slopes(j)/slopes(BY_SIZE)", "dh = 0.0_wp*slopes(j)")),
     ("substeps behind an event keep their place",
      (EVENT_TIME, "sens%shift(j) = sens%shift(j) + dh", "sens%shift(j) = sens%shift(j) + 0.0_wp*dh")),

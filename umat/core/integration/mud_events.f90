@@ -68,6 +68,7 @@ contains
       type(counters_t), intent(inout) :: counters
       integer, intent(out) :: event        !< EVENT_* at the end of the substep
       real(wp) :: reversal
+      logical :: reverses
 
       event = EVENT_NONE
       if (trial%mode == MODE_HELD) then
@@ -86,12 +87,14 @@ contains
       end if
       if (may_reverse(par, inc, trial)) then
          reversal = h
-         call find_reversal(par, inc, trial, counters, reversal)
-         if (reversal < h) then
-            h = reversal
-            call take_step(par, inc, h, trial, counters)
+         call find_reversal(par, inc, trial, counters, reversal, reverses)
+         if (reverses) then
+            if (reversal < h) then
+               h = reversal
+               call take_step(par, inc, h, trial, counters)
+            end if
+            call land_on(par, inc, EVENT_REVERSAL, h, trial, counters, event)
          end if
-         call land_on(par, inc, EVENT_REVERSAL, h, trial, counters, event)
       end if
       if (trial%watched > 0) call land_on(par, inc, EVENT_RETURN, h, trial, counters, event)
    end subroutine stop_at_event
@@ -110,8 +113,9 @@ contains
       end associate
    end function mechanism_switches
 
-   !> True where a reversal inside the substep is possible: (r - r_in):n is negative at its end, where the last stage
-   !> stands, or it falls at its start and is so small that it may have been negative in between. A process that drifts
+   !> True where a reversal inside the substep is possible: (r - r_in):n is beyond -x_rev at its last stage, or would be
+   !> if it went on at twice the rate with which the substep begins. A parabola that comes back falls a quarter as far.
+   !> Where it stays between 0 and -x_rev, as in soil that hardly moves, nothing is looked for. A process that drifts
    !> backwards from its beginning (softening outside the bounding surface) is not looked at: there the floor makes the
    !> rates independent of the memory, and it is enough to begin anew where a substep begins. The rule as_published
    !> tests there and nowhere else.
@@ -119,42 +123,35 @@ contains
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
+      real(wp) :: fall
 
       may_reverse = par%memory_rule /= RULE_AS_PUBLISHED .and. trial%advanced .and. trial%w(1)%loading .and. &
                     trial%w(1)%x >= -par%x_rev
       if (may_reverse) then
-         associate (last => trial%w(inc%scheme%stages))
-            may_reverse = last%loading .and. (last%x < 0.0_wp .or. falls(par, trial))
+         associate (first => trial%w(1), second => trial%w(2), last => trial%w(inc%scheme%stages))
+            fall = 0.0_wp
+            if (second%loading) fall = LARGEST_FACTOR*(first%x - second%x)/inc%scheme%node(2)
+            may_reverse = last%loading .and. (last%x < -par%x_rev .or. first%x + par%x_rev < fall)
          end associate
       end if
    end function may_reverse
 
-   !> True where (r - r_in):n was larger a substep ago, is below the floor, and would reach -x_rev within the substep if
-   !> it went on falling: the substep is at most twice the one before. A parabola of that slope falls a quarter as far.
-   !> The first substep may be any number of times the last one of the increment before.
-   pure logical function falls(par, trial)
-      type(params_t), intent(in) :: par
-      type(trial_t), intent(in) :: trial
-
-      falls = trial%w(1)%x < par%x_floor .and. trial%w(1)%x < trial%x_previous
-      if (trial%time > 0.0_wp) falls = falls .and. &
-         trial%w(1)%x + par%x_rev < LARGEST_FACTOR*(trial%x_previous - trial%w(1)%x)
-   end function falls
-
-   !> Shortens h to a place beyond the reversal where (r - r_in):n passes -x_rev and comes back within the substep: its
-   !> minimum, by a parabola through the start, the middle and the end.
-   pure subroutine find_reversal(par, inc, trial, counters, h)
+   !> Whether (r - r_in):n passes -x_rev in the substep. Where it comes back h is shortened to a place beyond the
+   !> reversal: its minimum, by a parabola through the start, the middle and the end.
+   pure subroutine find_reversal(par, inc, trial, counters, h, reverses)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
       type(counters_t), intent(inout) :: counters
       real(wp), intent(inout) :: h
+      logical, intent(out) :: reverses
       type(trial_t) :: probe
       real(wp) :: x_start, x_middle, x_end, slope, bend, lowest
 
       x_start = trial%w(1)%x + par%x_rev
       call event_function(par, inc, EVENT_REVERSAL, trial, trial%time + h, trial%y, counters, x_end)
-      if (x_end < 0.0_wp) return
+      reverses = x_end < 0.0_wp
+      if (reverses) return
       probe = trial
       call take_step(par, inc, 0.5_wp*h, probe, counters)
       call event_function(par, inc, EVENT_REVERSAL, probe, probe%time + 0.5_wp*h, probe%y, counters, x_middle)
@@ -166,7 +163,8 @@ contains
       if (x_start + lowest*(slope + lowest*bend) > PROBE_BELOW*par%x_rev) return
       call take_step(par, inc, lowest*h, probe, counters)
       call event_function(par, inc, EVENT_REVERSAL, probe, probe%time + lowest*h, probe%y, counters, x_middle)
-      if (x_middle < 0.0_wp) h = lowest*h
+      reverses = x_middle < 0.0_wp
+      if (reverses) h = lowest*h
    end subroutine find_reversal
 
    !> The direction and target of the present process after an accepted substep: where it goes forwards last, at the end

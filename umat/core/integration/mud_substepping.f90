@@ -62,7 +62,7 @@ contains
       elastic_substeps = 0
       known = .false.
       event = EVENT_NONE
-      call begin_phase(state, trial)
+      call begin_phase(trial)
       substeps: do while (time < 1.0_wp)
          reached = time
          trial%time = time
@@ -136,7 +136,6 @@ contains
          call accept_substep(par, inc, h_taken, trial, state, counters)
          call record_substep(par, inc, trial, h_taken, error, state%sigma, SUBSTEP_ACCEPTED, jump, &
                              event /= EVENT_NONE, counters, record)
-         trial%x_previous = trial%w(1)%x
          known = rate_is_known(inc, trial, event)
       end do substeps
       if (.not. inc%inside) state%last_step = proposal(inc, planned, h*size, factor)

@@ -24,11 +24,9 @@ module mud_transitions
 contains
    !> What a trial holds before the first substep of an increment or phase. Its stress and rate are those of
    !> begin_substep.
-   pure subroutine begin_phase(state, trial)
-      type(state_t), intent(in) :: state
+   pure subroutine begin_phase(trial)
       type(trial_t), intent(inout) :: trial
 
-      trial%x_previous = state%memory%x_running
       trial%pressed = .false.
       trial%relaxation%speed = 0.0_wp
       trial%openings = 0

@@ -29,7 +29,6 @@ module mud_trial
       logical :: pressed            !< The bounding surface was met inside the elastic domain: ordinary rates follow.
       real(wp) :: r_in(6)
       real(wp) :: time              !< Pseudo-time of y0 [-].
-      real(wp) :: x_previous        !< (r - r_in):n where the substep before began [-].
       logical :: advanced           !< The present process has had (r - r_in):n > 0: a reversal would end it.
       integer :: openings           !< How often p' has fallen to p_min in this increment or phase.
       type(relaxation_t) :: relaxation   !< Its stiff direction, of speed 0 where the substep is explicit.
