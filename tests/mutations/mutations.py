@@ -70,7 +70,9 @@ MUTATIONS = [
     ("no contraction cap", (DIRECTION, "w%d = limit", "w%d = w%d")),
     ("softening cap twice as large", (DIRECTION, "w%h_b = limit\n", "w%h_b = 2.0_wp*limit\n")),
     ("first root found taken",
-     (DIRECTION, "if (single_root(par, arc, w)) return", "if (single_root(par, arc, w) .or. last > 0.0_wp) return")),
+     (DIRECTION, "if (.not. w%several) return", "if (.not. w%several .or. last > 0.0_wp) return")),
+    ("no look at the floor before a rising (r - r_in):n",
+     (DIRECTION, "single_root = side*there%residual < 0.0_wp", "single_root = there%scale > 0.0_wp")),
     ("plastic shear without sqrt(2/3)", (RATES, "w%d_eps_q = SQRT_2_3*w%l", "w%d_eps_q = w%l")),
     # memory
     ("forget to store the memory", (REVERSAL, "      memory%r_in = r_in\n", "      memory%r_in = memory%r_in\n")),

@@ -49,9 +49,16 @@ module mud_events
    real(wp), parameter :: SHARP_KINK = 0.01_wp
    !> A drive of the isotropic mechanism this much smaller than at the end of a substep is where it switched before [-].
    real(wp), parameter :: AT_SWITCH = 1.0e-6_wp
+   !> A function this small at the start, as a share of its change, is zero there but for where the event before was
+   !> found: false position would creep away from it [-].
+   real(wp), parameter :: AT_START = 1.0e-6_wp
    !> A function that has no zero by then jumps there, as (r - r_in):n does from one direction to another: bisection.
    integer, parameter :: SMOOTH_ITERATIONS = 16
    integer, parameter :: MAX_EVENT_ITERATIONS = 100          !< Bisection alone needs about 45.
+   !> It jumps where over a bracket that is shorter by this factor it still changes by more than that share of what it
+   !> did: bisection, and a bracket that is wider, share of increment, because each trial is a substep. Only where the
+   !> direction turns to its opposite does the convergence of a host's Newton method depend on the place [-].
+   real(wp), parameter :: SHORT = 0.25_wp, JUMP = 0.5_wp, JUMP_TOLERANCE = 1.0e-10_wp, OPPOSITE = -0.9_wp
    !> A turning point ends no substep and need not be as exact; where the direction jumps, it is found to a thousandth
    !> of the substep.
    real(wp), parameter :: TURN_RESIDUAL = 1.0e-6_wp
@@ -239,9 +246,9 @@ contains
       type(trial_t), intent(inout) :: trial
       type(counters_t), intent(inout) :: counters
       integer, intent(inout) :: landed     !< becomes the event if it happens
-      real(wp) :: low, high, f_low, f_high, f, h_trial, width, zero, before
+      real(wp) :: low, high, f_low, f_high, f, h_trial, width, zero, before, value_low, value_high, change, narrow
       integer :: iteration, side, most
-      logical :: divided
+      logical :: divided, jumps
 
       call event_function(par, inc, event, trial, trial%time + h, trial%y, counters, f_high)
       if (f_high >= 0.0_wp) return
@@ -258,25 +265,36 @@ contains
          f_low = f_low - before
          f_high = f_high - before
       end if
-      divided = event == EVENT_OPENS .and. f_low <= zero .and. trial%w(1)%d_p > 0.0_wp
+      divided = event == EVENT_OPENS .and. f_low <= AT_START*(f_low - f_high) .and. trial%w(1)%d_p > 0.0_wp
       if (divided) then
          f_low = trial%w(1)%d_p/par%p_min
          f_high = f_high/h
+         zero = max(EVENT_RESIDUAL*(f_low - f_high), ROUNDING/h)
       end if
       low = 0.0_wp
       high = h
       h_trial = h
       side = 0
       width = h
+      value_low = f_low
+      value_high = f_high
+      change = f_low - f_high
+      jumps = .false.
+      narrow = JUMP_TOLERANCE
+      if (ddot(trial%w(1)%n, trial%w(inc%scheme%stages)%n) < OPPOSITE) narrow = EVENT_TOLERANCE
       do iteration = 1, most
-         if (high - low <= EVENT_TOLERANCE .or. high <= par%h_min) exit
+         if (high - low <= merge(narrow, EVENT_TOLERANCE, jumps) .or. high <= par%h_min) exit
          h_trial = 0.5_wp*(low + high)
-         if ((f_low > 0.0_wp .or. low > 0.0_wp) .and. iteration <= SMOOTH_ITERATIONS .and. &
+         if (.not. jumps .and. (f_low > 0.0_wp .or. low > 0.0_wp) .and. iteration <= SMOOTH_ITERATIONS .and. &
              (mod(iteration, 4) > 0 .or. high - low < 0.5_wp*width)) then
             h_trial = low + (high - low)*f_low/(f_low - f_high)
             h_trial = min(max(h_trial, low + 0.5_wp*EVENT_TOLERANCE), high - 0.5_wp*EVENT_TOLERANCE)
          end if
-         if (mod(iteration, 4) == 0) width = high - low
+         if (mod(iteration, 4) == 0) then
+            jumps = high - low <= SHORT*width .and. value_low - value_high > JUMP*change
+            width = high - low
+            change = value_low - value_high
+         end if
          call take_step(par, inc, h_trial, trial, counters)
          call event_function(par, inc, event, trial, trial%time + h_trial, trial%y, counters, f)
          if (divided) f = f/h_trial
@@ -285,11 +303,13 @@ contains
             if (side < 0) f_low = f_low*remaining(f, f_high)
             high = h_trial
             f_high = f
+            value_high = f
             side = -1
          else
             if (side > 0) f_high = f_high*remaining(f, f_low)
             low = h_trial
             f_low = f
+            value_low = f
             side = 1
             ! at the event but for rounding; a held point must be beyond it, or it would not close
             if (f < zero .and. event /= EVENT_CLOSES) high = low

@@ -6,7 +6,7 @@ module mud_substep
    implicit none (type, external)
    private
    public :: scheme_t, SCHEMES, HIGHER_ORDER, LINEARLY_IMPLICIT, IMPLICIT_WEIGHTS, IMPLICIT_DIAGONAL, MAX_STAGES, &
-             LARGEST_FACTOR, stage_point, solution, error_vector, step_factor
+             LARGEST_FACTOR, SMALLEST_FACTOR, SAFETY, stage_point, solution, error_vector, step_factor
 
    integer, parameter :: MAX_STAGES = 7
    integer, parameter :: TRIANGLE = MAX_STAGES*(MAX_STAGES - 1)/2

@@ -4,6 +4,7 @@ module mud_substepping
    use mud_kinds, only: wp
    use mud_consistent, only: sensitivity_t, propagate
    use mud_event_time, only: move_event
+   use mud_error_control, only: control_t, judge_attempt
    use mud_events, only: stop_at_event, EVENT_TOLERANCE, EVENT_NONE, EVENT_OPENS, EVENT_MECHANISM
    use mud_increment, only: increment_t, void_ratio_at, suction_at
    use mud_params, only: params_t
@@ -12,11 +13,11 @@ module mud_substepping
    use mud_status, only: mud_status_t, fail, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, &
       MUD_NOT_FINITE, ON_STRESS
    use mud_stiffness, only: choose_stepping, raise_order
-   use mud_substep, only: step_factor, SCHEMES, LARGEST_FACTOR
+   use mud_substep, only: SCHEMES, LARGEST_FACTOR
    use mud_tensor, only: ddot, norm, is_finite, all_finite
    use mud_trace, only: trace_t, record_substep, SUBSTEP_REJECTED, SUBSTEP_ACCEPTED, SUBSTEP_FAILED
    use mud_transitions, only: begin_phase, begin_substep, accept_substep, rate_is_known
-   use mud_trial, only: trial_t, take_step, error_norm, MODE_HELD
+   use mud_trial, only: trial_t, take_step, error_norm
    implicit none (type, external)
    private
    public :: integrate
@@ -27,9 +28,6 @@ module mud_substepping
    real(wp), parameter :: SHARP = 1.0e-3_wp
    !> First substep where the domain turns, share of its radius: a divisor of few round increments [-].
    real(wp), parameter :: TURN_PIECE = 0.7_wp
-   !> The higher order's share of the tolerance: its steps are long, and their errors are what its estimate says, while
-   !> modified Euler's are smaller [-].
-   real(wp), parameter :: STRICTNESS = 0.3_wp
    !> Modified Euler hands over to a higher order where more substeps than these are ahead: two rates each [-].
    real(wp), parameter :: MANY_SUBSTEPS = 50.0_wp
    real(wp), parameter :: LAST_SLIVER = 1.0e-9_wp            !< A rest of this share joins the substep before it [-].
@@ -51,6 +49,7 @@ contains
       type(trace_t), intent(inout), optional :: record
       real(wp) :: time, h, h_taken, planned, error, factor, tolerance, turn
       integer :: elastic_substeps, jump, event
+      type(control_t) :: control
       logical :: may_grow, known
 
       time = 0.0_wp
@@ -78,7 +77,6 @@ contains
             end if
             h = max(h, par%h_min)
             if (MANY_SUBSTEPS*h < 1.0_wp - time) call raise_order(par, inc)
-            tolerance = allowed_error(par, inc, trial)
             h_taken = h
             if (time + h*(1.0_wp + LAST_SLIVER) >= 1.0_wp) h_taken = 1.0_wp - time
             call take_step(par, inc, h_taken, trial, counters)
@@ -89,7 +87,7 @@ contains
                                    counters, record)
                return
             end if
-            factor = step_factor(inc%scheme, error, tolerance, may_grow)
+            call judge_attempt(par, inc, trial, h_taken, error, may_grow, control, tolerance, factor)
             if (error <= tolerance) exit attempts
             if (min(h, h_taken) <= par%h_min*(1.0_wp + LAST_SLIVER)) then
                if (.not. par%accept_minimum) then
@@ -174,16 +172,6 @@ contains
       proposal = max(planned, grown)
       if (planned <= 0.0_wp) proposal = 0.0_wp
    end function proposal
-
-   !> What the error of the coming substep may be [-].
-   pure real(wp) function allowed_error(par, inc, trial) result(tolerance)
-      type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
-      type(trial_t), intent(in) :: trial
-
-      tolerance = par%tolerance
-      if (inc%scheme%order > SCHEMES(par%scheme)%order .and. trial%mode /= MODE_HELD) tolerance = STRICTNESS*tolerance
-   end function allowed_error
 
    !> How far the elastic domain turns from its start on, 1 minus its cosine with the strain: the transient lasts about
    !> a radius of strain.

@@ -132,11 +132,25 @@ contains
       call begin_process(par, r, trigger%n, t, state%memory)
       if (consistent) call jump_of_memory(par, inc, jump, before, state%memory, trigger, trial, sens)
       trial%r_in = state%memory%r_in
-      call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
+      if (stays_floored(trigger, trial%r_in)) then
+         trial%w(1)%r_moved = 0.0_wp
+         trial%w(1)%x = 0.0_wp
+      else
+         call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
+      end if
       if (par%memory_rule == RULE_RETURN_POINT) then
          call try_to_return(par, inc, .false., r, t, consistent, state, trial, sens, jump, counters)
       end if
    end subroutine apply_memory_rule
+
+   !> True where a rate is also that of a process which begins where it stands: with r_in = r the floor acts in every
+   !> direction, as it did in this one, and without a cap the equation of the floor has one root.
+   pure logical function stays_floored(w, r_in)
+      type(rate_t), intent(in) :: w
+      real(wp), intent(in) :: r_in(6)
+
+      stays_floored = w%floored .and. .not. (w%capped_d .or. w%capped_h) .and. all(abs(r_in - w%r) <= 0.0_wp)
+   end function stays_floored
 
    !> Lets interrupted processes go on whose targets r has reached, and leaves the one to watch in the trial.
    pure subroutine try_to_return(par, inc, landed, r, t, consistent, state, trial, sens, jump, counters)

@@ -21,6 +21,7 @@ module mud_direction
    integer, parameter :: MAX_ITERATIONS = 80             !< Bisection alone needs 53.
    integer, parameter :: POINTS = 8   !< Of the scan for roots where a bracket is not certain: looked at together.
    real(wp), parameter :: NEGLIGIBLE = 1.0e-12_wp        !< Smaller divisors would only make a cap that never acts [-].
+   real(wp), parameter :: NOT_FAR = 0.5_wp   !< Cosine up to which a rising x excludes roots [-].
    real(wp), parameter :: NO_LIMIT = 1.0e100_wp          !< A cap that is off.
 
    !> One rate and its intermediate results, as mud_tangent needs them. Per unit of the pseudo-time of d_strain, d_pc.
@@ -55,7 +56,7 @@ module mud_direction
       real(wp) :: a_d, d           !< A_d, D [-]
       real(wp) :: beta, gamma      !< coefficients of the direction equation [kPa]
       ! guards
-      logical :: floored, capped_d, capped_h, iso_kept, no_root
+      logical :: floored, capped_d, capped_h, iso_kept, no_root, several   !< several: the arc was scanned for roots
       ! the result
       real(wp) :: d_p              !< rate of p' [kPa]
       real(wp) :: d_sigma(6)       !< [kPa]
@@ -136,6 +137,7 @@ contains
       side = sign(1.0_wp, w%beta)
       first = side*at%residual
       guarded = par%floored .and. par%cap_d > 0.0_wp .and. par%cap_h > 0.0_wp
+      w%several = .not. guarded
       last = 1.0_wp
       found = .false.
       if (guarded) then
@@ -148,7 +150,8 @@ contains
          found = at%admissible > 0.0_wp
          last = abs(tau)
          if (found) then
-            if (single_root(par, arc, w)) return
+            w%several = .not. single_root(par, arc, side, at, w)
+            if (.not. w%several) return
             call scan_arc(par, arc, w, side, first, last, .true., low, high, crossed)
             if (.not. crossed) return
          end if
@@ -200,19 +203,31 @@ contains
       end do
    end subroutine newton
 
-   !> False where a root earlier than the one that w holds is possible: a cap, or a change between the floor and a
-   !> small (r - r_in):n, bends the residual back. (200,000 random states against a scan of 2048 points: three misses,
-   !> under the softening cap; without the scan 169.)
-   pure logical function single_root(par, arc, w)
+   !> False where a root before that of w and at is possible: a cap, or a change between the floor and a small x, bends
+   !> the residual back. Where x rises up to the root only the floor's equation can have one, before x passes the floor:
+   !> the residual there tells (the roots of 2,400,000 random states of six kinds are those of scans of all such arcs).
+   pure logical function single_root(par, arc, side, at, w)
       type(params_t), intent(in) :: par
       type(arc_t), intent(in) :: arc
+      real(wp), intent(in) :: side
+      type(trial_t), intent(in) :: at
       type(rate_t), intent(in) :: w
-      logical :: always_floored, never_near
-
-      ! On less than a right angle x cannot become positive between two negative ends.
-      always_floored = arc%x_t**2 + arc%x_q**2 < par%x_floor**2 .or. max(arc%x_t, w%x) < 0.0_wp
-      never_near = min(arc%x_t, w%x) > 2.0_wp*par%x_floor
-      single_root = .not. (w%capped_h .or. w%capped_d) .and. (always_floored .or. never_near)
+      type(rate_t) :: passing
+      type(trial_t) :: there
+      real(wp) :: x_q
+      single_root = .false.
+      if (w%capped_h .or. w%capped_d) return
+      ! Always floored (on less than a right angle x cannot become positive between two negative ends), or never near.
+      single_root = arc%x_t**2 + arc%x_q**2 < par%x_floor**2 .or. max(arc%x_t, w%x) < 0.0_wp .or. &
+                    min(arc%x_t, w%x) > 2.0_wp*par%x_floor
+      x_q = side*arc%x_q
+      if (single_root .or. at%cosine < NOT_FAR .or. at%cosine*x_q < abs(at%sine)*arc%x_t) return
+      single_root = w%floored .or. arc%x_t >= par%x_floor
+      if (single_root) return
+      passing = w
+      call evaluate_direction(par, arc, side*(par%x_floor - arc%x_t) &
+                              /(x_q + sqrt(max(arc%x_t**2 + x_q**2 - par%x_floor**2, 0.0_wp))), passing, there)
+      single_root = side*there%residual < 0.0_wp .and. .not. (passing%capped_h .or. passing%capped_d)
    end function single_root
 
    !> The first interval of the arc up to tau = `last` (a root already known, or an end) in which the residual becomes

@@ -137,6 +137,7 @@ contains
       w%t = 2.0_wp*w%g*d_e - w%r*volumetric
       w%t_norm = norm(w%t)
       w%no_root = .false.
+      w%several = .false.
       known = w%loading
       w%loading = .false.
       terms = 2.0_wp*w%g*d_norm + max(w%r_norm, SMALLEST_RATIO)*abs(volumetric)

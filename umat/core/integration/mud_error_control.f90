@@ -1,0 +1,73 @@
+! SPDX-License-Identifier: MIT
+!> Which error of a substep is allowed, and the size of the next attempt; docs/theory/integration.md sections 3, 3.1.
+module mud_error_control
+   use mud_increment, only: increment_t
+   use mud_kinds, only: wp
+   use mud_params, only: params_t
+   use mud_rates, only: rate_t, MODE_ORDINARY
+   use mud_registry, only: RULE_AS_PUBLISHED
+   use mud_substep, only: step_factor, SCHEMES, SAFETY, SMALLEST_FACTOR
+   use mud_trial, only: trial_t, MODE_HELD
+   implicit none (type, external)
+   private
+   public :: control_t, judge_attempt
+
+   !> The higher order's share of the tolerance: its steps are long, and their errors are what its estimate says, while
+   !> modified Euler's are smaller [-].
+   real(wp), parameter :: STRICTNESS = 0.3_wp
+   !> An error that has fallen by less than this power of the size is that of a jump of the rates: of a smooth substep
+   !> the power is the order, at least 2, and so it is across a kink [-].
+   real(wp), parameter :: FIRST_ORDER = 1.5_wp
+   !> So many jumps of an increment or phase are resolved to the tolerance. From then on the rates chatter between two
+   !> roots of the direction equation, and each further jump doubles the tolerance of substeps with several roots, up to
+   !> a limit [-].
+   integer, parameter :: RESOLVED_JUMPS = 1
+   real(wp), parameter :: GROWTH = 2.0_wp, LARGEST_GROWTH = 32.0_wp
+
+   !> What is known of the attempts of an increment or phase.
+   type :: control_t
+      real(wp) :: error = 0.0_wp, h = 0.0_wp   !< of the attempt before at this substep, 0: none; h a share of the increment [-]
+      integer :: jumps = 0   !< attempts so far whose error was that of a jump
+   end type control_t
+contains
+   !> The error that an attempt may have, and the factor on its size for the next one. h is a share of inc, all [-]. A
+   !> jump inside a substep leaves an error that falls as its size does, whatever the order of the scheme.
+   !> docs/theory/integration.md sections 3, 3.1.
+   pure subroutine judge_attempt(par, inc, trial, h, error, may_grow, control, tolerance, factor)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial          !< after the attempt
+      real(wp), intent(in) :: h, error
+      logical, intent(in) :: may_grow             !< no attempt at this substep was rejected
+      type(control_t), intent(inout) :: control
+      real(wp), intent(out) :: tolerance, factor
+      logical :: jump, changes
+
+      jump = .false.
+      changes = .false.
+      if (trial%mode == MODE_ORDINARY .and. par%memory_rule /= RULE_AS_PUBLISHED) &
+         changes = changes_root(trial%w(1:inc%scheme%stages))
+      if (.not. may_grow) jump = error > control%error*(h/control%h)**FIRST_ORDER
+      if (jump .and. changes) control%jumps = control%jumps + 1
+      control%error = error
+      control%h = h
+
+      tolerance = par%tolerance
+      if (inc%scheme%order > SCHEMES(par%scheme)%order .and. trial%mode /= MODE_HELD .and. &
+          trial%relaxation%speed <= 0.0_wp) tolerance = STRICTNESS*tolerance
+      if (changes .and. control%jumps > RESOLVED_JUMPS) &
+         tolerance = tolerance*min(GROWTH**min(control%jumps - RESOLVED_JUMPS, 100), LARGEST_GROWTH)
+      factor = step_factor(inc%scheme, error, tolerance, may_grow)
+      if (jump .and. error > tolerance) factor = max(SAFETY*tolerance/error, SMALLEST_FACTOR)
+   end subroutine judge_attempt
+
+   !> True where stages of a substep are at different roots of the direction equation: several are possible only between
+   !> floor, cap and neither.
+   pure logical function changes_root(w)
+      type(rate_t), intent(in) :: w(:)
+
+      changes_root = any(w%several) .and. (any(w%floored .neqv. w(1)%floored) .or. &
+                                           any(w%capped_h .neqv. w(1)%capped_h) .or. &
+                                           any(w%capped_d .neqv. w(1)%capped_d))
+   end function changes_root
+end module mud_error_control
