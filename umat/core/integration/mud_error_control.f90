@@ -6,11 +6,11 @@ module mud_error_control
    use mud_params, only: params_t
    use mud_rates, only: rate_t, MODE_ORDINARY
    use mud_registry, only: RULE_AS_PUBLISHED
-   use mud_substep, only: step_factor, SCHEMES, SAFETY, SMALLEST_FACTOR
+   use mud_substep, only: step_factor, SCHEMES, SAFETY, SMALLEST_FACTOR, LARGEST_FACTOR
    use mud_trial, only: trial_t, MODE_HELD
    implicit none (type, external)
    private
-   public :: control_t, judge_attempt
+   public :: control_t, judge_attempt, proposal
 
    !> The higher order's share of the tolerance: its steps are long, and their errors are what its estimate says, while
    !> modified Euler's are smaller [-].
@@ -26,7 +26,8 @@ module mud_error_control
 
    !> What is known of the attempts of an increment or phase.
    type :: control_t
-      real(wp) :: error = 0.0_wp, h = 0.0_wp   !< of the attempt before at this substep, 0: none; h a share of the increment [-]
+      !> Of the attempt before at this substep, 0: none; h a share of the increment [-].
+      real(wp) :: error = 0.0_wp, h = 0.0_wp
       integer :: jumps = 0   !< attempts so far whose error was that of a jump
    end type control_t
 contains
@@ -60,6 +61,22 @@ contains
       factor = step_factor(inc%scheme, error, tolerance, may_grow)
       if (jump .and. error > tolerance) factor = max(SAFETY*tolerance/error, SMALLEST_FACTOR)
    end subroutine judge_attempt
+
+   !> The first substep of the next increment, in units of strain, 0: all of it. The last substep ends where the
+   !> increment does: where its error let it grow as far as a substep may, it says nothing against the step that was
+   !> planned, and nothing at all where none was. A higher order's estimate sees less of what a long first step hides:
+   !> its steps grow from what was taken. docs/theory/integration.md section 3.
+   pure real(wp) function proposal(inc, planned, grown, factor)
+      type(increment_t), intent(in) :: inc   !< With the scheme of its last substep.
+      real(wp), intent(in) :: planned   !< Before the increment cut it short; 0: none [-]
+      real(wp), intent(in) :: grown     !< By the last substep and its error [-]
+      real(wp), intent(in) :: factor    !< Of that growth [-]
+
+      proposal = grown
+      if (factor < LARGEST_FACTOR .or. inc%scheme%order > SCHEMES(1)%order) return
+      proposal = max(planned, grown)
+      if (planned <= 0.0_wp) proposal = 0.0_wp
+   end function proposal
 
    !> True where stages of a substep are at different roots of the direction equation: several are possible only between
    !> floor, cap and neither.

@@ -4,7 +4,7 @@ module mud_substepping
    use mud_kinds, only: wp
    use mud_consistent, only: sensitivity_t, propagate
    use mud_event_time, only: move_event
-   use mud_error_control, only: control_t, judge_attempt
+   use mud_error_control, only: control_t, judge_attempt, proposal
    use mud_events, only: stop_at_event, EVENT_TOLERANCE, EVENT_NONE, EVENT_OPENS, EVENT_MECHANISM
    use mud_increment, only: increment_t, void_ratio_at, suction_at
    use mud_params, only: params_t
@@ -13,7 +13,6 @@ module mud_substepping
    use mud_status, only: mud_status_t, fail, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, &
       MUD_NOT_FINITE, ON_STRESS
    use mud_stiffness, only: choose_stepping, raise_order
-   use mud_substep, only: SCHEMES, LARGEST_FACTOR
    use mud_tensor, only: ddot, norm, is_finite, all_finite
    use mud_trace, only: trace_t, record_substep, SUBSTEP_REJECTED, SUBSTEP_ACCEPTED, SUBSTEP_FAILED
    use mud_transitions, only: begin_phase, begin_substep, accept_substep, rate_is_known
@@ -156,22 +155,6 @@ contains
          first_step = min(first_step, 1.0_wp/real(ceiling(min(norm(inc%d_strain)/(TURN_PIECE*inc%rho), 1.0e6_wp)), wp))
       end if
    end function first_step
-
-   !> The first substep of the next increment, in units of strain, 0: all of it. The last substep ends where the
-   !> increment does: where its error let it grow as far as a substep may, it says nothing against the step that was
-   !> planned, and nothing at all where none was. A higher order's estimate sees less of what a long first step hides:
-   !> its steps grow from what was taken. docs/theory/integration.md section 3.
-   pure real(wp) function proposal(inc, planned, grown, factor)
-      type(increment_t), intent(in) :: inc   !< With the scheme of its last substep.
-      real(wp), intent(in) :: planned   !< Before the increment cut it short; 0: none [-]
-      real(wp), intent(in) :: grown     !< By the last substep and its error [-]
-      real(wp), intent(in) :: factor    !< Of that growth [-]
-
-      proposal = grown
-      if (factor < LARGEST_FACTOR .or. inc%scheme%order > SCHEMES(1)%order) return
-      proposal = max(planned, grown)
-      if (planned <= 0.0_wp) proposal = 0.0_wp
-   end function proposal
 
    !> How far the elastic domain turns from its start on, 1 minus its cosine with the strain: the transient lasts about
    !> a radius of strain.
