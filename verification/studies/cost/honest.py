@@ -61,6 +61,7 @@ SCENES = {
                            [("   dt = 100\n", "")], THREE),
     "Liakopoulos": (HOST + "liakopoulos/scene.nml", [], STEPS_OF_LIAKOPOULOS,
                     [(r"   dt(_growth|_max)? = \S+\n", "")], TWO),
+    "footing on sand, static": (HERE + "footing.nml", [], [], [("   dt = 0.004\n", "")], THREE),
     "column shaken at its base": (HOST + "waves/layers.nml", [("duration = 4", "duration = 1.5")],
                                   [("dt = 2.0e-3", "dt = 2e-4")], [("rho_inf = 1.0", "rho_inf = 0.8")], TWO),
     "three fields of MUD": ("tests/host/scenes/restart.nml", [

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
 """The sixteen analyses of the paper's Table 1 with its settings and with an accuracy, and a fine reference of each.
 
-    python3 verification/studies/cost/table_1.py [--only SETTING] [ANALYSIS...]
+    python3 verification/studies/cost/table_1.py [--only SETTING] [--table FILE] [ANALYSIS...]
     MUD_BUILD_DIR: the build, default build/release
 
 One analysis (`s0030_remedy`) after the other: the paper's settings, then the accuracies, so that times which are
-compared are of the same minutes; with `--only reference` the fine steps, which take longer. Writes table_1.csv;
-resumable: a run whose row is there is left. Twenty CPU minutes, and as many for the references, one thread. The answers
-are of the first 30 ms: what follows the separation is chaotic.
+compared are of the same minutes; with `--only reference` the fine steps, which take longer, with `--only 1e-3` the
+finest of the presets. Writes table_1.csv, or the file of `--table`: table_1_later.csv has what was run again after
+rate evaluations were saved. Resumable: a run whose row is there is left. Twenty CPU minutes, and as many for the
+references, one thread. The answers are of the first 30 ms: what follows the separation is chaotic.
 """
 import os
 import re
@@ -25,6 +26,7 @@ FOLDER = study.build.parent / "cost/table_1"
 SERIES = ("remedy", "as_published")
 ACCURACIES = ("1e-1", "3e-2", "1e-2")
 SETTINGS = ("paper", *ACCURACIES)
+FINEST = "1e-3"
 REFERENCE = "reference"
 ANALYSES = [(f"{label(s, 'u-p_w-p_c')}_{series}", s, series) for s in SUCTIONS for series in SERIES]
 NAMES = ("name", "setting", "outcome", "steps", "iterations", "rates", "factorisations", "user_s", "wall_s",
@@ -85,13 +87,17 @@ def main(words):
     if "--only" in words:
         at = words.index("--only")
         settings, words = (words[at + 1],), words[:at] + words[at + 2:]
-    have = [tuple(r.get(n, "") for n in NAMES) for r in tables.rows(TABLE)] if TABLE.exists() else []
+    table = TABLE
+    if "--table" in words:
+        at = words.index("--table")
+        table, words = study.here / words[at + 1], words[:at] + words[at + 2:]
+    have = [tuple(r.get(n, "") for n in NAMES) for r in tables.rows(table)] if table.exists() else []
     chosen = [a for w in words for a in ANALYSES if a[0] == w] or ANALYSES
     left = [(*a, s) for a in chosen for s in settings if (a[0], s) not in [r[:2] for r in have]]
     for i, analysis in enumerate(left):
         have.append(run(*analysis))
         have = [completed(r) for r in have]
-        tables.write(TABLE, NAMES, have)
+        tables.write(table, NAMES, have)
         print(*have[-1], f"{i + 1} of {len(left)}", flush=True)
 
 
