@@ -121,7 +121,8 @@ contains
    !> sets its keys.
    subroutine find_effects()
       if (only_effects .or. (scene%derive_effects .and. .not. only_check)) then
-         call ask_effects(scene, option_given(options, '--ablate'), quiet, effects, pilots, fault)
+         call ask_effects(scene, option_given(options, '--ablate'), &
+                          merge(huge(1.0d0), scene%effects_pilot_share, only_effects), quiet, effects, pilots, fault)
          if (fault%code /= 0) return
          if (.not. quiet) call print_pilots(output_unit, pilots)
          if (.not. quiet .or. only_effects) call print_effects(output_unit, effects, scene%derive_effects)

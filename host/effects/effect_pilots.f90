@@ -10,7 +10,7 @@ module effect_pilots
    use faults, only: fault_t, raise, EXIT_INPUT
    use pilot_runs, only: pilot_t, run_pilot, difference_t, difference, influence_t
    use pilot_scenes, only: make_cheap, can_coarsen
-   use scene_types, only: scene_t, WITH_P_C
+   use scene_types, only: scene_t, scene_stage_t, WITH_P_C
    use texts, only: short, whole
    implicit none (type, external)
    private
@@ -32,6 +32,10 @@ module effect_pilots
       integer :: runs = 0
       integer :: cells = 1, steps = 1      !< How much longer cells and steps were.
       real(wp) :: seconds = 0.0_wp
+      real(wp) :: work = 0.0_wp            !< Elements times steps of all.
+      real(wp) :: run_work = 0.0_wp        !< The same of the run, estimated from the base of the pilots.
+      real(wp) :: planned = 0.0_wp         !< Work of the pilots that would be needed.
+      logical :: too_dear = .false.        !< They would cost a larger share of the run than they may: none was tried.
       type(difference_t) :: own_error      !< Against pilots with steps, or cells, twice as long.
       logical :: own_error_known = .false.
       type(influence_t), allocatable :: influences(:)   !< Of every effect that was tried on every answer.
@@ -61,37 +65,50 @@ contains
       end do
    end subroutine apply_effects
 
-   !> Pilots of a scene as it was read. `whole_scene`: the pilots are the scene itself, neither coarser nor faster. The
+   !> Pilots of a scene as it was read. `whole_scene`: the pilots are the scene itself, neither coarser nor faster; they
+   !> may cost `share` of the estimated work of the run [-], else no effect is tried and all stay as they are. The
    !> table's `on` says what the run should have; only what no key says may differ from the scene. docs/theory/host.md
    !> section 11. Fault EXIT_INPUT: as of settle_scene, or the pilot with every effect fails; a failure of another pilot
    !> stands in its row.
-   subroutine ask_effects(scene, whole_scene, quiet, table, account, fault)
+   subroutine ask_effects(scene, whole_scene, share, quiet, table, account, fault)
       type(scene_t), intent(in) :: scene
       logical, intent(in) :: whole_scene, quiet
+      real(wp), intent(in) :: share
       type(effect_t), allocatable, intent(out) :: table(:)   !< (rows) As of list_effects.
       type(pilots_account_t), intent(out) :: account
       type(fault_t), intent(inout) :: fault
       type(scene_t) :: settled, cheap
       type(pilot_t) :: base
+      logical, allocatable :: tried(:)
       integer :: i
 
       table = list_effects(scene)
+      ! What the scene does not have, and a key says so, is tried with the whole scene alone.
+      tried = table%present .or. whole_scene .or. .not. table%by_hand
       settled = scene
       call settle_scene(settled, fault)
       if (fault%code /= 0) return
-      call find_base()
-      if (fault%code /= 0) return
-      call prescribe_steps(base, cheap)
       allocate (account%influences(0))
+      account%cells = 1
+      if (.not. whole_scene) account%cells = cells_of(settled)
+      if (.not. whole_scene) call look_ahead(settled, count(tried .and. .not. table%by_hand), share, account)
+      if (.not. account%too_dear) call find_base()
+      if (fault%code /= 0) return
+      if (account%too_dear) then
+         table%why = merge('not tried: by hand                              ', &
+                           'not tried: pilots would cost too much of the run', table%by_hand)
+         table%on = table%present
+         return
+      end if
+      call prescribe_steps(base, cheap)
       do i = 1, size(table)
-         ! What the scene does not have, and a key says so, is tried with the whole scene alone.
-         if (.not. (table(i)%present .or. whole_scene) .and. table(i)%by_hand) cycle
+         if (.not. tried(i)) cycle
          call try_effect(cheap, base, i, table(i), account)
          if (.not. quiet) write (output_unit, '(a)') '   pilot '//whole(account%runs)//', '// &
             trim(merge('without', 'with   ', table(i)%present))//' '//trim(table(i)%name)//': '// &
             told(table(i))
       end do
-      call decide(cheap, base, scene%effects_tolerance, quiet, table, account)
+      call decide(cheap, base, scene%effects_tolerance, share, quiet, table, account)
       call set_limits(base, real(account%steps, wp), scene%effects_tolerance, table)
    contains
       !> The pilot with every effect. Its steps are halved until that changes the answers little.
@@ -99,10 +116,9 @@ contains
          type(pilot_t) :: finer
          type(scene_t) :: finer_scene
          type(difference_t) :: apart
+         logical :: good
          integer :: k
 
-         account%cells = 1
-         if (.not. whole_scene) account%cells = cells_of(settled)
          do k = merge(LEVELS, 0, .not. whole_scene), 0, -1
             finer_scene = settled
             if (.not. whole_scene) call make_cheap(account%cells, 2**k, finer_scene)
@@ -115,7 +131,10 @@ contains
             base = finer
             cheap = finer_scene
             account%steps = 2**k
-            if (account%own_error_known .and. apart%share <= GOOD_PILOT) exit
+            good = account%own_error_known .and. apart%share <= GOOD_PILOT
+            call estimate(settled, cheap, base, account)
+            call keep_to(share, merge(1, 2, good), table%by_hand, tried, base, account)
+            if (good .or. account%too_dear) exit
          end do
          if (.not. base%done) then
             call raise(fault, EXIT_INPUT, trim(scene%file)//': the pilot with every effect fails, so that nothing '// &
@@ -125,7 +144,7 @@ contains
          if (.not. quiet) write (output_unit, '(a)') 'Pilots: '//whole(base%elements)//' elements, '// &
             whole(base%unknowns)//' unknowns, '//whole(base%steps)//' steps; with every effect '// &
             short(base%seconds)//' s.'
-         if (whole_scene .or. size(settled%points) == 0 .or. .not. can_coarsen(cheap)) return
+         if (account%too_dear .or. whole_scene .or. size(settled%points) == 0 .or. .not. can_coarsen(cheap)) return
          finer_scene = settled
          call make_cheap(2*account%cells, account%steps, finer_scene)
          call run_pilot(finer_scene, 0, finer)
@@ -170,7 +189,89 @@ contains
 
       account%runs = account%runs + 1
       account%seconds = account%seconds + pilot%seconds
+      account%work = account%work + work_of(pilot)
    end subroutine book
+
+   pure real(wp) function work_of(pilot)
+      type(pilot_t), intent(in) :: pilot
+
+      work_of = real(pilot%elements, wp)*pilot%steps
+   end function work_of
+
+   !> Whether the keys alone say that pilots are too dear: the first ones, two of them, and one for each open effect, at
+   !> the most that cells and steps of any stage can be longer.
+   pure subroutine look_ahead(scene, open, share, account)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: open   !< Effects to be tried.
+      real(wp), intent(in) :: share
+      type(pilots_account_t), intent(inout) :: account
+      type(scene_t) :: cheap
+      integer :: i
+
+      cheap = scene
+      call make_cheap(account%cells, 2**LEVELS, cheap)
+      account%run_work = 0.0_wp
+      do i = 1, size(scene%stages)
+         account%run_work = max(account%run_work, longer_steps(scene%stages(i), cheap%stages(i)))
+      end do
+      if (can_coarsen(scene)) account%run_work = account%run_work*elements_of(scene)/elements_of(cheap)
+      account%planned = real(1 + 2*(open + 3), wp)
+      account%too_dear = account%planned > share*account%run_work
+   end subroutine look_ahead
+
+   pure real(wp) function elements_of(scene)
+      type(scene_t), intent(in) :: scene
+
+      elements_of = 2.0_wp*sum(scene%mesh%r_cells)*sum(scene%mesh%z_cells)
+   end function elements_of
+
+   !> How many times as long the steps of a pilot's stage are; of controlled ones the square root of their accuracies,
+   !> for their error is of second order.
+   pure real(wp) function longer_steps(stage, of_pilot)
+      type(scene_stage_t), intent(in) :: stage, of_pilot
+
+      longer_steps = of_pilot%dt/stage%dt
+      if (stage%controlled) longer_steps = sqrt(of_pilot%accuracy/max(stage%accuracy, tiny(1.0_wp)))
+   end function longer_steps
+
+   !> Work of the run, from that of a pilot: elements and steps by the keys. A direct solver makes large runs dearer.
+   pure subroutine estimate(scene, cheap, pilot, account)
+      type(scene_t), intent(in) :: scene, cheap
+      type(pilot_t), intent(in) :: pilot
+      type(pilots_account_t), intent(inout) :: account
+      real(wp) :: elements, steps
+      integer :: i
+
+      elements = pilot%elements
+      if (can_coarsen(scene)) elements = elements_of(scene)
+      steps = 0.0_wp
+      do i = 1, size(scene%stages)
+         steps = steps + size(pilot%ends(i)%times)*longer_steps(scene%stages(i), cheap%stages(i))
+      end do
+      account%run_work = elements*steps
+   end subroutine estimate
+
+   !> Whether what is left to do fits into the share: one pilot for each effect that is tried, one with cells twice as
+   !> long and one without all that is to go, `dearer` times as dear as this one, beside it where it is not the base
+   !> itself. Effects that are set by hand are tried where there is room for them.
+   pure subroutine keep_to(share, dearer, by_hand, tried, pilot, account)
+      real(wp), intent(in) :: share
+      integer, intent(in) :: dearer
+      logical, intent(in) :: by_hand(:)
+      logical, intent(inout) :: tried(:)
+      type(pilot_t), intent(in) :: pilot
+      type(pilots_account_t), intent(inout) :: account
+
+      account%planned = to_do()
+      if (account%planned <= share*account%run_work) return
+      tried = tried .and. .not. by_hand
+      account%planned = to_do()
+      account%too_dear = account%planned > share*account%run_work
+   contains
+      pure real(wp) function to_do()
+         to_do = account%work + dearer*work_of(pilot)*(count(tried) + 1 + dearer)
+      end function to_do
+   end subroutine keep_to
 
    !> One pilot without (with) an effect.
    subroutine try_effect(cheap, base, row, effect, account)
@@ -212,10 +313,10 @@ contains
    end subroutine try_effect
 
    !> What no key says goes or stays; what is to go together is tried together.
-   subroutine decide(cheap, base, tolerance, quiet, table, account)
+   subroutine decide(cheap, base, tolerance, share, quiet, table, account)
       type(scene_t), intent(in) :: cheap
       type(pilot_t), intent(in) :: base
-      real(wp), intent(in) :: tolerance
+      real(wp), intent(in) :: tolerance, share
       logical, intent(in) :: quiet
       type(effect_t), intent(inout) :: table(:)
       type(pilots_account_t), intent(inout) :: account
@@ -246,6 +347,11 @@ contains
       do
          going = table%present .and. .not. table%on
          if (count(going) < 2) exit
+         if (account%work + work_of(base) > share*account%run_work) then
+            where (going) table%on = .true.
+            where (going) table%why = 'weak alone; a pilot without all that are to go would cost too much of the run'
+            exit
+         end if
          other = cheap
          call apply_effects(table, other)
          call run_pilot(other, base%steps, pilot)

@@ -156,7 +156,10 @@ contains
       do i = 1, size(model%fixes)
          associate (fix => model%fixes(i))
             if (fix%field > DISPLACEMENTS .or. fix%acceleration) cycle
-            if (abs(fix%value) + abs(fix%value_slope) > 0.0_wp) moving = [moving, i]
+            if (abs(fix%value) + abs(fix%value_slope) <= 0.0_wp) cycle
+            ! One answer, though several stages move it.
+            if (any(model%fixes(moving)%group == fix%group .and. model%fixes(moving)%field == fix%field)) cycle
+            moving = [moving, i]
          end associate
       end do
       allocate (names(size(moving)))

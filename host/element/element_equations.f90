@@ -233,12 +233,14 @@ contains
             if (out%with_change) call add_response(shapes(g), DISPLACEMENTS, &
                change_of(domain, region, k(g), old%stress(:, p), pore_t(old%e(p), old%s(p), old%s_rate(p)), response), &
                change)
-            rate = sum(abs(scheme%c_v*k(g)%strain(1:3)))*gp%weight
             if (scheme%kind == DYNAMIC) call add_flight(domain, region, k(g), scheme, skeleton, shapes(g), out%stretch)
-            do i = 1, n_p
-               out%stretch(LAST_U + i) = out%stretch(LAST_U + i) + rate*abs(shapes(g)%m(i)) &
-                  + gp%weight*(drift(1)*abs(shapes(g)%m_r(i)) + drift(2)*abs(shapes(g)%m_z(i)))
-            end do
+            if (n_p > 0) then
+               rate = sum(abs(scheme%c_v*k(g)%strain(1:3)))*gp%weight
+               do i = 1, n_p
+                  out%stretch(LAST_U + i) = out%stretch(LAST_U + i) + rate*abs(shapes(g)%m(i)) &
+                     + gp%weight*(drift(1)*abs(shapes(g)%m_r(i)) + drift(2)*abs(shapes(g)%m_z(i)))
+               end do
+            end if
             if (with_tangent) call add_tangent(shapes(g), n_fields, tangent, sums%k)
          end associate
       end do
@@ -280,12 +282,11 @@ contains
       real(wp), intent(in) :: stress0(6)           !< Effective stress before the step [kPa].
       type(pore_t), intent(in) :: old
       real(wp), intent(in) :: response(PLACES)
-      real(wp) :: change(PLACES), pressure
+      real(wp) :: change(PLACES)
 
       change = 0.0_wp
-      pressure = k%w0 + (1 - old%s)*k%c0
       change(RR:RZ) = response(RR:RZ) - stress0(:4)
-      change(RR:TT) = change(RR:TT) + pressure
+      if (region%with_w) change(RR:TT) = change(RR:TT) + (k%w0 + (1 - old%s)*k%c0)
       change(U + 1:U + 2) = response(U + 1:U + 2)
       change(U + 2) = change(U + 2) - mixture_density(domain, region, old%e/(1 + old%e), old%s)*domain%gravity
    end function change_of

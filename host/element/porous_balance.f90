@@ -102,7 +102,7 @@ contains
       type(skeleton_t), intent(in) :: skeleton
       type(pore_t), intent(in) :: old
       type(pore_t), intent(out) :: new
-      type(mixture_t), intent(out) :: mix
+      type(mixture_t), intent(out) :: mix   !< Without water: porosity and slopes that are zero.
       type(saturation_t) :: before, after
       real(wp) :: l
 
@@ -118,6 +118,7 @@ contains
       mix%s_pc = 0.0_wp
       mix%rate_ev = 0.0_wp
       mix%rate_pc = 0.0_wp
+      if (.not. region%with_w) return
       if (region%with_c) then
          new%s = skeleton%s
          mix%s_ev = l*skeleton%ds_dev
@@ -161,10 +162,11 @@ contains
       if (region%stiffness_damping > 0.0_wp .and. scheme%kind == DYNAMIC .and. scheme%c_v > 0.0_wp) &
          l_s = l + region%stiffness_damping/scheme%dt
       associate (n => mix%n, s => mix%s, fluids => domain%fluids)
-         pressure = mix%p_w + (1 - s)*mix%p_c
+         pressure = 0.0_wp
          rho_n = -region%rho_s
          rho_s = 0.0_wp
          if (region%with_w) then
+            pressure = mix%p_w + (1 - s)*mix%p_c
             rho_n = rho_n + s*fluids%rho_w
             if (region%with_c) rho_n = rho_n + (1 - s)*mix%rho_a
             if (region%with_c) rho_s = n*(fluids%rho_w - mix%rho_a)
@@ -178,7 +180,7 @@ contains
          response(U + 1:U + 2) = rho*accel - k%source(1:2)
          if (.not. with_tangent) return
          tangent(1:4, 1:4) = l_s*skeleton%tangent
-         tangent(1:3, PW) = -l
+         if (region%with_w) tangent(1:3, PW) = -l
          tangent(U + 1, U + 1) = rho*scheme%c_a
          if (scheme%kind == DYNAMIC) tangent(U + 1, U + 1) = rho*(scheme%c_a + region%damping*scheme%c_v)
          tangent(U + 2, U + 2) = tangent(U + 1, U + 1)

@@ -41,6 +41,7 @@ module idle_keys
       rule_t('initial', 'surcharge', 'stress', '|geostatic|'), rule_t('initial', 'k_0', 'stress', '|geostatic|'), &
       rule_t('initial', 'k_0_of', 'stress', '|geostatic|'), &
       rule_t('fluids', 'k_a', 'gas', '|constant|'), rule_t('scene', 'effects_tolerance', 'effects', '|auto|'), &
+      rule_t('scene', 'effects_pilot_share', 'effects', '|auto|'), &
       rule_t('stage', 'rho_inf', 'analysis', '||quasi_static|dynamic|'), &
       rule_t('stage', 'start', 'analysis', '||dynamic|'), &
       rule_t('region', 'permeability', 'drainage', '|coupled|'), &

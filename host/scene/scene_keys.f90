@@ -32,6 +32,8 @@ module scene_keys
             'auto: pilots determine what the keys leave open, see host/README.md', 'given|auto'), &
       key_t('scene', 'effects_tolerance', 'n', '0.01', 1.0e-6_wp, 1, &
             'largest influence of an effect that is left out [-]'), &
+      key_t('scene', 'effects_pilot_share', 'n', '0.1', 0, BIG, &
+            'pilots of effects = ''auto'' may cost this share of the run [-]; else nothing is left out'), &
       key_t('scene', 'effects_on_warning', 'w', 'warn', 0, 0, &
             'action if an effect that pilots removed matters in the run', 'warn|stop'), &
       key_t('scene', 'without', 'W', NONE, 0, 0, 'effects that are taken out by hand', EFFECT_WORDS), &

@@ -192,6 +192,7 @@ contains
       scene%checkpoint_end = word_is(group, 'checkpoint_end', 'yes')
       scene%derive_effects = word_is(group, 'effects', 'auto')
       scene%effects_tolerance = number_of(group, 'effects_tolerance')
+      scene%effects_pilot_share = number_of(group, 'effects_pilot_share')
       scene%stop_on_warning = word_is(group, 'effects_on_warning', 'stop')
       scene%without = lower_case(texts_of(group, 'without'))
       scene%fields_by_hand = given(group, 'fields') .or. .not. scene%derive_effects

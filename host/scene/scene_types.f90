@@ -189,6 +189,7 @@ module scene_types
       logical :: derive_effects = .false.            !< Effects that the keys leave open are found by pilots.
       logical :: stop_on_warning = .false.           !< A warning about a removed effect ends the run.
       real(wp) :: effects_tolerance = 0.01_wp
+      real(wp) :: effects_pilot_share = 0.1_wp       !< Of the work of the run [-].
       character(LENGTH), allocatable :: without(:)   !< Effects that are taken out by hand.
       type(effect_t), allocatable :: effects(:)      !< What pilots have found; not allocated: none ran.
       logical :: fields_by_hand = .true., gravity_by_hand = .true., seepage_by_hand = .true.   !< these say it.

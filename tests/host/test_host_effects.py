@@ -14,7 +14,7 @@ import tables  # noqa: E402 (checking knows its folder)
 
 sys.path.insert(0, str(root / "verification/studies/effects"))
 import scenes  # noqa: E402
-from scenes import CURVE, DRAINED, WATER, column  # noqa: E402
+from scenes import AUTO, CURVE, DRAINED, WATER, column  # noqa: E402
 
 host = build / "host/mud_host"
 environment = {**os.environ, "OMP_NUM_THREADS": "1"}
@@ -77,7 +77,7 @@ check("wet: pilots' cost is told", re.search(r"\d+ pilots in \S+ s", said) and "
 inertia = table["inertia in load"]["on"] == "on"
 kind = "dynamic" if inertia else "quasi_static"
 run(column("gravity = 0 fields = 'u'", f"analysis = '{kind}' duration = 1000 dt = 10",
-           times="0, 1000", region="void_ratio = 0.8").replace("effects = 'auto'", ""), "dry")
+           times="0, 1000", region="void_ratio = 0.8").replace(AUTO, ""), "dry")
 for file in ("histories.csv", "ledger.csv"):
     check(f"wet: {file} as by hand, byte for byte",
           (work / "wet" / file).read_bytes() == (work / "dry" / file).read_bytes())
@@ -93,14 +93,14 @@ check("hands: its influence is told all the same", float(table["p_w"]["influence
 
 # `without` is the key of the effect, by hand.
 slow = dict(stage="analysis = 'dynamic' duration = 1 dt = 0.05", times="0, 1")
-by_word = column("gravity = 0 without = 'inertia'", **slow).replace("effects = 'auto'", "")
+by_word = column("gravity = 0 without = 'inertia'", **slow).replace(AUTO, "")
 by_key = by_word.replace(" without = 'inertia'", "").replace("'dynamic'", "'quasi_static'")
 run(by_word, "by_word")
 run(by_key, "by_key")
 check("without inertia: as quasi_static, byte for byte",
       (work / "by_word/histories.csv").read_bytes() == (work / "by_key/histories.csv").read_bytes())
 heavy = column("without = 'gravity' gravity = 9.81", **slow, more="&initial stress = 'geostatic' surface = 1 /")
-done = start(heavy.replace("effects = 'auto'", ""), "weightless")
+done = start(heavy.replace(AUTO, ""), "weightless")
 check("without gravity, but geostatic: refused with the reason",
       done.returncode == 2 and "gravity" in done.stderr and "geostatic" in done.stderr, done.stderr)
 
@@ -192,7 +192,7 @@ if done:
 
 # The whole scene without each effect, and with those that it does not have.
 _, table = run(column("gravity = 0", "analysis = 'quasi_static' duration = 1 dt = 0.1", times="0, 1").replace(
-    "effects = 'auto'", ""), "ledger", "--ablate", "--quiet")
+    AUTO, ""), "ledger", "--ablate", "--quiet")
 check("ablate: gravity was put in",
       table["gravity"]["in_scene"] == "no" and float(table["gravity"]["influence"]) > 0.1, table)
 check("ablate: so was inertia",
@@ -217,7 +217,7 @@ wetted = column("gravity = 0", "analysis = 'quasi_static' duration = 1 dt = 0.25
 _, table = run(wetted, "wetted", "--effects", "--quiet")
 is_on("wetted", table, "hysteresis", False, "hand")
 check("wetted: hysteresis is not tried by --effects", table["hysteresis"]["influence"] == "", table["hysteresis"])
-_, table = run(wetted.replace("effects = 'auto'", "fields = 'u-p_w-p_c'"), "wetted_ledger", "--ablate", "--quiet")
+_, table = run(wetted.replace(AUTO, "fields = 'u-p_w-p_c'"), "wetted_ledger", "--ablate", "--quiet")
 check("ablate: hysteresis was put in, and matters where soil is wetted", table["hysteresis"]["in_scene"] == "no"
       and float(table["hysteresis"]["influence"] or 0) > 0.01, table["hysteresis"])
 
@@ -240,8 +240,32 @@ check("a scene at rest: nothing to judge by", all(row["influence"] == "" for row
 check("a scene at rest: nothing goes", all((row["on"] == "on") == (row["in_scene"] == "yes")
                                            for row in table.values()), table)
 
+twice = pushed + ("&stage name = 'further' analysis = 'static' duration = 1 dt = 0.1 /\n"
+                  "&fix group = 'top_1' field = 'u_z' value = -0.005 history = 'ramp' stages = 'further' /\n")
+run(twice.replace("history = 'ramp' /\n&load", "history = 'ramp' stages = 'push' /\n&load"), "twice", "--effects", "--quiet")
+names = [row["answer"] for row in tables.rows(work / "twice/effects_answers.csv") if row["effect"] == "lode"]
+check("a support that two stages move is one answer", names.count("top_1.force_z") == 1, names)
+
+# Pilots may cost a tenth of the run: a small scene is run with everything, and says so; a larger one is asked.
+small = column("gravity = 0", "duration = 10 dt = 0.1", times="0, 10").replace(AUTO, "effects = 'auto'")
+said, table = run(small, "small")
+check("small: no pilot, and why", "pilots in" not in said and "No effect is left out: pilots" in said
+      and "effects_pilot_share" in said, said)
+check("small: everything stays", all(row["on"] == ("on" if row["in_scene"] == "yes" else "off") for row in table.values())
+      and table["inertia in load"]["on"] == "on", table)
+run(small.replace("effects = 'auto'", "").replace("duration = 10", "analysis = 'dynamic' duration = 10"), "small_by_hand")
+check("small: as with everything, byte for byte",
+      (work / "small/histories.csv").read_bytes() == (work / "small_by_hand/histories.csv").read_bytes())
+large = small.replace("r_cells = 1", "r_cells = 4").replace("duration = 10 dt = 0.1", "duration = 10 dt = 0.014")
+said, table = run(large, "large")
+is_on("large", table, "inertia in load", False)
+check("large: pilots ran within the share", re.search(r"of these \S+ s for pilots", said) and
+      "No effect is left out" not in said, said)
+said, table = run(small, "small_asked", "--effects")
+check("small: --effects runs pilots all the same", table["inertia in load"]["influence"] != "", table)
+
 # Mistakes.
-for what, text, words in [("no analysis", column("gravity = 0").replace("effects = 'auto'", ""),
+for what, text, words in [("no analysis", column("gravity = 0").replace(AUTO, ""),
                            ("needs analysis", "quasi_static")),
                           ("unknown word", column("").replace("'auto'", "'all'"), ("given|auto",)),
                           ("unknown effect", column("without = 'wind'"), ("wind", "gravity|contact")),

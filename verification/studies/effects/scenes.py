@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Scenes that a careless choice of effects spoils, and scenes that need few of them. Every scene leaves open what it can
-(`effects = 'auto'`): fields, gravity, inertia and the switches of the material."""
+(`effects = 'auto'`): fields, gravity, inertia and the switches of the material. They are small, so that pilots may cost as
+much as they like."""
 from dataclasses import dataclass
+
+AUTO = "effects = 'auto' effects_pilot_share = 1e6"
 
 ELASTIC = "&elastic name = 'soil' young = 1.0e4 poisson = 0.25 /"
 WATER = "&permeability name = 'k' intrinsic = {k} law = 'constant' /"
@@ -19,7 +22,7 @@ def column(keys="", stage="duration = 10", times="0, 10", values="0, 1", load=10
     pressed = (f"&history name = 'h' times = {times} values = {values} /\n"
                f"&load group = 'top' kind = 'pressure' value = {load} history = 'h' /") if load else ""
     regions = region if "&region" in region else f"&region material = 'soil' {region} /"
-    return f"""&scene name = 'column' geometry = 'plane_strain' effects = 'auto' {keys} /
+    return f"""&scene name = 'column' geometry = 'plane_strain' {AUTO} {keys} /
 &mesh r = 0, {height / 10} r_cells = 1 z = {breaks} z_cells = {z_cells or cells} /
 {soil}
 {laws}
@@ -34,7 +37,7 @@ def column(keys="", stage="duration = 10", times="0, 10", values="0, 1", load=10
 """
 
 
-CANTILEVER = """&scene name = 'cantilever' geometry = 'plane_strain' effects = 'auto' /
+CANTILEVER = f"""&scene name = 'cantilever' geometry = 'plane_strain' {AUTO} /
 &mesh r = 0, 10 r_cells = 40 z = -0.1, 0.1 z_cells = 2 /
 &elastic name = 'soil' young = 3.0e7 poisson = 0.2 /
 &region material = 'soil' void_ratio = 0.01 rho_s = 2.4 /
@@ -46,7 +49,7 @@ CANTILEVER = """&scene name = 'cantilever' geometry = 'plane_strain' effects = '
 &point name = 'tip' r = 10 z = 0 /
 """
 
-SLAB = """&scene name = 'slab' geometry = 'plane_strain' effects = 'auto' gravity = 0 /
+SLAB = f"""&scene name = 'slab' geometry = 'plane_strain' {AUTO} gravity = 0 /
 &mesh r = 0, 2 r_cells = 12 z = 0, 0.2 z_cells = 3 /
 &elastic name = 'soil' young = 2.0e5 poisson = 0.25 /
 &retention name = 'c' P_a = 5 omega = 0 n = 2 m = 1 /
