@@ -17,10 +17,11 @@ contains
       type(pilots_account_t), intent(in) :: account
 
       if (account%runs > 0) write (unit, '(a)') whole(account%runs)//' pilots in '//short(account%seconds)// &
-         ' s: cells '//whole(account%cells)//' times, steps '//whole(account%steps)//' times as long as those of the scene.'
+         ' s: cells '//whole(account%cells)//' times, steps '//whole(account%steps)// &
+         ' times as long as those of the scene.'
       if (account%too_dear) write (unit, '(a)') 'No effect is left out: pilots that find out which may go would '// &
-         'cost at least '//short(100*account%planned/max(account%run_work, tiny(1.0_wp)))//' % of the run, more than '// &
-         'effects_pilot_share allows. mud_host --effects runs them all the same.'
+         'cost at least '//short(100*account%planned/max(account%run_work, tiny(1.0_wp)))//' % of the run, '// &
+         'more than effects_pilot_share allows. mud_host --effects runs them all the same.'
       if (account%own_error_known) write (unit, '(a)') 'The pilot''s own error, '// &
          'against pilots with steps, and cells, twice as long: '// &
          short(100*account%own_error%share)//' % of '//trim(account%own_error%answer)//'.'

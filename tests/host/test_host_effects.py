@@ -242,7 +242,8 @@ check("a scene at rest: nothing goes", all((row["on"] == "on") == (row["in_scene
 
 twice = pushed + ("&stage name = 'further' analysis = 'static' duration = 1 dt = 0.1 /\n"
                   "&fix group = 'top_1' field = 'u_z' value = -0.005 history = 'ramp' stages = 'further' /\n")
-run(twice.replace("history = 'ramp' /\n&load", "history = 'ramp' stages = 'push' /\n&load"), "twice", "--effects", "--quiet")
+twice = twice.replace("history = 'ramp' /\n&load", "history = 'ramp' stages = 'push' /\n&load")
+run(twice, "twice", "--effects", "--quiet")
 names = [row["answer"] for row in tables.rows(work / "twice/effects_answers.csv") if row["effect"] == "lode"]
 check("a support that two stages move is one answer", names.count("top_1.force_z") == 1, names)
 
