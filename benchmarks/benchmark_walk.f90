@@ -10,9 +10,11 @@ module benchmark_walk
    use mud_params, only: params_t, read_params
    use mud_rates, only: rate_t, rate_at, MODE_ORDINARY
    use mud_status, only: mud_status_t
+   use mud_tensor, only: ddot, norm
    implicit none (type, external)
    private
-   public :: wp, path_t, PATHS, path_named, tally_t, walk, walk_batch, evaluate_rates, number_of_updates
+   public :: wp, path_t, PATHS, path_named, tally_t, walk, walk_batch, evaluate_rates, met_rates_t, &
+             meet_rates, evaluate_met_rates, number_of_updates
 
    integer, parameter :: wp = c_double, WORDS = 128   !< Room for PROPS and STATEV.
    real(wp), parameter :: RIGHT_ANGLE = acos(0.0_wp)
@@ -45,6 +47,13 @@ module benchmark_walk
       integer(int64) :: nanoseconds = 0
       integer :: rates = 0, updates = 0
    end type tally_t
+
+   !> Arguments of a rate that a random walk has met.
+   type :: met_rates_t
+      type(params_t) :: par
+      real(wp) :: stress(6), void_ratio, z(6), r_in(6), d_strain(6)
+   end type met_rates_t
+   integer, parameter :: MET = 400   !< So many of each kind.
 
    !> struct timespec and the clocks of POSIX, as Linux numbers them. A thread's own time does not run while another
    !> program has the processor; a batch is timed by the clock on the wall.
@@ -251,6 +260,115 @@ contains
       if (.not. w%loading .or. .not. abs(checksum) > 0.0_wp) error stop 'benchmark: a rate is not plastic'
       tally = tally_t(after - before, evaluations, evaluations)
    end subroutine evaluate_rates
+
+   !> Rates on saturated walks of random increments of 1e-3, compression positive. rates(:, 1) have one root of the
+   !> direction equation for certain, of rates(:, 2) the arc crosses the floor or a cap: docs/theory/material.md 4.6.
+   subroutine meet_rates(rates)
+      type(met_rates_t), intent(out) :: rates(MET, 2)
+      integer, parameter :: LENGTH = 40
+      type(path_t) :: begin
+      type(met_rates_t) :: one
+      type(mud_status_t) :: status
+      type(rate_t) :: w
+      type(mud_report) :: report
+      real(wp) :: props(WORDS), stress(6), statev(WORDS)
+      integer(c_int) :: n_props, n_statev, code
+      integer :: i, kind, count(2), fabric, memory, e
+      integer(int64) :: seed
+
+      fabric = mud_index(MUD_STATEV, 'fabric_11'//c_null_char)
+      memory = mud_index(MUD_STATEV, 'memory_11'//c_null_char)
+      e = mud_index(MUD_STATEV, 'void_ratio'//c_null_char) + 1
+      seed = 1
+      count = 0
+      i = 0
+      do while (any(count < MET))
+         if (mod(i, LENGTH) == 0) then
+            begin = path_t('walk', 10.0_wp**(1.3_wp + 1.4_wp*share(seed))*EQUAL, 0.0_wp, 0.0_wp, UNDRAINED, UNDRAINED, &
+                           0.0_wp)
+            begin%void_ratio = 0.65_wp + 0.25_wp*share(seed)
+            call start(begin, 1, 1.0e-5_wp, .false., props, n_props, stress, statev, n_statev)
+            call read_params(props(1:n_props), one%par, status)
+         end if
+         i = i + 1
+         one%stress = -stress
+         one%void_ratio = statev(e)
+         one%z = statev(fabric + 1:fabric + 6)
+         one%r_in = statev(memory + 1:memory + 6)
+         one%d_strain = random_strain(seed)
+         call evaluate(one, w)
+         kind = merge(2, 1, may_cross(one%par, w))
+         if (w%loading .and. w%x >= 0.0_wp .and. count(kind) < MET) then
+            count(kind) = count(kind) + 1
+            rates(count(kind), kind) = one
+         end if
+         code = mud_update(props, n_props, stress, statev, n_statev, -one%d_strain*[1, 1, 1, 2, 2, 2], 0.0_wp, 0.0_wp, &
+                           MUD_TANGENT_NONE, stress, statev, report=report)
+         if (code /= 0) error stop 'benchmark: an update failed'
+      end do
+   end subroutine meet_rates
+
+   !> True unless x is below the floor on the whole arc, or twice above it at both ends, and no cap acts.
+   pure logical function may_cross(par, w)
+      type(params_t), intent(in) :: par
+      type(rate_t), intent(in) :: w
+      real(wp) :: n_t(6), q(6), x_t, x_q
+
+      n_t = w%t/w%t_norm
+      q = w%r - ddot(w%r, n_t)*n_t
+      x_t = ddot(w%r_moved, n_t)
+      x_q = ddot(w%r_moved, q)/max(norm(q), tiny(x_q))
+      may_cross = w%capped_d .or. w%capped_h .or. &
+                  .not. (x_t**2 + x_q**2 < par%x_floor**2 .or. min(x_t, w%x) > 2.0_wp*par%x_floor)
+   end function may_cross
+
+   subroutine evaluate(this, w)
+      type(met_rates_t), intent(in) :: this
+      type(rate_t), intent(inout) :: w
+
+      call rate_at(this%par, .false., this%stress, this%void_ratio, 0.0_wp, this%z, this%r_in, this%d_strain, 0.0_wp, &
+                   MODE_ORDINARY, w)
+   end subroutine evaluate
+
+   !> The rates of one kind, one after the other.
+   subroutine evaluate_met_rates(rates, tally)
+      type(met_rates_t), intent(in) :: rates(:)
+      type(tally_t), intent(out) :: tally
+      type(rate_t) :: w
+      real(wp) :: checksum
+      integer(int64) :: before
+      integer :: i
+
+      checksum = 0.0_wp
+      before = now(OF_THIS_THREAD)
+      do i = 1, size(rates)
+         call evaluate(rates(i), w)
+         checksum = checksum + abs(w%d_p)
+      end do
+      tally = tally_t(now(OF_THIS_THREAD) - before, size(rates), size(rates))
+      if (.not. checksum > 0.0_wp) error stop 'benchmark: a rate is not plastic'
+   end subroutine evaluate_met_rates
+
+   !> A random strain of norm 1e-3, most of it deviatoric.
+   function random_strain(seed) result(strain)
+      integer(int64), intent(inout) :: seed
+      real(wp) :: strain(6)
+      integer :: i
+
+      do i = 1, 6
+         strain(i) = share(seed) - 0.5_wp
+      end do
+      strain(1:3) = strain(1:3) - 0.3_wp*sum(strain(1:3))
+      strain = 1.0e-3_wp*strain/norm(strain)
+   end function random_strain
+
+   !> A random number in (0, 1): Park & Miller, Comm. ACM 31 (1988).
+   real(wp) function share(seed)
+      integer(int64), intent(inout) :: seed
+
+      seed = mod(16807_int64*seed, 2147483647_int64)
+      share = real(seed, wp)/2147483647.0_wp
+   end function share
 
    integer(int64) function now(clock)
       integer(c_int), intent(in) :: clock

@@ -11,7 +11,8 @@
 !> ratio is the median of the rounds' own ratios. A batch is timed by the clock on the wall, which other programs on the
 !> same processors lengthen at will: of its rounds the least counts.
 program mud_benchmark
-   use benchmark_walk, only: wp, path_t, PATHS, path_named, tally_t, walk, walk_batch, evaluate_rates
+   use benchmark_walk, only: wp, path_t, PATHS, path_named, tally_t, walk, walk_batch, evaluate_rates, &
+      met_rates_t, meet_rates, evaluate_met_rates
    implicit none (type, external)
 
    !> One row of the table and what its rounds took.
@@ -27,8 +28,11 @@ program mud_benchmark
 
    character(*), parameter :: SCHEME_NAMES(0:3) = ['-   ', 'ME21', 'BS32', 'DP54']
    character(*), parameter :: TANGENT_NAMES(0:3) = ['none      ', 'elastic   ', 'continuum ', 'consistent']
+   !> Rates that random walks meet, by what their arc of directions crosses.
+   character(24), parameter :: MET_KINDS(2) = ['walk_one_root           ', 'walk_floor_or_cap       ']
    integer, parameter :: POINTS = 400, EVALUATIONS = 200
    type(variant_t), allocatable :: variants(:)
+   type(met_rates_t) :: met(400, size(MET_KINDS))
    integer :: rounds
 
    rounds = 21
@@ -76,6 +80,10 @@ contains
       do i = 1, size(PATHS)
          variants = [variants, variant_t('rate', PATHS(i), reference=size(variants) + 1)]
       end do
+      do i = 1, size(MET_KINDS)
+         variants = [variants, variant_t('rate', path_t(MET_KINDS(i), 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp), &
+                                         reference=size(PATHS) + 1)]
+      end do
       do j = 1, size(STRAINS)
          do i = 1, size(PATHS)
             do scheme = 1, 3
@@ -122,6 +130,7 @@ contains
    subroutine run()
       integer :: i, round
 
+      call meet_rates(met)
       do i = 1, size(variants)
          allocate (variants(i)%ns(rounds))
       end do
@@ -130,7 +139,11 @@ contains
             associate (v => variants(i))
                select case (v%door)
                case ('rate')
-                  call evaluate_rates(v%path, EVALUATIONS, v%tally)
+                  if (any(v%path%name == MET_KINDS)) then
+                     call evaluate_met_rates(met(:, findloc(MET_KINDS, v%path%name, dim=1)), v%tally)
+                  else
+                     call evaluate_rates(v%path, EVALUATIONS, v%tally)
+                  end if
                case ('batch')
                   call walk_batch(v%path, v%strain, v%scheme, v%tolerance, v%tangent, v%threads, POINTS, v%tally)
                case default
