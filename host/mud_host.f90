@@ -182,6 +182,8 @@ contains
          if (model%stages(i)%kind /= STATIC) write (output_unit, '(a)') 'Stage '//trim(model%stages(i)%name)//': '// &
             trim(merge('dynamic     ', 'quasi_static', model%stages(i)%kind == DYNAMIC))//', rho_inf '// &
             short(model%stages(i)%rho_inf)//'.'
+         if (model%stages(i)%controlled) write (output_unit, '(a)') 'Stage '//trim(model%stages(i)%name)// &
+            ': steps are controlled by their error, accuracy '//short(100*model%stages(i)%accuracy)//' %.'
       end do
       if (scene%derive_effects .and. only_check) write (output_unit, '(a)') 'effects = ''auto'': pilots find out '// &
          'what the keys leave open when the run begins; --effects shows it without a run.'

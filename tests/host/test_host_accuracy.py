@@ -99,6 +99,9 @@ done = run(written("free", free), work / "free")
 t, p = history(work / "free", "time"), history(work / "free", "base.p_w")
 true = np.max(np.abs(p - np.interp(t, history(work / "plain", "time"), history(work / "plain", "base.p_w"))))/np.ptp(p)
 check("consolidation without dt", done.returncode == 0 and len(t) < 150 and true < 1e-2, (done.stderr, len(t), true))
+check("consolidation without dt: the accuracy is told",
+      "Stage consolidation: steps are controlled by their error, accuracy 1 %." in done.stdout, done.stdout)
+check("given steps: no accuracy is told", "are controlled" not in run(TERZAGHI, work / "told", "--check").stdout)
 # Where nothing is sudden the first step is not so short that what it changes drowns in rounding.
 RAIN = root / "verification/studies/cost/scenes/rain.nml"
 done = run(written("rain", RAIN.read_text().replace("   dt = 100\n", "")), work / "rain", "--accuracy", "1e-3")
