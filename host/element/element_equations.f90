@@ -149,7 +149,7 @@ contains
       type(state_t), intent(in) :: old, new
       type(shapes_t), intent(in) :: shapes(:)     !< As many as points, or more.
       type(kinematics_t), intent(inout) :: k(:)   !< Likewise.
-      real(wp) :: x0(FIELDS, 6), x1(FIELDS, 6), v(FIELDS, 6), a(2, 6)
+      real(wp) :: x0(FIELDS, 6), x1(FIELDS, 6), v(FIELDS, 6), a(2, 6), v0(DISPLACEMENTS, 6)
       integer :: g, node(6), n_p
 
       node = domain%mesh%t6(:, element)
@@ -157,8 +157,8 @@ contains
       x1 = new%x(:, node)
       a = 0.0_wp
       if (scheme%kind == DYNAMIC) a = old%a(:, node) + scheme%l_a*(new%a(:, node) - old%a(:, node))
-      v(:DISPLACEMENTS, :) = old%v(:DISPLACEMENTS, node) &
-         + scheme%l_v*(new%v(:DISPLACEMENTS, node) - old%v(:DISPLACEMENTS, node))
+      v0 = old%v(:DISPLACEMENTS, node)
+      v(:DISPLACEMENTS, :) = v0 + scheme%l_v*(new%v(:DISPLACEMENTS, node) - v0)
       n_p = domain%n_carriers(element)
       v(AT_P_W:, :) = 0.0_wp
       if (n_p > 0) v(AT_P_W:, :) = old%v(AT_P_W:, node) + scheme%l_p*(new%v(AT_P_W:, node) - old%v(AT_P_W:, node))
@@ -174,7 +174,7 @@ contains
             call look(shapes(g), n_p > 0, region%with_c, scheme, x0, x1, v, a, k(g))
             if (region%drainage /= COUPLED) call add_given(given_pressures_at(domain, element, g), k(g))
             k(g)%speed = 0.0_wp
-            if (scheme%kind == DYNAMIC) k(g)%velocity = matmul(old%v(:DISPLACEMENTS, node), gp%n)
+            if (scheme%kind == DYNAMIC) k(g)%velocity = matmul(v0, gp%n)
             if (region%damping > 0.0_wp .and. scheme%kind == DYNAMIC) k(g)%speed = matmul(v(:DISPLACEMENTS, :), gp%n)
             k(g)%source = 0.0_wp
             if (associated(domain%source)) &

@@ -208,7 +208,7 @@ contains
          assembly%floor(i) = stretches
       end do
       !$omp end do
-      if (with_tangent) then
+      if (with_tangent .and. threads > 1) then
          !$omp do schedule(static)
          do i = 1, size(pattern%col)
             total = 0.0_wp
@@ -220,5 +220,11 @@ contains
          !$omp end do
       end if
       !$omp end parallel
+      if (.not. with_tangent .or. threads > 1) return
+      ! One thread adds element after element, the same sums in the same order in fewer instructions.
+      assembly%values = 0.0_wp
+      do j = 1, size(pattern%place)
+         assembly%values(pattern%place(j)) = assembly%values(pattern%place(j)) + assembly%k(j)
+      end do
    end subroutine add_up
 end module equation_assembly

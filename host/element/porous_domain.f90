@@ -13,7 +13,7 @@ module porous_domain
    implicit none (type, external)
    private
    public :: domain_t, region_t, fluids_t, gauss_t, state_t, source_i, prepare_domain, new_state_of, copy_state, &
-             mixture_density, given_pressures_at, pressures_at
+             take_over, mixture_density, given_pressures_at, pressures_at
    public :: COUPLED, DRAINED, UNDRAINED, DRY
 
    ! What the fluids in the pores of a region do, in the order of the words of &region drainage.
@@ -249,6 +249,27 @@ contains
       if (region%with_w) mixture_density = mixture_density + n*s*domain%fluids%rho_w
       if (region%with_c) mixture_density = mixture_density + n*(1 - s)*domain%fluids%rho_a
    end function mixture_density
+
+   !> A state that is accepted takes the place of the one before. What is large changes hands: `new` is left with
+   !> stresses and state variables of the step before, all of which a pass by the material writes.
+   subroutine take_over(new, state)
+      type(state_t), intent(inout) :: new, state
+      real(wp), allocatable :: stress(:, :), variables(:)
+
+      call move_alloc(state%stress, stress)
+      call move_alloc(new%stress, state%stress)
+      call move_alloc(stress, new%stress)
+      call move_alloc(state%state, variables)
+      call move_alloc(new%state, state%state)
+      call move_alloc(variables, new%state)
+      state%time = new%time
+      state%x(:, :) = new%x
+      state%v(:, :) = new%v
+      state%a(:, :) = new%a
+      state%e(:) = new%e
+      state%s(:) = new%s
+      state%s_rate(:) = new%s_rate
+   end subroutine take_over
 
    !> Copies without allocating anew. Both must have the same extents.
    subroutine copy_state(from, to)

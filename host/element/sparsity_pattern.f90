@@ -12,6 +12,7 @@ module sparsity_pattern
       integer, allocatable :: col(:)      !< Ascending in every row.
       integer, allocatable :: first(:)    !< (entries + 1) where the sources of every entry begin
       integer, allocatable :: source(:)   !< Place in the square matrices of the elements, one behind the other, from 1
+      integer, allocatable :: place(:)    !< The other way round: the entry to which every place adds
       integer, allocatable :: before(:)   !< (elements + 1) Entries of these before those of an element.
       integer, allocatable :: r_first(:), r_source(:)   !< The same for the vector r(m, elements).
    end type pattern_t
@@ -82,6 +83,7 @@ contains
                pattern%first(k + 1) = pattern%first(k) + users(k)
             end do
             allocate (count_of(used), source=0)
+            allocate (pattern%place(sum(users)))
          end if
          do i = 1, n
             do k = pattern%row(i), pattern%row(i + 1) - 1
@@ -96,6 +98,7 @@ contains
                         users(at) = users(at) + 1
                      else
                         pattern%source(pattern%first(at) + count_of(at)) = a + m_of(e)*(j - 1) + pattern%before(e)
+                        pattern%place(a + m_of(e)*(j - 1) + pattern%before(e)) = at
                         count_of(at) = count_of(at) + 1
                      end if
                   end associate

@@ -171,10 +171,11 @@ contains
       type(state_t), intent(in) :: old, new
       real(wp), intent(in) :: du(DISPLACEMENTS, 6)   !< [m]
       type(work_t), intent(inout) :: work
-      real(wp) :: strain(4), p(2), middle(2, 6), s, n, rho, push(DISPLACEMENTS)
+      real(wp) :: strain(4), p(2), middle(2, 6), s, n, rho, push(DISPLACEMENTS), dv(DISPLACEMENTS, 6)
       integer :: g, at, node(6)
 
       node = domain%mesh%t6(:, e)
+      dv = new%v(:DISPLACEMENTS, node) - old%v(:DISPLACEMENTS, node)
       associate (carriers => domain%carriers(:domain%n_carriers(e), e))
          middle(:, :size(carriers)) = 0.5_wp*(old%x(AT_P_W:, carriers) + new%x(AT_P_W:, carriers))
       end associate
@@ -194,8 +195,7 @@ contains
             work%gravity = work%gravity - gp%weight*rho*domain%gravity*dot_product(gp%n, du(2, :))
             if (scheme%kind /= DYNAMIC) cycle
             push = gp%weight*rho*matmul(du, gp%n)
-            work%inertia = work%inertia + dot_product(push, matmul(new%v(:DISPLACEMENTS, node) &
-                                                                   - old%v(:DISPLACEMENTS, node), gp%n))/scheme%dt
+            work%inertia = work%inertia + dot_product(push, matmul(dv, gp%n))/scheme%dt
             if (region%damping > 0.0_wp) work%damping = work%damping + region%damping &
                *dot_product(push, 0.5_wp*matmul(old%v(:DISPLACEMENTS, node) + new%v(:DISPLACEMENTS, node), gp%n))
             if (region%stiffness_damping > 0.0_wp) work%damping = work%damping + gp%weight/scheme%dt &

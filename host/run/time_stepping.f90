@@ -8,7 +8,7 @@ module time_stepping
    use convergence, only: control_t, log_t
    use generalised_alpha, only: scheme_t, make_scheme, step_error
    use model_types, only: model_t
-   use porous_domain, only: copy_state
+   use porous_domain, only: copy_state, take_over
    use run_observer, only: run_observer_t, step_report_t
    use run_state, only: run_t
    use sparse_factors, only: release
@@ -118,7 +118,7 @@ contains
                                 at%t_start + stage%duration - run%next%time <= LAST_STEP*dt, log)
          if (allocated(run%monitor%table)) call watch_effects(model, report, run, fault, observer)
          call keep_step(model, stage, dt, run)
-         call copy_state(run%next, run%state)
+         call take_over(run%next, run%state)
          if (.not. stage%controlled) at%nominal = min(at%nominal*stage%dt_growth, max(stage%dt_max, stage%dt))
          at%good = at%good + 1
          if (at%good >= GOOD_STEPS .and. at%factor < 1.0_wp) then
