@@ -163,20 +163,24 @@ contains
       type(initial_t), intent(in) :: initial
       real(wp), intent(in) :: z
       type(saturation_t) :: sat
-      real(wp) :: at, step, n, p_a, rho_a
+      real(wp) :: at, step, n, p_a, p_c, p_c_before, rho_a
       integer :: i
 
       weight = 0.0_wp
+      p_c_before = huge(p_c_before)
       step = (initial%surface - z)/SLICES
       associate (m => model%domain, region => model%domain%regions(model%domain%region_of(element)))
          n = region%void_ratio/(1 + region%void_ratio)
          do i = 1, SLICES
             at = z + (i - 0.5_wp)*step
             weight = weight + (1 - n)*region%rho_s
-            if (region%with_c) sat = region%law%retention(suction(initial, at), region%void_ratio)
+            p_c = suction(initial, at)
+            ! a suction that is the same all over has one degree of saturation
+            if (region%with_c .and. abs(p_c - p_c_before) > 0.0_wp) sat = region%law%retention(p_c, region%void_ratio)
+            p_c_before = p_c
             if (region%with_c .and. initial%saturation > 0.0_wp) sat%s = initial%saturation
             rho_a = m%fluids%rho_a
-            p_a = water(initial, at) + suction(initial, at)
+            p_a = water(initial, at) + p_c
             if (m%fluids%ideal_gas) rho_a = rho_a*(1 + p_a/m%fluids%p_ref)
             if (region%with_w) weight = weight + n*(sat%s*m%fluids%rho_w + (1 - sat%s)*rho_a)
          end do

@@ -37,24 +37,25 @@ contains
    !> Rate at a vector of the integration and a pseudo-time; void ratio and suction follow from the latter exactly. time
    !> and r_in [-], y [kPa, -, -] for sigma', z and plastic shear; units of w as in rate_t. Guards that act are counted,
    !> nothing is refused. docs/theory/integration.md section 1.
-   pure subroutine rate_of(par, inc, time, y, r_in, mode, w, counters)
+   pure subroutine rate_of(par, inc, time, y, r_in, mode, w, counters, near)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       real(wp), intent(in) :: time, y(NY), r_in(6)
       integer, intent(in) :: mode
       type(rate_t), intent(inout) :: w
       type(counters_t), intent(inout) :: counters
+      type(rate_t), intent(in), optional :: near   !< As rate_at has it.
       real(wp) :: loading(6), aside(6)
 
       if (has_aside(inc, mode)) then
          call loading_strain(inc, mode, time, loading, aside)
          call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), suction_at(inc, time), y(7:12), r_in, &
-                      loading, inc%d_pc, mode, w)
+                      loading, inc%d_pc, mode, w, near)
          w%d_p = w%d_p + w%k*trace(aside)
          w%d_sigma = w%d_sigma + 2.0_wp*w%g*deviator(aside) + (w%k*trace(aside))*IDENTITY
       else
          call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), suction_at(inc, time), y(7:12), r_in, &
-                      inc%d_strain, inc%d_pc, mode, w)
+                      inc%d_strain, inc%d_pc, mode, w, near)
       end if
       counters%rate = counters%rate + 1
       if (w%floored .and. par%floored) counters%floor = counters%floor + 1

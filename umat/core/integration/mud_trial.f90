@@ -58,7 +58,7 @@ contains
       do i = 2, inc%scheme%stages
          call stage_point(inc%scheme, i, trial%y0, trial%rates, h, y)
          call rate_of(par, inc, trial%time + inc%scheme%node(i)*h, y, trial%r_in, trial%mode, trial%w(i), &
-                      counters)
+                      counters, trial%w(1))
          call store_rate(trial%w(i), trial%rates(:, i))
          if (trial%relaxation%speed > 0.0_wp) call relax(trial%relaxation, h, trial%rates(:, 1:i))
       end do

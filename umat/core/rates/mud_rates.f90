@@ -51,7 +51,7 @@ contains
    !> Rates of stress, fabric and plastic shear for a strain rate and a suction rate. Compression positive, tensor
    !> shear. docs/theory/material.md sections 4 and 5; nothing is refused, w%no_root tells that no direction was found
    !> and the rate is elastic.
-   pure subroutine rate_at(par, bonded, sigma, e, p_c, z, r_in, d_strain, d_pc, mode, w)
+   pure subroutine rate_at(par, bonded, sigma, e, p_c, z, r_in, d_strain, d_pc, mode, w, near)
       type(params_t), intent(in) :: par
       logical, intent(in) :: bonded             !< Suction bonding acts in this update.
       real(wp), intent(in) :: sigma(6)          !< sigma' [kPa]
@@ -62,6 +62,7 @@ contains
       real(wp), intent(in) :: d_pc              !< suction rate [kPa]
       integer, intent(in) :: mode               !< MODE_*
       type(rate_t), intent(inout) :: w          !< All of it is set.
+      type(rate_t), intent(in), optional :: near   !< A rate of nearly the same state: its direction is where to begin.
       real(wp) :: d_v, d_e(6), d_norm
 
       d_v = trace(d_strain)
@@ -70,6 +71,10 @@ contains
       call evaluate_point(par, bonded, sigma, e, p_c, z, r_in, w)
 
       w%loading = .false.
+      if (present(near)) then
+         w%loading = near%loading
+         w%n = near%n
+      end if
       w%iso_kept = .false.
       w%iso_active = .false.
       w%k_e = w%k
