@@ -80,7 +80,7 @@ contains
       integer :: n
 
       n = 0
-      if (exponent > 0.0_wp .and. exponent <= MOST_FACTORS) n = nint(exponent)
+      if (exponent > 0.0_wp .and. exponent <= MOST_FACTORS) n = int(exponent)
       if (n > 0 .and. abs(exponent - n) <= 0.0_wp) then
          power = x**n
       else

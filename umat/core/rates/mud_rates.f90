@@ -72,7 +72,7 @@ contains
 
       w%loading = .false.
       if (present(near)) then
-         w%loading = near%loading
+         w%loading = near%loading .and. .not. near%several   ! of several roots the first counts
          w%n = near%n
       end if
       w%iso_kept = .false.
