@@ -5,8 +5,8 @@ module element_equations
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
    use kinds, only: wp
    use material_point, only: response_t, report_t, MOST_POINTS
-   use element_sums, only: sums_t, shapes_t, shapes_of, clear_sums, add_response, add_tangent, residual_of, matrix_of
-   use porous_domain, only: domain_t, region_t, state_t, mixture_density, given_pressures_at, COUPLED
+   use element_sums, only: sums_t, clear_sums, add_response, add_tangent, residual_of, matrix_of
+   use porous_domain, only: domain_t, region_t, state_t, gauss_t, mixture_density, given_pressures_at, COUPLED
    use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, PLACES, RR, TT, RZ, U
    use generalised_alpha, only: scheme_t, DYNAMIC
    use carried_slopes, only: slopes_t, keep_slopes, follow_slopes, same_again, BY_MATERIAL, BY_SLOPES
@@ -62,7 +62,6 @@ contains
       type(response_t) :: material
       type(kinematics_t) :: k(MOST_POINTS)
       real(wp), dimension(MOST_POINTS) :: suction, d_suction
-      type(shapes_t) :: shapes(MOST_POINTS)
       real(wp) :: strain(6, MOST_POINTS)
       integer :: g, n
 
@@ -70,10 +69,7 @@ contains
       out%replaced = 0
       out%rate_evaluations = 0
       out%seconds = 0.0_wp
-      do g = 1, domain%rule
-         call shapes_of(domain%gauss(g, element), domain%n_carriers(element), shapes(g))
-      end do
-      call look_at_nodes(domain, element, scheme, old, new, shapes, k)
+      call look_at_nodes(domain, element, scheme, old, new, k)
       do g = 1, domain%rule
          ! Also where it is not a number.
          if (all(abs(k(g)%strain) <= 1.0_wp)) cycle
@@ -90,7 +86,7 @@ contains
       end do
       call ask_points(domain, element, old, new, strain, suction, d_suction, with_tangent, slopes, material, out)
       if (out%bad_point > 0) return
-      call add_points(domain, element, scheme, shapes, k, material, old, new, with_tangent, out)
+      call add_points(domain, element, scheme, k, material, old, new, with_tangent, out)
    end subroutine compute_element
 
    !> Stress, saturation and void ratio at the points of an element, and their slopes.
@@ -142,13 +138,12 @@ contains
    end subroutine ask_points
 
    !> What the nodes say about the points of an element.
-   subroutine look_at_nodes(domain, element, scheme, old, new, shapes, k)
+   subroutine look_at_nodes(domain, element, scheme, old, new, k)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
       type(scheme_t), intent(in) :: scheme
       type(state_t), intent(in) :: old, new
-      type(shapes_t), intent(in) :: shapes(:)     !< As many as points, or more.
-      type(kinematics_t), intent(inout) :: k(:)   !< Likewise.
+      type(kinematics_t), intent(inout) :: k(:)   !< As many as points, or more.
       real(wp) :: x0(FIELDS, 6), x1(FIELDS, 6), v(FIELDS, 6), a(2, 6), v0(DISPLACEMENTS, 6)
       integer :: g, node(6), n_p
 
@@ -171,7 +166,7 @@ contains
       end if
       do g = 1, domain%rule
          associate (gp => domain%gauss(g, element), region => domain%regions(domain%region_of(element)))
-            call look(shapes(g), n_p > 0, region%with_c, scheme, x0, x1, v, a, k(g))
+            call look(gp, n_p > 0, region%with_c, scheme, x0, x1, v, a, k(g))
             if (region%drainage /= COUPLED) call add_given(given_pressures_at(domain, element, g), k(g))
             k(g)%speed = 0.0_wp
             if (scheme%kind == DYNAMIC) k(g)%velocity = matmul(v0, gp%n)
@@ -184,11 +179,10 @@ contains
    end subroutine look_at_nodes
 
    !> The balances at the points, added up over the element.
-   subroutine add_points(domain, element, scheme, shapes, k, material, old, new, with_tangent, out)
+   subroutine add_points(domain, element, scheme, k, material, old, new, with_tangent, out)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
       type(scheme_t), intent(in) :: scheme
-      type(shapes_t), intent(in) :: shapes(:)
       type(kinematics_t), intent(in) :: k(:)
       type(response_t), intent(in) :: material
       type(state_t), intent(in) :: old
@@ -229,19 +223,19 @@ contains
             new%e(p) = pore%e
             new%s(p) = pore%s
             new%s_rate(p) = pore%s_rate
-            call add_response(shapes(g), n_fields, response, sums%r)
-            if (out%with_change) call add_response(shapes(g), DISPLACEMENTS, &
+            call add_response(gp, n_fields, response, sums%r)
+            if (out%with_change) call add_response(gp, DISPLACEMENTS, &
                change_of(domain, region, k(g), old%stress(:, p), pore_t(old%e(p), old%s(p), old%s_rate(p)), response), &
                change)
-            if (scheme%kind == DYNAMIC) call add_flight(domain, region, k(g), scheme, skeleton, shapes(g), out%stretch)
+            if (scheme%kind == DYNAMIC) call add_flight(domain, region, k(g), scheme, skeleton, gp, out%stretch)
             if (n_p > 0) then
                rate = sum(abs(scheme%c_v*k(g)%strain(1:3)))*gp%weight
                do i = 1, n_p
-                  out%stretch(LAST_U + i) = out%stretch(LAST_U + i) + rate*abs(shapes(g)%m(i)) &
-                     + gp%weight*(drift(1)*abs(shapes(g)%m_r(i)) + drift(2)*abs(shapes(g)%m_z(i)))
+                  out%stretch(LAST_U + i) = out%stretch(LAST_U + i) + rate*abs(gp%m(i)) &
+                     + gp%weight*(drift(1)*abs(gp%dm(i, 1)) + drift(2)*abs(gp%dm(i, 2)))
                end do
             end if
-            if (with_tangent) call add_tangent(shapes(g), n_fields, tangent, sums%k)
+            if (with_tangent) call add_tangent(gp, n_fields, tangent, sums%k)
          end associate
       end do
       out%r(n + 1:) = 0.0_wp
@@ -254,21 +248,21 @@ contains
    end subroutine add_points
 
    !> A body in flight: its inertia is its weight and nothing is left that a residual could be small against.
-   pure subroutine add_flight(domain, region, k, scheme, skeleton, s, stretch)
+   pure subroutine add_flight(domain, region, k, scheme, skeleton, gp, stretch)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
       type(kinematics_t), intent(in) :: k
       type(scheme_t), intent(in) :: scheme
       type(skeleton_t), intent(in) :: skeleton
-      type(shapes_t), intent(in) :: s
+      type(gauss_t), intent(in) :: gp
       real(wp), intent(inout) :: stretch(:)
       real(wp) :: force, part
       integer :: i
 
       force = mixture_density(domain, region, skeleton%e/(1 + skeleton%e), skeleton%s) &
               *(domain%gravity + FLIGHT_SHARE*norm2(k%velocity)/scheme%dt)
-      do i = 1, size(s%n)
-         part = s%weight*force*abs(s%n(i))
+      do i = 1, size(gp%n)
+         part = gp%weight*force*abs(gp%n(i))
          stretch(2*i - 1) = stretch(2*i - 1) + part
          stretch(2*i) = stretch(2*i) + part
       end do
@@ -292,8 +286,8 @@ contains
    end function change_of
 
    !> What the nodes say about a point.
-   pure subroutine look(s, with_w, with_c, scheme, x0, x1, v, a, k)
-      type(shapes_t), intent(in) :: s
+   pure subroutine look(gp, with_w, with_c, scheme, x0, x1, v, a, k)
+      type(gauss_t), intent(in) :: gp
       logical, intent(in) :: with_w   !< Whether nodes carry pressures.
       logical, intent(in) :: with_c   !< Else the suction of the carriers is 0, and nothing is spent on it.
       type(scheme_t), intent(in) :: scheme
@@ -307,17 +301,17 @@ contains
       rates = 0.0_wp
       do i = 1, 6
          du = x1(:DISPLACEMENTS, i) - x0(:DISPLACEMENTS, i)
-         slopes(:, 1) = slopes(:, 1) + s%d_r(i)*du
-         slopes(:, 2) = slopes(:, 2) + s%d_z(i)*du
-         hoop = hoop + s%n_r(i)*du(1)
-         rates = rates + [s%d_r(i)*v(1, i), s%d_z(i)*v(2, i), s%n_r(i)*v(1, i)]
+         slopes(:, 1) = slopes(:, 1) + gp%dn(i, 1)*du
+         slopes(:, 2) = slopes(:, 2) + gp%dn(i, 2)*du
+         hoop = hoop + gp%n_over_r(i)*du(1)
+         rates = rates + [gp%dn(i, 1)*v(1, i), gp%dn(i, 2)*v(2, i), gp%n_over_r(i)*v(1, i)]
       end do
       k%strain = [slopes(1, 1), slopes(2, 2), hoop, slopes(1, 2) + slopes(2, 1)]
       k%div_v = sum(rates)
       k%accel = 0.0_wp
       if (scheme%kind == DYNAMIC) then
          do i = 1, 6
-            k%accel = k%accel + a(:, i)*s%n(i)
+            k%accel = k%accel + a(:, i)*gp%n(i)
          end do
       end if
       k%w0 = 0.0_wp
@@ -329,14 +323,14 @@ contains
       k%grad_w = 0.0_wp
       k%grad_c = 0.0_wp
       if (.not. with_w) return
-      call look_at_pressure(s, scheme%l_f, x0(AT_P_W, :), x1(AT_P_W, :), v(AT_P_W, :), k%w0, k%w1, k%w_dot, k%grad_w)
+      call look_at_pressure(gp, scheme%l_f, x0(AT_P_W, :), x1(AT_P_W, :), v(AT_P_W, :), k%w0, k%w1, k%w_dot, k%grad_w)
       if (.not. with_c) return
-      call look_at_pressure(s, scheme%l_f, x0(AT_P_C, :), x1(AT_P_C, :), v(AT_P_C, :), k%c0, k%c1, k%c_dot, k%grad_c)
+      call look_at_pressure(gp, scheme%l_f, x0(AT_P_C, :), x1(AT_P_C, :), v(AT_P_C, :), k%c0, k%c1, k%c_dot, k%grad_c)
    end subroutine look
 
    !> A pressure before and after, its rate and its gradient at the level of values; they are zero on entry.
-   pure subroutine look_at_pressure(s, level, p0, p1, rate, before, after, p_dot, gradient)
-      type(shapes_t), intent(in) :: s
+   pure subroutine look_at_pressure(gp, level, p0, p1, rate, before, after, p_dot, gradient)
+      type(gauss_t), intent(in) :: gp
       real(wp), intent(in) :: level, p0(6), p1(6), rate(6)
       real(wp), intent(inout) :: before, after, p_dot, gradient(2)
       real(wp) :: p
@@ -344,10 +338,10 @@ contains
 
       do i = 1, 6
          p = p0(i) + level*(p1(i) - p0(i))
-         before = before + s%m(i)*p0(i)
-         after = after + s%m(i)*p1(i)
-         p_dot = p_dot + s%m(i)*rate(i)
-         gradient = gradient + [s%m_r(i), s%m_z(i)]*p
+         before = before + gp%m(i)*p0(i)
+         after = after + gp%m(i)*p1(i)
+         p_dot = p_dot + gp%m(i)*rate(i)
+         gradient = gradient + [gp%dm(i, 1), gp%dm(i, 2)]*p
       end do
    end subroutine look_at_pressure
 

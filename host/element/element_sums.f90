@@ -8,7 +8,7 @@ module element_sums
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: sums_t, shapes_t, shapes_of, clear_sums, add_response, add_tangent, residual_of, matrix_of
+   public :: sums_t, clear_sums, add_response, add_tangent, residual_of, matrix_of
 
    integer, parameter :: NODES = 6
    integer, parameter :: U_R = 1, U_Z = 2, WATER = 3, SUCTION = 4   !< Fields of an element.
@@ -16,43 +16,12 @@ module element_sums
    integer, parameter :: FORCES = U + 2   !< Places of stress and force, before those of the fluids.
    integer, parameter :: LAST_U = 2*NODES
 
-   !> Shape functions of a point, side by side; those of the pressures are 0 behind the nodes that carry them.
-   type :: shapes_t
-      real(wp) :: n(NODES), n_r(NODES), d_r(NODES), d_z(NODES)   !< Of displacements: value, over r, slopes.
-      real(wp) :: m(NODES), m_r(NODES), m_z(NODES)               !< Of pressures: value, slopes.
-      real(wp) :: weight                                         !< Volume of the point [m3].
-   end type shapes_t
-
    !> What the points add up to.
    type :: sums_t
       real(wp) :: r(NODES, 4)             !< Residual.
       real(wp) :: k(NODES, 4, NODES, 4)   !< Its slopes: node and field of the row, node and field of the column.
    end type sums_t
 contains
-   !> Shape functions of a point whose pressures have n_p nodes.
-   pure subroutine shapes_of(gp, n_p, s)
-      type(gauss_t), intent(in) :: gp
-      integer, intent(in) :: n_p
-      type(shapes_t), intent(out) :: s
-      integer :: i
-
-      do i = 1, NODES
-         s%n(i) = gp%n(i)
-         s%n_r(i) = gp%n_over_r(i)
-         s%d_r(i) = gp%dn(1, i)
-         s%d_z(i) = gp%dn(2, i)
-      end do
-      s%m = 0.0_wp
-      s%m_r = 0.0_wp
-      s%m_z = 0.0_wp
-      do i = 1, n_p
-         s%m(i) = gp%m(i)
-         s%m_r(i) = gp%dm(1, i)
-         s%m_z(i) = gp%dm(2, i)
-      end do
-      s%weight = gp%weight
-   end subroutine shapes_of
-
    !> Sums of no point yet.
    pure subroutine clear_sums(with_tangent, sums)
       logical, intent(in) :: with_tangent   !< Else the matrix stays as it is.
@@ -63,24 +32,28 @@ contains
    end subroutine clear_sums
 
    !> r = r + weight B^T response. Units of response: those of point_response.
-   pure subroutine add_response(s, fields, response, r)
-      type(shapes_t), intent(in) :: s
+   pure subroutine add_response(gp, fields, response, r)
+      type(gauss_t), intent(in) :: gp
       integer, intent(in) :: fields           !< Of the element: 2, 3 or 4.
       real(wp), intent(in) :: response(PLACES)
       real(wp), intent(inout) :: r(NODES, 4)
 
-      r(:, U_R) = r(:, U_R) + s%weight*(s%d_r*response(RR) + s%n_r*response(TT) + s%d_z*response(RZ) &
-                                        + s%n*response(U + 1))
-      r(:, U_Z) = r(:, U_Z) + s%weight*(s%d_z*response(ZZ) + s%d_r*response(RZ) + s%n*response(U + 2))
+      associate (d_r => gp%dn(:, 1), d_z => gp%dn(:, 2))
+         r(:, U_R) = r(:, U_R) + gp%weight*(d_r*response(RR) + gp%n_over_r*response(TT) + d_z*response(RZ) &
+                                            + gp%n*response(U + 1))
+         r(:, U_Z) = r(:, U_Z) + gp%weight*(d_z*response(ZZ) + d_r*response(RZ) + gp%n*response(U + 2))
+      end associate
       if (fields < WATER) return
-      r(:, WATER) = r(:, WATER) + s%weight*(s%m*response(PW) + s%m_r*response(GW + 1) + s%m_z*response(GW + 2))
-      if (fields < SUCTION) return
-      r(:, SUCTION) = r(:, SUCTION) + s%weight*(s%m*response(PC) + s%m_r*response(GA + 1) + s%m_z*response(GA + 2))
+      associate (d_r => gp%dm(:, 1), d_z => gp%dm(:, 2))
+         r(:, WATER) = r(:, WATER) + gp%weight*(gp%m*response(PW) + d_r*response(GW + 1) + d_z*response(GW + 2))
+         if (fields < SUCTION) return
+         r(:, SUCTION) = r(:, SUCTION) + gp%weight*(gp%m*response(PC) + d_r*response(GA + 1) + d_z*response(GA + 2))
+      end associate
    end subroutine add_response
 
    !> k = k + weight B^T tangent B. A gradient of pressure changes the fluxes alone (docs/theory/host.md section 3.3).
-   pure subroutine add_tangent(s, fields, tangent, k)
-      type(shapes_t), intent(in) :: s
+   pure subroutine add_tangent(gp, fields, tangent, k)
+      type(gauss_t), intent(in) :: gp
       integer, intent(in) :: fields
       real(wp), intent(in) :: tangent(PLACES, PLACES)
       real(wp), intent(inout) :: k(NODES, 4, NODES, 4)
@@ -88,25 +61,26 @@ contains
       integer :: j
 
       if (fields < WATER) then
-         call add_tangent_of_skeleton(s, tangent(:FORCES, :FORCES), k)
+         call add_tangent_of_skeleton(gp, tangent(:FORCES, :FORCES), k)
          return
       end if
       do j = 1, NODES
-         part = s%d_r(j)*tangent(:, RR) + s%n_r(j)*tangent(:, TT) + s%d_z(j)*tangent(:, RZ) + s%n(j)*tangent(:, U + 1)
-         call add_response(s, fields, part, k(:, :, j, U_R))
-         part = s%d_z(j)*tangent(:, ZZ) + s%d_r(j)*tangent(:, RZ) + s%n(j)*tangent(:, U + 2)
-         call add_response(s, fields, part, k(:, :, j, U_Z))
-         call slopes_of_pressure(s, j, PW, GW, tangent, part)
-         call add_response(s, fields, part, k(:, :, j, WATER))
+         part = gp%dn(j, 1)*tangent(:, RR) + gp%n_over_r(j)*tangent(:, TT) + gp%dn(j, 2)*tangent(:, RZ) &
+                + gp%n(j)*tangent(:, U + 1)
+         call add_response(gp, fields, part, k(:, :, j, U_R))
+         part = gp%dn(j, 2)*tangent(:, ZZ) + gp%dn(j, 1)*tangent(:, RZ) + gp%n(j)*tangent(:, U + 2)
+         call add_response(gp, fields, part, k(:, :, j, U_Z))
+         call slopes_of_pressure(gp, j, PW, GW, tangent, part)
+         call add_response(gp, fields, part, k(:, :, j, WATER))
          if (fields < SUCTION) cycle
-         call slopes_of_pressure(s, j, PC, GA, tangent, part)
-         call add_response(s, fields, part, k(:, :, j, SUCTION))
+         call slopes_of_pressure(gp, j, PC, GA, tangent, part)
+         call add_response(gp, fields, part, k(:, :, j, SUCTION))
       end do
    end subroutine add_tangent
 
    !> The same without pressures: nothing is spent on their places.
-   pure subroutine add_tangent_of_skeleton(s, tangent, k)
-      type(shapes_t), intent(in) :: s
+   pure subroutine add_tangent_of_skeleton(gp, tangent, k)
+      type(gauss_t), intent(in) :: gp
       real(wp), intent(in) :: tangent(FORCES, FORCES)
       real(wp), intent(inout) :: k(NODES, 4, NODES, 4)
       real(wp) :: part(PLACES)
@@ -114,24 +88,24 @@ contains
 
       part = 0.0_wp
       do j = 1, NODES
-         part(:FORCES) = s%d_r(j)*tangent(:, RR) + s%n_r(j)*tangent(:, TT) + s%d_z(j)*tangent(:, RZ) &
-                         + s%n(j)*tangent(:, U + 1)
-         call add_response(s, DISPLACEMENTS, part, k(:, :, j, U_R))
-         part(:FORCES) = s%d_z(j)*tangent(:, ZZ) + s%d_r(j)*tangent(:, RZ) + s%n(j)*tangent(:, U + 2)
-         call add_response(s, DISPLACEMENTS, part, k(:, :, j, U_Z))
+         part(:FORCES) = gp%dn(j, 1)*tangent(:, RR) + gp%n_over_r(j)*tangent(:, TT) + gp%dn(j, 2)*tangent(:, RZ) &
+                         + gp%n(j)*tangent(:, U + 1)
+         call add_response(gp, DISPLACEMENTS, part, k(:, :, j, U_R))
+         part(:FORCES) = gp%dn(j, 2)*tangent(:, ZZ) + gp%dn(j, 1)*tangent(:, RZ) + gp%n(j)*tangent(:, U + 2)
+         call add_response(gp, DISPLACEMENTS, part, k(:, :, j, U_Z))
       end do
    end subroutine add_tangent_of_skeleton
 
    !> How the response changes with a pressure at node j.
-   pure subroutine slopes_of_pressure(s, j, value, gradient, tangent, part)
-      type(shapes_t), intent(in) :: s
+   pure subroutine slopes_of_pressure(gp, j, value, gradient, tangent, part)
+      type(gauss_t), intent(in) :: gp
       integer, intent(in) :: j, value, gradient   !< Node; place of the value, place before its gradient.
       real(wp), intent(in) :: tangent(PLACES, PLACES)
       real(wp), intent(out) :: part(PLACES)
 
-      part(:BOTH) = s%m(j)*tangent(:BOTH, value)
-      part(BOTH + 1:) = s%m(j)*tangent(BOTH + 1:, value) + s%m_r(j)*tangent(BOTH + 1:, gradient + 1) &
-                        + s%m_z(j)*tangent(BOTH + 1:, gradient + 2)
+      part(:BOTH) = gp%m(j)*tangent(:BOTH, value)
+      part(BOTH + 1:) = gp%m(j)*tangent(BOTH + 1:, value) + gp%dm(j, 1)*tangent(BOTH + 1:, gradient + 1) &
+                        + gp%dm(j, 2)*tangent(BOTH + 1:, gradient + 2)
    end subroutine slopes_of_pressure
 
    !> The residual in the order of the element's unknowns: displacements node by node, then the n_p values of a pressure

@@ -42,12 +42,13 @@ module porous_domain
       logical :: with_w = .false., with_c = .false.   !< Whether its pores hold water, and air at another pressure.
    end type region_t
 
-   !> Geometry at a quadrature point. Pressures use the first n_p of the shape functions m.
+   !> Geometry at a quadrature point. Pressures use the first n_p of the shape functions m; where nodes carry any, the
+   !> others are 0. Nodes side by side, so that the compiler takes several at once.
    type :: gauss_t
       real(wp) :: x(2)
       real(wp) :: weight            !< Volume: 2 pi r dA, or dA [m3]
-      real(wp) :: n(6), dn(2, 6)    !< Of the displacements.
-      real(wp) :: m(6), dm(2, 6)    !< Of the pressures.
+      real(wp) :: n(6), dn(6, 2)    !< Of the displacements.
+      real(wp) :: m(6), dm(6, 2)    !< Of the pressures.
       real(wp) :: n_over_r(6)       !< Hoop strain; 0 in plane strain.
    end type gauss_t
 
@@ -128,7 +129,7 @@ contains
                   return
                end if
                inverse = reshape([jacobian(2, 2), -jacobian(2, 1), -jacobian(1, 2), jacobian(1, 1)], [2, 2])/det
-               point%dn = matmul(inverse, d)
+               point%dn = transpose(matmul(inverse, d))
                point%x = matmul(x, point%n)
                point%weight = weights(g)*det
                point%n_over_r = 0.0_wp
@@ -146,8 +147,8 @@ contains
                if (domain%n_p == 3) then
                   call linear(points(1, g), points(2, g), n3, d3)
                   point%m = [n3, 0.0_wp, 0.0_wp, 0.0_wp]
-                  point%dm(:, 1:3) = matmul(inverse, d3)
-                  point%dm(:, 4:6) = 0.0_wp
+                  point%dm(1:3, :) = transpose(matmul(inverse, d3))
+                  point%dm(4:6, :) = 0.0_wp
                end if
                if (domain%center(e) > 0) then
                   point%m = [1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]

@@ -182,9 +182,9 @@ contains
       do g = 1, domain%rule
          at = (e - 1)*domain%rule + g
          associate (gp => domain%gauss(g, e), region => domain%regions(domain%region_of(e)))
-            strain = [dot_product(gp%dn(1, :), du(1, :)), dot_product(gp%dn(2, :), du(2, :)), &
+            strain = [dot_product(gp%dn(:, 1), du(1, :)), dot_product(gp%dn(:, 2), du(2, :)), &
                       dot_product(gp%n_over_r, du(1, :)), &
-                      dot_product(gp%dn(2, :), du(1, :)) + dot_product(gp%dn(1, :), du(2, :))]
+                      dot_product(gp%dn(:, 2), du(1, :)) + dot_product(gp%dn(:, 1), du(2, :))]
             work%skeleton = work%skeleton &
                + 0.5_wp*gp%weight*dot_product(old%stress(1:4, at) + new%stress(1:4, at), strain)
             s = 0.5_wp*(old%s(at) + new%s(at))
@@ -225,11 +225,11 @@ contains
                     law => domain%permeabilities(domain%regions(domain%region_of(e))%permeability))
             rel = relative_permeability(law, 0.5_wp*(old%s(p) + new%s(p)))
             kappa = law%intrinsic*rel%w/f%eta_w
-            drive = matmul(gp%dm(:, :n_p), middle(AT_P_W, :n_p)) + [0.0_wp, f%rho_w*domain%gravity]
+            drive = matmul(middle(AT_P_W, :n_p), gp%dm(:n_p, :)) + [0.0_wp, f%rho_w*domain%gravity]
             ledger%seepage = ledger%seepage + scheme%dt*gp%weight*kappa*dot_product(drive, drive)
             if (.not. domain%with_c) cycle
             kappa = law%intrinsic*rel%a/f%eta_a
-            drive = matmul(gp%dm(:, :n_p), middle(AT_P_W, :n_p) + middle(AT_P_C, :n_p)) + [0.0_wp, &
+            drive = matmul(middle(AT_P_W, :n_p) + middle(AT_P_C, :n_p), gp%dm(:n_p, :)) + [0.0_wp, &
                f%rho_a*domain%gravity]
             ledger%seepage = ledger%seepage + scheme%dt*gp%weight*kappa*dot_product(drive, drive)
          end associate
