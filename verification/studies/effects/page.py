@@ -15,7 +15,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import scenes  # noqa: E402
 
 PAGE = Page(
-    claim="`effects = 'auto'` keeps the effects that matter in ten scenes where a careless choice gives wrong results, and removes effects that do not matter in seven",
+    claim="`effects = 'auto'` keeps the effects that matter in ten scenes where a careless choice gives wrong results, and removes effects that do not matter in five others and in three of the ten",
     kind=("robustness", "study"),
     input="`scenes.py`: every scene leaves all possible choices open; compared are the run that `auto` chooses, the run with "
           "everything (`effects_tolerance = 1e-6`), and the careless run (`without`)",
