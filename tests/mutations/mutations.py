@@ -15,6 +15,7 @@ PARAMS, REGISTRY, STATE = "core/base/mud_params.f90", "core/base/mud_registry.f9
 CONSISTENT = "core/integration/mud_consistent.f90"
 SUBSTEPPING = "core/integration/mud_substepping.f90"
 DRIVING = "core/integration/mud_driving.f90"
+SCANNING, BRANCHES = "core/laws/mud_scanning.f90", "core/integration/mud_branches.f90"
 
 MUTATIONS = [
     # those the issue names
@@ -62,6 +63,37 @@ MUTATIONS = [
     ("retention without Omega in dS_w/de", (RETENTION, "sat%ds_de = slope*par%omega/e", "sat%ds_de = slope/e")),
     ("retention without the void ratio",
      (RETENTION, "log_suction + par%omega*log(e)", "log_suction + 0.0_wp*log(e)")),
+    # hydraulic hysteresis
+    ("a scanning curve dries with the exponent of wetting",
+     (SCANNING, "merge(1.0_wp + par%b_d, 1.0_wp - par%b_w, dries)",
+      "merge(1.0_wp + par%b_w, 1.0_wp - par%b_w, dries)")),
+    ("the slope of a scanning curve without its weight",
+     (RETENTION, "slope = slope*weight",
+      "slope = slope + 0.0_wp*weight")),
+    ("saturation between the main curves is not kept",
+     (SCANNING, "inside = max(min(s_w, bounds(2)), bounds(1))",
+      "inside = s_w + 0.0_wp*bounds(1)")),
+    ("wetting along the curve of drying",
+     (SCANNING, "branch%p_a = par%p_aw",
+      "branch%p_a = par%p_a")),
+    ("drying and wetting follow the suction alone",
+     (BRANCHES, "rise = inc%d_pc - max(suction_at(inc, time), 0.0_wp)*omega*inc%d_v*(1.0_wp + e)/e",
+      "rise = inc%d_pc - 0.0_wp*omega*e")),
+    ("a turn of suction within an increment is not seen",
+     (BRANCHES, "if (1.0_wp - turn < WHOLE_PHASE) turn = 1.0_wp",
+      "turn = 1.0_wp")),
+    ("the coupling blocks do not know the turn",
+     (BRANCHES, "slope = slope*(at_turn%ds_dpc - start%ds_dpc)*share",
+      "slope = 0.0_wp*slope*(at_turn%ds_dpc - start%ds_dpc)*share")),
+    ("the curvature of a scanning curve without the change of its weight",
+     (RETENTION, "bend = bend*weight + slope*par%scanning%q*(1.0_wp - weight)",
+      "bend = bend*weight")),
+    ("wetting curves above drying are accepted",
+     (SCANNING, "if (log(par%p_aw) > limit + AS_MUCH)",
+      "if (log(par%p_aw) > limit + 10.0_wp)")),
+    ("soil with hysteresis starts on the wetting curve",
+     (SCANNING, "if (abs(s_w) <= 0.0_wp) s_w = bounds(2)",
+      "if (abs(s_w) <= 0.0_wp) s_w = bounds(1)")),
     # rates and guards
     ("isotropic mechanism never rejected", (RATES, "w%b_rate < 0.0_wp) then", "w%b_rate < -huge(1.0_wp)) then")),
     ("isotropic mechanism acts in extension too",
