@@ -216,7 +216,7 @@ contains
       end do
       if (can_coarsen(scene)) account%run_work = account%run_work*elements_of(scene)/elements_of(cheap)
       account%planned = real(1 + 2*(open + 3), wp)
-      account%too_dear = account%planned > share*account%run_work
+      account%too_dear = .not. fits(account%planned, share, account)
    end subroutine look_ahead
 
    pure real(wp) function elements_of(scene)
@@ -230,8 +230,11 @@ contains
    pure real(wp) function longer_steps(stage, of_pilot)
       type(scene_stage_t), intent(in) :: stage, of_pilot
 
-      longer_steps = of_pilot%dt/stage%dt
-      if (stage%controlled) longer_steps = sqrt(of_pilot%accuracy/max(stage%accuracy, tiny(1.0_wp)))
+      if (stage%controlled) then
+         longer_steps = sqrt(of_pilot%accuracy/stage%accuracy)
+      else
+         longer_steps = of_pilot%dt/stage%dt
+      end if
    end function longer_steps
 
    !> Work of the run, from that of a pilot: elements and steps by the keys. A direct solver makes large runs dearer.
@@ -251,6 +254,14 @@ contains
       account%run_work = elements*steps
    end subroutine estimate
 
+   !> Whether some work is at most a share of the run's, which may be as large as a number can be.
+   pure logical function fits(work, share, account)
+      real(wp), intent(in) :: work, share   !< As work_of has it; [-]
+      type(pilots_account_t), intent(in) :: account
+
+      fits = work/max(account%run_work, 1.0_wp) <= share
+   end function fits
+
    !> Whether what is left to do fits into the share: one pilot for each effect that is tried, one with cells twice as
    !> long and one without all that is to go, `dearer` times as dear as this one, beside it where it is not the base
    !> itself. Effects that are set by hand are tried where there is room for them.
@@ -263,10 +274,10 @@ contains
       type(pilots_account_t), intent(inout) :: account
 
       account%planned = to_do()
-      if (account%planned <= share*account%run_work) return
+      if (fits(account%planned, share, account)) return
       tried = tried .and. .not. by_hand
       account%planned = to_do()
-      account%too_dear = account%planned > share*account%run_work
+      account%too_dear = .not. fits(account%planned, share, account)
    contains
       pure real(wp) function to_do()
          to_do = account%work + dearer*work_of(pilot)*(count(tried) + 1 + dearer)
@@ -347,7 +358,7 @@ contains
       do
          going = table%present .and. .not. table%on
          if (count(going) < 2) exit
-         if (account%work + work_of(base) > share*account%run_work) then
+         if (.not. fits(account%work + work_of(base), share, account)) then
             where (going) table%on = .true.
             where (going) table%why = 'weak alone; a pilot without all that are to go would cost too much of the run'
             exit

@@ -281,7 +281,9 @@ contains
       change = f_low - f_high
       jumps = .false.
       narrow = JUMP_TOLERANCE
-      if (ddot(trial%w(1)%n, trial%w(inc%scheme%stages)%n) < OPPOSITE) narrow = EVENT_TOLERANCE
+      if (trial%mode /= MODE_HELD) then   ! a held point has no stages
+         if (ddot(trial%w(1)%n, trial%w(inc%scheme%stages)%n) < OPPOSITE) narrow = EVENT_TOLERANCE
+      end if
       do iteration = 1, most
          if (high - low <= merge(narrow, EVENT_TOLERANCE, jumps) .or. high <= par%h_min) exit
          h_trial = 0.5_wp*(low + high)
