@@ -162,6 +162,7 @@ contains
       real(wp), intent(in) :: stress(6)
       type(place_t), intent(in) :: place
 
+      if (.not. all(is_finite(stress))) return   ! as vumat_ leaves a refused point
       if (.not. sum(stress(1:3)) > 0.0_wp) return
       if (first_time(ON_PRESSURE)) call speak('MUD: remark of '//trim(place%door)//' at '//trim(place_text(place))// &
          ': the mean effective stress p'' is '//trim(number(-sum(stress(1:3))/3.0_wp))//'. The model has no '// &
