@@ -263,13 +263,7 @@ contains
       call move_alloc(state%state, variables)
       call move_alloc(new%state, state%state)
       call move_alloc(variables, new%state)
-      state%time = new%time
-      state%x(:, :) = new%x
-      state%v(:, :) = new%v
-      state%a(:, :) = new%a
-      state%e(:) = new%e
-      state%s(:) = new%s
-      state%s_rate(:) = new%s_rate
+      call copy_small(new, state)
    end subroutine take_over
 
    !> Copies without allocating anew. Both must have the same extents.
@@ -277,14 +271,22 @@ contains
       type(state_t), intent(in) :: from
       type(state_t), intent(inout) :: to
 
+      to%stress(:, :) = from%stress
+      to%state(:) = from%state
+      call copy_small(from, to)
+   end subroutine copy_state
+
+   !> All but stresses and state variables of the points.
+   subroutine copy_small(from, to)
+      type(state_t), intent(in) :: from
+      type(state_t), intent(inout) :: to
+
       to%time = from%time
       to%x(:, :) = from%x
       to%v(:, :) = from%v
       to%a(:, :) = from%a
-      to%stress(:, :) = from%stress
-      to%state(:) = from%state
       to%e(:) = from%e
       to%s(:) = from%s
       to%s_rate(:) = from%s_rate
-   end subroutine copy_state
+   end subroutine copy_small
 end module porous_domain

@@ -216,16 +216,14 @@ contains
       logical, intent(out) :: known(FIELDS)
       integer :: kind
 
-      associate (c => run%control, change => run%next%x - run%state%x)
+      associate (c => run%control)
          kind = kind_of_error(model, stage)
          call local_errors(make_scheme(kind, stage%rho_inf, dt), c%memory, run%state%x, run%state%v, run%state%a, &
                            run%next%x, run%next%v, run%next%a, error, known)
          if (kind == DYNAMIC) error = PEAK*error
-         if (kind == QUASI_STATIC .and. c%fresh == 1) then
-            error = ROOT_SHARE*change
-            ! Given steps need not be short here: what the first one left is told by the second.
-            if (.not. stage%controlled) error = FIRST_TWO*change
-         end if
+         ! Given steps need not be short here: what the first one left is told by the second.
+         if (kind == QUASI_STATIC .and. c%fresh == 1) &
+            error = merge(ROOT_SHARE, FIRST_TWO, stage%controlled)*(run%next%x - run%state%x)
          if (stage%controlled .or. kind /= STATIC .or. depends_on_path(model)) return
          ! Without a memory and without a flow the answer does not depend on the steps.
          error = 0.0_wp

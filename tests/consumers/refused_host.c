@@ -53,14 +53,20 @@ static void set_up(host_t *h)
    h->props[mud_index(MUD_PROPS, "e_0")] = 0.735;
 }
 
-static void call(host_t *h, double axial)
+/* One increment of the strain that the host holds. */
+static void update(host_t *h)
 {
    int ndi = 3, nshr = 3;
-   h->dstrain[0] = -axial, h->dstrain[1] = h->dstrain[2] = 0.5 * axial;
    h->increment++;
    umat_(h->stress, h->statev, h->tangent, NULL, NULL, &h->scd, NULL, NULL, NULL, NULL, NULL, h->dstrain, NULL, NULL,
          NULL, NULL, h->predef, h->dpred, NULL, &ndi, &nshr, &h->ntens, &h->nstatv, h->props, &h->nprops, NULL, h->drot,
          h->pnewdt, NULL, NULL, NULL, &h->element, &h->point, NULL, NULL, &h->step, &h->increment);
+}
+
+static void call(host_t *h, double axial)
+{
+   h->dstrain[0] = -axial, h->dstrain[1] = h->dstrain[2] = 0.5 * axial;
+   update(h);
 }
 
 static int tell(const host_t *h)
@@ -174,15 +180,10 @@ static int tension(int rule)
       h.props[mud_index(MUD_PROPS, "memory_rule")] = rule;
       for (int i = 0; i < 3; i++)
          h.stress[i] = -20.0;
-      for (int step = 0; step < STEPS; step++) {
-         int ndi = 3, nshr = 3;
-         for (int i = 0; i < 3; i++)
-            h.dstrain[i] = 0.02 / STEPS / 3.0;
-         h.increment++;
-         umat_(h.stress, h.statev, h.tangent, NULL, NULL, &h.scd, NULL, NULL, NULL, NULL, NULL, h.dstrain, NULL, NULL,
-               NULL, NULL, NULL, NULL, NULL, &ndi, &nshr, &h.ntens, &h.nstatv, h.props, &h.nprops, NULL, NULL,
-               h.pnewdt, NULL, NULL, NULL, &h.element, &h.point, NULL, NULL, &h.step, &h.increment);
-      }
+      for (int i = 0; i < 3; i++)
+         h.dstrain[i] = 0.02 / STEPS / 3.0;
+      for (int step = 0; step < STEPS; step++)
+         update(&h);
    }
    return tell(&h);
 }
