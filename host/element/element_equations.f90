@@ -7,7 +7,8 @@ module element_equations
    use material_point, only: response_t, report_t, MOST_POINTS
    use element_sums, only: sums_t, clear_sums, add_response, add_tangent, residual_of, matrix_of
    use porous_domain, only: domain_t, region_t, state_t, gauss_t, mixture_density, given_pressures_at, COUPLED
-   use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, PLACES, RR, TT, RZ, U
+   use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, solid_response, PLACES, RR, TT, RZ, &
+                             U
    use generalised_alpha, only: scheme_t, DYNAMIC
    use carried_slopes, only: slopes_t, keep_slopes, follow_slopes, same_again, BY_MATERIAL, BY_SLOPES
    use tangent_fallback, only: stiffen, NO_FALLBACK
@@ -42,6 +43,8 @@ contains
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element   !< Its number.
 
+      element_size = LAST_U
+      if (domain%n_carriers(element) == 0) return
       associate (region => domain%regions(domain%region_of(element)))
          element_size = LAST_U + domain%n_carriers(element)*count([region%with_w, region%with_c])
       end associate
@@ -148,21 +151,24 @@ contains
       integer :: g, node(6), n_p
 
       node = domain%mesh%t6(:, element)
-      x0 = old%x(:, node)
-      x1 = new%x(:, node)
+      n_p = domain%n_carriers(element)
+      x0(:DISPLACEMENTS, :) = old%x(:DISPLACEMENTS, node)
+      x1(:DISPLACEMENTS, :) = new%x(:DISPLACEMENTS, node)
       a = 0.0_wp
       if (scheme%kind == DYNAMIC) a = old%a(:, node) + scheme%l_a*(new%a(:, node) - old%a(:, node))
       v0 = old%v(:DISPLACEMENTS, node)
       v(:DISPLACEMENTS, :) = v0 + scheme%l_v*(new%v(:DISPLACEMENTS, node) - v0)
-      n_p = domain%n_carriers(element)
-      v(AT_P_W:, :) = 0.0_wp
-      if (n_p > 0) v(AT_P_W:, :) = old%v(AT_P_W:, node) + scheme%l_p*(new%v(AT_P_W:, node) - old%v(AT_P_W:, node))
-      if (domain%center(element) > 0) then
-         associate (center => domain%center(element))
-            x0(AT_P_W:, 1) = old%x(AT_P_W:, center)
-            x1(AT_P_W:, 1) = new%x(AT_P_W:, center)
-            v(AT_P_W:, 1) = old%v(AT_P_W:, center) + scheme%l_p*(new%v(AT_P_W:, center) - old%v(AT_P_W:, center))
-         end associate
+      if (n_p > 0) then
+         x0(AT_P_W:, :) = old%x(AT_P_W:, node)
+         x1(AT_P_W:, :) = new%x(AT_P_W:, node)
+         v(AT_P_W:, :) = old%v(AT_P_W:, node) + scheme%l_p*(new%v(AT_P_W:, node) - old%v(AT_P_W:, node))
+         if (domain%center(element) > 0) then
+            associate (center => domain%center(element))
+               x0(AT_P_W:, 1) = old%x(AT_P_W:, center)
+               x1(AT_P_W:, 1) = new%x(AT_P_W:, center)
+               v(AT_P_W:, 1) = old%v(AT_P_W:, center) + scheme%l_p*(new%v(AT_P_W:, center) - old%v(AT_P_W:, center))
+            end associate
+         end if
       end if
       do g = 1, domain%rule
          associate (gp => domain%gauss(g, element), region => domain%regions(domain%region_of(element)))
@@ -217,24 +223,28 @@ contains
             skeleton%ds_dpc = 0.0_wp
          end if
          associate (gp => domain%gauss(g, element), region => domain%regions(domain%region_of(element)))
-            call point_response(domain, region, scheme, k(g), old%stress(:, p), skeleton, &
-                                pore_t(old%e(p), old%s(p), old%s_rate(p)), pore, with_tangent, response, tangent, drift)
-            new%stress(:, p) = material%stress(:, g)
-            new%e(p) = pore%e
-            new%s(p) = pore%s
-            new%s_rate(p) = pore%s_rate
-            call add_response(gp, n_fields, response, sums%r)
-            if (out%with_change) call add_response(gp, DISPLACEMENTS, &
-               change_of(domain, region, k(g), old%stress(:, p), pore_t(old%e(p), old%s(p), old%s_rate(p)), response), &
-               change)
-            if (scheme%kind == DYNAMIC) call add_flight(domain, region, k(g), scheme, skeleton, gp, out%stretch)
-            if (n_p > 0) then
+            if (region%with_w) then
+               call point_response(domain, region, scheme, k(g), old%stress(:, p), skeleton, &
+                                   pore_t(old%e(p), old%s(p), old%s_rate(p)), pore, with_tangent, response, tangent, &
+                                   drift)
+               new%s(p) = pore%s
+               new%s_rate(p) = pore%s_rate
                rate = sum(abs(scheme%c_v*k(g)%strain(1:3)))*gp%weight
                do i = 1, n_p
                   out%stretch(LAST_U + i) = out%stretch(LAST_U + i) + rate*abs(gp%m(i)) &
                      + gp%weight*(drift(1)*abs(gp%dm(i, 1)) + drift(2)*abs(gp%dm(i, 2)))
                end do
+            else
+               call solid_response(domain, region, scheme, k(g), old%stress(:, p), skeleton, old%e(p), with_tangent, &
+                                   response, tangent)
             end if
+            new%stress(:, p) = material%stress(:, g)
+            new%e(p) = skeleton%e
+            call add_response(gp, n_fields, response, sums%r)
+            if (out%with_change) call add_response(gp, DISPLACEMENTS, &
+               change_of(domain, region, k(g), old%stress(:, p), old%e(p), old%s(p), response), &
+               change)
+            if (scheme%kind == DYNAMIC) call add_flight(domain, region, k(g), scheme, skeleton, gp, out%stretch)
             if (with_tangent) call add_tangent(gp, n_fields, tangent, sums%k)
          end associate
       end do
@@ -269,20 +279,20 @@ contains
    end subroutine add_flight
 
    !> What a step changes of the total stress and of the weight at a point; inertia, sources and damping count whole.
-   pure function change_of(domain, region, k, stress0, old, response) result(change)
+   pure function change_of(domain, region, k, stress0, e0, s0, response) result(change)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
       type(kinematics_t), intent(in) :: k
       real(wp), intent(in) :: stress0(6)           !< Effective stress before the step [kPa].
-      type(pore_t), intent(in) :: old
+      real(wp), intent(in) :: e0, s0               !< Void ratio and degree of saturation before it [-].
       real(wp), intent(in) :: response(PLACES)
       real(wp) :: change(PLACES)
 
       change = 0.0_wp
       change(RR:RZ) = response(RR:RZ) - stress0(:4)
-      if (region%with_w) change(RR:TT) = change(RR:TT) + (k%w0 + (1 - old%s)*k%c0)
+      if (region%with_w) change(RR:TT) = change(RR:TT) + (k%w0 + (1 - s0)*k%c0)
       change(U + 1:U + 2) = response(U + 1:U + 2)
-      change(U + 2) = change(U + 2) - mixture_density(domain, region, old%e/(1 + old%e), old%s)*domain%gravity
+      change(U + 2) = change(U + 2) - mixture_density(domain, region, e0/(1 + e0), s0)*domain%gravity
    end function change_of
 
    !> What the nodes say about a point.

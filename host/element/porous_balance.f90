@@ -12,7 +12,8 @@ module porous_balance
    use generalised_alpha, only: scheme_t, rate_of, STATIC, DYNAMIC
    implicit none (type, external)
    private
-   public :: kinematics_t, pore_t, skeleton_t, point_response, PLACES, RR, ZZ, TT, RZ, U, PW, PC, GW, GA
+   public :: kinematics_t, pore_t, skeleton_t, point_response, solid_response, PLACES, RR, ZZ, TT, RZ, U, PW, PC, &
+             GW, GA
 
    integer, parameter :: PLACES = 12
    ! Places, or places before the first; the strain comes first.
@@ -61,10 +62,10 @@ module porous_balance
       type(relative_t) :: rel        !< Relative permeabilities, where fluids flow.
    end type mixture_t
 contains
-   !> Response of a point, its tangent where it is asked for, and its pores at the end of the step. docs/theory/host.md
-   !> sections 2, 3.3 and 3.4. response: stress [kPa], force per volume [kN/m3], sources of volume [1/s], fluxes [m/s].
-   !> In static steps and in drained or dry regions the places of the fluids are 0; pressures act in the stress in any
-   !> case.
+   !> Response of a point of a region with water, its tangent where it is asked for, and its pores at the end of the
+   !> step. docs/theory/host.md sections 2, 3.3 and 3.4. response: stress [kPa], force per volume [kN/m3], sources of
+   !> volume [1/s], fluxes [m/s]. In static steps and in drained regions the places of the fluids are 0; pressures act
+   !> in the stress in any case.
    subroutine point_response(domain, region, scheme, k, stress0, skeleton, old, new, with_tangent, response, tangent, &
                              drift)
       type(domain_t), intent(in) :: domain
@@ -84,7 +85,7 @@ contains
       if (with_tangent) tangent = 0.0_wp
       drift = 0.0_wp
       call add_momentum(domain, region, scheme, k, stress0, skeleton, mix, with_tangent, response, tangent)
-      if (.not. region%with_w .or. scheme%kind == STATIC) return
+      if (scheme%kind == STATIC) return
       if (region%drainage /= COUPLED .and. region%drainage /= UNDRAINED) return
       if (region%drainage == COUPLED) &
          mix%rel = relative_permeability(domain%permeabilities(region%permeability), mix%s)
@@ -92,6 +93,62 @@ contains
       if (region%with_c) call add_air(domain, region, scheme, k, mix, with_tangent, response, tangent, drift)
       response(PW) = response(PW) - k%source(3)
    end subroutine point_response
+
+   !> The same of a point of a region without water, where nothing is spent on the places of the fluids.
+   !> docs/theory/host.md sections 2 and 3.3.
+   pure subroutine solid_response(domain, region, scheme, k, stress0, skeleton, e_old, with_tangent, response, tangent)
+      type(domain_t), intent(in) :: domain
+      type(region_t), intent(in) :: region
+      type(scheme_t), intent(in) :: scheme
+      type(kinematics_t), intent(in) :: k
+      real(wp), intent(in) :: stress0(6)     !< Effective stress before the step.
+      type(skeleton_t), intent(in) :: skeleton
+      real(wp), intent(in) :: e_old          !< Void ratio before the step [-].
+      logical, intent(in) :: with_tangent
+      real(wp), intent(out) :: response(PLACES)              !< As of point_response.
+      real(wp), intent(inout) :: tangent(PLACES, PLACES)     !< Written at stress and force, where it is asked for.
+      real(wp) :: n, n1, rho, accel(2), l_s
+      integer :: i
+
+      n1 = skeleton%e/(1 + skeleton%e)
+      n = e_old/(1 + e_old)
+      n = n + scheme%l_f*(n1 - n)
+      rho = region%rho_s - n*region%rho_s
+      l_s = level_of_stress(region, scheme)
+      accel = k%accel + region%damping*k%speed
+      accel(2) = accel(2) + domain%gravity
+      response = 0.0_wp
+      response(1:4) = stress0(1:4) + l_s*(skeleton%stress - stress0(1:4))
+      response(U + 1:U + 2) = rho*accel - k%source(1:2)
+      if (.not. with_tangent) return
+      tangent(:U + 2, :U + 2) = 0.0_wp
+      tangent(1:4, 1:4) = l_s*skeleton%tangent
+      tangent(U + 1, U + 1) = rho*slope_of_inertia(region, scheme)
+      tangent(U + 2, U + 2) = tangent(U + 1, U + 1)
+      do i = 1, 3
+         tangent(U + 1:U + 2, i) = -accel*(region%rho_s*scheme%l_f*(1 - n1))
+      end do
+   end subroutine solid_response
+
+   !> Share of the effective stress's increment over the step that acts: with the stress of damping, which is in
+   !> proportion to its rate.
+   pure real(wp) function level_of_stress(region, scheme) result(level)
+      type(region_t), intent(in) :: region
+      type(scheme_t), intent(in) :: scheme
+
+      level = scheme%l_f
+      if (region%stiffness_damping > 0.0_wp .and. scheme%kind == DYNAMIC .and. scheme%c_v > 0.0_wp) &
+         level = level + region%stiffness_damping/scheme%dt
+   end function level_of_stress
+
+   !> Slope of accelerations and damping against the new displacements [1/s2].
+   pure real(wp) function slope_of_inertia(region, scheme) result(slope)
+      type(region_t), intent(in) :: region
+      type(scheme_t), intent(in) :: scheme
+
+      slope = scheme%c_a
+      if (scheme%kind == DYNAMIC) slope = slope + region%damping*scheme%c_v
+   end function slope_of_inertia
 
    !> Void ratio and saturation at the end of the step, and the mixture at its levels.
    subroutine fill_pores(domain, region, scheme, k, skeleton, old, new, mix)
@@ -102,7 +159,7 @@ contains
       type(skeleton_t), intent(in) :: skeleton
       type(pore_t), intent(in) :: old
       type(pore_t), intent(out) :: new
-      type(mixture_t), intent(out) :: mix   !< Without water: porosity and slopes that are zero.
+      type(mixture_t), intent(out) :: mix
       type(saturation_t) :: before, after
       real(wp) :: l
 
@@ -118,7 +175,6 @@ contains
       mix%s_pc = 0.0_wp
       mix%rate_ev = 0.0_wp
       mix%rate_pc = 0.0_wp
-      if (.not. region%with_w) return
       if (region%with_c) then
          new%s = skeleton%s
          mix%s_ev = l*skeleton%ds_dev
@@ -157,20 +213,13 @@ contains
       integer :: i
 
       l = scheme%l_f
-      ! The stress of damping is in proportion to the rate of the effective stress, its increment over the step.
-      l_s = l
-      if (region%stiffness_damping > 0.0_wp .and. scheme%kind == DYNAMIC .and. scheme%c_v > 0.0_wp) &
-         l_s = l + region%stiffness_damping/scheme%dt
+      l_s = level_of_stress(region, scheme)
       associate (n => mix%n, s => mix%s, fluids => domain%fluids)
-         pressure = 0.0_wp
-         rho_n = -region%rho_s
+         pressure = mix%p_w + (1 - s)*mix%p_c
+         rho_n = s*fluids%rho_w - region%rho_s
          rho_s = 0.0_wp
-         if (region%with_w) then
-            pressure = mix%p_w + (1 - s)*mix%p_c
-            rho_n = rho_n + s*fluids%rho_w
-            if (region%with_c) rho_n = rho_n + (1 - s)*mix%rho_a
-            if (region%with_c) rho_s = n*(fluids%rho_w - mix%rho_a)
-         end if
+         if (region%with_c) rho_n = rho_n + (1 - s)*mix%rho_a
+         if (region%with_c) rho_s = n*(fluids%rho_w - mix%rho_a)
          rho = region%rho_s + n*rho_n
          accel = k%accel + region%damping*k%speed
          accel(2) = accel(2) + domain%gravity
@@ -180,9 +229,8 @@ contains
          response(U + 1:U + 2) = rho*accel - k%source(1:2)
          if (.not. with_tangent) return
          tangent(1:4, 1:4) = l_s*skeleton%tangent
-         if (region%with_w) tangent(1:3, PW) = -l
-         tangent(U + 1, U + 1) = rho*scheme%c_a
-         if (scheme%kind == DYNAMIC) tangent(U + 1, U + 1) = rho*(scheme%c_a + region%damping*scheme%c_v)
+         tangent(1:3, PW) = -l
+         tangent(U + 1, U + 1) = rho*slope_of_inertia(region, scheme)
          tangent(U + 2, U + 2) = tangent(U + 1, U + 1)
          do i = 1, 3
             tangent(U + 1:U + 2, i) = accel*(rho_n*l*(1 - mix%n1) + rho_s*mix%s_ev)

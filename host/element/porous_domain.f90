@@ -247,7 +247,8 @@ contains
       real(wp), intent(in) :: n, s   !< Porosity, degree of saturation [-].
 
       mixture_density = (1 - n)*region%rho_s
-      if (region%with_w) mixture_density = mixture_density + n*s*domain%fluids%rho_w
+      if (.not. region%with_w) return
+      mixture_density = mixture_density + n*s*domain%fluids%rho_w
       if (region%with_c) mixture_density = mixture_density + n*(1 - s)*domain%fluids%rho_a
    end function mixture_density
 
