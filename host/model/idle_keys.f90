@@ -1,12 +1,13 @@
 ! SPDX-License-Identifier: MIT
 !> Keys of a scene that change nothing because another key says so, and definitions that nobody uses.
 module idle_keys
+   use effect_types, only: OF_P_W, OF_P_C
    use faults, only: at_line
    use key_schema, only: given, line_of
    use material_registry, only: is_law
    use namelists, only: group_t
    use scene_keys, only: text_of
-   use scene_types, only: scene_t, WITH_U, WITH_P_C
+   use scene_types, only: scene_t, WITH_U, WITH_P_W, WITH_P_C
    use texts, only: lower_case
    implicit none (type, external)
    private
@@ -42,6 +43,7 @@ module idle_keys
       rule_t('initial', 'k_0_of', 'stress', '|geostatic|'), &
       rule_t('fluids', 'k_a', 'gas', '|constant|'), rule_t('scene', 'effects_tolerance', 'effects', '|auto|'), &
       rule_t('scene', 'effects_pilot_share', 'effects', '|auto|'), &
+      rule_t('scene', 'effects_on_warning', 'effects', '|auto|'), &
       rule_t('stage', 'rho_inf', 'analysis', '||quasi_static|dynamic|'), &
       rule_t('stage', 'start', 'analysis', '||dynamic|'), &
       rule_t('region', 'permeability', 'drainage', '|coupled|'), &
@@ -79,12 +81,18 @@ contains
    subroutine list_idle_keys(scene, warnings)
       type(scene_t), intent(in) :: scene
       character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)   !< They grow. (warnings)
-      integer :: g
+      integer :: g, i
 
+      if (allocated(scene%absent)) then
+         do i = 1, size(scene%absent)
+            call add_warning(trim(scene%file)//': without = '''//trim(scene%absent(i))//''' of &scene has no effect: '// &
+                             'the scene does not have it.', warnings)
+         end do
+      end if
       do g = 1, size(scene%groups)
          if (is_law(scene%groups(g)%name)) cycle
          call look_at_rules(scene%groups(g), warnings)
-         if (.not. scene%derive_effects) call look_at_fields(scene, scene%groups(g), warnings)
+         call look_at_fields(fields_of(scene), scene%groups(g), warnings)
       end do
       call look_for_users(scene, warnings)
    end subroutine list_idle_keys
@@ -116,13 +124,23 @@ contains
       end function place
    end subroutine look_at_rules
 
-   subroutine look_at_fields(scene, group, warnings)
+   !> Fields of a scene, with those that pilots have removed: what these need was not in vain.
+   pure integer function fields_of(scene) result(fields)
       type(scene_t), intent(in) :: scene
+
+      fields = scene%fields
+      if (.not. allocated(scene%effects)) return
+      if (any(scene%effects%kind == OF_P_W .and. scene%effects%present)) fields = max(fields, WITH_P_W)
+      if (any(scene%effects%kind == OF_P_C .and. scene%effects%present)) fields = WITH_P_C
+   end function fields_of
+
+   subroutine look_at_fields(fields, group, warnings)
+      integer, intent(in) :: fields
       type(group_t), intent(in) :: group
       character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
 
-      if (scene%fields == WITH_U) call look(NEED_P_W, 'p_w')
-      if (scene%fields < WITH_P_C) call look(NEED_P_C, 'p_c')
+      if (fields == WITH_U) call look(NEED_P_W, 'p_w')
+      if (fields < WITH_P_C) call look(NEED_P_C, 'p_c')
    contains
       subroutine look(keys, field)
          character(*), intent(in) :: keys(:), field

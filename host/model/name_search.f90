@@ -26,8 +26,12 @@ contains
       type(fault_t), intent(inout) :: fault
 
       found = findloc(names == name, .true., dim=1)
-      if (found == 0) call raise(fault, EXIT_GROUP, place//key//' = '''//trim(name)// &
-                                 ''' is defined nowhere; there is'//listed(names)//'.')
+      if (found == 0 .and. name == '') then
+         call raise(fault, EXIT_GROUP, place//key//' is missing: name one; there is'//listed(names)//'.')
+      else if (found == 0) then
+         call raise(fault, EXIT_GROUP, place//key//' = '''//trim(name)//''' is defined nowhere; there is'// &
+                    listed(names)//'.')
+      end if
    end function defined_name
 
    pure function listed(names) result(list)

@@ -12,7 +12,8 @@ module effect_switches
    use namelists, only: set_entry
    use parameter_groups, only: read_parameters
    use scene_types, only: scene_t, NAME_LENGTH, WITH_U, WITH_P_W, WITH_P_C, IS_STATIC, IS_QUASI_STATIC, IS_DYNAMIC, &
-                          FIX_P_W, FIX_P_C, LOAD_WATER, LOAD_AIR, IS_COUPLED, IS_DRY
+                          FIX_P_W, FIX_P_C, LOAD_WATER, LOAD_AIR, IS_COUPLED, IS_DRAINED, IS_UNDRAINED, &
+                          IS_DRY
    implicit none (type, external)
    private
    public :: list_effects, settle_open_keys, switch, switch_by_hand
@@ -34,13 +35,21 @@ contains
       if (.not. scene%gravity_by_hand) scene%gravity = EARTH
       if (.not. scene%fields_by_hand) then
          scene%fields = WITH_U
-         if (any(scene%regions%permeability_name /= '')) scene%fields = WITH_P_W
+         if (holds_water(scene)) scene%fields = WITH_P_W
          if (any(scene%regions%retention_name /= '')) scene%fields = WITH_P_C
       end if
       do i = 1, size(scene%stages)
          if (scene%stages(i)%analysis == 0) scene%stages(i)%analysis = IS_DYNAMIC
       end do
    end subroutine settle_open_keys
+
+   !> Whether the keys of a region speak of water: where it flows, or is kept.
+   pure logical function holds_water(scene)
+      type(scene_t), intent(in) :: scene
+
+      holds_water = any(scene%regions%permeability_name /= '' .or. scene%regions%drainage == IS_DRAINED .or. &
+                        scene%regions%drainage == IS_UNDRAINED)
+   end function holds_water
 
    !> The effects of a scene, in the order of the list: present or not, said by a key or left open. Inertia has a row a
    !> stage. What has no meaning for the scene has no row. To be called before the open keys are settled.
@@ -82,7 +91,7 @@ contains
       case (OF_SEEPAGE)
          has_meaning = scene%fields /= WITH_U .and. any(scene%stages%analysis == IS_DYNAMIC)
       case (OF_P_W)
-         has_meaning = any(scene%regions%permeability_name /= '')
+         has_meaning = holds_water(scene)
       case (OF_P_C)
          has_meaning = any(scene%regions%retention_name /= '')
       case (OF_CONTACT, OF_GEOMETRY)
@@ -167,13 +176,19 @@ contains
       end select
    end function is_open
 
-   !> The effects that the key `without` takes out.
+   !> The effects that the key `without` takes out. Those that the scene does not have become its list `absent`.
    subroutine switch_by_hand(scene, why)
       type(scene_t), intent(inout) :: scene
       character(*), intent(out) :: why   !< Why one of them cannot be; empty if all could.
+      logical :: here(size(scene%without))
       integer :: i, k, stage
 
       why = ''
+      do i = 1, size(scene%without)
+         k = findloc(EFFECT_NAMES, scene%without(i), dim=1)
+         here(i) = any([(is_present(scene, k, stage), stage=1, size(scene%stages))])
+      end do
+      scene%absent = pack(scene%without, .not. here)
       do i = 1, size(scene%without)
          k = findloc(EFFECT_NAMES, scene%without(i), dim=1)
          do stage = 1, merge(size(scene%stages), 1, k == OF_INERTIA)

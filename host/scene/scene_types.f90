@@ -191,6 +191,7 @@ module scene_types
       real(wp) :: effects_tolerance = 0.01_wp
       real(wp) :: effects_pilot_share = 0.1_wp       !< Of the work of the run [-].
       character(LENGTH), allocatable :: without(:)   !< Effects that are taken out by hand.
+      character(LENGTH), allocatable :: absent(:)    !< Those of them that the scene did not have.
       type(effect_t), allocatable :: effects(:)      !< What pilots have found; not allocated: none ran.
       logical :: fields_by_hand = .true., gravity_by_hand = .true., seepage_by_hand = .true.   !< these say it.
       type(scene_mesh_t) :: mesh

@@ -7,11 +7,12 @@ import sys
 from test_architecture import root
 
 failed = 0
-for which in ([], ["--contact"]):
+LISTS = ([], ["--contact"], ["--regions"])
+for which in LISTS:
     done = subprocess.run([sys.executable, root / "tests/mutations/run_mutations.py", "--apply", *which],
                           capture_output=True, text=True)
     if done.returncode:
         failed += 1
         print(f"FAILED mutations {' '.join(which)}:\n{done.stdout}{done.stderr}")
-print(f"{2 - failed} passed, {failed} failed")
+print(f"{len(LISTS) - failed} passed, {failed} failed")
 sys.exit(failed > 0)

@@ -266,6 +266,29 @@ check("large: pilots ran within the share", re.search(r"of these \S+ s for pilot
 said, table = run(small, "small_asked", "--effects")
 check("small: --effects runs pilots all the same", table["inertia in load"]["influence"] != "", table)
 
+# Water that cannot leave needs no permeability, but is there: the soil would settle 400 times as much without it.
+kept = column("gravity = 0", "analysis = 'quasi_static' duration = 10 dt = 1", region="void_ratio = 0.8 drainage = 'undrained'")
+_, table = run(kept, "kept")
+is_on("kept", table, "p_w", True)
+run(kept.replace(AUTO, "fields = 'u-p_w'"), "kept_by_hand")
+check("kept: as by hand, byte for byte", (work / "kept/histories.csv").read_bytes()
+      == (work / "kept_by_hand/histories.csv").read_bytes())
+done = start(kept.replace("region material", "region group = 'block_1_1' material").replace(
+    "z = 0, 1 z_cells = 8", "z = 0, 0.5, 1 z_cells = 4, 4").replace(
+    "&stage", "&region group = 'block_1_2' material = 'soil' void_ratio = 0.8 /\n&stage"), "no_flow")
+check("beside it flowing water needs a permeability", done.returncode == 2 and "permeability is missing" in done.stderr,
+      done.stderr)
+
+# What has no effect is told, whoever chooses the fields.
+said, _ = run(column("gravity = 0", **slow, more="&initial p_w = 30 /"), "nothing_holds_it")
+check("auto: a pressure that no region can have", "p_w of &initial has no effect" in said, said)
+said, _ = run(column("gravity = 0 fields = 'u'", **slow).replace(AUTO, "effects_on_warning = 'stop' without = 'p_c'"), "idle")
+check("given: nothing watches", "effects_on_warning of &scene has no effect" in said, said)
+check("without what is not there", "without = 'p_c' of &scene has no effect" in said, said)
+said, _ = run(column("gravity = 0", **wet).replace(AUTO, "fields = 'u-p_w-p_c' without = 'p_w', 'p_c'").replace(
+    "&stage name = 'load'", "&stage name = 'load' analysis = 'dynamic'"), "both")
+check("without two, of which one takes the other along", "no effect" in said and "'p_c' of &scene has no" not in said, said)
+
 # Mistakes.
 for what, text, words in [("no analysis", column("gravity = 0").replace(AUTO, ""),
                            ("needs analysis", "quasi_static")),

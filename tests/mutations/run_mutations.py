@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Change the library in one place at a time and see which tests notice.
 
-Usage: run_mutations.py [--contact] [-k WORD] [--most N] [--readme] [--keep] [-j N]. Works on a copy of the source tree
+Usage: run_mutations.py [--contact | --regions] [-k WORD] [--most N] [--readme] [--keep] [-j N]. Works on a copy of the source tree
 in a temporary folder; builds release with our own runner. A mutation that no test notices survives: exit code 1. One
 that does not apply or does not compile is an error of mutations.py: exit code 2.
   --contact  mutations of the host's contact instead: its suites and the page verification/host/contact
+  --regions  mutations of what regions of the host do: its suites of models and elements
   -k WORD    only mutations whose title contains it
   --most N   only mutations that at most N tests noticed when the table was written: 0, those it does not have
-  --readme   write the table to README.md (CONTACT.md) beside this file; what was left out keeps its row
+  --readme   write the table to README.md (CONTACT.md, REGIONS.md) beside this file; what was left out keeps its row
   --keep     keep the temporary folder
   --apply    only see whether every mutation applies: nothing is built or run
 """
@@ -22,7 +23,7 @@ import sys
 import tempfile
 import time
 
-from mutations import CONTACT, MUTATIONS
+from mutations import CONTACT, MUTATIONS, REGIONS
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -40,7 +41,7 @@ def run(command, folder, **more):
 
 class Library:
     """The library and its suites."""
-    mutations, sources, table = MUTATIONS, "umat", "README.md"
+    mutations, sources, table, title = MUTATIONS, "umat", "README.md", "Mutations"
     command = "python3 tests/mutations/run_mutations.py --readme"
     judges = "the suites of `tests/umat/core` and `tests/umat/contract`"
     patterns, programs, pages = ("tests/umat/core/*/*.pf", "tests/umat/contract/*.pf"), [], []
@@ -48,12 +49,20 @@ class Library:
 
 class Contact:
     """The host's contact, its suites and its page of known answers."""
-    mutations, sources, table = CONTACT, "host", "CONTACT.md"
+    mutations, sources, table, title = CONTACT, "host", "CONTACT.md", "Mutations of the contact"
     command = "python3 tests/mutations/run_mutations.py --contact --readme"
     judges = ("the suites of contact and drainage in `tests/host`, and, where none of them notices, "
               "`verification/run host/contact --quick`")
     patterns = ("tests/host/contact/*.pf", "tests/host/model/test_contact_drainage.pf")
     programs, pages = ["mud_host"], ["host/contact"]
+
+
+class Regions:
+    """What the regions of the host do, and its suites of models and elements."""
+    mutations, sources, table, title = REGIONS, "host", "REGIONS.md", "Mutations of regions"
+    command = "python3 tests/mutations/run_mutations.py --regions --readme"
+    judges = "the suites of `tests/host/model` and `tests/host/element`"
+    patterns, programs, pages = ("tests/host/model/*.pf", "tests/host/element/*.pf"), [], []
 
 
 subject = Library
@@ -156,7 +165,8 @@ def commit():
 
 def rows_of_page():
     """Lines of the present table by title."""
-    lines = (HERE / subject.table).read_text(encoding="utf-8").splitlines()
+    page = HERE / subject.table
+    lines = page.read_text(encoding="utf-8").splitlines() if page.exists() else []
     return {line.split("|")[1].strip(): line for line in lines if line.startswith("| ")}
 
 
@@ -174,7 +184,7 @@ def write_readme(table, rows, suites, seconds):
     rows = [rows[title] for title, *_ in subject.mutations if title in rows]
     survived = sum(not tests_in(row) for row in rows)
     partly = "" if len(table) == len(rows) else f" {len(rows) - len(table)} rows are of earlier commits."
-    lines = [f"# Mutations{' of the contact' if subject is Contact else ''}", "",
+    lines = [f"# {subject.title}", "",
              f"`{subject.command}` changes `{subject.sources}` in one place at a time "
              f"(`mutations.py`), builds it and runs {subject.judges}. It is not part of "
              "`./check`. \"(hangs)\" and \"(stops)\" mean that the program of the suite hung or stopped.", "",
@@ -190,6 +200,7 @@ def main():
     global subject
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--contact", action="store_true")
+    arguments.add_argument("--regions", action="store_true")
     arguments.add_argument("-k", default="", metavar="WORD")
     arguments.add_argument("--most", type=int, metavar="N")
     arguments.add_argument("--readme", action="store_true")
@@ -197,7 +208,7 @@ def main():
     arguments.add_argument("--apply", action="store_true")
     arguments.add_argument("-j", type=int, default=os.cpu_count())
     arguments = arguments.parse_args()
-    subject = Contact if arguments.contact else Library
+    subject = Contact if arguments.contact else Regions if arguments.regions else Library
     start = time.monotonic()
     folder = pathlib.Path(tempfile.mkdtemp(prefix="mud-mutations-"))
     tree = folder / "mud"
@@ -207,7 +218,7 @@ def main():
             return apply_all(tree)
         configured = run(["cmake", "-S", ".", "-B", "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                           "-DMUD_PRESET=release", "-DMUD_USE_PFUNIT=OFF", "-DMUD_WERROR=OFF",
-                          "-DMUD_BUILD_DRIVERS=OFF", f"-DMUD_BUILD_HOST={'ON' if subject is Contact else 'OFF'}"], tree)
+                          "-DMUD_BUILD_DRIVERS=OFF", f"-DMUD_BUILD_HOST={'OFF' if subject is Library else 'ON'}"], tree)
         if configured.returncode:
             print(configured.stdout)
             return 2

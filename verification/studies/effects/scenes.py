@@ -67,6 +67,22 @@ SLAB = f"""&scene name = 'slab' geometry = 'plane_strain' {AUTO} gravity = 0 /
 &point name = 'clamp_top' r = 0.1667 z = 0.2 /
 """
 
+DILATANCY = f"""&scene name = 'dilatancy' geometry = 'plane_strain' {AUTO} gravity = 0 accuracy = 1e-2 /
+&mesh r = 0, 0.5 r_cells = 1 z = 0, 1 z_cells = 1 /
+{SAND}
+{WATER.format(k="1e-12")}
+&region material = 'soil' void_ratio = 0.65 retention = 'material' permeability = 'k' /
+{STRESS.format(50)}
+&stage name = 'push' analysis = 'quasi_static' duration = 100 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'all' field = 'p_a' /
+&load group = 'right' kind = 'pressure' value = 50 /
+&history name = 'h' times = 0, 100 values = 0, 1 /
+&fix group = 'top' field = 'u_z' value = -0.04 history = 'h' /
+&point name = 'side' r = 0.5 z = 0.5 /
+"""
+
 
 @dataclass(frozen=True)
 class Scene:
@@ -113,6 +129,9 @@ TRAPS = (
     Scene("fast load on saturated soil", "a load within 0.5 s on soil that drains in 10 s",
           column("gravity = 0 accuracy = 1e-2", "duration = 1", "0, 0.5", "0, 1", laws=WATER.format(k="1e-11"),
                  region="void_ratio = 0.8 permeability = 'k'", more=DRAINED), ("p_w",), ("p_w",), ("inertia in load",)),
+    Scene("suction from dilatancy", "sealed saturated sand that is pushed: at first its pressure rises, then dilatancy desaturates it; "
+          "without p_c the water pulls with 240 kPa and the sand carries four times as much", DILATANCY,
+          ("p_w", "p_c", "lode"), ("p_c",), ("fabric",)),
     Scene("two weak ones together", "weight and inertia change little, each alone; the tolerance is that of the scene, 4 %",
           column("accuracy = 1e-2 effects_tolerance = 0.04", "duration = 2", "0, 1", "0, 1", load=200),
           (), ("gravity", "inertia")),
