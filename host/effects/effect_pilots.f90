@@ -6,7 +6,7 @@ module effect_pilots
    use kinds, only: wp
    use effect_monitor, only: is_watched
    use effect_switches, only: list_effects, settle_open_keys, switch, switch_by_hand
-   use effect_types, only: effect_t, OF_P_C, OF_SEEPAGE
+   use effect_types, only: effect_t, indicator_place, OF_P_C, OF_SEEPAGE, OF_FLOW
    use faults, only: fault_t, raise, EXIT_INPUT
    use pilot_runs, only: pilot_t, run_pilot, difference_t, difference, influence_t
    use pilot_scenes, only: make_cheap, can_coarsen
@@ -79,19 +79,20 @@ contains
       type(fault_t), intent(inout) :: fault
       type(scene_t) :: settled, cheap
       type(pilot_t) :: base
-      logical, allocatable :: tried(:)
+      logical, allocatable :: tried(:), dispensable(:)
       integer :: i
 
       table = list_effects(scene)
       ! What the scene does not have, and a key says so, is tried with the whole scene alone.
       tried = table%present .or. whole_scene .or. .not. table%by_hand
+      dispensable = table%by_hand .or. table%kind == OF_FLOW
       settled = scene
       call settle_scene(settled, fault)
       if (fault%code /= 0) return
       allocate (account%influences(0))
       account%cells = 1
       if (.not. whole_scene) account%cells = cells_of(settled)
-      if (.not. whole_scene) call look_ahead(settled, count(tried .and. .not. table%by_hand), share, account)
+      if (.not. whole_scene) call look_ahead(settled, count(tried .and. .not. dispensable), share, account)
       if (.not. account%too_dear) call find_base()
       if (fault%code /= 0) return
       if (account%too_dear) then
@@ -133,7 +134,7 @@ contains
             account%steps = 2**k
             good = account%own_error_known .and. apart%share <= GOOD_PILOT
             call estimate(settled, cheap, base, account)
-            call keep_to(share, merge(1, 2, good), table%by_hand, tried, base, account)
+            call keep_to(share, merge(1, 2, good), dispensable, tried, base, account)
             if (good .or. account%too_dear) exit
          end do
          if (.not. base%done) then
@@ -143,7 +144,7 @@ contains
          end if
          if (.not. quiet) write (output_unit, '(a)') 'Pilots: '//whole(base%elements)//' elements, '// &
             whole(base%unknowns)//' unknowns, '//whole(base%steps)//' steps; with every effect '// &
-            short(base%seconds)//' s.'
+            short(base%processor)//' s of processor time.'
          if (account%too_dear .or. whole_scene .or. size(settled%points) == 0 .or. .not. can_coarsen(cheap)) return
          finer_scene = settled
          call make_cheap(2*account%cells, account%steps, finer_scene)
@@ -264,18 +265,18 @@ contains
 
    !> Whether what is left to do fits into the share: one pilot for each effect that is tried, one with cells twice as
    !> long and one without all that is to go, `dearer` times as dear as this one, beside it where it is not the base
-   !> itself. Effects that are set by hand are tried where there is room for them.
-   pure subroutine keep_to(share, dearer, by_hand, tried, pilot, account)
+   !> itself. Effects that are set by hand, and the flow in single regions, are tried where there is room for them.
+   pure subroutine keep_to(share, dearer, dispensable, tried, pilot, account)
       real(wp), intent(in) :: share
       integer, intent(in) :: dearer
-      logical, intent(in) :: by_hand(:)
+      logical, intent(in) :: dispensable(:)
       logical, intent(inout) :: tried(:)
       type(pilot_t), intent(in) :: pilot
       type(pilots_account_t), intent(inout) :: account
 
       account%planned = to_do()
       if (fits(account%planned, share, account)) return
-      tried = tried .and. .not. by_hand
+      tried = tried .and. .not. dispensable
       account%planned = to_do()
       account%too_dear = .not. fits(account%planned, share, account)
    contains
@@ -319,8 +320,9 @@ contains
       effect%change = apart%change
       effect%answer = apart%answer
       effect%unknowns = base%unknowns - pilot%unknowns
-      effect%seconds = pilot%seconds/max(base%seconds, tiny(1.0_wp))
-      if (effect%present .and. is_watched(effect%kind)) effect%limit = maxval(pilot%indicators(effect%kind, :))
+      effect%seconds = pilot%processor/max(base%processor, tiny(1.0_wp))
+      if (effect%present .and. is_watched(effect%kind)) &
+         effect%limit = maxval(pilot%indicators(indicator_place(effect), :))
    end subroutine try_effect
 
    !> What no key says goes or stays; what is to go together is tried together.
@@ -340,7 +342,8 @@ contains
       do i = 1, size(table)
          associate (t => table(i))
             if (t%influence < 0.0_wp .and. t%why == '') then
-               t%why = 'not tried: by hand'
+               t%why = merge('not tried: by hand                              ', &
+                             'not tried: pilots would cost too much of the run', t%by_hand)
             else if (t%by_hand) then
                t%why = trim(t%why)//trim(merge('; by hand', 'by hand  ', t%why /= ''))
             else if (t%influence < 0.0_wp) then

@@ -5,7 +5,7 @@ module pilot_runs
    use, intrinsic :: iso_fortran_env, only: output_unit
    use kinds, only: wp
    use effect_monitor, only: indicator_of, mass_of_nodes
-   use effect_types, only: EFFECTS
+   use effect_types, only: effect_t, EFFECTS, OF_FLOW
    use faults, only: fault_t, raise, EXIT_INPUT
    use history_distance, only: farthest
    use model_builder, only: build_model
@@ -38,14 +38,14 @@ module pilot_runs
       logical :: done = .false.
       character(200) :: why = ''                      !< Where it is not done.
       integer :: elements = 0, unknowns = 0, steps = 0
-      real(wp) :: seconds = 0.0_wp
+      real(wp) :: seconds = 0.0_wp, processor = 0.0_wp   !< By the clock; of the processor, all threads.
       real(wp) :: stress = 0.0_wp                     !< Largest change of an effective stress [kPa].
       logical :: has(FIELDS) = .false.
       character(72), allocatable :: names(:)          !< Of the points.
       real(wp), allocatable :: time(:), x(:, :, :)    !< [s], (FIELDS, points, times) [m, kPa]
       character(72), allocatable :: supports(:)       !< Those that move, with the direction.
       real(wp), allocatable :: force(:, :)            !< (supports, times) [kN]
-      real(wp), allocatable :: indicators(:, :)       !< Largest, (EFFECTS, stages), see effect_monitor.
+      real(wp), allocatable :: indicators(:, :)       !< Largest, (see indicator_place, stages).
       type(stage_ends_t), allocatable :: ends(:)      !< Of the stages.
       real(wp), allocatable :: rho_inf(:)             !< Of the stages.
    end type pilot_t
@@ -91,9 +91,10 @@ contains
       type(run_t) :: run
       type(watcher_t) :: watcher
       type(fault_t) :: fault
-      real(wp) :: t0
+      real(wp) :: t0, p0, p1
 
       t0 = clock()
+      call cpu_time(p0)
       watcher%silent = .true.
       if (most_steps > 0) watcher%most_steps = MOST_TIMES_THE_STEPS*most_steps
       call build_model(scene, model, fault)
@@ -103,6 +104,8 @@ contains
       pilot%done = fault%code == 0
       pilot%why = fault%text(:len(pilot%why))
       pilot%seconds = clock() - t0
+      call cpu_time(p1)
+      pilot%processor = p1 - p0
       if (allocated(model%stages)) pilot%rho_inf = model%stages%rho_inf
       if (.not. allocated(model%dofs%of)) return
       pilot%elements = size(model%domain%mesh%t6, 2)
@@ -133,7 +136,7 @@ contains
       self%mass = mass_of_nodes(model, run%state)
       self%first = run%state
       self%before = run%state
-      allocate (self%seen%indicators(EFFECTS, size(model%stages)), source=0.0_wp)
+      allocate (self%seen%indicators(EFFECTS + size(model%domain%regions), size(model%stages)), source=0.0_wp)
       allocate (self%seen%ends(size(model%stages)))
       do i = 1, size(model%stages)
          allocate (self%seen%ends(i)%times(0))
@@ -209,15 +212,17 @@ contains
       type(step_report_t), intent(in) :: report
       logical, intent(out) :: checkpoint
       type(fault_t), intent(inout) :: fault
+      type(effect_t) :: effect
       integer :: k
 
       checkpoint = .false.
       call keep(self, model, run)
       self%seen%stress = max(self%seen%stress, maxval(abs(run%state%stress - self%first%stress)))
       associate (s => report%stage)
-         do k = 1, EFFECTS
+         do k = 1, size(self%seen%indicators, 1)
+            effect = effect_t(kind=min(k, OF_FLOW), stage=s, region=max(0, k - EFFECTS))
             self%seen%indicators(k, s) = max(self%seen%indicators(k, s), &
-               indicator_of(k, s, model, s, report%dt, self%mass, self%before, run%state))
+               indicator_of(effect, model, s, report%dt, self%mass, self%before, run%state))
          end do
          self%seen%ends(s)%times = [self%seen%ends(s)%times, run%state%time - run%at%t_start]
       end associate

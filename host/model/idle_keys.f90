@@ -85,8 +85,8 @@ contains
 
       if (allocated(scene%absent)) then
          do i = 1, size(scene%absent)
-            call add_warning(trim(scene%file)//': without = '''//trim(scene%absent(i))//''' of &scene has no effect: '// &
-                             'the scene does not have it.', warnings)
+            call add_warning(trim(scene%file)//': without = '''//trim(scene%absent(i))// &
+                             ''' of &scene has no effect: the scene does not have it.', warnings)
          end do
       end if
       do g = 1, size(scene%groups)

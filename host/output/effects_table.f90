@@ -49,7 +49,7 @@ contains
       end do
       write (unit, '(a)') 'Influence: largest change of an answer without the effect (with it where it is off), '// &
          'share of the answer''s range; change in m, kPa or kN;'
-      write (unit, '(a)') 'time: of the run without (with) it over that with all.'
+      write (unit, '(a)') 'time: processor time of the run without (with) it over that with all.'
    end subroutine print_effects
 
    pure function state_of(effect, decided) result(text)

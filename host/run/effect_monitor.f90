@@ -4,7 +4,7 @@
 !> asked of the material. docs/theory/host.md section 11.
 module effect_monitor
    use kinds, only: wp
-   use effect_types, only: effect_t, OF_P_W, OF_P_C, OF_INERTIA, OF_SEEPAGE, OF_GRAVITY, NEVER
+   use effect_types, only: effect_t, OF_P_W, OF_P_C, OF_INERTIA, OF_SEEPAGE, OF_GRAVITY, OF_FLOW, NEVER
    use model_types, only: model_t
    use unknown_fields, only: DISPLACEMENTS, AT_P_W
    use porous_domain, only: state_t, mixture_density
@@ -57,7 +57,7 @@ contains
    pure logical function is_watched(kind)
       integer, intent(in) :: kind   !< One of OF_...
 
-      is_watched = any([OF_INERTIA, OF_SEEPAGE, OF_P_W, OF_P_C, OF_GRAVITY] == kind)
+      is_watched = any([OF_INERTIA, OF_SEEPAGE, OF_P_W, OF_P_C, OF_GRAVITY, OF_FLOW] == kind)
    end function is_watched
 
    !> Indicators of a step; `news` marks those that pass their limit with it. docs/theory/host.md section 11.
@@ -75,7 +75,7 @@ contains
       do i = 1, size(monitor%table)
          associate (t => monitor%table(i))
             if (t%limit < 0.0_wp) cycle
-            value = indicator_of(t%kind, t%stage, model, stage, dt, monitor%mass, old, new)
+            value = indicator_of(t, model, stage, dt, monitor%mass, old, new)
             t%largest = max(t%largest, value)
             if (.not. value > t%limit .or. t%crossed > NEVER) cycle
             t%crossed = new%time
@@ -85,11 +85,11 @@ contains
    end subroutine monitor_step
 
    !> What an effect would act on, in a step without it: of inertia the speed [kJ**(1/2)], of the relative acceleration
-   !> the acceleration [m/s2], of p_w the rate of volume [1/s], of p_c the tension of the water [kPa], of gravity the
-   !> inverse of the least mean effective stress of a material that yields [1/kPa]. docs/theory/host.md section 11. 0 of
-   !> effects that leave no trace.
-   real(wp) function indicator_of(kind, of_stage, model, stage, dt, mass, old, new) result(value)
-      integer, intent(in) :: kind, of_stage   !< Effect, and stage of its inertia.
+   !> the acceleration [m/s2], of p_w the rate of volume [1/s], of flow that in its region, of p_c the tension of the
+   !> water [kPa], of gravity the inverse of the least mean effective stress of a material that yields [1/kPa].
+   !> docs/theory/host.md section 11. 0 of effects that leave no trace.
+   real(wp) function indicator_of(effect, model, stage, dt, mass, old, new) result(value)
+      type(effect_t), intent(in) :: effect   !< Its kind, and the stage of an inertia or the region of a flow.
       type(model_t), intent(in) :: model
       integer, intent(in) :: stage   !< Number of the present one.
       real(wp), intent(in) :: dt, mass(:)   !< [s]; (nodes) [Mg], of mass_of_nodes.
@@ -98,14 +98,23 @@ contains
       integer :: e
 
       value = 0.0_wp
-      select case (kind)
+      select case (effect%kind)
       case (OF_INERTIA)
-         if (of_stage == stage) value = &
+         if (effect%stage == stage) value = &
             sqrt(sum(mass*sum(((new%x(:DISPLACEMENTS, :) - old%x(:DISPLACEMENTS, :))/dt)**2, dim=1)))
       case (OF_SEEPAGE)
          if (model%stages(stage)%kind == DYNAMIC) value = sqrt(maxval(sum(new%a**2, dim=1)))
       case (OF_P_W)
          value = maxval(abs(new%e - old%e)/(1 + new%e))/dt
+      case (OF_FLOW)
+         associate (m => model%domain)
+            do e = 1, size(m%region_of)
+               if (m%region_of(e) /= effect%region) cycle
+               associate (one => old%e((e - 1)*m%rule + 1:e*m%rule), two => new%e((e - 1)*m%rule + 1:e*m%rule))
+                  value = max(value, maxval(abs(two - one)/(1 + two))/dt)
+               end associate
+            end do
+         end associate
       case (OF_P_C)
          value = max(0.0_wp, maxval(-new%x(AT_P_W, :), mask=model%dofs%of(AT_P_W, :) > 0))
       case (OF_GRAVITY)
@@ -128,7 +137,7 @@ contains
       select case (effect%kind)
       case (OF_P_C)
          text = 'the tension of the water [kPa]'
-      case (OF_P_W)
+      case (OF_P_W, OF_FLOW)
          text = 'the rate of volume of the soil [1/s]'
       case (OF_INERTIA)
          text = 'the speed of the motion [root of kJ]'
@@ -145,6 +154,8 @@ contains
          text = text//'set fields = ''u-p_w-p_c'' in &scene.'
       case (OF_P_W)
          text = text//'set fields = ''u-p_w'' in &scene.'
+      case (OF_FLOW)
+         text = text//'set drainage = ''coupled'' in that &region.'
       case (OF_INERTIA)
          text = text//'set analysis = ''dynamic'' in &stage.'
       case (OF_SEEPAGE)

@@ -5,7 +5,7 @@ module effect_switches
    use kinds, only: wp
    use effect_types, only: effect_t, EFFECT_NAMES, EFFECTS, OF_INERTIA, OF_SEEPAGE, OF_P_W, OF_P_C, OF_GRAVITY, &
       OF_CONTACT, OF_DAMPING, OF_ABSORBING, OF_DRAINAGE, OF_GEOMETRY, OF_VOID_RATIO, OF_HYSTERESIS, OF_BONDING, &
-      OF_ELASTIC_DOMAIN
+      OF_ELASTIC_DOMAIN, OF_FLOW
    use faults, only: fault_t
    use key_schema, only: given
    use library_tables, only: property_index, property_range
@@ -80,7 +80,26 @@ contains
             list = [list, row]
          end do
       end do
+      list = [list, flows_of(settled)]
    end function list_effects
+
+   !> A row for every region whose fluids may flow or not, where there are others: alone it is p_w that may go.
+   function flows_of(scene) result(list)
+      type(scene_t), intent(in) :: scene
+      type(effect_t), allocatable :: list(:)
+      integer :: i, region
+
+      allocate (list(0))
+      if (.not. scene%derive_effects .or. scene%fields == WITH_U .or. size(scene%regions) < 2) return
+      region = 0
+      do i = 1, size(scene%groups)
+         if (scene%groups(i)%name /= 'region') cycle
+         region = region + 1   ! in their order
+         if (.not. given(scene%groups(i), 'drainage')) &
+            list = [list, effect_t(kind=OF_FLOW, region=region, present=.true., on=.true., by_hand=.false., &
+                                   name='flow in '//scene%regions(region)%group_name)]
+      end do
+   end function flows_of
 
    !> Whether a row of the table would say anything.
    logical function has_meaning(scene, kind)
@@ -254,6 +273,8 @@ contains
          scene%contacts%fixed_geometry = .not. on
       case (OF_VOID_RATIO)
          call freeze_retention(scene, why)
+      case (OF_FLOW)
+         scene%regions(effect%region)%drainage = merge(IS_COUPLED, IS_DRAINED, on)
       case default
          call set_switch(scene, effect%kind, on)
       end select

@@ -4,16 +4,17 @@ module effect_types
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: effect_t, EFFECT_NAMES, EFFECT_WORDS, EFFECTS, EFFECT_LENGTH, UNKNOWN, NEVER
+   public :: effect_t, EFFECT_NAMES, EFFECT_WORDS, EFFECTS, EFFECT_LENGTH, UNKNOWN, NEVER, indicator_place
    public :: OF_INERTIA, OF_SEEPAGE, OF_P_W, OF_P_C, OF_GRAVITY, OF_CONTACT, OF_DAMPING, OF_ABSORBING, OF_DRAINAGE, &
              OF_GEOMETRY, OF_VOID_RATIO, OF_HYSTERESIS, OF_BONDING, OF_FABRIC, OF_ISOTROPIC, OF_LODE, OF_MEMORY, &
-             OF_ELASTIC_DOMAIN
+             OF_ELASTIC_DOMAIN, OF_FLOW
 
    integer, parameter :: EFFECTS = 18, EFFECT_LENGTH = 26
    integer, parameter :: OF_INERTIA = 1, OF_SEEPAGE = 2, OF_P_W = 3, OF_P_C = 4, OF_GRAVITY = 5, OF_CONTACT = 6, &
       OF_DAMPING = 7, OF_ABSORBING = 8, OF_DRAINAGE = 9, OF_GEOMETRY = 10, OF_VOID_RATIO = 11, &
       OF_HYSTERESIS = 12, OF_BONDING = 13, OF_FABRIC = 14, OF_ISOTROPIC = 15, OF_LODE = 16, OF_MEMORY = 17, &
       OF_ELASTIC_DOMAIN = 18
+   integer, parameter :: OF_FLOW = EFFECTS + 1   !< Of water and air in one region: `drainage` of &region says it.
    !> The word of every effect: in tables, and in the key `without` of &scene (which takes those of the list below).
    character(EFFECT_LENGTH), parameter :: EFFECT_NAMES(EFFECTS) = [character(EFFECT_LENGTH) :: 'inertia', &
       'relative_acceleration', 'p_w', 'p_c', 'gravity', 'contact', 'damping', 'absorbing', 'contact_drainage', &
@@ -36,6 +37,7 @@ module effect_types
    type :: effect_t
       integer :: kind = 0                      !< One of OF_...
       integer :: stage = 0                     !< Number of the stage, of the inertia; 0: all.
+      integer :: region = 0                    !< Number of the region, of the flow; 0: all.
       character(96) :: name = ''
       logical :: present = .false.             !< In the scene as it was given.
       logical :: by_hand = .true.              !< A key sets it, so that nothing else decides.
@@ -44,11 +46,19 @@ module effect_types
       real(wp) :: change = 0.0_wp              !< The largest change with its sign, in the unit of the answer.
       character(72) :: answer = ''             !< The answer that changes most.
       integer :: unknowns = 0                  !< Fewer (more) without (with) it, in the pilot.
-      real(wp) :: seconds = UNKNOWN            !< Time of its pilot over that of the whole scene's pilot [-].
+      real(wp) :: seconds = UNKNOWN            !< Processor time of its pilot over that of the whole scene's [-].
       character(200) :: why = ''
       ! Monitored during the run where a pilot removed it.
       real(wp) :: limit = UNKNOWN              !< Of the indicator, see effect_monitor.
       real(wp) :: largest = 0.0_wp             !< Largest value of the indicator so far.
       real(wp) :: crossed = NEVER              !< Time when the indicator passed the limit [s].
    end type effect_t
+contains
+   !> Place of an effect among the indicators of a run: those of the list, then one a region for its flow.
+   pure integer function indicator_place(effect) result(place)
+      type(effect_t), intent(in) :: effect
+
+      place = effect%kind
+      if (effect%kind == OF_FLOW) place = EFFECTS + effect%region
+   end function indicator_place
 end module effect_types

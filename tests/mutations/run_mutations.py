@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Change the library in one place at a time and see which tests notice.
 
-Usage: run_mutations.py [--contact | --regions] [-k WORD] [--most N] [--readme] [--keep] [-j N]. Works on a copy of the source tree
-in a temporary folder; builds release with our own runner. A mutation that no test notices survives: exit code 1. One
-that does not apply or does not compile is an error of mutations.py: exit code 2.
+Usage: run_mutations.py [--contact | --regions] [-k WORD] [--most N] [--readme] [--keep] [-j N]. Works on a copy of the
+source tree in a temporary folder; builds release with our own runner. A mutation that no test notices survives: exit
+code 1. One that does not apply or does not compile is an error of mutations.py: exit code 2.
   --contact  mutations of the host's contact instead: its suites and the page verification/host/contact
   --regions  mutations of what regions of the host do: its suites of models and elements
   -k WORD    only mutations whose title contains it

@@ -83,6 +83,27 @@ DILATANCY = f"""&scene name = 'dilatancy' geometry = 'plane_strain' {AUTO} gravi
 &point name = 'side' r = 0.5 z = 0.5 /
 """
 
+# To be filled: keys of &scene, of the region farthest away, of the stage, more groups.
+PLOTS = """&scene name = 'plots' geometry = 'plane_strain' {0} fields = 'u-p_w' gravity = 0 /
+&mesh r = 0, 1, 3, 6 r_cells = 4, 4, 3 z = -1, 0 z_cells = 4 /
+&elastic name = 'soil' young = 1e4 poisson = 0.25 /
+&permeability name = 'k' intrinsic = 1e-11 law = 'constant' /
+&region group = 'block_1_1' material = 'soil' void_ratio = 0.8 permeability = 'k' /
+&region group = 'block_2_1' material = 'soil' void_ratio = 0.8 permeability = 'k' drainage = 'coupled' /
+&region group = 'block_3_1' material = 'soil' void_ratio = 0.8 {1} /
+&stage name = 'load' {2} /
+&history name = 'h' times = 0, 0.5 values = 0, 1 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'top_1' field = 'p_w' /
+&load group = 'top_1' kind = 'pressure' value = 100 history = 'h' /
+&point name = 'top' r = 0 z = 0 /
+&point name = 'base' r = 0 z = -1 /
+{3}
+"""
+
 
 @dataclass(frozen=True)
 class Scene:
@@ -153,4 +174,7 @@ EASY = (
           column("gravity = 0 accuracy = 1e-2", "duration = 200", "0, 1", "0, 1", laws=WATER.format(k="1e-12") + "\n" + CURVE,
                  region="void_ratio = 0.8 permeability = 'k' retention = 'c'", more=DRAINED + "\n&fix group = 'top' field = 'p_a' /"),
           drops=("inertia in load", "p_c")),
+    Scene("far soil", "100 kPa within half a second on one metre of a layer whose farthest half hears nothing of it",
+          PLOTS.format(AUTO, "permeability = 'k'", "analysis = 'quasi_static' duration = 2 dt = 0.02", ""),
+          drops=("flow in block_3_1",)),
 )

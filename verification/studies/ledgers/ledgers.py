@@ -11,6 +11,7 @@ import argparse
 import csv
 import pathlib
 import re
+import resource
 import subprocess
 import sys
 import tempfile
@@ -126,10 +127,12 @@ def farthest(one, other, columns):
 
 
 def run(host, path, *more):
+    """What it prints, and the processor time [s]."""
+    began = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     done = subprocess.run([str(host), str(path), *more], capture_output=True, text=True)
     if done.returncode:
         raise RuntimeError(f"{path.name}: {done.stderr.strip()}")
-    return done.stdout
+    return done.stdout, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - began
 
 
 def write(path, columns, rows):
@@ -143,26 +146,25 @@ def ledger(host, name, base, methods, results, commit):
     with tempfile.TemporaryDirectory() as scratch:
         folder = pathlib.Path(scratch)
         (folder / "base.nml").write_text(base, encoding="utf-8")
-        said = run(host, folder / "base.nml", "--ablate", "--output", str(folder / "ablate"))
+        said, _ = run(host, folder / "base.nml", "--ablate", "--output", str(folder / "ablate"))
         print(said, flush=True)
         for kind, file in (("effects", "effects.csv"), ("answers", "effects_answers.csv")):
             (results / f"{kind}_{name}.csv").write_bytes((folder / "ablate" / file).read_bytes())
-        run(host, folder / "base.nml", "--quiet", "--output", str(folder / "one"))
+        _, own_seconds = run(host, folder / "base.nml", "--quiet", "--output", str(folder / "one"))
         one = tables.columns(folder / "one/histories.csv")
         answers = [c for c in one if c.endswith((".u_r", ".u_z", ".p_w", ".p_c")) and not re.match(BETWEEN_NODES, c)]
         rows = []
         for change, text in methods.items():
             (folder / "other.nml").write_text(text, encoding="utf-8")
-            told = run(host, folder / "other.nml", "--output", str(folder / "other"))
+            told, seconds = run(host, folder / "other.nml", "--output", str(folder / "other"))
             size = re.search(r": (\d+) elements, \d+ nodes, (\d+) unknowns", told)
-            seconds = re.search(r"in all +(\S+) s", told)[1]
-            rows += [(change, *row, *size.groups(), seconds)
+            rows += [(change, *row, *size.groups(), f"{seconds:.4g}")
                      for row in farthest(one, tables.columns(folder / "other/histories.csv"), answers)]
     write(results / f"methods_{name}.csv", METHODS, rows)
-    own = re.search(r"Pilots: (\d+) elements, (\d+) unknowns, (\d+) steps; with every effect (\S+) s", said)
+    own = re.search(r"Pilots: (\d+) elements, (\d+) unknowns, (\d+) steps", said)
     path = results / "runs.csv"
     kept = {row["scene"]: tuple(row[c] for c in RUNS) for row in tables.rows(path)} if path.exists() else {}
-    kept[name] = (name, *own.groups(), commit)
+    kept[name] = (name, *own.groups(), f"{own_seconds:.4g}", commit)
     write(path, RUNS, [kept[key] for key in scenes() if key in kept])
 
 
