@@ -114,7 +114,7 @@ contains
          write (error_unit, '(a)') trim(fault%text)
          stop fault%code, quiet=.true.
       end if
-      stop
+      stop, quiet=.true.
    end subroutine leave
 
    !> Determines which effects the scene needs, where the scene leaves that open or the command line asks for it, and
