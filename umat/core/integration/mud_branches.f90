@@ -10,7 +10,7 @@ module mud_branches
    use mud_increment, only: increment_t, take_phase, void_ratio_at, suction_at
    use mud_params, only: params_t
    use mud_phases, only: integrate_phases
-   use mud_retention, only: saturation_t, saturation, scanning_weight
+   use mud_retention, only: saturation_t, saturation, change_of_offset, offset_with_turn
    use mud_scanning, only: branch_from, clipped, main_curve
    use mud_state, only: state_t, counters_t
    use mud_status, only: mud_status_t, MUD_OK
@@ -103,8 +103,8 @@ contains
       type(trace_t), intent(inout), optional :: record
       type(increment_t) :: whole
       type(driving_t) :: first, rest
-      type(saturation_t) :: at_turn
-      real(wp) :: share
+      type(params_t) :: turned
+      real(wp) :: share, with_turn(2)
 
       share = course%turn
       if (share >= 1.0_wp) then
@@ -112,8 +112,11 @@ contains
          return
       end if
       whole = inc
+      call turn_around(par, branch, whole, share, turned, with_turn, course)
       if (consistent) then
          call parts_at_turn(whole, share, par%omega, sens%driving, first, rest)
+         rest%scans = turned%scanning%between
+         rest%offset = with_turn(1)*sens%driving%d_pc + with_turn(2)*sens%driving%d_v
          sens%driving = first
       end if
       call take_phase(whole, 0.0_wp, share, inc)
@@ -125,40 +128,37 @@ contains
          sens%driving = rest
       end if
       call take_phase(whole, share, 1.0_wp, inc)
-      at_turn = saturation(branch, inc%p_c0, inc%e0)
-      branch = branch_from(par, .false., inc%p_c0, inc%e0, at_turn%s_w)
-      call change_through_turn(par, share, inc, at_turn, branch, course)
+      branch = turned
       call integrate_phases(branch, inc, (1.0_wp - share)*size, consistent, state, trial, sens, counters, reached, &
                             status, record)
       reached = share + (1.0_wp - share)*reached
    end subroutine integrate_course
 
-   !> How S_w at the end changes with the suction where x turns: y**q = x**q + offset**q holds on the wetting branch
-   !> before and after, and S_w(y) at the turn changes along the drying branch.
-   pure subroutine change_through_turn(par, share, inc, at_turn, branch, course)
-      type(params_t), intent(in) :: par
-      real(wp), intent(in) :: share
-      type(increment_t), intent(in) :: inc           !< The phase behind the turn.
-      type(saturation_t), intent(in) :: at_turn      !< On the drying branch.
-      type(params_t), intent(in) :: branch           !< The wetting branch.
+   !> The wetting branch behind a turn, how q ln of its offset changes with suction step and volume of the increment,
+   !> and how S_w at the end does through that. x is stationary where it turns: the place of the turn does not matter.
+   pure subroutine turn_around(par, dries, inc, share, turned, with_turn, course)
+      type(params_t), intent(in) :: par, dries   !< Of the material, and of the branch before the turn.
+      type(increment_t), intent(in) :: inc       !< The whole.
+      real(wp), intent(in) :: share              !< Where it turns [-].
+      type(params_t), intent(out) :: turned
+      real(wp), intent(out) :: with_turn(2)      !< [1/kPa, -]
       type(course_t), intent(inout) :: course
-      type(saturation_t) :: start, finish
-      real(wp) :: p_c, e, weights(2), log_ratio, slope
+      type(saturation_t) :: before, finish
+      real(wp) :: p_c, e, with_offset(3)
 
-      start = saturation(branch, inc%p_c0, inc%e0)
+      p_c = suction_at(inc, share)
+      e = void_ratio_at(inc, share)
+      before = saturation(dries, p_c, e)
+      turned = branch_from(par, .false., p_c, e, before%s_w)
+      with_turn = share*[1.0_wp/p_c, -par%omega*(1.0_wp + e)/e] &
+                  *offset_with_turn(turned, before, saturation(turned, p_c, e), p_c, e)
       p_c = suction_at(inc, 1.0_wp)
       e = void_ratio_at(inc, 1.0_wp)
-      finish = saturation(branch, p_c, e)
-      if (abs(start%ds_dpc) <= 0.0_wp .or. abs(finish%ds_dpc) <= 0.0_wp) return
-      ! y**q = x**q/weight, and y**q at the end changes as offset**q and that at the turn do beside x
-      weights = [scanning_weight(branch, inc%p_c0, inc%e0), scanning_weight(branch, p_c, e)]
-      log_ratio = log(weights(2)/weights(1)) &
-                  + branch%scanning%q*(log(inc%p_c0/p_c) + par%omega*log(inc%e0/e))
-      slope = finish%ds_dpc/weights(2)*p_c/(start%ds_dpc/weights(1)*inc%p_c0)*exp(log_ratio)
-      slope = slope*(at_turn%ds_dpc - start%ds_dpc)*share
-      course%change_pc = slope
-      course%change_v = -slope*par%omega*inc%p_c0*(1.0_wp + inc%e0)/inc%e0
-   end subroutine change_through_turn
+      finish = saturation(turned, p_c, e)
+      with_offset = change_of_offset(turned, finish, p_c, e)
+      course%change_pc = with_offset(1)*with_turn(1)
+      course%change_v = with_offset(1)*with_turn(2)
+   end subroutine turn_around
 
    !> S_w at the end, between the main curves, with the slopes of what it follows there. A saturation that was clipped
    !> is counted and has the slopes of the main curve. docs/theory/material.md section 2.1.1.

@@ -126,7 +126,7 @@ contains
       real(wp), intent(in) :: h, shift(DIRECTIONS), dh(DIRECTIONS)
       type(driving_t), intent(in) :: driving
       real(wp), intent(inout) :: y(DIRECTIONS, NY)
-      real(wp), dimension(DIRECTIONS) :: de_half, dp_c_half, de, dp_c
+      real(wp), dimension(DIRECTIONS) :: de_half, dp_c_half, de, dp_c, offset
       real(wp) :: r0(6), r_half(6), dr(6), strain(6), half, middle
       integer :: j
 
@@ -136,11 +136,15 @@ contains
       r_half = slide(par, inc, r0, trial%time, half)
       call change_of_place(inc, middle, void_ratio_at(inc, middle), shift + 0.5_wp*dh, driving, de_half, dp_c_half)
       call change_of_place(inc, trial%time + h, void_ratio_at(inc, trial%time + h), shift + dh, driving, de, dp_c)
+      offset = 0.0_wp
+      if (driving%scans) offset = driving%offset
       do j = 1, DIRECTIONS
          strain = driving%d_strain%of(j, :) + (dh(j)/h)*inc%d_strain
          dr = y(j, 1:6)
-         dr = change_of_slide(par, inc, r0, trial%time, half, deviator(dr)/par%p_min, strain, de_half(j), dp_c_half(j))
-         y(j, 1:6) = par%p_min*change_of_slide(par, inc, r_half, middle, half, dr, strain, de(j), dp_c(j))
+         dr = change_of_slide(par, inc, r0, trial%time, half, deviator(dr)/par%p_min, strain, de_half(j), &
+                              dp_c_half(j), offset(j))
+         y(j, 1:6) = par%p_min*change_of_slide(par, inc, r_half, middle, half, dr, strain, de(j), dp_c(j), &
+                                               offset(j))
       end do
    end subroutine through_held
 
@@ -284,6 +288,8 @@ contains
       type(changes_t), intent(inout) :: changes   !< all of it is set
 
       changes%d_pc = driving%d_pc
+      changes%scans = driving%scans
+      if (driving%scans) changes%offset = driving%offset
       call change_of_place(inc, time, e, dt, driving, changes%e, changes%p_c)
       call changes_of_loading_strain(inc, mode, turning, driving%d_strain, driving%from_centre, dt, changes%loading)
    end subroutine changes_along

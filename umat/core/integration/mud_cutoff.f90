@@ -31,12 +31,13 @@ contains
       r = limited(par, state_parameter(par, inc%bonded, e, suction_at(inc, time + h), par%p_min), r)
    end function slide
 
-   !> Change of that stress ratio with r0, with the increment's strain and with void ratio and suction at the end. All
-   !> [-] but dp_c [kPa]; time and h are shares of inc. Derivative of docs/theory/material.md section 6.2.
-   pure function change_of_slide(par, inc, r0, time, h, dr0, d_strain, de, dp_c) result(change)
+   !> Change of that stress ratio with r0, with the increment's strain, with void ratio and suction at the end and with
+   !> a scanning curve, of q ln offset. All [-] but dp_c [kPa]; time and h are shares of inc. Derivative of
+   !> docs/theory/material.md section 6.2.
+   pure function change_of_slide(par, inc, r0, time, h, dr0, d_strain, de, dp_c, d_offset) result(change)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: r0(6), time, h, dr0(6), d_strain(6), de, dp_c
+      real(wp), intent(in) :: r0(6), time, h, dr0(6), d_strain(6), de, dp_c, d_offset
       real(wp) :: change(6), r(6), e, p_c, stiffness, psi, dpsi
 
       e = void_ratio_at(inc, time + h)
@@ -47,7 +48,7 @@ contains
       psi = state_parameter(par, inc%bonded, e, p_c, par%p_min)
       if (norm(r) <= 0.0_wp) return
       if (excess(par, psi, r) <= 0.0_wp) return
-      dpsi = change_of_state_parameter(par, inc%bonded, e, p_c, par%p_min, de, dp_c, 0.0_wp)
+      dpsi = change_of_state_parameter(par, inc%bonded, e, p_c, par%p_min, de, dp_c, 0.0_wp, d_offset)
       change = change_of_limited(par, psi, r, dpsi, change)
    end function change_of_slide
 

@@ -21,11 +21,14 @@ module mud_driving
       real(wp) :: e0(DIRECTIONS)               !< of ln(1 + e) at its start
       real(wp) :: p_c0(DIRECTIONS)             !< of its first suction
       type(tensors_t) :: from_centre           !< of the strain from the centre of the elastic domain at its start
+      logical :: scans                         !< It is on a scanning curve that depends on the increment ...
+      real(wp) :: offset(DIRECTIONS)           !< ... by q ln of its offset; not set otherwise.
    end type driving_t
 
    !> Nothing drives.
    type(tensors_t), parameter :: NO_CHANGES = tensors_t(0.0_wp, ZERO_TENSORS)
-   type(driving_t), parameter :: AT_REST = driving_t(NO_CHANGES, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, NO_CHANGES)
+   type(driving_t), parameter :: AT_REST = driving_t(NO_CHANGES, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, NO_CHANGES, &
+                                                  .false., 0.0_wp)
 contains
    !> The increment along the seven directions: unit engineering strains 1 to 6, unit suction step. Strains [-], suction
    !> in the unit of p_atm.
@@ -45,6 +48,7 @@ contains
       driving%e0 = 0.0_wp
       driving%p_c0 = 0.0_wp
       driving%from_centre = NO_CHANGES
+      driving%scans = .false.
    end subroutine whole_increment
 
    !> Both parts of an increment whose strain from the centre of the elastic domain reaches the sphere at a share of it,
@@ -122,6 +126,12 @@ contains
       rest%e0 = driving%e0 - first%d_v
       rest%p_c0 = driving%p_c0 + first%d_pc
       rest%from_centre = driving%from_centre
+      first%scans = driving%scans
+      rest%scans = driving%scans
+      if (driving%scans) then
+         first%offset = driving%offset
+         rest%offset = driving%offset
+      end if
    end subroutine split
 
    !> Derivatives of the strain from the centre of the elastic domain at the end of a part that began on the sphere. [-]

@@ -64,6 +64,7 @@ contains
       changes%e = 0.0_wp
       changes%p_c = 0.0_wp
       changes%d_pc = 0.0_wp
+      changes%scans = .false.
       call changes_of_loading_strain(inc, trial%mode, turning, REST, REST, unmoved, changes%loading)
       call linearise_stage(par, inc, trial%w(1), trial%y0, trial%time, void_ratio_at(inc, trial%time), &
                            changes%loading, lin)

@@ -6,7 +6,8 @@ module mud_retention
    use mud_params, only: params_t, scanning_t
    implicit none (type, external)
    private
-   public :: saturation_t, saturation, saturation_curvature, scanning_weight, log_suction, LOG_LARGE, EULER
+   public :: saturation_t, saturation, saturation_curvature, change_of_offset, offset_with_turn, log_suction, &
+             LOG_LARGE, EULER
 
    real(wp), parameter :: EULER = 2.7182818284590452_wp      !< exp(1)
    !> Beyond it exp(1) is lost in exp(1) + a, and a might overflow.
@@ -62,24 +63,25 @@ contains
       if (par%omega > 0.0_wp) log_suction = log_suction + par%omega*log(e)
    end function log_suction
 
-   !> d ln y/d ln x = (x/y)**q of a scanning curve, 1 on a main curve [-]. docs/theory/material.md section 2.1.1; the
-   !> signs are not checked.
-   pure real(wp) function scanning_weight(par, p_c, e) result(weight)
+   !> weight = d ln y/d ln x = (x/y)**q of a scanning curve, and 1 - weight without cancellation.
+   pure subroutine scanning_weights(par, p_c, e, weight, rest)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: p_c, e   !< [kPa, -], p_c > 0
-      real(wp) :: log_x
+      real(wp), intent(in) :: p_c, e   !< p_c > 0
+      real(wp), intent(out) :: weight, rest
+      real(wp) :: log_x, t
 
-      weight = 1.0_wp
-      if (.not. par%scanning%between) return
       log_x = log_suction(par, p_c, e)
+      t = par%scanning%log_offset - par%scanning%q*log_x
       call to_main_curve(par%scanning, log_x, weight)
-   end function scanning_weight
+      rest = 1.0_wp
+      if (t < LOG_LARGE) rest = exp(t)*weight
+   end subroutine scanning_weights
 
    !> From the suction on a scanning curve to that of the main curve at the same S_w, both as ln(x/P_a).
    pure subroutine to_main_curve(scanning, log_x, weight)
       type(scanning_t), intent(in) :: scanning
       real(wp), intent(inout) :: log_x
-      real(wp), intent(out) :: weight   !< See scanning_weight.
+      real(wp), intent(out) :: weight   !< d ln y/d ln x [-]
       real(wp) :: t, log_weight
 
       t = scanning%log_offset - scanning%q*log_x
@@ -99,16 +101,69 @@ contains
       type(params_t), intent(in) :: par
       type(saturation_t), intent(in) :: sat
       real(wp), intent(in) :: p_c, e
-      real(wp) :: curvature(3), slope, bend, weight
+      real(wp) :: curvature(3), slope, bend, weight, rest
 
       curvature = 0.0_wp
       if (p_c <= 0.0_wp) return
       slope = sat%ds_dpc*p_c                                    ! dS_w/d ln p*
       bend = slope*par%n_x*(1.0_wp - sat%share*(1.0_wp + (par%m_x + 1.0_wp)/sat%log_sum))
       if (par%scanning%between) then
-         weight = scanning_weight(par, p_c, e)
-         bend = bend*weight + slope*par%scanning%q*(1.0_wp - weight)
+         call scanning_weights(par, p_c, e, weight, rest)
+         bend = bend*weight + slope*par%scanning%q*rest
       end if
       curvature = [(bend - slope)/p_c**2, bend*par%omega/(p_c*e), (bend*par%omega - slope)*par%omega/e**2]
    end function saturation_curvature
+
+   !> Derivatives [dS_w (-), d2S_w/dp_c (1/kPa), d2S_w/de (-)] with respect to q ln offset of a scanning curve, at the
+   !> suction and void ratio of sat. sat is that of p_c [kPa] and e [-]; zeros without suction and on a main curve.
+   !> docs/theory/material.md section 2.1.1.
+   pure function change_of_offset(par, sat, p_c, e) result(change)
+      type(params_t), intent(in) :: par
+      type(saturation_t), intent(in) :: sat
+      real(wp), intent(in) :: p_c, e
+      real(wp) :: change(3), slope, weight, rest
+
+      change = 0.0_wp
+      if (.not. par%scanning%between .or. p_c <= 0.0_wp) return
+      call scanning_weights(par, p_c, e, weight, rest)
+      slope = slope_of_main_curve(par, sat)
+      change(1) = slope*rest/par%scanning%q
+      change(2) = weight*rest*(bend_of_main_curve(par, sat, slope)/par%scanning%q - slope)   ! with ln x
+      change(3) = change(2)*par%omega/e
+      change(2) = change(2)/p_c
+   end function change_of_offset
+
+   !> dS_w/d ln y of the main curve, at the S_w of sat.
+   pure real(wp) function slope_of_main_curve(par, sat) result(slope)
+      type(params_t), intent(in) :: par
+      type(saturation_t), intent(in) :: sat
+
+      slope = -par%m_x*(sat%s_w - par%s_min)/sat%log_sum*sat%share*par%n_x
+   end function slope_of_main_curve
+
+   !> d2S_w/d(ln y)2, likewise.
+   pure real(wp) function bend_of_main_curve(par, sat, slope) result(bend)
+      type(params_t), intent(in) :: par
+      type(saturation_t), intent(in) :: sat
+      real(wp), intent(in) :: slope
+
+      bend = slope*par%n_x*(1.0_wp - sat%share*(1.0_wp + (par%m_x + 1.0_wp)/sat%log_sum))
+   end function bend_of_main_curve
+
+   !> d(q ln offset)/d ln x of the wetting curve in par that leaves a drying curve at p_c [kPa] and e [-], where
+   !> y**q = x**q + offset**q and S_w(y) changes along the drying curve. dries is the saturation on that, sat on the
+   !> wetting curve; 0 where no water moves. docs/theory/material.md section 2.1.1.
+   pure real(wp) function offset_with_turn(par, dries, sat, p_c, e) result(change)
+      type(params_t), intent(in) :: par
+      type(saturation_t), intent(in) :: dries, sat
+      real(wp), intent(in) :: p_c, e
+      real(wp) :: slope, weight, rest
+
+      change = 0.0_wp
+      if (.not. par%scanning%between) return
+      slope = slope_of_main_curve(par, sat)
+      if (abs(slope) <= 0.0_wp) return
+      call scanning_weights(par, p_c, e, weight, rest)
+      change = par%scanning%q*(dries%ds_dpc*p_c/slope - weight)/rest
+   end function offset_with_turn
 end module mud_retention

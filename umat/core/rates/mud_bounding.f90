@@ -3,7 +3,7 @@
 module mud_bounding
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
-   use mud_bonding, only: bonding_t, bonding, UNBONDED
+   use mud_bonding, only: bonding_t, bonding, bonding_with_offset, UNBONDED
    use mud_critical_state, only: critical_void_ratio, bounding_ratio, lode_slope, lode_factor
    use mud_rates, only: bounding_norm
    use mud_tensor, only: ddot, norm, square
@@ -22,18 +22,25 @@ contains
       psi = e - critical_void_ratio(par, factor_of(par, bonded, p_c, e), p)
    end function state_parameter
 
-   !> Change of psi with void ratio, suction and mean stress [-]. At e [-], p_c and p [kPa], for their changes de [-],
-   !> dp_c and dp [kPa]; derivative of docs/theory/material.md section 3.2.
-   pure real(wp) function change_of_state_parameter(par, bonded, e, p_c, p, de, dp_c, dp) result(change)
+   !> Change of psi with void ratio, suction and mean stress, and with a scanning curve, q ln of its offset [-]. At e
+   !> [-], p_c and p [kPa], for their changes de [-], dp_c and dp [kPa], d_offset [-]; derivative of
+   !> docs/theory/material.md sections 2.1.1 and 3.2.
+   pure real(wp) function change_of_state_parameter(par, bonded, e, p_c, p, de, dp_c, dp, d_offset) result(change)
       type(params_t), intent(in) :: par
       logical, intent(in) :: bonded
       real(wp), intent(in) :: e, p_c, p, de, dp_c, dp
+      real(wp), intent(in), optional :: d_offset
       type(bonding_t) :: bond
+      real(wp) :: df, with_offset(3)
 
       bond = UNBONDED
       if (bonded) bond = bonding(par, p_c, e)
-      change = de - critical_void_ratio(par, bond%f, p)*((bond%df_de*de + bond%df_dpc*dp_c)/bond%f &
-                                                         - par%lambda*dp/(p + par%alpha_csl))
+      df = bond%df_de*de + bond%df_dpc*dp_c
+      if (bonded .and. par%scanning%between .and. present(d_offset)) then
+         with_offset = bonding_with_offset(par, bond, p_c, e)
+         df = df + with_offset(1)*d_offset
+      end if
+      change = de - critical_void_ratio(par, bond%f, p)*(df/bond%f - par%lambda*dp/(p + par%alpha_csl))
    end function change_of_state_parameter
 
    pure real(wp) function factor_of(par, bonded, p_c, e) result(f)

@@ -18,6 +18,8 @@ module mud_point_changes
    type :: changes_t
       real(wp), dimension(LANES) :: e, p_c, d_pc   !< of void ratio, suction and its rate [-, kPa, kPa]
       type(loading_t) :: loading                   !< of the strain rate that loads
+      logical :: scans                             !< The scanning curve changes too; otherwise offset is not set.
+      real(wp) :: offset(LANES)                    !< of q ln of its offset [-]
    end type changes_t
 
    !> What lies between the changes of a rate's arguments and those of its results.

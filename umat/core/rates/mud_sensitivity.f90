@@ -14,6 +14,7 @@ module mud_sensitivity
    use mud_rates, only: rate_t
    use mud_tensor, only: LANES, tensors_t, ddot, contractions, contracted, traces, ZERO_TENSORS
    use mud_loading, only: free_contracted, loading_traces, add_loading
+   use mud_offset_changes, only: add_offset
    use mud_point_changes, only: changes_t, lanes_t, rest, change_point, along_ratio, NRATES
    implicit none (type, external)
    private
@@ -41,6 +42,7 @@ contains
          call rest(w, changes, x)
       else
          call change_point(par, w, lin, y, changes, x)
+         if (changes%scans) call add_offset(par, w, lin, changes%offset, x)
       end if
       if (w%loading) then
          if (.not. at_rest) call change_moduli(par, w, lin, y, r_in, changes, x)
@@ -78,6 +80,7 @@ contains
 
       x%v = loading_traces(changes%loading, strain, centre)
       call change_point(par, w, lin, y, changes, x)
+      if (changes%scans) call add_offset(par, w, lin, changes%offset, x)
       associate (loading => changes%loading)
          c = (2.0_wp*w%g)*(free_contracted(loading, strain, centre, w%n) &
                            + ddot(loading%basis(:, 1), w%n)*loading%along(:, 1) &
