@@ -8,7 +8,8 @@ SUBSTEP, TRIAL = "core/integration/mud_substep.f90", "core/integration/mud_trial
 RETURN_POINT, EVENTS = "core/integration/mud_return_point.f90", "core/integration/mud_events.f90"
 TRANSITIONS, PHASES = "core/integration/mud_transitions.f90", "core/integration/mud_phases.f90"
 BOUNDING, EVENT_TIME = "core/rates/mud_bounding.f90", "core/integration/mud_event_time.f90"
-CUTOFF = "core/integration/mud_cutoff.f90"
+CUTOFF, LANDING = "core/integration/mud_cutoff.f90", "core/integration/mud_landing.f90"
+EVENT_FUNCTIONS = "core/integration/mud_event_functions.f90"
 FLOW, HARDENING, CRITICAL = "core/laws/mud_flow.f90", "core/laws/mud_hardening.f90", "core/laws/mud_critical_state.f90"
 RETENTION, BONDING, ELASTIC = "core/laws/mud_retention.f90", "core/laws/mud_bonding.f90", "core/laws/mud_elastic.f90"
 PARAMS, REGISTRY, STATE = "core/base/mud_params.f90", "core/base/mud_registry.f90", "core/base/mud_state.f90"
@@ -124,7 +125,7 @@ MUTATIONS = [
     ("return_point follows the stress ratio", (RETURN_POINT, "memory%direction = place%chord/place%length", "memory%direction = place%r/norm(place%r)")),
     ("return_point notes every direction", (RETURN_POINT, "SMALLEST_COSINE = 0.7_wp", "SMALLEST_COSINE = -2.0_wp")),
     ("return_point notes its turning point where a substep ends",
-     (EVENTS, "call land_on(par, inc, EVENT_TURN, size, probe, counters, landed)", "landed = 0")),
+     (EVENTS, "call land_on(par, inc, EVENT_TURN, par%tolerance, size, probe, counters, landed)", "landed = 0")),
     ("return_point notes progress against its chord", (RETURN_POINT, "along = ddot(t, place%chord)", "along = abs(ddot(t, place%chord))")),
     ("return_point forgets how far it came",
      (RETURN_POINT, "max(memory%target, ddot(r, memory%direction))", "max(memory%target, 0.0_wp*r(1))")),
@@ -161,8 +162,9 @@ MUTATIONS = [
     ("growth right after a rejection", (SUBSTEP, "factor = min(factor, 1.0_wp)", "factor = min(factor, 2.0_wp)")),
     # tension cut-off
     ("p' is not held at the opening",
-     (EVENTS, "< 3.0_wp*par%p_min) call land_on(par, inc, EVENT_OPENS",
-      "< -huge(1.0_wp)) call land_on(par, inc, EVENT_OPENS")),
+     (EVENTS, "if (trace(trial%y(1:6)) < 3.0_wp*par%p_min) then", "if (trace(trial%y(1:6)) < -huge(1.0_wp)) then")),
+    ("the place of a jump is found like that of other events",
+     (LANDING, "width = JUMP_SHARE*h/max(error, 1.0_wp)", "width = 0.0_wp*h/max(error, 1.0_wp)")),
     ("closing remembers the gap", (TRANSITIONS, "state%memory = new_memory(r)", "state%memory%depth = state%memory%depth")),
     ("open stress ratio beyond the bounding surface", (BOUNDING, "if (beyond > 0.0_wp) r_limited", "if (beyond > 1.0e9_wp) r_limited")),
     ("an open point never closes",
@@ -173,7 +175,7 @@ MUTATIONS = [
      (PHASES, "whole%from_centre + share*whole%d_strain", "whole%from_centre + 0.0_wp*share")),
     ("strain beside the loading direction is lost",
      (INCREMENT, "aside = inc%d_strain - loading", "aside = 0.0_wp*loading")),
-    ("no bounding surface inside the elastic domain", (EVENTS, "LARGEST_EXCESS = 0.2_wp", "LARGEST_EXCESS = 1.0e9_wp")),
+    ("no bounding surface inside the elastic domain", (EVENT_FUNCTIONS, "LARGEST_EXCESS = 0.2_wp", "LARGEST_EXCESS = 1.0e9_wp")),
     ("the tangent does not know where the elastic domain ends",
      (DRIVING, "change = changes_of_exit", "change = 0.0_wp*changes_of_exit")),
     # kinks of suction, and the step control

@@ -10,7 +10,7 @@ module mud_error_control
    use mud_trial, only: trial_t, MODE_HELD
    implicit none (type, external)
    private
-   public :: control_t, judge_attempt, proposal
+   public :: control_t, judge_attempt, proposal, changes_root
 
    !> The higher order's share of the tolerance: its steps are long, and their errors are what its estimate says, while
    !> modified Euler's are smaller [-].
@@ -79,7 +79,7 @@ contains
    end function proposal
 
    !> True where stages of a substep are at different roots of the direction equation: several are possible only between
-   !> floor, cap and neither.
+   !> floor, cap and neither. Stages as rate_t has them. docs/theory/integration.md section 3.1.
    pure logical function changes_root(w)
       type(rate_t), intent(in) :: w(:)
 

@@ -7,8 +7,8 @@ module mud_event_time
    use mud_consistent, only: sensitivity_t, change_with_size, changes_along, changes_of_ratio, linearise_stage
    use mud_critical_state, only: bounding_ratio
    use mud_driving, only: driving_t, DIRECTIONS
-   use mud_events, only: EVENT_OPENS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, closing_mode, &
-      change_of_closing_rate, psi_at
+   use mud_event_functions, only: EVENT_OPENS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, closing_mode, &
+      change_of_closing_rate, rate_without_past, psi_at
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, turning_t, turning_of, NY
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio
@@ -55,7 +55,7 @@ contains
       if (event == EVENT_REVERSAL) then
          call rate_of(par, inc, time, trial%y, trial%r_in, mode, w, uncounted)
       else if (trial%mode == MODE_HELD) then
-         call rate_without_past(par, inc, time, trial%y, w)
+         call rate_without_past(par, inc, time, trial%y, w, uncounted)
       end if
       call change_with_size(par, inc, trial, h, with_size)
       y = sens%y
@@ -76,19 +76,6 @@ contains
          sens%shift(j) = sens%shift(j) + dh
       end do
    end subroutine move_event
-
-   !> The rate that decides whether a held point closes.
-   pure subroutine rate_without_past(par, inc, time, y, w)
-      type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: time, y(NY)
-      type(rate_t), intent(inout) :: w
-      type(counters_t) :: uncounted
-      real(wp) :: p, r(6)
-
-      call stress_ratio(par, y(1:6), p, r)
-      call rate_of(par, inc, time, y, r, closing_mode(inc), w, uncounted)
-   end subroutine rate_without_past
 
    !> Changes of the event's function, where it is zero; its scale does not matter.
    pure function slopes_of_event(par, inc, event, trial, time, w, lin, y, r_in, driving, changes) result(slopes)

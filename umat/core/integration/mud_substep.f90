@@ -6,7 +6,8 @@ module mud_substep
    implicit none (type, external)
    private
    public :: scheme_t, SCHEMES, HIGHER_ORDER, LINEARLY_IMPLICIT, IMPLICIT_WEIGHTS, IMPLICIT_DIAGONAL, MAX_STAGES, &
-             LARGEST_FACTOR, SMALLEST_FACTOR, SAFETY, stage_point, solution, error_vector, step_factor
+             LARGEST_FACTOR, SMALLEST_FACTOR, SAFETY, stage_point, solution, error_vector, &
+             step_factor, cubic_point
 
    integer, parameter :: MAX_STAGES = 7
    integer, parameter :: TRIANGLE = MAX_STAGES*(MAX_STAGES - 1)/2
@@ -105,6 +106,17 @@ contains
 
       call combine(scheme%error(1:scheme%stages), ZERO(1:size(error)), rates, h, error)
    end subroutine error_vector
+
+   !> The state at a share of a step h, by the cubic that has the states and rates of both its ends (Hermite's
+   !> interpolation). y of any length, rates per unit of time; h in that unit, share [-]. docs/theory/integration.md
+   !> section 4.1.
+   pure function cubic_point(h, share, y0, rate0, y1, rate1) result(y)
+      real(wp), intent(in) :: h, share, y0(:), rate0(:), y1(:), rate1(:)
+      real(wp) :: y(size(y0))
+
+      y = y0 + share*(y1 - y0) &
+          + share*(share - 1.0_wp)*((1.0_wp - 2.0_wp*share)*(y1 - y0) + (share - 1.0_wp)*h*rate0 + share*h*rate1)
+   end function cubic_point
 
    !> y = y0 + h times the weighted sum of the first rates; the first two in one go.
    pure subroutine combine(weights, y0, rates, h, y)

@@ -5,8 +5,9 @@ module mud_transitions
    use mud_kinds, only: wp
    use mud_bounding, only: excess
    use mud_consistent, only: sensitivity_t, jump_of_memory, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
-   use mud_events, only: note_turning_point, elastic_rate, closing_mode, closing_rate, psi_at, LARGEST_EXCESS, &
-      EVENT_NONE, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN
+   use mud_event_functions, only: elastic_rate, closing_mode, closing_rate, psi_at, LARGEST_EXCESS, EVENT_NONE, &
+      EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN
+   use mud_events, only: note_turning_point
    use mud_increment, only: increment_t, rate_of
    use mud_params, only: params_t
    use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY, MODE_ELASTIC

@@ -1,0 +1,201 @@
+! SPDX-License-Identifier: MIT
+!> The functions whose zeros are events; docs/theory/integration.md section 4.2.
+module mud_event_functions
+   use mud_kinds, only: wp
+   use mud_bounding, only: state_parameter, excess
+   use mud_critical_state, only: bounding_ratio
+   use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, NY
+   use mud_params, only: params_t
+   use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY, MODE_ELASTIC
+   use mud_return_point, only: place_t, place_at, forwardness, beyond_target
+   use mud_state, only: counters_t
+   use mud_tensor, only: ddot, trace, norm, deviator
+   use mud_trial, only: trial_t
+   implicit none (type, external)
+   private
+   public :: event_function, rate_at_end, rate_without_past, place_of, elastic_rate, closing_mode, closing_rate, &
+             change_of_closing_rate, psi_at, LARGEST_EXCESS
+   public :: EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, EVENT_MECHANISM, &
+             EVENT_TURN
+
+   integer, parameter :: EVENT_NONE = 0
+   integer, parameter :: EVENT_OPENS = 1      !< p' falls to p_min.
+   integer, parameter :: EVENT_CLOSES = 2     !< p' would rise from p_min.
+   integer, parameter :: EVENT_BOUNDS = 3     !< r exceeds the bounding surface inside the elastic domain.
+   integer, parameter :: EVENT_REVERSAL = 4   !< (r - r_in):n falls to -x_rev.
+   integer, parameter :: EVENT_RETURN = 5     !< r reaches the target of an interrupted process.
+   integer, parameter :: EVENT_MECHANISM = 6  !< The isotropic mechanism begins or ends to act while suction changes.
+   integer, parameter :: EVENT_TURN = 7       !< A process ceases to go forwards; its substep goes on.
+
+   !> An open point closes when p' would rise by this share of the elastic rate: opening and closing at the same rate
+   !> would chatter where the two pull the stress ratio to opposite sides [-].
+   real(wp), parameter :: CLOSING = 0.01_wp
+   !> Each time a point opens again in the same increment the share is that many times larger, up to a limit: where
+   !> the rate without a past rises and that of the process that follows falls, it would open and close at every turn
+   !> [-].
+   real(wp), parameter :: CLOSING_GROWTH = 4.0_wp, LARGEST_CLOSING = 0.32_wp
+   !> At a low stress an elastic strain of rho_e may be more than the whole strength: r may exceed the bounding surface
+   !> by this share. Softening sand is some per cent beyond it and must be able to return where it came from [-].
+   real(wp), parameter :: LARGEST_EXCESS = 0.2_wp
+contains
+   !> The rate that an event looks at where the trial's substep ends: that of the last stage if it stands there. Events
+   !> that look at no rate leave w as it is. h is a share of inc [-]; units of w as in rate_t.
+   !> docs/theory/integration.md section 4.2.
+   pure subroutine rate_at_end(par, inc, event, trial, h, w, counters)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: event
+      type(trial_t), intent(in) :: trial
+      real(wp), intent(in) :: h
+      type(rate_t), intent(inout) :: w
+      type(counters_t), intent(inout) :: counters
+
+      select case (event)
+      case (EVENT_REVERSAL, EVENT_MECHANISM, EVENT_TURN)
+         if (inc%scheme%first_same_as_last) then
+            w = trial%w(inc%scheme%stages)
+         else
+            call rate_of(par, inc, trial%time + h, trial%y, trial%r_in, trial%mode, w, counters)
+         end if
+      case (EVENT_CLOSES)
+         call rate_without_past(par, inc, trial%time + h, trial%y, w, counters)
+      end select
+   end subroutine rate_at_end
+
+   !> The rate of a held point that closes: without a past. time is a share of inc [-], y as for rate_of.
+   !> docs/theory/material.md section 6.3.
+   pure subroutine rate_without_past(par, inc, time, y, w, counters)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time, y(NY)
+      type(rate_t), intent(inout) :: w
+      type(counters_t), intent(inout) :: counters
+      real(wp) :: p, r(6)
+
+      call stress_ratio(par, y(1:6), p, r)
+      call rate_of(par, inc, time, y, r, closing_mode(inc), w, counters)
+   end subroutine rate_without_past
+
+   !> Function of an event, dimensionless, negative beyond it. time is a share of inc [-]; y and w are state and rate
+   !> there, w only for the events that rate_at_end knows. docs/theory/integration.md section 4.2.
+   pure real(wp) function event_function(par, inc, event, trial, time, y, w) result(f)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: event
+      type(trial_t), intent(in) :: trial       !< where the substep began
+      real(wp), intent(in) :: time, y(NY)
+      type(rate_t), intent(in) :: w
+      real(wp) :: p, r(6)
+
+      select case (event)
+      case (EVENT_OPENS)
+         f = trace(y(1:6))/(3.0_wp*par%p_min) - 1.0_wp
+      case (EVENT_BOUNDS)
+         call stress_ratio(par, y(1:6), p, r)
+         f = allowed_excess(par, inc, trial) - excess(par, psi_at(par, inc, time, p), r)
+      case (EVENT_REVERSAL)
+         f = w%x + par%x_rev
+      case (EVENT_MECHANISM)
+         f = w%iso_drive/trial%w(1)%iso_drive
+      case (EVENT_TURN)
+         f = forwardness(par, place_of(par, inc, trial, w, y))
+      case (EVENT_RETURN)
+         call stress_ratio(par, y(1:6), p, r)
+         f = -beyond_target(par, trial%process, r, bounding_ratio(par, psi_at(par, inc, time, p)))
+      case default
+         f = -closing_rate(inc, trial, w)/(w%k*norm(inc%d_strain) + abs(inc%d_pc))
+      end select
+   end function event_function
+
+   !> The place of the trial's process at a state y and its rate w; units as in both.
+   !> docs/theory/memory-rules.md section 3.2.
+   pure function place_of(par, inc, trial, w, y) result(place)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      type(rate_t), intent(in) :: w
+      real(wp), intent(in) :: y(NY)
+      type(place_t) :: place
+      real(wp) :: p, r(6), t(6)
+
+      call stress_ratio(par, y(1:6), p, r)
+      t = elastic_rate(inc, w, r)
+      place = place_at(par, trial%r_in, w%loading, r, w%n, t)
+      ! of the size of the chord, as what it is compared with: the place could not be found otherwise
+      if (abs(place%along) > 0.0_wp) place%along = place%along/norm(t)
+   end function place_of
+
+   !> p' times the rate of the stress ratio if the whole strain were elastic. The part of the strain across the elastic
+   !> domain turns the direction of loading, not the process: the whole strain tells where it goes. r [-].
+   !> docs/theory/memory-rules.md section 3.3.
+   pure function elastic_rate(inc, w, r) result(t)
+      type(increment_t), intent(in) :: inc
+      type(rate_t), intent(in) :: w
+      real(wp), intent(in) :: r(6)
+      real(wp) :: t(6)   !< [stress]
+
+      t = (2.0_wp*w%g)*deviator(inc%d_strain) - (w%k*inc%d_v)*r
+   end function elastic_rate
+
+   !> How a held point would go on if it closed: inside the elastic domain without plastic dilatancy. One of
+   !> MODE_ORDINARY and MODE_ELASTIC.
+   pure integer function closing_mode(inc)
+      type(increment_t), intent(in) :: inc
+
+      closing_mode = merge(MODE_ELASTIC, MODE_ORDINARY, inc%inside)
+   end function closing_mode
+
+   !> Share of the elastic rate at which an open point closes [-].
+   pure real(wp) function closing_share(trial)
+      type(trial_t), intent(in) :: trial
+
+      closing_share = min(CLOSING*CLOSING_GROWTH**max(trial%openings - 1, 0), LARGEST_CLOSING)
+   end function closing_share
+
+   !> How far the rate of p' is above the one at which an open point closes, positive if it closes [kPa].
+   !> docs/theory/material.md sections 6.1, 6.3.
+   pure real(wp) function closing_rate(inc, trial, w)
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      type(rate_t), intent(in) :: w        !< at p_min, without a past
+
+      closing_rate = w%d_p - closing_share(trial)*(w%k*norm(inc%d_strain) + abs(inc%d_pc))
+   end function closing_rate
+
+   !> Its change with the rate of p', the void ratio, the strain and the suction step [kPa]. e, de and d_strain [-],
+   !> d_rate and d_pc [kPa]; e is the void ratio at the place. Derivative of docs/theory/material.md sections 6.1, 6.3.
+   pure real(wp) function change_of_closing_rate(inc, trial, w, e, d_rate, de, d_strain, d_pc) result(change)
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      type(rate_t), intent(in) :: w
+      real(wp), intent(in) :: e, d_rate, de, d_strain(6), d_pc
+      real(wp) :: length
+
+      length = norm(inc%d_strain)
+      change = w%k*length*de*(1.0_wp/(1.0_wp + e) - 1.0_wp/e) + sign(1.0_wp, inc%d_pc)*d_pc
+      if (length > 0.0_wp) change = change + w%k*ddot(inc%d_strain, d_strain)/length
+      change = d_rate - closing_share(trial)*change
+   end function change_of_closing_rate
+
+   !> How far r may be beyond the bounding surface in a substep inside the elastic domain: from farther outside it is
+   !> the excess at the start.
+   pure real(wp) function allowed_excess(par, inc, trial)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      real(wp) :: p, r(6)
+
+      call stress_ratio(par, trial%y0(1:6), p, r)
+      allowed_excess = max(excess(par, psi_at(par, inc, trial%time, p), r), LARGEST_EXCESS)
+   end function allowed_excess
+
+   !> State parameter at a pseudo-time and a mean stress [-]. time is a share of inc [-], p in the unit of p_atm.
+   !> docs/theory/material.md section 3.2.
+   pure real(wp) function psi_at(par, inc, time, p)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time, p
+
+      psi_at = state_parameter(par, inc%bonded, void_ratio_at(inc, time), suction_at(inc, time), p)
+   end function psi_at
+end module mud_event_functions
