@@ -12,7 +12,7 @@ module effect_switches
    use namelists, only: set_entry
    use parameter_groups, only: read_parameters
    use scene_types, only: scene_t, NAME_LENGTH, WITH_U, WITH_P_W, WITH_P_C, IS_STATIC, IS_QUASI_STATIC, IS_DYNAMIC, &
-                          FIX_P_W, FIX_P_C, LOAD_WATER, LOAD_AIR, IS_COUPLED, IS_DRAINED, IS_UNDRAINED, &
+                          FIX_P_W, FIX_P_C, FIX_P_A, LOAD_WATER, LOAD_AIR, IS_COUPLED, IS_DRAINED, IS_UNDRAINED, &
                           IS_DRY
    implicit none (type, external)
    private
@@ -253,6 +253,8 @@ contains
             if (scene%fields == WITH_U) why = 'it needs p_w'
             if (why == '') scene%fields = WITH_P_C
          else
+            why = water_given_by_others(scene)
+            if (why /= '') return
             call drop_field(scene, FIX_P_C, LOAD_AIR)
             scene%fields = min(scene%fields, WITH_P_W)
          end if
@@ -279,6 +281,22 @@ contains
          call set_switch(scene, effect%kind, on)
       end select
    end subroutine switch
+
+   !> Where p_a and p_c are prescribed, p_w is as well: without these two its boundary would be closed. Empty: nowhere.
+   pure function water_given_by_others(scene) result(why)
+      type(scene_t), intent(in) :: scene
+      character(200) :: why
+      integer :: i
+
+      why = ''
+      do i = 1, size(scene%fixes)
+         associate (here => scene%fixes%group_name == scene%fixes(i)%group_name, field => scene%fixes%field_number)
+            if (field(i) /= FIX_P_A .or. .not. any(here .and. field == FIX_P_C) .or. any(here .and. field == FIX_P_W)) &
+               cycle
+            why = 'p_a and p_c of '''//trim(scene%fixes(i)%group_name)//''' prescribe its p_w: give p_w with one of them'
+         end associate
+      end do
+   end function water_given_by_others
 
    !> Without the fixed values and the inflows of a field, and of those that need it.
    pure subroutine drop_field(scene, first_field, first_load)

@@ -321,6 +321,17 @@ said, _ = run(column("gravity = 0", **wet).replace(AUTO, "fields = 'u-p_w-p_c' w
 check("without two, of which one takes the other along", "no effect" in said
       and "'p_c' of &scene has no" not in said, said)
 
+# p_a and p_c of a boundary are its p_w too: without them it would be closed, without a word.
+by_two = column("gravity = 0", f"{QUASI_STATIC} duration = 1000 dt = 100", **{
+    **wet, "more": "&fix group = 'top' field = 'p_a' /\n&fix group = 'top' field = 'p_c' value = -5 /"})
+_, table = run(by_two, "by_two", "--effects", "--quiet")
+is_on("a boundary with p_a and p_c", table, "p_c", True)
+done = start(by_two.replace(AUTO, "fields = 'u-p_w-p_c' without = 'p_c'"), "by_two_hand")
+check("a boundary with p_a and p_c: refused without p_c, with the remedy",
+      done.returncode == 2 and "prescribe its p_w: give p_w" in done.stderr, done.stderr)
+done = start(by_two.replace(AUTO, "fields = 'u-p_w-p_c' without = 'p_w'"), "by_two_dry")
+check("a boundary with p_a and p_c: without water both go", done.returncode == 0, done.stderr)
+
 # Mistakes.
 for what, text, words in [("no analysis", column("gravity = 0").replace(AUTO, ""),
                            ("needs analysis", "quasi_static")),
