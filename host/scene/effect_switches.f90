@@ -293,7 +293,7 @@ contains
          associate (here => scene%fixes%group_name == scene%fixes(i)%group_name, field => scene%fixes%field_number)
             if (field(i) /= FIX_P_A .or. .not. any(here .and. field == FIX_P_C) .or. any(here .and. field == FIX_P_W)) &
                cycle
-            why = 'p_a and p_c of '''//trim(scene%fixes(i)%group_name)//''' prescribe its p_w: give p_w with one of them'
+            why = 'p_a and p_c of '''//trim(scene%fixes(i)%group_name)//''' prescribe p_w: give p_w and one of these'
          end associate
       end do
    end function water_given_by_others

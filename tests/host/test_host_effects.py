@@ -328,7 +328,7 @@ _, table = run(by_two, "by_two", "--effects", "--quiet")
 is_on("a boundary with p_a and p_c", table, "p_c", True)
 done = start(by_two.replace(AUTO, "fields = 'u-p_w-p_c' without = 'p_c'"), "by_two_hand")
 check("a boundary with p_a and p_c: refused without p_c, with the remedy",
-      done.returncode == 2 and "prescribe its p_w: give p_w" in done.stderr, done.stderr)
+      done.returncode == 2 and "prescribe p_w: give p_w" in done.stderr, done.stderr)
 done = start(by_two.replace(AUTO, "fields = 'u-p_w-p_c' without = 'p_w'"), "by_two_dry")
 check("a boundary with p_a and p_c: without water both go", done.returncode == 0, done.stderr)
 
