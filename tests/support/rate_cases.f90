@@ -5,11 +5,13 @@ module rate_cases
    use mud_params, only: params_t, read_params, default_props
    use mud_rates, only: rate_t, rate_at, bounding_norm, MODE_ORDINARY, MODE_ELASTIC
    use mud_status, only: mud_status_t
+   use mud_registry, only: P_G_0, P_K_0, P_M_C, P_N_B, P_N_D, P_H_0, P_A_0
    use mud_tensor, only: IDENTITY, norm, ddot, deviator
+   use path_tools, only: material
    use random_states, only: random_t, uniform, log_uniform, random_tensor, random_deviator
    implicit none (type, external)
    private
-   public :: case_t, random_case, evaluate, same_branch
+   public :: case_t, random_case, rising_case, evaluate, same_branch
 
    !> A rate's arguments.
    type :: case_t
@@ -83,4 +85,41 @@ contains
          this%r_in = -this%par%x_floor*((1.0_wp + uniform(random, -1.0e-8_wp, 1.0e-8_wp))*r + q)
       end select
    end function random_case
+
+   !> A random sand and state in which (r - r_in):n begins below its floor and passes it as n turns from t towards r:
+   !> with much fabric and dilatancy the direction equation of the floor then has a root before it passes, and that of
+   !> the rising x another behind. Parameters beyond those of published sands make both frequent.
+   function rising_case(random) result(this)
+      type(random_t), intent(inout) :: random
+      type(case_t) :: this
+      type(rate_t) :: w
+      real(wp) :: p, r(6), along(6), across(6), before, beside
+
+      this%par = material([P_G_0, P_K_0, P_M_C, P_N_B, P_N_D, P_H_0, P_A_0], &
+                          [uniform(random, 40.0_wp, 300.0_wp), uniform(random, 40.0_wp, 600.0_wp), &
+                           uniform(random, 0.9_wp, 1.8_wp), uniform(random, 0.5_wp, 4.0_wp), &
+                           uniform(random, 0.5_wp, 8.0_wp), log_uniform(random, 1.0_wp, 50.0_wp), &
+                           uniform(random, 0.2_wp, 3.0_wp)])
+      this%e = uniform(random, 0.5_wp, 1.1_wp)
+      p = log_uniform(random, this%par%p_min, 5000.0_wp)
+      this%p_c = 0.0_wp
+      this%d_pc = 0.0_wp
+      r = random_deviator(random)
+      this%z = uniform(random, -4.0_wp, 4.0_wp)*r + uniform(random, 0.0_wp, 2.0_wp)*random_deviator(random)
+      this%d_strain = 1.0e-3_wp*random_tensor(random)
+      this%r_in = 0.0_wp
+      this%sigma = p*IDENTITY
+      call evaluate(this, this%d_strain, 0.0_wp, w)
+      r = uniform(random, 0.0_wp, 1.05_wp)*bounding_norm(this%par, r, norm(r), w%m_b)*r
+      this%sigma = p*(r + IDENTITY)
+      this%r_in = r
+      ! t does not depend on the memory
+      call evaluate(this, this%d_strain, 0.0_wp, w)
+      along = w%t/w%t_norm
+      across = w%r - ddot(w%r, along)*along
+      across = across/max(norm(across), epsilon(p))
+      before = this%par%x_floor*uniform(random, -30.0_wp, 1.0_wp)
+      beside = log_uniform(random, 3.0e-3_wp, 1.5_wp)
+      this%r_in = r - before*along - sign(beside, uniform(random, -1.0_wp, 1.0_wp))*across
+   end function rising_case
 end module rate_cases
