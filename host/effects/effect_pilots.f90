@@ -8,7 +8,8 @@ module effect_pilots
    use effect_switches, only: list_effects, settle_open_keys, switch, switch_by_hand
    use effect_types, only: effect_t, indicator_place, OF_P_C, OF_SEEPAGE, OF_FLOW
    use faults, only: fault_t, raise, EXIT_INPUT
-   use pilot_runs, only: pilot_t, run_pilot, difference_t, difference, influence_t
+   use pilot_differences, only: difference_t, difference, influence_t
+   use pilot_runs, only: pilot_t, run_pilot
    use pilot_scenes, only: make_cheap, can_coarsen
    use scene_types, only: scene_t, scene_stage_t, WITH_P_C
    use texts, only: short, whole

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Runs a scene without files and words, and keeps what its answers did; compares two such runs.
+!> Runs a scene without files and words, and keeps what its answers did.
 !> docs/theory/host.md section 11.
 module pilot_runs
    use, intrinsic :: iso_fortran_env, only: output_unit
@@ -7,27 +7,23 @@ module pilot_runs
    use effect_monitor, only: indicator_of, mass_of_nodes
    use effect_types, only: effect_t, EFFECTS, OF_FLOW
    use faults, only: fault_t, raise, EXIT_INPUT
-   use history_distance, only: farthest
    use model_builder, only: build_model
    use model_types, only: model_t
+   use moving_supports, only: find_moving, forces_of_moving
    use porous_domain, only: state_t, copy_state
    use run_observer, only: run_observer_t, step_report_t
    use run_setup, only: prepare_run
    use run_state, only: run_t
    use scene_types, only: scene_t
    use time_stepping, only: run_stages
-   use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS, AT_P_W, AT_P_C
+   use unknown_fields, only: FIELDS
    use wall_clock, only: clock
    implicit none (type, external)
    private
-   public :: pilot_t, stage_ends_t, run_pilot, difference_t, difference, influence_t
+   public :: pilot_t, stage_ends_t, run_pilot
 
    integer, parameter :: NODES_WITHOUT_POINTS = 50    !< Answers of a scene that names no points.
    integer, parameter :: MOST_TIMES_THE_STEPS = 5     !< Of the whole scene's pilot, that another one may take.
-   real(wp), parameter :: NO_ANSWER = 1.0e-4_wp       !< A smaller range, as share of its kind's largest, is no answer.
-   real(wp), parameter :: NO_PRESSURE = 1.0e-3_wp     !< The same of a pressure, as a share of the stresses' change.
-
-   character(7), parameter :: FORCES(DISPLACEMENTS) = ['force_r', 'force_z']
 
    type :: stage_ends_t
       real(wp), allocatable :: times(:)               !< Ends of the steps, from the start of the stage [s].
@@ -65,22 +61,6 @@ module pilot_runs
       procedure :: run_ends
       procedure :: warn
    end type watcher_t
-
-   !> How far two runs lie apart.
-   type :: difference_t
-      real(wp) :: share = 0.0_wp                      !< Distance as a share of the answer's range [-].
-      real(wp) :: change = 0.0_wp                     !< Second run less first, where they differ most [m, kPa, kN].
-      character(72) :: answer = ''
-   end type difference_t
-
-   !> What an effect changes in one answer.
-   type :: influence_t
-      integer :: effect = 0                           !< Row of the table of effects.
-      character(72) :: answer = ''
-      real(wp) :: range = 0.0_wp                      !< What the share is of [m, kPa, kN].
-      real(wp) :: change = 0.0_wp                     !< Second run less first, where they differ most [m, kPa, kN].
-      real(wp) :: share = 0.0_wp                      !< [-]
-   end type influence_t
 contains
    !> Runs a scene whose keys are settled. A failure is told in the pilot. docs/theory/host.md section 11.
    subroutine run_pilot(scene, most_steps, pilot)
@@ -148,38 +128,12 @@ contains
       call keep(self, model, run)
    end subroutine run_begins
 
-   !> Supports that move a body: where a displacement is prescribed, the answer is the force.
-   pure subroutine find_moving(model, moving, names)
-      type(model_t), intent(in) :: model
-      integer, allocatable, intent(out) :: moving(:)          !< Places in model%fixes.
-      character(72), allocatable, intent(out) :: names(:)     !< As the columns of reactions_STAGE.csv.
-      integer :: i
-
-      allocate (moving(0))
-      do i = 1, size(model%fixes)
-         associate (fix => model%fixes(i))
-            if (fix%field > DISPLACEMENTS .or. fix%acceleration) cycle
-            if (abs(fix%value) + abs(fix%value_slope) <= 0.0_wp) cycle
-            ! One answer, though several stages move it.
-            if (any(model%fixes(moving)%group == fix%group .and. model%fixes(moving)%field == fix%field)) cycle
-            moving = [moving, i]
-         end associate
-      end do
-      allocate (names(size(moving)))
-      do i = 1, size(moving)
-         associate (fix => model%fixes(moving(i)))
-            names(i) = trim(model%domain%mesh%groups(fix%group)%name)//'.'//trim(FORCES(fix%field))
-         end associate
-      end do
-   end subroutine find_moving
-
    !> A row of the histories. Before the first step no force is known: it gets that of the first.
    subroutine keep(self, model, run)
       class(watcher_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
       real(wp), allocatable :: time(:), x(:, :, :), force(:, :)
-      integer :: i
 
       if (self%rows == size(self%seen%time)) then
          allocate (time(2*self%rows), x(FIELDS, size(self%nodes), 2*self%rows), force(size(self%moving), 2*self%rows))
@@ -194,13 +148,7 @@ contains
       self%seen%time(self%rows) = run%state%time
       self%seen%x(:, :, self%rows) = run%state%x(:FIELDS, self%nodes)
       if (self%rows == 1) return
-      do i = 1, size(self%moving)
-         associate (fix => model%fixes(self%moving(i)))
-            associate (at => model%dofs%of(fix%field, model%domain%mesh%groups(fix%group)%nodes))
-               self%seen%force(i, self%rows) = sum(run%system%reaction(pack(at, at > 0)))
-            end associate
-         end associate
-      end do
+      self%seen%force(:, self%rows) = forces_of_moving(model, run, self%moving)
       if (self%rows == 2) self%seen%force(:, 1) = self%seen%force(:, 2)
    end subroutine keep
 
@@ -266,69 +214,4 @@ contains
       ! The run itself warns where it is needed.
       if (.not. self%silent) write (output_unit, '(a)') text
    end subroutine warn
-
-   !> How far the answers of two runs of one mesh lie apart, as shares of the range of each answer in the first; a field
-   !> that one of them lacks is measured by its change against the largest change of an effective stress.
-   !> docs/theory/host.md section 11. The force of a support that moves is an answer too. `worst` is the answer that
-   !> differs most; `influences` lists all answers that either run has.
-   subroutine difference(one, two, worst, influences)
-      type(pilot_t), intent(in) :: one, two
-      type(difference_t), intent(out) :: worst
-      type(influence_t), allocatable, intent(out), optional :: influences(:)   !< (answers)
-      type(influence_t) :: all(FIELDS*size(one%names) + size(one%supports))
-      real(wp) :: range(FIELDS, size(one%names)), force_range(size(one%supports)), largest(2), scale, apart, change
-      integer :: f, i, of, n
-
-      n = 0
-      range = maxval(one%x, dim=3) - minval(one%x, dim=3)
-      largest = [maxval(range(:DISPLACEMENTS, :)), maxval(range(DISPLACEMENTS + 1:, :))]
-      largest(2) = max(largest(2), NO_PRESSURE/NO_ANSWER*one%stress)
-      do i = 1, size(one%names)
-         do f = 1, FIELDS
-            of = merge(1, 2, f <= DISPLACEMENTS)
-            if (one%has(f) .and. two%has(f)) then
-               if (range(f, i) <= NO_ANSWER*largest(of)) cycle
-               scale = range(f, i)
-               change = farthest(one%time, one%x(f, i, :), two%time, two%x(f, i, :))
-            else if (one%has(f)) then
-               call lost(one, f, i, change, scale)
-            else if (two%has(f)) then
-               call lost(two, f, i, change, scale)
-            else
-               cycle
-            end if
-            call compare(trim(one%names(i))//'.'//trim(FIELD_NAMES(f)))
-         end do
-      end do
-      force_range = maxval(one%force, dim=2) - minval(one%force, dim=2)
-      do i = 1, size(one%supports)
-         if (force_range(i) <= NO_ANSWER*maxval(force_range)) cycle
-         scale = force_range(i)
-         change = farthest(one%time, one%force(i, :), two%time, two%force(i, :))
-         call compare(trim(one%supports(i)))
-      end do
-      if (present(influences)) influences = all(:n)
-   contains
-      subroutine compare(answer)
-         character(*), intent(in) :: answer
-
-         apart = abs(change)/max(scale, tiny(1.0_wp)/epsilon(1.0_wp))
-         n = n + 1
-         all(n) = influence_t(0, answer, scale, change, apart)
-         if (apart > worst%share) worst = difference_t(apart, change, all(n)%answer)
-      end subroutine compare
-   end subroutine difference
-
-   !> A pressure that is no unknown any more: its change; of suction that beyond zero alone.
-   pure subroutine lost(run, field, point, change, scale)
-      type(pilot_t), intent(in) :: run
-      integer, intent(in) :: field, point
-      real(wp), intent(out) :: change, scale   !< [kPa]
-
-      scale = run%stress
-      change = 0.0_wp
-      if (field == AT_P_W) change = -(maxval(run%x(field, point, :)) - minval(run%x(field, point, :)))
-      if (field == AT_P_C) change = -(maxval(max(0.0_wp, run%x(field, point, :))) &
-                                      - minval(max(0.0_wp, run%x(field, point, :))))
-   end subroutine lost
 end module pilot_runs

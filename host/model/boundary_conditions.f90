@@ -13,7 +13,7 @@ module boundary_conditions
    implicit none (type, external)
    private
    public :: new_constraint, constrain_step, follow_accelerations, starting_accelerations, &
-             prescribing_fixes
+             prescribing_fixes, forces_of_supports
 
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
 contains
@@ -207,4 +207,22 @@ contains
          end associate
       end do
    end subroutine prescribing_fixes
+
+   !> Forces that hold displacements, group by group [kN]: an unknown's belongs to the group of the &fix that prescribes
+   !> it. docs/theory/host.md section 9.1.
+   pure function forces_of_supports(model, by, reaction) result(force)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: by(:)          !< (unknowns) Of prescribing_fixes.
+      real(wp), intent(in) :: reaction(:)   !< (unknowns) Residual with every row kept.
+      real(wp) :: force(DISPLACEMENTS, size(model%domain%mesh%groups))
+      integer :: i
+
+      force = 0.0_wp
+      do i = 1, size(by)
+         if (by(i) == 0 .or. model%dofs%field(i) > DISPLACEMENTS) cycle
+         associate (total => force(model%dofs%field(i), model%fixes(by(i))%group))
+            total = total + reaction(i)
+         end associate
+      end do
+   end function forces_of_supports
 end module boundary_conditions

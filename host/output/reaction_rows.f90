@@ -4,7 +4,7 @@
 !> &fix that prescribes it, so that the columns add up to the whole. docs/theory/host.md section 9.1.
 module reaction_rows
    use kinds, only: wp
-   use boundary_conditions, only: prescribing_fixes
+   use boundary_conditions, only: prescribing_fixes, forces_of_supports
    use contact_drainage, only: drainage_t
    use generalised_alpha, only: scheme_t, make_scheme, STATIC
    use model_types, only: model_t, stage_t, factor_at
@@ -111,13 +111,8 @@ contains
          real(wp) :: w, a
 
          call prescribing_fixes(model, stage, model%dofs, drainage, time, by, air_by)
+         sums(:DISPLACEMENTS, :) = forces_of_supports(model, by, reaction)
          associate (dofs => model%dofs)
-            do i = 1, dofs%n
-               if (by(i) == 0 .or. dofs%field(i) > DISPLACEMENTS) cycle
-               associate (total => sums(dofs%field(i), model%fixes(by(i))%group))
-                  total = total + reaction(i)
-               end associate
-            end do
             if (scheme%kind == STATIC .or. .not. model%domain%with_w) return
             do i = 1, size(air_by)
                if (dofs%of(AT_P_W, i) == 0) cycle

@@ -19,6 +19,7 @@ from scenes import AUTO, CURVE, DRAINED, WATER, column  # noqa: E402
 host = build / "host/mud_host"
 environment = {**os.environ, "OMP_NUM_THREADS": "1"}
 QUASI_STATIC = "analysis = 'quasi_static'"
+SIX_DIGITS = 5e-6   # Rounding of what effects_answers.csv holds, relative.
 SOAKED = "void_ratio = 0.8 permeability = 'k' retention = 'c'"
 
 
@@ -247,6 +248,17 @@ twice = twice.replace("history = 'ramp' /\n&load", "history = 'ramp' stages = 'p
 run(twice, "twice", "--effects", "--quiet")
 names = [row["answer"] for row in tables.rows(work / "twice/effects_answers.csv") if row["effect"] == "lode"]
 check("a support that two stages move is one answer", names.count("top_1.force_z") == 1, names)
+
+# A node of two supports belongs to the one named last, in the pilots as in the tables of reactions.
+shared = twice.replace("&load group = 'top_2'", "&fix group = 'top_2' field = 'u_z' /\n&load group = 'top_2'")
+run(shared, "shared", "--quiet")
+forces = [float(row["top_1.force_z"]) for stage in ("push", "further")
+          for row in tables.rows(work / f"shared/reactions_{stage}.csv")]
+run(shared, "shared_ledger", "--ablate", "--quiet")
+answers = {(row["effect"], row["answer"]): row for row in tables.rows(work / "shared_ledger/effects_answers.csv")}
+span = float(answers["lode", "top_1.force_z"]["range"])
+check("the answer of a support is its column of reactions_STAGE.csv",
+      abs(span - (max(forces) - min(forces))) <= SIX_DIGITS*span, (span, min(forces), max(forces)))
 
 # Pilots may cost a tenth of the run: a small scene is run with everything, and says so; a larger one is asked.
 small = column("gravity = 0", "duration = 10 dt = 0.1", times="0, 10").replace(AUTO, "effects = 'auto'")
