@@ -2,7 +2,7 @@
 !> Residual and exact tangent of one element: B^T response and B^T slope B over its quadrature points.
 module element_equations
    use wall_clock, only: clock, lap
-   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
+   use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use kinds, only: wp
    use material_point, only: response_t, report_t, MOST_POINTS
    use element_sums, only: sums_t, clear_sums, add_response, add_tangent, residual_of, matrix_of
@@ -21,6 +21,15 @@ module element_equations
    !> Of momentum a step: accelerations are differences of velocities that large, 1e-6 leaves room for their rounding.
    real(wp), parameter :: FLIGHT_SHARE = 1.0e-6_wp
    integer, parameter :: STRAIN_TOO_LARGE = 1000   !< Code of a strain beyond 1 in a step: no law is asked.
+
+   !> What the nodes of an element say. Pressures with the nodes side by side: p_w, p_c; set where nodes carry them.
+   type :: nodes_t
+      real(wp) :: u0(DISPLACEMENTS, 6), u1(DISPLACEMENTS, 6)   !< Before and after [m].
+      real(wp) :: v0(DISPLACEMENTS, 6)                         !< Before [m/s].
+      real(wp) :: v(DISPLACEMENTS, 6), a(DISPLACEMENTS, 6)     !< At their levels [m/s, m/s2].
+      real(wp) :: p0(6, 2), p1(6, 2)                           !< Before and after [kPa].
+      real(wp) :: rate(6, 2)                                   !< At its level [kPa/s].
+   end type nodes_t
 
    type :: element_t
       real(wp) :: r(MAX_DOF) = 0.0_wp            !< Residual.
@@ -147,42 +156,52 @@ contains
       type(scheme_t), intent(in) :: scheme
       type(state_t), intent(in) :: old, new
       type(kinematics_t), intent(inout) :: k(:)   !< As many as points, or more.
-      real(wp) :: x0(FIELDS, 6), x1(FIELDS, 6), v(FIELDS, 6), a(2, 6), v0(DISPLACEMENTS, 6)
-      integer :: g, node(6), n_p
+      type(nodes_t) :: nodes
+      integer :: g, n_p
 
-      node = domain%mesh%t6(:, element)
       n_p = domain%n_carriers(element)
-      x0(:DISPLACEMENTS, :) = old%x(:DISPLACEMENTS, node)
-      x1(:DISPLACEMENTS, :) = new%x(:DISPLACEMENTS, node)
-      a = 0.0_wp
-      if (scheme%kind == DYNAMIC) a = old%a(:, node) + scheme%l_a*(new%a(:, node) - old%a(:, node))
-      v0 = old%v(:DISPLACEMENTS, node)
-      v(:DISPLACEMENTS, :) = v0 + scheme%l_v*(new%v(:DISPLACEMENTS, node) - v0)
-      if (n_p > 0) then
-         x0(AT_P_W:, :) = old%x(AT_P_W:, node)
-         x1(AT_P_W:, :) = new%x(AT_P_W:, node)
-         v(AT_P_W:, :) = old%v(AT_P_W:, node) + scheme%l_p*(new%v(AT_P_W:, node) - old%v(AT_P_W:, node))
-         if (domain%center(element) > 0) then
-            associate (center => domain%center(element))
-               x0(AT_P_W:, 1) = old%x(AT_P_W:, center)
-               x1(AT_P_W:, 1) = new%x(AT_P_W:, center)
-               v(AT_P_W:, 1) = old%v(AT_P_W:, center) + scheme%l_p*(new%v(AT_P_W:, center) - old%v(AT_P_W:, center))
-            end associate
-         end if
-      end if
+      call gather(domain, element, scheme, old, new, nodes)
       do g = 1, domain%rule
          associate (gp => domain%gauss(g, element), region => domain%regions(domain%region_of(element)))
-            call look(gp, n_p > 0, region%with_c, scheme, x0, x1, v, a, k(g))
+            call look(gp, n_p > 0, region%with_c, scheme, nodes, k(g))
             if (region%drainage /= COUPLED) call add_given(given_pressures_at(domain, element, g), k(g))
             k(g)%speed = 0.0_wp
-            if (scheme%kind == DYNAMIC) k(g)%velocity = matmul(v0, gp%n)
-            if (region%damping > 0.0_wp .and. scheme%kind == DYNAMIC) k(g)%speed = matmul(v(:DISPLACEMENTS, :), gp%n)
+            if (scheme%kind == DYNAMIC) k(g)%velocity = matmul(nodes%v0, gp%n)
+            if (region%damping > 0.0_wp .and. scheme%kind == DYNAMIC) k(g)%speed = matmul(nodes%v, gp%n)
             k(g)%source = 0.0_wp
             if (associated(domain%source)) &
                k(g)%source = domain%source(gp%x, old%time + scheme%l_f*(new%time - old%time))
          end associate
       end do
    end subroutine look_at_nodes
+
+   !> What the nodes of an element carry; in an undrained element its center the pressures.
+   pure subroutine gather(domain, element, scheme, old, new, nodes)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: element
+      type(scheme_t), intent(in) :: scheme
+      type(state_t), intent(in) :: old, new
+      type(nodes_t), intent(inout) :: nodes
+      real(wp) :: p_dot(6)
+      integer :: node(6), carrier(6), f
+
+      node = domain%mesh%t6(:, element)
+      nodes%u0 = old%x(:DISPLACEMENTS, node)
+      nodes%u1 = new%x(:DISPLACEMENTS, node)
+      nodes%a = 0.0_wp
+      if (scheme%kind == DYNAMIC) nodes%a = old%a(:, node) + scheme%l_a*(new%a(:, node) - old%a(:, node))
+      nodes%v0 = old%v(:DISPLACEMENTS, node)
+      nodes%v = nodes%v0 + scheme%l_v*(new%v(:DISPLACEMENTS, node) - nodes%v0)
+      if (domain%n_carriers(element) == 0) return
+      carrier = node
+      if (domain%center(element) > 0) carrier(1) = domain%center(element)
+      do f = AT_P_W, merge(AT_P_C, AT_P_W, domain%with_c)
+         nodes%p0(:, f - DISPLACEMENTS) = old%x(f, carrier)
+         nodes%p1(:, f - DISPLACEMENTS) = new%x(f, carrier)
+         p_dot = old%v(f, carrier)
+         nodes%rate(:, f - DISPLACEMENTS) = p_dot + scheme%l_p*(new%v(f, carrier) - p_dot)
+      end do
+   end subroutine gather
 
    !> The balances at the points, added up over the element.
    subroutine add_points(domain, element, scheme, k, material, old, new, with_tangent, out)
@@ -296,12 +315,12 @@ contains
    end function change_of
 
    !> What the nodes say about a point.
-   pure subroutine look(gp, with_w, with_c, scheme, x0, x1, v, a, k)
+   pure subroutine look(gp, with_w, with_c, scheme, nodes, k)
       type(gauss_t), intent(in) :: gp
       logical, intent(in) :: with_w   !< Whether nodes carry pressures.
       logical, intent(in) :: with_c   !< Else the suction of the carriers is 0, and nothing is spent on it.
       type(scheme_t), intent(in) :: scheme
-      real(wp), intent(in) :: x0(FIELDS, 6), x1(FIELDS, 6), v(FIELDS, 6), a(2, 6)
+      type(nodes_t), intent(in) :: nodes
       type(kinematics_t), intent(inout) :: k
       real(wp) :: du(DISPLACEMENTS), slopes(DISPLACEMENTS, DISPLACEMENTS), hoop, rates(3)
       integer :: i
@@ -310,18 +329,18 @@ contains
       hoop = 0.0_wp
       rates = 0.0_wp
       do i = 1, 6
-         du = x1(:DISPLACEMENTS, i) - x0(:DISPLACEMENTS, i)
+         du = nodes%u1(:, i) - nodes%u0(:, i)
          slopes(:, 1) = slopes(:, 1) + gp%dn(i, 1)*du
          slopes(:, 2) = slopes(:, 2) + gp%dn(i, 2)*du
          hoop = hoop + gp%n_over_r(i)*du(1)
-         rates = rates + [gp%dn(i, 1)*v(1, i), gp%dn(i, 2)*v(2, i), gp%n_over_r(i)*v(1, i)]
+         rates = rates + [gp%dn(i, 1)*nodes%v(1, i), gp%dn(i, 2)*nodes%v(2, i), gp%n_over_r(i)*nodes%v(1, i)]
       end do
       k%strain = [slopes(1, 1), slopes(2, 2), hoop, slopes(1, 2) + slopes(2, 1)]
       k%div_v = sum(rates)
       k%accel = 0.0_wp
       if (scheme%kind == DYNAMIC) then
          do i = 1, 6
-            k%accel = k%accel + a(:, i)*gp%n(i)
+            k%accel = k%accel + nodes%a(:, i)*gp%n(i)
          end do
       end if
       k%w0 = 0.0_wp
@@ -333,26 +352,27 @@ contains
       k%grad_w = 0.0_wp
       k%grad_c = 0.0_wp
       if (.not. with_w) return
-      call look_at_pressure(gp, scheme%l_f, x0(AT_P_W, :), x1(AT_P_W, :), v(AT_P_W, :), k%w0, k%w1, k%w_dot, k%grad_w)
+      call look_at_pressure(gp, scheme%l_f, nodes, 1, k%w0, k%w1, k%w_dot, k%grad_w)
       if (.not. with_c) return
-      call look_at_pressure(gp, scheme%l_f, x0(AT_P_C, :), x1(AT_P_C, :), v(AT_P_C, :), k%c0, k%c1, k%c_dot, k%grad_c)
+      call look_at_pressure(gp, scheme%l_f, nodes, 2, k%c0, k%c1, k%c_dot, k%grad_c)
    end subroutine look
 
-   !> A pressure before and after, its rate and its gradient at the level of values; they are zero on entry.
-   pure subroutine look_at_pressure(gp, level, p0, p1, rate, before, after, p_dot, gradient)
+   !> A pressure before and after, its rate and its gradient at the level of values.
+   pure subroutine look_at_pressure(gp, level, nodes, which, before, after, p_dot, gradient)
       type(gauss_t), intent(in) :: gp
-      real(wp), intent(in) :: level, p0(6), p1(6), rate(6)
-      real(wp), intent(inout) :: before, after, p_dot, gradient(2)
-      real(wp) :: p
-      integer :: i
+      real(wp), intent(in) :: level
+      type(nodes_t), intent(in) :: nodes
+      integer, intent(in) :: which   !< 1: p_w, 2: p_c.
+      real(wp), intent(out) :: before, after, p_dot, gradient(2)
+      real(wp) :: p(6)
 
-      do i = 1, 6
-         p = p0(i) + level*(p1(i) - p0(i))
-         before = before + gp%m(i)*p0(i)
-         after = after + gp%m(i)*p1(i)
-         p_dot = p_dot + gp%m(i)*rate(i)
-         gradient = gradient + [gp%dm(i, 1), gp%dm(i, 2)]*p
-      end do
+      associate (p0 => nodes%p0(:, which), p1 => nodes%p1(:, which))
+         p = p0 + level*(p1 - p0)
+         before = dot_product(gp%m, p0)
+         after = dot_product(gp%m, p1)
+      end associate
+      p_dot = dot_product(gp%m, nodes%rate(:, which))
+      gradient = [dot_product(gp%dm(:, 1), p), dot_product(gp%dm(:, 2), p)]
    end subroutine look_at_pressure
 
    !> Pressures that no unknown carries.

@@ -52,11 +52,13 @@ module porous_balance
    !> The mixture of a point at its levels, and the slopes of that.
    type :: mixture_t
       real(wp) :: n, n1              !< Porosity at the level of values and at the end of the step [-]
-      real(wp) :: s, s_dot           !< Degree of saturation [-] and its rate [1/s]
+      real(wp) :: s                  !< Degree of saturation [-]
       real(wp) :: s_ev, s_pc         !< Slopes of s against volume strain [-] and suction [1/kPa]
-      real(wp) :: rate_ev, rate_pc   !< Those of its rate, over that of the scheme.
-      real(wp) :: p_w, p_c           !< [kPa]
+      real(wp) :: p_w                !< [kPa]
       ! where there is air:
+      real(wp) :: p_c                !< [kPa]
+      real(wp) :: s_dot              !< Rate of the degree of saturation [1/s]
+      real(wp) :: rate_ev, rate_pc   !< Its slopes, over that of the scheme.
       real(wp) :: k_a, d_k_a         !< Bulk modulus of the air [kPa] and its slope against p_a [-]
       real(wp) :: rho_a, d_rho_a     !< Density of the air [t/m3] and its slope against p_a.
       type(relative_t) :: rel        !< Relative permeabilities, where fluids flow.
@@ -150,7 +152,8 @@ contains
       if (scheme%kind == DYNAMIC) slope = slope + region%damping*scheme%c_v
    end function slope_of_inertia
 
-   !> Void ratio and saturation at the end of the step, and the mixture at its levels.
+   !> Void ratio and saturation at the end of the step, and the mixture at its levels: saturated where the scene has no
+   !> suction.
    subroutine fill_pores(domain, region, scheme, k, skeleton, old, new, mix)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
@@ -160,42 +163,51 @@ contains
       type(pore_t), intent(in) :: old
       type(pore_t), intent(out) :: new
       type(mixture_t), intent(out) :: mix
+
+      new = pore_t(skeleton%e, 1.0_wp, 0.0_wp)
+      mix%n1 = new%e/(1 + new%e)
+      mix%n = old%e/(1 + old%e)
+      mix%n = mix%n + scheme%l_f*(mix%n1 - mix%n)
+      mix%p_w = k%w0 + scheme%l_f*(k%w1 - k%w0)
+      mix%s = 1.0_wp
+      mix%s_ev = 0.0_wp
+      mix%s_pc = 0.0_wp
+      if (region%with_c) call fill_with_air(domain, region, scheme, k, skeleton, old, new, mix)
+   end subroutine fill_pores
+
+   !> How much of the pores is water, and the air in the rest.
+   subroutine fill_with_air(domain, region, scheme, k, skeleton, old, new, mix)
+      type(domain_t), intent(in) :: domain
+      type(region_t), intent(in) :: region
+      type(scheme_t), intent(in) :: scheme
+      type(kinematics_t), intent(in) :: k
+      type(skeleton_t), intent(in) :: skeleton
+      type(pore_t), intent(in) :: old
+      type(pore_t), intent(inout) :: new
+      type(mixture_t), intent(inout) :: mix
       type(saturation_t) :: before, after
       real(wp) :: l
 
       l = scheme%l_f
-      new%e = skeleton%e
-      mix%n1 = new%e/(1 + new%e)
-      mix%n = old%e/(1 + old%e)
-      mix%n = mix%n + l*(mix%n1 - mix%n)
-      ! How much of the pores is water: saturated where the scene has no suction.
-      new%s = 1.0_wp
-      new%s_rate = 0.0_wp
-      mix%s_ev = 0.0_wp
-      mix%s_pc = 0.0_wp
-      mix%rate_ev = 0.0_wp
-      mix%rate_pc = 0.0_wp
-      if (region%with_c) then
-         new%s = skeleton%s
-         mix%s_ev = l*skeleton%ds_dev
-         mix%s_pc = l*skeleton%ds_dpc
-         if (domain%full_rate) then
-            new%s_rate = rate_of(scheme, old%s, old%s_rate, new%s)
-            mix%rate_pc = skeleton%ds_dpc
-            mix%rate_ev = skeleton%ds_dev
-         else
-            before = region%law%retention(k%c0, old%e)
-            after = region%law%retention(k%c1, old%e)
-            new%s_rate = rate_of(scheme, before%s, old%s_rate, after%s)
-            mix%rate_pc = after%ds_dpc
-         end if
+      new%s = skeleton%s
+      mix%s_ev = l*skeleton%ds_dev
+      mix%s_pc = l*skeleton%ds_dpc
+      if (domain%full_rate) then
+         new%s_rate = rate_of(scheme, old%s, old%s_rate, new%s)
+         mix%rate_pc = skeleton%ds_dpc
+         mix%rate_ev = skeleton%ds_dev
+      else
+         before = region%law%retention(k%c0, old%e)
+         after = region%law%retention(k%c1, old%e)
+         new%s_rate = rate_of(scheme, before%s, old%s_rate, after%s)
+         mix%rate_pc = after%ds_dpc
+         mix%rate_ev = 0.0_wp
       end if
       mix%s = old%s + l*(new%s - old%s)
       mix%s_dot = old%s_rate + scheme%l_p*(new%s_rate - old%s_rate)
-      mix%p_w = k%w0 + l*(k%w1 - k%w0)
       mix%p_c = k%c0 + l*(k%c1 - k%c0)
-      if (region%with_c) call air(domain, mix%p_w + mix%p_c, mix%k_a, mix%d_k_a, mix%rho_a, mix%d_rho_a)
-   end subroutine fill_pores
+      call air(domain, mix%p_w + mix%p_c, mix%k_a, mix%d_k_a, mix%rho_a, mix%d_rho_a)
+   end subroutine fill_with_air
 
    !> Momentum of the mixture: total stress, inertia, weight.
    pure subroutine add_momentum(domain, region, scheme, k, stress0, skeleton, mix, with_tangent, response, tangent)
@@ -215,11 +227,14 @@ contains
       l = scheme%l_f
       l_s = level_of_stress(region, scheme)
       associate (n => mix%n, s => mix%s, fluids => domain%fluids)
-         pressure = mix%p_w + (1 - s)*mix%p_c
+         pressure = mix%p_w
          rho_n = s*fluids%rho_w - region%rho_s
          rho_s = 0.0_wp
-         if (region%with_c) rho_n = rho_n + (1 - s)*mix%rho_a
-         if (region%with_c) rho_s = n*(fluids%rho_w - mix%rho_a)
+         if (region%with_c) then
+            pressure = pressure + (1 - s)*mix%p_c
+            rho_n = rho_n + (1 - s)*mix%rho_a
+            rho_s = n*(fluids%rho_w - mix%rho_a)
+         end if
          rho = region%rho_s + n*rho_n
          accel = k%accel + region%damping*k%speed
          accel(2) = accel(2) + domain%gravity
