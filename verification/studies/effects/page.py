@@ -9,7 +9,7 @@ import time
 import numpy as np
 from tools import tables
 from tools.bench import ROOT
-from tools.page import Page, Tolerance
+from tools.page import Page, Script, Tolerance
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import scenes  # noqa: E402
@@ -21,6 +21,8 @@ PAGE = Page(
           "everything (`effects_tolerance = 1e-6`), and the careless run (`without`)",
     reference="the run with everything, at its end and on the way, as a share of the range of each answer",
     seconds=90, quick=0, pictures=("effects.png",))
+
+MAKES = (Script("times.py", ("times.csv",), 240),)
 
 COUNT = Tolerance("a count")
 CHANGED = Tolerance("removed effects may change an answer by the tolerance of the scene (1 %, 4 % where the scene "
@@ -86,6 +88,19 @@ def check(bench):
                    f"with everything {row['full']:.2f} s")
         results.append(row)
     return results
+
+
+def texts(bench):
+    rows = []
+    for row in tables.rows(bench.here / "times.csv"):
+        whole, pilots = float(row["seconds"]), float(row["of these pilots"])
+        rows.append((row["scene"], row["elements"], row["off"], f"{row['unknowns with everything']} to {row['unknowns']}",
+                     row["seconds with everything"], row["seconds"], row["of these pilots"],
+                     f"{100 * pilots / float(row['seconds with everything']):.2g} %", f"{100 * float(row['share allowed']):.0f} %",
+                     f"{100 * (1 - whole / float(row['seconds with everything'])):.0f} %", f"{100 * float(row['changes']):.2g} %"))
+    return {"README.md": {"times": tables.markdown(
+        ("scene", "elements", "removed", "unknowns", "with everything [s]", "with auto [s]", "of these pilots [s]",
+         "pilots, share of the whole run", "allowed by their estimate", "time saved", "largest change of a displacement"), rows)}}
 
 
 def draw(bench, results, plt):
