@@ -105,7 +105,10 @@ contains
       this%p_c = 0.0_wp
       this%d_pc = 0.0_wp
       r = random_deviator(random)
-      this%z = uniform(random, -4.0_wp, 4.0_wp)*r + uniform(random, 0.0_wp, 2.0_wp)*random_deviator(random)
+      ! one after the other: the order of functions in an expression is the compiler's
+      this%z = uniform(random, -4.0_wp, 4.0_wp)*r
+      beside = uniform(random, 0.0_wp, 2.0_wp)
+      this%z = this%z + beside*random_deviator(random)
       this%d_strain = 1.0e-3_wp*random_tensor(random)
       this%r_in = 0.0_wp
       this%sigma = p*IDENTITY
