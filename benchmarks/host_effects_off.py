@@ -40,7 +40,8 @@ EFFECTS = {
     "p_w": ("u", "dynamic", False, NO_SUCTION + (
         (r"\b(?:model%)?(?:region|domain)%with_w\b", ".false."),
         (r"\n *if \(\.not\. with_w\) return\n.*", ""),
-        (r"\bn_p > 0\b", ".false."), (r"\n *response\(1:3\) = response\(1:3\) - pressure", ""))),
+        (r"\bn_p > 0\b", ".false."), (r"\bdomain%n_carriers\(element\) == 0", ".true."),
+        (r"\n *response\(1:3\) = response\(1:3\) - pressure", ""))),
     "p_c": ("u-p_w", "dynamic", False, NO_SUCTION),
     "gravity": ("u-p_w", "dynamic", False, (
         (r"\n *(?:accel|b)\(2\) = (?:accel|b)\(2\) \+ domain%gravity", ""), (r"domain%gravity \+ FLIGHT_SHARE", "FLIGHT_SHARE"),
