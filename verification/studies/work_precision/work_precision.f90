@@ -75,7 +75,7 @@ contains
       n_props = mud_count(MUD_PROPS)
       n_statev = mud_count(MUD_STATEV)
       if (max(n_props, n_statev) > WORDS) error stop 'work_precision: WORDS is too small'
-      code = mud_default_props(props, n_props)
+      call set_material_of_reference(props, n_props)
       statev = 0.0_wp
       result%stress = path%p*EQUAL
       suction = path%suction
@@ -103,6 +103,16 @@ contains
       call system_clock(after)
       result%nanoseconds = real(after - before, wp)*1.0e9_wp/real(per_second, wp)
    end subroutine walk
+
+   !> The default material, without an elastic domain and with the rule `threshold`, as the reference has it.
+   subroutine set_material_of_reference(props, n_props)
+      real(wp), intent(inout) :: props(:)
+      integer(c_int), intent(in) :: n_props
+
+      if (mud_default_props(props, n_props) /= 0) error stop 'work_precision: no default material'
+      props(mud_index(MUD_PROPS, 'rho_e'//c_null_char) + 1) = 0.0_wp
+      props(mud_index(MUD_PROPS, 'memory_rule'//c_null_char) + 1) = 1.0_wp   ! threshold
+   end subroutine set_material_of_reference
 
    subroutine set(props, scheme, tolerance)
       real(wp), intent(inout) :: props(:)
