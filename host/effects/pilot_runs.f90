@@ -148,7 +148,7 @@ contains
       self%seen%time(self%rows) = run%state%time
       self%seen%x(:, :, self%rows) = run%state%x(:FIELDS, self%nodes)
       if (self%rows == 1) return
-      self%seen%force(:, self%rows) = forces_of_moving(model, run, self%moving)
+      if (size(self%moving) > 0) self%seen%force(:, self%rows) = forces_of_moving(model, run, self%moving)
       if (self%rows == 2) self%seen%force(:, 1) = self%seen%force(:, 2)
    end subroutine keep
 
