@@ -1,14 +1,15 @@
 ! SPDX-License-Identifier: MIT
 !> Paths that the benchmarks walk along, through the doors of mud.h and through the rate itself.
 module benchmark_walk
-   use, intrinsic :: iso_c_binding, only: c_int, c_long, c_double, c_null_char
+   use, intrinsic :: iso_c_binding, only: c_int, c_long, c_double, c_null_char, c_loc
    use, intrinsic :: iso_fortran_env, only: int64
    use mud_bonding, only: is_bonded
-   use mud_interface, only: mud_default_props, mud_init_state, mud_update, mud_update_batch, &
-      mud_prepared_size, mud_prepare, mud_update_prepared, mud_index, mud_count, &
-      mud_report, MUD_PROPS, MUD_STATEV, MUD_TANGENT_NONE
+   use mud_interface, only: mud_default_props, mud_prepared_size, mud_prepare, mud_init, mud_update, &
+      mud_update_points, mud_points, mud_blocks, mud_index, mud_count, mud_report, MUD_PROPS, &
+      MUD_STATEV, MUD_TANGENT_NONE
    use mud_params, only: params_t, read_params
-   use mud_rates, only: rate_t, rate_at, MODE_ORDINARY
+   use mud_rates, only: rate_at, MODE_ORDINARY
+   use mud_direction, only: rate_t
    use mud_status, only: mud_status_t
    use mud_tensor, only: ddot, norm
    implicit none (type, external)
@@ -100,12 +101,12 @@ contains
       if (all(abs(path%from - path%to) <= 0.0_wp)) d_strain = strain*path%from
    end function strain_of
 
-   subroutine start(path, scheme, tolerance, domain, props, n_props, stress, statev, n_statev, zero)
+   subroutine start(path, scheme, tolerance, domain, props, n_props, material, stress, statev, n_statev, zero)
       type(path_t), intent(in) :: path
       integer, intent(in) :: scheme
       real(wp), intent(in) :: tolerance
       logical, intent(in) :: domain   !< With the elastic domain of the default material; otherwise without any.
-      real(wp), intent(out) :: props(WORDS), stress(6), statev(WORDS)
+      real(wp), intent(out) :: props(WORDS), material(:), stress(6), statev(WORDS)
       integer(c_int), intent(out) :: n_props, n_statev
       character(*), intent(in), optional :: zero   !< Name of a parameter that is 0.
       character :: text(1)
@@ -125,7 +126,9 @@ contains
       end if
       stress = path%stress
       statev = 0.0_wp
-      code = mud_init_state(props, n_props, stress, path%suction, path%void_ratio, statev, n_statev, text, 0_c_int)
+      code = mud_prepare(props, n_props, material, size(material, kind=c_int), text, 0_c_int)
+      if (code == 0) code = mud_init(material, stress, path%suction, path%void_ratio, 0.0_wp, statev, n_statev, text, &
+                                     0_c_int)
       if (code /= 0) error stop 'benchmark: a start is not accepted'
    end subroutine start
 
@@ -139,19 +142,16 @@ contains
       logical, intent(in) :: domain     !< With the elastic domain of the default material; otherwise without any.
       character(*), intent(in), optional :: zero   !< Name of a parameter that is 0.
       real(wp) :: props(WORDS), stress(6), statev(WORDS), suction, d_suction, d_strain(6)
-      real(wp) :: c(6, 6), c_pc(6), sw_e(6), sw_pc
-      real(wp), allocatable :: steps(:, :), material(:)
+      real(wp) :: material(mud_prepared_size())
+      real(wp), allocatable :: steps(:, :)
+      type(mud_blocks) :: blocks
       type(mud_report) :: report
       character :: text(1)
       integer(c_int) :: n_props, n_statev, code
       integer(int64) :: before, after
       integer :: i
 
-      call start(path, scheme, tolerance, domain, props, n_props, stress, statev, n_statev, zero)
-      allocate (material(mud_prepared_size()))
-      if (mud_prepare(props, n_props, material, size(material, kind=c_int), text, 0_c_int) /= 0) then
-         error stop 'benchmark: a material is not accepted'
-      end if
+      call start(path, scheme, tolerance, domain, props, n_props, material, stress, statev, n_statev, zero)
       tally%updates = number_of_updates(strain)
       allocate (steps(6, tally%updates))
       do i = 1, tally%updates
@@ -162,15 +162,12 @@ contains
       before = now(OF_THIS_THREAD)
       do i = 1, tally%updates
          d_strain = steps(:, i)
-         if (prepared) then
-            code = mud_update_prepared(material, stress, statev, n_statev, d_strain, suction, d_suction, &
-                                       int(tangent, c_int), stress, statev, c, c_pc, sw_e, sw_pc, report)
-         else
-            code = mud_update(props, n_props, stress, statev, n_statev, d_strain, suction, d_suction, &
-                              int(tangent, c_int), stress, statev, c, c_pc, sw_e, sw_pc, report)
-         end if
-         if (code /= 0) error stop 'benchmark: an update failed'
+         code = 0
+         if (.not. prepared) code = mud_prepare(props, n_props, material, size(material, kind=c_int), text, 0_c_int)
          suction = suction + d_suction
+         if (code == 0) code = mud_update(material, stress, statev, n_statev, d_strain, suction, int(tangent, c_int), &
+                                          stress, statev, blocks, report)
+         if (code /= 0) error stop 'benchmark: an update failed'
          tally%rates = tally%rates + report%n_rate
       end do
       after = now(OF_THIS_THREAD)
@@ -183,18 +180,19 @@ contains
       real(wp), intent(in) :: strain, tolerance
       integer, intent(in) :: scheme, tangent, threads, points
       type(tally_t), intent(out) :: tally
-      real(wp), dimension(:, :), allocatable :: stress, statev, d_strain, c_pc, sw_e
-      real(wp), allocatable :: c(:, :, :), suction(:), d_suction(:), sw_pc(:)
-      type(mud_report), allocatable :: reports(:)
-      integer(c_int), allocatable :: status(:)
-      real(wp) :: props(WORDS), one(6), state(WORDS)
+      real(wp), dimension(:, :), allocatable, target :: stress, statev, d_strain, c_pc, sw_e
+      real(wp), allocatable, target :: c(:, :, :), suction(:), sw_pc(:)
+      type(mud_report), allocatable, target :: reports(:)
+      integer(c_int), allocatable, target :: status(:)
+      type(mud_points) :: mesh
+      real(wp) :: props(WORDS), material(mud_prepared_size()), one(6), state(WORDS)
       integer(c_int) :: n_props, n_statev, failed
       integer(int64) :: before, after
       integer :: i
 
-      call start(path, scheme, tolerance, .true., props, n_props, one, state, n_statev)
+      call start(path, scheme, tolerance, .true., props, n_props, material, one, state, n_statev)
       allocate (stress(6, points), statev(n_statev, points), d_strain(6, points), c(6, 6, points), c_pc(6, points), &
-                sw_e(6, points), suction(points), d_suction(points), sw_pc(points), reports(points), status(points))
+                sw_e(6, points), suction(points), sw_pc(points), reports(points), status(points))
       c = 0.0_wp
       c_pc = 0.0_wp
       sw_e = 0.0_wp
@@ -205,18 +203,19 @@ contains
          d_strain(:, i) = 10.0_wp*strain*real(i, wp)/real(points, wp)*path%from
       end do
       suction = path%suction
-      d_suction = 0.0_wp
+      mesh = mud_points(n=int(points, c_int), nstatev=n_statev, tangent=int(tangent, c_int), &
+         threads=int(threads, c_int), stress0=c_loc(stress), statev0=c_loc(statev), dstrain=c_loc(d_strain), &
+         suction=c_loc(suction), stress1=c_loc(stress), statev1=c_loc(statev), dsig_deps=c_loc(c), &
+         dsig_dpc=c_loc(c_pc), dsw_deps=c_loc(sw_e), dsw_dpc=c_loc(sw_pc), status=c_loc(status), &
+         reports=c_loc(reports))
       ! the first call spreads the points along the path and wakes the threads
-      failed = mud_update_batch(props, n_props, int(points, c_int), stress, statev, n_statev, d_strain, suction, &
-         d_suction, int(tangent, c_int), int(threads, c_int), stress, statev, c, c_pc, sw_e, sw_pc, status, reports)
+      failed = mud_update_points(material, 1_c_int, mesh)
       do i = 1, points
          d_strain(:, i) = strain_of(path, i, points, strain)
       end do
-      d_suction = strain*path%d_suction
+      suction = suction + strain*path%d_suction
       before = now(ON_THE_WALL)
-      failed = failed + mud_update_batch(props, n_props, int(points, c_int), stress, statev, n_statev, d_strain, &
-         suction, d_suction, int(tangent, c_int), int(threads, c_int), stress, statev, c, c_pc, sw_e, sw_pc, status, &
-         reports)
+      failed = failed + mud_update_points(material, 1_c_int, mesh)
       after = now(ON_THE_WALL)
       if (failed /= 0) error stop 'benchmark: a batch failed'
       tally = tally_t(after - before, sum(reports%n_rate), points)
@@ -227,7 +226,8 @@ contains
       type(path_t), intent(in) :: path
       integer, intent(in) :: evaluations
       type(tally_t), intent(out) :: tally
-      real(wp) :: props(WORDS), stress(6), statev(WORDS), d_strain(6), d_pc, z(6), r_in(6), checksum
+      real(wp) :: props(WORDS), material(mud_prepared_size()), stress(6), statev(WORDS), d_strain(6), d_pc, z(6), &
+         r_in(6), checksum
       type(params_t) :: par
       type(mud_status_t) :: status
       type(rate_t) :: w
@@ -236,9 +236,9 @@ contains
       integer(int64) :: before, after
       integer :: i, fabric, memory
 
-      call start(path, 1, 1.0e-5_wp, .true., props, n_props, stress, statev, n_statev)
+      call start(path, 1, 1.0e-5_wp, .true., props, n_props, material, stress, statev, n_statev)
       d_strain = 1.0e-3_wp*path%from
-      code = mud_update(props, n_props, stress, statev, n_statev, d_strain, path%suction, 0.0_wp, MUD_TANGENT_NONE, &
+      code = mud_update(material, stress, statev, n_statev, d_strain, path%suction, MUD_TANGENT_NONE, &
                         stress, statev, report=report)
       if (code /= 0) error stop 'benchmark: an update failed'
       call read_params(props(1:n_props), par, status)
@@ -271,7 +271,7 @@ contains
       type(mud_status_t) :: status
       type(rate_t) :: w
       type(mud_report) :: report
-      real(wp) :: props(WORDS), stress(6), statev(WORDS)
+      real(wp) :: props(WORDS), material(mud_prepared_size()), stress(6), statev(WORDS)
       integer(c_int) :: n_props, n_statev, code
       integer :: i, kind, count(2), fabric, memory, e
       integer(int64) :: seed
@@ -287,7 +287,7 @@ contains
             begin = path_t('walk', 10.0_wp**(1.3_wp + 1.4_wp*share(seed))*EQUAL, 0.0_wp, 0.0_wp, UNDRAINED, UNDRAINED, &
                            0.0_wp)
             begin%void_ratio = 0.65_wp + 0.25_wp*share(seed)
-            call start(begin, 1, 1.0e-5_wp, .false., props, n_props, stress, statev, n_statev)
+            call start(begin, 1, 1.0e-5_wp, .false., props, n_props, material, stress, statev, n_statev)
             call read_params(props(1:n_props), one%par, status)
          end if
          i = i + 1
@@ -302,7 +302,7 @@ contains
             count(kind) = count(kind) + 1
             rates(count(kind), kind) = one
          end if
-         code = mud_update(props, n_props, stress, statev, n_statev, -one%d_strain*[1, 1, 1, 2, 2, 2], 0.0_wp, 0.0_wp, &
+         code = mud_update(material, stress, statev, n_statev, -one%d_strain*[1, 1, 1, 2, 2, 2], 0.0_wp, &
                            MUD_TANGENT_NONE, stress, statev, report=report)
          if (code /= 0) error stop 'benchmark: an update failed'
       end do

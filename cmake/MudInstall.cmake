@@ -5,9 +5,46 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
+# Commands that run before anything is installed: files that are not built are named, with the command that builds them.
+# To be called before the folders that install, as commands run in the order of their places.
+function(mud_install_only_what_is_built)
+   install(CODE "include(\"${PROJECT_BINARY_DIR}/mud_built.cmake\")" ALL_COMPONENTS)
+endfunction()
+
+# mud_installs(COMPONENT FILE...): files that the component needs; generator expressions are allowed.
+function(mud_installs component)
+   foreach(file IN LISTS ARGN)
+      set_property(GLOBAL APPEND_STRING PROPERTY MUD_INSTALLED_FILES "need(${component} \"${file}\")\n")
+   endforeach()
+endfunction()
+
+# Writes what mud_install_only_what_is_built reads, once all files are known.
+function(mud_write_installed_files)
+   get_property(needs GLOBAL PROPERTY MUD_INSTALLED_FILES)
+   file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/mud_built.cmake CONTENT
+"set(missing \"\")
+macro(need component file)
+   if((NOT CMAKE_INSTALL_COMPONENT OR CMAKE_INSTALL_COMPONENT STREQUAL \"\${component}\") AND NOT EXISTS \"\${file}\")
+      string(APPEND missing \"\\n   \${file}\")
+   endif()
+endmacro()
+${needs}
+if(missing)
+   message(FATAL_ERROR \"MUD cannot be installed, because these files have not been built:\${missing}\\n\"
+      \"Nothing was installed. Build them first: cmake --build ${PROJECT_BINARY_DIR}\")
+endif()
+")
+endfunction()
+
 function(mud_install)
    cmake_parse_arguments(PARSE_ARGV 0 arg "" "" "TARGETS;HEADERS;MODULES;RUNTIME;DATA")
    set(package ${CMAKE_INSTALL_LIBDIR}/cmake/mud)
+   # A program without any shared library needs what libgfortran.a itself needs.
+   if("gfortran" IN_LIST arg_RUNTIME AND "quadmath" IN_LIST CMAKE_Fortran_IMPLICIT_LINK_LIBRARIES)
+      list(FIND arg_RUNTIME gfortran place)
+      math(EXPR place "${place} + 1")
+      list(INSERT arg_RUNTIME ${place} quadmath)
+   endif()
    set(modules ${CMAKE_INSTALL_INCLUDEDIR}/mud/modules)
 
    # The module files are gfortran's own: no other compiler is sent there.
@@ -19,6 +56,14 @@ function(mud_install)
       LIBRARY COMPONENT library NAMELINK_COMPONENT development
       ARCHIVE COMPONENT development
       INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+   foreach(target IN LISTS arg_TARGETS)
+      mud_installs(development $<TARGET_FILE:${target}>)
+      get_target_property(kind ${target} TYPE)
+      if(kind STREQUAL "SHARED_LIBRARY")
+         mud_installs(library $<TARGET_FILE:${target}>)
+      endif()
+   endforeach()
+   mud_installs(development ${arg_MODULES} ${arg_DATA})
    install(FILES ${arg_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
    install(FILES ${arg_MODULES} DESTINATION ${modules} COMPONENT development)
    install(EXPORT mudTargets NAMESPACE mud:: DESTINATION ${package} COMPONENT development)
@@ -41,13 +86,8 @@ function(mud_install)
    foreach(dir LIBDIR INCLUDEDIR DATADIR)
       cmake_path(APPEND pc_${dir} "\${prefix}" "${CMAKE_INSTALL_${dir}}")
    endforeach()
-   list(TRANSFORM arg_RUNTIME PREPEND "-l")
-   list(JOIN arg_RUNTIME " " runtime)
-   # A program without any shared library needs what libgfortran.a itself needs.
-   set(private "${runtime}")
-   if("quadmath" IN_LIST CMAKE_Fortran_IMPLICIT_LINK_LIBRARIES)
-      string(REPLACE "-lgfortran" "-lgfortran -lquadmath" private "${runtime}")
-   endif()
+   list(TRANSFORM arg_RUNTIME PREPEND "-l" OUTPUT_VARIABLE runtime)
+   list(JOIN runtime " " runtime)
    # Where there is no shared library, -lmud is the archive and always needs what is below it.
    set(libs "")
    if(NOT MUD_BUILD_SHARED)
@@ -65,7 +105,13 @@ function(mud_install_programs)
    cmake_parse_arguments(PARSE_ARGV 0 arg "" "" "MATERIALS;PROGRAMS")
    foreach(program IN LISTS arg_PROGRAMS)
       if(TARGET ${program})
+         # Linked with libmud.so alone where there is no archive: it is looked for beside the program.
+         if(NOT MUD_BUILD_STATIC)
+            file(RELATIVE_PATH up /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
+            set_property(TARGET ${program} PROPERTY INSTALL_RPATH $ORIGIN/${up})
+         endif()
          install(TARGETS ${program} RUNTIME COMPONENT programs)
+         mud_installs(programs $<TARGET_FILE:${program}>)
       endif()
    endforeach()
    install(FILES ${arg_MATERIALS} DESTINATION ${CMAKE_INSTALL_DATADIR}/mud/materials COMPONENT programs)

@@ -25,4 +25,27 @@ set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "MUD soil model: headers, archive, sing
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME mud-programs)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAMS_DESCRIPTION "MUD soil model: laboratory tests, finite-element host, input of others")
+
+# Every package names its licence in the form of Debian. These files are in no plain `cmake --install`.
+file(READ ${PROJECT_SOURCE_DIR}/LICENSE licence)
+string(REGEX REPLACE "^MIT License\n+Copyright [^\n]*\n+" "" licence "${licence}")
+string(STRIP "${licence}" licence)
+string(REGEX REPLACE "\n\n" "\n.\n" licence "${licence}")
+string(REGEX REPLACE "\n" "\n " licence "${licence}")
+file(STRINGS ${PROJECT_SOURCE_DIR}/LICENSE copyright REGEX "^Copyright ")
+string(REGEX REPLACE "^Copyright (\\([cC]\\) )?" "" copyright "${copyright}")
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/copyright CONTENT
+"Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
+Upstream-Name: MUD
+
+Files: *
+Copyright: ${copyright}
+License: Expat
+ ${licence}
+" @ONLY)
+foreach(component library development programs)
+   string(TOUPPER ${component} name)
+   install(FILES ${PROJECT_BINARY_DIR}/copyright DESTINATION share/doc/${CPACK_DEBIAN_${name}_PACKAGE_NAME}
+      COMPONENT ${component} EXCLUDE_FROM_ALL)
+endforeach()
 include(CPack)

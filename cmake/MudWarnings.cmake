@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # mud_set_warnings(TARGET [TESTS])
-# The language standard and the warnings every target of ours is held to.
+# The language standard and the warnings every target of ours is held to, and relative names of sources in messages.
 # TESTS leaves out -Wuse-without-only, because .pf files say `use funit`.
 function(mud_set_warnings target)
    cmake_parse_arguments(PARSE_ARGV 1 arg "TESTS" "" "")
@@ -8,6 +8,12 @@ function(mud_set_warnings target)
    set(c -std=c11 -Wall -Wextra)
    if(NOT arg_TESTS)
       list(APPEND fortran -Wuse-without-only)
+      # gfortran keeps the name of a source as it stands in the command, for its messages of run time (-ffile-prefix-map
+      # changes other languages alone). By relative names libraries and programs do not hold where they were built.
+      if(UNIX)
+         set_property(TARGET ${target} PROPERTY
+            RULE_LAUNCH_COMPILE "sh ${PROJECT_SOURCE_DIR}/cmake/relative_names.sh ${PROJECT_SOURCE_DIR}")
+      endif()
    endif()
    # Without optimisation gfortran 12 takes every allocation on assignment for a use of undefined bounds.
    if(CMAKE_BUILD_TYPE STREQUAL "Debug")

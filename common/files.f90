@@ -6,7 +6,8 @@ module files
    use, intrinsic :: iso_fortran_env, only: output_unit
    implicit none (type, external)
    private
-   public :: write_whole, read_whole, can_be_written, bytes_of, make_folder, folder_of, to_terminal, limits_are_errors
+   public :: write_whole, name_part, remove_part, PART, read_whole, bytes_of, make_folder, folder_of, to_terminal, &
+             limits_are_errors
    public :: fopen, open_output, fwrite, fflush, fileno, fclose, fsync, truncate
 
    character(*), parameter :: PART = '.part'   !< Ends the name of a file that is being written.
@@ -127,10 +128,33 @@ contains
       if (good) good = c_rename(temporary, path//c_null_char) == 0
       if (good) then
          call settle_file(folder_of(path))
-      else if (c_remove(temporary) /= 0) then
-         good = .false.
+      else
+         call remove_part(path)
       end if
    end subroutine write_whole
+
+   !> Gives a file that was written under path//PART its name, once it is on the disk. good is false if that fails.
+   subroutine name_part(path, good)
+      character(*), intent(in) :: path
+      logical, intent(out) :: good
+      type(c_ptr) :: file
+
+      file = fopen(path//PART//c_null_char, 'rb'//c_null_char)
+      good = c_associated(file)
+      if (.not. good) return
+      good = fsync(fileno(file)) == 0
+      if (fclose(file) /= 0) good = .false.
+      if (good) good = c_rename(path//PART//c_null_char, path//c_null_char) == 0
+      if (good) call settle_file(folder_of(path))
+   end subroutine name_part
+
+   !> Removes path//PART, if it is there.
+   subroutine remove_part(path)
+      character(*), intent(in) :: path
+      integer(c_int) :: status
+
+      status = c_remove(path//PART//c_null_char)
+   end subroutine remove_part
 
    !> A whole file as text. Not by a Fortran unit: two threads that read one file would be refused. good is false, and
    !> text is what was read, where that fails.
@@ -155,21 +179,6 @@ contains
       good = ferror(file) == 0
       if (fclose(file) /= 0) good = .false.
    end subroutine read_whole
-
-   !> Whether write_whole could write a file of that name now; one that is there stays as it is. False where the folder
-   !> does not exist or is write-protected.
-   logical function can_be_written(path) result(good)
-      character(*), intent(in) :: path
-      character(:), allocatable :: temporary
-      type(c_ptr) :: file
-
-      temporary = path//PART//c_null_char
-      file = fopen(temporary, 'wb'//c_null_char)
-      good = c_associated(file)
-      if (.not. good) return
-      if (fclose(file) /= 0) good = .false.
-      if (c_remove(temporary) /= 0) good = .false.
-   end function can_be_written
 
    !> The standard output as a file of its own: to close it leaves the standard output open. A null pointer where that
    !> fails.

@@ -1,22 +1,22 @@
 ! SPDX-License-Identifier: MIT
 !> HDF5 files of the host, the only module that knows the HDF5 library: datasets with the attributes `unit` and
 !> `description` and a checksum, texts as attributes of the file. A file is built in memory and written as a whole, so
-!> that a full disk or a killed run leaves no half of one. Without HDF5 the file of the same name beside it is built.
+!> that a full disk or a killed run leaves no half of one under its name. Without HDF5 the file of the same name in
+!> without_hdf5 is built.
 module hdf5_file
-   use, intrinsic :: iso_c_binding, only: c_int8_t, c_ptr, c_loc, c_null_ptr
-   use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5eset_auto_f, h5fcreate_f, h5fopen_f, h5fclose_f, h5fflush_f, &
-                   h5fget_file_image_f, h5pcreate_f, h5pclose_f, h5pset_fapl_core_f, h5pset_chunk_f, &
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_loc
+   use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5eset_auto_f, h5fcreate_f, h5fopen_f, h5fclose_f, &
+                   h5pcreate_f, h5pclose_f, h5pset_fapl_core_f, h5pset_chunk_f, &
                    h5pset_libver_bounds_f, H5F_LIBVER_V18_F, &
                    h5pset_fletcher32_f, h5pset_obj_track_times_f, h5pset_create_inter_group_f, h5screate_f, &
                    h5screate_simple_f, h5sclose_f, h5dcreate_f, h5dopen_f, h5dwrite_f, h5dread_f, h5dclose_f, &
                    h5dget_space_f, h5sget_simple_extent_ndims_f, h5sget_simple_extent_dims_f, h5tcopy_f, &
                    h5tset_size_f, h5tclose_f, h5acreate_f, h5aopen_f, h5awrite_f, h5aread_f, h5aclose_f, &
-                   H5F_ACC_TRUNC_F, H5F_ACC_RDONLY_F, H5F_SCOPE_GLOBAL_F, H5P_FILE_ACCESS_F, H5P_FILE_CREATE_F, &
+                   H5F_ACC_TRUNC_F, H5F_ACC_RDONLY_F, H5P_FILE_ACCESS_F, H5P_FILE_CREATE_F, &
                    H5P_DATASET_CREATE_F, &
                    H5P_LINK_CREATE_F, H5S_SCALAR_F, H5T_NATIVE_DOUBLE, H5T_NATIVE_INTEGER, H5T_FORTRAN_S1
    use kinds, only: wp
-   use files, only: write_whole
-   use hdf5_superblock, only: seal_superblock
+   use files, only: name_part, remove_part, PART
    implicit none (type, external)
    private
    public :: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, get_text, extent_of
@@ -28,6 +28,7 @@ module hdf5_file
    type :: h5_t
       integer(hid_t) :: id = -1
       logical :: good = .true.   !< False after the first call that failed.
+      character(:), allocatable :: path   !< Of a new file; it is written beside it and then gets this name.
    end type h5_t
 
    !> An array of any size, with one or two dimensions, as a dataset; its folders are made. An empty one is left out.
@@ -42,14 +43,16 @@ module hdf5_file
       module procedure get_real, get_real_2, get_integer
    end interface get
 contains
-   !> An empty file in memory. `guarded`: in the format of HDF5 1.8, which has checksums over its structure too; what
-   !> reads it must not be older. file%good is false after a failure, of this call or any later one.
-   subroutine new_file(file, guarded)
+   !> An empty file, in memory until write_file. `guarded`: in the format of HDF5 1.8, which has checksums over its
+   !> structure too; what reads it must not be older. file%good is false after a failure, of this call or any later one.
+   subroutine new_file(file, path, guarded)
       type(h5_t), intent(out) :: file
+      character(*), intent(in) :: path
       logical, intent(in), optional :: guarded
       integer(hid_t) :: access, creation
       integer :: status
 
+      file%path = path
       call begin(file)
       call h5pcreate_f(H5P_FILE_CREATE_F, creation, status)
       call note(file, status)
@@ -57,13 +60,13 @@ contains
       call note(file, status)
       call h5pcreate_f(H5P_FILE_ACCESS_F, access, status)
       call note(file, status)
-      call h5pset_fapl_core_f(access, GROWTH, .false., status)
+      call h5pset_fapl_core_f(access, GROWTH, .true., status)
       call note(file, status)
       if (present(guarded)) then
          if (guarded) call h5pset_libver_bounds_f(access, H5F_LIBVER_V18_F, H5F_LIBVER_V18_F, status)
          call note(file, status)
       end if
-      call h5fcreate_f('memory', H5F_ACC_TRUNC_F, file%id, status, creation, access)
+      call h5fcreate_f(path//PART, H5F_ACC_TRUNC_F, file%id, status, creation, access)
       call note(file, status)
       call h5pclose_f(creation, status)
       call h5pclose_f(access, status)
@@ -71,29 +74,17 @@ contains
 
    !> From memory to the disk; the file is closed. good is false where this call or one before it failed; a file of that
    !> name then stays.
-   subroutine write_file(file, path, good)
+   subroutine write_file(file, good)
       type(h5_t), intent(inout) :: file
-      character(*), intent(in) :: path
       logical, intent(out) :: good
-      integer(c_int8_t), allocatable, target :: image(:)
-      integer(size_t), parameter :: NOTHING = 0
-      integer(size_t) :: length
       integer :: status
-      type(c_ptr) :: place
 
-      place = c_null_ptr
-      call h5fflush_f(file%id, H5F_SCOPE_GLOBAL_F, status)
+      call h5fclose_f(file%id, status)
       call note(file, status)
-      call h5fget_file_image_f(file%id, place, NOTHING, status, buf_size=length)
-      call note(file, status)
-      allocate (image(length))
-      place = c_loc(image)
-      call h5fget_file_image_f(file%id, place, length, status)
-      call note(file, status)
+      file%id = -1
       good = file%good
-      call close_file(file)
-      call seal_superblock(image)
-      if (good) call write_whole(path, image, good)
+      if (good) call name_part(file%path, good)
+      if (.not. good) call remove_part(file%path)
    end subroutine write_file
 
    !> Opens an existing file for reading; not good if it is missing, no HDF5 file or truncated. file%good says so.

@@ -5,7 +5,7 @@
 module namelists
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use files, only: read_whole
-   use texts, only: lower_case, whole
+   use texts, only: lower_case, whole, mark_length
    implicit none (type, external)
    private
    public :: entry_t, group_t, read_groups, groups_of_text, find_entry, set_entry, MAX_VALUES, LENGTH
@@ -75,7 +75,7 @@ contains
       allocate (groups(0))
       inside = .false.
       line = 0
-      first = 1
+      first = 1 + mark_length(text)
       do while (first <= len(text) .and. fault%code == 0)
          length = index(text(first:), NEW_LINE_) - 1
          if (length < 0) length = len(text) - first + 1

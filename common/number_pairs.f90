@@ -3,7 +3,7 @@
 module number_pairs
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use texts, only: whole, read_number
+   use texts, only: whole, read_number, mark_length
    implicit none (type, external)
    private
    public :: read_pairs
@@ -51,6 +51,7 @@ contains
                        ' characters.')
             exit
          end if
+         if (n == 1) line = line(1 + mark_length(line):)
          line = adjustl(blank(line(:scan(line//'!', '!#') - 1)))
          if (line == '') cycle
          last = index(line, ' ')

@@ -8,7 +8,7 @@ module texts
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: lower_case, short, whole, read_number, from_c, word_place
+   public :: lower_case, short, whole, read_number, from_c, word_place, mark_length
 
    !> An integer as text.
    interface whole
@@ -26,6 +26,15 @@ contains
          if (lge(text(i:i), 'A') .and. lle(text(i:i), 'Z')) lower(i:i) = achar(iachar(text(i:i)) + 32)
       end do
    end function lower_case
+
+   !> Characters of the byte-order mark that a text begins with (UTF-8, as some editors write it): 3, or 0 without one.
+   pure integer function mark_length(text)
+      character(*), intent(in) :: text
+      character(3), parameter :: MARK = char(239)//char(187)//char(191)
+
+      mark_length = 0
+      if (index(text, MARK) == 1) mark_length = len(MARK)
+   end function mark_length
 
    !> Where a text first has a word that no letter, digit or underscore continues, 0 if nowhere; case ignored.
    pure integer function word_place(text, word)

@@ -4,19 +4,19 @@ program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit, int64
    use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
    use answer_verification, only: history_t, read_history, differences, force_error_t, compare_forces
-   use answer_errors, only: write_answers, print_answers, tell_answers
-   use blas_in_use, only: blas_t, find_blas
+   use answer_errors, only: write_answers, print_answers, judge_answers
    use checkpoints, only: read_checkpoint
    use kinds, only: wp
    use wall_clock, only: clock
    use generalised_alpha, only: STATIC, DYNAMIC
-   use effect_pilots, only: ask_effects, settle_scene, apply_effects, pilots_account_t
+   use effect_pilots, only: ask_effects, settle_scene, apply_effects
    use effect_types, only: effect_t
    use effects_table, only: print_effects, print_pilots, write_effects, write_influences
    use model_builder, only: build_model
    use model_types, only: model_t
    use linear_system, only: T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST
    use output_tables, only: check_tables, COLUMNS_OF_A_POINT
+   use pilot_budget, only: pilots_account_t
    use process_settings, only: settle_process
    use run_output, only: run_output_t
    use run_setup, only: prepare_run
@@ -26,7 +26,8 @@ program mud_host
    use scene_keys, only: print_template
    use scene_reader, only: read_scene
    use scene_types, only: scene_t
-   use scene_warnings, only: list_warnings, WARNING_LENGTH
+   use scene_warnings, only: list_warnings
+   use idle_keys, only: WARNING_LENGTH
    use time_stepping, only: run_stages
    use files, only: limits_are_errors, folder_of, make_folder
    use faults, only: fault_t, raise, EXIT_INPUT
@@ -100,7 +101,7 @@ program mud_host
          if (fault%code == 0) call write_answers(folder, model, run%control, forces, fault)
          if (fault%code == 0 .and. .not. quiet) call print_answers(output_unit, model, run%control, &
                                                                    option_given(options, '--verify'), forces)
-         if (fault%code == 0) call tell_answers(model, run%control, option_given(options, '--verify'), forces)
+         if (fault%code == 0) call judge_answers(model, run%control, option_given(options, '--verify'), forces, fault)
       end if
    end if
    if (.not. (quiet .or. only_check) .and. run%steps > 0) call account()
@@ -156,7 +157,8 @@ contains
       integer :: k
 
       write (output_unit, '(a)') USAGE, (trim(LINES(k)), k=1, size(LINES))
-      write (output_unit, '(a)') 'Exit codes: host/README.md, "Exit codes".'
+      write (output_unit, '(a)') 'Exit code 20: an answer misses the accuracy asked for more than three times; '// &
+         'results are written.', 'Exit codes: host/README.md, "Exit codes".'
    end subroutine print_help
 
    !> Whether the run could go on from the checkpoint, in its folder.
@@ -177,7 +179,6 @@ contains
          whole(size(model%domain%mesh%x, 2))//' nodes, '//whole(model%dofs%n)//' unknowns, '// &
          whole(size(run%pattern%col))//' entries, '//whole(model%domain%threads)//' threads.'
       write (output_unit, '(a)') size_of_run(model, run)
-      call tell_libraries()
       do i = 1, size(model%stages)
          if (model%stages(i)%kind /= STATIC) write (output_unit, '(a)') 'Stage '//trim(model%stages(i)%name)//': '// &
             trim(merge('dynamic     ', 'quasi_static', model%stages(i)%kind == DYNAMIC))//', rho_inf '// &
@@ -221,21 +222,6 @@ contains
       if (fault%code == 0) run%control%point_largest = differences(one, two)
       if (fault%code == 0) call compare_forces(folder, folder//'/verify', model%stages, forces, fault)
    end subroutine verify
-
-   !> The libraries that a factorisation spends its time in.
-   subroutine tell_libraries()
-      type(blas_t) :: found
-
-      found = find_blas()
-      if (found%name == '' .and. found%blas_file == '') then
-         write (output_unit, '(a)') 'BLAS: not known (linked statically?).'
-      else
-         write (output_unit, '(a)') 'BLAS: '//trim(found%name//' '//found%blas_file)//'; LAPACK: '// &
-            found%lapack_file//'.'
-      end if
-      if (found%slow) write (output_unit, '(a)') 'Warning: this is the reference BLAS: a factorisation takes two '// &
-         'to five times as long as with an optimised one (Debian: libopenblas0-serial).'
-   end subroutine tell_libraries
 
    !> Time that each part of the run took.
    subroutine account()

@@ -5,7 +5,8 @@ module material_elastic
    use key_schema, only: key_t, number_of, REQUIRED, UNBOUNDED
    use faults, only: fault_t
    use namelists, only: group_t
-   use material_point, only: material_t, response_t, report_t, saturation_t, swollen, NAME_LENGTH
+   use material_point, only: material_t, response_t, report_t, swollen, NAME_LENGTH
+   use retention_curves, only: saturation_t
    implicit none (type, external)
    private
    public :: elastic_t, new_elastic, isotropic, ELASTIC_KEYS

@@ -7,9 +7,9 @@ module material_mud
    use key_schema, only: key_t, NONE
    use library_tables, only: property_count, property_index, property_name, property_option, property_range, &
                              range_for, state_count, statev_index, statev_name, statev_unit
-   use material_point, only: material_t, response_t, report_t, remark_t, saturation_t, NAME_LENGTH, NO_PRESET, &
-                             WITHOUT_TANGENT
-   use mud_interface, only: mud_report, mud_prepared_size, mud_prepare, mud_init_state, mud_update_prepared, &
+   use material_point, only: material_t, response_t, report_t, remark_t, NAME_LENGTH, NO_PRESET
+   use retention_curves, only: saturation_t
+   use mud_interface, only: mud_report, mud_blocks, mud_prepared_size, mud_prepare, mud_init, mud_update, &
                             mud_saturation, mud_save_increment, mud_message, MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, &
                             MUD_TANGENT_CONSISTENT
    use namelists, only: group_t
@@ -128,7 +128,7 @@ contains
       not_the_default = abs(value - preset) > epsilon(1.0_wp)*abs(preset)
    end function not_the_default
 
-   !> Another tolerance and scheme of the stress integration. Both must lie in their ranges.
+   !> Another tolerance and scheme of the stress integration, both in their ranges; scheme 0 leaves it.
    subroutine integrate_to(self, tolerance, scheme)
       class(mud_t), intent(inout) :: self
       real(wp), intent(in) :: tolerance   !< Relative.
@@ -138,7 +138,7 @@ contains
 
       props = self%props
       props(property_index('tolerance')) = tolerance
-      if (.not. self%given_scheme) props(property_index('scheme')) = real(scheme, wp)
+      if (.not. self%given_scheme .and. scheme > 0) props(property_index('scheme')) = real(scheme, wp)
       text = c_null_char
       if (mud_prepare(props, size(props), prepared, size(prepared), text, BUFFER) /= 0) return
       self%props = props
@@ -174,40 +174,10 @@ contains
       preset = 0.0_wp
       if (self%saturation_is_state) preset = state(self%place_s_w)
       state = 0.0_wp
-      if (preset > 0.0_wp) then
-         call begin_between(self, preset, stress, suction, void_ratio, state, text)
-      else if (mud_init_state(self%props, size(self%props), stress, suction, void_ratio, state, self%n_state, raw, &
-                              BUFFER) /= 0) then
-         text = from_c(raw)
-      end if
+      if (mud_init(self%prepared, stress, suction, void_ratio, preset, state, self%n_state, raw, BUFFER) == 0) return
+      text = from_c(raw)
+      if (preset > 0.0_wp) text = 'saturation of &initial must lie between the main curves at this suction: '//text
    end subroutine initial_state
-
-   !> A start between the main curves: an update by nothing of a state that has presets alone.
-   subroutine begin_between(self, s_w, stress, suction, void_ratio, state, text)
-      class(mud_t), intent(in) :: self
-      real(wp), intent(in) :: s_w, suction, void_ratio
-      real(wp), intent(inout) :: stress(6), state(:)
-      character(*), intent(out) :: text
-      integer, parameter :: LONGEST_QUOTE = 400
-      real(wp) :: new_state(size(state), 1)
-      type(response_t) :: response
-      type(report_t) :: report
-
-      text = ''
-      new_state = 0.0_wp
-      state(self%place_e) = void_ratio
-      state(self%place_s_w) = s_w
-      call self%update(1, reshape(stress, [6, 1]), reshape(state, [size(state), 1]), &
-                       reshape(spread(0.0_wp, 1, 6), [6, 1]), [suction], [0.0_wp], WITHOUT_TANGENT, response, &
-                       new_state, report)
-      if (report%code /= 0) then
-         call self%message(report, text)
-         text = 'saturation of &initial must lie between the main curves at this suction: '//text(:LONGEST_QUOTE)
-         return
-      end if
-      stress = response%stress(:, 1)
-      state = new_state(:, 1)
-   end subroutine begin_between
 
    !> Point by point: the library's batch would start a team of threads for every element, and programs have theirs.
    subroutine update(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state, &
@@ -220,22 +190,21 @@ contains
       real(wp), intent(inout), contiguous :: new_state(:, :)
       type(report_t), intent(out) :: report
       type(mud_report) :: of_point
-      real(wp) :: dsw_deps(6)
-      integer(c_int) :: code
+      type(mud_blocks) :: blocks
+      integer(c_int) :: code, kind
       integer :: g
 
+      kind = MUD_TANGENT_NONE
+      if (with_tangent) kind = self%tangent
       do g = 1, n
          response%stress(:, g) = stress(:, g)
-         if (with_tangent) then
-            code = mud_update_prepared(self%prepared, stress(:, g), state(:, g), self%n_state, strain(:, g), &
-                                       suction(g), d_suction(g), self%tangent, response%stress(:, g), &
-                                       new_state(:, g), response%dsig_deps(:, :, g), response%dsig_dpc(:, g), &
-                                       dsw_deps, response%dsw_dpc(g), of_point)
-            response%dsw_dev(g) = dsw_deps(1)   ! the normal components are equal, those of shear are zero
-         else
-            code = mud_update_prepared(self%prepared, stress(:, g), state(:, g), self%n_state, strain(:, g), &
-                                       suction(g), d_suction(g), MUD_TANGENT_NONE, response%stress(:, g), &
-                                       new_state(:, g), report=of_point)
+         code = mud_update(self%prepared, stress(:, g), state(:, g), self%n_state, strain(:, g), &
+                           suction(g) + d_suction(g), kind, response%stress(:, g), new_state(:, g), blocks, of_point)
+         if (with_tangent .and. code == 0) then
+            response%dsig_deps(:, :, g) = blocks%dsig_deps
+            response%dsig_dpc(:, g) = blocks%dsig_dpc
+            response%dsw_dev(g) = blocks%dsw_deps(1)   ! the normal components are equal, those of shear are zero
+            response%dsw_dpc(g) = blocks%dsw_dpc
          end if
          call add_up(of_point, report)
          if (code /= 0) then
@@ -320,13 +289,13 @@ contains
       class(mud_t), intent(in) :: self
       real(wp), intent(in) :: stress(6), state(:), suction
       real(wp), intent(out) :: tangent(6, 6)
-      real(wp) :: no_strain(6), stress1(6), state1(self%n_state), dsig_dpc(6), dsw_deps(6), dsw_dpc
-      type(mud_report) :: report
+      real(wp) :: no_strain(6), stress1(6), state1(self%n_state)
+      type(mud_blocks) :: blocks
 
       no_strain = 0.0_wp
-      if (mud_update_prepared(self%prepared, stress, state(:self%n_state), self%n_state, no_strain, suction, 0.0_wp, &
-                              MUD_TANGENT_ELASTIC, stress1, state1, tangent, dsig_dpc, dsw_deps, dsw_dpc, report) &
-          /= 0) tangent = 0.0_wp
+      tangent = 0.0_wp
+      if (mud_update(self%prepared, stress, state(:self%n_state), self%n_state, no_strain, suction, &
+                     MUD_TANGENT_ELASTIC, stress1, state1, blocks) == 0) tangent = blocks%dsig_deps
    end subroutine elastic_tangent
 
    subroutine save_update(self, path, origin, stress, state, strain, suction, d_suction, text)
@@ -338,8 +307,8 @@ contains
 
       raw = c_null_char
       text = ''
-      if (mud_save_increment(trim(path)//c_null_char, origin//c_null_char, self%props, size(self%props), stress, &
-                             state, self%n_state, strain, suction, d_suction, self%tangent, raw, BUFFER) /= 0) &
+      if (mud_save_increment(trim(path)//c_null_char, origin//c_null_char, self%prepared, stress, state, &
+                             self%n_state, strain, suction + d_suction, self%tangent, raw, BUFFER) /= 0) &
          text = from_c(raw)
    end subroutine save_update
 

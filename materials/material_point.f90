@@ -9,7 +9,7 @@ module material_point
    use stress_units, only: stress_unit_t
    implicit none (type, external)
    private
-   public :: material_t, material_slot_t, response_t, report_t, remark_t, saturation_t, state_index, swollen
+   public :: material_t, material_slot_t, response_t, report_t, remark_t, state_index, swollen
    public :: lost_pressure, PRESSURE_LOST
    public :: MOST_POINTS, MOST_GUARDS, NAME_LENGTH, DOUBT_LENGTH, WITHOUT_TANGENT, WITH_TANGENT, NO_PRESET
 
@@ -146,13 +146,13 @@ module material_point
       end function of_state_i
    end interface
 contains
-   !> Sets the tolerance and the scheme of the stress integration, where the law has such.
+   !> Sets the tolerance and the scheme of the stress integration, where the law has such; scheme 0 leaves it.
    subroutine no_tolerance(self, tolerance, scheme)
       class(material_t), intent(inout) :: self
       real(wp), intent(in) :: tolerance   !< Relative, > 0
       integer, intent(in) :: scheme       !< As the parameter of that name.
 
-      if (self%tolerance > 0.0_wp .and. scheme > 0) self%tolerance = tolerance
+      if (self%tolerance > 0.0_wp .and. scheme >= 0) self%tolerance = tolerance
    end subroutine no_tolerance
 
    !> Degree of saturation, and its slopes, at a suction [kPa] and a void ratio [-]; a law with a retention of its own

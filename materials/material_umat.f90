@@ -9,7 +9,8 @@ module material_umat
    use files, only: folder_of
    use key_schema, only: key_t, text_of, texts_of, number_of, numbers_of, word_is, line_of, REQUIRED, NONE, UNBOUNDED
    use kinds, only: wp
-   use material_point, only: material_t, response_t, report_t, remark_t, saturation_t, swollen, NAME_LENGTH
+   use material_point, only: material_t, response_t, report_t, remark_t, swollen, NAME_LENGTH
+   use retention_curves, only: saturation_t
    use namelists, only: group_t
    use texts, only: whole, short
    use umat_library, only: umat_i, load_umat, CMNAME_LENGTH

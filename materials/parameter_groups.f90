@@ -169,22 +169,11 @@ contains
       if (.not. good) call property_option(place, item%values(1), value, good)
       if (.not. good) then
          call raise(fault, EXIT_INPUT, at_line(file, item%line)//property_name(place)//' = '//trim(item%values(1))// &
-                    ' is neither a number nor one of its words ('//described_range(place, props)//')'// &
-                    successor(item%key, item%values(1))//'.')
+                    ' is neither a number nor one of its words ('//described_range(place, props)//').')
          return
       end if
       props(place) = value
    end subroutine set_property
-
-   !> What took the place of a word of an earlier version; empty for any other.
-   pure function successor(key, word) result(text)
-      character(*), intent(in) :: key, word
-      character(:), allocatable :: text
-
-      text = ''
-      if (lower_case(key) == 'memory_rule' .and. lower_case(word) == 'resume') &
-         text = '; the rule resume of version 0.1 is gone: return_point takes its place'
-   end function successor
 
    !> Refuses a parameter outside its range in the unit of p_atm.
    subroutine check_range(file, item, props, fault)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Run every test suite of a build folder and add up the single tests.
 
-Usage: run_suites.py BUILD_DIR [-j N]. The suites are those ctest knows. Each has to close with
-`N passed, M failed` (or with pFUnit's summary); one that does not, because it crashed, stopped or
+Usage: run_suites.py BUILD_DIR [-j N] [--tier fast|check|nightly]. The suites are those ctest knows, of
+the tier `fast` those with that label. The seconds told are of the processor, of a suite with all
+that it starts. Each has to close with `N passed, M failed` (or with pFUnit's summary); one that does not, because it crashed, stopped or
 hung, is run again test by test, so that every test is counted and the culprit is named.
 """
 import argparse
@@ -12,7 +13,8 @@ import os
 import re
 import subprocess
 import sys
-import time
+import tempfile
+import threading
 
 CLOSING = re.compile(r"^(\d+) passed, (\d+) failed$")
 PFUNIT_OK = re.compile(r"^ ?OK\s*$\s*\((\d+) tests?", re.MULTILINE)
@@ -20,30 +22,39 @@ PFUNIT_BAD = re.compile(r"^Tests run: (\d+), Failures: (\d+), Errors: (\d+)", re
 TIMEOUT = 900  # s; a suite takes seconds, the heaviest in the debug build minutes
 
 
-def suites_of(build):
+def suites_of(build, tier):
     answer = subprocess.run(["ctest", "--show-only=json-v1"], cwd=build, check=True, capture_output=True, text=True)
     for test in json.loads(answer.stdout)["tests"]:
         properties = {p["name"]: p["value"] for p in test.get("properties", [])}
-        environment = dict(os.environ, **dict(e.split("=", 1) for e in properties.get("ENVIRONMENT", [])))
+        if tier == "fast" and "fast" not in properties.get("LABELS", []):
+            continue
+        environment = dict(os.environ, MUD_TIER=tier, **dict(e.split("=", 1) for e in properties.get("ENVIRONMENT", [])))
         yield test["name"], test.get("command"), environment, properties.get("WORKING_DIRECTORY", build)
 
 
 def run(command, environment, folder):
-    """Exit code (None: hung) and everything that was written."""
-    try:
-        done = subprocess.run(command, env=environment, cwd=folder, timeout=TIMEOUT, stdin=subprocess.DEVNULL,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
-    except subprocess.TimeoutExpired as late:
-        text = late.stdout or ""
-        return None, text if isinstance(text, str) else text.decode(errors="replace")
-    except OSError as problem:
-        return -1, str(problem)
-    return done.returncode, done.stdout
+    """Exit code (None: hung), everything that was written, and seconds of the processor."""
+    with tempfile.TemporaryFile() as output:
+        try:
+            child = subprocess.Popen(command, env=environment, cwd=folder, stdin=subprocess.DEVNULL, stdout=output,
+                                     stderr=subprocess.STDOUT)
+        except OSError as problem:
+            return -1, str(problem), 0.0
+        late = threading.Timer(TIMEOUT, child.kill)
+        late.start()
+        _, status, used = os.wait4(child.pid, 0)
+        hung = not late.is_alive()
+        late.cancel()
+        child.returncode = os.waitstatus_to_exitcode(status)   # it is waited for: Popen must not do it again
+        output.seek(0)
+        text = output.read().decode(errors="replace")
+    return None if hung else child.returncode, text, used.ru_utime + used.ru_stime
 
 
 def counts(code, output):
     """(passed, failed), or None if the suite did not come to its end or contradicts itself."""
-    lines = output.rstrip().splitlines()
+    # The library may say at the end of a process, on standard error, what it has refused.
+    lines = [line for line in output.rstrip().splitlines() if not line.startswith("MUD: ")]
     found = CLOSING.match(lines[-1]) if lines else None
     if found:
         passed, failed = int(found[1]), int(found[2])
@@ -61,13 +72,13 @@ def counts(code, output):
 
 def one_by_one(command, environment, folder):
     """Passed, failed and messages of a crashed suite whose tests can be listed and run alone."""
-    code, listed = run([*command, "--list"], environment, folder)
+    code, listed, _ = run([*command, "--list"], environment, folder)
     names = listed.split()
     if code != 0 or not names or not all(re.fullmatch(r"\w+", name) for name in names):
         return 0, 1, []
     passed, messages = 0, []
     for name in names:
-        code, output = run([*command, name], environment, folder)
+        code, output, _ = run([*command, name], environment, folder)
         if counts(code, output) == (1, 0):
             passed += 1
         else:
@@ -79,10 +90,9 @@ def one_by_one(command, environment, folder):
 
 def run_suite(suite):
     name, command, environment, folder = suite
-    start = time.monotonic()
     if not command:
         return name, 0, 1, "the program was not built", 0.0
-    code, output = run(command, environment, folder)
+    code, output, seconds = run(command, environment, folder)
     result = counts(code, output)
     if result:
         passed, failed = result
@@ -91,24 +101,28 @@ def run_suite(suite):
         output += f"\nFAILED {name} {how} without a valid closing line"
         passed, failed, messages = (0, 1, []) if code is None else one_by_one(command, environment, folder)
         output += "".join("\n" + message for message in messages)
-    return name, passed, failed, output, time.monotonic() - start
+    return name, passed, failed, output, seconds
 
 
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     arguments.add_argument("build")
     arguments.add_argument("-j", type=int, default=os.cpu_count(), help="suites run at the same time")
+    arguments.add_argument("--tier", choices=("fast", "check", "nightly"), default="check",
+                           help="fast: a minute; check: every suite; nightly: every suite at full length")
     arguments = arguments.parse_args()
     build = os.path.abspath(arguments.build)
-    suites = list(suites_of(build))
+    suites = list(suites_of(build, arguments.tier))
     passed = failed = 0
+    total = 0.0
     with concurrent.futures.ThreadPoolExecutor(arguments.j) as pool:
         for name, good, bad, output, seconds in pool.map(run_suite, suites):
             if bad:
                 # The line with the counts is ours to write, once and last.
                 print("\n".join(line for line in output.splitlines() if line.strip() and not CLOSING.match(line)))
             print(f"  {name}: {good} passed, {bad} failed, {seconds:.1f} s", flush=True)
-            passed, failed = passed + good, failed + bad
+            passed, failed, total = passed + good, failed + bad, total + seconds
+    print(f"  {len(suites)} suites: {total:.0f} s of the processor")
     if not suites:
         print("FAILED there are no test suites in this build")
         failed = 1

@@ -100,10 +100,17 @@ check_versions() {
       setup_fail "cmake 3.25 or later is needed, found $found"
 }
 
-# configure_and_build PRESET BUILD_DIR [CMAKE_ARGUMENT...]: logs beside the build, shown only if it fails.
+# configure_and_build PRESET BUILD_DIR [CMAKE_ARGUMENT...] [--target NAME...]: logs beside the build, shown only if it
+# fails. Without --target everything is built.
 configure_and_build() {
-   local preset=$1 dir=$2
+   local preset=$1 dir=$2 options=() targets=()
    shift 2
+   while [ $# -gt 0 ] && [ "$1" != --target ]; do
+      options+=("$1")
+      shift
+   done
+   targets=("$@")
+   set -- "${options[@]}"
    mkdir -p "$dir"
    # cmake reads its presets from the current folder.
    if ! (cd "$root" && cmake --preset "$preset" -B "$dir" -DMUD_PYTHON="$venv_python" "$@") \
@@ -113,7 +120,7 @@ configure_and_build() {
       return 1
    fi
    echo "setup: building the preset $preset, the first time for some minutes; log: ${dir#"$root"/}/build.log"
-   if ! cmake --build "$dir" -- -k 0 >"$dir/build.log" 2>&1; then
+   if ! cmake --build "$dir" "${targets[@]}" -- -k 0 >"$dir/build.log" 2>&1; then
       grep -v '^\[[0-9]*/[0-9]*\] \(Building\|Linking\|Generating\|Reading\)' "$dir/build.log" | head -n 200 >&2
       echo "the $preset build failed: see above; the whole log is $dir/build.log" >&2
       return 1

@@ -18,7 +18,7 @@ Written by scripts/single_source.py from umat/core and umat/abi: change it there
 It defines the UMAT (symbol umat_), a VUMAT (vumat_), a UDSM (user_mod_ and its companions) and the functions of
 mud.h, but neither its tables of names nor what MFront's behaviours need: those are C and in the library. PROPS,
 STATEV, conventions and status codes: umat/README.md. Free form, Fortran 2018; gfortran 12 or later. Compiling leaves
-.mod files in the working folder, which nobody needs. With -fopenmp mud_update_batch uses several threads, and what
+.mod files in the working folder, which nobody needs. With -fopenmp mud_update_points uses several threads, and what
 umat_ says is said once even if two threads fail at the same instant; everything else is the same without.
 
    gfortran -O3 -fPIC -fno-semantic-interposition -c mud_umat_single.f90

@@ -69,7 +69,6 @@ check "the programs install with what they need" install "$(debs mud-programs)"
 check "mud_triax runs a case" inside sh -c "cd /tmp/cases && mud_triax $(basename "$case") --output /tmp/out.csv"
 check "mud_describe reads the installed material" says '^150.0$' mud_describe plain /usr/share/mud/materials/toyoura.nml
 check "mud_host says what it is" says mud_host mud_host --help
-check "mud_replay says what it is" says mud_replay mud_replay --help
 check "the library installs" install "$(debs libmud2)"
 check "ldconfig knows it" says libmud.so.2 ldconfig -p
 check "the development files install" install "$(debs libmud-dev)" gcc gfortran libc6-dev pkg-config

@@ -16,10 +16,9 @@ PYTHON = "/usr/bin/python3"  # Debian's packages belong to Debian's Python
 RANKS = 1e-8  # loads of a push, relative: ten times the tolerance of Newton's method for the residual
 clients.debian(["python3-dolfinx", "openmpi-bin"])
 folder = clients.work_folder("fenicsx")
-environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
-environment |= {"MUD_LIBRARY": str(clients.library_file), "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
-                "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
-                "OMPI_MCA_mpi_yield_when_idle": "1"}  # a waiting rank leaves its core to others
+environment = {**os.environ, **clients.python_package, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
+               "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
+               "OMPI_MCA_mpi_yield_when_idle": "1"}  # a waiting rank leaves its core to others
 SMALL = ["--cells", "3", "--steps", "4"]
 
 

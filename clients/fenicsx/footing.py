@@ -18,7 +18,7 @@ from dolfinx import fem, mesh
 from mpi4py import MPI
 from petsc4py import PETSc
 
-import mud_points
+import mud
 import porous
 
 HALF_WIDTH, SIZE = 0.5, 4.0  # of the footing, of the ground [m]
@@ -39,7 +39,6 @@ def arguments():
     parser.add_argument("--scheme", type=int, default=1, help="integration scheme of MUD, 1 to 3")
     parser.add_argument("--linear", choices=("mumps", "amg"), default="mumps")
     parser.add_argument("--tolerance", type=float, default=1.0e-9)
-    parser.add_argument("--library", help="libmud.so; default: MUD_LIBRARY or where the system looks")
     parser.add_argument("--save", help="checkpoint written after every step")
     parser.add_argument("--load", help="checkpoint to go on from")
     parser.add_argument("--stop-after", type=int, help="step after which to end")
@@ -80,7 +79,7 @@ def model(given):
     half_width, size = HALF_WIDTH*given.scale, SIZE*given.scale
     dimension = 2 if given.strip else 3
     domain = ground(dimension, given.cells, given.scale)
-    material = mud_points.Material(given.library, scheme=given.scheme, tangent=3)
+    material = mud.Material(scheme=given.scheme)
     control = porous.Control(linear=given.linear, tolerance=given.tolerance)
     problem = porous.Problem(domain, material, [-SURCHARGE]*3 + [0.0]*3, given.void_ratio, control=control)
     up, facet = dimension - 1, dimension - 1

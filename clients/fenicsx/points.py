@@ -7,32 +7,31 @@ import sys
 
 import numpy as np
 
-import mud_points
+import mud
 
 
 def follow(given):
     strains, suction = np.array(given["strains"]), np.array(given["suction"])
-    sand, n = mud_points.Material(), 4
-    stress, state = sand.points(n, [given["stress"]]*3 + [0.0]*3, given["void_ratio"], suction[0])
-    new_stress, new_state, tangent, rows = stress.copy(), state.copy(), np.zeros((n, 36)), []
+    sand, n, rows = mud.Material(), 4, []
+    points = sand.init_batch(np.tile([given["stress"]]*3 + [0.0]*3, (n, 1)), np.full(n, suction[0]),
+                             np.full(n, given["void_ratio"]))
     for i in range(1, len(strains)):
-        sand.update(stress, state, np.tile(strains[i] - strains[i - 1], (n, 1)), new_stress, new_state, tangent,
-                    np.full(n, suction[i - 1]), np.full(n, suction[i] - suction[i - 1]))
-        stress, new_stress, state, new_state = new_stress, stress, new_state, state
-        if np.ptp(stress, axis=0).any():
+        step = np.tile(strains[i] - strains[i - 1], (n, 1))
+        sand.update_batch(points.stress, points.statev, step, np.full(n, suction[i]), "consistent", out=points)
+        if points.failed:
+            sys.exit(str(points.fault()))
+        if np.ptp(points.stress, axis=0).any():
             sys.exit("equal points have different answers")
-        rows.append(stress[0].tolist())
+        rows.append(points.stress[0].tolist())
     return {"stress": rows}
 
 
 def again(file):
-    sand = mud_points.Material()
-    sand.set_props(file["props"])
+    sand = mud.Material(**dict(zip(mud.parameters, file["props"])))
     stress, strain = (file[name].reshape(-1, 6) for name in ("stress", "strain"))
     state = file["state"].reshape(len(stress), -1)
-    new_stress, new_state, tangent = np.zeros_like(stress), np.zeros_like(state), np.zeros((len(stress), 36))
-    sand.update(stress, state, strain, new_stress, new_state, tangent)
-    same = new_stress.tobytes() == file["new_stress"].tobytes() and new_state.tobytes() == file["new_state"].tobytes()
+    new = sand.update_batch(stress, state, strain, tangent="consistent")
+    same = new.stress.tobytes() == file["new_stress"].tobytes() and new.statev.tobytes() == file["new_state"].tobytes()
     return {"same": same, "points": len(stress)}
 
 

@@ -16,7 +16,7 @@ from dolfinx.fem import petsc as fem_petsc
 from mpi4py import MPI
 from petsc4py import PETSc
 
-import mud_points
+import mud
 
 
 @dataclasses.dataclass
@@ -39,6 +39,10 @@ class Control:
 
 class NotConverged(Exception):
     pass
+
+
+class Refused(Exception):
+    """Some point of any rank has no answer to its increment; nothing was written there."""
 
 
 def voigt_strain(v):
@@ -83,9 +87,10 @@ class Problem:
         self.tangent_field, self.tangent_rows = quadrature(36)
         self.strain = fem.Expression(voigt_strain(self.u - self.u0), points)
         self.owned = np.arange(self.cells, dtype=np.int32)
-        self.stress0, self.state0 = self.material.points(n, stress, void_ratio)
+        begun = self.material.init_batch(np.tile(np.array(stress, float), (n, 1)), void_ratio=np.full(n, void_ratio))
+        self.stress0, self.state0 = begun.stress, begun.statev
         self.stress1, self.state1 = self.stress0.copy(), self.state0.copy()
-        self.tangent = np.zeros((n, 36))
+        self.tangent = np.zeros((n, 6, 6))
 
     def _forms(self, cell, water):
         v, q = ufl.TestFunction(self.V), ufl.TestFunction(self.Q)
@@ -114,21 +119,16 @@ class Problem:
     def update(self):
         """Stress, state, tangent for the present displacement; every rank learns when a point of any refuses."""
         strain = self.strain.eval(self.owned).reshape(-1, 6)
-        refused, factor, sentence = 0, 1.0, ""
-        try:
-            self.material.update(self.stress0, self.state0, strain, self.stress1, self.state1, self.tangent)
-        except mud_points.Refused as reason:
-            refused, factor, sentence = reason.count, reason.pnewdt, reason.sentence
-        refused = self.comm.allreduce(refused)
-        if refused:
-            factor = self.comm.allreduce(factor, MPI.MIN)
-            sentence = next(s for s in self.comm.allgather(sentence) if s)
-            raise mud_points.Refused(refused, factor, sentence)
+        answer = self.material.update_batch(
+            self.stress0, self.state0, np.ascontiguousarray(strain), tangent="consistent", threads=1,
+            out=mud.BatchResponse(self.stress1, self.state1, self.tangent))
+        if self.comm.allreduce(answer.failed):
+            raise Refused(next(fault for fault in self.comm.allgather(str(answer.fault() or "")) if fault))
         self._to_fields(self.stress1)
 
     def _to_fields(self, stress):
         self.stress_field.x.array.reshape(-1, 6)[self.rows] = stress
-        self.tangent_field.x.array.reshape(-1, 36)[self.tangent_rows] = self.tangent
+        self.tangent_field.x.array.reshape(-1, 36)[self.tangent_rows] = self.tangent.reshape(-1, 36)
 
     def _vector(self):
         """Residual with the distance of the boundary values, as Newton's method wants it."""
@@ -218,7 +218,7 @@ class Problem:
     def present(self):
         """Stress of the start of the step, and the slopes with which the states go on as they strained last: those of a
         zero increment would be elastic."""
-        self.material.slopes(self.stress0, self.state0, self.tangent)
+        self.material.tangent_batch(self.stress0, self.state0, threads=1, out=mud.BatchResponse(columns=self.tangent))
         self._to_fields(self.stress0)
 
     def _newton(self):
@@ -248,7 +248,7 @@ class Problem:
                     if np.isfinite(norm) and (iteration == 1 or norm <= (1.0 - 1.0e-4*share)*before
                                               or norm <= control.tolerance*force):
                         break
-                except mud_points.Refused:
+                except Refused:
                     if iteration == 1:
                         raise
                 self.counts["searches"] += 1
@@ -279,7 +279,7 @@ class Problem:
             set_boundary(self.time + size)
             try:
                 iterations = self._newton()
-            except (NotConverged, mud_points.Refused, PETSc.Error) as reason:
+            except (NotConverged, Refused, PETSc.Error) as reason:
                 # Every rank comes here: refusals are reduced, norms and PETSc's reasons are those of all.
                 cuts += 1
                 self.counts["cuts"] += 1

@@ -31,8 +31,8 @@ def main():
     sys.excepthook = footing.abort_all
     given = footing.arguments()
     problem, set_boundary, *_ = footing.model(given)
-    problem.material.update = timed("material", problem.material.update)
-    problem.material.slopes = timed("material", problem.material.slopes)
+    problem.material.update_batch = timed("material", problem.material.update_batch)
+    problem.material.tangent_batch = timed("material", problem.material.tangent_batch)
     fem_petsc.assemble_matrix_block = timed("assembly", fem_petsc.assemble_matrix_block)
     fem_petsc.assemble_vector_block = timed("assembly", fem_petsc.assemble_vector_block)
     problem._start()

@@ -3,6 +3,7 @@
 import csv
 import json
 import pathlib
+import subprocess
 
 import clients
 import project
@@ -123,4 +124,55 @@ else:
                            for pair in ((coarse, fine), (own_coarse, own_fine), (fine, own_fine)))
     clients.verdict(apart <= theirs + ours, "dynamic column against mud_host, 1333 steps",
                     f"apart {apart:.1e} of {scale:.4g}, allowed {theirs:.1e} (Kratos) + {ours:.1e} (mud_host)")
+
+
+def refused(law):
+    """Every node is prescribed and K_0 is negative: exit code, standard error and rows of stress."""
+    folder = clients.work_folder(f"kratos/refused_{law}")
+    (folder / "cube.mdpa").write_text((here / "cube.mdpa").read_text())
+    (folder / "stress.csv").unlink(missing_ok=True)
+    project.write(folder, "MaterialParameters.json", project.material(
+        law, clients.library_file, clients.props(K_0=-1.0), clients.statev(), True))
+    project.write(folder, "ProjectParameters.json", project.project(
+        3, "cube", 5, [project.dry()], [project.start([-100.0]*3 + [0.0]*3)], ["Soil"]))
+    (folder / "strains.csv").write_text("-1e-4,5e-5,5e-5,0,0,0\n"*5)
+    done = subprocess.run([python, here / "run.py", "strains.csv"], cwd=folder, capture_output=True, text=True,
+                          timeout=600)
+    return done.returncode, done.stderr
+
+
+code, told = refused("SmallStrainUMAT3DLaw")
+last = told.strip().splitlines()[-1:]
+clients.verdict("parameter K_0 (PROPS 1) is -1" in told and last and last[0].startswith("MUD: at the end of this"),
+                "a refused parameter with every node prescribed, UMAT: the first and the last message tell it",
+                f"exit code {code}")
+code, told = refused("SmallStrainUDSM3DLaw")
+clients.verdict("parameter K_0 (PROPS 1) is -1" in told and code != 0, "the same, UDSM: Kratos stops",
+                f"exit code {code}")
+
+# The start: ground with weight under K_0 stress, and a surcharge that grows.
+K_0, SURCHARGE, ADDED = 0.5, 10.0, 40.0
+folder = clients.work_folder("kratos/ground")
+growing = [(0.0, SURCHARGE), (1.0, SURCHARGE), (21.0, SURCHARGE + ADDED)]
+(folder / "column.mdpa").write_text(project.column_mesh(4, growing))
+project.write(folder, "MaterialParameters.json", project.material(
+    "SmallStrainUMAT2DPlaneStrainLaw", clients.library_file, clients.props(), clients.statev(void_ratio=0.8), True))
+content = project.project(
+    2, "column", 21, [project.dry(), project.constraint("Sides", "X"), project.constraint("Bottom", "Y")],
+    [project.cell_pressure(2, SURCHARGE, 1)], ["Soil", "Sides", "Bottom", "Cell"])
+# Of nothing a share of 1e-10 is never reached; the water's 1e-9 Mg/m3 move the ground by 1e-13 m.
+content["solver_settings"]["displacement_absolute_tolerance"] = 1e-12
+project.write(folder, "ProjectParameters.json", content)
+code = clients.run([python, here / "run.py", "--ground", repr(2.65/1.8*9.81), repr(K_0), repr(SURCHARGE)],
+                   folder / "log.txt", cwd=folder, timeout=600)
+if code == 0:
+    with open(folder / "stress.csv") as file:
+        rows = [[float(x) for x in row] for row in csv.reader(file)]
+    clients.verdict(rows[0][4] == 1 and rows[0][5] <= 1e-8, "ground under K_0 stress rests in one iteration",
+                    f"{rows[0][4]:.0f} iterations, displacement {rows[0][5]:.1e} m")
+    table = clients.expected("ground", sigma_a=-rows[0][1], sigma_r=-rows[0][0], sigma_a_end=-rows[-1][1])
+    clients.compare("and its horizontal stress follows the surcharge as in mud_triax", [[rows[-1][0]]],
+                    [[-table["sigma_r"][-1]]], 2e-4)
+else:
+    clients.verdict(False, "ground under K_0 stress", f"exit code {code}")
 clients.finish()

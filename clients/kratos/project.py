@@ -76,8 +76,8 @@ def cell_pressure(dimension, value, table=0):
                            "table": [table, 0]}}
 
 
-def column_mesh(cells):
-    """A row of quadrilaterals, 1 m high, with a load on top that rises by half and falls again."""
+def column_mesh(cells, load=((0.0, 100.0), (0.002, 150.0), (0.004, 100.0), (1.0, 100.0))):
+    """A row of quadrilaterals, 1 m high, with a load on top at times, which rises by half and falls again."""
     nodes = [(x, i/cells) for i in range(cells + 1) for x in (0.0, 0.1)]
     everything, top = range(1, len(nodes) + 1), (2*cells + 1, 2*cells + 2)
 
@@ -92,7 +92,7 @@ def column_mesh(cells):
     elements = [f"{i + 1} 0  {2*i + 1} {2*i + 2} {2*i + 4} {2*i + 3}" for i in range(cells)]
     return "\n".join(
         block("ModelPartData", []) + block("Properties 0", [])
-        + block("Table 1 TIME NORMAL_CONTACT_STRESS", ["0.0 100.0", "0.002 150.0", "0.004 100.0", "1.0 100.0"])
+        + block("Table 1 TIME NORMAL_CONTACT_STRESS", [f"{time} {value}" for time, value in load])
         + block("Nodes", [f"{i} {x} {y!r} 0.0" for i, (x, y) in enumerate(nodes, 1)])
         + block("Elements UPwSmallStrainElement2D4N", elements)
         + block("Conditions UPwNormalFaceLoadCondition2D2N", [f"1 0  {top[1]} {top[0]}"])

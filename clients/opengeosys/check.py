@@ -3,6 +3,8 @@
 import csv
 import ctypes
 import pathlib
+import re
+import subprocess
 import xml.etree.ElementTree
 
 import clients
@@ -127,4 +129,43 @@ for i, name in enumerate(("suction at the top", "settlement of the top")):
                            for pair in ((before, there), (ours_before, ours_now), (there, ours_now)))
     clients.verdict(apart <= theirs + ours, f"column wetted from below against mud_host, {name}",
                     f"apart {apart:.1e} of {scale:.4g}, allowed {theirs:.1e} (OpenGeoSys) + {ours:.1e} (mud_host)")
+
+
+def told(name, **changes):
+    """Exit code and standard error of two steps with other parameters."""
+    folder = clients.work_folder(f"opengeosys/{name}")
+    project.write_cube(folder)
+    table = clients.expected("shear")
+    text = project.project(clients.library_file, named_props() | changes, {}, clients.strains(table)[:3], -100.0)
+    (folder / "cube.prj").write_text(text)
+    done = subprocess.run([python.parent / "ogs", "cube.prj"], cwd=folder, capture_output=True, text=True, timeout=600)
+    return done.returncode, done.stderr
+
+
+# What the library says is on standard error.
+code, words = told("refused", K_0=-1.0)
+clients.verdict(code != 0 and "MUD: MFront refused the increment" in words and "parameter K_0 (PROPS 1) is -1" in words,
+                "a refusal tells its reason on standard error", f"exit code {code}")
+code, words = told("units", p_atm=101325.0)
+clients.verdict("do all PROPS have the unit of stress of p_atm?" in words, "p_atm in Pa among kPa draws a warning",
+                f"exit code {code}")
+
+# The start: ground with weight under K_0 stress.
+CELLS, DEPTH, K_0, SURCHARGE, ADDED, STEPS = 4, 4.0, 0.5, 10.0, 40.0, 20
+density = 2.65/(1.0 + named_props()["e_0"])
+folder = clients.work_folder("opengeosys/ground")
+project.write_column(folder, CELLS, DEPTH)
+(folder / "column.prj").write_text(project.ground(clients.library_file, named_props(), DEPTH, density, K_0, SURCHARGE,
+                                                  ADDED, STEPS))
+code = clients.run([python.parent / "ogs", "column.prj"], folder / "log.txt", cwd=folder, timeout=600)
+moved = max(abs(x) for x in field(folder / "r_1.vtu", "displacement")) if code == 0 else float("nan")
+# The first iteration of the first step is followed by that of the second.
+begun = re.findall(r"Iteration #(\d+) started", (folder / "log.txt").read_text())[:2]
+clients.verdict(code == 0 and moved <= 1e-8 and begun == ["1", "1"], "ground under K_0 stress rests in one iteration",
+                f"iterations {begun}, displacement {moved:.1e} m")
+if code == 0:
+    before, after = (field(folder / f"r_{i}.vtu", "sigma")[:4] for i in (1, STEPS + 1))
+    table = clients.expected("ground", sigma_a=-before[1], sigma_r=-before[0], sigma_a_end=-after[1])
+    clients.compare("and its horizontal stress follows the surcharge as in mud_triax", [[after[0]]],
+                    [[-table["sigma_r"][-1]]], 2e-4)
 clients.finish()

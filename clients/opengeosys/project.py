@@ -2,6 +2,7 @@
 """Writes projects of OpenGeoSys with MUD: a cube whose nodes all move by given strains, saturated or unsaturated."""
 POINTS = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
 CUBE = (0, 1, 3, 2, 4, 5, 7, 6)
+GRAVITY = 9.81
 
 
 def array(name, kind, values, components=1):
@@ -113,8 +114,8 @@ def project(library, props, presets, strains, stress, suction=None, saturation=1
                  variables)
 
 
-def solid_alone():
-    return f"<phases><phase><type>Solid</type>{properties(density=2.65)}</phase></phases>"
+def solid_alone(density=2.65):
+    return f"<phases><phase><type>Solid</type>{properties(density=density)}</phase></phases>"
 
 
 def soil_with_water(porosity, saturation, permeability=1.0e-12):
@@ -173,6 +174,26 @@ def write_column(folder, cells, height):
         (folder / f"{name}.vtu").write_text(grid(points[first:first + 2], [(0, 1)], [LINE],
                                                  array("bulk_node_ids", "UInt64", [first, first + 1]),
                                                  array("bulk_element_ids", "UInt64", [element])))
+
+
+def ground(library, props, height, density, k_0, surcharge, added, steps):
+    """Ground with weight [m, Mg/m3, kPa]: a step in which nothing is added, then the surcharge grows. The stress is
+    that of the depth, the state variables are zeros, so that every point begins with a memory of its own."""
+    vertical = f"-({surcharge!r}+{density*GRAVITY!r}*({height!r}-y))"
+    horizontal = f"{k_0!r}*({vertical})"
+    parameters = "".join(constant(f"mud_{n}", v) for n, v in props.items())
+    parameters += constant("rest", 0, 0) + constant("held", 0)
+    parameters += ("<parameter><name>start_stress</name><type>Function</type>"
+                   + "".join(f"<expression>{e}</expression>" for e in (horizontal, vertical, horizontal, "0"))
+                   + "</parameter>\n")
+    parameters += function("load", "-surcharge(t)")
+    curves = curve("surcharge", [surcharge] + [surcharge + added*i/steps for i in range(steps + 1)])
+    variables = variable("displacement", 2, "rest", condition(0, "held") + condition(1, "held", "bottom")
+                         + condition(1, "load", "top", "Neumann"))
+    law = relation("MUD", library, props, [])
+    process = SMALL_DEFORMATION.format(relation=law, zero=f"0 {-GRAVITY!r}")
+    return whole(["column", "nodes", "bottom", "top"], process, solid_alone(density), "<abstols>1e-10 1e-10</abstols>",
+                 float(steps + 1), steps + 1, ("displacement", "sigma"), parameters, curves, variables)
 
 
 def column(library, props, void_ratio, stress, pull, suction, permeability, end, steps):

@@ -3,6 +3,7 @@
 import csv
 import ctypes
 import hashlib
+import json
 import os
 import pathlib
 import shutil
@@ -13,6 +14,8 @@ root = pathlib.Path(__file__).resolve().parents[2]
 build = pathlib.Path(os.environ.get("MUD_BUILD_DIR", root / "build/release"))
 home = pathlib.Path(os.environ.get("MUD_CLIENTS_DIR", root / "build/clients"))  # programs and results of the checks
 library_file = build / "umat/libmud.so"
+# Environment in which a Python imports the package of the tree.
+python_package = {"PYTHONPATH": str(root / "python"), "MUD_LIBRARY_DIR": str(build)}
 COMPONENTS = ("11", "22", "33", "12", "13", "23")
 SKIPPED = 77
 DIGITS = 1e-9  # relative: prescribed strain passes through matrix products of the host, ten digits and more survive
@@ -84,10 +87,16 @@ def saturation(suction, void_ratio):
     return answer.value
 
 
-def expected(case):
-    """Columns of a case of clients/cases, by the mud_triax of the day: a row for every increment."""
-    out = work_folder("expected") / f"{case}.csv"
-    program, file = build / "drivers/mud_triax", root / f"clients/cases/{case}.nml"
+def expected(case, **numbers):
+    """Columns of a case of clients/cases, by the mud_triax of the day: a row for every increment. numbers: for the
+    words that stand between @ in the case."""
+    folder = work_folder("expected")
+    out, program = folder / f"{case}.csv", build / "drivers/mud_triax"
+    text = (root / f"clients/cases/{case}.nml").read_text().replace("../../drivers", str(root / "drivers"))
+    for name, value in numbers.items():
+        text = text.replace(f"@{name}@", repr(value))
+    file = folder / f"{case}.nml"
+    file.write_text(text)
     subprocess.run([program, file, "--output", out, "--quiet"], check=True, timeout=60)
     lines = [line for line in out.read_text().splitlines() if line[0] != "#"]
     rows = list(csv.reader(lines))
@@ -103,6 +112,19 @@ def strains(table):
 def stresses(table):
     """Effective stresses of every row, tension positive, components as the strains."""
     return [[-x for x in row] for row in zip(*(table["sig_" + a] for a in COMPONENTS))]
+
+
+def triaxial(name):
+    """The triaxial test of clients/NAME/triaxial.py, in an own environment, against mud_triax: axial and radial stress."""
+    here, table, folder = root / "clients" / name, expected("triaxial"), work_folder(name)
+    python = venv(name, (here / "requirements.txt").read_text().split())
+    (folder / "strains.json").write_text(json.dumps(table["eps_a"][1:]))
+    (folder / "stresses.json").unlink(missing_ok=True)
+    code = run([python, here / "triaxial.py", "strains.json", "stresses.json"], folder / "log", cwd=folder, timeout=1800,
+               env={**os.environ, **python_package, "OMP_NUM_THREADS": "1"})
+    rows = json.loads((folder / "stresses.json").read_text()) if code == 0 else []
+    wanted = [[-a, -r] for a, r in zip(table["sigma_a"], table["sigma_r"])][1:]
+    compare("triaxial, drained, unloaded and reloaded", [row[:2] for row in rows], wanted)
 
 
 def work_folder(name):

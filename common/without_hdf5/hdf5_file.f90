@@ -21,20 +21,20 @@ module hdf5_file
    end interface get
 contains
    !> Fails, file%good is false: there is no HDF5.
-   subroutine new_file(file, guarded)
+   subroutine new_file(file, path, guarded)
       type(h5_t), intent(out) :: file
+      character(*), intent(in) :: path
       logical, intent(in), optional :: guarded
 
-      file%good = present(guarded) .and. .false.
+      file%good = present(guarded) .and. len(path) < 0
    end subroutine new_file
 
    !> Fails, good is false: there is no HDF5.
-   subroutine write_file(file, path, good)
+   subroutine write_file(file, good)
       type(h5_t), intent(inout) :: file
-      character(*), intent(in) :: path
       logical, intent(out) :: good
 
-      good = file%good .and. len(path) < 0
+      good = file%good
    end subroutine write_file
 
    !> Fails, file%good is false: there is no HDF5.
@@ -49,7 +49,7 @@ contains
    subroutine close_file(file)
       type(h5_t), intent(inout) :: file
 
-      file%good = present(guarded) .and. .false.
+      file%good = .false.
    end subroutine close_file
 
    subroutine put_real(file, name, values, unit, meaning)

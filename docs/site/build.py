@@ -1,19 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Builds the site into build/site/html: gathers the pages, runs FORD and Sphinx. Every warning is an error."""
+"""Builds the site into build/site/html: gathers the pages and runs Sphinx. Every warning is an error."""
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
 
-import ziamath
-
-import fortran_api
 import stage
 
 root = pathlib.Path(__file__).resolve().parents[2]
 work = root / "build/site"
-FONT = "STIXTwoMath-Regular.ttf"
 # What a browser would fetch from elsewhere when it shows a page; links that a reader follows are no such thing.
 FETCH = re.compile(r"""<(?:script|img|iframe)[^>]*src="(?:https?:)?//|<link[^>]*href="(?:https?:)?//|url\(["']?https?:""")
 
@@ -21,16 +17,11 @@ FETCH = re.compile(r"""<(?:script|img|iframe)[^>]*src="(?:https?:)?//|<link[^>]*
 def main():
     pages, html = work / "pages", work / "html"
     stage.stage(root, pages)
-    fonts = pages / "_fonts"
-    fonts.mkdir()
-    shutil.copyfile(pathlib.Path(ziamath.__file__).parent / "fonts" / FONT, fonts / FONT)
     shutil.rmtree(html, ignore_errors=True)
     run = subprocess.run([sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", "-c",
                           str(root / "docs/site"), "-d", str(work / "doctrees"), str(pages), str(html)])
     if run.returncode:
         return run.returncode
-    if "--without-fortran" not in sys.argv:
-        fortran_api.build(root, work, html / "fortran-api")
     if fetched := [str(page.relative_to(html)) for page in sorted(html.rglob("*")) if page.suffix in (".html", ".css")
                    and FETCH.search(page.read_text(encoding="utf-8"))]:
         print("these pages would load something from the network:", *fetched, sep="\n   ", file=sys.stderr)

@@ -13,7 +13,9 @@ author = "the MUD contributors"
 release = re.search(r"project\(mud VERSION (\S+)", (root / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
 version = release
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax",
+              "sphinx-mathjax-offline"]
+mathjax_path = "mathjax/tex-svg.js"   # from the package, drawn without fonts: a page needs no network
 root_doc = "index"
 nitpicky = False
 templates_path = []
@@ -27,7 +29,7 @@ myst_links_external_new_tab = False
 
 html_theme = "furo"
 html_title = f"MUD {release}"
-html_static_path = [str(here / "static"), str(root / "build/site/pages/_fonts")]
+html_static_path = [str(here / "static")]
 html_css_files = ["site.css"]
 html_copy_source = False
 html_show_copyright = False

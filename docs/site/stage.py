@@ -10,6 +10,7 @@ import c_header
 import gallery
 
 LINK = re.compile(r"(!?\[[^\]]*\]\()([^)\s]+)(\))")
+FORTRAN = ("umat/core", "umat/abi", "umat/include", "common", "materials", "drivers/src", "host")
 PICTURES = (".png", ".svg")
 # Headings of the margin for pages that the front page does not list; the last takes what is left.
 REST = {"Evidence: element tests": "verification/material/", "Evidence: finite elements": "verification/host/",
@@ -66,6 +67,28 @@ def staged(root, pages, name):
     return text
 
 
+def fortran_page(root, pages):
+    """The Fortran sources: a table a folder, a line a module with the comment at its head, linked to its source."""
+    lines = ["# The Fortran sources", "", "A comment `!>` above a procedure gives units, shapes, errors and the source of "
+             "its formula.", ""]
+    folders = {}
+    for path in sorted(path for name in FORTRAN for path in (root / name).rglob("*.f90")):
+        folders.setdefault(path.parent.relative_to(root).as_posix(), []).append(path)
+    for folder, paths in folders.items():
+        lines += [f"## {folder}", "", "| module | |", "|---|---|"]
+        for path in paths:
+            text = path.read_text(encoding="utf-8")
+            head = " ".join(re.findall(r"^!> ?(.*)", re.split(r"^(?:module|program)\b", text, flags=re.MULTILINE)[0],
+                                       re.MULTILINE))
+            name = path.relative_to(root).as_posix()
+            place = pages / (name + ".md")
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_text(source_page(name, path), encoding="utf-8")
+            lines.append(f"| [{path.stem}]({name}.md) | {c_header.escaped(head).replace('|', chr(92) + '|')} |")
+        lines.append("")
+    return "\n".join(lines)
+
+
 def with_the_rest(index, names):
     """The front page, and below its lists, for the margin alone, the pages that these do not name, under headings."""
     named = {line.split("<")[-1].rstrip(">") for line in index.splitlines()}
@@ -92,5 +115,6 @@ def stage(root, pages):
     index = pages / "index.md"
     index.write_text(with_the_rest(index.read_text(encoding="utf-8"), names), encoding="utf-8")
     (pages / "gallery.md").write_text(gallery.page(root), encoding="utf-8")
+    (pages / "fortran.md").write_text(fortran_page(root, pages), encoding="utf-8")
     (pages / "c_header.md").write_text(c_header.page(root / "umat/include/mud.h"), encoding="utf-8")
     return names

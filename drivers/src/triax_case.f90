@@ -4,8 +4,8 @@ module triax_case
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use texts, only: short, whole
-   use namelists, only: group_t, read_groups, groups_of_text, set_entry, LENGTH
-   use key_schema, only: check_entries, describe_key, get_text, get_number
+   use namelists, only: group_t, read_groups, groups_of_text, set_entry, find_entry, LENGTH
+   use key_schema, only: check_entries, describe_key, get_text, get_number, get_numbers, given, line_of
    use triax_keys, only: CASE_KEYS, check_keys
    use triax_control, only: CONTROL_TOLERANCE
    use triax_stage, only: stage_t
@@ -13,7 +13,7 @@ module triax_case
    use material_point, only: material_t
    use material_registry, only: new_material
    use retention_groups, only: give_retention, RETENTION_KEYS
-   use triax_point, only: soil_t, point_t, make_soil, start_point, mean_stress, AXIAL, RADIAL
+   use triax_point, only: soil_t, point_t, make_soil, start_point, restore_point, mean_stress, AXIAL, RADIAL
    implicit none (type, external)
    private
    public :: case_t, read_case, make_case
@@ -192,8 +192,9 @@ contains
       type(point_t), intent(out) :: start
       type(fault_t), intent(inout) :: fault
       real(wp) :: p_eff, sigma_a, sigma_r, ratio, suction, s_w, stress(6)
+      real(wp), allocatable :: state(:)
       character(:), allocatable :: name
-      logical :: has_p, has_a, has_r, found
+      logical :: has_p, has_a, has_r, has_six, has_state, found
 
       p_eff = 0.0_wp
       sigma_a = 0.0_wp
@@ -206,13 +207,18 @@ contains
       call get_number(group, 'sigma_r', sigma_r, has_r)
       call get_number(group, 'suction', suction, found)
       call get_number(group, 'saturation', s_w, found)
+      has_six = given(group, 'stress')
+      has_state = given(group, 'state_variables')
       call get_number(group, 'void_ratio', ratio, found)
-      if (.not. found) then
+      if (.not. (found .or. has_state)) then
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&initial lacks void_ratio ('// &
                     describe_key(CASE_KEYS, 'initial', 'void_ratio')//').')
-      else if (has_p .eqv. (has_a .or. has_r)) then
+      else if (has_state .and. (found .or. s_w > 0.0_wp .or. .not. has_six)) then
+         call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, 'state_variables'))//'state_variables '// &
+                    'needs stress, and takes the place of void_ratio and saturation; give these two alone.')
+      else if (count([has_p, has_a .or. has_r, has_six]) /= 1) then
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)// &
-                    '&initial needs the stress once: either p_eff, or sigma_a and sigma_r.')
+                    '&initial needs the stress once: either p_eff, or sigma_a and sigma_r, or stress (six values).')
       else if (has_a .neqv. has_r) then
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&initial needs sigma_a and sigma_r together.')
       end if
@@ -222,9 +228,18 @@ contains
       stress = 0.0_wp
       stress(AXIAL) = merge(p_eff, sigma_a, has_p)
       stress(RADIAL) = merge(p_eff, sigma_r, has_p)
-      call start_point(soil, stress, suction, ratio, s_w, start, fault)
+      if (has_six) call get_numbers(group, 'stress', stress)
+      if (has_state) then
+         allocate (state(group%entries(find_entry(group, 'state_variables'))%count))
+         call get_numbers(group, 'state_variables', state)
+         call restore_point(soil, stress, suction, state, start, fault)
+      else
+         call start_point(soil, stress, suction, ratio, s_w, start, fault)
+      end if
       if (fault%code /= 0) then
          fault%text = at_line(group%file, group%line)//fault%text
+      else if (has_state) then
+         return   ! what its history left, whatever that is
       else if (mean_stress(start) > (1.0_wp + LIFTED)*sum(stress(1:3))/3.0_wp) then
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'the mean effective stress is '// &
                     short(sum(stress(1:3))/3.0_wp)//name//', below p_min of the material, '// &

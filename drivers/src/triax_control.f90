@@ -7,10 +7,9 @@ module triax_control
    use texts, only: short, whole
    use dense, only: solve, outer
    use triax_stage, only: stage_t, quantity_rows, CONTROL_NAMES, ROWS, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
-   use material_point, only: MOST_GUARDS
-   use triax_point, only: soil_t, point_t, tangent_t, report_t, update_point, save_update, update_sentence, &
-                          void_ratio, saturation, slope_is_exact, axial_strain, volumetric_strain, mean_stress, &
-                          deviator_stress
+   use material_point, only: MOST_GUARDS, report_t
+   use triax_point, only: soil_t, point_t, tangent_t, update_point, save_update, update_sentence, void_ratio, &
+                          saturation, slope_is_exact, axial_strain, volumetric_strain, mean_stress, deviator_stress
    implicit none (type, external)
    private
    public :: plan_t, tally_t, plan_way, advance, lead, quantity, CONTROL_TOLERANCE
@@ -24,6 +23,7 @@ module triax_control
    integer, parameter :: MAX_CUTS = 20         !< An increment is halved at most so often: a millionth.
    !> A strain itself is rounded: an increment below this share of it cannot be met to the tolerance.
    real(wp), parameter :: ROUNDING = 10.0_wp*epsilon(1.0_wp)/CONTROL_TOLERANCE
+   integer, parameter :: REFUSAL_LENGTH = 1000
    integer, parameter :: SUCTION = 7           !< Place of suction among the unknowns, after the six strains.
    integer, parameter :: NORMAL = 3            !< Components up to this are normal ones.
    real(wp), parameter :: IDENTITY(6) = [1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
@@ -52,6 +52,7 @@ module triax_control
       logical :: residuals = .false.         !< Print the error of every iteration.
       character(256) :: save_to = ''         !< File for the first update that the library refuses; blank: none.
       logical :: saved = .false.
+      character(REFUSAL_LENGTH) :: refusal = ''   !< What the law said of the first update that it refused.
       real(wp) :: least_pressure = huge(1.0_wp)   !< Smallest p' after an increment, of the unit of the law.
       integer :: guards(MOST_GUARDS) = 0     !< How often each guard of the law acted.
       real(wp) :: error = 0.0_wp             !< Largest error of a constraint since the caller set it to 0, relative.
@@ -97,6 +98,7 @@ contains
 
       plan%given(SUCTION) = .not. stage%keeps_water
       if (stage%moves_suction) plan%given_change(SUCTION) = stage%suction_end - point%suction
+      if (stage%by_change) plan%given_change(SUCTION) = stage%suction_change
       ! A constraint on one strain gives it, and six on strains alone give all.
       do i = 1, ROWS
          if (any(abs(plan%stress_rows(:, i)) > 0.0_wp) .or. count(abs(plan%strain_rows(:, i)) > 0.0_wp) /= 1) cycle
@@ -206,7 +208,8 @@ contains
       if (done + share >= 1.0_wp) progress = real(k, wp)/real(plan%increments, wp)
       x = plan%rate*share
       where (plan%given(:6)) x(:6) = plan%strain_start + plan%given_change(:6)*progress - point%strain
-      if (plan%given(SUCTION)) x(SUCTION) = plan%suction_start + plan%given_change(SUCTION)*progress - point%suction
+      ! In this order the first increment of a saved update has every bit of its change.
+      if (plan%given(SUCTION)) x(SUCTION) = plan%given_change(SUCTION)*progress - (point%suction - plan%suction_start)
       slope = 0.0_wp
       last_residual = 0.0_wp
       step = 0.0_wp
@@ -217,6 +220,7 @@ contains
          tally%updates = tally%updates + 1
          if (report%code /= 0) then
             call raise(fault, EXIT_RUN, update_sentence(soil, report))
+            if (tally%refusal == '') tally%refusal = fault%text
             if (len_trim(tally%save_to) > 0 .and. .not. tally%saved) then
                tally%saved = .true.
                call save_update(tally%save_to, 'mud_triax, '//trim(CONTROL_NAMES(plan%control))// &

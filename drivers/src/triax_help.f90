@@ -40,7 +40,7 @@ contains
          '                   difference takes the place of the estimated errors', &
          '   --quiet         no summary, no progress', &
          '   --residuals     prints the error of every iteration for prescribed stresses', &
-         '   --save-failed FILE   writes the first update that the library refuses to a new file for mud_replay', &
+         '   --save-failed FILE   writes the first update that the library refuses to a new case file', &
          '   --template      prints a case that runs unchanged, with every parameter and its range', &
          '', &
          'Exit codes: 0 done; 2 input refused, nothing written; 3 the run stopped, rows so far are kept;', &

@@ -2,7 +2,7 @@
 !> Keys of case files.
 module triax_keys
    use kinds, only: wp
-   use key_schema, only: key_t, check_entries, described, NONE
+   use key_schema, only: key_t, check_entries, described, NONE, UNBOUNDED
    use faults, only: fault_t
    use namelists, only: group_t
    use stress_units, only: stress_unit_t, KILOPASCAL
@@ -27,10 +27,14 @@ module triax_keys
             'axial effective stress, with sigma_r, instead of p_eff', unit='kPa'), &
       key_t('initial', 'sigma_r', 'n', NONE, 1.0e-6_wp, 1.0e7_wp, &
             'radial effective stress, with sigma_a', unit='kPa'), &
+      key_t('initial', 'stress', 'N', NONE, -1.0e7_wp, 1.0e7_wp, &
+            'effective stresses 11, 22, 33, 12, 13, 23, instead of p_eff', unit='kPa', values=6), &
       key_t('initial', 'void_ratio', 'n', NONE, 0.01_wp, 5.0_wp, 'void ratio'), &
       key_t('initial', 'suction', 'n', NONE, 0.0_wp, 1.0e6_wp, 'p_a - p_w; default 0, saturated', unit='kPa'), &
       key_t('initial', 'saturation', 'n', NONE, 1.0e-6_wp, 1.0_wp, &
             'degree of saturation between the main curves, with hysteresis = 1; default: on the main drying curve'), &
+      key_t('initial', 'state_variables', 'N', NONE, -UNBOUNDED, UNBOUNDED, &
+            'all state variables of the law in their order, with stress, instead of void_ratio'), &
       key_t('stage', 'control', 't', NONE, 0, 0, 'see the list of controls'), &
       key_t('stage', 'stress', 'w', 'net', 0, 0, &
             'stress that is prescribed, default net; both are the same without suction', 'net|effective'), &
@@ -55,6 +59,8 @@ module triax_keys
               'change of the sum of constraint '//DIGITS(i)//' over the stage, default 0 (linear)'), i=1, 6)], &
       key_t('stage', 'suction_end', 'n', NONE, 0.0_wp, 1.0e6_wp, &
             'suction at the end, reached in equal parts; default: suction is constant', unit='kPa'), &
+      key_t('stage', 'd_suction', 'n', NONE, -1.0e6_wp, 1.0e6_wp, &
+            'change of the suction over the stage, instead of suction_end', unit='kPa'), &
       key_t('stage', 'water', 'w', 'free', 0, 0, &
             'constant: the water content S_w e is constant and suction changes; default free', 'free|constant'), &
       key_t('stage', 'cycle_by', 't', NONE, 0, 0, &

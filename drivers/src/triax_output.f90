@@ -13,7 +13,6 @@ module triax_output
    use triax_stage_run, only: stage_run_t
    use stress_units, only: stress_unit_t, in_unit
    use csv, only: csv_t, open_csv, write_line, close_csv
-   use files, only: can_be_written
    use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, put, put_text
    use triax_point, only: soil_t, point_t
    implicit none (type, external)
@@ -54,8 +53,8 @@ contains
                     'file, or install libhdf5-dev and build again.')
       else if (table%hdf5) then
          ! The file is written at the end; this says now whether it can be.
-         if (can_be_written(path)) then
-            call new_file(table%h5)
+         call new_file(table%h5, path)
+         if (table%h5%good) then
             call keep_rows(table)
          else
             call raise(fault, EXIT_OUTPUT, path//' cannot be written; choose another place with --output.')
@@ -224,7 +223,7 @@ contains
          do i = 1, size(table%shown)
             call put_column(table%h5, COLUMNS(table%shown(i)), table%unit, table%kept(:table%rows, i))
          end do
-         call write_file(table%h5, table%path, good)
+         call write_file(table%h5, good)
          if (.not. good) call raise(last, EXIT_OUTPUT, table%path//' cannot be written; is the disk full?')
       end if
       if (fault%code == 0) fault = last

@@ -6,11 +6,12 @@ module triax_point
    use faults, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
    use kinds, only: wp
    use material_point, only: material_t, response_t, report_t, state_index, WITH_TANGENT
+   use texts, only: whole
    implicit none (type, external)
    private
-   public :: soil_t, point_t, tangent_t, report_t
+   public :: soil_t, point_t, tangent_t
    public :: AXIAL, RADIAL
-   public :: make_soil, start_point, update_point, save_update, update_sentence, slope_is_exact
+   public :: make_soil, start_point, restore_point, update_point, save_update, update_sentence, slope_is_exact
    public :: mean_stress, deviator_stress, radial_stress, axial_strain, radial_strain, volumetric_strain, void_ratio, &
              saturation, state_value
 
@@ -82,6 +83,26 @@ contains
       point%suction = suction
    end subroutine start_point
 
+   !> A sample with the state variables of an earlier one, unchanged and unchecked. Compression positive. Fault
+   !> EXIT_INPUT: the law has another number of them.
+   subroutine restore_point(soil, stress, suction, state, point, fault)
+      type(soil_t), intent(in) :: soil
+      real(wp), intent(in) :: stress(6), suction   !< [unit of stress of the law]
+      real(wp), intent(in) :: state(:)   !< (state variables of the law)
+      type(point_t), intent(out) :: point
+      type(fault_t), intent(inout) :: fault
+
+      if (size(state) /= soil%law%n_state) then
+         call raise(fault, EXIT_INPUT, 'state_variables has '//whole(size(state))//' values; the law of this &
+                    &material has '//whole(soil%law%n_state)//'.')
+         return
+      end if
+      allocate (point%state(soil%law%n_state, 1))
+      point%state(:, 1) = state
+      point%stress = stress
+      point%suction = suction
+   end subroutine restore_point
+
    !> Integrates a strain and a change of suction. Where the report's code is not 0, only the report is of use. Strain
    !> compression positive.
    subroutine update_point(soil, before, strain, suction, after, tangent, report)
@@ -110,7 +131,7 @@ contains
       after%suction = before%suction + suction
    end subroutine update_point
 
-   !> Writes an update to a file that mud_replay runs. Fault EXIT_OUTPUT: there is such a file, it cannot be written, or
+   !> Writes an update to a case file. Fault EXIT_OUTPUT: there is such a file, it cannot be written, or
    !> the law saves none.
    subroutine save_update(file, origin, soil, before, strain, suction, fault)
       character(*), intent(in) :: file, origin

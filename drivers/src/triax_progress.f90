@@ -87,8 +87,10 @@ contains
             write (output_unit, '(a)') '   control    prescribed stresses are met within '//short(tally%worst)// &
                ' of their value (allowed '//short(tally%tolerance)//')'
          end if
+         if (tally%refusal /= '') write (output_unit, '(a)') '   refused    the first refused update: '// &
+            trim(tally%refusal)
          if (tally%saved) write (output_unit, '(a)') '   saved      '//trim(tally%save_to)// &
-            ', the first refused update, for mud_replay'
+            ', a case file of that update'
          write (output_unit, '(a)') '   output     '//table%path//', '//whole(table%rows)//' rows'
       end associate
    contains

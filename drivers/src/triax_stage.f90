@@ -53,8 +53,9 @@ module triax_stage
       real(wp) :: changes(ROWS) = 0.0_wp     !< Right sides; that of a lead by its value is set when the stage begins.
       logical :: effective = .false.         !< Stress rows prescribe effective stress, not net stress.
       logical :: moves_suction = .false.
+      logical :: by_change = .false.         !< The suction moves by suction_change, not to suction_end.
       logical :: keeps_water = .false.       !< Water content S_w e is held, suction follows.
-      real(wp) :: suction_end = 0.0_wp       !< [unit of stress]
+      real(wp) :: suction_end = 0.0_wp, suction_change = 0.0_wp   !< [unit of stress]
       real(wp) :: increment = 0.0_wp         !< In the unit of what leads.
       logical :: given_increment = .false.   !< By hand: an accuracy does not change it.
       integer :: parts = 1                   !< Increments are divided into so many, for an accuracy.

@@ -236,14 +236,26 @@ contains
       type(group_t), intent(in) :: group
       type(stage_t), intent(inout) :: stage
       type(fault_t), intent(inout) :: fault
+      character(:), allocatable :: key
 
       stage%keeps_water = word_is(CASE_KEYS, group, 'water', 'constant')
       call get_number(group, 'suction_end', stage%suction_end, stage%moves_suction)
+      call get_number(group, 'd_suction', stage%suction_change, stage%by_change)
+      if (stage%moves_suction .and. stage%by_change) then
+         call refuse(group, 'd_suction', 'cannot be combined with suction_end; remove one of them.', fault)
+         return
+      else if (stage%by_change .and. stage%lead == BY_SUCTION) then
+         call refuse(group, 'd_suction', 'has no effect with control '//name_of(stage%control)// &
+                     ', which takes suction_end; remove it.', fault)
+         return
+      end if
+      stage%moves_suction = stage%moves_suction .or. stage%by_change
+      key = trim(merge('d_suction  ', 'suction_end', stage%by_change))
       if (stage%moves_suction .and. stage%keeps_water) then
-         call refuse(group, 'suction_end', 'cannot be combined with a constant water content; remove one of them.', &
+         call refuse(group, key, 'cannot be combined with a constant water content; remove one of them.', &
                      fault)
       else if (stage%moves_suction .and. stage%cycles > 0) then
-         call refuse(group, 'suction_end', 'cannot be combined with cycles; change the suction in a separate stage.', &
+         call refuse(group, key, 'cannot be combined with cycles; change the suction in a separate stage.', &
                      fault)
       end if
    end subroutine read_water

@@ -7,7 +7,7 @@ module triax_stage_run
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use faults, only: fault_t, raise, EXIT_RUN
    use texts, only: short, whole
-   use triax_stage, only: stage_t, sealed_control, shear_control, CONTROL_NAMES, QUANTITIES
+   use triax_stage, only: stage_t, sealed_control, shear_control, QUANTITIES
    use triax_control, only: plan_t, tally_t, plan_way, advance, lead, quantity
    use triax_point, only: soil_t, point_t, AXIAL, RADIAL
    implicit none (type, external)
@@ -53,7 +53,7 @@ contains
       run%pressure_start = pressure
       run%confining = confining_stress(stage, point)
       run%sealed = sealed_control(stage%control) .and. point%suction <= 0.0_wp .and. &
-                      .not. (stage%moves_suction .and. stage%suction_end > 0.0_wp)
+                      .not. (stage%moves_suction .and. max(stage%suction_end, stage%suction_change) > 0.0_wp)
       if (stage%stop_r_u > 0.0_wp .and. .not. run%sealed) then
          call raise(fault, EXIT_RUN, 'stop_r_u needs a saturated sample; the suction is '//short(point%suction)// &
                     ' '//trim(soil%law%unit%name)//'.')

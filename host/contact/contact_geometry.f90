@@ -3,11 +3,10 @@
 !> do. docs/theory/contact.md section 2.
 module contact_geometry
    use contact_projection, only: edge_of, least_stretch
-   use contact_types, only: wp, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, PRESSURE_WORK, ENERGY_SLOPE, &
-                            contact_options_t, &
-                            contact_status_t, contact_fail, is_finite, CONTACT_OK, CONTACT_BAD_OPTION, &
-                            CONTACT_BAD_EDGE, CONTACT_BAD_SIZE, CONTACT_NOT_FINITE, CONTACT_BAD_RADIUS, &
-                            CONTACT_DISTORTED_EDGE
+   use contact_types, only: NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, contact_options_t, contact_status_t, contact_fail, &
+                            is_finite, CONTACT_OK, CONTACT_BAD_OPTION, CONTACT_BAD_EDGE, CONTACT_BAD_SIZE, &
+                            CONTACT_NOT_FINITE, CONTACT_BAD_RADIUS, CONTACT_DISTORTED_EDGE
+   use kinds, only: wp
    implicit none (type, external)
    private
    public :: contact_geometry_t, contact_prepare, check_coordinates
@@ -64,8 +63,6 @@ contains
          status = contact_fail(CONTACT_BAD_OPTION, value=options%search_radius)
       else if (all(options%gap /= [NODAL_GAP, POINTWISE_GAP, COMBINED_GAP])) then
          status = contact_fail(CONTACT_BAD_OPTION, value=real(options%gap, wp))
-      else if (all(options%variation /= [PRESSURE_WORK, ENERGY_SLOPE])) then
-         status = contact_fail(CONTACT_BAD_OPTION, value=real(options%variation, wp))
       end if
    end subroutine check_options
 

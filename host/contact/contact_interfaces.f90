@@ -3,9 +3,9 @@
 !> contacts nothing is allocated and nothing is done.
 module contact_interfaces
    use kinds, only: wp
-   use contact_fixed, only: fixed_contact_t, fix_geometry, evaluate_fixed
    use contact_geometry, only: contact_geometry_t, contact_prepare
-   use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate
+   use contact_penalty, only: contact_workspace_t, contact_result_t, contact_point_t, new_workspace, new_result, &
+                              contact_evaluate, points_of
    use contact_plate, only: plate_response_t, new_plate_response, plate_positions, gather_on_plate, force_on_plate
    use contact_types, only: contact_options_t, contact_status_t, CONTACT_OK
    use degrees_of_freedom, only: dofs_t
@@ -14,8 +14,8 @@ module contact_interfaces
    implicit none (type, external)
    private
    public :: contacts_t, contact_interface_t, surface_t, surface_of, new_interface, plate_surface
-   public :: evaluate_contacts, probe_contacts, probe_interface, fit_pattern, add_contacts
-   public :: contact_forces, mean_contact_forces
+   public :: evaluate_contacts, probe_contacts, start_points, probe_interface, fit_pattern, add_contacts, &
+             contact_forces, mean_contact_forces
 
    !> A boundary with numbers of its own.
    type :: surface_t
@@ -27,10 +27,10 @@ module contact_interfaces
    !> The interface of two surfaces that may come into contact.
    type :: contact_interface_t
       type(contact_geometry_t) :: geometry
-      type(fixed_contact_t), allocatable :: fixed   !< Where the geometry is that of the start.
       type(contact_workspace_t) :: work
       type(contact_result_t) :: result      !< Outcome at the iterates of a step.
       type(contact_result_t) :: probe       !< Outcome at other displacements, independent of the step.
+      type(contact_point_t), allocatable :: point(:)   !< Of every slave node at the start of the step.
       type(plate_response_t) :: on_plate    !< Forces where the master is a plate.
       integer :: plate = 0                  !< Node of this plate, 0: the master is no plate.
       type(surface_t) :: slave, master
@@ -101,11 +101,7 @@ contains
       one%work = new_workspace(one%geometry)
       one%result = new_result(one%geometry)
       one%probe = new_result(one%geometry)
-      if (options%fixed) then
-         allocate (one%fixed)
-         call fix_geometry(one%geometry, slave%x0, master%x0, one%fixed, status)
-         if (status%code /= CONTACT_OK) return
-      end if
+      one%point = points_of(one%probe)
       nodes = [slave%node, master%node]
       one%unknown = reshape(dofs%of(:DISPLACEMENTS, nodes), [DISPLACEMENTS*size(nodes)])
       if (plate == 0) return
@@ -129,7 +125,7 @@ contains
             t%energy = 0.0_wp
             t%area = 0.0_wp
             if (.not. t%acts) cycle
-            call probe_interface(t%geometry, t%fixed, t%slave, t%master, t%plate, x, with_tangent, t%work, t%result, &
+            call probe_interface(t%geometry, t%slave, t%master, t%plate, x, with_tangent, t%work, t%result, &
                                  contacts%status)
             good = contacts%status%code == CONTACT_OK
             if (.not. good) return
@@ -153,18 +149,32 @@ contains
       do i = 1, size(contacts%interfaces)
          associate (t => contacts%interfaces(i))
             if (.not. t%acts) cycle
-            call probe_interface(t%geometry, t%fixed, t%slave, t%master, t%plate, x, .false., t%work, t%probe, &
-                                 contacts%status)
+            call probe_interface(t%geometry, t%slave, t%master, t%plate, x, .false., t%work, t%probe, contacts%status)
             good = contacts%status%code == CONTACT_OK
             if (.not. good) return
          end associate
       end do
    end function probe_contacts
 
-   !> One pair of surfaces at given displacements. status: as of contact_evaluate, evaluate_fixed.
-   subroutine probe_interface(geometry, fixed, slave, master, plate, x, with_tangent, work, result, status)
+   !> Sets the states of the contact points at the displacements at the start of a step; false if a kernel refuses them.
+   !> docs/theory/contact.md section 5. A step that is cut, and a restart, find the same states.
+   logical function start_points(contacts, x) result(good)
+      type(contacts_t), intent(inout) :: contacts
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
+      integer :: i
+
+      good = probe_contacts(contacts, x)
+      if (.not. good) return
+      do i = 1, size(contacts%interfaces)
+         associate (t => contacts%interfaces(i))
+            if (t%acts) t%point = points_of(t%probe)
+         end associate
+      end do
+   end function start_points
+
+   !> One pair of surfaces at given displacements. status: as of contact_evaluate.
+   subroutine probe_interface(geometry, slave, master, plate, x, with_tangent, work, result, status)
       type(contact_geometry_t), intent(in) :: geometry
-      type(fixed_contact_t), allocatable, intent(in) :: fixed   !< Not allocated: the geometry moves.
       type(surface_t), intent(in) :: slave, master
       integer, intent(in) :: plate   !< Node of the plate that is the master, or 0.
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
@@ -178,11 +188,6 @@ contains
          at = plate_positions(master%x0, x(AT_U_Z, plate))
       else
          at = master%x0 + x(:DISPLACEMENTS, master%node)
-      end if
-      if (allocated(fixed)) then
-         call evaluate_fixed(geometry, fixed, x(:DISPLACEMENTS, slave%node), at - master%x0, with_tangent, result, &
-                             status)
-         return
       end if
       call contact_evaluate(geometry, slave%x0 + x(:DISPLACEMENTS, slave%node), at, with_tangent, work, result, status)
    end subroutine probe_interface

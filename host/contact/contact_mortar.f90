@@ -11,7 +11,8 @@
 module contact_mortar
    use contact_projection, only: edge_t, edge_of, shapes, shape_slopes, place, tangent, project_point, follow_normal, &
                                  INSIDE, BEFORE, BEYOND, SAME_PLACE
-   use contact_types, only: wp, TWO_PI
+   use contact_types, only: TWO_PI
+   use kinds, only: wp
    implicit none (type, external)
    private
    public :: overlap_t, point_t, find_overlap, end_slope, integration_point, unit_push, pair_gaps, penetration, &
@@ -51,7 +52,6 @@ module contact_mortar
       real(wp) :: t(2) = 0.0_wp                   !< Slave tangent dx_s/ds [m].
       real(wp) :: t_bend(2) = 0.0_wp              !< dt/ds [m]
       real(wp) :: tm(2) = 0.0_wp                  !< Master tangent dx_m/dm [m].
-      real(wp) :: tm_bend(2) = 0.0_wp             !< dtm/dm [m]
       real(wp) :: slip = 0.0_wp                   !< tm.t, < 0 [m2]
       real(wp) :: area = 0.0_wp                   !< Weight of the rule times half the segment times 2 pi r [m or 1]
       real(wp) :: ring = 1.0_wp, d_ring(12) = 0.0_wp    !< 2 pi r [m], or 1.
@@ -150,7 +150,7 @@ contains
    end function between
 
    !> How the foot s of master node j moves: the derivative of (x_j - x(s)).t(s) = 0. By the 12 local coordinates [1/m]:
-   !> docs/theory/contact.md section 3.3.
+   !> docs/theory/contact.md section 3.2.
    pure function end_slope(x, slave, j, s) result(d_s)
       real(wp), intent(in) :: x(2, 6), s   !< Local coordinates [m], place in [-1, 1].
       type(edge_t), intent(in) :: slave
@@ -171,7 +171,7 @@ contains
    end function end_slope
 
    !> A point of a segment. `missed`: by how much of the master edge's length the normal misses it, 0 if it hits. Where
-   !> it misses, the rest of p is not filled. docs/theory/contact.md sections 2.1, 2.2 and 3.3.
+   !> it misses, the rest of p is not filled. docs/theory/contact.md sections 2.1, 2.2 and 3.2.
    pure subroutine integration_point(x, overlap, segment, position, share, axisymmetric, p, missed)
       real(wp), intent(in) :: x(2, 6)   !< Local coordinates [m].
       type(overlap_t), intent(in) :: overlap
@@ -208,7 +208,6 @@ contains
       p%nm = shapes(p%m)
       p%dnm = shape_slopes(p%m)
       p%t_bend = 2.0_wp*slave%bend
-      p%tm_bend = 2.0_wp*master%bend
       p%phi = p%y(1)*p%t(2) - p%y(2)*p%t(1)
       p%length = norm2(p%t)
       if (axisymmetric) p%ring = TWO_PI*p%x(1)

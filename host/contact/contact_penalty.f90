@@ -7,12 +7,13 @@ module contact_penalty
    use contact_projection, only: edge_t, edge_of, place, tangent
    use contact_response, only: response_t, pair_response
    use contact_search, only: search_t, prepare_search, find_candidates
-   use contact_types, only: wp, TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, PRESSURE_WORK, contact_options_t, &
-                            contact_status_t, contact_fail, CONTACT_OK, CONTACT_NO_PROJECTION
+   use contact_types, only: TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, contact_options_t, contact_status_t, &
+                            contact_fail, CONTACT_OK, CONTACT_NO_PROJECTION
+   use kinds, only: wp
    implicit none (type, external)
    private
-   public :: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate
-   public :: find_whole, share_penalty, unknowns_of, add_column, make_room
+   public :: contact_workspace_t, contact_result_t, contact_point_t, new_workspace, new_result, &
+             contact_evaluate, points_of
 
    integer, parameter :: FIRST_ROOM = 1024   !< Triplets to begin with.
    real(wp), parameter :: POINTWISE_SHARE = 0.5_wp   !< Of the penalty, where both gaps are penalised [-].
@@ -48,13 +49,27 @@ module contact_penalty
       real(wp), allocatable :: gap(:)           !< g_A, open > 0; 0 where w_A = 0 [m]
       real(wp), allocatable :: pressure(:)      !< p_A >= 0 [kPa]
       logical, allocatable :: active(:)         !< p_A > 0
-      integer :: changed = 0                    !< Nodes whose `active` differs from the evaluation before.
       real(wp) :: unpressed = 0.0_wp            !< Deepest penetration without pressure, over its edge [-].
       real(wp) :: unpressed_at(2) = 0.0_wp      !< Middle of the edge with this penetration [m].
       integer :: pairs = 0                      !< Pairs of edges opposite each other.
       integer :: checks = 0                     !< Pairs of boxes the search compared.
    end type contact_result_t
+
+   !> State of a contact point, that is of a slave node, at the start of a step: it acts unchanged throughout the step.
+   type :: contact_point_t
+      real(wp) :: pressure = 0.0_wp   !< p_A >= 0 [kPa]
+      real(wp) :: coverage = 0.0_wp   !< Share of w_A that lies opposite the master [-].
+   end type contact_point_t
 contains
+   !> The states of the contact points that belong to an evaluation: docs/theory/contact.md section 5.
+   pure function points_of(result) result(point)
+      type(contact_result_t), intent(in) :: result
+      type(contact_point_t) :: point(size(result%pressure))
+
+      point%pressure = result%pressure
+      where (result%whole > 0.0_wp) point%coverage = result%weight/result%whole
+   end function points_of
+
    !> Room for evaluations of prepared surfaces.
    pure function new_workspace(geometry) result(work)
       type(contact_geometry_t), intent(in) :: geometry
@@ -84,8 +99,8 @@ contains
       allocate (result%value(FIRST_ROOM), source=0.0_wp)
    end function new_result
 
-   !> Evaluates everything for current coordinates. If the status is not CONTACT_OK the answer is of no use, but
-   !> `active` is still that of the evaluation before. docs/theory/contact.md sections 2 and 3, paper eqs (17), (18).
+   !> Evaluates everything for current coordinates. If the status is not CONTACT_OK the answer is of no use.
+   !> docs/theory/contact.md sections 2 and 3, paper eqs (17), (18).
    !> status: as of check_coordinates; CONTACT_NO_PROJECTION where a normal of the slave misses the master edge
    !> opposite.
    pure subroutine contact_evaluate(geometry, slave_x, master_x, with_tangent, work, result, status)
@@ -112,7 +127,6 @@ contains
       if (status%code /= CONTACT_OK) return
       call respond(geometry, slave_x, master_x, with_tangent, work, result, status)
       if (status%code /= CONTACT_OK) return
-      result%changed = count(result%active .neqv. result%pressure > 0.0_wp)
       result%active = result%pressure > 0.0_wp
    end subroutine contact_evaluate
 
@@ -337,11 +351,7 @@ contains
             associate (pair => work%pair(i), at => work%position(unknown))
                slope = pair%d_weighted_gap(:, a) - result%gap(node)*pair%d_weight(:, a)
                work%right(at) = work%right(at) + slope
-               if (geometry%options%variation == PRESSURE_WORK) then
-                  work%left(at) = work%left(at) - pair%push(:, a)
-               else
-                  work%left(at) = work%left(at) + slope
-               end if
+               work%left(at) = work%left(at) - pair%push(:, a)
             end associate
          end do
       end do

@@ -2,10 +2,10 @@
 !> Quadratic edges (nodes: start, end, middle; the body on the left, so that the outward normal points to the right) and
 !> projections between them: of a point onto an edge, and along a given normal onto the edge opposite.
 module contact_projection
-   use contact_types, only: wp
+   use kinds, only: wp
    implicit none (type, external)
    private
-   public :: edge_t, edge_of, shapes, shape_slopes, SHAPE_BENDS, place, tangent, least_stretch
+   public :: edge_t, edge_of, shapes, shape_slopes, place, tangent, least_stretch
    public :: project_point, follow_normal, BEFORE, INSIDE, BEYOND, SAME_PLACE
 
    !> x(s) = middle + slope s + bend s**2, s in [-1, 1].
@@ -22,7 +22,6 @@ module contact_projection
 
    !> Places on an edge that are not told apart: 1e-12 of its length, which is 2.
    real(wp), parameter :: SAME_PLACE = 2.0e-12_wp
-   real(wp), parameter :: SHAPE_BENDS(3) = [1.0_wp, 1.0_wp, -2.0_wp]   !< Second derivatives of the shape functions [-].
    !> Bisection alone reaches the spacing of numbers from [-1, 1] in 53 halvings; Newton needs about 5 steps.
    integer, parameter :: MOST_STEPS = 64
    !> A step of two units in the last place of 1 is rounding, not progress.

@@ -4,7 +4,7 @@
 !> number does not matter; two cells that share a place in it cost one comparison.
 module contact_search
    use, intrinsic :: iso_fortran_env, only: int64
-   use contact_types, only: wp
+   use kinds, only: wp
    implicit none (type, external)
    private
    public :: search_t, prepare_search, find_candidates, edge_boxes, boxes_meet

@@ -5,10 +5,10 @@ module contact_types
    use kinds, only: wp, PI
    implicit none (type, external)
    private
-   public :: wp, TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, PRESSURE_WORK, ENERGY_SLOPE
+   public :: TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP
    public :: contact_options_t, contact_status_t, contact_fail, contact_message, is_finite
    public :: CONTACT_OK, CONTACT_BAD_OPTION, CONTACT_BAD_EDGE, CONTACT_BAD_SIZE, CONTACT_NOT_FINITE, &
-             CONTACT_BAD_RADIUS, CONTACT_DISTORTED_EDGE, CONTACT_NO_PROJECTION, CONTACT_NOT_OPPOSITE
+             CONTACT_BAD_RADIUS, CONTACT_DISTORTED_EDGE, CONTACT_NO_PROJECTION
 
    real(wp), parameter :: TWO_PI = 2.0_wp*PI
 
@@ -16,16 +16,12 @@ module contact_types
    integer, parameter :: NODAL_GAP = 1        !< The mean gap under each hat.
    integer, parameter :: POINTWISE_GAP = 2    !< The gap itself, paper eq. (18).
    integer, parameter :: COMBINED_GAP = 3     !< Half the penalty on each: smooth pressures, and no corner gets through.
-   ! What is varied.
-   integer, parameter :: PRESSURE_WORK = 1    !< The work of the pressure along the slave's normal: area not varied.
-   integer, parameter :: ENERGY_SLOPE = 2     !< The energy with everything in it: the force is its exact derivative.
 
    integer, parameter :: CONTACT_OK = 0
    ! Negative: the caller's mistake.
    integer, parameter :: CONTACT_BAD_OPTION = -1      !< Penalty, search radius or a kind is out of its range.
    integer, parameter :: CONTACT_BAD_EDGE = -2        !< An edge names a node that is not there or is used too often.
    integer, parameter :: CONTACT_BAD_SIZE = -3        !< Coordinates of another number of nodes than prepared.
-   integer, parameter :: CONTACT_NOT_OPPOSITE = -4    !< Of fixed geometry: no part of the surfaces is opposite.
    ! Positive: a configuration that a smaller step may avoid.
    integer, parameter :: CONTACT_NOT_FINITE = 1       !< A coordinate is NaN or infinite.
    integer, parameter :: CONTACT_BAD_RADIUS = 2       !< A slave node lies at a negative radius.
@@ -37,8 +33,6 @@ module contact_types
       real(wp) :: search_radius = 0.0_wp      !< Edges farther apart do not meet [m]; 0: length of each slave edge
       logical :: axisymmetric = .true.        !< 2 pi r, otherwise plane strain of unit thickness
       integer :: gap = COMBINED_GAP           !< NODAL_GAP, POINTWISE_GAP or COMBINED_GAP
-      integer :: variation = PRESSURE_WORK    !< PRESSURE_WORK or ENERGY_SLOPE
-      logical :: fixed = .false.              !< Overlap and normals of the start, contact_fixed.
    end type contact_options_t
 
    type :: contact_status_t
@@ -84,16 +78,13 @@ contains
          text = 'contact: no fault'
       case (CONTACT_BAD_OPTION)
          text = 'contact: an option has the value '//trim(adjustl(value))//': the penalty must be finite and > 0, '// &
-                'the search radius finite and >= 0, gap and variation one of the named kinds'
+                'the search radius finite and >= 0, gap one of the named kinds'
       case (CONTACT_BAD_EDGE)
          text = 'contact: edge '//trim(number)//' of the '//trim(side)//' surface names node '//trim(adjustl(value))// &
                 ': it must be one of the surface, in at most two edges, and a middle node in one'
       case (CONTACT_BAD_SIZE)
          text = 'contact: '//trim(adjustl(value))//' nodes of the '//trim(side)//' surface were given, '// &
                 trim(number)//' were prepared: prepare the contact again after a change of mesh'
-      case (CONTACT_NOT_OPPOSITE)
-         text = 'contact: no part of the slave surface lies opposite the master at the start, so that a contact of '// &
-                'fixed geometry could never close: raise the search radius, or let the geometry move'
       case (CONTACT_NOT_FINITE)
          text = 'contact: node '//trim(number)//' of the '//trim(side)//' surface has a coordinate that is not '// &
                 'finite: cut the step'

@@ -1,21 +1,22 @@
 ! SPDX-License-Identifier: MIT
-!> Asks a scene which effects it calls for: pilots of it with every effect and without each, and what each changes in
-!> the answers. docs/theory/host.md section 11.
+!> Asks a scene which effects it calls for: pilots of its cheapest reading, with what no key says added, then without
+!> each effect, and what each changes in the answers. docs/theory/host.md section 11.
 module effect_pilots
    use, intrinsic :: iso_fortran_env, only: output_unit
    use kinds, only: wp
    use effect_monitor, only: is_watched
    use effect_switches, only: list_effects, settle_open_keys, switch, switch_by_hand
-   use effect_types, only: effect_t, indicator_place, OF_P_C, OF_SEEPAGE, OF_FLOW
+   use effect_types, only: effect_t, indicator_place, OF_P_C, OF_SEEPAGE, OF_FLOW, OF_INERTIA, OF_GRAVITY
    use faults, only: fault_t, raise, EXIT_INPUT
+   use pilot_budget, only: pilots_account_t, book, left, estimate, expect_run, NO_LIMIT
    use pilot_differences, only: difference_t, difference, influence_t
    use pilot_runs, only: pilot_t, run_pilot
    use pilot_scenes, only: make_cheap, can_coarsen
-   use scene_types, only: scene_t, scene_stage_t, WITH_P_C
+   use scene_types, only: scene_t, WITH_P_C, IS_DYNAMIC
    use texts, only: short, whole
    implicit none (type, external)
    private
-   public :: ask_effects, settle_scene, apply_effects, pilots_account_t
+   public :: ask_effects, settle_scene, apply_effects
 
    !> An influence is taken so many times as large, for the coarseness of the pilot.
    real(wp), parameter :: PILOT_FACTOR = 2.0_wp
@@ -25,25 +26,28 @@ module effect_pilots
    !> 2**LEVELS times as long as those of the scene.
    real(wp), parameter :: GOOD_PILOT = 0.25_wp
    integer, parameter :: LEVELS = 5
+   !> A pilot without an effect may cost so many times that with it.
+   real(wp), parameter :: MOST_TIMES_THE_BASE = 5.0_wp
+   !> Work that pilots with inertia may take where nothing else limits them: so much [s], or so many times that of the
+   !> pilot without it.
+   real(wp), parameter :: LONGEST = 60.0_wp, MOST_TIMES_STILL = 1000.0_wp
    !> Above so many elements cells are twice, three and four times as long.
    integer, parameter :: MANY_ELEMENTS(3) = [60, 1000, 4000]
+   character(*), parameter :: OVER_SHARE = 'not tried: pilots would cost too much'
 
-   !> The pilots as a whole.
-   type :: pilots_account_t
-      integer :: runs = 0
-      integer :: cells = 1, steps = 1      !< How much longer cells and steps were.
-      real(wp) :: seconds = 0.0_wp
-      real(wp) :: work = 0.0_wp            !< Elements times steps of all.
-      real(wp) :: run_work = 0.0_wp        !< The same of the run, estimated from the base of the pilots.
-      real(wp) :: planned = 0.0_wp         !< Work of the pilots that would be needed.
-      logical :: too_dear = .false.        !< They would cost a larger share of the run than they may: none was tried.
-      type(difference_t) :: own_error      !< Against pilots with steps, or cells, twice as long.
+   !> A reading of the scene, its pilot, and the scene of that pilot with its steps prescribed: what others are compared
+   !> with.
+   type :: base_t
+      type(scene_t) :: scene
+      type(pilot_t) :: pilot
+      integer :: steps = 1               !< How many times as long as those of the scene.
+      logical :: good = .false.          !< Steps half as long change the answers little.
+      type(difference_t) :: own_error    !< Against pilots with steps, or cells, twice as long.
       logical :: own_error_known = .false.
-      type(influence_t), allocatable :: influences(:)   !< Of every effect that was tried on every answer.
-   end type pilots_account_t
+   end type base_t
 contains
-   !> The scene with its open keys settled as the general case, and without what `without` names. Fault EXIT_INPUT: an
-   !> effect of `without` cannot be taken out.
+   !> The scene in its cheapest reading, and without what `without` names. Fault EXIT_INPUT: an effect of `without`
+   !> cannot be taken out.
    subroutine settle_scene(scene, fault)
       type(scene_t), intent(inout) :: scene
       type(fault_t), intent(inout) :: fault
@@ -67,10 +71,10 @@ contains
    end subroutine apply_effects
 
    !> Pilots of a scene as it was read. `whole_scene`: the pilots are the scene itself, neither coarser nor faster; they
-   !> may cost `share` of the estimated work of the run [-], else no effect is tried and all stay as they are. The
-   !> table's `on` says what the run should have; only what no key says may differ from the scene. docs/theory/host.md
-   !> section 11. Fault EXIT_INPUT: as of settle_scene, or the pilot with every effect fails; a failure of another pilot
-   !> stands in its row.
+   !> may cost `share` of the expected run [-], or some seconds if that is more (pilot_budget). What is not tried is as
+   !> the scene says it. The table's `on` says what the run should have; only what no key says may differ from the
+   !> scene. docs/theory/host.md section 11. Fault EXIT_INPUT: as of settle_scene, or the pilot of the scene fails; a
+   !> failure of another pilot stands in its row.
    subroutine ask_effects(scene, whole_scene, share, quiet, table, account, fault)
       type(scene_t), intent(in) :: scene
       logical, intent(in) :: whole_scene, quiet
@@ -78,85 +82,48 @@ contains
       type(effect_t), allocatable, intent(out) :: table(:)   !< (rows) As of list_effects.
       type(pilots_account_t), intent(out) :: account
       type(fault_t), intent(inout) :: fault
-      type(scene_t) :: settled, cheap
-      type(pilot_t) :: base
-      logical, allocatable :: tried(:), dispensable(:)
-      integer :: i
+      type(scene_t) :: settled
+      type(base_t) :: base
+      logical, allocatable :: tried(:)
 
       table = list_effects(scene)
-      ! What the scene does not have, and a key says so, is tried with the whole scene alone.
-      tried = table%present .or. whole_scene .or. .not. table%by_hand
-      dispensable = table%by_hand .or. table%kind == OF_FLOW
       settled = scene
       call settle_scene(settled, fault)
       if (fault%code /= 0) return
       allocate (account%influences(0))
-      account%cells = 1
+      account%share = merge(NO_LIMIT, share, whole_scene)
       if (.not. whole_scene) account%cells = cells_of(settled)
-      if (.not. whole_scene) call look_ahead(settled, count(tried .and. .not. dispensable), share, account)
-      if (.not. account%too_dear) call find_base()
+      table%tried_in = table%present
+      call find_base(settled, whole_scene, quiet, account, base)
+      if (.not. whole_scene) call add_inertia(settled, quiet, table, account, base)
+      if (.not. base%pilot%done .and. .not. account%over_share) call raise(fault, EXIT_INPUT, trim(scene%file)// &
+         ': the pilot of the scene fails, so that nothing can be said of any effect: '//trim(base%pilot%why))
       if (fault%code /= 0) return
-      if (account%too_dear) then
-         table%why = merge('not tried: by hand                              ', &
-                           'not tried: pilots would cost too much of the run', table%by_hand)
-         table%on = table%present
-         return
-      end if
-      call prescribe_steps(base, cheap)
-      do i = 1, size(table)
-         if (.not. tried(i)) cycle
-         call try_effect(cheap, base, i, table(i), account)
-         if (.not. quiet) write (output_unit, '(a)') '   pilot '//whole(account%runs)//', '// &
-            trim(merge('without', 'with   ', table(i)%present))//' '//trim(table(i)%name)//': '// &
-            told(table(i))
-      end do
-      call decide(cheap, base, scene%effects_tolerance, share, quiet, table, account)
-      call set_limits(base, real(account%steps, wp), scene%effects_tolerance, table)
-   contains
-      !> The pilot with every effect. Its steps are halved until that changes the answers little.
-      subroutine find_base()
-         type(pilot_t) :: finer
-         type(scene_t) :: finer_scene
-         type(difference_t) :: apart
-         logical :: good
-         integer :: k
-
-         do k = merge(LEVELS, 0, .not. whole_scene), 0, -1
-            finer_scene = settled
-            if (.not. whole_scene) call make_cheap(account%cells, 2**k, finer_scene)
-            call run_pilot(finer_scene, 0, finer)
-            call book(finer, account)
-            if (.not. finer%done) cycle
-            if (base%done) call difference(finer, base, apart)
-            account%own_error_known = base%done
-            account%own_error = apart
-            base = finer
-            cheap = finer_scene
-            account%steps = 2**k
-            good = account%own_error_known .and. apart%share <= GOOD_PILOT
-            call estimate(settled, cheap, base, account)
-            call keep_to(share, merge(1, 2, good), dispensable, tried, base, account)
-            if (good .or. account%too_dear) exit
-         end do
-         if (.not. base%done) then
-            call raise(fault, EXIT_INPUT, trim(scene%file)//': the pilot with every effect fails, so that nothing '// &
-                       'can be said of any: '//trim(finer%why))
-            return
+      if (.not. account%over_share) then
+         ! What the scene does not have, and a key says so, is tried with the whole scene alone.
+         tried = (table%present .or. whole_scene .or. .not. table%by_hand) .and. table%influence < 0.0_wp .and. &
+                 table%why == ''
+         if (.not. whole_scene) tried = tried .and. .not. (is_added(table%kind) .and. .not. table%present)
+         if (.not. any(base%scene%stages%analysis == IS_DYNAMIC)) then
+            where (tried .and. table%kind == OF_SEEPAGE) table%why = 'not tried: no stage has inertia'
+            tried = tried .and. table%kind /= OF_SEEPAGE
          end if
-         if (.not. quiet) write (output_unit, '(a)') 'Pilots: '//whole(base%elements)//' elements, '// &
-            whole(base%unknowns)//' unknowns, '//whole(base%steps)//' steps; with every effect '// &
-            short(base%processor)//' s of processor time.'
-         if (account%too_dear .or. whole_scene .or. size(settled%points) == 0 .or. .not. can_coarsen(cheap)) return
-         finer_scene = settled
-         call make_cheap(2*account%cells, account%steps, finer_scene)
-         call run_pilot(finer_scene, 0, finer)
-         call book(finer, account)
-         if (.not. finer%done) return
-         call difference(base, finer, apart)
-         account%own_error_known = .true.
-         if (apart%share > account%own_error%share) account%own_error = apart
-      end subroutine find_base
+         call keep_to_budget(base%pilot, table%by_hand .or. table%kind == OF_FLOW, account, tried)
+         call try_effects(base, tried, quiet, table, account)
+         if (.not. whole_scene) call coarser_cells(settled, account, base)
+      end if
+      call decide(base, scene%effects_tolerance, quiet, whole_scene, table, account)
+      account%steps = base%steps
+      account%own_error = base%own_error
+      account%own_error_known = base%own_error_known
    end subroutine ask_effects
+
+   !> Whether an effect is one that is judged before all others, by what it adds to the cheapest reading.
+   elemental logical function is_added(kind)
+      integer, intent(in) :: kind
+
+      is_added = kind == OF_INERTIA .or. kind == OF_GRAVITY
+   end function is_added
 
    !> How much longer the cells of pilots are, so that few tens of elements are left of a small scene and some
    !> hundreds of a large one.
@@ -168,149 +135,282 @@ contains
       times = 1 + count(2*sum(scene%mesh%r_cells)*sum(scene%mesh%z_cells) > MANY_ELEMENTS)
    end function cells_of
 
-   !> All pilots take the steps of the first, so that they differ by nothing else than the effect.
-   subroutine prescribe_steps(base, scene)
-      type(pilot_t), intent(in) :: base
-      type(scene_t), intent(inout) :: scene
-      integer :: i
+   !> The pilot of a reading. Its steps are halved until that changes the answers little. All pilots that follow take
+   !> the steps of the last one, which is run once more with its steps prescribed: what differs then differs by the
+   !> effect, and not by how steps are chosen and begun.
+   subroutine find_base(reading, whole_scene, quiet, account, base, most)
+      type(scene_t), intent(in) :: reading
+      logical, intent(in) :: whole_scene, quiet
+      type(pilots_account_t), intent(inout) :: account
+      type(base_t), intent(out) :: base
+      real(wp), intent(in), optional :: most   !< Work until one is done, or of all without a limit; default: any [s].
+      type(pilot_t) :: finer
+      type(scene_t) :: finer_scene
+      type(difference_t) :: apart
+      real(wp) :: before, run_before
+      integer :: k
 
-      do i = 1, size(scene%stages)
-         if (.not. scene%stages(i)%controlled .or. size(base%ends(i)%times) == 0) cycle
-         scene%stages(i)%controlled = .false.
-         scene%stages(i)%ends = base%ends(i)%times
-         scene%stages(i)%dt = base%ends(i)%times(1)
-         scene%stages(i)%dt_growth = 1.0_wp
-         ! The default depends on who chooses the steps.
-         scene%stages(i)%rho_inf = base%rho_inf(i)
+      before = account%work
+      run_before = account%run_work
+      do k = merge(LEVELS, 0, .not. whole_scene), 0, -1
+         finer_scene = reading
+         if (.not. whole_scene) call make_cheap(account%cells, 2**k, finer_scene)
+         call expect_run(reading, finer_scene, base%pilot%done, account)
+         ! The next pilot, and that with its steps prescribed.
+         if (base%pilot%done) account%over_share = 4*base%pilot%work > rest()
+         if (account%over_share) exit
+         call run_pilot(finer_scene, rest(), finer)
+         call book(finer, account)
+         if (finer%cut_off) then
+            if (.not. base%pilot%done) base%pilot = finer
+            account%over_share = .true.
+            exit
+         else if (.not. finer%done) then
+            if (.not. base%pilot%done) base%pilot = finer
+            cycle
+         end if
+         call estimate(reading, finer_scene, finer, base%scene, base%pilot, account)
+         if (base%pilot%done) call difference(finer, base%pilot, apart)
+         base%own_error_known = base%pilot%done
+         base%own_error = apart
+         base%pilot = finer
+         base%scene = finer_scene
+         base%steps = 2**k
+         base%good = base%own_error_known .and. apart%share <= GOOD_PILOT
+         if (base%good) exit
       end do
+      if (.not. base%pilot%done) account%run_work = run_before
+      if (base%pilot%done) call prescribe_steps(account, base)
+      if (quiet .or. .not. base%pilot%done) return
+      write (output_unit, '(a)') 'Pilots: '//whole(base%pilot%elements)//' elements, '// &
+         whole(base%pilot%unknowns)//' unknowns, '//whole(base%pilot%steps)//' steps'// &
+         trim(merge(' with inertia', '             ', any(base%scene%stages%analysis == IS_DYNAMIC)))//'; '// &
+         short(base%pilot%processor)//' s of processor time.'
+   contains
+      real(wp) function rest()
+         rest = left(account)
+         if (.not. present(most)) return
+         if (.not. base%pilot%done .or. rest >= NO_LIMIT) rest = min(rest, most - (account%work - before))
+      end function rest
+   end subroutine find_base
+
+   !> The base with the steps that it chose, all of them given.
+   subroutine prescribe_steps(account, base)
+      type(pilots_account_t), intent(inout) :: account
+      type(base_t), intent(inout) :: base
+      type(pilot_t) :: again
+      type(difference_t) :: apart
+      integer :: i
+      logical :: any_controlled
+
+      any_controlled = .false.
+      do i = 1, size(base%scene%stages)
+         associate (stage => base%scene%stages(i), ends => base%pilot%ends(i)%times)
+            if (.not. stage%controlled .or. size(ends) == 0) cycle
+            any_controlled = .true.
+            stage%controlled = .false.
+            stage%ends = ends
+            stage%dt = ends(1)
+            stage%dt_growth = 1.0_wp
+            ! The default depends on who chooses the steps.
+            stage%rho_inf = base%pilot%rho_inf(i)
+         end associate
+      end do
+      if (.not. any_controlled) return
+      call run_pilot(base%scene, MOST_TIMES_THE_BASE*base%pilot%work, again)
+      call book(again, account)
+      if (.not. again%done) return
+      call difference(base%pilot, again, apart)
+      account%noise = max(account%noise, apart%share)
+      base%pilot = again
    end subroutine prescribe_steps
 
-   pure subroutine book(pilot, account)
-      type(pilot_t), intent(in) :: pilot
+   !> What the scene leaves open and does not have in its cheapest reading: weight, in steps without inertia, and
+   !> inertia, with steps of its own and without the weight that a key does not ask for. Base: with what matters of
+   !> them, for all other effects.
+   subroutine add_inertia(settled, quiet, table, account, base)
+      type(scene_t), intent(in) :: settled
+      logical, intent(in) :: quiet
+      type(effect_t), intent(inout) :: table(:)
       type(pilots_account_t), intent(inout) :: account
+      type(base_t), intent(inout) :: base
+      type(scene_t) :: moving
+      type(base_t) :: dynamic
+      type(pilot_t) :: pilot
+      real(wp) :: tolerance
+      logical :: open(size(table)), dear
+      character(200) :: why
+      integer :: g, i
 
-      account%runs = account%runs + 1
-      account%seconds = account%seconds + pilot%seconds
-      account%work = account%work + work_of(pilot)
-   end subroutine book
-
-   pure real(wp) function work_of(pilot)
-      type(pilot_t), intent(in) :: pilot
-
-      work_of = real(pilot%elements, wp)*pilot%steps
-   end function work_of
-
-   !> Whether the keys alone say that pilots are too dear: the first ones, two of them, and one for each open effect, at
-   !> the most that cells and steps of any stage can be longer.
-   pure subroutine look_ahead(scene, open, share, account)
-      type(scene_t), intent(in) :: scene
-      integer, intent(in) :: open   !< Effects to be tried.
-      real(wp), intent(in) :: share
-      type(pilots_account_t), intent(inout) :: account
-      type(scene_t) :: cheap
-      integer :: i
-
-      cheap = scene
-      call make_cheap(account%cells, 2**LEVELS, cheap)
-      account%run_work = 0.0_wp
-      do i = 1, size(scene%stages)
-         account%run_work = max(account%run_work, longer_steps(scene%stages(i), cheap%stages(i)))
-      end do
-      if (can_coarsen(scene)) account%run_work = account%run_work*elements_of(scene)/elements_of(cheap)
-      account%planned = real(1 + 2*(open + 3), wp)
-      account%too_dear = .not. fits(account%planned, share, account)
-   end subroutine look_ahead
-
-   pure real(wp) function elements_of(scene)
-      type(scene_t), intent(in) :: scene
-
-      elements_of = 2.0_wp*sum(scene%mesh%r_cells)*sum(scene%mesh%z_cells)
-   end function elements_of
-
-   !> How many times as long the steps of a pilot's stage are; of controlled ones the square root of their accuracies,
-   !> for their error is of second order.
-   pure real(wp) function longer_steps(stage, of_pilot)
-      type(scene_stage_t), intent(in) :: stage, of_pilot
-
-      if (stage%controlled) then
-         longer_steps = sqrt(of_pilot%accuracy/stage%accuracy)
-      else
-         longer_steps = of_pilot%dt/stage%dt
+      tolerance = settled%effects_tolerance
+      open = table%kind == OF_INERTIA .and. .not. table%by_hand .and. .not. table%present
+      g = findloc(table%kind == OF_GRAVITY .and. .not. table%by_hand .and. .not. table%present, .true., dim=1)
+      dear = account%over_share
+      if (base%pilot%done .and. .not. dear .and. g > 0) then
+         call try_effect(base, g, table(g), account, pilot)
+         call tell(table(g), .not. quiet, account)
+         table(g)%on = matters(table(g), tolerance)
       end if
-   end function longer_steps
+      if (any(open) .and. .not. dear) then
+         moving = settled
+         do i = 1, size(table)
+            if (open(i)) call switch(moving, table(i), .true., why)
+         end do
+         ! Pilots of the other effects come after it, and have to be paid too.
+         call find_base(moving, .false., quiet, account, dynamic, &
+                        most=min(left(account) - 2*(size(table) + 2)*base%pilot%work, &
+                                 max(LONGEST, MOST_TIMES_STILL*base%pilot%work)))
+         account%over_share = .false.
+         if (dynamic%pilot%cut_off) then
+            where (open) table%why = 'its pilot came to '//short(dynamic%pilot%time(size(dynamic%pilot%time)))// &
+               ' s within what pilots may cost: as the scene says'
+            if (base%pilot%done) then
+               ! The first step of a flow goes with the square of the accuracy.
+               where (open) table%limit = SURPRISE*base%steps**2*maxval(base%pilot%indicators(OF_INERTIA, :))
+            end if
+         else if (.not. dynamic%pilot%done) then
+            where (open) table%why = 'cannot be put in: '//trim(dynamic%pilot%why)
+         end if
+      end if
+      call judge_inertia()
+      call choose_base()
+   contains
+      !> Each stage without its inertia, at the steps that resolve it; and all that would go at once.
+      subroutine judge_inertia()
+         type(difference_t) :: apart
+         type(scene_t) :: other
+         type(pilot_t) :: still
+         logical :: going(size(table))
+         integer :: k
 
-   !> Work of the run, from that of a pilot: elements and steps by the keys. A direct solver makes large runs dearer.
-   pure subroutine estimate(scene, cheap, pilot, account)
-      type(scene_t), intent(in) :: scene, cheap
+         if (.not. dynamic%pilot%done .or. any(open .and. table%why /= '')) return
+         where (open) table%tried_in = .true.
+         do k = 1, size(table)
+            if (.not. open(k)) cycle
+            call try_effect(dynamic, k, table(k), account, still)
+            call tell(table(k), .not. quiet, account)
+            table(k)%on = matters(table(k), tolerance)
+         end do
+         where (open) table%tried_in = .false.
+         if (.not. base%pilot%done) return
+         ! Weak alone: the weight is put into the pilot with inertia, all is taken out of the other.
+         going = open .and. .not. table%on
+         if (g > 0) going(g) = table(g)%influence >= 0.0_wp .and. .not. table(g)%on
+         if (count(going) < 2) return
+         other = dynamic%scene
+         pilot = dynamic%pilot
+         if (g > 0) then
+            if (going(g)) call switch(other, table(g), .true., why)
+            if (going(g)) call run_pilot(other, left(account), pilot)
+            if (going(g)) call book(pilot, account)
+         end if
+         other = dynamic%scene
+         do k = 1, size(table)
+            if (going(k) .and. open(k)) call switch(other, table(k), .false., why)
+         end do
+         call run_pilot(other, left(account), still)
+         call book(still, account)
+         if (.not. (pilot%done .and. still%done)) return
+         call difference(pilot, still, apart)
+         if (apart%share <= tolerance) return
+         k = maxloc(table%influence, dim=1, mask=going)
+         table(k)%on = .true.
+         table(k)%why = 'weak alone, but not together with the others that are to go'
+      end subroutine judge_inertia
+
+      !> With weight and inertia as they are decided: what is left is compared with that.
+      subroutine choose_base()
+         type(scene_t), allocatable :: before
+         logical :: moves
+
+         moves = any(open .and. table%on)
+         ! A body that nothing holds needs its inertia; what its base says of that stands in the row.
+         if (.not. base%pilot%done .and. (dynamic%pilot%done .or. dynamic%pilot%cut_off)) then
+            where (open) table%on = .true.
+            where (open) table%why = 'cannot be left out: '//trim(base%pilot%why)
+            moves = .true.
+            account%over_share = dynamic%pilot%cut_off
+         end if
+         if (moves) base = dynamic
+         if (.not. base%pilot%done) return
+         allocate (before, source=base%scene)
+         do i = 1, size(table)
+            if (moves .and. open(i) .and. .not. table(i)%on) call switch(base%scene, table(i), .false., why)
+            if (i == g .and. table(i)%on) call switch(base%scene, table(i), .true., why)
+         end do
+         where (open) table%tried_in = table%on
+         if (g > 0) then
+            table(g)%tried_in = table(g)%on
+            ! The speed at which added weight acts at once is as large as steps are short: no reason for a warning.
+            where (open .and. table(g)%on) table%limit = -1.0_wp
+         end if
+         if (.not. (any(open .and. .not. table%on) .and. moves) .and. .not. any(table%tried_in .and. &
+             table%kind == OF_GRAVITY .and. .not. table%present)) return
+         call run_pilot(base%scene, MOST_TIMES_THE_BASE*base%pilot%work, pilot)
+         call book(pilot, account)
+         if (pilot%done) then
+            base%pilot = pilot
+         else
+            base%scene = before
+            where (open) table%tried_in = moves
+            if (g > 0) table(g)%tried_in = .false.
+         end if
+      end subroutine choose_base
+   end subroutine add_inertia
+
+   !> Whether what is left to do fits: one pilot for each effect that is tried and one without all that is to go.
+   !> Effects that are set by hand, and the flow in single regions, are tried where there is room for them.
+   pure subroutine keep_to_budget(pilot, dispensable, account, tried)
       type(pilot_t), intent(in) :: pilot
+      logical, intent(in) :: dispensable(:)
+      type(pilots_account_t), intent(in) :: account
+      logical, intent(inout) :: tried(:)
+
+      if (pilot%work*(count(tried) + 1) <= left(account)) return
+      tried = tried .and. .not. dispensable
+      if (pilot%work*(count(tried) + 1) > left(account)) tried = .false.
+   end subroutine keep_to_budget
+
+   subroutine try_effects(base, tried, quiet, table, account)
+      type(base_t), intent(in) :: base
+      logical, intent(in) :: tried(:), quiet
+      type(effect_t), intent(inout) :: table(:)
       type(pilots_account_t), intent(inout) :: account
-      real(wp) :: elements, steps
+      type(pilot_t) :: pilot
       integer :: i
 
-      elements = pilot%elements
-      if (can_coarsen(scene)) elements = elements_of(scene)
-      steps = 0.0_wp
-      do i = 1, size(scene%stages)
-         steps = steps + size(pilot%ends(i)%times)*longer_steps(scene%stages(i), cheap%stages(i))
+      do i = 1, size(table)
+         if (.not. tried(i)) cycle
+         call try_effect(base, i, table(i), account, pilot)
+         call tell(table(i), .not. quiet, account)
       end do
-      account%run_work = elements*steps
-   end subroutine estimate
-
-   !> Whether some work is at most a share of the run's, which may be as large as a number can be.
-   pure logical function fits(work, share, account)
-      real(wp), intent(in) :: work, share   !< As work_of has it; [-]
-      type(pilots_account_t), intent(in) :: account
-
-      fits = work/max(account%run_work, 1.0_wp) <= share
-   end function fits
-
-   !> Whether what is left to do fits into the share: one pilot for each effect that is tried, one with cells twice as
-   !> long and one without all that is to go, `dearer` times as dear as this one, beside it where it is not the base
-   !> itself. Effects that are set by hand, and the flow in single regions, are tried where there is room for them.
-   pure subroutine keep_to(share, dearer, dispensable, tried, pilot, account)
-      real(wp), intent(in) :: share
-      integer, intent(in) :: dearer
-      logical, intent(in) :: dispensable(:)
-      logical, intent(inout) :: tried(:)
-      type(pilot_t), intent(in) :: pilot
-      type(pilots_account_t), intent(inout) :: account
-
-      account%planned = to_do()
-      if (fits(account%planned, share, account)) return
-      tried = tried .and. .not. dispensable
-      account%planned = to_do()
-      account%too_dear = .not. fits(account%planned, share, account)
-   contains
-      pure real(wp) function to_do()
-         to_do = account%work + dearer*work_of(pilot)*(count(tried) + 1 + dearer)
-      end function to_do
-   end subroutine keep_to
+   end subroutine try_effects
 
    !> One pilot without (with) an effect.
-   subroutine try_effect(cheap, base, row, effect, account)
-      type(scene_t), intent(in) :: cheap
-      type(pilot_t), intent(in) :: base
+   subroutine try_effect(base, row, effect, account, pilot)
+      type(base_t), intent(in) :: base
       integer, intent(in) :: row   !< Of the effect.
       type(effect_t), intent(inout) :: effect
       type(pilots_account_t), intent(inout) :: account
+      type(pilot_t), intent(out) :: pilot
       type(influence_t), allocatable :: influences(:)
       type(scene_t) :: other
-      type(pilot_t) :: pilot
       type(difference_t) :: apart
       character(200) :: why
 
-      other = cheap
-      call switch(other, effect, .not. effect%present, why)
+      other = base%scene
+      call switch(other, effect, .not. effect%tried_in, why)
       if (why == '') then
-         call run_pilot(other, base%steps, pilot)
+         call run_pilot(other, MOST_TIMES_THE_BASE*base%pilot%work, pilot)
          call book(pilot, account)
          why = pilot%why
       end if
       if (why /= '') then
-         effect%why = trim(merge('cannot be left out: ', 'cannot be put in:   ', effect%present))//' '//trim(why)
+         effect%why = trim(merge('cannot be left out: ', 'cannot be put in:   ', effect%tried_in))//' '//trim(why)
+         effect%on = effect%tried_in
          return
       end if
-      call difference(base, pilot, apart, influences)
+      call difference(base%pilot, pilot, apart, influences)
       if (size(influences) == 0) then
          effect%why = 'no point and no force of a moving support changes: nothing to judge by'
          return
@@ -320,59 +420,79 @@ contains
       effect%influence = apart%share
       effect%change = apart%change
       effect%answer = apart%answer
-      effect%unknowns = base%unknowns - pilot%unknowns
-      effect%seconds = pilot%processor/max(base%processor, tiny(1.0_wp))
-      if (effect%present .and. is_watched(effect%kind)) &
-         effect%limit = maxval(pilot%indicators(indicator_place(effect), :))
+      effect%unknowns = base%pilot%unknowns - pilot%unknowns
+      effect%seconds = pilot%processor/max(base%pilot%processor, tiny(1.0_wp))
+      if (.not. is_watched(effect%kind)) return
+      ! Of the run without it.
+      associate (without => indicator_place(effect))
+         if (effect%tried_in) effect%limit = maxval(pilot%indicators(without, :))
+         if (.not. effect%tried_in .and. effect%kind /= OF_SEEPAGE) &
+            effect%limit = maxval(base%pilot%indicators(without, :))
+      end associate
+      effect%limit = SURPRISE*base%steps*effect%limit
+      if (effect%kind == OF_P_C) effect%limit = max(effect%limit, base%scene%effects_tolerance*base%pilot%stress)
    end subroutine try_effect
 
+   !> Whether an effect that was tried changes an answer by more than the tolerance.
+   pure logical function matters(effect, tolerance)
+      type(effect_t), intent(in) :: effect
+      real(wp), intent(in) :: tolerance
+
+      matters = effect%on
+      if (effect%influence >= 0.0_wp) matters = PILOT_FACTOR*effect%influence > tolerance
+   end function matters
+
    !> What no key says goes or stays; what is to go together is tried together.
-   subroutine decide(cheap, base, tolerance, share, quiet, table, account)
-      type(scene_t), intent(in) :: cheap
-      type(pilot_t), intent(in) :: base
-      real(wp), intent(in) :: tolerance, share
-      logical, intent(in) :: quiet
+   subroutine decide(base, tolerance, quiet, whole_scene, table, account)
+      type(base_t), intent(in) :: base
+      real(wp), intent(in) :: tolerance
+      logical, intent(in) :: quiet, whole_scene
       type(effect_t), intent(inout) :: table(:)
       type(pilots_account_t), intent(inout) :: account
       type(scene_t) :: other
       type(pilot_t) :: pilot
       type(difference_t) :: apart
       logical :: going(size(table))
+      character(200) :: why
       integer :: i
 
       do i = 1, size(table)
          associate (t => table(i))
-            if (t%influence < 0.0_wp .and. t%why == '') then
-               t%why = merge('not tried: by hand                              ', &
-                             'not tried: pilots would cost too much of the run', t%by_hand)
-            else if (t%by_hand) then
-               t%why = trim(t%why)//trim(merge('; by hand', 'by hand  ', t%why /= ''))
+            if (t%by_hand) then
+               if (t%influence < 0.0_wp .and. t%why == '') t%why = 'not tried: by hand'
+               if (index(t%why, 'not tried') == 0) t%why = trim(t%why)//trim(merge('; by hand', 'by hand  ', &
+                                                                                   t%why /= ''))
             else if (t%influence < 0.0_wp) then
-               t%on = t%present
-            else
-               t%on = PILOT_FACTOR*t%influence > tolerance
+               if (t%why == '') t%why = OVER_SHARE
+            else if (whole_scene .or. t%present .or. .not. is_added(t%kind)) then
+               t%on = matters(t, tolerance)
                ! Relative acceleration makes waves grow in unsaturated soil.
-               if (t%kind == OF_SEEPAGE .and. t%on .and. cheap%fields == WITH_P_C) then
+               if (t%kind == OF_SEEPAGE .and. t%on .and. base%scene%fields == WITH_P_C) then
                   t%on = .false.
                   t%why = 'unstable in unsaturated soil: it stays off'
                end if
             end if
+            if (t%influence > 0.0_wp .and. t%influence <= account%noise) t%why = trim(t%why)//trim(merge('; ', '  ', &
+               t%why /= ''))//' within the noise of the pilots'
+            t%why = adjustl(t%why)
          end associate
       end do
       do
-         going = table%present .and. .not. table%on
+         going = table%tried_in .and. .not. table%on .and. table%influence >= 0.0_wp
          if (count(going) < 2) exit
-         if (.not. fits(account%work + work_of(base), share, account)) then
+         if (base%pilot%work > left(account)) then
             where (going) table%on = .true.
-            where (going) table%why = 'weak alone; a pilot without all that are to go would cost too much of the run'
+            where (going) table%why = 'weak alone; a pilot without all that are to go would cost too much'
             exit
          end if
-         other = cheap
-         call apply_effects(table, other)
-         call run_pilot(other, base%steps, pilot)
+         other = base%scene
+         do i = 1, size(table)
+            if (going(i)) call switch(other, table(i), .false., why)
+         end do
+         call run_pilot(other, MOST_TIMES_THE_BASE*base%pilot%work, pilot)
          call book(pilot, account)
          if (pilot%done) then
-            call difference(base, pilot, apart)
+            call difference(base%pilot, pilot, apart)
             if (.not. quiet) write (output_unit, '(a)') '   pilot '//whole(account%runs)//', without all that is '// &
                'to go: '//short(100*apart%share)//' % of '//trim(apart%answer)
             if (apart%share <= tolerance) exit
@@ -382,30 +502,43 @@ contains
          table(i)%on = .true.
          table(i)%why = 'weak alone, but not together with the others that are to go'
       end do
-   end subroutine decide
-
-   !> What the run may show of the effects that are gone.
-   pure subroutine set_limits(base, step_ratio, tolerance, table)
-      type(pilot_t), intent(in) :: base
-      real(wp), intent(in) :: step_ratio, tolerance
-      type(effect_t), intent(inout) :: table(:)
-      integer :: i
-
       do i = 1, size(table)
          associate (t => table(i))
-            if (t%on .or. .not. t%present .or. t%by_hand) t%limit = -1.0_wp
-            if (t%limit < 0.0_wp) cycle
-            t%limit = SURPRISE*step_ratio*t%limit
-            if (t%kind == OF_P_C) t%limit = max(t%limit, tolerance*base%stress)
+            ! What the run watches is what it leaves out and no key says.
+            if (t%on .or. t%by_hand) t%limit = -1.0_wp
+            t%added = t%on .and. .not. t%present
          end associate
       end do
-   end subroutine set_limits
+   end subroutine decide
+
+   !> The error of the mesh of the pilots, where there is room for another one.
+   subroutine coarser_cells(settled, account, base)
+      type(scene_t), intent(in) :: settled
+      type(pilots_account_t), intent(inout) :: account
+      type(base_t), intent(inout) :: base
+      type(scene_t) :: coarser
+      type(pilot_t) :: pilot
+      type(difference_t) :: apart
+
+      if (size(settled%points) == 0 .or. .not. can_coarsen(base%scene) .or. base%pilot%work > left(account)) return
+      coarser = base%scene
+      call make_cheap(2, 1, coarser)
+      call run_pilot(coarser, MOST_TIMES_THE_BASE*base%pilot%work, pilot)
+      call book(pilot, account)
+      if (.not. pilot%done) return
+      call difference(pilot, base%pilot, apart)
+      if (apart%share > base%own_error%share .or. .not. base%own_error_known) base%own_error = apart
+      base%own_error_known = .true.
+   end subroutine coarser_cells
 
    !> A row in a few words, while the pilots run.
-   function told(effect) result(text)
+   subroutine tell(effect, aloud, account)
       type(effect_t), intent(in) :: effect
+      logical, intent(in) :: aloud
+      type(pilots_account_t), intent(in) :: account
       character(:), allocatable :: text
 
+      if (.not. aloud) return
       if (effect%influence < 0.0_wp) then
          text = trim(effect%why)
       else if (effect%answer == '') then
@@ -413,5 +546,7 @@ contains
       else
          text = short(100*effect%influence)//' % of '//trim(effect%answer)
       end if
-   end function told
+      write (output_unit, '(a)') '   pilot '//whole(account%runs)//', '//trim(merge('without', 'with   ', &
+         effect%tried_in))//' '//trim(effect%name)//': '//text
+   end subroutine tell
 end module effect_pilots

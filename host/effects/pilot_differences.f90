@@ -38,6 +38,7 @@ contains
       type(influence_t), allocatable, intent(out), optional :: influences(:)   !< (answers)
       type(influence_t) :: all(FIELDS*size(one%names) + size(one%supports))
       real(wp) :: range(FIELDS, size(one%names)), force_range(size(one%supports)), largest(2), scale, apart, change
+      logical :: both(size(one%force_time))
       integer :: f, i, of, n
 
       n = 0
@@ -61,11 +62,14 @@ contains
             call compare(trim(one%names(i))//'.'//trim(FIELD_NAMES(f)))
          end do
       end do
+      ! Before the first step no force is known, and those of a step belong to a moment within it.
+      both = one%force_time >= two%force_time(min(2, size(two%force_time))) .and. &
+             one%force_time <= two%force_time(size(two%force_time))
       force_range = maxval(one%force, dim=2) - minval(one%force, dim=2)
       do i = 1, size(one%supports)
          if (force_range(i) <= NO_ANSWER*maxval(force_range)) cycle
          scale = force_range(i)
-         change = farthest(one%time, one%force(i, :), two%time, two%force(i, :))
+         change = farthest(pack(one%force_time, both), pack(one%force(i, :), both), two%force_time, two%force(i, :))
          call compare(trim(one%supports(i)))
       end do
       if (present(influences)) influences = all(:n)

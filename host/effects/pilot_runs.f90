@@ -7,6 +7,7 @@ module pilot_runs
    use effect_monitor, only: indicator_of, mass_of_nodes
    use effect_types, only: effect_t, EFFECTS, OF_FLOW
    use faults, only: fault_t, raise, EXIT_INPUT
+   use generalised_alpha, only: scheme_t, make_scheme
    use model_builder, only: build_model
    use model_types, only: model_t
    use moving_supports, only: find_moving, forces_of_moving
@@ -23,7 +24,8 @@ module pilot_runs
    public :: pilot_t, stage_ends_t, run_pilot
 
    integer, parameter :: NODES_WITHOUT_POINTS = 50    !< Answers of a scene that names no points.
-   integer, parameter :: MOST_TIMES_THE_STEPS = 5     !< Of the whole scene's pilot, that another one may take.
+   ! A pass over an element with its share of the solution, on a usual processor: measured, rounded [s].
+   real(wp), parameter :: OF_ELASTIC = 3.0e-5_wp, OF_PLASTIC = 1.0e-4_wp
 
    type :: stage_ends_t
       real(wp), allocatable :: times(:)               !< Ends of the steps, from the start of the stage [s].
@@ -32,15 +34,18 @@ module pilot_runs
    !> What a pilot has shown.
    type :: pilot_t
       logical :: done = .false.
+      logical :: cut_off = .false.                    !< It took all work that it may.
       character(200) :: why = ''                      !< Where it is not done.
       integer :: elements = 0, unknowns = 0, steps = 0
       real(wp) :: seconds = 0.0_wp, processor = 0.0_wp   !< By the clock; of the processor, all threads.
+      real(wp) :: work = 0.0_wp                       !< By the passes over its elements [s].
       real(wp) :: stress = 0.0_wp                     !< Largest change of an effective stress [kPa].
       logical :: has(FIELDS) = .false.
       character(72), allocatable :: names(:)          !< Of the points.
       real(wp), allocatable :: time(:), x(:, :, :)    !< [s], (FIELDS, points, times) [m, kPa]
       character(72), allocatable :: supports(:)       !< Those that move, with the direction.
       real(wp), allocatable :: force(:, :)            !< (supports, times) [kN]
+      real(wp), allocatable :: force_time(:)          !< To which they belong, within the steps [s].
       real(wp), allocatable :: indicators(:, :)       !< Largest, (see indicator_place, stages).
       type(stage_ends_t), allocatable :: ends(:)      !< Of the stages.
       real(wp), allocatable :: rho_inf(:)             !< Of the stages.
@@ -53,7 +58,7 @@ module pilot_runs
       integer, allocatable :: nodes(:)
       integer, allocatable :: moving(:)               !< Supports of which the force is kept, places in model%fixes.
       integer :: rows = 0
-      integer :: most_steps = huge(1)
+      real(wp) :: of_pass = 0.0_wp, most_work = huge(1.0_wp)   !< [s]
    contains
       procedure :: run_begins
       procedure :: step_done
@@ -63,9 +68,9 @@ module pilot_runs
    end type watcher_t
 contains
    !> Runs a scene whose keys are settled. A failure is told in the pilot. docs/theory/host.md section 11.
-   subroutine run_pilot(scene, most_steps, pilot)
+   subroutine run_pilot(scene, most_work, pilot)
       type(scene_t), intent(in) :: scene
-      integer, intent(in) :: most_steps   !< Of a pilot that may take MOST_TIMES_THE_STEPS times as many; 0: any number.
+      real(wp), intent(in) :: most_work   !< That the pilot may take [s].
       type(pilot_t), intent(out) :: pilot
       type(model_t) :: model
       type(run_t) :: run
@@ -76,12 +81,14 @@ contains
       t0 = clock()
       call cpu_time(p0)
       watcher%silent = .true.
-      if (most_steps > 0) watcher%most_steps = MOST_TIMES_THE_STEPS*most_steps
+      watcher%most_work = most_work
       call build_model(scene, model, fault)
       if (fault%code == 0) call prepare_run(model, run, fault)
       if (fault%code == 0) call run_stages(model, run, fault, watcher)
       pilot = watcher%seen
       pilot%done = fault%code == 0
+      pilot%work = watcher%of_pass*(run%iterations + run%steps)
+      pilot%cut_off = .not. pilot%done .and. pilot%work > most_work
       pilot%why = fault%text(:len(pilot%why))
       pilot%seconds = clock() - t0
       call cpu_time(p1)
@@ -113,6 +120,10 @@ contains
             write (self%seen%names(i), '(a,i0)') 'node', self%nodes(i)
          end do
       end if
+      do i = 1, size(model%domain%region_of)
+         self%of_pass = self%of_pass + merge(OF_ELASTIC, OF_PLASTIC, &
+                                             model%domain%regions(model%domain%region_of(i))%law%has_energy)
+      end do
       self%mass = mass_of_nodes(model, run%state)
       self%first = run%state
       self%before = run%state
@@ -125,15 +136,18 @@ contains
       n = size(self%moving)
       allocate (self%seen%time(1), self%seen%x(FIELDS, size(self%nodes), 1), self%seen%force(n, 1))
       self%seen%force = 0.0_wp
-      call keep(self, model, run)
+      self%seen%force_time = [run%state%time]
+      call keep(self, model, run, 0.0_wp)
    end subroutine run_begins
 
    !> A row of the histories. Before the first step no force is known: it gets that of the first.
-   subroutine keep(self, model, run)
+   subroutine keep(self, model, run, dt)
       class(watcher_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
-      real(wp), allocatable :: time(:), x(:, :, :), force(:, :)
+      real(wp), intent(in) :: dt   !< Of the step [s].
+      type(scheme_t) :: scheme
+      real(wp), allocatable :: time(:), force_time(:), x(:, :, :), force(:, :)
 
       if (self%rows == size(self%seen%time)) then
          allocate (time(2*self%rows), x(FIELDS, size(self%nodes), 2*self%rows), force(size(self%moving), 2*self%rows))
@@ -143,16 +157,21 @@ contains
          call move_alloc(time, self%seen%time)
          call move_alloc(x, self%seen%x)
          call move_alloc(force, self%seen%force)
+         allocate (force_time(2*self%rows))
+         force_time(:self%rows) = self%seen%force_time
+         call move_alloc(force_time, self%seen%force_time)
       end if
       self%rows = self%rows + 1
       self%seen%time(self%rows) = run%state%time
       self%seen%x(:, :, self%rows) = run%state%x(:FIELDS, self%nodes)
       if (self%rows == 1) return
+      scheme = make_scheme(model%stages(run%at%stage)%kind, model%stages(run%at%stage)%rho_inf, dt)
+      self%seen%force_time(self%rows) = run%state%time - (1 - scheme%l_f)*dt
       if (size(self%moving) > 0) self%seen%force(:, self%rows) = forces_of_moving(model, run, self%moving)
       if (self%rows == 2) self%seen%force(:, 1) = self%seen%force(:, 2)
    end subroutine keep
 
-   !> Keeps answers, indicators and the end of the step. Fault EXIT_INPUT: more than most_steps.
+   !> Keeps answers, indicators and the end of the step. Fault EXIT_INPUT: more than most_work.
    subroutine step_done(self, model, run, report, checkpoint, fault)
       class(watcher_t), intent(inout) :: self
       type(model_t), intent(in) :: model
@@ -164,7 +183,7 @@ contains
       integer :: k
 
       checkpoint = .false.
-      call keep(self, model, run)
+      call keep(self, model, run, report%dt)
       self%seen%stress = max(self%seen%stress, maxval(abs(run%state%stress - self%first%stress)))
       associate (s => report%stage)
          do k = 1, size(self%seen%indicators, 1)
@@ -175,7 +194,8 @@ contains
          self%seen%ends(s)%times = [self%seen%ends(s)%times, run%state%time - run%at%t_start]
       end associate
       call copy_state(run%state, self%before)
-      if (run%steps > self%most_steps) call raise(fault, EXIT_INPUT, 'its pilot takes many times as many steps')
+      if (self%of_pass*(run%iterations + run%steps) > self%most_work) call raise(fault, EXIT_INPUT, &
+         'its pilot takes many times as many steps')
    end subroutine step_done
 
    !> Takes over displacements that the end of the stage has set to zero. Raises no fault.
@@ -204,13 +224,16 @@ contains
       self%seen%time = self%seen%time(:self%rows)
       self%seen%x = self%seen%x(:, :, :self%rows)
       self%seen%force = self%seen%force(:, :self%rows)
+      self%seen%force_time = self%seen%force_time(:self%rows)
    end subroutine run_ends
 
    !> Prints a text, unless the watcher is silent.
-   subroutine warn(self, text)
+   subroutine warn(self, text, passing)
       class(watcher_t), intent(inout) :: self
       character(*), intent(in) :: text
+      logical, intent(in), optional :: passing
 
+      if (present(passing)) return
       ! The run itself warns where it is needed.
       if (.not. self%silent) write (output_unit, '(a)') text
    end subroutine warn

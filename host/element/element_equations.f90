@@ -96,13 +96,13 @@ contains
          suction(g) = k(g)%c0
          d_suction(g) = k(g)%c1 - k(g)%c0
       end do
-      call ask_points(domain, element, old, new, strain, suction, d_suction, with_tangent, slopes, material, out)
+      call update_points(domain, element, old, new, strain, suction, d_suction, with_tangent, slopes, material, out)
       if (out%bad_point > 0) return
       call add_points(domain, element, scheme, k, material, old, new, with_tangent, out)
    end subroutine compute_element
 
    !> Stress, saturation and void ratio at the points of an element, and their slopes.
-   subroutine ask_points(domain, element, old, new, strain, suction, d_suction, with_tangent, slopes, material, out)
+   subroutine update_points(domain, element, old, new, strain, suction, d_suction, with_tangent, slopes, material, out)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
       type(state_t), intent(in), target :: old
@@ -147,7 +147,7 @@ contains
       if (with_tangent .and. out%fallback /= NO_FALLBACK) &
          call stiffen(domain%regions(domain%region_of(element))%law, out%fallback, n, after, &
                       suction(:n) + d_suction(:n), material, out%replaced)
-   end subroutine ask_points
+   end subroutine update_points
 
    !> What the nodes say about the points of an element.
    subroutine look_at_nodes(domain, element, scheme, old, new, k)
@@ -157,14 +157,17 @@ contains
       type(state_t), intent(in) :: old, new
       type(kinematics_t), intent(inout) :: k(:)   !< As many as points, or more.
       type(nodes_t) :: nodes
+      real(wp) :: gravity
       integer :: g, n_p
 
       n_p = domain%n_carriers(element)
+      gravity = old%gravity + scheme%l_f*(new%gravity - old%gravity)
       call gather(domain, element, scheme, old, new, nodes)
       do g = 1, domain%rule
          associate (gp => domain%gauss(g, element), region => domain%regions(domain%region_of(element)))
             call look(gp, n_p > 0, region%with_c, scheme, nodes, k(g))
             if (region%drainage /= COUPLED) call add_given(given_pressures_at(domain, element, g), k(g))
+            k(g)%gravity = gravity
             k(g)%speed = 0.0_wp
             if (scheme%kind == DYNAMIC) k(g)%velocity = matmul(nodes%v0, gp%n)
             if (region%damping > 0.0_wp .and. scheme%kind == DYNAMIC) k(g)%speed = matmul(nodes%v, gp%n)
@@ -254,14 +257,14 @@ contains
                      + gp%weight*(drift(1)*abs(gp%dm(i, 1)) + drift(2)*abs(gp%dm(i, 2)))
                end do
             else
-               call solid_response(domain, region, scheme, k(g), old%stress(:, p), skeleton, old%e(p), with_tangent, &
-                                   response, tangent)
+               call solid_response(region, scheme, k(g), old%stress(:, p), skeleton, old%e(p), with_tangent, response, &
+                                   tangent)
             end if
             new%stress(:, p) = material%stress(:, g)
             new%e(p) = skeleton%e
             call add_response(gp, n_fields, response, sums%r)
             if (out%with_change) call add_response(gp, DISPLACEMENTS, &
-               change_of(domain, region, k(g), old%stress(:, p), old%e(p), old%s(p), response), &
+               change_of(domain, region, k(g), old%gravity, old%stress(:, p), old%e(p), old%s(p), response), &
                change)
             if (scheme%kind == DYNAMIC) call add_flight(domain, region, k(g), scheme, skeleton, gp, out%stretch)
             if (with_tangent) call add_tangent(gp, n_fields, tangent, sums%k)
@@ -289,7 +292,7 @@ contains
       integer :: i
 
       force = mixture_density(domain, region, skeleton%e/(1 + skeleton%e), skeleton%s) &
-              *(domain%gravity + FLIGHT_SHARE*norm2(k%velocity)/scheme%dt)
+              *(k%gravity + FLIGHT_SHARE*norm2(k%velocity)/scheme%dt)
       do i = 1, size(gp%n)
          part = gp%weight*force*abs(gp%n(i))
          stretch(2*i - 1) = stretch(2*i - 1) + part
@@ -298,10 +301,11 @@ contains
    end subroutine add_flight
 
    !> What a step changes of the total stress and of the weight at a point; inertia, sources and damping count whole.
-   pure function change_of(domain, region, k, stress0, e0, s0, response) result(change)
+   pure function change_of(domain, region, k, gravity0, stress0, e0, s0, response) result(change)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
       type(kinematics_t), intent(in) :: k
+      real(wp), intent(in) :: gravity0             !< Before the step [m/s2].
       real(wp), intent(in) :: stress0(6)           !< Effective stress before the step [kPa].
       real(wp), intent(in) :: e0, s0               !< Void ratio and degree of saturation before it [-].
       real(wp), intent(in) :: response(PLACES)
@@ -311,7 +315,7 @@ contains
       change(RR:RZ) = response(RR:RZ) - stress0(:4)
       if (region%with_w) change(RR:TT) = change(RR:TT) + (k%w0 + (1 - s0)*k%c0)
       change(U + 1:U + 2) = response(U + 1:U + 2)
-      change(U + 2) = change(U + 2) - mixture_density(domain, region, e0/(1 + e0), s0)*domain%gravity
+      change(U + 2) = change(U + 2) - mixture_density(domain, region, e0/(1 + e0), s0)*gravity0
    end function change_of
 
    !> What the nodes say about a point.

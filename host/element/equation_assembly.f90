@@ -4,10 +4,10 @@
 module equation_assembly
    use wall_clock, only: clock
    use kinds, only: wp
-   use carried_slopes, only: slopes_t, new_slopes, BY_MATERIAL, BY_SLOPES, AS_BEFORE
+   use carried_slopes, only: slopes_t, new_slopes, BY_MATERIAL, BY_SLOPES
    use degrees_of_freedom, only: dofs_t
    use element_equations, only: element_t, compute_element, element_size
-   use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
+   use tangent_fallback, only: NO_FALLBACK
    use material_point, only: report_t
    use porous_domain, only: domain_t, state_t, COUPLED
    use sparsity_pattern, only: pattern_t
@@ -16,7 +16,7 @@ module equation_assembly
    implicit none (type, external)
    private
    integer, parameter :: WORTH_THREADS = 64   !< Elements below which waking threads costs more than it saves.
-   public :: assembly_t, make_assembly, assemble, follow_slopes_first, NO_FALLBACK, SOFT_POINTS, AS_BEFORE
+   public :: assembly_t, make_assembly, assemble, follow_slopes_first
 
    type :: assembly_t
       real(wp), allocatable :: r(:, :)               !< Of every element.

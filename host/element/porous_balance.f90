@@ -8,7 +8,7 @@ module porous_balance
    use kinds, only: wp
    use porous_domain, only: domain_t, region_t, COUPLED, UNDRAINED
    use permeability_laws, only: relative_t, relative_permeability
-   use material_point, only: saturation_t
+   use retention_curves, only: saturation_t
    use generalised_alpha, only: scheme_t, rate_of, STATIC, DYNAMIC
    implicit none (type, external)
    private
@@ -26,6 +26,7 @@ module porous_balance
    type :: kinematics_t
       real(wp) :: strain(4)                     !< Increment of the step.
       real(wp) :: accel(2)                      !< At its level [m/s2].
+      real(wp) :: gravity                       !< At the level of values [m/s2].
       real(wp) :: speed(2)                      !< At its level, where it may be damped [m/s].
       real(wp) :: velocity(2)                   !< Before, in dynamic stages [m/s].
       real(wp) :: div_v                         !< Rate of volume at its level [1/s].
@@ -98,8 +99,7 @@ contains
 
    !> The same of a point of a region without water, where nothing is spent on the places of the fluids.
    !> docs/theory/host.md sections 2 and 3.3.
-   pure subroutine solid_response(domain, region, scheme, k, stress0, skeleton, e_old, with_tangent, response, tangent)
-      type(domain_t), intent(in) :: domain
+   pure subroutine solid_response(region, scheme, k, stress0, skeleton, e_old, with_tangent, response, tangent)
       type(region_t), intent(in) :: region
       type(scheme_t), intent(in) :: scheme
       type(kinematics_t), intent(in) :: k
@@ -118,7 +118,7 @@ contains
       rho = region%rho_s - n*region%rho_s
       l_s = level_of_stress(region, scheme)
       accel = k%accel + region%damping*k%speed
-      accel(2) = accel(2) + domain%gravity
+      accel(2) = accel(2) + k%gravity
       response = 0.0_wp
       response(1:4) = stress0(1:4) + l_s*(skeleton%stress - stress0(1:4))
       response(U + 1:U + 2) = rho*accel - k%source(1:2)
@@ -237,7 +237,7 @@ contains
          end if
          rho = region%rho_s + n*rho_n
          accel = k%accel + region%damping*k%speed
-         accel(2) = accel(2) + domain%gravity
+         accel(2) = accel(2) + k%gravity
          response = 0.0_wp
          response(1:4) = stress0(1:4) + l_s*(skeleton%stress - stress0(1:4))
          response(1:3) = response(1:3) - pressure
@@ -351,7 +351,7 @@ contains
 
       b = 0.0_wp
       if (domain%seepage_inertia) b = k%accel
-      b(2) = b(2) + domain%gravity
+      b(2) = b(2) + k%gravity
    end function body_force
 
    !> Slopes of a flux against saturation and displacement.

@@ -33,6 +33,7 @@ module porous_domain
    !> What a region is made of.
    type :: region_t
       class(material_t), allocatable :: law   !< Skeleton and retention: stress, void ratio, degree of saturation.
+      real(wp) :: stress_tolerance = 0.0_wp   !< Of its stress integration as the scene has it [-].
       integer :: permeability = 0       !< Place in the list, 0: none.
       real(wp) :: rho_s = 0.0_wp        !< Density of the grains [Mg/m3]
       real(wp) :: void_ratio = 0.0_wp   !< Initially [-].
@@ -68,7 +69,7 @@ module porous_domain
       logical :: with_w = .false., with_c = .false.   !< Fields besides the displacements.
       integer :: n_p = 6                              !< Pressure nodes of an element: 6, or 3 (Taylor-Hood).
       integer :: rule = 6                             !< Quadrature points of an element.
-      real(wp) :: gravity = 0.0_wp                    !< Towards -z [m/s2].
+      real(wp) :: gravity = 0.0_wp                    !< Towards -z, where its history is 1 [m/s2].
       logical :: seepage_inertia = .false.
       logical :: full_rate = .true.                   !< dS_w/de takes part in the rate of saturation.
       type(fluids_t) :: fluids
@@ -92,6 +93,7 @@ module porous_domain
    !> Everything that one time step carries to the next.
    type :: state_t
       real(wp) :: time = 0.0_wp
+      real(wp) :: gravity = 0.0_wp            !< At this time, towards -z [m/s2].
       real(wp), allocatable :: x(:, :)        !< (FIELDS, nodes) unknowns
       real(wp), allocatable :: v(:, :)        !< their rates
       real(wp), allocatable :: a(:, :)        !< (2, nodes) accelerations
@@ -226,6 +228,7 @@ contains
 
       nodes = size(domain%mesh%x, 2)
       points = domain%rule*size(domain%mesh%t6, 2)
+      state%gravity = domain%gravity
       allocate (state%x(FIELDS, nodes), source=0.0_wp)
       allocate (state%v(FIELDS, nodes), source=0.0_wp)
       allocate (state%a(2, nodes), source=0.0_wp)
@@ -283,6 +286,7 @@ contains
       type(state_t), intent(inout) :: to
 
       to%time = from%time
+      to%gravity = from%gravity
       to%x(:, :) = from%x
       to%v(:, :) = from%v
       to%a(:, :) = from%a

@@ -1,11 +1,12 @@
 ! SPDX-License-Identifier: MIT
-!> Reads Gmsh 4.1 text meshes of 6-node triangles; physical groups become groups of the mesh.
+!> Reads Gmsh 4.1 text meshes of 6-node triangles; physical groups become groups of the mesh: by their names, or,
+!> without one, by their dimension and number, as curve_7 (point_, surface_).
 module gmsh_reader
    use exit_codes, only: EXIT_MESH
    use kinds, only: wp
    use triangle_mesh, only: mesh_t, add_group, NAME_LENGTH
    use faults, only: fault_t, raise, at_line
-   use texts, only: short, whole
+   use texts, only: short, whole, mark_length
    implicit none (type, external)
    private
    public :: read_gmsh
@@ -64,6 +65,7 @@ contains
          read (reader%unit, '(a)', iostat=status) reader%text
          if (status /= 0) exit
          reader%line = reader%line + 1
+         if (reader%line == 1) reader%text = reader%text(1 + mark_length(reader%text):)
          select case (trim(reader%text))
          case ('$MeshFormat')
             call read_format(reader, fault)
@@ -79,8 +81,25 @@ contains
       end do
       close (reader%unit)
       if (fault%code == 0 .and. .not. allocated(mesh%x)) call wrong(reader, 'there is no section $Nodes', fault)
+      if (fault%code == 0) call name_others(entities, names)
       if (fault%code == 0) call sort_out(reader, names, entities, blocks, mesh, fault)
    end subroutine read_gmsh
+
+   !> Physical groups that the file gives no name are named by their dimension and number.
+   subroutine name_others(entities, names)
+      type(entity_t), intent(in) :: entities(:)
+      type(physical_t), allocatable, intent(inout) :: names(:)
+      character(7), parameter :: KINDS(0:3) = ['point  ', 'curve  ', 'surface', 'volume ']
+      integer :: i, k, tag
+
+      do i = 1, size(entities)
+         do k = 1, size(entities(i)%physical)
+            tag = abs(entities(i)%physical(k))
+            if (any(names%dimension == entities(i)%dimension .and. names%tag == tag)) cycle
+            names = [names, physical_t(entities(i)%dimension, tag, trim(KINDS(entities(i)%dimension))//'_'//whole(tag))]
+         end do
+      end do
+   end subroutine name_others
 
    subroutine wrong(reader, what, fault)
       type(reader_t), intent(in) :: reader

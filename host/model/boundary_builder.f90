@@ -3,7 +3,7 @@
 module boundary_builder
    use kinds, only: wp
    use faults, only: fault_t, raise, EXIT_INPUT
-   use contact_types, only: contact_options_t, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, PRESSURE_WORK, ENERGY_SLOPE
+   use contact_types, only: contact_options_t, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP
    use exit_codes, only: EXIT_GROUP
    use model_types, only: model_t, initial_t, fix_t, load_t, plate_t, contact_pair_t, absorber_t, tie_t, &
                           PRESCRIBED_P_A
@@ -80,6 +80,8 @@ contains
       allocate (model%initials(size(scene%initials)), model%fixes(size(scene%fixes)), model%loads(size(scene%loads)), &
                 model%contacts(size(scene%contacts)), model%absorbers(size(scene%absorbers)), &
                 model%ties(size(scene%ties)))
+      model%gravity_amplitude = amplitude_of(scene%gravity_history, trim(scene%file)//': gravity_history of &scene: ', &
+                                             model, fault)
       do i = 1, size(scene%initials)
          if (fault%code == 0) call build_initial(scene%initials(i), model, model%initials(i), fault)
       end do
@@ -199,8 +201,7 @@ contains
       if (given%drains_by_state .and. .not. model%domain%with_w) call raise(fault, EXIT_INPUT, place_of(given)// &
          'drainage = ''state'' needs pressures; see fields in &scene.')
       contact%options = contact_options_t(penalty=given%penalty, search_radius=given%search_radius, &
-         axisymmetric=model%domain%axisymmetric, gap=GAP_OF(given%gap_number), &
-         variation=merge(PRESSURE_WORK, ENERGY_SLOPE, given%pressure_work), fixed=given%fixed_geometry)
+         axisymmetric=model%domain%axisymmetric, gap=GAP_OF(given%gap_number))
    end subroutine build_contact
 
    subroutine build_absorber(given, model, absorber, fault)

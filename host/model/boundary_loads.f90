@@ -3,7 +3,7 @@
 module boundary_loads
    use kinds, only: wp, PI
    use given_pressures, only: edges_with_flow
-   use model_types, only: model_t, stage_t, load_t, plate_t, factor_at
+   use model_types, only: model_t, stage_t, load_t, plate_t, factor_at, gravity_at
    use scene_types, only: acts_in, LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_AIR, LOAD_FORCE_R
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    use degrees_of_freedom, only: dofs_t, tie, tie_pairs
@@ -162,6 +162,6 @@ contains
       real(wp), intent(in) :: time   !< [s]
 
       plate_load = factor_at(model, plate%amplitude, time)*plate%force
-      if (plate%heavy) plate_load = plate_load - plate%mass*model%domain%gravity
+      if (plate%heavy) plate_load = plate_load - plate%mass*gravity_at(model, time)
    end function plate_load
 end module boundary_loads

@@ -8,7 +8,7 @@ module contact_drainage
    use kinds, only: wp
    use model_types, only: model_t
    use contact_types, only: contact_message
-   use contact_interfaces, only: contacts_t, probe_contacts
+   use contact_interfaces, only: contacts_t, start_points
    use faults, only: fault_t, raise, EXIT_INPUT
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
@@ -76,7 +76,7 @@ contains
       integer :: c, f
 
       if (.not. allocated(drainage%gives_way)) return
-      if (.not. probe_contacts(contacts, x)) then
+      if (.not. start_points(contacts, x)) then
          call contact_message(contacts%status, text)
          call raise(fault, EXIT_CONVERGENCE, 'Drainage at the start of a step: '//trim(text)//'.')
          return
@@ -85,8 +85,8 @@ contains
       do c = 1, size(model%contacts)
          contacts%interfaces(c)%sealed = 0
          if (.not. model%contacts(c)%drains_by_state .or. .not. contacts%interfaces(c)%acts) cycle
-         associate (probe => contacts%interfaces(c)%probe, nodes => contacts%interfaces(c)%slave%node)
-            sealed = probe%pressure > 0.0_wp .and. probe%weight >= HALF*probe%whole
+         associate (point => contacts%interfaces(c)%point, nodes => contacts%interfaces(c)%slave%node)
+            sealed = point%pressure > 0.0_wp .and. point%coverage >= HALF
             contacts%interfaces(c)%sealed = count(sealed)
             do f = 1, size(model%fixes)
                if (.not. drainage%gives_way(f, c)) cycle

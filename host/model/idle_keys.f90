@@ -54,7 +54,7 @@ module idle_keys
    !> A key that acts only where another one is given (or, with `without`, is not).
    type :: partner_t
       character(12) :: group
-      character(12) :: key
+      character(15) :: key
       character(12) :: partner
       logical :: without = .false.
    end type partner_t
@@ -62,7 +62,9 @@ module idle_keys
    type(partner_t), parameter :: PARTNERS(*) = [ &
       partner_t('fix', 'datum', 'value_slope'), partner_t('load', 'datum', 'value_slope'), &
       partner_t('stage', 'dt_max', 'dt_growth'), partner_t('initial', 'wave_number', 'wave'), &
-      partner_t('plate', 'z', 'r'), partner_t('plate', 'face', 'r'), partner_t('mesh', 'r', 'file', .true.), &
+      partner_t('scene', 'gravity_history', 'gravity'), &
+      partner_t('plate', 'z', 'r'), partner_t('plate', 'face', 'r'), partner_t('mesh', 'scale', 'file'), &
+      partner_t('mesh', 'r', 'file', .true.), &
       partner_t('mesh', 'z', 'file', .true.), partner_t('mesh', 'r_cells', 'file', .true.), &
       partner_t('mesh', 'z_cells', 'file', .true.), partner_t('mesh', 'r_ratio', 'file', .true.), &
       partner_t('mesh', 'z_ratio', 'file', .true.), partner_t('history', 'times', 'file', .true.), &
@@ -171,6 +173,8 @@ contains
             if (.not. any([character(12) :: 'material', 'retention', 'permeability', 'history'] == key)) cycle
             used = .false.
             do k = 1, size(scene%groups)
+               if (key == 'history' .and. given(scene%groups(k), 'gravity_history')) &
+                  used = used .or. text_of(scene%groups(k), 'gravity_history') == name_of(group)
                if (k == g .or. .not. given(scene%groups(k), trim(key))) cycle
                if (is_law(scene%groups(k)%name)) cycle
                used = used .or. text_of(scene%groups(k), trim(key)) == name_of(group)

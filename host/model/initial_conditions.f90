@@ -4,11 +4,12 @@
 module initial_conditions
    use exit_codes, only: EXIT_MATERIAL
    use kinds, only: wp
-   use model_types, only: model_t, initial_t
+   use model_types, only: model_t, initial_t, gravity_at
    use given_pressures, only: pressures_at_start, water, suction
    use porous_domain, only: state_t, new_state_of, pressures_at, COUPLED, DRY
    use material_mud, only: mud_t
-   use material_point, only: material_t, saturation_t
+   use material_point, only: material_t
+   use retention_curves, only: saturation_t
    use faults, only: fault_t, raise
    use texts, only: short, whole
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C
@@ -18,9 +19,10 @@ module initial_conditions
 
    integer, parameter :: SLICES = 400   !< Of a column, for its weight: relative error 1/(24 SLICES**2) of its bend.
 
-   !> Points of MUD with a tensile component of the effective stress that the scene prescribes.
+   !> Points of MUD with a tensile component of the effective stress that the scene prescribes, or with no stress.
    type :: tension_t
       integer :: points = 0
+      integer :: bare = 0            !< Points without effective stress: sand has no stiffness there.
       real(wp) :: largest = 0.0_wp   !< [kPa]
       real(wp) :: z = 0.0_wp         !< Where it is [m].
    end type tension_t
@@ -40,6 +42,7 @@ contains
       integer :: e, g, p, i, n
 
       state = new_state_of(model%domain)
+      state%gravity = gravity_at(model, state%time)
       allocate (of_point(size(state%s)))
       do i = 1, size(model%initials)
          associate (one => model%initials(i), group => model%domain%mesh%groups(model%initials(i)%group))
@@ -103,6 +106,7 @@ contains
 
       select type (law)
       type is (mud_t)
+         if (.not. any(abs(stress(1:3)) > 0.0_wp)) tension%bare = tension%bare + 1
          if (.not. any(stress(1:3) > 0.0_wp)) return
          tension%points = tension%points + 1
          if (maxval(stress(1:3)) <= tension%largest) return
@@ -185,6 +189,6 @@ contains
             if (region%with_w) weight = weight + n*(sat%s*m%fluids%rho_w + (1 - sat%s)*rho_a)
          end do
       end associate
-      weight = weight*step*model%domain%gravity
+      weight = weight*step*gravity_at(model, 0.0_wp)
    end function weight_above
 end module initial_conditions

@@ -25,6 +25,7 @@ contains
 
       if (scene%mesh_file /= '') then
          call read_gmsh(trim(scene%mesh_file), mesh, fault)
+         if (fault%code == 0) mesh%x = scene%scale*mesh%x
          return
       end if
       elements = 2*sum(real(scene%r_cells, wp))*sum(real(scene%z_cells, wp))

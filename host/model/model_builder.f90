@@ -7,6 +7,7 @@ module model_builder
    use boundary_builder, only: build_plates, build_boundaries
    use boundary_loads, only: shape_loads, ties_of
    use degrees_of_freedom, only: number_unknowns
+   use free_bodies, only: check_bodies
    use given_pressures, only: add_centers, give_pressures, check_places
    use mesh_builder, only: build_mesh
    use model_types, only: model_t, point_t
@@ -26,8 +27,8 @@ module model_builder
    real(wp), parameter :: WORTH_A_THREAD = 4.0e-3_wp   !< A slice of Linux' scheduler [s].
 contains
    !> The keys of the scene must be settled (effect_switches). Mesh, regions, boundaries, unknowns and unit loads of a
-   !> scene. Faults: those of its parts; EXIT_INPUT: no quadrature rule of so many points; EXIT_ELEMENT: see
-   !> prepare_domain.
+   !> scene. Faults: those of its parts, of check_bodies; EXIT_INPUT: no quadrature rule of so many points;
+   !> EXIT_ELEMENT: see prepare_domain.
    subroutine build_model(scene, model, fault)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(out) :: model
@@ -58,6 +59,7 @@ contains
       if (fault%code == 0) call choose_threads(scene%threads, model%domain)
       if (fault%code == 0) call build_boundaries(scene, model, fault)
       if (fault%code == 0) call check_places(model, fault)
+      if (fault%code == 0) call check_bodies(model, fault)
       if (fault%code == 0) call give_pressures(model)
       if (fault%code == 0) call prepare_domain(model%domain, fault)
       if (fault%code /= 0) return

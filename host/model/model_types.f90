@@ -15,7 +15,7 @@ module model_types
                            NAME_LENGTH, FINGERPRINT_LENGTH
    implicit none (type, external)
    private
-   public :: model_t, initial_t, stage_t, fix_t, load_t, plate_t, contact_pair_t, point_t, factor_at
+   public :: model_t, initial_t, stage_t, fix_t, load_t, plate_t, contact_pair_t, point_t, factor_at, gravity_at
    public :: PRESCRIBED_P_A, absorber_t, tie_t
 
    integer, parameter :: PRESCRIBED_P_A = FIELDS + 1   !< "Field" of a prescribed air pressure.
@@ -81,6 +81,7 @@ module model_types
       real(wp) :: checkpoint_seconds = 0.0_wp             !< 0: none.
       logical :: checkpoint_end = .false.                 !< When the last stage ends.
       type(scene_amplitude_t), allocatable :: amplitudes(:)
+      integer :: gravity_amplitude = 0
       type(initial_t), allocatable :: initials(:)
       type(stage_t), allocatable :: stages(:)
       type(fix_t), allocatable :: fixes(:)
@@ -101,4 +102,12 @@ contains
       factor = 1.0_wp
       if (amplitude > 0) factor = amplitude_at(model%amplitudes(amplitude), time)
    end function factor_at
+
+   !> Gravity at a time, towards -z [m/s2].
+   pure real(wp) function gravity_at(model, time)
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: time   !< [s]
+
+      gravity_at = factor_at(model, model%gravity_amplitude, time)*model%domain%gravity
+   end function gravity_at
 end module model_types

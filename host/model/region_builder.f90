@@ -24,9 +24,9 @@ module region_builder
    integer, parameter :: DRAINAGE_OF(*) = [COUPLED, DRAINED, UNDRAINED, DRY]   !< Of the words of &region drainage.
 contains
    !> Materials, retention and permeability of every element; a fault names elements without a region and unknown names.
-   !> Fault EXIT_GROUP: an element without a region, or a name that is not defined. Fault EXIT_INPUT: no void ratio
-   !> where there are fluids, two retentions or none, saturation_rate = "suction" with a saturation that is a state,
-   !> tangent = 0; and what the laws refuse.
+   !> Fault EXIT_GROUP: an element of no region or of two, or a name that is not defined. Fault EXIT_INPUT: no void
+   !> ratio where there are fluids, two retentions or none, saturation_rate = "suction" with a saturation that is a
+   !> state, tangent = 0; and what the laws refuse.
    subroutine build_regions(scene, domain, fault)
       type(scene_t), intent(in) :: scene
       type(domain_t), intent(inout) :: domain
@@ -87,6 +87,7 @@ contains
       if (fault%code /= 0) return
       associate (region => domain%regions(number))
          allocate (region%law, source=materials(k)%law)
+         region%stress_tolerance = region%law%tolerance
          region%rho_s = given%rho_s
          region%damping = given%damping
          region%stiffness_damping = given%stiffness_damping
@@ -100,10 +101,43 @@ contains
             'the region needs a void_ratio: its pores hold the fluids.')
          if (region%with_w .and. region%drainage == COUPLED .and. fault%code == 0) region%permeability = &
             defined_name('permeability', given%permeability_name, domain%permeabilities%name, place_of(given), fault)
-         domain%region_of(domain%mesh%groups(group)%elements) = number
+         call take_elements(scene, number, domain%mesh%groups(group)%elements, domain%region_of, fault)
          if (region%with_c .and. fault%code == 0) call give_retention(scene, given, region%law, fault)
       end associate
    end subroutine build_region
+
+   !> The elements of a region. One without a group has those that no other region names, wherever it stands; elements
+   !> that two groups name are refused, for nothing says which region they belong to.
+   subroutine take_elements(scene, number, elements, region_of, fault)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: number, elements(:)
+      integer, intent(inout) :: region_of(:)
+      type(fault_t), intent(inout) :: fault
+      logical :: both(size(elements))
+      integer :: i
+
+      if (fault%code /= 0) return
+      associate (regions => scene%regions)
+         both = region_of(elements) > 0
+         do i = 1, size(elements)
+            if (both(i)) both(i) = regions(region_of(elements(i)))%rest .eqv. regions(number)%rest
+         end do
+         if (any(both)) then
+            i = findloc(both, .true., dim=1)
+            associate (other => regions(region_of(elements(i))))
+               call raise(fault, EXIT_GROUP, place_of(regions(number))//'the groups '''// &
+                  trim(regions(number)%group_name)//''' and '''//trim(other%group_name)//''' of two &region (lines '// &
+                  whole(other%line)//' and '//whole(regions(number)%line)//') have '//whole(count(both))// &
+                  ' elements in common, the first is '//whole(elements(i))//'; a &region without group has the '// &
+                  'elements that no other region names.')
+            end associate
+            return
+         end if
+      end associate
+      do i = 1, size(elements)
+         if (region_of(elements(i)) == 0 .or. .not. scene%regions(number)%rest) region_of(elements(i)) = number
+      end do
+   end subroutine take_elements
 
    !> A law has a retention of its own, or the curve that the region names: never two. A rate of saturation by suction
    !> alone needs a curve.

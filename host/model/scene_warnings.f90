@@ -4,27 +4,48 @@
 module scene_warnings
    use kinds, only: wp
    use faults, only: at_line
-   use given_pressures, only: nodes_with_flow, edges_with_flow
+   use boundary_warnings, only: list_boundary_warnings
    use idle_keys, only: list_idle_keys, add_warning, WARNING_LENGTH
    use initial_conditions, only: tension_t
-   use key_schema, only: line_of
+   use key_schema, only: line_of, given
    use material_elastic, only: elastic_t
-   use model_types, only: model_t, fix_t, PRESCRIBED_P_A
-   use scene_types, only: scene_t, acts_in, place_of, LOAD_WATER, LOAD_AIR
+   use model_types, only: model_t
+   use scene_keys, only: number_of
+   use scene_types, only: scene_t, place_of
    use stress_units, only: KILOPASCAL
    use texts, only: short, whole
    use triangle_mesh, only: mesh_t
-   use unknown_fields, only: DISPLACEMENTS, AT_P_W, FIELD_NAMES
    implicit none (type, external)
    private
-   public :: list_warnings, WARNING_LENGTH
+   public :: list_warnings
 
    real(wp), parameter :: SAME_PLACE = 1.0e-6_wp      !< Share of the mesh below which a point is a node.
    real(wp), parameter :: LARGE_MESH = 1.0e3_wp, SMALL_MESH = 1.0e-3_wp   !< [m]
+   real(wp), parameter :: LARGE_FILE = 100.0_wp       !< [m] Of a mesh from a file, which may well be drawn in mm.
    real(wp), parameter :: PERMEABLE = 1.0e-8_wp       !< [m2] Coarse gravel; above it a conductivity [m/s] is likely.
    real(wp), parameter :: ATMOSPHERE = 101.325_wp     !< [kPa]
    real(wp), parameter :: STIFF = 1.0e9_wp            !< [kPa] Five times steel; above it a modulus in Pa is likely.
-   character(3), parameter :: WORDS(*) = [FIELD_NAMES, 'p_a']
+
+   !> Values of fluids and grains that suggest another unit: below `lower`, or above `upper` and below `beyond`.
+   type :: usual_t
+      character(5) :: key
+      real(wp) :: lower, upper, beyond
+      character(40) :: say
+   end type usual_t
+
+   real(wp), parameter :: FAR = huge(1.0_wp)
+   real(wp), parameter :: RIGID = 1.0e11_wp   !< [kPa] So stiff a water is meant to be incompressible.
+   ! Densities up to a third of mercury's, of grains up to more than lead's; viscosities up to hundreds of times that of
+   ! water, as in a centrifuge.
+   type(usual_t), parameter :: USUAL(*) = [ &
+      usual_t('k_w', 10.0_wp, 1.0e7_wp, RIGID, 'a bulk modulus in kPa (water 2.2e6)'), &
+      usual_t('rho_w', 0.0_wp, 5.0_wp, FAR, 'a density in Mg/m3 (water 1)'), &
+      usual_t('eta_w', 0.0_wp, 5.0e-4_wp, FAR, 'a viscosity in kPa s (water 1e-6)'), &
+      usual_t('k_a', 10.0_wp, 1.0e4_wp, RIGID, 'a bulk modulus in kPa (air 101.325)'), &
+      usual_t('rho_a', 0.0_wp, 0.1_wp, FAR, 'a density in Mg/m3 (air 1.2e-3)'), &
+      usual_t('eta_a', 0.0_wp, 1.0e-6_wp, FAR, 'a viscosity in kPa s (air 1.8e-8)'), &
+      usual_t('p_ref', 10.0_wp, 1.0e4_wp, FAR, 'an absolute pressure in kPa (101.325)'), &
+      usual_t('rho_s', 0.0_wp, 20.0_wp, FAR, 'a density in Mg/m3 (quartz 2.65)')]
 contains
    !> All warnings about a scene, in the order of their kinds; empty if there are none. Raises no fault.
    subroutine list_warnings(scene, model, tension, warnings)
@@ -35,12 +56,13 @@ contains
 
       allocate (warnings(0))
       call look_at_sizes(scene, model, warnings)
+      call look_at_units(scene, warnings)
+      call look_at_regions(scene, model, warnings)
       call look_at_materials(scene, model, warnings)
       call look_at_points(model, warnings)
       call look_at_initials(model, tension, warnings)
-      call look_at_fixes(model, warnings)
+      call list_boundary_warnings(model, warnings)
       call look_at_retentions(scene, model, warnings)
-      call look_at_places(model, warnings)
       call list_idle_keys(scene, warnings)
    end subroutine list_warnings
 
@@ -54,7 +76,10 @@ contains
 
       size_of = extent(model%domain%mesh)
       if (size_of > LARGE_MESH .or. size_of < SMALL_MESH) call add_warning(place_of(scene%mesh)//'the mesh is '// &
-         short(size_of)//' m large; lengths are in m.', warnings)
+         short(size_of)//' m large; lengths are in m.'//remedy(), warnings)
+      if (scene%mesh%mesh_file /= '' .and. .not. scene%mesh%scale_given .and. size_of > LARGE_FILE .and. &
+          size_of <= LARGE_MESH) call add_warning(place_of(scene%mesh)//'the mesh of the file is '//short(size_of)// &
+         ' m large; lengths are in m.'//remedy(), warnings)
       do i = 1, size(scene%permeabilities)
          associate (group => scene%permeabilities(i)%group, k => model%domain%permeabilities(i)%intrinsic)
             if (k > PERMEABLE) call add_warning(at_line(group%file, line_of(group, 'intrinsic'))//'intrinsic = '// &
@@ -70,7 +95,51 @@ contains
                'soil or metal; moduli are in kPa.', warnings)
          end select
       end do
+   contains
+      function remedy() result(text)
+         character(:), allocatable :: text
+
+         text = ''
+         if (scene%mesh%mesh_file /= '') text = ' scale = 1e-3 of &mesh reads millimetres, scale = 1 metres.'
+      end function remedy
    end subroutine look_at_sizes
+
+   !> Fluids and grains that seem to have another unit.
+   subroutine look_at_units(scene, warnings)
+      type(scene_t), intent(in) :: scene
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      real(wp) :: value
+      integer :: g, k
+
+      do g = 1, size(scene%groups)
+         associate (group => scene%groups(g))
+            if (group%name /= 'fluids' .and. group%name /= 'region') cycle
+            do k = 1, size(USUAL)
+               if (.not. given(group, trim(USUAL(k)%key))) cycle
+               value = number_of(group, trim(USUAL(k)%key))
+               if (value >= USUAL(k)%lower .and. (value <= USUAL(k)%upper .or. value >= USUAL(k)%beyond)) cycle
+               call add_warning(at_line(group%file, line_of(group, trim(USUAL(k)%key)))//trim(USUAL(k)%key)//' = '// &
+                  short(value)//' of &'//trim(group%name)//' is unusual for '//trim(USUAL(k)%say)//'; scenes are '// &
+                  'in m, s, kPa and Mg.', warnings)
+            end do
+         end associate
+      end do
+   end subroutine look_at_units
+
+   !> Regions without an element.
+   subroutine look_at_regions(scene, model, warnings)
+      type(scene_t), intent(in) :: scene
+      type(model_t), intent(in) :: model
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      integer :: i
+
+      do i = 1, size(scene%regions)
+         if (any(model%domain%region_of == i)) cycle
+         call add_warning(place_of(scene%regions(i))//'the region '''//trim(scene%regions(i)%group_name)//''' has '// &
+            'no element'//trim(merge(': other regions name them all.', '.                             ', &
+            scene%regions(i)%rest)), warnings)
+      end do
+   end subroutine look_at_regions
 
    !> What laws say of their parameters, and laws in another unit of stress: each material once.
    subroutine look_at_materials(scene, model, warnings)
@@ -164,6 +233,9 @@ contains
          whole(tension%points)//' points of MUD, most at z = '//short(tension%z)//' m ('//short(tension%largest)// &
          ' kPa): sand carries none, and the material starts from what it can carry, without balance; correct '// &
          'p_w, surface or k_0 of &initial, or add a surcharge.', warnings)
+      if (tension%bare > 0) call add_warning(whole(tension%bare)//' points of MUD begin without effective stress: '// &
+         'sand has no stiffness there, and what the first step finds is arbitrary; give stress = ''geostatic'' or '// &
+         '''uniform'' in &initial.', warnings)
       do i = 1, size(model%initials)
          associate (one => model%initials(i), group => model%domain%mesh%groups(model%initials(i)%group))
             if (.not. one%geostatic .or. size(group%nodes) == 0) cycle
@@ -174,87 +246,6 @@ contains
          end associate
       end do
    end subroutine look_at_initials
-
-   !> Two that prescribe an unknown of a stage differently: the later one applies; and p_w, p_c and p_a all at once.
-   subroutine look_at_fixes(model, warnings)
-      type(model_t), intent(in) :: model
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
-      integer, allocatable :: by(:, :)
-      integer :: i, j, s, n, node
-
-      allocate (by(PRESCRIBED_P_A, size(model%domain%mesh%x, 2)))
-      do i = 2, size(model%fixes)
-         associate (one => model%fixes(i))
-            before: do j = 1, i - 1
-               if (model%fixes(j)%field /= one%field .or. .not. differ(model%fixes(j), one)) cycle
-               if (model%fixes(j)%from >= one%until .or. one%from >= model%fixes(j)%until) cycle
-               do s = 1, size(model%stages)
-                  if (.not. (acts_in(one%stages, model%stages(s)%name) .and. &
-                             acts_in(model%fixes(j)%stages, model%stages(s)%name))) cycle
-                  associate (nodes => model%domain%mesh%groups(model%fixes(j)%group)%nodes)
-                     n = findloc([(any(model%domain%mesh%groups(one%group)%nodes == nodes(node)), &
-                                   node=1, size(nodes))], .true., dim=1)
-                     if (n == 0) cycle before
-                     call add_warning(place_of(one)//WORDS(one%field)//' of the node at ('// &
-                        short(model%domain%mesh%x(1, nodes(n)))//', '//short(model%domain%mesh%x(2, nodes(n)))// &
-                        ') m has two &fix in stage '//trim(model%stages(s)%name)//', of the groups '''// &
-                        trim(model%fixes(j)%group_name)//''' and '''//trim(one%group_name)//''', with different '// &
-                        'values; the later one counts.', warnings)
-                  end associate
-                  cycle before
-               end do
-            end do before
-         end associate
-      end do
-      do s = 1, size(model%stages)
-         by = 0
-         do i = 1, size(model%fixes)
-            if (model%fixes(i)%field > DISPLACEMENTS .and. acts_in(model%fixes(i)%stages, model%stages(s)%name)) &
-               by(model%fixes(i)%field, model%domain%mesh%groups(model%fixes(i)%group)%nodes) = i
-         end do
-         node = findloc(all(by(AT_P_W:, :) > 0, dim=1), .true., dim=1)
-         if (node > 0) call add_warning(place_of(model%fixes(maxval(by(:, node))))//'p_w, p_c and p_a of a node '// &
-            'are all prescribed in stage '//trim(model%stages(s)%name)//'; p_a = p_w + p_c, so give two of them.', &
-            warnings)
-      end do
-   contains
-      pure logical function differ(a, b)
-         type(fix_t), intent(in) :: a, b
-
-         differ = (a%hold .neqv. b%hold) .or. a%amplitude /= b%amplitude .or. abs(a%value - b%value) > 0.0_wp .or. &
-                  abs(a%value_slope - b%value_slope) > 0.0_wp .or. &
-                  (abs(a%value_slope) > 0.0_wp .and. abs(a%datum - b%datum) > 0.0_wp)
-         if (a%hold .and. b%hold) differ = .false.
-      end function differ
-   end subroutine look_at_fixes
-
-   !> Supports of pressures and inflows that act on a part of their group alone.
-   subroutine look_at_places(model, warnings)
-      type(model_t), intent(in) :: model
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
-      logical :: flows(size(model%domain%mesh%x, 2))
-      integer :: i
-
-      flows = nodes_with_flow(model%domain)
-      do i = 1, size(model%fixes)
-         associate (one => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
-            if (one%field > DISPLACEMENTS .and. .not. all(flows(nodes))) call add_warning(place_of(one)// &
-               trim(WORDS(one%field))//' is prescribed on '//whole(count(flows(nodes)))//' of the '// &
-               whole(size(nodes))//' nodes of '''//trim(one%group_name)//''': the others lie in no region with '// &
-               'drainage = ''coupled''.', warnings)
-         end associate
-      end do
-      do i = 1, size(model%loads)
-         associate (one => model%loads(i))
-            if (one%kind /= LOAD_WATER .and. one%kind /= LOAD_AIR) cycle
-            associate (edges => edges_with_flow(model%domain, one%group))
-               if (.not. all(edges)) call add_warning(place_of(one)//'fluid flows in through '//whole(count(edges))// &
-                  ' of the '//whole(size(edges))//' edges of '''//trim(one%group_name)//''': the others belong to '// &
-                  'no region with drainage = ''coupled''.', warnings)
-            end associate
-         end associate
-      end do
-   end subroutine look_at_places
 
    !> Names of curves that are not looked up because the scene has no suction.
    subroutine look_at_retentions(scene, model, warnings)

@@ -5,9 +5,10 @@ module answer_errors
    use, intrinsic :: iso_fortran_env, only: error_unit
    use kinds, only: wp
    use answer_verification, only: force_error_t
-   use control_state, only: control_state_t, LIMIT_NAMES
+   use control_state, only: control_state_t, LIMIT_NAMES, BY_LARGEST, BY_SMALLEST
    use csv, only: csv_t, new_csv, write_row, close_csv
-   use faults, only: fault_t
+   use exit_codes, only: EXIT_ACCURACY
+   use faults, only: fault_t, raise
    use error_norms, only: PATH
    use generalised_alpha, only: DYNAMIC
    use model_types, only: model_t
@@ -16,16 +17,14 @@ module answer_errors
    use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: write_answers, print_answers, tell_answers
+   public :: write_answers, print_answers, judge_answers
 
    real(wp), parameter :: NO_CHANGE = 1.0e-9_wp   !< Share of the field's largest change that is no change of an answer.
    !> Of an answer: the warning is given from here on. In dynamic stages the magnitudes of errors add up, to ten times
    !> the true one in long shaking.
    real(wp), parameter :: ALARMING_ERROR = 0.1_wp, ALARMING_IN_MOTION = 0.3_wp
    real(wp), parameter :: BEYOND = 3.0_wp            !< Or from this multiple of the accuracy that was asked for.
-   real(wp), parameter :: HARDLY = 0.1_wp            !< Share of the field's largest change below which an answer's own
-                                                     !< is too small to be judged by, and such a pressure [kPa].
-   real(wp), parameter :: LEAST_PRESSURE = 0.01_wp
+   real(wp), parameter :: LEAST_PRESSURE = 0.01_wp   !< Smaller changes of pressures are no answers [kPa].
    character(18), parameter :: OF_ALL(DISPLACEMENTS:FIELDS) = [character(18) :: 'displacements', 'p_w', 'p_c']
    character(170), parameter :: UNSEEN(DISPLACEMENTS:FIELDS) = [character(170) :: &
       ', since loads or prescribed values act at once; the response of a material with a memory may depend on how '// &
@@ -73,30 +72,33 @@ contains
       end do
    end function is_prescribed
 
-   !> Warns on standard error, also where the run is quiet, of the answer whose estimated error is largest, if that is
-   !> more than 10 % (30 % with dynamic stages) and three times the accuracy that was asked for; of the field where no
-   !> point is named. docs/theory/host.md section 4.5.
-   subroutine tell_answers(model, control, verified, forces)
+   !> Judges every answer by its own change, of the fields where no point is named; an answer that changes by less than
+   !> Newton's tolerance of its field is no answer. Given steps: a warning on standard error, also where the run is
+   !> quiet, of the worst one beyond 10 % (30 % with dynamic stages). Controlled steps: fault EXIT_ACCURACY where the
+   !> worst one is beyond three times what was asked for. docs/theory/host.md section 4.5.
+   subroutine judge_answers(model, control, verified, forces, fault)
       type(model_t), intent(in) :: model
       type(control_state_t), intent(in) :: control
       logical, intent(in) :: verified   !< The errors are differences to a finer run.
       type(force_error_t), intent(in) :: forces(:)   !< As compare_forces gives them.
-      character(*), parameter :: SHORTER(2) = [character(120) :: &
-         'Leave dt out (steps are then controlled by their error) or shorten it; --verify measures the error.', &
-         'Ask for a smaller accuracy, or give none of dt, dt_max and steps; --verify measures the error.']
-      character(:), allocatable :: worst
-      real(wp) :: change, error, largest
+      type(fault_t), intent(inout) :: fault
+      character(*), parameter :: SHORTER = &
+         'Leave dt out (steps are then controlled by their error) or shorten it; --verify measures the error.'
+      character(:), allocatable :: worst, measured
+      real(wp) :: change, error, largest, asked
       integer :: i, f
 
+      asked = 0.0_wp
+      if (any(model%stages%controlled)) asked = maxval(model%stages%accuracy, mask=model%stages%controlled)
       largest = ALARMING_ERROR
       if (any(model%stages%kind == DYNAMIC) .and. .not. verified) largest = ALARMING_IN_MOTION
-      if (any(model%stages%controlled)) largest = max(largest, BEYOND*maxval(model%stages%accuracy, &
-                                                                             mask=model%stages%controlled))
+      if (asked > 0.0_wp) largest = BEYOND*asked
       worst = ''
       do f = 1, FIELDS
          do i = 1, size(model%points)
             if (.not. estimate(model, control, i, f, change, error)) cycle
-            if (change > HARDLY*control%scale(f) .and. (f <= DISPLACEMENTS .or. change > LEAST_PRESSURE)) &
+            if (change > minval(model%stages%tolerance)*control%scale(f) .and. &
+                (f <= DISPLACEMENTS .or. change > LEAST_PRESSURE)) &
                call compare(trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f)), error)
          end do
          if (size(model%points) > 0 .or. f < DISPLACEMENTS .or. .not. control%scale(f) > 0.0_wp) cycle
@@ -108,9 +110,15 @@ contains
          call compare(trim(forces(i)%name), forces(i)%error)
       end do
       if (worst == '') return
-      write (error_unit, '(a)') 'mud_host: warning: the steps in time are too long: the '// &
-         trim(merge('measured ', 'estimated', verified))//' error of '//worst//' is '//short(100*largest)// &
-         ' % of its largest change. '//trim(merge(SHORTER(2), SHORTER(1), any(model%stages%controlled)))
+      measured = trim(merge('measured ', 'estimated', verified))//' error of '//worst//' is '//short(100*largest)// &
+                 ' % of its largest change'
+      if (asked > 0.0_wp) then
+         call raise(fault, EXIT_ACCURACY, 'The accuracy is not met: the '//measured//', '//short(100*asked)// &
+                    ' % was asked for. '//what_limited(control)//' The results are written. '//remedy(control, asked, &
+                    largest))
+         return
+      end if
+      write (error_unit, '(a)') 'mud_host: warning: the steps in time are too long: the '//measured//'. '//SHORTER
    contains
       subroutine compare(name, error)
          character(*), intent(in) :: name
@@ -120,7 +128,35 @@ contains
          worst = name
          largest = error
       end subroutine compare
-   end subroutine tell_answers
+   end subroutine judge_answers
+
+   !> What kept most steps short, in words.
+   function what_limited(control) result(text)
+      type(control_state_t), intent(in) :: control
+      character(:), allocatable :: text
+      integer :: i
+
+      i = maxloc(control%limits, 1)
+      text = 'Steps were kept short by: '//trim(LIMIT_NAMES(i))//' ('//whole(nint(control%limits(i)))//' of '// &
+             whole(nint(sum(control%limits)))//'); '//whole(control%rejected)//' steps were repeated.'
+   end function what_limited
+
+   !> What to change in the scene, by what kept most steps short.
+   function remedy(control, asked, found) result(text)
+      type(control_state_t), intent(in) :: control
+      real(wp), intent(in) :: asked, found   !< Accuracy, and the error of the worst answer [-].
+      character(:), allocatable :: text
+
+      select case (maxloc(control%limits, 1))
+      case (BY_LARGEST)
+         text = 'Shorten dt_max, or ask for an accuracy of '
+      case (BY_SMALLEST)
+         text = 'Split the stage: no step is shorter than 1e-8 of it. Or ask for an accuracy of '
+      case default
+         text = 'Ask for an accuracy of '
+      end select
+      text = text//short(asked*asked/found)//'; --verify measures the error.'
+   end function remedy
 
    !> answers.csv: largest change [m, kPa] and estimated error [-] of every answer: docs/theory/host.md section 4.5.
    !> Fault EXIT_OUTPUT: it cannot be written.
@@ -189,9 +225,6 @@ contains
             ' came in single steps'//trim(UNSEEN(f))
       end do
       if (.not. any(model%stages%controlled)) return
-      i = maxloc(control%limits, 1)
-      write (unit, '(a)') '   Steps were kept short by: '//trim(LIMIT_NAMES(i))//' ('// &
-         whole(nint(control%limits(i)))//' of '//whole(nint(sum(control%limits)))//'); '// &
-         whole(control%rejected)//' steps were repeated.'
+      write (unit, '(a)') '   '//what_limited(control)
    end subroutine print_answers
 end module answer_errors

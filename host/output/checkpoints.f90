@@ -10,15 +10,14 @@ module checkpoints
    use run_state, only: run_t
    use control_state, only: new_control_state, numbers_of, take_numbers, count_of_numbers
    use degrees_of_freedom, only: dofs_t
-   use energy_ledger, only: ledger_t
    use output_tables, only: tables_t, settle_tables
-   use model_types, only: model_t
+   use model_types, only: model_t, gravity_at
    use porous_domain, only: copy_state
    use sparsity_pattern, only: make_pattern
    use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, &
                       get_text, extent_of
    use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
-   use scene_past, only: past_fingerprint
+   use scene_past, only: past_of_scene, first_difference
    use texts, only: from_c, short, whole
    implicit none (type, external)
    private
@@ -26,14 +25,14 @@ module checkpoints
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
    character(*), parameter :: KIND_OF_FILE = 'checkpoint of mud_host'
-   character(*), parameter :: FORMAT = '8'      !< Grows with every change of what is stored.
+   character(*), parameter :: FORMAT = '9'      !< Grows with every change of what is stored.
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
    integer, parameter :: N_COUNTERS = 14
    character(*), parameter :: DAMAGED = ' is damaged: an entry is missing, has another extent or a wrong '// &
                                         'checksum; use an older copy, or start anew.'
    character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
                                         'contact, seepage, damping [kJ], outflow, outflow_air [m3], '// &
-                                        'largest_work, open_0, most_created, tolerated [kJ]'
+                                        'largest_work, open_0, most_created [kJ], overdue [-], tolerated [kJ]'
 contains
    !> Writes the complete state of a run to checkpoint.h5 in the folder of the tables, in place of an older one. Fault
    !> EXIT_OUTPUT: a table or the checkpoint cannot be written.
@@ -48,13 +47,14 @@ contains
       ! What the checkpoint counts on comes first.
       call settle_tables(tables, fault)
       if (fault%code /= 0) return
-      call new_file(file, guarded=.true.)
+      call new_file(file, tables%folder//'/'//CHECKPOINT, guarded=.true.)
       call put_text(file, 'kind', KIND_OF_FILE)
       call put_text(file, 'format', FORMAT)
       call put_text(file, 'library', library())
       call put_text(file, 'scene', trim(model%name))
       call put_text(file, 'fingerprint', model%fingerprint)
-      call put_text(file, 'past', past_fingerprint(model%groups, model%amplitudes, run%at%stage, run%state%time))
+      call put(file, 'past', codes_of(past_of_scene(model%groups, model%amplitudes, run%at%stage, run%state%time)), &
+               '-', 'the scene so far, one key a line: the codes of its characters')
       call put_text(file, 'origin', tables%origin)
       associate (s => run%state, c => run%at)
          call put(file, 'counters', counters_of(run, tables), '-', 'stage, step of it, cuts in force, good steps, '// &
@@ -78,6 +78,8 @@ contains
          call put(file, 's', s%s, '-', 'degree of saturation')
          call put(file, 's_rate', s%s_rate, '1/s', 'its rate')
       end associate
+      if (allocated(run%damping_stress)) call put(file, 'damping_stress', run%damping_stress, 'kPa', &
+         'stress of the damping in proportion to the stiffness')
       if (allocated(model%effects)) call put(file, 'monitor', [run%monitor%table%largest, run%monitor%table%crossed], &
          '-', 'indicators of the effects that the pilots removed, times at which they passed their limits [s]')
       call put(file, 'control', numbers_of(run%control), '-', 'control of the time step: see control_state')
@@ -85,7 +87,7 @@ contains
                                                       'flow that is subtracted, forces that hold the ground')
       if (pairs_of(run) > 0) call put(file, 'pairs', reshape(run%system%contacts%extra, [2*pairs_of(run)]), '-', &
                                       'pairs of unknowns that contacts brought into the matrix')
-      call write_file(file, tables%folder//'/'//CHECKPOINT, good)
+      call write_file(file, good)
       if (.not. good) call raise(fault, EXIT_OUTPUT, tables%folder//'/'//CHECKPOINT//' cannot be written; is the '// &
                                  'disk full? The one before is untouched: make room and use --restart.')
    end subroutine write_checkpoint
@@ -137,6 +139,7 @@ contains
          call get(file, 'e', run%state%e)
          call get(file, 's', run%state%s)
          call get(file, 's_rate', run%state%s_rate)
+         if (allocated(run%damping_stress)) call get(file, 'damping_stress', run%damping_stress)
          if (allocated(run%constraint%dashpots)) call get(file, 'offset', run%constraint%offset)
          if (file%good .and. allocated(model%effects)) call take_monitor(file, run)
          if (file%good) call take_control(file, model, run)
@@ -144,6 +147,7 @@ contains
             call take_pairs(file, nint(counters(N_COUNTERS)), model%dofs, run)
          if (file%good) then
             run%state%time = stage(1)
+            run%state%gravity = gravity_at(model, stage(1))
             run%at%t_start = stage(2)
             run%at%nominal = stage(3)
             run%at%factor = stage(4)
@@ -179,7 +183,8 @@ contains
       real(wp), allocatable :: list(:)
 
       if (.not. file%good) return
-      run%control = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(model%points))
+      run%control = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(model%points), &
+                                      size(model%contacts))
       allocate (list(count_of_numbers(run%control)))
       call get(file, 'control', list)
       if (file%good) call take_numbers(list, run%control)
@@ -221,8 +226,10 @@ contains
       type(h5_t), intent(inout) :: file
       type(fault_t), intent(inout) :: fault
       character(64) :: kind, format_of, library_of, here, theirs
+      character(:), allocatable :: difference
       real(wp) :: counters(N_COUNTERS), stage(4)
       integer :: number
+      logical :: differs
 
       kind = get_text(file, 'kind')
       format_of = get_text(file, 'format')
@@ -249,14 +256,18 @@ contains
          return
       end if
       number = nint(counters(1))
+      difference = ''
+      if (number <= size(model%stages)) difference = first_difference(past_of_scene(model%groups, model%amplitudes, &
+                                                                                    number, stage(1)), past_in(file))
+      differs = difference /= ''
       if (number > size(model%stages)) then
          call raise(fault, EXIT_RESTART, foreign()//'it stands in stage '//whole(number)//', and the scene has '// &
                     whole(size(model%stages))//'.')
-      else if (get_text(file, 'past') /= past_fingerprint(model%groups, model%amplitudes, number, stage(1))) then
-         call raise(fault, EXIT_RESTART, foreign()//'groups, keys, values and files must be those of the run, but '// &
-                    'for threads and checkpoint_*; what may differ is the duration of the stage under way ('// &
-                    trim(model%stages(number)%name)//'), later stages with the &fix and &load of these alone, and '// &
-                    'histories after '//short(stage(1))//' s.')
+      else if (differs) then
+         call raise(fault, EXIT_RESTART, foreign()//difference//'. Groups, keys, values and files must be those of '// &
+                    'the run, but for threads and checkpoint_*; what may differ is the duration of the stage under '// &
+                    'way ('//trim(model%stages(number)%name)//'), later stages with the &fix and &load '// &
+                    'of these alone, and histories after '//short(stage(1))//' s.')
       else if (allocated(model%effects)) then
          call raise(fault, EXIT_RESTART, foreign()//'with effects = ''auto'' what is left out was found by '// &
                     'pilots of the whole scene; set the effects by hand to go on with more stages or other durations.')
@@ -273,6 +284,29 @@ contains
                 trim(theirs)//', here '//model%fingerprint//'): '
       end function foreign
    end subroutine check_origin
+
+   !> The past that a checkpoint contains, see past_of_scene.
+   function past_in(file) result(text)
+      type(h5_t), intent(inout) :: file
+      character(:), allocatable :: text
+      integer, allocatable :: codes(:)
+      integer :: i
+
+      allocate (codes(extent_of(file, 'past')))
+      call get(file, 'past', codes)
+      allocate (character(size(codes)) :: text)
+      do i = 1, size(codes)
+         text(i:i) = achar(iand(codes(i), 255))
+      end do
+   end function past_in
+
+   pure function codes_of(text) result(codes)
+      character(*), intent(in) :: text
+      integer :: codes(len(text))
+      integer :: i
+
+      codes = [(iachar(text(i:i)), i=1, len(text))]
+   end function codes_of
 
    function library() result(text)
       character(64) :: text

@@ -75,7 +75,7 @@ contains
             if (.not. t%acts) cycle
             work = new_workspace(t%geometry)
             found = new_result(t%geometry)
-            call probe_interface(t%geometry, t%fixed, t%slave, t%master, t%plate, state%x, .false., work, found, &
+            call probe_interface(t%geometry, t%slave, t%master, t%plate, state%x, .false., work, found, &
                                  status)
             if (status%code /= CONTACT_OK) return
             rows = reshape([rows, (real(c, wp), t%slave%x0(:, i), found%weight(i), found%weight(i)/found%whole(i), &

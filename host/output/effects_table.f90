@@ -2,8 +2,8 @@
 !> The table of effects, printed and as a file.
 module effects_table
    use kinds, only: wp
-   use effect_pilots, only: pilots_account_t
-   use effect_types, only: effect_t, NEVER
+   use pilot_budget, only: pilots_account_t
+   use effect_types, only: effect_t, NEVER, OF_GRAVITY
    use csv, only: csv_t, new_csv, write_line, close_csv
    use faults, only: fault_t
    use texts, only: short, whole
@@ -19,9 +19,9 @@ contains
       if (account%runs > 0) write (unit, '(a)') whole(account%runs)//' pilots in '//short(account%seconds)// &
          ' s: cells '//whole(account%cells)//' times, steps '//whole(account%steps)// &
          ' times as long as those of the scene.'
-      if (account%too_dear) write (unit, '(a)') 'No effect is left out: pilots that find out which may go would '// &
-         'cost at least '//short(100*account%planned/max(account%run_work, tiny(1.0_wp)))//' % of the run, '// &
-         'more than effects_pilot_share allows. mud_host --effects runs them all the same.'
+      if (account%over_share) write (unit, '(a)') 'No effect was tried: pilots would cost more than '// &
+         'effects_pilot_share and ten seconds allow. The run takes what the scene says; mud_host --effects runs '// &
+         'the pilots all the same.'
       if (account%own_error_known) write (unit, '(a)') 'The pilot''s own error, '// &
          'against pilots with steps, and cells, twice as long: '// &
          short(100*account%own_error%share)//' % of '//trim(account%own_error%answer)//'.'
@@ -45,6 +45,13 @@ contains
             write (unit, '(a32,1x,a5,1x,a7,1x,2a13,a9,a7,1x,a)') t%name, state_of(t, decided), by(t), cells(1:2), &
                cells(3)(:8), cells(4)(:6), trim(t%answer)//trim(merge('; ', '  ', t%answer /= '' .and. t%why /= ''))// &
                ' '//trim(t%why)
+         end associate
+      end do
+      do i = 1, size(table)
+         associate (t => table(i))
+            if (decided .and. t%added) write (unit, '(a)') 'Added: '//trim(t%name)//', which the scene does not '// &
+               'have without effects = ''auto''.'//trim(merge(' The weight of 9.81 m/s2 acts at once; gravity in '// &
+               '&scene says another.', repeat(' ', 70), t%kind == OF_GRAVITY))
          end associate
       end do
       write (unit, '(a)') 'Influence: largest change of an answer without the effect (with it where it is off), '// &

@@ -55,7 +55,7 @@ contains
       logical :: good
 
       if (.not. HAS_HDF5) return
-      call new_file(file)
+      call new_file(file, folder//'/mesh.h5')
       call put_text(file, 'kind', 'mesh of mud_host')
       call put_text(file, 'scene', model)
       call put_text(file, 'fingerprint', fingerprint)
@@ -70,7 +70,7 @@ contains
                'every quadrature point')
       call put(file, 'points/weight', [((domain%gauss(g, e)%weight, g=1, domain%rule), e=1, size(domain%mesh%t6, 2))], &
                'm3', 'volume of every quadrature point (per m of thickness in plane strain)')
-      call write_file(file, folder//'/mesh.h5', good)
+      call write_file(file, good)
       if (.not. good) call complain(folder//'/mesh.h5', fault)
    end subroutine write_mesh
 
@@ -113,7 +113,7 @@ contains
       frames%times = [frames%times, state%time]
       path = folder//'/'//file_of(size(frames%times))
       call all_pressures(domain, state, x)
-      call new_file(file)
+      call new_file(file, path)
       call put_text(file, 'kind', 'fields of mud_host')
       call put(file, 'time', [state%time], 's', 'time')
       do i = 1, size(LIST)
@@ -140,7 +140,7 @@ contains
                'quadrature point, tension positive')
       call put(file, 'points/e', state%e, '-', 'void ratio of every quadrature point')
       call put(file, 'points/S_w', state%s, '-', 'degree of saturation of every quadrature point')
-      call write_file(file, path, good)
+      call write_file(file, good)
       if (.not. good) call complain(path, fault)
       if (good) call write_xdmf(folder, domain, frames, fault)
    contains

@@ -20,7 +20,8 @@ module output_tables
    implicit none (type, external)
    private
    public :: COLUMNS_OF_A_POINT
-   public :: tables_t, open_tables, check_tables, write_history, write_ledger, write_contacts, write_fields
+   public :: tables_t, open_tables, check_tables, write_history, write_ledger, write_contacts, write_fields, &
+             write_points
    public :: write_contact_nodes, write_reactions, close_reactions, reactions_of, close_tables, settle_tables
 
    character(4), parameter :: COLUMNS(14) = [character(4) :: 'u_r', 'u_z', 'p_w', 'p_c', 'v_r', 'v_z', 'a_r', 'a_z', &
@@ -257,6 +258,28 @@ contains
       end do
       call close_csv(table, fault)
    end subroutine write_fields
+
+   !> points.csv: the node of every point of the scene and the place of its stresses, the nearest quadrature point, both
+   !> at the start [m]. Fault EXIT_OUTPUT: it cannot be written.
+   subroutine write_points(folder, model, fault)
+      character(*), intent(in) :: folder
+      type(model_t), intent(in) :: model
+      type(fault_t), intent(inout) :: fault
+      type(csv_t) :: table
+      integer :: i
+
+      if (size(model%points) == 0) return
+      call new_csv(folder//'/points.csv', 'name,r,z,stress_r,stress_z', table, fault)
+      do i = 1, size(model%points)
+         if (fault%code /= 0) exit
+         associate (one => model%points(i), rule => model%domain%rule)
+            write (table%row, '(a,",",*(es24.16e3,:,","))') trim(one%name), model%domain%mesh%x(:, one%node), &
+               model%domain%gauss(mod(one%gauss - 1, rule) + 1, (one%gauss - 1)/rule + 1)%x
+         end associate
+         call write_row(table, fault)
+      end do
+      call close_csv(table, fault)
+   end subroutine write_points
 
    !> contact_STAGE.csv: slave nodes of the contacts that act in the stage. Units: see contact_nodes. Fault EXIT_OUTPUT:
    !> it cannot be written.

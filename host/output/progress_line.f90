@@ -10,7 +10,7 @@ module progress_line
    use texts, only: short, whole
    implicit none (type, external)
    private
-   public :: progress_t, show_progress, clear_progress, steps_left, span_of
+   public :: progress_t, show_progress, show_line, clear_progress, steps_left, span_of
 
    real(wp), parameter :: PERIODS(2) = [0.5_wp, 30.0_wp]   !< Between two lines: on a terminal, elsewhere [s].
    real(wp), parameter :: MEMORY = 0.9_wp                  !< Share of the past in the mean time of a step.
@@ -31,7 +31,7 @@ contains
       type(progress_t), intent(inout) :: progress
       character(:), allocatable :: line
       real(wp) :: now, left
-      logical :: terminal
+      logical :: terminal, known
       integer :: i
 
       if (progress%quiet) return
@@ -52,14 +52,39 @@ contains
       progress%last_line = now
       associate (stage => model%stages(run%at%stage), at => run%at)
          left = steps_left(stage, at%nominal*at%factor, at%t_start + stage%duration - run%state%time)
-         do i = at%stage + 1, size(model%stages)
+         ! Stages to come that choose their steps have not chosen them yet.
+         known = .not. any(model%stages(at%stage + 1:)%controlled)
+         do i = at%stage + 1, merge(size(model%stages), at%stage, known)
             left = left + steps_left(model%stages(i), model%stages(i)%dt, model%stages(i)%duration)
          end do
          line = 'Stage '//trim(stage%name)//': step '//whole(at%step)//', time '//short(run%state%time)//' s, '// &
                 whole(nint(100*(run%state%time - at%t_start)/stage%duration))//' %; about '// &
-                span_of(left*progress%pace)//' left for all stages'
+                span_of(left*progress%pace)//' left for '//trim(merge('all stages', 'this stage', known))
       end associate
-      line = line(:min(len(line), WIDTH))
+      call write_line(line, terminal, progress)
+   end subroutine show_progress
+
+   !> A text in the place of the line, as often as that. Nothing where the run is quiet.
+   subroutine show_line(text, progress)
+      character(*), intent(in) :: text
+      type(progress_t), intent(inout) :: progress
+      logical :: terminal
+
+      if (progress%quiet) return
+      terminal = to_terminal()
+      if (clock() - progress%last_line < PERIODS(merge(1, 2, terminal))) return
+      progress%last_line = clock()
+      call write_line(text, terminal, progress)
+   end subroutine show_line
+
+   !> A line in place on a terminal, else a new one.
+   subroutine write_line(text, terminal, progress)
+      character(*), intent(in) :: text
+      logical, intent(in) :: terminal
+      type(progress_t), intent(inout) :: progress
+      character(:), allocatable :: line
+
+      line = text(:min(len(text), WIDTH))
       if (terminal) then
          write (output_unit, '(a)', advance='no') achar(13)//line//repeat(' ', WIDTH - len(line))
          progress%standing = .true.
@@ -67,7 +92,7 @@ contains
          write (output_unit, '(a)') line
       end if
       flush (output_unit)
-   end subroutine show_progress
+   end subroutine write_line
 
    !> Empties the line on the terminal, so that another can be written.
    subroutine clear_progress(progress)

@@ -14,14 +14,16 @@ module run_output
    use field_files, only: write_frame
    use model_types, only: model_t
    use output_tables, only: tables_t, open_tables, write_history, write_ledger, write_contacts, write_fields, &
+                            write_points, &
                             write_contact_nodes, write_reactions, close_reactions, close_tables
-   use progress_line, only: progress_t, show_progress, clear_progress
+   use progress_line, only: progress_t, show_progress, show_line, clear_progress
    use run_observer, only: run_observer_t, step_report_t
    use run_state, only: run_t
    implicit none (type, external)
    private
    public :: run_output_t
 
+   real(wp), parameter :: PICTURES = 50.0_wp   !< Fields of a stage with controlled steps, if no key says when.
    real(wp), parameter :: ON_TIME = 1.0e-6_wp   !< Distance from a time of output, share of output_dt, that is rounding.
 
    type, extends(run_observer_t) :: run_output_t
@@ -58,8 +60,9 @@ contains
       call open_tables(self%folder, model, self%resume, self%tables, fault)
       if (fault%code == 0 .and. allocated(model%effects)) call write_effects(self%folder, run%monitor%table, fault)
       if (fault%code /= 0 .or. run%steps > 0) return
-      call write_history(self%tables, model, run%state, fault)
-      call write_frame(self%folder, model%domain, run%state, self%tables%frames, fault)
+      call write_points(self%folder, model, fault)
+      if (fault%code == 0) call write_history(self%tables, model, run%state, fault)
+      if (fault%code == 0) call write_frame(self%folder, model%domain, run%state, self%tables%frames, fault)
    end subroutine run_begins
 
    !> Tables, fields and a checkpoint where they are due, and the progress line. Fault EXIT_OUTPUT: a file cannot be
@@ -88,6 +91,9 @@ contains
          else if (stage%fields > 0 .and. .not. report%last) then
             if (mod(step, stage%fields) == 0) &
                call write_frame(self%folder, model%domain, run%state, self%tables%frames, fault)
+         else if (stage%controlled .and. stage%film .and. .not. report%last) then
+            if (picture_of(run%state%time - run%at%t_start) > picture_of(run%state%time - report%dt - run%at%t_start)) &
+               call write_frame(self%folder, model%domain, run%state, self%tables%frames, fault)
          end if
       end associate
       if (fault%code /= 0) return
@@ -101,6 +107,13 @@ contains
          if (fault%code /= 0) return
       end if
       call show_progress(model, run, self%progress)
+   contains
+      !> Number of the last picture up to a time since the start of the stage.
+      pure integer function picture_of(time)
+         real(wp), intent(in) :: time   !< [s]
+
+         picture_of = floor(PICTURES*(time/model%stages(report%stage)%duration)*(1 + ON_TIME))
+      end function picture_of
    end subroutine step_done
 
    !> The end of a stage; after a failure too, for what was computed. Fault EXIT_OUTPUT: a file cannot be written.
@@ -146,12 +159,17 @@ contains
       end do
    end subroutine run_ends
 
-   !> Prints a text, unless the run is quiet.
-   subroutine warn(self, text)
+   !> Prints a text, unless the run is quiet; one that passes in the place of the progress line.
+   subroutine warn(self, text, passing)
       class(run_output_t), intent(inout) :: self
       character(*), intent(in) :: text
+      logical, intent(in), optional :: passing
 
       if (self%quiet) return
+      if (present(passing)) then
+         call show_line(text, self%progress)
+         return
+      end if
       call clear_progress(self%progress)
       write (output_unit, '(a)') text
    end subroutine warn

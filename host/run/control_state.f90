@@ -17,7 +17,7 @@ module control_state
                          BY_SMALLEST = 6, BY_GROWTH = 7
    character(30), parameter :: LIMIT_NAMES(LIMITS) = [character(30) :: 'error of the displacements', 'error of p_w', &
       'error of p_c', 'times that steps end at', 'dt_max', 'smallest step', 'growth of the step']
-   integer, parameter :: SCALARS = 10
+   integer, parameter :: SCALARS = 12
 
    type :: control_state_t
       type(controller_t) :: controller
@@ -33,18 +33,22 @@ module control_state
                                                  !< displacements where the material has a memory, of pressures
                                                  !< in a stage of one step.
       real(wp) :: limits(LIMITS) = 0.0_wp        !< Steps by what kept them short.
+      real(wp) :: dissipated_0 = 0.0_wp          !< By damping and seepage where the stage began [kJ].
+      real(wp) :: motion = 0.0_wp                !< Kinetic energy over the time of the stage [kJ s].
+      real(wp), allocatable :: touching(:)       !< 1: the contact was closed at the start of the step, else 0.
       ! Of the fields at the named points, (FIELDS, points).
       real(wp), allocatable :: low(:, :), high(:, :), point_gathered(:, :), point_largest(:, :)
       real(wp), allocatable :: x_first(:, :)     !< Unknowns at the start of the stage.
    end type control_state_t
 contains
    !> State of a control that has taken no step.
-   pure function new_control_state(nodes, points, named) result(state)
-      integer, intent(in) :: nodes, points, named   !< Nodes, quadrature points, named points.
+   pure function new_control_state(nodes, points, named, contacts) result(state)
+      integer, intent(in) :: nodes, points, named, contacts   !< Nodes, quadrature points, named points, contacts.
       type(control_state_t) :: state
 
       state%memory = new_memory(FIELDS, nodes, points)
       allocate (state%x_first(FIELDS, nodes), source=0.0_wp)
+      allocate (state%touching(contacts), source=0.0_wp)
       allocate (state%low(FIELDS, named), source=huge(1.0_wp))
       allocate (state%high(FIELDS, named), source=-huge(1.0_wp))
       allocate (state%point_gathered(FIELDS, named), state%point_largest(FIELDS, named), source=0.0_wp)
@@ -55,7 +59,7 @@ contains
       type(control_state_t), intent(in) :: state   !< After new_control_state.
 
       n = SCALARS + 4*FIELDS + LIMITS + size(state%x_first) + size(state%memory%rate) &
-          + size(state%memory%s_rate) + 4*size(state%low)
+          + size(state%memory%s_rate) + 4*size(state%low) + size(state%touching)
    end function count_of_numbers
 
    !> Everything as one list, for a checkpoint. Each number in its own unit, in the order that take_numbers reads.
@@ -66,8 +70,9 @@ contains
       associate (c => state%controller, m => state%memory)
          list = [c%dt, c%last_ratio, merge(1.0_wp, 0.0_wp, c%held), state%t_sudden, real(state%fresh, wp), &
                  state%start_up, real(state%rejected, wp), merge(1.0_wp, 0.0_wp, m%known), m%dt, &
-                 m%span, state%unseen, state%scale, state%gathered, state%largest, state%limits, state%x_first, &
-                 m%rate, m%s_rate, state%low, state%high, state%point_gathered, state%point_largest]
+                 m%span, state%dissipated_0, state%motion, state%unseen, state%scale, state%gathered, &
+                 state%largest, state%limits, state%touching, state%x_first, m%rate, m%s_rate, state%low, &
+                 state%high, state%point_gathered, state%point_largest]
       end associate
    end function numbers_of
 
@@ -88,12 +93,15 @@ contains
          m%known = list(8) > 0.5_wp
          m%dt = list(9)
          m%span = list(10)
+         state%dissipated_0 = list(11)
+         state%motion = list(12)
          at = SCALARS
          call take_row(state%unseen)
          call take_row(state%scale)
          call take_row(state%gathered)
          call take_row(state%largest)
          call take_row(state%limits)
+         call take_row(state%touching)
          call take(state%x_first)
          call take(m%rate)
          call take_row(m%s_rate)

@@ -16,17 +16,21 @@ module energy_alarm
 
    character(*), parameter :: REMEDY = 'shorten dt, set rho_inf = 0 where a contact opens and closes, or '// &
       'measure = ''change'' where weight rests'
+   !> Steps in which the work of a load that has just begun exceeds by far that of its first step: it grows with the
+   !> third power of their number and faster.
+   real(wp), parameter :: PATIENCE = 5.0_wp
 contains
-   !> After every booked step: a fault where a dynamic stage has created more than it may. Fault EXIT_ENERGY.
-   !> docs/theory/host.md section 9.
-   subroutine check_creation(stage, time, ledger, fault)
+   !> After every booked step: a fault where a dynamic stage has created more than it may, in PATIENCE steps in a row or
+   !> in its last one. Fault EXIT_ENERGY. docs/theory/host.md section 9.
+   subroutine check_creation(stage, time, is_last, ledger, fault)
       type(stage_t), intent(in) :: stage
       real(wp), intent(in) :: time   !< At the end of the step [s].
+      logical, intent(in) :: is_last   !< The step is the last of the stage.
       type(ledger_t), intent(in) :: ledger
       type(fault_t), intent(inout) :: fault
 
       if (stage%kind /= DYNAMIC .or. fault%code /= 0) return
-      if (ledger%most_created <= allowed_creation(stage%created_energy, ledger)) return
+      if (ledger%overdue < merge(1.0_wp, PATIENCE, is_last)) return
       call raise(fault, EXIT_ENERGY, 'Stage '//trim(stage%name)//', time '//short(time)//' s: the run has created '// &
                  amount(ledger)//', allowed '//short(100*stage%created_energy)//' %. Its results may be wrong by '// &
                  'any factor: '//REMEDY//'; created_energy of &stage allows more.')

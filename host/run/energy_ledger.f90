@@ -8,13 +8,14 @@ module energy_ledger
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use dashpots, only: work_of_dashpots
    use degrees_of_freedom, only: dofs_t
-   use porous_domain, only: domain_t, state_t, mixture_density, pressures_at, COUPLED
+   use porous_domain, only: domain_t, region_t, state_t, mixture_density, pressures_at, COUPLED
    use permeability_laws, only: relative_t, relative_permeability
    use prescribed_values, only: constraint_t
    use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
    implicit none (type, external)
    private
-   public :: ledger_t, book_step, book_creation, allowed_creation, kinetic_energy, imbalance, ALARMING_SHARE
+   public :: ledger_t, book_step, book_creation, count_creation, allowed_creation, kinetic_energy, imbalance
+   public :: ALARMING_SHARE
 
    !> Energy that a run creates out of nothing, as a share of the largest work done in it, beyond which its results are
    !> unreliable: the balances of the verified scenes close to 1e-3 and better [-].
@@ -33,6 +34,7 @@ module energy_ledger
       real(wp) :: largest_work = 0.0_wp !< Largest of the works and of the kinetic energy at the start, so far [kJ].
       real(wp) :: open_0 = 0.0_wp       !< What the balance left open where the present stage began [kJ].
       real(wp) :: most_created = 0.0_wp !< Largest energy that a dynamic stage has created, so far [kJ].
+      real(wp) :: overdue = 0.0_wp      !< Steps in a row, to the last, with more created energy than the stage allows.
       real(wp) :: tolerated = 0.0_wp    !< Most that residuals within Newton's tolerance can have done in a step [kJ].
    end type ledger_t
 
@@ -45,7 +47,7 @@ contains
    !> All works are those of mean forces of a step times its displacements. So is that of the supports: what they hold
    !> is formed anew from the mean forces, since the reactions of the scheme hold at its own level, not half-way.
    !> docs/theory/host.md section 9. All in [kJ], outflow in [m3].
-   subroutine book_step(domain, dofs, scheme, constraint, reaction, contact_force, old, new, ledger)
+   subroutine book_step(domain, dofs, scheme, constraint, reaction, contact_force, old, new, damping_stress, ledger)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
       type(scheme_t), intent(in) :: scheme
@@ -54,6 +56,8 @@ contains
       real(wp), intent(in) :: contact_force(:)   !< Mean forces of the contacts over the step, if there are any [kN].
                                                  !< (unknowns) or (0).
       type(state_t), intent(in) :: old, new
+      !> (4, points) Stress of the damping at the start of the step, set to that at its end [kPa]; not allocated: none.
+      real(wp), allocatable, intent(inout) :: damping_stress(:, :)
       type(ledger_t), intent(inout) :: ledger
       type(work_t) :: work
       real(wp), allocatable :: change(:, :), held(:, :)
@@ -64,8 +68,9 @@ contains
       allocate (held, source=moved_by_supports(dofs, constraint, change))
       do e = 1, size(domain%mesh%t6, 2)
          associate (node => domain%mesh%t6(:, e))
-            call add_work_of_element(domain, e, scheme, old, new, change(:, node), work)
-            ledger%supports = ledger%supports + work_to_move_element(domain, e, scheme, old, new, held(:, node))
+            call add_work_of_element(domain, e, scheme, old, new, damping_stress, change(:, node), work)
+            ledger%supports = ledger%supports + work_to_move_element(domain, e, scheme, old, new, damping_stress, &
+                                                                     held(:, node))
             if (.not. domain%with_w .or. scheme%kind == STATIC) cycle
             if (domain%regions(domain%region_of(e))%drainage == COUPLED) &
                call book_seepage(domain, e, scheme, old, new, ledger)
@@ -81,7 +86,43 @@ contains
       ledger%damping = ledger%damping + work%damping
       call book_forces(dofs, scheme, constraint, contact_force, old, new, change, ledger)
       call book_outflow(dofs, scheme, constraint, reaction, ledger)
+      if (allocated(damping_stress)) call follow_damping(domain, scheme, old, new, damping_stress)
    end subroutine book_step
+
+   !> Stress that the damping in proportion to the stiffness has in the equations of a step: there it stands at the
+   !> level of values, although the increment over the step gives it. [kPa] docs/theory/host.md sections 2.1 and 9.
+   pure function damping_in(region, scheme, increment) result(stress)
+      type(region_t), intent(in) :: region
+      type(scheme_t), intent(in) :: scheme
+      real(wp), intent(in) :: increment(4)   !< Of the effective stress [kPa].
+      real(wp) :: stress(4)
+
+      stress = region%stiffness_damping/scheme%dt*increment
+   end function damping_in
+
+   !> Takes the stress of the damping to the end of the step: such that the one of the equations lies between both at
+   !> the level of values, as every other force does. None in a step without inertia. docs/theory/host.md section 9.
+   subroutine follow_damping(domain, scheme, old, new, damping_stress)
+      type(domain_t), intent(in) :: domain
+      type(scheme_t), intent(in) :: scheme
+      type(state_t), intent(in) :: old, new
+      real(wp), intent(inout) :: damping_stress(:, :)
+      integer :: e, p
+
+      if (scheme%kind /= DYNAMIC) then
+         damping_stress = 0.0_wp
+         return
+      end if
+      do e = 1, size(domain%mesh%t6, 2)
+         associate (region => domain%regions(domain%region_of(e)))
+            do p = (e - 1)*domain%rule + 1, e*domain%rule
+               damping_stress(:, p) = damping_stress(:, p) &
+                  + (damping_in(region, scheme, new%stress(1:4, p) - old%stress(1:4, p)) &
+                     - damping_stress(:, p))/scheme%l_f
+            end do
+         end associate
+      end do
+   end subroutine follow_damping
 
    !> The displacements of a step that supports prescribe, zero elsewhere [m].
    pure function moved_by_supports(dofs, constraint, change) result(held)
@@ -149,31 +190,35 @@ contains
    end subroutine book_outflow
 
    !> What moves an element as a step does, inertia included [kJ].
-   real(wp) function work_to_move_element(domain, e, scheme, old, new, du) result(total)
+   real(wp) function work_to_move_element(domain, e, scheme, old, new, damping_stress, du) result(total)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: e
       type(scheme_t), intent(in) :: scheme
       type(state_t), intent(in) :: old, new
+      real(wp), allocatable, intent(in) :: damping_stress(:, :)
       real(wp), intent(in) :: du(DISPLACEMENTS, 6)   !< [m]
       type(work_t) :: work
 
       total = 0.0_wp
       if (.not. any(abs(du) > 0.0_wp)) return
-      call add_work_of_element(domain, e, scheme, old, new, du, work)
+      call add_work_of_element(domain, e, scheme, old, new, damping_stress, du, work)
       total = work%skeleton + work%pores + work%damping + work%inertia - work%gravity
    end function work_to_move_element
 
    !> Work of the mean forces in an element at displacements of its nodes.
-   subroutine add_work_of_element(domain, e, scheme, old, new, du, work)
+   subroutine add_work_of_element(domain, e, scheme, old, new, damping_stress, du, work)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: e
       type(scheme_t), intent(in) :: scheme
       type(state_t), intent(in) :: old, new
+      real(wp), allocatable, intent(in) :: damping_stress(:, :)
       real(wp), intent(in) :: du(DISPLACEMENTS, 6)   !< [m]
       type(work_t), intent(inout) :: work
-      real(wp) :: strain(4), p(2), middle(2, 6), s, n, rho, push(DISPLACEMENTS), dv(DISPLACEMENTS, 6)
+      real(wp) :: damping(4), strain(4), p(2), middle(2, 6), s, n, rho, gravity, push(DISPLACEMENTS)
+      real(wp) :: dv(DISPLACEMENTS, 6)
       integer :: g, at, node(6)
 
+      gravity = 0.5_wp*(old%gravity + new%gravity)
       node = domain%mesh%t6(:, e)
       dv = new%v(:DISPLACEMENTS, node) - old%v(:DISPLACEMENTS, node)
       associate (carriers => domain%carriers(:domain%n_carriers(e), e))
@@ -192,14 +237,16 @@ contains
             p = pressures_at(domain, e, g, middle)
             work%pores = work%pores - gp%weight*(p(1) + (1 - s)*p(2))*sum(strain(1:3))
             rho = mixture_density(domain, region, n, s)
-            work%gravity = work%gravity - gp%weight*rho*domain%gravity*dot_product(gp%n, du(2, :))
+            work%gravity = work%gravity - gp%weight*rho*gravity*dot_product(gp%n, du(2, :))
             if (scheme%kind /= DYNAMIC) cycle
             push = gp%weight*rho*matmul(du, gp%n)
             work%inertia = work%inertia + dot_product(push, matmul(dv, gp%n))/scheme%dt
             if (region%damping > 0.0_wp) work%damping = work%damping + region%damping &
                *dot_product(push, 0.5_wp*matmul(old%v(:DISPLACEMENTS, node) + new%v(:DISPLACEMENTS, node), gp%n))
-            if (region%stiffness_damping > 0.0_wp) work%damping = work%damping + gp%weight/scheme%dt &
-               *region%stiffness_damping*dot_product(new%stress(1:4, at) - old%stress(1:4, at), strain)
+            if (.not. region%stiffness_damping > 0.0_wp) cycle
+            damping = damping_in(region, scheme, new%stress(1:4, at) - old%stress(1:4, at))
+            damping = damping_stress(:, at) + 0.5_wp/scheme%l_f*(damping - damping_stress(:, at))
+            work%damping = work%damping + gp%weight*dot_product(damping, strain)
          end associate
       end do
    end subroutine add_work_of_element
@@ -212,9 +259,10 @@ contains
       type(state_t), intent(in) :: old, new
       type(ledger_t), intent(inout) :: ledger
       type(relative_t) :: rel
-      real(wp) :: middle(AT_P_W:AT_P_C, 6), drive(2), kappa
+      real(wp) :: middle(AT_P_W:AT_P_C, 6), drive(2), kappa, gravity
       integer :: g, p, n_p
 
+      gravity = 0.5_wp*(old%gravity + new%gravity)
       n_p = domain%n_p
       associate (node => domain%mesh%t6(:, e))
          middle = 0.5_wp*(old%x(AT_P_W:AT_P_C, node) + new%x(AT_P_W:AT_P_C, node))
@@ -225,12 +273,12 @@ contains
                     law => domain%permeabilities(domain%regions(domain%region_of(e))%permeability))
             rel = relative_permeability(law, 0.5_wp*(old%s(p) + new%s(p)))
             kappa = law%intrinsic*rel%w/f%eta_w
-            drive = matmul(middle(AT_P_W, :n_p), gp%dm(:n_p, :)) + [0.0_wp, f%rho_w*domain%gravity]
+            drive = matmul(middle(AT_P_W, :n_p), gp%dm(:n_p, :)) + [0.0_wp, f%rho_w*gravity]
             ledger%seepage = ledger%seepage + scheme%dt*gp%weight*kappa*dot_product(drive, drive)
             if (.not. domain%with_c) cycle
             kappa = law%intrinsic*rel%a/f%eta_a
             drive = matmul(middle(AT_P_W, :n_p) + middle(AT_P_C, :n_p), gp%dm(:n_p, :)) + [0.0_wp, &
-               f%rho_a*domain%gravity]
+               f%rho_a*gravity]
             ledger%seepage = ledger%seepage + scheme%dt*gp%weight*kappa*dot_product(drive, drive)
          end associate
       end do
@@ -283,8 +331,18 @@ contains
       if (scheme%kind == DYNAMIC) ledger%most_created = max(ledger%most_created, ledger%open_0 - imbalance(ledger))
    end subroutine book_creation
 
+   !> After book_creation: counts the steps in a row in which more energy is created than a stage allows. The first step
+   !> of a load has no other work to be compared with than its own, of which the scheme creates up to an eighth:
+   !> docs/theory/host.md section 9.
+   pure subroutine count_creation(share, ledger)
+      real(wp), intent(in) :: share   !< created_energy of the stage [-].
+      type(ledger_t), intent(inout) :: ledger
+
+      ledger%overdue = merge(ledger%overdue + 1, 0.0_wp, ledger%most_created > allowed_creation(share, ledger))
+   end subroutine count_creation
+
    !> Created energy up to which nothing is said: a share of the largest work, and what no balance can tell from zero.
-   !> Of a body at rest, or in a first step, the work is as small as that. [kJ] docs/theory/host.md section 9.
+   !> Of a body at rest the work is as small as that. [kJ] docs/theory/host.md section 9.
    pure real(wp) function allowed_creation(share, ledger)
       real(wp), intent(in) :: share   !< [-]
       type(ledger_t), intent(in) :: ledger

@@ -17,7 +17,7 @@ module held_ground
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: hold_ground, let_waves_in, keep_flow
+   public :: hold_ground, set_incoming_waves, keep_flow
 contains
    !> Sets the forces on boundaries that act in a stage and did not in the one before, and frees them of those that no
    !> longer act. docs/theory/host.md section 7.4. Fault EXIT_MATERIAL: a material refuses its own state at rest.
@@ -57,7 +57,7 @@ contains
 
    !> Which boundaries act in a step, and the forces of the waves that come in at its ends. docs/theory/host.md section
    !> 7.4.
-   subroutine let_waves_in(model, stage, dt, run)
+   subroutine set_incoming_waves(model, stage, dt, run)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       real(wp), intent(in) :: dt   !< [s]
@@ -68,7 +68,7 @@ contains
          call add_incoming(model, stage, c%dashpots, run%state%time, c%load_0)
          call add_incoming(model, stage, c%dashpots, run%state%time + dt, c%load_1)
       end associate
-   end subroutine let_waves_in
+   end subroutine set_incoming_waves
 
    !> The flow of the initial state, to be subtracted from then on. docs/theory/host.md section 8. Fault EXIT_MATERIAL:
    !> a material refuses the initial state.

@@ -12,7 +12,7 @@ module pressure_alarm
    use unknown_fields, only: AT_P_W
    implicit none (type, external)
    private
-   public :: tell_oscillation, tell_lost_pressure, outlier
+   public :: tell_oscillation, warn_lost_pressure, outlier
 
    !> By how much a corner may differ from all sides around it, share of the range of all pressures: linear and
    !> parabolic fields leave nothing, a field that the mesh follows little [-].
@@ -53,7 +53,7 @@ contains
 
    !> After an accepted step; once a run, on standard error, also where the run is quiet. docs/theory/memory-rules.md
    !> section 2.2. Raises no fault.
-   subroutine tell_lost_pressure(model, time, stress, told)
+   subroutine warn_lost_pressure(model, time, stress, told)
       type(model_t), intent(in) :: model
       real(wp), intent(in) :: time           !< [s]
       real(wp), intent(in) :: stress(:, :)   !< Effective, of the Gauss points, tension positive. (6, points) [kPa]
@@ -75,7 +75,7 @@ contains
             end do
          end associate
       end do
-   end subroutine tell_lost_pressure
+   end subroutine warn_lost_pressure
 
    !> The corner of the mesh that stands out most, and by which share of the range of all pressures; 0 where no corner
    !> does or the range is too small to matter. A corner stands out by what it is above, or below, the middles of all

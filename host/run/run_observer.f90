@@ -62,11 +62,12 @@ module run_observer
          type(fault_t), intent(inout) :: fault
       end subroutine stage_i
 
-      !> Takes a warning.
-      subroutine warn_i(self, text)
+      !> Takes a warning, or a line that counts only while somebody watches the run.
+      subroutine warn_i(self, text, passing)
          import :: run_observer_t
          class(run_observer_t), intent(inout) :: self
          character(*), intent(in) :: text
+         logical, intent(in), optional :: passing   !< True: such a line.
       end subroutine warn_i
    end interface
 end module run_observer

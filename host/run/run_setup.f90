@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> The start of a run: matrix pattern, initial state, contacts, absorbing boundaries, the flow that is to be subtracted.
 module run_setup
+   use kinds, only: wp
    use faults, only: fault_t
    use absorbing_boundaries, only: prepare_absorbers
    use boundary_conditions, only: new_constraint
@@ -35,6 +36,8 @@ contains
       if (fault%code == 0) call seat_plates(model, run%system%contacts, run%state)
       if (fault%code == 0) call prepare_absorbers(model, run%state, run%constraint%dashpots, fault)
       run%next = run%state
+      if (any(model%domain%regions%stiffness_damping > 0.0_wp)) &
+         allocate (run%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
       if (fault%code == 0 .and. allocated(model%effects)) call begin_monitor(model, run%state, run%monitor)
       if (fault%code == 0 .and. model%subtract_flow) call keep_flow(model, run, fault)
    end subroutine prepare_run

@@ -36,6 +36,8 @@ module run_state
       type(drainage_t) :: drainage
       type(state_t) :: state, next             !< Before and after the step under way.
       type(ledger_t) :: ledger
+      !> (4, points) Stress of the damping in proportion to the stiffness, for the ledger; where a region has it [kPa].
+      real(wp), allocatable :: damping_stress(:, :)
       type(stage_state_t) :: at
       type(tension_t) :: tension               !< Of the initial state, for a warning.
       type(control_state_t) :: control         !< Of the time step, in stages that choose it.

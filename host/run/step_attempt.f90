@@ -11,15 +11,17 @@ module step_attempt
    use energy_ledger, only: kinetic_energy
    use generalised_alpha, only: scheme_t, make_scheme, DYNAMIC
    use given_pressures, only: follow_undrained
-   use held_ground, only: hold_ground, let_waves_in
-   use model_types, only: model_t, stage_t
+   use held_ground, only: hold_ground, set_incoming_waves
+   use model_types, only: model_t, stage_t, gravity_at
    use newton_step, only: take_step, start_accelerations, CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
    use run_state, only: run_t, stage_state_t
-   use step_failure, only: explain_failure
+   use step_failure, only: explain_failure, explain_short_step, LEAST_OF_STAGE
    use step_size, only: begin_control, prepare_rates, judge_step, shorten_step
    implicit none (type, external)
    private
    public :: begin_stage, try_step
+
+   real(wp), parameter :: LEAST_SPACINGS = 16.0_wp      !< Of the numbers at the present time: its rounding.
 contains
    !> Sets a run at the start of stage `number`: prescribed values, absorbing boundaries, control of the steps, first
    !> accelerations. docs/theory/host.md section 4.1. Faults: those of freeze_drainage, hold_ground and, for the
@@ -59,11 +61,18 @@ contains
       logical, intent(out) :: accepted   !< False also where its error is too large.
       type(fault_t), intent(inout) :: fault
       type(scheme_t) :: scheme
+      real(wp), allocatable :: a0(:, :)
+      real(wp) :: share
 
       accepted = .false.
+      if (dt < shortest_step(stage, run)) then
+         call explain_short_step(stage, run, dt, fault)
+         return
+      end if
       run%constraint%load_0 = load_at(model, stage, model%dofs, run%state%time)
       run%constraint%load_1 = load_at(model, stage, model%dofs, run%state%time + dt)
-      if (allocated(run%constraint%dashpots)) call let_waves_in(model, stage, dt, run)
+      if (allocated(run%constraint%dashpots)) call set_incoming_waves(model, stage, dt, run)
+      run%next%gravity = gravity_at(model, run%state%time + dt)
       call prescribe(model, stage, run%state%time + dt, run, fault)
       if (fault%code /= 0) return
       call prepare_rates(stage, dt, run)
@@ -72,6 +81,14 @@ contains
                                                                   run%constraint)
       call take_step(model%domain, model%dofs, run%pattern, scheme, run%constraint, control, run%state, run%next, &
                      run%assembly, run%system, log)
+      if (log%refused_guess .and. run%at%step == 0) then
+         ! The accelerations of the start are none that so long a step can follow: it begins without them.
+         a0 = run%state%a
+         run%state%a = 0.0_wp
+         call take_step(model%domain, model%dofs, run%pattern, scheme, run%constraint, control, run%state, run%next, &
+                        run%assembly, run%system, log)
+         if (log%outcome /= CONVERGED) run%state%a = a0
+      end if
       run%iterations = run%iterations + log%iterations
       run%rate_evaluations = run%rate_evaluations + log%rate_evaluations
       accepted = log%outcome == CONVERGED
@@ -87,16 +104,25 @@ contains
          at%good = 0
          run%system%factored = .false.
          ! A shorter step helps a singular matrix only where it is points of the material that resist with nothing.
-         if (at%cuts > stage%cuts .or. log%outcome == SOLVER_FAILED .or. &
+         share = merge(min(run%assembly%bad%factor, 0.5_wp), 0.5_wp, log%outcome == MATERIAL_FAILED)
+         if (at%cuts > stage%cuts .or. log%outcome == SOLVER_FAILED .or. share*dt < shortest_step(stage, run) .or. &
              (log%outcome == BODY_FREE .and. run%assembly%replaced == 0)) then
             call explain_failure(model, stage, run, log, run%state%time + dt, dt, fault)
             return
          end if
          ! Nothing of the failed step is kept: the next attempt starts from run%state alone.
-         at%factor = at%factor*merge(min(run%assembly%bad%factor, 0.5_wp), 0.5_wp, log%outcome == MATERIAL_FAILED)
+         at%factor = at%factor*share
          call shorten_step(stage, dt, run)
       end associate
    end subroutine try_step
+
+   !> Shorter steps do not come to an end, or do not move the time [s].
+   pure real(wp) function shortest_step(stage, run) result(dt)
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(in) :: run
+
+      dt = max(LEAST_OF_STAGE*stage%duration, LEAST_SPACINGS*spacing(run%state%time))
+   end function shortest_step
 
    !> Prescribed unknowns of a step that ends at a time, from the state that it starts from.
    subroutine prescribe(model, stage, time, run, fault)
@@ -119,7 +145,7 @@ contains
       type(log_t) :: log
 
       run%constraint%load_0 = load_at(model, stage, model%dofs, run%state%time)
-      if (allocated(run%constraint%dashpots)) call let_waves_in(model, stage, 0.0_wp, run)
+      if (allocated(run%constraint%dashpots)) call set_incoming_waves(model, stage, 0.0_wp, run)
       if (any(model%fixes%acceleration)) then
          if (.not. allocated(run%constraint%acceleration)) allocate (run%constraint%acceleration(model%dofs%n))
          call starting_accelerations(model, stage, model%dofs, make_scheme(stage%kind, stage%rho_inf, stage%dt), &

@@ -8,19 +8,15 @@ module step_booking
    use effect_monitor, only: monitor_step, warning_of
    use exit_codes, only: EXIT_EFFECT
    use faults, only: fault_t, raise
-   use energy_alarm, only: check_creation, tell_creation
-   use energy_ledger, only: book_step, book_creation, imbalance
-   use generalised_alpha, only: scheme_t
+   use energy_ledger, only: book_step, book_creation, count_creation, imbalance
+   use generalised_alpha, only: scheme_t, DYNAMIC
    use linear_system, only: T_CONTACT
    use model_types, only: model_t
    use run_observer, only: run_observer_t, step_report_t
    use run_state, only: run_t
-   use contact_alarm, only: tell_penetration
-   use pressure_alarm, only: tell_oscillation, tell_lost_pressure
    implicit none (type, external)
    private
-   public :: book_accepted_step, watch_effects, check_creation, tell_creation, tell_penetration, &
-             tell_oscillation, tell_lost_pressure
+   public :: book_accepted_step, watch_effects
 contains
    !> Adds a step to the ledger: energies, work, outflow, contacts. docs/theory/host.md section 9.
    subroutine book_accepted_step(model, scheme, run)
@@ -39,9 +35,10 @@ contains
          call lap(run%system%seconds(T_CONTACT), t0)
       end if
       call book_step(model%domain, model%dofs, scheme, run%constraint, run%system%reaction, contact_force, run%state, &
-                     run%next, run%ledger)
+                     run%next, run%damping_stress, run%ledger)
       call book_creation(scheme, model%stages(run%at%stage)%tolerance, model%dofs, run%assembly%scale, &
                          run%next%x - run%state%x, run%ledger)
+      if (scheme%kind == DYNAMIC) call count_creation(model%stages(run%at%stage)%created_energy, run%ledger)
    end subroutine book_accepted_step
 
    !> Monitors a step that is accepted but not yet taken over, and warns. docs/theory/host.md section 11. Fault

@@ -7,6 +7,7 @@ module step_failure
    use contact_types, only: contact_message
    use exit_codes, only: EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
    use element_equations, only: STRAIN_TOO_LARGE
+   use free_bodies, only: bodies_on_contact
    use model_types, only: model_t, stage_t
    use convergence, only: log_t, BY_RESIDUAL, BY_CORRECTION
    use newton_step, only: MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
@@ -14,7 +15,9 @@ module step_failure
    use unknown_fields, only: FIELD_NAMES
    implicit none (type, external)
    private
-   public :: explain_failure
+   public :: explain_failure, explain_short_step, LEAST_OF_STAGE
+
+   real(wp), parameter :: LEAST_OF_STAGE = 1.0e-12_wp   !< Of the duration of the stage: shorter steps are a crawl.
 contains
    !> Raises the fault of a step that failed: exit code, place, cause and remedy. Fault EXIT_MATERIAL, EXIT_CONVERGENCE
    !> (also of contacts), EXIT_FREE_BODY or EXIT_SOLVER, by log%outcome.
@@ -40,18 +43,20 @@ contains
                call m%regions(m%region_of(e))%law%message(run%assembly%bad, text)
             end if
             call raise(fault, EXIT_MATERIAL, place//'the material of element '//whole(e)//', point '// &
-                       whole(run%assembly%bad_point)//', refuses: '//trim(text))
+                       whole(run%assembly%bad_point)//', refuses: '//trim(text)//unstressed(run))
          case (CONTACT_FAILED)
             call contact_message(run%system%contacts%status, text)
             call raise(fault, EXIT_CONVERGENCE, place//trim(text)//'.')
          case (BODY_FREE)
             if (run%assembly%replaced > 0) then
                call raise(fault, EXIT_FREE_BODY, place//'the equations are singular'//soft_points(model, run)// &
-                          ': add a surcharge or suction there, load in smaller steps, or look for a missing &fix.')
+                          unstressed(run)//bodies_on_contact(model, stage)//': add a surcharge or suction there, '// &
+                          'load in smaller steps, or look for a missing &fix.')
                return
             end if
             call raise(fault, EXIT_FREE_BODY, place//'the equations are singular: a body can move or a pressure is '// &
-                       'undetermined; add a &fix, or look for a region without stiffness or a plate without contact.')
+                       'undetermined'//bodies_on_contact(model, stage)//'; add a &fix, or look for a region '// &
+                       'without stiffness or a plate without contact.')
          case (SOLVER_FAILED)
             call raise(fault, EXIT_SOLVER, place//'the linear solver failed; is there enough memory for '// &
                        whole(model%dofs%n)//' unknowns?')
@@ -61,10 +66,38 @@ contains
             call raise(fault, EXIT_CONVERGENCE, place//'no convergence after '//whole(log%iterations)// &
                        ' iterations'//soft_points(model, run)//'; '//what_is_left(stage, log)//' (allowed '// &
                        short(stage%tolerance)//'), worst at '//place_of(model, node)// &
-                       '; use a smaller dt, more cuts or a better tangent.')
+                       unstressed(run)//'; use a smaller dt, more cuts or a better tangent.')
          end select
       end associate
    end subroutine explain_failure
+
+   !> That soil began without stress, where it did: the likely cause of a failure.
+   function unstressed(run) result(text)
+      type(run_t), intent(in) :: run
+      character(:), allocatable :: text
+
+      text = ''
+      if (run%tension%bare > 0) text = '. '//whole(run%tension%bare)//' points of MUD began without effective '// &
+         'stress, and so without stiffness: give them stress = ''geostatic'' or ''uniform'' in &initial'
+   end function unstressed
+
+   !> Raises the fault of a step that is too short before it is tried. Fault EXIT_CONVERGENCE.
+   subroutine explain_short_step(stage, run, dt, fault)
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(in) :: run
+      real(wp), intent(in) :: dt   !< [s]
+      type(fault_t), intent(inout) :: fault
+      character(:), allocatable :: cause
+
+      cause = 'dt, dt_max or output_dt is too short for a stage of '//short(stage%duration)//' s.'
+      if (dt > LEAST_OF_STAGE*stage%duration) cause = 'it is the rounding of the time: divide the scene into runs '// &
+                                                      'that begin at 0 s.'
+      if (run%at%factor < 1.0_wp) cause = 'steps before it failed and were cut to '//short(run%at%factor)// &
+                                          ' of the given one.'
+      call raise(fault, EXIT_CONVERGENCE, 'Stage '//trim(stage%name)//', time '//short(run%state%time)//' s: the '// &
+                 'next step, '//short(dt)//' s, is below '//short(LEAST_OF_STAGE)//' of the stage or of the time: '// &
+                 cause)
+   end subroutine explain_short_step
 
    !> How many points were given the elastic stiffness in the last pass, and where most of them are; nothing if none.
    function soft_points(model, run) result(text)

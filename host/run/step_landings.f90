@@ -138,7 +138,7 @@ contains
          before = 0.0_wp
          if (number > 1) before = load_at(model, model%stages(number - 1), model%dofs, run%state%time)
          at_once = norm2(load - before) > SAME*norm2(load)
-         if (number == 1) at_once = at_once .or. abs(model%domain%gravity) > 0.0_wp .or. &
+         if (number == 1) at_once = at_once .or. abs(run%state%gravity) > 0.0_wp .or. &
             any(abs(x(AT_P_W:AT_P_C, :) - spread(x(AT_P_W:AT_P_C, 1), 2, size(x, 2))) > SAME*maxval(abs(x(AT_P_W:, :))))
          do i = 1, model%dofs%n
             associate (f => model%dofs%field(i), node => model%dofs%node(i))

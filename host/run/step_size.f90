@@ -3,34 +3,39 @@
 !> stays below the accuracy asked for. The errors of given steps are estimated too. docs/theory/host.md section 4.5.
 module step_size
    use kinds, only: wp
-   use control_state, only: control_state_t, new_control_state, BY_DISPLACEMENTS, BY_PRESSURE, BY_SUCTION, BY_TIMES, &
-                            BY_LARGEST, BY_SMALLEST, BY_GROWTH
+   use contact_interfaces, only: probe_contacts
+   use control_state, only: new_control_state, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
    use error_norms, only: keep_rates, shift_rates, local_errors, remember, forget, rms
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, QUASI_STATIC, DYNAMIC
    use model_types, only: model_t, stage_t
    use run_state, only: run_t
    use step_landings, only: next_time, is_break, begins_suddenly, changes_within, LAST_STEP, SHORTEST
-   use step_control, only: new_controller, judge, LARGEST_FACTOR
+   use step_control, only: new_controller, judge, LARGEST_FACTOR, MOST_REJECTIONS
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: begin_control, next_step, prepare_rates, judge_step, shorten_step, keep_step, is_over, LAST_STEP
+   public :: begin_control, next_step, prepare_rates, judge_step, shorten_step, keep_step, is_over
 
    integer, parameter :: SETTLED = 3              !< Steps after a sudden change until rates tell of the error again.
    real(wp), parameter :: START_UP_STEPS = 10.0_wp !< First steps in which changes are expected to grow yet.
    real(wp), parameter :: FIRST_SHARE = 0.04_wp   !< Of the span to the first break, times the root of the accuracy.
    real(wp), parameter :: FIRST_STATIC = 0.05_wp  !< Largest share of that span that a first static step takes.
-   real(wp), parameter :: EVENT = 0.01_wp         !< Least share of what is left that a step may take: an impact or a
+   real(wp), parameter :: EVENT = 0.015_wp        !< Least share of what is left that a step may take: an impact or a
                                                   !< change of contact is not resolved for its own sake.
    real(wp), parameter :: GROWTH = 0.5_wp         !< Of the accuracy: of what it adds to the scale a step may err by.
    real(wp), parameter :: RESERVE = 0.1_wp        !< Share of the accuracy that is left when it has been used up.
-   real(wp), parameter :: KNOCK = 0.3_wp          !< The same of pressures in dynamic stages, of the accuracy: they
-                                                  !< follow every knock and fade; three such steps use it up.
+   real(wp), parameter :: PRESSURE_SHARE = 0.3_wp !< The same of pressures in dynamic stages, of the accuracy: they
+                                                  !< follow every impact and fade; three such steps use it up.
+   real(wp), parameter :: PRESSURE_BUDGET = 2.0_wp   !< Times the accuracy that impacts may leave at a point in all.
+   real(wp), parameter :: PRESSURE_RESERVE = 0.2_wp  !< Share that a step is allowed when they have left that.
    real(wp), parameter :: PEAK = 1.57_wp          !< Of a sine over the mean of its magnitude.
    real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Share of its change by which the second step after a sudden load
                                                   !< is in error, since flow begins with the root of time.
    real(wp), parameter :: FIRST_TWO = 0.5_wp      !< The same of given steps, for the first two together.
-   real(wp), parameter :: PLATE_SHARE = 0.1_wp    !< Of the way of a plate, as a least scale of the soil's.
+   real(wp), parameter :: PLATE_SHARE = 0.01_wp   !< Of the way of a plate, as a least scale of the soil's.
+   real(wp), parameter :: NAMED_SHARE = 0.01_wp   !< Of the change of its field, as a least change of a named answer.
+   integer, parameter :: LANDING_REJECTIONS = 15  !< In a row, of a step with contacts that are not at the start.
+   integer, parameter :: BISECTIONS = 40          !< Of the time at which a contact closes.
    real(wp), parameter :: FLOOR = 1.0e-9_wp       !< Share of the largest value of a field that is no change of it.
 contains
    !> A stage begins: scales, and the first step where steps are controlled. docs/theory/host.md section 4.5.
@@ -42,14 +47,19 @@ contains
 
       associate (c => run%control)
          if (.not. allocated(c%x_first)) then
-            c = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(model%points))
+            c = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(model%points), &
+                                  size(model%contacts))
          else if (model%stages(run%at%stage - 1)%zero_displacements) then
             ! Displacements count anew: what was seen of them is of no answer.
             rejected = c%rejected
-            c = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(model%points))
+            c = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(model%points), &
+                                  size(model%contacts))
             c%rejected = rejected
          end if
          c%x_first = run%state%x
+         c%dissipated_0 = dissipated(model, run)
+         c%motion = 0.0_wp
+         c%touching = closed_contacts(run, run%state%x)
          call sudden(run%state%time, run)
          if (.not. stage%controlled) return
          c%controller = new_controller(first_step(model, stage, run))
@@ -185,17 +195,24 @@ contains
       type(run_t), intent(inout) :: run
       logical, intent(out) :: accepted
       real(wp) :: error(FIELDS, size(run%state%x, 2)), norm(FIELDS), elapsed
-      logical :: known(FIELDS)
+      real(wp), allocatable :: touching(:)
+      logical :: known(FIELDS), changes
       integer :: bodies
 
       call estimate_error(model, stage, dt, run, error, known)
-      ! Plates with a face of their own come last: their vibration on a penalty is no answer.
       bodies = size(run%state%x, 2) - size(model%domain%bodies)
       norm = field_norms(error(:, :bodies))
       elapsed = run%next%time - run%control%t_sudden
+      allocate (touching, source=run%control%touching)
+      if (stage%kind == DYNAMIC) touching = closed_contacts(run, run%next%x)
+      changes = any(abs(touching - run%control%touching) > 0.5_wp)
       accepted = .true.
-      if (stage%controlled) call weigh_error(model, stage, dt, elapsed, norm, known, run, accepted)
-      if (.not. accepted) return
+      if (stage%controlled) call weigh_error(model, stage, dt, elapsed, error, norm, known, changes, run, accepted)
+      if (.not. accepted) then
+         if (any(touching > run%control%touching)) call end_where_it_closes(dt, run)
+         return
+      end if
+      run%control%touching = touching
       associate (c => run%control, change => field_norms(run%next%x(:, :bodies) - run%state%x(:, :bodies)))
          if (.not. (known(AT_U_R) .or. stage%kind == QUASI_STATIC .and. c%fresh == 1) .and. depends_on_path(model)) &
             c%unseen(:DISPLACEMENTS) = c%unseen(:DISPLACEMENTS) + change(:DISPLACEMENTS)
@@ -205,6 +222,55 @@ contains
       end associate
       call gather(model, stage, error, norm, elapsed - dt, elapsed, run)
    end subroutine judge_step
+
+   !> 1 for every contact that is closed at given displacements, else 0; 0 too where a kernel refuses them.
+   function closed_contacts(run, x) result(closed)
+      type(run_t), intent(inout) :: run
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) [m]
+      real(wp) :: closed(size(run%control%touching))
+      integer :: i
+
+      closed = 0.0_wp
+      if (size(closed) == 0) return
+      if (.not. probe_contacts(run%system%contacts, x)) return
+      do i = 1, size(closed)
+         associate (t => run%system%contacts%interfaces(i))
+            if (t%acts) closed(i) = merge(1.0_wp, 0.0_wp, any(t%probe%active))
+         end associate
+      end do
+   end function closed_contacts
+
+   !> The next attempt ends where a contact closes, which is looked for along the motion that keeps its accelerations:
+   !> exact for bodies in free flight. Where that motion closes none the step stays as its error asks for.
+   subroutine end_where_it_closes(dt, run)
+      real(wp), intent(in) :: dt   !< That was tried [s].
+      type(run_t), intent(inout) :: run
+      real(wp) :: open, shut, middle
+      integer :: i
+
+      open = 0.0_wp
+      shut = dt
+      if (.not. closes_after(shut)) return
+      do i = 1, BISECTIONS
+         middle = 0.5_wp*(open + shut)
+         if (closes_after(middle)) then
+            shut = middle
+         else
+            open = middle
+         end if
+      end do
+      ! Much nearer than what the error asks for: such a step may hold the closing as well.
+      if (shut > EVENT*run%control%controller%dt) run%control%controller%dt = shut
+   contains
+      logical function closes_after(time)
+         real(wp), intent(in) :: time   !< [s]
+         real(wp) :: x(FIELDS, size(run%state%x, 2))
+
+         x = run%state%x + time*run%state%v
+         x(:DISPLACEMENTS, :) = x(:DISPLACEMENTS, :) + 0.5_wp*time**2*run%state%a
+         closes_after = any(closed_contacts(run, x) > run%control%touching)
+      end function closes_after
+   end subroutine end_where_it_closes
 
    !> Errors of all unknowns in the step under way, and of which fields they are known.
    subroutine estimate_error(model, stage, dt, run, error, known)
@@ -243,33 +309,44 @@ contains
    end function kind_of_error
 
    !> Whether the error of a controlled step lets it stand, the length of the next attempt, and what limits it.
-   subroutine weigh_error(model, stage, dt, elapsed, norm, known, run, accepted)
+   subroutine weigh_error(model, stage, dt, elapsed, error, norm, known, changes, run, accepted)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       real(wp), intent(in) :: dt, elapsed    !< Step, and the time since the last sudden change at its end [s].
+      real(wp), intent(in) :: error(:, :)    !< (FIELDS, nodes) [m, kPa]
       real(wp), intent(in) :: norm(FIELDS)   !< Of the errors [m, kPa].
       logical, intent(in) :: known(FIELDS)
+      logical, intent(in) :: changes         !< A contact closes or opens in the step.
       type(run_t), intent(inout) :: run
       logical, intent(out) :: accepted
-      real(wp) :: share(FIELDS), ratios(FIELDS), ratio, asked
+      real(wp) :: share(FIELDS), ratios(FIELDS), allowed(FIELDS), ratio, asked, left
       integer :: bodies, by
 
       associate (c => run%control)
          bodies = size(run%state%x, 2) - size(model%domain%bodies)
          share = max(dt/elapsed, EVENT)
          if (stage%kind == DYNAMIC) then
-            share(:DISPLACEMENTS) = max(dt/(run%at%t_start + stage%duration - run%state%time), EVENT) &
-                                    *what_is_left(model, stage, run)
-            ! Early errors are small beside what displacements grow to.
-            share(:DISPLACEMENTS) = max(share(:DISPLACEMENTS), GROWTH*added_share(run, bodies))
+            left = what_is_left(model, stage, run)
+            share(:DISPLACEMENTS) = max(left*dt/(run%at%t_start + stage%duration - run%state%time), EVENT*left**2)
             ! Pressures follow every knock of a contact; such errors do not add up.
-            share(DISPLACEMENTS + 1:) = max(dt/elapsed, KNOCK)
+            share(DISPLACEMENTS + 1:) = max(dt/elapsed, PRESSURE_SHARE)
          end if
-         ratios = norm/(stage%accuracy*share*scales(run, bodies)*max(1.0_wp, c%start_up/elapsed)**2)
+         allowed = share
+         ! Early errors are small beside what displacements grow to.
+         if (stage%kind == DYNAMIC) allowed(:DISPLACEMENTS) = max(allowed(:DISPLACEMENTS), &
+                                                                  GROWTH*added_share(run, bodies))
+         ratios = norm/(allowed*scales(run, bodies))
+         ratios = max(ratios, ratios_of_points(model, stage, run, error, share, bodies))
+         if (stage%kind == DYNAMIC) ratios(AT_U_Z) = max(ratios(AT_U_Z), ratio_of_plates(model, stage, dt, run, error, &
+            changes)/allowed(AT_U_Z))
+         ratios = ratios/(stage%accuracy*max(1.0_wp, c%start_up/elapsed)**2)
          ratio = maxval(ratios, mask=known)
          if (.not. any(known)) ratio = -1.0_wp
          asked = c%controller%dt
          if (dt <= SHORTEST*stage%duration) ratio = min(ratio, 1.0_wp)
+         ! A start from rest gives nothing to compare with; a landing does.
+         c%controller%most_rejections = merge(LANDING_REJECTIONS, MOST_REJECTIONS, changes .or. &
+            stage%kind == DYNAMIC .and. size(model%contacts) > 0 .and. c%fresh >= SETTLED)
          call judge(c%controller, dt, ratio, accepted)
          c%controller%dt = max(c%controller%dt, SHORTEST*stage%duration)
          if (.not. accepted) then
@@ -292,24 +369,102 @@ contains
       end associate
    end subroutine weigh_error
 
+   !> Errors at the named points over what is allowed of their own changes, the worst of every field; 1: allowed is the
+   !> whole change. No less is asked for than that of a point that changes by a share of its field.
+   pure function ratios_of_points(model, stage, run, error, share, bodies) result(ratios)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(in) :: run
+      real(wp), intent(in) :: error(:, :), share(:)   !< (FIELDS, nodes) [m, kPa]; (FIELDS) of the accuracy.
+      integer, intent(in) :: bodies
+      real(wp) :: ratios(FIELDS), before(FIELDS), now(FIELDS), least(FIELDS), allowed
+      integer :: i, f
+
+      ratios = 0.0_wp
+      least = NAMED_SHARE*scales(run, bodies)
+      associate (c => run%control)
+         do i = 1, size(model%points)
+            associate (x => run%next%x(:, model%points(i)%node), x0 => run%state%x(:, model%points(i)%node), &
+                       e => abs(error(:, model%points(i)%node)))
+               before = max(ranges(c%low(:, i), c%high(:, i)), least)
+               now = max(ranges(min(c%low(:, i), x0, x), max(c%high(:, i), x0, x)), least)
+               do f = 1, FIELDS
+                  allowed = share(f)
+                  if (stage%kind == DYNAMIC) then
+                     if (f > DISPLACEMENTS) then
+                        allowed = allowed*max(PRESSURE_RESERVE, &
+                           1 - abs(c%point_gathered(f, i))/(PRESSURE_BUDGET*stage%accuracy*now(f)))
+                     else
+                        allowed = max(allowed, GROWTH*(1 - before(f)/now(f)))
+                     end if
+                  end if
+                  ratios(f) = max(ratios(f), e(f)/(allowed*now(f)))
+               end do
+            end associate
+         end do
+      end associate
+   end function ratios_of_points
+
+   !> Changes of the fields at a point; of a displacement the larger one of its components. 0 before the first step.
+   pure function ranges(low, high)
+      real(wp), intent(in) :: low(:), high(:)   !< (FIELDS) smallest and largest values [m, kPa].
+      real(wp) :: ranges(FIELDS)
+
+      ranges = 0.0_wp
+      where (high > low) ranges = high - low
+      ranges(:DISPLACEMENTS) = maxval(ranges(:DISPLACEMENTS))
+   end function ranges
+
+   !> Error of the way of the plates over the scale of the displacements. Where a plate has met the ground its vibration
+   !> on the penalty is no answer: what the stiffness of the penalty takes of the error in a step is left out, but in
+   !> the step in which it meets or leaves the ground.
+   pure real(wp) function ratio_of_plates(model, stage, dt, run, error, changes) result(ratio)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: dt   !< [s]
+      type(run_t), intent(in) :: run
+      real(wp), intent(in) :: error(:, :)   !< (FIELDS, nodes) [m, kPa]
+      logical, intent(in) :: changes
+      type(scheme_t) :: scheme
+      real(wp) :: own, scale(FIELDS), way
+      integer :: i, k, bodies
+
+      ratio = 0.0_wp
+      bodies = size(run%state%x, 2) - size(model%domain%bodies)
+      scheme = make_scheme(stage%kind, stage%rho_inf, dt)
+      scale = scales(run, bodies)
+      way = max(scale(AT_U_Z), maxval(abs(run%next%x(AT_U_Z, :bodies) - run%control%x_first(AT_U_Z, :bodies))))
+      do i = 1, size(model%plates)
+         if (model%plates(i)%node <= bodies) cycle
+         own = abs(error(AT_U_Z, model%plates(i)%node))
+         if (.not. changes .and. model%plates(i)%mass > 0.0_wp .and. allocated(run%system%contacts%interfaces)) then
+            do k = 1, size(model%contacts)
+               associate (t => run%system%contacts%interfaces(k))
+                  if (t%acts .and. t%plate == model%plates(i)%node) own = own/(1 + scheme%l_f/scheme%c_a &
+                     *model%contacts(k)%options%penalty*t%area/model%plates(i)%mass)
+               end associate
+            end do
+         end if
+         ratio = max(ratio, own/way)
+      end do
+   end function ratio_of_plates
+
    !> Errors of displacements without a flow stay and add up. So what the steps so far have left of the accuracy is
    !> spread over the stages to come, and in a stage over its time: share of the accuracy for this stage's rest.
    pure real(wp) function what_is_left(model, stage, run) result(left)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       type(run_t), intent(in) :: run
-      real(wp) :: used
-      integer :: i, f
+      real(wp) :: used, change(FIELDS)
+      integer :: i
 
       associate (c => run%control)
-         used = maxval(c%gathered(:DISPLACEMENTS)/max(c%scale(:DISPLACEMENTS), tiny(1.0_wp)))
-         ! An answer that hardly changes beside the others does not rule the steps.
+         used = 0.0_wp
          do i = 1, size(model%points)
-            do f = 1, DISPLACEMENTS
-               if (c%high(f, i) < c%low(f, i)) cycle   ! not looked at yet
-               used = max(used, c%point_gathered(f, i)/max(c%high(f, i) - c%low(f, i), c%scale(f), tiny(1.0_wp)))
-            end do
+            change = max(ranges(c%low(:, i), c%high(:, i)), NAMED_SHARE*c%scale, tiny(1.0_wp))
+            used = max(used, maxval(abs(c%point_gathered(:DISPLACEMENTS, i))/change(:DISPLACEMENTS)))
          end do
+         if (.not. used > 0.0_wp) used = maxval(c%gathered(:DISPLACEMENTS)/max(c%scale(:DISPLACEMENTS), tiny(1.0_wp)))
       end associate
       left = max(1.0_wp - used/stage%accuracy, RESERVE)
    end function what_is_left
@@ -361,20 +516,42 @@ contains
 
       kept = 1.0_wp
       if (stage%kind == QUASI_STATIC) kept = before/after
-      if (stage%kind == DYNAMIC) kept(DISPLACEMENTS + 1:) = before/after
       associate (c => run%control)
+         if (stage%kind == DYNAMIC) then
+            c%motion = c%motion + (after - before)*run%ledger%kinetic
+            if (c%motion > 0.0_wp) kept(:DISPLACEMENTS) = exp(-(after - before)/4 &
+               *max(0.0_wp, dissipated(model, run) - c%dissipated_0)/c%motion)
+            kept(DISPLACEMENTS + 1:) = min(kept(AT_U_R), before/after)
+         end if
          c%scale = scales(run, size(run%state%x, 2) - size(model%domain%bodies))
          c%gathered = kept*c%gathered + norm
          c%largest = max(c%largest, c%gathered)
          do i = 1, size(model%points)
             node = model%points(i)%node
-            c%point_gathered(:, i) = kept*c%point_gathered(:, i) + abs(error(:, node))
-            c%point_largest(:, i) = max(c%point_largest(:, i), c%point_gathered(:, i))
+            c%point_gathered(:, i) = kept*c%point_gathered(:, i)
+            ! Motion may answer an error in its own time, and paths keep it: magnitudes add up. What flows answers by
+            ! fading alone: errors of opposite sign cancel.
+            if (stage%kind == QUASI_STATIC) then
+               c%point_gathered(:, i) = c%point_gathered(:, i) + error(:, node)
+            else
+               c%point_gathered(:, i) = abs(c%point_gathered(:, i)) + abs(error(:, node))
+            end if
+            c%point_largest(:, i) = max(c%point_largest(:, i), abs(c%point_gathered(:, i)))
             c%low(:, i) = min(c%low(:, i), run%state%x(:, node), run%next%x(:, node))
             c%high(:, i) = max(c%high(:, i), run%state%x(:, node), run%next%x(:, node))
          end do
       end associate
    end subroutine gather
+
+   !> What motion has lost so far, and with it its errors: to damping and boundaries, and where no material has a memory
+   !> to seepage [kJ].
+   pure real(wp) function dissipated(model, run)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+
+      dissipated = run%ledger%damping
+      if (.not. depends_on_path(model)) dissipated = dissipated + run%ledger%seepage
+   end function dissipated
 
    !> After an attempt that failed: the share of it that is tried next becomes the step. docs/theory/host.md section
    !> 4.4; nothing where steps are given.

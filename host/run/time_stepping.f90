@@ -12,11 +12,16 @@ module time_stepping
    use run_observer, only: run_observer_t, step_report_t
    use run_state, only: run_t
    use sparse_factors, only: release
+   use stress_tolerance, only: follow_newton, roughness, warn_stagnation
    use step_attempt, only: begin_stage, try_step
-   use step_size, only: next_step, keep_step, is_over, LAST_STEP
-   use step_booking, only: book_accepted_step, watch_effects, check_creation, tell_creation, tell_penetration, &
-                           tell_oscillation, tell_lost_pressure
+   use step_size, only: next_step, keep_step, is_over
+   use step_landings, only: LAST_STEP
+   use step_booking, only: book_accepted_step, watch_effects
+   use energy_alarm, only: check_creation, tell_creation
+   use contact_alarm, only: tell_penetration
+   use pressure_alarm, only: tell_oscillation, warn_lost_pressure
    use unknown_fields, only: DISPLACEMENTS
+   use texts, only: short, whole
    implicit none (type, external)
    private
    public :: run_stages
@@ -26,7 +31,7 @@ contains
    !> All stages, from where the run stands. docs/theory/host.md section 4. Faults: those of begin_stage, try_step,
    !> watch_effects, check_creation and the observer; the first ends the run, and the observer is still told.
    subroutine run_stages(model, run, fault, observer)
-      type(model_t), intent(in) :: model
+      type(model_t), intent(inout) :: model   !< The laws follow the tolerance of the stages.
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       class(run_observer_t), intent(inout), optional :: observer
@@ -40,7 +45,7 @@ contains
       call lap(run%seconds_output, t0)
       do i = max(1, run%at%stage), size(model%stages)
          call run_stage(model, i, run, fault, observer)
-         if (speaks(observer)) call tell_creation(model%stages(i), run%ledger)
+         if (warns(observer)) call tell_creation(model%stages(i), run%ledger)
          t0 = clock()
          ! Also after a failure, which is reported, not what its last output may meet.
          last = fault_t()
@@ -57,7 +62,7 @@ contains
    end subroutine run_stages
 
    subroutine run_stage(model, number, run, fault, observer)
-      type(model_t), intent(in) :: model
+      type(model_t), intent(inout) :: model
       integer, intent(in) :: number
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
@@ -65,11 +70,13 @@ contains
       type(control_t) :: control
       type(log_t) :: log
       real(wp) :: dt
-      logical :: accepted
+      logical :: accepted, warned
 
       associate (stage => model%stages(number), at => run%at)
+         call follow_newton(stage, model%domain%regions)
          control = control_t(stage%tolerance, stage%max_iterations, stage%no_predictor, stage%measure, &
-                             stage%controlled)
+                             stage%controlled, roughness(model%domain%regions))
+         warned = .false.
          ! A run that is taken up again is in the middle of its stage.
          call contacts_act(model, stage, run%system%contacts)
          if (at%stage /= number) call begin_stage(model, number, run, fault)
@@ -78,7 +85,13 @@ contains
             if (is_over(stage, run)) exit
             dt = next_step(model, stage, run)
             call try_step(model, stage, control, dt, run, log, accepted, fault)
-            if (fault%code == 0 .and. accepted) call close_step(model, number, dt, log, run, fault, observer)
+            if (fault%code == 0 .and. accepted) then
+               if (warns(observer)) call warn_stagnation(stage, run%next%time, log, control%roughness, warned)
+               call close_step(model, number, dt, log, run, fault, observer)
+            end if
+            if (fault%code == 0 .and. .not. accepted .and. present(observer)) call observer%warn('Stage '// &
+               trim(stage%name)//', time '//short(run%state%time)//' s: a step of '//short(dt)//' s is repeated, '// &
+               'cuts '//whole(run%cuts), passing=.true.)
             if (fault%code /= 0) return
          end do
          if (stage%zero_displacements) then
@@ -87,6 +100,7 @@ contains
             run%state%v = 0.0_wp
             run%state%a = 0.0_wp
             run%state%s_rate = 0.0_wp
+            if (allocated(run%damping_stress)) run%damping_stress = 0.0_wp
          end if
          call copy_state(run%state, run%next)
       end associate
@@ -110,9 +124,9 @@ contains
          scheme = make_scheme(stage%kind, stage%rho_inf, dt)
          at%step = at%step + 1
          run%steps = run%steps + 1
-         if (speaks(observer)) call tell_penetration(model, run%next%time, run%system%contacts)
-         if (speaks(observer)) call tell_oscillation(model, stage, run%next%time, run%next%x, run%told_oscillation)
-         if (speaks(observer)) call tell_lost_pressure(model, run%next%time, run%next%stress, run%told_pressure)
+         if (warns(observer)) call tell_penetration(model, run%next%time, run%system%contacts)
+         if (warns(observer)) call tell_oscillation(model, stage, run%next%time, run%next%x, run%told_oscillation)
+         if (warns(observer)) call warn_lost_pressure(model, run%next%time, run%next%stress, run%told_pressure)
          call book_accepted_step(model, scheme, run)
          report = step_report_t(number, dt, step_error(scheme, run%state%x, run%state%a, run%next%x, run%next%a), &
                                 at%t_start + stage%duration - run%next%time <= LAST_STEP*dt, log)
@@ -135,14 +149,14 @@ contains
          if (checkpoint) run%assembly%slopes%known = .false.
          call lap(run%seconds_output, t0)
       end if
-      call check_creation(model%stages(number), run%state%time, run%ledger, fault)
+      call check_creation(model%stages(number), run%state%time, report%last, run%ledger, fault)
    end subroutine close_step
 
    !> Whether there is an observer that may print warnings.
-   logical function speaks(observer)
+   logical function warns(observer)
       class(run_observer_t), intent(in), optional :: observer
 
-      speaks = .false.
-      if (present(observer)) speaks = .not. observer%silent
-   end function speaks
+      warns = .false.
+      if (present(observer)) warns = .not. observer%silent
+   end function warns
 end module time_stepping

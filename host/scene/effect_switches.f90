@@ -4,7 +4,7 @@
 module effect_switches
    use kinds, only: wp
    use effect_types, only: effect_t, EFFECT_NAMES, EFFECTS, OF_INERTIA, OF_SEEPAGE, OF_P_W, OF_P_C, OF_GRAVITY, &
-      OF_CONTACT, OF_DAMPING, OF_ABSORBING, OF_DRAINAGE, OF_GEOMETRY, OF_VOID_RATIO, OF_HYSTERESIS, OF_BONDING, &
+      OF_CONTACT, OF_DAMPING, OF_ABSORBING, OF_DRAINAGE, OF_VOID_RATIO, OF_HYSTERESIS, OF_BONDING, &
       OF_ELASTIC_DOMAIN, OF_FLOW
    use faults, only: fault_t
    use key_schema, only: given
@@ -13,7 +13,7 @@ module effect_switches
    use parameter_groups, only: read_parameters
    use scene_types, only: scene_t, NAME_LENGTH, WITH_U, WITH_P_W, WITH_P_C, IS_STATIC, IS_QUASI_STATIC, IS_DYNAMIC, &
                           FIX_P_W, FIX_P_C, FIX_P_A, LOAD_WATER, LOAD_AIR, IS_COUPLED, IS_DRAINED, IS_UNDRAINED, &
-                          IS_DRY
+                          IS_DRY, acts_in
    implicit none (type, external)
    private
    public :: list_effects, settle_open_keys, switch, switch_by_hand
@@ -26,22 +26,40 @@ module effect_switches
       'fabric', 'isotropic', 'lode', 'memory_rule', 'rho_e']
    real(wp), parameter :: SWITCHED_ON = 1.0_wp
 contains
-   !> What the scene leaves to be found out begins as the general case: all fields that the regions have laws for,
-   !> gravity, inertia. docs/theory/host.md section 11; gravity is 9.81 m/s2.
+   !> The cheapest reading of what the scene leaves open: the fields that its regions have laws for, no weight, and no
+   !> inertia where nothing speaks of motion. docs/theory/host.md section 11.
    pure subroutine settle_open_keys(scene)
       type(scene_t), intent(inout) :: scene
       integer :: i
 
-      if (.not. scene%gravity_by_hand) scene%gravity = EARTH
       if (.not. scene%fields_by_hand) then
          scene%fields = WITH_U
          if (holds_water(scene)) scene%fields = WITH_P_W
          if (any(scene%regions%retention_name /= '')) scene%fields = WITH_P_C
       end if
       do i = 1, size(scene%stages)
-         if (scene%stages(i)%analysis == 0) scene%stages(i)%analysis = IS_DYNAMIC
+         if (scene%stages(i)%analysis == 0) scene%stages(i)%analysis = merge(IS_DYNAMIC, IS_QUASI_STATIC, &
+                                                                              speaks_of_motion(scene, i))
       end do
    end subroutine settle_open_keys
+
+   !> Whether a stage has keys that act with inertia alone: waves that leave or come in, an acceleration, a velocity at
+   !> the start, damping.
+   pure logical function speaks_of_motion(scene, stage) result(speaks)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: stage
+      integer :: i
+
+      speaks = any(scene%regions%damping > 0.0_wp .or. scene%regions%stiffness_damping > 0.0_wp)
+      if (stage == 1) speaks = speaks .or. any(abs(scene%initials%v_z) > 0.0_wp .or. abs(scene%initials%wave) > 0.0_wp)
+      do i = 1, size(scene%absorbers)
+         speaks = speaks .or. acts_in(scene%absorbers(i)%stages, scene%stages(stage)%name)
+      end do
+      do i = 1, size(scene%fixes)
+         speaks = speaks .or. (scene%fixes(i)%acceleration .and. &
+                               acts_in(scene%fixes(i)%stages, scene%stages(stage)%name))
+      end do
+   end function speaks_of_motion
 
    !> Whether the keys of a region speak of water: where it flows, or is kept.
    pure logical function holds_water(scene)
@@ -71,7 +89,8 @@ contains
                row%stage = stage
                row%name = trim(row%name)//' in '//scene%stages(stage)%name
             end if
-            if (.not. has_meaning(settled, kind)) cycle
+            if (.not. has_meaning(settled, kind, any(settled%stages%analysis == IS_DYNAMIC .or. &
+                                                     scene%stages%analysis == 0))) cycle
             ! A static stage is a way to equilibrium, which has no time.
             if (kind == OF_INERTIA .and. settled%stages(stage)%analysis == IS_STATIC) cycle
             row%present = is_present(settled, kind, stage)
@@ -102,18 +121,19 @@ contains
    end function flows_of
 
    !> Whether a row of the table would say anything.
-   logical function has_meaning(scene, kind)
+   logical function has_meaning(scene, kind, may_move)
       type(scene_t), intent(in) :: scene
       integer, intent(in) :: kind
+      logical, intent(in) :: may_move   !< A stage has inertia, or leaves it open.
 
       select case (kind)
       case (OF_SEEPAGE)
-         has_meaning = scene%fields /= WITH_U .and. any(scene%stages%analysis == IS_DYNAMIC)
+         has_meaning = scene%fields /= WITH_U .and. may_move
       case (OF_P_W)
          has_meaning = holds_water(scene)
       case (OF_P_C)
          has_meaning = any(scene%regions%retention_name /= '')
-      case (OF_CONTACT, OF_GEOMETRY)
+      case (OF_CONTACT)
          has_meaning = size(scene%contacts) > 0
       case (OF_DRAINAGE)
          has_meaning = size(scene%contacts) > 0 .and. scene%fields /= WITH_U
@@ -160,8 +180,6 @@ contains
          present = size(scene%absorbers) > 0
       case (OF_DRAINAGE)
          present = any(scene%contacts%drains_by_state)
-      case (OF_GEOMETRY)
-         present = .not. all(scene%contacts%fixed_geometry)
       case (OF_VOID_RATIO)
          if (scene%fields == WITH_P_C) &
             present = any([(parameter_of(scene, i, 'Omega') > 0.0_wp, i=1, size(scene%materials))])
@@ -271,8 +289,6 @@ contains
          scene%absorbers = scene%absorbers(:0)
       case (OF_DRAINAGE)
          scene%contacts%drains_by_state = on
-      case (OF_GEOMETRY)
-         scene%contacts%fixed_geometry = .not. on
       case (OF_VOID_RATIO)
          call freeze_retention(scene, why)
       case (OF_FLOW)

@@ -5,7 +5,8 @@ module scene_accuracy
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use namelists, only: group_t, set_entry
-   use scene_keys, only: number_of, word_is, given
+   use scene_keys, only: number_of, word_is
+   use key_schema, only: given
    use scene_types, only: scene_stage_t
    implicit none (type, external)
    private

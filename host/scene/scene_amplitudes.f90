@@ -5,7 +5,8 @@ module scene_amplitudes
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use namelists, only: group_t
    use number_pairs, only: read_pairs
-   use scene_keys, only: numbers_of, text_of, given
+   use scene_keys, only: text_of
+   use key_schema, only: numbers_of, given
    use scene_types, only: scene_amplitude_t
    implicit none (type, external)
    private

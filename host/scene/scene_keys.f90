@@ -5,8 +5,7 @@ module scene_keys
    use kinds, only: wp
    use effect_types, only: EFFECT_WORDS
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use key_schema, only: key_t, REQUIRED, NONE, UNBOUNDED, check_group, given, texts_of, numbers_of, &
-                         line_of, words_of, place_of, &
+   use key_schema, only: key_t, REQUIRED, NONE, UNBOUNDED, check_group, given, line_of, words_of, place_of, &
                          schema_number_of => number_of, schema_text_of => text_of, schema_word_is => word_is
    use material_registry, only: is_law, law_names, law_keys
    use namelists, only: group_t, MAX_VALUES
@@ -15,7 +14,7 @@ module scene_keys
    use texts, only: lower_case
    implicit none (type, external)
    private
-   public :: check_keys, number_of, numbers_of, text_of, texts_of, word_is, word_number, given, print_template
+   public :: check_keys, number_of, text_of, word_is, word_number, print_template
 
    real(wp), parameter :: BIG = UNBOUNDED, TINY_ = 1.0e-30_wp
 
@@ -28,6 +27,7 @@ module scene_keys
       key_t('scene', 'pressures', 'w', 'quadratic', 0, 0, 'interpolation (linear: Taylor-Hood)', 'quadratic|linear'), &
       key_t('scene', 'quadrature', 'i', '6', 3, 12, 'points of an element: 3, 6, 7 or 12'), &
       key_t('scene', 'gravity', 'n', '0', 0, 1000, 'acceleration towards -z [m/s2]'), &
+      key_t('scene', 'gravity_history', 't', NONE, 0, 0, 'name of a &history: factor on gravity'), &
       key_t('scene', 'effects', 'w', 'given', 0, 0, &
             'auto: pilots determine what the keys leave open, see host/README.md', 'given|auto'), &
       key_t('scene', 'effects_tolerance', 'n', '0.01', 1.0e-6_wp, 1, &
@@ -52,6 +52,8 @@ module scene_keys
       key_t('scene', 'checkpoint_seconds', 'n', '0', 0, BIG, 'checkpoint.h5 after so much wall time [s]; 0: none'), &
       key_t('scene', 'checkpoint_end', 'w', 'no', 0, 0, 'checkpoint.h5 when the last stage ends', 'no|yes'), &
       key_t('mesh', 'file', 't', NONE, 0, 0, 'Gmsh 4.1 text mesh, relative to the scene; or r and z:'), &
+      key_t('mesh', 'scale', 'n', '1', 1.0e-9_wp, 1.0e9_wp, &
+            'factor on the coordinates of the file; 1e-3: they are in mm'), &
       key_t('mesh', 'r', 'N', NONE, -BIG, BIG, 'breaks along r [m], ascending'), &
       key_t('mesh', 'r_cells', 'I', NONE, 1, 100000, 'cells between two breaks of r'), &
       key_t('mesh', 'r_ratio', 'N', NONE, 0.01_wp, 100, 'size of a cell over that of the previous one; default 1'), &
@@ -79,7 +81,7 @@ module scene_keys
       key_t('permeability', 'k_rw', 'n', '1.0', 0, 1, 'constant: relative permeability to water [-]'), &
       key_t('permeability', 'k_ra', 'n', '1.0', 0, 1, 'constant: relative permeability to air [-]'), &
       key_t('permeability', 'floor', 'n', '1.0e-4', 0, 1, 'least relative permeability [-]'), &
-      key_t('region', 'group', 't', 'all', 0, 0, 'group of elements'), &
+      key_t('region', 'group', 't', 'all', 0, 0, 'group of elements; without it those that no other region names'), &
       key_t('region', 'material', 't', REQUIRED, 0, 0, 'name of a material, as &mud or &elastic'), &
       key_t('region', 'retention', 't', NONE, 0, 0, 'name of a &retention, or "material": its own'), &
       key_t('region', 'permeability', 't', NONE, 0, 0, 'name of a &permeability'), &
@@ -138,7 +140,7 @@ module scene_keys
             'displacements are set to zero at the end of the stage', 'no|yes'), &
       key_t('stage', 'every', 'i', '1', 1, 1000000, 'histories are written every so many steps'), &
       key_t('stage', 'fields', 'i', '0', 0, 1000000, &
-            'fields are written every so many steps; 0: at the end of the stage'), &
+            'fields are written every so many steps; 0: at the end; without: controlled steps at 50 times'), &
       key_t('fix', 'group', 't', REQUIRED, 0, 0, 'boundary, region or node group'), &
       key_t('fix', 'field', 'w', REQUIRED, 0, 0, 'what is prescribed', 'u_r|u_z|p_w|p_c|p_a'), &
       key_t('fix', 'value', 'n', '0', -BIG, BIG, 'prescribed value, at the datum [m, kPa]'), &
@@ -189,14 +191,10 @@ module scene_keys
       key_t('contact', 'penalty', 'n', '1.0e8', TINY_, BIG, 'pressure of a unit of penetration [kN/m3]'), &
       key_t('contact', 'gap', 'w', 'combined', 0, 0, 'gap that is penalised, see CONTACT.md', &
             'nodal|pointwise|combined'), &
-      key_t('contact', 'variation', 'w', 'pressure', 0, 0, &
-            'what gives the contact force, see CONTACT.md', 'pressure|energy'), &
       key_t('contact', 'search_radius', 'n', '0', 0, BIG, &
             'edges farther apart are not paired [m]; 0: length of the slave edge'), &
       key_t('contact', 'drainage', 'w', 'fixed', 0, 0, &
             'state: nodes in contact are released from &fix of pressures', 'fixed|state'), &
-      key_t('contact', 'geometry', 'w', 'moving', 0, 0, &
-            'fixed: overlap and normals of the start, for small displacements', 'moving|fixed'), &
       key_t('contact', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
       key_t('point', 'name', 't', REQUIRED, 0, 0, 'name in histories.csv'), &
       key_t('point', 'r', 'n', REQUIRED, -BIG, BIG, 'the nearest node is taken [m]'), &
@@ -213,8 +211,6 @@ contains
       integer :: g
 
       do g = 1, size(groups)
-         call check_renamed(groups(g), fault)
-         if (fault%code /= 0) return
          if (is_law(groups(g)%name)) then
             ! The law checks its own keys when it is built.
             if (.not. given(groups(g), 'name')) call raise(fault, EXIT_INPUT, at_line(groups(g)%file, &
@@ -230,26 +226,6 @@ contains
          if (fault%code /= 0) return
       end do
    end subroutine check_keys
-
-   !> Groups and keys of older scenes: the fault names the new ones.
-   subroutine check_renamed(group, fault)
-      type(group_t), intent(in) :: group
-      type(fault_t), intent(inout) :: fault
-      character(:), allocatable :: key
-
-      if (group%name == 'rigid') then
-         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&rigid is &plate now: &plate name = ... '// &
-                    'group = ... mass = ... with the same force and history.')
-      else if (group%name == 'contact' .and. given(group, 'reach')) then
-         call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, 'reach'))//'the key reach of &contact is '// &
-                    'search_radius now.')
-      else if (group%name == 'mud' .and. (given(group, 'material_call') .or. given(group, 'call'))) then
-         key = 'call'
-         if (given(group, 'material_call')) key = 'material_call'
-         call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, key))//'the key '//key// &
-                    ' of &mud no longer exists: leave it out, or load a UMAT with &umat.')
-      end if
-   end subroutine check_renamed
 
    !> Number of a word among the words of its key, from 1; 0 where the key has no value.
    integer function word_number(group, name) result(number)

@@ -9,8 +9,8 @@ module scene_reader
    use scene_fingerprint, only: fingerprint_of, sealed
    use scene_accuracy, only: ask_accuracy, ask_steps, ask_stress
    use scene_amplitudes, only: read_amplitude
-   use key_schema, only: get_text
-   use scene_keys, only: check_keys, number_of, numbers_of, text_of, texts_of, word_is, word_number, given
+   use key_schema, only: get_text, numbers_of, texts_of, given
+   use scene_keys, only: check_keys, number_of, text_of, word_is, word_number
    use scene_names, only: check_names
    use texts, only: lower_case
    use scene_types, only: scene_t, scene_item_t, scene_law_t, scene_amplitude_t, scene_region_t, scene_initial_t, &
@@ -28,6 +28,7 @@ contains
       type(fault_t), intent(inout) :: fault
       character(*), intent(in), optional :: accuracy   !< In place of that of the scene; empty: none.
       type(group_t), allocatable :: groups(:)
+      type(scene_amplitude_t) :: amplitude
       integer :: i
 
       call read_groups(file, groups, fault)
@@ -58,7 +59,8 @@ contains
             case ('permeability')
                call take_law(group, scene%permeabilities)
             case ('history')
-               call take_amplitude(group, scene, fault)
+               call read_amplitude(group, amplitude, fault)
+               scene%amplitudes = [scene%amplitudes, amplitude]
             case ('stage')
                call take_stage(group, scene, fault)
             case ('region')
@@ -153,16 +155,6 @@ contains
       laws = [laws, law]
    end subroutine take_law
 
-   subroutine take_amplitude(group, scene, fault)
-      type(group_t), intent(in) :: group
-      type(scene_t), intent(inout) :: scene
-      type(fault_t), intent(inout) :: fault
-      type(scene_amplitude_t) :: amplitude
-
-      call read_amplitude(group, amplitude, fault)
-      scene%amplitudes = [scene%amplitudes, amplitude]
-   end subroutine take_amplitude
-
    pure function item_of(group) result(item)
       type(group_t), intent(in) :: group
       type(scene_item_t) :: item
@@ -180,6 +172,7 @@ contains
       scene%linear_pressures = word_is(group, 'pressures', 'linear')
       scene%quadrature = nint(number_of(group, 'quadrature'))
       scene%gravity = number_of(group, 'gravity')
+      scene%gravity_history = text_of(group, 'gravity_history')
       scene%seepage_inertia = word_is(group, 'seepage_inertia', 'yes')
       scene%full_saturation_rate = word_is(group, 'saturation_rate', 'full')
       scene%subtract_flow = word_is(group, 'initial_flow', 'subtract')
@@ -196,7 +189,7 @@ contains
       scene%stop_on_warning = word_is(group, 'effects_on_warning', 'stop')
       scene%without = lower_case(texts_of(group, 'without'))
       scene%fields_by_hand = given(group, 'fields') .or. .not. scene%derive_effects
-      scene%gravity_by_hand = given(group, 'gravity') .or. .not. scene%derive_effects
+      scene%gravity_by_hand = given(group, 'gravity') .or. scene%gravity_history /= '' .or. .not. scene%derive_effects
       scene%seepage_by_hand = given(group, 'seepage_inertia') .or. .not. scene%derive_effects
    end subroutine take_scene
 
@@ -207,6 +200,8 @@ contains
       associate (mesh => scene%mesh)
          mesh%scene_item_t = item_of(group)
          if (given(group, 'file')) mesh%mesh_file = beside(group, text_of(group, 'file'))
+         mesh%scale = number_of(group, 'scale')
+         mesh%scale_given = given(group, 'scale')
          mesh%r = numbers_of(group, 'r')
          mesh%z = numbers_of(group, 'z')
          mesh%r_cells = nint(numbers_of(group, 'r_cells'))
@@ -267,6 +262,7 @@ contains
       stage%max_iterations = nint(number_of(group, 'max_iterations'))
       stage%every = nint(number_of(group, 'every'))
       stage%fields = nint(number_of(group, 'fields'))
+      stage%film = .not. (given(group, 'fields') .or. given(group, 'output_dt'))
       stage%no_predictor = word_is(group, 'predictor', 'none')
       stage%solve_start = word_is(group, 'start', 'solve')
       stage%zero_displacements = word_is(group, 'zero_displacements', 'yes')
@@ -280,6 +276,7 @@ contains
 
       region%scene_item_t = item_of(group)
       region%group_name = text_of(group, 'group')
+      region%rest = .not. given(group, 'group')
       region%material_name = text_of(group, 'material')
       region%retention_name = text_of(group, 'retention')
       region%permeability_name = text_of(group, 'permeability')
@@ -403,9 +400,7 @@ contains
       contact%penalty = number_of(group, 'penalty')
       contact%search_radius = number_of(group, 'search_radius')
       contact%gap_number = word_number(group, 'gap')
-      contact%pressure_work = word_is(group, 'variation', 'pressure')
       contact%drains_by_state = word_is(group, 'drainage', 'state')
-      contact%fixed_geometry = word_is(group, 'geometry', 'fixed')
       contact%stages = texts_of(group, 'stages')
       scene%contacts = [scene%contacts, contact]
    end subroutine take_contact

@@ -44,6 +44,8 @@ module scene_types
    !> A file, or the breaks of a built-in mesh of graded blocks.
    type, extends(scene_item_t) :: scene_mesh_t
       character(LENGTH) :: mesh_file = ''           !< Empty: built in.
+      real(wp) :: scale = 1.0_wp                    !< Of the coordinates of the file [-].
+      logical :: scale_given = .false.
       real(wp), allocatable :: r(:), z(:)           !< Breaks [m]
       integer, allocatable :: r_cells(:), z_cells(:)
       real(wp), allocatable :: r_ratio(:), z_ratio(:)
@@ -70,6 +72,7 @@ module scene_types
       real(wp) :: damping = 0.0_wp      !< [1/s]
       real(wp) :: stiffness_damping = 0.0_wp   !< [s]
       integer :: drainage = IS_COUPLED
+      logical :: rest = .false.         !< Without a group: the elements that no other region has.
    end type scene_region_t
 
    type, extends(scene_item_t) :: scene_initial_t
@@ -103,6 +106,7 @@ module scene_types
       real(wp) :: created_energy = 0.01_wp           !< Share of the largest work that ends the run [-].
       integer :: measure_number = MEASURE_AUTO
       integer :: max_iterations = 12, every = 1, fields = 0
+      logical :: film = .true.                       !< No key says when fields are written.
       logical :: no_predictor = .false., solve_start = .true., zero_displacements = .false.
    end type scene_stage_t
 
@@ -143,9 +147,7 @@ module scene_types
       real(wp) :: penalty = 1.0e8_wp                 !< [kN/m3]
       real(wp) :: search_radius = 0.0_wp             !< [m]
       integer :: gap_number = GAP_COMBINED
-      logical :: pressure_work = .true.
       logical :: drains_by_state = .false.           !< Covered nodes are impervious.
-      logical :: fixed_geometry = .false.            !< Overlap and normals of the start.
       character(LENGTH), allocatable :: stages(:)
    end type scene_contact_t
 
@@ -178,6 +180,7 @@ module scene_types
       logical :: linear_pressures = .false.
       integer :: quadrature = 6
       real(wp) :: gravity = 0.0_wp                   !< [m/s2]
+      character(LENGTH) :: gravity_history = ''       !< Name of the factor on it; empty: none.
       logical :: seepage_inertia = .false., full_saturation_rate = .true., subtract_flow = .false.
       integer :: threads = 0
       logical :: reuse_factors = .true.

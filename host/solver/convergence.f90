@@ -16,6 +16,7 @@ module convergence
    implicit none (type, external)
    private
    public :: control_t, log_t, measure, good_enough, field_scales, body_scale, is_body, rounding_in
+   public :: look_for_stagnation
    public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_STAGE, measure_in, linear_tolerance
 
    integer, parameter :: BY_FORCES = 1       !< The errors of the fields, see above.
@@ -30,9 +31,11 @@ module convergence
    !> The same with inertia: accelerations are differences of displacements over dt**2, so that rounding leaves
    !> 4/(omega dt)**2 epsilon of a motion; this has room for three thousand steps a period.
    real(wp), parameter :: ROUNDING_OF_INERTIA = 1.0e-10_wp
-   !> Of Newton's tolerance, left to the linear solution. Given steps repeat what was published; where the error of the
-   !> step rules, less does: the residual that counts is that of the whole equations.
-   real(wp), parameter :: LINEAR_SHARE = 1.0e-5_wp, CONTROLLED_SHARE = 1.0e-3_wp
+   !> Of Newton's tolerance, left to the linear solution. What it leaves is noise in the strains: a material without an
+   !> elastic domain takes noise for reversals and becomes stiffer (docs/theory/host.md section 6).
+   real(wp), parameter :: LINEAR_SHARE = 1.0e-5_wp
+   integer, parameter :: PATIENCE = 6          !< Iterations without progress after which the error stagnates.
+   real(wp), parameter :: PROGRESS = 0.5_wp    !< Of the smallest error so far: more is no progress.
    real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Of strain rates and parts of fluxes, see above.
    real(wp), parameter :: ABSOLUTE_FLOOR = 1.0e-12_wp   !< [kN] or [m3/s]: nothing smaller is a force.
 
@@ -42,6 +45,7 @@ module convergence
       logical :: no_predictor = .false.              !< Predict no change.
       integer :: measure = BY_FORCES          !< What has to fall below the tolerance.
       logical :: carries_slopes = .false.     !< The first pass of a step follows the slopes of the one before.
+      real(wp) :: roughness = 0.0_wp          !< Tolerance of the stress integration, the largest of the regions [-].
    end type control_t
 
    !> What a step did.
@@ -53,6 +57,10 @@ module convergence
       real(wp) :: correction = 0.0_wp         !< |dx|/|x|, the worst field.
       integer :: worst_field = 0, worst_unknown = 0
       integer :: rate_evaluations = 0                   !< Rate evaluations of the material.
+      logical :: refused_guess = .false.      !< The first guess was refused, the step began at the unchanged state.
+      real(wp) :: best_error = huge(1.0_wp)             !< Smallest error so far that was progress [-].
+      integer :: since_best = 0                         !< Iterations since then.
+      logical :: stagnated = .false.                    !< Accepted at what the stress integration lets Newton reach.
    end type log_t
 contains
    !> The measure of a stage: what BY_STAGE stands for. docs/theory/host.md section 5.1.
@@ -78,8 +86,7 @@ contains
       type(control_t), intent(in) :: control
 
       linear_tolerance = 0.0_wp
-      if (any(control%measure == [BY_FORCES, BY_CHANGE])) linear_tolerance = control%tolerance &
-         *merge(CONTROLLED_SHARE, LINEAR_SHARE, control%carries_slopes)
+      if (any(control%measure == [BY_FORCES, BY_CHANGE])) linear_tolerance = LINEAR_SHARE*control%tolerance
    end function linear_tolerance
 
    !> Whether the iteration may end. By the measure of the control: docs/theory/host.md section 5.1.
@@ -96,6 +103,24 @@ contains
          good_enough = all(log%error < control%tolerance)
       end select
    end function good_enough
+
+   !> Whether the error has ceased to fall above the tolerance and below the roughness of the stress integration: the
+   !> substeps of a point change with its strain, so that its stress is known to that tolerance and no better.
+   !> Updates the log. docs/theory/host.md section 5.1.
+   pure subroutine look_for_stagnation(control, log)
+      type(control_t), intent(in) :: control
+      type(log_t), intent(inout) :: log
+      real(wp) :: error
+
+      if (all(control%measure /= [BY_FORCES, BY_CHANGE])) return
+      error = maxval(log%error)
+      log%since_best = log%since_best + 1
+      if (error < PROGRESS*log%best_error) then
+         log%best_error = error
+         log%since_best = 0
+      end if
+      log%stagnated = log%since_best >= PATIENCE .and. error <= control%roughness
+   end subroutine look_for_stagnation
 
    !> What a residual of a field is small against; rows of prescribed unknowns do not count. docs/theory/host.md section
    !> 5.1. Of displacements [kN], of pressures [m3/s].

@@ -6,11 +6,13 @@ module newton_step
    use wall_clock, only: clock, lap
    use conjugate_residuals, only: solve_by_factors, INACCURATE
    use contact_interfaces, only: add_contacts, contact_forces
-   use convergence, only: control_t, log_t, measure, good_enough, linear_tolerance, rounding_in, &
+   use convergence, only: control_t, log_t, measure, good_enough, look_for_stagnation, linear_tolerance, rounding_in, &
                           BY_FORCES, BY_CHANGE
    use dashpots, only: add_dashpots
    use degrees_of_freedom, only: dofs_t
-   use equation_assembly, only: assembly_t, assemble, follow_slopes_first, NO_FALLBACK, SOFT_POINTS, AS_BEFORE
+   use equation_assembly, only: assembly_t, assemble, follow_slopes_first
+   use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
+   use carried_slopes, only: AS_BEFORE
    use generalised_alpha, only: scheme_t, predict, advance_rates, DYNAMIC
    use linear_system, only: system_t, solve_step, asked_for, look_at_contacts, MOST_STEPS, T_ASSEMBLY, &
                             T_REST, T_MATERIAL, T_CONTACT
@@ -49,7 +51,7 @@ contains
       real(wp), allocatable :: touched(:)   !< Forces of contacts before, where steps are measured by what they change.
       real(wp) :: norm, norm_0, t0
       integer :: status
-      logical :: with_tangent
+      logical :: with_tangent, guessed
 
       t0 = clock()
       allocate (rhs(dofs%n), dx(dofs%n))
@@ -63,8 +65,18 @@ contains
       call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
       norm_0 = -1.0_wp
       with_tangent = .true.
+      guessed = .not. control%no_predictor
       do
-         if (.not. pass(with_tangent)) return
+         if (.not. pass(with_tangent)) then
+            ! A guess that is refused says nothing of the step: it starts again from what is known.
+            if (.not. guessed .or. log%iterations > 0) return
+            guessed = .false.
+            log%refused_guess = .true.
+            log%outcome = CONVERGED
+            new%x = old%x
+            call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
+            cycle
+         end if
          if (log%iterations > 0) then
             call measure(dofs, constraint, assembly, rhs, system%rounding, system%largest, log)
             if (log%iterations == 1) log%first_error = log%error
@@ -73,6 +85,8 @@ contains
             if (log%iterations == 1) norm_0 = max(norm_0, norm, ROUNDING*norm2(assembly%scale))
             log%reduction = norm/max(norm_0, tiny(1.0_wp))
             if (good_enough(control, log)) exit
+            call look_for_stagnation(control, log)
+            if (log%stagnated) exit
             if (log%iterations >= control%max_iterations .or. .not. all(log%error < HOPELESS)) then
                log%outcome = NOT_CONVERGED
                system%reassemble_tangent = .true.

@@ -22,6 +22,7 @@ module error_norms
    real(wp), parameter :: LONGEST = 2.0_wp   !< Times the last step: no rate is carried over a longer one.
    !> Share of the curvature of a path that a straight step leaves out (deviation in the middle of the step).
    real(wp), parameter :: PATH = 0.125_wp
+   real(wp), parameter :: BENT = 1.0_wp/12   !< Mean deviation of a bent path from the straight step, of dt**2 x''.
 
    !> Rates one step back.
    type :: rate_memory_t
@@ -107,7 +108,7 @@ contains
       known = memory%known
       associate (dt => scheme%dt)
          if (scheme%kind == STATIC) then
-            if (memory%known) error = PATH*dt**2*((x1 - x0)/dt - memory%rate)/(0.5_wp*(dt + memory%dt))
+            if (memory%known) error = static_error((x1 - x0)/dt, memory%rate, dt, memory%dt)
             return
          end if
          first = 1
@@ -131,6 +132,22 @@ contains
                             /(0.5_wp*(dt + memory%dt) + off*(min(dt, LONGEST*memory%dt) - memory%dt))
       end associate
    end subroutine local_errors
+
+   !> Error of a static step [unit of the rate times s]: its ends are in equilibrium, and within it the material follows
+   !> a straight path instead of a bent one. The bend, dt**2/12 of the second derivative in the mean, matters as far as
+   !> the stiffness changes along it, and that is the share by which the rate changes.
+   !> docs/theory/host.md section 4.5.
+   pure function static_error(rate, rate_before, dt, dt_before) result(error)
+      real(wp), intent(in) :: rate(:, :), rate_before(:, :)   !< (fields, nodes) of this step and of the last one.
+      real(wp), intent(in) :: dt, dt_before                   !< Their lengths [s].
+      real(wp) :: error(size(rate, 1), size(rate, 2))
+      real(wp) :: share
+
+      associate (bend => (rate - rate_before)/(0.5_wp*(dt + dt_before)))
+         share = min(1.0_wp, dt*norm2(bend)/max(norm2(rate), norm2(rate_before), tiny(1.0_wp)))
+         error = BENT*share*dt**2*bend
+      end associate
+   end function static_error
 
    !> Keeps the rates of the start of an accepted step. x: (fields, nodes) values at both ends of the step [m, kPa]; v0:
    !> their rates at its start [1/s of it]; s_rate: (points) rate of S_w there [1/s]. In static steps the rates are

@@ -6,11 +6,11 @@ module step_control
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: controller_t, new_controller, judge, REJECTED_ABOVE, LARGEST_FACTOR
+   public :: controller_t, new_controller, judge, REJECTED_ABOVE, LARGEST_FACTOR, MOST_REJECTIONS
 
    real(wp), parameter :: REJECTED_ABOVE = 1.2_wp   !< Ratio of error to allowance beyond which a step is repeated.
    real(wp), parameter :: LARGEST_FACTOR = 2.0_wp, SMALLEST_FACTOR = 0.2_wp
-   integer, parameter :: MOST_REJECTIONS = 3        !< In a row: then the step stands, whatever its error.
+   integer, parameter :: MOST_REJECTIONS = 3        !< Where its caller does not say otherwise.
    real(wp), parameter :: SAFETY = 0.9_wp           !< Of the step that the error asks for.
    !> A longer step that gains less than this is not taken: the factors of the matrix serve equal steps.
    real(wp), parameter :: DEADBAND = 1.2_wp
@@ -23,6 +23,7 @@ module step_control
       real(wp) :: dt = 0.0_wp           !< Next step [s].
       real(wp) :: last_ratio = 1.0_wp   !< Of the last accepted step.
       integer :: rejections = 0         !< In a row, of the step under way.
+      integer :: most_rejections = MOST_REJECTIONS   !< In a row: then the step stands, whatever its error.
       logical :: held = .false.         !< The last attempt was rejected: no growth.
    end type controller_t
 contains
@@ -41,11 +42,11 @@ contains
       type(controller_t), intent(inout) :: controller
       real(wp), intent(in) :: dt      !< That was tried; shorter than asked where it had to end at a given time [s].
       real(wp), intent(in) :: ratio   !< Its error over what is allowed [-].
-      logical, intent(out) :: accepted   !< Also after MOST_REJECTIONS in a row.
+      logical, intent(out) :: accepted   !< Also after the most rejections in a row.
       real(wp) :: factor, r
 
       ! Where something begins out of rest nothing is there yet to compare its error with.
-      accepted = .not. ratio > REJECTED_ABOVE .or. controller%rejections >= MOST_REJECTIONS
+      accepted = .not. ratio > REJECTED_ABOVE .or. controller%rejections >= controller%most_rejections
       if (.not. accepted) then
          controller%rejections = controller%rejections + 1
          controller%dt = dt*max(SMALLEST_FACTOR, min(SAFETY, SAFETY*ratio**(-1/ORDER)))

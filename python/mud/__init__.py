@@ -11,12 +11,17 @@ laboratory tests. Points follow the library's convention (tension positive, engi
 laboratory (compression positive); both say so.
 """
 
+from . import _native
 from .element_test import Stage, TestResult, element_test, run_case
 from .errors import IncrementError, InputError, MudError, TestStopped, UnknownName
 from .host import HostRun
-from .material import BatchResponse, Material, Response, material_file, materials
+from .material import Material, Response, material_file, materials
 from .plots import plot_histories, plot_test
+from .points import BatchResponse, MaterialList
 from .registry import Parameter, Registry, StateVariable, parameters, state, states
+
+#: Version of the library, which is that of the package.
+__version__: str = _native.text_of(_native.mud.mud_version)[1]
 
 __all__ = [
     "BatchResponse",
@@ -24,6 +29,7 @@ __all__ = [
     "IncrementError",
     "InputError",
     "Material",
+    "MaterialList",
     "MudError",
     "Parameter",
     "Registry",

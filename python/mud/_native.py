@@ -17,7 +17,7 @@ PACKAGE = pathlib.Path(__file__).resolve().parent
 SOURCE_TREE = PACKAGE.parent.parent
 FOLDER_VARIABLE = "MUD_LIBRARY_DIR"
 # Interfaces that this package was written for.
-ABI_VERSIONS = {"mud": (2, 3), "mud_triax": (1,)}
+ABI_VERSIONS = {"mud": (3,), "mud_triax": (1,)}
 TEXT = 2000  # bytes of a sentence
 
 
@@ -57,21 +57,22 @@ def _constants(header: str) -> dict[str, int]:
     return found
 
 
-def _structure(header: str, name: str) -> type[ctypes.Structure]:
-    """The ctypes twin of a `typedef struct` of ints and doubles."""
+def _structure(header: str, name: str, **known: type) -> type[ctypes.Structure]:
+    """The ctypes twin of a `typedef struct` of ints, doubles, arrays of them, pointers and structures known before."""
     body = re.search(rf"typedef struct {name}\s*\{{(.*?)\}}", header, re.DOTALL)
-    kinds = {"int": c_int, "double": c_double}
-    fields = [
-        (field.strip(), kinds[kind])
-        for kind, names in re.findall(r"\b(int|double)\s+([^;]+);", body[1])
-        for field in re.split(",", names)
-    ]
+    kinds, fields = {"int": c_int, "double": c_double, **known}, []
+    for kind, names in re.findall(r"(?:const\s+)?(\w+)\s+([^;]+);", body[1]):
+        for star, word, length in re.findall(r"(\*?)(\w+)(?:\[(\d+)\])?", names):
+            fields.append((word, c_void_p if star else kinds[kind] * int(length) if length else kinds[kind]))
     return type(name, (ctypes.Structure,), {"_fields_": fields})
 
 
 _text, _text_triax = _header("mud.h"), _header("mud_triax.h")
 CONSTANTS = {**_constants(_text), **_constants(_text_triax)}
 Report = _structure(_text, "mud_report")
+Blocks = _structure(_text, "mud_blocks")
+Points = _structure(_text, "mud_points")
+Summary = _structure(_text, "mud_summary", mud_report=Report)
 STATUS_NAMES = {
     value: name for name, value in _constants(re.search(r"enum mud_status\s*\{.*?\}", _text, re.DOTALL)[0]).items()
 }
@@ -87,26 +88,15 @@ _SIGNATURES = {
     "mud_default_props": [c_void_p, c_int],
     "mud_bounds_for": [c_void_p, c_int, c_int, _doubles, _doubles, _doubles],
     "mud_validate_props": [c_void_p, c_int, c_char_p, c_int],
-    "mud_init_state": [c_void_p, c_int, c_void_p, c_double, c_double, c_void_p, c_int, c_char_p, c_int],
+    "mud_convert_props": [c_void_p, c_int, c_double],
     "mud_prepared_size": [],
     "mud_prepare": [c_void_p, c_int, c_void_p, c_int, c_char_p, c_int],
-    "mud_update_prepared": [c_void_p, c_void_p, c_void_p, c_int, c_void_p, c_double, c_double, c_int]
-    + 6 * [c_void_p]
-    + [POINTER(Report)],
-    "mud_update_batch_prepared": [
-        c_void_p,
-        c_int,
-        c_void_p,
-        c_void_p,
-        c_int,
-        c_void_p,
-        c_void_p,
-        c_void_p,
-        c_int,
-        c_int,
-    ]
-    + 7 * [c_void_p]
-    + [c_void_p],
+    "mud_init": [c_void_p, c_void_p, c_double, c_double, c_double, c_void_p, c_int, c_char_p, c_int],
+    "mud_update": [c_void_p, c_void_p, c_void_p, c_int, c_void_p, c_double, c_int] + 4 * [c_void_p],
+    "mud_init_points": [c_void_p, c_int, c_void_p, c_void_p],
+    "mud_update_points": [c_void_p, c_int, c_void_p, c_void_p],
+    "mud_saturation_points": [c_void_p, c_int, c_void_p, c_void_p],
+    "mud_save_increment": [c_char_p, c_char_p, c_void_p, c_void_p, c_void_p, c_int, c_void_p, c_double, c_int, c_char_p, c_int],
     "mud_saturation": [c_void_p, c_double, c_double, _doubles, _doubles, _doubles],
     "mud_status_text": [c_int, c_char_p, c_int],
     "mud_message": [POINTER(Report), c_char_p, c_int],
@@ -137,15 +127,33 @@ def _load(name: str, signatures: dict[str, list]) -> ctypes.CDLL:
     return library
 
 
-mud = _load("mud", _SIGNATURES)
-mud_triax = _load("mud_triax", _SIGNATURES_TRIAX)
-mud_triax.mud_triax_free.restype = None
-for _name, _found in (("mud", mud.mud_abi_version()), ("mud_triax", CONSTANTS["MUD_TRIAX_ABI_VERSION"])):
-    if _found not in ABI_VERSIONS[_name]:
+def _check_version(name: str, found: int) -> None:
+    if found not in ABI_VERSIONS[name]:
         raise ImportError(
-            f"lib{_name} has interface {_found}, this package was written for {ABI_VERSIONS[_name]}; "
+            f"lib{name} has interface {found}, this package was written for {ABI_VERSIONS[name]}; "
             "install library and package from the same tree."
         )
+
+
+class _Later:
+    """A library that is loaded when a function of it is first asked for: updates need neither mud_triax nor LAPACK."""
+
+    def __init__(self, name: str, signatures: dict[str, list]) -> None:
+        self._what = name, signatures
+
+    def __getattr__(self, function: str):
+        if function not in self._what[1]:
+            raise AttributeError(function)
+        library = _load(*self._what)
+        library.mud_triax_free.restype = None
+        self.__dict__.update({name: getattr(library, name) for name in self._what[1]})
+        return getattr(library, function)
+
+
+mud = _load("mud", _SIGNATURES)
+_check_version("mud", mud.mud_abi_version())
+_check_version("mud_triax", CONSTANTS["MUD_TRIAX_ABI_VERSION"])
+mud_triax = _Later("mud_triax", _SIGNATURES_TRIAX)
 
 
 def text_of(function, *arguments) -> tuple[int, str]:

@@ -12,7 +12,6 @@ from ctypes import byref
 import numpy as np
 
 from . import _native
-from ._former_names import note_on
 from ._native import CONSTANTS as C
 from .errors import InputError, TestStopped
 from .material import Material
@@ -53,8 +52,7 @@ class TestResult(Mapping):
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self._columns:
-            note = note_on(name) or f"there are {', '.join(self._columns)}"
-            raise KeyError(f"there is no column {name}; {note}")
+            raise KeyError(f"there is no column {name}; there are {', '.join(self._columns)}")
         return self._columns[name]
 
     def __iter__(self) -> Iterator[str]:

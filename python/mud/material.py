@@ -3,59 +3,83 @@
 
 from __future__ import annotations
 
-import dataclasses
+import ctypes
 import os
 import pathlib
+import threading
 from collections.abc import Mapping
 from ctypes import byref, c_double
 
 import numpy as np
 
 from . import _native, namelist
-from ._native import CONSTANTS as C
 from .errors import InputError, fault_of
+from .points import Points, need, tangent_kind
 from .registry import parameters, states
 
-TANGENTS = {
-    None: "MUD_TANGENT_NONE",
-    "elastic": "MUD_TANGENT_ELASTIC",
-    "continuum": "MUD_TANGENT_CONTINUUM",
-    "consistent": "MUD_TANGENT_CONSISTENT",
-}
+_SUCTION = states["suction"].index
+_STATE, _SLOPES = slice(6, 6 + len(states)), slice(6 + len(states), None)
+_BLOCKS = 50  # doubles of mud_blocks: 36, 6, 6, 1, 1
+_REPORT = ctypes.sizeof(_native.Report)
 
 
-@dataclasses.dataclass
 class Response:
     """Answer of one update, in the library's convention: tension positive, components 11, 22, 33, 12, 13, 23.
 
     Blocks are None where no tangent was asked for.
     """
 
-    stress: np.ndarray  #: (6,) effective stress [kPa]
-    statev: np.ndarray  #: (n_states,)
-    dsig_deps: np.ndarray | None  #: (6, 6), [i, j] = d sigma'_i / d (engineering strain j) [kPa]
-    dsig_dpc: np.ndarray | None  #: (6,) d sigma' / d suction [-]
-    dsw_deps: np.ndarray | None  #: (6,) d S_w / d strain [-]
-    dsw_dpc: float | None  #: d S_w / d suction [1/kPa]
-    report: object  #: mud_report of mud.h: n_rate, n_substep, pnewdt, ...
+    __slots__ = ("_blocks", "_report", "statev", "stress")
+
+    def __init__(self, stress: np.ndarray, statev: np.ndarray, blocks: np.ndarray | None, report: bytes):
+        self.stress = stress  #: (6,) effective stress [kPa]
+        self.statev = statev  #: (n_states,)
+        self._blocks, self._report = blocks, report
+
+    def _part(self, first: int, last: int) -> np.ndarray | None:
+        return None if self._blocks is None else self._blocks[first:last]
+
+    @property
+    def dsig_deps(self) -> np.ndarray | None:
+        """(6, 6), [i, j] = d sigma'_i / d (engineering strain j) [kPa]."""
+        return None if self._blocks is None else self._blocks[:36].reshape(6, 6).T
+
+    @property
+    def dsig_dpc(self) -> np.ndarray | None:
+        """(6,) d sigma' / d suction [-]."""
+        return self._part(36, 42)
+
+    @property
+    def dsw_deps(self) -> np.ndarray | None:
+        """(6,) d S_w / d strain [-]."""
+        return self._part(42, 48)
+
+    @property
+    def dsw_dpc(self) -> float | None:
+        """d S_w / d suction [1/kPa]."""
+        return None if self._blocks is None else float(self._blocks[48])
+
+    @property
+    def report(self) -> object:
+        """mud_report of mud.h: n_rate, n_substep, pnewdt, ..."""
+        return _native.Report.from_buffer_copy(self._report)
 
 
-@dataclasses.dataclass
-class BatchResponse:
-    """Answer of many updates; n points."""
+class _Workspace(threading.local):
+    """Arrays of one update, and their addresses; every thread has its own."""
 
-    stress: np.ndarray  #: (n, 6) [kPa]
-    statev: np.ndarray  #: (n, n_states)
-    status: np.ndarray  #: (n,) status codes, 0: done; a point that failed keeps its outputs as they were
-    failed: int  #: number of points that failed
-    dsig_deps: np.ndarray | None  #: (n, 6, 6), [k, j, i] = d sigma'_i / d strain j: columns as the library writes them
-    dsig_dpc: np.ndarray | None  #: (n, 6)
-    dsw_deps: np.ndarray | None  #: (n, 6)
-    dsw_dpc: np.ndarray | None  #: (n,)
+    def __init__(self):
+        n = len(states)
+        start, end, report = np.zeros(12 + n), np.zeros(6 + n + _BLOCKS), (ctypes.c_char * _REPORT)()
+        inputs, outputs = start.ctypes.data, end.ctypes.data
+        places = (slice(0, 6), (6,), "stress"), (_STATE, (n,), "statev"), (slice(6 + n, None), (6,), "dstrain")
+        before = (inputs, inputs + 48, n, inputs + 48 + 8 * n)
+        after = (outputs, outputs + 48, outputs + 48 + 8 * n, ctypes.addressof(report))
+        self.all = start, places, before, after, end, report
 
-    def sentence(self, point: int) -> str:
-        """The message of the library about a point."""
-        return _native.text_of(_native.mud.mud_status_text, int(self.status[point]))[1]
+
+_workspace = _Workspace()
+_mud_update = _native.mud.mud_update
 
 
 def material_folders() -> list[pathlib.Path]:
@@ -89,7 +113,7 @@ def material_file(name: str | os.PathLike) -> pathlib.Path:
     )
 
 
-class Material(Mapping):
+class Material(Points, Mapping):
     """Parameters of MUD by name; those not given have the library's default.
 
     >>> sand = Material("toyoura", e_0=0.735, memory_rule="classic")
@@ -115,16 +139,21 @@ class Material(Mapping):
             self._set(entries)
         self._set(values)
         self.props.flags.writeable = False
-        self._prepared = np.empty(_native.mud.mud_prepared_size())
+        self._storage = np.zeros((1, _native.mud.mud_prepared_size()))
         code, sentence = _native.text_of(
             _native.mud.mud_prepare,
             self.props.ctypes.data,
             len(self.props),
-            self._prepared.ctypes.data,
-            len(self._prepared),
+            self._storage.ctypes.data,
+            self._storage.size,
         )
         if code != 0:
             raise fault_of(code, sentence)
+        self._address = self._storage.ctypes.data
+
+    def __setstate__(self, state: dict) -> None:
+        self.__dict__.update(state)
+        self._address = self._storage.ctypes.data  # of this copy
 
     def _set(self, values: Mapping[str, float | str]) -> None:
         for name, value in values.items():
@@ -160,25 +189,40 @@ class Material(Mapping):
         lines = [f"   {name} = {value!r}" for name, value in self.items() if value != parameters[name].default]
         return "\n".join(["&material", f"   name = '{self.title}'", *lines, "/", ""])
 
+    def converted(self, factor: float) -> Material:
+        """The same material in another unit of stress, ``factor`` of which make one of the present unit (0.001: MPa of kPa)."""
+        props = self.props.copy()
+        code = _native.mud.mud_convert_props(props.ctypes.data, len(props), factor)
+        if code != 0:
+            raise fault_of(code)
+        other = Material(**dict(zip(parameters, props)))
+        other.title = self.title
+        return other
+
     def initial_state(
-        self, stress: np.ndarray, suction: float = 0.0, void_ratio: float | None = None
+        self,
+        stress: np.ndarray,
+        suction: float = 0.0,
+        void_ratio: float | None = None,
+        saturation: float | None = None,
     ) -> tuple[np.ndarray, np.ndarray]:
         """Stress (6,) and STATEV (n_states,) of a point that begins.
 
         stress : (6,) effective stress [kPa], tension positive; lifted to p_min where its mean is below.
         suction : p_a - p_w [kPa].
         void_ratio : [-]; None: e_0 of the material.
+        saturation : [-], with hysteresis; None: on the main drying curve.
         """
         start = np.array(stress, dtype=float)
-        _need(start, (6,), "stress")
+        need(start, (6,), "stress")
         statev = np.zeros(len(states))
         code, sentence = _native.text_of(
-            _native.mud.mud_init_state,
-            self.props.ctypes.data,
-            len(self.props),
+            _native.mud.mud_init,
+            self._address,
             start.ctypes.data,
             suction,
             0.0 if void_ratio is None else void_ratio,
+            0.0 if saturation is None else saturation,
             statev.ctypes.data,
             len(statev),
         )
@@ -191,99 +235,59 @@ class Material(Mapping):
         stress: np.ndarray,
         statev: np.ndarray,
         dstrain: np.ndarray,
-        suction: float = 0.0,
-        dsuction: float = 0.0,
+        suction: float | None = None,
         tangent: str | None = None,
     ) -> Response:
         """Integrates one increment of strain and suction; the arguments are not changed.
 
         stress : (6,) [kPa]; statev : (n_states,); dstrain : (6,) engineering strain [-]; all tension positive.
-        suction, dsuction : at the start, and its change [kPa].
+        suction : at the end [kPa], where it begins statev tells; None: it does not change.
         tangent : None, "elastic", "continuum" or "consistent".
 
         Raises ``InputError`` or ``IncrementError``.
         """
-        kind = _tangent(tangent)
+        kind = tangent_kind(tangent)
+        start, places, before, after, end, report = _workspace.all
+        for given, (place, shape, name) in zip((stress, statev, dstrain), places):
+            if (given.shape if type(given) is np.ndarray else np.shape(given)) != shape:
+                raise InputError(f"{name} has the shape {np.shape(given)}, needed is {shape}")
+            start[place] = given
+        if suction is None:
+            suction = start[6 + _SUCTION]
+        code = _mud_update(self._address, *before, suction, kind, *after)
+        if code != 0:
+            raise fault_of(code, report=_native.Report.from_buffer_copy(report))
+        end = end.copy()
+        return Response(end[:6], end[_STATE], end[_SLOPES] if kind else None, bytes(report))
+
+    def save_increment(
+        self,
+        path: str | os.PathLike,
+        stress: np.ndarray,
+        statev: np.ndarray,
+        dstrain: np.ndarray,
+        suction: float | None = None,
+        tangent: str | None = "consistent",
+        origin: str = "",
+    ) -> None:
+        """Writes an increment, the arguments of ``update``, to a new file: a case that mud_triax repeats bit by bit."""
         arrays = [np.ascontiguousarray(a, dtype=float) for a in (stress, statev, dstrain)]
         for array, shape, name in zip(arrays, ((6,), (len(states),), (6,)), ("stress", "statev", "dstrain")):
-            _need(array, shape, name)
-        new_stress, new_statev = np.empty(6), np.empty(len(states))
-        blocks = [np.empty(36), np.empty(6), np.empty(6), np.empty(1)] if tangent else [None] * 4
-        report = _native.Report()
-        code = _native.mud.mud_update_prepared(
-            self._prepared.ctypes.data,
+            need(array, shape, name)
+        code, sentence = _native.text_of(
+            _native.mud.mud_save_increment,
+            os.fsencode(path),
+            origin.encode(),
+            self._address,
             arrays[0].ctypes.data,
             arrays[1].ctypes.data,
             len(states),
             arrays[2].ctypes.data,
-            suction,
-            dsuction,
-            kind,
-            new_stress.ctypes.data,
-            new_statev.ctypes.data,
-            *(None if b is None else b.ctypes.data for b in blocks),
-            byref(report),
+            arrays[1][_SUCTION] if suction is None else suction,
+            tangent_kind(tangent),
         )
         if code != 0:
-            raise fault_of(code, report=report)
-        if not tangent:
-            return Response(new_stress, new_statev, None, None, None, None, report)
-        return Response(
-            new_stress, new_statev, blocks[0].reshape(6, 6).T, blocks[1], blocks[2], float(blocks[3][0]), report
-        )
-
-    def update_batch(
-        self,
-        stress: np.ndarray,
-        statev: np.ndarray,
-        dstrain: np.ndarray,
-        suction: np.ndarray | None = None,
-        dsuction: np.ndarray | None = None,
-        tangent: str | None = None,
-        threads: int = 0,
-        out: tuple[np.ndarray, np.ndarray] | None = None,
-    ) -> BatchResponse:
-        """Integrates one increment of n points. Nothing is copied: the library reads and writes the arrays themselves.
-
-        stress : (n, 6) [kPa]; statev : (n, n_states); dstrain : (n, 6); suction, dsuction : (n,) [kPa] or None.
-        tangent : as in ``update``. threads : 0 takes as many as OpenMP would.
-        out : (stress, statev) to write to, may be the inputs themselves; None: new arrays.
-
-        Every array must be of float64 and contiguous (C order); any other is refused, never copied.
-        A point that fails leaves its outputs as they were: see ``status`` of the answer.
-        """
-        kind, n = _tangent(tangent), len(stress)
-        new_stress, new_statev = (np.empty((n, 6)), np.empty((n, len(states)))) if out is None else out
-        if out is None:  # a point that fails keeps what it had
-            new_stress[:], new_statev[:] = stress, statev
-        for array, shape, name in (
-            (stress, (n, 6), "stress"),
-            (statev, (n, len(states)), "statev"),
-            (dstrain, (n, 6), "dstrain"),
-            (suction, (n,), "suction"),
-            (dsuction, (n,), "dsuction"),
-            (new_stress, (n, 6), "out[0]"),
-            (new_statev, (n, len(states)), "out[1]"),
-        ):
-            if array is not None:
-                _need(array, shape, name)
-        blocks = [np.zeros((n, 6, 6)), np.zeros((n, 6)), np.zeros((n, 6)), np.zeros(n)] if tangent else [None] * 4
-        status = np.zeros(n, dtype=np.intc)
-        failed = _native.mud.mud_update_batch_prepared(
-            self._prepared.ctypes.data,
-            n,
-            *map(_place, (stress, statev)),
-            len(states),
-            *map(_place, (dstrain, suction, dsuction)),
-            kind,
-            threads,
-            *map(_place, (new_stress, new_statev, *blocks)),
-            status.ctypes.data,
-            None,
-        )
-        if failed < 0:
-            raise fault_of(failed)
-        return BatchResponse(new_stress, new_statev, status, failed, *blocks)
+            raise fault_of(code, sentence)
 
     def saturation(self, suction: np.ndarray | float, void_ratio: np.ndarray | float) -> np.ndarray:
         """Degree of saturation [-] at suctions [kPa] and void ratios [-]; the shapes are broadcast together."""
@@ -291,29 +295,9 @@ class Material(Mapping):
         answer, value = np.empty(suctions.shape), c_double()
         for place in np.ndindex(suctions.shape):
             code = _native.mud.mud_saturation(
-                self._prepared.ctypes.data, suctions[place], ratios[place], byref(value), None, None
+                self._address, suctions[place], ratios[place], byref(value), None, None
             )
             if code != 0:
                 raise fault_of(code)
             answer[place] = value.value
         return answer
-
-
-def _tangent(kind: str | None) -> int:
-    if kind not in TANGENTS:
-        raise InputError(f"tangent = {kind!r}: allowed are {', '.join(repr(k) for k in TANGENTS)}")
-    return C[TANGENTS[kind]]
-
-
-def _need(array: np.ndarray, shape: tuple[int, ...], name: str) -> None:
-    if not isinstance(array, np.ndarray) or array.dtype != np.float64 or not array.flags.c_contiguous:
-        raise InputError(
-            f"{name} must be a contiguous numpy array of float64 (C order); make it one with "
-            "numpy.ascontiguousarray(..., dtype=float)"
-        )
-    if array.shape != shape:
-        raise InputError(f"{name} has the shape {array.shape}, needed is {shape}")
-
-
-def _place(array: np.ndarray | None):
-    return None if array is None else array.ctypes.data

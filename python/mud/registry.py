@@ -11,7 +11,6 @@ from ctypes import byref, c_double
 import numpy as np
 
 from . import _native
-from ._former_names import note_on
 from ._native import CONSTANTS as C
 from .errors import UnknownName
 
@@ -54,9 +53,7 @@ class Registry(Mapping):
     def __getitem__(self, name: str):
         if name.lower() not in self._lower:
             near = difflib.get_close_matches(name.lower(), self._lower, 1, 0.0)
-            former = note_on(name) if self._what == "state variable" else ""
-            note = former or f"the nearest is {self._lower[near[0]]}"
-            raise UnknownName(f"there is no {self._what} {name}; {note}")
+            raise UnknownName(f"there is no {self._what} {name}; the nearest is {self._lower[near[0]]}")
         return self._entries[self._lower[name.lower()]]
 
     def __contains__(self, name: object) -> bool:

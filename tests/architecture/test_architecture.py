@@ -86,9 +86,11 @@ def remembered(files):
     """The exception from the rule above: the one variable of mud_once stands in first_time and nowhere else."""
     text = next((file.read_text(encoding="utf-8") for file in files if file.stem == "mud_once"), "")
     wrong = [] if len(module_variables(text)) == 1 else [f"mud_once: module variables {module_variables(text)}"]
-    body = re.search(r"function first_time.*?end function first_time", text, re.DOTALL)
-    uses_of = [len(re.findall(r"\btold\(", part)) for part in (text, body[0] if body else "")]
-    return wrong + ([] if uses_of[0] == uses_of[1] + 1 else ["mud_once: told is used outside first_time"])
+    # Whether a sentence is new, and how many increments the last sentence of a process counts: nothing else.
+    bodies = re.findall(r"(?:function|subroutine) (first_time|remind_at_exit|remind)\b(.*?)"
+                        r"end (?:function|subroutine) \1$", text, re.DOTALL | re.MULTILINE)
+    uses_of = [len(re.findall(r"\btold\(", part)) for part in (text, "".join(body for _, body in bodies))]
+    return wrong + ([] if uses_of[0] == uses_of[1] + 1 else ["mud_once: told is used outside first_time and reminders"])
 
 
 def not_strict(text):
@@ -227,7 +229,7 @@ def main():
         ("core procedures are pure", over(core_files, not_pure)),
         ("core and abi have no module variables, but for what was said already",
          over([file for file in library if file.stem != "mud_once"], module_variables)),
-        ("what was said already is one variable, which one function reads", remembered(abi_files)),
+        ("what was said already is one variable, which sentences alone read", remembered(abi_files)),
         ("every unit is strict", over(modules + suites, not_strict)),
         ("a file and its module share one name", over(modules + suites, wrong_name, True)),
         (f"no line has more than {COLUMNS} columns",

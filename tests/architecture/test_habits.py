@@ -37,7 +37,10 @@ def unlicensed(names, text_of):
 version = found(r"^project\(mud VERSION (\S+)", "CMakeLists.txt")
 told = {"pyproject.toml": tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"],
         "umat/abi/mud_c_api.f90": found(r"VERSION = '([\d.]+)'", "umat/abi/mud_c_api.f90"),
-        "CITATION.cff": found(r"^version: (\S+)", "CITATION.cff"),
+        "CITATION.cff": found(r"^version: (\S+)", "CITATION.cff"), "fpm.toml": found(r'^version = "(\S+)"', "fpm.toml"),
+        "codemeta.json": found(r'"version": "(\S+)"', "codemeta.json"),
+        "packaging/conda/recipe.yaml": found(r'^  version: "(\S+)"', "packaging/conda/recipe.yaml"),
+        "packaging/spack/package.py": found(r'^    version\("(\S+)"', "packaging/spack/package.py"),
         "docs/release.md": found(r"^\| version \| (\S+) \|", "docs/release.md")}
 check("every file tells the version of CMakeLists.txt", set(told.values()) == {version}, f"{version}, but {told}")
 check("docs/release.md tells the ABI version of mud.h", found(r"^\| ABI version \| (\d+) \|", "docs/release.md")

@@ -18,8 +18,8 @@ void *calloc(size_t n, size_t m) { __atomic_add_fetch(&allocations, 1, __ATOMIC_
 void *realloc(void *p, size_t n) { __atomic_add_fetch(&allocations, 1, __ATOMIC_RELAXED); return __libc_realloc(p, n); }
 #endif
 
-static double props[MAX], stress[6*POINTS], statev[MAX*POINTS], dstrain[6*POINTS], suction[POINTS], dsuction[POINTS];
-static double c[36*POINTS], c_pc[6*POINTS], sw_e[6*POINTS], sw_pc[POINTS];
+static double props[MAX], stress[6*POINTS], statev[MAX*POINTS], dstrain[6*POINTS], suction[POINTS];
+static double c[36*POINTS], c_pc[6*POINTS], sw_e[6*POINTS], sw_pc[POINTS], *material, change;
 static int status[POINTS];
 static int nprops, nstatev;
 
@@ -28,11 +28,12 @@ static void start(int scheme, int rule, double p_c)
    mud_default_props(props, nprops);
    props[mud_index(MUD_PROPS, "scheme")] = scheme;
    props[mud_index(MUD_PROPS, "memory_rule")] = rule;
+   change = p_c > 0.0 ? 1.0e-3 : 0.0;
+   if (mud_prepare(props, nprops, material, mud_prepared_size(), NULL, 0)) exit(2);
    for (int i = 0; i < POINTS; i++) {
       for (int j = 0; j < 6; j++) stress[6*i + j] = j < 3 ? -100.0 : 0.0;
       suction[i] = p_c;
-      dsuction[i] = p_c > 0.0 ? 1.0e-3 : 0.0;
-      if (mud_init_state(props, nprops, stress + 6*i, p_c, 0.75, statev + nstatev*i, nstatev, NULL, 0)) exit(2);
+      if (mud_init(material, stress + 6*i, p_c, 0.75, 0.0, statev + nstatev*i, nstatev, NULL, 0)) exit(2);
    }
 }
 
@@ -48,11 +49,13 @@ int main(int argc, char **argv)
 {
    const int updates = argc > 1 ? atoi(argv[1]) : 1000;
    mud_report report;
+   mud_blocks blocks;
    long before, done, failed;
 
    nprops = mud_count(MUD_PROPS);
    nstatev = mud_count(MUD_STATEV);
-   if (nprops > MAX || nstatev > MAX) return 2;
+   material = malloc(sizeof(double)*(size_t)mud_prepared_size());
+   if (nprops > MAX || nstatev > MAX || !material) return 2;
    setvbuf(stdout, NULL, _IOLBF, 1 << 16);
    printf("warming up\n");
    for (int scheme = 1; scheme <= 3; scheme++)
@@ -64,9 +67,9 @@ int main(int argc, char **argv)
             for (int k = 0; k < updates; k++) {
                strain_of(k, dstrain);
                if (k == 7) dstrain[2] = 2.0;   /* refused: a failure must not allocate either */
-               int code = mud_update(props, nprops, stress, statev, nstatev, dstrain, suction[0], dsuction[0], tangent,
-                                     stress, statev, c, c_pc, sw_e, sw_pc, &report);
-               if (code) failed++; else { done++; suction[0] += dsuction[0]; }
+               int code = mud_update(material, stress, statev, nstatev, dstrain, suction[0] + change, tangent, stress,
+                                     statev, &blocks, &report);
+               if (code) failed++; else { done++; suction[0] += change; }
             }
             printf("update scheme %d tangent %d suction %d: %ld done, %ld refused, allocations %ld\n", scheme, tangent,
                    !wet, done, failed, allocations - before);
@@ -77,11 +80,15 @@ int main(int argc, char **argv)
          for (int i = 0; i < POINTS; i++) strain_of(i, dstrain + 6*i);
          for (int call = 0; call < 3; call++) {   /* the first makes the team of threads */
             before = allocations;
-            failed = mud_update_batch(props, nprops, n, stress, statev, nstatev, dstrain, suction, dsuction, 3, threads,
-                                      stress, statev, c, c_pc, sw_e, sw_pc, status, NULL);
+            for (int i = 0; i < POINTS; i++) suction[i] += change;
+            failed = mud_update_points(material, 1, &(mud_points){
+               .n = n, .nstatev = nstatev, .tangent = 3, .threads = threads, .stress0 = stress, .statev0 = statev,
+               .dstrain = dstrain, .suction = suction, .stress1 = stress, .statev1 = statev, .dsig_deps = c,
+               .dsig_dpc = c_pc, .dsw_deps = sw_e, .dsw_dpc = sw_pc, .status = status}, NULL);
          }
          printf("batch threads %d points %d: %ld failed, allocations %ld\n", threads, n, failed, allocations - before);
       }
+   free(material);
    before = allocations;
    free(malloc(10 + argc));
    free(realloc(calloc(3, 5 + argc), 100));

@@ -19,28 +19,31 @@ extern void umat_(double *stress, double *statev, double *ddsdde, double *sse, d
                   double *pnewdt, double *celent, double *dfgrd0, double *dfgrd1, int *noel, int *npt, int *layer,
                   int *kspt, int *kstep, int *kinc);
 
-enum { MAX = 128, THREADS = 8 };
+enum { MAX = 128, ROOM = 512, THREADS = 8 };
 static const double STRESS[6] = {-90.0, -95.0, -120.0, 3.0, -2.0, 1.0};
 static const double DSTRAIN[6] = {1.0e-3, 2.0e-3, -4.0e-3, 1.0e-3 / 3.0, -1.0e-4, 7.0e-4};
-static const double SUCTION = 40.0, DSUCTION = -1.0 / 3.0;
+static const double SUCTION = 40.0, DSUCTION = -0.375;
 
-static int set_up(double props[MAX], double statev[MAX])
+/* The material, prepared, and a point of it that has begun. */
+static int set_up(double props[MAX], double material[ROOM], double statev[MAX])
 {
-   memset(statev, 0, MAX * sizeof *statev);
+   double stress[6];
+   memcpy(stress, STRESS, sizeof stress);
    if (mud_default_props(props, mud_count(MUD_PROPS)) != MUD_OK)
       return 0;
    props[mud_index(MUD_PROPS, "max_substeps")] = 12.0;
    props[mud_index(MUD_PROPS, "tangent")] = MUD_TANGENT_CONTINUUM;   /* as `save` asks for */
-   return 1;
+   return mud_prepare(props, mud_count(MUD_PROPS), material, ROOM, NULL, 0) == MUD_OK &&
+          mud_init(material, stress, SUCTION, 0.0, 0.0, statev, mud_count(MUD_STATEV), NULL, 0) == MUD_OK;
 }
 
 static int save(const char *path, char *text, int len)
 {
-   double props[MAX], statev[MAX];
-   if (!set_up(props, statev))
+   double props[MAX], material[ROOM], statev[MAX];
+   if (!set_up(props, material, statev))
       return 1;
-   return mud_save_increment(path, "failing_host", props, mud_count(MUD_PROPS), STRESS, statev, mud_count(MUD_STATEV),
-                             DSTRAIN, SUCTION, DSUCTION, MUD_TANGENT_CONTINUUM, text, len);
+   return mud_save_increment(path, "failing_host", material, STRESS, statev, mud_count(MUD_STATEV), DSTRAIN,
+                             SUCTION + DSUCTION, MUD_TANGENT_CONTINUUM, text, len);
 }
 
 /* What is wrong with a call; NOTHING_ELSE: too few substeps are allowed, as with the others. */
@@ -48,11 +51,11 @@ enum fault { NOTHING_ELSE, PROPS_H_0, PROPS_N_B, STRAIN_13, MEMORY_22, STRESS_11
 
 static int fail_as_umat(int element, enum fault fault)
 {
-   double props[MAX], statev[MAX], stress[6], dstrain[6], suction = SUCTION, dsuction = DSUCTION;
+   double props[MAX], material[ROOM], statev[MAX], stress[6], dstrain[6], suction = SUCTION, dsuction = DSUCTION;
    double scd = 0.0, pnewdt = 1.0;
    int ntens = 6, nprops = mud_count(MUD_PROPS), nstatv = mud_count(MUD_STATEV), npt = 4, kstep = 1, kinc = 9;
 
-   if (!set_up(props, statev))
+   if (!set_up(props, material, statev))
       return 1;
    memcpy(stress, STRESS, sizeof stress);
    memcpy(dstrain, DSTRAIN, sizeof dstrain);

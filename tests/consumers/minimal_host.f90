@@ -2,25 +2,27 @@
 !> A minimal host: one point of dense sand, sheared without change of volume to 1 % axial strain.
 program minimal_host
    use, intrinsic :: iso_c_binding, only: c_int, c_double, c_char, c_null_char
-   use mud_interface, only: mud_report, mud_count, mud_index, mud_default_props, mud_validate_props, mud_update, &
-      mud_message, MUD_PROPS, MUD_STATEV, MUD_TANGENT_CONSISTENT
+   use mud_interface, only: mud_report, mud_count, mud_index, mud_default_props, mud_prepared_size, mud_prepare, &
+      mud_init, mud_update, mud_blocks, mud_message, MUD_PROPS, MUD_STATEV, MUD_TANGENT_CONSISTENT
    implicit none (type, external)
    real(c_double), parameter :: END_STRAIN = 0.01_c_double
-   real(c_double), allocatable :: props(:), statev(:)
-   real(c_double) :: stress(6), tangent(6, 6), strain, step, d
+   real(c_double), allocatable :: props(:), statev(:), material(:)
+   real(c_double) :: stress(6), strain, step, d
+   type(mud_blocks) :: blocks                                ! dsig_deps is the tangent
    type(mud_report) :: report
    integer(c_int) :: status, e_0
    character(kind=c_char) :: text(200)
 
-   allocate (props(mud_count(MUD_PROPS)), statev(mud_count(MUD_STATEV)))
+   allocate (props(mud_count(MUD_PROPS)), statev(mud_count(MUD_STATEV)), material(mud_prepared_size()))
    status = mud_default_props(props, size(props))
    e_0 = mud_index(MUD_PROPS, 'e_0'//c_null_char) + 1        ! indices of the library are those of C
    props(e_0) = 0.735_c_double                               ! initial void ratio
-   status = mud_validate_props(props, size(props), text, size(text))
+   status = mud_prepare(props, size(props), material, size(material), text, size(text))
    if (status /= 0) call give_up()
 
-   statev = 0.0_c_double                                     ! initialised by the first update
    stress = [-100.0_c_double, -100.0_c_double, -100.0_c_double, 0.0_c_double, 0.0_c_double, 0.0_c_double]
+   status = mud_init(material, stress, 0.0_c_double, 0.0_c_double, 0.0_c_double, statev, size(statev), text, size(text))
+   if (status /= 0) call give_up()
    strain = 0.0_c_double                                     ! stress: effective [kPa], tension positive
    step = 1.0e-4_c_double
    do while (END_STRAIN - strain > 1.0e-12_c_double)
@@ -38,17 +40,13 @@ program minimal_host
    print '(a,f0.3,a,f0.3,a)', "p' ", -sum(stress(1:3))/3.0_c_double, ' kPa, q ', stress(2) - stress(1), ' kPa'
 contains
    !> One increment of undrained compression; components 11, 22, 33, 12, 13, 23, shear would be engineering shear.
-   !> Outputs are separate from inputs, so that the old values remain if the increment must be repeated.
    subroutine update(axial)
       real(c_double), intent(in) :: axial
-      real(c_double) :: dstrain(6), new_stress(6), new_statev(size(statev))
+      real(c_double) :: dstrain(6)
 
       dstrain = [-axial, axial/2, axial/2, 0.0_c_double, 0.0_c_double, 0.0_c_double]
-      status = mud_update(props, size(props), stress, statev, size(statev), dstrain, 0.0_c_double, 0.0_c_double, &
-                          MUD_TANGENT_CONSISTENT, new_stress, new_statev, dsig_deps=tangent, report=report)
-      if (status /= 0) return
-      stress = new_stress
-      statev = new_statev
+      status = mud_update(material, stress, statev, size(statev), dstrain, 0.0_c_double, MUD_TANGENT_CONSISTENT, &
+                          stress, statev, blocks, report)
    end subroutine update
 
    subroutine give_up()

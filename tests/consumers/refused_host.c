@@ -4,6 +4,7 @@
  *    refused_host kratos [STATEV]       fields, DROT and PNEWDT are NULL, element and point 0, a first call with dt 0;
  *                                       trials start from the finalised state; STATEV: how many it reserves
  *    refused_host kratos_hard           the same, but the 50th increment is too large: "converged" on it or stopped?
+ *    refused_host kratos_prescribed     the same with K_0 < 0 and every strain prescribed: nothing iterates
  *    refused_host calculix [STATEV]     PNEWDT enters with -1, PREDEF and DPRED were never set
  *    refused_host incremental_driver    PNEWDT enters with 0, DROT was never set
  *    refused_host abaqus NTENS          PNEWDT enters with 1
@@ -102,6 +103,16 @@ static int kratos(int nstatv, int hard)
       finalised = trial;
    }
    return tell(&finalised);
+}
+
+static int prescribed(void)
+{
+   host_t h;
+   set_up(&h);
+   h.props[mud_index(MUD_PROPS, "K_0")] = -1.0;
+   for (int step = 0; step < STEPS; step++)
+      call(&h, 1.0e-4);
+   return tell(&h);
 }
 
 static int abaqus_like(double enters, double fields, double rotation, int ntens, int nstatv)
@@ -234,6 +245,8 @@ int main(int argc, char **argv)
       return kratos(number, 0);
    if (strcmp(task, "kratos_hard") == 0)
       return kratos(0, 1);
+   if (strcmp(task, "kratos_prescribed") == 0)
+      return prescribed();
    if (strcmp(task, "calculix") == 0)
       return abaqus_like(-1.0, 37.2, 0.0, 6, number);
    if (strcmp(task, "incremental_driver") == 0)

@@ -10,13 +10,14 @@ sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
 from checking import build, check, finish, light, root, work  # noqa: E402
 
 SECONDS = 60   # a help text takes less than one; more only on a machine that is very busy
-PROGRAMS = [build / name for name in ("drivers/mud_triax", "drivers/mud_replay", "drivers/mud_describe",
+PROGRAMS = [build / name for name in ("drivers/mud_triax", "drivers/mud_describe",
                                       "host/mud_host")]
 # Started by these words; what the build or a test alone starts is not here.
 PYTHON = ["drivers/plot_case.py", "host/plot_run.py", "calibration/library.py", "scripts/single_source.py",
           "scripts/same_answers.py", "scripts/run_suites.py", "scripts/module_map.py", "benchmarks/host_benchmark.py",
           "tests/mutations/run_mutations.py"]
 SHELL = ["demo", "check", "scripts/site", "scripts/benchmark", "scripts/random_increments", "scripts/try_packages.sh",
+         "scripts/before_release", "scripts/try_fpm", "scripts/try_recipes", "scripts/wheel",
          "clients/check", "verification/run", "tests/fuzz/run"]
 
 

@@ -23,13 +23,13 @@ OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]+")
 # What stands at the beginning of a command, and who prints its options.
 PROGRAMS = {
     "mud_triax": [build / "drivers/mud_triax", "--help"], "mud_host": [build / "host/mud_host", "--help"],
-    "mud_replay": [build / "drivers/mud_replay", "--help"], "mud_describe": [build / "drivers/mud_describe", "--help"],
+    "mud_describe": [build / "drivers/mud_describe", "--help"],
     "mud_calibrate": [sys.executable, "-m", "mud.calibration.command", "--help"], "check": [root / "check", "--help"],
     "verification/run": [root / "verification/run", "--help"],
     "plot_case.py": [sys.executable, root / "drivers/plot_case.py", "--help"],
     "plot_run.py": [sys.executable, root / "host/plot_run.py", "--help"]}
 COMMAND = re.compile(r"^(?:\$ |    )?(?:[A-Z_]+=\S+ )*(?:build/venv/bin/python3 |build/release/\w+/|\./)?"
-                     r"(?:(?!clients)[\w.]+/)*(mud_triax|mud_host|mud_replay|mud_describe|mud_calibrate|check|"
+                     r"(?:(?!clients)[\w.]+/)*(mud_triax|mud_host|mud_describe|mud_calibrate|check|"
                      r"verification/run|plot_case\.py|plot_run\.py)(?= )(?P<words>[^|>#!\n]*)", re.MULTILINE)
 
 

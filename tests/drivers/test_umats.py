@@ -106,13 +106,13 @@ names, keys = table("statev", r"^\| \d+ \| `(\w+)`"), table("namelist", r"^   (\
 
 def props_of(text, place):
     """PROPS of a case, from the file of an update that the library saved: it holds all of them, to the last bit."""
-    case, saved = work / "probe.nml", work / "probe.txt"
+    case, saved = work / "probe.nml", work / "probe_saved.nml"
     saved.unlink(missing_ok=True)
     case.write_text(re.sub(r"&stage.*", "", text, flags=re.S).replace("'../", f"'{place}/../")
                     + stage("control = 'drained'", "eps_a_end = 1.0", "increment = 1.0", "output_interval = 1.0"))
     words = [triax, case, "--output", work / "probe.csv", "--quiet", "--save-failed", saved]
     subprocess.run(words, capture_output=True)
-    values = dict(line.split()[:2] for line in saved.read_text().splitlines() if len(line.split()) == 2)
+    values = dict(re.findall(r"^   (\w+) = (\S+)", saved.read_text(), re.MULTILINE))
     return [values[key] for key in keys]
 
 

@@ -39,11 +39,6 @@ MISTAKES = [
      "tangent = 3", "tangent = 3\n   hysteresis = 1", 2, ("saturation_rate = 'suction'", "hysteresis = 1", "'full'")),
     ("tangent without slopes", SUCTION, "tangent = 3", "tangent = 0", 2, ("gives no slopes",)),
     ("key of a law", SUCTION, "tangent = 3", "tangnt = 3", 2, ("tangnt", "tangent")),
-    ("group of older scenes", SCENE, "&elastic", "&rigid group = 'top' mass = 1 /\n&elastic", 2,
-     ("&rigid is &plate now",)),
-    ("key of older materials", SUCTION, "tangent = 3", "material_call = 'umat'", 2, ("material_call", "&umat")),
-    ("key of the first materials", SUCTION, "tangent = 3", "call = 'umat'", 2, ("the key call of &mud", "&umat")),
-    ("key of older scenes", FALL, "penalty = 1.0e7", "reach = 1", 2, ("reach", "search_radius now")),
     ("plate without a place", FALL, "   r = 0, 0.15\n   z = 1.0e-5", "", 2, ("give one of the two",)),
     ("plate with two places", FALL, "   z = 1.0e-5", "   group = 'top'", 2, ("give one of the two",)),
     ("no stage", SCENE, "&stage", "&point name = 'p' r = 0 z = 0 /\n&stage", 0, ()),
@@ -53,7 +48,7 @@ MISTAKES = [
     ("missing material", SCENE, "material = 'wall'", "material = 'wal'", 11, ("wal", "there is wall")),
     ("missing stage", SCENE, "kind = 'pressure'", "kind = 'pressure'\n   stages = 'lode'", 11, ("lode",)),
     ("inverted element", SCENE, "r = 1, 2", "r = -1, 2", 12, ("r >= 0",)),
-    ("unconstrained body", SCENE, "   field = 'u_z'", "   field = 'u_r'", 13, ("singular", "&fix")),
+    ("unconstrained body", SCENE, "   field = 'u_z'", "   field = 'u_r'", 13, ("nothing holds the body", "&fix")),
     ("no convergence", FLOW, "tolerance = 1.0e-8", "tolerance = 1.0e-14\n   cuts = 2\n   max_iterations = 1", 14,
      ("no convergence", "element", "time")),
     ("no convergence of a plate", FALL, "tolerance = 1.0e-6",
@@ -115,7 +110,7 @@ for words in (("--output", "--quiet"), ("--restart", "--check"), ("--output",), 
     check(f"{' '.join(words)}: usage", done.returncode == 2 and words[0] in done.stderr and "usage" in done.stderr
           and len(done.stderr.splitlines()) == 1 and not (work / "--quiet").exists(), done.stderr)
 done = subprocess.run([host, "--help"], capture_output=True, text=True)
-check("help", done.returncode == 0 and "default: output" in done.stdout and "Exit codes: host/README.md" in done.stdout
+check("help", done.returncode == 0 and "default: output" in done.stdout and "xit codes: host/README.md" in done.stdout
       and "--restart" in done.stdout and max(map(len, done.stdout.splitlines())) <= 120, done.stdout)
 done = subprocess.run([host, work / "scene.nml", "--output", "/proc/nowhere"], capture_output=True, text=True,
                       env=environment)
@@ -129,7 +124,7 @@ check("first scene of the manual runs", done.returncode == 0, done.stderr)
 if done.returncode == 0:
     u_z = list(tables.numbers(work / "first/histories.csv")[-1].values())[2]
     check("first scene: 1 mm", abs(u_z + 1e-3) < 1e-12, u_z)
-for code in re.findall(r"EXIT_\w+ = (\d+)", (root / "host/exit_codes.f90").read_text()):
+for code in re.findall(r"EXIT_\w+ = (\d+)", (root / "host/base/exit_codes.f90").read_text()):
     check(f"the manual names exit code {code}", f"| {code} |" in manual)
 
 # A plate that bounces on its penalty: generalised-alpha with rho_inf = 0.8 gains energy at every opening and closing
@@ -149,6 +144,45 @@ for rho, code, word in (("0.8", 18, "has created"), ("0.0", 0, ""), (f"0.8{allow
         last = tables.numbers(work / "fall/ledger.csv")[-1]["time"]
         check(f"rho_inf {' '.join(rho.split())}: the run ends before its time", 0 < last < 0.05, last)
 
+# A load that grows from zero on a column with Rayleigh damping: its first step has no other work than its own, of which
+# the scheme creates at most gamma**2 l_f/(beta l_a) - 1, 0.83 % with rho_inf 0.8 and 12.5 % with 0, where inertia alone
+# acts; damping takes nothing of that for creation. No run ends by it, and at the end 1e-4 of the work is left of it.
+ramp = ("&scene name = 'ramp' geometry = 'plane_strain' fields = 'u' /\n"
+        "&mesh r = 0, 1 r_cells = 1 z = -8, 0 z_cells = 8 /\n"
+        "&elastic name = 'm' young = 3e5 poisson = 0.25 /\n&region material = 'm' rho_s = 1.9 void_ratio = 0 "
+        "stiffness_damping = 2e-3 damping = 1 /\n&history name = 'v' times = 0, 0.05, 0.1, 1 values = 0, 1, 0, 0 /\n"
+        "&stage name = 's' analysis = 'dynamic' duration = 0.2 /\n&tie first = 'left' second = 'right' /\n"
+        "&fix group = 'bottom' field = 'u_z' /\n&fix group = 'bottom' field = 'u_r' /\n"
+        "&load group = 'top' kind = 'shear_r' value = 5 history = 'v' /\n&point name = 't' r = 0 z = 0 /\n")
+for rho, least, most in ((0.8, 0.0, 0.0084), (0.0, 0.02, 0.126)):
+    scene.write_text(ramp.replace("duration", f"rho_inf = {rho} duration"))
+    done = subprocess.run([host, scene, "--output", work / "ramp", "--quiet"], capture_output=True, text=True,
+                          env=environment)
+    check(f"damped column, rho_inf {rho}: runs", done.returncode == 0 and "created" not in done.stderr, done.stderr)
+    rows = tables.numbers(work / "ramp/ledger.csv")
+    created = -rows[0]["imbalance"] / rows[0]["loads"]
+    check(f"damped column, rho_inf {rho}: what the first step creates", least <= created <= most, created)
+    left = -rows[-1]["imbalance"] / max(row["loads"] for row in rows)
+    check(f"damped column, rho_inf {rho}: what is left of it", left < 1e-4, left)
+
+# A first guess that is refused: 0.5 g dt**2 of a cantilever's step of 100 s is 49 km. The step starts again from the
+# state before it; the tip sinks by what the statics of the beam say, 3/2 rho g L**4/(E' h**2) with E' of plane strain
+# and 2 % for shear and the mesh; a linear problem takes any step, without a cut and without energy out of nothing.
+beam = ("&scene name = 'beam' geometry = 'plane_strain' gravity = 9.81 /\n"
+        "&mesh r = 0, 8 r_cells = 40 z = 0, 0.4 z_cells = 2 /\n"
+        "&elastic name = 'c' young = 3e7 poisson = 0.2 /\n&region material = 'c' rho_s = 2.5 void_ratio = 0 /\n"
+        "&stage name = 's' duration = 4000 analysis = 'dynamic' dt = 100 rho_inf = 0 /\n"
+        "&fix group = 'left' field = 'u_r' /\n"
+        "&fix group = 'left' field = 'u_z' /\n&point name = 'tip' r = 8 z = 0.2 /\n")
+scene.write_text(beam)
+done = subprocess.run([host, scene, "--output", work / "beam", "--quiet"], capture_output=True, text=True,
+                      env=environment)
+check("cantilever in steps of 100 s: runs", done.returncode == 0, done.stderr)
+rows = tables.numbers(work / "beam/histories.csv")
+sag = 1.5 * 2.5 * 9.81 * 8**4 / (3e7 / (1 - 0.2**2) * 0.4**2)
+check("cantilever: no cut", len(rows) == 41, len(rows))
+check("cantilever: static tip", abs(rows[-1]["tip.u_z"] / -sag - 1) < 0.02, (rows[-1]["tip.u_z"], -sag))
+
 # rho_inf where the scene leaves it open: 0 in a dynamic stage with contact, which gains no energy on a penalty however
 # long the step (omega dt 3, 12 and 50 here; rounding apart), 0.8 without. The start of a run says which holds.
 quiet_fall = fall.replace("rho_inf = 0.8", "").replace("duration = 0.06", "duration = 0.02")
@@ -165,10 +199,6 @@ free = re.sub(r"&contact.*?^/$", "", quiet_fall, flags=re.MULTILINE | re.DOTALL)
 scene.write_text(free)
 done = subprocess.run([host, scene, "--check"], capture_output=True, text=True, env=environment)
 check("without contact: rho_inf 0.8", "Stage fall: dynamic, rho_inf 0.8." in done.stdout, done.stdout + done.stderr)
-# The BLAS that the process has loaded is named, and the reference one draws a warning.
-check("BLAS named", re.search(r"^BLAS: .+", done.stdout, re.MULTILINE), done.stdout)
-check("reference BLAS: warned", ("BLAS: reference" in done.stdout) == ("Warning: this is the reference BLAS"
-                                                                        in done.stdout), done.stdout)
 
 # Results do not depend on the number of threads: the files are the same, byte for byte.
 answers = []

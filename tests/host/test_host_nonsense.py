@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Scenes of nonsense: a clear refusal or a run, never a crash.
 
-1000 scenes in the check run (fewer in the slow builds, which only read them); `MUD_NONSENSE=100000` for a long run,
-`MUD_NONSENSE_FIRST` for where it begins.
+300 scenes in the check run, 50 in the slow builds, which only read them; 1000 and 100 by ./check --tier nightly.
+`MUD_NONSENSE=100000` for a long run, `MUD_NONSENSE_FIRST` for where it begins.
 """
 import collections
 import concurrent.futures
@@ -15,7 +15,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import add, build, check, finish, light, root, work  # noqa: E402
+from checking import add, build, check, finish, light, nightly, root, work  # noqa: E402
 from nonsense import Grammar  # noqa: E402
 
 HOST = build / "host/mud_host"
@@ -31,7 +31,7 @@ ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1"}
 FIRST = int(os.environ.get("MUD_NONSENSE_FIRST", 0))
 EVERY = int(os.environ.get("MUD_NONSENSE_RUN", 10))
 TOGETHER = "MUD_NONSENSE_TOGETHER" in os.environ
-COUNT = int(os.environ.get("MUD_NONSENSE", 100 if light else 1000))
+COUNT = int(os.environ.get("MUD_NONSENSE", (100 if nightly else 50) if light else (1000 if nightly else 300)))
 
 
 def bases():

@@ -43,7 +43,8 @@ def table(which, pattern):
 
 # The same words for the same numbers, as keys of &mud and as PROPS of its UMAT.
 states, props = table("statev", r"^\| \d+ \| `(\w+)`"), dict(table("namelist", r"^   (\w+) = (\S+)"))
-props.update(memory_rule="1", tangent="3", theta="0.2")
+# The stages ask for 1e-6, which &mud follows and a UMAT does not: both have it.
+props.update(memory_rule="1", tangent="3", theta="0.2", tolerance="1.0E-6")
 own = "&mud\n   name = 'sand'\n   " + "\n   ".join(f"{key} = {value}" for key, value in props.items()) + "\n/\n"
 places = {"void_ratio_at": "void_ratio", "saturation_at": "saturation", "saturation_slopes_at": "dsw_dpc",
           "suction_slope_at": "dsigma_dpc_11"}

@@ -5,6 +5,7 @@ import ctypes
 import inspect
 import os
 import pathlib
+import pickle
 import subprocess
 import sys
 import threading
@@ -97,33 +98,18 @@ check(
 )
 answer = sand.update(stress, state, SHEAR, tangent="consistent")
 direct = np.empty(6), np.empty(len(mud.states))
-library = ctypes.CDLL(str(build / "umat/libmud.so"))
-library.mud_update.argtypes = [
-    ctypes.c_void_p,
-    ctypes.c_int,
-    ctypes.c_void_p,
-    ctypes.c_void_p,
-    ctypes.c_int,
-    ctypes.c_void_p,
-    ctypes.c_double,
-    ctypes.c_double,
-    ctypes.c_int,
-] + 7 * [ctypes.c_void_p]
+library, material = ctypes.CDLL(str(build / "umat/libmud.so")), np.zeros(_native.mud.mud_prepared_size())
+pointer, number, count = ctypes.c_void_p, ctypes.c_double, ctypes.c_int
+library.mud_prepare.argtypes = [pointer, count, pointer, count, pointer, count]
+library.mud_update.argtypes = [pointer, pointer, pointer, count, pointer, number, count] + 4 * [pointer]
+library.mud_prepare(sand.props.ctypes.data, len(sand.props), material.ctypes.data, len(material), None, 0)
 library.mud_update(
-    sand.props.ctypes.data,
-    len(sand.props),
-    stress.ctypes.data,
-    state.ctypes.data,
+    *(a.ctypes.data for a in (material, stress, state)),
     len(state),
     SHEAR.ctypes.data,
     0.0,
-    0.0,
     3,
-    direct[0].ctypes.data,
-    direct[1].ctypes.data,
-    None,
-    None,
-    None,
+    *(a.ctypes.data for a in direct),
     None,
     None,
 )
@@ -158,15 +144,22 @@ strains = np.ascontiguousarray(SHEAR * np.linspace(0.0, 2.0, n)[:, None])
 batch = sand.update_batch(*many, strains, tangent="continuum", threads=2)
 one = [sand.update(stress, state, strain, tangent="continuum") for strain in strains]
 check(
-    "a batch has the bits of single updates",
+    "a batch has the bits of single updates, its tangent their order",
     np.array_equal(batch.stress, [o.stress for o in one])
-    and np.array_equal(batch.dsig_deps.transpose(0, 2, 1), [o.dsig_deps for o in one]),
+    and np.array_equal(batch.dsig_deps, [o.dsig_deps for o in one])
+    and np.array_equal(batch.columns.transpose(0, 2, 1), batch.dsig_deps)
+    and np.array_equal(batch.dsw_dpc, [o.dsw_dpc for o in one]),
 )
-place = many[0].ctypes.data
-inside = sand.update_batch(*many, strains, out=many)
+out = mud.BatchResponse(*many, columns=np.zeros((n, 6, 6)))
+places = [a.ctypes.data for a in (*many, out.columns)]
+inside = sand.update_batch(*many, strains, tangent="continuum", out=out)
 check(
-    "a batch in place writes to the arrays themselves",
-    inside.stress is many[0] and many[0].ctypes.data == place and np.array_equal(many[0], batch.stress),
+    "a batch in place writes to the arrays themselves, tangents too",
+    inside is out
+    and places == [a.ctypes.data for a in (out.stress, out.statev, out.columns)]
+    and np.array_equal(many[0], batch.stress)
+    and np.array_equal(out.columns, batch.columns)
+    and out.dsig_dpc is None,
 )
 told = refused(mud.InputError, lambda: sand.update_batch(many[0][::2], many[1][::2], strains[::2]))
 check("an array that would have to be copied is refused", "contiguous" in told, told)
@@ -177,6 +170,84 @@ check(
     batch.failed == 1 and batch.status[3] > 0 and np.array_equal(batch.stress[3], many[0][3]) and batch.sentence(3),
     batch.status[:5],
 )
+strains[7, 4] = np.nan
+batch = sand.update_batch(*many, strains)
+fault = batch.fault()
+check(
+    "a batch tells how many failed, the worst, its sentence and the factor",
+    (batch.failed, batch.worst, batch.status[7]) == (2, 3, -6)
+    and 0.0 < batch.pnewdt < 1.0
+    and str(fault).startswith("point 3: strain increment")
+    and isinstance(fault, mud.IncrementError),
+    fault,
+)
+told = refused(mud.InputError, lambda: sand.update(stress, state, strains[7]))
+check("a strain of NaN is told by its component", "strain increment 13 is not finite" in told, told)
+
+# Points that begin, lists, several materials, suction, total stress, slopes of the present state.
+stresses, suctions = np.tile(COMPRESSION, (4, 1)), np.array([0.0, 10.0, 20.0, 30.0])
+stresses[1] = 0.0
+begun = sand.init_batch(stresses, suctions, np.full(4, 0.7))
+alone = sand.initial_state(stresses[2], 20.0, 0.7)
+check(
+    "points begin as alone, and those that are lifted are counted",
+    begun.n_lifted == 1 and begun.stress[1, 0] < 0.0 and np.array_equal(begun.statev[2], alone[1]),
+    begun,
+)
+other = sand.changed(M_c=1.4)
+ground, kinds = mud.MaterialList([sand, other]), np.array([0, 1, 0, 1], dtype=np.intc)
+shear, some = np.tile(SHEAR, (4, 1)), np.array([3, 0], dtype=np.intc)
+part = ground.update_batch(begun.stress, begun.statev, shear, points=some, material=kinds)
+whole = other.update_batch(begun.stress, begun.statev, shear)
+check(
+    "a list of points, each with its material, and no other",
+    np.array_equal(part.stress[3], whole.stress[3])
+    and np.array_equal(part.stress[1:3], begun.stress[1:3])
+    and not np.array_equal(part.stress[0], whole.stress[0]),
+)
+told = refused(mud.InputError, lambda: ground.update_batch(begun.stress, begun.statev, shear))
+check("several materials without the numbers of the points are refused", "material" in told, told)
+told = refused(mud.InputError, lambda: sand.update_batch(begun.stress, begun.statev, shear, points=some + 1))
+check("a number beyond the points is refused", "4" in told, told)
+wetter = sand.update_batch(begun.stress, begun.statev, shear, 0.5 * suctions, tangent="consistent")
+kept = sand.update_batch(begun.stress, begun.statev, shear)
+check(
+    "suction is that at the end; left out it stays",
+    np.array_equal(mud.state(wetter.statev, "suction"), 0.5 * suctions)
+    and np.array_equal(mud.state(kept.statev, "suction"), suctions)
+    and np.array_equal(sand.update(begun.stress[2], begun.statev[2], SHEAR, 10.0).stress, wetter.stress[2]),
+)
+curve = sand.saturation_batch(wetter.statev)
+check(
+    "the degree of saturation of points is that of their update, with its slopes",
+    np.array_equal(curve.s_w, mud.state(wetter.statev, "saturation")) and np.array_equal(curve.dsw_dpc, wetter.dsw_dpc),
+)
+water = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+total = stresses + (sand.saturation(suctions, 0.7) * suctions)[:, None] * water
+start = sand.init_batch(total, suctions, np.full(4, 0.7), total_stress=True)
+ended = sand.update_batch(start.stress, start.statev, shear, 0.5 * suctions, total_stress=True)
+expected = wetter.stress + (mud.state(wetter.statev, "saturation") * 0.5 * suctions)[:, None] * water
+check("total stress is effective stress and its water", np.allclose(ended.stress[2:], expected[2:], rtol=1e-9))
+ahead = sand.tangent_batch(wetter.stress, wetter.statev, shear)
+last, none = (sand.tangent_batch(wetter.stress, wetter.statev, *a) for a in ((), (None, suctions)))
+plain = sand.update_batch(wetter.stress, wetter.statev, 0.0 * shear, tangent="elastic")
+check(
+    "slopes of the present state follow the direction, or the last strain whatever suction does",
+    np.allclose(ahead.columns, last.columns, rtol=1e-4, atol=1.0)
+    and np.allclose(last.columns, none.columns, rtol=1e-3, atol=10.0)
+    and np.abs(ahead.columns[2] - plain.columns[2]).max() > 0.05 * plain.columns[2].max(),
+)
+mega = sand.converted(0.001)
+check(
+    "a material in another unit of stress",
+    mega["p_atm"] == 0.101325 and np.allclose(1e3 * mega.update(*mega.initial_state(COMPRESSION / 1e3), SHEAR).stress,
+                                              sand.update(*sand.initial_state(COMPRESSION), SHEAR).stress),
+)
+sand.save_increment(work / "increment.nml", *sand.initial_state(COMPRESSION), SHEAR)
+told = refused(mud.InputError, lambda: sand.save_increment(work / "increment.nml", stress, state, SHEAR))
+check("an increment is saved to a new file", "&material" in (work / "increment.nml").read_text() and told, told)
+check("a material can be sent to another process", np.array_equal(
+    pickle.loads(pickle.dumps(sand)).update(stress, state, SHEAR).stress, sand.update(stress, state, SHEAR).stress))
 curve = sand.saturation(np.array([0.0, 10.0]), 0.8)
 closed = np.log(np.e + (10.0 * 0.8**2 / 5.0) ** 2) ** -1.0  # eq. (24), Omega 2, n_x 2, m_x 1, P_a 5
 check("the retention curve is eq. (24)", curve[0] == 1.0 and abs(curve[1] - closed) < 1e-14, curve)

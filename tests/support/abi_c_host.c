@@ -16,9 +16,13 @@ _Static_assert(offsetof(mud_substep, error) == 8 * sizeof(int) + 2 * sizeof(doub
                && offsetof(mud_substep, stress) == 8 * sizeof(int) + 6 * sizeof(double), "likewise the numbers");
 
 _Static_assert(offsetof(mud_summary, pnewdt) == 6 * sizeof(int)
-               && sizeof(mud_summary) == 6 * sizeof(int) + 3 * sizeof(double), "five counts, a gap, three numbers");
+               && sizeof(mud_summary) == 6 * sizeof(int) + 3 * sizeof(double) + sizeof(mud_report),
+               "five counts, a gap, three numbers, the report of the worst point");
+_Static_assert(offsetof(mud_points, list) == 4 * sizeof(int)
+               && sizeof(mud_points) == 4 * sizeof(int) + 17 * sizeof(void *), "four counts, 17 arrays, no gap");
+_Static_assert(sizeof(mud_blocks) == 50 * sizeof(double), "36, 6 and 6 slopes, two numbers");
 
-enum { MAX_PROPS = 128, MAX_STATEV = 256, STEPS = 300 };
+enum { MAX_PROPS = 128, MAX_STATEV = 256, MAX_MATERIAL = 512, STEPS = 300 };
 
 /* Layout of the report, in bytes. */
 int abi_report_size(void) { return (int)sizeof(mud_report); }
@@ -43,11 +47,11 @@ void abi_status_codes(int codes[18])
    memcpy(codes, all, sizeof all);
 }
 
-void abi_options(int options[14])
+void abi_options(int options[16])
 {
-   const int all[14] = {MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL,
+   const int all[16] = {MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL,
                         MUD_ROTATION, MUD_EVOLUTION, MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONTINUUM,
-                        MUD_TANGENT_CONSISTENT};
+                        MUD_TANGENT_CONSISTENT, MUD_TANGENT_PRESENT, MUD_TOTAL_STRESS};
    memcpy(options, all, sizeof all);
 }
 
@@ -57,6 +61,16 @@ typedef struct {
    int in_place, status;
    double stress[6], statev[MAX_STATEV], tangent[36];
 } walk_t;
+
+/* The default material; MUD_OK, or why not. */
+static int prepare(double *material)
+{
+   double props[MAX_PROPS];
+   const int nprops = mud_count(MUD_PROPS);
+   if (mud_prepared_size() > MAX_MATERIAL || mud_default_props(props, nprops) != MUD_OK)
+      return MUD_NOT_PREPARED;
+   return mud_prepare(props, nprops, material, MAX_MATERIAL, NULL, 0);
+}
 
 static double next(unsigned *seed)
 {
@@ -68,17 +82,17 @@ static double next(unsigned *seed)
 static void *walk(void *argument)
 {
    walk_t *w = argument;
-   double props[MAX_PROPS], stress[6], statev[MAX_STATEV];
-   const int nprops = mud_count(MUD_PROPS), nstatev = mud_count(MUD_STATEV);
-   char text[200];
+   double material[MAX_MATERIAL], stress[6], statev[MAX_STATEV];
+   const int nstatev = mud_count(MUD_STATEV);
+   mud_blocks blocks;
    unsigned seed = w->seed;
 
    memset(w->statev, 0, sizeof w->statev);
    for (int i = 0; i < 6; i++)
       w->stress[i] = i < 3 ? -80.0 : 0.0;
-   w->status = mud_default_props(props, nprops);
+   w->status = prepare(material);
    if (w->status == MUD_OK)
-      w->status = mud_init_state(props, nprops, w->stress, 25.0, 0.0, w->statev, nstatev, text, (int)sizeof text);
+      w->status = mud_init(material, w->stress, 25.0, 0.0, 0.0, w->statev, nstatev, NULL, 0);
    for (int step = 0; step < STEPS && w->status == MUD_OK; step++) {
       double dstrain[6], *to_stress = w->in_place ? w->stress : stress, *to_statev = w->in_place ? w->statev : statev;
       for (int i = 0; i < 6; i++)
@@ -89,8 +103,9 @@ static void *walk(void *argument)
          memset(stress, 0x55, sizeof stress);
          memset(statev, 0x55, sizeof statev);
       }
-      w->status = mud_update(props, nprops, w->stress, w->statev, nstatev, dstrain, 25.0, 0.0, MUD_TANGENT_CONTINUUM,
-                             to_stress, to_statev, w->tangent, NULL, NULL, NULL, NULL);
+      w->status = mud_update(material, w->stress, w->statev, nstatev, dstrain, 25.0, MUD_TANGENT_CONTINUUM, to_stress,
+                             to_statev, &blocks, NULL);
+      memcpy(w->tangent, blocks.dsig_deps, sizeof w->tangent);
       if (!w->in_place) {
          memcpy(w->stress, stress, sizeof stress);
          memcpy(w->statev, statev, (size_t)nstatev * sizeof *statev);
@@ -120,15 +135,19 @@ int abi_walk_in_place_is_the_same(void)
 int abi_failure_in_place_leaves_all(void)
 {
    static walk_t before, after;
-   double props[MAX_PROPS], dstrain[6] = {3.0};
-   const int nprops = mud_count(MUD_PROPS);
+   double material[MAX_MATERIAL], dstrain[6] = {3.0};
+   mud_blocks blocks, untouched;
    before = (walk_t){.seed = 6u, .in_place = 1};
    walk(&before);
    memcpy(&after, &before, sizeof after);
-   mud_default_props(props, nprops);
-   int status = mud_update(props, nprops, after.stress, after.statev, mud_count(MUD_STATEV), dstrain, 25.0, 0.0,
-                           MUD_TANGENT_CONTINUUM, after.stress, after.statev, after.tangent, NULL, NULL, NULL, NULL);
-   return status == MUD_INCREMENT_TOO_LARGE && !memcmp(&before, &after, sizeof after);
+   memset(&blocks, 0x55, sizeof blocks);
+   untouched = blocks;
+   int status = prepare(material);
+   if (status == MUD_OK)
+      status = mud_update(material, after.stress, after.statev, mud_count(MUD_STATEV), dstrain, 25.0,
+                          MUD_TANGENT_CONTINUUM, after.stress, after.statev, &blocks, NULL);
+   return status == MUD_INCREMENT_TOO_LARGE && !memcmp(&before, &after, sizeof after)
+          && !memcmp(&blocks, &untouched, sizeof blocks);
 }
 
 /* 1 if walks in `n` threads at the same time end with the bits of the same walks one after the other. */
@@ -164,18 +183,18 @@ int abi_threads_walk_as_one(int n)
 int abi_null_pointers_of_update(void)
 {
    static walk_t w, copy;
-   double props[MAX_PROPS], dstrain[6] = {-1.0e-5};
-   const int nprops = mud_count(MUD_PROPS), nstatev = mud_count(MUD_STATEV);
+   double material[MAX_MATERIAL], dstrain[6] = {-1.0e-5};
+   const int nstatev = mud_count(MUD_STATEV);
    w = (walk_t){.seed = 7u, .in_place = 1};
    walk(&w);
-   mud_default_props(props, nprops);
+   if (prepare(material) != MUD_OK)
+      return 0;
    for (int i = 0; i < 7; i++) {
       mud_report report;
       memcpy(&copy, &w, sizeof copy);
-      int status = mud_update(i == 0 ? NULL : props, nprops, i == 1 ? NULL : w.stress, i == 2 ? NULL : w.statev,
-                              nstatev, i == 3 ? NULL : dstrain, 25.0, 0.0, MUD_TANGENT_CONTINUUM,
-                              i == 4 ? NULL : copy.stress, i == 5 ? NULL : copy.statev, NULL, NULL, NULL, NULL,
-                              i == 6 ? NULL : &report);
+      int status = mud_update(i == 0 ? NULL : material, i == 1 ? NULL : w.stress, i == 2 ? NULL : w.statev, nstatev,
+                              i == 3 ? NULL : dstrain, 25.0, MUD_TANGENT_CONTINUUM, i == 4 ? NULL : copy.stress,
+                              i == 5 ? NULL : copy.statev, NULL, i == 6 ? NULL : &report);
       if (i < 6 && (status != MUD_NULL_ARGUMENT || report.status != status || memcmp(&copy, &w, sizeof copy)))
          return 0;
       if (i == 6 && status != MUD_OK)
@@ -187,15 +206,21 @@ int abi_null_pointers_of_update(void)
 /* 1 if NULL is answered with a code by every other function that takes a pointer. */
 int abi_null_pointers_of_the_rest(void)
 {
-   double props[MAX_PROPS], stress[6] = {-1.0, -1.0, -1.0}, statev[MAX_STATEV] = {0.0};
+   double props[MAX_PROPS], material[MAX_MATERIAL], stress[6] = {-1.0, -1.0, -1.0}, statev[MAX_STATEV] = {0.0};
    const int nprops = mud_count(MUD_PROPS), nstatev = mud_count(MUD_STATEV);
-   return mud_default_props(NULL, nprops) == MUD_NULL_ARGUMENT && mud_default_props(props, nprops) == MUD_OK &&
+   return prepare(material) == MUD_OK &&
+          mud_default_props(NULL, nprops) == MUD_NULL_ARGUMENT && mud_default_props(props, nprops) == MUD_OK &&
           mud_validate_props(NULL, nprops, NULL, 0) == MUD_NULL_ARGUMENT &&
           mud_validate_props(props, nprops, NULL, 0) == MUD_OK && mud_message(NULL, NULL, 0) == MUD_NULL_ARGUMENT &&
-          mud_init_state(NULL, nprops, stress, 0.0, 0.0, statev, nstatev, NULL, 0) == MUD_NULL_ARGUMENT &&
-          mud_init_state(props, nprops, NULL, 0.0, 0.0, statev, nstatev, NULL, 0) == MUD_NULL_ARGUMENT &&
-          mud_init_state(props, nprops, stress, 0.0, 0.0, NULL, nstatev, NULL, 0) == MUD_NULL_ARGUMENT &&
-          mud_init_state(props, nprops, stress, 0.0, 0.0, statev, nstatev, NULL, 0) == MUD_OK &&
+          mud_prepare(NULL, nprops, material, MAX_MATERIAL, NULL, 0) == MUD_NULL_ARGUMENT &&
+          mud_prepare(props, nprops, NULL, MAX_MATERIAL, NULL, 0) == MUD_NULL_ARGUMENT &&
+          mud_init(NULL, stress, 0.0, 0.0, 0.0, statev, nstatev, NULL, 0) == MUD_NULL_ARGUMENT &&
+          mud_init(material, NULL, 0.0, 0.0, 0.0, statev, nstatev, NULL, 0) == MUD_NULL_ARGUMENT &&
+          mud_init(material, stress, 0.0, 0.0, 0.0, NULL, nstatev, NULL, 0) == MUD_NULL_ARGUMENT &&
+          mud_init(material, stress, 0.0, 0.0, 0.0, statev, nstatev, NULL, 0) == MUD_OK &&
+          mud_update_points(NULL, 1, &(mud_points){0}, NULL) == MUD_NULL_ARGUMENT &&
+          mud_init_points(material, 1, NULL, NULL) == MUD_NULL_ARGUMENT &&
+          mud_saturation_points(material, 1, &(mud_points){.nstatev = nstatev}, NULL) == MUD_NULL_ARGUMENT &&
           mud_index(MUD_PROPS, NULL) == -1 && mud_bounds(MUD_PROPS, 0, NULL, NULL, NULL) == MUD_OK &&
           mud_version(NULL, 10) == MUD_OK && mud_text(MUD_PROPS, 0, MUD_NAME, NULL, 10) == MUD_OK &&
           mud_status_text(0, NULL, 10) == MUD_OK;

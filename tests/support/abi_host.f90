@@ -1,21 +1,26 @@
 ! SPDX-License-Identifier: MIT
 !> A host of umat_ as foreign programs are: everything by address, any address may be NULL.
 module abi_host
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_loc, c_null_ptr
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_loc, c_null_char, c_null_ptr
    use, intrinsic :: iso_fortran_env, only: int64
-   use mud_interface, only: mud_update
+   use mud_interface, only: mud_report, mud_blocks, mud_prepared_size, mud_prepare, mud_init, mud_update, mud_message, &
+      MUD_TANGENT_ELASTIC
    use mud_kinds, only: wp
    use mud_params, only: default_props
-   use mud_registry, only: NPROPS, NSTATV, P_MEMORY_RULE
+   use mud_registry, only: NPROPS, NSTATV, P_HYSTERESIS, P_MEMORY_RULE, S_LAYOUT, S_VOID_RATIO, S_SATURATION, &
+      S_SUCTION
+   use mud_tensor, only: is_finite
    use random_states, only: random_t, uniform, random_tensor
    implicit none (type, external)
    private
    public :: umat_call_t, call_umat, new_call, walked_call, walk, random_strain, same_bits, untouched, refusal, &
-             common_refusal, not_a_number, infinite, MARK, N_ARGUMENTS, UNIT_MATRIX
+             elastic_matrix, common_refusal, begin_once, update_once, prepared_of, not_a_number, infinite, MARK, &
+             N_ARGUMENTS, UNIT_MATRIX
    public :: A_STRESS, A_STATEV, A_DDSDDE, A_SCD, A_DSTRAN, A_PREDEF, A_DPRED, A_NDI, A_NTENS, A_NSTATV, A_PROPS, &
              A_NPROPS, A_DROT, A_PNEWDT, MANDATORY, TOUCHED, NO_CUT
 
    integer, parameter :: N_ARGUMENTS = 37
+   integer(c_int), parameter :: LONG = 400           !< Bytes of a sentence.
    integer, parameter :: A_STRESS = 1, A_STATEV = 2, A_DDSDDE = 3, A_SCD = 6, A_DSTRAN = 12, A_PREDEF = 17, &
                          A_DPRED = 18, A_NDI = 20, A_NTENS = 22, A_NSTATV = 23, A_PROPS = 24, A_NPROPS = 25, &
                          A_DROT = 27, A_PNEWDT = 28
@@ -144,8 +149,8 @@ contains
                   .and. a%kinc == b%kinc
    end function untouched
 
-   !> Status of a call that is meant to fail, 0 if it does not; TOUCHED if it wrote more than PNEWDT and SCD; NO_CUT if
-   !> it left PNEWDT at 1 or wrote nonsense.
+   !> Status of a call that is meant to fail, 0 if it does not; TOUCHED if it wrote more than PNEWDT, SCD and the
+   !> elastic DDSDDE; NO_CUT if it left PNEWDT at 1 or wrote nonsense.
    integer function refusal(host) result(code)
       type(umat_call_t), intent(in) :: host
       type(umat_call_t) :: trial
@@ -154,9 +159,29 @@ contains
       call call_umat(trial)
       code = nint(trial%scd)
       if (code == 0) return
+      if (.not. same_bits(host%ddsdde, trial%ddsdde)) then
+         if (.not. same_bits(elastic_matrix(host), trial%ddsdde)) code = TOUCHED
+         trial%ddsdde = host%ddsdde
+      end if
       if (.not. untouched(host, trial)) code = TOUCHED
       if (.not. (trial%pnewdt > 0.0_wp .and. trial%pnewdt < 1.0_wp)) code = NO_CUT
    end function refusal
+
+   !> DDSDDE with the elastic matrix of the state that a host holds, by mud_update; as it is where there is none.
+   function elastic_matrix(host) result(ddsdde)
+      type(umat_call_t), intent(in) :: host
+      real(wp) :: ddsdde(40), stress0(6), stress(6), statev(NSTATV), still(6), tangent(6, 6)
+      integer :: n
+
+      ddsdde = host%ddsdde
+      n = host%ntens
+      still = 0.0_wp
+      stress0 = still
+      stress0(1:n) = host%stress(1:n)
+      if (update_once(host%props, host%nprops, stress0, host%statev, host%nstatv, still, host%statev(S_SUCTION), &
+                      0.0_wp, MUD_TANGENT_ELASTIC, stress, statev, tangent) == 0) &
+         ddsdde(1:n*n) = reshape(tangent(1:n, 1:n), [n*n])
+   end function elastic_matrix
 
    !> The same through mud_update; what it may not write is marked.
    integer function update_refusal(host) result(code)
@@ -168,8 +193,8 @@ contains
       tangent = MARK
       blocks = MARK
       slope = MARK
-      code = mud_update(host%props, host%nprops, host%stress, host%statev, host%nstatv, host%dstran, host%predef(1), &
-                        host%dpred(1), 2, stress, statev, tangent, blocks(:, 1), blocks(:, 2), slope)
+      code = update_once(host%props, host%nprops, host%stress, host%statev, host%nstatv, host%dstran, host%predef(1), &
+                         host%dpred(1), 2, stress, statev, tangent, blocks(:, 1), blocks(:, 2), slope)
       if (code == 0) return
       if (.not. same_bits([stress, statev, tangent, blocks, slope], spread(MARK, 1, 61 + NSTATV))) code = TOUCHED
    end function update_refusal
@@ -181,6 +206,80 @@ contains
       code = refusal(host)
       if (update_refusal(host) /= code) code = 0
    end function common_refusal
+
+   !> A prepared material; status that of mud_prepare.
+   function prepared_of(props, n_props, code) result(material)
+      integer(c_int), intent(in) :: n_props
+      real(wp), intent(in) :: props(n_props)
+      integer(c_int), intent(out), optional :: code
+      real(wp) :: material(mud_prepared_size())
+      character(kind=c_char) :: text(1)
+      integer(c_int) :: status
+
+      material = 0.0_wp
+      status = mud_prepare(props, n_props, material, size(material), text, 0_c_int)
+      if (present(code)) code = status
+   end function prepared_of
+
+   !> mud_init of a material that is prepared for this point alone.
+   integer(c_int) function begin_once(props, n_props, stress, suction, void_ratio, statev, n_statev, text, len) &
+      result(code)
+      integer(c_int), intent(in) :: n_props, n_statev, len
+      real(wp), intent(in) :: props(n_props), suction, void_ratio
+      real(wp), intent(inout) :: stress(6), statev(n_statev)
+      character(kind=c_char), intent(out) :: text(*)
+      real(wp) :: material(mud_prepared_size())
+
+      material = 0.0_wp
+      code = mud_prepare(props, n_props, material, size(material), text, len)
+      if (code == 0) code = mud_init(material, stress, suction, void_ratio, 0.0_wp, statev, n_statev, text, len)
+   end function begin_once
+
+   !> mud_update with what umat_ is given: a material that is prepared for this update alone, the suction of the host,
+   !> and a state that never began begins here.
+   integer(c_int) function update_once(props, n_props, stress0, statev0, n_statev, d_strain, suction, d_suction, &
+           tangent, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, report, sentence) result(code)
+      integer(c_int), intent(in) :: n_props, n_statev, tangent
+      real(wp), intent(in) :: props(n_props), stress0(6), statev0(n_statev), d_strain(6), suction, d_suction
+      real(wp), intent(inout) :: stress1(6), statev1(n_statev)
+      real(wp), intent(inout), optional :: dsig_deps(6, 6), dsig_dpc(6), dsw_deps(6), dsw_dpc
+      type(mud_report), intent(out), optional :: report
+      character(*), intent(out), optional :: sentence   !< Of the library.
+      real(wp) :: material(mud_prepared_size()), stress(6), statev(n_statev), preset
+      type(mud_blocks) :: blocks
+      logical :: began
+      type(mud_report) :: of_update
+      character(LONG, kind=c_char) :: text
+
+      text = c_null_char
+      material = 0.0_wp
+      code = mud_prepare(props, n_props, material, size(material), text, LONG)
+      stress = stress0
+      statev = statev0
+      if (code == 0 .and. n_statev >= NSTATV) then
+         began = .true.
+         if (is_finite(statev0(S_LAYOUT))) began = abs(statev0(S_LAYOUT)) > 0.0_wp
+         if (.not. began) then
+            preset = 0.0_wp
+            if (n_props >= P_HYSTERESIS) preset = props(P_HYSTERESIS)*statev0(S_SATURATION)
+            code = mud_init(material, stress, suction, statev0(S_VOID_RATIO), preset, statev, n_statev, text, LONG)
+         else if (is_finite(suction) .and. is_finite(statev0(S_SUCTION))) then
+            statev(S_SUCTION) = suction
+         end if
+      end if
+      if (present(sentence)) sentence = text(:index(text, c_null_char) - 1)
+      if (code /= 0) return
+      code = mud_update(material, stress, statev, n_statev, d_strain, suction + d_suction, tangent, stress1, statev1, &
+                        blocks, of_update)
+      if (present(report)) report = of_update
+      if (mud_message(of_update, text, LONG) < 0) error stop 'abi_host: no sentence'
+      if (present(sentence)) sentence = text(:index(text, c_null_char) - 1)
+      if (code /= 0) return
+      if (present(dsig_deps) .and. tangent > 0) dsig_deps = blocks%dsig_deps
+      if (present(dsig_dpc) .and. tangent > 0) dsig_dpc = blocks%dsig_dpc
+      if (present(dsw_deps)) dsw_deps = blocks%dsw_deps
+      if (present(dsw_dpc)) dsw_dpc = blocks%dsw_dpc
+   end function update_once
 
    !> A quiet NaN. Made of bits: arithmetic that makes one traps in the debug build.
    pure real(wp) function not_a_number()

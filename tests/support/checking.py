@@ -10,6 +10,8 @@ import tempfile
 root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2]).resolve()
 build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release").resolve()
 light = os.environ.get("MUD_PRESET", "release") != "release"   # the checking builds are slow
+nightly = os.environ.get("MUD_TIER") == "nightly"              # everything at full length: ./check --tier nightly
+brief = light and not nightly                                  # one path through each part of the program
 # Scripts read CSV tables by common/tables.py.
 sys.path.append(str(root / "common"))
 sys.dont_write_bytecode = True

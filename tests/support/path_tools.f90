@@ -4,12 +4,15 @@ module path_tools
    use mud_bonding, only: is_bonded
    use mud_kinds, only: wp
    use mud_params, only: params_t, read_params, default_props
-   use mud_point, only: blocks_t, initial_state, update_point, TANGENT_NONE
-   use mud_rates, only: rate_t, rate_at, MODE_ORDINARY
+   use mud_point, only: update_point, TANGENT_NONE
+   use mud_rate, only: rate_t
+   use mud_rates, only: rate_at, MODE_ORDINARY
    use mud_registry, only: NPROPS, P_RHO_E
    use mud_state, only: state_t, counters_t
    use mud_status, only: mud_status_t
    use mud_tensor, only: IDENTITY, trace, norm
+   use mud_blocks, only: blocks_t
+   use mud_start, only: initial_state
    use random_states, only: random_t, uniform
    implicit none (type, external)
    private

@@ -3,7 +3,9 @@
 module rate_cases
    use mud_kinds, only: wp
    use mud_params, only: params_t, read_params, default_props
-   use mud_rates, only: rate_t, rate_at, bounding_norm, MODE_ORDINARY, MODE_ELASTIC
+   use mud_critical_state, only: bounding_norm
+   use mud_rate, only: rate_t
+   use mud_rates, only: rate_at, MODE_ORDINARY, MODE_ELASTIC
    use mud_status, only: mud_status_t
    use mud_registry, only: P_G_0, P_K_0, P_M_C, P_N_B, P_N_D, P_H_0, P_A_0
    use mud_tensor, only: IDENTITY, norm, ddot, deviator

@@ -157,7 +157,7 @@ def failures_are_heard_and_saved():
           done.stdout)
     check("a host that drops the sentence is heard all the same", "MUD: MFront refused the increment" in done.stderr
           and "too many substeps" in done.stderr, done.stderr)
-    check("the increment is saved", saved == ["mud_failed_too_many_substeps.txt"], saved)
+    check("the increment is saved", saved == ["mud_failed_too_many_substeps.nml"], saved)
 
 
 if sys.argv[1:] == ["fail"]:

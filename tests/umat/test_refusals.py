@@ -17,6 +17,11 @@ SENTENCE = re.compile(r"MUD: umat_ refused the increment at (.+?), status (-?\d+
                       r"MUD_MESSAGES=off silences\)")
 
 
+# What a process says when it ends, after increments that were answered with NaN.
+LAST_WORD = re.compile(r"MUD: at the end of this process: refused increments whose stress was set to NaN: (\d+)\. "
+                       r"Unless the host has repeated them .+ are no results")
+
+
 def run(*words, **environment):
     return subprocess.run([str(word) for word in words], cwd=work, capture_output=True, text=True,
                           env={**plain, **environment})
@@ -28,8 +33,9 @@ def flags(language):
 
 
 def sentences(done):
-    """(place, status, text) of every line on standard error; None where a line is something else."""
-    return [found.groups() if (found := SENTENCE.fullmatch(line)) else None for line in done.stderr.splitlines()]
+    """(place, status, text) of every line on standard error but the last word; None where a line is something else."""
+    return [found.groups() if (found := SENTENCE.fullmatch(line)) else None for line in done.stderr.splitlines()
+            if not LAST_WORD.fullmatch(line)]
 
 
 def known(done):
@@ -67,6 +73,14 @@ check("and says once what, where and what to do", len(told) == 1 and told[0] and
       "element 0, point 0, step 2, increment" in told[0][0] and
       all(words in told[0][2] for words in ("strain increment 11 is -3, allowed -1 to 1", "cut it",
                                             "PNEWDT is NULL, so STRESS is NaN")), done.stderr)
+last = done.stderr.splitlines()[-1:]
+check("and its last word is how many increments were answered with NaN", last and (
+    found := LAST_WORD.fullmatch(last[0])) and found[1] == "15", done.stderr)
+# Every strain prescribed: no equation sees the NaN and no iteration diverges.
+done = run(host, "kratos_prescribed")
+last = LAST_WORD.fullmatch(done.stderr.splitlines()[-1])
+check("a host without unknowns ends like a good one, and hears of the NaN at its end", done.returncode == 0 and
+      "nan" in done.stdout and done.stderr.count("\n") == 2 and last and last[1] == "100", done.stdout + done.stderr)
 done = run(host, "kratos_hard", MUD_NO_PNEWDT="keep")
 check("MUD_NO_PNEWDT=keep leaves the old stress, on which the host converges", re.match(r"p' ", done.stdout) and
       not known(done) and "what it computes from here is wrong" in done.stderr, done.stdout + done.stderr)
@@ -126,7 +140,7 @@ for name in ("kratos_hard", "threads", "contradiction", "calculix"):
     done = run(host, name, MUD_MESSAGES="off")
     check(f"MUD_MESSAGES=off silences {name}", done.stderr == "" and done.stdout != "", done.stderr)
 done = run(host, "kratos_hard", MUD_MESSAGES="on")
-check("any other value of it does not", done.stderr.count("\n") == 1, done.stderr)
+check("any other value of it does not", done.stderr.count("\n") == 2, done.stderr)
 
 # A solver in an archive that has a umat_ of its own, as CalculiX does: nothing of libmud.a is taken unless asked for.
 (work / "solver.c").write_text("void umat_(void *);\nvoid solve(void) { double s[6] = {0}; umat_(s); }\n",

@@ -2,6 +2,7 @@
 !> What hosts pass to umat_: NULL pointers, memory that was never set, other orders of components.
 module mud_arguments
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
+   use mud_host_increment, only: suction_change
    use mud_kinds, only: wp
    use mud_params, only: completed, is_length
    use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NSTATV, P_SHEAR_ORDER, S_LAYOUT, S_SUCTION
@@ -11,8 +12,9 @@ module mud_arguments
    use mud_units, only: stress_unit, LARGEST_STRESS
    implicit none (type, external)
    private
-   public :: check_arguments, has_past, rotates, read_rotation, suction_t, read_suction, component_order, integer_at, &
-             real_at, SUCTION_AS_GIVEN, SUCTION_CONTRADICTS, SUCTION_UNREADABLE, ARGUMENT_NAMES
+   public :: check_arguments, has_past, rotates, read_rotation, turns_unread, begins_late, is_green_strain, suction_t, &
+             read_suction, component_order, integer_at, real_at, SUCTION_AS_GIVEN, SUCTION_CONTRADICTS, &
+             SUCTION_UNREADABLE, ARGUMENT_NAMES
 
    !> DROT may differ from a rotation by this, rounding of single-precision hosts [-].
    real(wp), parameter :: ORTHOGONAL = 1.0e-6_wp
@@ -21,8 +23,15 @@ module mud_arguments
    !> PREDEF may differ from the suction of STATEV by this share of the larger one, or of an atmosphere: rounding of
    !> single-precision hosts, and of a suction that returns to zero [-, kPa].
    real(wp), parameter :: SAME_SUCTION = 1.0e-6_wp, ATMOSPHERE = 100.0_wp
-   !> What CalculiX enters with in PNEWDT. It passes PREDEF and DPRED that it has never set.
+   !> What CalculiX enters with in PNEWDT. It passes PREDEF and DPRED that it has never set, and a DROT that its finite
+   !> strains (@ABAQUSNL) do not follow.
    real(wp), parameter :: PNEWDT_OF_CALCULIX = -1.0_wp
+   !> TIME(2) up to this share of DTIME is the beginning of the analysis: rounding of sums of times [-].
+   real(wp), parameter :: AT_THE_START = 1.0e-6_wp
+   !> Green's and logarithmic strain are told apart where their traces differ by more than TELLABLE [-]; a trace within
+   !> CLOSE of that difference belongs to Green's.
+   real(wp), parameter :: TELLABLE = 1.0e-7_wp, CLOSE = 1.0e-2_wp
+   real(wp), parameter :: LARGEST_GRADIENT = 100.0_wp   !< A larger entry of DFGRD1 is memory that was never set [-].
 
    integer, parameter :: SUCTION_AS_GIVEN = 0, SUCTION_CONTRADICTS = 1, SUCTION_UNREADABLE = 2
    !> Arguments that must be given, in the order in which status%index counts them.
@@ -76,11 +85,12 @@ contains
       if (has_past) has_past = abs(statev(S_LAYOUT)) > 0.0_wp
    end function has_past
 
-   !> DROT as a matrix. None where it is NULL or zero, and where the point has no past that could be rotated: hosts
-   !> without finite rotations pass memory that was never set. Anything else that is no rotation is refused. Its status
-   !> is MUD_BAD_INPUT on ON_ROTATION; entries [-], orthogonality to a tolerance.
-   subroutine read_rotation(drot, past, rotation, status)
-      type(c_ptr), intent(in) :: drot
+   !> DROT as a matrix. None where it is NULL or zero, where the point has no past that could be rotated (hosts without
+   !> finite rotations pass memory that was never set), and from CalculiX, whose stress and strain stand in axes that do
+   !> not turn. Anything else that is no rotation is refused. Its status is MUD_BAD_INPUT on ON_ROTATION; entries [-],
+   !> orthogonality to a tolerance.
+   subroutine read_rotation(drot, past, pnewdt, rotation, status)
+      type(c_ptr), intent(in) :: drot, pnewdt
       logical, intent(in) :: past
       real(wp), intent(out) :: rotation(3, 3)
       type(mud_status_t), intent(out) :: status
@@ -89,6 +99,7 @@ contains
       integer :: i
 
       rotation = unit_matrix()
+      if (enters_as_calculix(pnewdt)) return
       if (.not. (past .and. c_associated(drot))) return
       call c_f_pointer(drot, matrix, [9])
       do i = 1, 9
@@ -107,6 +118,70 @@ contains
          status = fail(MUD_BAD_INPUT, ON_ROTATION, 10, determinant(rotation), 1.0_wp, 1.0_wp)
       end if
    end subroutine read_rotation
+
+   !> True if a DROT that is more than no rotation is not read, because the host enters as CalculiX does.
+   logical function turns_unread(drot, pnewdt)
+      type(c_ptr), intent(in) :: drot, pnewdt
+      real(wp) :: given(3, 3)
+
+      turns_unread = .false.
+      if (.not. enters_as_calculix(pnewdt)) return
+      if (.not. c_associated(drot)) return
+      given = matrix_at(drot)
+      if (.not. all(is_finite(given))) return
+      turns_unread = maxval(abs(matmul(given, transpose(given)) - unit_matrix())) <= ORTHOGONAL &
+                     .and. maxval(abs(given - unit_matrix())) > ORTHOGONAL
+   end function turns_unread
+
+   !> True if a point without a past begins in the midst of an analysis: TIME(2), the time at the start of the
+   !> increment, is beyond the first. Only of hosts that give PNEWDT: of the others some pass one number as TIME, as
+   !> Kratos does.
+   logical function begins_late(past, time, dtime, pnewdt)
+      logical, intent(in) :: past
+      type(c_ptr), intent(in) :: time, dtime, pnewdt
+      real(c_double), pointer, contiguous :: times(:)
+      real(wp) :: step
+
+      begins_late = .false.
+      if (past .or. .not. (c_associated(time) .and. c_associated(pnewdt))) return
+      call c_f_pointer(time, times, [2])
+      step = real_at(dtime)
+      if (.not. (is_finite(times(2)) .and. is_finite(step))) return
+      begins_late = times(2) > max(AT_THE_START*step, NOTHING)
+   end function begins_late
+
+   !> True if a host that enters as CalculiX does gives Green's strain, (F^T F - 1)/2, where MUD takes the logarithmic
+   !> one: its door @ABAQUS with finite strains (NLGEOM), for which it has @ABAQUSNL. Seen by the traces of the total
+   !> strain at the end, which no rotation changes: (|F|^2 - 3)/2 against ln det F.
+   logical function is_green_strain(stran, dstran, dfgrd1, pnewdt)
+      type(c_ptr), intent(in) :: stran, dstran, dfgrd1, pnewdt
+      real(c_double), pointer, contiguous :: strain(:), increment(:)
+      real(wp) :: f(3, 3), green, logarithmic, given
+
+      is_green_strain = .false.
+      if (.not. enters_as_calculix(pnewdt)) return
+      if (.not. (c_associated(stran) .and. c_associated(dfgrd1))) return
+      call c_f_pointer(stran, strain, [3])
+      call c_f_pointer(dstran, increment, [3])
+      f = matrix_at(dfgrd1)
+      if (.not. (all(is_finite(f)) .and. all(is_finite(strain)) .and. all(is_finite(increment)))) return
+      if (.not. (maxval(abs(f)) < LARGEST_GRADIENT .and. determinant(f) > 0.0_wp)) return
+      given = sum(strain) + sum(increment)
+      green = 0.5_wp*(sum(f**2) - 3.0_wp)
+      logarithmic = log(determinant(f))
+      if (abs(green - logarithmic) > TELLABLE) &
+         is_green_strain = abs(given - green) <= CLOSE*abs(green - logarithmic)
+   end function is_green_strain
+
+   !> Nine numbers of a host, by columns.
+   function matrix_at(pointer) result(matrix)
+      type(c_ptr), intent(in) :: pointer
+      real(wp) :: matrix(3, 3)
+      real(c_double), pointer, contiguous :: given(:, :)
+
+      call c_f_pointer(pointer, given, [3, 3])
+      matrix = given
+   end function matrix_at
 
    pure real(wp) function determinant(a)
       real(wp), intent(in) :: a(3, 3)
@@ -135,7 +210,7 @@ contains
    end function unit_matrix
 
    !> Suction and its change. The degree of saturation may not jump between two increments, so the suction that STATEV
-   !> holds is the start where PREDEF is NULL, where it was never set (CalculiX) and where it says otherwise. In the
+   !> holds is the start, as in mud_update, and PREDEF + DPRED the end; that PREDEF says otherwise is read off. In the
    !> unit of p_atm; props(:) of any size, of which p_atm counts. Nothing is refused: a suction that is not finite or
    !> too large is handed on as it is.
    type(suction_t) function read_suction(predef, dpred, pnewdt, statev, props) result(suction)
@@ -158,10 +233,12 @@ contains
          ! What is beyond the largest suction is refused as it is.
          if (.not. (within(suction%start, LARGEST_STRESS*unit) .and. within(stored, LARGEST_STRESS*unit))) return
          if (.not. is_finite(suction%change)) return
-         if (within(suction%start - stored, SAME_SUCTION*max(abs(suction%start), abs(stored), ATMOSPHERE*unit))) return
-         suction%change = suction%start + suction%change - stored
+         if (.not. within(suction%start - stored, SAME_SUCTION*max(abs(suction%start), abs(stored), &
+                                                                   ATMOSPHERE*unit))) then
+            suction%reading = SUCTION_CONTRADICTS
+         end if
+         suction%change = suction_change(stored, suction%start + suction%change)
          suction%start = stored
-         suction%reading = SUCTION_CONTRADICTS
       end if
    end function read_suction
 

@@ -1,214 +1,349 @@
 ! SPDX-License-Identifier: MIT
-!> Many points at once: mud_update_batch, mud_update_batch_prepared, mud_update_list and mud_tangent_list of mud.h.
+!> Many points of several materials: mud_init_points, mud_update_points and mud_saturation_points of mud.h.
 module mud_batch
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_null_ptr, c_associated, c_f_pointer
-   use mud_kernel, only: report_t, output_t, kernel_point, kernel_tangent
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
+   use mud_host_increment, only: host_increment, kind_of, is_present, is_total
+   use mud_kernel, only: report_t, output_t, kernel_begin, failed_report
    use mud_kinds, only: wp
-   use mud_params, only: params_t, read_params
-   use mud_prepared, only: prepared_t, find_prepared
-   use mud_registry, only: NSTATV, S_OPEN
+   use mud_params, only: params_t
+   use mud_prepared, only: prepared_t, find_materials
+   use mud_registry, only: NSTATV, S_OPEN, S_SATURATION, S_SUCTION, S_VOID_RATIO
+   use mud_retention, only: saturation_t, saturation
+   use mud_retention_point, only: state_saturation
+   use mud_state, only: E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, ON_STATEV, &
       ON_ARGUMENT
-   use mud_to_host, only: number_at, find_list
+   use mud_tensor, only: is_finite
+   use mud_to_host, only: number_at
+   use mud_total, only: effective_stress, total_stress
    implicit none (type, external)
    private
-   public :: mud_update_batch, mud_update_batch_prepared, mud_update_list, mud_tangent_list
+   public :: mud_init_points, mud_update_points, mud_saturation_points
 
    integer, parameter :: CHUNK = 16   !< Points a thread takes at a time: costs differ from point to point.
-   integer, parameter :: AHEAD = -1   !< In place of a tangent kind: slopes of the present state, no update.
+   integer, parameter :: BEGIN = 1, UPDATE = 2, RETAIN = 3   !< What to do with every point.
+
+   !> struct mud_points of mud.h.
+   type, bind(c) :: points_t
+      integer(c_int) :: n, n_statev, tangent, threads
+      type(c_ptr) :: list, material, stress0, statev0, dstrain, suction, void_ratio, saturation, stress1, statev1, &
+                     dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, s_w, status, reports
+   end type points_t
 
    !> struct mud_summary of mud.h.
    type, bind(c) :: summary_t
-      integer(c_int) :: failed = 0, first = -1, status = MUD_OK, open = 0, tensile = 0
+      integer(c_int) :: failed = 0, worst = -1, open = 0, tensile = 0, lifted = 0
       real(c_double) :: pnewdt = 1.0_wp, rates = 0.0_wp, substeps = 0.0_wp
+      type(report_t) :: report
    end type summary_t
+
+   !> The same arrays; what the host left out is not associated.
+   type :: arrays_t
+      integer(c_int), pointer, contiguous :: list(:), material(:), codes(:)
+      real(c_double), pointer, contiguous :: stress0(:, :), statev0(:, :), strain(:, :), suction(:), void_ratio(:), &
+                                             saturation(:), stress1(:, :), statev1(:, :), c(:, :, :), c_pc(:, :), &
+                                             sw_e(:, :), sw_pc(:), s_w(:)
+      type(report_t), pointer, contiguous :: reports(:)
+   end type arrays_t
 contains
-   !> n points of one material over contiguous arrays, each point as in mud_update; see mud.h. Tension positive,
-   !> engineering shear, stress in the unit of p_atm. Returns the number of failed points, their codes are in
-   !> status_out, or a negative code where nothing was done: MUD_NULL_ARGUMENT, MUD_BAD_NSTATV, MUD_BAD_OPTION (n or
-   !> tangent below 0) or that of read_params.
-   integer(c_int) function mud_update_batch(props, n_props, n, stress0, statev0, n_statev, dstrain, suction0, &
-           dsuction, tangent, threads, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status_out, &
-           reports) bind(c, name='mud_update_batch')
-      type(c_ptr), value :: props, stress0, statev0, dstrain, suction0, dsuction, stress1, statev1, dsig_deps, &
-                            dsig_dpc, dsw_deps, dsw_dpc, status_out, reports
-      integer(c_int), value :: n_props, n, n_statev, tangent, threads
-      real(c_double), pointer, contiguous :: props_in(:)
-      type(params_t) :: par
+   !> Fills STATEV of points that begin. Tension positive, stress and suction in the unit of p_atm, void ratio [-].
+   !> Returns the number of failed points, or a negative code where nothing was done; see run.
+   integer(c_int) function mud_init_points(materials, n_materials, points, summary) bind(c, name='mud_init_points')
+      type(c_ptr), value :: materials, points, summary
+      integer(c_int), value :: n_materials
+
+      mud_init_points = run(BEGIN, materials, n_materials, points, summary)
+   end function mud_init_points
+
+   !> One increment of every point, or the slopes of its present state, as host_increment has it. Returns as
+   !> mud_init_points.
+   integer(c_int) function mud_update_points(materials, n_materials, points, summary) bind(c, name='mud_update_points')
+      type(c_ptr), value :: materials, points, summary
+      integer(c_int), value :: n_materials
+
+      mud_update_points = run(UPDATE, materials, n_materials, points, summary)
+   end function mud_update_points
+
+   !> Degree of saturation of every point at another suction, as state_saturation has it. Returns as mud_init_points.
+   integer(c_int) function mud_saturation_points(materials, n_materials, points, summary) &
+      bind(c, name='mud_saturation_points')
+      type(c_ptr), value :: materials, points, summary
+      integer(c_int), value :: n_materials
+
+      mud_saturation_points = run(RETAIN, materials, n_materials, points, summary)
+   end function mud_saturation_points
+
+   !> A task for every point. MUD_NULL_ARGUMENT, MUD_NOT_PREPARED, MUD_BAD_NSTATV, MUD_BAD_OPTION (counts, kind of
+   !> tangent, numbers of points or materials) before anything is done. A point that fails leaves its own outputs
+   !> untouched and the others alone; bitwise independent of the number of threads, for no point sees another.
+   integer(c_int) function run(task, materials, n_materials, points, summary)
+      integer, intent(in) :: task
+      type(c_ptr), intent(in) :: materials, points, summary
+      integer(c_int), intent(in) :: n_materials
+      type(prepared_t), pointer, contiguous :: material(:)
+      type(points_t), pointer :: given
+      type(arrays_t) :: arrays
       type(mud_status_t) :: status
+      type(summary_t) :: total
+      type(output_t) :: output
+      type(report_t) :: report
+      integer :: i, j, k
+      logical :: raised
+      !$omp declare reduction (join : summary_t : add(omp_in, omp_out)) initializer (omp_priv = no_points())
 
-      status = fault_of(n, n_statev, tangent, c_associated(props), c_associated(stress0), c_associated(statev0), &
-                        c_associated(dstrain), c_associated(stress1), c_associated(statev1), c_associated(status_out))
-      if (status%code == MUD_OK) then
-         call c_f_pointer(props, props_in, [max(n_props, 0)])
-         call read_params(props_in, par, status)
-      end if
-      mud_update_batch = status%code
-      if (status%code == MUD_OK) call update_points(par, n, c_null_ptr, stress0, statev0, n_statev, dstrain, &
-         suction0, dsuction, tangent, threads, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status_out, &
-         reports, c_null_ptr, mud_update_batch)
-   end function mud_update_batch
+      nullify (given)
+      call find_materials(materials, n_materials, material, status)
+      if (.not. c_associated(points)) status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
+      if (status%code == MUD_OK) call c_f_pointer(points, given)
+      if (status%code == MUD_OK) status = fault_of(task, given)
+      if (status%code == MUD_OK) call find_arrays(task, given, int(n_materials), arrays, status)
+      run = status%code
+      if (status%code /= MUD_OK) return
 
-   !> The same for a prepared material. MUD_NOT_PREPARED where the storage is no material.
-   integer(c_int) function mud_update_batch_prepared(prepared, n, stress0, statev0, n_statev, dstrain, suction0, &
-           dsuction, tangent, threads, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status_out, &
-           reports) bind(c, name='mud_update_batch_prepared')
-      type(c_ptr), value :: prepared, stress0, statev0, dstrain, suction0, dsuction, stress1, statev1, dsig_deps, &
-                            dsig_dpc, dsw_deps, dsw_dpc, status_out, reports
-      integer(c_int), value :: n, n_statev, tangent, threads
+      total = no_points()
+      !$omp parallel do schedule(dynamic, CHUNK) default(shared) private(i, j, k, output, report, raised) &
+      !$omp num_threads(thread_count(given%threads)) reduction(join:total)
+      do i = 1, given%n
+         j = i
+         if (associated(arrays%list)) j = arrays%list(i) + 1
+         k = 1
+         if (associated(arrays%material)) k = arrays%material(j) + 1
+         raised = .false.
+         select case (task)
+         case (BEGIN)
+            call begin_point(material(k)%par, arrays, j, is_total(given%tangent), raised, report)
+         case (UPDATE)
+            call update_point(material(k)%par, arrays, j, given%tangent, output, report)
+         case default
+            call retain_point(material(k)%par, arrays, j, report)
+         end select
+         if (associated(arrays%codes)) arrays%codes(j) = report%status
+         if (associated(arrays%reports)) arrays%reports(j) = report
+         call add(of_point(report, j - 1, raised), total)
+         if (task == UPDATE .and. report%status == MUD_OK) then
+            if (output%statev(S_OPEN) > 0.5_wp) total%open = total%open + 1
+         end if
+      end do
+      !$omp end parallel do
+      run = total%failed
+      if (c_associated(summary)) call give_summary(summary, total)
+   end function run
 
-      mud_update_batch_prepared = mud_update_list(prepared, n, c_null_ptr, stress0, statev0, n_statev, dstrain, &
-         suction0, dsuction, tangent, threads, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status_out, &
-         reports, c_null_ptr)
-   end function mud_update_batch_prepared
-
-   !> The same for the points of a list, with a summary. MUD_NOT_PREPARED where the storage is no material,
-   !> MUD_BAD_OPTION for a negative number in the list.
-   integer(c_int) function mud_update_list(prepared, n, points, stress0, statev0, n_statev, dstrain, suction0, &
-           dsuction, tangent, threads, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status_out, &
-           reports, summary) bind(c, name='mud_update_list')
-      type(c_ptr), value :: prepared, points, stress0, statev0, dstrain, suction0, dsuction, stress1, statev1, &
-                            dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status_out, reports, summary
-      integer(c_int), value :: n, n_statev, tangent, threads
-      type(prepared_t), pointer :: material
+   !> What is wrong with the counts and the kind of tangent, and which array is missing that a task needs.
+   pure function fault_of(task, given) result(status)
+      integer, intent(in) :: task
+      type(points_t), intent(in) :: given
       type(mud_status_t) :: status
+      logical :: complete
 
-      status = fault_of(n, n_statev, tangent, c_associated(prepared), c_associated(stress0), c_associated(statev0), &
-                        c_associated(dstrain), c_associated(stress1), c_associated(statev1), c_associated(status_out))
-      if (status%code == MUD_OK) call find_prepared(prepared, material, status)
-      mud_update_list = status%code
-      if (status%code == MUD_OK) call update_points(material%par, n, points, stress0, statev0, n_statev, dstrain, &
-         suction0, dsuction, tangent, threads, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status_out, &
-         reports, summary, mud_update_list)
-   end function mud_update_list
-
-   !> Slopes with which the points of a list go on; see kernel_tangent. d sigma'/d strain in the unit of p_atm
-   !> (engineering shear), d sigma'/d p_c [-], d S_w/d strain [-], d S_w/d p_c [1/unit]. Returns as mud_update_list.
-   integer(c_int) function mud_tangent_list(prepared, n, points, stress, statev, n_statev, direction, suction, &
-           dsuction, threads, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status_out, summary) &
-           bind(c, name='mud_tangent_list')
-      type(c_ptr), value :: prepared, points, stress, statev, direction, suction, dsuction, dsig_deps, dsig_dpc, &
-                            dsw_deps, dsw_dpc, status_out, summary
-      integer(c_int), value :: n, n_statev, threads
-      type(prepared_t), pointer :: material
-      type(mud_status_t) :: status
-
-      status = fault_of(n, n_statev, 0, c_associated(prepared), c_associated(stress), c_associated(statev), .true., &
-                        .true., .true., c_associated(status_out))
-      if (status%code == MUD_OK) call find_prepared(prepared, material, status)
-      mud_tangent_list = status%code
-      if (status%code == MUD_OK) call update_points(material%par, n, points, stress, statev, n_statev, direction, &
-         suction, dsuction, AHEAD, threads, c_null_ptr, c_null_ptr, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, &
-         status_out, c_null_ptr, summary, mud_tangent_list)
-   end function mud_tangent_list
-
-   !> What is wrong with the arguments of a batch; the pointers are those that must be given.
-   pure function fault_of(n, n_statev, tangent, material, stress0, statev0, dstrain, stress1, statev1, status_out) &
-      result(status)
-      integer(c_int), intent(in) :: n, n_statev, tangent
-      logical, intent(in) :: material, stress0, statev0, dstrain, stress1, statev1, status_out
-      type(mud_status_t) :: status
-
-      if (.not. (material .and. stress0 .and. statev0 .and. dstrain .and. stress1 .and. statev1 .and. status_out)) then
+      select case (task)
+      case (BEGIN)
+         complete = c_associated(given%stress0) .and. c_associated(given%stress1) .and. c_associated(given%statev1)
+      case (UPDATE)
+         complete = c_associated(given%stress0) .and. c_associated(given%statev0)
+         if (.not. is_present(given%tangent)) complete = complete .and. c_associated(given%dstrain) &
+            .and. c_associated(given%stress1) .and. c_associated(given%statev1)
+      case default
+         complete = c_associated(given%statev0)
+      end select
+      if (.not. complete) then
          status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
-      else if (n_statev < NSTATV) then
+      else if (given%n_statev < NSTATV) then
          status = fail(MUD_BAD_NSTATV, ON_STATEV)
-      else if (n < 0 .or. tangent < 0) then
+      else if (given%n < 0 .or. kind_of(given%tangent) < 0) then
          status = fail(MUD_BAD_OPTION, ON_ARGUMENT)
       end if
    end function fault_of
 
-   !> The points of checked arguments. A point that fails leaves its own outputs untouched and the others alone. Bitwise
-   !> independent of the number of threads, for no point sees another.
-   subroutine update_points(par, n, points, stress0, statev0, n_statev, dstrain, suction0, dsuction, tangent, threads, &
-                            stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, status_out, reports, summary, &
-                            outcome)
-      type(params_t), intent(in) :: par
-      type(c_ptr), intent(in) :: points, stress0, statev0, dstrain, suction0, dsuction, stress1, statev1, dsig_deps, &
-                                 dsig_dpc, dsw_deps, dsw_dpc, status_out, reports, summary
-      integer(c_int), intent(in) :: n, n_statev, tangent, threads
-      integer(c_int), intent(out) :: outcome   !< How many points failed, or a code below 0.
-      real(c_double), pointer, contiguous :: s0(:, :), v0(:, :), de(:, :), pc0(:), dpc(:)
-      real(c_double), pointer, contiguous :: s1(:, :), v1(:, :)
-      real(c_double), pointer, contiguous :: c(:, :, :), c_pc(:, :), sw_e(:, :), sw_pc(:)
-      type(report_t), pointer :: report_to(:)
-      integer(c_int), pointer, contiguous :: codes(:), list(:)
-      type(mud_status_t) :: status
-      type(output_t) :: output
-      type(report_t) :: report
-      real(wp) :: still(6), pnewdt, rates, substeps
-      integer :: i, j, extent, failures, workers, first, opened, tensile, code_of_first
+   !> The arrays, as long as the largest number in the list needs. MUD_BAD_OPTION for a number below 0, and for a
+   !> material that is not there.
+   subroutine find_arrays(task, given, n_materials, arrays, status)
+      integer, intent(in) :: task, n_materials
+      type(points_t), intent(in) :: given
+      type(arrays_t), intent(out) :: arrays
+      type(mud_status_t), intent(out) :: status
+      integer :: n, m, i, k
+      logical :: writes
 
-      call find_list(points, n, list, extent, status)
-      outcome = status%code
-      if (status%code /= MUD_OK) return
-      call c_f_pointer(stress0, s0, [6, extent])
-      call c_f_pointer(statev0, v0, [int(n_statev), extent])
-      call c_f_pointer(status_out, codes, [extent])
-      nullify (de, s1, v1, pc0, dpc, c, c_pc, sw_e, sw_pc, report_to)
-      if (c_associated(dstrain)) call c_f_pointer(dstrain, de, [6, extent])
-      if (c_associated(stress1)) call c_f_pointer(stress1, s1, [6, extent])
-      if (c_associated(statev1)) call c_f_pointer(statev1, v1, [int(n_statev), extent])
-      if (c_associated(suction0)) call c_f_pointer(suction0, pc0, [extent])
-      if (c_associated(dsuction)) call c_f_pointer(dsuction, dpc, [extent])
-      if (c_associated(dsig_deps)) call c_f_pointer(dsig_deps, c, [6, 6, extent])
-      if (c_associated(dsig_dpc)) call c_f_pointer(dsig_dpc, c_pc, [6, extent])
-      if (c_associated(dsw_deps)) call c_f_pointer(dsw_deps, sw_e, [6, extent])
-      if (c_associated(dsw_dpc)) call c_f_pointer(dsw_dpc, sw_pc, [extent])
-      if (c_associated(reports)) call c_f_pointer(reports, report_to, [extent])
-
-      still = 0.0_wp
-      failures = 0
-      opened = 0
-      tensile = 0
-      first = huge(first)
-      pnewdt = 1.0_wp
-      rates = 0.0_wp
-      substeps = 0.0_wp
-      workers = thread_count(threads)
-      !$omp parallel do schedule(dynamic, CHUNK) default(shared) private(i, j, output, report) num_threads(workers) &
-      !$omp reduction(+:failures, opened, tensile, rates, substeps) reduction(min:pnewdt, first)
-      do i = 1, n
-         j = i
-         if (associated(list)) j = list(i) + 1
-         if (tangent /= AHEAD) then
-            call kernel_point(par, s0(:, j), v0(:, j), de(:, j), number_at(pc0, j), number_at(dpc, j), tangent, &
-                              output, report)
-         else if (associated(de)) then
-            call kernel_tangent(par, s0(:, j), v0(:, j), de(:, j), number_at(pc0, j), number_at(dpc, j), output, report)
-         else
-            call kernel_tangent(par, s0(:, j), v0(:, j), still, number_at(pc0, j), number_at(dpc, j), output, report)
-         end if
-         codes(j) = report%status
-         if (associated(report_to)) report_to(j) = report
-         pnewdt = min(pnewdt, report%pnewdt)
-         rates = rates + report%n_rate
-         substeps = substeps + report%n_substep
-         if (report%status /= MUD_OK) then
-            failures = failures + 1
-            first = min(first, j - 1)
-            cycle
-         end if
-         if (output%statev(S_OPEN) > 0.5_wp) opened = opened + 1
-         tensile = tensile + report%n_tensile
-         if (associated(s1)) s1(:, j) = output%stress
-         if (associated(v1)) v1(1:NSTATV, j) = output%statev
-         if (output%has_tangent) then
-            if (associated(c)) c(:, :, j) = output%dsig_deps
-            if (associated(c_pc)) c_pc(:, j) = output%dsig_dpc
-         end if
-         if (associated(sw_e)) sw_e(:, j) = output%dsw_deps
-         if (associated(sw_pc)) sw_pc(j) = output%dsw_dpc
-      end do
-      !$omp end parallel do
-      outcome = int(failures, c_int)
-      if (c_associated(summary)) then
-         code_of_first = MUD_OK
-         if (failures == 0) first = -1
-         if (failures > 0) code_of_first = codes(first + 1)
-         call give_summary(summary, summary_t(failures, first, code_of_first, opened, tensile, pnewdt, rates, substeps))
+      nullify (arrays%list, arrays%material, arrays%codes, arrays%stress0, arrays%statev0, arrays%strain, &
+               arrays%suction, arrays%void_ratio, arrays%saturation, arrays%stress1, arrays%statev1, arrays%c, &
+               arrays%c_pc, arrays%sw_e, arrays%sw_pc, arrays%s_w, arrays%reports)
+      n = given%n
+      m = given%n_statev
+      if (c_associated(given%list)) then
+         call c_f_pointer(given%list, arrays%list, [given%n])
+         n = 0
+         if (given%n > 0) n = maxval(arrays%list) + 1
+         if (given%n > 0) i = minval(arrays%list)
+         if (given%n > 0 .and. i < 0) status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(i, wp), 0.0_wp, huge(1.0_wp))
+         if (status%code /= MUD_OK) return
       end if
-   end subroutine update_points
+      if (c_associated(given%material)) then
+         call c_f_pointer(given%material, arrays%material, [n])
+         do i = 1, given%n
+            k = i
+            if (associated(arrays%list)) k = arrays%list(i) + 1
+            if (arrays%material(k) >= 0 .and. arrays%material(k) < n_materials) cycle
+            status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(arrays%material(k), wp), 0.0_wp, &
+                          real(n_materials - 1, wp))
+            return
+         end do
+      end if
+      writes = task == BEGIN .or. (task == UPDATE .and. .not. is_present(given%tangent))
+      if (c_associated(given%stress0)) call c_f_pointer(given%stress0, arrays%stress0, [6, n])
+      if (c_associated(given%statev0)) call c_f_pointer(given%statev0, arrays%statev0, [m, n])
+      if (c_associated(given%dstrain)) call c_f_pointer(given%dstrain, arrays%strain, [6, n])
+      if (c_associated(given%suction)) call c_f_pointer(given%suction, arrays%suction, [n])
+      if (c_associated(given%void_ratio)) call c_f_pointer(given%void_ratio, arrays%void_ratio, [n])
+      if (c_associated(given%saturation)) call c_f_pointer(given%saturation, arrays%saturation, [n])
+      if (writes) call c_f_pointer(given%stress1, arrays%stress1, [6, n])
+      if (writes) call c_f_pointer(given%statev1, arrays%statev1, [m, n])
+      if (c_associated(given%dsig_deps)) call c_f_pointer(given%dsig_deps, arrays%c, [6, 6, n])
+      if (c_associated(given%dsig_dpc)) call c_f_pointer(given%dsig_dpc, arrays%c_pc, [6, n])
+      if (c_associated(given%dsw_deps)) call c_f_pointer(given%dsw_deps, arrays%sw_e, [6, n])
+      if (c_associated(given%dsw_dpc)) call c_f_pointer(given%dsw_dpc, arrays%sw_pc, [n])
+      if (c_associated(given%s_w)) call c_f_pointer(given%s_w, arrays%s_w, [n])
+      if (c_associated(given%status)) call c_f_pointer(given%status, arrays%codes, [n])
+      if (c_associated(given%reports)) call c_f_pointer(given%reports, arrays%reports, [n])
+   end subroutine find_arrays
+
+   !> A start of point j; raised tells that its mean stress was lifted to p_min.
+   subroutine begin_point(par, arrays, j, total, raised, report)
+      type(params_t), intent(in) :: par
+      type(arrays_t), intent(in) :: arrays
+      integer, intent(in) :: j
+      logical, intent(in) :: total   !< Stress is total stress less air pressure.
+      logical, intent(out) :: raised
+      type(report_t), intent(out) :: report
+      real(wp) :: stress(6), begun(6), statev(NSTATV), suction, e, preset
+
+      raised = .false.
+      suction = number_at(arrays%suction, j)
+      e = number_at(arrays%void_ratio, j)
+      preset = number_at(arrays%saturation, j)
+      begun = arrays%stress0(:, j)
+      if (total) begun = effective_stress(begun, 0.0_wp, first_saturation(par, suction, e, preset), suction)
+      stress = begun
+      call kernel_begin(par, begun, suction, e, statev, report, preset)
+      if (report%status /= MUD_OK) return
+      raised = any(abs(begun - stress) > 0.0_wp)
+      if (total) begun = total_stress(begun, 0.0_wp, statev(S_SATURATION), suction)
+      arrays%stress1(:, j) = begun
+      arrays%statev1(1:NSTATV, j) = statev
+      if (associated(arrays%s_w)) arrays%s_w(j) = statev(S_SATURATION)
+   end subroutine begin_point
+
+   !> S_w with which a point will begin; 0 where kernel_begin refuses its numbers.
+   pure real(wp) function first_saturation(par, suction, void_ratio, preset) result(s_w)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: suction, void_ratio, preset
+      type(saturation_t) :: sat
+      real(wp) :: e
+
+      s_w = 0.0_wp
+      if (.not. (is_finite(suction) .and. is_finite(void_ratio) .and. is_finite(preset))) return
+      e = void_ratio
+      if (abs(e) <= 0.0_wp) e = par%e_0
+      if (e <= E_LOWER .or. e >= E_UPPER) return
+      sat = saturation(par, suction, e)
+      s_w = sat%s_w
+      if (par%hysteresis .and. preset > 0.0_wp) s_w = preset
+   end function first_saturation
+
+   !> An increment of point j.
+   subroutine update_point(par, arrays, j, tangent, output, report)
+      type(params_t), intent(in) :: par
+      type(arrays_t), intent(in) :: arrays
+      integer, intent(in) :: j
+      integer(c_int), intent(in) :: tangent
+      type(output_t), intent(inout) :: output
+      type(report_t), intent(out) :: report
+      real(wp) :: strain(6), suction
+
+      strain = 0.0_wp
+      if (associated(arrays%strain)) strain = arrays%strain(:, j)
+      suction = arrays%statev0(S_SUCTION, j)
+      if (associated(arrays%suction)) suction = arrays%suction(j)
+      call host_increment(par, arrays%stress0(:, j), arrays%statev0(:NSTATV, j), strain, suction, int(tangent), &
+                          output, report)
+      if (report%status /= MUD_OK) return
+      if (associated(arrays%stress1)) arrays%stress1(:, j) = output%stress
+      if (associated(arrays%statev1)) arrays%statev1(1:NSTATV, j) = output%statev
+      if (output%has_tangent) then
+         if (associated(arrays%c)) arrays%c(:, :, j) = output%dsig_deps
+         if (associated(arrays%c_pc)) arrays%c_pc(:, j) = output%dsig_dpc
+      end if
+      if (associated(arrays%sw_e)) arrays%sw_e(:, j) = output%dsw_deps
+      if (associated(arrays%sw_pc)) arrays%sw_pc(j) = output%dsw_dpc
+      if (associated(arrays%s_w)) arrays%s_w(j) = output%statev(S_SATURATION)
+   end subroutine update_point
+
+   !> S_w and its slopes of point j at another suction.
+   subroutine retain_point(par, arrays, j, report)
+      type(params_t), intent(in) :: par
+      type(arrays_t), intent(in) :: arrays
+      integer, intent(in) :: j
+      type(report_t), intent(out) :: report
+      type(saturation_t) :: sat
+      type(mud_status_t) :: status
+      real(wp) :: suction
+
+      suction = arrays%statev0(S_SUCTION, j)
+      if (associated(arrays%suction)) suction = arrays%suction(j)
+      call state_saturation(par, arrays%statev0(:NSTATV, j), suction, sat, status)
+      report = failed_report(status)
+      if (status%code /= MUD_OK) return
+      if (associated(arrays%s_w)) arrays%s_w(j) = sat%s_w
+      if (associated(arrays%sw_pc)) arrays%sw_pc(j) = sat%ds_dpc
+      if (associated(arrays%sw_e)) arrays%sw_e(:, j) = [1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]* &
+                                                       (1.0_wp + arrays%statev0(S_VOID_RATIO, j))*sat%ds_de
+   end subroutine retain_point
+
+   pure function no_points() result(none)
+      type(summary_t) :: none
+
+      none = summary_t(report=failed_report(mud_status_t()))
+   end function no_points
+
+   !> What one point adds to a summary; whether it is open its state tells.
+   pure function of_point(report, number, raised) result(one)
+      type(report_t), intent(in) :: report
+      integer, intent(in) :: number   !< From 0.
+      logical, intent(in) :: raised   !< It began, with its mean stress lifted.
+      type(summary_t) :: one
+
+      one = summary_t(pnewdt=report%pnewdt, rates=real(report%n_rate, wp), substeps=real(report%n_substep, wp), &
+                      report=report)
+      if (raised) one%lifted = 1
+      if (report%status == MUD_OK) then
+         one%tensile = report%n_tensile
+      else
+         one%failed = 1
+         one%worst = number
+      end if
+   end function of_point
+
+   !> One summary into another, in any order: the worst is the point that got least far, of equals the smallest number.
+   pure subroutine add(one, total)
+      type(summary_t), intent(in) :: one
+      type(summary_t), intent(inout) :: total
+      logical :: worse
+
+      worse = one%failed > 0
+      if (worse .and. total%failed > 0) worse = one%report%reached < total%report%reached .or. &
+         (.not. one%report%reached > total%report%reached .and. one%worst < total%worst)
+      if (worse) then
+         total%worst = one%worst
+         total%report = one%report
+      end if
+      total%failed = total%failed + one%failed
+      total%open = total%open + one%open
+      total%tensile = total%tensile + one%tensile
+      total%lifted = total%lifted + one%lifted
+      total%pnewdt = min(total%pnewdt, one%pnewdt)
+      total%rates = total%rates + one%rates
+      total%substeps = total%substeps + one%substeps
+   end subroutine add
 
    subroutine give_summary(summary, value)
       type(c_ptr), intent(in) :: summary

@@ -2,7 +2,7 @@
 !> The functions of mud.h.
 module mud_c_api
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_associated, c_f_pointer
-   use mud_kernel, only: report_t, output_t, kernel_init, kernel_update, failed_report
+   use mud_kernel, only: report_t, failed_report
    use mud_advice, only: advice_on, ADVICE_LENGTH
    use mud_kinds, only: wp
    use mud_messages, only: status_text, report_text
@@ -16,16 +16,15 @@ module mud_c_api
       MUD_BAD_PROPS, MUD_BAD_INPUT, ON_PROPS, ON_STATEV, ON_ARGUMENT
    use mud_tensor, only: is_finite
    use mud_to_host, only: put, put_real
-   use mud_trace, only: trace_t
    use mud_units, only: bounds_for, convert_props
    implicit none (type, external)
    private
    public :: mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_option, mud_bounds, mud_bounds_for, &
-             mud_default_props, mud_convert_props, mud_validate_props, mud_init_state, &
-             mud_trace_increment, mud_status_text, mud_message
+             mud_default_props, mud_convert_props, mud_validate_props, &
+             mud_status_text, mud_message
    public :: ABI_VERSION, VERSION
 
-   integer, parameter :: ABI_VERSION = 2
+   integer, parameter :: ABI_VERSION = 3
    character(*), parameter :: VERSION = '0.2.0'
    integer, parameter :: LIST_PROPS = 1, LIST_STATEV = 2
    integer, parameter :: FIELD_NAME = 1, FIELD_SYMBOL = 2, FIELD_UNIT = 3, FIELD_ORIGIN = 4, FIELD_MEANING = 5, &
@@ -259,74 +258,6 @@ contains
       if (advice == '') advice = report_text(failed_report(status))
       call put(advice, text, len)
    end function mud_validate_props
-
-   !> Initialises a point, as kernel_init: tension positive, stress and suction in the unit of p_atm, void ratio [-].
-   !> MUD_NULL_ARGUMENT, or the code of kernel_init; on an error nothing but text is written.
-   integer(c_int) function mud_init_state(props, n_props, stress, suction, void_ratio, statev, n_statev, text, len) &
-      bind(c, name='mud_init_state')
-      type(c_ptr), value :: props, stress, statev, text
-      integer(c_int), value :: n_props, n_statev, len
-      real(c_double), value :: suction, void_ratio
-      real(c_double), pointer, contiguous :: props_in(:), stress_in(:), statev_in(:)
-      type(report_t) :: report
-
-      if (c_associated(props) .and. c_associated(stress) .and. c_associated(statev)) then
-         call c_f_pointer(props, props_in, [max(n_props, 0)])
-         call c_f_pointer(stress, stress_in, [6])
-         call c_f_pointer(statev, statev_in, [max(n_statev, 0)])
-         call kernel_init(props_in, stress_in, suction, void_ratio, statev_in, report)
-      else
-         report = failed_report(fail(MUD_NULL_ARGUMENT, ON_ARGUMENT))
-      end if
-      mud_init_state = report%status
-      call put(report_text(report), text, len)
-   end function mud_init_state
-
-   !> Runs mud_update and reports every substep that it tries; see mud.h. Its rows have the stress tension positive.
-   !> MUD_NULL_ARGUMENT, MUD_BAD_OPTION for tangent < 0, first < 1 or n_rows < 0, else the status of the update.
-   integer(c_int) function mud_trace_increment(props, n_props, stress0, statev0, n_statev, dstrain, suction0, &
-           dsuction, tangent, first, rows, n_rows, attempts, report_out) bind(c, name='mud_trace_increment')
-      type(c_ptr), value :: props, stress0, statev0, dstrain, rows, attempts, report_out
-      integer(c_int), value :: n_props, n_statev, tangent, first, n_rows
-      real(c_double), value :: suction0, dsuction
-      real(c_double), pointer, contiguous :: props_in(:), stress_in(:), statev_in(:), dstrain_in(:)
-      integer(c_int), pointer :: attempts_to
-      type(report_t), pointer :: report_to
-      type(report_t) :: report
-      type(output_t) :: output
-      type(trace_t) :: trace
-      integer :: i
-
-      if (.not. (c_associated(props) .and. c_associated(stress0) .and. c_associated(statev0) .and. &
-                 c_associated(dstrain))) then
-         report = failed_report(fail(MUD_NULL_ARGUMENT, ON_ARGUMENT))
-      else if (tangent < 0 .or. first < 1 .or. n_rows < 0) then
-         report = failed_report(fail(MUD_BAD_OPTION, ON_ARGUMENT))
-      else
-         call c_f_pointer(props, props_in, [max(n_props, 0)])
-         call c_f_pointer(stress0, stress_in, [6])
-         call c_f_pointer(statev0, statev_in, [max(n_statev, 0)])
-         call c_f_pointer(dstrain, dstrain_in, [6])
-         trace%first = first
-         if (c_associated(rows)) call c_f_pointer(rows, trace%rows, [n_rows])
-         call kernel_update(props_in, stress_in, statev_in, dstrain_in, suction0, dsuction, tangent, output, report, &
-                            trace)
-      end if
-      if (associated(trace%rows)) then
-         do i = 1, min(trace%attempts - trace%first + 1, n_rows)
-            trace%rows(i)%stress = 0.0_wp - trace%rows(i)%stress
-         end do
-      end if
-      if (c_associated(attempts)) then
-         call c_f_pointer(attempts, attempts_to)
-         attempts_to = trace%attempts
-      end if
-      if (c_associated(report_out)) then
-         call c_f_pointer(report_out, report_to)
-         report_to = report
-      end if
-      mud_trace_increment = report%status
-   end function mud_trace_increment
 
    !> A sentence for a code, also for one that is unknown; always MUD_OK.
    integer(c_int) function mud_status_text(code, text, len) bind(c, name='mud_status_text')

@@ -3,29 +3,39 @@
 !> umat_ and mud_update both end here.
 module mud_kernel
    use, intrinsic :: iso_c_binding, only: c_int, c_double
+   use mud_bounding, only: limited
    use mud_kinds, only: wp
    use mud_params, only: params_t, read_params
-   use mud_point, only: blocks_t, initial_state, update_point, LAST_RATE => TANGENT_CONTINUUM
+   use mud_point, only: update_point, LAST_RATE => TANGENT_CONTINUUM
+   use mud_blocks, only: blocks_t
+   use mud_start, only: initial_state
+   use mud_rates, only: stress_ratio
    use mud_registry, only: NSTATV, VARIABLES, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION, S_DSIGMA_DPC, &
       S_DSW_DPC, S_DSW_DEV, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE
-   use mud_scanning, only: check_curves
+   use mud_scanning, only: check_curves, check_saturation
    use mud_state, only: state_t, counters_t, pack_state, unpack_state, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_BAD_STATE, MUD_BAD_INPUT, MUD_BAD_OPTION, &
-      MUD_NOT_FINITE, ON_STATEV, ON_STRESS, ON_STRAIN, ON_ARGUMENT
-   use mud_tensor, only: is_finite, all_finite, rotate
+      MUD_NOT_FINITE, ON_STATEV, ON_STRESS, ON_STRAIN, ON_SUCTION, ON_ARGUMENT
+   use mud_tensor, only: is_finite, all_finite, norm, rotate
    use mud_trace, only: trace_t
    implicit none (type, external)
    private
    public :: report_t, output_t, kernel_init, kernel_begin, kernel_update, kernel_point, kernel_tangent, &
-      rotate_statev, failed_report, copy_statev, TANGENT_FROM_PROPS
+      rotate_statev, failed_report, copy_statev, TANGENT_FROM_PROPS, ON_STRESS_RATIO
 
    integer, parameter :: TANGENT_FROM_PROPS = -1   !< Take the tangent kind from PROPS.
+   integer, parameter :: ON_STRESS_RATIO = 7      !< Index of a status on stress: the ratio q/p', no component.
    integer, parameter :: LAST_TANGENT = 3          !< Largest tangent kind.
    real(wp), parameter :: SMALLEST_CUT = 0.1_wp, LARGEST_CUT = 0.5_wp   !< Range of the suggested PNEWDT [-].
    !> Strain by which kernel_tangent looks ahead [-]: the stress moves by about 1e-7 of itself, the slopes likewise.
    real(wp), parameter :: LOOK_AHEAD = 1.0e-10_wp
    !> Suction that counts like a strain of 1, in atmospheres: about the bulk modulus number of soil [-].
    real(wp), parameter :: STIFF = 1.0e3_wp
+   !> Share that a change of suction has in a direction where only its sense counts: the slopes change as little [-].
+   real(wp), parameter :: SENSE = 1.0e-6_wp
+   !> A start may be beyond the bounding surface by this factor [-]: dense soil that softens is, by a few per cent.
+   real(wp), parameter :: FARTHEST_START = 1.25_wp
+   real(wp), parameter :: SQRT_3_2 = sqrt(1.5_wp)   !< From |r| to q/p' [-].
 
    !> struct mud_report of mud.h.
    type, bind(c) :: report_t
@@ -61,25 +71,40 @@ contains
       end if
    end subroutine kernel_init
 
-   !> The same for checked parameters. statev(:) has at least NSTATV entries, else MUD_BAD_NSTATV; otherwise the codes
-   !> of initial_state and check_curves.
-   pure subroutine kernel_begin(par, stress, suction, void_ratio, statev, report)
+   !> The same for checked parameters. statev(:) has at least NSTATV entries, else MUD_BAD_NSTATV; MUD_BAD_STATE for a
+   !> saturation without hysteresis; otherwise the codes of initialise.
+   pure subroutine kernel_begin(par, stress, suction, void_ratio, statev, report, saturation)
       type(params_t), intent(in) :: par
       real(wp), intent(inout) :: stress(6)
       real(wp), intent(in) :: suction, void_ratio   !< Void ratio 0: e_0.
       real(wp), intent(inout) :: statev(:)
       type(report_t), intent(out) :: report
+      real(wp), intent(in), optional :: saturation   !< 0: on the main drying curve [-].
       type(state_t) :: state
       type(mud_status_t) :: status
-      real(wp) :: packed(NSTATV)
+      real(wp) :: packed(NSTATV), preset
 
+      preset = 0.0_wp
+      if (present(saturation)) preset = saturation
       if (size(statev) < NSTATV) status = wrong_nstatv(size(statev))
-      if (status%code == MUD_OK) call initialise(par, stress, suction, void_ratio, 0.0_wp, state, packed, status)
+      if (status%code == MUD_OK .and. .not. par%hysteresis) call refuse_preset(preset, status)
+      if (status%code == MUD_OK) call initialise(par, stress, suction, void_ratio, preset, state, packed, status)
       report = failed_report(status)
       if (status%code /= MUD_OK) return
       stress = to_umat_stress(state%sigma)
       statev(1:NSTATV) = packed
    end subroutine kernel_begin
+
+   !> Without hysteresis S_w is a function of suction and void ratio: another one of a start would be lost in silence.
+   pure subroutine refuse_preset(preset, status)
+      real(wp), intent(in) :: preset
+      type(mud_status_t), intent(inout) :: status
+      logical :: given
+
+      given = .not. is_finite(preset)
+      if (.not. given) given = abs(preset) > 0.0_wp
+      if (given) status = fail(MUD_BAD_STATE, ON_STATEV, S_SATURATION, preset, 0.0_wp, 0.0_wp)
+   end subroutine refuse_preset
 
    !> One increment of a material as PROPS give it. On failure output is undefined. Arguments as in kernel_point. Codes
    !> of read_params, else those of kernel_point. props(:) as read_params takes them, statev(:) of at least NSTATV.
@@ -138,10 +163,11 @@ contains
       report = report_of(status, counters, reached)
    end subroutine kernel_point
 
-   !> Slopes with which a state goes on in a direction of strain and suction of any length. No direction: that in which
-   !> the state strained last, as far as its elastic domain remembers it. Only the blocks of output mean something.
-   !> Tension positive, stress in the unit of p_atm, statev(:) of at least NSTATV. MUD_BAD_INPUT for a direction that is
-   !> not finite, else the codes of kernel_point. docs/theory/integration.md sections 5.2 and 5.4.
+   !> Slopes with which a state goes on in a direction of strain and suction of any length. No strain: that in which the
+   !> state strained last, as far as its elastic domain remembers it; of the suction only the sense counts then, for how
+   !> fast it changes against a remembered strain nobody said. Only the blocks of output mean something. Tension
+   !> positive, stress in the unit of p_atm, statev(:) of at least NSTATV. MUD_BAD_INPUT for a direction that is not
+   !> finite, else the codes of kernel_point. docs/theory/integration.md sections 5.2 and 5.4.
    pure subroutine kernel_tangent(par, stress, statev, direction, suction, d_suction, output, report)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: stress(6)
@@ -150,25 +176,32 @@ contains
       real(wp), intent(in) :: suction, d_suction   !< [kPa]
       type(output_t), intent(inout) :: output
       type(report_t), intent(out) :: report
-      real(wp) :: ahead(6), length
+      real(wp) :: ahead(6), suction_ahead, length
+      integer :: i
 
-      ahead = direction
-      if (.not. (all(is_finite(direction)) .and. is_finite(d_suction))) then
-         report = failed_report(fail(MUD_BAD_INPUT, ON_STRAIN))
+      i = findloc(is_finite(direction), .false., dim=1)
+      if (i > 0) then
+         report = failed_report(fail(MUD_BAD_INPUT, ON_STRAIN, i, direction(i), -1.0_wp, 1.0_wp))
          return
       end if
-      length = max(maxval(abs(ahead)), abs(d_suction)/(STIFF*par%p_atm))
-      if (length <= 0.0_wp .and. size(statev) >= NSTATV) then
+      if (.not. is_finite(d_suction)) then
+         report = failed_report(fail(MUD_BAD_INPUT, ON_SUCTION, 0, d_suction, -huge(1.0_wp), huge(1.0_wp)))
+         return
+      end if
+      ahead = direction
+      suction_ahead = d_suction
+      if (maxval(abs(direction)) <= 0.0_wp .and. size(statev) >= NSTATV) then
          ahead = statev(S_ELASTIC_DOMAIN:S_ELASTIC_DOMAIN + 5)*[-1.0_wp, -1.0_wp, -1.0_wp, -2.0_wp, -2.0_wp, -2.0_wp]
          if (.not. all(is_finite(ahead))) ahead = 0.0_wp   ! said by the update
-         length = maxval(abs(ahead))
+         if (abs(d_suction) > 0.0_wp .and. maxval(abs(ahead)) > 0.0_wp) &
+            suction_ahead = sign(SENSE*STIFF*par%p_atm*maxval(abs(ahead)), d_suction)
       end if
+      length = max(maxval(abs(ahead)), abs(suction_ahead)/(STIFF*par%p_atm))
       if (length > 0.0_wp) then
-         call kernel_point(par, stress, statev, ahead/length*LOOK_AHEAD, suction, d_suction/length*LOOK_AHEAD, &
-                           LAST_RATE, output, report)
-      else
-         call kernel_point(par, stress, statev, ahead, suction, d_suction, LAST_RATE, output, report)
+         ahead = ahead/length*LOOK_AHEAD
+         suction_ahead = suction_ahead/length*LOOK_AHEAD
       end if
+      call kernel_point(par, stress, statev, ahead, suction, suction_ahead, LAST_RATE, output, report)
    end subroutine kernel_tangent
 
    !> Rotates every tensor of STATEV by DROT, as Abaqus asks for. That drot is a rotation is not checked.
@@ -213,6 +246,9 @@ contains
          call initialise(par, stress, suction, statev(S_VOID_RATIO), statev(S_SATURATION), state, packed, status)
       else
          call unpack_state(statev, state, status)
+         if (par%hysteresis .and. status%code == MUD_OK) then
+            call check_saturation(par, state%p_c, state%e, state%s_w, status)
+         end if
          call copy_statev(statev, packed)
          state%sigma = -stress
          state%p_c = suction
@@ -227,7 +263,8 @@ contains
       to = from
    end subroutine copy_statev
 
-   !> A state without a past; a void ratio of zero means that of the parameters, stress zero means p_min.
+   !> A state without a past; a void ratio of zero means that of the parameters, stress zero means p_min. Codes of
+   !> check_curves, initial_state and check_strength.
    pure subroutine initialise(par, stress, suction, void_ratio, s_w, state, packed, status)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: stress(6), suction, void_ratio
@@ -245,8 +282,23 @@ contains
       if (par%hysteresis) call check_curves(par, status)
       if (status%code /= MUD_OK) return
       call initial_state(par, -stress, e, suction, state, status, s_w)
+      if (status%code == MUD_OK) call check_strength(par, state, status)
       if (status%code == MUD_OK) call pack_state(state, counters_t(), packed)
    end subroutine initialise
+
+   !> A start far beyond the bounding surface, which no loading reaches: MUD_BAD_INPUT with q/p' and the largest that is
+   !> taken in its direction. docs/theory/material.md section 1.4.
+   pure subroutine check_strength(par, state, status)
+      type(params_t), intent(in) :: par
+      type(state_t), intent(in) :: state
+      type(mud_status_t), intent(inout) :: status
+      real(wp) :: p, r(6), largest
+
+      call stress_ratio(par, state%sigma, p, r)
+      largest = FARTHEST_START*norm(limited(par, state%psi, r))
+      if (norm(r) > largest) status = fail(MUD_BAD_INPUT, ON_STRESS, ON_STRESS_RATIO, SQRT_3_2*norm(r), 0.0_wp, &
+                                           SQRT_3_2*largest)
+   end subroutine check_strength
 
    !> From the core's results to UMAT conventions; a result that is not finite is a failure.
    pure subroutine write_output(state, blocks, counters, has_tangent, output, status)
@@ -308,7 +360,7 @@ contains
 
       host_value = status%value
       if (.not. is_finite(host_value) .or. status%index < 1) return
-      if (status%subject == ON_STRESS) host_value = -host_value
+      if (status%subject == ON_STRESS .and. status%index <= 6) host_value = -host_value
       if (status%subject == ON_STRAIN) host_value = -host_value*host_factor(status)
    end function host_value
 

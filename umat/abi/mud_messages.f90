@@ -2,12 +2,12 @@
 !> Sentences for status codes: what, where, value, allowed range, remedy.
 module mud_messages
    use mud_kinds, only: wp
-   use mud_registry, only: NPROPS, NSTATV, PROPERTIES, KIND_REAL, property_meaning, statev_name
+   use mud_registry, only: NPROPS, NSTATV, PROPERTIES, KIND_REAL, S_LAYOUT, property_meaning, statev_name
    use mud_status, only: MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_BAD_NTENS, MUD_BAD_PROPS, MUD_BAD_STATE, &
       MUD_BAD_INPUT, MUD_NULL_ARGUMENT, MUD_BAD_VOID_RATIO, MUD_BAD_OPTION, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, &
       MUD_NO_DIRECTION, MUD_VOID_RATIO_LIMIT, MUD_NOT_FINITE, MUD_INCREMENT_TOO_LARGE, MUD_NOT_WRITTEN, &
       MUD_NOT_PREPARED, ON_PROPS, ON_STATEV, ON_STRESS, ON_STRAIN, ON_SUCTION, ON_ROTATION
-   use mud_kernel, only: report_t
+   use mud_kernel, only: report_t, ON_STRESS_RATIO
    use mud_tensor, only: is_finite
    implicit none (type, external)
    private
@@ -83,8 +83,12 @@ contains
       case (MUD_BAD_STATE)
          if (report%index < 1 .or. report%index > NSTATV) return
          text = 'state variable '//trim(statev_name(report%index))//' (STATEV '//trim(whole(report%index))//') is '// &
-                trim(number(report%value))//trim(span(lower, upper))// &
-                ': was STATEV zeroed before the first call and kept since?'
+                trim(number(report%value))//trim(span(lower, upper))//': '
+         if (report%index == S_LAYOUT .and. is_zero(report%value)) then
+            text = trim(text)//' mud_init or mud_init_points begins a point'
+         else
+            text = trim(text)//' was STATEV zeroed before the first call and kept since?'
+         end if
       case (MUD_BAD_NPROPS, MUD_BAD_NSTATV)
          text = trim(text)//'; given '//trim(number(report%value))//', needed '//trim(lower)
          ! Without and with the entries of hysteresis.
@@ -99,6 +103,8 @@ contains
       case (MUD_BAD_INPUT, MUD_INCREMENT_TOO_LARGE)
          if (report%subject == ON_STRESS .or. report%subject == ON_STRAIN .or. report%subject == ON_SUCTION) then
             if (report%status == MUD_BAD_INPUT) text = 'check what the host passes'
+            if (report%subject == ON_STRESS .and. report%index == ON_STRESS_RATIO) text = 'the point begins far '// &
+               'beyond the bounding surface: give a smaller deviator, or a smaller void ratio'
             text = trim(quantity(report))//' is '//trim(number(report%value))//trim(span(lower, upper))//': '//text
          else if (report%subject == ON_ROTATION) then
             text = rotation_text(report)
@@ -204,6 +210,7 @@ contains
       select case (report%subject)
       case (ON_STRESS)
          text = 'stress'
+         if (report%index == ON_STRESS_RATIO) text = 'initial stress ratio q/p'''
       case (ON_STRAIN)
          text = 'strain increment'
       case default
@@ -211,6 +218,14 @@ contains
       end select
       if (report%index >= 1 .and. report%index <= 6) text = trim(text)//' '//COMPONENT(report%index)
    end function quantity
+
+   !> A NaN is not compared, for it would trap.
+   pure logical function is_zero(value)
+      real(wp), intent(in) :: value
+
+      is_zero = is_finite(value)
+      if (is_zero) is_zero = abs(value) <= 0.0_wp
+   end function is_zero
 
    !> Texts of fixed length: gfortran keeps the length of deferred-length results in static storage, which threads
    !> share.

@@ -4,15 +4,17 @@
 !> those of MUD; symmetric tensors are in Mandel's notation (shear times square root of 2), matrices row by row.
 module mud_mfront
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
+   use mud_arguments, only: has_past
    use mud_kernel, only: report_t, output_t, kernel_point, kernel_tangent, failed_report
    use mud_kinds, only: wp
    use mud_messages, only: report_text
    use mud_params, only: params_t, read_params, completed
-   use mud_refusals, only: place_t, say_refusal, save_if_asked
-   use mud_registry, only: NPROPS_WITHOUT_HYSTERESIS, NSTATV, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION
+   use mud_refusals, only: place_t, say_refusal, remark_on_props, remark_on_pressure, save_if_asked
+   use mud_registry, only: NPROPS_WITHOUT_HYSTERESIS, NSTATV, S_VOID_RATIO, S_SATURATION, S_SUCTION
    use mud_retention, only: saturation_t, saturation
-   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_INPUT, MUD_BAD_OPTION, ON_ARGUMENT, &
-      ON_SUCTION
+   use mud_state, only: E_LOWER, E_UPPER
+   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_STATE, MUD_BAD_INPUT, MUD_BAD_OPTION, &
+      ON_ARGUMENT, ON_STATEV, ON_SUCTION
    use mud_tensor, only: is_finite
    use mud_to_host, only: put
    use mud_total, only: effective_stress, total_stress, total_blocks
@@ -28,6 +30,8 @@ module mud_mfront
    real(wp), parameter :: WITH_SPEED_OF_SOUND = 50.0_wp       !< K(1) above it asks for the speed of sound too.
    character(*), parameter :: DOOR = 'MFront'                 !< What a sentence calls the interface.
    integer, parameter :: NONE = 0, ELASTIC = 1, CONTINUUM = 2, CONSISTENT = 3
+   !> S_w of a state may differ from that of its suction by this, what a text of seven digits leaves [-].
+   real(wp), parameter :: SAME_SATURATION = 1.0e-6_wp
 
    !> A state of a point as MGIS hands it over, in its order.
    type, bind(c) :: state_view_t
@@ -160,7 +164,7 @@ contains
       type(report_t), intent(out) :: report
       type(output_t) :: output
       real(wp) :: stress(6), strain(6), suction(2), request
-      logical :: speed
+      logical :: speed, predicts
 
       request = point%k(1)
       if (.not. is_finite(request)) then
@@ -169,6 +173,7 @@ contains
       end if
       speed = request > WITH_SPEED_OF_SOUND
       if (speed) request = request - 2.0_wp*WITH_SPEED_OF_SOUND
+      predicts = request < -0.5_wp
       stress = 0.0_wp
       strain = 0.0_wp
       stress(1:n) = point%force0(1:n)/MANDEL(1:n)
@@ -178,7 +183,7 @@ contains
       if (unsaturated) then
          if (report%status /= MUD_OK) return
       end if
-      if (request < -0.5_wp) then
+      if (predicts) then
          if (request < -1.5_wp) then
             call kernel_tangent(par, stress, point%state0, strain, suction(1), suction(2) - suction(1), output, report)
          else
@@ -193,14 +198,17 @@ contains
                             place_t(DOOR), report)
          return
       end if
-      if (request >= -0.5_wp) then
+      if (.not. has_past(point%state0)) call remark_on_props(completed(point%props), place_t(DOOR))
+      if (.not. predicts) then
+         call remark_on_pressure(output%stress, place_t(DOOR))
          point%state1(1:NSTATV) = output%statev
          stress = output%stress
          if (unsaturated) stress = total_stress(stress, 0.0_wp, output%statev(S_SATURATION), suction(2))
          point%force1(1:n) = stress(1:n)*MANDEL(1:n)
          if (unsaturated) point%force1(n + 1) = output%statev(S_SATURATION)
       end if
-      if (output%has_tangent) call write_blocks(view, n, unsaturated, suction(2), output)
+      ! A prediction has the slopes of the present state, so its suction is the present one.
+      if (output%has_tangent) call write_blocks(view, n, unsaturated, merge(suction(1), suction(2), predicts), output)
       if (speed) call write_speed_of_sound(view, par, output)
    end subroutine answer
 
@@ -218,9 +226,9 @@ contains
       end if
    end function kind_of
 
-   !> Total stress at the start becomes effective stress. Saturation and suction are those of the state where it has a
-   !> past, for the degree of saturation may not jump between two increments; otherwise those of the host's liquid
-   !> pressure. Air is at pressure 0.
+   !> Total stress at the start becomes effective stress. The suction is that of the state where it has a past, for the
+   !> degree of saturation may not jump between two increments; otherwise that of the host's liquid pressure. Air is at
+   !> pressure 0. MUD_BAD_STATE where S_w of the state is not that of its suction: the stress would jump with it.
    subroutine start_unsaturated(par, point, n, stress, suction, report)
       type(params_t), intent(in) :: par
       type(point_t), intent(in) :: point
@@ -231,18 +239,19 @@ contains
       type(saturation_t) :: sat
       type(mud_status_t) :: status
       real(wp) :: e
+      logical :: past
 
       suction = -[point%gradient0(n + 1), point%gradient1(n + 1)]
       if (.not. all(is_finite(suction))) status = fail(MUD_BAD_INPUT, ON_SUCTION)
       if (status%code == MUD_OK .and. all(is_finite(point%state0))) then
-         if (abs(point%state0(S_LAYOUT)) > 0.0_wp) then
-            suction(1) = point%state0(S_SUCTION)
-            sat%s_w = point%state0(S_SATURATION)
-         else
-            e = point%state0(S_VOID_RATIO)
-            if (.not. e > 0.0_wp) e = par%e_0
-            sat = saturation(par, suction(1), e)
-         end if
+         past = has_past(point%state0)
+         if (past) suction(1) = point%state0(S_SUCTION)
+         e = point%state0(S_VOID_RATIO)
+         if (e <= E_LOWER .or. e >= E_UPPER) e = par%e_0   ! none is given; a wrong one is refused by the update
+         sat = saturation(par, suction(1), e)
+         if (past .and. abs(point%state0(S_SATURATION) - sat%s_w) > SAME_SATURATION) &
+            status = fail(MUD_BAD_STATE, ON_STATEV, S_SATURATION, point%state0(S_SATURATION), &
+                          sat%s_w - SAME_SATURATION, sat%s_w + SAME_SATURATION)
          stress = effective_stress(stress, 0.0_wp, sat%s_w, suction(1))
       end if
       report = failed_report(status)

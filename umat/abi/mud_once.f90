@@ -5,17 +5,19 @@
 !> two threads that fail at the same instant may both speak. A forked process inherits what was said before; the ranks
 !> of MPI are processes of their own.
 module mud_once
-   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_size_t
+   use, intrinsic :: iso_c_binding, only: c_char, c_funloc, c_funptr, c_int, c_size_t
    use, intrinsic :: iso_fortran_env, only: int32
    implicit none (type, external)
    private
-   public :: first_time, speak, environment_is, KINDS
+   public :: first_time, speak, remind_at_exit, environment_is, KINDS
 
    integer, parameter :: BITS = 31, WORDS = 700   !< Bits of a word in use (the sign is left alone), and words.
    integer, parameter :: KINDS = WORDS*BITS       !< Sentences are numbered from 0 to KINDS - 1.
    character(*), parameter :: SILENCER = 'MUD_MESSAGES'
    integer(c_int), parameter :: STANDARD_ERROR = 2
-   integer(int32) :: told(0:WORDS - 1) = 0        !< One bit a kind; see the head of the module.
+   integer, parameter :: SPOILED = WORDS          !< Place of a number: how many increments were answered with NaN.
+   !> One bit a kind, and behind them SPOILED; see the head of the module.
+   integer(int32) :: told(0:WORDS) = 0
 
    interface
       !> The system's: one call for a whole line, so that the lines of threads and processes do not mix.
@@ -25,6 +27,12 @@ module mud_once
          character(kind=c_char), intent(in) :: text(*)
          integer(c_size_t), value :: n
       end function c_write
+
+      !> C's: a procedure that the process calls when it ends.
+      integer(c_int) function c_atexit(procedure_) bind(c, name='atexit')
+         import :: c_funptr, c_int
+         type(c_funptr), value :: procedure_
+      end function c_atexit
    end interface
 contains
    !> True for the first caller of a process that asks for this kind. False for a kind outside 0 to KINDS - 1.
@@ -57,6 +65,29 @@ contains
       length = len_trim(text) + 1
       length = c_write(STANDARD_ERROR, trim(text)//new_line(text), length)
    end subroutine speak
+
+   !> Counts an increment whose refusal the host sees as a NaN alone. The process tells their number when it ends, for a
+   !> host that goes on with a NaN ends like one that has computed something: the first sentence is far above its last.
+   subroutine remind_at_exit()
+      integer(int32) :: number
+      integer(c_int) :: code
+
+      !$omp atomic capture
+      number = told(SPOILED)
+      told(SPOILED) = told(SPOILED) + 1_int32
+      !$omp end atomic
+      if (number == 0) code = c_atexit(c_funloc(remind))
+   end subroutine remind_at_exit
+
+   !> The last sentence of a process.
+   subroutine remind() bind(c, name='')
+      character(12) :: number
+
+      write (number, '(i0)') told(SPOILED)
+      call speak('MUD: at the end of this process: refused increments whose stress was set to NaN: '// &
+                 trim(number)//'. Unless the host has repeated them with smaller ones, its results from the first '// &
+                 'of them on (see above) are no results')
+   end subroutine remind
 
    !> True if an environment variable has this value. False where it is not set or longer than 32 characters.
    logical function environment_is(name, value)

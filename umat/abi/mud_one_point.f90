@@ -1,39 +1,81 @@
 ! SPDX-License-Identifier: MIT
-!> One increment at one point for a C host: mud_update and mud_update_prepared of mud.h.
+!> One point for a C host: mud_init, mud_update and mud_trace_increment of mud.h.
 module mud_one_point
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
-   use mud_kernel, only: report_t, output_t, kernel_point, failed_report, copy_statev
+   use mud_host_increment, only: host_increment, kind_of, is_present
+   use mud_kernel, only: report_t, output_t, kernel_begin, failed_report, copy_statev
    use mud_kinds, only: wp
-   use mud_params, only: params_t, read_params
+   use mud_messages, only: report_text
    use mud_prepared, only: prepared_t, find_prepared
-   use mud_registry, only: NSTATV
-   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, ON_ARGUMENT
-   use mud_to_host, only: put_real
+   use mud_registry, only: NSTATV, S_SATURATION
+   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_NSTATV, MUD_BAD_OPTION, ON_ARGUMENT, &
+      ON_STATEV
+   use mud_to_host, only: put
+   use mud_trace, only: trace_t
    implicit none (type, external)
    private
-   public :: mud_update, mud_update_prepared
+   public :: mud_init, mud_update, mud_trace_increment
+
+   !> struct mud_blocks of mud.h.
+   type, bind(c) :: blocks_t
+      real(c_double) :: dsig_deps(6, 6), dsig_dpc(6), dsw_deps(6), dsw_dpc, s_w
+   end type blocks_t
+
+   !> What the pointers of a host lead to.
+   type :: start_t
+      type(prepared_t), pointer :: material
+      real(c_double), pointer, contiguous :: stress(:), statev(:)
+      real(wp) :: d_strain(6) = 0.0_wp
+   end type start_t
 contains
-   !> One increment as kernel_point has it, see mud.h: tension positive, engineering shear, stress in the unit of p_atm.
-   !> Returns the status; on any failure only the report is written.
-   integer(c_int) function mud_update(props, n_props, stress0, statev0, n_statev, dstrain, suction0, dsuction, &
-           tangent, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, report_out) bind(c, name='mud_update')
-      type(c_ptr), value :: props, stress0, statev0, dstrain, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, &
-                            dsw_dpc, report_out
-      integer(c_int), value :: n_props, n_statev, tangent
-      real(c_double), value :: suction0, dsuction
-      real(c_double), pointer, contiguous :: props_in(:)
-      type(params_t) :: par
+   !> Begins a point, as kernel_begin: tension positive, stress and suction in the unit of p_atm, void ratio and
+   !> saturation [-]. MUD_NULL_ARGUMENT, MUD_NOT_PREPARED, or the code of kernel_begin; on an error nothing but text is
+   !> written.
+   integer(c_int) function mud_init(storage, stress, suction, void_ratio, saturation, statev, n_statev, text, len) &
+      bind(c, name='mud_init')
+      type(c_ptr), value :: storage, stress, statev, text
+      integer(c_int), value :: n_statev, len
+      real(c_double), value :: suction, void_ratio, saturation
+      type(prepared_t), pointer :: material
+      real(c_double), pointer, contiguous :: stress_in(:), statev_in(:)
       type(mud_status_t) :: status
       type(report_t) :: report
 
-      call check_arguments(c_associated(props), stress0, statev0, dstrain, tangent, stress1, statev1, status)
+      call find_prepared(storage, material, status)
+      if (.not. (c_associated(stress) .and. c_associated(statev))) status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
       if (status%code == MUD_OK) then
-         call c_f_pointer(props, props_in, [max(n_props, 0)])
-         call read_params(props_in, par, status)
+         call c_f_pointer(stress, stress_in, [6])
+         call c_f_pointer(statev, statev_in, [max(n_statev, 0)])
+         call kernel_begin(material%par, stress_in, suction, void_ratio, statev_in, report, saturation)
+      else
+         report = failed_report(status)
       end if
+      mud_init = report%status
+      call put(report_text(report), text, len)
+   end function mud_init
+
+   !> One increment as host_increment has it, see mud.h: tension positive, engineering shear, stress in the unit of
+   !> p_atm. Returns the status; on any failure only the report is written.
+   integer(c_int) function mud_update(storage, stress0, statev0, n_statev, dstrain, suction, tangent, stress1, &
+           statev1, blocks, report_out) bind(c, name='mud_update')
+      type(c_ptr), value :: storage, stress0, statev0, dstrain, stress1, statev1, blocks, report_out
+      integer(c_int), value :: n_statev, tangent
+      real(c_double), value :: suction
+      type(start_t) :: start
+      type(mud_status_t) :: status
+      type(output_t) :: output
+      type(report_t) :: report
+
+      call find_start(storage, stress0, statev0, n_statev, dstrain, tangent, start, status)
+      if (.not. (is_present(tangent) .or. (c_associated(stress1) .and. c_associated(statev1)))) &
+         status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
       if (status%code == MUD_OK) then
-         call update(par, stress0, statev0, n_statev, dstrain, suction0, dsuction, tangent, stress1, statev1, &
-                     dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, report)
+         call host_increment(start%material%par, start%stress, start%statev, start%d_strain, suction, tangent, output, &
+                             report)
+         if (report%status == MUD_OK) then
+            if (.not. is_present(tangent)) call give_state(output, stress1, statev1)
+            if (c_associated(blocks)) call give_blocks(output, blocks)
+         end if
       else
          report = failed_report(status)
       end if
@@ -41,81 +83,95 @@ contains
       mud_update = report%status
    end function mud_update
 
-   !> As mud_update for a prepared material; MUD_NOT_PREPARED where the storage is none.
-   integer(c_int) function mud_update_prepared(prepared, stress0, statev0, n_statev, dstrain, suction0, dsuction, &
-           tangent, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, report_out) &
-           bind(c, name='mud_update_prepared')
-      type(c_ptr), value :: prepared, stress0, statev0, dstrain, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, &
-                            dsw_dpc, report_out
-      integer(c_int), value :: n_statev, tangent
-      real(c_double), value :: suction0, dsuction
-      type(prepared_t), pointer :: material
+   !> Runs mud_update and reports every substep that it tries; see mud.h. Its rows have the stress tension positive.
+   !> MUD_BAD_OPTION for first < 1, n_rows < 0 and slopes of the present state, else the status of the update.
+   integer(c_int) function mud_trace_increment(storage, stress0, statev0, n_statev, dstrain, suction, tangent, first, &
+           rows, n_rows, attempts, report_out) bind(c, name='mud_trace_increment')
+      type(c_ptr), value :: storage, stress0, statev0, dstrain, rows, attempts, report_out
+      integer(c_int), value :: n_statev, tangent, first, n_rows
+      real(c_double), value :: suction
+      integer(c_int), pointer :: attempts_to
+      type(start_t) :: start
       type(mud_status_t) :: status
+      type(output_t) :: output
       type(report_t) :: report
+      type(trace_t) :: trace
+      integer :: i
 
-      call check_arguments(c_associated(prepared), stress0, statev0, dstrain, tangent, stress1, statev1, status)
-      if (status%code == MUD_OK) call find_prepared(prepared, material, status)
+      call find_start(storage, stress0, statev0, n_statev, dstrain, tangent, start, status)
+      if (status%code == MUD_OK .and. (first < 1 .or. n_rows < 0 .or. is_present(tangent))) &
+         status = fail(MUD_BAD_OPTION, ON_ARGUMENT)
       if (status%code == MUD_OK) then
-         call update(material%par, stress0, statev0, n_statev, dstrain, suction0, dsuction, tangent, stress1, statev1, &
-                     dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, report)
+         trace%first = first
+         if (c_associated(rows)) call c_f_pointer(rows, trace%rows, [n_rows])
+         call host_increment(start%material%par, start%stress, start%statev, start%d_strain, suction, tangent, output, &
+                             report, trace)
       else
          report = failed_report(status)
       end if
+      if (associated(trace%rows)) then
+         do i = 1, min(trace%attempts - trace%first + 1, n_rows)
+            trace%rows(i)%stress = 0.0_wp - trace%rows(i)%stress
+         end do
+      end if
+      if (c_associated(attempts)) then
+         call c_f_pointer(attempts, attempts_to)
+         attempts_to = trace%attempts
+      end if
       call give_report(report, report_out)
-      mud_update_prepared = report%status
-   end function mud_update_prepared
+      mud_trace_increment = report%status
+   end function mud_trace_increment
 
-   !> The increment of a checked material; outputs are written on success only, those given as NULL not at all.
-   subroutine update(par, stress0, statev0, n_statev, dstrain, suction0, dsuction, tangent, stress1, statev1, &
-                     dsig_deps, dsig_dpc, dsw_deps, dsw_dpc, report)
-      type(params_t), intent(in) :: par
-      type(c_ptr), intent(in) :: stress0, statev0, dstrain, stress1, statev1, dsig_deps, dsig_dpc, dsw_deps, dsw_dpc
+   !> What an increment starts from, or why it cannot: MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_NOT_PREPARED,
+   !> MUD_BAD_NSTATV. Where slopes of the present state are asked for a NULL strain is none.
+   subroutine find_start(storage, stress0, statev0, n_statev, dstrain, tangent, start, status)
+      type(c_ptr), intent(in) :: storage, stress0, statev0, dstrain
       integer(c_int), intent(in) :: n_statev, tangent
-      real(c_double), intent(in) :: suction0, dsuction
-      type(report_t), intent(out) :: report
-      real(c_double), pointer, contiguous :: stress_in(:), statev_in(:), dstrain_in(:), array(:), matrix(:, :)
-      type(output_t) :: output
+      type(start_t), intent(out) :: start
+      type(mud_status_t), intent(out) :: status
+      real(c_double), pointer, contiguous :: strain(:)
 
-      call c_f_pointer(stress0, stress_in, [6])
-      call c_f_pointer(statev0, statev_in, [max(n_statev, 0)])
-      call c_f_pointer(dstrain, dstrain_in, [6])
-      call kernel_point(par, stress_in, statev_in, dstrain_in, suction0, dsuction, tangent, output, report)
-      if (report%status /= MUD_OK) return
+      call find_prepared(storage, start%material, status)
+      if (.not. (c_associated(stress0) .and. c_associated(statev0) .and. &
+                 (c_associated(dstrain) .or. is_present(tangent)))) status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
+      if (status%code == MUD_OK .and. kind_of(tangent) < 0) &
+         status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(tangent, wp))
+      if (status%code == MUD_OK .and. n_statev < NSTATV) &
+         status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n_statev, wp), real(NSTATV, wp), huge(1.0_wp))
+      if (status%code /= MUD_OK) return
+      call c_f_pointer(stress0, start%stress, [6])
+      call c_f_pointer(statev0, start%statev, [NSTATV])
+      if (.not. c_associated(dstrain)) return
+      call c_f_pointer(dstrain, strain, [6])
+      start%d_strain = strain
+   end subroutine find_start
+
+   subroutine give_state(output, stress1, statev1)
+      type(output_t), intent(in) :: output
+      type(c_ptr), intent(in) :: stress1, statev1
+      real(c_double), pointer, contiguous :: array(:)
 
       call c_f_pointer(stress1, array, [6])
       array = output%stress
       call c_f_pointer(statev1, array, [NSTATV])
       call copy_statev(output%statev, array)
+   end subroutine give_state
+
+   !> The slopes against strain and suction of stress only where a tangent was asked for.
+   subroutine give_blocks(output, blocks)
+      type(output_t), intent(in) :: output
+      type(c_ptr), intent(in) :: blocks
+      type(blocks_t), pointer :: place
+
+      call c_f_pointer(blocks, place)
       if (output%has_tangent) then
-         if (c_associated(dsig_deps)) then
-            call c_f_pointer(dsig_deps, matrix, [6, 6])
-            matrix = output%dsig_deps
-         end if
-         if (c_associated(dsig_dpc)) then
-            call c_f_pointer(dsig_dpc, array, [6])
-            array = output%dsig_dpc
-         end if
+         place%dsig_deps = output%dsig_deps
+         place%dsig_dpc = output%dsig_dpc
       end if
-      if (c_associated(dsw_deps)) then
-         call c_f_pointer(dsw_deps, array, [6])
-         array = output%dsw_deps
-      end if
-      call put_real(output%dsw_dpc, dsw_dpc)
-   end subroutine update
-
-   subroutine check_arguments(material_given, stress0, statev0, dstrain, tangent, stress1, statev1, status)
-      logical, intent(in) :: material_given
-      type(c_ptr), intent(in) :: stress0, statev0, dstrain, stress1, statev1
-      integer(c_int), intent(in) :: tangent
-      type(mud_status_t), intent(out) :: status
-
-      if (.not. (material_given .and. c_associated(stress0) .and. c_associated(statev0) .and. c_associated(dstrain) &
-                 .and. c_associated(stress1) .and. c_associated(statev1))) then
-         status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
-      else if (tangent < 0) then
-         status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(tangent, wp))
-      end if
-   end subroutine check_arguments
+      place%dsw_deps = output%dsw_deps
+      place%dsw_dpc = output%dsw_dpc
+      place%s_w = output%statev(S_SATURATION)
+   end subroutine give_blocks
 
    subroutine give_report(report, report_out)
       type(report_t), intent(in) :: report

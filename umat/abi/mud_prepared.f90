@@ -1,24 +1,26 @@
 ! SPDX-License-Identifier: MIT
-!> A material checked and named once, in storage of the caller, for any number of updates: mud_prepare of mud.h.
+!> A material checked once, in storage of the caller, for any number of points and updates: mud_prepare of mud.h.
 module mud_prepared
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
    use, intrinsic :: iso_fortran_env, only: int64
    use mud_kernel, only: failed_report
    use mud_kinds, only: wp
    use mud_messages, only: report_text
-   use mud_params, only: params_t, read_params
+   use mud_params, only: params_t, read_params, completed
+   use mud_registry, only: NPROPS
    use mud_scanning, only: check_curves
-   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_NOT_PREPARED, ON_ARGUMENT
+   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_NOT_PREPARED, MUD_BAD_OPTION, ON_ARGUMENT
    use mud_to_host, only: put
    implicit none (type, external)
    private
-   public :: prepared_t, find_prepared, mud_prepared_size, mud_prepare
+   public :: prepared_t, find_prepared, find_materials, mud_prepared_size, mud_prepare
 
    !> What the caller's storage holds. The marks at both ends tell it from storage that was never prepared, was prepared
    !> by a library with other parameters, or was written over at an edge.
    type :: prepared_t
       integer(int64) :: head = 0
       type(params_t) :: par
+      real(wp) :: props(NPROPS)   !< What the parameters were read from.
       integer(int64) :: tail = 0
    end type prepared_t
 
@@ -35,27 +37,28 @@ contains
    !> Checks PROPS and writes the material; on an error the storage is no prepared material. MUD_NULL_ARGUMENT,
    !> MUD_NOT_PREPARED where size_ (doubles) is too small, else the codes of read_params and check_curves; text says
    !> which. Stresses in the unit of p_atm.
-   integer(c_int) function mud_prepare(props, n_props, prepared, size_, text, len) bind(c, name='mud_prepare')
-      type(c_ptr), value :: props, prepared, text
+   integer(c_int) function mud_prepare(props, n_props, storage, size_, text, len) bind(c, name='mud_prepare')
+      type(c_ptr), value :: props, storage, text
       integer(c_int), value :: n_props, size_, len
       real(c_double), pointer, contiguous :: values(:)
       type(prepared_t), pointer :: material
       type(params_t) :: par
       type(mud_status_t) :: status
 
-      if (.not. (c_associated(props) .and. c_associated(prepared))) then
+      if (.not. (c_associated(props) .and. c_associated(storage))) then
          status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
       else if (size_ < mud_prepared_size()) then
          status = fail(MUD_NOT_PREPARED, ON_ARGUMENT, 0, real(size_, wp), real(mud_prepared_size(), wp), huge(1.0_wp))
       else
          call c_f_pointer(props, values, [max(n_props, 0)])
-         call c_f_pointer(prepared, material)
+         call c_f_pointer(storage, material)
          call read_params(values, par, status)
          if (status%code == MUD_OK .and. par%hysteresis) call check_curves(par, status)
          material%head = 0
          material%tail = 0
          if (status%code == MUD_OK) then
             material%par = par
+            material%props = completed(values)
             material%head = mark_of()
             material%tail = not(mark_of())
          end if
@@ -64,21 +67,37 @@ contains
       call put(report_text(failed_report(status)), text, len)
    end function mud_prepare
 
-   !> The material behind a pointer, or why there is none. MUD_NULL_ARGUMENT, or MUD_NOT_PREPARED where no mud_prepare
-   !> of this library filled it.
-   subroutine find_prepared(prepared, material, status)
-      type(c_ptr), intent(in) :: prepared
+   !> The material behind a pointer, or why there is none: codes of find_materials.
+   subroutine find_prepared(storage, material, status)
+      type(c_ptr), intent(in) :: storage
       type(prepared_t), pointer, intent(out) :: material
       type(mud_status_t), intent(out) :: status
+      type(prepared_t), pointer, contiguous :: materials(:)
 
       nullify (material)
-      if (.not. c_associated(prepared)) then
-         status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
-         return
-      end if
-      call c_f_pointer(prepared, material)
-      if (material%head /= mark_of() .or. material%tail /= not(mark_of())) status = fail(MUD_NOT_PREPARED, ON_ARGUMENT)
+      call find_materials(storage, 1_c_int, materials, status)
+      if (status%code == MUD_OK) material => materials(1)
    end subroutine find_prepared
+
+   !> Materials one after another, n of them. MUD_NULL_ARGUMENT, MUD_BAD_OPTION for n < 1, MUD_NOT_PREPARED where no
+   !> mud_prepare of this library filled one.
+   subroutine find_materials(storage, n, materials, status)
+      type(c_ptr), intent(in) :: storage
+      integer(c_int), intent(in) :: n
+      type(prepared_t), pointer, contiguous, intent(out) :: materials(:)
+      type(mud_status_t), intent(out) :: status
+
+      nullify (materials)
+      if (.not. c_associated(storage)) then
+         status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
+      else if (n < 1) then
+         status = fail(MUD_BAD_OPTION, ON_ARGUMENT)
+      else
+         call c_f_pointer(storage, materials, [n])
+         if (any(materials%head /= mark_of() .or. materials%tail /= not(mark_of()))) &
+            status = fail(MUD_NOT_PREPARED, ON_ARGUMENT)
+      end if
+   end subroutine find_materials
 
    !> Of this library: another number of parameters is another mark.
    pure integer(int64) function mark_of()

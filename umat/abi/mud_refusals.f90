@@ -10,7 +10,7 @@ module mud_refusals
    use mud_kernel, only: report_t
    use mud_kinds, only: wp
    use mud_messages, only: report_text, failure_name, number, MESSAGE_LENGTH
-   use mud_once, only: first_time, speak, environment_is
+   use mud_once, only: first_time, speak, remind_at_exit, environment_is
    use mud_registry, only: NPROPS, NSTATV, P_TANGENT
    use mud_save, only: write_increment, PATH_LENGTH
    use mud_status, only: MUD_NULL_ARGUMENT, MUD_NOT_WRITTEN
@@ -18,7 +18,7 @@ module mud_refusals
    implicit none (type, external)
    private
    public :: KEEP_VARIABLE, place_t, refuse, say_refusal, remark_on_suction, remark_on_props, remark_on_pressure, &
-             save_if_asked
+             remark_on_late_start, remark_on_rotation, remark_on_green_strain, save_if_asked
 
    !> KSTEP, KINC, NOEL and NPT of the host; each may be NULL.
    type :: place_t
@@ -37,9 +37,10 @@ module mud_refusals
    ! Kinds of sentences: a status code, what it is about, and the entry of that array.
    integer, parameter :: SUBJECTS = 9, ENTRIES = 128, CODES = 17
    integer, parameter :: FIRST_REMARK = CODES*SUBJECTS*ENTRIES   !< Remarks follow the failures.
-   integer, parameter :: NOT_SAVED = FIRST_REMARK, ON_PROPS_UNITS = FIRST_REMARK + 3, ON_PRESSURE = FIRST_REMARK + 4
+   integer, parameter :: NOT_SAVED = FIRST_REMARK, ON_PROPS_UNITS = FIRST_REMARK + 3, ON_PRESSURE = FIRST_REMARK + 4, &
+                         ON_LATE_START = FIRST_REMARK + 5, ON_TURN = FIRST_REMARK + 6, ON_GREEN = FIRST_REMARK + 7
 contains
-   !> Answers a host whose increment is refused. STATEV and DDSDDE stay as they are. Pointers may be NULL; the report
+   !> Answers a host whose increment is refused. STATEV stays as it is. Pointers may be NULL; the report
    !> has a status other than MUD_OK.
    subroutine refuse(report, place, stress, ntens, pnewdt, scd)
       type(report_t), intent(in) :: report
@@ -54,6 +55,7 @@ contains
       else if (c_associated(stress)) then
          stops = .not. environment_is(KEEP_VARIABLE, 'keep')
          if (stops) call spoil(stress, integer_at(ntens))
+         if (stops) call remind_at_exit()
       end if
       if (c_associated(scd)) then
          call c_f_pointer(scd, code)
@@ -139,11 +141,53 @@ contains
                 trim(number(suction%start))//', holds. Preset it there; a host that does set PREDEF must enter '// &
                 'with another PNEWDT, such as 1'
       end if
-      call speak('MUD: remark of umat_ at '//trim(place_text(place))//': '//trim(text)//CLOSING)
+      call remark(text, place)
    end subroutine remark_on_suction
 
-   !> Passes the warning of mud_validate_props on: hosts of umat_ do not ask for it. Asked where a point begins. PROPS
-   !> of an update that passed; in the unit of p_atm.
+   !> Says that a point begins anew in the midst of the analysis. time: TIME(2) of the host.
+   subroutine remark_on_late_start(time, place)
+      real(wp), intent(in) :: time
+      type(place_t), intent(in) :: place
+
+      if (.not. first_time(ON_LATE_START)) return
+      call remark('STATEV is not initialised (layout 0) though the increment begins at TIME(2) = '// &
+                  trim(number(time))//', so the point begins anew, with its present stress and without a past. '// &
+                  'That is right for an element that is activated now. After a restart it means that the host has '// &
+                  'lost STATEV, as CalculiX does with *RESTART, and what it computes from here is wrong: compute '// &
+                  'all steps in one run', place)
+   end subroutine remark_on_late_start
+
+   !> Says that DROT is not read.
+   subroutine remark_on_rotation(place)
+      type(place_t), intent(in) :: place
+
+      if (.not. first_time(ON_TURN)) return
+      call remark('DROT is a rotation, but it is not read: a host that enters with PNEWDT = -1, as CalculiX does, '// &
+                  'keeps stress and strain in axes that do not turn. A host whose axes turn must enter with '// &
+                  'another PNEWDT, such as 1', place)
+   end subroutine remark_on_rotation
+
+   !> Says that the strain is Green's.
+   subroutine remark_on_green_strain(place)
+      type(place_t), intent(in) :: place
+
+      if (.not. first_time(ON_GREEN)) return
+      call remark('STRAN is Green''s strain of DFGRD1, as CalculiX gives it with NLGEOM to a material of the name '// &
+                  '@ABAQUS_..., but MUD takes logarithmic strain: what the host computes with large strains is '// &
+                  'wrong. Name the material @ABAQUSNL_... (linked statically: ABAQUSNL_...), or leave NLGEOM out', &
+                  place)
+   end subroutine remark_on_green_strain
+
+   !> One line of a remark; the caller has asked whether it is new.
+   subroutine remark(text, place)
+      character(*), intent(in) :: text
+      type(place_t), intent(in) :: place
+
+      call speak('MUD: remark of '//trim(place%door)//' at '//trim(place_text(place))//': '//trim(text)//CLOSING)
+   end subroutine remark
+
+   !> Passes the warning of mud_validate_props on: hosts do not ask for it. Asked where a point begins. PROPS of an
+   !> update that passed; in the unit of p_atm.
    subroutine remark_on_props(props, place)
       real(wp), intent(in) :: props(NPROPS)
       type(place_t), intent(in) :: place
@@ -151,9 +195,7 @@ contains
 
       advice = advice_on(props)
       if (advice == '') return
-      if (first_time(ON_PROPS_UNITS)) then
-         call speak('MUD: remark of umat_ at '//trim(place_text(place))//': '//trim(advice)//CLOSING)
-      end if
+      if (first_time(ON_PROPS_UNITS)) call remark(advice, place)
    end subroutine remark_on_props
 
    !> Says that p' fell below zero, which the tension cut-off prevents where it is on. `stress`: effective, at the end
@@ -164,10 +206,10 @@ contains
 
       if (.not. all(is_finite(stress))) return   ! as vumat_ leaves a refused point
       if (.not. sum(stress(1:3)) > 0.0_wp) return
-      if (first_time(ON_PRESSURE)) call speak('MUD: remark of '//trim(place%door)//' at '//trim(place_text(place))// &
-         ': the mean effective stress p'' is '//trim(number(-sum(stress(1:3))/3.0_wp))//'. The model has no '// &
-         'meaning below 0, and its tension cut-off is off: do not use the results from here on; set cutoff = 1, '// &
-         'with a memory_rule other than 4 (as_published)'//CLOSING)
+      if (first_time(ON_PRESSURE)) call remark('the mean effective stress p'' is '// &
+         trim(number(-sum(stress(1:3))/3.0_wp))//'. The model has no meaning below 0, and its tension cut-off is '// &
+         'off: do not use the results from here on; set cutoff = 1, with a memory_rule other than 4 (as_published)', &
+         place)
    end subroutine remark_on_pressure
 
    !> Where an increment is, as far as the host says.
@@ -213,7 +255,7 @@ contains
          call remark_on_saving('the name of the folder is too long')
          return
       end if
-      path = folder(:length)//'/mud_failed_'//trim(failure_name(report))//'.txt'
+      path = folder(:length)//'/mud_failed_'//trim(failure_name(report))//'.nml'
       inquire (file=path, exist=taken)
       if (taken) return
       tangent = 0   ! where PROPS have none, they fail before it matters

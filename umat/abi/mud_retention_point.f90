@@ -1,21 +1,21 @@
 ! SPDX-License-Identifier: MIT
-!> The retention curve of a prepared material for a C host: mud_saturation and mud_state_saturation of mud.h.
+!> The retention curve of a prepared material for a C host: mud_saturation of mud.h, and the same of a state.
 module mud_retention_point
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double
    use mud_kinds, only: wp
    use mud_prepared, only: prepared_t, find_prepared
    use mud_params, only: params_t
-   use mud_registry, only: NSTATV, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION
+   use mud_registry, only: NSTATV, STATE_LAYOUT, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION
    use mud_retention, only: saturation_t, saturation
    use mud_scanning, only: branch_from, clipped
    use mud_state, only: E_LOWER, E_UPPER
-   use mud_status, only: mud_status_t, MUD_OK, MUD_BAD_INPUT, MUD_BAD_VOID_RATIO, MUD_BAD_NSTATV, MUD_BAD_STATE, &
-      MUD_NULL_ARGUMENT
+   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_INPUT, MUD_BAD_VOID_RATIO, MUD_BAD_STATE, ON_STATEV, &
+      ON_SUCTION
    use mud_tensor, only: is_finite
    use mud_to_host, only: put_real
    implicit none (type, external)
    private
-   public :: mud_saturation, mud_state_saturation
+   public :: mud_saturation, state_saturation
 contains
    !> Degree of saturation and its slopes, with hysteresis those of main drying; on an error nothing is written. Suction
    !> in the unit of p_atm, void ratio above 0 and S_w [-]; slopes [1/unit, -]. MUD_NOT_PREPARED, MUD_BAD_INPUT,
@@ -43,48 +43,35 @@ contains
       call put_real(sat%ds_de, ds_de)
    end function mud_saturation
 
-   !> The same for a point with a past: its STATEV tells the void ratio (e_0 of the material before it began) and, with
-   !> hysteresis, from which S_w at which suction it goes on. ds_dev is the slope against the volumetric strain, tension
-   !> positive [-]. MUD_NOT_PREPARED, MUD_NULL_ARGUMENT, MUD_BAD_NSTATV, MUD_BAD_INPUT, MUD_BAD_STATE.
+   !> The same for a point with a past: its STATEV tells the void ratio and, with hysteresis, from which S_w at which
+   !> suction it goes on. The slope is that against void ratio [-]. MUD_BAD_INPUT, MUD_BAD_STATE.
    !> docs/theory/material.md sections 2.1, 2.1.1.
-   integer(c_int) function mud_state_saturation(prepared, statev, n_statev, suction, s_w, ds_dpc, ds_dev) &
-      bind(c, name='mud_state_saturation')
-      type(c_ptr), value :: prepared, statev, s_w, ds_dpc, ds_dev
-      integer(c_int), value :: n_statev
-      real(c_double), value :: suction
-      type(prepared_t), pointer :: material
-      real(c_double), pointer, contiguous :: state(:)
-      type(saturation_t) :: sat
-      type(mud_status_t) :: status
-      real(wp) :: e
+   pure subroutine state_saturation(par, statev, suction, sat, status)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: statev(NSTATV), suction
+      type(saturation_t), intent(inout) :: sat   !< Untouched where it is refused.
+      type(mud_status_t), intent(out) :: status
+      integer, parameter :: READ(4) = [S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION]
+      integer :: i
 
-      call find_prepared(prepared, material, status)
-      mud_state_saturation = status%code
-      if (status%code /= MUD_OK) return
-      mud_state_saturation = MUD_NULL_ARGUMENT
-      if (.not. c_associated(statev)) return
-      mud_state_saturation = MUD_BAD_NSTATV
-      if (n_statev < NSTATV) return
-      call c_f_pointer(statev, state, [NSTATV])
-      mud_state_saturation = MUD_BAD_INPUT
-      if (.not. is_finite(suction)) return
-      mud_state_saturation = MUD_BAD_STATE
-      if (.not. (is_finite(state(S_LAYOUT)) .and. is_finite(state(S_VOID_RATIO)))) return
-      e = state(S_VOID_RATIO)
-      if (abs(state(S_LAYOUT)) <= 0.0_wp .and. abs(e) <= 0.0_wp) e = material%par%e_0
-      if (.not. (e > E_LOWER .and. e < E_UPPER)) return
-      if (material%par%hysteresis .and. abs(state(S_LAYOUT)) > 0.0_wp) then
-         mud_state_saturation = MUD_BAD_STATE
-         if (.not. (is_finite(state(S_SATURATION)) .and. is_finite(state(S_SUCTION)))) return
-         sat = scanned(material%par, state(S_SUCTION), e, state(S_SATURATION), suction)
-      else
-         sat = saturation(material%par, suction, e)
+      if (.not. is_finite(suction)) then
+         status = fail(MUD_BAD_INPUT, ON_SUCTION, 0, suction, -huge(1.0_wp), huge(1.0_wp))
+         return
       end if
-      mud_state_saturation = MUD_OK
-      call put_real(sat%s_w, s_w)
-      call put_real(sat%ds_dpc, ds_dpc)
-      call put_real((1.0_wp + e)*sat%ds_de, ds_dev)
-   end function mud_state_saturation
+      i = findloc(is_finite(statev(READ)), .false., dim=1)
+      if (i > 0) then
+         status = fail(MUD_BAD_STATE, ON_STATEV, READ(i), statev(READ(i)), -huge(1.0_wp), huge(1.0_wp))
+      else if (abs(statev(S_LAYOUT) - STATE_LAYOUT) > 0.0_wp) then
+         status = fail(MUD_BAD_STATE, ON_STATEV, S_LAYOUT, statev(S_LAYOUT), real(STATE_LAYOUT, wp), &
+                       real(STATE_LAYOUT, wp))
+      else if (statev(S_VOID_RATIO) <= E_LOWER .or. statev(S_VOID_RATIO) >= E_UPPER) then
+         status = fail(MUD_BAD_STATE, ON_STATEV, S_VOID_RATIO, statev(S_VOID_RATIO), E_LOWER, E_UPPER)
+      else if (par%hysteresis) then
+         sat = scanned(par, statev(S_SUCTION), statev(S_VOID_RATIO), statev(S_SATURATION), suction)
+      else
+         sat = saturation(par, suction, statev(S_VOID_RATIO))
+      end if
+   end subroutine state_saturation
 
    !> Degree of saturation after a change of suction at constant void ratio.
    pure function scanned(par, from, e, s_w, to) result(sat)

@@ -1,22 +1,25 @@
 ! SPDX-License-Identifier: MIT
-!> A failed increment as a small text file, which mud_replay runs alone. The only place of the library that writes a
+!> A failed increment as a case file, which mud_triax runs alone. The only place of the library that writes a
 !> file, and only where it is asked to.
 module mud_save
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_size_t, c_associated, &
       c_f_pointer
-   use mud_c_api, only: ABI_VERSION, VERSION
-   use mud_kernel, only: report_t, output_t, kernel_update
+   use mud_c_api, only: VERSION
+   use mud_host_increment, only: host_increment, suction_change
+   use mud_kernel, only: report_t, output_t, kernel_begin
    use mud_kinds, only: wp
    use mud_messages, only: status_text, report_text
-   use mud_params, only: completed, is_length
-   use mud_registry, only: NPROPS, NSTATV, PROPERTIES, statev_name
-   use mud_status, only: MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_NOT_WRITTEN
+   use mud_params, only: params_t, read_params
+   use mud_prepared, only: prepared_t, find_prepared
+   use mud_registry, only: NPROPS, NSTATV, P_TANGENT, PROPERTIES, S_LAYOUT, S_VOID_RATIO, S_SATURATION, &
+      S_SUCTION, statev_name
+   use mud_status, only: mud_status_t, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_NOT_WRITTEN
+   use mud_tensor, only: is_finite
    use mud_to_host, only: put
    implicit none (type, external)
    private
    public :: mud_save_increment, write_increment, PATH_LENGTH
 
-   integer, parameter :: FORMAT_VERSION = 1
    integer, parameter :: PATH_LENGTH = 1024, ORIGIN_LENGTH = 200, PROBLEM_LENGTH = 300
    integer, parameter :: LAST_TANGENT = 3
    character(2), parameter :: COMPONENT(6) = ['11', '22', '33', '12', '13', '23']
@@ -47,13 +50,15 @@ module mud_save
    end interface
 contains
    !> See mud.h. The increment is run once more, so that the file says how it ends. Returns MUD_OK whatever that end is;
-   !> MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_NOT_WRITTEN.
-   integer(c_int) function mud_save_increment(path, origin, props, n_props, stress0, statev0, n_statev, dstrain, &
-           suction0, dsuction, tangent, text, len) bind(c, name='mud_save_increment')
-      type(c_ptr), value :: path, origin, props, stress0, statev0, dstrain, text
-      integer(c_int), value :: n_props, n_statev, tangent, len
-      real(c_double), value :: suction0, dsuction
-      real(c_double), pointer, contiguous :: props_in(:), stress_in(:), statev_in(:), dstrain_in(:)
+   !> MUD_NULL_ARGUMENT, MUD_NOT_PREPARED, MUD_BAD_OPTION, MUD_BAD_NSTATV, MUD_NOT_WRITTEN.
+   integer(c_int) function mud_save_increment(path, origin, storage, stress0, statev0, n_statev, dstrain, suction, &
+           tangent, text, len) bind(c, name='mud_save_increment')
+      type(c_ptr), value :: path, origin, storage, stress0, statev0, dstrain, text
+      integer(c_int), value :: n_statev, tangent, len
+      real(c_double), value :: suction
+      real(c_double), pointer, contiguous :: stress_in(:), statev_in(:), dstrain_in(:)
+      type(prepared_t), pointer :: material
+      type(mud_status_t) :: status
       type(report_t) :: report
       type(output_t) :: output
       character(PATH_LENGTH) :: name
@@ -61,16 +66,15 @@ contains
       character(PROBLEM_LENGTH) :: problem
       logical :: whole
 
-      mud_save_increment = MUD_OK
-      if (n_statev < NSTATV) mud_save_increment = MUD_BAD_NSTATV
-      if (.not. is_length(n_props)) mud_save_increment = MUD_BAD_NPROPS
+      call find_prepared(storage, material, status)
+      mud_save_increment = status%code
+      if (status%code == MUD_OK .and. n_statev < NSTATV) mud_save_increment = MUD_BAD_NSTATV
       if (tangent < 0 .or. tangent > LAST_TANGENT) mud_save_increment = MUD_BAD_OPTION
-      if (.not. (c_associated(path) .and. c_associated(props) .and. c_associated(stress0) .and. &
-                 c_associated(statev0) .and. c_associated(dstrain))) mud_save_increment = MUD_NULL_ARGUMENT
+      if (.not. (c_associated(path) .and. c_associated(stress0) .and. c_associated(statev0) .and. &
+                 c_associated(dstrain))) mud_save_increment = MUD_NULL_ARGUMENT
       call put(status_text(mud_save_increment), text, len)
       if (mud_save_increment /= MUD_OK) return
 
-      call c_f_pointer(props, props_in, [n_props])
       call c_f_pointer(stress0, stress_in, [6])
       call c_f_pointer(statev0, statev_in, [NSTATV])
       call c_f_pointer(dstrain, dstrain_in, [6])
@@ -78,9 +82,9 @@ contains
       call get(path, name, whole)
       problem = 'the name of the file is empty or too long'
       if (whole .and. name /= '') then
-         call kernel_update(props_in, stress_in, statev_in, dstrain_in, suction0, dsuction, tangent, output, report)
-         call write_increment(name, whence, completed(props_in), stress_in, statev_in, dstrain_in, suction0, dsuction, &
-                              tangent, report, problem)
+         call host_increment(material%par, stress_in, statev_in, dstrain_in, suction, tangent, output, report)
+         call write_increment(name, whence, material%props, stress_in, statev_in, dstrain_in, statev_in(S_SUCTION), &
+                              suction_change(statev_in(S_SUCTION), suction), tangent, report, problem)
       end if
       if (problem == '') return
       mud_save_increment = MUD_NOT_WRITTEN
@@ -93,11 +97,14 @@ contains
    subroutine write_increment(path, origin, props, stress, statev, d_strain, suction, d_suction, tangent, report, &
                               problem)
       character(*), intent(in) :: path, origin
-      real(wp), intent(in) :: props(:), stress(6), statev(:), d_strain(6), suction, d_suction
+      real(wp), intent(in), contiguous :: props(:)
+      real(wp), intent(in) :: stress(6), statev(:), d_strain(6), suction, d_suction
       integer, intent(in) :: tangent
       type(report_t), intent(in) :: report
       character(*), intent(out) :: problem   !< Blank if the file is written.
       type(c_ptr) :: file
+      real(wp) :: start(6), state(NSTATV)
+      character(80) :: digits
       logical :: good, taken
       integer :: i
 
@@ -111,35 +118,48 @@ contains
          return
       end if
       problem = ''
-      call line('# An increment of MUD as of mud.h (tension positive, engineering shear); mud_replay runs it.')
-      call count_line('format', FORMAT_VERSION)
-      call line('library '//VERSION)
-      call count_line('abi', ABI_VERSION)
-      call line('origin '//origin)
-      call line('# '//report_text(report))
-      call count_line('status', report%status)
-      call count_line('n_rate', report%n_rate)
-      call count_line('n_substep', report%n_substep)
-      call count_line('n_reject', report%n_reject)
-      call real_line('reached', report%reached)
-      call count_line('tangent', tangent)
-      call real_line('suction', suction)
-      call real_line('dsuction', d_suction)
-      do i = 1, 6
-         call real_line('stress_'//COMPONENT(i), stress(i))
-      end do
-      do i = 1, 6
-         call real_line('dstrain_'//COMPONENT(i), d_strain(i))
-      end do
-      call count_line('props', NPROPS)
+      start = stress
+      state = statev(1:NSTATV)
+      call begin_as_umat(props, suction, start, state)
+      call line('! An increment of MUD, for mud_triax: compression positive, engineering shear, stresses in the '// &
+                'unit of p_atm.')
+      call line('! Library '//VERSION//'. '//report_text(report))
+      write (digits, '(*(i0, :, 1x))') report%status, report%n_substep, report%n_reject, report%n_rate
+      call line('! Status, substeps, rejected, rates, share reached: '//trim(digits)//' '//bits(report%reached))
+      call line('&case')
+      call line('   title = '''//trim(without_quotes(origin))//'''')
+      call line('/')
+      call line('&material')
       do i = 1, NPROPS
-         call real_line(PROPERTIES(i)%name, props(i))
+         if (i == P_TANGENT .and. tangent > 0) then
+            call line('   '//trim(PROPERTIES(i)%name)//' = '//bits(real(tangent, wp)))
+         else
+            call line('   '//trim(PROPERTIES(i)%name)//' = '//bits(props(i)))
+         end if
       end do
-      call count_line('statev', NSTATV)
+      call line('/')
+      call line('&initial')
+      call line('   suction = '//bits(suction))
+      call line('   stress =')
+      do i = 1, 6
+         call line('      '//trim(bits(-start(i)))//'   ! '//COMPONENT(i))
+      end do
+      call line('   state_variables =')
       do i = 1, NSTATV
-         call real_line(statev_name(i), statev(i))
+         call line('      '//trim(bits(state(i)))//'   ! '//trim(statev_name(i)))
       end do
-      call line('end')
+      call line('/')
+      call line('&stage')
+      call line('   control = ''linear''')
+      call line('   increment = 1.0')
+      do i = 1, 6
+         digits = repeat('0 ', 6)
+         digits(2*i - 1:2*i - 1) = '1'
+         call line('   strain_'//achar(iachar('0') + i)//' = '//trim(digits))
+         call line('   change_'//achar(iachar('0') + i)//' = '//trim(bits(-d_strain(i)))//'   ! '//COMPONENT(i))
+      end do
+      call line('   d_suction = '//bits(d_suction))
+      call line('/')
 
       if (c_fclose(file) == 0 .and. good) return
       problem = 'the file could not be finished; is the disk full?'
@@ -154,26 +174,48 @@ contains
          n = len_trim(text) + 1
          good = c_fwrite(trim(text)//new_line(text), 1_c_size_t, n, file) == n
       end subroutine line
-
-      subroutine count_line(name, value)
-         character(*), intent(in) :: name
-         integer, intent(in) :: value
-         character(12) :: digits
-
-         write (digits, '(i0)') value
-         call line(name//' '//digits)
-      end subroutine count_line
-
-      !> Seventeen digits: the same bits when they are read again.
-      subroutine real_line(name, value)
-         character(*), intent(in) :: name
-         real(wp), intent(in) :: value
-         character(24) :: digits
-
-         write (digits, '(es24.16e3)') value
-         call line(trim(name)//' '//adjustl(digits))
-      end subroutine real_line
    end subroutine write_increment
+
+   !> The state of a point that umat_ begins in this increment; a start that is refused stays as it is.
+   subroutine begin_as_umat(props, suction, stress, statev)
+      real(wp), intent(in), contiguous :: props(:)
+      real(wp), intent(in) :: suction
+      real(wp), intent(inout) :: stress(6), statev(NSTATV)
+      type(params_t) :: par
+      type(mud_status_t) :: status
+      type(report_t) :: report
+      real(wp) :: preset
+
+      if (.not. is_finite(statev(S_LAYOUT))) return
+      if (abs(statev(S_LAYOUT)) > 0.0_wp) return
+      call read_params(props, par, status)
+      if (status%code /= MUD_OK) return
+      preset = 0.0_wp
+      if (par%hysteresis) preset = statev(S_SATURATION)
+      call kernel_begin(par, stress, suction, statev(S_VOID_RATIO), statev, report, preset)
+   end subroutine begin_as_umat
+
+   !> Seventeen digits: the same bits when they are read again. A minus zero loses its sign. At fixed length: gfortran
+   !> keeps the length of an allocatable result between calls.
+   pure function bits(value) result(text)
+      real(wp), intent(in) :: value
+      character(24) :: text
+
+      write (text, '(es24.16e3)') value + 0.0_wp
+      text = adjustl(text)
+   end function bits
+
+   !> A text that can stand between quotes.
+   pure function without_quotes(text) result(clean)
+      character(*), intent(in) :: text
+      character(ORIGIN_LENGTH) :: clean
+      integer :: i
+
+      clean = text
+      do i = 1, len(clean)
+         if (clean(i:i) == '''') clean(i:i) = ' '
+      end do
+   end function without_quotes
 
    !> A C string; `whole` if it fits. What is not printable becomes a blank: a line must stay a line.
    subroutine get(string, text, whole)

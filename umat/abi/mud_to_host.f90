@@ -3,10 +3,9 @@
 module mud_to_host
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_associated, c_f_pointer
    use mud_kinds, only: wp
-   use mud_status, only: mud_status_t, fail, MUD_BAD_OPTION, ON_ARGUMENT
    implicit none (type, external)
    private
-   public :: put, put_real, number_at, find_list
+   public :: put, put_real, number_at
 contains
    !> Text into a C buffer of `length` bytes, cut to fit, terminated. Nothing where it is NULL or has no room.
    subroutine put(text, buffer, length)
@@ -44,24 +43,4 @@ contains
       number_at = 0.0_wp
       if (associated(array)) number_at = array(i)
    end function number_at
-
-   !> The list of a batch, numbers from 0, unassociated where it is NULL (all points), and how many points the arrays
-   !> must have. A negative number is MUD_BAD_OPTION; n >= 0 is not checked. list(n) where it is given; the arrays of
-   !> the points have extent columns.
-   subroutine find_list(points, n, list, extent, status)
-      type(c_ptr), intent(in) :: points
-      integer(c_int), intent(in) :: n
-      integer(c_int), pointer, contiguous, intent(out) :: list(:)
-      integer, intent(out) :: extent
-      type(mud_status_t), intent(out) :: status
-
-      nullify (list)
-      extent = n
-      if (.not. c_associated(points)) return
-      call c_f_pointer(points, list, [n])
-      extent = 0
-      if (n == 0) return
-      extent = maxval(list) + 1
-      if (minval(list) < 0) status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(minval(list), wp), 0.0_wp, huge(1.0_wp))
-   end subroutine find_list
 end module mud_to_host

@@ -5,11 +5,12 @@
 !> be cut by such a host, so a hard one is taken in pieces.
 module mud_udsm
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_associated, c_f_pointer, c_loc
+   use mud_arguments, only: has_past
    use mud_kernel, only: report_t, output_t, kernel_point, kernel_init, failed_report
    use mud_kinds, only: wp
    use mud_params, only: params_t, read_params, completed
    use mud_pieces, only: update_in_pieces
-   use mud_refusals, only: place_t, say_refusal, remark_on_pressure, save_if_asked
+   use mud_refusals, only: place_t, say_refusal, remark_on_props, remark_on_pressure, save_if_asked
    use mud_registry, only: NPROPS_WITHOUT_HYSTERESIS, NSTATV, PROPERTIES, VARIABLES, statev_name, statev_variable, &
       S_LAYOUT, S_VOID_RATIO, S_SUCTION, S_OPEN, S_EPS_Q_P_TOTAL
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, ON_ARGUMENT
@@ -52,7 +53,7 @@ contains
       if (report%status == MUD_OK) then
          select case (idtask)
          case (BEGIN_STATE)
-            call initialise(par, props, sig0, stvar0, report)
+            call initialise(par, props, sig0, stvar0, place, report)
          case (STRESSES)
             call stresses_of(par, isundr, props, sig0, swp0, stvar0, deps, bulkw, sig, swp, stvar, ipl, place, report)
          case (STIFFNESS, ELASTIC_STIFFNESS)
@@ -102,20 +103,22 @@ contains
    end subroutine check
 
    !> A state that has begun stays. Without a stress (hosts ask before they know it) the first update begins it.
-   subroutine initialise(par, props, sig0, stvar0, report)
+   subroutine initialise(par, props, sig0, stvar0, place, report)
       type(params_t), intent(in) :: par
       type(c_ptr), intent(in) :: props, sig0, stvar0
+      type(place_t), intent(in) :: place
       type(report_t), intent(inout) :: report
       real(c_double), pointer, contiguous :: values(:), state(:)
       real(wp) :: stress(6)
 
+      call c_f_pointer(props, values, [NPROPS_WITHOUT_HYSTERESIS])
+      call remark_on_props(completed(values), place)
       stress = read_six(sig0)
       if (.not. all(is_finite(stress))) return   ! said by the update
       if (abs(sum(stress(1:3))) <= 3.0_wp*NO_STRESS*par%p_atm) return
       call c_f_pointer(stvar0, state, [NSTATV])
       if (.not. is_finite(state(S_LAYOUT))) return
       if (abs(state(S_LAYOUT)) > 0.0_wp) return
-      call c_f_pointer(props, values, [NPROPS_WITHOUT_HYSTERESIS])
       call kernel_init(values, stress, state(S_SUCTION), state(S_VOID_RATIO), state, report)
    end subroutine initialise
 
@@ -146,6 +149,8 @@ contains
          call save_if_asked(completed(values), stress0, state0, strain, state0(S_SUCTION), 0.0_wp, place, report)
          return
       end if
+      call c_f_pointer(props, values, [NPROPS_WITHOUT_HYSTERESIS])
+      if (.not. has_past(state0)) call remark_on_props(completed(values), place)
       call remark_on_pressure(output%stress, place)
       if (c_associated(ipl)) then
          call c_f_pointer(ipl, plastic)

@@ -2,23 +2,26 @@
 !> The UMAT: Abaqus' signature, symbol umat_, every argument a C pointer that some host leaves NULL.
 module mud_umat
    use, intrinsic :: iso_c_binding, only: c_ptr, c_double, c_associated, c_f_pointer
-   use mud_arguments, only: check_arguments, has_past, rotates, read_rotation, suction_t, read_suction, &
-      component_order, integer_at, SUCTION_AS_GIVEN
+   use mud_arguments, only: check_arguments, has_past, rotates, read_rotation, turns_unread, begins_late, &
+      is_green_strain, suction_t, read_suction, component_order, integer_at, SUCTION_AS_GIVEN
    use mud_kernel, only: report_t, output_t, kernel_update, rotate_statev, failed_report, TANGENT_FROM_PROPS
    use mud_kinds, only: wp
    use mud_refusals, only: place_t, refuse, remark_on_suction, remark_on_props, remark_on_pressure, &
-                           save_if_asked
+      remark_on_late_start, remark_on_rotation, remark_on_green_strain, save_if_asked
    use mud_params, only: completed, is_length
-   use mud_registry, only: NSTATV
+   use mud_registry, only: NPROPS, NSTATV, P_TANGENT, S_SUCTION
    use mud_status, only: mud_status_t, MUD_OK
    implicit none (type, external)
    private
    public :: umat
+
+   integer, parameter :: ELASTIC = 1   !< Tangent kind.
 contains
    !> Suction is PREDEF(1), its increment DPRED(1); STRESS is Bishop's effective stress. On failure only PNEWDT (a
-   !> factor below 1) and SCD (the status code) are written; where PNEWDT is NULL, STRESS becomes NaN, so that no host
-   !> goes on with the old one. See umat/README.md for PROPS, STATEV and the pitfalls. Tension positive, engineering
-   !> shear, STRESS, DDSDDE and suction in the unit of p_atm. Codes of check_arguments, read_rotation and kernel_update.
+   !> factor below 1), SCD (the status code) and an elastic DDSDDE are written; where PNEWDT is NULL, STRESS becomes NaN
+   !> instead, so that no host goes on with the old one. See umat/README.md for PROPS, STATEV and the pitfalls. Tension
+   !> positive, engineering shear, STRESS, DDSDDE and suction in the unit of p_atm. Codes of check_arguments,
+   !> read_rotation and kernel_update.
    subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, time, dtime, &
                    temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv_, props, nprops, coords, drot, &
                    pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, kstep, kinc) bind(c, name='umat_')
@@ -32,6 +35,7 @@ contains
       place = place_t(step=kstep, increment=kinc, element=noel, point=npt)
       call check_arguments(stress, statev, dstran, ndi, ntens, nstatv_, props, nprops, status)
       if (status%code == MUD_OK) then
+         call look_at_host(statev, stran, dstran, time, dtime, drot, pnewdt, dfgrd1, place)
          call update(stress, statev, ddsdde, dstran, integer_at(ntens), integer_at(nstatv_), props, &
                      integer_at(nprops), predef, dpred, drot, pnewdt, place, report)
       else
@@ -41,12 +45,26 @@ contains
 
       ! What the model does not use.
       associate (a => [c_associated(sse), c_associated(spd), c_associated(rpl), c_associated(ddsddt), &
-                       c_associated(drplde), c_associated(drpldt), c_associated(stran), c_associated(time), &
-                       c_associated(dtime), c_associated(temp), c_associated(dtemp), c_associated(cmname), &
-                       c_associated(nshr), c_associated(coords), c_associated(celent), c_associated(dfgrd0), &
-                       c_associated(dfgrd1), c_associated(layer), c_associated(kspt)])
+                       c_associated(drplde), c_associated(drpldt), c_associated(temp), c_associated(dtemp), &
+                       c_associated(cmname), c_associated(nshr), c_associated(coords), c_associated(celent), &
+                       c_associated(dfgrd0), c_associated(layer), c_associated(kspt)])
       end associate
    end subroutine umat
+
+   !> What a host gives that is read otherwise than it may be meant: said once a process, and nothing changes.
+   subroutine look_at_host(statev, stran, dstran, time, dtime, drot, pnewdt, dfgrd1, place)
+      type(c_ptr), intent(in) :: statev, stran, dstran, time, dtime, drot, pnewdt, dfgrd1
+      type(place_t), intent(in) :: place
+      real(c_double), pointer, contiguous :: state(:), times(:)
+
+      call c_f_pointer(statev, state, [NSTATV])
+      if (begins_late(has_past(state), time, dtime, pnewdt)) then
+         call c_f_pointer(time, times, [2])
+         call remark_on_late_start(times(2), place)
+      end if
+      if (turns_unread(drot, pnewdt)) call remark_on_rotation(place)
+      if (is_green_strain(stran, dstran, dfgrd1, pnewdt)) call remark_on_green_strain(place)
+   end subroutine look_at_host
 
    !> The update itself, once the arguments are known to be there.
    subroutine update(stress, statev, ddsdde, dstran, ntens, n_statev, props, n_props, predef, dpred, drot, pnewdt, &
@@ -74,9 +92,10 @@ contains
       stress6 = stress6(order)
       dstran6 = dstran6(order)
       statev0 = statev_in(1:NSTATV)
-      call read_rotation(drot, has_past(statev0), rotation, status)
+      call read_rotation(drot, has_past(statev0), pnewdt, rotation, status)
       if (status%code /= MUD_OK) then
          report = failed_report(status)
+         call give_elastic(props_in, stress6, statev0, order(1:ntens), pnewdt, ddsdde)
          return
       end if
       if (rotates(rotation, statev0)) call rotate_statev(rotation, statev0)
@@ -91,6 +110,7 @@ contains
             call save_if_asked(completed(props_in), stress6, statev0, dstran6, suction%start, suction%change, place, &
                                report)
          end if
+         call give_elastic(props_in, stress6, statev0, order(1:ntens), pnewdt, ddsdde)
          return
       end if
       if (.not. has_past(statev0)) call remark_on_props(completed(props_in), place)
@@ -103,4 +123,27 @@ contains
          tangent_out = output%dsig_deps(order(1:ntens), order(1:ntens))
       end if
    end subroutine update
+
+   !> The elastic DDSDDE of the state before an increment that is refused: hosts that are asked for a cut may factorise
+   !> the matrix first, as CalculiX does. DDSDDE stays where PNEWDT is NULL, where PROPS ask for no tangent, and where
+   !> PROPS, stress or state are so wrong that they have no stiffness. Stress and state as the update has them.
+   subroutine give_elastic(props, stress, statev, order, pnewdt, ddsdde)
+      real(wp), intent(in), contiguous :: props(:)
+      real(wp), intent(in) :: stress(6), statev(NSTATV)
+      integer, intent(in) :: order(:)   !< As many as NTENS.
+      type(c_ptr), intent(in) :: pnewdt, ddsdde
+      type(output_t) :: output
+      type(report_t) :: report
+      real(c_double), pointer, contiguous :: tangent_out(:, :)
+      real(wp) :: parameters(NPROPS), still(6)
+
+      if (.not. (c_associated(pnewdt) .and. c_associated(ddsdde) .and. is_length(size(props)))) return
+      still = 0.0_wp
+      call kernel_update(props, stress, statev, still, statev(S_SUCTION), 0.0_wp, ELASTIC, output, report)
+      if (report%status /= MUD_OK) return
+      parameters = completed(props)
+      if (nint(parameters(P_TANGENT)) < ELASTIC) return
+      call c_f_pointer(ddsdde, tangent_out, [size(order), size(order)])
+      tangent_out = output%dsig_deps(order, order)
+   end subroutine give_elastic
 end module mud_umat

@@ -1,19 +1,17 @@
 ! SPDX-License-Identifier: MIT
-!> The VUMAT of Abaqus/Explicit, symbol vumat_, in double precision: a block of points in one call, over the batch of
-!> mud_update_batch. Arrays have the points first: (nblock, components 11, 22, 33, 12, 23, 13); shear strain is that of
-!> the tensor.
+!> The VUMAT of Abaqus/Explicit, symbol vumat_, in double precision: a block of points in one call. Arrays have the
+!> points first: (nblock, components 11, 22, 33, 12, 23, 13); shear strain is that of the tensor.
 !> Stress is effective and corotational, as the host gives it, and the tensors of the state with it: nothing is rotated.
 module mud_vumat
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_null_ptr, c_associated, c_f_pointer, c_loc
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
    use, intrinsic :: iso_fortran_env, only: int64
    use mud_arguments, only: integer_at, real_at, has_past
-   use mud_batch, only: mud_update_batch
-   use mud_kernel, only: report_t, output_t, failed_report
+   use mud_kernel, only: report_t, output_t, kernel_point, failed_report
    use mud_kinds, only: wp
-   use mud_once, only: environment_is
+   use mud_once, only: environment_is, remind_at_exit
    use mud_params, only: params_t, read_params, completed, is_length
    use mud_pieces, only: update_in_pieces
-   use mud_refusals, only: place_t, say_refusal, remark_on_pressure, save_if_asked, KEEP_VARIABLE
+   use mud_refusals, only: place_t, say_refusal, remark_on_props, remark_on_pressure, save_if_asked, KEEP_VARIABLE
    use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NSTATV, S_SUCTION
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_NTENS, MUD_BAD_NSTATV, MUD_BAD_NPROPS, &
       ON_ARGUMENT, ON_STATEV, ON_PROPS
@@ -25,7 +23,7 @@ module mud_vumat
    integer, parameter :: CHUNK = 32                      !< Points that are copied and updated together.
    integer, parameter :: ORDER(6) = [1, 2, 3, 4, 6, 5]   !< Of the host's components; its own inverse.
    real(wp), parameter :: ENGINEERING(6) = [1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp, 2.0_wp, 2.0_wp]
-   integer(c_int), parameter :: NONE = 0, ELASTIC = 1, ONE_THREAD = 1   ! The host is parallel by itself.
+   integer, parameter :: NONE = 0, ELASTIC = 1           !< Kinds of tangent.
 
    !> The arrays of a block.
    type :: block_t
@@ -35,7 +33,7 @@ module mud_vumat
                                              energy1(:)
    end type block_t
 
-   !> Some points of it as the batch wants them.
+   !> Some points of it, component by component.
    type :: chunk_t
       real(c_double) :: stress(6, CHUNK), state(NSTATV, CHUNK), strain(6, CHUNK), suction(CHUNK), d_suction(CHUNK)
       integer(c_int) :: status(CHUNK)
@@ -82,6 +80,7 @@ contains
       else
          call say_refusal(failed_report(status), place_t('vumat_'), '. Nothing was computed')
          if (c_associated(stress_new)) call spoil_first(stress_new, integer_at(nblock))
+         call remind_at_exit()
       end if
       call copy_energy(ener_inelas_old, ener_inelas_new, integer_at(nblock))
 
@@ -134,10 +133,11 @@ contains
       type(params_t), intent(in) :: par
       integer, intent(in) :: first, n
       logical, intent(in) :: elastic_only
-      type(chunk_t), target :: old
-      real(c_double), target :: stress(6, CHUNK), state(NSTATV, CHUNK), slopes(6, 6, CHUNK), still(6, CHUNK)
+      type(chunk_t) :: old
+      real(wp) :: stress(6, CHUNK), state(NSTATV, CHUNK)
+      type(output_t) :: output
+      type(report_t) :: report
       integer :: i, k
-      integer(c_int) :: failed
 
       do i = 1, n
          k = first + i - 1
@@ -146,25 +146,25 @@ contains
          old%state(:, i) = points%state0(k, 1:NSTATV)
          call read_suction(points, k, old%state(:, i), old%suction(i), old%d_suction(i))
       end do
-      if (elastic_only) then
-         still = 0.0_wp
-         failed = mud_update_batch(c_loc(points%props), size(points%props), int(n, c_int), c_loc(old%stress), &
-                                   c_loc(old%state), NSTATV, c_loc(still), c_loc(old%suction), c_null_ptr, ELASTIC, &
-                                   ONE_THREAD, c_loc(stress), c_loc(state), c_loc(slopes), c_null_ptr, c_null_ptr, &
-                                   c_null_ptr, c_loc(old%status), c_null_ptr)
-         do i = 1, n
-            stress(:, i) = old%stress(:, i) + matmul(slopes(:, :, i), old%strain(:, i))
-         end do
-         state(:, 1:n) = old%state(:, 1:n)
-      else
-         failed = mud_update_batch(c_loc(points%props), size(points%props), int(n, c_int), c_loc(old%stress), &
-                                   c_loc(old%state), NSTATV, c_loc(old%strain), c_loc(old%suction), &
-                                   c_loc(old%d_suction), NONE, ONE_THREAD, c_loc(stress), c_loc(state), &
-                                   c_null_ptr, c_null_ptr, c_null_ptr, c_null_ptr, c_loc(old%status), c_null_ptr)
-      end if
-      if (failed < 0) old%status = failed
+      do i = 1, n
+         if (elastic_only) then
+            call kernel_point(par, old%stress(:, i), old%state(:, i), spread(0.0_wp, 1, 6), old%suction(i), 0.0_wp, &
+                              ELASTIC, output, report)
+            if (report%status == MUD_OK) stress(:, i) = old%stress(:, i) + matmul(output%dsig_deps, old%strain(:, i))
+            state(:, i) = old%state(:, i)
+         else
+            call kernel_point(par, old%stress(:, i), old%state(:, i), old%strain(:, i), old%suction(i), &
+                              old%d_suction(i), NONE, output, report)
+            if (report%status == MUD_OK) then
+               stress(:, i) = output%stress
+               state(:, i) = output%statev
+            end if
+         end if
+         old%status(i) = report%status
+      end do
       do i = 1, n
          if (old%status(i) /= MUD_OK) call try_in_pieces(points, par, old, i, stress(:, i), state(:, i))
+         if (.not. has_past(old%state(:, i))) call remark_on_props(completed(points%props), place_t('vumat_'))
          if (.not. elastic_only) call remark_on_pressure(stress(:, i), place_t('vumat_'))
          call write_point(points, first + i - 1, old%strain(:, i), stress(:, i), state(:, i))
       end do
@@ -185,7 +185,7 @@ contains
       if (is_finite(start) .and. is_finite(change)) change = change - start
    end subroutine read_suction
 
-   !> A point that the batch refused: in pieces, or not at all, which is said.
+   !> A point whose increment was refused: in pieces, or not at all, which is said.
    subroutine try_in_pieces(points, par, old, i, stress, state)
       type(block_t), intent(in) :: points
       type(params_t), intent(in) :: par
@@ -196,7 +196,7 @@ contains
       type(report_t) :: report
 
       call update_in_pieces(par, old%stress(:, i), old%state(:, i), old%strain(:, i), old%suction(i), &
-                            old%d_suction(i), int(NONE), output, report)
+                            old%d_suction(i), NONE, output, report)
       if (report%status == MUD_OK) then
          stress = output%stress
          state = output%statev
@@ -212,6 +212,7 @@ contains
       else
          stress = transfer(int(z'7FF8000000000000', int64), 1.0_wp)
          call say_refusal(report, place_t('vumat_'), '. Its stress is NaN, to stop the analysis')
+         call remind_at_exit()
       end if
    end subroutine try_in_pieces
 

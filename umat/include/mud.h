@@ -6,6 +6,9 @@
  * "Stress" is Bishop's effective stress sigma' with chi = S_w. Suction p_c = p_a - p_w is positive when unsaturated.
  * Indices of PROPS and STATEV are those of C, from 0.
  *
+ * The way of a host: mud_prepare a material once; mud_init every point; mud_update in every iteration. The same for the
+ * points of a mesh: mud_init_points, mud_update_points.
+ *
  * Every array is the caller's. Nothing is allocated, printed or kept between calls; calls are thread-safe. No file is
  * read or written, but for mud_save_increment and what MUD_SAVE_FAILED asks of umat_ (see "failed increments" below).
  * umat_, vumat_, user_mod_ and MFront's behaviours alone print: each distinct refusal once a process, on standard error
@@ -21,7 +24,7 @@
 extern "C" {
 #endif
 
-#define MUD_ABI_VERSION 2
+#define MUD_ABI_VERSION 3
 
 enum mud_status {
    MUD_OK = 0,
@@ -37,8 +40,12 @@ enum mud_field {
    MUD_NAME = 1, MUD_SYMBOL = 2, MUD_UNIT = 3, MUD_ORIGIN = 4, MUD_MEANING = 5,
    MUD_INITIAL = 6, MUD_ROTATION = 7, MUD_EVOLUTION = 8   /* of STATEV only */
 };
+/* Kind of tangent. PRESENT: nothing is updated; the slopes are those with which the state goes on, for the first
+ * iteration of a step. MUD_TOTAL_STRESS may be added to each: stress0, stress1, dsig_deps and dsig_dpc are those of
+ * total stress less air pressure, sigma + p_a I = sigma' + S_w p_c I (tension positive). */
 enum mud_tangent {
-   MUD_TANGENT_NONE = 0, MUD_TANGENT_ELASTIC = 1, MUD_TANGENT_CONTINUUM = 2, MUD_TANGENT_CONSISTENT = 3
+   MUD_TANGENT_NONE = 0, MUD_TANGENT_ELASTIC = 1, MUD_TANGENT_CONTINUUM = 2, MUD_TANGENT_CONSISTENT = 3,
+   MUD_TANGENT_PRESENT = 4, MUD_TOTAL_STRESS = 16
 };
 
 /* What one update did and, on failure, where it stopped: filled by every mud_update. */
@@ -93,111 +100,87 @@ extern const int mud_props_count, mud_statev_count;
 extern const char *const mud_props_names[], *const mud_props_units[];
 extern const char *const mud_statev_names[], *const mud_statev_units[];
 
-/* --- one integration point --------------------------------------------------------------------------- */
-/* Fills statev[nstatev] for a stress[6] (lifted in place to p_min if its mean is below), suction and void ratio
- * (0: e_0 of the props). */
-int mud_init_state(const double *props, int nprops, double *stress, double suction, double void_ratio,
-                   double *statev, int nstatev, char *text, int len);
-
-/* Integrates dstrain[6] and dsuction from (stress0, statev0, suction0) to (stress1, statev1). Outputs may be the same
- * arrays as inputs. On any failure stress1, statev1 and the tangent blocks are untouched. An uninitialised statev0
- * (layout = 0) is initialised first. Tangent blocks, each may be NULL:
- *   dsig_deps[36]  column j (at 6*j) = d sigma' / d (engineering strain j)
- *   dsig_dpc[6]    d sigma' / d suction
- *   dsw_deps[6]    d S_w / d strain
- *   dsw_dpc[1]     d S_w / d suction
- * report may be NULL. */
-int mud_update(const double *props, int nprops, const double *stress0, const double *statev0, int nstatev,
-               const double *dstrain, double suction0, double dsuction, int tangent,
-               double *stress1, double *statev1, double *dsig_deps, double *dsig_dpc, double *dsw_deps,
-               double *dsw_dpc, mud_report *report);
-
-/* n points of one material over contiguous arrays: stress[6*n], statev[nstatev*n], dstrain[6*n], suction[n] (suction0
- * and dsuction may be NULL: saturated, constant), tangent blocks [36*n], [6*n], [6*n], [n], each may be NULL. `threads`
- * 0: as many as OpenMP would take. status[n] receives the code of every point; a failed point leaves its own outputs
- * untouched and the others alone. The answer is bitwise that of mud_update, whatever the number of threads.
- * reports[n] may be NULL.
- * Returns the number of failed points, or a negative code if nothing was done. */
-int mud_update_batch(const double *props, int nprops, int n, const double *stress0, const double *statev0, int nstatev,
-                     const double *dstrain, const double *suction0, const double *dsuction, int tangent, int threads,
-                     double *stress1, double *statev1, double *dsig_deps, double *dsig_dpc, double *dsw_deps,
-                     double *dsw_dpc, int *status, mud_report *reports);
-
-/* A material checked and named once, for any number of updates. Storage: mud_prepared_size() doubles of the caller, who
- * passes their number as `size`; opaque, may be copied in memory, not to be kept in a file. mud_prepare refuses what
- * mud_update would refuse; after an error the storage is no material. The updates are those without _prepared, bit by
- * bit; they only read the storage, which threads may share. Storage that is no material of this library:
- * MUD_NOT_PREPARED. */
+/* --- a material ----------------------------------------------------------------------------------------- */
+/* PROPS checked and kept in mud_prepared_size() doubles of the caller, who passes their number as `size`; opaque, may
+ * be copied in memory, not to be kept in a file. Whatever uses it only reads it, so threads may share it. After an
+ * error the storage is no material; storage that is no material of this library: MUD_NOT_PREPARED. */
 int mud_prepared_size(void);
-int mud_prepare(const double *props, int nprops, double *prepared, int size, char *text, int len);
-int mud_update_prepared(const double *prepared, const double *stress0, const double *statev0, int nstatev,
-                        const double *dstrain, double suction0, double dsuction, int tangent,
-                        double *stress1, double *statev1, double *dsig_deps, double *dsig_dpc, double *dsw_deps,
-                        double *dsw_dpc, mud_report *report);
-int mud_update_batch_prepared(const double *prepared, int n, const double *stress0, const double *statev0, int nstatev,
-                              const double *dstrain, const double *suction0, const double *dsuction, int tangent,
-                              int threads, double *stress1, double *statev1, double *dsig_deps, double *dsig_dpc,
-                              double *dsw_deps, double *dsw_dpc, int *status, mud_report *reports);
+int mud_prepare(const double *props, int nprops, double *material, int size, char *text, int len);
 
-/* Degree of saturation of a prepared material at a suction and a void ratio (above 0), and its slopes against either at
- * constant other; each output may be NULL. The curve that updates use: their S_w is this one, bit by bit; with
- * hysteresis it is the main drying curve. */
-int mud_saturation(const double *prepared, double suction, double void_ratio, double *s_w, double *ds_dpc,
+/* Degree of saturation at a suction and a void ratio (above 0), and its slopes against either at constant other; each
+ * output may be NULL. The curve that updates use; with hysteresis the main drying curve. */
+int mud_saturation(const double *material, double suction, double void_ratio, double *s_w, double *ds_dpc,
                    double *ds_de);
 
-/* The same for a point: statev tells its void ratio and, with hysteresis, from which S_w at which suction it goes on.
- * ds_dev: slope against the volume strain, tension positive, like dsw_deps of mud_update. */
-int mud_state_saturation(const double *prepared, const double *statev, int nstatev, double suction, double *s_w,
-                         double *ds_dpc, double *ds_dev);
+/* --- one integration point --------------------------------------------------------------------------- */
+/* Begins a point: fills statev[nstatev] for an effective stress[6], a suction, a void ratio (0: e_0 of the props) and,
+ * with hysteresis, a degree of saturation (0: on the main drying curve). A mean stress below p_min is lifted in place;
+ * a stress ratio far beyond the bounding surface is refused. */
+int mud_init(const double *material, double *stress, double suction, double void_ratio, double saturation,
+             double *statev, int nstatev, char *text, int len);
 
-/* --- many points of a mesh with several materials ------------------------------------------------------ */
-/* The arrays are those of all points of the mesh; n numbers in `points`, from 0, each once, say which of them a call
- * reads and writes (NULL: the first n). n may be 0. Every material is one call with its own list. */
+/* Slopes at the end of an update: dsig_* for a tangent other than NONE, the rest always. */
+typedef struct mud_blocks {
+   double dsig_deps[36];    /* column j (at 6*j): d sigma' / d (engineering strain j)                  */
+   double dsig_dpc[6];      /* d sigma' / d suction                                                    */
+   double dsw_deps[6];      /* d S_w / d strain                                                        */
+   double dsw_dpc;          /* d S_w / d suction                                                       */
+   double s_w;              /* degree of saturation                                                    */
+} mud_blocks;
 
-/* What became of a batch. Join those of several calls or ranks by sums, and by the smallest pnewdt. */
+/* Integrates dstrain[6] and a change of suction from (stress0, statev0) to (stress1, statev1). `suction` is that at the
+ * end; where the change begins statev0 tells. Outputs may be the same arrays as inputs; blocks and report may be NULL.
+ * On any failure stress1, statev1 and blocks are untouched. A statev0 that no mud_init filled is refused.
+ *
+ * With MUD_TANGENT_PRESENT stress1 and statev1 are not written (NULL is allowed), and dstrain, of any length, is the
+ * direction that is expected, such as the last increment, with its suction. A zero or NULL dstrain means the direction
+ * in which the point strained last, as far as its elastic domain remembers it; of the suction only the sense counts
+ * then. Inside the elastic domain the slopes are elastic. */
+int mud_update(const double *material, const double *stress0, const double *statev0, int nstatev,
+               const double *dstrain, double suction, int tangent,
+               double *stress1, double *statev1, mud_blocks *blocks, mud_report *report);
+
+/* --- many points --------------------------------------------------------------------------------------- */
+/* The arrays of a mesh, those of one point after those of another. Zero the structure, then set what a call needs. */
+typedef struct mud_points {
+   int n;                   /* how many points a call reads and writes, 0 or more                      */
+   int nstatev;             /* numbers of a point in statev0 and statev1                               */
+   int tangent;             /* as in mud_update                                                        */
+   int threads;             /* 0: as many as OpenMP would take                                         */
+   const int *list;         /* numbers of the n points, from 0, each once; NULL: the first n           */
+   const int *material;     /* [...]: number of the material of every point, from 0; NULL: 0           */
+   const double *stress0, *statev0;      /* [6*...], [nstatev*...]: where the points are               */
+   const double *dstrain;   /* [6*...]                                                                 */
+   const double *suction;   /* [...]: at the end; NULL: that of statev0, of a point that begins 0      */
+   const double *void_ratio, *saturation;   /* [...]: of points that begin; NULL: 0, see mud_init      */
+   double *stress1, *statev1;   /* may be stress0 and statev0                                          */
+   double *dsig_deps, *dsig_dpc, *dsw_deps, *dsw_dpc, *s_w;   /* as in mud_blocks; NULL: not wanted     */
+   int *status;             /* [...]: code of every point; may be NULL                                 */
+   mud_report *reports;     /* [...]; may be NULL                                                      */
+} mud_points;
+
+/* What became of the points. Join those of several calls or ranks by sums, and by the smallest pnewdt. */
 typedef struct mud_summary {
    int failed;              /* how many points failed                                                  */
-   int first;               /* smallest number of a failed point, from 0; -1: none                     */
-   int status;              /* its code                                                                */
+   int worst;               /* number of the failed point that got least far, from 0; -1: none failed  */
    int n_open, n_tensile;   /* points held by the tension cut-off; with a tensile principal stress     */
+   int n_lifted;            /* points that began with a mean stress below p_min                        */
    double pnewdt;           /* smallest suggested factor on the increment, 1 if no point failed        */
    double n_rate, n_substep;   /* of all points together                                               */
+   mud_report report;       /* of the worst point                                                      */
 } mud_summary;
 
-/* Begins points: fills statev[nstatev*...] for stress[6*...], suction and void_ratio (each NULL: 0; a void ratio of 0
- * is e_0 of the material). A mean stress below p_min is lifted in place, and lifted[...] is 1 there (may be NULL).
- * status[...] receives the code of every point; a failed one keeps its stress and statev. Returns how many failed, or a
- * negative code if nothing was done. */
-int mud_init_batch(const double *prepared, int n, const int *points, double *stress, const double *suction,
-                   const double *void_ratio, double *statev, int nstatev, int *lifted, int *status);
-
-/* mud_update_batch_prepared for the points of a list; bit by bit the same. reports and summary may be NULL. */
-int mud_update_list(const double *prepared, int n, const int *points, const double *stress0, const double *statev0,
-                    int nstatev, const double *dstrain, const double *suction0, const double *dsuction, int tangent,
-                    int threads, double *stress1, double *statev1, double *dsig_deps, double *dsig_dpc,
-                    double *dsw_deps, double *dsw_dpc, int *status, mud_report *reports, mud_summary *summary);
-
-/* Slopes with which the present state goes on, for the first iteration of a step; nothing is updated. direction[6*...]
- * is the strain that is expected, of any length (such as the last increment), with its suction dsuction (may be NULL).
- * NULL or zero: the direction in which the point strained last, as far as its elastic domain remembers it. Inside its
- * elastic domain the slopes of a point are elastic. */
-int mud_tangent_list(const double *prepared, int n, const int *points, const double *stress, const double *statev,
-                     int nstatev, const double *direction, const double *suction, const double *dsuction, int threads,
-                     double *dsig_deps, double *dsig_dpc, double *dsw_deps, double *dsw_dpc, int *status,
-                     mud_summary *summary);
-
-/* --- total stress --------------------------------------------------------------------------------------- */
-/* n points: sigma' = sigma + (p_a - S_w p_c) I and back, tension positive; air_pressure[n] (NULL: 0) is positive in
- * compression. The result may be the array that is given. */
-int mud_effective_stress(int n, const double *total, const double *air_pressure, const double *s_w,
-                         const double *suction, double *effective);
-int mud_total_stress(int n, const double *effective, const double *air_pressure, const double *s_w,
-                     const double *suction, double *total);
-/* Turns dsig_deps[36*n] and dsig_dpc[6*n] of an update (either may be NULL) into the slopes of total stress at constant
- * air pressure, in place; S_w, suction and the slopes of S_w are those at the end of the increment. Against water
- * pressure: the negative of dsig_dpc. */
-int mud_total_blocks(int n, const double *s_w, const double *suction, const double *dsw_deps, const double *dsw_dpc,
-                     double *dsig_deps, double *dsig_dpc);
+/* `materials` are nmaterials prepared ones, each of mud_prepared_size() doubles, one after another. A point that fails
+ * keeps its outputs and leaves the others alone; every other one has the answer of mud_init or mud_update, bit by bit,
+ * whatever the number of threads. Each returns how many points failed, or a negative code if nothing was done; summary
+ * may be NULL.
+ *
+ * mud_init_points reads stress0, suction, void_ratio, saturation (tangent: 0 or MUD_TOTAL_STRESS) and fills stress1,
+ * statev1, s_w. mud_update_points is mud_update. mud_saturation_points gives S_w and its slopes at a suction to which
+ * the points go at their present void ratio, from what statev0 tells: s_w, dsw_dpc, dsw_deps. */
+int mud_init_points(const double *materials, int nmaterials, const mud_points *points, mud_summary *summary);
+int mud_update_points(const double *materials, int nmaterials, const mud_points *points, mud_summary *summary);
+int mud_saturation_points(const double *materials, int nmaterials, const mud_points *points, mud_summary *summary);
 
 /* --- failed increments ---------------------------------------------------------------------------------- */
 /* One substep that an update tried. */
@@ -222,20 +205,20 @@ typedef struct mud_substep {
 /* Runs mud_update and reports its substeps: rows[i] is substep number first + i (from 1), as far as there are
  * nrows; *attempts receives how many were tried. Only rows, attempts and report are written; each may be NULL.
  * Returns the status of the update. */
-int mud_trace_increment(const double *props, int nprops, const double *stress0, const double *statev0, int nstatev,
-                        const double *dstrain, double suction0, double dsuction, int tangent,
+int mud_trace_increment(const double *material, const double *stress0, const double *statev0, int nstatev,
+                        const double *dstrain, double suction, int tangent,
                         int first, mud_substep *rows, int nrows, int *attempts, mud_report *report);
 
-/* Writes an increment, with the arguments of mud_update and how it ends, to a new text file that mud_replay runs alone;
+/* Writes an increment, with the arguments of mud_update and how it ends, to a new case file that mud_triax runs alone;
  * bit by bit the same. `origin` is a remark for the reader (may be NULL). A file of that name is never overwritten, an
  * unfinished one is removed: MUD_NOT_WRITTEN, and text says why.
  *
  * umat_ does the same by itself where the environment variable MUD_SAVE_FAILED names a folder: the first increment of
- * each distinct failure, under a name that says which, such as mud_failed_too_many_substeps.txt. A file that is there
+ * each distinct failure, under a name that says which, such as mud_failed_too_many_substeps.nml. A file that is there
  * already stays; that the folder cannot be written is said once. */
-int mud_save_increment(const char *path, const char *origin, const double *props, int nprops, const double *stress0,
-                       const double *statev0, int nstatev, const double *dstrain, double suction0, double dsuction,
-                       int tangent, char *text, int len);
+int mud_save_increment(const char *path, const char *origin, const double *material, const double *stress0,
+                       const double *statev0, int nstatev, const double *dstrain, double suction, int tangent,
+                       char *text, int len);
 
 /* --- texts ---------------------------------------------------------------------------------------------- */
 /* A sentence for a status code; with a report, one that says where, the value, the allowed range and the remedy. */

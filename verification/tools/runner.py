@@ -3,7 +3,9 @@
 
     verification/run                          all pages
     verification/run material host/cylinder   a section, a page; the name alone does where there is one of it
-    verification/run --list                   what there is
+    verification/run --list                   what there is, and which data are older than the model (umat/core)
+    verification/run --all --make --update    overnight: makes the data of every page again, the cheap ones first, as
+                                              far as they fit into three hours; then runs and writes the pages
     verification/run --quick                  short versions of what the check run takes, without pictures
 
 Every page prints its checks, each with what it is off by, what is allowed, value and reference; the last line is
@@ -33,9 +35,16 @@ from tools import pictures, readme  # noqa: E402
 from tools.bench import ROOT, Bench  # noqa: E402
 from tools.page import Tolerance  # noqa: E402
 
+sys.path.append(str(ROOT / "common"))
+import tables  # noqa: E402
+
 SECTIONS = {"material": "element tests with mud_triax", "host": "scenes with mud_host",
             "studies": "the program compared with itself and with published results"}
 SAME = Tolerance("generated from the committed files")
+
+
+AGES = HERE / "made.csv"   # script,core: with which core a script last made its data
+NIGHT = 3*3600.0           # s, of the scripts that --all --make runs
 
 
 @dataclass
@@ -192,6 +201,8 @@ def make(name, build, output, update, only, arguments):
         if code:
             print(f"   FAILED {script.name}: exit code {code}")
             continue
+        if update:
+            note_age(name, script)
         for pattern in script.files:
             for made in sorted(results.glob(pattern)):
                 file = made.relative_to(results)
@@ -202,6 +213,45 @@ def make(name, build, output, update, only, arguments):
                     kept.parent.mkdir(parents=True, exist_ok=True)
                     shutil.copyfile(made, kept)
     return good
+
+
+def core():
+    """The core of the tree as git counts its contents; empty without git or with changes that are not committed."""
+    said = [subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True) for words in (
+        ("rev-parse", "HEAD:umat/core"), ("status", "--porcelain", "umat/core"))]
+    return said[0].stdout.strip() if not any(done.returncode for done in said) and not said[1].stdout.strip() else ""
+
+
+def ages():
+    """{page/script: core that it was made with}."""
+    return {row["script"]: row["core"] for row in tables.rows(AGES)} if AGES.exists() else {}
+
+
+def note_age(name, script):
+    made = {**ages(), f"{name}/{script.name}": core()}
+    AGES.write_text("script,core\n" + "".join(f"{key},{made[key]}\n" for key in sorted(made)), encoding="utf-8")
+
+
+def older(name):
+    """Scripts of a page whose committed data were made with another core, or it is not known with which."""
+    known, now = ages(), core()
+    return [script.name for script in getattr(load(name), "MAKES", ()) if not now
+            or known.get(f"{name}/{script.name}") != now]
+
+
+def in_a_night(chosen):
+    """{page: scripts} that fit into a night, the cheap ones first; what does not fit is said."""
+    dear = sorted(((script.seconds, name, script) for name in chosen for script in getattr(load(name), "MAKES", ())),
+                  key=lambda entry: entry[:2])
+    taken, spent = {}, 0.0
+    for seconds, name, script in dear:
+        if spent + seconds <= NIGHT:
+            taken.setdefault(name, []).append(script.name)
+            spent += seconds
+        else:
+            print(f"left out, {seconds:g} s: verification/run {name} --make --only {script.name}")
+    print(f"scripts of {len(taken)} pages, about {spent:.0f} s of one core", flush=True)
+    return taken
 
 
 def chosen_of(words, parser):
@@ -220,6 +270,7 @@ def main():
     parser = argparse.ArgumentParser(prog="verification/run", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("pages", nargs="*", metavar="PAGE")
+    parser.add_argument("--all", action="store_true", help="with --make: what fits into a night, then all pages")
     parser.add_argument("--list", action="store_true", help="name the pages and run nothing")
     parser.add_argument("--quick", action="store_true", help="as the check run does")
     parser.add_argument("--update", action="store_true", help="write into the source tree what was found")
@@ -235,18 +286,26 @@ def main():
     options = parser.parse_args()
     if options.update and options.quick:
         parser.error("--update takes whole pages: leave out --quick")
+    if options.all and (options.pages or options.only):
+        parser.error("--all takes every page: leave out names and --only")
     build, output = options.build.resolve(), options.output.resolve()
     chosen = chosen_of(options.pages, parser)
     if options.list:
         for name in chosen:
             page = load(name).PAGE
             print(f"{name:32s} {page.seconds:6g} s  {', '.join(page.kind)}: {page.claim}")
+            if old := older(name):
+                print(f"{'':32s}   older than the core: {', '.join(old)}")
             if options.update:
                 update_texts(name, output)
         if options.update:
             update_index()
         return 0
-    if options.make:
+    if options.all and options.make:
+        taken = in_a_night(chosen)
+        good = [make(name, build, output, options.update, scripts, []) for name, scripts in taken.items()]
+        print(f"{good.count(True)} pages made again, {good.count(False)} failed", flush=True)
+    elif options.make:
         good = [make(name, build, output, options.update, options.only, options.arguments) for name in chosen]
         return 0 if all(good) else 1
     if options.quick:

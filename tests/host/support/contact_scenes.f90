@@ -4,8 +4,8 @@ module contact_scenes
    use, intrinsic :: iso_fortran_env, only: int64
    use contact_geometry, only: contact_geometry_t, contact_prepare
    use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate
-   use contact_types, only: wp, TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, PRESSURE_WORK, ENERGY_SLOPE, &
-                            contact_options_t, contact_status_t
+   use contact_types, only: TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, contact_options_t, contact_status_t
+   use kinds, only: wp
    implicit none (type, external)
    private
    public :: random_t, uniform, surface_t, straight, curve, rough, flat_pair, contact_form, crossing_chains
@@ -13,8 +13,8 @@ module contact_scenes
 
    !> Penalty [kN/m3] of a contact_form: deep penetration, all terms count.
    real(wp), parameter, public :: SOFT_PENALTY = 1.0e3_wp
-   !> Each gap with each variation, in plane strain and axisymmetric.
-   integer, parameter, public :: FORMS = 12
+   !> Each gap, in plane strain and axisymmetric.
+   integer, parameter, public :: FORMS = 6
 
    !> A generator of its own, the same on every machine (Park & Miller's minimal standard).
    type :: random_t
@@ -235,7 +235,7 @@ contains
       end do
    end subroutine rough
 
-   !> The eight forms of a contact.
+   !> The six forms of a contact.
    pure function contact_form(form) result(options)
       integer, intent(in) :: form   !< 1 to FORMS; those of the second half are axisymmetric.
       type(contact_options_t) :: options
@@ -243,7 +243,6 @@ contains
 
       options%penalty = SOFT_PENALTY
       options%gap = GAPS(mod(form - 1, 3) + 1)
-      options%variation = merge(PRESSURE_WORK, ENERGY_SLOPE, mod((form - 1)/3, 2) == 0)
       options%axisymmetric = form > FORMS/2
    end function contact_form
 

@@ -3,6 +3,7 @@
 module mud_params
    use mud_kinds, only: wp, SQRT_6
    use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, PROPERTIES, KIND_REAL, RULE_AS_PUBLISHED, &
+      SCHEME_AUTOMATIC, SCHEME_OF_PAPER, &
       P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, P_H_0, P_C_H, &
       P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, P_P_ATM, P_P_MIN, &
       P_BONDING, P_FABRIC, P_ISOTROPIC, P_LODE, P_MEMORY_RULE, P_EPS_HAT, P_J_EXP, P_X_0, P_X_REV, P_CAP_D, P_CAP_H, &
@@ -164,6 +165,7 @@ contains
       ! `as_published` is the classic rule with every guard off, whatever the guards' entries say.
       published = params%memory_rule == RULE_AS_PUBLISHED
       params%accept_minimum = published
+      if (published .and. params%scheme == SCHEME_AUTOMATIC) params%scheme = SCHEME_OF_PAPER
       params%floored = props(P_X_0) > 0.0_wp .and. .not. published
       params%x_floor = merge(props(P_X_0), FLOOR_AS_PUBLISHED, params%floored)
       params%x_rev = merge(0.0_wp, props(P_X_REV), published)

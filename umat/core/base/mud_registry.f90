@@ -9,7 +9,8 @@ module mud_registry
    public :: UNIT_STRESS, UNIT_STRESS_TO_LAMBDA, NPROPS_WITHOUT_HYSTERESIS
    public :: KIND_REAL, KIND_SWITCH, KIND_OPTION, KIND_COUNT
    public :: option_t, OPTIONS, property_meaning, property_index, statev_index, statev_name, statev_variable, COMPONENTS
-   public :: RULE_CLASSIC, RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, RULE_AS_PUBLISHED
+   public :: RULE_CLASSIC, RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, RULE_AS_PUBLISHED, SCHEME_AUTOMATIC, &
+             SCHEME_OF_PAPER
 
    public :: P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, &
              P_H_0, P_C_H, P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, &
@@ -26,6 +27,8 @@ module mud_registry
    integer, parameter :: KIND_REAL = 0, KIND_SWITCH = 1, KIND_OPTION = 2, KIND_COUNT = 3
    integer, parameter :: RULE_CLASSIC = 0, RULE_THRESHOLD = 1, RULE_REPOSITIONING = 2, RULE_RETURN_POINT = 3, &
                          RULE_AS_PUBLISHED = 4
+   !> The order follows the error; other values are pairs of mud_substep, modified Euler first.
+   integer, parameter :: SCHEME_AUTOMATIC = 0, SCHEME_OF_PAPER = 1
    !> Units of the entries of PROPS that change with the unit of p_atm. Their bounds and defaults below are those for
    !> the default p_atm; mud_units converts them.
    character(10), parameter :: UNIT_STRESS = 'kPa', UNIT_STRESS_TO_LAMBDA = 'kPa^lambda'
@@ -121,21 +124,17 @@ module mud_registry
    integer, parameter :: S_SATURATION = 3
    integer, parameter :: S_SUCTION = 4
    integer, parameter :: S_STATE_PARAMETER = 5
-   integer, parameter :: S_EPS_Q_P = 6
-   integer, parameter :: S_EPS_Q_P_TOTAL = 7
-   integer, parameter :: S_X_BEFORE = 8
-   integer, parameter :: S_X_RUNNING = 9
+   integer, parameter :: S_EPS_Q_P = 6, S_EPS_Q_P_TOTAL = 7
+   integer, parameter :: S_X_BEFORE = 8, S_X_RUNNING = 9
    integer, parameter :: S_TARGET = 10
    integer, parameter :: S_INTERRUPTED = 11
    integer, parameter :: S_OPEN = 12
    integer, parameter :: S_LAST_STEP = 13
    integer, parameter :: S_FABRIC = 14
-   integer, parameter :: S_MEMORY = 20
-   integer, parameter :: S_MEMORY_BEFORE = 26
+   integer, parameter :: S_MEMORY = 20, S_MEMORY_BEFORE = 26
    integer, parameter :: S_DIRECTION = 32
    integer, parameter :: S_DSIGMA_DPC = 38
-   integer, parameter :: S_DSW_DPC = 44
-   integer, parameter :: S_DSW_DEV = 45
+   integer, parameter :: S_DSW_DPC = 44, S_DSW_DEV = 45
    integer, parameter :: S_N_RATE = 46
    integer, parameter :: S_N_SUBSTEP = 47
    integer, parameter :: S_N_REJECT = 48
@@ -231,7 +230,7 @@ module mud_registry
          'softening cap; 0: off'), &
       property_t(P_CUTOFF, 'cutoff', 'cutoff', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 1.0_wp, 'numerical', &
          '1: tension cut-off at p_min; 0: off'), &
-      property_t(P_SCHEME, 'scheme', 'scheme', '1', KIND_OPTION, 1.0_wp, 3.0_wp, 1.0_wp, 'paper', &
+      property_t(P_SCHEME, 'scheme', 'scheme', '1', KIND_OPTION, 0.0_wp, 3.0_wp, 0.0_wp, 'ours', &
          ''), &
       property_t(P_TOLERANCE, 'tolerance', 'tol', '1', KIND_REAL, 1e-12_wp, 0.1_wp, 1e-05_wp, 'paper', &
          'relative tolerance of the stress integration'), &
@@ -260,7 +259,7 @@ module mud_registry
 
    type(variable_t), parameter :: VARIABLES(NVARIABLES) = [ &
       variable_t(S_LAYOUT, 1, 'layout', '-', '1', .false., 'ours', &
-         '0: not initialised; otherwise the layout number of this table', 'set to 1', 'never'), &
+         '0: not initialised; otherwise the layout number', 'set to '//achar(iachar('0') + STATE_LAYOUT), 'never'), &
       variable_t(S_VOID_RATIO, 1, 'void_ratio', 'e', '1', .false., 'paper', &
          'void ratio; preset it (layout = 0) to override e_0', 'preset or e_0', &
          '1 + e falls with exp(-eps_v), exactly'), &
@@ -364,7 +363,8 @@ module mud_registry
       option_t(P_MEMORY_RULE, RULE_REPOSITIONING, 'repositioning'), &
       option_t(P_MEMORY_RULE, RULE_RETURN_POINT, 'return_point'), &
       option_t(P_MEMORY_RULE, RULE_AS_PUBLISHED, 'as_published'), &
-      option_t(P_SCHEME, 1, 'modified Euler 2(1)'), &
+      option_t(P_SCHEME, SCHEME_AUTOMATIC, 'automatic'), &
+      option_t(P_SCHEME, SCHEME_OF_PAPER, 'modified Euler 2(1)'), &
       option_t(P_SCHEME, 2, 'Bogacki-Shampine 3(2)'), &
       option_t(P_SCHEME, 3, 'Dormand-Prince 5(4)'), &
       option_t(P_TANGENT, 0, 'none'), &

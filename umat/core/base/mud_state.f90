@@ -79,6 +79,7 @@ contains
       end if
       call require(statev, S_LAYOUT, real(STATE_LAYOUT, wp), real(STATE_LAYOUT, wp), status)
       call require(statev, S_VOID_RATIO, E_LOWER, E_UPPER, status)
+      call require(statev, S_SATURATION, 0.0_wp, 1.0_wp, status)
       call require(statev, S_INTERRUPTED, 0.0_wp, real(MAX_INTERRUPTED, wp), status)
       call require(statev, S_OPEN, 0.0_wp, 1.0_wp, status)
       call require(statev, S_LAST_STEP, 0.0_wp, huge(1.0_wp), status)

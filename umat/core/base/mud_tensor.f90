@@ -7,7 +7,8 @@ module mud_tensor
    implicit none (type, external)
    private
    public :: IDENTITY, SHEAR_WEIGHT, ddot, trace, deviator, norm, square, is_finite, all_finite, outer_add, rotate, &
-             LANES, contractions, tensors_t, contracted, traces, ZERO_TENSORS, UNIT_STRAINS, ANY_TENSORS
+             LANES, contractions, tensors_t, contracted, traces, ZERO_TENSORS, UNIT_STRAINS, ANY_TENSORS, &
+             strain_directions
 
    !> Directions of a derivative that are worked on side by side: six strains, the suction and an idle one, for an even
    !> number the compiler takes two at a time.
@@ -29,6 +30,18 @@ module mud_tensor
    !> Added to the exponent's bits, one place to the right, it carries into the second bit of all if they are all set.
    integer(int64), parameter :: CARRY = int(z'0008000000000000', int64), CARRIED = int(z'4000000000000000', int64)
 contains
+   !> Unit engineering strains as tensors, one a direction [-].
+   pure function strain_directions() result(unit)
+      type(tensors_t) :: unit
+      integer :: j
+
+      unit%of = 0.0_wp
+      do j = 1, 6
+         unit%of(j, j) = merge(1.0_wp, 0.5_wp, j <= 3)
+      end do
+      unit%kind = UNIT_STRAINS
+   end function strain_directions
+
    !> Full contraction a:b. In the unit of a times that of b.
    pure real(wp) function ddot(a, b)
       real(wp), intent(in) :: a(6), b(6)

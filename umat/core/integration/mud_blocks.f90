@@ -3,13 +3,13 @@
 module mud_blocks
    use mud_kinds, only: wp
    use mud_cutoff, only: slides, held_rate
-   use mud_elastic, only: bulk_modulus, shear_modulus
-   use mud_increment, only: increment_t, has_aside
-   use mud_elastic_domain, only: loading_direction
+   use mud_elastic, only: bulk_modulus, shear_modulus, elastic_tangent
+   use mud_increment, only: increment_t, has_aside, direction_at
    use mud_params, only: params_t
-   use mud_rates, only: rate_t, stress_ratio, MODE_ELASTIC
+   use mud_rate, only: rate_t
+   use mud_rates, only: stress_ratio, MODE_ELASTIC
    use mud_state, only: state_t
-   use mud_tangent, only: continuum_tangent, elastic_tangent
+   use mud_tangent, only: continuum_tangent
    use mud_tensor, only: SHEAR_WEIGHT, deviator, outer_add
    use mud_trial, only: trial_t, MODE_HELD
    implicit none (type, external)
@@ -67,7 +67,7 @@ contains
       along = 0.0_wp
       nu = 0.0_wp
       if (mode /= MODE_ELASTIC) then
-         nu = loading_direction(inc%rho, inc%from_centre, inc%d_strain, 1.0_wp)
+         nu = direction_at(inc, 1.0_wp)
          along = matmul(c - elastic, SHEAR_WEIGHT*nu)
       end if
       c = elastic

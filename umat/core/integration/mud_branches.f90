@@ -5,41 +5,35 @@
 module mud_branches
    use mud_kinds, only: wp
    use mud_blocks, only: blocks_t
-   use mud_consistent, only: sensitivity_t
-   use mud_driving, only: driving_t, parts_at_turn
-   use mud_increment, only: increment_t, take_phase, void_ratio_at, suction_at
+   use mud_increment, only: increment_t, void_ratio_at, suction_at
+   use mud_integration, only: integration_t
    use mud_params, only: params_t
-   use mud_phases, only: integrate_phases
    use mud_retention, only: saturation_t, saturation, change_of_offset, offset_with_turn
    use mud_scanning, only: branch_from, clipped, main_curve
    use mud_state, only: state_t, counters_t
-   use mud_status, only: mud_status_t, MUD_OK
-   use mud_trace, only: trace_t
-   use mud_trial, only: trial_t
    implicit none (type, external)
    private
-   public :: course_t, begin_course, integrate_course, end_course
+   public :: course_t, begin_course, turn_around, end_course
 
    integer, parameter :: HALVINGS = 60            !< Of an increment: more than a double can tell apart.
-   real(wp), parameter :: WHOLE_PHASE = 1.0e-9_wp !< A phase shorter than this share is left out [-].
 
    !> How S_w changes through an increment.
    type :: course_t
       real(wp) :: turn        !< Share of the increment after which x no longer rises, 1 if it does not turn [-].
       real(wp) :: s_w         !< At the start, between the main curves [-].
       logical :: at_rest      !< x does not change.
+      type(params_t) :: branch   !< Parameters whose saturation is that of the present scanning curve.
       real(wp) :: change_pc, change_v   !< Of S_w at the end with suction step and volume, through the turn [1/kPa, -].
    end type course_t
 contains
-   !> Clips S_w of the state that an increment begins with and finds the first branch. branch are the parameters of that
-   !> branch; a saturation that was clipped is counted. docs/theory/material.md section 2.1.1.
-   pure subroutine begin_course(par, inc, state, counters, course, branch)
+   !> Clips S_w of the state that an increment begins with and finds the first branch; a saturation that was clipped is
+   !> counted. docs/theory/material.md section 2.1.1.
+   pure subroutine begin_course(par, inc, state, counters, course)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(state_t), intent(inout) :: state
       type(counters_t), intent(inout) :: counters
       type(course_t), intent(out) :: course
-      type(params_t), intent(out) :: branch
       logical :: dries
 
       call clipped(par, inc%p_c0, inc%e0, state%s_w, counters%clip)
@@ -49,7 +43,7 @@ contains
       course%at_rest = abs(inc%d_pc) <= 0.0_wp .and. abs(inc%d_v) <= 0.0_wp
       course%turn = turn_of_suction(par%omega, inc)
       dries = course%at_rest .or. rise(par%omega, inc, 0.0_wp) > 0.0_wp
-      branch = branch_from(par, dries, inc%p_c0, inc%e0, state%s_w)
+      course%branch = branch_from(par, dries, inc%p_c0, inc%e0, state%s_w)
    end subroutine begin_course
 
    !> e^-Omega dx/dt [kPa], t the share of the increment.
@@ -81,79 +75,33 @@ contains
             turn = middle
          end if
       end do
-      if (1.0_wp - turn < WHOLE_PHASE) turn = 1.0_wp
    end function turn_of_suction
-
-   !> integrate_phases with the branches. On return branch and inc are those that ended the increment. Arguments as
-   !> there; reached is the share of the whole increment [-]. After an error state is that of the last accepted substep.
-   pure subroutine integrate_course(par, course, inc, size, consistent, branch, state, trial, sens, counters, reached, &
-                                    status, record)
-      type(params_t), intent(in) :: par
-      type(course_t), intent(inout) :: course
-      type(increment_t), intent(inout) :: inc
-      real(wp), intent(in) :: size
-      logical, intent(in) :: consistent
-      type(params_t), intent(inout) :: branch
-      type(state_t), intent(inout) :: state
-      type(trial_t), intent(inout) :: trial
-      type(sensitivity_t), intent(inout) :: sens
-      type(counters_t), intent(inout) :: counters
-      real(wp), intent(out) :: reached
-      type(mud_status_t), intent(out) :: status
-      type(trace_t), intent(inout), optional :: record
-      type(increment_t) :: whole
-      type(driving_t) :: first, rest
-      type(params_t) :: turned
-      real(wp) :: share, with_turn(2)
-
-      share = course%turn
-      if (share >= 1.0_wp) then
-         call integrate_phases(branch, inc, size, consistent, state, trial, sens, counters, reached, status, record)
-         return
-      end if
-      whole = inc
-      call turn_around(par, branch, whole, share, turned, with_turn, course)
-      if (consistent) then
-         call parts_at_turn(whole, share, par%omega, sens%driving, first, rest)
-         rest%scans = turned%scanning%between
-         rest%offset = with_turn(1)*sens%driving%d_pc + with_turn(2)*sens%driving%d_v
-         sens%driving = first
-      end if
-      call take_phase(whole, 0.0_wp, share, inc)
-      call integrate_phases(branch, inc, share*size, consistent, state, trial, sens, counters, reached, status, record)
-      reached = share*reached
-      if (status%code /= MUD_OK) return
-      if (consistent) then
-         rest%from_centre = sens%driving%from_centre
-         sens%driving = rest
-      end if
-      call take_phase(whole, share, 1.0_wp, inc)
-      branch = turned
-      call integrate_phases(branch, inc, (1.0_wp - share)*size, consistent, state, trial, sens, counters, reached, &
-                            status, record)
-      reached = share + (1.0_wp - share)*reached
-   end subroutine integrate_course
 
    !> The wetting branch behind a turn, how q ln of its offset changes with suction step and volume of the increment,
    !> and how S_w at the end does through that. x is stationary where it turns: the place of the turn does not matter.
-   pure subroutine turn_around(par, dries, inc, share, turned, with_turn, course)
-      type(params_t), intent(in) :: par, dries   !< Of the material, and of the branch before the turn.
-      type(increment_t), intent(in) :: inc       !< The whole.
-      real(wp), intent(in) :: share              !< Where it turns [-].
-      type(params_t), intent(out) :: turned
-      real(wp), intent(out) :: with_turn(2)      !< [1/kPa, -]
+   !> docs/theory/material.md section 2.1.1.
+   pure subroutine turn_around(par, share, course, it)
+      type(params_t), intent(in) :: par      !< Of the material.
+      real(wp), intent(in) :: share          !< Where it turns [-].
       type(course_t), intent(inout) :: course
+      type(integration_t), intent(inout) :: it
       type(saturation_t) :: before, finish
-      real(wp) :: p_c, e, with_offset(3)
+      type(params_t) :: turned
+      real(wp) :: p_c, e, with_offset(3), with_turn(2)
 
-      p_c = suction_at(inc, share)
-      e = void_ratio_at(inc, share)
-      before = saturation(dries, p_c, e)
+      p_c = suction_at(it%inc, share)
+      e = void_ratio_at(it%inc, share)
+      before = saturation(course%branch, p_c, e)
       turned = branch_from(par, .false., p_c, e, before%s_w)
       with_turn = share*[1.0_wp/p_c, -par%omega*(1.0_wp + e)/e] &
                   *offset_with_turn(turned, before, saturation(turned, p_c, e), p_c, e)
-      p_c = suction_at(inc, 1.0_wp)
-      e = void_ratio_at(inc, 1.0_wp)
+      if (it%consistent) then
+         it%sens%driving%scans = turned%scanning%between
+         it%sens%driving%offset = with_turn(1)*it%sens%driving%d_pc + with_turn(2)*it%sens%driving%d_v
+      end if
+      course%branch = turned
+      p_c = suction_at(it%inc, 1.0_wp)
+      e = void_ratio_at(it%inc, 1.0_wp)
       finish = saturation(turned, p_c, e)
       with_offset = change_of_offset(turned, finish, p_c, e)
       course%change_pc = with_offset(1)*with_turn(1)

@@ -9,20 +9,24 @@ module mud_consistent
    use mud_loading, only: loading_t
    use mud_cutoff, only: slide, change_of_slide
    use mud_driving, only: driving_t, whole_increment, DIRECTIONS, AT_REST
-   use mud_increment, only: increment_t, void_ratio_at, suction_at, changes_of_loading_strain, turning_t, turning_of, NY
+   use mud_increment, only: increment_t, void_ratio_at, suction_at, changes_of_loading_strain, turning_of, NY
    use mud_params, only: params_t
-   use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY
+   use mud_rate, only: rate_t
+   use mud_rates, only: stress_ratio, MODE_ORDINARY
    use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, MAX_INTERRUPTED
    use mud_relaxation, only: relax
    use mud_reversal, only: interrupted_share
-   use mud_sensitivity, only: changes_t, linearised_t, linearise, changes_of_rate
+   use mud_sensitivity, only: changes_of_rate
    use mud_state, only: memory_t
    use mud_substep, only: MAX_STAGES, stage_point, solution
    use mud_tensor, only: IDENTITY, trace, deviator, tensors_t, ZERO_TENSORS, ANY_TENSORS
    use mud_trial, only: trial_t, MODE_HELD
+   use mud_elastic_domain, only: turning_t
+   use mud_point_changes, only: changes_t
+   use mud_linearise, only: linearised_t, linearise
    implicit none (type, external)
    private
-   public :: sensitivity_t, no_sensitivity, propagate, jump_of_memory, change_with_size, changes_along, &
+   public :: sensitivity_t, no_sensitivity, begin_stretch, propagate, jump_of_memory, change_with_size, changes_along, &
              changes_of_ratio, linearise_stage, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
 
    integer, parameter :: JUMP_NONE = 0
@@ -30,7 +34,6 @@ module mud_consistent
    integer, parameter :: JUMP_RETURN = 2     !< An interrupted process goes on.
    integer, parameter :: JUMP_NEW = 3        !< The point leaves the tension cut-off: no past.
 
-   real(wp), parameter :: WHOLE = 1.0_wp - 1.0e-12_wp   !< A phase that ends beyond is the last, but for rounding [-].
    integer, parameter :: STRESSES = 6*DIRECTIONS   !< That many derivatives are those of the stress: they stand first.
 
    !> Derivatives along the directions of driving_t.
@@ -40,6 +43,7 @@ module mud_consistent
       type(tensors_t) :: r_in                !< of the memory
       real(wp) :: r_before(DIRECTIONS, 6)    !< of the memory of the process before
       real(wp) :: shift(DIRECTIONS)          !< of the pseudo-time where the next substep begins
+      real(wp) :: stretch(DIRECTIONS)        !< of the length of the phase, over that length
       !> Of the memories of interrupted processes; those up to number `settled` were there when the increment began.
       real(wp) :: interrupted(DIRECTIONS, 6, MAX_INTERRUPTED)
       integer :: settled
@@ -47,8 +51,9 @@ module mud_consistent
    end type sensitivity_t
 contains
    !> At the start of an increment nothing depends on it yet. docs/theory/integration.md section 5.3.
-   pure subroutine no_sensitivity(depth, sens)
+   pure subroutine no_sensitivity(depth, inc, sens)
       integer, intent(in) :: depth           !< number of interrupted processes
+      type(increment_t), intent(in) :: inc
       type(sensitivity_t), intent(inout) :: sens
 
       sens%at_rest = .true.
@@ -58,28 +63,37 @@ contains
       sens%r_before = 0.0_wp
       sens%shift = 0.0_wp
       sens%settled = depth
-      call whole_increment(sens%driving)
+      call whole_increment(inc, sens%driving)
    end subroutine no_sensitivity
 
-   !> Carries the derivatives through an accepted substep h at whose end the pseudo-time is fixed (the last one of an
-   !> increment or a phase) or not. h is a share of inc [-]. docs/theory/integration.md section 5.3.
-   pure subroutine propagate(par, inc, trial, h, last, sens)
+   !> A phase begins whose end has a pseudo-time that changes by end_shift [-]. Its substeps stretch with it.
+   pure subroutine begin_stretch(inc, end_shift, sens)
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: end_shift(DIRECTIONS)
+      type(sensitivity_t), intent(inout) :: sens
+
+      sens%stretch = (end_shift - sens%shift)/(inc%to - inc%from)
+   end subroutine begin_stretch
+
+   !> Carries the derivatives through an accepted substep h, the last one of a phase or not. The end of a phase has a
+   !> pseudo-time that changes by end_shift. h and end_shift are shares of inc [-]. docs/theory/integration.md section
+   !> 5.3.
+   pure subroutine propagate(par, inc, trial, h, last, end_shift, sens)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
-      real(wp), intent(in) :: h
+      real(wp), intent(in) :: h, end_shift(DIRECTIONS)
       logical, intent(in) :: last
       type(sensitivity_t), intent(inout) :: sens
       real(wp) :: dh(DIRECTIONS)
-      logical :: ends
 
-      dh = 0.0_wp
-      if (last) dh = -sens%shift
+      dh = h*sens%stretch
+      if (last) dh = end_shift - sens%shift
       ! at the end of the whole increment only the stress is asked for
-      ends = last .and. inc%from + inc%length > WHOLE
-      call through_substep(par, inc, trial, h, sens%at_rest, ends, sens%shift, dh, sens%r_in, sens%driving, sens%y)
+      call through_substep(par, inc, trial, h, sens%at_rest, last .and. inc%to >= 1.0_wp, sens%shift, dh, sens%r_in, &
+                           sens%driving, sens%y)
       sens%at_rest = .false.
-      if (last) sens%shift = 0.0_wp
+      sens%shift = sens%shift + dh
    end subroutine propagate
 
    !> Derivative of the end of a substep with respect to its size. Per unit of h, a share of inc; [kPa, -, -] for
@@ -155,8 +169,8 @@ contains
       type(driving_t), intent(in) :: driving
       real(wp), dimension(DIRECTIONS), intent(out) :: de, dp_c
 
-      de = (1.0_wp + e)*(driving%e0 - time*driving%d_v - inc%d_v*dt)
-      dp_c = driving%p_c0 + time*driving%d_pc + inc%d_pc*dt
+      de = -(1.0_wp + e)*(time*driving%d_v + inc%d_v*dt)
+      dp_c = time*driving%d_pc + inc%d_pc*dt
    end subroutine change_of_place
 
    !> The scheme applied to all directions as one long vector.
@@ -291,7 +305,8 @@ contains
       changes%scans = driving%scans
       if (driving%scans) changes%offset = driving%offset
       call change_of_place(inc, time, e, dt, driving, changes%e, changes%p_c)
-      call changes_of_loading_strain(inc, mode, turning, driving%d_strain, driving%from_centre, dt, changes%loading)
+      call changes_of_loading_strain(inc, mode, turning, driving%d_strain, driving%from_centre, dt - driving%exit, &
+                                     changes%loading)
    end subroutine changes_along
 
    !> Changes of the stress ratio with the stress. sigma and y(:, 1:6) [kPa], dr [-]. Where p' is held at p_min its

@@ -7,9 +7,9 @@
 module mud_cutoff
    use mud_kinds, only: wp
    use mud_params, only: params_t
-   use mud_bounding, only: state_parameter, change_of_state_parameter, excess, change_of_excess, limited, &
+   use mud_bounding, only: psi_of, change_of_psi, excess, change_of_excess, limited, &
       change_of_limited
-   use mud_elastic, only: shear_modulus
+   use mud_elastic, only: shear_modulus, shear_slope
    use mud_increment, only: increment_t, void_ratio_at, suction_at
    use mud_tensor, only: trace, deviator, norm
    implicit none (type, external)
@@ -28,7 +28,7 @@ contains
 
       e = void_ratio_at(inc, time + h)
       r = r0 + deviator((2.0_wp*shear_modulus(par, e, par%p_min)/par%p_min*h)*inc%d_strain)
-      r = limited(par, state_parameter(par, inc%bonded, e, suction_at(inc, time + h), par%p_min), r)
+      r = limited(par, psi_of(par, inc%bonded, e, suction_at(inc, time + h), par%p_min), r)
    end function slide
 
    !> Change of that stress ratio with r0, with the increment's strain, with void ratio and suction at the end and with
@@ -44,20 +44,13 @@ contains
       p_c = suction_at(inc, time + h)
       stiffness = 2.0_wp*shear_modulus(par, e, par%p_min)/par%p_min*h
       r = r0 + deviator(stiffness*inc%d_strain)
-      change = dr0 + deviator(stiffness*d_strain) + deviator((stiffness*modulus_slope(e)*de)*inc%d_strain)
-      psi = state_parameter(par, inc%bonded, e, p_c, par%p_min)
+      change = dr0 + deviator(stiffness*d_strain) + deviator((stiffness*shear_slope(e)*de)*inc%d_strain)
+      psi = psi_of(par, inc%bonded, e, p_c, par%p_min)
       if (norm(r) <= 0.0_wp) return
       if (excess(par, psi, r) <= 0.0_wp) return
-      dpsi = change_of_state_parameter(par, inc%bonded, e, p_c, par%p_min, de, dp_c, 0.0_wp, d_offset)
+      dpsi = change_of_psi(par, inc%bonded, e, p_c, par%p_min, de, dp_c, 0.0_wp, d_offset)
       change = change_of_limited(par, psi, r, dpsi, change)
    end function change_of_slide
-
-   !> d ln G/de at constant p' [-].
-   pure real(wp) function modulus_slope(e)
-      real(wp), intent(in) :: e
-
-      modulus_slope = -2.0_wp/(2.97_wp - e) - 1.0_wp/(1.0_wp + e)
-   end function modulus_slope
 
    !> True where the stress ratio of a held point is on the bounding surface and an elastic rate would leave it.
    !> docs/theory/material.md section 6.2, to 1e-12 of the surface.
@@ -69,9 +62,9 @@ contains
 
       slides = .false.
       if (norm(r) <= 0.0_wp) return
-      psi = state_parameter(par, bonded, e, p_c, par%p_min)
+      psi = psi_of(par, bonded, e, p_c, par%p_min)
       if (excess(par, psi, r) < -ON_SURFACE) return
-      dpsi = change_of_state_parameter(par, bonded, e, p_c, par%p_min, -(1.0_wp + e)*trace(d_strain), d_pc, 0.0_wp)
+      dpsi = change_of_psi(par, bonded, e, p_c, par%p_min, -(1.0_wp + e)*trace(d_strain), d_pc, 0.0_wp)
       slides = change_of_excess(par, psi, r, dpsi, held_rate(par, bonded, e, p_c, r, .false., d_strain, d_pc)) > 0.0_wp
    end function slides
 
@@ -86,8 +79,8 @@ contains
 
       rate = deviator((2.0_wp*shear_modulus(par, e, par%p_min)/par%p_min)*d_strain)
       if (.not. sliding) return
-      psi = state_parameter(par, bonded, e, p_c, par%p_min)
-      dpsi = change_of_state_parameter(par, bonded, e, p_c, par%p_min, -(1.0_wp + e)*trace(d_strain), d_pc, 0.0_wp)
+      psi = psi_of(par, bonded, e, p_c, par%p_min)
+      dpsi = change_of_psi(par, bonded, e, p_c, par%p_min, -(1.0_wp + e)*trace(d_strain), d_pc, 0.0_wp)
       rate = change_of_limited(par, psi, r, dpsi, rate)
    end function held_rate
 end module mud_cutoff

@@ -4,17 +4,20 @@ module mud_error_control
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
    use mud_params, only: params_t
-   use mud_rates, only: rate_t, MODE_ORDINARY
-   use mud_registry, only: RULE_AS_PUBLISHED
-   use mud_substep, only: step_factor, SCHEMES, SAFETY, SMALLEST_FACTOR, LARGEST_FACTOR
+   use mud_rate, only: rate_t
+   use mud_rates, only: MODE_ORDINARY
+   use mud_registry, only: RULE_AS_PUBLISHED, SCHEME_AUTOMATIC
+   use mud_substep, only: step_factor, THIRD_ORDER, SAFETY, SMALLEST_FACTOR, LARGEST_FACTOR
    use mud_trial, only: trial_t, MODE_HELD
    implicit none (type, external)
    private
-   public :: control_t, judge_attempt, proposal, changes_root
+   public :: control_t, judge_attempt, proposal, changes_root, STRICTNESS
 
-   !> The higher order's share of the tolerance: its steps are long, and their errors are what its estimate says, while
-   !> modified Euler's are smaller [-].
-   real(wp), parameter :: STRICTNESS = 0.3_wp
+   !> The share of the tolerance that the scheme automatic allows to substeps of third order: they are long, and their
+   !> errors are what their estimate says, while those of modified Euler are smaller. Across a kink of the rates the
+   !> estimate misses a part of the error: that share again, but not below LEAST_ACROSS, where substeps would become
+   !> shorter than their minimum [-].
+   real(wp), parameter :: STRICTNESS = 0.3_wp, ACROSS_KINK = 0.3_wp, LEAST_ACROSS = 1.0e-11_wp
    !> An error that has fallen by less than this power of the size is that of a jump of the rates: of a smooth substep
    !> the power is the order, at least 2, and so it is across a kink [-].
    real(wp), parameter :: FIRST_ORDER = 1.5_wp
@@ -54,8 +57,12 @@ contains
       control%h = h
 
       tolerance = par%tolerance
-      if (inc%scheme%order > SCHEMES(par%scheme)%order .and. trial%mode /= MODE_HELD .and. &
-          trial%relaxation%speed <= 0.0_wp) tolerance = STRICTNESS*tolerance
+      if (par%scheme == SCHEME_AUTOMATIC .and. inc%scheme%order == THIRD_ORDER%order .and. &
+          trial%mode /= MODE_HELD .and. trial%relaxation%speed <= 0.0_wp) then
+         tolerance = STRICTNESS*tolerance
+         if (has_kink(trial%w(1:inc%scheme%stages)) .and. .not. changes) &
+            tolerance = max(ACROSS_KINK*tolerance, min(tolerance, LEAST_ACROSS))
+      end if
       if (changes .and. control%jumps > RESOLVED_JUMPS) &
          tolerance = tolerance*min(GROWTH**min(control%jumps - RESOLVED_JUMPS, 100), LARGEST_GROWTH)
       factor = step_factor(inc%scheme, error, tolerance, may_grow)
@@ -73,10 +80,19 @@ contains
       real(wp), intent(in) :: factor    !< Of that growth [-]
 
       proposal = grown
-      if (factor < LARGEST_FACTOR .or. inc%scheme%order > SCHEMES(1)%order) return
+      if (factor < LARGEST_FACTOR .or. inc%scheme%order >= THIRD_ORDER%order) return
       proposal = max(planned, grown)
       if (planned <= 0.0_wp) proposal = 0.0_wp
    end function proposal
+
+   !> True where stages of a substep stand on different sides of a kink of the rates: the floor, a cap, the isotropic
+   !> mechanism.
+   pure logical function has_kink(w)
+      type(rate_t), intent(in) :: w(:)
+
+      has_kink = any(w%floored .neqv. w(1)%floored) .or. any(w%capped_h .neqv. w(1)%capped_h) .or. &
+                 any(w%capped_d .neqv. w(1)%capped_d) .or. any(w%iso_active .neqv. w(1)%iso_active)
+   end function has_kink
 
    !> True where stages of a substep are at different roots of the direction equation: several are possible only between
    !> floor, cap and neither. Stages as rate_t has them. docs/theory/integration.md section 3.1.

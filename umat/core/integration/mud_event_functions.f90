@@ -2,11 +2,13 @@
 !> The functions whose zeros are events; docs/theory/integration.md section 4.2.
 module mud_event_functions
    use mud_kinds, only: wp
-   use mud_bounding, only: state_parameter, excess
+   use mud_bounding, only: psi_of, excess
    use mud_critical_state, only: bounding_ratio
+   use mud_elastic, only: bulk_slope
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, NY
    use mud_params, only: params_t
-   use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY, MODE_ELASTIC
+   use mud_rate, only: rate_t
+   use mud_rates, only: stress_ratio, MODE_ORDINARY, MODE_ELASTIC
    use mud_return_point, only: place_t, place_at, forwardness, beyond_target
    use mud_state, only: counters_t
    use mud_tensor, only: ddot, trace, norm, deviator
@@ -172,7 +174,7 @@ contains
       real(wp) :: length
 
       length = norm(inc%d_strain)
-      change = w%k*length*de*(1.0_wp/(1.0_wp + e) - 1.0_wp/e) + sign(1.0_wp, inc%d_pc)*d_pc
+      change = w%k*length*de*bulk_slope(e) + sign(1.0_wp, inc%d_pc)*d_pc
       if (length > 0.0_wp) change = change + w%k*ddot(inc%d_strain, d_strain)/length
       change = d_rate - closing_share(trial)*change
    end function change_of_closing_rate
@@ -196,6 +198,6 @@ contains
       type(increment_t), intent(in) :: inc
       real(wp), intent(in) :: time, p
 
-      psi_at = state_parameter(par, inc%bonded, void_ratio_at(inc, time), suction_at(inc, time), p)
+      psi_at = psi_of(par, inc%bonded, void_ratio_at(inc, time), suction_at(inc, time), p)
    end function psi_at
 end module mud_event_functions

@@ -3,20 +3,24 @@
 !> there changes its size.
 module mud_event_time
    use mud_kinds, only: wp
-   use mud_bounding, only: change_of_state_parameter, change_of_bounding_ratio, change_of_excess
+   use mud_bounding, only: change_of_psi, change_of_excess
    use mud_consistent, only: sensitivity_t, change_with_size, changes_along, changes_of_ratio, linearise_stage
-   use mud_critical_state, only: bounding_ratio
+   use mud_critical_state, only: bounding_ratio, bounding_slope
    use mud_driving, only: driving_t, DIRECTIONS
    use mud_event_functions, only: EVENT_OPENS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, closing_mode, &
       change_of_closing_rate, rate_without_past, psi_at
-   use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, turning_t, turning_of, NY
+   use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, turning_of, NY
    use mud_params, only: params_t
-   use mud_rates, only: rate_t, stress_ratio
+   use mud_rate, only: rate_t
+   use mud_rates, only: stress_ratio
    use mud_return_point, only: target_limit, is_limited
-   use mud_sensitivity, only: changes_t, linearised_t, changes_of_rate, changes_of_drive
+   use mud_sensitivity, only: changes_of_rate, changes_of_drive
    use mud_state, only: counters_t
    use mud_tensor, only: ddot, trace, contractions, tensors_t, ANY_TENSORS
    use mud_trial, only: trial_t, MODE_HELD
+   use mud_elastic_domain, only: turning_t
+   use mud_point_changes, only: changes_t
+   use mud_linearise, only: linearised_t
    implicit none (type, external)
    private
    public :: move_event
@@ -150,7 +154,7 @@ contains
       call stress_ratio(par, trial%y(1:6), p, r)
       psi = psi_at(par, inc, time, p)
       dp = merge(trace(y(1:6))/3.0_wp, 0.0_wp, trace(trial%y(1:6)) >= 3.0_wp*par%p_min)
-      dpsi = change_of_state_parameter(par, inc%bonded, void_ratio_at(inc, time), suction_at(inc, time), p, de, &
+      dpsi = change_of_psi(par, inc%bonded, void_ratio_at(inc, time), suction_at(inc, time), p, de, &
                                        dp_c, dp, d_offset)
       if (event == EVENT_BOUNDS) then
          slope = change_of_excess(par, psi, r, dpsi, dr)
@@ -158,7 +162,7 @@ contains
          m_b = bounding_ratio(par, psi)
          slope = ddot(dr, trial%process%direction)
          if (is_limited(par, trial%process, m_b)) then
-            slope = slope - target_limit(par, trial%process)*change_of_bounding_ratio(par, psi, m_b, dpsi)
+            slope = slope - target_limit(par, trial%process)*bounding_slope(par, psi, m_b)*dpsi
          end if
       end if
    end function slope_at_surface

@@ -8,7 +8,8 @@ module mud_events
    use mud_kinds, only: wp
    use mud_landing, only: land_on, EVENT_TOLERANCE
    use mud_params, only: params_t
-   use mud_rates, only: rate_t, MODE_ELASTIC
+   use mud_rate, only: rate_t
+   use mud_rates, only: MODE_ELASTIC
    use mud_registry, only: RULE_AS_PUBLISHED
    use mud_return_point, only: place_t, forwardness, note_progress, note_farthest
    use mud_state, only: memory_t, counters_t
@@ -18,7 +19,6 @@ module mud_events
    implicit none (type, external)
    private
    public :: stop_at_event, note_turning_point
-   public :: EVENT_TOLERANCE, EVENT_NONE, EVENT_OPENS, EVENT_MECHANISM   !< as the loop over substeps needs them
 
    real(wp), parameter :: PROBE_BELOW = 0.5_wp   !< A minimum below this share of x_rev above -x_rev is looked at [-].
    !> A kink is looked for where the error of a substep is above this share of the tolerance [-].

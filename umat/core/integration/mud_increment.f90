@@ -7,31 +7,36 @@ module mud_increment
    use mud_tensor, only: IDENTITY, LANES, ddot, trace, deviator, norm, tensors_t
    use mud_loading, only: loading_t, no_strain, whole_strain
    use mud_bonding, only: is_bonded
-   use mud_rates, only: rate_t, rate_at, MODE_ORDINARY, MODE_ELASTIC
-   use mud_elastic_domain, only: turning_t, turning_at, combination_t, combination_of_turning, loading_direction
+   use mud_rate, only: rate_t
+   use mud_rates, only: rate_at, MODE_ORDINARY, MODE_ELASTIC
+   use mud_elastic_domain, only: turning_t, turning_at, combination_t, combination_of_turning, &
+      loading_direction, exit_share
    use mud_substep, only: scheme_t, SCHEMES
    implicit none (type, external)
    private
-   public :: increment_t, new_increment, take_phase, void_ratio_at, suction_at, rate_of, loading_strain, &
-             changes_of_loading_strain, turning_t, turning_of, has_aside, NY
+   public :: increment_t, new_increment, take_phase, end_in_domain, direction_at, void_ratio_at, suction_at, rate_of, &
+             loading_strain, changes_of_loading_strain, turning_of, has_aside, NY, SHORTEST_PHASE
 
    integer, parameter :: NY = 13         !< Length of the integrated vector: sigma'(6), z(6), plastic shear.
    !> A strain across the elastic domain, whose part along nu is rounding of either sign, does not load: it would look
    !> like a reversal [-].
    real(wp), parameter :: ACROSS = 1.0e-12_wp
+   real(wp), parameter :: SHORTEST_PHASE = 1.0e-9_wp   !< A shorter phase is left out [-].
 
    type(turning_t), parameter :: NO_TURNING = turning_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
       0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
 
-   !> What stays the same through an update; with an elastic domain, through one of its phases.
+   !> An increment, and the phase of it that is being integrated. Pseudo-time runs from 0 to 1 over the whole of it.
    type :: increment_t
       real(wp) :: d_strain(6), d_pc, p_c0, e0, d_v
-      logical :: bonded             !< Bonding is on and there is suction: decided once.
-      logical :: inside             !< The phase inside the elastic domain.
       real(wp) :: rho               !< Radius of the elastic domain, 0: none [-].
-      real(wp) :: from, length      !< The phase's place in the update [-].
-      real(wp) :: from_centre(6)        !< Strain from its centre at the start [-].
-      type(scheme_t) :: scheme
+      real(wp) :: exit              !< Where the strain leaves the elastic domain, 1: it does not [-].
+      real(wp) :: from_centre(6)    !< Strain from its centre, there or, if it stays inside, at the start [-].
+      ! the phase
+      real(wp) :: from, to          !< Its place [-].
+      logical :: bonded             !< Bonding is on and there is suction.
+      logical :: inside             !< It is inside the elastic domain.
+      type(scheme_t) :: scheme      !< Of the substep.
    end type increment_t
 contains
    !> Rate at a vector of the integration and a pseudo-time; void ratio and suction follow from the latter exactly. time
@@ -84,7 +89,7 @@ contains
       real(wp) :: nu(6)
 
       nu = 0.0_wp
-      if (mode /= MODE_ELASTIC) nu = loading_direction(inc%rho, inc%from_centre, inc%d_strain, time)
+      if (mode /= MODE_ELASTIC) nu = direction_at(inc, time)
       call part(inc, nu, loading, aside)
    end subroutine loading_strain
 
@@ -108,7 +113,7 @@ contains
       integer, intent(in) :: mode
       type(turning_t), intent(in) :: turning   !< of the pseudo-time; not used inside the domain
       type(tensors_t), intent(in) :: strain, centre   !< changes of both
-      real(wp), intent(in) :: dt(LANES)
+      real(wp), intent(in) :: dt(LANES)        !< of the pseudo-time since the exit
       type(loading_t), intent(inout) :: loading
       type(combination_t) :: by
       real(wp) :: along, per_rho, nu(2), nu_rate(2), turn_rate, turn, on_d, on_length, d_on_u
@@ -158,49 +163,77 @@ contains
       type(turning_t) :: turning
 
       if (has_aside(inc, mode) .and. mode /= MODE_ELASTIC) then
-         turning = turning_at(inc%rho, inc%from_centre, inc%d_strain, time)
+         turning = turning_at(inc%rho, inc%from_centre, inc%d_strain, time - inc%exit)
       else
          turning = NO_TURNING
       end if
    end function turning_of
 
-   !> An increment of a point with void ratio e and suction p_c. e and strain [-], tensor shear, compression positive;
-   !> p_c and d_pc in the unit of p_atm. Nothing is checked. docs/theory/integration.md section 1.
-   pure subroutine new_increment(par, e, p_c, d_strain, d_pc, inc)
+   !> An increment of a point with void ratio e, suction p_c and a strain from_centre of the elastic domain. e and
+   !> strain [-], tensor shear, compression positive; p_c and d_pc in the unit of p_atm. The phase is not set, nothing
+   !> is checked. docs/theory/integration.md section 1, docs/theory/memory-rules.md section 4.2.
+   pure subroutine new_increment(par, e, p_c, from_centre, d_strain, d_pc, inc)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: e, p_c, d_strain(6), d_pc
+      real(wp), intent(in) :: e, p_c, from_centre(6), d_strain(6), d_pc
       type(increment_t), intent(out) :: inc
+      real(wp) :: length
 
       inc%d_strain = d_strain
       inc%d_pc = d_pc
       inc%p_c0 = p_c
       inc%e0 = e
       inc%d_v = trace(d_strain)
-      inc%bonded = is_bonded(par, max(p_c, p_c + d_pc))
-      inc%scheme = SCHEMES(par%scheme)
+      inc%scheme = SCHEMES(max(par%scheme, 1))   ! automatic: chosen for every attempt
       inc%rho = par%rho_e
-      inc%inside = .false.
-      inc%from = 0.0_wp
-      inc%length = 1.0_wp
+      inc%exit = 1.0_wp
       inc%from_centre = 0.0_wp
+      if (inc%rho <= 0.0_wp) return
+      inc%from_centre = from_centre
+      length = norm(from_centre)
+      if (length > inc%rho) inc%from_centre = (inc%rho/length)*from_centre
+      inc%exit = exit_share(inc%rho, inc%from_centre, d_strain)
+      if (inc%exit < SHORTEST_PHASE) inc%exit = 0.0_wp
+      if (1.0_wp - inc%exit < SHORTEST_PHASE) then
+         inc%exit = 1.0_wp
+      else
+         inc%from_centre = inc%from_centre + inc%exit*d_strain
+         inc%from_centre = (inc%rho/norm(inc%from_centre))*inc%from_centre
+      end if
    end subroutine new_increment
 
-   !> The part of an increment between two pseudo-times as an increment of its own. from and to are shares of the whole
-   !> [-], not checked. docs/theory/memory-rules.md section 4.2.
-   pure subroutine take_phase(whole, from, to, inc)
-      type(increment_t), intent(in) :: whole
+   !> The phase of an increment between two pseudo-times [-]: nothing changes its kind in between.
+   pure subroutine take_phase(par, from, to, inc)
+      type(params_t), intent(in) :: par
       real(wp), intent(in) :: from, to
-      type(increment_t), intent(out) :: inc
+      type(increment_t), intent(inout) :: inc
 
-      inc = whole
-      inc%from = whole%from + from*whole%length
-      inc%length = (to - from)*whole%length
-      inc%d_strain = (to - from)*whole%d_strain
-      inc%d_v = (to - from)*whole%d_v
-      inc%d_pc = (to - from)*whole%d_pc
-      inc%e0 = void_ratio_at(whole, from)
-      inc%p_c0 = suction_at(whole, from)
+      inc%from = from
+      inc%to = to
+      inc%inside = inc%rho > 0.0_wp .and. 0.5_wp*(from + to) < inc%exit
+      inc%bonded = is_bonded(par, suction_at(inc, 0.5_wp*(from + to)))
    end subroutine take_phase
+
+   !> Strain from the centre of the elastic domain at the end of an increment [-]. docs/theory/memory-rules.md section
+   !> 4.2.
+   pure function end_in_domain(inc) result(from_centre)
+      type(increment_t), intent(in) :: inc
+      real(wp) :: from_centre(6)
+
+      if (inc%exit < 1.0_wp) then
+         from_centre = inc%rho*direction_at(inc, 1.0_wp)
+      else
+         from_centre = inc%from_centre + inc%d_strain
+      end if
+   end function end_in_domain
+
+   !> nu at a pseudo-time beyond the exit [-]. docs/theory/memory-rules.md section 4.2.
+   pure function direction_at(inc, time) result(nu)
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time
+      real(wp) :: nu(6)
+
+      nu = loading_direction(inc%rho, inc%from_centre, inc%d_strain, time - inc%exit)
+   end function direction_at
 
    !> Void ratio at a pseudo-time: 1 + e falls as exp(-eps_v), exactly. time is a share of inc, the result [-].
    !> docs/theory/material.md section 1.2.

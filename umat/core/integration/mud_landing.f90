@@ -6,7 +6,7 @@ module mud_landing
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
    use mud_params, only: params_t
-   use mud_rates, only: rate_t
+   use mud_rate, only: rate_t
    use mud_state, only: counters_t
    use mud_tensor, only: ddot
    use mud_trial, only: trial_t, take_step, MODE_HELD

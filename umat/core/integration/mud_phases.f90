@@ -1,131 +1,115 @@
 ! SPDX-License-Identifier: MIT
-!> The phases of an increment: with and without suction, inside an elastic domain and beyond it.
+!> An increment as a list of phases. Where suction turns or passes zero, and where the strain leaves the elastic domain,
+!> follows from strain, void ratio and suction alone: the list is made before anything is integrated.
 module mud_phases
+   use mud_branches, only: course_t, turn_around
+   use mud_consistent, only: begin_stretch
+   use mud_driving, only: change_of_zero_suction, change_of_turn, DIRECTIONS
+   use mud_increment, only: increment_t, take_phase, suction_at, end_in_domain, SHORTEST_PHASE
+   use mud_integration, only: integration_t
    use mud_kinds, only: wp
-   use mud_bonding, only: is_bonded
-   use mud_consistent, only: sensitivity_t
-   use mud_driving, only: driving_t, parts_at_exit, parts_without_suction, end_in_domain
-   use mud_elastic_domain, only: exit_share, loading_direction
-   use mud_increment, only: increment_t, take_phase
    use mud_params, only: params_t
-   use mud_state, only: state_t, counters_t
-   use mud_status, only: mud_status_t, MUD_OK
-   use mud_substepping, only: integrate
-   use mud_tensor, only: norm
-   use mud_trace, only: trace_t
-   use mud_trial, only: trial_t
+   use mud_status, only: MUD_OK
+   use mud_substepping, only: integrate_phase
    implicit none (type, external)
    private
    public :: integrate_phases
 
-   real(wp), parameter :: WHOLE_PHASE = 1.0e-9_wp            !< A phase shorter than this share is left out [-].
+   integer, parameter :: CUT_END = 0, CUT_TURN = 1, CUT_NO_SUCTION = 2, CUT_EXIT = 3
 
+   !> Where a phase ends.
+   type :: cut_t
+      integer :: kind    !< CUT_*
+      real(wp) :: time   !< Pseudo-time [-].
+   end type cut_t
 contains
-   !> An increment. Where suction passes zero it is taken in two parts: bonding begins or ends there. On return inc is
-   !> the phase that ended the increment. size in units of strain and reached, the share integrated [-]. Errors are
-   !> those of integrate; state is then that of the last accepted substep. docs/theory/integration.md section 1.
-   pure subroutine integrate_phases(par, inc, size, consistent, state, trial, sens, counters, reached, status, record)
+   !> Integrates an increment that is not zero. On return it%inc is in the phase that ended it, and with hysteresis
+   !> course%branch is its branch. Errors are those of integrate_phase; the state is then that of the last accepted
+   !> substep. docs/theory/integration.md section 1.
+   pure subroutine integrate_phases(par, course, it)
       type(params_t), intent(in) :: par
-      type(increment_t), intent(inout) :: inc
-      real(wp), intent(in) :: size
-      logical, intent(in) :: consistent
-      type(state_t), intent(inout) :: state
-      type(trial_t), intent(inout) :: trial
-      type(sensitivity_t), intent(inout) :: sens
-      type(counters_t), intent(inout) :: counters
-      real(wp), intent(out) :: reached
-      type(mud_status_t), intent(out) :: status
-      type(trace_t), intent(inout), optional :: record
-      type(increment_t) :: whole
-      type(driving_t) :: first, rest
-      real(wp) :: share
+      type(course_t), intent(inout) :: course   !< With hysteresis; otherwise its turn is 1.
+      type(integration_t), intent(inout) :: it
+      type(cut_t) :: cuts(4)
+      real(wp) :: from, end_shift(DIRECTIONS)
+      integer :: i, n
 
-      share = share_without_suction(par, inc)
-      if (share >= 1.0_wp) then
-         call integrate_part(par, inc, size, consistent, state, trial, sens, counters, reached, status, record)
-         return
-      end if
-      whole = inc
-      if (consistent) call parts_without_suction(whole, share, sens%driving, first, rest)
-      call take_phase(whole, 0.0_wp, share, inc)
-      inc%bonded = is_bonded(par, whole%p_c0)
-      if (consistent) sens%driving = first
-      call integrate_part(par, inc, share*size, consistent, state, trial, sens, counters, reached, status, record)
-      reached = share*reached
-      if (status%code /= MUD_OK) return
-      if (consistent) rest%from_centre = sens%driving%from_centre
-      call take_phase(whole, share, 1.0_wp, inc)
-      inc%p_c0 = 0.0_wp
-      inc%bonded = is_bonded(par, inc%d_pc)
-      if (consistent) sens%driving = rest
-      call integrate_part(par, inc, (1.0_wp - share)*size, consistent, state, trial, sens, counters, reached, status, &
-                          record)
-      reached = share + (1.0_wp - share)*reached
+      call list_cuts(par, it%inc, course%turn, cuts, n)
+      from = 0.0_wp
+      do i = 1, n
+         call take_phase(par, from, cuts(i)%time, it%inc)
+         if (it%consistent) then
+            end_shift = change_of_cut(par, it, cuts(i))
+            call begin_stretch(it%inc, end_shift, it%sens)
+         end if
+         if (par%hysteresis) then
+            call integrate_phase(course%branch, end_shift, it)
+         else
+            call integrate_phase(par, end_shift, it)
+         end if
+         if (it%status%code /= MUD_OK) return
+         if (cuts(i)%kind == CUT_TURN) call turn_around(par, cuts(i)%time, course, it)
+         from = cuts(i)%time
+      end do
+      if (it%inc%rho > 0.0_wp) it%state%from_centre = end_in_domain(it%inc)
    end subroutine integrate_phases
 
-   !> Share of an increment after which its suction passes zero, 1 if it does not.
-   pure real(wp) function share_without_suction(par, inc) result(share)
+   !> The cuts of an increment in their order, its end the last. A phase that would be very short is joined to the next.
+   pure subroutine list_cuts(par, inc, turn, cuts, n)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: turn
+      type(cut_t), intent(out) :: cuts(4)
+      integer, intent(out) :: n
+
+      n = 1
+      cuts(1) = cut_t(CUT_END, 1.0_wp)
+      call insert(cut_t(CUT_TURN, turn), cuts, n)
+      if (passes_zero(par, inc)) call insert(cut_t(CUT_NO_SUCTION, -inc%p_c0/inc%d_pc), cuts, n)
+      if (inc%rho > 0.0_wp) call insert(cut_t(CUT_EXIT, inc%exit), cuts, n)
+   end subroutine list_cuts
+
+   !> A cut at its place among others, unless it would leave a very short phase.
+   pure subroutine insert(cut, cuts, n)
+      type(cut_t), intent(in) :: cut
+      type(cut_t), intent(inout) :: cuts(4)
+      integer, intent(inout) :: n
+      integer :: i
+
+      if (cut%time < SHORTEST_PHASE .or. any(abs(cuts(1:n)%time - cut%time) < SHORTEST_PHASE)) return
+      do i = n, 1, -1
+         if (cuts(i)%time < cut%time) exit
+         cuts(i + 1) = cuts(i)
+      end do
+      cuts(i + 1) = cut
+      n = n + 1
+   end subroutine insert
+
+   !> True where suction passes zero and bonding begins or ends there.
+   pure logical function passes_zero(par, inc)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
 
-      share = 1.0_wp
-      if (.not. par%bonding .or. abs(inc%p_c0) <= 0.0_wp) return
-      if ((inc%p_c0 > 0.0_wp) .eqv. (inc%p_c0 + inc%d_pc >= 0.0_wp)) return
-      share = -inc%p_c0/inc%d_pc
-      if (share < WHOLE_PHASE .or. 1.0_wp - share < WHOLE_PHASE) share = 1.0_wp
-   end function share_without_suction
+      passes_zero = par%bonding .and. abs(inc%p_c0) > 0.0_wp
+      if (passes_zero) passes_zero = (inc%p_c0 > 0.0_wp) .neqv. (suction_at(inc, 1.0_wp) >= 0.0_wp)
+   end function passes_zero
 
-   !> A part of an increment, or all of it: with an elastic domain a phase inside it, then one that pulls it along;
-   !> either may be empty. On return the derivatives of the strain from the centre are those at the end.
-   pure subroutine integrate_part(par, inc, size, consistent, state, trial, sens, counters, reached, status, record)
+   !> Derivatives of the pseudo-time of a cut [-].
+   pure function change_of_cut(par, it, cut) result(change)
       type(params_t), intent(in) :: par
-      type(increment_t), intent(inout) :: inc
-      real(wp), intent(in) :: size
-      logical, intent(in) :: consistent
-      type(state_t), intent(inout) :: state
-      type(trial_t), intent(inout) :: trial
-      type(sensitivity_t), intent(inout) :: sens
-      type(counters_t), intent(inout) :: counters
-      real(wp), intent(out) :: reached
-      type(mud_status_t), intent(out) :: status
-      type(trace_t), intent(inout), optional :: record
-      type(increment_t) :: whole
-      type(driving_t) :: inside, rest
-      real(wp) :: share
-      logical :: divided   !< Derivatives are wanted, and there are two parts.
+      type(integration_t), intent(in) :: it
+      type(cut_t), intent(in) :: cut
+      real(wp) :: change(DIRECTIONS)
 
-      if (inc%rho <= 0.0_wp) then
-         call integrate(par, inc, size, consistent, state, trial, sens, counters, reached, status, record)
-         return
-      end if
-      whole = inc
-      whole%from_centre = state%from_centre
-      if (norm(state%from_centre) > inc%rho) whole%from_centre = (inc%rho/norm(state%from_centre))*state%from_centre
-      share = exit_share(inc%rho, whole%from_centre, inc%d_strain)
-      if (share < WHOLE_PHASE) share = 0.0_wp
-      if (1.0_wp - share < WHOLE_PHASE) share = 1.0_wp
-      divided = consistent .and. share > 0.0_wp
-      if (divided) call parts_at_exit(whole, share, sens%driving, inside, rest)
-
-      if (share > 0.0_wp) then
-         call take_phase(whole, 0.0_wp, share, inc)
-         inc%inside = .true.
-         if (consistent) sens%driving = inside
-         call integrate(par, inc, share*size, consistent, state, trial, sens, counters, reached, status, record)
-         reached = share*reached
-         if (status%code /= MUD_OK) return
-      end if
-      state%from_centre = whole%from_centre + share*whole%d_strain
-      if (divided) sens%driving%from_centre = rest%from_centre
-      if (share < 1.0_wp) then
-         call take_phase(whole, share, 1.0_wp, inc)
-         inc%from_centre = (inc%rho/norm(state%from_centre))*state%from_centre
-         if (divided) sens%driving = rest
-         call integrate(par, inc, (1.0_wp - share)*size, consistent, state, trial, sens, counters, reached, status, &
-                        record)
-         reached = share + (1.0_wp - share)*reached
-         state%from_centre = inc%rho*loading_direction(inc%rho, inc%from_centre, inc%d_strain, 1.0_wp)
-         if (consistent .and. whole%length < 1.0_wp) sens%driving%from_centre = end_in_domain(inc, sens%driving)
-      end if
-   end subroutine integrate_part
+      select case (cut%kind)
+      case (CUT_TURN)
+         change = change_of_turn(it%inc, cut%time, par%omega, it%sens%driving)
+      case (CUT_NO_SUCTION)
+         change = change_of_zero_suction(it%inc, cut%time, it%sens%driving)
+      case (CUT_EXIT)
+         change = it%sens%driving%exit
+      case default
+         change = 0.0_wp
+      end select
+   end function change_of_cut
 end module mud_phases

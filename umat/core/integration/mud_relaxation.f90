@@ -7,7 +7,7 @@
 module mud_relaxation
    use mud_increment, only: NY
    use mud_kinds, only: wp, SQRT_2_3
-   use mud_rates, only: rate_t
+   use mud_rate, only: rate_t
    use mud_substep, only: IMPLICIT_DIAGONAL, IMPLICIT_WEIGHTS
    use mud_tensor, only: IDENTITY
    implicit none (type, external)

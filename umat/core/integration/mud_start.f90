@@ -4,9 +4,9 @@ module mud_start
    use mud_kinds, only: wp
    use mud_blocks, only: blocks_t
    use mud_bonding, only: bonding_t, is_bonded, bonding, UNBONDED
-   use mud_bounding, only: state_parameter, limited
+   use mud_bounding, only: psi_of, limited
    use mud_checks, only: check_stress
-   use mud_critical_state, only: critical_void_ratio
+   use mud_critical_state, only: state_parameter
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio
    use mud_retention, only: saturation_t, saturation
@@ -76,7 +76,7 @@ contains
       type(state_t), intent(inout) :: state
 
       if (trace(state%sigma) >= 3.0_wp*par%p_min*(1.0_wp - AT_LIMIT)) return
-      state%sigma = par%p_min*(IDENTITY + limited(par, state_parameter(par, bonded, state%e, state%p_c, par%p_min), &
+      state%sigma = par%p_min*(IDENTITY + limited(par, psi_of(par, bonded, state%e, state%p_c, par%p_min), &
                                                   deviator(state%sigma)/par%p_min))
    end subroutine lift_to_limit
 
@@ -97,7 +97,7 @@ contains
          sat = saturation(par, state%p_c, state%e)
       end if
       state%s_w = sat%s_w
-      state%psi = state%e - critical_void_ratio(par, bond%f, max(trace(state%sigma)/3.0_wp, par%p_min))
+      state%psi = state_parameter(par, bond%f, state%e, max(trace(state%sigma)/3.0_wp, par%p_min))
       if (.not. present(blocks)) return
       blocks%dsw_dpc = sat%ds_dpc
       blocks%dsw_dev = -(1.0_wp + state%e)*sat%ds_de

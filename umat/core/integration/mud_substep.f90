@@ -5,7 +5,8 @@ module mud_substep
    use mud_kinds, only: wp
    implicit none (type, external)
    private
-   public :: scheme_t, SCHEMES, HIGHER_ORDER, LINEARLY_IMPLICIT, IMPLICIT_WEIGHTS, IMPLICIT_DIAGONAL, MAX_STAGES, &
+   public :: scheme_t, SCHEMES, SECOND_ORDER, THIRD_ORDER, AS_SECOND_ORDER, LINEARLY_IMPLICIT, &
+             IMPLICIT_WEIGHTS, IMPLICIT_DIAGONAL, MAX_STAGES, &
              LARGEST_FACTOR, SMALLEST_FACTOR, SAFETY, stage_point, solution, error_vector, &
              step_factor, cubic_point
 
@@ -54,9 +55,12 @@ module mud_substep
       [0.0_wp, 1.0_wp/5, 3.0_wp/10, 4.0_wp/5, 8.0_wp/9, 1.0_wp, 1.0_wp])
 
    type(scheme_t), parameter :: SCHEMES(3) = [MODIFIED_EULER, BOGACKI_SHAMPINE, DORMAND_PRINCE]
-   !> Replaces modified Euler where that would need many substeps: its steps grow with the third root of the tolerance,
-   !> and it is the most stable of the three for its rates.
-   type(scheme_t), parameter :: HIGHER_ORDER = BOGACKI_SHAMPINE
+   !> The pairs of the scheme `automatic`. Steps of the third order grow with the third root of the tolerance, and it is
+   !> the most stable of the three for its rates.
+   type(scheme_t), parameter :: SECOND_ORDER = MODIFIED_EULER, THIRD_ORDER = BOGACKI_SHAMPINE
+   !> The error that modified Euler would have, from the stages of a substep of third order: its first and its last.
+   type(scheme_t), parameter :: AS_SECOND_ORDER = scheme_t(4, 2, .true., BOGACKI_SHAMPINE%a, BOGACKI_SHAMPINE%b, &
+      [-0.5_wp, 0.0_wp, 0.0_wp, 0.5_wp, ZERO(5:7)], BOGACKI_SHAMPINE%node)
 
    !> Rosenbrock-W 3(2), ROS34PW2 of Rang & Angermann, BIT 45 (2005): of order 3 whatever matrix stands for the
    !> Jacobian, and L-stable where it is the Jacobian. Its rates are those of explicit stages, changed by

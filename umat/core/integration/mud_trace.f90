@@ -38,12 +38,11 @@ contains
       integer, intent(in) :: outcome, jump    !< SUBSTEP_*; JUMP_* of the memory at its start.
       logical, intent(in) :: landed           !< Shortened to end at an event.
       type(counters_t), intent(in) :: counters
-      type(trace_t), intent(inout), optional :: trace   !< Without it nothing is done.
+      type(trace_t), intent(inout) :: trace
       type(saturation_t) :: sat
       real(wp) :: e, p_c
       integer :: row
 
-      if (.not. present(trace)) return
       trace%attempts = trace%attempts + 1
       row = trace%attempts - trace%first + 1
       if (.not. associated(trace%rows) .or. row < 1) return
@@ -53,6 +52,6 @@ contains
       sat = saturation(par, p_c, e)
       trace%rows(row) = substep_t(outcome, trial%mode, jump, merge(1, 0, landed), counters%rate, counters%reset, &
                                   guard_count(counters), counters%no_root, &
-                                  inc%from + inc%length*trial%time, inc%length*h, error, e, sat%s_w, p_c, sigma)
+                                  trial%time, h, error, e, sat%s_w, p_c, sigma)
    end subroutine record_substep
 end module mud_trace

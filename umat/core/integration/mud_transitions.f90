@@ -4,19 +4,21 @@
 module mud_transitions
    use mud_kinds, only: wp
    use mud_bounding, only: excess
-   use mud_consistent, only: sensitivity_t, jump_of_memory, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
+   use mud_consistent, only: jump_of_memory, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
    use mud_event_functions, only: elastic_rate, closing_mode, closing_rate, psi_at, LARGEST_EXCESS, EVENT_NONE, &
       EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN
    use mud_events, only: note_turning_point
-   use mud_increment, only: increment_t, rate_of
+   use mud_increment, only: rate_of
+   use mud_integration, only: integration_t
    use mud_params, only: params_t
-   use mud_rates, only: rate_t, stress_ratio, MODE_ORDINARY, MODE_ELASTIC
+   use mud_rate, only: rate_t
+   use mud_rates, only: stress_ratio, MODE_ORDINARY, MODE_ELASTIC
    use mud_registry, only: RULE_RETURN_POINT
    use mud_return_point, only: watched_process, beyond_target, resume_process
    use mud_reversal, only: new_memory, begin_process, accept_process
-   use mud_state, only: memory_t, state_t, counters_t
+   use mud_state, only: memory_t
    use mud_tensor, only: IDENTITY, ddot, trace, deviator
-   use mud_trial, only: trial_t, MODE_HELD
+   use mud_trial, only: MODE_HELD
    implicit none (type, external)
    private
    public :: begin_phase, begin_substep, accept_substep, rate_is_known, AT_LIMIT
@@ -25,122 +27,128 @@ module mud_transitions
 contains
    !> What a trial holds before the first substep of an increment or phase. Its stress and rate are those of
    !> begin_substep.
-   pure subroutine begin_phase(trial)
-      type(trial_t), intent(inout) :: trial
+   pure subroutine begin_phase(it)
+      type(integration_t), intent(inout) :: it
 
-      trial%pressed = .false.
-      trial%relaxation%speed = 0.0_wp
-      trial%openings = 0
+      it%known = .false.
+      it%event = EVENT_NONE
+      it%trial%pressed = .false.
+      it%trial%relaxation%speed = 0.0_wp
+      it%trial%openings = 0
    end subroutine begin_phase
 
    !> Decides what the coming substep is - ordinary, elastic or held by the tension cut-off - applies the memory rule,
    !> and leaves the first rate in the trial. docs/theory/integration.md section 1, docs/theory/memory-rules.md section
    !> 3.5, docs/theory/material.md section 6.
-   pure subroutine begin_substep(par, inc, event, known, consistent, state, trial, sens, jump, counters)
+   pure subroutine begin_substep(par, it)
       type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
-      integer, intent(in) :: event       !< At which the substep before ended.
-      logical, intent(in) :: known       !< The trial's last rate is that of this point; one held does not close.
-      logical, intent(in) :: consistent  !< Derivatives are wanted.
-      type(state_t), intent(inout) :: state
-      type(trial_t), intent(inout) :: trial
-      type(sensitivity_t), intent(inout) :: sens
-      integer, intent(out) :: jump       !< JUMP_*, the last one if there are several
-      type(counters_t), intent(inout) :: counters
+      type(integration_t), intent(inout) :: it
       real(wp) :: p, r(6), outwards
 
-      jump = JUMP_NONE
-      trial%watched = 0
-      trial%advanced = .false.
-      call stress_ratio(par, state%sigma, p, r)
-      trial%mode = MODE_ORDINARY
-      trial%r_in = state%memory%r_in
-      if (state%open) then
-         trial%mode = MODE_HELD
-         if (known) return
-         call try_to_close(par, inc, r, consistent, state, trial, sens, jump, counters)
+      it%jump = JUMP_NONE
+      it%trial%watched = 0
+      it%trial%advanced = .false.
+      call stress_ratio(par, it%state%sigma, p, r)
+      it%trial%mode = MODE_ORDINARY
+      it%trial%r_in = it%state%memory%r_in
+      if (it%state%open) then
+         it%trial%mode = MODE_HELD
+         if (it%known) return
+         call try_to_close(par, r, it)
          return
       end if
 
       ! beyond the surface by a landing, whichever way the strain leads: suction may move the surface
-      if (event == EVENT_BOUNDS) trial%pressed = .true.
-      if (inc%inside .and. .not. trial%pressed) then
-         trial%mode = MODE_ELASTIC
-         call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
-         outwards = (2.0_wp*trial%w(1)%g)*ddot(inc%d_strain, r) - (trial%w(1)%k*inc%d_v)*ddot(r, r)
-         if (outwards > 0.0_wp) trial%pressed = excess(par, psi_at(par, inc, trial%time, p), r) >= LARGEST_EXCESS
-         if (trial%pressed) trial%mode = MODE_ORDINARY
+      if (it%event == EVENT_BOUNDS) it%trial%pressed = .true.
+      if (it%inc%inside .and. .not. it%trial%pressed) then
+         it%trial%mode = MODE_ELASTIC
+         call first_rate(par, it)
+         outwards = (2.0_wp*it%trial%w(1)%g)*ddot(it%inc%d_strain, r) - (it%trial%w(1)%k*it%inc%d_v)*ddot(r, r)
+         if (outwards > 0.0_wp) it%trial%pressed = &
+            excess(par, psi_at(par, it%inc, it%trial%time, p), r) >= LARGEST_EXCESS
+         if (it%trial%pressed) it%trial%mode = MODE_ORDINARY
       end if
 
-      trial%advanced = .false.
-      if (trial%mode == MODE_ORDINARY) then
-         if (known) then
-            trial%w(1) = trial%w(inc%scheme%stages)
+      it%trial%advanced = .false.
+      if (it%trial%mode == MODE_ORDINARY) then
+         if (it%known) then
+            it%trial%w(1) = it%trial%w(it%inc%scheme%stages)
          else
-            call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
+            call first_rate(par, it)
          end if
-         call apply_memory_rule(par, inc, event, r, consistent, state, trial, sens, jump, counters)
-         trial%advanced = state%memory%x_running > 0.0_wp .or. trial%w(1)%x > 0.0_wp
+         call apply_memory_rule(par, r, it)
+         it%trial%advanced = it%state%memory%x_running > 0.0_wp .or. it%trial%w(1)%x > 0.0_wp
       end if
 
-      if (par%cutoff .and. trial%w(1)%d_p <= 0.0_wp) then
-         if (trace(state%sigma) <= 3.0_wp*par%p_min*(1.0_wp + AT_LIMIT)) then
-            call try_to_close(par, inc, r, consistent, state, trial, sens, jump, counters)
+      if (par%cutoff .and. it%trial%w(1)%d_p <= 0.0_wp) then
+         if (trace(it%state%sigma) <= 3.0_wp*par%p_min*(1.0_wp + AT_LIMIT)) then
+            call try_to_close(par, r, it)
          end if
       end if
    end subroutine begin_substep
 
+   !> The rate where the coming substep begins, of its mode and memory.
+   pure subroutine first_rate(par, it)
+      type(params_t), intent(in) :: par
+      type(integration_t), intent(inout) :: it
+
+      call rate_of(par, it%inc, it%trial%time, it%trial%y0, it%trial%r_in, it%trial%mode, it%trial%w(1), it%counters)
+   end subroutine first_rate
+
+   !> Derivatives of the memory across its jump, which `trigger` made.
+   pure subroutine follow_jump(par, before, trigger, it)
+      type(params_t), intent(in) :: par
+      type(memory_t), intent(in) :: before
+      type(rate_t), intent(in) :: trigger
+      type(integration_t), intent(inout) :: it
+
+      if (it%consistent) &
+         call jump_of_memory(par, it%inc, it%jump, before, it%state%memory, trigger, it%trial, it%sens)
+   end subroutine follow_jump
+
    !> True after a substep whose last rate is the first of the next, or which is held and does not close at its end.
    !> docs/theory/integration.md section 2.
-   pure logical function rate_is_known(inc, trial, event)
-      type(increment_t), intent(in) :: inc
-      type(trial_t), intent(in) :: trial
-      integer, intent(in) :: event   !< At which it ended.
+   pure logical function rate_is_known(it)
+      type(integration_t), intent(in) :: it
 
-      rate_is_known = event == EVENT_NONE .and. &
-                      (trial%mode == MODE_HELD .or. (trial%mode == MODE_ORDINARY .and. inc%scheme%first_same_as_last))
+      rate_is_known = it%event == EVENT_NONE .and. &
+                      (it%trial%mode == MODE_HELD .or. &
+                       (it%trial%mode == MODE_ORDINARY .and. it%inc%scheme%first_same_as_last))
    end function rate_is_known
 
    !> Returns and reversals where an ordinary substep begins; the trial holds the rate of the memory that results.
-   pure subroutine apply_memory_rule(par, inc, event, r, consistent, state, trial, sens, jump, counters)
+   pure subroutine apply_memory_rule(par, r, it)
       type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
-      integer, intent(in) :: event
+      type(integration_t), intent(inout) :: it
       real(wp), intent(in) :: r(6)
-      logical, intent(in) :: consistent
-      type(state_t), intent(inout) :: state
-      type(trial_t), intent(inout) :: trial
-      type(sensitivity_t), intent(inout) :: sens
-      integer, intent(inout) :: jump
-      type(counters_t), intent(inout) :: counters
       type(memory_t) :: before
       type(rate_t) :: trigger
       real(wp) :: t(6)
 
-      t = elastic_rate(inc, trial%w(1), r)
+      t = elastic_rate(it%inc, it%trial%w(1), r)
       if (par%memory_rule == RULE_RETURN_POINT) then
-         call try_to_return(par, inc, event == EVENT_RETURN, r, t, consistent, state, trial, sens, jump, counters)
+         call try_to_return(par, it%event == EVENT_RETURN, r, t, it)
       end if
-      if (.not. trial%w(1)%loading .or. trial%w(1)%x >= 0.0_wp) return
-      if (trial%w(1)%x >= -par%x_rev .and. event /= EVENT_REVERSAL) then
-         counters%hysteresis = counters%hysteresis + 1
+      if (.not. it%trial%w(1)%loading .or. it%trial%w(1)%x >= 0.0_wp) return
+      if (it%trial%w(1)%x >= -par%x_rev .and. it%event /= EVENT_REVERSAL) then
+         it%counters%hysteresis = it%counters%hysteresis + 1
          return
       end if
-      counters%reset = counters%reset + 1
-      jump = JUMP_REVERSAL
-      trigger = trial%w(1)
-      before = state%memory
-      call begin_process(par, r, trigger%n, t, state%memory)
-      if (consistent) call jump_of_memory(par, inc, jump, before, state%memory, trigger, trial, sens)
-      trial%r_in = state%memory%r_in
-      if (stays_floored(trigger, trial%r_in)) then
-         trial%w(1)%r_moved = 0.0_wp
-         trial%w(1)%x = 0.0_wp
+      it%counters%reset = it%counters%reset + 1
+      it%jump = JUMP_REVERSAL
+      trigger = it%trial%w(1)
+      before = it%state%memory
+      call begin_process(par, r, trigger%n, t, it%state%memory)
+      call follow_jump(par, before, trigger, it)
+      it%trial%r_in = it%state%memory%r_in
+      if (stays_floored(trigger, it%trial%r_in)) then
+         it%trial%w(1)%r_moved = 0.0_wp
+         it%trial%w(1)%x = 0.0_wp
       else
-         call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
+         call first_rate(par, it)
       end if
       if (par%memory_rule == RULE_RETURN_POINT) then
-         call try_to_return(par, inc, .false., r, t, consistent, state, trial, sens, jump, counters)
+         call try_to_return(par, .false., r, t, it)
       end if
    end subroutine apply_memory_rule
 
@@ -154,107 +162,95 @@ contains
    end function stays_floored
 
    !> Lets interrupted processes go on whose targets r has reached, and leaves the one to watch in the trial.
-   pure subroutine try_to_return(par, inc, landed, r, t, consistent, state, trial, sens, jump, counters)
+   pure subroutine try_to_return(par, landed, r, t, it)
       type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
+      type(integration_t), intent(inout) :: it
       logical, intent(in) :: landed          !< On the target: rounding does not count.
       real(wp), intent(in) :: r(6), t(6)
-      logical, intent(in) :: consistent
-      type(state_t), intent(inout) :: state
-      type(trial_t), intent(inout) :: trial
-      type(sensitivity_t), intent(inout) :: sens
-      integer, intent(inout) :: jump
-      type(counters_t), intent(inout) :: counters
       type(memory_t) :: before
+      type(rate_t) :: trigger
       logical :: reached
 
       reached = landed
       do
-         trial%watched = watched_process(state%memory, t)
-         if (trial%watched == 0) return
-         trial%process = state%memory%interrupted(trial%watched)
-         if (.not. reached) reached = beyond_target(par, trial%process, r, trial%w(1)%m_b) >= 0.0_wp
+         it%trial%watched = watched_process(it%state%memory, t)
+         if (it%trial%watched == 0) return
+         it%trial%process = it%state%memory%interrupted(it%trial%watched)
+         if (.not. reached) reached = beyond_target(par, it%trial%process, r, it%trial%w(1)%m_b) >= 0.0_wp
          if (.not. reached) return
-         jump = JUMP_RETURN
-         before = state%memory
-         call resume_process(trial%watched, r, t, state%memory)
-         if (consistent) call jump_of_memory(par, inc, jump, before, state%memory, trial%w(1), trial, sens)
-         trial%r_in = state%memory%r_in
-         call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
+         it%jump = JUMP_RETURN
+         before = it%state%memory
+         call resume_process(it%trial%watched, r, t, it%state%memory)
+         trigger = it%trial%w(1)
+         call follow_jump(par, before, trigger, it)
+         it%trial%r_in = it%state%memory%r_in
+         call first_rate(par, it)
          reached = .false.
       end do
    end subroutine try_to_return
 
    !> A point at p_min stays open while p' would not rise from there; it closes without memory of the gap. The trial
    !> holds the ordinary rate of a point without a past.
-   pure subroutine try_to_close(par, inc, r, consistent, state, trial, sens, jump, counters)
+   pure subroutine try_to_close(par, r, it)
       type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
+      type(integration_t), intent(inout) :: it
       real(wp), intent(in) :: r(6)
-      logical, intent(in) :: consistent
-      type(state_t), intent(inout) :: state
-      type(trial_t), intent(inout) :: trial
-      type(sensitivity_t), intent(inout) :: sens
-      integer, intent(inout) :: jump
-      type(counters_t), intent(inout) :: counters
       type(memory_t) :: before
+      type(rate_t) :: trigger
 
-      trial%r_in = r
-      trial%mode = closing_mode(inc)
-      call rate_of(par, inc, trial%time, trial%y0, trial%r_in, trial%mode, trial%w(1), counters)
-      state%open = closing_rate(inc, trial, trial%w(1)) <= 0.0_wp
-      trial%watched = 0
-      if (state%open) then
-         trial%mode = MODE_HELD
+      it%trial%r_in = r
+      it%trial%mode = closing_mode(it%inc)
+      call first_rate(par, it)
+      it%state%open = closing_rate(it%inc, it%trial, it%trial%w(1)) <= 0.0_wp
+      it%trial%watched = 0
+      if (it%state%open) then
+         it%trial%mode = MODE_HELD
          return
       end if
-      jump = JUMP_NEW
-      before = state%memory
-      state%memory = new_memory(r)
-      if (consistent) call jump_of_memory(par, inc, jump, before, state%memory, trial%w(1), trial, sens)
+      it%jump = JUMP_NEW
+      before = it%state%memory
+      it%state%memory = new_memory(r)
+      trigger = it%trial%w(1)
+      call follow_jump(par, before, trigger, it)
    end subroutine try_to_close
 
    !> Takes over an accepted substep; state already has its void ratio and suction. With the tension cut-off on, a mean
    !> stress that landed below p_min is set to p_min. docs/theory/memory-rules.md section 3.2.
-   pure subroutine accept_substep(par, inc, h, trial, state, counters)
+   pure subroutine accept_substep(par, h, it)
       type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
+      type(integration_t), intent(inout) :: it
       real(wp), intent(in) :: h             !< size of the substep [-]
-      type(trial_t), intent(in) :: trial
-      type(state_t), intent(inout) :: state
-      type(counters_t), intent(inout) :: counters
 
-      counters%substep = counters%substep + 1
-      state%sigma = trial%y(1:6)
-      if (trial%mode == MODE_HELD) then
-         counters%open = counters%open + 1
+      it%counters%substep = it%counters%substep + 1
+      it%state%sigma = it%trial%y(1:6)
+      if (it%trial%mode == MODE_HELD) then
+         it%counters%open = it%counters%open + 1
          return
       end if
-      state%z = trial%y(7:12)
-      state%eps_q_total = state%eps_q_total + trial%y(13)
-      if (par%cutoff .and. trace(state%sigma) < 3.0_wp*par%p_min) then
-         state%sigma = deviator(state%sigma) + par%p_min*IDENTITY
+      it%state%z = it%trial%y(7:12)
+      it%state%eps_q_total = it%state%eps_q_total + it%trial%y(13)
+      if (par%cutoff .and. trace(it%state%sigma) < 3.0_wp*par%p_min) then
+         it%state%sigma = deviator(it%state%sigma) + par%p_min*IDENTITY
       end if
-      if (trial%mode == MODE_ORDINARY) then
-         associate (w => trial%w(latest_forwards(inc, trial)))
-            call accept_process(w%loading, w%x, trial%y(13), state%memory)
+      if (it%trial%mode == MODE_ORDINARY) then
+         associate (w => it%trial%w(latest_forwards(it)))
+            call accept_process(w%loading, w%x, it%trial%y(13), it%state%memory)
          end associate
          if (par%memory_rule == RULE_RETURN_POINT) then
-            call note_turning_point(par, inc, h, trial, state%memory, counters)
+            call note_turning_point(par, it%inc, h, it%trial, it%state%memory, it%counters)
          end if
       end if
    end subroutine accept_substep
 
    !> The stage that tells how far a process has come: the last one of an ordinary substep, if it stands at its end and
    !> no turn lies in between, otherwise the first.
-   pure integer function latest_forwards(inc, trial) result(stage)
-      type(increment_t), intent(in) :: inc
-      type(trial_t), intent(in) :: trial
+   pure integer function latest_forwards(it) result(stage)
+      type(integration_t), intent(in) :: it
 
       stage = 1
-      if (.not. inc%scheme%first_same_as_last) return
-      associate (last => trial%w(inc%scheme%stages))
-         if (last%loading .and. last%x >= 0.0_wp) stage = inc%scheme%stages
+      if (.not. it%inc%scheme%first_same_as_last) return
+      associate (last => it%trial%w(it%inc%scheme%stages))
+         if (last%loading .and. last%x >= 0.0_wp) stage = it%inc%scheme%stages
       end associate
    end function latest_forwards
 end module mud_transitions

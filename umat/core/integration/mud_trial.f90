@@ -5,7 +5,7 @@ module mud_trial
    use mud_cutoff, only: slide
    use mud_increment, only: increment_t, rate_of, NY
    use mud_params, only: params_t
-   use mud_rates, only: rate_t
+   use mud_rate, only: rate_t
    use mud_relaxation, only: relaxation_t, relax
    use mud_state, only: counters_t, interrupted_t
    use mud_substep, only: scheme_t, MAX_STAGES, stage_point, solution, error_vector

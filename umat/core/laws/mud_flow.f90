@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Plastic flow: dilatancy and fabric; docs/theory/material.md sections 4.2 and 4.3.
 module mud_flow
+   use mud_branchless, only: positive
    use mud_kinds, only: wp
    use mud_params, only: params_t
    implicit none (type, external)
@@ -13,7 +14,7 @@ contains
       real(wp), intent(in) :: z_n   !< z:n [-]
 
       a_d = par%a_0
-      if (par%fabric) a_d = a_d*(1.0_wp + max(z_n, 0.0_wp))
+      if (par%fabric) a_d = a_d*(1.0_wp + positive(z_n))
    end function dilatancy_factor
 
    !> D [-] of d eps^p = L (n + D/3 I): in triaxial compression exactly paper eq. (9). docs/theory/material.md section

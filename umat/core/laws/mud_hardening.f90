@@ -8,13 +8,15 @@ module mud_hardening
    use mud_critical_state, only: compression_image
    implicit none (type, external)
    private
-   public :: kinematic_modulus, isotropic_t, isotropic_hardening, SMALLEST_VOID_TERM, NO_HARDENING
+   public :: kinematic_modulus, kinematic_slope, KINEMATIC_EXPONENT, isotropic_t, isotropic_hardening, NO_HARDENING
 
    real(wp), parameter :: SMALLEST_VOID_TERM = 0.01_wp   !< Guard: 1 - c_h e >= it [-].
    !> Below it |delta|^theta, whose slope at zero is infinite, is an odd polynomial of the same value, slope and bend
    !> there: this slope is the rate at which states approach the compression line [-].
    real(wp), parameter :: SMALLEST_DELTA = 1.0e-4_wp
    real(wp), parameter :: SMALLEST_COUPLING = 0.1_wp     !< Guard: 1 + C >= it [-].
+
+   real(wp), parameter :: KINEMATIC_EXPONENT = -0.5_wp   !< d ln b_0/d ln p' [-].
 
    !> Compliance of the isotropic mechanism: d eps_v^iso = < a dp'/p' + b dp_c >.
    type :: isotropic_t
@@ -42,6 +44,15 @@ contains
 
       b_0 = par%h_0*par%g_0*max(1.0_wp - par%c_h*e, SMALLEST_VOID_TERM)*sqrt(par%p_atm/p)
    end function kinematic_modulus
+
+   !> d ln b_0/de [-]; 0 at the guard.
+   pure real(wp) function kinematic_slope(par, e) result(slope)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: e
+
+      slope = 0.0_wp
+      if (1.0_wp - par%c_h*e > SMALLEST_VOID_TERM) slope = -par%c_h/(1.0_wp - par%c_h*e)
+   end function kinematic_slope
 
    !> Isotropic hardening, paper eqs (4), (6), (7) with the second term of (4) restored as the change of f at constant e
    !> (mended): on the compression line ln e = ln N_l - lambda ln p' + ln f. docs/theory/material.md sections 3.5 and

@@ -111,7 +111,8 @@ contains
          call scanning_weights(par, p_c, e, weight, rest)
          bend = bend*weight + slope*par%scanning%q*rest
       end if
-      curvature = [(bend - slope)/p_c**2, bend*par%omega/(p_c*e), (bend*par%omega - slope)*par%omega/e**2]
+      ! one division after the other: the square of a tiny suction would be 0
+      curvature = [(bend - slope)/p_c/p_c, bend*par%omega/p_c/e, (bend*par%omega - slope)*par%omega/e**2]
    end function saturation_curvature
 
    !> Derivatives [dS_w (-), d2S_w/dp_c (1/kPa), d2S_w/de (-)] with respect to q ln offset of a scanning curve, at the

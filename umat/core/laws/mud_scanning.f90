@@ -11,7 +11,7 @@ module mud_scanning
    use mud_tensor, only: is_finite
    implicit none (type, external)
    private
-   public :: branch_from, main_curve, clipped, check_curves, preset_saturation
+   public :: branch_from, main_curve, clipped, check_curves, check_saturation, preset_saturation
 
    !> S_w this close to a main curve, as a share of S_max, is on it: rounding of S_w, which near S_max would be a large
    !> error of the suction that belongs to it [-].
@@ -124,19 +124,31 @@ contains
       real(wp), intent(in) :: p_c, e
       real(wp), intent(inout) :: s_w
       type(mud_status_t), intent(inout) :: status
+      real(wp) :: bounds(2)
+
+      bounds = main_curves(par, p_c, e)
+      if (is_finite(s_w)) then
+         if (abs(s_w) <= 0.0_wp) s_w = bounds(2)
+      end if
+      call check_saturation(par, p_c, e, s_w, status)
+      if (is_finite(s_w)) s_w = max(min(s_w, bounds(2)), bounds(1))
+   end subroutine preset_saturation
+
+   !> That S_w of a state lies between the main curves at its suction [kPa] and void ratio [-]. One that is not finite,
+   !> or outside by more than 1e-6 S_max, is MUD_BAD_STATE; a good one leaves status as it is.
+   pure subroutine check_saturation(par, p_c, e, s_w, status)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: p_c, e, s_w
+      type(mud_status_t), intent(inout) :: status
       real(wp) :: bounds(2), rounding
 
       bounds = main_curves(par, p_c, e)
-      if (.not. is_finite(s_w)) then
-         status = fail(MUD_BAD_STATE, ON_STATEV, S_SATURATION, s_w, bounds(1), bounds(2))
-         return
-      end if
-      if (abs(s_w) <= 0.0_wp) s_w = bounds(2)
       rounding = PRESET_ROUNDING*par%s_max
-      if (s_w < bounds(1) - rounding .or. s_w > bounds(2) + rounding) &
-         status = fail(MUD_BAD_STATE, ON_STATEV, S_SATURATION, s_w, bounds(1), bounds(2))
-      s_w = max(min(s_w, bounds(2)), bounds(1))
-   end subroutine preset_saturation
+      if (is_finite(s_w)) then
+         if (s_w >= bounds(1) - rounding .and. s_w <= bounds(2) + rounding) return
+      end if
+      status = fail(MUD_BAD_STATE, ON_STATEV, S_SATURATION, s_w, bounds(1), bounds(2))
+   end subroutine check_saturation
 
    !> The main wetting curve nowhere above the main drying curve, beyond what bounds of single parameters say: the
    !> largest P_aw of which that is true at many suctions. A P_aw [kPa] above it is MUD_BAD_PROPS, with that limit;

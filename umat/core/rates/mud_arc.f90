@@ -1,13 +1,12 @@
 ! SPDX-License-Identifier: MIT
 !> The arc of directions n = cos(w) t/|t| + sin(w) q in the plane of t and r: what is linear in n, and tr(n^3), along
-!> it; docs/theory/material.md section 4.6. What belongs to a switch that is off is not asked for. And comparisons that
-!> let the compiler work on two points of it at once.
+!> it; docs/theory/material.md section 4.6. What belongs to a switch that is off is not asked for.
 module mud_arc
    use mud_kinds, only: wp
    use mud_tensor, only: ddot, norm, square
    implicit none (type, external)
    private
-   public :: arc_t, arc_through, add_fabric, add_cube, trace_cube, trace_cube_slope, positive, larger, smaller
+   public :: arc_t, arc_through, add_fabric, add_cube, trace_cube, trace_cube_slope
 
    !> Products of the two ends t/|t| and q of the arc with tensors [-].
    type :: arc_t
@@ -79,25 +78,4 @@ contains
       slope = 3.0_wp*(c*c*(c*arc%cubic(1) - s*arc%cubic(0)) + 2.0_wp*c*s*(c*arc%cubic(2) - s*arc%cubic(1)) &
                       + s*s*(c*arc%cubic(3) - s*arc%cubic(2)))
    end function trace_cube_slope
-
-   !> max(a, 0) without a comparison.
-   pure real(wp) function positive(a)
-      real(wp), intent(in) :: a
-
-      positive = 0.5_wp*(a + abs(a))
-   end function positive
-
-   !> max(a, b), where the rounding of b does not matter if a is the larger one by far.
-   pure real(wp) function larger(a, b)
-      real(wp), intent(in) :: a, b
-
-      larger = b + positive(a - b)
-   end function larger
-
-   !> min(a, b), likewise.
-   pure real(wp) function smaller(a, b)
-      real(wp), intent(in) :: a, b
-
-      smaller = a - positive(a - b)
-   end function smaller
 end module mud_arc

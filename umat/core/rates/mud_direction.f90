@@ -2,67 +2,27 @@
 !> The loading direction of a rate: the root of one scalar equation on an arc.
 !>
 !> gamma n = t y + beta r, y = 1/(L h), so that n lies in the plane of t and r and one angle decides it:
-!> docs/theory/material.md section 4, guards section 5. The angle, phi there, is w here.
+!> docs/theory/material.md section 4.6. The angle, phi there, is w here. The equation is that of
+!> mud_direction_equation; here its roots are looked for.
 module mud_direction
-   use mud_arc, only: arc_t, arc_through, add_fabric, add_cube, trace_cube, trace_cube_slope, positive, larger, smaller
-   use mud_kinds, only: wp, SQRT_2_3, SQRT_6
-   use mud_params, only: params_t
-   use mud_tensor, only: ddot
-   use mud_bonding, only: bonding_t
+   use mud_arc, only: arc_t, arc_through, add_fabric, add_cube, trace_cube, trace_cube_slope
+   use mud_branchless, only: positive, smaller
    use mud_critical_state, only: lode_factor, lode_slope
-   use mud_flow, only: dilatancy_factor, dilatancy
-   use mud_hardening, only: isotropic_t
+   use mud_direction_equation, only: equation_t, equation_of, moduli_at, note_moduli, slopes_t, slopes_at
+   use mud_flow, only: dilatancy_factor
+   use mud_kinds, only: wp, SQRT_2_3
+   use mud_params, only: params_t
+   use mud_rate, only: rate_t
+   use mud_tensor, only: ddot
    implicit none (type, external)
    private
-   public :: rate_t, find_direction
+   public :: find_direction
 
    real(wp), parameter :: PARALLEL = 1.0e-13_wp          !< r normal to t below this share of r is rounding [-].
    real(wp), parameter :: ROOT_TOLERANCE = 1.0e-14_wp    !< Of the direction equation, share of its terms [-].
    integer, parameter :: MAX_ITERATIONS = 80             !< Bisection alone needs 53.
    integer, parameter :: POINTS = 8   !< Of the scan for roots where a bracket is not certain: looked at together.
-   real(wp), parameter :: NEGLIGIBLE = 1.0e-12_wp        !< Smaller divisors would only make a cap that never acts [-].
    real(wp), parameter :: NOT_FAR = 0.5_wp   !< Cosine up to which a rising x excludes roots [-].
-   real(wp), parameter :: NO_LIMIT = 1.0e100_wp          !< A cap that is off.
-
-   !> One rate and its intermediate results, as mud_tangent needs them. Per unit of the pseudo-time of d_strain, d_pc.
-   type :: rate_t
-      ! the point
-      real(wp) :: p                !< p' >= p_min [kPa]
-      real(wp) :: r(6), r_norm     !< stress ratio and its norm [-]
-      real(wp) :: r_moved(6)       !< r - r_in [-]
-      real(wp) :: z(6)             !< fabric [-]
-      real(wp) :: k, g             !< elastic moduli K, G [kPa]
-      type(bonding_t) :: bond      !< bonding, none where saturated
-      real(wp) :: psi              !< state parameter [-]
-      real(wp) :: m_b, m_d         !< M^b, M^d in triaxial compression [-]
-      real(wp) :: b_0              !< h x [-]
-      type(isotropic_t) :: iso     !< isotropic mechanism
-      ! the direction
-      logical :: loading           !< L >= 0 was solved for; false: elastic
-      real(wp) :: iso_drive        !< A dp'/p' + B of a rate without the isotropic mechanism: above 0 it acts [-]
-      logical :: iso_active        !< the isotropic mechanism acts
-      real(wp) :: k_e              !< K, or K/(1 + K A/p') [kPa]
-      real(wp) :: b_rate           !< B [-]
-      real(wp) :: t(6), t_norm     !< t [kPa]
-      real(wp) :: n(6)             !< loading direction [-]
-      real(wp) :: y                !< 1/(L h) [-]
-      real(wp) :: l                !< loading index L [-]
-      real(wp) :: h_b              !< 1/h [-]
-      real(wp) :: x                !< (r - r_in):n, not floored [-]
-      real(wp) :: lode, lode_slope !< g [-] and dg/d tr(n^3)
-      real(wp) :: r_b, r_d         !< |r| on the bounding and dilatancy surfaces in the direction of n [-]
-      real(wp) :: dr_b, dr_d       !< their slopes by the angle of n [-]
-      real(wp) :: r_n, z_n         !< r:n, z:n [-]
-      real(wp) :: a_d, d           !< A_d, D [-]
-      real(wp) :: beta, gamma      !< coefficients of the direction equation [kPa]
-      ! guards
-      logical :: floored, capped_d, capped_h, iso_kept, no_root, several   !< several: the arc was scanned for roots
-      ! the result
-      real(wp) :: d_p              !< rate of p' [kPa]
-      real(wp) :: d_sigma(6)       !< [kPa]
-      real(wp) :: d_z(6)           !< [-]
-      real(wp) :: d_eps_q          !< plastic shear, sqrt(2/3) L [-]
-   end type rate_t
 
    !> The direction equation at one angle.
    type :: trial_t
@@ -80,6 +40,7 @@ contains
       logical, intent(in) :: known          !< w%n is the direction for nearly the same t: a start of the iteration.
       type(rate_t), intent(inout) :: w
       type(arc_t) :: arc
+      type(equation_t) :: eq
       type(trial_t) :: at
       real(wp) :: n_t(6), q(6), start, tau
       logical :: found
@@ -91,14 +52,12 @@ contains
       w%z_n = 0.0_wp
       w%a_d = par%a_0
       w%lode = 1.0_wp
-      w%lode_slope = 0.0_wp
       w%r_b = SQRT_2_3*w%m_b
       w%r_d = SQRT_2_3*w%m_d
-      w%dr_b = 0.0_wp
-      w%dr_d = 0.0_wp
+      eq = equation_of(par, w)
       if (arc%r_q <= 0.0_wp) then
          w%n = n_t
-         call evaluate_direction(par, arc, 0.0_wp, w, at)
+         call evaluate_direction(par, eq, arc, 0.0_wp, w, at)
          found = at%admissible > 0.0_wp
       else
          start = -1.0_wp
@@ -106,7 +65,7 @@ contains
             ! a direction against t has no half angle
             if (ddot(w%n, n_t) > -0.9_wp) start = ddot(w%n, q)/(1.0_wp + ddot(w%n, n_t))
          end if
-         call find_angle(par, arc, start, w, tau, at, found)
+         call find_angle(par, eq, arc, start, w, tau, at, found)
          w%n = at%cosine*n_t + at%sine*q
       end if
       w%loading = found
@@ -122,8 +81,9 @@ contains
    !> In units of that side the residual begins negative at w = 0. With every guard on it ends positive at a right
    !> angle, so a bracketed Newton iteration cannot fail. Where the floor or a cap acts, and with guards off, several
    !> roots or none are possible: there the arc is scanned for the first change of sign.
-   pure subroutine find_angle(par, arc, guess, w, tau, at, found)
+   pure subroutine find_angle(par, eq, arc, guess, w, tau, at, found)
       type(params_t), intent(in) :: par
+      type(equation_t), intent(in) :: eq
       type(arc_t), intent(in) :: arc
       real(wp), intent(in) :: guess     !< tau, if it is on the side where the root lies
       type(rate_t), intent(inout) :: w
@@ -133,7 +93,7 @@ contains
       real(wp) :: side, low, high, first, last, start
       logical :: guarded, crossed
 
-      call evaluate_direction(par, arc, 0.0_wp, w, at)
+      call evaluate_direction(par, eq, arc, 0.0_wp, w, at)
       side = sign(1.0_wp, w%beta)
       first = side*at%residual
       guarded = par%floored .and. par%cap_d > 0.0_wp .and. par%cap_h > 0.0_wp
@@ -146,28 +106,29 @@ contains
             start = min(abs(w%beta)*arc%r_q/w%gamma, 1.0_wp)   ! sine of the angle if gamma and beta did not change
             start = start/(1.0_wp + sqrt(1.0_wp - start*start))
          end if
-         call newton(par, arc, side, 0.0_wp, 1.0_wp, start, w, tau, at)
+         call newton(par, eq, arc, side, 0.0_wp, 1.0_wp, start, w, tau, at)
          found = at%admissible > 0.0_wp
          last = abs(tau)
          if (found) then
-            w%several = .not. single_root(par, arc, side, at, w)
+            w%several = .not. single_root(par, eq, arc, side, at, w)
             if (.not. w%several) return
-            call scan_arc(par, arc, w, side, first, last, .true., low, high, crossed)
+            call scan_arc(par, eq, arc, w, side, first, last, .true., low, high, crossed)
             if (.not. crossed) return
          end if
       end if
       if (.not. found) then
-         call scan_arc(par, arc, w, side, first, last, .false., low, high, found)
+         call scan_arc(par, eq, arc, w, side, first, last, .false., low, high, found)
          if (.not. found) return
       end if
-      call newton(par, arc, side, low, high, 0.5_wp*(low + high), w, tau, at)
+      call newton(par, eq, arc, side, low, high, 0.5_wp*(low + high), w, tau, at)
       found = at%admissible > 0.0_wp
    end subroutine find_angle
 
    !> Newton's method kept inside a bracket (tau without sign, `side` gives it) whose low end has a negative residual
    !> and whose high end a positive one. Leaves w and at evaluated at the angle it returns.
-   pure subroutine newton(par, arc, side, from, to, first, w, tau, at)
+   pure subroutine newton(par, eq, arc, side, from, to, first, w, tau, at)
       type(params_t), intent(in) :: par
+      type(equation_t), intent(in) :: eq
       type(arc_t), intent(in) :: arc
       real(wp), intent(in) :: side, from, to, first
       type(rate_t), intent(inout) :: w
@@ -182,7 +143,7 @@ contains
       previous = to - from
       do iteration = 1, MAX_ITERATIONS
          tau = side*u
-         call evaluate_direction(par, arc, tau, w, at)
+         call evaluate_direction(par, eq, arc, tau, w, at)
          if (abs(at%residual) <= ROOT_TOLERANCE*at%scale) return
          if (side*at%residual < 0.0_wp) then
             lower = u
@@ -206,8 +167,9 @@ contains
    !> False where a root before that of w and at is possible: a cap, or a change between the floor and a small x, bends
    !> the residual back. Where x rises up to the root only the floor's equation can have one, before x passes the floor:
    !> the residual there tells (the roots of 2,400,000 random states of six kinds are those of scans of all such arcs).
-   pure logical function single_root(par, arc, side, at, w)
+   pure logical function single_root(par, eq, arc, side, at, w)
       type(params_t), intent(in) :: par
+      type(equation_t), intent(in) :: eq
       type(arc_t), intent(in) :: arc
       real(wp), intent(in) :: side
       type(trial_t), intent(in) :: at
@@ -225,7 +187,7 @@ contains
       single_root = w%floored .or. arc%x_t >= par%x_floor
       if (single_root) return
       passing = w
-      call evaluate_direction(par, arc, side*(par%x_floor - arc%x_t) &
+      call evaluate_direction(par, eq, arc, side*(par%x_floor - arc%x_t) &
                               /(x_q + sqrt(max(arc%x_t**2 + x_q**2 - par%x_floor**2, 0.0_wp))), passing, there)
       single_root = side*there%residual < 0.0_wp .and. .not. (passing%capped_h .or. passing%capped_d)
    end function single_root
@@ -235,8 +197,9 @@ contains
    !> again, more closely, where the chords beside it, prolonged, meet zero in it: a residual that bends once between
    !> two points cannot rise above both of them. (240,000 random states: the same roots as with a scan of 64 points, all
    !> but one of them those of a scan of 2048.)
-   pure subroutine scan_arc(par, arc, w, side, first, last, is_root, lower, upper, crossed)
+   pure subroutine scan_arc(par, eq, arc, w, side, first, last, is_root, lower, upper, crossed)
       type(params_t), intent(in) :: par
+      type(equation_t), intent(in) :: eq
       type(arc_t), intent(in) :: arc
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: side, first, last   !< first: the residual at tau = 0, in units of its side [kPa]
@@ -250,7 +213,7 @@ contains
       intervals = POINTS
       if (is_root) intervals = POINTS + 1   ! the known root itself is no crossing
       step = last/intervals
-      call residuals(par, arc, w, side, 0.0_wp, step, f(1:POINTS), above)
+      call residuals(par, eq, arc, w, side, 0.0_wp, step, f(1:POINTS), above)
       f(-1:0) = first
       f(POINTS + 1:) = merge(0.0_wp, f(POINTS), is_root)
       do i = 0, intervals - 1
@@ -262,7 +225,7 @@ contains
             reach = max(reach, above(i + 1))
          end if
          if (reach < 0.0_wp) cycle
-         call residuals(par, arc, w, side, from, step/(POINTS + 1), fine, above_fine)
+         call residuals(par, eq, arc, w, side, from, step/(POINTS + 1), fine, above_fine)
          do j = 1, POINTS
             if (above_fine(j) < 0.0_wp) cycle
             crossed = .true.
@@ -280,138 +243,70 @@ contains
    end subroutine scan_arc
 
    !> The residual in units of its side, and a number that is not negative where it is positive at an admissible angle,
-   !> at equal steps of tau from `from` on: what evaluate_direction does, without branches or comparisons, so
-   !> that the compiler lets two points be worked on at once.
-   pure subroutine residuals(par, arc, w, side, from, step, f, above)
+   !> at equal steps of tau from `from` on: the same equation as in evaluate_direction, of all points together.
+   pure subroutine residuals(par, eq, arc, w, side, from, step, f, above)
       type(params_t), intent(in) :: par
+      type(equation_t), intent(in) :: eq
       type(arc_t), intent(in) :: arc
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: side, from, step
       real(wp), intent(out) :: f(POINTS), above(POINTS)
-      real(wp) :: most_d, least_h, p_23, stiff_min, per_b_0
-      real(wp), dimension(POINTS) :: cosine, sine, r_b, r_d, a_d
-      real(wp) :: tau, c, s, r_n, x, cos_3t, g, d, limit, h_b, stiffness, beta, gamma, residual
+      real(wp), dimension(POINTS) :: c, s, lode, a_d
+      real(wp) :: tau, d, h_b, beta, gamma
       integer :: i
 
       do i = 1, POINTS
          tau = side*(from + i*step)
-         cosine(i) = 2.0_wp/(1.0_wp + tau*tau) - 1.0_wp
-         sine(i) = tau*(1.0_wp + cosine(i))
+         c(i) = 2.0_wp/(1.0_wp + tau*tau) - 1.0_wp
+         s(i) = tau*(1.0_wp + c(i))
       end do
-      r_b = SQRT_2_3*w%m_b
-      r_d = SQRT_2_3*w%m_d
+      lode = 1.0_wp
       if (par%lode) then
          do i = 1, POINTS
-            cos_3t = smaller(larger(SQRT_6*trace_cube(arc, cosine(i), sine(i)), -1.0_wp), 1.0_wp)
-            g = sqrt(sqrt(2.0_wp*par%c4/(1.0_wp + par%c4 - (1.0_wp - par%c4)*cos_3t)))
-            r_b(i) = r_b(i)*g
-            r_d(i) = r_d(i)*g
+            lode(i) = lode_factor(par, trace_cube(arc, c(i), s(i)))
          end do
       end if
       a_d = par%a_0
       if (par%fabric) then
          do i = 1, POINTS
-            a_d(i) = par%a_0 + par%a_0*positive(cosine(i)*arc%z_t + sine(i)*arc%z_q)
+            a_d(i) = dilatancy_factor(par, c(i)*arc%z_t + s(i)*arc%z_q)
          end do
       end if
-      most_d = merge(par%cap_d*2.0_wp*w%g/w%k_e, NO_LIMIT, par%cap_d > 0.0_wp)
-      p_23 = 2.0_wp/3.0_wp*w%p
-      least_h = merge(p_23/(1.0_wp - par%cap_h), 0.0_wp, par%cap_h > 0.0_wp)
-      stiff_min = NEGLIGIBLE*w%g
-      per_b_0 = 1.0_wp/w%b_0
       do i = 1, POINTS
-         c = cosine(i)
-         s = sine(i)
-         r_n = c*arc%r_t + s*arc%r_q
-         x = c*arc%x_t + s*arc%x_q
-         d = a_d(i)*(r_d(i) - r_n)
-         d = smaller(d, most_d/larger(r_n, NEGLIGIBLE))
-         stiffness = 2.0_wp*w%g - w%k_e*d*r_n
-         h_b = larger(x, par%x_floor)*per_b_0
-         limit = least_h*positive(r_n - r_b(i))/larger(stiffness, stiff_min)
-         h_b = larger(h_b, limit*(0.5_wp + sign(0.5_wp, stiffness)))
-         beta = p_23 + h_b*w%k_e*d
-         gamma = p_23*r_b(i) + 2.0_wp*w%g*h_b
-         residual = side*(gamma*s - beta*arc%r_q)
-         f(i) = residual
-         above(i) = smaller(residual + ROOT_TOLERANCE*(gamma + abs(beta)*arc%r_q), gamma*c - beta*arc%r_t)
+         call moduli_at(eq, c(i)*arc%r_t + s(i)*arc%r_q, c(i)*arc%x_t + s(i)*arc%x_q, a_d(i), &
+                        (SQRT_2_3*w%m_b)*lode(i), (SQRT_2_3*w%m_d)*lode(i), d, h_b, beta, gamma)
+         f(i) = side*(gamma*s(i) - beta*arc%r_q)
+         above(i) = smaller(f(i) + ROOT_TOLERANCE*(gamma + abs(beta)*arc%r_q), gamma*c(i) - beta*arc%r_t)
       end do
    end subroutine residuals
 
-   !> The direction equation at the angle whose half has the tangent tau, with the guards that bound hardening and
-   !> dilatancy.
-   pure subroutine evaluate_direction(par, arc, tau, w, at)
+   !> The direction equation at the angle whose half has the tangent tau.
+   pure subroutine evaluate_direction(par, eq, arc, tau, w, at)
       type(params_t), intent(in) :: par
+      type(equation_t), intent(in) :: eq
       type(arc_t), intent(in) :: arc
       real(wp), intent(in) :: tau
       type(rate_t), intent(inout) :: w
       type(trial_t), intent(out) :: at
-      real(wp) :: c, s, limit
 
       at%cosine = 2.0_wp/(1.0_wp + tau*tau) - 1.0_wp
       at%sine = tau*(1.0_wp + at%cosine)
-      c = at%cosine
-      s = at%sine
-      w%r_n = c*arc%r_t + s*arc%r_q
-      w%x = c*arc%x_t + s*arc%x_q
+      w%r_n = at%cosine*arc%r_t + at%sine*arc%r_q
+      w%x = at%cosine*arc%x_t + at%sine*arc%x_q
       if (par%fabric) then
-         w%z_n = c*arc%z_t + s*arc%z_q
+         w%z_n = at%cosine*arc%z_t + at%sine*arc%z_q
          w%a_d = dilatancy_factor(par, w%z_n)
       end if
-      if (par%lode) call add_lode(par, arc, c, s, w)
-      w%d = dilatancy(w%a_d, w%r_d, w%r_n)
-      w%capped_d = .false.
-      if (par%cap_d > 0.0_wp .and. w%r_n > 0.0_wp) then
-         limit = par%cap_d*2.0_wp*w%g/(w%k_e*w%r_n)
-         w%capped_d = w%d > limit
-         if (w%capped_d) w%d = limit
+      if (par%lode) then
+         w%lode = lode_factor(par, trace_cube(arc, at%cosine, at%sine))
+         w%r_b = (SQRT_2_3*w%m_b)*w%lode
+         w%r_d = (SQRT_2_3*w%m_d)*w%lode
       end if
-
-      w%floored = w%x < par%x_floor
-      w%h_b = max(w%x, par%x_floor)/w%b_0
-      w%capped_h = .false.
-      if (par%cap_h > 0.0_wp .and. w%r_n > w%r_b) then
-         limit = softening_limit(par, w)
-         w%capped_h = w%h_b < limit
-         if (w%capped_h) w%h_b = limit
-      end if
-
-      w%beta = 2.0_wp/3.0_wp*w%p + w%h_b*w%k_e*w%d
-      w%gamma = 2.0_wp/3.0_wp*w%p*w%r_b + 2.0_wp*w%g*w%h_b
-      at%residual = w%gamma*s - w%beta*arc%r_q
+      call note_moduli(eq, w)
+      at%residual = w%gamma*at%sine - w%beta*arc%r_q
       at%scale = w%gamma + abs(w%beta)*arc%r_q
-      at%admissible = w%gamma*c - w%beta*arc%r_t
+      at%admissible = w%gamma*at%cosine - w%beta*arc%r_t
    end subroutine evaluate_direction
-
-   !> The bounding and dilatancy surfaces in the direction of n, and their slopes by its angle.
-   pure subroutine add_lode(par, arc, c, s, w)
-      type(params_t), intent(in) :: par
-      type(arc_t), intent(in) :: arc
-      real(wp), intent(in) :: c, s   !< cosine and sine of the angle
-      type(rate_t), intent(inout) :: w
-      real(wp) :: turn
-
-      w%lode = lode_factor(par, trace_cube(arc, c, s))
-      w%lode_slope = lode_slope(par, w%lode)
-      turn = w%lode_slope*trace_cube_slope(arc, c, s)
-      w%r_b = SQRT_2_3*w%lode*w%m_b
-      w%r_d = SQRT_2_3*w%lode*w%m_d
-      w%dr_b = SQRT_2_3*w%m_b*turn
-      w%dr_d = SQRT_2_3*w%m_d*turn
-   end subroutine add_lode
-
-   !> Least 1/h of the softening cap [-]; 0 where it does not apply.
-   pure real(wp) function softening_limit(par, w) result(limit)
-      type(params_t), intent(in) :: par
-      type(rate_t), intent(in) :: w
-      real(wp) :: stiffness
-
-      limit = 0.0_wp
-      stiffness = 2.0_wp*w%g - w%k_e*w%d*w%r_n
-      if (stiffness > 0.0_wp) then
-         limit = 2.0_wp/3.0_wp*w%p/((1.0_wp - par%cap_h)*stiffness)*(w%r_n - w%r_b)
-      end if
-   end function softening_limit
 
    !> Derivative of the residual with respect to the angle, where it was evaluated [kPa].
    pure real(wp) function slope_of_residual(par, arc, w, at) result(slope)
@@ -419,27 +314,20 @@ contains
       type(arc_t), intent(in) :: arc
       type(rate_t), intent(in) :: w
       type(trial_t), intent(in) :: at
-      real(wp) :: c, s, dr, dx, dd, dh, stiffness, d_stiffness, d_beta, d_gamma
+      type(slopes_t) :: s
+      real(wp) :: dr, dx, dz, d_lode, dd, dh, d_beta, d_gamma
 
-      c = at%cosine
-      s = at%sine
-      dr = c*arc%r_q - s*arc%r_t
-      dx = c*arc%x_q - s*arc%x_t
-      if (w%capped_d) then
-         dd = -w%d/w%r_n*dr
-      else
-         dd = w%a_d*(w%dr_d - dr)
-         if (w%z_n > 0.0_wp) dd = dd + par%a_0*(c*arc%z_q - s*arc%z_t)*(w%r_d - w%r_n)
-      end if
-      if (w%capped_h) then
-         stiffness = 2.0_wp*w%g - w%k_e*w%d*w%r_n
-         d_stiffness = -w%k_e*(dd*w%r_n + w%d*dr)
-         dh = 2.0_wp/3.0_wp*w%p/((1.0_wp - par%cap_h)*stiffness)*(dr - w%dr_b) - w%h_b*d_stiffness/stiffness
-      else
-         dh = merge(0.0_wp, dx/w%b_0, w%floored)
-      end if
+      call slopes_at(par, w, s)
+      dr = at%cosine*arc%r_q - at%sine*arc%r_t
+      dx = at%cosine*arc%x_q - at%sine*arc%x_t
+      dz = 0.0_wp
+      if (par%fabric) dz = at%cosine*arc%z_q - at%sine*arc%z_t
+      d_lode = 0.0_wp
+      if (par%lode) d_lode = SQRT_2_3*lode_slope(par, w%lode)*trace_cube_slope(arc, at%cosine, at%sine)
+      dd = s%d_r*dr + s%d_z*dz + s%d_r_d*w%m_d*d_lode
+      dh = s%h_r*dr + s%h_z*dz + s%h_x*dx + (s%h_r_d*w%m_d + s%h_r_b*w%m_b)*d_lode
       d_beta = w%k_e*(dh*w%d + w%h_b*dd)
-      d_gamma = 2.0_wp/3.0_wp*w%p*w%dr_b + 2.0_wp*w%g*dh
-      slope = d_gamma*s + w%gamma*c - d_beta*arc%r_q
+      d_gamma = 2.0_wp/3.0_wp*w%p*w%m_b*d_lode + 2.0_wp*w%g*dh
+      slope = d_gamma*at%sine + w%gamma*at%cosine - d_beta*arc%r_q
    end function slope_of_residual
 end module mud_direction

@@ -2,11 +2,12 @@
 !> Changes of what a rate takes from the point alone - moduli, state parameter, bounding ratio, isotropic mechanism -
 !> along the directions of a derivative, which stand side by side; docs/theory/integration.md section 5.3.
 module mud_point_changes
+   use mud_elastic, only: BULK_EXPONENT, SHEAR_EXPONENT
    use mud_kinds, only: wp
    use mud_linearise, only: linearised_t
    use mud_loading, only: loading_t
    use mud_params, only: params_t
-   use mud_rates, only: rate_t
+   use mud_rate, only: rate_t
    use mud_tensor, only: LANES, contractions
    implicit none (type, external)
    private
@@ -26,7 +27,8 @@ module mud_point_changes
    type :: lanes_t
       real(wp), dimension(LANES) :: mean, v          !< a third of the trace of stress; trace of the strain rate
       real(wp), dimension(LANES) :: p, share         !< of p', and over p'
-      real(wp), dimension(LANES) :: k, g, f, psi, m_b, k_e, b, volumetric, dd, dh, beta, gamma
+      real(wp), dimension(LANES) :: f, f_pc, f_e     !< of f, df/dp_c, df/de
+      real(wp), dimension(LANES) :: k, g, psi, m_b, k_e, b, volumetric, dd, dh, beta, gamma
       real(wp), dimension(LANES) :: n_dr, h_dr, d_dr, gamma_dr   !< n:dr, and of the gradients along n
       real(wp), dimension(LANES) :: dl, flow         !< of L and of L D
       !> The turn dn by tensors: strain rate and stress by factors; e, n, r and the unit tensor.
@@ -68,22 +70,26 @@ contains
       real(wp), intent(in) :: y(LANES, NRATES)
       type(changes_t), intent(in) :: changes
       type(lanes_t), intent(inout) :: x
-      real(wp) :: m_b_slope, follows, on_f, on_p
+      real(wp) :: follows
       integer :: j
 
       follows = merge(0.0_wp, 1.0_wp, lin%held_p)
-      m_b_slope = merge(-par%n_b*w%m_b, 0.0_wp, w%psi < 0.0_wp)
       x%mean = (y(:, 1) + y(:, 2) + y(:, 3))/3.0_wp
-      on_f = lin%e_c*lin%per_f
-      on_p = lin%e_c*lin%e_c_slope
+      x%f = w%bond%df_de*changes%e + w%bond%df_dpc*changes%p_c
+      x%f_e = lin%curvature(3)*changes%e + lin%curvature(2)*changes%p_c
+      x%f_pc = lin%curvature(2)*changes%e + lin%curvature(1)*changes%p_c
+      if (changes%scans) then   ! a scanning curve that moves changes S_w, and f with it
+         x%f = x%f + lin%with_offset(1)*changes%offset
+         x%f_pc = x%f_pc + lin%with_offset(2)*changes%offset
+         x%f_e = x%f_e + lin%with_offset(3)*changes%offset
+      end if
       do j = 1, LANES
          x%p(j) = follows*x%mean(j)
          x%share(j) = x%p(j)*lin%per_p
-         x%k(j) = w%k*(2.0_wp/3.0_wp*x%share(j) + changes%e(j)*lin%k_slope)
-         x%g(j) = w%g*(0.5_wp*x%share(j) + changes%e(j)*lin%g_slope)
-         x%f(j) = lin%bond%df_de*changes%e(j) + lin%bond%df_dpc*changes%p_c(j)
-         x%psi(j) = changes%e(j) - on_f*x%f(j) + on_p*x%p(j)
-         x%m_b(j) = m_b_slope*x%psi(j)
+         x%k(j) = w%k*(BULK_EXPONENT*x%share(j) + changes%e(j)*lin%k_slope)
+         x%g(j) = w%g*(SHEAR_EXPONENT*x%share(j) + changes%e(j)*lin%g_slope)
+         x%psi(j) = changes%e(j) + lin%psi_f*x%f(j) + lin%psi_p*x%p(j)
+         x%m_b(j) = lin%m_b_psi*x%psi(j)
       end do
       if (w%iso_active) then
          call change_of_mechanism(par, w, lin, y, changes, x)
@@ -113,53 +119,44 @@ contains
       type(changes_t), intent(in) :: changes
       type(lanes_t), intent(inout) :: x
       real(wp), dimension(LANES) :: r_dr, cube_dr
-      real(wp) :: weight, approach, f, f_bond, coupling, share, a, dk, de, dpc, on_cube, per_e_lambda, bent_e, bent_pc
-      real(wp) :: k_a
-      real(wp) :: on_weight, by_norm, crowd_share, crowd_norm, e_share, per_coupling, per_a, per_k, softening
-      real(wp) :: shared_e, shared_pc, per_f, coupled, per_weight, per_lambda, per_softening, per_m_b
+      real(wp) :: weight, approach, f, f_bond, coupling, share, a, dk, de
+      real(wp) :: per_lambda, on_weight, by_norm, crowd_share, crowd_norm, e_share, per_coupling, per_a, k_a, &
+         softening, per_softening, per_e_lambda, bonded_e, bonded_pc, swelling
       integer :: j
 
-      per_f = lin%per_f
       per_lambda = 1.0_wp/par%lambda
-      per_weight = w%iso%share/w%iso%weight
       on_weight = 2.0_wp*(1.0_wp - w%iso%weight)
       by_norm = 3.0_wp/(lin%lode_r*w%m_b)**2
-      crowd_share = 1.0_wp + 3.0_wp*(lin%r_norm/par%m_c)**2
+      crowd_share = 1.0_wp + 3.0_wp*(w%r_norm/par%m_c)**2
       crowd_norm = w%iso%approach*6.0_wp/par%m_c**2
-      shared_e = lin%bond%df_de*per_f
-      shared_pc = lin%bond%df_dpc*per_f
       e_share = w%iso%share*(1.0_wp/lin%e - 1.0_wp/(1.0_wp + lin%e))
       per_coupling = merge(0.0_wp, w%iso%share/(1.0_wp + w%iso%c), w%iso%floored)
       per_a = w%iso%a/w%iso%share
-      per_k = 1.0_wp/w%k
-      softening = w%k*w%iso%a*lin%per_p
+      k_a = w%k*lin%per_p
+      softening = k_a*w%iso%a
       per_softening = 1.0_wp/(1.0_wp + softening)
       per_e_lambda = per_lambda/lin%e
-      per_m_b = 1.0_wp/w%m_b
-      coupled = lin%kappa*(w%iso%f + w%iso%c)/3.0_wp
+      bonded_e = w%bond%df_de*lin%per_f
+      bonded_pc = w%bond%df_dpc*lin%per_f
+      swelling = lin%kappa*(w%iso%f + w%iso%c)/3.0_wp   ! kappa falls as p'/K
       r_dr = along_ratio(lin, y, x%p, w%r, w%r_norm**2)
-      cube_dr = lin%per_p*contractions(y(:, 1:6), lin%r_cube_slope)   ! its contraction with r is zero
-      on_cube = lin%lode_slope_r/lin%lode_r
-      bent_e = lin%e*per_f*w%iso%f
-      bent_pc = w%iso%share*w%iso%f*per_f
-      k_a = w%k*lin%per_p
+      cube_dr = (lin%per_p/lin%lode_r)*contractions(y(:, 1:6), lin%lode_r_slope)   ! it has no part along r
       do j = 1, LANES
          de = changes%e(j)
-         dpc = changes%p_c(j)
          ! w = 1 - (|r|/R_b(r))^2; r_dr = |r| d|r|
-         weight = on_weight*(on_cube*cube_dr(j) + x%m_b(j)*per_m_b) - by_norm*r_dr(j)
-         f_bond = per_f*x%f(j)
+         weight = on_weight*(cube_dr(j) + x%m_b(j)/w%m_b) - by_norm*r_dr(j)
+         f_bond = lin%per_f*x%f(j)
          approach = w%iso%approach*(x%share(j) - f_bond*per_lambda + de*per_e_lambda)
          f = -w%iso%f_slope*(crowd_share*approach + crowd_norm*r_dr(j))
-         coupling = -(shared_e*w%iso%f)*de - (lin%e*shared_e)*(f - w%iso%f*f_bond) &
-                    - bent_e*(lin%curvature(3)*de + lin%curvature(2)*dpc)
-         share = per_weight*weight + e_share*de - per_coupling*coupling
-         a = per_a*share + w%iso%share*((par%lambda - lin%kappa)*f - lin%kappa*coupling - coupled*x%share(j))
-         dk = x%k(j)*per_k
+         coupling = -(bonded_e*w%iso%f)*de - (lin%e*bonded_e)*(f - w%iso%f*f_bond) &
+                    - (lin%e*lin%per_f*w%iso%f)*x%f_e(j)
+         share = w%iso%share/w%iso%weight*weight + e_share*de - per_coupling*coupling
+         a = per_a*share + w%iso%share*((par%lambda - lin%kappa)*f - lin%kappa*coupling - swelling*x%share(j))
+         dk = x%k(j)/w%k
          x%k_e(j) = w%k_e*(dk - (k_a*a + softening*(dk - x%share(j)))*per_softening)
          x%b(j) = w%iso%b*changes%d_pc(j) &
-                  - lin%d_pc*((w%iso%f*shared_pc)*share + (w%iso%share*shared_pc)*(f - w%iso%f*f_bond) &
-                              + bent_pc*(lin%curvature(2)*de + lin%curvature(1)*dpc))
+                  - lin%d_pc*((w%iso%f*bonded_pc)*share + (w%iso%share*bonded_pc)*(f - w%iso%f*f_bond) &
+                              + (w%iso%share*w%iso%f*lin%per_f)*x%f_pc(j))
       end do
    end subroutine change_of_mechanism
 end module mud_point_changes

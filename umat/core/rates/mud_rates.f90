@@ -6,16 +6,17 @@
 module mud_rates
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
-   use mud_tensor, only: IDENTITY, ddot, trace, deviator, norm, square
+   use mud_tensor, only: IDENTITY, trace, deviator, norm
    use mud_elastic, only: bulk_modulus, shear_modulus, swelling_slope
    use mud_bonding, only: bonding, UNBONDED
-   use mud_critical_state, only: critical_void_ratio, bounding_ratio, dilatancy_ratio, lode_factor
-   use mud_direction, only: rate_t, find_direction
+   use mud_critical_state, only: state_parameter, bounding_ratio, dilatancy_ratio, bounding_norm
+   use mud_direction, only: find_direction
    use mud_flow, only: fabric_rate
    use mud_hardening, only: kinematic_modulus, isotropic_hardening, NO_HARDENING
+   use mud_rate, only: rate_t
    implicit none (type, external)
    private
-   public :: rate_t, rate_at, stress_ratio, bounding_norm, MODE_ORDINARY, MODE_ELASTIC
+   public :: rate_at, stress_ratio, MODE_ORDINARY, MODE_ELASTIC
 
    integer, parameter :: MODE_ORDINARY = 0   !< Both mechanisms act.
    integer, parameter :: MODE_ELASTIC = 1    !< L = 0: inside the elastic domain.
@@ -35,18 +36,6 @@ contains
       p = max(trace(sigma)/3.0_wp, par%p_min)
       r = deviator(sigma)/p
    end subroutine stress_ratio
-
-   !> Norm of the bounding stress ratio in the direction of r, sqrt(2/3) g(r/|r|) M^b [-]. r_norm = |r| and m_b = M^b
-   !> [-]; without a direction (r = 0) g is 1. docs/theory/material.md sections 3.3, 3.4.
-   pure real(wp) function bounding_norm(par, r, r_norm, m_b)
-      type(params_t), intent(in) :: par
-      real(wp), intent(in) :: r(6), r_norm, m_b
-      real(wp) :: g
-
-      g = 1.0_wp
-      if (par%lode .and. r_norm > 0.0_wp) g = lode_factor(par, ddot(square(r), r)/r_norm**3)
-      bounding_norm = SQRT_2_3*g*m_b
-   end function bounding_norm
 
    !> Rates of stress, fabric and plastic shear for a strain rate and a suction rate. Compression positive, tensor
    !> shear. docs/theory/material.md sections 4 and 5; nothing is refused, w%no_root tells that no direction was found
@@ -116,7 +105,7 @@ contains
       w%g = shear_modulus(par, e, w%p)
       w%bond = UNBONDED
       if (bonded) w%bond = bonding(par, p_c, e)
-      w%psi = e - critical_void_ratio(par, w%bond%f, w%p)
+      w%psi = state_parameter(par, w%bond%f, e, w%p)
       w%m_b = bounding_ratio(par, w%psi)
       w%m_d = dilatancy_ratio(par, w%psi)
       w%b_0 = kinematic_modulus(par, e, w%p)

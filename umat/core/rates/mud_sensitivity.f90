@@ -11,14 +11,15 @@ module mud_sensitivity
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
    use mud_linearise, only: linearised_t, linearise
-   use mud_rates, only: rate_t
+   use mud_rate, only: rate_t
    use mud_tensor, only: LANES, tensors_t, ddot, contractions, contracted, traces, ZERO_TENSORS
    use mud_loading, only: free_contracted, loading_traces, add_loading
-   use mud_offset_changes, only: add_offset
+   use mud_critical_state, only: dilatancy_slope
+   use mud_hardening, only: KINEMATIC_EXPONENT
    use mud_point_changes, only: changes_t, lanes_t, rest, change_point, along_ratio, NRATES
    implicit none (type, external)
    private
-   public :: changes_t, linearised_t, linearise, changes_of_rate, changes_of_drive, NRATES
+   public :: changes_of_rate, changes_of_drive
 
 contains
    !> Changes of the rates of stress, fabric and plastic shear, and of the loading direction. Units of the results [kPa,
@@ -42,7 +43,6 @@ contains
          call rest(w, changes, x)
       else
          call change_point(par, w, lin, y, changes, x)
-         if (changes%scans) call add_offset(par, w, lin, changes%offset, x)
       end if
       if (w%loading) then
          if (.not. at_rest) call change_moduli(par, w, lin, y, r_in, changes, x)
@@ -80,7 +80,6 @@ contains
 
       x%v = loading_traces(changes%loading, strain, centre)
       call change_point(par, w, lin, y, changes, x)
-      if (changes%scans) call add_offset(par, w, lin, changes%offset, x)
       associate (loading => changes%loading)
          c = (2.0_wp*w%g)*(free_contracted(loading, strain, centre, w%n) &
                            + ddot(loading%basis(:, 1), w%n)*loading%along(:, 1) &
@@ -99,59 +98,31 @@ contains
       type(tensors_t), intent(in) :: r_in
       type(changes_t), intent(in) :: changes
       type(lanes_t), intent(inout) :: x
-      real(wp), dimension(LANES) :: r_b, stiffness
-      real(wp) :: d_g, d_k, d_r, d_psi, d_z, h_share, h_e, h_r, h_in, h_stiffness, h_b, r_b_1, at_rest, gamma_p, gamma_r
+      real(wp) :: n_dz(LANES), r_b, r_d_psi, r_b_m, per_p
       integer :: j
 
-      ! D and 1/h: coefficients of what they depend on
-      d_g = 0.0_wp
-      d_k = 0.0_wp
-      d_psi = 0.0_wp
-      d_z = 0.0_wp
-      if (w%capped_d) then
-         d_g = w%d/w%g
-         d_k = -w%d/w%k_e
-         d_r = -w%d/w%r_n
-      else
-         d_psi = w%a_d*SQRT_2_3*w%lode*par%n_d*w%m_d
-         d_r = -w%a_d
-         if (par%fabric .and. w%z_n > 0.0_wp) d_z = par%a_0*w%d/w%a_d
-      end if
-      h_e = 0.0_wp
-      h_in = 0.0_wp
-      h_stiffness = 0.0_wp
-      h_b = 0.0_wp
-      if (w%capped_h) then
-         at_rest = 2.0_wp*w%g - w%k_e*w%d*w%r_n
-         h_share = w%h_b
-         h_stiffness = -w%h_b/at_rest
-         h_r = 2.0_wp/3.0_wp*w%p/((1.0_wp - par%cap_h)*at_rest)
-         h_b = -h_r
-      else
-         h_share = 0.5_wp*w%h_b
-         h_e = -w%h_b*lin%b_slope
-         h_r = merge(0.0_wp, lin%per_b_0, w%floored)
-         h_in = -h_r
-      end if
-      r_b_1 = SQRT_2_3*w%lode
+      r_b_m = SQRT_2_3*w%lode
+      r_d_psi = r_b_m*dilatancy_slope(par, w%m_d)
       x%n_dr = along_ratio(lin, y, x%p, w%n, lin%on_r(1))
       x%h_dr = along_ratio(lin, y, x%p, lin%h_n, lin%on_r(2))
       x%d_dr = along_ratio(lin, y, x%p, lin%d_n, lin%on_r(3))
       x%gamma_dr = along_ratio(lin, y, x%p, lin%gamma_n, lin%on_r(4))
-      r_b = r_b_1*x%m_b
-      x%dd = d_g*x%g + d_k*x%k_e + d_r*x%n_dr + d_psi*x%psi
-      if (abs(d_z) > 0.0_wp) x%dd = x%dd + d_z*contractions(y(:, 7:12), w%n)
-      x%dh = h_share*x%share + h_e*changes%e + h_r*x%n_dr
-      if (abs(h_in) > 0.0_wp .and. r_in%kind /= ZERO_TENSORS) x%dh = x%dh + h_in*contracted(r_in, w%n)
-      if (w%capped_h) then
-         stiffness = 2.0_wp*x%g - (w%d*w%r_n)*x%k_e - w%k_e*(w%r_n*x%dd + w%d*x%n_dr)
-         x%dh = x%dh + h_stiffness*stiffness + h_b*r_b
-      end if
-      gamma_p = 2.0_wp/3.0_wp*r_b_1*w%m_b
-      gamma_r = 2.0_wp/3.0_wp*w%p
+      associate (s => lin%slopes)
+         per_p = s%h_p*w%p + s%h_b_0*w%b_0*KINEMATIC_EXPONENT
+         x%dd = s%d_g*x%g + s%d_k*x%k_e + s%d_r*x%n_dr + (s%d_r_d*r_d_psi)*x%psi
+         x%dh = per_p*x%share + (s%h_b_0*w%b_0*lin%b_slope)*changes%e + s%h_g*x%g + s%h_k*x%k_e &
+                + (s%h_r + s%h_x)*x%n_dr + (s%h_r_d*r_d_psi)*x%psi + (s%h_r_b*r_b_m)*x%m_b
+         if (abs(s%d_z) > 0.0_wp) then
+            n_dz = contractions(y(:, 7:12), w%n)
+            x%dd = x%dd + s%d_z*n_dz
+            x%dh = x%dh + s%h_z*n_dz
+         end if
+         if (s%h_x > 0.0_wp .and. r_in%kind /= ZERO_TENSORS) x%dh = x%dh - s%h_x*contracted(r_in, w%n)
+      end associate
       do j = 1, LANES
+         r_b = r_b_m*x%m_b(j)
          x%beta(j) = 2.0_wp/3.0_wp*x%p(j) + (w%k_e*w%d)*x%dh(j) + (w%h_b*w%d)*x%k_e(j) + (w%h_b*w%k_e)*x%dd(j)
-         x%gamma(j) = gamma_p*x%p(j) + gamma_r*r_b(j) + (2.0_wp*w%h_b)*x%g(j) + (2.0_wp*w%g)*x%dh(j)
+         x%gamma(j) = 2.0_wp/3.0_wp*(w%r_b*x%p(j) + w%p*r_b) + (2.0_wp*w%h_b)*x%g(j) + (2.0_wp*w%g)*x%dh(j)
       end do
    end subroutine change_moduli
 

@@ -3,8 +3,8 @@
 !> Compression positive, components 11, 22, 33, 12, 13, 23, engineering shear strain.
 module walk_point
    use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_loc, c_null_ptr, c_null_char
-   use mud_interface, only: mud_count, mud_index, mud_default_props, mud_validate_props, mud_init_state, mud_update, &
-      MUD_PROPS, MUD_STATEV, MUD_TANGENT_NONE, MUD_TANGENT_CONSISTENT
+   use mud_interface, only: mud_count, mud_index, mud_default_props, mud_prepared_size, mud_prepare, mud_init, mud_update, &
+      mud_blocks, MUD_PROPS, MUD_STATEV, MUD_TANGENT_NONE, MUD_TANGENT_CONSISTENT
    use kinds, only: wp
    use dense, only: solve
    implicit none (type, external)
@@ -25,6 +25,7 @@ module walk_point
    type :: point_t
       integer(c_int) :: nprops = 0, nstatev = 0
       real(wp) :: props(ROOM) = 0.0_wp, statev(ROOM) = 0.0_wp
+      real(wp), allocatable :: material(:)   !< Prepared where the point starts.
       real(wp) :: stress(6) = 0.0_wp    !< sigma' [kPa]
       real(wp) :: strain(6) = 0.0_wp    !< Sum of the increments [-].
       real(wp) :: suction = 0.0_wp      !< [kPa]
@@ -79,10 +80,12 @@ contains
       character(400) :: text
       real(wp) :: sigma(6)
 
-      if (mud_validate_props(point%props, point%nprops, text, len(text)) /= 0) call give_up(text)
+      if (.not. allocated(point%material)) allocate (point%material(mud_prepared_size()))
+      if (mud_prepare(point%props, point%nprops, point%material, size(point%material), text, len(text)) /= 0) &
+         call give_up(text)
       sigma = -stress
-      if (mud_init_state(point%props, point%nprops, sigma, suction, void_ratio, point%statev, point%nstatev, text, &
-                         len(text)) /= 0) call give_up(text)
+      if (mud_init(point%material, sigma, suction, void_ratio, 0.0_wp, point%statev, point%nstatev, text, len(text)) &
+          /= 0) call give_up(text)
       point%stress = -sigma
       point%suction = suction
       call lead_components(point, spread(.false., 1, 6))
@@ -181,8 +184,8 @@ contains
       logical, intent(out) :: failed
       real(wp) :: stress(6)
 
-      failed = mud_update(point%props, point%nprops, -point%stress, point%statev, point%nstatev, -strain, &
-                          point%suction, d_suction, MUD_TANGENT_NONE, stress, point%statev) /= 0
+      failed = mud_update(point%material, -point%stress, point%statev, point%nstatev, -strain, &
+                          point%suction + d_suction, MUD_TANGENT_NONE, stress, point%statev) /= 0
       if (failed) return
       point%stress = -stress
       point%strain = point%strain + strain
@@ -197,6 +200,7 @@ contains
       type(control_t) :: control
       real(wp) :: trial(6), change(6), stress(6), statev(ROOM), tangent(6, 6), residual(6), matrix(6, 6), error, last
       real(wp) :: allowed
+      type(mud_blocks) :: blocks
       integer :: iteration, backtracks
       logical :: good
 
@@ -215,9 +219,9 @@ contains
       backtracks = 0
       do iteration = 1, MAX_ITERATIONS
          point%iterations = point%iterations + 1
-         if (mud_update(point%props, point%nprops, -point%stress, point%statev, point%nstatev, -trial, &
-                        point%suction, d_suction, MUD_TANGENT_CONSISTENT, stress, statev, &
-                        dsig_deps=tangent) /= 0) return
+         if (mud_update(point%material, -point%stress, point%statev, point%nstatev, -trial, &
+                        point%suction + d_suction, MUD_TANGENT_CONSISTENT, stress, statev, blocks) /= 0) return
+         tangent = blocks%dsig_deps
          stress = -stress
          residual = values - matmul(control%strain, trial) - matmul(control%stress, stress)
          error = maxval(abs(residual), control%by_stress)

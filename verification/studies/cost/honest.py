@@ -23,6 +23,7 @@ import tables  # noqa: E402
 
 build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
 TABLE = here / "honest.csv"
+MISSED = 20   # Exit code of mud_host: the accuracy is not met, the results are complete.
 NAMES = ("scene", "accuracy", "steps", "answer", "change", "true_error", "estimated_error", "ratio")
 HOST, HERE = "verification/host/", "verification/studies/cost/scenes/"
 FINE_FLOW = [("dt = 1.0e-3", "dt = 1e-5"), ("dt_growth = 1.03", "dt_growth = 1.005")]
@@ -69,6 +70,17 @@ SCENES = {
         [(r"duration = 0.3\n   dt = 1.0e-3\n   dt_growth = 1.3",
           "duration = 0.3\n dt = 1e-7\n dt_growth = 1.02\n dt_max = 2e-3\n rho_inf = 0"),
          (r"duration = 0.03\n   dt = 1.0e-3", "duration = 0.03\n   dt = 2e-5")], [], TWO),
+    # Scenes that nothing was tuned with.
+    "harmonic load, damped": (HERE + "harmonic.nml", [], [], [("   dt = 2.5e-4\n", "")], TWO),
+    "harmonic load, strongly damped": (HERE + "harmonic.nml", [("damping = 6.3", "damping = 30")], [],
+                                       [("   dt = 2.5e-4\n", "")], TWO),
+    "harmonic load, undamped": (HERE + "harmonic.nml", [("   damping = 6.3\n", ""), ("duration = 2", "duration = 0.5")],
+                                [("dt = 2.5e-4", "dt = 5e-5")], [("   dt = 2.5e-4\n", "")], TWO),
+    "footing on dense sand": (HERE + "sand.nml", [], [], [("   dt = 0.0025\n   tolerance = 1.0e-6\n", "")], TWO),
+    "footing on loose sand": (HERE + "sand.nml", [("e_0 = 0.65", "e_0 = 0.85"), ("value = 80", "value = 30")], [],
+                              [("   dt = 0.0025\n   tolerance = 1.0e-6\n", "")], TWO),
+    "plate falls 2 cm": (HERE + "drop.nml", [], [], [("   dt = 4.0e-6\n", "")], TWO),
+    "plate falls 2 mm": (HERE + "drop.nml", [("z = 0.02\n", "z = 0.002\n")], [], [("   dt = 4.0e-6\n", "")], TWO),
     # On a coarse mesh and while the load acts: the bounces after it are chaotic.
     "indentation at 30 kPa": ("verification/studies/indentation/indent_s030.nml", [
         ("duration = 0.03999", "duration = 0.028"), ("r_cells = 6, 8", "r_cells = 3, 4"),
@@ -105,7 +117,7 @@ def run(text, beside, folder, *words):
     scene.write_text(re.sub(r"file = '(?!/)([^']+)'", lambda m: f"file = '{beside / m[1]}'", text), encoding="utf-8")
     done = subprocess.run([build / "host/mud_host", scene, "--output", folder, "--quiet", *words], text=True,
                           capture_output=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
-    return done.stderr.strip() if done.returncode else ""
+    return done.stderr.strip() if done.returncode not in (0, MISSED) else ""
 
 
 def row(name, accuracy, steps, answer, change, true, estimate):

@@ -13,7 +13,7 @@ PAGE = Page(
     claim="a run with controlled steps estimates its true error within a factor of five and meets the accuracy that "
           "was set within a factor of two, with the exceptions that are listed; what an error costs in the indentation",
     kind=("study", "exact"),
-    input="seventeen scenes and four paths of the driver (`honest.py`); the indentation at suctions of 0, 30 and 1000 "
+    input="twenty-four scenes and four paths of the driver (`honest.py`); the indentation at suctions of 0, 30 and 1000 "
           "kPa, one contributor at a time on a coarse mesh (`study.py`); the analyses of Table 1 (`table_1.py`)",
     reference="a closed form (vibration), else given fine steps on the same mesh",
     seconds=10, quick=6, pictures=("asked.png", "price.png"))

@@ -69,7 +69,7 @@ def check(bench):
                                                ("effects_tolerance = 0.04", "effects_tolerance = 1e-6"))
         row = {"name": scene.name, "what": scene.what, "auto": apart(full, auto), "seconds": seconds - pilots,
                "pilots": pilots, "full": all_seconds - all_pilots, "careless": None,
-               "off": [name for name, r in table.items() if r["in_scene"] == "yes" and r["on"] == "off"]}
+               "off": [name for name, r in table.items() if r["influence"] and r["on"] == "off"]}
         for name in scene.keeps:
             bench.near(f"{scene.name}: keeps {name}", float(table[name]["on"] == "on"), 1.0, COUNT)
         for name in scene.drops:

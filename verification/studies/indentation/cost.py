@@ -81,8 +81,7 @@ def path_of(job, name, corners):
 
 
 def walk(file, rule, threshold, tangent):
-    """Along a recorded path through the library; what callgrind counts is mud_update (which jumps to kernel_update)
-    alone."""
+    """Along a recorded path through the library; callgrind counts kernel_point alone, which mud_update ends in."""
     path = np.load(file)
     mud = ctypes.CDLL(str(build / "umat/libmud.so"))
     double = ctypes.POINTER(ctypes.c_double)
@@ -96,16 +95,16 @@ def walk(file, rule, threshold, tangent):
         props[mud.mud_index(PROPS, key.encode())] = value
     stress = path["start"][:6].copy()
     text = ctypes.create_string_buffer(200)
-    if mud.mud_init_state(of(props), n_props, of(stress), ctypes.c_double(path["suction"][0]),
-                          ctypes.c_double(path["start"][6]),
-                          of(state), n_state, text, 200):
+    material = np.zeros(mud.mud_prepared_size())
+    if mud.mud_prepare(of(props), n_props, of(material), len(material), text, 200) or mud.mud_init(
+            of(material), of(stress), ctypes.c_double(path["suction"][0]), ctypes.c_double(path["start"][6]),
+            ctypes.c_double(0.0), of(state), n_state, text, 200):
         sys.exit(text.value.decode())
-    slope, slope_pc = np.zeros(36), np.zeros(6)
-    for d, p, q in zip(np.ascontiguousarray(path["strain"]), path["suction"], path["suction"][1:]):
+    blocks = np.zeros(50)
+    for d, q in zip(np.ascontiguousarray(path["strain"]), path["suction"][1:]):
         step = d.copy()
-        code = mud.mud_update(of(props), n_props, of(stress), of(state), n_state, of(step), ctypes.c_double(p),
-                              ctypes.c_double(q - p), int(tangent), of(stress), of(state), of(slope), of(slope_pc),
-                              None, None, None)
+        code = mud.mud_update(of(material), of(stress), of(state), n_state, of(step), ctypes.c_double(q), int(tangent),
+                              of(stress), of(state), of(blocks), None)
         if code:
             sys.exit(f"mud_update: {code}")
     print(*(int(state[mud.mud_index(STATEV, key)]) for key in (b"n_rate", b"n_substep", b"n_reset")))
@@ -113,7 +112,7 @@ def walk(file, rule, threshold, tangent):
 
 def count(file, rule, threshold, tangent=0):
     """(instructions in mud_update, rates, substeps, resets)."""
-    done = subprocess.run(["valgrind", "--tool=callgrind", "--toggle-collect=__mud_kernel_MOD_kernel_update",
+    done = subprocess.run(["valgrind", "--tool=callgrind", "--toggle-collect=__mud_kernel_MOD_kernel_point",
                            "--callgrind-out-file=/dev/null",
                            sys.executable, __file__, "--walk", file, str(rule), str(threshold), str(tangent)],
                           capture_output=True, text=True)

@@ -4,8 +4,8 @@ module oscillation_soil
    use, intrinsic :: iso_c_binding, only: c_int, c_null_char
    use kinds, only: wp
    use dense, only: solve
-   use mud_interface, only: mud_report, mud_count, mud_index, mud_default_props, mud_validate_props, mud_init_state, &
-      mud_update, MUD_PROPS, MUD_STATEV, MUD_TANGENT_NONE, MUD_TANGENT_CONSISTENT
+   use mud_interface, only: mud_report, mud_count, mud_index, mud_default_props, mud_prepared_size, mud_prepare, &
+      mud_init, mud_update, mud_blocks, MUD_PROPS, MUD_STATEV, MUD_TANGENT_NONE, MUD_TANGENT_CONSISTENT
    implicit none (type, external)
    private
    public :: soil_t, new_soil, step_soil, total, void_ratio
@@ -17,6 +17,7 @@ module oscillation_soil
    type :: soil_t
       integer :: nprops, nstatev
       real(wp) :: props(ROOM), statev(ROOM)
+      real(wp), allocatable :: material(:)   !< Prepared.
       real(wp) :: stress(6)         !< sigma' of the UMAT convention [kPa]
       real(wp) :: suction           !< [kPa]
       real(wp) :: tangent(6, 6)     !< d stress/d engineering strain of the last update [kPa]
@@ -44,15 +45,16 @@ contains
          if (place < 1) error stop 'oscillation_soil: the library has no such parameter'
          soil%props(place) = values(i)
       end do
-      if (mud_validate_props(soil%props, soil%nprops, text, len(text)) /= 0) then
+      allocate (soil%material(mud_prepared_size()))
+      if (mud_prepare(soil%props, soil%nprops, soil%material, size(soil%material), text, len(text)) /= 0) then
          print '(a)', text(:index(text, c_null_char) - 1)
          error stop 1
       end if
       soil%stress = [-p, -p, -p, 0.0_wp, 0.0_wp, 0.0_wp]
       soil%suction = suction
       soil%statev = 0.0_wp
-      if (mud_init_state(soil%props, soil%nprops, soil%stress, suction, e, soil%statev, soil%nstatev, text, &
-                         len(text)) /= 0) error stop 'oscillation_soil: the start is not accepted'
+      if (mud_init(soil%material, soil%stress, suction, e, 0.0_wp, soil%statev, soil%nstatev, text, len(text)) /= 0) &
+         error stop 'oscillation_soil: the start is not accepted'
       soil%held = held
       soil%target = soil%stress
       soil%tangent = 0.0_wp
@@ -97,8 +99,8 @@ contains
       logical, intent(out) :: failed
       integer(c_int) :: code
 
-      code = mud_update(soil%props, soil%nprops, soil%stress, soil%statev, soil%nstatev, strain, soil%suction, &
-                        0.0_wp, MUD_TANGENT_NONE, soil%stress, soil%statev)
+      code = mud_update(soil%material, soil%stress, soil%statev, soil%nstatev, strain, soil%suction, &
+                        MUD_TANGENT_NONE, soil%stress, soil%statev)
       failed = code /= 0
    end subroutine plain_step
 
@@ -111,15 +113,17 @@ contains
       logical :: good
       integer :: iteration, i
       integer(c_int) :: code
+      type(mud_blocks) :: blocks
 
       trial = merge(0.0_wp, strain, soil%held)
       last = huge(1.0_wp)
       failed = .true.
       do iteration = 1, MAX_ITERATIONS
          soil%iterations = soil%iterations + 1
-         code = mud_update(soil%props, soil%nprops, soil%stress, soil%statev, soil%nstatev, trial, soil%suction, &
-                           0.0_wp, MUD_TANGENT_CONSISTENT, stress, statev, dsig_deps=tangent)
+         code = mud_update(soil%material, soil%stress, soil%statev, soil%nstatev, trial, soil%suction, &
+                           MUD_TANGENT_CONSISTENT, stress, statev, blocks)
          if (code /= 0) return
+         tangent = blocks%dsig_deps
          residual = merge(soil%target - stress, 0.0_wp, soil%held)
          if (maxval(abs(residual)) <= STRESS_TOLERANCE*abs(sum(soil%target(1:3)))) then
             soil%stress = stress

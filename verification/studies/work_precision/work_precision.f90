@@ -8,7 +8,7 @@
 program work_precision
    use, intrinsic :: iso_c_binding, only: c_int, c_double, c_null_char
    use, intrinsic :: iso_fortran_env, only: int64
-   use mud_interface, only: mud_default_props, mud_init_state, mud_update, mud_index, mud_count, mud_report, &
+   use mud_interface, only: mud_default_props, mud_prepared_size, mud_prepare, mud_init, mud_update, mud_index, mud_count, mud_report, &
       MUD_PROPS, MUD_STATEV, MUD_TANGENT_NONE
    implicit none (type, external)
 
@@ -65,7 +65,7 @@ contains
       integer, intent(in) :: scheme, increments, timed
       real(wp), intent(in) :: tolerance
       type(result_t), intent(out) :: result
-      real(wp) :: props(WORDS), statev(WORDS), suction, d_suction
+      real(wp) :: props(WORDS), statev(WORDS), material(mud_prepared_size()), suction, d_suction
       type(mud_report) :: report
       character :: text(1)
       integer(c_int) :: n_props, n_statev, code
@@ -79,18 +79,22 @@ contains
       statev = 0.0_wp
       result%stress = path%p*EQUAL
       suction = path%suction
-      code = mud_init_state(props, n_props, result%stress, suction, path%void_ratio, statev, n_statev, text, 0_c_int)
+      code = mud_prepare(props, n_props, material, size(material), text, 0_c_int)
+      if (code == 0) code = mud_init(material, result%stress, suction, path%void_ratio, 0.0_wp, statev, n_statev, text, &
+                                     0_c_int)
       if (code /= 0) error stop 'work_precision: a start is not accepted'
       call system_clock(before, per_second)
       do part = 1, PARTS
          if (all(abs(path%strain(:, part)) <= 0.0_wp)) exit
          n = merge(increments, 1, part >= timed)
          call set(props, merge(scheme, 3, part >= timed), merge(tolerance, 1.0e-11_wp, part >= timed))
+         code = mud_prepare(props, n_props, material, size(material), text, 0_c_int)
+         if (code /= 0) error stop 'work_precision: a material is not accepted'
          if (part == timed) statev(mud_index(MUD_STATEV, 'last_step'//c_null_char) + 1) = 0.0_wp
          d_suction = path%d_suction(part)/n
          do i = 1, n
-            result%code = mud_update(props, n_props, result%stress, statev, n_statev, path%strain(:, part)/n, suction, &
-                                     d_suction, MUD_TANGENT_NONE, result%stress, statev, report=report)
+            result%code = mud_update(material, result%stress, statev, n_statev, path%strain(:, part)/n, &
+                                     suction + d_suction, MUD_TANGENT_NONE, result%stress, statev, report=report)
             if (part >= timed) then
                result%rates = result%rates + report%n_rate
                result%substeps = result%substeps + report%n_substep

@@ -1,0 +1,238 @@
+! SPDX-License-Identifier: MIT
+!> Warnings about supports, loads and histories of a scene that are allowed but usually mistakes.
+module boundary_warnings
+   use kinds, only: wp
+   use given_pressures, only: nodes_with_flow, edges_with_flow
+   use idle_keys, only: add_warning, WARNING_LENGTH
+   use model_types, only: model_t, stage_t, fix_t, PRESCRIBED_P_A
+   use scene_types, only: scene_item_t, acts_in, amplitude_at, place_of, LOAD_WATER, LOAD_AIR
+   use texts, only: short, whole
+   use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C, FIELD_NAMES
+   implicit none (type, external)
+   private
+   public :: list_boundary_warnings
+
+   character(3), parameter :: WORDS(*) = [FIELD_NAMES, 'p_a']
+contains
+   !> Adds all of them to a list. Raises no fault.
+   subroutine list_boundary_warnings(model, warnings)
+      type(model_t), intent(in) :: model
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)   !< They grow. (warnings)
+
+      call look_at_fixes(model, warnings)
+      call look_at_slopes(model, warnings)
+      call look_at_inflows(model, warnings)
+      call look_at_histories(model, warnings)
+      call look_at_places(model, warnings)
+   end subroutine list_boundary_warnings
+
+   !> Two that prescribe an unknown of a stage differently: the later one applies; and p_w, p_c and p_a all at once.
+   subroutine look_at_fixes(model, warnings)
+      type(model_t), intent(in) :: model
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      integer, allocatable :: by(:, :)
+      integer :: i, j, s, n, node
+
+      allocate (by(PRESCRIBED_P_A, size(model%domain%mesh%x, 2)))
+      do i = 2, size(model%fixes)
+         associate (one => model%fixes(i))
+            before: do j = 1, i - 1
+               if (model%fixes(j)%field /= one%field .or. .not. differ(model%fixes(j), one)) cycle
+               if (model%fixes(j)%from >= one%until .or. one%from >= model%fixes(j)%until) cycle
+               do s = 1, size(model%stages)
+                  if (.not. (acts_in(one%stages, model%stages(s)%name) .and. &
+                             acts_in(model%fixes(j)%stages, model%stages(s)%name))) cycle
+                  associate (nodes => model%domain%mesh%groups(model%fixes(j)%group)%nodes)
+                     n = findloc([(any(model%domain%mesh%groups(one%group)%nodes == nodes(node)), &
+                                   node=1, size(nodes))], .true., dim=1)
+                     if (n == 0) cycle before
+                     call add_warning(place_of(one)//WORDS(one%field)//' of the node at ('// &
+                        short(model%domain%mesh%x(1, nodes(n)))//', '//short(model%domain%mesh%x(2, nodes(n)))// &
+                        ') m has two &fix in stage '//trim(model%stages(s)%name)//', of the groups '''// &
+                        trim(model%fixes(j)%group_name)//''' and '''//trim(one%group_name)//''', with different '// &
+                        'values; the later one counts.', warnings)
+                  end associate
+                  cycle before
+               end do
+            end do before
+         end associate
+      end do
+      do s = 1, size(model%stages)
+         by = 0
+         do i = 1, size(model%fixes)
+            if (model%fixes(i)%field > DISPLACEMENTS .and. acts_in(model%fixes(i)%stages, model%stages(s)%name)) &
+               by(model%fixes(i)%field, model%domain%mesh%groups(model%fixes(i)%group)%nodes) = i
+         end do
+         node = findloc(all(by(AT_P_W:, :) > 0, dim=1), .true., dim=1)
+         if (node > 0) call add_warning(place_of(model%fixes(maxval(by(:, node))))//'p_w, p_c and p_a of a node '// &
+            'are all prescribed in stage '//trim(model%stages(s)%name)//'; p_a = p_w + p_c, so give two of them.', &
+            warnings)
+      end do
+   contains
+      pure logical function differ(a, b)
+         type(fix_t), intent(in) :: a, b
+
+         differ = (a%hold .neqv. b%hold) .or. a%amplitude /= b%amplitude .or. abs(a%value - b%value) > 0.0_wp .or. &
+                  abs(a%value_slope - b%value_slope) > 0.0_wp .or. &
+                  (abs(a%value_slope) > 0.0_wp .and. abs(a%datum - b%datum) > 0.0_wp)
+         if (a%hold .and. b%hold) differ = .false.
+      end function differ
+   end subroutine look_at_fixes
+
+   !> Pressures of water that grow upwards, where weight makes them grow downwards.
+   subroutine look_at_slopes(model, warnings)
+      type(model_t), intent(in) :: model
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      character(*), parameter :: REMEDY = ' kPa/m grows upwards; in water at rest p_w grows downwards, by -rho_w g '// &
+                                          '(-9.81 kPa/m).'
+      integer :: i
+
+      if (.not. (model%domain%with_w .and. model%domain%gravity > 0.0_wp)) return
+      do i = 1, size(model%initials)
+         associate (one => model%initials(i))
+            if (one%p_w_slope > 0.0_wp) call add_warning(place_of(one)//'p_w_slope = '//short(one%p_w_slope)//REMEDY, &
+                                                        warnings)
+         end associate
+      end do
+      do i = 1, size(model%fixes)
+         associate (one => model%fixes(i))
+            if (one%field == AT_P_W .and. one%value_slope > 0.0_wp) call add_warning(place_of(one)//'value_slope = '// &
+               short(one%value_slope)//' of p_w'//REMEDY, warnings)
+         end associate
+      end do
+   end subroutine look_at_slopes
+
+   !> Inflows through edges with a prescribed pressure, which takes them up: they do nothing.
+   subroutine look_at_inflows(model, warnings)
+      type(model_t), intent(in) :: model
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      logical :: taken(size(model%domain%mesh%x, 2))
+      integer :: e, i, s, lost
+
+      do i = 1, size(model%loads)
+         associate (one => model%loads(i), edges => model%domain%mesh%groups(model%loads(i)%group)%edges)
+            if (one%kind /= LOAD_WATER .and. one%kind /= LOAD_AIR) cycle
+            do s = 1, size(model%stages)
+               if (.not. acts_in(one%stages, model%stages(s)%name)) cycle
+               if (one%kind == LOAD_WATER) then
+                  taken = has_given(model, model%stages(s), AT_P_W)
+                  taken = taken .or. (has_given(model, model%stages(s), AT_P_C) .and. &
+                                      has_given(model, model%stages(s), PRESCRIBED_P_A))
+               else
+                  taken = has_given(model, model%stages(s), PRESCRIBED_P_A)
+                  taken = taken .or. (has_given(model, model%stages(s), AT_P_W) .and. &
+                                      has_given(model, model%stages(s), AT_P_C))
+               end if
+               lost = count([(all(taken(edges(:2, e))), e=1, size(edges, 2))])
+               if (lost == 0) cycle
+               call add_warning(place_of(one)//'the inflow has no effect on '//whole(lost)//' of the '// &
+                  whole(size(edges, 2))//' edges of '''//trim(one%group_name)//''' in stage '// &
+                  trim(model%stages(s)%name)//': a &fix prescribes the pressure of '// &
+                  trim(merge('water', 'air  ', one%kind == LOAD_WATER))//' there.', warnings)
+               exit
+            end do
+         end associate
+      end do
+   end subroutine look_at_inflows
+
+   !> Nodes with a prescribed value throughout a stage. (nodes)
+   pure function has_given(model, stage, field) result(has)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      integer, intent(in) :: field   !< As of fix_t.
+      logical :: has(size(model%domain%mesh%x, 2))
+      integer :: i
+
+      has = .false.
+      do i = 1, size(model%fixes)
+         associate (one => model%fixes(i))
+            if (one%field /= field .or. .not. acts_in(one%stages, stage%name)) cycle
+            if (one%from > -huge(1.0_wp) .or. one%until < huge(1.0_wp)) cycle
+            has(model%domain%mesh%groups(one%group)%nodes) = .true.
+         end associate
+      end do
+   end function has_given
+
+   !> Histories of which a part lies before what they act on: times are those of the run, not of the stage.
+   subroutine look_at_histories(model, warnings)
+      type(model_t), intent(in) :: model
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      integer :: i
+
+      do i = 1, size(model%loads)
+         associate (one => model%loads(i))
+            call look(one%scene_item_t, one%amplitude, first_time(one%stages))
+         end associate
+      end do
+      do i = 1, size(model%fixes)
+         associate (one => model%fixes(i))
+            if (.not. one%hold) call look(one%scene_item_t, one%amplitude, max(one%from, first_time(one%stages)))
+         end associate
+      end do
+      do i = 1, size(model%plates)
+         call look(model%plates(i)%scene_item_t, model%plates(i)%amplitude, 0.0_wp)
+      end do
+      do i = 1, size(model%absorbers)
+         associate (one => model%absorbers(i))
+            call look(one%scene_item_t, one%amplitude, first_time(one%stages))
+         end associate
+      end do
+   contains
+      !> Start of the first stage in which something acts [s].
+      real(wp) function first_time(stages) result(start)
+         character(*), intent(in) :: stages(:)
+         integer :: s
+
+         start = 0.0_wp
+         do s = 1, size(model%stages)
+            if (acts_in(stages, model%stages(s)%name)) return
+            start = start + model%stages(s)%duration
+         end do
+      end function first_time
+
+      subroutine look(item, amplitude, start)
+         type(scene_item_t), intent(in) :: item
+         integer, intent(in) :: amplitude
+         real(wp), intent(in) :: start   !< When it begins to act [s].
+         real(wp) :: factor
+
+         if (amplitude == 0) return
+         associate (h => model%amplitudes(amplitude))
+            factor = amplitude_at(h, start)
+            if (.not. any(h%times < start .and. abs(h%values - factor) > 0.0_wp)) return
+            call add_warning(place_of(item)//'history '''//trim(h%name)//''' begins at '//short(h%times(1))// &
+               ' s, and this acts from '//short(start)//' s on, at once with the factor '//short(factor)// &
+               trim(merge(', which then stays; ', ';                   ', h%times(size(h%times)) <= start))// &
+               ' times of a &history are those of the run, not of a stage.', warnings)
+         end associate
+      end subroutine look
+   end subroutine look_at_histories
+
+   !> Supports of pressures and inflows that act on a part of their group alone.
+   subroutine look_at_places(model, warnings)
+      type(model_t), intent(in) :: model
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      logical :: flows(size(model%domain%mesh%x, 2))
+      integer :: i
+
+      flows = nodes_with_flow(model%domain)
+      do i = 1, size(model%fixes)
+         associate (one => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
+            if (one%field > DISPLACEMENTS .and. .not. all(flows(nodes))) call add_warning(place_of(one)// &
+               trim(WORDS(one%field))//' is prescribed on '//whole(count(flows(nodes)))//' of the '// &
+               whole(size(nodes))//' nodes of '''//trim(one%group_name)//''': the others lie in no region with '// &
+               'drainage = ''coupled''.', warnings)
+         end associate
+      end do
+      do i = 1, size(model%loads)
+         associate (one => model%loads(i))
+            if (one%kind /= LOAD_WATER .and. one%kind /= LOAD_AIR) cycle
+            associate (edges => edges_with_flow(model%domain, one%group))
+               if (.not. all(edges)) call add_warning(place_of(one)//'fluid flows in through '//whole(count(edges))// &
+                  ' of the '//whole(size(edges))//' edges of '''//trim(one%group_name)//''': the others belong to '// &
+                  'no region with drainage = ''coupled''.', warnings)
+            end associate
+         end associate
+      end do
+   end subroutine look_at_places
+end module boundary_warnings

@@ -1,0 +1,62 @@
+! SPDX-License-Identifier: MIT
+!> Newton's method and the stress integration ask each other for accuracy: an error of Newton's method below the
+!> tolerance of the stresses cannot be reached, since the substeps of a point change with its strain.
+!> docs/theory/host.md section 5.1.
+module stress_tolerance
+   use, intrinsic :: iso_fortran_env, only: error_unit
+   use kinds, only: wp
+   use convergence, only: log_t
+   use model_types, only: stage_t
+   use porous_domain, only: region_t
+   use texts, only: short
+   implicit none (type, external)
+   private
+   public :: follow_newton, roughness, warn_stagnation
+
+   integer, parameter :: SCHEME_STAYS = 0
+   real(wp), parameter :: LEAST = 1.0e-10_wp   !< No stress is integrated to less [-].
+contains
+   !> Before a stage: stresses are integrated to the tolerance of the material or to that of Newton's method, whichever
+   !> is smaller. docs/theory/host.md section 5.1.
+   subroutine follow_newton(stage, regions)
+      type(stage_t), intent(in) :: stage
+      type(region_t), intent(inout) :: regions(:)
+      real(wp) :: wanted
+      integer :: i
+
+      do i = 1, size(regions)
+         associate (law => regions(i)%law)
+            if (.not. law%tolerance > 0.0_wp) cycle
+            wanted = min(regions(i)%stress_tolerance, max(stage%tolerance, LEAST))
+            if (abs(wanted - law%tolerance) > epsilon(1.0_wp)*wanted) call law%integrate_to(wanted, SCHEME_STAYS)
+         end associate
+      end do
+   end subroutine follow_newton
+
+   !> Largest tolerance of the stress integration; 0 without one. [-] docs/theory/host.md section 5.1.
+   pure real(wp) function roughness(regions)
+      type(region_t), intent(in) :: regions(:)
+      integer :: i
+
+      roughness = 0.0_wp
+      do i = 1, size(regions)
+         roughness = max(roughness, regions(i)%law%tolerance)
+      end do
+   end function roughness
+
+   !> After an accepted step whose error stagnated: once a stage, on standard error, also where the run is quiet.
+   !> docs/theory/host.md section 5.1. Raises no fault.
+   subroutine warn_stagnation(stage, time, log, rough, told)
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: time, rough   !< [s]; tolerance of the stress integration [-].
+      type(log_t), intent(in) :: log
+      logical, intent(inout) :: told
+
+      if (told .or. .not. log%stagnated) return
+      told = .true.
+      write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//', time '//short(time)// &
+         ' s: Newton''s method stays at an error of '//short(maxval(log%error))//' and cannot reach its tolerance '// &
+         'of '//short(stage%tolerance)//', because stresses are integrated to '//short(rough)// &
+         '. The step is accepted. Give &stage a tolerance above the error reached, or the material a smaller one.'
+   end subroutine warn_stagnation
+end module stress_tolerance

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+"""Every option of CMakeLists.txt can be switched off: the rest builds, and its programs run.
+
+One folder, without optimisation: one option after another is off, so that only what it changes is compiled again.
+"""
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from checking import build, check, finish, light, root, work  # noqa: E402
+
+if light:
+    print("note: which options exist does not depend on how the library is compiled; the release tries them")
+    check("left to the release", True)
+    finish()
+
+cache = dict(re.findall(r"^(\w+):\w+=(.*)$", (build / "CMakeCache.txt").read_text(encoding="utf-8"), re.MULTILINE))
+folder = work / "options"
+# What is installed, and which option it belongs to.
+PARTS = {"bin/mud_triax": "MUD_BUILD_DRIVERS", "bin/mud_describe": "MUD_BUILD_DRIVERS",
+         "bin/mud_host": "MUD_BUILD_HOST", "libmud.a": "MUD_BUILD_STATIC",
+         "libmud.so": "MUD_BUILD_SHARED", "include/mud.h": "MUD_INSTALL"}
+
+
+def run(*command):
+    """Exit code and everything that was written."""
+    done = subprocess.run([str(word) for word in command], cwd=work, capture_output=True, text=True)
+    return done.returncode, done.stdout + done.stderr
+
+
+def options():
+    """The names of the options of the project."""
+    texts = "".join((root / name).read_text(encoding="utf-8") for name in ("CMakeLists.txt", "common/CMakeLists.txt"))
+    return {name for name in re.findall(r"^option\((MUD_\w+) ", texts, re.MULTILINE)}
+
+
+def built_without(*off):
+    """Configures, builds and installs with these options off and every other on: whether that went well, its text."""
+    shutil.rmtree(work / "prefix", ignore_errors=True)
+    values = {name: "ON" for name in options() if name not in ("MUD_BUILD_PYTHON", "MUD_BUILD_BENCHMARKS", *off)}
+    values |= {name: "OFF" for name in ("MUD_BUILD_TESTS", *off)}
+    for command in (
+            ["cmake", "-S", root, "-B", folder, "-G", cache["CMAKE_GENERATOR"], "--no-warn-unused-cli",
+             f"-DCMAKE_Fortran_COMPILER={cache['CMAKE_Fortran_COMPILER']}",
+             f"-DCMAKE_C_COMPILER={cache['CMAKE_C_COMPILER']}", f"-DMUD_PYTHON={sys.executable}",
+             "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_Fortran_FLAGS_DEBUG=-O0", "-DCMAKE_C_FLAGS_DEBUG=-O0",
+             *[f"-D{name}={value}" for name, value in values.items()]],
+            ["cmake", "--build", folder, "-j", "2"], ["cmake", "--install", folder, "--prefix", work / "prefix"]):
+        code, told = run(*command)
+        if code != 0:
+            return False, told[-2000:]
+    return True, ""
+
+
+def contradictions(*off):
+    """Parts installed although their option is off, those missing although it is on, programs that do not run."""
+    prefix = work / "prefix"
+    there = {part: list(prefix.rglob(part)) for part in PARTS}
+    wrong = [part for part, option in PARTS.items() if bool(there[part]) == (option in off or "MUD_INSTALL" in off)]
+    return wrong + [f"{part}: {told}" for part, found in there.items() if found and part.startswith("bin/")
+                    for code, told in [run(found[0], "--help")] if code != 0]
+
+
+base = ("MUD_WITH_HDF5",)
+good, told = built_without(*base)
+check("it builds without HDF5 and without tests", good, told)
+check("everything is installed, and the programs run", not contradictions(), contradictions())
+case = root / "drivers/cases/undrained_e735_p100.nml"
+code, told = run(work / "prefix/bin/mud_triax", case, "--output", work / "rows.csv")
+check("mud_triax without HDF5 writes its table",
+      code == 0 and len((work / "rows.csv").read_text().splitlines()) > 10, told)
+code, told = run(work / "prefix/bin/mud_triax", case, "--output", work / "rows.h5")
+check("mud_triax without HDF5 says so where it is asked for a file of that kind",
+      code != 0 and "HDF5" in told and not (work / "rows.h5").exists(), told)
+scene = (root / "host/README.md").read_text(encoding="utf-8").split("<!-- first scene -->\n```\n")[1].split("```")[0]
+(work / "scene.nml").write_text(scene)
+code, told = run(work / "prefix/bin/mud_host", work / "scene.nml", "--output", work / "out", "--quiet")
+check("mud_host without HDF5 runs its first scene", code == 0 and (work / "out/histories.csv").exists(), told)
+
+single = {"MUD_BUILD_STATIC", "MUD_BUILD_SHARED", "MUD_BUILD_DRIVERS", "MUD_BUILD_HOST", "MUD_INSTALL"}
+check("every option is tried here or stands off", options() == single | {
+    "MUD_WITH_HDF5", "MUD_BUILD_TESTS", "MUD_BUILD_BENCHMARKS", "MUD_BUILD_PYTHON", "MUD_WERROR"}, options())
+for option in sorted(single):
+    good, told = built_without(*base, option)
+    check(f"it builds with {option}=OFF", good, told)
+    wrong = contradictions(option)
+    check(f"with {option}=OFF what is on is installed, and nothing else", not wrong, wrong)
+finish()

@@ -1,0 +1,153 @@
+! SPDX-License-Identifier: MIT
+!> The direction equation gamma n = t y + beta r: dilatancy and hardening in a direction, with the guards that bound
+!> them, and how both depend on everything; docs/theory/material.md sections 4.2, 4.6 and 5. The only place of these
+!> equations: the search for roots, the rate, the tangents and the sensitivities take them from here.
+module mud_direction_equation
+   use mud_branchless, only: positive, larger, smaller
+   use mud_critical_state, only: lode_slope
+   use mud_flow, only: dilatancy
+   use mud_kinds, only: wp, SQRT_2_3
+   use mud_params, only: params_t
+   use mud_rate, only: rate_t
+   use mud_tensor, only: ddot, deviator, square
+   implicit none (type, external)
+   private
+   public :: equation_t, equation_of, moduli_at, note_moduli, slopes_t, slopes_at, gradients
+
+   real(wp), parameter :: NEGLIGIBLE = 1.0e-12_wp   !< Smaller divisors would only make a cap that never acts [-].
+   real(wp), parameter :: NO_LIMIT = 1.0e100_wp     !< A cap that is off.
+
+   !> What is the same in every direction.
+   type :: equation_t
+      real(wp) :: two_g, k_e      !< 2 G, K_e [kPa]
+      real(wp) :: two_thirds_p    !< [kPa]
+      real(wp) :: per_b_0         !< 1/b_0 [-]
+      real(wp) :: x_floor         !< x_0 [-]
+      real(wp) :: most_d          !< D r:n of the contraction cap [-]
+      real(wp) :: least_h         !< 2/3 p'/(1 - kappa_c) of the softening cap, 0: off [kPa]
+   end type equation_t
+
+   !> Slopes of D by r:n, z:n, its surface, G and K_e, and of 1/h by these (with what D does to the softening cap), by
+   !> x, its surface, p' at constant b_0 and b_0.
+   type :: slopes_t
+      real(wp) :: d_r, d_z, d_r_d, d_g, d_k
+      real(wp) :: h_r, h_z, h_r_d, h_g, h_k, h_x, h_r_b, h_p, h_b_0
+   end type slopes_t
+contains
+   !> Of a rate whose state, moduli and choice of the isotropic mechanism are known; units as in rate_t.
+   pure function equation_of(par, w) result(eq)
+      type(params_t), intent(in) :: par
+      type(rate_t), intent(in) :: w
+      type(equation_t) :: eq
+
+      eq%two_g = 2.0_wp*w%g
+      eq%k_e = w%k_e
+      eq%two_thirds_p = 2.0_wp/3.0_wp*w%p
+      eq%per_b_0 = 1.0_wp/w%b_0
+      eq%x_floor = par%x_floor
+      eq%most_d = merge(par%cap_d*eq%two_g/eq%k_e, NO_LIMIT, par%cap_d > 0.0_wp)
+      eq%least_h = merge(eq%two_thirds_p/(1.0_wp - par%cap_h), 0.0_wp, par%cap_h > 0.0_wp)
+   end function equation_of
+
+   !> D, 1/h, beta and gamma in a direction, docs/theory/material.md sections 4.2, 4.6, 5.2 to 5.4. Without branches: of
+   !> several directions the compiler works on two at a time.
+   pure subroutine moduli_at(eq, r_n, x, a_d, r_b, r_d, d, h_b, beta, gamma)
+      type(equation_t), intent(in) :: eq
+      real(wp), intent(in) :: r_n, x           !< r:n and (r - r_in):n [-]
+      real(wp), intent(in) :: a_d, r_b, r_d    !< A_d and |r| on both surfaces in the direction [-]
+      real(wp), intent(out) :: d, h_b          !< [-]
+      real(wp), intent(out) :: beta, gamma     !< [kPa]
+      real(wp) :: stiffness, limit
+
+      d = smaller(dilatancy(a_d, r_d, r_n), eq%most_d/larger(r_n, NEGLIGIBLE))
+      stiffness = eq%two_g - eq%k_e*d*r_n
+      h_b = larger(x, eq%x_floor)*eq%per_b_0
+      limit = eq%least_h*positive(r_n - r_b)/larger(stiffness, NEGLIGIBLE*eq%two_g)
+      h_b = larger(limit*(0.5_wp + sign(0.5_wp, stiffness)), h_b)   ! exactly h_b where the cap does not act
+      beta = eq%two_thirds_p + h_b*eq%k_e*d
+      gamma = eq%two_thirds_p*r_b + eq%two_g*h_b
+   end subroutine moduli_at
+
+   !> The same for the direction that w has, with the guards that act there.
+   pure subroutine note_moduli(eq, w)
+      type(equation_t), intent(in) :: eq
+      type(rate_t), intent(inout) :: w
+
+      call moduli_at(eq, w%r_n, w%x, w%a_d, w%r_b, w%r_d, w%d, w%h_b, w%beta, w%gamma)
+      w%floored = w%x < eq%x_floor
+      w%capped_d = w%d < dilatancy(w%a_d, w%r_d, w%r_n)
+      w%capped_h = w%h_b > larger(w%x, eq%x_floor)*eq%per_b_0
+   end subroutine note_moduli
+
+   !> Slopes of D and 1/h where w has them. Derivatives of moduli_at; A_d changes with z:n by docs/theory/material.md
+   !> section 4.2.
+   pure subroutine slopes_at(par, w, s)
+      type(params_t), intent(in) :: par
+      type(rate_t), intent(in) :: w
+      type(slopes_t), intent(out) :: s
+      real(wp) :: stiffness, by_stiffness
+
+      s%d_z = 0.0_wp
+      s%d_r_d = 0.0_wp
+      s%d_g = 0.0_wp
+      s%d_k = 0.0_wp
+      if (w%capped_d) then
+         s%d_r = -w%d/w%r_n
+         s%d_g = w%d/w%g
+         s%d_k = -w%d/w%k_e
+      else
+         s%d_r = -w%a_d
+         s%d_r_d = w%a_d
+         if (par%fabric .and. w%z_n > 0.0_wp) s%d_z = par%a_0*(w%r_d - w%r_n)
+      end if
+      if (w%capped_h) then
+         stiffness = 2.0_wp*w%g - w%k_e*w%d*w%r_n
+         by_stiffness = w%h_b/stiffness
+         s%h_r_b = -2.0_wp/3.0_wp*w%p/((1.0_wp - par%cap_h)*stiffness)
+         s%h_r = -s%h_r_b + by_stiffness*w%k_e*(w%d + w%r_n*s%d_r)
+         s%h_z = by_stiffness*w%k_e*w%r_n*s%d_z
+         s%h_r_d = by_stiffness*w%k_e*w%r_n*s%d_r_d
+         s%h_g = -by_stiffness*(2.0_wp - w%k_e*w%r_n*s%d_g)
+         s%h_k = by_stiffness*w%r_n*(w%d + w%k_e*s%d_k)
+         s%h_p = w%h_b/w%p
+         s%h_x = 0.0_wp
+         s%h_b_0 = 0.0_wp
+      else
+         s%h_r_b = 0.0_wp
+         s%h_r = 0.0_wp
+         s%h_z = 0.0_wp
+         s%h_r_d = 0.0_wp
+         s%h_g = 0.0_wp
+         s%h_k = 0.0_wp
+         s%h_p = 0.0_wp
+         s%h_x = merge(0.0_wp, 1.0_wp/w%b_0, w%floored)
+         s%h_b_0 = -w%h_b/w%b_0
+      end if
+   end subroutine slopes_at
+
+   !> Derivatives of 1/h, D and gamma with respect to n, their parts along n removed since n:dn = 0; that of beta is K_e
+   !> (D h_n + d_n/h). Units [-, -, kPa]; s is that of w, a rate that loads.
+   pure subroutine gradients(par, w, s, h_n, d_n, gamma_n)
+      type(params_t), intent(in) :: par
+      type(rate_t), intent(in) :: w
+      type(slopes_t), intent(in) :: s
+      real(wp), dimension(6), intent(out) :: h_n, d_n, gamma_n
+      real(wp) :: g_n(6)
+
+      d_n = s%d_r*w%r
+      h_n = s%h_r*w%r + s%h_x*w%r_moved
+      if (par%fabric) then
+         d_n = d_n + s%d_z*w%z
+         h_n = h_n + s%h_z*w%z
+      end if
+      g_n = 0.0_wp
+      if (par%lode) then
+         g_n = (3.0_wp*lode_slope(par, w%lode)*SQRT_2_3)*deviator(square(w%n))
+         d_n = d_n + (s%d_r_d*w%m_d)*g_n
+         h_n = h_n + (s%h_r_d*w%m_d + s%h_r_b*w%m_b)*g_n
+      end if
+      d_n = d_n - ddot(d_n, w%n)*w%n
+      h_n = h_n - ddot(h_n, w%n)*w%n
+      gamma_n = (2.0_wp/3.0_wp*w%p*w%m_b)*(g_n - ddot(g_n, w%n)*w%n) + (2.0_wp*w%g)*h_n
+   end subroutine gradients
+end module mud_direction_equation
