@@ -60,7 +60,10 @@ contains
       associate (law => test%soil%law, stages => test%stages)
          free_increments = .not. all(stages%given_increment)
          free_tolerance = law%tolerance > 0.0_wp .and. .not. law%given_tolerance
-         where (.not. stages%given_increment) stages%increment = min(stages%interval, COARSE*stages%increment)
+         where (.not. stages%given_increment)
+            stages%increment = min(stages%interval, COARSE*stages%increment)
+            stages%suction_increment = min(stages%suction_interval, COARSE*stages%suction_increment)
+         end where
          if (free_tolerance) call law%integrate_to(min(LARGEST_TOLERANCE, max(LEAST_TOLERANCE, &
                                                    TOLERANCE_SHARE*test%accuracy)), scheme)
          refinements = 0

@@ -13,7 +13,8 @@ module triax_case
    use material_point, only: material_t
    use material_registry, only: new_material
    use retention_groups, only: give_retention, RETENTION_KEYS
-   use triax_point, only: soil_t, point_t, make_soil, start_point, restore_point, mean_stress, AXIAL, RADIAL
+   use triax_point, only: soil_t, point_t, make_soil, start_point, restore_point, mean_stress, saturation, &
+                          AXIAL, RADIAL
    implicit none (type, external)
    private
    public :: case_t, read_case, make_case
@@ -30,6 +31,7 @@ module triax_case
    end type case_t
 
    real(wp), parameter :: LIFTED = 1.0e-12_wp   !< Far above rounding: the library has raised the stress to p_min.
+   real(wp), parameter :: ROUNDED = 1.0e-9_wp   !< Share of a stress by which a net stress may fall below zero.
 
 contains
    !> Reads and checks a case with its material, and brings the sample to its start. Fault EXIT_INPUT: a file cannot be
@@ -194,7 +196,7 @@ contains
       real(wp) :: p_eff, sigma_a, sigma_r, ratio, suction, s_w, stress(6)
       real(wp), allocatable :: state(:)
       character(:), allocatable :: name
-      logical :: has_p, has_a, has_r, has_six, has_state, found
+      logical :: has_p, has_a, has_r, has_net, has_six, has_state, found
 
       p_eff = 0.0_wp
       sigma_a = 0.0_wp
@@ -207,6 +209,17 @@ contains
       call get_number(group, 'sigma_r', sigma_r, has_r)
       call get_number(group, 'suction', suction, found)
       call get_number(group, 'saturation', s_w, found)
+      has_net = given(group, 'p_net') .or. given(group, 'sigma_a_net') .or. given(group, 'sigma_r_net')
+      if (has_net) then
+         if (has_p .or. has_a .or. has_r) then
+            call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&initial takes the effective stress '// &
+                       'or the net stress, not both.')
+            return
+         end if
+         call get_number(group, 'p_net', p_eff, has_p)
+         call get_number(group, 'sigma_a_net', sigma_a, has_a)
+         call get_number(group, 'sigma_r_net', sigma_r, has_r)
+      end if
       has_six = given(group, 'stress')
       has_state = given(group, 'state_variables')
       call get_number(group, 'void_ratio', ratio, found)
@@ -218,9 +231,11 @@ contains
                     'needs stress, and takes the place of void_ratio and saturation; give these two alone.')
       else if (count([has_p, has_a .or. has_r, has_six]) /= 1) then
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)// &
-                    '&initial needs the stress once: either p_eff, or sigma_a and sigma_r, or stress (six values).')
+                    '&initial needs the stress once: either p_eff, or sigma_a and sigma_r, or stress (six values), '// &
+                    'or p_net, or sigma_a_net and sigma_r_net.')
       else if (has_a .neqv. has_r) then
-         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&initial needs sigma_a and sigma_r together.')
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)// &
+                    '&initial needs the axial and the radial stress together.')
       end if
       if (fault%code /= 0) return
 
@@ -234,7 +249,12 @@ contains
          call get_numbers(group, 'state_variables', state)
          call restore_point(soil, stress, suction, state, start, fault)
       else
-         call start_point(soil, stress, suction, ratio, s_w, start, fault)
+         if (has_net) then
+            ! S_w knows no stress: a sample at any stress tells it.
+            call start_point(soil, suction_stress(stress, suction), suction, ratio, s_w, start, fault)
+            if (fault%code == 0) stress = suction_stress(stress, saturation(soil, start)*suction)
+         end if
+         if (fault%code == 0) call start_point(soil, stress, suction, ratio, s_w, start, fault)
       end if
       if (fault%code /= 0) then
          fault%text = at_line(group%file, group%line)//fault%text
@@ -244,6 +264,36 @@ contains
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'the mean effective stress is '// &
                     short(sum(stress(1:3))/3.0_wp)//name//', below p_min of the material, '// &
                     short(mean_stress(start))//name//'; raise the one or lower the other.')
+      else if (.not. has_six) then
+         call refuse_tension(group, soil, start, fault)
       end if
    end subroutine read_initial
+
+   !> Stress with a pressure added to its normal components. [unit of stress]
+   pure function suction_stress(stress, pressure) result(total)
+      real(wp), intent(in) :: stress(6), pressure
+      real(wp) :: total(6)
+
+      total = stress
+      total(1:3) = stress(1:3) + pressure
+   end function suction_stress
+
+   !> A start that no laboratory can make: tension in the net stress. What the law cannot begin with it refuses itself.
+   subroutine refuse_tension(group, soil, start, fault)
+      type(group_t), intent(in) :: group
+      type(soil_t), intent(in) :: soil
+      type(point_t), intent(in) :: start
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: least, most, bound
+
+      least = minval(start%stress(1:3))
+      most = maxval(start%stress(1:3))
+      bound = saturation(soil, start)*start%suction
+      if (least - bound < -ROUNDED*most) then
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'the net stress sigma'' - S_w p_c is '// &
+                    short(least - bound)//' '//trim(soil%law%unit%name)//', tension: at S_w '// &
+                    short(saturation(soil, start))//' the suction alone makes an effective stress of '// &
+                    short(bound)//'; give at least that, or the net stress (p_net).')
+      end if
+   end subroutine refuse_tension
 end module triax_case

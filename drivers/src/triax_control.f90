@@ -24,6 +24,7 @@ module triax_control
    !> A strain itself is rounded: an increment below this share of it cannot be met to the tolerance.
    real(wp), parameter :: ROUNDING = 10.0_wp*epsilon(1.0_wp)/CONTROL_TOLERANCE
    integer, parameter :: REFUSAL_LENGTH = 1000
+   real(wp), parameter :: STAYS = 1.0e-6_wp    !< Share of an increment: less is no motion of what leads.
    integer, parameter :: SUCTION = 7           !< Place of suction among the unknowns, after the six strains.
    integer, parameter :: NORMAL = 3            !< Components up to this are normal ones.
    real(wp), parameter :: IDENTITY(6) = [1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
@@ -33,6 +34,7 @@ module triax_control
       integer :: control = 0
       integer :: increments = 0                   !< An open way has 1, and goes on beyond it.
       real(wp) :: lead_start = 0.0_wp, lead_change = 0.0_wp
+      real(wp) :: interval = 0.0_wp               !< Of the rows, in the unit of what leads.
       real(wp) :: strain_rows(6, ROWS) = 0.0_wp, stress_rows(6, ROWS) = 0.0_wp, changes(ROWS) = 0.0_wp
       logical :: effective = .false., keeps_water = .false.
       real(wp) :: strain_start(6) = 0.0_wp, stress_start(6) = 0.0_wp, suction_start = 0.0_wp, water_start = 0.0_wp
@@ -94,11 +96,21 @@ contains
          plan%lead_change = target - plan%lead_start
          plan%changes(ROWS) = plan%lead_change
       end select
-      plan%increments = stage%parts*ceiling(abs(plan%lead_change)/stage%increment*(1.0_wp - 1.0e-9_wp))
+      plan%increments = stage%parts*equal_parts(plan%lead_change, stage%increment)
+      plan%interval = stage%interval
 
       plan%given(SUCTION) = .not. stage%keeps_water
       if (stage%moves_suction) plan%given_change(SUCTION) = stage%suction_end - point%suction
       if (stage%by_change) plan%given_change(SUCTION) = stage%suction_change
+      ! Wetting under a constant load: what leads stays, or moves by less than a default increment, and suction decides.
+      if (abs(plan%given_change(SUCTION)) > 0.0_wp .and. (abs(plan%lead_change) <= STAYS*stage%increment .or. &
+          plan%increments <= stage%parts .and. .not. stage%given_increment)) then
+         plan%lead_start = point%suction
+         plan%lead_change = plan%given_change(SUCTION)
+         plan%increments = max(plan%increments, &
+                               stage%parts*equal_parts(plan%lead_change, stage%suction_increment))
+         plan%interval = stage%suction_interval
+      end if
       ! A constraint on one strain gives it, and six on strains alone give all.
       do i = 1, ROWS
          if (any(abs(plan%stress_rows(:, i)) > 0.0_wp) .or. count(abs(plan%strain_rows(:, i)) > 0.0_wp) /= 1) cycle
@@ -113,6 +125,13 @@ contains
          if (good) plan%given_change(:6) = strain
       end if
    end subroutine plan_way
+
+   !> Equal parts of a change, none larger than an increment but for rounding.
+   pure integer function equal_parts(change, increment)
+      real(wp), intent(in) :: change, increment   !< In one unit; the increment > 0.
+
+      equal_parts = ceiling(abs(change)/increment*(1.0_wp - 1.0e-9_wp))
+   end function equal_parts
 
    !> The variable that leads a stage, after increment k: by value, or the share of a change. [-] or [unit of stress of
    !> the law].

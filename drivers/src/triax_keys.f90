@@ -11,6 +11,8 @@ module triax_keys
    public :: CASE_KEYS, keys_in, check_keys, print_keys
 
    character, parameter :: DIGITS(6) = ['1', '2', '3', '4', '5', '6']
+   !> [kPa] Stress of a start: grains of sand crush long before.
+   real(wp), parameter :: MOST = 5.0e4_wp
    integer, private :: i   ! of the implied loops below
    type(key_t), parameter :: CASE_KEYS(*) = [ &
       key_t('case', 'name', 't', NONE, 0, 0, 'name of the case and of its output; default: name of the file'), &
@@ -21,12 +23,17 @@ module triax_keys
             'relative error wanted in the histories; chooses increments and stress tolerance that are not given'), &
       key_t('case', 'max_updates', 'i', NONE, 1.0_wp, 1.0e9_wp, &
             'most updates of the material; then the test stops (for fits); default: no limit'), &
-      key_t('initial', 'p_eff', 'n', NONE, 1.0e-6_wp, 1.0e7_wp, &
+      key_t('initial', 'p_eff', 'n', NONE, 1.0e-6_wp, MOST, &
             'mean effective stress of an isotropic start', unit='kPa'), &
-      key_t('initial', 'sigma_a', 'n', NONE, 1.0e-6_wp, 1.0e7_wp, &
+      key_t('initial', 'sigma_a', 'n', NONE, 1.0e-6_wp, MOST, &
             'axial effective stress, with sigma_r, instead of p_eff', unit='kPa'), &
-      key_t('initial', 'sigma_r', 'n', NONE, 1.0e-6_wp, 1.0e7_wp, &
+      key_t('initial', 'sigma_r', 'n', NONE, 1.0e-6_wp, MOST, &
             'radial effective stress, with sigma_a', unit='kPa'), &
+      key_t('initial', 'p_net', 'n', NONE, 0.0_wp, MOST, &
+            'mean net stress of an isotropic start, instead of p_eff: p'' is p_net + S_w suction', unit='kPa'), &
+      key_t('initial', 'sigma_a_net', 'n', NONE, 0.0_wp, MOST, &
+            'axial net stress, with sigma_r_net, instead of p_eff', unit='kPa'), &
+      key_t('initial', 'sigma_r_net', 'n', NONE, 0.0_wp, MOST, 'radial net stress, with sigma_a_net', unit='kPa'), &
       key_t('initial', 'stress', 'N', NONE, -1.0e7_wp, 1.0e7_wp, &
             'effective stresses 11, 22, 33, 12, 13, 23, instead of p_eff', unit='kPa', values=6), &
       key_t('initial', 'void_ratio', 'n', NONE, 0.01_wp, 5.0_wp, 'void ratio'), &

@@ -58,6 +58,7 @@ module triax_stage
       real(wp) :: suction_end = 0.0_wp, suction_change = 0.0_wp   !< [unit of stress]
       real(wp) :: increment = 0.0_wp         !< In the unit of what leads.
       logical :: given_increment = .false.   !< By hand: an accuracy does not change it.
+      real(wp) :: suction_increment = 0.0_wp, suction_interval = 0.0_wp   !< Where suction alone moves [stress].
       integer :: parts = 1                   !< Increments are divided into so many, for an accuracy.
       real(wp) :: interval = 0.0_wp          !< Between rows of the output, in the same unit.
       integer :: cycles = 0                  !< 0: one way

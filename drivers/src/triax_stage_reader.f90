@@ -48,8 +48,13 @@ contains
          stage%increment = stage%increment*unit%factor
          stage%interval = stage%interval*unit%factor
       end if
+      stage%suction_increment = SUCTION_INCREMENT*unit%factor
+      stage%suction_interval = SUCTION_INTERVAL*unit%factor
       call get_number(group, 'increment', stage%increment, stage%given_increment)
+      if (stage%given_increment .and. QUANTITIES(stage%lead)%unit == PER_PRESSURE) &
+         stage%suction_increment = stage%increment
       call get_number(group, 'output_interval', stage%interval, found)
+      if (found .and. QUANTITIES(stage%lead)%unit == PER_PRESSURE) stage%suction_interval = stage%interval
       call get_number(group, 'stop_r_u', stage%stop_r_u, found)
       if (found .and. .not. sealed_control(stage%control)) then
          call refuse(group, 'stop_r_u', 'has no effect with control '//name_of(stage%control)// &

@@ -104,7 +104,7 @@ contains
          if (fault%code /= 0) return
          arrived = run%k >= run%plan%increments
       end if
-      run%row = arrived .or. passes(lead(run%plan, run%k - 1), lead(run%plan, run%k), stage%interval)
+      run%row = arrived .or. passes(lead(run%plan, run%k - 1), lead(run%plan, run%k), run%plan%interval)
       if (run%sealed) then
          run%pressure = run%pressure_start + run%confining - confining_stress(stage, point)
          run%r_u = (run%pressure - run%pressure_start)/run%confining

@@ -13,7 +13,7 @@ laboratory (compression positive); both say so.
 
 from . import _native
 from .element_test import Stage, TestResult, element_test, run_case
-from .errors import IncrementError, InputError, MudError, TestStopped, UnknownName
+from .errors import IncrementError, InputError, MudError, TestStopped, Unchangeable, UnknownName
 from .host import HostRun
 from .material import Material, Response, material_file, materials
 from .plots import plot_histories, plot_test
@@ -38,6 +38,7 @@ __all__ = [
     "StateVariable",
     "TestResult",
     "TestStopped",
+    "Unchangeable",
     "UnknownName",
     "element_test",
     "material_file",

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ctypes
+import difflib
 import os
 import pathlib
 from collections.abc import Iterator, Mapping, Sequence
@@ -13,7 +14,7 @@ import numpy as np
 
 from . import _native
 from ._native import CONSTANTS as C
-from .errors import InputError, TestStopped
+from .errors import InputError, TestStopped, UnknownName
 from .material import Material
 
 _DONE, _REFUSED = 0, 2
@@ -37,23 +38,59 @@ class Stage:
         return f"Stage({self.control!r}, {', '.join(f'{k}={v!r}' for k, v in self.keys.items())})"
 
 
+# Columns that follow from the stresses of the driver: name -> (unit, meaning).
+_DERIVED = {
+    "q_mises": ("kPa", "sqrt(3 J2) of the effective stress, whatever its direction; |q| in triaxial tests"),
+    "b": ("1", "(sigma_2 - sigma_3)/(sigma_1 - sigma_3); NaN where the stress is isotropic"),
+    "lode": ("degrees", "Lode angle: 0 in triaxial compression, 60 in extension; NaN where the stress is isotropic"),
+}
+
+
 class TestResult(Mapping):
-    """Table of a test: columns by name, arrays of shape (rows,); compression positive, kPa, natural strain."""
+    """Table of a test: columns by name, arrays of shape (rows,); compression positive, kPa, natural strain.
+
+    Behind the columns of the driver come ``q_mises``, ``b`` and ``lode`` of the principal stresses: ``q`` is
+    sigma_a - sigma_r and says little where the axes turn, as in simple shear.
+    """
 
     __test__ = False  # not a test of pytest
 
     def __init__(
         self, columns: dict[str, np.ndarray], units: dict[str, str], meanings: dict[str, str], remarks: list[str]
     ):
-        self._columns = columns
-        self.units = units  #: unit of each column
-        self.meanings = meanings  #: what each column is
+        self._columns = {**columns, **_of_principal_stresses(columns)}
+        #: unit of each column
+        self.units = {**units, **{name: unit.replace("kPa", units["q"]) for name, (unit, _) in _DERIVED.items()}}
+        self.meanings = {**meanings, **{name: text for name, (_, text) in _DERIVED.items()}}  #: what each column is
         self.remarks = remarks  #: facts of the run, "name: text"
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self._columns:
-            raise KeyError(f"there is no column {name}; there are {', '.join(self._columns)}")
+            raise UnknownName(f"there is no column {name}{_nearest(name, self._columns)}")
         return self._columns[name]
+
+    def __getattr__(self, name: str) -> np.ndarray:
+        if name in self.__dict__.get("_columns", ()):
+            raise AttributeError(f"columns are read by their name in brackets: result['{name}']")
+        raise AttributeError(f"a TestResult has no {name}{_nearest(name, self.__dict__.get('_columns', ()))}")
+
+    def __repr__(self) -> str:
+        end = ", ".join(f"{name} {self[name][-1]:.6g}" for name in ("eps_a", "eps_v", "p_eff", "q", "e", "s_w"))
+        case = next((r.removeprefix("case: ") for r in self.remarks if r.startswith("case: ")), "test")
+        return (
+            f"TestResult({case!r}: {len(self['stage'])} rows, {int(self['stage'][-1])} stages; end: {end}; "
+            f"columns {', '.join(self)})"
+        )
+
+    def to_frame(self) -> object:
+        """The table as a pandas.DataFrame; units and meanings are in its ``attrs``."""
+        try:
+            import pandas
+        except ImportError as problem:
+            raise ImportError("to_frame needs pandas: pip install 'mud-soil[frames]'") from problem
+        frame = pandas.DataFrame(self._columns)
+        frame.attrs.update(units=self.units, meanings=self.meanings, remarks=self.remarks)
+        return frame
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._columns)
@@ -85,8 +122,13 @@ def element_test(
     p_eff: float | None = None,
     sigma_a: float | None = None,
     sigma_r: float | None = None,
+    p_net: float | None = None,
+    sigma_a_net: float | None = None,
+    sigma_r_net: float | None = None,
     suction: float = 0.0,
+    saturation: float | None = None,
     name: str = "test",
+    accuracy: float | None = None,
     control_tolerance: float | None = None,
     max_updates: int | None = None,
 ) -> TestResult:
@@ -96,8 +138,10 @@ def element_test(
         (``{"law": "elastic", "young": 1e4, "poisson": 0.3}``).
     stages : one after the other.
     void_ratio : at the start [-].
-    p_eff, or sigma_a and sigma_r : effective stress at the start [kPa].
-    suction : at the start [kPa].
+    p_eff, or sigma_a and sigma_r : effective stress at the start [kPa]; p_net, or sigma_a_net and sigma_r_net: net stress.
+    suction : at the start [kPa]. saturation : at the start, with hysteresis; None: on the main drying curve.
+    accuracy : relative error wanted in the histories, as 1e-2: increments and tolerance that are not given are chosen for it,
+        and ``remarks`` tell the estimate of every column; None: the increments of the stages.
     control_tolerance : relative error allowed in the prescribed stresses; None: the driver's 1e-10.
     max_updates : the test stops after so many updates of the material; None: no limit.
 
@@ -105,10 +149,34 @@ def element_test(
     """
     if isinstance(material, (str, os.PathLike)):
         material = Material(material)
-    initial = {"void_ratio": void_ratio, "p_eff": p_eff, "sigma_a": sigma_a, "sigma_r": sigma_r, "suction": suction}
+    wrong = next((s for s in stages if not isinstance(s, Stage)), None)
+    if not stages or wrong is not None:
+        raise InputError(
+            f"{'a test has no stage' if wrong is None else f'{wrong!r} is no stage'}; give stages as "
+            "mud.Stage('drained', eps_a_end=0.2)"
+        )
+    initial = {
+        "void_ratio": void_ratio,
+        "p_eff": p_eff,
+        "sigma_a": sigma_a,
+        "sigma_r": sigma_r,
+        "p_net": p_net,
+        "sigma_a_net": sigma_a_net,
+        "sigma_r_net": sigma_r_net,
+        "suction": suction,
+        "saturation": saturation,
+    }
     text = "".join(
         [
-            _group("case", {"name": name, "control_tolerance": control_tolerance, "max_updates": max_updates}),
+            _group(
+                "case",
+                {
+                    "name": name,
+                    "accuracy": accuracy,
+                    "control_tolerance": control_tolerance,
+                    "max_updates": max_updates,
+                },
+            ),
             material.group() if isinstance(material, Material) else _group("material", material),
             _group("initial", initial),
             *(_group("stage", {"control": s.control, **s.keys}) for s in stages),
@@ -155,6 +223,31 @@ def _table(handle: ctypes.c_void_p) -> TestResult:
         dict(zip(fields[0], fields[2])),
         remarks.value.decode().splitlines(),
     )
+
+
+def _of_principal_stresses(columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The columns of _DERIVED: from six stresses where the driver gives them, else from axial and radial stress."""
+    if "sig_11" in columns:
+        s11, s22, s33, s12, s13, s23 = (columns[f"sig_{k}"] for k in ("11", "22", "33", "12", "13", "23"))
+        tensor = np.array([[s11, s12, s13], [s12, s22, s23], [s13, s23, s33]]).transpose(2, 0, 1)
+        least, middle, most = np.linalg.eigvalsh(tensor).T
+    else:
+        axial, radial = columns["sigma_a"], columns["sigma_r"]
+        least, middle, most = np.minimum(axial, radial), radial, np.maximum(axial, radial)
+    reach = most - least
+    sheared = reach > 1e-9 * np.abs(most)  # eigenvalues of an isotropic stress differ by rounding
+    b = np.where(sheared, (middle - least) / np.where(sheared, reach, 1.0), np.nan)
+    return {
+        "q_mises": np.sqrt(((most - middle) ** 2 + (middle - least) ** 2 + reach**2) / 2),
+        "b": b,
+        "lode": np.degrees(np.arctan2(np.sqrt(3.0) * b, 2.0 - b)),
+    }
+
+
+def _nearest(name: str, names: object) -> str:
+    """'; the nearest is X (there are ...)'."""
+    near = difflib.get_close_matches(name, list(names), 1, 0.4)
+    return (f"; the nearest is {near[0]}" if near else "") + f" (there are {', '.join(names)})"
 
 
 def _group(name: str, keys: Mapping[str, object]) -> str:

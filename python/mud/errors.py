@@ -24,6 +24,10 @@ class UnknownName(InputError, KeyError):
     __str__ = Exception.__str__  # KeyError shows a representation, not the sentence
 
 
+class Unchangeable(InputError, AttributeError):
+    """An attribute that cannot be set, or is read in another way; the sentence says how."""
+
+
 class IncrementError(MudError):
     """An increment that could not be integrated (positive code); nothing was changed, a smaller one may pass.
 

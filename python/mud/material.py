@@ -13,7 +13,7 @@ from ctypes import byref, c_double
 import numpy as np
 
 from . import _native, namelist
-from .errors import InputError, fault_of
+from .errors import InputError, Unchangeable, fault_of
 from .points import Points, need, tangent_kind
 from .registry import parameters, states
 
@@ -127,6 +127,8 @@ class Material(Points, Mapping):
     unknown parameter.
     """
 
+    _OWN = ("props", "title", "_storage", "_address")
+
     def __init__(self, source: str | os.PathLike | None = None, /, **values: float | str):
         self.props = np.empty(len(parameters))  #: (n_parameters,) PROPS
         self.title = "defaults of the library"
@@ -164,6 +166,23 @@ class Material(Points, Mapping):
                     raise InputError(f"{entry.name} = '{value}': {entry.meaning}; allowed: {allowed}")
                 value = entry.options[value]
             self.props[entry.index] = value
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if name not in self._OWN:
+            raise Unchangeable(
+                f"a material does not change: sand.changed({name}={value!r}) gives another one"
+                if name in parameters
+                else f"a material has no attribute {name}; parameters are given as in sand.changed(G_0=50.0)"
+            )
+        super().__setattr__(name, value)
+
+    def __setitem__(self, name: str, value: object) -> None:
+        raise Unchangeable(f"a material does not change: sand.changed({parameters[name].name}={value!r}) gives another one")
+
+    def __getattr__(self, name: str) -> float:
+        if name in parameters:
+            raise Unchangeable(f"parameters are read by their name in brackets: sand['{parameters[name].name}']")
+        raise AttributeError(f"a material has no attribute {name}")
 
     def __getitem__(self, name: str) -> float:
         return float(self.props[parameters[name].index])
@@ -208,13 +227,20 @@ class Material(Points, Mapping):
     ) -> tuple[np.ndarray, np.ndarray]:
         """Stress (6,) and STATEV (n_states,) of a point that begins.
 
-        stress : (6,) effective stress [kPa], tension positive; lifted to p_min where its mean is below.
+        stress : (6,) effective stress [kPa], tension positive; a mean within p_atm/100 of zero is lifted to p_min, more
+            tension is refused.
         suction : p_a - p_w [kPa].
         void_ratio : [-]; None: e_0 of the material.
         saturation : [-], with hysteresis; None: on the main drying curve.
         """
         start = np.array(stress, dtype=float)
         need(start, (6,), "stress")
+        mean = float(start[:3].mean())
+        if mean > 0.01 * self["p_atm"]:
+            raise InputError(
+                f"the mean stress of the start is {mean:g}, tension: tension is positive here, and sand bears none; give "
+                f"compression with the sign minus, as {-mean:g}"
+            )
         statev = np.zeros(len(states))
         code, sentence = _native.text_of(
             _native.mud.mud_init,

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from .host import HostRun
 
 COLOURS = ("#0b3c6f", "#c8553d", "#3a8f6a", "#8a5a9e", "#b58900", "#555555")
+LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)))
+_POINTS = {"marker": "o", "ls": "", "color": COLOURS[5], "ms": 3.5, "mfc": "white"}
 
 
 def pyplot():
@@ -41,41 +43,152 @@ def pyplot():
     return plt
 
 
+# Of a range, a share of its scale below which it is constant.
+_SMALL = 1e-9
+# Column -> (label, factor).
+_LABELS = {
+    "eps_a": ("axial strain [%]", 100),
+    "eps_v": ("volumetric strain [%]", 100),
+    "gamma_13": ("shear strain [%]", 100),
+    "q": ("deviator stress q [kPa]", 1),
+    "sig_13": ("shear stress [kPa]", 1),
+    "p_eff": ("mean effective stress p' [kPa]", 1),
+    "u": ("excess pore pressure [kPa]", 1),
+    "e": ("void ratio [-]", 1),
+    "suction": ("suction [kPa]", 1),
+    "s_w": ("degree of saturation [-]", 1),
+    "r_u": ("pore pressure ratio [-]", 1),
+    "cycle": ("cycle", 1),
+    "psi": ("state parameter [-]", 1),
+    "n_substep": ("substeps since the start", 1),
+}
+# Names of a laboratory's columns -> those of a result.
+_LABORATORY = {name: name for name in _LABELS if name not in ("psi", "n_substep")}
+_LABORATORY |= {"p": "p_eff", "S_w": "s_w", "gamma": "gamma_13", "tau": "sig_13"}
+
+
+def panels(runs: Sequence[Mapping[str, np.ndarray]]) -> list[tuple[str, str, str, bool]]:
+    """(title, x column, y column, logarithmic x) for what happens in results of mud_triax: paths of stress and strain
+    always, pore pressure where it builds up, suction and saturation where suction moves, cycles where there are any."""
+
+    def moves(name: str, scale: float | None = None) -> bool:
+        return any(
+            name in run and np.ptp(run[name]) > _SMALL * (scale or max(1e-30, np.max(np.abs(run[name])))) for run in runs
+        )
+
+    shear = moves("gamma_13", 1.0)
+    strain, stress = ("gamma_13", "sig_13") if shear else ("eps_a", "q")
+    strain = strain if moves(strain, 1.0) else "eps_v"
+    pages = []
+    if moves(stress):
+        pages += [("stress and strain", strain, stress, False), ("stress path", "p_eff", stress, False)]
+    if moves("eps_v", 1.0) and strain != "eps_v":
+        pages.append(("volume", strain, "eps_v", False))
+    if moves("u"):
+        pages.append(("pore pressure", strain, "u", False))
+    if moves("e"):
+        pages.append(("state", "p_eff", "e", True))
+    else:
+        pages.append(("mean stress", strain, "p_eff", False))
+    if moves("suction"):
+        pages += [("retention", "suction", "s_w", False), ("wetting and drying", "suction", "e", False)]
+    if moves("r_u") and moves("cycle"):
+        pages += [("cycles", "cycle", "r_u", False), ("cycles", "cycle", strain, False)]
+    pages += [("state parameter", strain, "psi", False), ("cost", strain, "n_substep", False)]
+    return [page for page in pages if any(page[1] in run and page[2] in run for run in runs)]
+
+
+def values_of(run: Mapping[str, np.ndarray], name: str) -> np.ndarray:
+    """A column as it is drawn: strains in per cent, axial and volumetric ones linear as a laboratory reports them."""
+    values = run[name]
+    if name == "eps_a":
+        values = -np.expm1(-values)
+    elif name == "eps_v":
+        values = (run["e"][0] - run["e"]) / (1 + run["e"][0])
+    return _LABELS[name][1] * values
+
+
+def draw(plt, runs: Mapping[str, Mapping[str, np.ndarray]], pages: Sequence[tuple[str, str, str, bool]]) -> Figure:
+    """A figure with a panel for each of ``pages``, a line for each run; the key stands below the panels."""
+    from matplotlib.ticker import LogFormatter
+
+    wide = 3 if len(pages) > 4 else 2
+    high = -(-len(pages) // wide)
+    figure, axes = plt.subplots(high, wide, figsize=(4.3 * wide, 3.3 * high + 0.3), squeeze=False, layout="constrained")
+    for axis, (title, x, y, log) in zip(axes.flat, pages):
+        for i, run in enumerate(runs.values()):
+            if x in run and y in run:
+                line = {"color": COLOURS[i % len(COLOURS)], "ls": LINES[i // len(COLOURS) % len(LINES)]}
+                axis.plot(values_of(run, x), values_of(run, y), **line, lw=0.7 if run["cycle"].max() > 5 else 1.5)
+                axis.plot(values_of(run, x)[0], values_of(run, y)[0], "o", color=line["color"], ms=4)
+        axis.set_title(title, fontsize=10)
+        axis.set_xlabel(_LABELS[x][0] + (", logarithmic" if log else ""))
+        axis.set_ylabel(_LABELS[y][0])
+        axis.grid(color="#dddddd", lw=0.6)
+        if log:
+            axis.set_xscale("log")
+            for which in (axis.xaxis.set_major_formatter, axis.xaxis.set_minor_formatter):
+                which(LogFormatter(labelOnlyBase=False, minor_thresholds=(2, 0.6)))
+    for axis in axes.flat[len(pages) :]:
+        axis.axis("off")
+    return figure
+
+
+def key(plt, figure: Figure, labels: Sequence[str], laboratory: bool = False) -> None:
+    """The key of ``draw`` below the panels, a line for each run."""
+    from matplotlib.lines import Line2D
+
+    handles = [
+        Line2D([], [], color=COLOURS[i % len(COLOURS)], ls=LINES[i // len(COLOURS) % len(LINES)], label=label)
+        for i, label in enumerate(labels)
+    ]
+    if laboratory:
+        handles.append(Line2D([], [], **_POINTS, label="laboratory"))
+    figure.legend(handles=handles, loc="outside lower center", ncols=min(4, len(handles)))
+
+
 def plot_test(
-    tests: TestResult | Mapping[str, TestResult],
+    tests: TestResult | Mapping[str, TestResult] | Sequence[TestResult],
     output: str | os.PathLike | None = None,
     laboratory: Mapping[str, np.ndarray] | None = None,
 ) -> Figure:
-    """Four panels of one test, or of several by label: q against axial strain and against p', volumetric strain, void ratio.
+    """Panels of one test, of several by label, or of a list: what they show follows from what moves in the tests, shear,
+    pore pressure, cycles and suction included.
 
-    laboratory : columns eps_a and eps_v (linear strain [-]), q, p [kPa], e; those that are there are drawn as points.
+    laboratory : columns eps_a and eps_v (linear strain [-]), gamma, q, tau, p, u, suction [kPa], e, S_w, r_u, cycle; where a
+        panel has both of its columns they are drawn as points.
     output : picture to write; None returns the figure alone. Returns the matplotlib figure.
     """
+    from .errors import InputError
+
+    if isinstance(tests, Mapping):
+        runs = {"model": tests} if "eps_a" in tests else dict(tests)
+    else:
+        runs = {f"test {i}": test for i, test in enumerate(tests, 1)}
+    if not runs:
+        raise InputError("there is no test to draw")
+    measured = {}
+    for name, values in (laboratory or {}).items():
+        if name not in _LABORATORY:
+            raise InputError(
+                f"laboratory: there is no column {name} to draw; there are {', '.join(sorted(_LABORATORY))}"
+            )
+        measured[_LABORATORY[name]] = _LABELS[_LABORATORY[name]][1] * np.asarray(values, dtype=float)
     plt = pyplot()
-    runs = tests if isinstance(tests, dict) else {"model": tests}
-    figure, axes = plt.subplots(2, 2, figsize=(9, 6.5), layout="constrained")
-    panels = (
-        ("axial strain [%]", "q [kPa]", lambda r: (100 * r.axial_strain, r["q"]), ("eps_a", "q")),
-        ("p' [kPa]", "q [kPa]", lambda r: (r["p_eff"], r["q"]), ("p", "q")),
-        (
-            "axial strain [%]",
-            "volumetric strain [%]",
-            lambda r: (100 * r.axial_strain, 100 * r.volumetric_strain),
-            ("eps_a", "eps_v"),
-        ),
-        ("p' [kPa]", "void ratio", lambda r: (r["p_eff"], r["e"]), ("p", "e")),
-    )
-    for axis, (x_label, y_label, values, names) in zip(axes.flat, panels):
-        for colour, (label, run) in zip(COLOURS, runs.items()):
-            axis.plot(*values(run), color=colour, label=label)
-        if laboratory is not None and all(name in laboratory for name in names):
-            x, y = (np.asarray(laboratory[n]) * (100 if n.startswith("eps") else 1) for n in names)
-            axis.plot(x, y, "o", color=COLOURS[5], ms=3.5, mfc="white", label="laboratory")
-        axis.set_xlabel(x_label)
-        axis.set_ylabel(y_label)
-        axis.grid(color="#dddddd", lw=0.6)
-    if len(runs) > 1 or laboratory is not None:
-        axes[0, 0].legend()
+    pages = [page for page in panels(list(runs.values())) if page[0] not in ("cost", "state parameter")]
+    figure, drawn = draw(plt, runs, pages), set()
+    for axis, (_, x, y, _) in zip(figure.axes, pages):
+        if x in measured and y in measured:
+            axis.plot(measured[x], measured[y], **_POINTS)
+            drawn |= {x, y}
+    if measured and not drawn:
+        plt.close(figure)
+        raise InputError(
+            f"laboratory: no panel shows two of {', '.join(laboratory)}; the panels show "
+            + ", ".join(f"{y} over {x}" for _, x, y, _ in pages)
+        )
+    if len(runs) > 1 or drawn:
+        key(plt, figure, list(runs), bool(drawn))
     if output is not None:
         figure.savefig(output)
         plt.close(figure)
@@ -84,6 +197,8 @@ def plot_test(
 
 def plot_histories(run: HostRun, columns: Sequence[str], output: str | os.PathLike | None = None) -> Figure:
     """Histories of a run of the host against time [s], a panel for each column ("POINT.QUANTITY"). Returns the figure."""
+    from .errors import UnknownName
+
     plt = pyplot()
     table = run.histories
     time = table[next(iter(table))]
@@ -92,7 +207,8 @@ def plot_histories(run: HostRun, columns: Sequence[str], output: str | os.PathLi
     )
     for axis, name in zip(axes[:, 0], columns):
         if name not in table:
-            raise KeyError(f"there is no history {name}; there are {', '.join(list(table)[1:])}")
+            plt.close(figure)
+            raise UnknownName(f"there is no history {name}; there are {', '.join(list(table)[1:])}")
         axis.plot(time, table[name], color=COLOURS[0])
         axis.set_ylabel(name)
         axis.grid(color="#dddddd", lw=0.6)
