@@ -9,7 +9,7 @@ module key_schema
    use namelists, only: group_t, entry_t, find_entry, LENGTH
    implicit none (type, external)
    private
-   public :: key_t, REQUIRED, NONE, UNBOUNDED
+   public :: key_t, REQUIRED, NONE, UNBOUNDED, LONGEST_WORD
    public :: check_group, check_entries, place_of, describe_key, described, words_of
    public :: given, line_of, text_of, texts_of, number_of, numbers_of, word_is, get_text, get_number, get_numbers
 
@@ -29,6 +29,9 @@ module key_schema
       character(208) :: words = ''       !< Kinds w, W: the words, divided by |.
       character(8) :: unit = ''          !< Shown behind the range, where the meaning does not say it.
       integer :: values = 0              !< How many values a list has, 0: any number.
+      !> When it has an effect, conditions between blanks: `key=word|word` another key has one of these words or none,
+      !> `+key` another key is given, `-key` it is not, `:p_w` the unknown exists.
+      character(48) :: acts = ''
    end type key_t
 contains
    !> Refuses an unknown group and, in a known one, a missing key and everything that check_entries refuses. Faults are

@@ -18,18 +18,27 @@ module retention_groups
    type(key_t), parameter :: RETENTION_KEYS(*) = [ &
       key_t('retention', 'law', 'w', 'bilogarithmic', 0, 0, 'see README', &
             'bilogarithmic|van_genuchten|power|table|saturated'), &
-      key_t('retention', 'p_a', 'n', '5.0', SMALLEST, UNBOUNDED, 'air entry of the bilogarithmic law [kPa]'), &
-      key_t('retention', 'alpha', 'n', NONE, SMALLEST, UNBOUNDED, 'van Genuchten''s alpha [1/kPa]'), &
-      key_t('retention', 'n', 'n', '2.0', 0.01_wp, 100, 'exponent n, of van Genuchten above 1 [-]'), &
-      key_t('retention', 'm', 'n', '1.0', 0.001_wp, 100, 'exponent m; of van Genuchten by default 1 - 1/n [-]'), &
-      key_t('retention', 'omega', 'n', '2.0', 0, 100, 'exponent of the void ratio in the bilogarithmic law [-]'), &
-      key_t('retention', 's_max', 'n', '1.0', 0, 1, 'largest degree of saturation [-]'), &
-      key_t('retention', 's_min', 'n', '0.0', 0, 1, 'least degree of saturation [-]'), &
-      key_t('retention', 'a', 'n', '0.0', 0, UNBOUNDED, 'factor of the power law S = 1 - a p_c**b'), &
-      key_t('retention', 'b', 'n', '1.0', 1, 100, 'exponent b of the power law [-]'), &
-      key_t('retention', 'suction', 'N', NONE, -UNBOUNDED, UNBOUNDED, 'table: suctions [kPa], ascending'), &
-      key_t('retention', 'saturation', 'N', NONE, 0, 1, 'table: degrees of saturation [-]'), &
-      key_t('retention', 'file', 't', NONE, 0, 0, 'table: text file with a suction and a saturation a line')]
+      key_t('retention', 'p_a', 'n', '5.0', SMALLEST, UNBOUNDED, 'air entry of the bilogarithmic law [kPa]', &
+            acts='law=bilogarithmic'), &
+      key_t('retention', 'alpha', 'n', NONE, SMALLEST, UNBOUNDED, 'van Genuchten''s alpha [1/kPa]', &
+            acts='law=van_genuchten'), &
+      key_t('retention', 'n', 'n', '2.0', 0.01_wp, 100, 'exponent n, of van Genuchten above 1 [-]', &
+            acts='law=bilogarithmic|van_genuchten'), &
+      key_t('retention', 'm', 'n', '1.0', 0.001_wp, 100, 'exponent m; of van Genuchten by default 1 - 1/n [-]', &
+            acts='law=bilogarithmic|van_genuchten'), &
+      key_t('retention', 'omega', 'n', '2.0', 0, 100, 'exponent of the void ratio in the bilogarithmic law [-]', &
+            acts='law=bilogarithmic'), &
+      key_t('retention', 's_max', 'n', '1.0', 0, 1, 'largest degree of saturation [-]', &
+            acts='law=bilogarithmic|van_genuchten'), &
+      key_t('retention', 's_min', 'n', '0.0', 0, 1, 'least degree of saturation [-]', &
+            acts='law=bilogarithmic|van_genuchten|power'), &
+      key_t('retention', 'a', 'n', '0.0', 0, UNBOUNDED, 'factor of the power law S = 1 - a p_c**b', acts='law=power'), &
+      key_t('retention', 'b', 'n', '1.0', 1, 100, 'exponent b of the power law [-]', acts='law=power'), &
+      key_t('retention', 'suction', 'N', NONE, -UNBOUNDED, UNBOUNDED, 'table: suctions [kPa], ascending', &
+            acts='law=table -file'), &
+      key_t('retention', 'saturation', 'N', NONE, 0, 1, 'table: degrees of saturation [-]', acts='law=table -file'), &
+      key_t('retention', 'file', 't', NONE, 0, 0, 'table: text file with a suction and a saturation a line', &
+            acts='law=table')]
 contains
    !> Reads a curve and gives it to a law that has no retention curve of its own. Suctions [kPa]. A fault (EXIT_INPUT)
    !> where the law has its own, or the values contradict each other.

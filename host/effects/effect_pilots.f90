@@ -12,8 +12,9 @@ module effect_pilots
    use pilot_differences, only: difference_t, difference, influence_t
    use pilot_runs, only: pilot_t, run_pilot
    use pilot_scenes, only: make_cheap, can_coarsen
-   use scene_types, only: scene_t, WITH_P_C, IS_DYNAMIC
+   use scene_types, only: scene_t, WITH_P_C
    use texts, only: short, whole
+   use generalised_alpha, only: DYNAMIC
    implicit none (type, external)
    private
    public :: ask_effects, settle_scene, apply_effects
@@ -104,7 +105,7 @@ contains
          tried = (table%present .or. whole_scene .or. .not. table%by_hand) .and. table%influence < 0.0_wp .and. &
                  table%why == ''
          if (.not. whole_scene) tried = tried .and. .not. (is_added(table%kind) .and. .not. table%present)
-         if (.not. any(base%scene%stages%analysis == IS_DYNAMIC)) then
+         if (.not. any(base%scene%stages%kind == DYNAMIC)) then
             where (tried .and. table%kind == OF_SEEPAGE) table%why = 'not tried: no stage has inertia'
             tried = tried .and. table%kind /= OF_SEEPAGE
          end if
@@ -184,7 +185,7 @@ contains
       if (quiet .or. .not. base%pilot%done) return
       write (output_unit, '(a)') 'Pilots: '//whole(base%pilot%elements)//' elements, '// &
          whole(base%pilot%unknowns)//' unknowns, '//whole(base%pilot%steps)//' steps'// &
-         trim(merge(' with inertia', '             ', any(base%scene%stages%analysis == IS_DYNAMIC)))//'; '// &
+         trim(merge(' with inertia', '             ', any(base%scene%stages%kind == DYNAMIC)))//'; '// &
          short(base%pilot%processor)//' s of processor time.'
    contains
       real(wp) function rest()

@@ -6,7 +6,7 @@ module pilot_budget
    use pilot_differences, only: difference_t, influence_t
    use pilot_runs, only: pilot_t
    use pilot_scenes, only: can_coarsen
-   use scene_types, only: scene_t, scene_stage_t
+   use scene_types, only: scene_t, stage_t
    implicit none (type, external)
    private
    public :: pilots_account_t, book, left, estimate, expect_run, NO_LIMIT

@@ -9,10 +9,10 @@ module permeability_laws
    public :: permeability_t, relative_t, relative_permeability, &
              LAW_CONSTANT, LAW_COREY, LAW_MUALEM, LAW_POWER
 
-   integer, parameter :: LAW_CONSTANT = 1   !< k_rw and k_ra as given.
-   integer, parameter :: LAW_COREY = 2      !< k_rw = S_e**b, k_ra = (1 - S_e)**2 (1 - S_e**c)
-   integer, parameter :: LAW_MUALEM = 3     !< Mualem-van Genuchten with exponent m.
-   integer, parameter :: LAW_POWER = 4      !< k_rw = 1 - a (1 - S_w)**b, k_ra as Corey.
+   integer, parameter :: LAW_CONSTANT = 4   !< k_rw and k_ra as given.
+   integer, parameter :: LAW_COREY = 1      !< k_rw = S_e**b, k_ra = (1 - S_e)**2 (1 - S_e**c)
+   integer, parameter :: LAW_MUALEM = 2     !< Mualem-van Genuchten with exponent m.
+   integer, parameter :: LAW_POWER = 3      !< k_rw = 1 - a (1 - S_w)**b, k_ra as Corey.
    !> Mualem's slopes are infinite at S_e = 0 and 1: S_e is kept this far from both.
    real(wp), parameter :: MARGIN = 1.0e-9_wp
    real(wp), parameter :: MOST_FACTORS = 16.0_wp   !< Whole exponents up to it are multiplied out.

@@ -10,10 +10,10 @@ module absorbing_boundaries
    use faults, only: fault_t, raise
    use generalised_alpha, only: DYNAMIC
    use material_point, only: response_t, report_t
-   use model_types, only: model_t, stage_t, absorber_t, factor_at
+   use model_types, only: model_t, factor_at
    use permeability_laws, only: relative_t, relative_permeability
    use porous_domain, only: state_t, mixture_density, pressures_at, COUPLED, UNDRAINED
-   use scene_types, only: place_of, acts_in
+   use scene_types, only: place_of, acts_in, stage_t, absorber_t
    use shape_functions, only: edge_quadratic, edge_rule
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C

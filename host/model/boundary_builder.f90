@@ -3,67 +3,59 @@
 module boundary_builder
    use kinds, only: wp
    use faults, only: fault_t, raise, EXIT_INPUT
-   use contact_types, only: contact_options_t, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP
    use exit_codes, only: EXIT_GROUP
-   use model_types, only: model_t, initial_t, fix_t, load_t, plate_t, contact_pair_t, absorber_t, tie_t, &
-                          PRESCRIBED_P_A
+   use model_types, only: model_t
    use name_search, only: mesh_group, defined_name
-   use scene_types, only: scene_t, scene_initial_t, scene_fix_t, scene_load_t, scene_plate_t, scene_contact_t, &
-                          scene_absorber_t, scene_tie_t, acts_in, place_of, FIX_P_W, FIX_P_C, LOAD_WATER, LOAD_AIR, &
-                          LOAD_FORCE_R
+   use scene_types, only: initial_t, fix_t, load_t, plate_t, contact_pair_t, absorber_t, tie_t, acts_in, &
+                          place_of, LOAD_WATER, LOAD_AIR, LOAD_FORCE_R, PRESCRIBED_P_A
    use texts, only: short, whole
    use triangle_mesh, only: find_group, add_group
-   use unknown_fields, only: FIELD_NAMES, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
+   use unknown_fields, only: FIELD_NAMES, AT_P_W, AT_P_C
    implicit none (type, external)
    private
    public :: build_plates, build_boundaries
 
-   integer, parameter :: GAP_OF(*) = [NODAL_GAP, POINTWISE_GAP, COMBINED_GAP]   !< Of the words of &contact gap.
    character(3), parameter :: WORD_OF(*) = [FIELD_NAMES, 'p_a']
-   integer, parameter :: FIELD_OF(*) = [AT_U_R, AT_U_Z, AT_P_W, AT_P_C, PRESCRIBED_P_A]   !< Of the words of &fix field.
 contains
    !> Plates come first: those with a face of their own become nodes of the mesh, and all become groups of it.
    !> docs/theory/host.md section 7.3. Fault EXIT_GROUP: the name is that of a group of the mesh, or the boundary or
    !> history of a plate does not exist.
-   subroutine build_plates(scene, model, fault)
-      type(scene_t), intent(in) :: scene
+   subroutine build_plates(model, fault)
       type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      allocate (model%plates(size(scene%plates)), model%domain%bodies(0))
-      do i = 1, size(scene%plates)
-         call build_plate(scene%plates(i), model, model%plates(i), fault)
+      allocate (model%domain%bodies(0))
+      do i = 1, size(model%plates)
+         call build_plate(model, model%plates(i), fault)
          if (fault%code /= 0) return
       end do
    end subroutine build_plates
 
-   subroutine build_plate(given, model, plate, fault)
-      type(scene_plate_t), intent(in) :: given
+   subroutine build_plate(model, plate, fault)
       type(model_t), intent(inout) :: model
       type(plate_t), intent(inout) :: plate
       type(fault_t), intent(inout) :: fault
       integer :: none(3, 0)
 
-      plate%scene_plate_t = given
-      plate%amplitude = amplitude_of(given%amplitude_name, place_of(given), model, fault)
+      plate%amplitude = amplitude_of(plate%amplitude_name, place_of(plate), model, fault)
       if (fault%code /= 0) return
       associate (mesh => model%domain%mesh)
-         if (find_group(mesh, trim(given%name)) > 0) then
-            call raise(fault, EXIT_GROUP, place_of(given)//'the mesh has a group '''//trim(given%name)// &
+         if (find_group(mesh, trim(plate%name)) > 0) then
+            call raise(fault, EXIT_GROUP, place_of(plate)//'the mesh has a group '''//trim(plate%name)// &
                        ''' already; give the plate another name.')
             return
          end if
-         if (given%joined_name == '') then
-            mesh%x = reshape([mesh%x, given%r(1), given%z], [2, size(mesh%x, 2) + 1])
+         if (plate%joined_name == '') then
+            mesh%x = reshape([mesh%x, plate%r(1), plate%z], [2, size(mesh%x, 2) + 1])
             plate%node = size(mesh%x, 2)
-            call add_group(mesh, trim(given%name), [integer ::], none, [plate%node])
+            call add_group(mesh, trim(plate%name), [integer ::], none, [plate%node])
             model%domain%bodies = [model%domain%bodies, plate%node]
          else
-            plate%group = mesh_group(mesh, given%joined_name, place_of(given), fault)
+            plate%group = mesh_group(mesh, plate%joined_name, place_of(plate), fault)
             if (fault%code /= 0) return
             plate%node = mesh%groups(plate%group)%nodes(1)
-            call add_group(mesh, trim(given%name), [integer ::], none, mesh%groups(plate%group)%nodes)
+            call add_group(mesh, trim(plate%name), [integer ::], none, mesh%groups(plate%group)%nodes)
          end if
       end associate
    end subroutine build_plate
@@ -71,34 +63,30 @@ contains
    !> Initial conditions, supports, loads, contacts, absorbing boundaries and ties of a scene; a fault names what cannot
    !> be resolved. Fault EXIT_GROUP: a group or history does not exist, or a group lacks the edges or nodes that are
    !> needed. Fault EXIT_INPUT: a field that the scene lacks, or keys that contradict each other.
-   subroutine build_boundaries(scene, model, fault)
-      type(scene_t), intent(in) :: scene
+   subroutine build_boundaries(model, fault)
       type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      allocate (model%initials(size(scene%initials)), model%fixes(size(scene%fixes)), model%loads(size(scene%loads)), &
-                model%contacts(size(scene%contacts)), model%absorbers(size(scene%absorbers)), &
-                model%ties(size(scene%ties)))
-      model%gravity_amplitude = amplitude_of(scene%gravity_history, trim(scene%file)//': gravity_history of &scene: ', &
+      model%gravity_amplitude = amplitude_of(model%gravity_history, trim(model%file)//': gravity_history of &scene: ', &
                                              model, fault)
-      do i = 1, size(scene%initials)
-         if (fault%code == 0) call build_initial(scene%initials(i), model, model%initials(i), fault)
+      do i = 1, size(model%initials)
+         if (fault%code == 0) call build_initial(model, model%initials(i), fault)
       end do
-      do i = 1, size(scene%fixes)
-         if (fault%code == 0) call build_fix(scene%fixes(i), model, model%fixes(i), fault)
+      do i = 1, size(model%fixes)
+         if (fault%code == 0) call build_fix(model, model%fixes(i), fault)
       end do
-      do i = 1, size(scene%loads)
-         if (fault%code == 0) call build_load(scene%loads(i), model, model%loads(i), fault)
+      do i = 1, size(model%loads)
+         if (fault%code == 0) call build_load(model, model%loads(i), fault)
       end do
-      do i = 1, size(scene%contacts)
-         if (fault%code == 0) call build_contact(scene%contacts(i), model, model%contacts(i), fault)
+      do i = 1, size(model%contacts)
+         if (fault%code == 0) call build_contact(model, model%contacts(i), fault)
       end do
-      do i = 1, size(scene%absorbers)
-         if (fault%code == 0) call build_absorber(scene%absorbers(i), model, model%absorbers(i), fault)
+      do i = 1, size(model%absorbers)
+         if (fault%code == 0) call build_absorber(model, model%absorbers(i), fault)
       end do
-      do i = 1, size(scene%ties)
-         if (fault%code == 0) call build_tie(scene%ties(i), model, model%ties(i), fault)
+      do i = 1, size(model%ties)
+         if (fault%code == 0) call build_tie(model, model%ties(i), fault)
       end do
    end subroutine build_boundaries
 
@@ -112,115 +100,101 @@ contains
       if (name /= '') amplitude = defined_name('history', name, model%amplitudes%name, place, fault)
    end function amplitude_of
 
-   subroutine build_initial(given, model, initial, fault)
-      type(scene_initial_t), intent(in) :: given
+   subroutine build_initial(model, initial, fault)
       type(model_t), intent(in) :: model
       type(initial_t), intent(inout) :: initial
       type(fault_t), intent(inout) :: fault
 
-      initial%scene_initial_t = given
-      initial%group = mesh_group(model%domain%mesh, given%group_name, place_of(given), fault)
+      initial%group = mesh_group(model%domain%mesh, initial%group_name, place_of(initial), fault)
    end subroutine build_initial
 
-   subroutine build_fix(given, model, fix, fault)
-      type(scene_fix_t), intent(in) :: given
+   subroutine build_fix(model, fix, fault)
       type(model_t), intent(in) :: model
       type(fix_t), intent(inout) :: fix
       type(fault_t), intent(inout) :: fault
 
-      fix%scene_fix_t = given
-      fix%group = mesh_group(model%domain%mesh, given%group_name, place_of(given), fault)
-      if (fault%code == 0) fix%amplitude = amplitude_of(given%amplitude_name, place_of(given), model, fault)
+      fix%group = mesh_group(model%domain%mesh, fix%group_name, place_of(fix), fault)
+      if (fault%code == 0) fix%amplitude = amplitude_of(fix%amplitude_name, place_of(fix), model, fault)
       if (fault%code /= 0) return
-      fix%field = FIELD_OF(given%field_number)
-      if (given%acceleration .and. (given%field_number >= FIX_P_W .or. given%hold .or. fix%amplitude == 0)) then
-         call raise(fault, EXIT_INPUT, place_of(given)//'motion = ''acceleration'' needs a displacement (u_r, '// &
+      if (fix%acceleration .and. (fix%field >= AT_P_W .or. fix%hold .or. fix%amplitude == 0)) then
+         call raise(fault, EXIT_INPUT, place_of(fix)//'motion = ''acceleration'' needs a displacement (u_r, '// &
                     'u_z), a history, and not hold = ''yes''.')
          return
       end if
-      if ((given%field_number == FIX_P_W .and. .not. model%domain%with_w) .or. &
-          (given%field_number >= FIX_P_C .and. .not. model%domain%with_c)) call raise(fault, EXIT_INPUT, &
-         place_of(given)//'the scene has no field '//WORD_OF(given%field_number)//'; see fields in &scene.')
+      if ((fix%field == AT_P_W .and. .not. model%domain%with_w) .or. &
+          (fix%field >= AT_P_C .and. .not. model%domain%with_c)) call raise(fault, EXIT_INPUT, &
+         place_of(fix)//'the scene has no field '//WORD_OF(fix%field)//'; see fields in &scene.')
    end subroutine build_fix
 
-   subroutine build_load(given, model, load, fault)
-      type(scene_load_t), intent(in) :: given
+   subroutine build_load(model, load, fault)
       type(model_t), intent(in) :: model
       type(load_t), intent(inout) :: load
       type(fault_t), intent(inout) :: fault
 
-      load%scene_load_t = given
-      load%group = mesh_group(model%domain%mesh, given%group_name, place_of(given), fault)
-      if (fault%code == 0) load%amplitude = amplitude_of(given%amplitude_name, place_of(given), model, fault)
+      load%group = mesh_group(model%domain%mesh, load%group_name, place_of(load), fault)
+      if (fault%code == 0) load%amplitude = amplitude_of(load%amplitude_name, place_of(load), model, fault)
       if (fault%code /= 0) return
-      if (given%kind < LOAD_FORCE_R .and. size(model%domain%mesh%groups(load%group)%edges, 2) == 0) then
-         call raise(fault, EXIT_GROUP, place_of(given)//'group '''//trim(given%group_name)//''' has no edges to load.')
-      else if ((given%kind == LOAD_WATER .and. .not. model%domain%with_w) .or. &
-               (given%kind == LOAD_AIR .and. .not. model%domain%with_c)) then
-         call raise(fault, EXIT_INPUT, place_of(given)//'the scene has no field for such an inflow; see '// &
+      if (load%kind < LOAD_FORCE_R .and. size(model%domain%mesh%groups(load%group)%edges, 2) == 0) then
+         call raise(fault, EXIT_GROUP, place_of(load)//'group '''//trim(load%group_name)//''' has no edges to load.')
+      else if ((load%kind == LOAD_WATER .and. .not. model%domain%with_w) .or. &
+               (load%kind == LOAD_AIR .and. .not. model%domain%with_c)) then
+         call raise(fault, EXIT_INPUT, place_of(load)//'the scene has no field for such an inflow; see '// &
                     'fields in &scene.')
       end if
    end subroutine build_load
 
-   subroutine build_contact(given, model, contact, fault)
-      type(scene_contact_t), intent(in) :: given
+   subroutine build_contact(model, contact, fault)
       type(model_t), intent(in) :: model
       type(contact_pair_t), intent(inout) :: contact
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      contact%scene_contact_t = given
-      contact%slave = mesh_group(model%domain%mesh, given%slave_name, place_of(given), fault)
-      if (fault%code == 0) contact%master = mesh_group(model%domain%mesh, given%master_name, place_of(given), fault)
+      contact%slave = mesh_group(model%domain%mesh, contact%slave_name, place_of(contact), fault)
+      if (fault%code == 0) contact%master = mesh_group(model%domain%mesh, contact%master_name, place_of(contact), fault)
       if (fault%code /= 0) return
       do i = 1, size(model%plates)
-         if (model%plates(i)%name /= given%master_name) cycle
+         if (model%plates(i)%name /= contact%master_name) cycle
          ! A plate that is joined to a boundary has no other surface than this.
          if (model%plates(i)%group == 0) contact%plate = i
          if (model%plates(i)%group > 0) contact%master = model%plates(i)%group
       end do
       associate (groups => model%domain%mesh%groups)
          if (contact%slave == contact%master) then
-            call raise(fault, EXIT_GROUP, place_of(given)//'slave and master are one boundary, '''// &
-                       trim(given%slave_name)//'''; name the two that meet.')
+            call raise(fault, EXIT_GROUP, place_of(contact)//'slave and master are one boundary, '''// &
+                       trim(contact%slave_name)//'''; name the two that meet.')
             return
          else if (size(groups(contact%slave)%edges, 2) == 0 .or. &
                   (contact%plate == 0 .and. size(groups(contact%master)%edges, 2) == 0)) then
-            call raise(fault, EXIT_GROUP, place_of(given)//'slave and master need edges: a boundary of the mesh '// &
+            call raise(fault, EXIT_GROUP, place_of(contact)//'slave and master need edges: a boundary of the mesh '// &
                        '(the master may be a plate).')
             return
          end if
       end associate
       do i = 1, size(model%stages)
-         if (model%stages(i)%zero_displacements .and. acts_in(given%stages, model%stages(i)%name)) then
-            call raise(fault, EXIT_INPUT, place_of(given)//'stage '''//trim(model%stages(i)%name)// &
+         if (model%stages(i)%zero_displacements .and. acts_in(contact%stages, model%stages(i)%name)) then
+            call raise(fault, EXIT_INPUT, place_of(contact)//'stage '''//trim(model%stages(i)%name)// &
                        ''' zeroes its displacements, which would undo the contact; name the stages of the contact.')
             return
          end if
       end do
-      if (given%drains_by_state .and. .not. model%domain%with_w) call raise(fault, EXIT_INPUT, place_of(given)// &
+      if (contact%drains_by_state .and. .not. model%domain%with_w) call raise(fault, EXIT_INPUT, place_of(contact)// &
          'drainage = ''state'' needs pressures; see fields in &scene.')
-      contact%options = contact_options_t(penalty=given%penalty, search_radius=given%search_radius, &
-         axisymmetric=model%domain%axisymmetric, gap=GAP_OF(given%gap_number))
    end subroutine build_contact
 
-   subroutine build_absorber(given, model, absorber, fault)
-      type(scene_absorber_t), intent(in) :: given
+   subroutine build_absorber(model, absorber, fault)
       type(model_t), intent(in) :: model
       type(absorber_t), intent(inout) :: absorber
       type(fault_t), intent(inout) :: fault
 
-      absorber%scene_absorber_t = given
-      absorber%group = mesh_group(model%domain%mesh, given%group_name, place_of(given), fault)
-      if (fault%code == 0) absorber%amplitude = amplitude_of(given%amplitude_name, place_of(given), model, fault)
+      absorber%group = mesh_group(model%domain%mesh, absorber%group_name, place_of(absorber), fault)
+      if (fault%code == 0) absorber%amplitude = amplitude_of(absorber%amplitude_name, place_of(absorber), model, fault)
       if (fault%code /= 0) return
       if (size(model%domain%mesh%groups(absorber%group)%edges, 2) == 0) call raise(fault, EXIT_GROUP, &
-         place_of(given)//'group '''//trim(given%group_name)//''' has no edges that waves could leave through.')
+         place_of(absorber)//'group '''//trim(absorber%group_name)//''' has no edges that waves could leave through.')
    end subroutine build_absorber
 
    !> Pairs of nodes at equal heights.
-   subroutine build_tie(given, model, tie, fault)
-      type(scene_tie_t), intent(in) :: given
+   subroutine build_tie(model, tie, fault)
       type(model_t), intent(in) :: model
       type(tie_t), intent(inout) :: tie
       type(fault_t), intent(inout) :: fault
@@ -228,16 +202,15 @@ contains
       real(wp), parameter :: SAME_HEIGHT = 1.0e-6_wp   !< Share of the height of the boundary.
       real(wp) :: near
 
-      tie%scene_tie_t = given
       second = 0
-      first = mesh_group(model%domain%mesh, given%first_name, place_of(given), fault)
-      if (fault%code == 0) second = mesh_group(model%domain%mesh, given%second_name, place_of(given), fault)
+      first = mesh_group(model%domain%mesh, tie%first_name, place_of(tie), fault)
+      if (fault%code == 0) second = mesh_group(model%domain%mesh, tie%second_name, place_of(tie), fault)
       if (fault%code /= 0) return
       associate (a => model%domain%mesh%groups(first)%nodes, b => model%domain%mesh%groups(second)%nodes, &
                  z => model%domain%mesh%x(2, :))
          if (first == second .or. size(a) /= size(b)) then
-            call raise(fault, EXIT_GROUP, place_of(given)//'''' //trim(given%first_name)//''' has '//whole(size(a))// &
-                       ' nodes and '''//trim(given%second_name)//''' '//whole(size(b))//'; a tie needs two '// &
+            call raise(fault, EXIT_GROUP, place_of(tie)//'''' //trim(tie%first_name)//''' has '//whole(size(a))// &
+                       ' nodes and '''//trim(tie%second_name)//''' '//whole(size(b))//'; a tie needs two '// &
                        'boundaries with as many nodes, at the same heights.')
             return
          end if
@@ -246,8 +219,8 @@ contains
          do i = 1, size(a)
             k = minloc(abs(z(b) - z(a(i))), dim=1)
             if (abs(z(b(k)) - z(a(i))) > near .or. any(tie%pairs(2, :i - 1) == b(k))) then
-               call raise(fault, EXIT_GROUP, place_of(given)//'no node of '''//trim(given%second_name)//''' lies '// &
-                          'at the height '//short(z(a(i)))//' m of '''//trim(given%first_name)//'''.')
+               call raise(fault, EXIT_GROUP, place_of(tie)//'no node of '''//trim(tie%second_name)//''' lies '// &
+                          'at the height '//short(z(a(i)))//' m of '''//trim(tie%first_name)//'''.')
                return
             end if
             tie%pairs(:, i) = [a(i), b(k)]

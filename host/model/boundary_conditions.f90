@@ -5,10 +5,10 @@ module boundary_conditions
    use contact_drainage, only: drainage_t, is_released
    use degrees_of_freedom, only: dofs_t
    use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
-   use model_types, only: model_t, stage_t, fix_t, factor_at, PRESCRIBED_P_A
+   use model_types, only: model_t, factor_at
    use porous_domain, only: state_t
    use prescribed_values, only: constraint_t
-   use scene_types, only: acts_in
+   use scene_types, only: acts_in, stage_t, fix_t, PRESCRIBED_P_A
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private

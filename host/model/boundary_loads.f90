@@ -3,8 +3,9 @@
 module boundary_loads
    use kinds, only: wp, PI
    use given_pressures, only: edges_with_flow
-   use model_types, only: model_t, stage_t, load_t, plate_t, factor_at, gravity_at
-   use scene_types, only: acts_in, LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_AIR, LOAD_FORCE_R
+   use model_types, only: model_t, factor_at, gravity_at
+   use scene_types, only: acts_in, LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_AIR, LOAD_FORCE_R, &
+                          stage_t, load_t, plate_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    use degrees_of_freedom, only: dofs_t, tie, tie_pairs
    use shape_functions, only: edge_quadratic, edge_rule

@@ -3,8 +3,8 @@
 module contact_setup
    use kinds, only: wp
    use boundary_loads, only: plate_load
-   use model_types, only: model_t, stage_t
-   use scene_types, only: acts_in
+   use model_types, only: model_t
+   use scene_types, only: acts_in, stage_t
    use unknown_fields, only: AT_U_Z
    use contact_types, only: contact_status_t, contact_message, CONTACT_OK, TWO_PI
    use contact_interfaces, only: contacts_t, surface_t, surface_of, new_interface, plate_surface

@@ -6,8 +6,8 @@ module free_bodies
    use exit_codes, only: EXIT_FREE_BODY
    use faults, only: fault_t, raise
    use generalised_alpha, only: DYNAMIC
-   use model_types, only: model_t, stage_t
-   use scene_types, only: acts_in
+   use model_types, only: model_t
+   use scene_types, only: acts_in, stage_t
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS, AT_U_R, AT_U_Z
    implicit none (type, external)

@@ -4,7 +4,7 @@
 module initial_conditions
    use exit_codes, only: EXIT_MATERIAL
    use kinds, only: wp
-   use model_types, only: model_t, initial_t, gravity_at
+   use model_types, only: model_t, gravity_at
    use given_pressures, only: pressures_at_start, water, suction
    use porous_domain, only: state_t, new_state_of, pressures_at, COUPLED, DRY
    use material_mud, only: mud_t
@@ -13,6 +13,7 @@ module initial_conditions
    use faults, only: fault_t, raise
    use texts, only: short, whole
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C
+   use scene_types, only: initial_t
    implicit none (type, external)
    private
    public :: initial_state, tension_t

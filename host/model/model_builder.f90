@@ -10,11 +10,11 @@ module model_builder
    use free_bodies, only: check_bodies
    use given_pressures, only: add_centers, give_pressures, check_places
    use mesh_builder, only: build_mesh
-   use model_types, only: model_t, point_t
-   use porous_domain, only: domain_t, fluids_t, prepare_domain
+   use model_types, only: model_t
+   use porous_domain, only: domain_t, prepare_domain
    use region_builder, only: build_regions
-   use scene_types, only: scene_t, scene_point_t, WITH_P_W, WITH_P_C
-   use stage_builder, only: build_stage, choose_schemes
+   use scene_types, only: scene_t, point_t, WITH_P_W, WITH_P_C
+   use stage_builder, only: choose_schemes
    use shape_functions, only: RULES
    use texts, only: whole
    !$ use omp_lib, only: omp_get_max_threads
@@ -35,35 +35,22 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      model%name = scene%name
-      model%fingerprint = scene%fingerprint
-      model%groups = scene%groups
-      model%subtract_flow = scene%subtract_flow
-      model%reuse_factors = scene%reuse_factors
-      model%ordering = scene%ordering
-      model%checkpoint_steps = scene%checkpoint_steps
-      model%checkpoint_seconds = scene%checkpoint_seconds
-      model%checkpoint_end = scene%checkpoint_end
-      if (allocated(scene%effects)) model%effects = scene%effects
-      model%stop_on_warning = scene%stop_on_warning
-      model%amplitudes = scene%amplitudes
-      allocate (model%stages(size(scene%stages)))
-      do i = 1, size(scene%stages)
-         call build_stage(scene%stages(i), model%stages(i))
-      end do
+      model%scene_t = scene
       call build_domain(scene, model, fault)
       if (fault%code == 0) call build_regions(scene, model%domain, fault)
       ! Before plates become nodes: those are the last ones.
       if (fault%code == 0) call add_centers(model%domain)
-      if (fault%code == 0) call build_plates(scene, model, fault)
+      if (fault%code == 0) call build_plates(model, fault)
       if (fault%code == 0) call choose_threads(scene%threads, model%domain)
-      if (fault%code == 0) call build_boundaries(scene, model, fault)
+      if (fault%code == 0) call build_boundaries(model, fault)
       if (fault%code == 0) call check_places(model, fault)
       if (fault%code == 0) call check_bodies(model, fault)
       if (fault%code == 0) call give_pressures(model)
       if (fault%code == 0) call prepare_domain(model%domain, fault)
       if (fault%code /= 0) return
-      model%points = [(point_of(scene%points(i), model), i=1, size(scene%points))]
+      do i = 1, size(model%points)
+         call find_point(model%domain, model%points(i))
+      end do
       call choose_schemes(model)
       call number_unknowns(model%domain, ties_of(model), model%dofs)
       call shape_loads(model, model%dofs)
@@ -94,7 +81,7 @@ contains
       type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
 
-      associate (domain => model%domain, f => scene%fluids)
+      associate (domain => model%domain)
          domain%axisymmetric = scene%axisymmetric
          domain%with_c = scene%fields == WITH_P_C
          domain%with_w = domain%with_c .or. scene%fields == WITH_P_W
@@ -103,7 +90,8 @@ contains
          domain%gravity = scene%gravity
          domain%seepage_inertia = scene%seepage_inertia
          domain%full_rate = scene%full_saturation_rate
-         domain%fluids = fluids_t(f%k_w, f%rho_w, f%eta_w, f%k_a, f%rho_a, f%eta_a, f%ideal_gas, f%p_ref)
+         domain%fluids = scene%fluids
+         domain%permeabilities = scene%permeabilities
          if (.not. any(RULES == domain%rule)) call raise(fault, EXIT_INPUT, trim(scene%file)//': quadrature = '// &
             whole(domain%rule)//': there are rules of 3, 6, 7 and 12 points.')
          if (fault%code == 0) call build_mesh(scene%mesh, domain%mesh, fault)
@@ -111,22 +99,18 @@ contains
    end subroutine build_domain
 
    !> The node and the quadrature point nearest to a point.
-   function point_of(given, model) result(point)
-      type(scene_point_t), intent(in) :: given
-      type(model_t), intent(in) :: model
-      type(point_t) :: point
-      logical :: vertex(size(model%domain%mesh%x, 2))
+   subroutine find_point(m, point)
+      type(domain_t), intent(in) :: m
+      type(point_t), intent(inout) :: point
+      logical :: vertex(size(m%mesh%x, 2))
       integer :: e, g, i
 
-      point%scene_point_t = given
-      associate (m => model%domain)
-         ! Where pressures are linear only vertices have them.
-         vertex = .false.
-         do e = 1, size(m%mesh%t6, 2)
-            vertex(m%mesh%t6(1:m%n_p, e)) = .true.
-         end do
-         point%node = minloc([(norm2(m%mesh%x(:, i) - given%x), i=1, size(m%mesh%x, 2))], 1, mask=vertex)
-         point%gauss = minloc([((norm2(m%gauss(g, e)%x - given%x), g=1, m%rule), e=1, size(m%mesh%t6, 2))], 1)
-      end associate
-   end function point_of
+      ! Where pressures are linear only vertices have them.
+      vertex = .false.
+      do e = 1, size(m%mesh%t6, 2)
+         vertex(m%mesh%t6(1:m%n_p, e)) = .true.
+      end do
+      point%node = minloc([(norm2(m%mesh%x(:, i) - point%x), i=1, size(m%mesh%x, 2))], 1, mask=vertex)
+      point%gauss = minloc([((norm2(m%gauss(g, e)%x - point%x), g=1, m%rule), e=1, size(m%mesh%t6, 2))], 1)
+   end subroutine find_point
 end module model_builder

@@ -10,8 +10,7 @@ module region_builder
    use material_registry, only: new_material
    use name_search, only: mesh_group, defined_name
    use namelists, only: LENGTH
-   use permeability_builder, only: new_permeability
-   use porous_domain, only: domain_t, COUPLED, DRAINED, UNDRAINED, DRY
+   use porous_domain, only: domain_t, COUPLED, DRY
    use retention_groups, only: new_retention
    use scene_types, only: scene_t, scene_region_t, place_of
    use texts, only: whole
@@ -21,7 +20,6 @@ module region_builder
 
    !> Names of no curve: the material has a retention of its own. The second is that of older scenes.
    character(8), parameter :: OF_THE_MATERIAL(2) = [character(8) :: 'material', 'mud']
-   integer, parameter :: DRAINAGE_OF(*) = [COUPLED, DRAINED, UNDRAINED, DRY]   !< Of the words of &region drainage.
 contains
    !> Materials, retention and permeability of every element; a fault names elements without a region and unknown names.
    !> Fault EXIT_GROUP: an element of no region or of two, or a name that is not defined. Fault EXIT_INPUT: no void
@@ -44,11 +42,7 @@ contains
          end associate
          if (fault%code /= 0) return
       end do
-      allocate (domain%permeabilities(size(scene%permeabilities)), domain%regions(size(scene%regions)))
-      do i = 1, size(scene%permeabilities)
-         call new_permeability(scene%permeabilities(i), domain%permeabilities(i), fault)
-         if (fault%code /= 0) return
-      end do
+      allocate (domain%regions(size(scene%regions)))
       allocate (domain%region_of(size(domain%mesh%t6, 2)), source=0)
       do i = 1, size(scene%regions)
          call build_region(scene, scene%regions(i), i, materials, domain, fault)
@@ -93,7 +87,7 @@ contains
          region%stiffness_damping = given%stiffness_damping
          region%void_ratio = given%void_ratio
          ! Without fluids in the scene there is no difference.
-         region%drainage = merge(DRAINAGE_OF(given%drainage), COUPLED, domain%with_w)
+         region%drainage = merge(given%drainage, COUPLED, domain%with_w)
          region%with_w = domain%with_w .and. region%drainage /= DRY
          region%with_c = domain%with_c .and. region%drainage /= DRY
          if (given%void_ratio < 0.0_wp) region%void_ratio = region%law%default_void_ratio()

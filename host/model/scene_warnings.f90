@@ -7,10 +7,10 @@ module scene_warnings
    use boundary_warnings, only: list_boundary_warnings
    use idle_keys, only: list_idle_keys, add_warning, WARNING_LENGTH
    use initial_conditions, only: tension_t
-   use key_schema, only: line_of, given
+   use key_schema, only: line_of, given, get_number
    use material_elastic, only: elastic_t
    use model_types, only: model_t
-   use scene_keys, only: number_of
+   use namelists, only: group_t
    use scene_types, only: scene_t, place_of
    use stress_units, only: KILOPASCAL
    use texts, only: short, whole
@@ -71,7 +71,7 @@ contains
       type(scene_t), intent(in) :: scene
       type(model_t), intent(in) :: model
       character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
-      real(wp) :: size_of
+      real(wp) :: size_of, k
       integer :: i
 
       size_of = extent(model%domain%mesh)
@@ -80,8 +80,10 @@ contains
       if (scene%mesh%mesh_file /= '' .and. .not. scene%mesh%scale_given .and. size_of > LARGE_FILE .and. &
           size_of <= LARGE_MESH) call add_warning(place_of(scene%mesh)//'the mesh of the file is '//short(size_of)// &
          ' m large; lengths are in m.'//remedy(), warnings)
-      do i = 1, size(scene%permeabilities)
-         associate (group => scene%permeabilities(i)%group, k => model%domain%permeabilities(i)%intrinsic)
+      do i = 1, size(scene%groups)
+         associate (group => scene%groups(i))
+            if (group%name /= 'permeability') cycle
+            k = value_of(group, 'intrinsic')
             if (k > PERMEABLE) call add_warning(at_line(group%file, line_of(group, 'intrinsic'))//'intrinsic = '// &
                short(k)//' m2 is more than coarse gravel has; a conductivity [m/s] is k rho_w g/eta_w, about 1e7 '// &
                'times the permeability k [m2].', warnings)
@@ -104,6 +106,16 @@ contains
       end function remedy
    end subroutine look_at_sizes
 
+   !> Value of a key that a group gives.
+   real(wp) function value_of(group, key) result(value)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: key
+      logical :: found
+
+      value = 0.0_wp
+      call get_number(group, key, value, found)
+   end function value_of
+
    !> Fluids and grains that seem to have another unit.
    subroutine look_at_units(scene, warnings)
       type(scene_t), intent(in) :: scene
@@ -116,7 +128,7 @@ contains
             if (group%name /= 'fluids' .and. group%name /= 'region') cycle
             do k = 1, size(USUAL)
                if (.not. given(group, trim(USUAL(k)%key))) cycle
-               value = number_of(group, trim(USUAL(k)%key))
+               value = value_of(group, trim(USUAL(k)%key))
                if (value >= USUAL(k)%lower .and. (value <= USUAL(k)%upper .or. value >= USUAL(k)%beyond)) cycle
                call add_warning(at_line(group%file, line_of(group, trim(USUAL(k)%key)))//trim(USUAL(k)%key)//' = '// &
                   short(value)//' of &'//trim(group%name)//' is unusual for '//trim(USUAL(k)%say)//'; scenes are '// &

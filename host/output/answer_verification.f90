@@ -7,9 +7,9 @@ module answer_verification
    use faults, only: fault_t, raise, EXIT_OUTPUT
    use files, only: read_whole
    use history_distance, only: farthest
-   use model_types, only: stage_t
    use output_tables, only: reactions_of
    use unknown_fields, only: FIELDS
+   use scene_types, only: stage_t
    implicit none (type, external)
    private
    public :: history_t, read_history, differences, force_error_t, compare_forces

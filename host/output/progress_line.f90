@@ -5,9 +5,10 @@ module progress_line
    use wall_clock, only: clock
    use run_state, only: run_t
    use kinds, only: wp
-   use model_types, only: model_t, stage_t
+   use model_types, only: model_t
    use files, only: to_terminal
    use texts, only: short, whole
+   use scene_types, only: stage_t
    implicit none (type, external)
    private
    public :: progress_t, show_progress, show_line, clear_progress, steps_left, span_of

@@ -7,9 +7,9 @@ module reaction_rows
    use boundary_conditions, only: prescribing_fixes, forces_of_supports
    use contact_drainage, only: drainage_t
    use generalised_alpha, only: scheme_t, make_scheme, STATIC
-   use model_types, only: model_t, stage_t, factor_at
+   use model_types, only: model_t, factor_at
    use prescribed_values, only: constraint_t
-   use scene_types, only: acts_in, LOAD_WATER, LOAD_AIR
+   use scene_types, only: acts_in, LOAD_WATER, LOAD_AIR, stage_t
    use unknown_fields, only: DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private

@@ -8,8 +8,8 @@ module energy_alarm
    use exit_codes, only: EXIT_ENERGY
    use faults, only: fault_t, raise
    use generalised_alpha, only: DYNAMIC
-   use model_types, only: stage_t
    use texts, only: short
+   use scene_types, only: stage_t
    implicit none (type, external)
    private
    public :: check_creation, tell_creation

@@ -10,11 +10,12 @@ module held_ground
    use exit_codes, only: EXIT_MATERIAL
    use faults, only: fault_t, raise
    use generalised_alpha, only: make_scheme, STATIC, DYNAMIC
-   use model_types, only: model_t, stage_t
+   use model_types, only: model_t
    use porous_domain, only: copy_state
    use run_state, only: run_t
    use texts, only: whole
    use unknown_fields, only: DISPLACEMENTS
+   use scene_types, only: stage_t
    implicit none (type, external)
    private
    public :: hold_ground, set_incoming_waves, keep_flow

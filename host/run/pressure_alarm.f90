@@ -6,10 +6,11 @@ module pressure_alarm
    use kinds, only: wp
    use generalised_alpha, only: STATIC
    use material_point, only: lost_pressure, PRESSURE_LOST
-   use model_types, only: model_t, stage_t
+   use model_types, only: model_t
    use porous_domain, only: COUPLED
    use texts, only: short
    use unknown_fields, only: AT_P_W
+   use scene_types, only: stage_t
    implicit none (type, external)
    private
    public :: tell_oscillation, warn_lost_pressure, outlier

@@ -12,11 +12,12 @@ module step_attempt
    use generalised_alpha, only: scheme_t, make_scheme, DYNAMIC
    use given_pressures, only: follow_undrained
    use held_ground, only: hold_ground, set_incoming_waves
-   use model_types, only: model_t, stage_t, gravity_at
+   use model_types, only: model_t, gravity_at
    use newton_step, only: take_step, start_accelerations, CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
    use run_state, only: run_t, stage_state_t
    use step_failure, only: explain_failure, explain_short_step, LEAST_OF_STAGE
    use step_size, only: begin_control, prepare_rates, judge_step, shorten_step
+   use scene_types, only: stage_t
    implicit none (type, external)
    private
    public :: begin_stage, try_step

@@ -7,9 +7,9 @@
 module step_landings
    use kinds, only: wp
    use boundary_loads, only: load_at
-   use model_types, only: model_t, stage_t
+   use model_types, only: model_t
    use run_state, only: run_t
-   use scene_types, only: scene_amplitude_t, amplitude_at, acts_in
+   use scene_types, only: amplitude_t, amplitude_at, acts_in, stage_t
    use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)
    private
@@ -50,7 +50,7 @@ contains
    !> range: the one that the line to the horizon misses most, until no line misses one. Huge if there is none. [s]
    !> docs/theory/host.md section 4.5.
    pure real(wp) function straight_until(amplitude, now, close, horizon, share) result(until)
-      type(scene_amplitude_t), intent(in) :: amplitude
+      type(amplitude_t), intent(in) :: amplitude
       real(wp), intent(in) :: now, close   !< Breaks nearer than `close` are the present time [s].
       real(wp), intent(in) :: horizon      !< [s]
       real(wp), intent(in) :: share        !< Of the range [-].

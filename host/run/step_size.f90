@@ -7,11 +7,12 @@ module step_size
    use control_state, only: new_control_state, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
    use error_norms, only: keep_rates, shift_rates, local_errors, remember, forget, rms
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, QUASI_STATIC, DYNAMIC
-   use model_types, only: model_t, stage_t
+   use model_types, only: model_t
    use run_state, only: run_t
    use step_landings, only: next_time, is_break, begins_suddenly, changes_within, LAST_STEP, SHORTEST
    use step_control, only: new_controller, judge, LARGEST_FACTOR, MOST_REJECTIONS
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
+   use scene_types, only: stage_t
    implicit none (type, external)
    private
    public :: begin_control, next_step, prepare_rates, judge_step, shorten_step, keep_step, is_over

@@ -6,9 +6,9 @@ module stress_tolerance
    use, intrinsic :: iso_fortran_env, only: error_unit
    use kinds, only: wp
    use convergence, only: log_t
-   use model_types, only: stage_t
    use porous_domain, only: region_t
    use texts, only: short
+   use scene_types, only: stage_t
    implicit none (type, external)
    private
    public :: follow_newton, roughness, warn_stagnation

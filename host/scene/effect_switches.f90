@@ -11,9 +11,11 @@ module effect_switches
    use library_tables, only: property_index, property_range
    use namelists, only: set_entry
    use parameter_groups, only: read_parameters
-   use scene_types, only: scene_t, NAME_LENGTH, WITH_U, WITH_P_W, WITH_P_C, IS_STATIC, IS_QUASI_STATIC, IS_DYNAMIC, &
-                          FIX_P_W, FIX_P_C, FIX_P_A, LOAD_WATER, LOAD_AIR, IS_COUPLED, IS_DRAINED, IS_UNDRAINED, &
-                          IS_DRY, acts_in
+   use scene_types, only: scene_t, NAME_LENGTH, WITH_U, WITH_P_W, WITH_P_C, PRESCRIBED_P_A, LOAD_WATER, LOAD_AIR, &
+                          acts_in
+   use generalised_alpha, only: STATIC, QUASI_STATIC, DYNAMIC
+   use unknown_fields, only: AT_P_W, AT_P_C
+   use porous_domain, only: COUPLED, DRAINED, UNDRAINED, DRY
    implicit none (type, external)
    private
    public :: list_effects, settle_open_keys, switch, switch_by_hand
@@ -38,7 +40,7 @@ contains
          if (any(scene%regions%retention_name /= '')) scene%fields = WITH_P_C
       end if
       do i = 1, size(scene%stages)
-         if (scene%stages(i)%analysis == 0) scene%stages(i)%analysis = merge(IS_DYNAMIC, IS_QUASI_STATIC, &
+         if (scene%stages(i)%kind == 0) scene%stages(i)%kind = merge(DYNAMIC, QUASI_STATIC, &
                                                                               speaks_of_motion(scene, i))
       end do
    end subroutine settle_open_keys
@@ -65,8 +67,8 @@ contains
    pure logical function holds_water(scene)
       type(scene_t), intent(in) :: scene
 
-      holds_water = any(scene%regions%permeability_name /= '' .or. scene%regions%drainage == IS_DRAINED .or. &
-                        scene%regions%drainage == IS_UNDRAINED)
+      holds_water = any(scene%regions%permeability_name /= '' .or. scene%regions%drainage == DRAINED .or. &
+                        scene%regions%drainage == UNDRAINED)
    end function holds_water
 
    !> The effects of a scene, in the order of the list: present or not, said by a key or left open. Inertia has a row a
@@ -89,10 +91,10 @@ contains
                row%stage = stage
                row%name = trim(row%name)//' in '//scene%stages(stage)%name
             end if
-            if (.not. has_meaning(settled, kind, any(settled%stages%analysis == IS_DYNAMIC .or. &
-                                                     scene%stages%analysis == 0))) cycle
+            if (.not. has_meaning(settled, kind, any(settled%stages%kind == DYNAMIC .or. &
+                                                     scene%stages%kind == 0))) cycle
             ! A static stage is a way to equilibrium, which has no time.
-            if (kind == OF_INERTIA .and. settled%stages(stage)%analysis == IS_STATIC) cycle
+            if (kind == OF_INERTIA .and. settled%stages(stage)%kind == STATIC) cycle
             row%present = is_present(settled, kind, stage)
             row%by_hand = .not. is_open(scene, kind, stage)
             row%on = row%present
@@ -163,7 +165,7 @@ contains
       present = .false.
       select case (kind)
       case (OF_INERTIA)
-         present = scene%stages(stage)%analysis == IS_DYNAMIC
+         present = scene%stages(stage)%kind == DYNAMIC
       case (OF_SEEPAGE)
          present = scene%seepage_inertia
       case (OF_P_W)
@@ -198,7 +200,7 @@ contains
       if (any(scene%without == EFFECT_NAMES(kind))) return
       select case (kind)
       case (OF_INERTIA)
-         open = scene%stages(stage)%analysis == 0
+         open = scene%stages(stage)%kind == 0
       case (OF_SEEPAGE)
          open = .not. scene%seepage_by_hand
       case (OF_P_W, OF_P_C)
@@ -248,17 +250,17 @@ contains
       why = ''
       select case (effect%kind)
       case (OF_INERTIA)
-         scene%stages(effect%stage)%analysis = merge(IS_DYNAMIC, IS_QUASI_STATIC, on)
-         if (.not. on .and. .not. any(scene%stages%analysis == IS_DYNAMIC)) scene%seepage_inertia = .false.
+         scene%stages(effect%stage)%kind = merge(DYNAMIC, QUASI_STATIC, on)
+         if (.not. on .and. .not. any(scene%stages%kind == DYNAMIC)) scene%seepage_inertia = .false.
       case (OF_SEEPAGE)
          scene%seepage_inertia = on
       case (OF_P_W)
          if (on) then
-            if (any(scene%regions%permeability_name == '' .and. scene%regions%drainage == IS_COUPLED)) &
+            if (any(scene%regions%permeability_name == '' .and. scene%regions%drainage == COUPLED)) &
                why = 'a region has no permeability'
             if (why == '' .and. scene%fields == WITH_U) scene%fields = WITH_P_W
          else
-            call drop_field(scene, FIX_P_W, LOAD_WATER)
+            call drop_field(scene, AT_P_W, LOAD_WATER)
             scene%fields = WITH_U
             scene%seepage_inertia = .false.
             if (size(scene%contacts) > 0) scene%contacts%drains_by_state = .false.
@@ -266,14 +268,14 @@ contains
          end if
       case (OF_P_C)
          if (on) then
-            if (any(scene%regions%retention_name == '' .and. scene%regions%drainage /= IS_DRY)) &
+            if (any(scene%regions%retention_name == '' .and. scene%regions%drainage /= DRY)) &
                why = 'a region has no retention'
             if (scene%fields == WITH_U) why = 'it needs p_w'
             if (why == '') scene%fields = WITH_P_C
          else
             why = water_given_by_others(scene)
             if (why /= '') return
-            call drop_field(scene, FIX_P_C, LOAD_AIR)
+            call drop_field(scene, AT_P_C, LOAD_AIR)
             scene%fields = min(scene%fields, WITH_P_W)
          end if
       case (OF_GRAVITY)
@@ -292,7 +294,7 @@ contains
       case (OF_VOID_RATIO)
          call freeze_retention(scene, why)
       case (OF_FLOW)
-         scene%regions(effect%region)%drainage = merge(IS_COUPLED, IS_DRAINED, on)
+         scene%regions(effect%region)%drainage = merge(COUPLED, DRAINED, on)
       case default
          call set_switch(scene, effect%kind, on)
       end select
@@ -306,9 +308,9 @@ contains
 
       why = ''
       do i = 1, size(scene%fixes)
-         associate (here => scene%fixes%group_name == scene%fixes(i)%group_name, field => scene%fixes%field_number)
-            if (field(i) /= FIX_P_A .or. .not. any(here .and. field == FIX_P_C) .or. any(here .and. field == FIX_P_W)) &
-               cycle
+         associate (here => scene%fixes%group_name == scene%fixes(i)%group_name, field => scene%fixes%field)
+            if (field(i) /= PRESCRIBED_P_A .or. .not. any(here .and. field == AT_P_C) .or. &
+                any(here .and. field == AT_P_W)) cycle
             why = 'p_a and p_c of '''//trim(scene%fixes(i)%group_name)//''' prescribe p_w: give p_w and one of these'
          end associate
       end do
@@ -319,7 +321,7 @@ contains
       type(scene_t), intent(inout) :: scene
       integer, intent(in) :: first_field, first_load
 
-      scene%fixes = pack(scene%fixes, scene%fixes%field_number < first_field)
+      scene%fixes = pack(scene%fixes, scene%fixes%field < first_field)
       scene%loads = pack(scene%loads, scene%loads%kind < first_load .or. scene%loads%kind > LOAD_AIR)
    end subroutine drop_field
 

@@ -5,9 +5,8 @@ module scene_accuracy
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use namelists, only: group_t, set_entry
-   use scene_keys, only: number_of, word_is
    use key_schema, only: given
-   use scene_types, only: scene_stage_t
+   use scene_types, only: stage_t
    implicit none (type, external)
    private
    public :: ask_accuracy, ask_steps, ask_stress, shorten_given_steps
@@ -30,29 +29,26 @@ contains
    end subroutine ask_accuracy
 
    !> Steps and tolerance of a stage. docs/theory/host.md section 4.5. Fault EXIT_INPUT: steps = "given" without dt.
-   subroutine ask_steps(group, accuracy, stage, fault)
+   subroutine ask_steps(group, accuracy, by_error, stage, fault)
       type(group_t), intent(in) :: group
       real(wp), intent(in) :: accuracy   !< Of the scene; 0: not asked for.
-      type(scene_stage_t), intent(inout) :: stage
+      logical, intent(in) :: by_error    !< The key steps says it.
+      type(stage_t), intent(inout) :: stage
       type(fault_t), intent(inout) :: fault
 
       stage%accuracy = accuracy
       if (.not. accuracy > 0.0_wp) stage%accuracy = DEFAULT_ACCURACY
       stage%controlled = accuracy > 0.0_wp .or. .not. given(group, 'dt')
-      if (given(group, 'steps')) stage%controlled = word_is(group, 'steps', 'controlled')
-      if (given(group, 'dt')) then
-         stage%dt = number_of(group, 'dt')
-      else if (.not. stage%controlled) then
-         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&stage with steps = ''given'' needs dt [s].')
-      end if
-      if (given(group, 'output_dt')) stage%output_dt = number_of(group, 'output_dt')
+      if (given(group, 'steps')) stage%controlled = by_error
+      if (.not. (given(group, 'dt') .or. stage%controlled)) call raise(fault, EXIT_INPUT, at_line(group%file, &
+         group%line)//'&stage with steps = ''given'' needs dt [s].')
       if (stage%controlled .and. .not. given(group, 'tolerance')) &
          stage%tolerance = min(stage%tolerance, NEWTON_SHARE*stage%accuracy)
    end subroutine ask_steps
 
    !> Shortens the given steps of stages to a share of their length; growing ones grow as much in the same time.
    pure subroutine shorten_given_steps(stages, share)
-      type(scene_stage_t), intent(inout) :: stages(:)
+      type(stage_t), intent(inout) :: stages(:)
       real(wp), intent(in) :: share   !< 0 to 1
       integer :: i
 

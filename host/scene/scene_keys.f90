@@ -1,264 +1,534 @@
 ! SPDX-License-Identifier: MIT
-!> Every key of a scene: kind, default, range or words, meaning. Checks, the template and the tables of the manual all
-!> come from this list.
+!> Every key of a scene, once: its name, the value that it sets, range or words, meaning, and when it has an effect. The
+!> statements read a group; with a group that gives nothing they list the keys, from which checks, the template and the
+!> warnings about keys without effect come. Defaults are those of scene_types.
 module scene_keys
    use kinds, only: wp
    use effect_types, only: EFFECT_WORDS
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use key_schema, only: key_t, REQUIRED, NONE, UNBOUNDED, check_group, given, line_of, words_of, place_of, &
-                         schema_number_of => number_of, schema_text_of => text_of, schema_word_is => word_is
+   use key_schema, only: key_t, REQUIRED, UNBOUNDED, check_group, given
+   use key_table, only: key_table_t
    use material_registry, only: is_law, law_names, law_keys
-   use namelists, only: group_t, MAX_VALUES
+   use namelists, only: group_t, MAX_VALUES, LENGTH
+   use number_pairs, only: read_pairs
+   use permeability_laws, only: permeability_t
    use retention_groups, only: RETENTION_KEYS
+   use scene_accuracy, only: ask_steps, ask_stress
+   use scene_types, only: scene_t, scene_law_t, scene_region_t, scene_item_t, initial_t, amplitude_t, stage_t, fix_t, &
+                          load_t, plate_t, contact_pair_t, absorber_t, tie_t, point_t, place_of
    use spelling, only: nearest_name
-   use texts, only: lower_case
    implicit none (type, external)
    private
-   public :: check_keys, number_of, text_of, word_is, word_number, print_template
+   public :: check_keys, keys_of_scenes, make_lists, take_group, print_template
 
-   real(wp), parameter :: BIG = UNBOUNDED, TINY_ = 1.0e-30_wp
-
-   !> Keys of a scene's own groups. Laws of materials and retention curves list theirs themselves.
-   type(key_t), parameter :: OWN_KEYS(*) = [ &
-      key_t('scene', 'name', 't', REQUIRED, 0, 0, 'name of the scene'), &
-      key_t('scene', 'geometry', 'w', 'axisymmetric', 0, 0, &
-            'axisymmetric in r, z or plane strain in x, y', 'axisymmetric|plane_strain'), &
-      key_t('scene', 'fields', 'w', 'u', 0, 0, 'unknowns; absent ones cost nothing', 'u|u-p_w|u-p_w-p_c'), &
-      key_t('scene', 'pressures', 'w', 'quadratic', 0, 0, 'interpolation (linear: Taylor-Hood)', 'quadratic|linear'), &
-      key_t('scene', 'quadrature', 'i', '6', 3, 12, 'points of an element: 3, 6, 7 or 12'), &
-      key_t('scene', 'gravity', 'n', '0', 0, 1000, 'acceleration towards -z [m/s2]'), &
-      key_t('scene', 'gravity_history', 't', NONE, 0, 0, 'name of a &history: factor on gravity'), &
-      key_t('scene', 'effects', 'w', 'given', 0, 0, &
-            'auto: pilots determine what the keys leave open, see host/README.md', 'given|auto'), &
-      key_t('scene', 'effects_tolerance', 'n', '0.01', 1.0e-6_wp, 1, &
-            'largest influence of an effect that is left out [-]'), &
-      key_t('scene', 'effects_pilot_share', 'n', '0.1', 0, BIG, &
-            'pilots of effects = ''auto'' may cost this share of the run [-]; else nothing is left out'), &
-      key_t('scene', 'effects_on_warning', 'w', 'warn', 0, 0, &
-            'action if an effect that pilots removed matters in the run', 'warn|stop'), &
-      key_t('scene', 'without', 'W', NONE, 0, 0, 'effects that are taken out by hand', EFFECT_WORDS), &
-      key_t('scene', 'seepage_inertia', 'w', 'no', 0, 0, 'acceleration of the skeleton in Darcy''s law', 'no|yes'), &
-      key_t('scene', 'saturation_rate', 'w', 'full', 0, 0, &
-            'rate of saturation by void ratio and suction, or by suction alone', 'full|suction'), &
-      key_t('scene', 'initial_flow', 'w', 'drain', 0, 0, &
-            'subtract: the initial flow is maintained', 'drain|subtract'), &
-      key_t('scene', 'accuracy', 'n', NONE, 1.0e-8_wp, 0.5_wp, &
-            'relative error wanted in the histories of the points [-], see host/README.md'), &
-      key_t('scene', 'threads', 'i', '0', 0, 1024, 'threads over elements; 0: by size, at most OMP_NUM_THREADS'), &
-      key_t('scene', 'factors', 'w', 'reuse', 0, 0, &
-            'factors of the matrix: reused while they serve, or new in every iteration', 'reuse|fresh'), &
-      key_t('scene', 'ordering', 'w', 'amd', 0, 0, 'ordering of the unknowns; best tries several', 'amd|metis|best'), &
-      key_t('scene', 'checkpoint_steps', 'i', '0', 0, 1000000000, 'checkpoint.h5 after every so many steps; 0: none'), &
-      key_t('scene', 'checkpoint_seconds', 'n', '0', 0, BIG, 'checkpoint.h5 after so much wall time [s]; 0: none'), &
-      key_t('scene', 'checkpoint_end', 'w', 'no', 0, 0, 'checkpoint.h5 when the last stage ends', 'no|yes'), &
-      key_t('mesh', 'file', 't', NONE, 0, 0, 'Gmsh 4.1 text mesh, relative to the scene; or r and z:'), &
-      key_t('mesh', 'scale', 'n', '1', 1.0e-9_wp, 1.0e9_wp, &
-            'factor on the coordinates of the file; 1e-3: they are in mm'), &
-      key_t('mesh', 'r', 'N', NONE, -BIG, BIG, 'breaks along r [m], ascending'), &
-      key_t('mesh', 'r_cells', 'I', NONE, 1, 100000, 'cells between two breaks of r'), &
-      key_t('mesh', 'r_ratio', 'N', NONE, 0.01_wp, 100, 'size of a cell over that of the previous one; default 1'), &
-      key_t('mesh', 'z', 'N', NONE, -BIG, BIG, 'breaks along z [m], ascending'), &
-      key_t('mesh', 'z_cells', 'I', NONE, 1, 100000, 'cells between two breaks of z'), &
-      key_t('mesh', 'z_ratio', 'N', NONE, 0.01_wp, 100, 'size of a cell over that of the previous one; default 1'), &
-      key_t('fluids', 'k_w', 'n', '2.2e6', TINY_, BIG, 'bulk modulus of water [kPa]'), &
-      key_t('fluids', 'rho_w', 'n', '1.0', 0, 1000, 'density of water [Mg/m3]'), &
-      key_t('fluids', 'eta_w', 'n', '1.0e-6', TINY_, BIG, 'viscosity of water [kPa s]'), &
-      key_t('fluids', 'gas', 'w', 'constant', 0, 0, 'ideal: K_a = p_ref + p_a, density as well', 'constant|ideal'), &
-      key_t('fluids', 'k_a', 'n', '101.325', TINY_, BIG, 'bulk modulus of a constant gas [kPa]'), &
-      key_t('fluids', 'rho_a', 'n', '1.2e-3', 0, 1000, 'density of air (ideal: at p_ref) [Mg/m3]'), &
-      key_t('fluids', 'eta_a', 'n', '1.8e-8', TINY_, BIG, 'viscosity of air [kPa s]'), &
-      key_t('fluids', 'p_ref', 'n', '101.325', TINY_, BIG, 'absolute pressure where p_a = 0 [kPa]'), &
-      key_t('retention', 'name', 't', REQUIRED, 0, 0, 'name, for the key of &region'), &
-      key_t('permeability', 'name', 't', REQUIRED, 0, 0, 'name, for the key of &region'), &
-      key_t('permeability', 'intrinsic', 'n', REQUIRED, TINY_, 1, 'intrinsic permeability [m2]'), &
-      key_t('permeability', 'law', 'w', 'corey', 0, 0, 'relative permeabilities', 'corey|mualem|power|constant'), &
-      key_t('permeability', 's_min', 'n', '0.0', 0, 0.999_wp, 'S_w at which S_e = 0 [-]'), &
-      key_t('permeability', 's_max', 'n', '1.0', 0.001_wp, 1, 'S_w at which S_e = 1 [-]'), &
-      key_t('permeability', 'a', 'n', '0.0', 0, BIG, 'power: k_rw = 1 - a (1 - S_w)**b'), &
-      key_t('permeability', 'b', 'n', '3.0', 1, 100, 'corey: k_rw = S_e**b; power: see a'), &
-      key_t('permeability', 'c', 'n', '2.0', 1, 100, 'corey, power: k_ra = (1 - S_e)**2 (1 - S_e**c)'), &
-      key_t('permeability', 'm', 'n', '0.5', 0.01_wp, 0.99_wp, 'exponent of Mualem-van Genuchten [-]'), &
-      key_t('permeability', 'k_rw', 'n', '1.0', 0, 1, 'constant: relative permeability to water [-]'), &
-      key_t('permeability', 'k_ra', 'n', '1.0', 0, 1, 'constant: relative permeability to air [-]'), &
-      key_t('permeability', 'floor', 'n', '1.0e-4', 0, 1, 'least relative permeability [-]'), &
-      key_t('region', 'group', 't', 'all', 0, 0, 'group of elements; without it those that no other region names'), &
-      key_t('region', 'material', 't', REQUIRED, 0, 0, 'name of a material, as &mud or &elastic'), &
-      key_t('region', 'retention', 't', NONE, 0, 0, 'name of a &retention, or "material": its own'), &
-      key_t('region', 'permeability', 't', NONE, 0, 0, 'name of a &permeability'), &
-      key_t('region', 'drainage', 'w', 'coupled', 0, 0, &
-            'fluids flow, stay at given pressures, stay in every element, or are absent', &
-            'coupled|drained|undrained|dry'), &
-      key_t('region', 'rho_s', 'n', '2.65', 0, 1000, 'density of the grains [Mg/m3]'), &
-      key_t('region', 'void_ratio', 'n', NONE, 0, 10, 'initial void ratio [-]; default: the material''s'), &
-      key_t('region', 'damping', 'n', '0', 0, BIG, 'force against the velocity over mass, dynamic stages [1/s]'), &
-      key_t('region', 'stiffness_damping', 'n', '0', 0, BIG, &
-            'stress of the skeleton from its rate, dynamic stages [s]'), &
-      key_t('initial', 'group', 't', 'all', 0, 0, 'group of elements or nodes'), &
-      key_t('initial', 'p_w', 'n', '0', -BIG, BIG, 'pore water pressure at the datum [kPa]'), &
-      key_t('initial', 'p_w_slope', 'n', '0', -BIG, BIG, 'change of p_w with z [kPa/m]'), &
-      key_t('initial', 'p_c', 'n', '0', -BIG, BIG, 'suction at the datum [kPa]'), &
-      key_t('initial', 'p_c_slope', 'n', '0', -BIG, BIG, 'change of p_c with z [kPa/m]'), &
-      key_t('initial', 'saturation', 'n', NONE, 1.0e-6_wp, 1, &
-            'S_w between the main curves, with hysteresis [-]; default: on the main drying curve'), &
-      key_t('initial', 'datum', 'n', '0', -BIG, BIG, 'z of the datum [m]'), &
-      key_t('initial', 'v_z', 'n', '0', -BIG, BIG, 'vertical velocity at the start [m/s]'), &
-      key_t('initial', 'wave', 'n', '0', -BIG, BIG, 'v_z = wave sin(wave_number (z - datum)) at the start [m/s]'), &
-      key_t('initial', 'wave_number', 'n', '0', 0, BIG, 'see wave [1/m]'), &
-      key_t('initial', 'stress', 'w', 'none', 0, 0, 'effective stress at the start', 'none|uniform|geostatic'), &
-      key_t('initial', 'sigma', 'N', NONE, -BIG, BIG, 'uniform: rr, zz, tt, tension positive [kPa]'), &
-      key_t('initial', 'surface', 'n', '0', -BIG, BIG, 'geostatic: z of the surface [m]'), &
-      key_t('initial', 'surcharge', 'n', '0', 0, BIG, 'geostatic: pressure on it [kPa]'), &
-      key_t('initial', 'k_0', 'n', '0.5', 0, 10, 'geostatic: horizontal over vertical stress'), &
-      key_t('initial', 'k_0_of', 'w', 'net', 0, 0, 'stress that K_0 acts on where p_c > 0', 'net|effective'), &
-      key_t('history', 'name', 't', REQUIRED, 0, 0, 'name, for the key history of loads'), &
-      key_t('history', 'times', 'N', NONE, -BIG, BIG, 'ascending [s]; straight lines between, constant outside'), &
-      key_t('history', 'values', 'N', NONE, -BIG, BIG, 'factors at these times [-]'), &
-      key_t('history', 'file', 't', NONE, 0, 0, 'instead: text file, a time and a factor in every line'), &
-      key_t('stage', 'name', 't', REQUIRED, 0, 0, 'name of the stage'), &
-      key_t('stage', 'analysis', 'w', NONE, 0, 0, &
-            'kind of the stage; needed unless effects = ''auto''', 'static|quasi_static|dynamic'), &
-      key_t('stage', 'duration', 'n', REQUIRED, TINY_, BIG, 'duration [s]'), &
-      key_t('stage', 'dt', 'n', NONE, TINY_, BIG, 'time step [s]; where steps are controlled the first one'), &
-      key_t('stage', 'steps', 'w', NONE, 0, 0, &
-            'given: dt; controlled: by their error, default with accuracy or without dt', 'given|controlled'), &
-      key_t('stage', 'output_dt', 'n', NONE, TINY_, BIG, 'controlled steps end at multiples of it, with fields [s]'), &
-      key_t('stage', 'dt_growth', 'n', '1', 1, 10, 'factor on the step after every accepted one'), &
-      key_t('stage', 'dt_max', 'n', NONE, TINY_, BIG, 'largest step with dt_growth [s]'), &
-      key_t('stage', 'cuts', 'i', '10', 0, 40, 'how often a step may be halved'), &
-      key_t('stage', 'rho_inf', 'n', NONE, 0, 1, &
-            'spectral radius of generalised-alpha [-]; default 0.8, dynamic with contact 0'), &
-      key_t('stage', 'created_energy', 'n', '0.01', TINY_, BIG, &
-            'energy created out of nothing that ends the run, share of the largest work [-]'), &
-      key_t('stage', 'tolerance', 'n', '1.0e-3', 1.0e-14_wp, 0.1_wp, 'Newton: error that ends the iteration [-]'), &
-      key_t('stage', 'measure', 'w', 'auto', 0, 0, &
-            'measure of the error that ends the iteration, see host/README.md', &
-            'forces|residual|correction|change|auto'), &
-      key_t('stage', 'max_iterations', 'i', '12', 1, 1000, 'Newton: linear solves before the step is cut'), &
-      key_t('stage', 'predictor', 'w', 'rates', 0, 0, 'start of the iteration', 'rates|none'), &
-      key_t('stage', 'start', 'w', 'solve', 0, 0, 'accelerations at the start of a dynamic stage', 'solve|zero'), &
-      key_t('stage', 'zero_displacements', 'w', 'no', 0, 0, &
-            'displacements are set to zero at the end of the stage', 'no|yes'), &
-      key_t('stage', 'every', 'i', '1', 1, 1000000, 'histories are written every so many steps'), &
-      key_t('stage', 'fields', 'i', '0', 0, 1000000, &
-            'fields are written every so many steps; 0: at the end; without: controlled steps at 50 times'), &
-      key_t('fix', 'group', 't', REQUIRED, 0, 0, 'boundary, region or node group'), &
-      key_t('fix', 'field', 'w', REQUIRED, 0, 0, 'what is prescribed', 'u_r|u_z|p_w|p_c|p_a'), &
-      key_t('fix', 'value', 'n', '0', -BIG, BIG, 'prescribed value, at the datum [m, kPa]'), &
-      key_t('fix', 'value_slope', 'n', '0', -BIG, BIG, 'change of the value with z [-, kPa/m]'), &
-      key_t('fix', 'datum', 'n', '0', -BIG, BIG, 'z of the datum [m]'), &
-      key_t('fix', 'history', 't', NONE, 0, 0, 'factor on the value'), &
-      key_t('fix', 'hold', 'w', 'no', 0, 0, 'yes: held at its value at the start of the stage', 'no|yes'), &
-      key_t('fix', 'motion', 'w', 'value', 0, 0, &
-            'what the value of u_r, u_z is: displacement, or acceleration [m/s2]', 'value|acceleration'), &
-      key_t('fix', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
-      key_t('fix', 'from', 'n', NONE, -BIG, BIG, 'acts after this time [s]'), &
-      key_t('fix', 'until', 'n', NONE, -BIG, BIG, 'acts up to this time [s]'), &
-      key_t('load', 'group', 't', REQUIRED, 0, 0, 'boundary (for force: node group)'), &
-      key_t('load', 'kind', 'w', REQUIRED, 0, 0, &
-            'kind of load, see host/README.md', 'pressure|shear_r|shear_z|water|air|force_r|force_z'), &
-      key_t('load', 'value', 'n', REQUIRED, -BIG, BIG, 'value of the load, at the datum [kPa, m/s, kN]'), &
-      key_t('load', 'value_slope', 'n', '0', -BIG, BIG, 'change of the value with z [kPa/m, 1/s, kN/m]'), &
-      key_t('load', 'datum', 'n', '0', -BIG, BIG, 'z of the datum [m]'), &
-      key_t('load', 'history', 't', NONE, 0, 0, 'factor on the value'), &
-      key_t('load', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
-      key_t('absorbing', 'group', 't', REQUIRED, 0, 0, 'boundary that lets waves out, in dynamic stages'), &
-      key_t('absorbing', 'rho', 'n', NONE, TINY_, 1000, &
-            'density of the ground behind the boundary [Mg/m3]; default: the soil'), &
-      key_t('absorbing', 'c_p', 'n', NONE, TINY_, BIG, &
-            'speed of pressure waves behind the boundary [m/s]; default: the soil''s'), &
-      key_t('absorbing', 'c_s', 'n', NONE, TINY_, BIG, &
-            'speed of shear waves behind the boundary [m/s]; default: the soil''s'), &
-      key_t('absorbing', 'v_r', 'n', '0', -BIG, BIG, 'velocity along r of the incoming wave [m/s]'), &
-      key_t('absorbing', 'v_z', 'n', '0', -BIG, BIG, 'velocity along z of the incoming wave [m/s]'), &
-      key_t('absorbing', 'history', 't', NONE, 0, 0, 'factor on v_r and v_z'), &
-      key_t('absorbing', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
-      key_t('tie', 'first', 't', REQUIRED, 0, 0, 'first boundary: nodes at equal heights move together'), &
-      key_t('tie', 'second', 't', REQUIRED, 0, 0, 'second boundary, with nodes at the same heights'), &
-      key_t('tie', 'pressures', 'w', 'no', 0, 0, 'pore pressures of the nodes are equal as well', 'no|yes'), &
-      key_t('plate', 'name', 't', REQUIRED, 0, 0, 'rigid plate, vertical; also a group for &fix and &load'), &
-      key_t('plate', 'r', 'N', NONE, -BIG, BIG, 'begin and end of the plate''s own flat face [m]; or give group'), &
-      key_t('plate', 'group', 't', NONE, 0, 0, 'boundary of the mesh that moves with the plate; or give r'), &
-      key_t('plate', 'z', 'n', '0', -BIG, BIG, 'height of the plate''s own face at the start [m]'), &
-      key_t('plate', 'face', 'w', 'down', 0, 0, 'direction of the plate''s own face', 'down|up'), &
-      key_t('plate', 'mass', 'n', REQUIRED, TINY_, BIG, 'mass of the plate [Mg]'), &
-      key_t('plate', 'weight', 'w', 'no', 0, 0, &
-            'the weight acts, and the plate starts in balance on its contact', 'no|yes'), &
-      key_t('plate', 'force', 'n', '0', -BIG, BIG, 'force on the plate, upwards [kN]'), &
-      key_t('plate', 'history', 't', NONE, 0, 0, 'factor on the force'), &
-      key_t('contact', 'name', 't', REQUIRED, 0, 0, 'name in contact.csv'), &
-      key_t('contact', 'slave', 't', REQUIRED, 0, 0, 'boundary that is integrated over: the softer or finer one'), &
-      key_t('contact', 'master', 't', REQUIRED, 0, 0, 'boundary opposite, or name of a &plate'), &
-      key_t('contact', 'penalty', 'n', '1.0e8', TINY_, BIG, 'pressure of a unit of penetration [kN/m3]'), &
-      key_t('contact', 'gap', 'w', 'combined', 0, 0, 'gap that is penalised, see CONTACT.md', &
-            'nodal|pointwise|combined'), &
-      key_t('contact', 'search_radius', 'n', '0', 0, BIG, &
-            'edges farther apart are not paired [m]; 0: length of the slave edge'), &
-      key_t('contact', 'drainage', 'w', 'fixed', 0, 0, &
-            'state: nodes in contact are released from &fix of pressures', 'fixed|state'), &
-      key_t('contact', 'stages', 'T', NONE, 0, 0, 'names of stages; default: all'), &
-      key_t('point', 'name', 't', REQUIRED, 0, 0, 'name in histories.csv'), &
-      key_t('point', 'r', 'n', REQUIRED, -BIG, BIG, 'the nearest node is taken [m]'), &
-      key_t('point', 'z', 'n', REQUIRED, -BIG, BIG, 'the nearest node is taken [m]')]
+   real(wp), parameter :: BIG = UNBOUNDED, TINY_ = 1.0e-30_wp, ZERO = 0.0_wp, ONE = 1.0_wp
+   integer, parameter :: MANY = 1000000
+   character(12), parameter :: GROUPS(*) = [character(12) :: 'scene', 'mesh', 'fluids', 'retention', 'permeability', &
+      'region', 'initial', 'history', 'stage', 'fix', 'load', 'absorbing', 'tie', 'plate', 'contact', 'point']
    character(*), parameter :: LAW_NAME = 'name, for the key material of &region'
-   type(key_t), parameter :: KEYS(*) = [key_t :: OWN_KEYS, RETENTION_KEYS]
+   character(*), parameter :: STAGES = 'names of stages; default: all'
 contains
+   !> The keys of all groups but those of laws of materials, in the order of the template.
+   function keys_of_scenes() result(keys)
+      type(key_t), allocatable :: keys(:)
+      type(key_table_t) :: table
+      type(scene_t) :: nothing
+      type(fault_t) :: fault
+      integer :: g
+
+      allocate (table%keys(0), table%group%entries(0))
+      call make_lists(nothing)
+      do g = 1, size(GROUPS)
+         table%group%name = GROUPS(g)
+         ! What a group lacks is no fault of a list.
+         fault = fault_t()
+         call take_group(table, nothing, fault)
+      end do
+      call move_alloc(table%keys, keys)
+   end function keys_of_scenes
+
+   !> Empty lists of groups.
+   subroutine make_lists(scene)
+      type(scene_t), intent(inout) :: scene
+
+      allocate (scene%materials(0), scene%retentions(0), scene%permeabilities(0), scene%regions(0), &
+                scene%initials(0), scene%amplitudes(0), scene%stages(0), scene%fixes(0), scene%loads(0), &
+                scene%plates(0), scene%contacts(0), scene%absorbers(0), scene%ties(0), scene%points(0))
+   end subroutine make_lists
+
+   !> Reads the group of a table into a scene, &scene before others. Fault EXIT_INPUT: values contradict each other.
+   subroutine take_group(k, scene, fault)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+
+      select case (k%group%name)
+      case ('scene')
+         call take_scene(k, scene)
+      case ('mesh')
+         call take_mesh(k, scene)
+      case ('fluids')
+         call take_fluids(k, scene)
+      case ('retention')
+         call take_retention(k, scene)
+      case ('permeability')
+         call take_permeability(k, scene, fault)
+      case ('region')
+         call take_region(k, scene)
+      case ('initial')
+         call take_initial(k, scene, fault)
+      case ('history')
+         call take_history(k, scene, fault)
+      case ('stage')
+         call take_stage(k, scene, fault)
+      case ('fix')
+         call take_fix(k, scene)
+      case ('load')
+         call take_load(k, scene)
+      case ('absorbing')
+         call take_absorber(k, scene)
+      case ('tie')
+         call take_tie(k, scene)
+      case ('plate')
+         call take_plate(k, scene, fault)
+      case ('contact')
+         call take_contact(k, scene)
+      case ('point')
+         call take_point(k, scene)
+      case default
+         call take_material(k, scene)
+      end select
+   end subroutine take_group
+
+   pure function item_of(group) result(item)
+      type(group_t), intent(in) :: group
+      type(scene_item_t) :: item
+
+      item = scene_item_t(group%file, group%line)
+   end function item_of
+
+   subroutine take_scene(k, scene)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+
+      call k%text('name', scene%name, 'name of the scene', REQUIRED)
+      call k%flag('geometry', scene%axisymmetric, 'axisymmetric|plane_strain', 'axisymmetric', &
+                  'axisymmetric in r, z or plane strain in x, y')
+      call k%word('fields', scene%fields, 'u|u-p_w|u-p_w-p_c', 'unknowns; absent ones cost nothing')
+      call k%flag('pressures', scene%linear_pressures, 'quadratic|linear', 'linear', &
+                  'interpolation (linear: Taylor-Hood)', ':p_w')
+      call k%whole('quadrature', scene%quadrature, 3, 12, 'points of an element: 3, 6, 7 or 12')
+      call k%number('gravity', scene%gravity, ZERO, 1000*ONE, 'acceleration towards -z [m/s2]')
+      call k%text('gravity_history', scene%gravity_history, 'name of a &history: factor on gravity', '+gravity')
+      call k%flag('effects', scene%derive_effects, 'given|auto', 'auto', &
+                  'auto: pilots determine what the keys leave open, see host/README.md')
+      call k%number('effects_tolerance', scene%effects_tolerance, 1.0e-6_wp, ONE, &
+                    'largest influence of an effect that is left out [-]', 'effects=auto')
+      call k%number('effects_pilot_share', scene%effects_pilot_share, ZERO, BIG, &
+                    'pilots of effects = ''auto'' may cost this share of the run [-]; else nothing is left out', &
+                    'effects=auto')
+      call k%flag('effects_on_warning', scene%stop_on_warning, 'warn|stop', 'stop', &
+                  'action if an effect that pilots removed matters in the run', 'effects=auto')
+      call k%texts('without', scene%without, 'effects that are taken out by hand', words=EFFECT_WORDS)
+      call k%flag('seepage_inertia', scene%seepage_inertia, 'no|yes', 'yes', &
+                  'acceleration of the skeleton in Darcy''s law', ':p_w')
+      call k%flag('saturation_rate', scene%full_saturation_rate, 'full|suction', 'full', &
+                  'rate of saturation by void ratio and suction, or by suction alone', ':p_c')
+      call k%flag('initial_flow', scene%subtract_flow, 'drain|subtract', 'subtract', &
+                  'subtract: the initial flow is maintained', ':p_w')
+      call k%number('accuracy', scene%accuracy, 1.0e-8_wp, 0.5_wp, &
+                    'relative error wanted in the histories of the points [-], see host/README.md')
+      call k%whole('threads', scene%threads, 0, 1024, 'threads over elements; 0: by size, at most OMP_NUM_THREADS')
+      call k%flag('factors', scene%reuse_factors, 'reuse|fresh', 'reuse', &
+                  'factors of the matrix: reused while they serve, or new in every iteration')
+      call k%word('ordering', scene%ordering, 'amd|metis|best', 'ordering of the unknowns; best tries several')
+      call k%whole('checkpoint_steps', scene%checkpoint_steps, 0, 1000*MANY, &
+                   'checkpoint.h5 after every so many steps; 0: none')
+      call k%number('checkpoint_seconds', scene%checkpoint_seconds, ZERO, BIG, &
+                    'checkpoint.h5 after so much wall time [s]; 0: none')
+      call k%flag('checkpoint_end', scene%checkpoint_end, 'no|yes', 'yes', 'checkpoint.h5 when the last stage ends')
+      scene%fields_by_hand = k%given('fields') .or. .not. scene%derive_effects
+      scene%gravity_by_hand = k%given('gravity') .or. scene%gravity_history /= '' .or. .not. scene%derive_effects
+      scene%seepage_by_hand = k%given('seepage_inertia') .or. .not. scene%derive_effects
+   end subroutine take_scene
+
+   subroutine take_mesh(k, scene)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+      character(*), parameter :: RATIO = 'size of a cell over that of the previous one; default 1'
+
+      associate (mesh => scene%mesh)
+         mesh%scene_item_t = item_of(k%group)
+         call k%text('file', mesh%mesh_file, 'Gmsh 4.1 text mesh, relative to the scene; or r and z:')
+         call k%number('scale', mesh%scale, 1.0e-9_wp, 1.0e9_wp, &
+                       'factor on the coordinates of the file; 1e-3: they are in mm', '+file')
+         call k%numbers('r', mesh%r, -BIG, BIG, 'breaks along r [m], ascending', '-file')
+         call k%wholes('r_cells', mesh%r_cells, 1, 100000, 'cells between two breaks of r', '-file')
+         call k%numbers('r_ratio', mesh%r_ratio, 0.01_wp, 100*ONE, RATIO, '-file')
+         call k%numbers('z', mesh%z, -BIG, BIG, 'breaks along z [m], ascending', '-file')
+         call k%wholes('z_cells', mesh%z_cells, 1, 100000, 'cells between two breaks of z', '-file')
+         call k%numbers('z_ratio', mesh%z_ratio, 0.01_wp, 100*ONE, RATIO, '-file')
+         mesh%scale_given = k%given('scale')
+         ! A path is relative to the file of the scene.
+         if (k%given('file') .and. index(mesh%mesh_file, '/') /= 1) &
+            mesh%mesh_file = k%group%file(:index(k%group%file, '/', back=.true.))//mesh%mesh_file
+         if (size(mesh%r_ratio) == 0) mesh%r_ratio = spread(ONE, 1, size(mesh%r_cells))
+         if (size(mesh%z_ratio) == 0) mesh%z_ratio = spread(ONE, 1, size(mesh%z_cells))
+      end associate
+   end subroutine take_mesh
+
+   subroutine take_fluids(k, scene)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+
+      associate (f => scene%fluids)
+         call k%number('k_w', f%k_w, TINY_, BIG, 'bulk modulus of water [kPa]', ':p_w')
+         call k%number('rho_w', f%rho_w, ZERO, 1000*ONE, 'density of water [Mg/m3]', ':p_w')
+         call k%number('eta_w', f%eta_w, TINY_, BIG, 'viscosity of water [kPa s]', ':p_w')
+         call k%flag('gas', f%ideal_gas, 'constant|ideal', 'ideal', 'ideal: K_a = p_ref + p_a, density as well', ':p_c')
+         call k%number('k_a', f%k_a, TINY_, BIG, 'bulk modulus of a constant gas [kPa]', 'gas=constant :p_c')
+         call k%number('rho_a', f%rho_a, ZERO, 1000*ONE, 'density of air (ideal: at p_ref) [Mg/m3]', ':p_c')
+         call k%number('eta_a', f%eta_a, TINY_, BIG, 'viscosity of air [kPa s]', ':p_c')
+         call k%number('p_ref', f%p_ref, TINY_, BIG, 'absolute pressure where p_a = 0 [kPa]', ':p_c')
+      end associate
+   end subroutine take_fluids
+
+   subroutine take_retention(k, scene)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+      type(scene_law_t) :: law
+
+      call k%text('name', law%name, 'name, for the key of &region', REQUIRED)
+      if (allocated(k%keys)) k%keys = [k%keys, RETENTION_KEYS]
+      law%group = k%group
+      scene%retentions = [scene%retentions, law]
+   end subroutine take_retention
+
+   subroutine take_material(k, scene)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+      type(scene_law_t) :: law
+
+      call k%text('name', law%name, LAW_NAME, REQUIRED)
+      law%group = k%group
+      call ask_stress(scene%accuracy, law%group)
+      scene%materials = [scene%materials, law]
+   end subroutine take_material
+
+   subroutine take_permeability(k, scene, fault)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+      type(permeability_t) :: law
+
+      call k%text('name', law%name, 'name, for the key of &region', REQUIRED)
+      call k%number('intrinsic', law%intrinsic, TINY_, ONE, 'intrinsic permeability [m2]', REQUIRED)
+      call k%word('law', law%law, 'corey|mualem|power|constant', 'relative permeabilities')
+      call k%number('s_min', law%s_min, ZERO, 0.999_wp, 'S_w at which S_e = 0 [-]', 'law=corey|mualem|power')
+      call k%number('s_max', law%s_max, 0.001_wp, ONE, 'S_w at which S_e = 1 [-]', 'law=corey|mualem|power')
+      call k%number('a', law%a, ZERO, BIG, 'power: k_rw = 1 - a (1 - S_w)**b', 'law=power')
+      call k%number('b', law%b, ONE, 100*ONE, 'corey: k_rw = S_e**b; power: see a', 'law=corey|power')
+      call k%number('c', law%c, ONE, 100*ONE, 'corey, power: k_ra = (1 - S_e)**2 (1 - S_e**c)', 'law=corey|power')
+      call k%number('m', law%m, 0.01_wp, 0.99_wp, 'exponent of Mualem-van Genuchten [-]', 'law=mualem')
+      call k%number('k_rw', law%k_rw, ZERO, ONE, 'constant: relative permeability to water [-]', 'law=constant')
+      call k%number('k_ra', law%k_ra, ZERO, ONE, 'constant: relative permeability to air [-]', 'law=constant')
+      call k%number('floor', law%floor, ZERO, ONE, 'least relative permeability [-]')
+      if (law%s_max <= law%s_min) call raise(fault, EXIT_INPUT, at_line(k%group%file, k%group%line)// &
+                                             's_max must be larger than s_min.')
+      scene%permeabilities = [scene%permeabilities, law]
+   end subroutine take_permeability
+
+   subroutine take_region(k, scene)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+      type(scene_region_t) :: region
+
+      region%scene_item_t = item_of(k%group)
+      call k%text('group', region%group_name, 'group of elements; without it those that no other region names')
+      call k%text('material', region%material_name, 'name of a material, as &mud or &elastic', REQUIRED)
+      call k%text('retention', region%retention_name, 'name of a &retention, or "material": its own', &
+                  'drainage=coupled|drained|undrained :p_c')
+      call k%text('permeability', region%permeability_name, 'name of a &permeability', 'drainage=coupled :p_w')
+      call k%word('drainage', region%drainage, 'coupled|drained|undrained|dry', &
+                  'fluids flow, stay at given pressures, stay in every element, or are absent', ':p_w')
+      call k%number('rho_s', region%rho_s, ZERO, 1000*ONE, 'density of the grains [Mg/m3]')
+      call k%number('void_ratio', region%void_ratio, ZERO, 10*ONE, 'initial void ratio [-]; default: the material''s')
+      call k%number('damping', region%damping, ZERO, BIG, 'force against the velocity over mass, dynamic stages [1/s]')
+      call k%number('stiffness_damping', region%stiffness_damping, ZERO, BIG, &
+                    'stress of the skeleton from its rate, dynamic stages [s]')
+      region%rest = .not. k%given('group')
+      scene%regions = [scene%regions, region]
+   end subroutine take_region
+
+   subroutine take_initial(k, scene, fault)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+      type(initial_t) :: initial
+      real(wp), allocatable :: sigma(:)
+      integer :: stress
+
+      initial%scene_item_t = item_of(k%group)
+      call k%text('group', initial%group_name, 'group of elements or nodes')
+      call k%number('p_w', initial%p_w, -BIG, BIG, 'pore water pressure at the datum [kPa]', ':p_w')
+      call k%number('p_w_slope', initial%p_w_slope, -BIG, BIG, 'change of p_w with z [kPa/m]', ':p_w')
+      call k%number('p_c', initial%p_c, -BIG, BIG, 'suction at the datum [kPa]', ':p_c')
+      call k%number('p_c_slope', initial%p_c_slope, -BIG, BIG, 'change of p_c with z [kPa/m]', ':p_c')
+      call k%number('saturation', initial%saturation, 1.0e-6_wp, ONE, &
+                    'S_w between the main curves, with hysteresis [-]; default: on the main drying curve', ':p_c')
+      call k%number('datum', initial%datum, -BIG, BIG, 'z of the datum [m]')
+      call k%number('v_z', initial%v_z, -BIG, BIG, 'vertical velocity at the start [m/s]')
+      call k%number('wave', initial%wave, -BIG, BIG, 'v_z = wave sin(wave_number (z - datum)) at the start [m/s]')
+      call k%number('wave_number', initial%wave_number, ZERO, BIG, 'see wave [1/m]', '+wave')
+      stress = 1
+      call k%word('stress', stress, 'none|uniform|geostatic', 'effective stress at the start')
+      call k%numbers('sigma', sigma, -BIG, BIG, 'uniform: rr, zz, tt, tension positive [kPa]', 'stress=uniform')
+      call k%number('surface', initial%surface, -BIG, BIG, 'geostatic: z of the surface [m]', 'stress=geostatic')
+      call k%number('surcharge', initial%surcharge, ZERO, BIG, 'geostatic: pressure on it [kPa]', 'stress=geostatic')
+      call k%number('k_0', initial%k_0, ZERO, 10*ONE, 'geostatic: horizontal over vertical stress', 'stress=geostatic')
+      call k%flag('k_0_of', initial%net, 'net|effective', 'net', 'stress that K_0 acts on where p_c > 0', &
+                  'stress=geostatic')
+      initial%uniform = stress == 2
+      initial%geostatic = stress == 3
+      if (initial%uniform .and. size(sigma) /= 3) then
+         call raise(fault, EXIT_INPUT, place_of(initial)//'a uniform stress needs sigma = rr, zz, tt.')
+      else if (initial%uniform) then
+         initial%sigma = sigma
+      end if
+      scene%initials = [scene%initials, initial]
+   end subroutine take_initial
+
+   !> Times and factors from the keys, or from a file with two numbers a line.
+   subroutine take_history(k, scene, fault)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+      type(amplitude_t) :: amplitude
+      character(LENGTH) :: file
+
+      call k%text('name', amplitude%name, 'name, for the key history of loads', REQUIRED)
+      call k%numbers('times', amplitude%times, -BIG, BIG, 'ascending [s]; straight lines between, constant outside', &
+                     '-file')
+      call k%numbers('values', amplitude%values, -BIG, BIG, 'factors at these times [-]', '-file')
+      file = ''
+      call k%text('file', file, 'instead: text file, a time and a factor in every line')
+      if (k%given('file')) call read_pairs(trim(file), trim(k%group%file), k%group%line, 'a time and a factor', &
+                                           amplitude%times, amplitude%values, fault)
+      if (fault%code /= 0) return
+      if (size(amplitude%times) == 0 .or. size(amplitude%times) /= size(amplitude%values)) then
+         call raise(fault, EXIT_INPUT, at_line(k%group%file, k%group%line)//'history '//trim(amplitude%name)// &
+                    ' needs as many values as times.')
+      else if (any(amplitude%times(2:) <= amplitude%times(:size(amplitude%times) - 1))) then
+         call raise(fault, EXIT_INPUT, at_line(k%group%file, k%group%line)//'the times of history '// &
+                    trim(amplitude%name)//' must ascend.')
+      end if
+      scene%amplitudes = [scene%amplitudes, amplitude]
+   end subroutine take_history
+
+   subroutine take_stage(k, scene, fault)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+      type(stage_t) :: stage
+      integer :: steps
+
+      call k%text('name', stage%name, 'name of the stage', REQUIRED)
+      call k%word('analysis', stage%kind, 'static|quasi_static|dynamic', &
+                  'kind of the stage; needed unless effects = ''auto''')
+      call k%number('duration', stage%duration, TINY_, BIG, 'duration [s]', REQUIRED)
+      call k%number('dt', stage%dt, TINY_, BIG, 'time step [s]; where steps are controlled the first one')
+      steps = 0
+      call k%word('steps', steps, 'given|controlled', &
+                  'given: dt; controlled: by their error, default with accuracy or without dt')
+      call k%number('output_dt', stage%output_dt, TINY_, BIG, &
+                    'controlled steps end at multiples of it, with fields [s]')
+      call k%number('dt_growth', stage%dt_growth, ONE, 10*ONE, 'factor on the step after every accepted one')
+      call k%number('dt_max', stage%dt_max, TINY_, BIG, 'largest step with dt_growth [s]', '+dt_growth')
+      call k%whole('cuts', stage%cuts, 0, 40, 'how often a step may be halved')
+      call k%number('rho_inf', stage%rho_inf, ZERO, ONE, &
+                    'spectral radius of generalised-alpha [-]; default 0.8, dynamic with contact 0', &
+                    'analysis=quasi_static|dynamic')
+      call k%number('created_energy', stage%created_energy, TINY_, BIG, &
+                    'energy created out of nothing that ends the run, share of the largest work [-]')
+      call k%number('tolerance', stage%tolerance, 1.0e-14_wp, 0.1_wp, 'Newton: error that ends the iteration [-]')
+      call k%word('measure', stage%measure, 'forces|residual|correction|change|auto', &
+                  'measure of the error that ends the iteration, see host/README.md')
+      call k%whole('max_iterations', stage%max_iterations, 1, 1000, 'Newton: linear solves before the step is cut')
+      call k%flag('predictor', stage%no_predictor, 'rates|none', 'none', 'start of the iteration')
+      call k%flag('start', stage%solve_start, 'solve|zero', 'solve', 'accelerations at the start of a dynamic stage', &
+                  'analysis=dynamic')
+      call k%flag('zero_displacements', stage%zero_displacements, 'no|yes', 'yes', &
+                  'displacements are set to zero at the end of the stage')
+      call k%whole('every', stage%every, 1, MANY, 'histories are written every so many steps')
+      call k%whole('fields', stage%fields, 0, MANY, &
+                   'fields are written every so many steps; 0: at the end; without: controlled steps at 50 times')
+      stage%film = .not. (k%given('fields') .or. k%given('output_dt'))
+      if (stage%kind == 0 .and. .not. scene%derive_effects) call raise(fault, EXIT_INPUT, &
+         at_line(k%group%file, k%group%line)//'&stage needs analysis (static, quasi_static or dynamic); '// &
+         'effects = ''auto'' in &scene would find it out.')
+      call ask_steps(k%group, scene%accuracy, steps == 2, stage, fault)
+      scene%stages = [scene%stages, stage]
+   end subroutine take_stage
+
+   subroutine take_fix(k, scene)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+      type(fix_t) :: fix
+
+      fix%scene_item_t = item_of(k%group)
+      call k%text('group', fix%group_name, 'boundary, region or node group', REQUIRED)
+      call k%word('field', fix%field, 'u_r|u_z|p_w|p_c|p_a', 'what is prescribed', REQUIRED)
+      call k%number('value', fix%value, -BIG, BIG, 'prescribed value, at the datum [m, kPa]', 'hold=no')
+      call k%number('value_slope', fix%value_slope, -BIG, BIG, 'change of the value with z [-, kPa/m]', 'hold=no')
+      call k%number('datum', fix%datum, -BIG, BIG, 'z of the datum [m]', '+value_slope')
+      call k%text('history', fix%amplitude_name, 'factor on the value', 'hold=no')
+      call k%flag('hold', fix%hold, 'no|yes', 'yes', 'yes: held at its value at the start of the stage')
+      call k%flag('motion', fix%acceleration, 'value|acceleration', 'acceleration', &
+                  'what the value of u_r, u_z is: displacement, or acceleration [m/s2]')
+      call k%texts('stages', fix%stages, STAGES)
+      call k%number('from', fix%from, -BIG, BIG, 'acts after this time [s]')
+      call k%number('until', fix%until, -BIG, BIG, 'acts up to this time [s]')
+      scene%fixes = [scene%fixes, fix]
+   end subroutine take_fix
+
+   subroutine take_load(k, scene)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+      type(load_t) :: load
+
+      load%scene_item_t = item_of(k%group)
+      call k%text('group', load%group_name, 'boundary (for force: node group)', REQUIRED)
+      call k%word('kind', load%kind, 'pressure|shear_r|shear_z|water|air|force_r|force_z', &
+                  'kind of load, see host/README.md', REQUIRED)
+      call k%number('value', load%value, -BIG, BIG, 'value of the load, at the datum [kPa, m/s, kN]', REQUIRED)
+      call k%number('value_slope', load%value_slope, -BIG, BIG, 'change of the value with z [kPa/m, 1/s, kN/m]')
+      call k%number('datum', load%datum, -BIG, BIG, 'z of the datum [m]', '+value_slope')
+      call k%text('history', load%amplitude_name, 'factor on the value')
+      call k%texts('stages', load%stages, STAGES)
+      scene%loads = [scene%loads, load]
+   end subroutine take_load
+
+   subroutine take_absorber(k, scene)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+      type(absorber_t) :: absorber
+
+      absorber%scene_item_t = item_of(k%group)
+      call k%text('group', absorber%group_name, 'boundary that lets waves out, in dynamic stages', REQUIRED)
+      call k%number('rho', absorber%rho, TINY_, 1000*ONE, &
+                    'density of the ground behind the boundary [Mg/m3]; default: the soil')
+      call k%number('c_p', absorber%c_p, TINY_, BIG, &
+                    'speed of pressure waves behind the boundary [m/s]; default: the soil''s')
+      call k%number('c_s', absorber%c_s, TINY_, BIG, &
+                    'speed of shear waves behind the boundary [m/s]; default: the soil''s')
+      call k%number('v_r', absorber%incoming(1), -BIG, BIG, 'velocity along r of the incoming wave [m/s]')
+      call k%number('v_z', absorber%incoming(2), -BIG, BIG, 'velocity along z of the incoming wave [m/s]')
+      call k%text('history', absorber%amplitude_name, 'factor on v_r and v_z')
+      call k%texts('stages', absorber%stages, STAGES)
+      scene%absorbers = [scene%absorbers, absorber]
+   end subroutine take_absorber
+
+   subroutine take_tie(k, scene)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+      type(tie_t) :: tie
+
+      tie%scene_item_t = item_of(k%group)
+      call k%text('first', tie%first_name, 'first boundary: nodes at equal heights move together', REQUIRED)
+      call k%text('second', tie%second_name, 'second boundary, with nodes at the same heights', REQUIRED)
+      call k%flag('pressures', tie%pressures, 'no|yes', 'yes', 'pore pressures of the nodes are equal as well')
+      scene%ties = [scene%ties, tie]
+   end subroutine take_tie
+
+   subroutine take_plate(k, scene, fault)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+      type(plate_t) :: plate
+      real(wp), allocatable :: r(:)
+
+      plate%scene_item_t = item_of(k%group)
+      call k%text('name', plate%name, 'rigid plate, vertical; also a group for &fix and &load', REQUIRED)
+      call k%numbers('r', r, -BIG, BIG, 'begin and end of the plate''s own flat face [m]; or give group')
+      call k%text('group', plate%joined_name, 'boundary of the mesh that moves with the plate; or give r')
+      call k%number('z', plate%z, -BIG, BIG, 'height of the plate''s own face at the start [m]', '+r')
+      call k%flag('face', plate%up, 'down|up', 'up', 'direction of the plate''s own face', '+r')
+      call k%number('mass', plate%mass, TINY_, BIG, 'mass of the plate [Mg]', REQUIRED)
+      call k%flag('weight', plate%heavy, 'no|yes', 'yes', &
+                  'the weight acts, and the plate starts in balance on its contact')
+      call k%number('force', plate%force, -BIG, BIG, 'force on the plate, upwards [kN]')
+      call k%text('history', plate%amplitude_name, 'factor on the force')
+      if (k%given('group') .eqv. k%given('r')) then
+         call raise(fault, EXIT_INPUT, place_of(plate)//'a plate has a face of its own, r = begin, end, or '// &
+                    'it is joined to a boundary, group = name: give one of the two.')
+      else if (k%given('r') .and. size(r) /= 2) then
+         call raise(fault, EXIT_INPUT, place_of(plate)//'a plate needs r = begin, end, ascending.')
+      else if (k%given('r')) then
+         plate%r = r
+         if (.not. plate%r(2) > plate%r(1) .or. (scene%axisymmetric .and. plate%r(1) < ZERO)) call raise(fault, &
+            EXIT_INPUT, place_of(plate)//'a plate needs r = begin, end, ascending and, in axial symmetry, not '// &
+            'negative.')
+      end if
+      scene%plates = [scene%plates, plate]
+   end subroutine take_plate
+
+   subroutine take_contact(k, scene)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+      type(contact_pair_t) :: contact
+
+      contact%scene_item_t = item_of(k%group)
+      call k%text('name', contact%name, 'name in contact.csv', REQUIRED)
+      call k%text('slave', contact%slave_name, 'boundary that is integrated over: the softer or finer one', REQUIRED)
+      call k%text('master', contact%master_name, 'boundary opposite, or name of a &plate', REQUIRED)
+      call k%number('penalty', contact%options%penalty, TINY_, BIG, 'pressure of a unit of penetration [kN/m3]')
+      call k%word('gap', contact%options%gap, 'nodal|pointwise|combined', 'gap that is penalised, see CONTACT.md')
+      call k%number('search_radius', contact%options%search_radius, ZERO, BIG, &
+                    'edges farther apart are not paired [m]; 0: length of the slave edge')
+      call k%flag('drainage', contact%drains_by_state, 'fixed|state', 'state', &
+                  'state: nodes in contact are released from &fix of pressures')
+      call k%texts('stages', contact%stages, STAGES)
+      contact%options%axisymmetric = scene%axisymmetric
+      scene%contacts = [scene%contacts, contact]
+   end subroutine take_contact
+
+   subroutine take_point(k, scene)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+      type(point_t) :: point
+
+      call k%text('name', point%name, 'name in histories.csv', REQUIRED)
+      call k%number('r', point%x(1), -BIG, BIG, 'the nearest node is taken [m]', REQUIRED)
+      call k%number('z', point%x(2), -BIG, BIG, 'the nearest node is taken [m]', REQUIRED)
+      scene%points = [scene%points, point]
+   end subroutine take_point
+
    !> Refuses unknown groups and keys, missing ones, and values of the wrong kind or outside their range. Fault
    !> EXIT_INPUT, at the first. Keys of laws are checked where they are built.
    subroutine check_keys(groups, fault)
       type(group_t), intent(in) :: groups(:)   !< (groups of the scene)
       type(fault_t), intent(inout) :: fault
+      type(key_t), allocatable :: keys(:)
       character(12), allocatable :: names(:)
       integer :: g
 
+      allocate (keys, source=keys_of_scenes())
       do g = 1, size(groups)
          if (is_law(groups(g)%name)) then
             ! The law checks its own keys when it is built.
             if (.not. given(groups(g), 'name')) call raise(fault, EXIT_INPUT, at_line(groups(g)%file, &
                groups(g)%line)//'&'//trim(groups(g)%name)//' needs name ('//LAW_NAME//').')
-         else if (.not. any(KEYS%group == groups(g)%name)) then
-            names = [KEYS%group, law_names()]
+         else if (.not. any(keys%group == groups(g)%name)) then
+            names = [keys%group, law_names()]
             call raise(fault, EXIT_INPUT, at_line(groups(g)%file, groups(g)%line)//'there is no group &'// &
                        trim(groups(g)%name)//'; the nearest is &'// &
                        trim(names(nearest_name(groups(g)%name, names)))//'.')
          else
-            call check_group(KEYS, groups(g), .false., fault)
+            call check_group(keys, groups(g), .false., fault)
          end if
          if (fault%code /= 0) return
       end do
    end subroutine check_keys
-
-   !> Number of a word among the words of its key, from 1; 0 where the key has no value.
-   integer function word_number(group, name) result(number)
-      type(group_t), intent(in) :: group
-      character(*), intent(in) :: name
-
-      number = findloc(words_of(KEYS(place_of(KEYS, group%name, name))), lower_case(text_of(group, name)), dim=1)
-   end function word_number
-
-   !> Value of a number, or its default (0 if it has none). In the unit of the key.
-   real(wp) function number_of(group, name)
-      type(group_t), intent(in) :: group
-      character(*), intent(in) :: name
-
-      number_of = schema_number_of(KEYS, group, name)
-   end function number_of
-
-   !> A text, or its default.
-   function text_of(group, name) result(text)
-      type(group_t), intent(in) :: group
-      character(*), intent(in) :: name
-      character(:), allocatable :: text
-
-      text = schema_text_of(KEYS, group, name)
-   end function text_of
-
-   !> Whether the value of a key (its default where it is not given) is this word; case is ignored.
-   logical function word_is(group, name, word)
-      type(group_t), intent(in) :: group
-      character(*), intent(in) :: name, word
-
-      word_is = schema_word_is(KEYS, group, name, word)
-   end function word_is
 
    !> Every key with its default and meaning, as a scene to start from.
    subroutine print_template(unit)
@@ -267,8 +537,8 @@ contains
       character(12), allocatable :: laws(:)
       integer :: g, k
 
-      allocate (all_keys, source=KEYS)
-      laws = law_names()
+      allocate (all_keys, source=keys_of_scenes())
+      allocate (laws, source=law_names())
       do g = 1, size(laws)
          all_keys = [all_keys, key_t(laws(g), 'name', 't', REQUIRED, 0, 0, LAW_NAME), law_keys(laws(g))]
       end do

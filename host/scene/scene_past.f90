@@ -7,7 +7,7 @@ module scene_past
    use kinds, only: wp
    use namelists, only: group_t, LENGTH
    use scene_fingerprint, only: hash_t, add_text, text_of_hash, is_free
-   use scene_types, only: scene_amplitude_t, amplitude_at
+   use scene_types, only: amplitude_t, amplitude_at
    use texts, only: lower_case, whole
    implicit none (type, external)
    private
@@ -18,7 +18,7 @@ contains
    !> The first stages of a scene, the last of them up to a time, one key a line, as "&fix 3 (top): value = -0.1".
    function past_of_scene(groups, amplitudes, stages, time) result(text)
       type(group_t), intent(in) :: groups(:)       !< Of the scene, sealed. (groups)
-      type(scene_amplitude_t), intent(in) :: amplitudes(:)   !< All of the scene. (histories)
+      type(amplitude_t), intent(in) :: amplitudes(:)   !< All of the scene. (histories)
       integer, intent(in) :: stages                !< That have begun.
       real(wp), intent(in) :: time                 !< [s]
       character(:), allocatable :: text

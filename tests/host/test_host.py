@@ -220,9 +220,10 @@ for scene, count in ((terzaghi, 1), (work / "threads2.nml", 2), (indentation, 2)
 
 # The template names every key of the code and is refused for nothing but its question marks.
 template = subprocess.run([host, "--template"], capture_output=True, text=True).stdout
-keys = re.findall(r"key_t\('(\w+)', '(\w+)'", (root / "host/scene/scene_keys.f90").read_text())
-for group, key in keys:
-    part = re.search(rf"^&{group}$(.*?)^/$", template, re.MULTILINE | re.DOTALL)
-    check(f"template: {group} {key}", part and re.search(rf"^[ !]+{key} = ", part[1], re.MULTILINE))
+code = (root / "host/scene/scene_keys.f90").read_text()
+for name in set(re.findall(r"call k%\w+\('(\w+)'", code)):
+    lines, calls = (len(re.findall(pattern, text, re.MULTILINE))
+                    for pattern, text in ((rf"^[ !]+{name} = ", template), (rf"call k%\w+\('{name}'", code)))
+    check(f"template: {name} in {calls} groups", lines >= calls, lines)
 
 finish()

@@ -1,0 +1,164 @@
+! SPDX-License-Identifier: MIT
+!> Keys that are written once: every statement names a key, the value that it sets, its range and its meaning. The same
+!> statements list the keys (for checks, templates and messages) and read a group. The default of a key is what its
+!> value was before; a default outside of the range is none.
+module key_table
+   use kinds, only: wp
+   use key_schema, only: key_t, NONE, REQUIRED, LONGEST_WORD, get_text, get_number, numbers_of, texts_of, words_of, &
+                         group_gives => given
+   use namelists, only: group_t, LENGTH
+   use texts, only: lower_case, short, whole_text => whole
+   implicit none (type, external)
+   private
+   public :: key_table_t
+
+   type :: key_table_t
+      type(group_t) :: group                  !< It is read; one without entries gives nothing.
+      type(key_t), allocatable :: keys(:)     !< Listed so far; not allocated: keys are not listed.
+   contains
+      procedure :: given, number, whole, word, flag, text, numbers, wholes, texts
+      procedure, private :: list
+   end type key_table_t
+
+   ! Of every procedure: `acts` says when the key has an effect, see key_t; REQUIRED: it must be given.
+contains
+   !> Whether the group gives a key.
+   pure logical function given(self, name)
+      class(key_table_t), intent(in) :: self
+      character(*), intent(in) :: name
+
+      given = group_gives(self%group, name)
+   end function given
+
+   subroutine list(self, key, acts)
+      class(key_table_t), intent(inout) :: self
+      type(key_t), intent(in) :: key
+      character(*), intent(in), optional :: acts
+      type(key_t) :: listed
+
+      if (.not. allocated(self%keys)) return
+      listed = key
+      listed%group = self%group%name(:len(listed%group))
+      if (present(acts)) then
+         if (acts == REQUIRED) listed%preset = REQUIRED
+         if (acts /= REQUIRED) listed%acts = acts
+      end if
+      self%keys = [self%keys, listed]
+   end subroutine list
+
+   subroutine number(self, name, value, lower, upper, meaning, acts)
+      class(key_table_t), intent(inout) :: self
+      character(*), intent(in) :: name, meaning
+      real(wp), intent(inout) :: value
+      real(wp), intent(in) :: lower, upper
+      character(*), intent(in), optional :: acts
+      character(14) :: preset
+      logical :: found
+
+      preset = NONE
+      if (value >= lower .and. value <= upper) preset = short(value)
+      call self%list(key_t('', name, 'n', preset, lower, upper, meaning), acts)
+      call get_number(self%group, name, value, found)
+   end subroutine number
+
+   !> An integer.
+   subroutine whole(self, name, value, lower, upper, meaning, acts)
+      class(key_table_t), intent(inout) :: self
+      character(*), intent(in) :: name, meaning
+      integer, intent(inout) :: value
+      integer, intent(in) :: lower, upper
+      character(*), intent(in), optional :: acts
+      real(wp) :: found_value
+      logical :: found
+
+      call self%list(key_t('', name, 'i', whole_text(value), lower, upper, meaning), acts)
+      call get_number(self%group, name, found_value, found)
+      if (found) value = nint(found_value)
+   end subroutine whole
+
+   !> The number of a word among those of the key, from 1; 0: none.
+   subroutine word(self, name, value, words, meaning, acts)
+      class(key_table_t), intent(inout) :: self
+      character(*), intent(in) :: name, words, meaning
+      integer, intent(inout) :: value
+      character(*), intent(in), optional :: acts
+      character(LENGTH) :: chosen
+      character(LONGEST_WORD), allocatable :: all_words(:)
+      type(key_t) :: key
+
+      key = key_t('', name, 'w', NONE, 0, 0, meaning, words)
+      allocate (all_words, source=words_of(key))
+      if (value > 0) key%preset = all_words(value)(:len(key%preset))
+      call self%list(key, acts)
+      chosen = ''
+      call get_text(self%group, name, chosen)
+      if (self%given(name)) value = findloc(all_words, lower_case(chosen), dim=1)
+   end subroutine word
+
+   !> Whether one of two words, `yes`, is chosen.
+   subroutine flag(self, name, value, words, yes, meaning, acts)
+      class(key_table_t), intent(inout) :: self
+      character(*), intent(in) :: name, words, yes, meaning
+      logical, intent(inout) :: value
+      character(*), intent(in), optional :: acts
+      integer :: number_of_word
+
+      ! The first or the second.
+      number_of_word = merge(1, 2, value .eqv. index(words, yes//'|') == 1)
+      call self%word(name, number_of_word, words, meaning, acts)
+      value = (number_of_word == 1) .eqv. index(words, yes//'|') == 1
+   end subroutine flag
+
+   subroutine text(self, name, value, meaning, acts)
+      class(key_table_t), intent(inout) :: self
+      character(*), intent(in) :: name, meaning
+      character(*), intent(inout) :: value
+      character(*), intent(in), optional :: acts
+      character(LENGTH) :: found
+
+      call self%list(key_t('', name, 't', value, 0, 0, meaning), acts)
+      found = value
+      call get_text(self%group, name, found)
+      value = found
+   end subroutine text
+
+   !> A list of numbers, empty where it is not given.
+   subroutine numbers(self, name, values, lower, upper, meaning, acts)
+      class(key_table_t), intent(inout) :: self
+      character(*), intent(in) :: name, meaning
+      real(wp), allocatable, intent(out) :: values(:)   !< (numbers)
+      real(wp), intent(in) :: lower, upper
+      character(*), intent(in), optional :: acts
+
+      call self%list(key_t('', name, 'N', NONE, lower, upper, meaning), acts)
+      values = numbers_of(self%group, name)
+   end subroutine numbers
+
+   !> A list of integers, empty where it is not given.
+   subroutine wholes(self, name, values, lower, upper, meaning, acts)
+      class(key_table_t), intent(inout) :: self
+      character(*), intent(in) :: name, meaning
+      integer, allocatable, intent(out) :: values(:)   !< (numbers)
+      integer, intent(in) :: lower, upper
+      character(*), intent(in), optional :: acts
+
+      call self%list(key_t('', name, 'I', NONE, lower, upper, meaning), acts)
+      values = nint(numbers_of(self%group, name))
+   end subroutine wholes
+
+   !> A list of texts, empty where it is not given; with `words` each is one of these.
+   subroutine texts(self, name, values, meaning, acts, words)
+      class(key_table_t), intent(inout) :: self
+      character(*), intent(in) :: name, meaning
+      character(LENGTH), allocatable, intent(out) :: values(:)   !< (texts)
+      character(*), intent(in), optional :: acts, words
+
+      if (present(words)) then
+         call self%list(key_t('', name, 'W', NONE, 0, 0, meaning, words), acts)
+         values = lower_case(texts_of(self%group, name))
+      else
+         call self%list(key_t('', name, 'T', NONE, 0, 0, meaning), acts)
+         values = texts_of(self%group, name)
+      end if
+   end subroutine texts
+end module key_table
