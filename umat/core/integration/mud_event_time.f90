@@ -7,6 +7,7 @@ module mud_event_time
    use mud_consistent, only: sensitivity_t, change_with_size, changes_along, changes_of_ratio, linearise_stage
    use mud_critical_state, only: bounding_ratio, bounding_slope
    use mud_driving, only: driving_t, DIRECTIONS
+   use mud_error_control, only: changes_root
    use mud_event_functions, only: EVENT_OPENS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, closing_mode, &
       change_of_closing_rate, rate_without_past, psi_at
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, turning_of, NY
@@ -28,8 +29,8 @@ module mud_event_time
    !> An event whose function hardly changes along the path (relative to its change with the increment) has no definite
    !> time: it is taken as fixed [-].
    real(wp), parameter :: GRAZING = 1.0e-10_wp
-   !> A reversal beyond which (r - r_in):n is farther from -x_rev than this share of its change was not found but jumped
-   !> over: where it can be found it is to 1e-12 [-].
+   !> A reversal beyond which (r - r_in):n is farther from -x_rev than this share of its change may have been jumped
+   !> over: where it can be found it is to 1e-12, but in substeps as short as h_min [-].
    real(wp), parameter :: FOUND = 1.0e-6_wp
    integer, parameter :: BY_SIZE = DIRECTIONS   !< The idle direction serves as that of the substep's size.
 contains
@@ -133,13 +134,15 @@ contains
    end function slopes_of_event
 
    !> True where (r - r_in):n passes -x_rev in a jump: t and r have one direction only, as in triaxial states, t passes
-   !> zero, and n becomes its opposite. The time of such a reversal is that of t, along n, at zero.
+   !> zero, and n becomes its opposite (or the root changes). The time of such a reversal is that of t, along n, at
+   !> zero. A place that is known to h_min alone may be as far beyond -x_rev without a jump.
    pure logical function jumps(par, trial, w)
       type(params_t), intent(in) :: par
       type(trial_t), intent(in) :: trial
       type(rate_t), intent(in) :: w      !< at the event
 
       jumps = -(w%x + par%x_rev) > FOUND*(abs(trial%w(1)%x) + par%x_rev)
+      if (jumps) jumps = ddot(trial%w(1)%n, w%n) < 0.0_wp .or. changes_root([trial%w(1), w])
    end function jumps
 
    !> The same along one direction, where the event depends on the bounding surface.
