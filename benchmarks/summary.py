@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The tables of benchmarks/README.md from speed.csv and instructions.csv of a folder."""
 import pathlib
+import re
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "verification"))
@@ -19,9 +20,7 @@ counted = {(r["path"], int(r["tangent"])): r["instructions_per_update"] for r in
 TANGENTS = ["none", "elastic", "continuum", "consistent"]
 for line in (folder / "speed.csv").read_text(encoding="utf-8").splitlines():
     if line[:1] == "#":
-        print(line[1:].strip() + "  ")
-if counted:
-    print("Instructions: " + (folder / "instructions.csv").read_text(encoding="utf-8").split(";")[0][1:].strip() + "  ")
+        print(re.sub(r"^# commit [^;]*;", "#", line)[1:].strip() + "  ")
 
 print("\n| one rate evaluation | ns |\n|---|---|")
 for r in speed:

@@ -159,10 +159,6 @@ def apply_all(tree):
     return 2 if broken else 0
 
 
-def commit():
-    return run(["git", "describe", "--always", "--exclude=*"], ROOT).stdout.strip()
-
-
 def rows_of_page():
     """Lines of the present table by title."""
     page = HERE / subject.table
@@ -175,7 +171,7 @@ def tests_in(row):
     return int(row.split("|")[2]) if row else 0
 
 
-def write_readme(table, rows, suites, seconds):
+def write_readme(table, rows):
     for title, caught in table:
         shown = ", ".join(f"`{name}`" for name in caught[:4])
         if len(caught) > 4:
@@ -183,14 +179,11 @@ def write_readme(table, rows, suites, seconds):
         rows[title] = f"| {title} | {len(caught)} | {shown or '**none**'} |"
     rows = [rows[title] for title, *_ in subject.mutations if title in rows]
     survived = sum(not tests_in(row) for row in rows)
-    partly = "" if len(table) == len(rows) else f" {len(rows) - len(table)} rows are of earlier commits."
     lines = [f"# {subject.title}", "",
              f"`{subject.command}` changes `{subject.sources}` in one place at a time "
              f"(`mutations.py`), builds it and runs {subject.judges}. It is not part of "
              "`./check`. \"(hangs)\" and \"(stops)\" mean that the program of the suite hung or stopped.", "",
-             f"Measured: {len(rows)} mutations, {len(rows) - survived} noticed, {survived} survived. At commit "
-             f"{commit()}: {len(table)} of them, {suites} suites, {seconds / 60:.0f} minutes on {os.cpu_count()} cores "
-             f"with other work.{partly}"
+             f"Measured: {len(rows)} mutations, {len(rows) - survived} noticed, {survived} survived."
              + (f" Left out: {', '.join(sorted(LEFT_OUT))}." if subject is Library else ""), "",
              "| mutation | tests | noticed by |", "|---|---|---|", *rows]
     (HERE / subject.table).write_text("\n".join(lines) + "\n", encoding="utf-8")
@@ -209,7 +202,6 @@ def main():
     arguments.add_argument("-j", type=int, default=os.cpu_count())
     arguments = arguments.parse_args()
     subject = Contact if arguments.contact else Regions if arguments.regions else Library
-    start = time.monotonic()
     folder = pathlib.Path(tempfile.mkdtemp(prefix="mud-mutations-"))
     tree = folder / "mud"
     try:
@@ -253,7 +245,7 @@ def main():
         survived = [title for title, caught in table if not caught]
         print(f"{len(table)} mutations, {len(survived)} survived, {broken} not applicable")
         if arguments.readme:
-            write_readme(table, rows, len(suites_of(tree)), time.monotonic() - start)
+            write_readme(table, rows)
         return 2 if broken else bool(survived)
     except ValueError as problem:
         print(f"unchanged: {problem}")

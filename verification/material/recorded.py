@@ -61,8 +61,7 @@ def shown(value):
 
 
 def table(bench, columns, head=""):
-    """The recorded values as a table of a README, and the line that says which commit made them."""
+    """The recorded values as a table of a README."""
     values = read(bench)
     lines = [(quantity, *(shown(values.get((quantity, column))) for column in columns)) for quantity in dict.fromkeys(q for q, _ in values)]
-    made = tables.comments(bench.here / "results.csv")[0]
-    return tables.markdown((head, *columns), lines) + f"\nresults.csv: {made}.\n"
+    return tables.markdown((head, *columns), lines)

@@ -6,7 +6,6 @@ from __future__ import annotations
 import csv
 import datetime
 import pathlib
-import subprocess
 
 import numpy as np
 
@@ -128,7 +127,7 @@ def write_report(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
     text = [
         f"# {task.title or task.name}: calibration",
         "",
-        f"Made by `mud_calibrate`: MUD {_version()}{_commit()}, seed {task.seed}, {len(task.fitted())} tests fitted and "
+        f"Made by `mud_calibrate`: MUD {_version()}, seed {task.seed}, {len(task.fitted())} tests fitted and "
         f"{len(task.items) - len(task.fitted())} held out, {result.simulations} simulations, "
         f"{result.cpu_seconds:.0f} s of processor time, shared by {result.workers} workers ({result.seconds:.0f} s on the clock of a "
         "machine that may have done other things too).",
@@ -374,19 +373,3 @@ def _page(result: Calibration, items: list[Item], title: str, plt):
 
 def _version() -> str:
     return _native.text_of(_native.mud.mud_version)[1]
-
-
-def _commit() -> str:
-    """', commit X' where the package is used in its source tree."""
-    try:
-        done = subprocess.run(
-            ["git", "rev-parse", "--short", "HEAD"],
-            cwd=_native.SOURCE_TREE,
-            capture_output=True,
-            text=True,
-            check=True,
-            timeout=10,
-        )
-    except (OSError, subprocess.SubprocessError):
-        return ""
-    return f", commit {done.stdout.strip()}" if (_native.SOURCE_TREE / "umat").is_dir() else ""

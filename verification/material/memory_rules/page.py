@@ -154,9 +154,7 @@ def energy_table(values):
 def texts(bench):
     found = tables.rows(bench.here / "results.csv")
     values = {(row["row"], row["quantity"], row["rule"]): row["value"] for row in found}
-    comments = tables.comments(bench.here / "results.csv")
-    made = "; ".join(text for text in comments if text.startswith(("made", "renewed")))
     return {"README.md": {"published": published_table(values), "loops": loop_table(values), "six": row_table(values, memory_six.ROWS),
-                          "long": row_table(values, memory_long.ROWS), "energy": energy_table(values), "commit": f"The tables of this page: {made}.\n"}}
+                          "long": row_table(values, memory_long.ROWS), "energy": energy_table(values)}}
 
 

@@ -262,34 +262,10 @@ def table_1_text():
         f"\n\n{true}")
 
 
-def later_text():
-    """The analyses that were run again after rate evaluations were saved, beside those before."""
-    before = {(r["name"], r["setting"]): r for r in of_table("table_1.csv")}
-    rows = {(r["name"], r["setting"]): r for r in of_table("table_1_later.csv") if r["outcome"] == "0"}
-    names = [n for n, _, _ in table_1.ANALYSES if all((n, s) in rows for s in ("paper", "1e-2"))]
-
-    def total(key, setting, found):
-        return sum(float(found[n, setting][key]) for n in names)
-
-    lines = [(n[1:5].lstrip("0") or "0", n[6:].replace("_", " "), *(
-        f"{float(found[n, s]['rates'])/1e6:.2f}" for s in ("paper", "1e-2") for found in (before, rows)),
-        rows[n, "paper"]["user_s"], rows[n, "1e-2"]["user_s"],
-        *(f"{float(found[n, '1e-2']['user_s'])/float(found[n, 'paper']['user_s']):.3f}" for found in (before, rows)),
-        f"{100*abs(float(rows[n, '1e-2']['peak'])/float(before[n, 'paper']['peak']) - 1):.2f}") for n in names]
-    lines.append((f"these {len(names)}", "", *(
-        f"{total('rates', s, found)/1e6:.1f}" for s in ("paper", "1e-2") for found in (before, rows)),
-        f"{total('user_s', 'paper', rows):.1f}", f"{total('user_s', '1e-2', rows):.1f}",
-        *(f"**{total('user_s', '1e-2', found)/total('user_s', 'paper', found):.3f}**" for found in (before, rows)), ""))
-    return tables.markdown(
-        ("suction [kPa]", "rule", "paper's settings: rates [1e6] before", "now", "1e-2: rates [1e6] before", "now",
-         "paper's settings: CPU [s] now", "1e-2: CPU [s] now", "1e-2: time over the paper's before", "now",
-         "peak differs by [%]"), lines)
-
-
 def texts(bench):
     return {"README.md": {"scenes": scenes_text(), "honest": honest_text(), "given": given_text(),
                           "price": price_text(), "mesh": mesh_text(), "presets": presets_text(),
-                          "table_1": table_1_text(), "later": later_text()}}
+                          "table_1": table_1_text()}}
 
 
 def draw(bench, results, plt):

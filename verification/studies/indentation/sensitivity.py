@@ -15,7 +15,7 @@ import sys
 import figures
 from analysis import (STEPS, Job, balances, label, measure, parser_of, program, read_rows, render, results_folder, root,
                       run_all, scene, show, write_rows)
-from series import PUBLISHED, ended, iterations, made_by, number, ratios
+from series import PUBLISHED, ended, iterations, number, ratios
 from variations import BOTH, CONTROL, EXACT, FIELDS, STANDARD, SUCTIONS, TIGHT, VARIATIONS
 
 
@@ -151,7 +151,7 @@ def report(rows, base):
                and name not in STANDARD]
     if further:
         text += [f"Not run; available by `--only`: {'; '.join(further)}.", ""]
-    text += [f"Made by commit {made_by(rows)}, like the series.", "", "## Noise", "", *noise(rows, base), "",
+    text += ["## Noise", "", *noise(rows, base), "",
              "## Towards the paper", "",
              *towards(rows, base), "", "## Failures", "",
              *failures(rows)]

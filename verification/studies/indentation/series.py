@@ -164,12 +164,8 @@ def table_1(rows):
         if r["outcome"] != "0":
             text.append(f"- `{r['name']}` ended at {number(r.get('last_ms', math.nan), '.2f')} ms: "
                         f"{r['message'] or r['outcome']}")
-    text.append(f"\nMade by commit {made_by(rows)}.\n")
+    text.append("")
     return "\n".join(text)
-
-
-def made_by(rows):
-    return ", ".join(sorted({f"{r['commit']} (program {r['program']})" for r in rows.values()}))
 
 
 def ordered(rows):

@@ -85,8 +85,7 @@ def texts(results):
             largest = number(a["largest_mm"], ".4f") if ended(a) else "-"
             text.append(f"| {s} | {what} | {largest} | {' | '.join(finals)} | {number(difference)} | {number(work)} | "
                         f"{iterations(a)} | {iterations(b)} |")
-    made = sorted({f"{r['commit']} (program {r['program']})" for r in rows.values()})
-    return {"settings": "\n".join([*text, "", f"Made by commit {', '.join(made)}."])}
+    return {"settings": "\n".join(text)}
 
 
 if __name__ == "__main__":

@@ -96,7 +96,8 @@ def texts(bench):
     head = ("", "largest influence", "change [m, kPa]", "of answer", "fewer unknowns", "time ratio")
     marks = {name: tables.markdown(head, lines(bench, name)) for name in TITLES if read(bench, "effects", name)}
     runs = tables.rows(bench.here / "results/runs.csv")
-    return {"README.md": {**marks, "remedy": remedy(bench), "runs": tables.markdown(tuple(runs[0]), [tuple(row.values()) for row in runs])}}
+    return {"README.md": {**marks, "remedy": remedy(bench), "runs": tables.markdown(
+        tuple(runs[0])[:-1], [tuple(row.values())[:-1] for row in runs])}}
 
 
 def draw(bench, results, plt):
