@@ -141,7 +141,8 @@ contains
       call k%whole('threads', scene%threads, 0, 1024, 'threads over elements; 0: by size, at most OMP_NUM_THREADS')
       call k%flag('factors', scene%reuse_factors, 'reuse|fresh', 'reuse', &
                   'factors of the matrix: reused while they serve, or new in every iteration')
-      call k%word('ordering', scene%ordering, 'amd|metis|best', 'ordering of the unknowns; best tries several')
+      call k%word('ordering', scene%ordering, 'auto|amd|metis|best', &
+                  'ordering of the unknowns; auto: amd, beyond 10,000 unknowns metis; best tries several')
       call k%whole('checkpoint_steps', scene%checkpoint_steps, 0, 1000*MANY, &
                    'checkpoint.h5 after every so many steps; 0: none')
       call k%number('checkpoint_seconds', scene%checkpoint_seconds, ZERO, BIG, &

@@ -41,7 +41,7 @@ for folder, name in (("host", "mud_host"), ("drivers", "mud_triax")):
 # The order of the unknowns is no part of the equations. Newton ends at 1e-10 of the forces; a solution by other factors
 # differs by rounding times the condition of the matrix, some 1e-16*1e6.
 answers = {}
-for ordering in ("amd", "metis", "best"):
+for ordering in ("amd", "auto", "metis", "best"):
     scene = work / f"{ordering}.nml"
     scene.write_text(f"""&scene name = 'column' geometry = 'plane_strain' fields = 'u-p_w' ordering = '{ordering}' /
 &mesh r = 0, 0.1 r_cells = 2 z = 0, 1 z_cells = 12 /
@@ -59,7 +59,7 @@ for ordering in ("amd", "metis", "best"):
                           text=True)
     answers[ordering] = tables.numbers(work / ordering / "nodes_load.csv") if done.returncode == 0 else []
 amd = answers["amd"]
-for ordering in ("metis", "best"):
+for ordering in ("auto", "metis", "best"):
     apart = [abs(a[name] - b[name])/max(abs(c[name]) for c in amd) for a, b in zip(amd, answers[ordering])
              for name in ("u_z", "p_w")]
     check(f"ordering = '{ordering}' gives the answer of amd", apart and len(amd) == len(answers[ordering])
