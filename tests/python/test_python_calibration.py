@@ -225,7 +225,7 @@ known = {
     name: truth[name]
     for name in ("M_c", "N_c", "lambda", "alpha_csl", "n_b", "A_0", "G_0", "K_0", "N_l", "theta", "c_h")
 }
-effort = Effort(samples=4, starts=1, joint=6)
+effort = Effort(samples=4, starts=1, joint=6, members=8)
 
 
 def fit(file, workers=1, held_q=1.0, **others):
@@ -407,7 +407,7 @@ for given, word in (({"phy_c": 33.0}, "phy_c"), ({"G_max": 1e5}, "G_max_p")):
     told = refusal(lambda: make_task("k", make_tables("true.csv"), known=given))
     check(f"known {given} is refused", word in told, told)
 for others, word in (({"held_out": ["X"]}, "there is no test X"), ({"held_out": ["D", "L"]}, "every test is held out")):
-    told = refusal(lambda: make_task("k", make_tables("true.csv"), **others))
+    told = refusal(lambda: calibrate(make_task("k", make_tables("true.csv"), **others), effort, 1, None))
     check(f"{others} is refused", word in told, told)
 
 # The command.

@@ -8,8 +8,9 @@ write_material(result, Path("materials"))
 write_report(result, Path("my_sand"))
 """
 
-from .calibrate import Calibration, answers_of, calibrate, misfits_of
-from .fit import Effort
+from .calibrate import Calibration, answers_of, calibrate, evaluate, misfits_of
+from .ensemble import Band, Ensemble
+from .fit import Effort, Minimum
 from .misfit import Misfit, misfit_of
 from .report import summary, write_material, write_report
 from .simulation import Answer, Use, simulate, use_of
@@ -18,15 +19,19 @@ from .task import Item, Task, make_task, read_task
 
 __all__ = [
     "Answer",
+    "Band",
     "Calibration",
     "Effort",
+    "Ensemble",
     "Item",
     "LaboratoryTest",
+    "Minimum",
     "Misfit",
     "Task",
     "Use",
     "answers_of",
     "calibrate",
+    "evaluate",
     "make_task",
     "misfit_of",
     "misfits_of",

@@ -11,9 +11,13 @@ from collections.abc import Callable, Sequence
 from ..errors import InputError
 from ..material import Material
 from .diagnosis import Diagnosis, diagnose
-from .fit import Effort, Fit, say
+from .ensemble import Ensemble, make_ensemble
+from .fit import Effort, Fit, Minimum, say, trial_sets
 from .misfit import Misfit, misfit_of
+from .screen import screen
 from .simulation import SETTINGS, Answer, simulate
+from .soundness import unloading
+from .store import Store
 from .task import Item, Task
 
 
@@ -26,7 +30,7 @@ class Calibration:
     values: dict[str, float]  #: variables that were fitted
     answers: dict[str, Answer]  #: model at the rows of every test, by its name
     misfits: list[Misfit]  #: of every test, held-out ones too
-    diagnosis: Diagnosis
+    diagnosis: Diagnosis | None  #: None: nothing was fitted
     history: list[tuple[str, float]]  #: misfit after each step
     simulations: int
     seconds: float
@@ -34,6 +38,9 @@ class Calibration:
     workers: int
     beside: list[Misfit] | None = None  #: the same of another material, if wanted
     beside_name: str = ""
+    minima: list[Minimum] = dataclasses.field(default_factory=list)  #: within a tenth of the best misfit, best first
+    ensemble: Ensemble | None = None  #: sets that fit nearly as well, and their bands
+    notes: list[str] = dataclasses.field(default_factory=list)  #: what was cut, left out or begun later, before the fit
 
     def item(self, name: str) -> Item:
         """A test with what counts of it."""
@@ -46,27 +53,45 @@ def calibrate(
     workers: int = 0,
     write: Callable[[str], None] | None = say,
     beside: str | None = None,
+    unfinished: str | os.PathLike | None = None,
 ) -> Calibration:
     """Fits a material to the tests of a task that are not held out.
 
     effort : how much the search may do; the default is a whole calibration. workers : processes, 0: one a core; the answer does
     not depend on it. write : takes lines of progress with the time left, None: silent. beside : material whose misfit is reported
-    too. Reproducible: the same task, seed and library give the same parameters.
+    too. unfinished : file for what was evaluated, from which an interrupted fit goes on; removed when the fit is done.
+    Reproducible: the same task, seed and library give the same parameters.
     """
     try:
         import scipy  # noqa: F401
     except ImportError as problem:
         raise ImportError("mud_calibrate needs SciPy: pip install 'mud-soil[calibrate]'") from problem
     begin, used = time.monotonic(), _cpu()
-    fit = Fit(task, effort or Effort(), workers, write)
-    if not fit.variables:
+    if not any(not item.test.held_out for item in task.items):
+        raise InputError(
+            "every test is held out: nothing is left to fit. To compare a material with the tests and fit nothing, evaluate it"
+        )
+    if not task.variables():
         raise InputError("there is nothing to fit: every parameter that these tests depend on is known")
+    screened = screen(task, trial_sets(task, task.variables()))
+    task, notes = screened.task, [*_notes(task), *screened.notes]
+    if write:
+        for note in notes:
+            write(note)
+    store = Store(unfinished, task.fitted(), task.base) if unfinished else None
+    fit, done = Fit(task, effort or Effort(), workers, write, store), False
+    if store and store.read and write:
+        write(f"goes on from {store.path}: {store.read} evaluations of an interrupted fit")
     try:
         values = fit.run()
         answers = answers_of(fit.evaluator.material(values, **SETTINGS), task.items)
-        found = diagnose(fit, values, answers)
+        ensemble = make_ensemble(fit, values, answers)
+        found = diagnose(fit, values, answers, ensemble)
+        done = True
     finally:
         fit.evaluator.close()
+        if store:
+            store.close(done)
     other = Material(beside, **SETTINGS) if beside else None
     return Calibration(
         task,
@@ -82,7 +107,47 @@ def calibrate(
         workers or os.cpu_count() or 1,
         misfits_of(task.items, answers_of(other, task.items)) if other else None,
         beside or "",
+        fit.minima,
+        ensemble,
+        notes,
     )
+
+
+def evaluate(task: Task, material: str | os.PathLike | Material, beside: str | None = None) -> Calibration:
+    """Fits nothing: a material against every test of a task, held out or not, for ``write_report``."""
+    begin, used = time.monotonic(), _cpu()
+    sand = material if isinstance(material, Material) else Material(material)
+    answers = answers_of(sand.changed(**SETTINGS), task.items)
+    other = Material(beside, **SETTINGS) if beside else None
+    return Calibration(
+        task,
+        sand,
+        {},
+        answers,
+        misfits_of(task.items, answers),
+        None,
+        [],
+        len(task.items),
+        time.monotonic() - begin,
+        _cpu() - used,
+        1,
+        misfits_of(task.items, answers_of(other, task.items)) if other else None,
+        beside or "",
+        notes=[
+            *_notes(task),
+            *(f"{name} stopped: {answer.stopped}" for name, answer in answers.items() if answer.stopped),
+            *unloading(sand, task.items, answers),
+        ],
+    )
+
+
+def _notes(task: Task) -> list[str]:
+    """What the tables' defaults left out, the tests of one sentence together."""
+    told: dict[str, list[str]] = {}
+    for item in task.items:
+        if item.use.note:
+            told.setdefault(item.use.note, []).append(item.test.name)
+    return [f"{', '.join(names)}: {note}." for note, names in told.items()]
 
 
 def answers_of(material: Material, items: Sequence[Item]) -> dict[str, Answer]:

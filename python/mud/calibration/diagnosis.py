@@ -9,13 +9,14 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..material import Material
-from .fit import Fit
+from .ensemble import Ensemble
+from .fit import Fit, posterior, spread_of
 from .misfit import scaled
-from .simulation import Answer
+from .simulation import SETTINGS, Answer
+from .soundness import disagreeing, unloading
 from .task import Task
 from .variables import PINNED, Variable, meaning_of, poisson_ratio, start_of
 
-POINTS = 4  # of one curve that count as independent: its rows follow each other closely
 CONFIDENT = 1.96  # standard deviations of a 95 % interval
 UNDETERMINED = 2.0  # a 95 % interval that reaches from half to twice the value (of a share of the bounds: half of them)
 FLAT = 0.05  # [standard deviations of a curve] a change by 10 % that moves the curves by less is not felt
@@ -69,19 +70,23 @@ class Diagnosis:
     warnings: list[str]
 
 
-def diagnose(fit: Fit, values: Mapping[str, float], answers: Mapping[str, Answer]) -> Diagnosis:
-    """Looks at the optimum of a fit. answers : of every test, by name."""
-    watched = [_variable(name) for name in WATCHED if name not in [v.name for v in fit.variables]]
+def diagnose(
+    fit: Fit, values: Mapping[str, float], answers: Mapping[str, Answer], ensemble: Ensemble | None = None
+) -> Diagnosis:
+    """Looks at the optimum of a fit. answers : of every test, by name. ensemble : tells the intervals of its variables."""
+    kept = {v.name for v in fit.kept}
+    watched = [_variable(name) for name in WATCHED if name not in [v.name for v in fit.variables] and name not in kept]
     everything = {**{v.name: start_of(v.name, fit.task.base) for v in watched}, **values}
     mechanical = {item.test.kind for item in fit.task.fitted()} - {"retention"}
     if not mechanical:
         watched = []
+    watched = [*fit.kept, *watched]
     both = [*fit.variables, *watched]
     jacobian = _central(fit, both, everything)
     curves = fit.curves
     n = len(fit.variables)
     residual = fit.evaluator.residuals([everything])[0]
-    covariance = _covariance(jacobian[:, :n], float(residual @ residual) / max(curves - n / POINTS, 1.0))
+    covariance = posterior(jacobian[:, :n], spread_of(residual, curves))
     deviations = np.sqrt(np.diag(covariance))
     findings = []
     for i, variable in enumerate(both):
@@ -90,6 +95,8 @@ def diagnose(fit: Fit, values: Mapping[str, float], answers: Mapping[str, Answer
         felt = float(np.linalg.norm(jacobian[:, i]) * tenth / np.sqrt(curves))
         if i < n:
             low, high = (variable.value(float(np.clip(share + s * CONFIDENT * deviations[i], 0, 1))) for s in (-1, 1))
+            if ensemble and len({member[variable.name] for member in ensemble.members}) > 1:
+                low, high = ensemble.interval(variable.name, fit.minima)
             wide = (
                 high / max(low, 1e-12) > UNDETERMINED**2
                 if variable.log
@@ -100,7 +107,8 @@ def diagnose(fit: Fit, values: Mapping[str, float], answers: Mapping[str, Answer
                 Finding(variable, everything[variable.name], True, low, high, felt, not wide and felt >= FLAT, bound)
             )
         else:
-            findings.append(Finding(variable, everything[variable.name], False, np.nan, np.nan, felt, felt >= FLAT))
+            determined = felt >= FLAT and variable.name not in kept
+            findings.append(Finding(variable, everything[variable.name], False, np.nan, np.nan, felt, determined))
     scale = np.outer(deviations, deviations)
     matrix = np.divide(covariance, scale, out=np.zeros_like(covariance), where=scale > 0)
     names = [v.name for v in fit.variables]
@@ -112,9 +120,28 @@ def diagnose(fit: Fit, values: Mapping[str, float], answers: Mapping[str, Answer
         pairs,
         names,
         matrix,
-        _sentences(findings, pairs, fit.task),
-        _warnings(findings, fit, everything, answers),
+        [*_several(fit), *_sentences(findings, pairs, fit.task)],
+        [*_warnings(findings, fit, everything, answers), *disagreeing(fit, jacobian[:, :n], answers)],
     )
+
+
+def _several(fit: Fit) -> list[str]:
+    """Minima that are nearly as good as the best, and where they differ."""
+    if len(fit.minima) < 2:
+        return []
+    best, *others = fit.minima
+    told = []
+    for other in others:
+        far = sorted(
+            (v for v in fit.variables if v.name in best.values),
+            key=lambda v: -abs(v.share(best.values[v.name]) - v.share(other.values[v.name])),
+        )[:3]
+        told.append(
+            f"Another minimum fits nearly as well (misfit {other.cost:.3f}, the best {best.cost:.3f}): "
+            + ", ".join(f"{v.name} {other.values[v.name]:.4g} in place of {best.values[v.name]:.4g}" for v in far)
+            + "."
+        )
+    return told
 
 
 def _variable(name: str) -> Variable:
@@ -141,13 +168,6 @@ def _central(fit: Fit, variables: list[Variable], values: Mapping[str, float]) -
     return np.stack(
         [(residuals[2 * i] - residuals[2 * i + 1]) / (pair[0] - pair[1]) for i, pair in enumerate(ends)], axis=1
     )
-
-
-def _covariance(jacobian: np.ndarray, variance: float) -> np.ndarray:
-    """Of the shares: the residuals of a curve are divided by the root of its rows, POINTS of which are independent."""
-    _, singular, right = np.linalg.svd(jacobian, full_matrices=False)
-    small = np.maximum(singular, 1e-8 * singular[0])
-    return (right.T / small**2) @ right * variance / POINTS
 
 
 def _sentences(findings: list[Finding], pairs: list[tuple[str, str, float]], task: Task) -> list[str]:
@@ -186,6 +206,7 @@ def _warnings(
         if f.at_bound
     ]
     material = fit.evaluator.material(values)
+    told += unloading(fit.evaluator.material(values, **SETTINGS), fit.task.items, answers)
     for item in fit.task.items:
         answer = answers[item.test.name]
         if answer.stopped:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The fit: critical state by regression, a quasi-random search, groups one after the other, then everything together."""
+"""The fit: critical state by regression, a quasi-random search, several starts followed by groups and then by everything
+together; what the tests do not determine keeps its prior."""
 
 from __future__ import annotations
 
@@ -11,6 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from .misfit import Evaluator
+from .store import Store
 from .task import Task
 from .variables import GROUPS, P_CRITICAL, Variable, start_of
 
@@ -19,6 +21,15 @@ GROUP_EVALUATIONS = 4  # least squares of one group: it only has to come near
 FLAT = 1e-5  # change of the misfit, as a share, at which least squares end: valleys are long and flat
 THIN = 3  # rows of the search: every third
 FEW = 8  # tests of the search and of the groups, spread over the kinds
+PRIOR = 1.0  # standard deviation of the prior in the width of the bounds
+PULL = 0.1  # residual of a variable that is the width of its bounds away from its prior: less than a curve notices
+SAID_NOTHING = 0.45  # posterior deviation, as a share of the bounds, beyond which the tests have said nothing: theirs is 0.5
+NO_WORSE = 1.01  # and the misfit must not grow by more than this factor where such a parameter keeps its prior
+SPREAD = 0.3  # share of the bounds over which the search moves the critical state about its regression
+APART = 0.1  # least distance of two starts, rms over the variables as shares of the bounds
+TRIED_ON = 1.3  # starts whose misfit is within this factor of the best are fitted to the end
+NEARLY = 1.1  # minima within a tenth of the best are told
+SAME = 0.02  # minima closer than this (rms over the shares) are one
 
 
 @dataclasses.dataclass
@@ -26,9 +37,30 @@ class Effort:
     """How much the fit may do. Counts, not seconds, so that the answer does not depend on the machine."""
 
     samples: int = 64  #: points of the quasi-random search
-    starts: int = 2  #: best of them that are followed through the groups
+    starts: int = 4  #: best of them, apart from each other, that are followed through the groups
     rounds: int = 1  #: passes through the groups
+    trial: int = 12  #: evaluations with Jacobian of every start before the hopeless ones are left
     joint: int = 40  #: evaluations with Jacobian of the joint least squares
+    members: int = 96  #: of the ensemble; 0: none
+
+
+@dataclasses.dataclass
+class Minimum:
+    """An end of the joint least squares."""
+
+    values: dict[str, float]
+    cost: float  #: rms in standard deviations
+    jacobian: np.ndarray  #: d residual / d share of the fitted variables, without the prior
+    start: int  #: number of its start
+
+
+@dataclasses.dataclass
+class Part:
+    """Variables and tests that have nothing to do with the others."""
+
+    variables: list[Variable]
+    numbers: list[int]  #: of the tests
+    few: list[int]
 
 
 class Progress:
@@ -95,71 +127,201 @@ def critical_state(task: Task, variables: Sequence[Variable]) -> dict[str, float
     return found
 
 
-class Fit:
-    """Runs a task. ``values`` holds the variables, ``history`` what each step left as misfit."""
+def trial_sets(task: Task, variables: Sequence[Variable], count: int = 8) -> list[dict[str, float]]:
+    """A few sets of variables: the start with the critical state of the tests, and quasi-random ones."""
+    from scipy.stats import qmc
 
-    def __init__(self, task: Task, effort: Effort, workers: int = 0, write: Callable[[str], None] | None = say):
+    start = {v.name: v.value(v.share(start_of(v.name, task.base))) for v in variables}
+    first = {**start, **critical_state(task, variables)}
+    if not variables:
+        return [first]
+    points = qmc.Sobol(len(variables), seed=task.seed).random(count)[1:]
+    others = [{v.name: v.value(s) for v, s in zip(variables, point)} for point in points]
+    return [first, start, *({**o, **critical_state(task, variables)} for o in others)]
+
+
+class Fit:
+    """Runs a task. ``variables`` are those that are moved, ``kept`` those that keep their prior because the tests say nothing
+    about them, ``minima`` the ends of the starts, best first, ``history`` what each step left as misfit."""
+
+    def __init__(
+        self,
+        task: Task,
+        effort: Effort,
+        workers: int = 0,
+        write: Callable[[str], None] | None = say,
+        store: Store | None = None,
+    ):
         self.task, self.effort = task, effort
         self.variables = task.variables()
-        self.evaluator = Evaluator(task.fitted(), task.base, task.fixed_variables, workers)
-        self.few = few_of(task.fitted())
+        self.kept: list[Variable] = []
+        self.evaluator = Evaluator(task.fitted(), task.base, task.fixed_variables, workers, store)
         self.curves = sum(len(item.use.scatter) for item in task.fitted())
         self.history: list[tuple[str, float]] = []
-        n, share = len(self.variables), len(self.few) / len(task.fitted())
-        self.progress = Progress(
-            share * (effort.samples + effort.starts * effort.rounds * GROUP_EVALUATIONS * (n + 6))
-            + effort.joint * (n + 1),
-            write,
-        )
+        self.minima: list[Minimum] = []
+        self.parts = self._parts()
+        total = 0.0
+        for part in self.parts:
+            n, share = len(part.variables), len(part.few) / len(task.fitted())
+            total += share * (effort.samples + effort.starts * effort.rounds * GROUP_EVALUATIONS * (n + 6))
+            total += (effort.starts * effort.trial + effort.joint) * (n + 1) * len(part.numbers) / len(task.fitted())
+        self.progress = Progress(total, write)
+
+    def _parts(self) -> list[Part]:
+        """Retention apart from the mechanical tests: it alone speaks of the retention tests, and saturated tests do not
+        depend on it; where unsaturated tests do, the retention tests still tell it best."""
+        items = self.task.fitted()
+        parts = []
+        for apart in (True, False):
+            mine = [v for v in self.variables if (v.group == "retention") is apart]
+            numbers = [i for i, item in enumerate(items) if (item.test.kind == "retention") is apart]
+            if mine and numbers:
+                parts.append(Part(mine, numbers, few_of(items, numbers)))
+        return parts
 
     def run(self) -> dict[str, float]:
         """The variables at the optimum."""
-        task, effort = self.task, self.effort
-        values = {v.name: v.value(v.share(start_of(v.name, task.base))) for v in self.variables}
-        values.update(critical_state(task, self.variables))
-        starts = self._search(values)
-        ends = []
+        values = {v.name: v.value(v.share(start_of(v.name, self.task.base))) for v in self.variables}
+        values.update(critical_state(self.task, self.variables))
+        self.minima = []
+        for part in self.parts:
+            values = self._run_part(part, values)
+        return {v.name: values[v.name] for v in (*self.variables, *self.kept)}
+
+    def _run_part(self, part: Part, values: dict[str, float]) -> dict[str, float]:
+        effort = self.effort
+        word = "retention, " if part.variables[0].group == "retention" and len(self.parts) > 1 else ""
+        starts, ends = self._search(part, values, word), []
         for number, start in enumerate(starts):
+            cost = np.inf
             for _ in range(effort.rounds):
                 for group in GROUPS:
-                    mine = [v for v in self.variables if v.group == group]
+                    mine = [v for v in part.variables if v.group == group]
                     if mine:
-                        start, cost = self._least_squares(
-                            mine, start, GROUP_EVALUATIONS, f"start {number + 1}, {group}", True
+                        found = self._least_squares(
+                            mine, start, GROUP_EVALUATIONS, f"{word}start {number + 1}, {group}", part.few, THIN
                         )
+                        start, cost = found.values, found.cost
             ends.append((cost, number, start))
-        self.history.append(("groups", min(ends)[0]))
-        values, cost = self._least_squares(self.variables, min(ends)[2], effort.joint, "together", False)
-        self.history.append(("together", cost))
-        return values
+        self.history.append((f"{word}groups", min(ends)[0]))
+        tried = []
+        for _, number, start in ends:
+            evaluations = effort.trial if len(ends) > 1 else effort.joint
+            found = self._least_squares(
+                part.variables, start, evaluations, f"{word}start {number + 1}", part.numbers, 1
+            )
+            tried.append(dataclasses.replace(found, start=number + 1))
+        best = min(m.cost for m in tried)
+        if len(tried) > 1:
+            self.history.append((f"{word}starts tried", best))
+            tried = [
+                dataclasses.replace(
+                    self._least_squares(
+                        part.variables, m.values, effort.joint, f"{word}start {m.start}, together", part.numbers, 1
+                    ),
+                    start=m.start,
+                )
+                for m in tried
+                if m.cost <= TRIED_ON * best
+            ]
+        tried.sort(key=lambda m: (m.cost, m.start))
+        self.history.append((f"{word}together", tried[0].cost))
+        tried = self._keep_prior(part, tried, word)
+        if any(v.group != "retention" for v in part.variables) or len(self.parts) == 1:
+            self.minima = self._apart(part, [m for m in tried if m.cost <= NEARLY * tried[0].cost])
+        return tried[0].values
 
-    def _search(self, values: Mapping[str, float]) -> list[dict[str, float]]:
-        """The best of the start and of Sobol points for everything but the critical state, which the ends of the tests tell."""
+    def _apart(self, part: Part, minima: Sequence[Minimum]) -> list[Minimum]:
+        """Minima that are not the same."""
+        found: list[Minimum] = []
+        for m in minima:
+            if all(_distance(part.variables, m.values, other.values) > SAME for other in found):
+                found.append(m)
+        return found
+
+    def _keep_prior(self, part: Part, minima: list[Minimum], word: str) -> list[Minimum]:
+        """Gives those variables their prior back about which the tests say nothing, and fits the others again. One after the
+        other: two that are only determined together stay. If the misfit grows by it, nothing changes."""
+        best = minima[0]
+        residual = self.evaluator.residuals([best.values], part.numbers, 1)[0]
+        variance = spread_of(residual, self._curves(part.numbers))
+        rest, jacobian, kept = list(part.variables), best.jacobian, []
+        while len(rest) > 1:
+            deviations = np.sqrt(np.diag(posterior(jacobian, variance)))
+            worst = int(np.argmax(deviations))
+            if deviations[worst] < SAID_NOTHING:
+                break
+            kept.append(rest.pop(worst))
+            jacobian = np.delete(jacobian, worst, axis=1)
+        if not kept:
+            return minima
+        prior = {v.name: start_of(v.name, self.task.base) for v in kept}
+        again = [
+            dataclasses.replace(
+                self._least_squares(
+                    rest, {**m.values, **prior}, self.effort.joint, f"{word}start {m.start}, again", part.numbers, 1
+                ),
+                start=m.start,
+            )
+            for m in minima
+            if m.cost <= NEARLY * best.cost
+        ]
+        again.sort(key=lambda m: (m.cost, m.start))
+        if again[0].cost > NO_WORSE * best.cost:
+            return minima
+        self.history.append((f"{word}without what the tests say nothing about", again[0].cost))
+        part.variables = rest
+        self.kept += kept
+        self.variables = [v for v in self.variables if v not in kept]
+        return again
+
+    def _search(self, part: Part, values: Mapping[str, float], word: str) -> list[dict[str, float]]:
+        """The best of the start and of Sobol points, apart from each other; every other one moves the critical state too, about
+        what the ends of the tests tell."""
         from scipy.stats import qmc
 
-        free = [v for v in self.variables if v.group != GROUPS[0]]
+        free = part.variables
         sets = [dict(values)]
-        if free and self.effort.samples > 1:
-            points = qmc.Sobol(len(free), seed=self.task.seed).random(self.effort.samples)[
-                1:
-            ]  # a power of two, balanced
-            sets += [{**values, **{v.name: v.value(s) for v, s in zip(free, point)}} for point in points]
+        if self.effort.samples > 1:
+            # The first of a power of two, which is balanced, is the start itself.
+            points = qmc.Sobol(len(free), seed=self.task.seed).random(self.effort.samples)[1:]
+            for k, point in enumerate(points):
+                spread = SPREAD if k % 2 else 0.0
+                places = {
+                    v.name: (
+                        float(np.clip(v.share(values[v.name]) + spread * (s - 0.5), 0, 1)) if v.group == GROUPS[0] else s
+                    )
+                    for v, s in zip(free, point)
+                }
+                sets.append({**values, **{v.name: v.value(places[v.name]) for v in free}})
         residuals: list[np.ndarray] = []
         for first in range(0, len(sets), 8):
-            residuals += self.evaluator.residuals(sets[first : first + 8], self.few, THIN)
-            self._tell("search", len(sets[first : first + 8]), min(self._rms(r, True) for r in residuals), True)
-        costs = [self._rms(r, True) for r in residuals]
-        best = np.argsort(costs, kind="stable")[: self.effort.starts]
-        self.history += [("start", costs[0]), ("search", costs[best[0]])]
-        return [sets[i] for i in best]
+            residuals += self.evaluator.residuals(sets[first : first + 8], part.few, THIN)
+            best = min(self._rms(r, part.few) for r in residuals)
+            self._tell(f"{word}search", len(sets[first : first + 8]), best, part.few)
+        costs = [self._rms(r, part.few) for r in residuals]
+        order = np.argsort(costs, kind="stable")
+        self.history += [(f"{word}start", costs[0]), (f"{word}search", costs[order[0]])]
+        chosen: list[dict[str, float]] = []
+        for i in order:
+            if len(chosen) < self.effort.starts and all(_distance(free, sets[i], c) > APART for c in chosen):
+                chosen.append(sets[i])
+        return chosen
 
     def _least_squares(
-        self, mine: Sequence[Variable], values: Mapping[str, float], evaluations: int, what: str, coarse: bool
-    ) -> tuple[dict[str, float], float]:
-        """Least squares in some variables. coarse : on few tests and rows."""
+        self,
+        mine: Sequence[Variable],
+        values: Mapping[str, float],
+        evaluations: int,
+        what: str,
+        tests: Sequence[int],
+        thin: int,
+    ) -> Minimum:
+        """Least squares in some variables on some tests and rows, with a weak pull to the prior of the variables."""
         from scipy.optimize import least_squares
 
-        tests, thin = (self.few, THIN) if coarse else (None, 1)
+        prior = np.array([v.share(start_of(v.name, self.task.base)) for v in mine])
+        pull = PULL * np.eye(len(mine))
         seen = [np.nan]  # the misfit of the last evaluation, for the progress
 
         def at(shares: np.ndarray) -> dict[str, float]:
@@ -167,20 +329,21 @@ class Fit:
 
         def residual(shares: np.ndarray) -> np.ndarray:
             answer = self.evaluator.residuals([at(shares)], tests, thin)[0]
-            seen[0] = self._rms(answer, coarse)
-            self._tell(what, 1, seen[0], coarse)
-            return answer
+            seen[0] = self._rms(answer, tests)
+            self._tell(what, 1, seen[0], tests)
+            return np.concatenate([answer, pull @ (shares - prior)])
 
         def jacobian(shares: np.ndarray) -> np.ndarray:
             answer = self.jacobian(mine, at(shares), tests, thin)
-            self._tell(what, len(mine) + 1, seen[0], coarse)
-            return answer
+            self._tell(what, len(mine) + 1, seen[0], tests)
+            return np.concatenate([answer, pull])
 
         start = np.clip([v.share(values[v.name]) for v in mine], 1e-3, 1 - 1e-3)
         answer = least_squares(
             residual, start, jacobian, bounds=(0, 1), max_nfev=evaluations, ftol=FLAT, xtol=FLAT, gtol=1e-6
         )
-        return at(answer.x), self._rms(answer.fun, coarse)
+        n = len(mine)
+        return Minimum(at(answer.x), self._rms(answer.fun[:-n], tests), answer.jac[:-n], 0)
 
     def jacobian(
         self,
@@ -197,20 +360,39 @@ class Fit:
         residuals = self.evaluator.residuals(sets, tests, thin)
         return np.stack([(r - residuals[0]) / d for r, d in zip(residuals[1:], steps)], axis=1)
 
-    def _rms(self, residual: np.ndarray, coarse: bool) -> float:
-        items = self.evaluator.items
-        return rms(residual, sum(len(items[i].use.scatter) for i in (self.few if coarse else range(len(items)))))
+    def _curves(self, tests: Sequence[int]) -> int:
+        return sum(len(self.evaluator.items[i].use.scatter) for i in tests)
 
-    def _tell(self, what: str, sets: int, cost: float, coarse: bool) -> None:
-        self.progress.step(what, sets * (len(self.few) / len(self.evaluator.items) if coarse else 1.0), cost)
+    def _rms(self, residual: np.ndarray, tests: Sequence[int]) -> float:
+        return rms(residual, self._curves(tests))
+
+    def _tell(self, what: str, sets: int, cost: float, tests: Sequence[int]) -> None:
+        self.progress.step(what, sets * len(tests) / len(self.evaluator.items), cost)
 
 
-def few_of(items: Sequence) -> list[int]:
-    """Numbers of at most FEW tests, as many of each kind as its share of all, spread over the order of the tables."""
-    kinds = list(dict.fromkeys(item.test.kind for item in items))
+def spread_of(residual: np.ndarray, curves: int) -> float:
+    """Variance of what a curve is missed by: what the model cannot do is in it, and a curve counts as one observation, because
+    the errors of a model follow each other along it. At least that of the measurement."""
+    return max(float(residual @ residual) / curves, 1.0)
+
+
+def posterior(jacobian: np.ndarray, variance: float) -> np.ndarray:
+    """Covariance of the shares: tests and prior."""
+    n = jacobian.shape[1]
+    return np.linalg.inv(jacobian.T @ jacobian / variance + np.eye(n) / PRIOR**2)
+
+
+def _distance(variables: Sequence[Variable], a: Mapping[str, float], b: Mapping[str, float]) -> float:
+    """rms over the variables, as shares of their bounds."""
+    return float(np.sqrt(np.mean([(v.share(a[v.name]) - v.share(b[v.name])) ** 2 for v in variables])))
+
+
+def few_of(items: Sequence, numbers: Sequence[int]) -> list[int]:
+    """At most FEW of these tests, as many of each kind as its share of all, spread over the order of the tables."""
+    kinds = list(dict.fromkeys(items[i].test.kind for i in numbers))
     chosen: list[int] = []
     for kind in kinds:
-        mine = [i for i, item in enumerate(items) if item.test.kind == kind]
-        count = min(len(mine), max(1, round(FEW * len(mine) / len(items))))
+        mine = [i for i in numbers if items[i].test.kind == kind]
+        count = min(len(mine), max(1, round(FEW * len(mine) / len(numbers))))
         chosen += [mine[i] for i in np.unique(np.linspace(0, len(mine) - 1, count).round().astype(int))]
     return chosen

@@ -6,6 +6,7 @@ from __future__ import annotations
 import dataclasses
 import multiprocessing
 import os
+import signal
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 
@@ -14,6 +15,7 @@ import numpy as np
 from ..errors import MudError
 from ..material import Material
 from .simulation import SETTINGS, Answer, simulate
+from .store import Store
 from .task import Item
 from .variables import parameters_of, poisson_residual
 
@@ -29,6 +31,11 @@ _base: Mapping[str, float] = {}
 def _begin(items: Sequence[Item], base: Mapping[str, float]) -> None:
     global _items, _base
     _items, _base = items, base
+
+
+def _begin_worker(items: Sequence[Item], base: Mapping[str, float]) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # an interrupt ends the fit, which ends its workers
+    _begin(items, base)
 
 
 def _job(values: Mapping[str, float], number: int, thin: int) -> tuple[np.ndarray, bool]:
@@ -51,15 +58,22 @@ class Evaluator:
     number.
     """
 
-    def __init__(self, items: Sequence[Item], base: Mapping[str, float], fixed: Mapping[str, float], workers: int = 0):
-        self.items, self.base, self.fixed = items, base, fixed
+    def __init__(
+        self,
+        items: Sequence[Item],
+        base: Mapping[str, float],
+        fixed: Mapping[str, float],
+        workers: int = 0,
+        store: Store | None = None,
+    ):
+        self.items, self.base, self.fixed, self.store = items, base, fixed, store
         self.simulations = 0  #: single tests that were run
         self.failures: dict[str, int] = {}  #: test -> how often it stopped or was refused
         count = workers or os.cpu_count() or 1
         _begin(items, base)
         method = "fork" if "fork" in multiprocessing.get_all_start_methods() else "spawn"
         self._pool = (
-            ProcessPoolExecutor(count, multiprocessing.get_context(method), _begin, (items, base))
+            ProcessPoolExecutor(count, multiprocessing.get_context(method), _begin_worker, (items, base))
             if count > 1
             else None
         )
@@ -67,7 +81,7 @@ class Evaluator:
     def close(self) -> None:
         """Ends the workers."""
         if self._pool:
-            self._pool.shutdown()
+            self._pool.shutdown(cancel_futures=True)
 
     def material(self, values: Mapping[str, float], **settings: float | str) -> Material:
         """The material of a set of variables."""
@@ -80,11 +94,17 @@ class Evaluator:
         thin : only every row of this number counts."""
         numbers = range(len(self.items)) if numbers is None else numbers
         jobs = [({**self.fixed, **values}, number, thin) for values in sets for number in numbers]
-        if self._pool:
-            parts = list(self._pool.map(_job, *zip(*jobs), chunksize=4))
+        parts = [self.store.get(job) if self.store else None for job in jobs]
+        todo = [i for i, part in enumerate(parts) if part is None]
+        if self._pool and todo:
+            found = list(self._pool.map(_job, *zip(*(jobs[i] for i in todo)), chunksize=4))
         else:
             _begin(self.items, self.base)
-            parts = [_job(*job) for job in jobs]
+            found = [_job(*jobs[i]) for i in todo]
+        for i, part in zip(todo, found):
+            parts[i] = part
+        if self.store:
+            self.store.put([jobs[i] for i in todo], found)
         self.simulations += len(jobs)
         for (_, number, _), (_, stopped) in zip(jobs, parts):
             if stopped:
@@ -100,6 +120,14 @@ class Evaluator:
             )
             for i, values in enumerate(sets)
         ]
+
+
+    def answers(self, sets: Sequence[Mapping[str, float]], items: Sequence[Item]) -> list[list[Answer]]:
+        """The model at the rows of tests, for several sets of variables: [set][test]. Nothing of it is kept."""
+        jobs = [(self.material(values, **SETTINGS), item.test, item.use) for values in sets for item in items]
+        self.simulations += len(jobs)
+        found = list(self._pool.map(simulate, *zip(*jobs), chunksize=4)) if self._pool else [simulate(*j) for j in jobs]
+        return [found[i * len(items) : (i + 1) * len(items)] for i in range(len(sets))]
 
 
 def scaled(item: Item, answer: Answer, quantity: str) -> np.ndarray:
@@ -130,6 +158,7 @@ class Misfit:
     e: float = np.nan  #: largest difference of void ratio [-]
     e_loading: float = np.nan  #: the same, of the first loading alone
     S_w: float = np.nan  #: rms difference [-]
+    r_u: float = np.nan  #: cyclic: rms difference of the pore pressure ratio [-]
     stopped: str = ""
 
 
@@ -157,6 +186,9 @@ def misfit_of(item: Item, answer: Answer, last: float = 0.2001) -> Misfit:
         told.e, told.e_loading = float(np.max(off)), float(np.max(off[: int(np.argmax(stress)) + 1]))
     elif test.kind == "retention":
         told.S_w = rms(answer.columns["S_w"] - test["S_w"][rows])
-    elif "eps_v" in item.use.scatter:
-        told.eps_v = 100 * rms(answer.columns["eps_v"] - test["eps_v"][rows])
+    else:
+        if "eps_v" in item.use.scatter:
+            told.eps_v = 100 * rms(answer.columns["eps_v"] - test["eps_v"][rows])
+        if "r_u" in item.use.scatter:
+            told.r_u = rms(answer.columns["r_u"] - test["r_u"][rows])
     return told

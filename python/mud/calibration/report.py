@@ -13,7 +13,9 @@ from .. import _native
 from ..plots import COLOURS, pyplot
 from ..registry import parameters
 from .calibrate import Calibration
-from .diagnosis import POINTS, origin_of
+from .diagnosis import origin_of
+from .ensemble import LEVEL
+from .fit import PRIOR
 from .misfit import ROBUST, Misfit
 from .task import Item, Task
 
@@ -98,6 +100,7 @@ def summary(misfits: list[Misfit]) -> list[dict[str, str]]:
             ("p", "%", "p'"),
             ("eps_v", "points", "volumetric strain"),
             ("S_w", "", "S_w"),
+            ("r_u", "", "r_u"),
         ):
             values = np.array([getattr(m, key) for m in mine])
             values = values[np.isfinite(values)]
@@ -123,42 +126,109 @@ def write_report(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
     """README.md, pictures and misfit.csv into the folder; returns the page."""
     folder.mkdir(parents=True, exist_ok=True)
     pictures = _pictures(result, folder)
-    task, found = result.task, result.diagnosis
-    text = [
-        f"# {task.title or task.name}: calibration",
-        "",
-        f"Made by `mud_calibrate`: MUD {_version()}, seed {task.seed}, {len(task.fitted())} tests fitted and "
-        f"{len(task.items) - len(task.fitted())} held out, {result.simulations} simulations, "
-        f"{result.cpu_seconds:.0f} s of processor time, shared by {result.workers} workers ({result.seconds:.0f} s on the clock of a "
-        "machine that may have done other things too).",
-        "",
-        f"Tests: {_origin(task)}",
-        "",
-    ]
-    text += [f"- {note}" for note in task.notes] + [""]
+    task = result.task
+    text = [f"# {task.title or task.name}: {'calibration' if result.diagnosis else 'comparison'}", "", _made(result), ""]
+    text += [f"Tests: {_origin(task)}", ""]
+    text += [f"- {note}" for note in (*task.notes, *result.notes)] + [""]
+    text += _understood(task)
+    text += _misfit_summary("", result.misfits)
     text += [
-        "| set | misfit |",
-        "|---|---|",
-        *(f"| {line['set']} | {line['text']} |" for line in summary(result.misfits)),
-        "",
         "q: rms of q/q_lab - 1 over the laboratory rows from 1 to 20 % axial strain; volumetric strain: rms difference in "
         "percentage points over the same rows; void ratio: largest difference. The laboratory's linear axial strain is turned "
         "into the model's natural one.",
         "",
     ]
     if result.beside is not None:
-        text += [
-            f"Beside it: material `{result.beside_name}`, the same measure.",
-            "",
-            "| set | misfit |",
-            "|---|---|",
-            *(f"| {line['set']} | {line['text']} |" for line in summary(result.beside)),
-            "",
-        ]
+        text += _misfit_summary(f"Beside it: material `{result.beside_name}`, the same measure.", result.beside)
+    text += _coverage(result)
     text += ["## Curves", "", *(f"![{p.stem}]({p.name})" for p in pictures), "", "## Misfit of each test", ""]
     text += _misfit_table(result)
-    text += [
+    if result.diagnosis:
+        text += ["", *_fitted_sections(result)]
+    path = folder / "README.md"
+    path.write_text("\n".join([*text, ""]).rstrip("\n") + "\n", encoding="utf-8")
+    with open(folder / "misfit.csv", "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(("test", "kind", "set", *(column for _, column in _RECORDED), "stopped"))
+        for m in result.misfits:
+            numbers = ("" if np.isnan(v) else f"{v:.4g}" for v in (getattr(m, key) for key, _ in _RECORDED))
+            writer.writerow((m.name, m.kind, "held out" if m.held_out else "fitted", *numbers, m.stopped))
+    return path
+
+
+# Attributes of a misfit and their columns in misfit.csv.
+_RECORDED = (
+    ("q", "q_rms_percent"),
+    ("p", "p_rms_percent"),
+    ("eps_v", "eps_v_rms_points"),
+    ("e", "e_largest"),
+    ("e_loading", "e_largest_loading"),
+    ("S_w", "S_w_rms"),
+    ("r_u", "r_u_rms"),
+)
+
+
+def _made(result: Calibration) -> str:
+    """How the page was made."""
+    task = result.task
+    if not result.diagnosis:
+        return (
+            f"Made by `mud_calibrate --evaluate`: MUD {_version()}, material {result.material.title}, "
+            f"{len(task.items)} tests, nothing fitted."
+        )
+    return (
+        f"Made by `mud_calibrate`: MUD {_version()}, seed {task.seed}, {len(task.fitted())} tests fitted and "
+        f"{len(task.items) - len(task.fitted())} held out, {result.simulations} simulations, "
+        f"{result.cpu_seconds:.0f} s of processor time, shared by {result.workers} workers ({result.seconds:.0f} s on the "
+        "clock of a machine that may have done other things too)."
+    )
+
+
+def _misfit_summary(head: str, misfits: list[Misfit]) -> list[str]:
+    lines = [f"| {line['set']} | {line['text']} |" for line in summary(misfits)]
+    return [*([head, ""] if head else []), "| set | misfit |", "|---|---|", *lines, ""]
+
+
+def _understood(task: Task) -> list[str]:
+    """What the tables were understood to say, where they did not say it as the library does."""
+    told = dict.fromkeys((item.test.source, line) for item in task.items for line in item.test.understood)
+    if not told:
+        return []
+    return [
+        "## What the tables were understood to say",
         "",
+        "| table | in it | understood as |",
+        "|---|---|---|",
+        *(f"| {source} | {given} | {meant} |" for source, (given, meant) in told),
+        "",
+    ]
+
+
+def _coverage(result: Calibration) -> list[str]:
+    """How many points lie in their bands."""
+    if not result.ensemble:
+        return []
+    lines = []
+    for held, word in ((False, "fitted"), (True, "held out")):
+        shares = result.ensemble.coverage(result.task.items, held)
+        if shares:
+            total, n = shares.pop("")
+            parts = ", ".join(f"{quantity} {100 * share:.0f} %" for quantity, (share, _) in shares.items())
+            lines.append(f"| {word} | {100 * total:.0f} % of {n} | {parts} |")
+    return [
+        f"Bands of {100 * LEVEL:.0f} % (parameters and the error of the model) hold these shares of the laboratory's points:",
+        "",
+        "| set | all | by quantity |",
+        "|---|---|---|",
+        *lines,
+        "",
+    ]
+
+
+def _fitted_sections(result: Calibration) -> list[str]:
+    """Parameters, what is determined, minima, warnings, how it was fitted."""
+    found, ensemble = result.diagnosis, result.ensemble
+    text = [
         "## Parameters",
         "",
         "| parameter | value | 95 % | bounds | a change by 10 % moves the curves by | |",
@@ -175,22 +245,43 @@ def write_report(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
         "",
         "The last column but one is the sensitivity: rms over the curves, in standard deviations of what was measured. "
         "`e_c100` is the critical void ratio at 100 kPa and stands for N_c; `e_l10` the void ratio of the compression line at "
-        f"10 MPa and stands for N_l. Confidence comes from the Jacobian at the optimum; {POINTS} points of a curve count as "
-        "independent, and a systematic error of the model is not in it.",
-        "",
-        "## What these tests determine",
+        "10 MPa and stands for N_l. "
+        + (
+            f"Intervals are those of an ensemble of {len(ensemble.members)} sets drawn about the minima and weighted by their "
+            f"misfit ({ensemble.effective:.0f} of them count"
+            + (f", weights evened out by the exponent {ensemble.evened:.2g}" if ensemble.evened < 1 else "")
+            + "); they include every minimum below. "
+            if ensemble
+            else "Intervals come from the Jacobian at the optimum. "
+        )
+        + "A curve counts as one observation, whose variance is that of the misfit: the errors of a model follow each other "
+        f"along a curve. The prior of a parameter is its start between its bounds, with a deviation of {PRIOR:g} times their width.",
         "",
     ]
+    if len(result.minima) > 1:
+        names = [f.variable.name for f in found.findings if f.fitted and f.variable.name in result.minima[0].values]
+        text += [
+            "Minima within a tenth of the best misfit:",
+            "",
+            "| misfit | start | " + " | ".join(names) + " |",
+            "|" + "---|" * (len(names) + 2),
+            *(
+                f"| {m.cost:.3f} | {m.start} | " + " | ".join(f"{m.values[name]:.4g}" for name in names) + " |"
+                for m in result.minima
+            ),
+            "",
+        ]
+    if ensemble:
+        text += [
+            "Error of the model over the scatter of the measurement, from the fitted tests: "
+            + ", ".join(f"{kind}, {quantity} {error:.1f}" for (kind, quantity), error in ensemble.errors.items())
+            + ".",
+            "",
+        ]
+    text += ["## What these tests determine", ""]
     text += [f"- {sentence}" for sentence in found.sentences] or ["Every parameter that was fitted is determined."]
-    text += [
-        "",
-        "Correlations of the fitted variables at the optimum:",
-        "",
-        *_matrix(found.names, found.matrix),
-        "",
-        "## Warnings",
-        "",
-    ]
+    text += ["", "Correlations of the fitted variables at the optimum:", "", *_matrix(found.names, found.matrix), ""]
+    text += ["## Warnings", ""]
     text += [f"- {warning}" for warning in found.warnings] or ["None."]
     text += [
         "",
@@ -202,38 +293,10 @@ def write_report(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
         "",
         "Misfit in standard deviations of the measurement: every curve counts as much as any other, residuals beyond "
         f"{ROBUST:g} deviations count less (soft l1). Start: critical state from the ends of the shear tests; then a Sobol "
-        "search, the groups one after the other, and everything together (trust region, bounded). Steps before `together` use "
-        "a part of the tests and rows.",
-        "",
+        "search, several starts through the groups one after the other, and everything together (trust region, bounded) from "
+        "each of them. Steps before `starts tried` use a part of the tests and rows.",
     ]
-    path = folder / "README.md"
-    path.write_text("\n".join(text), encoding="utf-8")
-    with open(folder / "misfit.csv", "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(
-            (
-                "test",
-                "kind",
-                "set",
-                "q_rms_percent",
-                "eps_v_rms_points",
-                "e_largest",
-                "e_largest_loading",
-                "S_w_rms",
-                "stopped",
-            )
-        )
-        for m in result.misfits:
-            writer.writerow(
-                (
-                    m.name,
-                    m.kind,
-                    "held out" if m.held_out else "fitted",
-                    *("" if np.isnan(v) else f"{v:.4g}" for v in (m.q, m.eps_v, m.e, m.e_loading, m.S_w)),
-                    m.stopped,
-                )
-            )
-    return path
+    return text
 
 
 def _misfit_table(result: Calibration) -> list[str]:
@@ -245,6 +308,7 @@ def _misfit_table(result: Calibration) -> list[str]:
         ("e", "e, largest", ".4f"),
         ("e_loading", "e, first loading", ".4f"),
         ("S_w", "S_w, rms", ".3f"),
+        ("r_u", "r_u, rms", ".3f"),
     ]
     used = [c for c in columns if any(np.isfinite(getattr(m, c[0])) for m in result.misfits)]
     beside = {m.name: m for m in result.beside or []}
@@ -299,76 +363,86 @@ def _pictures(result: Calibration, folder: pathlib.Path) -> list[pathlib.Path]:
         for kind in dict.fromkeys(item.test.kind for item in result.task.items):
             items = [i for i in result.task.items if i.test.kind == kind and i.test.held_out is held]
             parts = -(-len(items) // PAGE)
+            told = {"fitted": "fitted", "held_out": "held out, predicted"}[word] if result.diagnosis else "compared"
             for n in range(parts):
-                figure = _page(
-                    result,
-                    items[n::parts],
-                    f"{result.task.title or result.task.name}: {kind}, {word.replace('_', ' ')}",
-                    plt,
-                )
+                title = f"{result.task.title or result.task.name}: {kind}, {told}"
+                figure = _page(result, items[n::parts], title, plt)
                 made.append(folder / f"{word}_{kind}{f'_{n + 1}' if parts > 1 else ''}.png")
                 figure.savefig(made[-1], dpi=100)
                 plt.close(figure)
     return made
 
 
+# What is drawn of a kind of test: (x, y) of each panel.
+_PANELS = {
+    "drained": (("eps_a", "q"), ("eps_a", "eps_v")),
+    "undrained": (("eps_a", "q"), ("p", "q")),
+    "oedometer": (("sigma_a", "e"),),
+    "isotropic": (("p", "e"),),
+    "retention": (("suction", "S_w"),),
+    "cyclic": (("cycle", "eps_v"), ("cycle", "r_u")),
+}
+_AXES = {
+    "eps_a": "axial strain [%]",
+    "eps_v": "volumetric strain [%]",
+    "q": "q [kPa]",
+    "p": "p' [kPa]",
+    "sigma_a": "axial stress [kPa]",
+    "e": "void ratio",
+    "suction": "suction [kPa]",
+    "S_w": "degree of saturation",
+    "cycle": "cycle",
+    "r_u": "pore pressure ratio r_u",
+}
+
+
 def _page(result: Calibration, items: list[Item], title: str, plt):
-    shear = items[0].test.kind in ("drained", "undrained")
-    figure, axes = plt.subplots(
-        1, 2 if shear else 1, figsize=(10 if shear else 7, 4.2), squeeze=False, layout="constrained"
-    )
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    kind = items[0].test.kind
+    panels = [(x, y) for x, y in _PANELS[kind] if any(x in i.test and y in i.test for i in items)]
+    figure, axes = plt.subplots(1, len(panels), figsize=(10 if len(panels) > 1 else 7, 4.9), squeeze=False, layout="constrained")
+    handles, banded = [], False
     for colour, item in zip(COLOURS, items):
-        test, rows, answer = item.test, item.use.rows, result.answers[item.test.name]
-        panels = (
-            [("eps_a", "q"), ("eps_a", "eps_v") if test.kind == "drained" else ("p", "q")]
-            if shear
-            else (
-                [("sigma_a", "e")]
-                if test.kind == "oedometer"
-                else (
-                    [("p", "e")]
-                    if test.kind == "isotropic"
-                    else [("suction", "S_w")] if test.kind == "retention" else [("cycle", next(iter(item.use.scatter)))]
-                )
-            )
-        )
         for axis, (x, y) in zip(axes[0], panels):
-            factor = [100 if name.startswith("eps") else 1 for name in (x, y)]
-            model_x = answer.columns["p"] if x == "p" else test[x][rows]
-            axis.plot(
-                factor[0] * test[x][rows], factor[1] * test[y][rows], "o", ms=3, color=colour, mfc="white", mew=0.8
-            )
-            order = np.argsort(model_x, kind="stable") if test.kind == "retention" else slice(None)
-            axis.plot(
-                factor[0] * model_x[order],
-                factor[1] * answer.columns[y][order],
-                color=colour,
-                label=f"{test.name}: {_start_text(item)}",
-            )
-            axis.set_xlabel(
-                {
-                    "eps_a": "axial strain [%]",
-                    "p": "p' [kPa]",
-                    "sigma_a": "axial stress [kPa]",
-                    "suction": "suction [kPa]",
-                    "cycle": "cycle",
-                }[x]
-            )
-            axis.set_ylabel(
-                {
-                    "q": "q [kPa]",
-                    "eps_v": "volumetric strain [%]",
-                    "e": "void ratio",
-                    "S_w": "degree of saturation",
-                    "r_u": "pore pressure ratio",
-                }[y]
-            )
-            if x in ("sigma_a", "p") and y == "e" or x == "suction":
-                axis.set_xscale("log")
-            axis.grid(color="#dddddd", lw=0.6)
-    axes[0, 0].legend(fontsize=7)
-    figure.suptitle(f"{title}; points: laboratory, lines: model", fontsize=10)
+            if x in item.test and y in item.test:
+                banded |= _draw(axis, result, item, x, y, colour)
+        handles.append(
+            Line2D([], [], color=colour, marker="o", ms=4, mfc="white", label=f"{item.test.name}: {_start_text(item)}")
+        )
+    for axis, (x, y) in zip(axes[0], panels):
+        axis.set_xlabel(_AXES[x])
+        axis.set_ylabel(_AXES[y])
+        if x in ("sigma_a", "p") and y == "e" or x == "suction":
+            axis.set_xscale("log")
+        axis.grid(color="#dddddd", lw=0.6)
+    handles.append(Line2D([], [], color="#555555", ls="", marker="o", ms=4, mfc="white", label="laboratory"))
+    handles.append(Line2D([], [], color="#555555", label="model"))
+    if banded:
+        handles.append(Patch(color="#555555", alpha=0.15, lw=0, label=f"{100 * LEVEL:.0f} % band"))
+    figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=7)
+    figure.suptitle(title, fontsize=10)
     return figure
+
+
+def _draw(axis, result: Calibration, item: Item, x: str, y: str, colour: str) -> bool:
+    """Points, line and band of a test; whether there is a band."""
+    test, rows, answer = item.test, item.use.rows, result.answers[item.test.name]
+    across, up = (100 if name.startswith("eps") else 1 for name in (x, y))
+    model_x = answer.columns["p"] if x == "p" and y == "q" else test[x][rows]
+    axis.plot(across * test[x][rows], up * test[y][rows], "o", ms=3, color=colour, mfc="white", mew=0.8)
+    order = np.argsort(model_x, kind="stable") if test.kind == "retention" else slice(None)
+    axis.plot(across * model_x[order], up * answer.columns[y][order], color=colour)
+    band = result.ensemble.bands[test.name].get(y) if result.ensemble and x != "p" else None
+    if band is None:
+        return False
+    turn = int(np.argmax(test[x][rows])) + 1 if test.kind in ("oedometer", "isotropic") else len(rows)
+    along = np.argsort(test[x][rows][:turn], kind="stable")  # of a loop the first loading
+    axis.fill_between(
+        across * test[x][rows][:turn][along], up * band.low[:turn][along], up * band.high[:turn][along], color=colour, alpha=0.15, lw=0
+    )
+    return True
 
 
 def _version() -> str:

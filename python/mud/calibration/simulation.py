@@ -10,7 +10,7 @@ import numpy as np
 from ..element_test import Stage, TestResult, element_test
 from ..errors import InputError, MudError, TestStopped
 from ..material import Material
-from .tables import LaboratoryTest
+from .tables import FEWEST_ROWS, LaboratoryTest
 
 # Numerical settings of a fit: errors of 1e-4 are far below the scatter of any laboratory (percents).
 SETTINGS = {"scheme": 2, "tolerance": 1e-4, "tangent": "continuum", "max_substeps": 1000}
@@ -22,6 +22,7 @@ STRAIN_INCREMENTS = ((0.01, 1e-3), (0.05, 2.5e-3), (1.0, 1e-2))
 # Compression: a stage for each factor of stress, in equal increments; void ratio is interpolated over the logarithm of stress.
 STRESS_FACTOR, STRESS_INCREMENTS = 2.0, 3
 CYCLE_STEPS = 20  # of a strain amplitude
+SETTLED = 10.0  # [kPa] compression counts from here on where a table begins below: before, a sample settles into its ring
 FAR = 1e6  # output interval that leaves rows at reversals and ends of stages alone
 
 
@@ -40,6 +41,7 @@ class Use:
     rows: np.ndarray  #: row numbers that are compared, in their order
     start: int  #: row at which the model starts
     scatter: dict[str, tuple[float, float]]  #: quantity -> (absolute, share of the value): standard deviation
+    note: str = ""  #: what was left out without being asked for
 
 
 # Standard deviation of what a laboratory measures: (absolute, as a share of the value). Stresses in kPa. Void ratio in
@@ -63,7 +65,8 @@ def use_of(
 ) -> Use:
     """Rows of a test that count: those whose leading quantity (eps_a, sigma_a, p, cycle, suction) lies in [first, last].
 
-    A test that is led by stress starts at its first used row, one led by strain at its first row. branch : of a retention
+    A test that is led by stress starts at its first used row, one led by strain at its first row. Without ``first``
+    compression counts from SETTLED on, where enough rows lie above it. branch : of a retention
     curve, "drying" (suction at its largest so far), "wetting" (behind the largest suction) or "all".
     """
     lead = test[
@@ -76,9 +79,12 @@ def use_of(
             "retention": "suction",
         }[test.kind]
     ]
-    size = np.abs(lead)
-    used = (size >= (0 if first is None else first)) & (size <= (np.inf if last is None else last))
+    size, note = np.abs(lead), ""
     by_stress = test.kind in ("oedometer", "isotropic")
+    if by_stress and first is None and size[0] < SETTLED and np.sum(size >= SETTLED) >= FEWEST_ROWS[test.kind]:
+        first = SETTLED
+        note = f"rows below {SETTLED:g} kPa do not count: the sample settles there (first = ... says otherwise)"
+    used = (size >= (0 if first is None else first)) & (size <= (np.inf if last is None else last))
     if by_stress:
         used &= size > 0
     start = int(np.argmax(used)) if by_stress else 0
@@ -90,7 +96,7 @@ def use_of(
     if used.sum() < 1:
         raise InputError(f"{test.source}, test {test.name}: no row between {first} and {last}")
     quantities = {q: s for q, s in {**SCATTER[test.kind], **(scatter or {})}.items() if q in test}
-    return Use(np.flatnonzero(used), start, quantities)
+    return Use(np.flatnonzero(used), start, quantities, note)
 
 
 def simulate(material: Material, test: LaboratoryTest, use: Use) -> Answer:

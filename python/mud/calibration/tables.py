@@ -72,6 +72,7 @@ class LaboratoryTest:
     control: str = ""  #: cyclic tests: of mud_triax
     cycle_by: str = ""
     held_out: bool = False
+    understood: list[tuple[str, str]] = dataclasses.field(default_factory=list)  #: (what the table says, what it means)
 
     def __contains__(self, name: str) -> bool:
         return name in self.columns
@@ -212,6 +213,8 @@ def _test(
     _check_values(path, test)
     if kind == "drained":
         _complete_drained(test)
+    elif kind == "undrained" and "e" not in test:
+        test.columns["e"] = test["e_0"].copy()  # the volume is held
     return test
 
 

@@ -44,8 +44,6 @@ class Task:
     notes: list[str] = dataclasses.field(default_factory=list)  #: sentences for the report
 
     def __post_init__(self):
-        if not any(not item.test.held_out for item in self.items):
-            raise InputError("every test is held out: nothing is left to fit")
         self.base = dict(Material(self.start).items())
         values, self.origins = known_parameters(self.known, self.base)
         self.base.update({k: v for k, v in values.items() if k in self.base})
