@@ -121,8 +121,6 @@ hears(
     "total mean stress",
     kind="undrained",
 )
-hears("cells separated by semicolons", (HEAD + "".join(ROWS)).replace(",", ";"), "semicolons", "commas")
-hears("cells separated by tabs", (HEAD + "".join(ROWS)).replace(",", "\t"), "tabs")
 hears("a cell that is no number", HEAD + "".join(ROWS).replace("200", "2oo"), ":3", "2oo")
 hears("a cell that is missing", HEAD + "".join(ROWS).replace(",166", ""), ":3", "5 cells")
 hears("a void ratio in per cent", HEAD + "".join(r.rpartition(",")[0] + ",80\n" for r in ROWS), "per cent?")

@@ -84,6 +84,7 @@ def calibrate(
         write(f"goes on from {store.path}: {store.read} evaluations of an interrupted fit")
     try:
         values = fit.run()
+        task.items = [item.under(values) for item in task.items]
         answers = answers_of(fit.evaluator.material(values, **SETTINGS), task.items)
         ensemble = make_ensemble(fit, values, answers)
         found = diagnose(fit, values, answers, ensemble)
@@ -144,10 +145,13 @@ def evaluate(task: Task, material: str | os.PathLike | Material, beside: str | N
 def _notes(task: Task) -> list[str]:
     """What the tables' defaults left out, the tests of one sentence together."""
     told: dict[str, list[str]] = {}
+    sources = dict.fromkeys((item.test.source, pair) for item in task.items for pair in item.test.understood)
+    for source, (given, meant) in sources:
+        told.setdefault(f"understood in {source}: '{given}' is {meant}", [])
     for item in task.items:
         if item.use.note:
             told.setdefault(item.use.note, []).append(item.test.name)
-    return [f"{', '.join(names)}: {note}." for note, names in told.items()]
+    return [f"{', '.join(names)}: {note}." if names else f"{note}." for note, names in told.items()]
 
 
 def answers_of(material: Material, items: Sequence[Item]) -> dict[str, Answer]:

@@ -110,7 +110,7 @@ def critical_state(task: Task, variables: Sequence[Variable]) -> dict[str, float
         return {}
     p, e, eta, weight = np.array(ends).T
     found: dict[str, float] = {}
-    line = [v for v in free if v.name != "M_c"]
+    line = [v for v in free if v.name in ("e_c100", "lambda", "alpha_csl")]
     if len(line) == 3:
 
         def off(shares: np.ndarray) -> np.ndarray:

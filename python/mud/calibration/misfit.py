@@ -40,7 +40,7 @@ def _begin_worker(items: Sequence[Item], base: Mapping[str, float]) -> None:
 
 def _job(values: Mapping[str, float], number: int, thin: int) -> tuple[np.ndarray, bool]:
     """Residual of one test under one set of variables, and whether it stopped."""
-    item = _items[number]
+    item = _items[number].under(values)
     try:
         answer = simulate(Material(**{**parameters_of(values, _base), **SETTINGS}), item.test, item.use)
     except MudError as problem:  # the set is refused
@@ -124,7 +124,11 @@ class Evaluator:
 
     def answers(self, sets: Sequence[Mapping[str, float]], items: Sequence[Item]) -> list[list[Answer]]:
         """The model at the rows of tests, for several sets of variables: [set][test]. Nothing of it is kept."""
-        jobs = [(self.material(values, **SETTINGS), item.test, item.use) for values in sets for item in items]
+        jobs = [
+            (self.material(values, **SETTINGS), one.test, one.use)
+            for values in sets
+            for one in (item.under(values) for item in items)
+        ]
         self.simulations += len(jobs)
         found = list(self._pool.map(simulate, *zip(*jobs), chunksize=4)) if self._pool else [simulate(*j) for j in jobs]
         return [found[i * len(items) : (i + 1) * len(items)] for i in range(len(sets))]

@@ -35,7 +35,8 @@ def screen(task: Task, sets: Sequence[Mapping[str, float]]) -> Screened:
     materials = []
     for values in sets:
         try:
-            materials.append(Material(**{**parameters_of({**task.fixed_variables, **values}, task.base), **SETTINGS}))
+            parameters = parameters_of({**task.fixed_variables, **values}, task.base)
+            materials.append(Material(**{**parameters, **SETTINGS}))
         except MudError:  # the set is refused: the others tell
             continue
     items, notes = [], []

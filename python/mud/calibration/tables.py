@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Laboratory tables: CSV files of tests, read and checked; errors name file, line and remedy.
+"""Laboratory tables: sheets of tests, read and checked; errors name file, line and remedy.
 
 A column is a quantity with its unit behind it: ``eps_a_percent``, ``q_kPa``, ``e``. ``#`` begins a comment. Compression is
 positive. Inside, strains are fractions and stresses kPa.
@@ -14,11 +14,9 @@ import pathlib
 
 import numpy as np
 
-from .._csv import rows_of
 from ..errors import InputError
+from .sheets import UNITS, read_sheet
 
-# Units behind the name of a column, and what they are worth.
-UNITS = {"percent": 0.01, "pct": 0.01, "pc": 0.01, "kPa": 1.0, "MPa": 1000.0, "Pa": 0.001}
 STRAINS, STRESSES = ("eps_a", "eps_v", "gamma"), ("q", "p", "sigma_a", "sigma_r", "suction", "u", "p_0", "amplitude")
 NUMBERS = ("e", "e_0", "S_w", "stress_ratio", "cycle", "r_u")
 TEXTS = ("test", "control", "cycle_by")
@@ -73,6 +71,7 @@ class LaboratoryTest:
     cycle_by: str = ""
     held_out: bool = False
     understood: list[tuple[str, str]] = dataclasses.field(default_factory=list)  #: (what the table says, what it means)
+    unknown_e_0: bool = False  #: the table has no void ratio of it
 
     def __contains__(self, name: str) -> bool:
         return name in self.columns
@@ -84,6 +83,18 @@ class LaboratoryTest:
     def e_0(self) -> float:
         """Void ratio at the start [-]."""
         return float(self.columns["e_0"][0] if "e_0" in self.columns else self.columns["e"][0])
+
+    def set_void_ratio(self, e_0: float) -> None:
+        """Gives a shear test the void ratio at the start, and with it that of every row."""
+        self.columns["e_0"] = np.full(len(self.lines), e_0)
+        change = self.columns["eps_v"] if self.kind == "drained" else 0.0
+        self.columns["e"] = self.columns["e_0"] - (1 + e_0) * change
+
+    def with_void_ratio(self, e_0: float) -> LaboratoryTest:
+        """The same test with another void ratio at the start."""
+        other = dataclasses.replace(self, columns=dict(self.columns))
+        other.set_void_ratio(e_0)
+        return other
 
     @property
     def suction(self) -> float:
@@ -101,6 +112,7 @@ class LaboratoryTest:
 def _head(cells: list[str], path: pathlib.Path, line: int) -> list[tuple[str, float | None]]:
     """(quantity, factor) of every column; the factor is None where no unit stands behind the name."""
     known = {*STRAINS, *STRESSES, *NUMBERS, *TEXTS}
+    shares = ("S_w", "r_u")  # numbers that may be given in per cent
     found: list[tuple[str, float | None]] = []
     for cell in cells:
         name, factor = cell.strip().removesuffix("_derived").removesuffix("_initial"), None
@@ -116,6 +128,7 @@ def _head(cells: list[str], path: pathlib.Path, line: int) -> list[tuple[str, fl
             and factor not in (None, 0.01)
             or name in NUMBERS
             and factor is not None
+            and not (name in shares and factor == 0.01)
         ):
             raise InputError(f"{path}:{line}: the column {cell} has a unit that {name} cannot have")
         found.append((name, factor))
@@ -128,28 +141,25 @@ def _head(cells: list[str], path: pathlib.Path, line: int) -> list[tuple[str, fl
 
 
 def read_table(path: str | os.PathLike, kind: str) -> list[LaboratoryTest]:
-    """The tests of a CSV file, checked.
+    """The tests of a sheet, checked: a file with commas, semicolons or tabs between cells, or the first sheet of a workbook.
 
     kind : drained, undrained, oedometer, isotropic, cyclic or retention; ``NEEDS`` lists the columns each one needs. A table
-        without a column ``test`` holds one test, called as the file.
+        without a column ``test`` holds one test, called as the file. Where no cell of a test has a void ratio it is unknown:
+        ``unknown_e_0``.
 
     Raises ``InputError``: file, line, what is wrong, and what to do.
     """
     path = pathlib.Path(path)
     if kind not in NEEDS:
         raise InputError(f"there is no kind of test {kind}; there are {', '.join(NEEDS)}")
-    rows = rows_of(path)
+    sheet = read_sheet(path, frozenset({*STRAINS, *STRESSES, *NUMBERS, *TEXTS, *ALIASES}))
+    rows = sheet.rows
     if len(rows) < 2:
         raise InputError(f"{path} has no rows of numbers below its line of names")
-    mark = next((word for word, mark in (("semicolons", ";"), ("tabs", "\t")) if mark in rows[0][1][0]), "")
-    if mark:
-        raise InputError(
-            f"{path}:{rows[0][0]}: cells are separated by {mark}; save the table with commas between cells and a point as "
-            "decimal mark"
-        )
     head = _head(rows[0][1], path, rows[0][0])
-    _need_columns(path, rows[0], kind, [name for name, _ in head])
     names = [name for name, _ in head]
+    both = {"sigma_a", "sigma_r"} <= set(names) and kind in ("drained", "undrained")
+    _need_columns(path, rows[0], kind, [*names, *(("q", "p") if both else ())])
     groups: dict[str, list[tuple[int, list[str]]]] = {}
     for number, cells in rows[1:]:
         if len(cells) != len(head):
@@ -157,7 +167,24 @@ def read_table(path: str | os.PathLike, kind: str) -> list[LaboratoryTest]:
         groups.setdefault(cells[names.index("test")].strip() if "test" in names else path.stem, []).append(
             (number, cells)
         )
-    return [_test(path, kind, name, head, rows[0][1], mine) for name, mine in groups.items()]
+    tests = [_test(path, kind, name, head, rows[0][1], mine) for name, mine in groups.items()]
+    for test in tests:
+        test.understood = [*sheet.understood, *test.understood]
+    _guess_void_ratios(path, tests)
+    return tests
+
+
+def _guess_void_ratios(path: pathlib.Path, tests: list[LaboratoryTest]) -> None:
+    """The prior of an unknown void ratio: the mean of the other tests'."""
+    known = [test.e_0 for test in tests if not test.unknown_e_0 and ("e" in test or "e_0" in test)]
+    for test in tests:
+        if test.unknown_e_0:
+            if not known:
+                raise InputError(f"{path}, test {test.name}: no test of the table has a void ratio; give one at least")
+            test.set_void_ratio(float(np.mean(known)))
+            test.understood.append(
+                (f"no void ratio in test {test.name}", f"an unknown of the fit, its prior {test.e_0:.3f}, the others' mean")
+            )
 
 
 def _need_columns(path: pathlib.Path, head: tuple[int, list[str]], kind: str, names: list[str]) -> None:
@@ -195,6 +222,10 @@ def _test(
             words[quantity] = cells[0]
         if quantity not in (*STRAINS, *STRESSES, *NUMBERS):
             continue
+        if quantity in ("e", "e_0") and not any(cells) and kind in ("drained", "undrained"):
+            continue
+        if quantity == "e_0" and cells[0] and not any(cells[1:]):
+            cells = cells[:1] * len(cells)
         values = _values(path, titles[place], cells, numbers)
         if quantity in STRAINS:
             _check_percent(path, name, kind, quantity, titles[place], values, factor, numbers)
@@ -208,12 +239,19 @@ def _test(
             raise InputError(f"{path}, test {name}: an amplitude of {words['cycle_by']} is a strain, not a stress")
         columns[quantity] = values * (1.0 if factor is None else factor)
     test = LaboratoryTest(name, kind, columns, path.name, numbers, **words)
+    if kind in ("drained", "undrained"):
+        _stresses(test)
+        test.unknown_e_0 = "e" not in test and "e_0" not in test and "eps_v" in test or (
+            kind == "undrained" and "e" not in test and "e_0" not in test
+        )
+        if kind == "drained" and "e" not in test and "e_0" not in test and "eps_v" not in test:
+            raise InputError(f"{path}, test {name}: neither a void ratio nor a volumetric strain is given")
     if len(rows) < FEWEST_ROWS[kind]:
         raise InputError(f"{path}, test {name}: {len(rows)} rows; a {kind} test needs at least {FEWEST_ROWS[kind]}")
     _check_values(path, test)
     if kind == "drained":
         _complete_drained(test)
-    elif kind == "undrained" and "e" not in test:
+    elif kind == "undrained" and "e" not in test and "e_0" in test:
         test.columns["e"] = test["e_0"].copy()  # the volume is held
     return test
 
@@ -360,6 +398,27 @@ def _check_volume(where: str, test: LaboratoryTest) -> None:
         )
 
 
+def _stresses(test: LaboratoryTest) -> None:
+    """q and p of sigma_1 and sigma_3 where they are not given; total stresses less the pore pressure."""
+    columns = test.columns
+    if not {"sigma_a", "sigma_r"} <= set(columns):
+        return
+    if test.kind == "undrained" and "u" in columns and "p" not in columns:
+        if np.ptp(columns["sigma_r"]) < TOTAL * np.max(columns["sigma_r"]) < np.ptp(columns["u"]):
+            for name in ("sigma_a", "sigma_r"):
+                columns[name] = columns[name] - columns["u"]
+            test.understood.append(("sigma_3 that stays while u changes", "total stresses; u is taken off"))
+    told = []
+    if "q" not in columns:
+        columns["q"] = columns["sigma_a"] - columns["sigma_r"]
+        told.append("q = sigma_1 - sigma_3")
+    if "p" not in columns:
+        columns["p"] = (columns["sigma_a"] + 2 * columns["sigma_r"]) / 3
+        told.append("p' = (sigma_1 + 2 sigma_3)/3")
+    if told:
+        test.understood.append(("sigma_1, sigma_3", ", ".join(told) + ", effective stresses"))
+
+
 def _complete_drained(test: LaboratoryTest) -> None:
     """q of a stress ratio, eps_v of e, e of eps_v."""
     columns = test.columns
@@ -367,7 +426,7 @@ def _complete_drained(test: LaboratoryTest) -> None:
         columns["q"] = (columns["stress_ratio"] - 1) * columns["sigma_r"]
     if "eps_v" not in columns:
         columns["eps_v"] = (columns["e"][0] - columns["e"]) / (1 + columns["e"][0])
-    if "e" not in columns:
+    if "e" not in columns and "e_0" in columns:
         columns["e"] = columns["e_0"] - (1 + columns["e_0"]) * columns["eps_v"]
     if "p" not in columns:
         columns["p"] = columns["sigma_r"] + columns["q"] / 3

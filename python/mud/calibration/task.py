@@ -13,10 +13,13 @@ from ..errors import InputError
 from ..material import Material
 from .simulation import SCATTER, Use, use_of
 from .tables import LaboratoryTest, read_table
-from .variables import LEAST_HARDENING, VARIABLES, Variable, chosen, known_parameters
+from .variables import GROUPS, LEAST_HARDENING, UNKNOWN, VARIABLES, Variable, chosen, known_parameters, meaning_of
 
 KEYS = ("name", "title", "reference", "start", "seed", "known", "tables", "held_out", "groups", "bounds", "notes")
 TABLE_KEYS = ("file", "kind", "first", "last", "scatter", "branch", "weight", "only", "name")
+
+
+LOOSER = 0.1  # [-] by which an unknown void ratio may lie beyond those of the other tests
 
 
 @dataclasses.dataclass
@@ -26,6 +29,13 @@ class Item:
     test: LaboratoryTest
     use: Use
     weight: float = 1.0
+
+    def under(self, values: Mapping[str, float]) -> Item:
+        """The same with the void ratio that a set of variables gives it, if the table has none."""
+        name = UNKNOWN + self.test.name
+        if not self.test.unknown_e_0 or name not in values:
+            return self
+        return dataclasses.replace(self, test=self.test.with_void_ratio(values[name]))
 
 
 @dataclasses.dataclass
@@ -47,6 +57,7 @@ class Task:
         self.base = dict(Material(self.start).items())
         values, self.origins = known_parameters(self.known, self.base)
         self.base.update({k: v for k, v in values.items() if k in self.base})
+        self.base.update({UNKNOWN + i.test.name: i.test.e_0 for i in self.items if i.test.unknown_e_0})
         self.fixed_variables = {k: v for k, v in values.items() if k not in self.base}
         for name in self.bounds:
             if name not in VARIABLES:
@@ -65,9 +76,17 @@ class Task:
         if loosest > 0 and "c_h" not in bounds:
             c_h = VARIABLES["c_h"]
             bounds["c_h"] = (c_h.lower, min(c_h.upper, (1 - LEAST_HARDENING) / float(loosest)))
+        ratios = [item.test.e_0 for item in self.fitted() if "e_0" in item.test or "e" in item.test]
+        unknown = [
+            Variable(
+                UNKNOWN + item.test.name, GROUPS[0], min(ratios) - LOOSER, max(ratios) + LOOSER, False, "1", meaning_of(UNKNOWN)
+            )
+            for item in self.fitted()
+            if item.test.unknown_e_0
+        ]
         return [
             dataclasses.replace(v, lower=bounds[v.name][0], upper=bounds[v.name][1]) if v.name in bounds else v
-            for v in chosen(kinds, unsaturated, [*self.origins], self.groups)
+            for v in [*chosen(kinds, unsaturated, [*self.origins], self.groups), *unknown]
         ]
 
 

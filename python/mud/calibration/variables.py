@@ -116,12 +116,16 @@ VARIABLES = {
         Variable("b_2", GROUPS[6], 0.0, 3.0, False),
     )
 }
+#: What the name of an unknown void ratio begins with; behind it comes the name of the test.
+UNKNOWN = "e_0 of "
 #: Parameters of the library that are pinned by a variable of another name.
 PINNED = {"N_c": "e_c100", "N_l": "e_l10"}
 
 
 def meaning_of(name: str) -> str:
     """What a variable means."""
+    if name.startswith(UNKNOWN):
+        return "void ratio at the start, which the table does not have"
     return VARIABLES[name].meaning or parameters[name].meaning
 
 
@@ -131,7 +135,7 @@ def parameters_of(values: Mapping[str, float], base: Mapping[str, float]) -> dic
     pins = {**pins_of(base), **{k: v for k, v in values.items() if k in PINNED.values()}}
     answer["N_c"] = pins["e_c100"] * (P_CRITICAL + answer["alpha_csl"]) ** answer["lambda"]
     answer["N_l"] = pins["e_l10"] * P_COMPRESSION ** answer["lambda"]
-    return answer
+    return {k: v for k, v in answer.items() if not k.startswith(UNKNOWN)}
 
 
 def pins_of(base: Mapping[str, float]) -> dict[str, float]:

@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: MIT
+"""Sheets as laboratories write them: CSV, semicolons and decimal commas, tabs, workbooks; heads in words with units.
+
+What a sheet says is brought to the form of ``tables``: names of quantities, units, a point as decimal mark. What had to be
+understood for that is kept as pairs (in the sheet, understood as).
+"""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import os
+import pathlib
+import re
+
+from ..errors import InputError
+
+# Units, and what they are worth in kPa or as a fraction; "" is a pure number.
+UNITS = {
+    "percent": 0.01,
+    "pct": 0.01,
+    "pc": 0.01,
+    "%": 0.01,
+    "kPa": 1.0,
+    "MPa": 1000.0,
+    "Pa": 0.001,
+    "bar": 100.0,
+    "kN/m2": 1.0,
+    "kN/m²": 1.0,
+    "MN/m2": 1000.0,
+    "MN/m²": 1000.0,
+    "N/mm2": 1000.0,
+    "N/mm²": 1000.0,
+    "kg/cm2": 98.0665,
+    "kgf/cm2": 98.0665,
+    "degrees": 1.0,
+}
+_LOWER_UNITS = {unit.lower(): unit for unit in UNITS} | {"mpa": "MPa", "pa": "Pa"}
+NO_UNITS = ("", "-", "1")
+# Heads in words: letters and figures alone, in lower case -> quantity.
+WORDS = {
+    "test": ("sample", "specimen", "testno", "testname", "sampleno"),
+    "eps_a": ("axialstrain", "verticalstrain", "eps1", "epsa", "epsilon1", "epsilona", "ε1", "εa"),
+    "eps_v": ("volumetricstrain", "volumestrain", "volstrain", "epsv", "epsvol", "epsilonv", "εv", "εvol"),
+    "gamma": ("shearstrain", "γ", "engineeringshearstrain"),
+    "q": ("deviatorstress", "deviatoricstress", "stressdifference", "principalstressdifference"),
+    "p": ("meanstress", "meaneffectivestress", "effectivemeanstress", "p'", "peff", "p′"),
+    "sigma_a": ("axialstress", "verticalstress", "effectiveverticalstress", "effectiveaxialstress")
+    + ("sigma1", "sigma1'", "sigmav", "sigmav'", "σ1", "σ1'", "σ'1", "σv", "σ'v", "σv'", "σa", "σ'a"),
+    "sigma_r": ("radialstress", "effectiveradialstress", "effectiveconfiningpressure", "confiningstress")
+    + ("effectivecellpressure", "lateralstress", "effectivelateralstress")
+    + ("sigma3", "sigma3'", "sigmah", "sigmah'", "σ3", "σ3'", "σ'3", "σh", "σ'h", "σr", "σ'r"),
+    "u": ("porepressure", "excessporepressure", "porewaterpressure", "excessporewaterpressure", "δu", "du"),
+    "e": ("voidratio",),
+    "e_0": ("initialvoidratio", "voidratioatstart", "e0", "einit", "eini"),
+    "suction": ("matricsuction", "suctionpressure"),
+    "S_w": ("degreeofsaturation", "saturation", "saturationdegree", "sw"),
+    "stress_ratio": ("stressratio", "principalstressratio"),
+    "cycle": ("cycleno", "cyclenumber"),
+    "r_u": ("porepressureratio", "ru"),
+}
+_WORDS = {word: quantity for quantity, words in WORDS.items() for word in words}
+LEAST_KNOWN = 2  # heads that make a line the line of names
+_DECIMAL_COMMA = re.compile(r"^[+-]?\d+,\d+([eE][+-]?\d+)?$")
+
+
+@dataclasses.dataclass
+class Sheet:
+    """Rows of cells, their first the names; ``understood``: pairs (in the sheet, understood as)."""
+
+    rows: list[tuple[int, list[str]]]
+    understood: list[tuple[str, str]]
+
+
+def read_sheet(path: str | os.PathLike, known: frozenset[str]) -> Sheet:
+    """A file as a sheet. known : names that are taken as they are.
+
+    Raises ``InputError`` for a file that cannot be read.
+    """
+    path, understood = pathlib.Path(path), []
+    if path.suffix.lower() in (".xlsx", ".xlsm"):
+        rows = _workbook(path, understood)
+    else:
+        rows = _text(path, understood)
+    first = _line_of_names(rows, known)
+    if first:
+        understood.append((f"lines {rows[0][0]} to {rows[first - 1][0]}", "above the line of names, not read"))
+        rows = rows[first:]
+    if not rows:
+        return Sheet([], understood)
+    rows = _second_line_of_units(rows, understood)
+    width = max((i + 1 for i, cell in enumerate(rows[0][1]) if cell.strip()), default=0)
+    names = [_understood_name(cell, known, understood) for cell in rows[0][1][:width]]
+    body = [(number, (cells + [""] * width)[:width] if _blank(cells[width:]) else cells) for number, cells in rows[1:]]
+    return Sheet([(rows[0][0], names), *body], understood)
+
+
+def _blank(cells: list[str]) -> bool:
+    return not any(cell.strip() for cell in cells)
+
+
+def _text(path: pathlib.Path, understood: list[tuple[str, str]]) -> list[tuple[int, list[str]]]:
+    try:
+        raw = path.read_bytes()
+    except OSError as problem:
+        raise InputError(f"{path} cannot be read: {problem.strerror}") from problem
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = raw.decode("cp1252", errors="replace")
+        understood.append(("letters", "Windows-1252, not UTF-8"))
+    if "\0" in text:
+        raise InputError(f"{path} is no text; save the table as CSV or .xlsx")
+    lines = [(n, line) for n, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
+    mark = next((m for m in ("\t", ";") if sum(m in line for _, line in lines) > len(lines) / 2), ",")
+    if mark != ",":
+        understood.append(({"\t": "tabs", ";": "semicolons"}[mark] + " between cells", "the separator"))
+    rows = [(n, next(csv.reader([line], delimiter=mark))) for n, line in lines]
+    if mark != "," and any(_DECIMAL_COMMA.match(cell.strip()) for _, cells in rows for cell in cells):
+        understood.append(("commas inside numbers", "decimal marks"))
+        rows = [
+            (n, [cell.strip().replace(",", ".") if _DECIMAL_COMMA.match(cell.strip()) else cell for cell in cells])
+            for n, cells in rows
+        ]
+    return [(n, cells) for n, cells in rows if not _blank(cells)]
+
+
+def _workbook(path: pathlib.Path, understood: list[tuple[str, str]]) -> list[tuple[int, list[str]]]:
+    try:
+        import openpyxl
+    except ImportError as problem:
+        raise ImportError("workbooks need openpyxl: pip install 'mud-soil[calibrate]'") from problem
+    try:
+        book = openpyxl.load_workbook(path, read_only=True, data_only=True)
+    except OSError as problem:
+        raise InputError(f"{path} cannot be read: {problem.strerror}") from problem
+    except Exception as problem:  # openpyxl raises what its parts raise
+        raise InputError(f"{path} is no workbook that openpyxl reads: {problem}") from problem
+    sheets = []
+    for sheet in book.worksheets:
+        rows = [
+            (n, ["" if v is None else repr(v) if isinstance(v, float) else str(v) for v in values])
+            for n, values in enumerate(sheet.iter_rows(values_only=True), 1)
+        ]
+        rows = [(n, cells) for n, cells in rows if not _blank(cells) and not cells[0].startswith("#")]
+        if rows:
+            sheets.append((sheet.title, rows))
+    book.close()
+    if len(sheets) > 1:
+        others = ", ".join(title for title, _ in sheets[1:])
+        understood.append((f"the sheet {sheets[0][0]}", f"the table; not read: {others}"))
+    return sheets[0][1] if sheets else []
+
+
+def _line_of_names(rows: list[tuple[int, list[str]]], known: frozenset[str]) -> int:
+    """Number of the first row in which names are found; 0 where none is."""
+    for i, (_, cells) in enumerate(rows[:40]):
+        if sum(_name(cell, known)[0] in known for cell in cells if cell.strip()) >= LEAST_KNOWN:
+            return i
+    return 0
+
+
+def _second_line_of_units(
+    rows: list[tuple[int, list[str]]], understood: list[tuple[str, str]]
+) -> list[tuple[int, list[str]]]:
+    """A line of units below the names goes into the names."""
+    if len(rows) < 2:
+        return rows
+    units = [cell.strip().strip("[]()").strip() for cell in rows[1][1]]
+    if not any(units) or any(u.lower() not in _LOWER_UNITS and u not in NO_UNITS for u in units):
+        return rows
+    units += [""] * (len(rows[0][1]) - len(units))
+    names = [f"{name.strip()} [{unit}]" if unit not in NO_UNITS else name for name, unit in zip(rows[0][1], units)]
+    understood.append((f"line {rows[1][0]}", "units of the names above it"))
+    return [(rows[0][0], names), *rows[2:]]
+
+
+def _name(cell: str, known: frozenset[str]) -> tuple[str, str]:
+    """(quantity, unit) of a head; the head itself where it is not understood."""
+    text, unit = cell.strip(), ""
+    found = re.match(r"^(.*?)[\s_,]*[\[\(]\s*([^\[\]\(\)]*?)\s*[\]\)]$", text)
+    if found and (found[2].lower() in _LOWER_UNITS or found[2] in NO_UNITS):
+        text, unit = found[1].strip(), _unit(found[2])
+    else:
+        stem, gap, last = re.match(r"^(.*?)([\s_]?)([^\s_]*)$", text).groups()
+        if stem and gap and last in UNITS:
+            text, unit = stem, last
+    if text in known:
+        return text, unit
+    plain = re.sub(r"[\s_.\-]", "", text).lower()
+    return _WORDS.get(plain, {k.lower(): k for k in known if len(k) > 1}.get(text.lower(), text)), unit
+
+
+def _unit(text: str) -> str:
+    """A unit as UNITS has it: MPa is not mPa, other letters may be of either size."""
+    return text if text in UNITS else _LOWER_UNITS.get(text.lower(), "")
+
+
+def _understood_name(cell: str, known: frozenset[str], understood: list[tuple[str, str]]) -> str:
+    """A head as ``tables`` reads it: the quantity, and its unit behind it."""
+    name, unit = _name(cell, known)
+    if name not in known:
+        return cell.strip()
+    told = {"percent": "percent", "pct": "percent", "pc": "percent", "%": "percent"}.get(unit, unit)
+    answer = f"{name}_{told}" if told else name
+    if answer != cell.strip() and f"{name}_{unit}" != cell.strip():
+        understood.append((cell.strip(), f"{name}" + (f" in {unit}" if unit else ", no unit")))
+    return answer
