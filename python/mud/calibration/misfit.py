@@ -163,6 +163,10 @@ class Misfit:
     e_loading: float = np.nan  #: the same, of the first loading alone
     S_w: float = np.nan  #: rms difference [-]
     r_u: float = np.nan  #: cyclic: rms difference of the pore pressure ratio [-]
+    sigma_r: float = np.nan  #: oedometer with radial stress: rms difference of it [kPa]
+    G: float = np.nan  #: rms of G_max/G_lab - 1 [%], or of the difference of G/G_max in hundredths
+    damping: float = np.nan  #: rms difference of the damping ratio in hundredths
+    N: float = np.nan  #: factor by which the cycles to liquefaction are missed, rms of its logarithm
     stopped: str = ""
 
 
@@ -188,8 +192,19 @@ def misfit_of(item: Item, answer: Answer, last: float = 0.2001) -> Misfit:
         off = np.abs(answer.columns["e"] - test["e"][rows])
         stress = test["sigma_a" if test.kind == "oedometer" else "p"][rows]
         told.e, told.e_loading = float(np.max(off)), float(np.max(off[: int(np.argmax(stress)) + 1]))
+        if "sigma_r" in item.use.scatter:
+            told.sigma_r = rms(answer.columns["sigma_r"] - test["sigma_r"][rows])
     elif test.kind == "retention":
         told.S_w = rms(answer.columns["S_w"] - test["S_w"][rows])
+    elif test.kind == "stiffness":
+        told.G = 100 * rms(answer.columns["G_max"] / test["G_max"][rows] - 1)
+    elif test.kind == "modulus":
+        if "G_ratio" in item.use.scatter:
+            told.G = 100 * rms(answer.columns["G_ratio"] - test["G_ratio"][rows])
+        if "damping" in item.use.scatter:
+            told.damping = 100 * rms(answer.columns["damping"] - test["damping"][rows])
+    elif test.kind == "liquefaction":
+        told.N = float(10 ** rms(answer.columns["log_N"] - test["log_N"][rows]))
     else:
         if "eps_v" in item.use.scatter:
             told.eps_v = 100 * rms(answer.columns["eps_v"] - test["eps_v"][rows])

@@ -70,11 +70,13 @@ def _range_text(result: Calibration) -> str:
     """Range of stress and void ratio, or of suction, of the fitted tests."""
     told = []
     mechanical = [i for i in result.task.fitted() if i.test.kind != "retention"]
-    if mechanical:
+    stressed = [i for i in mechanical if "p" in i.test or "sigma_a" in i.test]
+    ratios = [i for i in mechanical if "e" in i.test]
+    if stressed and ratios:
         stress = np.concatenate(
-            [i.test["p" if "p" in i.test else "sigma_a"][i.use.rows] for i in mechanical if i.test.kind != "cyclic"]
+            [i.test["p" if "p" in i.test else "sigma_a"][i.use.rows] for i in stressed]
         )
-        ratio = np.concatenate([i.test["e"][i.use.rows] for i in mechanical if "e" in i.test])
+        ratio = np.concatenate([i.test["e"][i.use.rows] for i in ratios])
         told.append(
             f"stress (p', oedometer: sigma_a) {stress.min():.0f} to {stress.max():.0f} kPa, void ratio "
             f"{ratio.min():.3f} to {ratio.max():.3f}"
@@ -101,6 +103,10 @@ def summary(misfits: list[Misfit]) -> list[dict[str, str]]:
             ("eps_v", "points", "volumetric strain"),
             ("S_w", "", "S_w"),
             ("r_u", "", "r_u"),
+            ("sigma_r", "kPa", "radial stress"),
+            ("G", "%", "shear modulus"),
+            ("damping", "points", "damping"),
+            ("N", "", "cycles to liquefaction by a factor of"),
         ):
             values = np.array([getattr(m, key) for m in mine])
             values = values[np.isfinite(values)]
@@ -165,6 +171,10 @@ _RECORDED = (
     ("e_loading", "e_largest_loading"),
     ("S_w", "S_w_rms"),
     ("r_u", "r_u_rms"),
+    ("sigma_r", "sigma_r_rms_kPa"),
+    ("G", "G_rms_percent"),
+    ("damping", "damping_rms_points"),
+    ("N", "N_factor"),
 )
 
 
@@ -309,6 +319,10 @@ def _misfit_table(result: Calibration) -> list[str]:
         ("e_loading", "e, first loading", ".4f"),
         ("S_w", "S_w, rms", ".3f"),
         ("r_u", "r_u, rms", ".3f"),
+        ("sigma_r", "sigma_r, rms [kPa]", ".1f"),
+        ("G", "G [%]", ".1f"),
+        ("damping", "damping [points]", ".1f"),
+        ("N", "N, factor", ".2f"),
     ]
     used = [c for c in columns if any(np.isfinite(getattr(m, c[0])) for m in result.misfits)]
     beside = {m.name: m for m in result.beside or []}
@@ -336,7 +350,7 @@ def _misfit_table(result: Calibration) -> list[str]:
 
 def _start_text(item: Item) -> str:
     test = item.test
-    if test.kind == "retention":
+    if test.kind in ("retention", "stiffness", "modulus", "liquefaction"):
         return f"{len(item.use.rows)} points"
     if test.kind == "drained":
         return f"{test.sigma_r:.0f} kPa, e {test.e_0:.3f}"
@@ -377,10 +391,13 @@ def _pictures(result: Calibration, folder: pathlib.Path) -> list[pathlib.Path]:
 _PANELS = {
     "drained": (("eps_a", "q"), ("eps_a", "eps_v")),
     "undrained": (("eps_a", "q"), ("p", "q")),
-    "oedometer": (("sigma_a", "e"),),
+    "oedometer": (("sigma_a", "e"), ("sigma_a", "sigma_r")),
     "isotropic": (("p", "e"),),
     "retention": (("suction", "S_w"),),
     "cyclic": (("cycle", "eps_v"), ("cycle", "r_u")),
+    "stiffness": (("p", "G_max"),),
+    "modulus": (("gamma", "G_ratio"), ("gamma", "damping")),
+    "liquefaction": (("log_N", "csr"),),
 }
 _AXES = {
     "eps_a": "axial strain [%]",
@@ -393,6 +410,13 @@ _AXES = {
     "S_w": "degree of saturation",
     "cycle": "cycle",
     "r_u": "pore pressure ratio r_u",
+    "sigma_r": "radial stress [kPa]",
+    "G_max": "G_max [kPa]",
+    "gamma": "shear strain [-]",
+    "G_ratio": "G/G_max",
+    "damping": "damping ratio",
+    "log_N": "log10 of the cycles to liquefaction",
+    "csr": "cyclic stress ratio q/(2 p_0)",
 }
 
 
@@ -414,7 +438,7 @@ def _page(result: Calibration, items: list[Item], title: str, plt):
     for axis, (x, y) in zip(axes[0], panels):
         axis.set_xlabel(_AXES[x])
         axis.set_ylabel(_AXES[y])
-        if x in ("sigma_a", "p") and y == "e" or x == "suction":
+        if x in ("sigma_a", "p") and y == "e" or x in ("suction", "gamma"):
             axis.set_xscale("log")
         axis.grid(color="#dddddd", lw=0.6)
     handles.append(Line2D([], [], color="#555555", ls="", marker="o", ms=4, mfc="white", label="laboratory"))
@@ -430,9 +454,15 @@ def _draw(axis, result: Calibration, item: Item, x: str, y: str, colour: str) ->
     """Points, line and band of a test; whether there is a band."""
     test, rows, answer = item.test, item.use.rows, result.answers[item.test.name]
     across, up = (100 if name.startswith("eps") else 1 for name in (x, y))
+    if y == "csr":  # the cycles are the answer
+        axis.plot(test[x][rows], test[y][rows], "o", ms=3, color=colour, mfc="white", mew=0.8)
+        axis.plot(answer.columns[x], test[y][rows], "x", ms=4, color=colour)
+        return False
     model_x = answer.columns["p"] if x == "p" and y == "q" else test[x][rows]
     axis.plot(across * test[x][rows], up * test[y][rows], "o", ms=3, color=colour, mfc="white", mew=0.8)
-    order = np.argsort(model_x, kind="stable") if test.kind == "retention" else slice(None)
+    hysteresis = test.kind == "retention" and result.material["hysteresis"] != 0
+    sorts = test.kind in ("retention", "stiffness", "modulus") and not hysteresis
+    order = np.argsort(model_x, kind="stable") if sorts else slice(None)
     axis.plot(across * model_x[order], up * answer.columns[y][order], color=colour)
     band = result.ensemble.bands[test.name].get(y) if result.ensemble and x != "p" else None
     if band is None:

@@ -58,6 +58,11 @@ WORDS = {
     "stress_ratio": ("stressratio", "principalstressratio"),
     "cycle": ("cycleno", "cyclenumber"),
     "r_u": ("porepressureratio", "ru"),
+    "G_max": ("gmax", "smallstrainshearmodulus", "maximumshearmodulus", "g0"),
+    "G_ratio": ("g/gmax", "g/g0", "modulusratio"),
+    "damping": ("dampingratio",),
+    "csr": ("cyclicstressratio", "crr"),
+    "N": ("cyclestoliquefaction", "numberofcycles", "nliq"),
 }
 _WORDS = {word: quantity for quantity, words in WORDS.items() for word in words}
 LEAST_KNOWN = 2  # heads that make a line the line of names

@@ -10,6 +10,7 @@ import numpy as np
 from ..element_test import Stage, TestResult, element_test
 from ..errors import InputError, MudError, TestStopped
 from ..material import Material
+from ..registry import states
 from .tables import FEWEST_ROWS, LaboratoryTest
 
 # Numerical settings of a fit: errors of 1e-4 are far below the scatter of any laboratory (percents).
@@ -22,7 +23,10 @@ STRAIN_INCREMENTS = ((0.01, 1e-3), (0.05, 2.5e-3), (1.0, 1e-2))
 # Compression: a stage for each factor of stress, in equal increments; void ratio is interpolated over the logarithm of stress.
 STRESS_FACTOR, STRESS_INCREMENTS = 2.0, 3
 CYCLE_STEPS = 20  # of a strain amplitude
+LOOP_STEPS = 40  # of an amplitude whose loop is measured
+LIQUEFIED, MORE_CYCLES = 0.95, 4.0  # pore pressure ratio; cycles that are tried, times those of the laboratory
 SETTLED = 10.0  # [kPa] compression counts from here on where a table begins below: before, a sample settles into its ring
+_SATURATION = states["saturation"].index
 FAR = 1e6  # output interval that leaves rows at reversals and ends of stages alone
 
 
@@ -49,10 +53,13 @@ class Use:
 SCATTER = {
     "drained": {"q": (3.0, 0.05), "eps_v": (0.0025, 0.0)},
     "undrained": {"q": (3.0, 0.05), "p": (3.0, 0.05)},
-    "oedometer": {"e": (0.0015, 0.0)},
+    "oedometer": {"e": (0.0015, 0.0), "sigma_r": (3.0, 0.1)},
     "isotropic": {"e": (0.0015, 0.0)},
     "cyclic": {"eps_v": (0.001, 0.1), "r_u": (0.05, 0.1)},
     "retention": {"S_w": (0.02, 0.0)},
+    "stiffness": {"G_max": (0.0, 0.1)},
+    "modulus": {"G_ratio": (0.05, 0.0), "damping": (0.03, 0.0)},
+    "liquefaction": {"log_N": (0.15, 0.0)},  # a factor of 1.4 in the number of cycles
 }
 
 
@@ -77,6 +84,9 @@ def use_of(
             "isotropic": "p",
             "cyclic": "cycle",
             "retention": "suction",
+            "stiffness": "p",
+            "modulus": "gamma",
+            "liquefaction": "csr",
         }[test.kind]
     ]
     size, note = np.abs(lead), ""
@@ -101,9 +111,11 @@ def use_of(
 
 def simulate(material: Material, test: LaboratoryTest, use: Use) -> Answer:
     """Runs a test on the model. A test that stops has NaN from there on, and says why."""
-    if test.kind == "retention":
-        e = test["e"][use.rows] if "e" in test else test["e_0"][use.rows] if "e_0" in test else material["e_0"]
-        return Answer({"S_w": material.saturation(test["suction"][use.rows], e)})
+    if test.kind in _SINGLE:
+        try:
+            return _SINGLE[test.kind](material, test, use.rows)
+        except MudError as problem:
+            return Answer({q: np.full(len(use.rows), np.nan) for q in use.scatter}, str(problem))
     try:
         stages, start = _course(material, test, use)
         most = int(CYCLE_UPDATES * test["cycle"].max()) if test.kind == "cyclic" else MAX_UPDATES
@@ -116,6 +128,90 @@ def simulate(material: Material, test: LaboratoryTest, use: Use) -> Answer:
     except MudError as problem:
         return Answer({q: np.full(len(use.rows), np.nan) for q in use.scatter}, str(problem))
     return Answer(_at_rows(test, use, result), stopped)
+
+
+def _retention(material: Material, test: LaboratoryTest, rows: np.ndarray) -> Answer:
+    """S_w at the rows; with hysteresis along the whole path of suction from the first row on, at constant volume."""
+    e = test["e"] if "e" in test else test["e_0"] if "e_0" in test else np.full(len(test.lines), material["e_0"])
+    if material["hysteresis"] == 0:
+        return Answer({"S_w": material.saturation(test["suction"][rows], e[rows])})
+    stress = np.array([-1.0, -1.0, -1.0, 0.0, 0.0, 0.0]) * material["p_atm"]
+    stress, state = material.initial_state(stress, float(test["suction"][0]), float(e[0]))
+    found = []
+    for row in range(int(rows.max()) + 1):
+        if row:
+            answer = material.update(stress, state, np.zeros(6), float(test["suction"][row]))
+            stress, state = answer.stress, answer.statev
+        found.append(float(state[_SATURATION]))
+    return Answer({"S_w": np.array(found)[rows]})
+
+
+def shear_modulus(material: Material, p: float, e: float) -> float:
+    """Elastic shear modulus at a mean effective stress [kPa] and a void ratio, of the library's own stiffness."""
+    stress, state = material.initial_state(-p * np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]), 0.0, e)
+    return float(material.update(stress, state, np.zeros(6), tangent="elastic").dsig_deps[3, 3])
+
+
+def _stiffness(material: Material, test: LaboratoryTest, rows: np.ndarray) -> Answer:
+    """G_max of every row."""
+    return Answer({"G_max": np.array([shear_modulus(material, test["p"][r], test["e"][r]) for r in rows])})
+
+
+def _modulus(material: Material, test: LaboratoryTest, rows: np.ndarray) -> Answer:
+    """Secant modulus over G_max and damping of the second cycle of drained simple shear, from an isotropic stress."""
+    ratio, damping = np.empty(len(rows)), np.empty(len(rows))
+    for k, r in enumerate(rows):
+        gamma, p, e = float(test["gamma"][r]), float(test["p_0"][r]), float(test["e_0"][r])
+        increment = gamma / LOOP_STEPS
+        stage = Stage(
+            "simple_shear_drained", cycle_by="gamma", amplitude=gamma, cycles=2, increment=increment, output_interval=increment
+        )
+        run = element_test(
+            material, stage, p_eff=p, void_ratio=e, control_tolerance=CONTROL_TOLERANCE, max_updates=MAX_UPDATES
+        )
+        strain, stress = run["gamma_13"], run["sig_13"]
+        ends = np.flatnonzero(strain < -gamma * (1 - 1e-6))  # twice at -gamma: a loop lies between them
+        loop = slice(int(ends[0]), int(ends[-1]) + 1)
+        x, y = strain[loop], stress[loop]
+        secant = (y[np.argmax(x)] - y[0]) / (2 * gamma)
+        # Area by trapezia, closed from the last to the first point; of the elastic triangle W = G gamma^2/2.
+        area = float(np.sum(0.5 * (x[1:] - x[:-1]) * (y[1:] + y[:-1])) + 0.5 * (x[0] - x[-1]) * (y[0] + y[-1]))
+        ratio[k], damping[k] = secant / shear_modulus(material, p, e), abs(area) / (2 * np.pi * secant * gamma**2)
+    return Answer({"G_ratio": ratio, "damping": damping})
+
+
+def _liquefaction(material: Material, test: LaboratoryTest, rows: np.ndarray) -> Answer:
+    """log10 of the cycles to r_u = LIQUEFIED in undrained triaxial cycles of q = 2 csr p_0; a sample that stands more than
+    MORE_CYCLES times as many as that of the laboratory counts as standing so many."""
+    found = np.empty(len(rows))
+    for k, r in enumerate(rows):
+        cycles = int(np.ceil(MORE_CYCLES * test["N"][r])) + 1
+        stage = Stage(
+            "undrained",
+            cycle_by="q",
+            amplitude=2 * float(test["csr"][r] * test["p_0"][r]),
+            cycles=cycles,
+            stop_r_u=LIQUEFIED,
+            increment=1e-4,
+            output_interval=FAR,
+        )
+        try:
+            run = element_test(
+                material,
+                stage,
+                p_eff=float(test["p_0"][r]),
+                void_ratio=float(test["e_0"][r]),
+                control_tolerance=CONTROL_TOLERANCE,
+                max_updates=CYCLE_UPDATES * cycles,
+            )
+        except TestStopped as problem:  # the stress is not reached any more: it has failed in that cycle
+            run = problem.result
+        found[k] = np.log10(max(1.0, float(run["cycle"][-1])))
+    return Answer({"log_N": found})
+
+
+# Kinds whose rows are points or tests of their own.
+_SINGLE = {"retention": _retention, "stiffness": _stiffness, "modulus": _modulus, "liquefaction": _liquefaction}
 
 
 def natural(strain: np.ndarray) -> np.ndarray:
@@ -156,8 +252,9 @@ def _course(material: Material, test: LaboratoryTest, use: Use) -> tuple[list[St
             for a, b in _pieces(float(stresses[turn]), float(stresses[end]))
         ]
         first = float(stresses[0])
+        lateral = float(test["sigma_r"][use.start]) if "sigma_r" in test else earth_pressure(material) * first
         start = (
-            {"sigma_a": first, "sigma_r": earth_pressure(material) * first}
+            {"sigma_a": first, "sigma_r": lateral}
             if test.kind == "oedometer"
             else {"p_eff": first}
         )
@@ -196,6 +293,7 @@ def _at_rows(test: LaboratoryTest, use: Use, result: TestResult) -> dict[str, np
         "p": result["p_eff"],
         "e": result["e"],
         "r_u": result["r_u"],
+        "sigma_r": result["sigma_r"],
     }
     names = list(dict.fromkeys([*use.scatter, "e", "p", "q"]))
     if test.kind == "cyclic":  # the last reversal of each cycle

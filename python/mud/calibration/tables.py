@@ -17,8 +17,8 @@ import numpy as np
 from ..errors import InputError
 from .sheets import UNITS, read_sheet
 
-STRAINS, STRESSES = ("eps_a", "eps_v", "gamma"), ("q", "p", "sigma_a", "sigma_r", "suction", "u", "p_0", "amplitude")
-NUMBERS = ("e", "e_0", "S_w", "stress_ratio", "cycle", "r_u")
+STRAINS, STRESSES = ("eps_a", "eps_v", "gamma"), ("q", "p", "sigma_a", "sigma_r", "suction", "u", "p_0", "amplitude", "G_max")
+NUMBERS = ("e", "e_0", "S_w", "stress_ratio", "cycle", "r_u", "G_ratio", "damping", "csr", "N")
 TEXTS = ("test", "control", "cycle_by")
 # Other names of the same.
 ALIASES = {
@@ -44,8 +44,12 @@ NEEDS = {
     "isotropic": ("p", "e"),
     "cyclic": ("control", "cycle_by", "amplitude", "cycle", "p_0", "e_0", ("eps_v", "r_u")),
     "retention": ("suction", "S_w"),
+    "stiffness": ("p", "e", "G_max"),
+    "modulus": ("gamma", ("G_ratio", "damping"), "p_0", "e_0"),
+    "liquefaction": ("csr", "N", "p_0", "e_0"),
 }
-FEWEST_ROWS = {"cyclic": 1, "drained": 3, "undrained": 3, "oedometer": 3, "isotropic": 3, "retention": 3}
+FEWEST_ROWS = {"drained": 3, "undrained": 3, "oedometer": 3, "isotropic": 3, "retention": 3}
+FEWEST_ROWS |= {"cyclic": 1, "stiffness": 1, "modulus": 1, "liquefaction": 1}
 # A strain in fractions cannot be larger: more means per cent. Volume: from the densest to the loosest sand is 0.3.
 LARGEST_FRACTION = {"eps_a": 0.9, "eps_v": 0.3, "gamma": 1.5}
 SMALLEST_PERCENT = 0.6  # a shear test in per cent goes further: less means fractions
@@ -112,7 +116,7 @@ class LaboratoryTest:
 def _head(cells: list[str], path: pathlib.Path, line: int) -> list[tuple[str, float | None]]:
     """(quantity, factor) of every column; the factor is None where no unit stands behind the name."""
     known = {*STRAINS, *STRESSES, *NUMBERS, *TEXTS}
-    shares = ("S_w", "r_u")  # numbers that may be given in per cent
+    shares = ("S_w", "r_u", "damping")  # numbers that may be given in per cent
     found: list[tuple[str, float | None]] = []
     for cell in cells:
         name, factor = cell.strip().removesuffix("_derived").removesuffix("_initial"), None
@@ -143,7 +147,7 @@ def _head(cells: list[str], path: pathlib.Path, line: int) -> list[tuple[str, fl
 def read_table(path: str | os.PathLike, kind: str) -> list[LaboratoryTest]:
     """The tests of a sheet, checked: a file with commas, semicolons or tabs between cells, or the first sheet of a workbook.
 
-    kind : drained, undrained, oedometer, isotropic, cyclic or retention; ``NEEDS`` lists the columns each one needs. A table
+    kind : drained, undrained, oedometer, isotropic, cyclic, retention, stiffness, modulus or liquefaction; ``NEEDS`` lists the columns each one needs. A table
         without a column ``test`` holds one test, called as the file. Where no cell of a test has a void ratio it is unknown:
         ``unknown_e_0``.
 
@@ -249,6 +253,8 @@ def _test(
     if len(rows) < FEWEST_ROWS[kind]:
         raise InputError(f"{path}, test {name}: {len(rows)} rows; a {kind} test needs at least {FEWEST_ROWS[kind]}")
     _check_values(path, test)
+    if kind == "liquefaction":
+        test.columns["log_N"] = np.log10(test["N"])
     if kind == "drained":
         _complete_drained(test)
     elif kind == "undrained" and "e" not in test and "e_0" in test:
@@ -324,6 +330,9 @@ def _check_values(path: pathlib.Path, test: LaboratoryTest) -> None:
                 f"{'grows' if way > 0 else 'falls'}: one of the two has its sign swapped; compression is positive, "
                 "and q = sigma_a - sigma_r"
             )
+    for quantity in ("gamma", "csr", "N", "p_0", "G_max", "G_ratio"):
+        if test.kind in ("stiffness", "modulus", "liquefaction") and quantity in test and np.any(test[quantity] <= 0):
+            raise InputError(f"{first(test[quantity] <= 0)}: {quantity} must be above zero")
     for quantity in ("p", "sigma_a", "sigma_r"):
         if quantity in test and np.median(test[quantity]) <= 0:
             raise InputError(f"{where}: {quantity} is negative: compression is positive")

@@ -65,10 +65,10 @@ GROUPS = (
 # Group -> kinds of tests that depend on it.
 SPEAKS = {
     "critical state": {"drained", "undrained"},
-    "elasticity and compression": {"oedometer", "isotropic", "drained"},
+    "elasticity and compression": {"oedometer", "isotropic", "drained", "stiffness", "modulus"},
     "peak and dilatancy": {"drained", "undrained"},
-    "hardening": {"drained", "undrained"},
-    "cycles": {"cyclic"},
+    "hardening": {"drained", "undrained", "modulus", "liquefaction"},
+    "cycles": {"cyclic", "liquefaction"},
     "retention": {"retention"},
     "bonding": set(),
 }
