@@ -11,7 +11,7 @@ import gallery
 
 LINK = re.compile(r"(!?\[[^\]]*\]\()([^)\s]+)(\))")
 FORTRAN = ("umat/core", "umat/abi", "umat/include", "common", "materials", "drivers/src", "host")
-PICTURES = (".png", ".svg")
+COPIED = (".png", ".svg", ".ipynb")   # beside the page, as they are
 # Headings of the margin for pages that the front page does not list; the last takes what is left.
 REST = {"Evidence: element tests": "verification/material/", "Evidence: finite elements": "verification/host/",
         "Evidence: studies": "verification/studies/", "Other programs": "clients/", "Further pages": ""}
@@ -56,7 +56,7 @@ def staged(root, pages, name):
             raise SystemExit(f"{name}: the link to {target} leads nowhere (a link names a file, not a folder)")
         place = pages / path.resolve().relative_to(root)
         place.parent.mkdir(parents=True, exist_ok=True)
-        if path.suffix in PICTURES:
+        if path.suffix in COPIED:
             shutil.copyfile(path, place)
         else:
             place.with_name(place.name + ".md").write_text(

@@ -10,6 +10,11 @@ import pathlib
 from .errors import InputError
 
 
+def cells_of(line: str, mark: str = ",") -> list[str]:
+    """Cells of a line, quoted ones without their quotes."""
+    return next(csv.reader([line], delimiter=mark))
+
+
 def rows_of(path: str | os.PathLike) -> list[tuple[int, list[str]]]:
     """(line, cells) of every row that is neither empty nor a comment (#), the names of the columns first."""
     try:
@@ -19,7 +24,7 @@ def rows_of(path: str | os.PathLike) -> list[tuple[int, list[str]]]:
     except UnicodeDecodeError as problem:
         raise InputError(f"{path} is no text in UTF-8; save it as CSV") from problem
     return [
-        (number, next(csv.reader([line])))
+        (number, cells_of(line))
         for number, line in enumerate(lines, 1)
         if line.strip() and not line.startswith("#")
     ]

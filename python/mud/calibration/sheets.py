@@ -7,12 +7,12 @@ understood for that is kept as pairs (in the sheet, understood as).
 
 from __future__ import annotations
 
-import csv
 import dataclasses
 import os
 import pathlib
 import re
 
+from .._csv import cells_of
 from ..errors import InputError
 
 # Units, and what they are worth in kPa or as a fraction; "" is a pure number.
@@ -120,7 +120,7 @@ def _text(path: pathlib.Path, understood: list[tuple[str, str]]) -> list[tuple[i
     mark = next((m for m in ("\t", ";") if sum(m in line for _, line in lines) > len(lines) / 2), ",")
     if mark != ",":
         understood.append(({"\t": "tabs", ";": "semicolons"}[mark] + " between cells", "the separator"))
-    rows = [(n, next(csv.reader([line], delimiter=mark))) for n, line in lines]
+    rows = [(n, cells_of(line, mark)) for n, line in lines]
     if mark != "," and any(_DECIMAL_COMMA.match(cell.strip()) for _, cells in rows for cell in cells):
         understood.append(("commas inside numbers", "decimal marks"))
         rows = [
