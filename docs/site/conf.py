@@ -60,4 +60,4 @@ def setup(app):
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
-autodoc_mock_imports = ["h5py", "matplotlib", "numpy", "scipy"]
+autodoc_mock_imports = ["h5py", "matplotlib", "openpyxl", "pandas", "scipy"]

@@ -96,7 +96,7 @@ def read_sheet(path: str | os.PathLike, known: frozenset[str]) -> Sheet:
     rows = _second_line_of_units(rows, understood)
     width = max((i + 1 for i, cell in enumerate(rows[0][1]) if cell.strip()), default=0)
     names = [_understood_name(cell, known, understood) for cell in rows[0][1][:width]]
-    body = [(number, (cells + [""] * width)[:width] if _blank(cells[width:]) else cells) for number, cells in rows[1:]]
+    body = [(number, cells[:width] if _blank(cells[width:]) else cells) for number, cells in rows[1:]]
     return Sheet([(rows[0][0], names), *body], understood)
 
 
