@@ -89,7 +89,7 @@ contains
       law%tolerance = law%props(property_index('tolerance'))
       law%given_tolerance = not_the_default('tolerance', law%tolerance)
       law%given_scheme = not_the_default('scheme', law%props(property_index('scheme')))
-      law%unguarded = lets_pressure_go(law%props)
+      law%unguarded = releases_pressure(law%props)
       law%e_0 = law%props(property_index('e_0'))
       law%n_guards = size(GUARDS)
       law%guard_names(:size(GUARDS)) = GUARDS
@@ -106,7 +106,7 @@ contains
    end subroutine fill_mud
 
    !> Whether nothing keeps p' above zero: without the tension cut-off, which the rule as_published switches off too.
-   logical function lets_pressure_go(props)
+   logical function releases_pressure(props)
       real(wp), intent(in) :: props(:)
       real(wp) :: published
       integer :: rule, guard
@@ -114,10 +114,10 @@ contains
 
       rule = property_index('memory_rule')
       call property_option(rule, 'as_published', published, known)
-      lets_pressure_go = known .and. nint(props(rule)) == nint(published)
+      releases_pressure = known .and. nint(props(rule)) == nint(published)
       guard = property_index('cutoff')
-      lets_pressure_go = lets_pressure_go .or. nint(props(guard)) == 0
-   end function lets_pressure_go
+      releases_pressure = releases_pressure .or. nint(props(guard)) == 0
+   end function releases_pressure
 
    logical function not_the_default(name, value)
       character(*), intent(in) :: name

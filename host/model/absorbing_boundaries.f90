@@ -19,7 +19,7 @@ module absorbing_boundaries
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: prepare_absorbers, add_incoming, absorber_acts, let_absorbers_act
+   public :: prepare_absorbers, add_incoming, absorber_acts, switch_absorbers
 
    !> The ground behind an edge.
    type :: ground_t
@@ -271,7 +271,7 @@ contains
    end function absorber_acts
 
    !> Switches the dashpots of the boundaries that act in a stage on, the others off.
-   subroutine let_absorbers_act(model, stage, list)
+   subroutine switch_absorbers(model, stage, list)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       type(dashpots_t), intent(inout) :: list(:)   !< (absorbing boundaries)
@@ -280,5 +280,5 @@ contains
       do i = 1, size(list)
          list(i)%acts = absorber_acts(model%absorbers(i), stage)
       end do
-   end subroutine let_absorbers_act
+   end subroutine switch_absorbers
 end module absorbing_boundaries

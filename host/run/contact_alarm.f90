@@ -8,7 +8,7 @@ module contact_alarm
    use texts, only: short
    implicit none (type, external)
    private
-   public :: tell_penetration
+   public :: warn_of_penetration
 
    !> Depth over the length of the edge from which the warning is given: a curved surface that rolls on leaves about an
    !> eighth of the ratio of edge length to radius, 1e-3 with a mesh that is fine enough for contact [-].
@@ -16,7 +16,7 @@ module contact_alarm
 contains
    !> After an accepted step; once for every contact, on standard error, also where the run is quiet. From 1e-3 of the
    !> length of an edge on: docs/theory/contact.md section 2.4. Raises no fault.
-   subroutine tell_penetration(model, time, contacts)
+   subroutine warn_of_penetration(model, time, contacts)
       type(model_t), intent(in) :: model
       real(wp), intent(in) :: time   !< [s]
       type(contacts_t), intent(inout) :: contacts
@@ -34,5 +34,5 @@ contains
                'refine the slave there.'
          end associate
       end do
-   end subroutine tell_penetration
+   end subroutine warn_of_penetration
 end module contact_alarm

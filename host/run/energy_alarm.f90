@@ -12,7 +12,7 @@ module energy_alarm
    use scene_types, only: stage_t
    implicit none (type, external)
    private
-   public :: check_creation, tell_creation
+   public :: check_creation, warn_of_created_energy
 
    character(*), parameter :: REMEDY = 'shorten dt, set rho_inf = 0 where a contact opens and closes, or '// &
       'measure = ''change'' where weight rests'
@@ -38,7 +38,7 @@ contains
 
    !> At the end of a dynamic stage that may create much: the warning, on standard error, also where the run is quiet.
    !> From ALARMING_SHARE of the largest work on; nothing beyond what check_creation refuses.
-   subroutine tell_creation(stage, ledger)
+   subroutine warn_of_created_energy(stage, ledger)
       type(stage_t), intent(in) :: stage
       type(ledger_t), intent(in) :: ledger
 
@@ -46,7 +46,7 @@ contains
       if (ledger%most_created > allowed_creation(stage%created_energy, ledger)) return
       write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//' has created '//amount(ledger)// &
          '. Do not use its results: '//REMEDY//'.'
-   end subroutine tell_creation
+   end subroutine warn_of_created_energy
 
    !> Energy in kJ and as a share.
    function amount(ledger) result(text)

@@ -4,7 +4,7 @@
 !> be kept up. docs/theory/host.md sections 7.4 and 8.
 module held_ground
    use kinds, only: wp
-   use absorbing_boundaries, only: absorber_acts, let_absorbers_act, add_incoming
+   use absorbing_boundaries, only: absorber_acts, switch_absorbers, add_incoming
    use boundary_loads, only: load_at
    use equation_assembly, only: assemble
    use exit_codes, only: EXIT_MATERIAL
@@ -65,7 +65,7 @@ contains
       type(run_t), intent(inout) :: run
 
       associate (c => run%constraint)
-         call let_absorbers_act(model, stage, c%dashpots)
+         call switch_absorbers(model, stage, c%dashpots)
          call add_incoming(model, stage, c%dashpots, run%state%time, c%load_0)
          call add_incoming(model, stage, c%dashpots, run%state%time + dt, c%load_1)
       end associate

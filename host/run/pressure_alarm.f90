@@ -13,7 +13,7 @@ module pressure_alarm
    use scene_types, only: stage_t
    implicit none (type, external)
    private
-   public :: tell_oscillation, warn_lost_pressure, outlier
+   public :: warn_of_oscillation, warn_lost_pressure, outlier
 
    !> By how much a corner may differ from all sides around it, share of the range of all pressures: linear and
    !> parabolic fields leave nothing, a field that the mesh follows little [-].
@@ -22,7 +22,7 @@ module pressure_alarm
 contains
    !> After an accepted step; once a run, on standard error, also where the run is quiet. Not in static stages, nor of
    !> linear pressures. docs/theory/host.md section 3.1. Raises no fault.
-   subroutine tell_oscillation(model, stage, time, x, told)
+   subroutine warn_of_oscillation(model, stage, time, x, told)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       real(wp), intent(in) :: time     !< [s]
@@ -50,7 +50,7 @@ contains
             ' % of the range of all pressures. Pressures that oscillate from node to node are wrong: refine '// &
             'the mesh there, take longer steps or, where hardly any water drains, set pressures = ''linear'' in &scene.'
       end associate
-   end subroutine tell_oscillation
+   end subroutine warn_of_oscillation
 
    !> After an accepted step; once a run, on standard error, also where the run is quiet. docs/theory/memory-rules.md
    !> section 2.2. Raises no fault.

@@ -17,9 +17,9 @@ module time_stepping
    use step_size, only: next_step, keep_step, is_over
    use step_landings, only: LAST_STEP
    use step_booking, only: book_accepted_step, watch_effects
-   use energy_alarm, only: check_creation, tell_creation
-   use contact_alarm, only: tell_penetration
-   use pressure_alarm, only: tell_oscillation, warn_lost_pressure
+   use energy_alarm, only: check_creation, warn_of_created_energy
+   use contact_alarm, only: warn_of_penetration
+   use pressure_alarm, only: warn_of_oscillation, warn_lost_pressure
    use unknown_fields, only: DISPLACEMENTS
    use texts, only: short, whole
    implicit none (type, external)
@@ -45,7 +45,7 @@ contains
       call lap(run%seconds_output, t0)
       do i = max(1, run%at%stage), size(model%stages)
          call run_stage(model, i, run, fault, observer)
-         if (warns(observer)) call tell_creation(model%stages(i), run%ledger)
+         if (warns(observer)) call warn_of_created_energy(model%stages(i), run%ledger)
          t0 = clock()
          ! Also after a failure, which is reported, not what its last output may meet.
          last = fault_t()
@@ -124,8 +124,8 @@ contains
          scheme = make_scheme(stage%kind, stage%rho_inf, dt)
          at%step = at%step + 1
          run%steps = run%steps + 1
-         if (warns(observer)) call tell_penetration(model, run%next%time, run%system%contacts)
-         if (warns(observer)) call tell_oscillation(model, stage, run%next%time, run%next%x, run%told_oscillation)
+         if (warns(observer)) call warn_of_penetration(model, run%next%time, run%system%contacts)
+         if (warns(observer)) call warn_of_oscillation(model, stage, run%next%time, run%next%x, run%told_oscillation)
          if (warns(observer)) call warn_lost_pressure(model, run%next%time, run%next%stress, run%told_pressure)
          call book_accepted_step(model, scheme, run)
          report = step_report_t(number, dt, step_error(scheme, run%state%x, run%state%a, run%next%x, run%next%a), &

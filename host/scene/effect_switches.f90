@@ -29,7 +29,7 @@ module effect_switches
    real(wp), parameter :: SWITCHED_ON = 1.0_wp
 contains
    !> The cheapest reading of what the scene leaves open: the fields that its regions have laws for, no weight, and no
-   !> inertia where nothing speaks of motion. docs/theory/host.md section 11.
+   !> inertia where no key needs it. docs/theory/host.md section 11.
    pure subroutine settle_open_keys(scene)
       type(scene_t), intent(inout) :: scene
       integer :: i
@@ -40,30 +40,29 @@ contains
          if (any(scene%regions%retention_name /= '')) scene%fields = WITH_P_C
       end if
       do i = 1, size(scene%stages)
-         if (scene%stages(i)%kind == 0) scene%stages(i)%kind = merge(DYNAMIC, QUASI_STATIC, &
-                                                                              speaks_of_motion(scene, i))
+         if (scene%stages(i)%kind == 0) scene%stages(i)%kind = merge(DYNAMIC, QUASI_STATIC, needs_inertia(scene, i))
       end do
    end subroutine settle_open_keys
 
    !> Whether a stage has keys that act with inertia alone: waves that leave or come in, an acceleration, a velocity at
    !> the start, damping.
-   pure logical function speaks_of_motion(scene, stage) result(speaks)
+   pure logical function needs_inertia(scene, stage) result(needed)
       type(scene_t), intent(in) :: scene
       integer, intent(in) :: stage
       integer :: i
 
-      speaks = any(scene%regions%damping > 0.0_wp .or. scene%regions%stiffness_damping > 0.0_wp)
-      if (stage == 1) speaks = speaks .or. any(abs(scene%initials%v_z) > 0.0_wp .or. abs(scene%initials%wave) > 0.0_wp)
+      needed = any(scene%regions%damping > 0.0_wp .or. scene%regions%stiffness_damping > 0.0_wp)
+      if (stage == 1) needed = needed .or. any(abs(scene%initials%v_z) > 0.0_wp .or. abs(scene%initials%wave) > 0.0_wp)
       do i = 1, size(scene%absorbers)
-         speaks = speaks .or. acts_in(scene%absorbers(i)%stages, scene%stages(stage)%name)
+         needed = needed .or. acts_in(scene%absorbers(i)%stages, scene%stages(stage)%name)
       end do
       do i = 1, size(scene%fixes)
-         speaks = speaks .or. (scene%fixes(i)%acceleration .and. &
+         needed = needed .or. (scene%fixes(i)%acceleration .and. &
                                acts_in(scene%fixes(i)%stages, scene%stages(stage)%name))
       end do
-   end function speaks_of_motion
+   end function needs_inertia
 
-   !> Whether the keys of a region speak of water: where it flows, or is kept.
+   !> Whether the keys of a region ask for water: where it flows, or is kept.
    pure logical function holds_water(scene)
       type(scene_t), intent(in) :: scene
 

@@ -45,12 +45,6 @@ told = {"pyproject.toml": tomllib.loads((root / "pyproject.toml").read_text(enco
 check("every file tells the version of CMakeLists.txt", set(told.values()) == {version}, f"{version}, but {told}")
 check("docs/release.md tells the ABI version of mud.h", found(r"^\| ABI version \| (\d+) \|", "docs/release.md")
       == found(r"^#define MUD_ABI_VERSION (\d+)", "umat/include/mud.h"))
-entries = (root / "umat/README.md").read_text(encoding="utf-8").split("<!-- mud_describe statev -->")[1]
-entries = entries.split("<!--")[0]
-layout = found(r"STATE_LAYOUT = (\d+)", "umat/core/base/mud_registry.f90")
-length = re.findall(r"^\| (\d+) \| `", entries, re.MULTILINE)[-1]
-check("docs/release.md tells layout and length of STATEV", found(
-    r"^\| layout of STATEV \| (\d+, \d+) entries", "docs/release.md") == f"{layout}, {length}", f"{layout}, {length}")
 
 texts = {"a.f90": "module a", "b.f90": f"! {TAG}: MIT\nmodule b", "c.md": "# c"}
 check("a source without a licence is seen, and nothing else", unlicensed(texts, texts.get) == ["a.f90"])

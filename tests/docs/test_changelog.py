@@ -74,9 +74,10 @@ def short_props():
     return f"{code}: {text.value.decode()}"
 
 
+LAYOUT = re.search(r"STATE_LAYOUT = (\d+)", (root / "umat/core/base/mud_registry.f90").read_text(encoding="utf-8"))[1]
 # What the first column of a row says: what the programs say of it today, and what has to be in that.
 CASES = {
-    "STATEV layout 1": (old_layout, ["layout", "2"]),
+    "STATEV layout 1": (old_layout, ["layout", LAYOUT]),
     "PROPS 45 entries": (short_props, ["-1", "45", "46"]),
     "a `&retention` of its own": (lambda: scene(MUD.format("", "retention = 'r'") + RETENTION),
                                   ["retention = 'material'"]),

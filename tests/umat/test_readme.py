@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The tables of umat/README.md are what the library says of itself, its programs those that test_install builds.
-
-Run with --write to renew both.
-"""
+"""The tables of umat/README.md are what the library says of itself. Run with --write to renew them."""
 import os
 import pathlib
 import re
@@ -12,19 +9,13 @@ import sys
 root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2])
 build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
 readme = root / "umat/README.md"
-BLOCK = re.compile(r"(<!-- (mud_describe \w+|source \S+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
-PROMISED = {"mud_describe props", "mud_describe statev", "mud_describe abaqus", "source tests/consumers/minimal_host.c",
-            "source tests/consumers/minimal_host.f90"}
+BLOCK = re.compile(r"(<!-- (mud_describe \w+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+PROMISED = {"mud_describe props", "mud_describe statev"}
 
 
 def content(block):
-    kind, what = block.split()
-    if kind == "source":
-        language = {".c": "c", ".f90": "fortran"}[pathlib.Path(what).suffix]
-        return f"```{language}\n{(root / what).read_text(encoding='utf-8')}```\n"
-    program = build / "drivers/mud_describe"
-    text = subprocess.run([program, what], check=True, capture_output=True, text=True).stdout
-    return f"```\n{text}```\n" if what in ("abaqus", "namelist") else text
+    return subprocess.run([build / "drivers/mud_describe", block.split()[1]], check=True, capture_output=True,
+                          text=True).stdout
 
 
 text = readme.read_text(encoding="utf-8")

@@ -2,14 +2,14 @@
 !> Which messages umat_ has already printed: the one thing that the library remembers between calls. A message of each
 !> kind goes to standard error once a process, whichever thread comes first. Nothing else reads the memory, so no answer
 !> depends on it. Compiled with OpenMP for its atomic operations alone, which need no run-time library; without OpenMP
-!> two threads that fail at the same instant may both speak. A forked process inherits what was said before; the ranks
+!> two threads that fail at the same instant may both print. A forked process inherits what was said before; the ranks
 !> of MPI are processes of their own.
 module mud_once
    use, intrinsic :: iso_c_binding, only: c_char, c_funloc, c_funptr, c_int, c_size_t
    use, intrinsic :: iso_fortran_env, only: int32
    implicit none (type, external)
    private
-   public :: first_time, speak, remind_at_exit, environment_is, KINDS
+   public :: first_time, write_message, report_at_exit, environment_is, KINDS
 
    integer, parameter :: BITS = 31, WORDS = 700   !< Bits of a word in use (the sign is left alone), and words.
    integer, parameter :: KINDS = WORDS*BITS       !< Sentences are numbered from 0 to KINDS - 1.
@@ -57,18 +57,18 @@ contains
    end function first_time
 
    !> One line on standard error, unless the user has silenced the library. That it cannot be written is no failure.
-   subroutine speak(text)
+   subroutine write_message(text)
       character(*), intent(in) :: text
       integer(c_size_t) :: length
 
       if (environment_is(SILENCER, 'off')) return
       length = len_trim(text) + 1
       length = c_write(STANDARD_ERROR, trim(text)//new_line(text), length)
-   end subroutine speak
+   end subroutine write_message
 
    !> Counts an increment whose refusal the host sees as a NaN alone. The process tells their number when it ends, for a
    !> host that goes on with a NaN ends like one that has computed something: the first sentence is far above its last.
-   subroutine remind_at_exit()
+   subroutine report_at_exit()
       integer(int32) :: number
       integer(c_int) :: code
 
@@ -77,14 +77,14 @@ contains
       told(SPOILED) = told(SPOILED) + 1_int32
       !$omp end atomic
       if (number == 0) code = c_atexit(c_funloc(remind))
-   end subroutine remind_at_exit
+   end subroutine report_at_exit
 
    !> The last sentence of a process.
    subroutine remind() bind(c, name='')
       character(12) :: number
 
       write (number, '(i0)') told(SPOILED)
-      call speak('MUD: at the end of this process: refused increments whose stress was set to NaN: '// &
+      call write_message('MUD: at the end of this process: refused increments whose stress was set to NaN: '// &
                  trim(number)//'. Unless the host has repeated them with smaller ones, its results from the first '// &
                  'of them on (see above) are no results')
    end subroutine remind

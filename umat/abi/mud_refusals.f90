@@ -10,7 +10,7 @@ module mud_refusals
    use mud_kernel, only: report_t
    use mud_kinds, only: wp
    use mud_messages, only: report_text, failure_name, number, MESSAGE_LENGTH
-   use mud_once, only: first_time, speak, remind_at_exit, environment_is
+   use mud_once, only: first_time, write_message, report_at_exit, environment_is
    use mud_registry, only: NPROPS, NSTATV, P_TANGENT
    use mud_save, only: write_increment, PATH_LENGTH
    use mud_status, only: MUD_NULL_ARGUMENT, MUD_NOT_WRITTEN
@@ -54,8 +54,8 @@ contains
          call ask_for_a_cut(report, pnewdt)
       else if (c_associated(stress)) then
          stops = .not. environment_is(KEEP_VARIABLE, 'keep')
-         if (stops) call spoil(stress, integer_at(ntens))
-         if (stops) call remind_at_exit()
+         if (stops) call set_to_nan(stress, integer_at(ntens))
+         if (stops) call report_at_exit()
       end if
       if (c_associated(scd)) then
          call c_f_pointer(scd, code)
@@ -87,14 +87,14 @@ contains
    end subroutine ask_for_a_cut
 
    !> Without PNEWDT a host would continue with the old stress; a NaN stops it.
-   subroutine spoil(stress, ntens)
+   subroutine set_to_nan(stress, ntens)
       type(c_ptr), intent(in) :: stress
       integer, intent(in) :: ntens   !< As the host gives it: it may be what is wrong.
       real(c_double), pointer, contiguous :: components(:)
 
       call c_f_pointer(stress, components, [min(max(ntens, 1), 6)])
       components = transfer(int(z'7FF8000000000000', int64), 1.0_wp)
-   end subroutine spoil
+   end subroutine set_to_nan
 
    pure integer function kind_of(report)
       type(report_t), intent(in) :: report
@@ -119,7 +119,7 @@ contains
       if (report%status == MUD_NULL_ARGUMENT .and. report%index >= 1 .and. report%index <= size(ARGUMENT_NAMES)) then
          text = trim(text)//': '//ARGUMENT_NAMES(report%index)
       end if
-      call speak(trim(text)//consequence//CLOSING)
+      call write_message(trim(text)//consequence//CLOSING)
    end subroutine say_refusal
 
    !> Says that the suction of STATEV was taken instead of PREDEF. In the unit of p_atm, once a process for each
@@ -183,7 +183,8 @@ contains
       character(*), intent(in) :: text
       type(place_t), intent(in) :: place
 
-      call speak('MUD: remark of '//trim(place%door)//' at '//trim(place_text(place))//': '//trim(text)//CLOSING)
+      call write_message('MUD: remark of '//trim(place%door)//' at '//trim(place_text(place))//': '//trim(text)// &
+                         CLOSING)
    end subroutine remark
 
    !> Passes the warning of mud_validate_props on: hosts do not ask for it. Asked where a point begins. PROPS of an
@@ -270,8 +271,8 @@ contains
          character(*), intent(in) :: text
 
          if (first_time(NOT_SAVED)) then
-            call speak('MUD: umat_ could not save a failed increment in the folder that MUD_SAVE_FAILED names: '// &
-                       trim(text)//'. Name a folder that exists, on a disk with room'//CLOSING)
+            call write_message('MUD: umat_ could not save a failed increment in the folder that MUD_SAVE_FAILED '// &
+                               'names: '//trim(text)//'. Name a folder that exists, on a disk with room'//CLOSING)
          end if
       end subroutine remark_on_saving
    end subroutine save_if_asked

@@ -8,7 +8,7 @@ module mud_vumat
    use mud_arguments, only: integer_at, real_at, has_past
    use mud_kernel, only: report_t, output_t, kernel_point, failed_report
    use mud_kinds, only: wp
-   use mud_once, only: environment_is, remind_at_exit
+   use mud_once, only: environment_is, report_at_exit
    use mud_params, only: params_t, read_params, completed, is_length
    use mud_pieces, only: update_in_pieces
    use mud_refusals, only: place_t, say_refusal, remark_on_props, remark_on_pressure, save_if_asked, KEEP_VARIABLE
@@ -79,8 +79,8 @@ contains
          end do
       else
          call say_refusal(failed_report(status), place_t('vumat_'), '. Nothing was computed')
-         if (c_associated(stress_new)) call spoil_first(stress_new, integer_at(nblock))
-         call remind_at_exit()
+         if (c_associated(stress_new)) call set_first_to_nan(stress_new, integer_at(nblock))
+         call report_at_exit()
       end if
       call copy_energy(ener_inelas_old, ener_inelas_new, integer_at(nblock))
 
@@ -212,7 +212,7 @@ contains
       else
          stress = transfer(int(z'7FF8000000000000', int64), 1.0_wp)
          call say_refusal(report, place_t('vumat_'), '. Its stress is NaN, to stop the analysis')
-         call remind_at_exit()
+         call report_at_exit()
       end if
    end subroutine try_in_pieces
 
@@ -245,7 +245,7 @@ contains
    end function read_six
 
    !> The first number of an array of unknown length becomes a NaN.
-   subroutine spoil_first(array, n)
+   subroutine set_first_to_nan(array, n)
       type(c_ptr), intent(in) :: array
       integer, intent(in) :: n   !< Points of the block.
       real(c_double), pointer :: number
@@ -253,7 +253,7 @@ contains
       if (n < 1) return
       call c_f_pointer(array, number)
       number = transfer(int(z'7FF8000000000000', int64), 1.0_wp)
-   end subroutine spoil_first
+   end subroutine set_first_to_nan
 
    !> Inelastic energy is not computed: it stays.
    subroutine copy_energy(old, new, n)

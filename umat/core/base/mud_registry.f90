@@ -119,36 +119,21 @@ module mud_registry
    !> with no room for more (PLAXIS: 50), go on as they are.
    integer, parameter :: NPROPS_WITHOUT_HYSTERESIS = P_HYSTERESIS - 1
 
-   integer, parameter :: S_LAYOUT = 1
-   integer, parameter :: S_VOID_RATIO = 2
-   integer, parameter :: S_SATURATION = 3
-   integer, parameter :: S_SUCTION = 4
-   integer, parameter :: S_STATE_PARAMETER = 5
-   integer, parameter :: S_EPS_Q_P = 6, S_EPS_Q_P_TOTAL = 7
-   integer, parameter :: S_X_BEFORE = 8, S_X_RUNNING = 9
-   integer, parameter :: S_TARGET = 10
-   integer, parameter :: S_INTERRUPTED = 11
-   integer, parameter :: S_OPEN = 12
-   integer, parameter :: S_LAST_STEP = 13
-   integer, parameter :: S_FABRIC = 14
-   integer, parameter :: S_MEMORY = 20, S_MEMORY_BEFORE = 26
-   integer, parameter :: S_DIRECTION = 32
-   integer, parameter :: S_DSIGMA_DPC = 38
-   integer, parameter :: S_DSW_DPC = 44, S_DSW_DEV = 45
-   integer, parameter :: S_N_RATE = 46
-   integer, parameter :: S_N_SUBSTEP = 47
-   integer, parameter :: S_N_REJECT = 48
-   integer, parameter :: S_N_RESET = 49
-   integer, parameter :: S_N_GUARD = 50
-   integer, parameter :: S_N_NO_ROOT = 51
-   integer, parameter :: S_N_MIN_STEP = 52
-   integer, parameter :: S_N_OPEN = 53
-   integer, parameter :: S_N_TENSILE = 54
-   integer, parameter :: S_ELASTIC_DOMAIN = 55
+   ! Places in STATEV, each behind the one before; a tensor takes six.
+   integer, parameter :: S_LAYOUT = 1, S_VOID_RATIO = S_LAYOUT + 1, S_SATURATION = S_VOID_RATIO + 1, &
+      S_SUCTION = S_SATURATION + 1, S_STATE_PARAMETER = S_SUCTION + 1, S_EPS_Q_P = S_STATE_PARAMETER + 1, &
+      S_EPS_Q_P_TOTAL = S_EPS_Q_P + 1, S_X_BEFORE = S_EPS_Q_P_TOTAL + 1, S_X_RUNNING = S_X_BEFORE + 1, &
+      S_TARGET = S_X_RUNNING + 1, S_INTERRUPTED = S_TARGET + 1, S_OPEN = S_INTERRUPTED + 1, S_LAST_STEP = S_OPEN + 1
+   integer, parameter :: S_FABRIC = S_LAST_STEP + 1, S_MEMORY = S_FABRIC + 6, S_MEMORY_BEFORE = S_MEMORY + 6, &
+      S_DIRECTION = S_MEMORY_BEFORE + 6, S_DSIGMA_DPC = S_DIRECTION + 6, S_DSW_DPC = S_DSIGMA_DPC + 6, &
+      S_DSW_DEV = S_DSW_DPC + 1
+   integer, parameter :: S_N_RATE = S_DSW_DEV + 1, S_N_SUBSTEP = S_N_RATE + 1, S_N_REJECT = S_N_SUBSTEP + 1, &
+      S_N_RESET = S_N_REJECT + 1, S_N_GUARD = S_N_RESET + 1, S_N_NO_ROOT = S_N_GUARD + 1, &
+      S_N_MIN_STEP = S_N_NO_ROOT + 1, S_N_OPEN = S_N_MIN_STEP + 1, S_N_TENSILE = S_N_OPEN + 1
+   integer, parameter :: S_ELASTIC_DOMAIN = S_N_TENSILE + 1
    !> Interrupted processes of the rule return_point, the oldest first: memory, direction and target of each.
    integer, parameter :: MAX_INTERRUPTED = 4, ENTRY_SIZE = 13
-   integer, parameter :: S_STACK = 61
-   integer, parameter :: NVARIABLES = 30 + 3*MAX_INTERRUPTED
+   integer, parameter :: S_STACK = S_ELASTIC_DOMAIN + 6
    integer, parameter :: NSTATV = S_STACK - 1 + ENTRY_SIZE*MAX_INTERRUPTED
 
    type(property_t), parameter :: PROPERTIES(NPROPS) = [ &
@@ -257,7 +242,7 @@ module mud_registry
       property_t(P_B_W, 'b_w', 'b_w', '1', KIND_REAL, 1.001_wp, 100.0_wp, 2.9_wp, 'ours', &
          'how flat wetting scanning curves begin; below 1 they would leave the main curves; with hysteresis')]
 
-   type(variable_t), parameter :: VARIABLES(NVARIABLES) = [ &
+   type(variable_t), parameter :: VARIABLES(*) = [ &
       variable_t(S_LAYOUT, 1, 'layout', '-', '1', .false., 'ours', &
          '0: not initialised; otherwise the layout number', 'set to '//achar(iachar('0') + STATE_LAYOUT), 'never'), &
       variable_t(S_VOID_RATIO, 1, 'void_ratio', 'e', '1', .false., 'paper', &
@@ -356,6 +341,7 @@ module mud_registry
          'direction of the interrupted process 4', '0', 'set where the process is interrupted'), &
       variable_t(S_STACK + 51, 1, 'target_4', 'T:n_4', '1', .false., 'ours', &
          'r:direction_4 at which the process 4 goes on', '0', 'set where the process is interrupted')]
+   integer, parameter :: NVARIABLES = size(VARIABLES)
 
    type(option_t), parameter :: OPTIONS(*) = [ &
       option_t(P_MEMORY_RULE, RULE_CLASSIC, 'classic'), &
