@@ -2,7 +2,7 @@
 """Are the estimated errors of given steps the true ones? The scenes of honest.py with the steps that they give, and
 with longer ones, against the same references. Writes given.csv; resumable, a scene whose rows are there is left.
 
-    python3 verification/studies/cost/given.py [SCENE...]     MUD_BUILD_DIR: the build, default build/release
+    verification/run studies/cost --make --only given.py [--pass SCENE...]
 
 References go to build/cost/honest and serve honest.py too. A minute of CPU beside them.
 """
@@ -13,9 +13,8 @@ import sys
 import honest
 import numpy as np
 
-from honest import tables
+from honest import results, tables
 
-TABLE = honest.here / "given.csv"
 NAMES = ("scene", "steps_given", *honest.NAMES[2:])
 # Name in honest.py: what is said of its steps, and changes of the scene.
 SCENES = {
@@ -59,14 +58,15 @@ def scene_rows(name, folder=None):
 
 
 def main(words):
-    have = [tuple(r[n] for n in NAMES) for r in tables.rows(TABLE)] if TABLE.exists() else []
+    table = results.folder(__file__) / "given.csv"
+    have = [tuple(r[n] for n in NAMES) for r in tables.rows(table)] if table.exists() else []
     order = list(SCENES)
     for name in words or order:
         if any(row[0] == name for row in have):
             continue
         have += [tuple(map(str, row)) for row in scene_rows(name)]
         have.sort(key=lambda row: order.index(row[0]))
-        tables.write(TABLE, NAMES, have)
+        tables.write(table, NAMES, have)
         print(name, flush=True)
 
 

@@ -2,7 +2,7 @@
 """Is the estimated error of an answer the true one? Runs scenes and cases with an accuracy, and against what is known:
 a closed form, or given fine steps on the same mesh. Writes honest.csv; resumable, a scene whose rows are there is left.
 
-    python3 verification/studies/cost/honest.py [SCENE...]     MUD_BUILD_DIR: the build, default build/release
+    verification/run studies/cost --make --only honest.py [--pass SCENE...]
 
 References go to build/cost/honest and serve again. Seven CPU minutes.
 """
@@ -20,9 +20,9 @@ here = pathlib.Path(__file__).resolve().parent
 root = here.parents[2]
 sys.path[:0] = [str(root / "common"), str(root / "verification")]
 import tables  # noqa: E402
+from tools import results  # noqa: E402
 
 build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
-TABLE = here / "honest.csv"
 MISSED = 20   # Exit code of mud_host: the accuracy is not met, the results are complete.
 NAMES = ("scene", "accuracy", "steps", "answer", "change", "true_error", "estimated_error", "ratio")
 HOST, HERE = "verification/host/", "verification/studies/cost/scenes/"
@@ -201,14 +201,15 @@ def path_rows(name, accuracies=("3e-2", "1e-3")):
 
 
 def main(words):
-    have = [tuple(r[n] for n in NAMES) for r in tables.rows(TABLE)] if TABLE.exists() else []
+    table = results.folder(__file__) / "honest.csv"
+    have = [tuple(r[n] for n in NAMES) for r in tables.rows(table)] if table.exists() else []
     order = [*SCENES, *PATHS]
     chosen = words or order
     begin, left = time.monotonic(), [n for n in chosen if not any(r[0] == n for r in have)]
     for i, name in enumerate(left):
         have += [tuple(map(str, r)) for r in (scene_rows(name) if name in SCENES else path_rows(name))]
         have.sort(key=lambda r: order.index(r[0]) if r[0] in order else len(order))
-        tables.write(TABLE, NAMES, have)
+        tables.write(table, NAMES, have)
         spent = time.monotonic() - begin
         print(f"{name}: {i + 1} of {len(left)}, {spent:.0f} s, about {spent/(i + 1)*(len(left) - i - 1):.0f} s left",
               flush=True)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What accuracy costs in the indentation: error of every answer against CPU time, rate evaluations, factorisations.
 
-    python3 verification/studies/cost/study.py [PART...]     MUD_BUILD_DIR: the build, default build/release
+    verification/run studies/cost --make --only study.py [--pass PART...]
 
 One contributor at a time from a base, settings together, the paper's settings and accuracies, on a coarse mesh at
 suctions of 30, 0 and 1000 kPa (on the mesh of the benchmark: table_1.py). Writes price.csv; resumable: an
@@ -25,10 +25,10 @@ root = here.parents[2]
 sys.path[:0] = [str(root / "common"), str(root / "verification"), str(root / "verification/studies/indentation")]
 from analysis import change, render, scene  # noqa: E402
 import tables  # noqa: E402
+from tools import results  # noqa: E402
 
 build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
 host = build / "host/mud_host"
-TABLE = here / "price.csv"
 FOLDER = build.parent / "cost/price"
 ANSWERS = ("peak", "peak_time", "p_w", "history")
 NAMES = ("suction", "mesh", "contributor", "setting", "steps", "iterations", "rates", "factorisations", "seconds",
@@ -129,7 +129,8 @@ def errors(found, exact):
 
 
 def main(words):
-    have = [tuple(r[n] for n in NAMES) for r in tables.rows(TABLE)] if TABLE.exists() else []
+    table = results.folder(__file__) / "price.csv"
+    have = [tuple(r[n] for n in NAMES) for r in tables.rows(table)] if table.exists() else []
     left = [a for a in ORDER if (not words or f"{a[0]}{a[1]}" in words)
             and not any(r[:4] == (str(a[0]), a[1], *a[2]) for r in have)]
     begin = time.monotonic()
@@ -144,7 +145,7 @@ def main(words):
             shown = [f"{v:.6g}" for v in found[:3]] + ["0"] if name == OF_ALL else \
                 [f"{e:.2g}" for e in errors(found, exact)]
             have.append((*key, *map(str, counts), f"{seconds:.2f}", *shown))
-        tables.write(TABLE, NAMES, have)
+        tables.write(table, NAMES, have)
         spent = time.monotonic() - begin
         print(f"{suction} kPa, {mesh} mesh, {', '.join(name)}: {seconds:.1f} s; {i + 1} of {len(left)}, about "
               f"{spent/(i + 1)*(len(left) - i - 1):.0f} s left", flush=True)

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: MIT
 """The sixteen analyses of the paper's Table 1 with its settings and with an accuracy, and a fine reference of each.
 
-    python3 verification/studies/cost/table_1.py [--only SETTING] [--table FILE] [ANALYSIS...]
-    MUD_BUILD_DIR: the build, default build/release
+    verification/run studies/cost --make --only table_1.py [--pass ANALYSIS... [--only SETTING]]
 
 One analysis (`s0030_remedy`) after the other: the paper's settings, then the accuracies, so that times which are
-compared are of the same minutes; with `--only reference` the fine steps, which take longer, with `--only 1e-3` the
-finest of the presets. Writes table_1.csv, or the file of `--table`: table_1_later.csv has what was run again after
-rate evaluations were saved. Resumable: a run whose row is there is left. Twenty CPU minutes, and as many for the
-references, one thread. The answers are of the first 30 ms: what follows the separation is chaotic.
+compared are of the same minutes. Without names those at 0, 30 and 1000 kPa with the remedy, and fine steps and 1e-3 at
+30 kPa: five minutes; all sixteen by name take twenty. Writes table_1.csv. Resumable: a run whose row is there is left.
+The answers are of the first 30 ms: what follows the separation is chaotic.
 """
 import os
 import re
@@ -19,15 +17,16 @@ import time
 
 import study
 import tables
+from tools import results
 from analysis import SUCTIONS, change, label, render, scene
 
-TABLE = study.here / "table_1.csv"
 FOLDER = study.build.parent / "cost/table_1"
 SERIES = ("remedy", "as_published")
 ACCURACIES = ("1e-1", "3e-2", "1e-2")
 SETTINGS = ("paper", *ACCURACIES)
 FINEST = "1e-3"
 REFERENCE = "reference"
+NIGHTLY = tuple(f"{label(s, 'u-p_w-p_c')}_remedy" for s in (30, 0, 1000))
 ANALYSES = [(f"{label(s, 'u-p_w-p_c')}_{series}", s, series) for s in SUCTIONS for series in SERIES]
 NAMES = ("name", "setting", "outcome", "steps", "iterations", "rates", "factorisations", "user_s", "wall_s",
          *study.ANSWERS, "largest_mm")
@@ -87,13 +86,12 @@ def main(words):
     if "--only" in words:
         at = words.index("--only")
         settings, words = (words[at + 1],), words[:at] + words[at + 2:]
-    table = TABLE
-    if "--table" in words:
-        at = words.index("--table")
-        table, words = study.here / words[at + 1], words[:at] + words[at + 2:]
+    table = results.folder(__file__) / "table_1.csv"
     have = [tuple(r.get(n, "") for n in NAMES) for r in tables.rows(table)] if table.exists() else []
-    chosen = [a for w in words for a in ANALYSES if a[0] == w] or ANALYSES
-    left = [(*a, s) for a in chosen for s in settings if (a[0], s) not in [r[:2] for r in have]]
+    left = [(*a, s) for a in ANALYSES if a[0] in (words or NIGHTLY) for s in settings]
+    if not words and settings == SETTINGS:
+        left += [(*a, s) for a in ANALYSES if a[0] == NIGHTLY[0] for s in (REFERENCE, FINEST)]
+    left = [(*a, s) for *a, s in left if (a[0], s) not in [r[:2] for r in have]]
     for i, analysis in enumerate(left):
         have.append(run(*analysis))
         have = [completed(r) for r in have]

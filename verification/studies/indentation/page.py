@@ -22,8 +22,8 @@ PAGE = Page(
     seconds=45, quick=3, pictures=("fig2_load.png", "fig3_interface.png", "fig4_errors.png", "fig5_displacement.png",
                                    "sensitivity.png"))
 MAKES = (Script("series.py", ("results/*.csv", "results/histories/*.csv"), 1500),
-         Script("sensitivity.py", ("results/sensitivity.csv",), 1200),
-         Script("settings.py", ("results/settings.csv",), 1060),
+         Script("sensitivity.py", ("results/sensitivity.csv",), 760),
+         Script("settings.py", ("results/settings.csv",), 530),
          Script("cost.py", ("results/cost.csv",), 600, "valgrind"))
 
 SEATED = Tolerance("the seat is in equilibrium to 1e-8 of all forces; the plate's weight is about 1e-3 of these",

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What the paper leaves open in its indentation benchmark, varied one by one, and what each changes in Table 1.
 
-The standard set at a suction of 30 kPa with and without the remedy, twenty minutes of one core; other suctions (0, 100,
+The standard set at a suction of 30 kPa with and without the remedy, thirteen minutes of one core; other suctions (0, 100,
 1000) by `--suction`, further variations by `--only`. Resumable as series.py is (which must have run before: its
 analyses are what is compared with): `verification/run indentation --make --only sensitivity.py [--pass OPTION ...]`.
 Exit code 1 if the balance of momentum is violated or rows are of another program than the series'.

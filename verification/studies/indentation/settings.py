@@ -3,7 +3,7 @@
 today: how much of the table is reflection, and how much a choice of this program.
 
 `verification/run indentation --make --only settings.py [--pass OPTION ...]`. A run that was interrupted goes on from its
-checkpoint. Every row of the table is of the same program.
+checkpoint. Suctions 30 and 1000 kPa, 0 and 100 by --suction. Every row of the table is of the same program.
 """
 import sys
 
@@ -37,6 +37,7 @@ SETTINGS = {"fixed": ("fixed sides and base, the paper's settings", lambda group
 
 def arguments():
     parser = analysis.parser_of(__doc__, SUCTIONS, 30)
+    parser.set_defaults(suction=(30, 1000))
     parser.add_argument("--only", nargs="+", choices=list(SETTINGS), default=list(SETTINGS), metavar="NAME")
     return parser.parse_args()
 

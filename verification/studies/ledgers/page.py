@@ -16,7 +16,7 @@ PAGE = Page(
     seconds=15, quick=0, pictures=("ledgers.png",))
 MAKES = (Script("ledgers.py", tuple(f"results/{kind}_{name}.csv" for name in (
     "indentation_0", "indentation_30", "indentation_1000", "terzaghi", "footing", "site")
-    for kind in ("effects", "answers", "methods")) + ("results/runs.csv",), 600),)
+    for kind in ("effects", "answers", "methods")) + ("results/runs.csv",), 400),)
 
 TITLES = {"indentation_0": "indentation, suction 0", "indentation_30": "indentation, suction 30 kPa",
           "indentation_1000": "indentation, suction 1000 kPa", "terzaghi": "Terzaghi's column", "footing": "dry footing",
