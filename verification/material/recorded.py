@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Pages that state what the published parameter set gives: measured values are kept in results.csv with the commit that made them."""
+"""Pages that state what the published parameter set gives: measured values are kept in results.csv."""
 import math
 import os
 import pathlib
-import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -28,10 +27,9 @@ def make(script):
     page = runner.load(str(folder.relative_to(HERE.parent)))
     made = results.folder(script)
     measured = page.measure(Bench(folder, os.environ.get("MUD_BUILD_DIR") or ROOT / "build/release", made / "scratch"))
-    commit = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=folder, capture_output=True, text=True).stdout.strip()
     tables.write(made / "results.csv", ("quantity", "column", "value"),
                  [(quantity, column, f"{value:.5g}") for (quantity, column), value in measured.items()],
-                 [f"made by make_results.py at commit {commit or 'unknown'}"])
+                 ["made by make_results.py"])
 
 
 def read(bench):
