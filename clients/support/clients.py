@@ -87,14 +87,17 @@ def saturation(suction, void_ratio):
     return answer.value
 
 
-def expected(case, **numbers):
+def expected(case, stages=(), **numbers):
     """Columns of a case of clients/cases, by the mud_triax of the day: a row for every increment. numbers: for the
-    words that stand between @ in the case."""
+    words that stand between @ in the case; stages: end and increment of axial strain of drained ones, for @stages@."""
     folder = work_folder("expected")
     out, program = folder / f"{case}.csv", build / "drivers/mud_triax"
     text = (root / f"clients/cases/{case}.nml").read_text().replace("../../drivers", str(root / "drivers"))
     for name, value in numbers.items():
         text = text.replace(f"@{name}@", repr(value))
+    text = text.replace("@stages@", "".join(
+        f"&stage\n   control = 'drained'\n   eps_a_end = {end!r}\n   increment = {increment!r}\n/\n"
+        for end, increment in stages))
     file = folder / f"{case}.nml"
     file.write_text(text)
     subprocess.run([program, file, "--output", out, "--quiet"], check=True, timeout=60)
@@ -125,6 +128,35 @@ def triaxial(name):
     rows = json.loads((folder / "stresses.json").read_text()) if code == 0 else []
     wanted = [[-a, -r] for a, r in zip(table["sigma_a"], table["sigma_r"])][1:]
     compare("triaxial, drained, unloaded and reloaded", [row[:2] for row in rows], wanted)
+
+
+# A column of ground with weight [m, kN/m3, -, kPa]: what ground.py of a client is given.
+GROUND = {"height": 4.0, "weight": 9.81*2.65/1.8, "k_0": 0.5, "surcharge": 10.0, "added": 40.0, "steps": 20}
+
+
+def ground(told):
+    """What ground.py of a client told of its column (None: it failed): nothing happens in the first step, and the
+    horizontal stress of a point then follows the vertical one as in mud_triax from the same K_0 stress."""
+    if told is None:
+        verdict(False, "ground under K_0 stress", "the program failed")
+        return
+    first, last = told["first"], told["last"]
+    verdict(first["iterations"] == 1 and first["moved"] <= 1e-8, "ground under K_0 stress rests in one iteration",
+            f"{first['iterations']} iterations, displacement {first['moved']:.1e} m")
+    (horizontal, vertical), (end, above) = first["stress"], last["stress"]
+    table = expected("ground", sigma_a=-vertical, sigma_r=-horizontal, sigma_a_end=-above)
+    compare("and its horizontal stress follows the surcharge as in mud_triax", [[end]], [[-table["sigma_r"][-1]]], 2e-4)
+
+
+def start(name):
+    """clients/NAME/ground.py in an own environment."""
+    here, folder = root / "clients" / name, work_folder(name)
+    (folder / "ground.json").write_text(json.dumps(GROUND))
+    (folder / "rested.json").unlink(missing_ok=True)
+    python = venv(name, (here / "requirements.txt").read_text().split())
+    code = run([python, here / "ground.py", "ground.json", "rested.json"], folder / "ground.log", cwd=folder,
+               timeout=600, env={**os.environ, **python_package, "OMP_NUM_THREADS": "1"})
+    ground(json.loads((folder / "rested.json").read_text()) if code == 0 else None)
 
 
 def work_folder(name):

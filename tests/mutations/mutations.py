@@ -180,7 +180,7 @@ MUTATIONS = [
      (DRIVING, "driving%exit = changes_of_exit", "driving%exit = 0.0_wp*changes_of_exit")),
     # kinks of suction, and the step control
     ("suction passes zero inside a substep", (PHASES, "cut_t(CUT_NO_SUCTION, -inc%p_c0/inc%d_pc)", "cut_t(CUT_NO_SUCTION, 0.0_wp*inc%p_c0)")),
-    ("the third order is never taken", (ORDER, "if (share*h >= rest) then", "if (share*h >= -rest) then")),
+    ("the third order is never taken", (ORDER, "if (share*h*(1.0_wp + LAST_SLIVER) >= rest) then", "if (share*h >= -rest) then")),
     ("kinks are allowed what smooth substeps are", (ERROR_CONTROL, "ACROSS_KINK = 0.3_wp", "ACROSS_KINK = 1.0_wp")),
     # tables
     ("two parameters swapped", (PARAMS, "params%n_b = props(P_N_B)", "params%n_b = props(P_N_D)")),

@@ -19,12 +19,15 @@ module mud_order
    use mud_linearise, only: linearised_t
    implicit none (type, external)
    private
-   public :: choose_stepping, choose_order, second_share, next_size
+   public :: choose_stepping, choose_order, second_share, next_size, LAST_SLIVER
 
    !> A substep is linearly implicit where the stiff direction would relax by more than this in it, as a rate: explicit
    !> pairs are unstable from 2 to 3.3 on. It remains so down to less [-].
    real(wp), parameter :: STIFF = 1.5_wp, NO_LONGER_STIFF = 0.7_wp
    type(tensors_t), parameter :: REST = tensors_t(0.0_wp, ZERO_TENSORS)
+   !> A rest of this share joins the substep before it. A size that should be the whole rest may miss it by rounding,
+   !> which must not choose the order [-].
+   real(wp), parameter :: LAST_SLIVER = 1.0e-9_wp
    real(wp), parameter :: FEW_SUBSTEPS = 4.0_wp   !< So many more are explicit even where they are stiff [-].
 contains
    !> Makes the coming substep linearly implicit where stability alone would keep explicit ones short. Only the scheme
@@ -59,7 +62,7 @@ contains
       type(trial_t), intent(in) :: trial
 
       if (par%scheme /= SCHEME_AUTOMATIC .or. trial%relaxation%speed > 0.0_wp) return
-      if (share*h >= rest) then
+      if (share*h*(1.0_wp + LAST_SLIVER) >= rest) then
          if (inc%scheme%order /= SECOND_ORDER%order) inc%scheme = SECOND_ORDER
       else if (.not. inc%scheme%first_same_as_last) then
          inc%scheme = THIRD_ORDER

@@ -11,7 +11,7 @@ module mud_substepping
    use mud_increment, only: increment_t, void_ratio_at, suction_at, direction_at
    use mud_integration, only: integration_t, record
    use mud_landing, only: EVENT_TOLERANCE
-   use mud_order, only: choose_stepping, choose_order, second_share, next_size
+   use mud_order, only: choose_stepping, choose_order, second_share, next_size, LAST_SLIVER
    use mud_params, only: params_t
    use mud_registry, only: RULE_AS_PUBLISHED, SCHEME_AUTOMATIC
    use mud_state, only: state_t
@@ -43,7 +43,6 @@ module mud_substepping
    real(wp), parameter :: SHARP = 1.0e-3_wp
    !> First substep where the domain turns, share of its radius: a divisor of few round increments [-].
    real(wp), parameter :: TURN_PIECE = 0.7_wp
-   real(wp), parameter :: LAST_SLIVER = 1.0e-9_wp            !< A rest of this share joins the substep before it [-].
 contains
    !> Integrates the phase of it%inc. Its end moves by end_shift along the directions of the derivatives [-]. Errors in
    !> it%status: MUD_TOO_MANY_SUBSTEPS, MUD_MINIMUM_STEP, MUD_NOT_FINITE, MUD_NO_DIRECTION; the state is then that of
