@@ -82,7 +82,10 @@ contains
             if (log%iterations == 1) log%first_error = log%error
             norm = norm2(pack(rhs, .not. constraint%fixed))
             ! A step that is driven by prescribed values alone begins with a residual that is almost zero.
-            if (log%iterations == 1) norm_0 = max(norm_0, norm, ROUNDING*norm2(assembly%scale))
+            if (log%iterations == 1) then
+               log%balanced = max(norm_0, norm) <= rounding_in(scheme%kind)*norm2(assembly%scale)
+               norm_0 = max(norm_0, norm, ROUNDING*norm2(assembly%scale))
+            end if
             log%reduction = norm/max(norm_0, tiny(1.0_wp))
             if (good_enough(control, log)) exit
             call look_for_stagnation(control, log)
