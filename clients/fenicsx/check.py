@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""FEniCSx, PETSc and MPI: points against mud_triax, ranks, restart, multigrid, a metre, a strip against mud_host.
+"""FEniCSx, PETSc and MPI: points against mud_triax, ranks, restart, multigrid, a metre, ground under K_0 stress, a strip
+against mud_host.
 
 Writes the numbers of the runs to results.json in its work folder."""
 import csv
@@ -92,6 +93,11 @@ for name, settlement, cut in (("metre", 1.0, False), ("metre_and_a_half", 1.5, T
         clients.verdict(bool(both and deep) and both["cuts"] == deep["cuts"], "two ranks cut the same steps",
                         f"{both and both['cuts']}, {deep and deep['cuts']} cuts")
         close("and give the loads of one", both, deep, RANKS)
+
+# The start: ground with weight under K_0 stress.
+path = folder / "given.json"
+path.write_text(json.dumps(clients.GROUND))
+clients.ground(program("ground", "ground.py", path))
 
 
 def graded(x):

@@ -56,8 +56,9 @@ def voigt_strain(v):
 class Problem:
     """Fields, points and equations; boundary values and loads come from the caller, see `step`."""
 
-    def __init__(self, mesh, material, stress, void_ratio, water=Water(), control=Control(), drained=False):
-        self.mesh, self.material, self.control, self.drained = mesh, material, control, drained
+    def __init__(self, mesh, material, stress, void_ratio, water=Water(), control=Control()):
+        """stress: at the start of every point, one for all or a function of places (points, 3)."""
+        self.mesh, self.material, self.control = mesh, material, control
         self.comm, self.time = mesh.comm, 0.0
         cell, self.dimension = mesh.ufl_cell(), mesh.geometry.dim
         self.V = fem.FunctionSpace(mesh, ufl.VectorElement("Lagrange", cell, 2))
@@ -87,7 +88,10 @@ class Problem:
         self.tangent_field, self.tangent_rows = quadrature(36)
         self.strain = fem.Expression(voigt_strain(self.u - self.u0), points)
         self.owned = np.arange(self.cells, dtype=np.int32)
-        begun = self.material.init_batch(np.tile(np.array(stress, float), (n, 1)), void_ratio=np.full(n, void_ratio))
+        x = ufl.SpatialCoordinate(self.mesh)
+        self.places = fem.Expression(x, points).eval(self.owned).reshape(n, -1)
+        begin = stress(self.places) if callable(stress) else np.tile(np.array(stress, float), (n, 1))
+        begun = self.material.init_batch(begin, void_ratio=np.full(n, void_ratio))
         self.stress0, self.state0 = begun.stress, begun.statev
         self.stress1, self.state1 = self.stress0.copy(), self.state0.copy()
         self.tangent = np.zeros((n, 6, 6))
@@ -256,7 +260,7 @@ class Problem:
             else:
                 raise NotConverged("line search")
             force = max(force, self._force())
-            if norm <= control.tolerance*force and iteration > 1:
+            if norm <= control.tolerance*force:
                 return iteration
         raise NotConverged(f"{control.iterations} iterations")
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""ngsolve: drained compression, unloading and reloading in three dimensions against mud_triax."""
+"""ngsolve: drained compression, unloading and reloading against mud_triax; ground under K_0 stress."""
 import clients
 
 clients.triaxial("ngsolve")
+clients.start("ngsolve")
 clients.finish()

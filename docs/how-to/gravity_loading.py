@@ -2,8 +2,9 @@
 """Prints how much the answer of ground depends on how its stress at the start came about.
 
 usage: gravity_loading.py BUILD_FOLDER
-Default sand under a vertical effective stress of 100 kPa, with the void ratio that plastic loading from 0.75 leaves: a
-point by mud_triax, and a strip of 2 m on ground without weight under a surcharge by mud_host.
+Default sand of void ratio 0.75, or what plastic loading leaves of it: a point under a vertical effective stress of 100
+kPa by mud_triax, and a strip of 2 m on 5 m of ground with weight under a surcharge of 10 kPa by mud_host, where
+gravity_history switches the weight on.
 """
 import pathlib
 import subprocess
@@ -15,6 +16,7 @@ from tables import numbers  # noqa: E402
 
 build = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "build/release").resolve()
 VERTICAL, SMALL = 100.0, 1.0   # [kPa]
+SURCHARGE, DEPTH, WEIGHT = 10.0, 5.0, 9.81*2.65/1.75   # of the strip [kPa, m, kN/m3]
 TESTS = ("control = 'k0'\n   sigma_a_end = 150\n   increment = 0.5",
          "control = 'k0'\n   sigma_a_end = 50\n   increment = 0.5",
          "control = 'undrained'\n   eps_a_end = {:.15g}")
@@ -24,6 +26,8 @@ STRIP = """&scene
    name = 'strip'
    geometry = 'plane_strain'
    fields = 'u'
+   gravity = 9.81
+   gravity_history = 'weight'
 /
 &mesh
    r = 0, 1, 6
@@ -39,11 +43,10 @@ STRIP = """&scene
    void_ratio = {void_ratio!r}
 /
 &initial
-   stress = 'uniform'
-   sigma = -{horizontal!r}, -{vertical!r}, -{horizontal!r}
+   {stress}
 /
 &history
-   name = 'surcharge'
+   name = 'weight'
    times = 0, 1
    values = {begin!r}, 1
 /
@@ -62,7 +65,7 @@ STRIP = """&scene
    name = 'strip'
    analysis = 'static'
    duration = 1
-   dt = 0.1
+   dt = 0.05
 /
 &fix
    group = 'left'
@@ -79,13 +82,12 @@ STRIP = """&scene
 &load
    group = 'top'
    kind = 'pressure'
-   value = 100
-   history = 'surcharge'
+   value = {surcharge!r}
 /
 &load
    group = 'top_1'
    kind = 'pressure'
-   value = 200
+   value = 100
    history = 'strip'
 /
 &point
@@ -96,12 +98,16 @@ STRIP = """&scene
 """
 
 
-def strip(folder, void_ratio, horizontal, vertical):
-    """Settlement of the middle of the strip under 200 kPa [mm]; a vertical stress below 100 kPa grows to it first."""
-    plastic = vertical < VERTICAL
+def strip(folder, void_ratio, k_0, plastic):
+    """Settlement of the middle of the strip under 100 kPa [mm]; plastic: the weight is switched on, under the surcharge
+    at K_0, otherwise its stress is given."""
+    if plastic:
+        stress = f"stress = 'uniform'\n   sigma = {-k_0*SURCHARGE!r}, {-SURCHARGE!r}, {-k_0*SURCHARGE!r}"
+    else:
+        stress = f"stress = 'geostatic'\n   surface = 0\n   surcharge = {SURCHARGE!r}\n   k_0 = {k_0!r}"
     (folder / "strip.nml").write_text(STRIP.format(
-        void_ratio=void_ratio, horizontal=horizontal, vertical=vertical, begin=vertical/VERTICAL,
-        step=0.04 if plastic else 1.0))
+        void_ratio=void_ratio, stress=stress, begin=0.0 if plastic else 1.0, step=0.04 if plastic else 1.0,
+        surcharge=SURCHARGE))
     subprocess.run([build / "host/mud_host", "strip.nml", "--output", "strip", "--quiet"], cwd=folder,
                    check=True)
     path = [(row["time"], row["centre.u_z"]) for row in numbers(folder / "strip/histories.csv")]
@@ -130,15 +136,18 @@ with tempfile.TemporaryDirectory() as name:
                f"control = 'k0'\n   sigma_a_end = {VERTICAL}\n   increment = 0.5")
     end = run(folder, *plastic)
     k_0 = end["sigma_r"]/VERTICAL
+    # what plastic loading by the weight leaves of the void ratio at half of the depth of the ground
+    middle = run(folder, f"sigma_a = {SURCHARGE}\n   sigma_r = {k_0*SURCHARGE:.15g}\n   void_ratio = 0.75",
+                 f"control = 'k0'\n   sigma_a_end = {SURCHARGE + 0.5*DEPTH*WEIGHT}\n   increment = 0.5")["e"]
 
     def given(ratio):
         return (f"sigma_a = {VERTICAL}\n   sigma_r = {ratio*VERTICAL:.15g}\n   void_ratio = {end['e']:.15g}",)
 
     print("| stress at the start | K_0 | settlement | sigma_h | q | strip |")
-    for what, ratio, start in (("plastic: vertical stress from 1 to 100 kPa", k_0, plastic),
+    for what, ratio, start in (("plastic: vertical stress from 1 to 100 kPa, weight from 0", k_0, plastic),
                                ("the same stress, given", k_0, given(k_0)),
                                ("elastic, Poisson's ratio 0.3", 0.3/0.7, given(0.3/0.7)),
                                ("given", 0.5, given(0.5)), ("given", 1.0, given(1.0))):
         settlement, horizontal, q = answers(folder, *start)
-        first = (0.75, SMALL, SMALL) if start is plastic else (end["e"], ratio*VERTICAL, VERTICAL)
-        print(f"| {what} | {ratio:.3f} | {settlement:.3f} | {horizontal:.1f} | {q:.1f} | {strip(folder, *first):.1f} |")
+        settled = strip(folder, 0.75 if start is plastic else middle, ratio, start is plastic)
+        print(f"| {what} | {ratio:.3f} | {settlement:.3f} | {horizontal:.1f} | {q:.1f} | {settled:.1f} |", flush=True)
