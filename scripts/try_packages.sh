@@ -3,13 +3,13 @@
 # Makes the Debian packages of a build and uses them in a root folder that has nothing else: programs first, then a C
 # and a Fortran host against the development files. Needs root, debootstrap and a Debian mirror; takes some minutes and
 # 1 GB of a temporary folder. Not part of ./check.
-# usage: scripts/try_packages.sh [BUILD]      (default build/release; MIRROR, by default that of apt, and SUITE from the environment)
+# usage: scripts/try_packages.sh [BUILD]      (default build/release, what the packages hold is built there;
+#        MIRROR, by default that of apt, and SUITE from the environment)
 set -eu
 case ${1:-} in
-   -*) sed -n '3,6s/^# //p' "$0"; exit 0 ;;
+   -*) sed -n '3,7s/^# //p' "$0"; exit 0 ;;
 esac
 source=$(cd "$(dirname "$0")/.." && pwd)
-build=$(cd "${1:-$source/build/release}" && pwd)
 mirror=${MIRROR:-$(apt-get indextargets --format '$(SITE)' 2> /dev/null | head -n 1)}
 suite=${SUITE:-bookworm}
 say() { printf '%s\n' "$*"; }
@@ -17,6 +17,14 @@ refuse() { say "try_packages: $*" >&2; exit 2; }
 [ "$(id -u)" = 0 ] || refuse "chroot needs root"
 [ -n "$mirror" ] || refuse "apt knows no mirror; name one: MIRROR=..."
 command -v debootstrap > /dev/null || refuse "there is no debootstrap (apt install debootstrap)"
+command -v dpkg-shlibdeps > /dev/null || refuse "there is no dpkg-shlibdeps (apt install dpkg-dev)"
+if [ $# -gt 0 ]; then
+   [ -e "$1/CPackConfig.cmake" ] || refuse "$1 is no build folder of MUD: it has no CPackConfig.cmake"
+else
+   bash -c '. "$0/scripts/setup.sh" && configure_and_build release "$0/build/release" --target mud mud_shared mud_triax \
+      mud_describe mud_host' "$source"
+fi
+build=$(cd "${1:-$source/build/release}" && pwd)
 work=$(mktemp -d)
 root=$work/root
 trap 'rm -rf "$work"' EXIT
