@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: MIT
+"""The recipes of conda and Spack ask CMake for what it knows, and for the tools that it needs.
+
+The recipe of Spack is run here by stand-ins for the directives of Spack; scripts/try_recipes builds that of conda.
+"""
+import re
+import sys
+import pathlib
+import types
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from checking import check, finish, root  # noqa: E402
+
+read = lambda name: (root / name).read_text(encoding="utf-8")  # noqa: E731
+OPTIONS = set(re.findall(r"^option\((MUD_\w+) ", read("CMakeLists.txt") + read("common/CMakeLists.txt"), re.MULTILINE))
+CMAKE = re.search(r"cmake_minimum_required\(VERSION ([\d.]+)", read("CMakeLists.txt"))[1]
+PYTHON = re.search(r"sys.version_info < \((\d+), (\d+)\)", read("scripts/python_environment.sh")).groups()
+
+
+class CMakePackage:
+    """What a recipe inherits: definitions for CMake."""
+    chosen = {}
+
+    def define(self, name, value):
+        return name, value
+
+    def define_from_variant(self, name, variant):
+        return name, self.chosen[variant]
+
+
+def spack():
+    """The class of the recipe, and its directives: (name, first argument, the rest)."""
+    told = []
+
+    def directive(name):
+        return lambda first, *more, **named: told.append((name, first, {**dict(enumerate(more)), **named}))
+
+    package = types.ModuleType("spack.package")
+    names = ("version", "variant", "depends_on", "requires", "license")
+    package.__dict__.update({name: directive(name) for name in names}, __all__=list(names))
+    system = types.ModuleType("spack_repo.builtin.build_systems.cmake")
+    system.CMakePackage = CMakePackage
+    modules = {"spack.package": package, system.__name__: system}
+    for name in list(modules):
+        while "." in name:
+            name = name.rpartition(".")[0]
+            modules.setdefault(name, types.ModuleType(name))
+    sys.modules.update(modules)
+    scope = {}
+    exec(compile(read("packaging/spack/package.py"), "package.py", "exec"), scope)
+    return scope["Mud"], told
+
+
+recipe, told = spack()
+variants = {first: more["default"] for name, first, more in told if name == "variant"}
+needs = {first: more for name, first, more in told if name == "depends_on"}
+check("Spack: the recipe is one of CMake, with a version and a licence", issubclass(recipe, CMakePackage) and
+      {"version", "license"} <= {name for name, *_ in told}, told)
+recipe.chosen = variants
+usual = dict(recipe().cmake_args())
+check("Spack: what it defines are options of CMakeLists.txt", set(usual) <= OPTIONS, set(usual) - OPTIONS)
+for variant in variants:
+    recipe.chosen = {**variants, variant: not variants[variant]}
+    changed = [name for name, value in recipe().cmake_args() if value != usual[name]]
+    check(f"Spack: the variant {variant} switches one option", len(changed) == 1, changed)
+unknown = [more["when"] for more in needs.values() if more.get("when", "+host").strip("+~") not in variants]
+check("Spack: what is needed sometimes depends on a variant that there is", not unknown, unknown)
+check("Spack: compilers, CMake and Python are those that the build needs",
+      {"c", "fortran", f"cmake@{CMAKE}:", "python@{}.{}:".format(*PYTHON), "lapack"} <= set(needs), needs)
+# HDF5 and the host need libraries of their own.
+check("Spack: the host brings its sparse solver, HDF5 its Fortran interface",
+      needs["suite-sparse"].get("when") == "+host" and needs["hdf5+fortran"].get("when") == "+hdf5", needs)
+
+text = read("packaging/conda/recipe.yaml")
+defined = dict(re.findall(r"-D(MUD_\w+)=(\w+)", text))
+check("conda: what it defines are options of CMakeLists.txt", defined and set(defined) <= OPTIONS, defined)
+check("conda: CMake and Python are those that the build needs",
+      f"cmake >={CMAKE}" in text and "python >={}.{}".format(*PYTHON) in text, text)
+check("conda: without the host it needs no sparse solver, and without HDF5 none of it",
+      defined["MUD_BUILD_HOST"] == defined["MUD_WITH_HDF5"] == "OFF" and "suitesparse" not in text, text)
+finish()
