@@ -55,7 +55,7 @@ module convergence
       real(wp) :: error(FIELDS) = 0.0_wp, first_error(FIELDS) = 0.0_wp
       real(wp) :: reduction = 0.0_wp          !< |R| over the larger of |R_0| and |R_1|.
       real(wp) :: correction = 0.0_wp         !< |dx|/|x|, the worst field.
-      logical :: balanced = .false.           !< The residual begins and is left with what rounding leaves of the forces.
+      logical :: balanced = .false.           !< The residual begins and ends at the rounding of the forces.
       integer :: worst_field = 0, worst_unknown = 0
       integer :: rate_evaluations = 0                   !< Rate evaluations of the material.
       logical :: refused_guess = .false.      !< The first guess was refused, the step began at the unchanged state.
