@@ -21,10 +21,11 @@ command -v dpkg-shlibdeps > /dev/null || refuse "there is no dpkg-shlibdeps (apt
 if [ $# -gt 0 ]; then
    [ -e "$1/CPackConfig.cmake" ] || refuse "$1 is no build folder of MUD: it has no CPackConfig.cmake"
 else
-   bash -c '. "$0/scripts/setup.sh" && configure_and_build release "$0/build/release" --target mud mud_shared mud_triax \
-      mud_describe mud_host' "$source"
+   bash -c '. "$0/scripts/setup.sh" && configure_and_build release "$0/build/release" --target mud mud_shared mud_single_source \
+      mud_triax mud_describe mud_host' "$source"
 fi
 build=$(cd "${1:-$source/build/release}" && pwd)
+abi=$(sed -n 's/^#define MUD_ABI_VERSION //p' "$source/umat/include/mud.h")
 work=$(mktemp -d)
 root=$work/root
 trap 'rm -rf "$work"' EXIT
@@ -77,8 +78,8 @@ check "the programs install with what they need" install "$(debs mud-programs)"
 check "mud_triax runs a case" inside sh -c "cd /tmp/cases && mud_triax $(basename "$case") --output /tmp/out.csv"
 check "mud_describe reads the installed material" says '^150.0$' mud_describe plain /usr/share/mud/materials/toyoura.nml
 check "mud_host says what it is" says mud_host mud_host --help
-check "the library installs" install "$(debs libmud2)"
-check "ldconfig knows it" says libmud.so.2 ldconfig -p
+check "the library installs" install "$(debs libmud$abi)"
+check "ldconfig knows it" says "libmud.so.$abi" ldconfig -p
 check "the development files install" install "$(debs libmud-dev)" gcc gfortran libc6-dev pkg-config
 check "a C host links and meets the known answer" meets \
    sh -c 'gcc /tmp/minimal_host.c $(pkg-config --cflags --libs mud) -o /tmp/host_c && /tmp/host_c'
@@ -87,6 +88,6 @@ check "a Fortran host links and meets the known answer" meets \
 check "a Fortran host links the archive" meets \
    sh -c 'cd /tmp && gfortran minimal_host.f90 $(pkg-config --cflags mud) $(pkg-config --variable=static_libs mud) -o host_a && ./host_a'
 check "all three packages leave without a trace" inside sh -c \
-   'dpkg --purge libmud-dev libmud2 mud-programs && ! ls /usr/lib/libmud* /usr/bin/mud_* /usr/share/mud 2> /dev/null'
+   "dpkg --purge libmud-dev libmud$abi mud-programs && ! ls /usr/lib/libmud* /usr/bin/mud_* /usr/share/mud 2> /dev/null"
 say "$passed passed, $failed failed"
 [ "$failed" = 0 ]

@@ -19,6 +19,8 @@ import pages  # noqa: E402
 
 HEAVY = "--heavy" in sys.argv
 RUN = ("docs/tutorials/", "docs/how-to/")
+# Of fenced blocks: Pygments knows them; namelists are read as Fortran.
+LANGUAGES = ("console", "c", "cmake", "fortran", "math", "python", "sh", "text", "toml")
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]+")
 # What stands at the beginning of a command, and who prints its options.
 PROGRAMS = {
@@ -154,6 +156,9 @@ rule("links lead to files and headings that there are", [
     for what in pages.broken(name, text, root, anchors_of)])
 rule("commands have options that their programs know", [
     f"{name}: {what}" for name, text in texts.items() for what in unknown_options(text)])
+rule("code is of a language that the site can colour, or of none", [
+    f"{name}, line {block.line}: {block.words[0]}" for name, text in texts.items() for block in pages.blocks(text)
+    if block.words and block.words[0] not in LANGUAGES])
 rule("troubleshooting quotes messages as they are", unsaid(texts["docs/troubleshooting.md"]))
 # The checking builds print the same; their sanitizers have nothing to find in a page.
 if not light:
