@@ -167,12 +167,13 @@ check(
     [sorted({both.items[i].test.kind for i in p.numbers}) for p in fit.parts] == [["retention"], ["drained"]]
     and {v.group for v in fit.parts[0].variables} == {"retention"},
 )
-joint = calibrate(both, Effort(samples=8, starts=2, trial=4, joint=20, members=0), 1, None)
-missed = {m.name: m for m in joint.misfits}
-check("a joint fit meets the retention curve", missed["r"].S_w < 0.01, missed["r"])
+if not light:  # the checking builds have seen a fit
+    joint = calibrate(both, Effort(samples=8, starts=2, trial=4, joint=20, members=0), 1, None)
+    missed = {m.name: m for m in joint.misfits}
+    check("a joint fit meets the retention curve", missed["r"].S_w < 0.01, missed["r"])
 
 # A test whose q is 1.3 times too large is named, and no other; without it nothing is said.
-for factors, names in (({}, []), ({"C": 1.3}, ["C"])):
+for factors, names in (({}, []), ({"C": 1.3}, ["C"]))[light:]:
     one = Effort(samples=1, starts=1, joint=6)
     fit = Fit(make_task("odd", table("odd.csv", factors), start="toyoura", known=known), one, 1, None)
     values = fit.run()
