@@ -29,7 +29,7 @@ MUTATIONS = [
      (TENSOR, "c(6) = a(6)*(a(2) + a(3)) + a(4)*a(5)", "c(5) = a(6)*(a(2) + a(3)) + a(4)*a(5)")),
     ("swap two shear components in rotate()",
      (TENSOR, "full(1, 2), full(1, 3), full(2, 3)]", "full(1, 3), full(1, 2), full(2, 3)]")),
-    ("freeze the fabric", (TRIAL, "dy(7:12) = w%d_z", "dy(7:12) = 0.0_wp*w%d_z")),
+    ("freeze the fabric", (INCREMENT, "dy(7:12) = w%d_z", "dy(7:12) = 0.0_wp*w%d_z")),
     # tensors and elasticity
     ("transpose the rotation",
      (TENSOR, "matmul(r, matmul(full, transpose(r)))", "matmul(transpose(r), matmul(full, r))")),

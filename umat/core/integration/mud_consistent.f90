@@ -19,8 +19,10 @@ module mud_consistent
    use mud_sensitivity, only: changes_of_rate
    use mud_state, only: memory_t
    use mud_substep, only: MAX_STAGES, stage_point, solution
-   use mud_tensor, only: IDENTITY, trace, deviator, tensors_t, ZERO_TENSORS, ANY_TENSORS
-   use mud_trial, only: trial_t, MODE_HELD
+   use mud_tensor, only: IDENTITY, trace, deviator, norm, contracted, tensors_t, ZERO_TENSORS, ANY_TENSORS
+   use mud_transient, only: fading_t, NO_FADING, without_turn, half_way, begin_fading, take_changes_of_fading, &
+      add_changes_of_faded
+   use mud_trial, only: trial_t, stage_of_trial, MODE_HELD
    use mud_elastic_domain, only: turning_t
    use mud_point_changes, only: changes_t
    use mud_linearise, only: linearised_t, linearise
@@ -48,6 +50,7 @@ module mud_consistent
       real(wp) :: interrupted(DIRECTIONS, 6, MAX_INTERRUPTED)
       integer :: settled
       type(driving_t) :: driving
+      type(fading_t) :: fading               !< of what fades of the rates, where that is known
    end type sensitivity_t
 contains
    !> At the start of an increment nothing depends on it yet. docs/theory/integration.md section 5.3.
@@ -90,8 +93,9 @@ contains
       dh = h*sens%stretch
       if (last) dh = end_shift - sens%shift
       ! at the end of the whole increment only the stress is asked for
+      if (trial%transient%known) call change_of_transient(par, inc, trial, sens)
       call through_substep(par, inc, trial, h, sens%at_rest, last .and. inc%to >= 1.0_wp, sens%shift, dh, sens%r_in, &
-                           sens%driving, sens%y)
+                           sens%driving, sens%fading, sens%y)
       sens%at_rest = .false.
       sens%shift = sens%shift + dh
    end subroutine propagate
@@ -109,12 +113,13 @@ contains
       none = 0.0_wp
       one = 1.0_wp
       y = 0.0_wp
-      call through_substep(par, inc, trial, h, .false., .false., none, one, AT_REST%d_strain, AT_REST, y)
+      call through_substep(par, inc, trial, h, .false., .false., none, one, AT_REST%d_strain, AT_REST, &
+                           NO_FADING, y)
       change = y(1, :)
    end subroutine change_with_size
 
    !> Derivatives across a substep: its start moves by `shift` in pseudo-time, its size changes by dh.
-   pure subroutine through_substep(par, inc, trial, h, at_rest, ends, shift, dh, r_in, driving, y)
+   pure subroutine through_substep(par, inc, trial, h, at_rest, ends, shift, dh, r_in, driving, fading, y)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
@@ -123,12 +128,13 @@ contains
       real(wp), intent(in) :: shift(DIRECTIONS), dh(DIRECTIONS)
       type(tensors_t), intent(in) :: r_in
       type(driving_t), intent(in) :: driving
+      type(fading_t), intent(in) :: fading
       real(wp), intent(inout) :: y(DIRECTIONS, NY)
 
       if (trial%mode == MODE_HELD) then
          call through_held(par, inc, trial, h, shift, dh, driving, y)
       else
-         call through_stages(par, inc, trial, h, at_rest, ends, shift, dh, r_in, driving, y)
+         call through_stages(par, inc, trial, h, at_rest, ends, shift, dh, r_in, driving, fading, y)
       end if
    end subroutine through_substep
 
@@ -174,7 +180,7 @@ contains
    end subroutine change_of_place
 
    !> The scheme applied to all directions as one long vector.
-   pure subroutine through_stages(par, inc, trial, h, at_rest, ends, shift, dh, r_in, driving, y1)
+   pure subroutine through_stages(par, inc, trial, h, at_rest, ends, shift, dh, r_in, driving, fading, y1)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
@@ -182,8 +188,10 @@ contains
       type(tensors_t), intent(in) :: r_in
       logical, intent(in) :: at_rest, ends
       type(driving_t), intent(in) :: driving
+      type(fading_t), intent(in) :: fading
       real(wp), intent(inout) :: y1(DIRECTIONS*NY)
-      real(wp) :: rates(DIRECTIONS*NY, MAX_STAGES), y0(DIRECTIONS*NY), y(DIRECTIONS*NY), point(NY)
+      real(wp) :: rates(DIRECTIONS*NY, MAX_STAGES), y0(DIRECTIONS*NY), y(DIRECTIONS*NY), point(NY), time, &
+         dt(DIRECTIONS)
       integer :: i, last
       logical :: moves
 
@@ -193,12 +201,18 @@ contains
       moves = any(abs(dh) > 0.0_wp)
       call change_of_stage(par, inc, trial%mode, trial%w(1), trial%y0, trial%time, at_rest, .false., shift, r_in, &
                            driving, y1, rates(:, 1))
+      if (trial%transient%known) call take_changes_of_fading(trial%transient, fading, trial%time, shift, rates(:, 1))
       call finish_stage(trial, h, 1, moves, dh, rates)
       do i = 2, last
          call stage_point(inc%scheme, i, y1, rates, h, y)
-         call stage_point(inc%scheme, i, trial%y0, trial%rates, h, point)
-         call change_of_stage(par, inc, trial%mode, trial%w(i), point, trial%time + inc%scheme%node(i)*h, .false., &
-                              ends .and. i == last, shift + inc%scheme%node(i)*dh, r_in, driving, y, rates(:, i))
+         call stage_of_trial(inc, i, h, trial, point)
+         time = trial%time + inc%scheme%node(i)*h
+         dt = shift + inc%scheme%node(i)*dh
+         if (trial%transient%known) &
+            call add_changes_of_faded(trial%transient, fading, trial%time, time, shift, dt, y)
+         call change_of_stage(par, inc, trial%mode, trial%w(i), point, time, .false., ends .and. i == last, dt, r_in, &
+                              driving, y, rates(:, i))
+         if (trial%transient%known) call take_changes_of_fading(trial%transient, fading, time, dt, rates(:, i))
          call finish_stage(trial, h, i, moves, dh, rates)
       end do
       if (ends) then
@@ -208,7 +222,32 @@ contains
          y0 = y1
          call solution(inc%scheme, y0, rates, h, y1)
       end if
+      if (trial%transient%known) call add_changes_of_faded(trial%transient, fading, trial%time, trial%time + h, shift, &
+                                                           shift + dh, y1)
    end subroutine through_stages
+
+   !> Derivatives of what fades of the rates from the start of this substep on.
+   pure subroutine change_of_transient(par, inc, trial, sens)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      type(sensitivity_t), intent(inout) :: sens
+      real(wp), dimension(DIRECTIONS, NY) :: now, far, half
+      real(wp) :: speed(DIRECTIONS)
+
+      if (trial%transient%since < trial%time) return
+      speed = contracted(sens%driving%d_strain, inc%d_strain)/(norm(inc%d_strain)*inc%rho)
+      associate (transient => trial%transient, at_rest => sens%at_rest, shift => sens%shift)
+         call change_of_stage(par, inc, MODE_ORDINARY, trial%w(1), trial%y0, trial%time, at_rest, .false., shift, &
+                              sens%r_in, sens%driving, sens%y, now)
+         call change_of_stage(par, without_turn(inc), MODE_ORDINARY, transient%far, trial%y0, trial%time, at_rest, &
+                              .false., shift, sens%r_in, sens%driving, sens%y, far)
+         call change_of_stage(par, inc, MODE_ORDINARY, transient%half, trial%y0, half_way(transient), at_rest, &
+                              .false., shift - ((half_way(transient) - trial%time)/transient%speed)*speed, sens%r_in, &
+                              sens%driving, sens%y, half)
+         call begin_fading(now, far, half, speed, shift, sens%fading)
+      end associate
+   end subroutine change_of_transient
 
    !> What its size, which changes by dh, and the stiff direction add to stage i.
    pure subroutine finish_stage(trial, h, i, moves, dh, rates)

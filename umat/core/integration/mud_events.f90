@@ -4,7 +4,7 @@ module mud_events
    use mud_error_control, only: changes_root
    use mud_event_functions, only: event_function, rate_at_end, place_of, EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, &
       EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, EVENT_MECHANISM, EVENT_TURN
-   use mud_increment, only: increment_t, rate_of, NY
+   use mud_increment, only: increment_t, rate_of, store_rate, NY
    use mud_kinds, only: wp
    use mud_landing, only: land_on, EVENT_TOLERANCE
    use mud_params, only: params_t
@@ -15,7 +15,7 @@ module mud_events
    use mud_state, only: memory_t, counters_t
    use mud_substep, only: LARGEST_FACTOR, cubic_point
    use mud_tensor, only: trace
-   use mud_trial, only: trial_t, take_step, store_rate, MODE_HELD
+   use mud_trial, only: trial_t, take_step, MODE_HELD
    implicit none (type, external)
    private
    public :: stop_at_event, note_turning_point

@@ -15,7 +15,7 @@ module mud_increment
    implicit none (type, external)
    private
    public :: increment_t, new_increment, take_phase, end_in_domain, direction_at, void_ratio_at, suction_at, rate_of, &
-             loading_strain, changes_of_loading_strain, turning_of, has_aside, NY, SHORTEST_PHASE
+             store_rate, loading_strain, changes_of_loading_strain, turning_of, has_aside, NY, SHORTEST_PHASE
 
    integer, parameter :: NY = 13         !< Length of the integrated vector: sigma'(6), z(6), plastic shear.
    !> A strain across the elastic domain, whose part along nu is rounding of either sign, does not load: it would look
@@ -69,6 +69,16 @@ contains
       if (w%iso_kept) counters%iso_kept = counters%iso_kept + 1
       if (w%no_root) counters%no_root = counters%no_root + 1
    end subroutine rate_of
+
+   !> A rate as one of the integrated vector. sigma' [kPa], z and plastic shear [-], per unit of pseudo-time.
+   pure subroutine store_rate(w, dy)
+      type(rate_t), intent(in) :: w
+      real(wp), intent(out) :: dy(NY)
+
+      dy(1:6) = w%d_sigma
+      dy(7:12) = w%d_z
+      dy(13) = w%d_eps_q
+   end subroutine store_rate
 
    !> True if a part of the strain is elastic: all of it inside the elastic domain, some where that is pulled.
    !> docs/theory/memory-rules.md section 4.1.

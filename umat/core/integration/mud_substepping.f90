@@ -15,10 +15,13 @@ module mud_substepping
    use mud_params, only: params_t
    use mud_registry, only: RULE_AS_PUBLISHED, SCHEME_AUTOMATIC
    use mud_state, only: state_t
+   use mud_substep, only: THIRD_ORDER
    use mud_status, only: fail, MUD_OK, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, MUD_NOT_FINITE, &
       ON_STRESS
+   use mud_rates, only: MODE_ORDINARY
    use mud_tensor, only: ddot, norm, is_finite, all_finite
    use mud_trace, only: SUBSTEP_REJECTED, SUBSTEP_ACCEPTED, SUBSTEP_FAILED
+   use mud_transient, only: find_transient
    use mud_transitions, only: begin_phase, begin_substep, accept_substep, rate_is_known
    use mud_trial, only: take_step, error_norm
    implicit none (type, external)
@@ -41,8 +44,10 @@ module mud_substepping
    !> From this on, some degrees, a turn of the domain is followed by the higher order: it is a transient that modified
    !> Euler pays for with many substeps, and whose errors add up along turning paths [-].
    real(wp), parameter :: SHARP = 1.0e-3_wp
-   !> First substep where the domain turns, share of its radius: a divisor of few round increments [-].
-   real(wp), parameter :: TURN_PIECE = 0.7_wp
+   !> First substep where the domain turns sharply, share of its radius: a divisor of few round increments. Those of
+   !> third order are longer, in inverse proportion to the angle, below NARROW, the root of 1 minus its cosine:
+   !> what the fading parts of the rates leave is of the angle's third power [-].
+   real(wp), parameter :: TURN_PIECE = 0.7_wp, NARROW = 0.12_wp
 contains
    !> Integrates the phase of it%inc. Its end moves by end_shift along the directions of the derivatives [-]. Errors in
    !> it%status: MUD_TOO_MANY_SUBSTEPS, MUD_MINIMUM_STEP, MUD_NOT_FINITE, MUD_NO_DIRECTION; the state is then that of
@@ -108,6 +113,12 @@ contains
          call choose_order(par, rest, step%h, merge(0.0_wp, step%share, step%turns), it%inc, it%trial)
          h = step%h
          if (h*(1.0_wp + LAST_SLIVER) >= rest) h = rest
+         if (it%trial%relaxation%speed > 0.0_wp) then
+            it%trial%transient%known = .false.
+         else if (it%trial%mode == MODE_ORDINARY .and. it%inc%scheme%order > 2) then
+            call find_transient(par, it%inc, it%trial%time, h, it%trial%y0, it%trial%r_in, it%trial%w(1), &
+                                it%trial%transient, it%counters)
+         end if
          call take_step(par, it%inc, h, it%trial, it%counters)
          step%error = error_norm(par, it%inc%scheme, it%trial, h)
          if (.not. all_finite(it%trial%y) .or. .not. is_finite(step%error)) then
@@ -159,7 +170,8 @@ contains
       type(params_t), intent(in) :: par
       type(integration_t), intent(in) :: it
       type(stepping_t) :: step
-      real(wp) :: length, turn, share, pieces
+      real(wp) :: length, turn, share, pieces, piece
+      logical :: fades
 
       length = it%inc%to - it%inc%from
       turn = turn_of(it%inc)
@@ -173,8 +185,11 @@ contains
       ! an elastic phase goes in one step if it can, and leaves the remembered step to the next plastic one
       if (it%state%last_step > 0.0_wp .and. .not. it%inc%inside) step%h = min(step%h, it%state%last_step/it%size)
       ! a whole number of pieces, so that a small change of the strain does not change their size
-      if (turn > ALIGNED) then
-         pieces = real(ceiling(min(length*norm(it%inc%d_strain)/(TURN_PIECE*it%inc%rho), 1.0e6_wp)), wp)
+      fades = par%scheme == SCHEME_AUTOMATIC .or. it%inc%scheme%order == THIRD_ORDER%order
+      if (turn > merge(SHARP, ALIGNED, fades)) then
+         piece = TURN_PIECE*it%inc%rho
+         if (fades) piece = piece*max(NARROW/sqrt(turn), 1.0_wp)
+         pieces = real(ceiling(min(length*norm(it%inc%d_strain)/piece, 1.0e6_wp)), wp)
          step%h = min(step%h, length/(share*pieces))
       end if
    end function first_step

@@ -34,6 +34,8 @@ contains
       it%event = EVENT_NONE
       it%trial%pressed = .false.
       it%trial%relaxation%speed = 0.0_wp
+      it%trial%transient%sought = .false.
+      it%trial%transient%known = .false.
       it%trial%openings = 0
    end subroutine begin_phase
 
@@ -84,6 +86,10 @@ contains
          if (trace(it%state%sigma) <= 3.0_wp*par%p_min*(1.0_wp + AT_LIMIT)) then
             call try_to_close(par, r, it)
          end if
+      end if
+      if (it%jump /= JUMP_NONE .or. it%trial%mode /= MODE_ORDINARY) then
+         it%trial%transient%sought = .false.
+         it%trial%transient%known = .false.
       end if
    end subroutine begin_substep
 

@@ -3,16 +3,17 @@
 module mud_trial
    use mud_kinds, only: wp
    use mud_cutoff, only: slide
-   use mud_increment, only: increment_t, rate_of, NY
+   use mud_increment, only: increment_t, rate_of, store_rate, NY
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_relaxation, only: relaxation_t, relax
    use mud_state, only: counters_t, interrupted_t
    use mud_substep, only: scheme_t, MAX_STAGES, stage_point, solution, error_vector
    use mud_tensor, only: IDENTITY, deviator, norm
+   use mud_transient, only: transient_t, take_fading, add_faded
    implicit none (type, external)
    private
-   public :: trial_t, take_step, error_norm, store_rate, MODE_HELD
+   public :: trial_t, take_step, stage_of_trial, error_norm, MODE_HELD
 
    integer, parameter :: MODE_HELD = 2   !< A substep held at p_min by the tension cut-off; see MODE_* of mud_rates.
    real(wp), parameter :: PLASTIC_SHEAR_SCALE = 0.01_wp   !< Of the error norm [-].
@@ -32,6 +33,7 @@ module mud_trial
       logical :: advanced           !< The present process has had (r - r_in):n > 0: a reversal would end it.
       integer :: openings           !< How often p' has fallen to p_min in this increment or phase.
       type(relaxation_t) :: relaxation   !< Its stiff direction, of speed 0 where the substep is explicit.
+      type(transient_t) :: transient     !< What fades of its rates; not of those in w.
       real(wp) :: held_error        !< Error of a held substep's stress ratio [-].
       integer :: watched            !< The interrupted process whose target is looked for, 0: none.
       type(interrupted_t) :: process   !< That process.
@@ -54,16 +56,34 @@ contains
          return
       end if
       call store_rate(trial%w(1), trial%rates(:, 1))
+      if (trial%transient%known) call take_fading(trial%transient, trial%time, trial%rates(:, 1))
       if (trial%relaxation%speed > 0.0_wp) call relax(trial%relaxation, h, trial%rates(:, 1:1))
       do i = 2, inc%scheme%stages
-         call stage_point(inc%scheme, i, trial%y0, trial%rates, h, y)
+         call stage_of_trial(inc, i, h, trial, y)
          call rate_of(par, inc, trial%time + inc%scheme%node(i)*h, y, trial%r_in, trial%mode, trial%w(i), &
                       counters, trial%w(1))
          call store_rate(trial%w(i), trial%rates(:, i))
+         if (trial%transient%known) &
+            call take_fading(trial%transient, trial%time + inc%scheme%node(i)*h, trial%rates(:, i))
          if (trial%relaxation%speed > 0.0_wp) call relax(trial%relaxation, h, trial%rates(:, 1:i))
       end do
       call solution(inc%scheme, trial%y0, trial%rates, h, trial%y)
+      if (trial%transient%known) call add_faded(trial%transient, trial%time, trial%time + h, trial%y)
    end subroutine take_step
+
+   !> Where stage i of a trial substep h stands. h is a share of inc [-], y as in trial_t. docs/theory/integration.md
+   !> sections 2 and 2.2.
+   pure subroutine stage_of_trial(inc, i, h, trial, y)
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: i
+      real(wp), intent(in) :: h
+      type(trial_t), intent(in) :: trial
+      real(wp), intent(out) :: y(NY)
+
+      call stage_point(inc%scheme, i, trial%y0, trial%rates, h, y)
+      if (trial%transient%known) &
+         call add_faded(trial%transient, trial%time, trial%time + inc%scheme%node(i)*h, y)
+   end subroutine stage_of_trial
 
    !> A substep at p_min: two half steps, the error against the whole one.
    pure subroutine hold(par, inc, h, trial)
@@ -81,16 +101,6 @@ contains
       trial%y(1:6) = par%p_min*(half + IDENTITY)
       trial%held_error = norm(half - whole)
    end subroutine hold
-
-   !> A rate as one of the integrated vector. sigma' [kPa], z and plastic shear [-], per unit of pseudo-time.
-   pure subroutine store_rate(w, dy)
-      type(rate_t), intent(in) :: w
-      real(wp), intent(out) :: dy(NY)
-
-      dy(1:6) = w%d_sigma
-      dy(7:12) = w%d_z
-      dy(13) = w%d_eps_q
-   end subroutine store_rate
 
    !> Relative error of a trial substep; the void ratio is exact. A held point's is that of its stress, p_min times its
    !> stress ratio. [-]; h is the size of the trial, a share of its increment. docs/theory/integration.md section 3.

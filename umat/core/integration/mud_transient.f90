@@ -1,0 +1,188 @@
+! SPDX-License-Identifier: MIT
+!> What the turn of the elastic domain adds to the rates: two parts that fade as exp(-k t) and exp(-2 k t), k = |a|/rho,
+!> faster than anything else changes. A pair integrates what is left of the rates, the parts are integrated exactly.
+!> Whatever the parts are, the order of the pair stays; docs/theory/integration.md section 2.2.
+module mud_transient
+   use mud_increment, only: increment_t, rate_of, store_rate, direction_at, has_aside, NY
+   use mud_kinds, only: wp
+   use mud_params, only: params_t
+   use mud_rate, only: rate_t
+   use mud_rates, only: MODE_ORDINARY
+   use mud_state, only: counters_t
+   use mud_tensor, only: LANES, ddot, norm
+   implicit none (type, external)
+   private
+   public :: transient_t, fading_t, NO_FADING, find_transient, without_turn, half_way, begin_fading, &
+             take_fading, add_faded, take_changes_of_fading, add_changes_of_faded
+
+   !> Rates that fade, per unit of pseudo-time.
+   type :: transient_t
+      logical :: sought = .false.   !< They were looked for ...
+      logical :: known = .false.    !< ... and found.
+      real(wp) :: since             !< Pseudo-time from which they fade [-].
+      real(wp) :: speed             !< k [-]
+      real(wp) :: parts(NY, 2)
+      type(rate_t) :: far, half     !< Rates from the same start without the turn, and half-way through it.
+   end type transient_t
+
+   !> Their changes along the directions of a derivative.
+   type :: fading_t
+      real(wp) :: parts(LANES, NY, 2), speed(LANES), since(LANES)
+   end type fading_t
+   type(fading_t), parameter :: NO_FADING = fading_t(0.0_wp, 0.0_wp, 0.0_wp)
+
+   real(wp), parameter :: LN_2 = log(2.0_wp)   !< k t at which the first part has fallen to a half [-].
+   !> Shorter attempts, as shares of the radius, follow the turn as it is, and so does a last piece that ends before the
+   !> turn is half-way [-].
+   real(wp), parameter :: LONG = 0.3_wp
+   !> A turn is followed, too, where the strain across the way of an attempt would move the stress by less than this
+   !> share or the tolerance [-].
+   real(wp), parameter :: NOTABLE = 1.0e-5_wp
+   !> 1 minus the cosine of the angle, 60 degrees, beyond which two parts do not describe the turn [-].
+   real(wp), parameter :: LARGEST = 0.5_wp
+contains
+   !> Looks for the parts at the start of an attempt h that is ordinary, from its first rate. They are not looked for
+   !> where the turn hardly moves the stress. time and h are shares of inc [-].
+   !> docs/theory/integration.md section 2.2.
+   pure subroutine find_transient(par, inc, time, h, y0, r_in, first, transient, counters)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time, h, y0(NY), r_in(6)
+      type(rate_t), intent(in) :: first
+      type(transient_t), intent(inout) :: transient
+      type(counters_t), intent(inout) :: counters
+      real(wp) :: length, cosine, now(NY), far(NY), half(NY)
+
+      if (transient%sought .or. .not. has_aside(inc, MODE_ORDINARY) .or. .not. first%loading) return
+      length = norm(inc%d_strain)
+      if (length*h < LONG*inc%rho .or. length*(inc%to - time) < LN_2*inc%rho) return
+      cosine = ddot(direction_at(inc, time), inc%d_strain)/length
+      if (1.0_wp - cosine > LARGEST) return
+      if (2.0_wp*first%g*(length*h)*sqrt(max(1.0_wp - cosine**2, 0.0_wp)) &
+          < max(par%tolerance, NOTABLE)*norm(y0(1:6))) return
+      transient%sought = .true.
+      transient%since = time
+      transient%speed = length/inc%rho
+      call rate_of(par, without_turn(inc), time, y0, r_in, MODE_ORDINARY, transient%far, counters, first)
+      call rate_of(par, inc, half_way(transient), y0, r_in, MODE_ORDINARY, transient%half, counters, first)
+      transient%known = transient%far%loading .and. transient%half%loading
+      call store_rate(first, now)
+      call store_rate(transient%far, far)
+      call store_rate(transient%half, half)
+      call split(now, far, half, transient%parts(:, 1), transient%parts(:, 2))
+   end subroutine find_transient
+
+   !> The increment whose whole strain loads.
+   pure function without_turn(inc) result(straight)
+      type(increment_t), intent(in) :: inc
+      type(increment_t) :: straight
+
+      straight = inc
+      straight%rho = 0.0_wp
+   end function without_turn
+
+   !> The pseudo-time half-way through the turn [-].
+   pure real(wp) function half_way(transient)
+      type(transient_t), intent(in) :: transient
+
+      half_way = transient%since + LN_2/transient%speed
+   end function half_way
+
+   !> Both parts from what rates are now, when the turn is over, and half-way: those of a polynomial in exp(-k t).
+   pure elemental subroutine split(now, far, half, first, second)
+      real(wp), intent(in) :: now, far, half
+      real(wp), intent(out) :: first, second
+
+      second = 2.0_wp*(now + far - 2.0_wp*half)
+      first = now - far - second
+   end subroutine split
+
+   !> Changes of the parts from those of the three rates; k changes by speed, the time from which they fade by since.
+   !> Derivative of docs/theory/integration.md section 2.2.
+   pure subroutine begin_fading(now, far, half, speed, since, fading)
+      real(wp), intent(in), dimension(LANES, NY) :: now, far, half
+      real(wp), intent(in), dimension(LANES) :: speed, since
+      type(fading_t), intent(inout) :: fading
+
+      call split(now, far, half, fading%parts(:, :, 1), fading%parts(:, :, 2))
+      fading%speed = speed
+      fading%since = since
+   end subroutine begin_fading
+
+   !> Takes from a rate at a pseudo-time [-] what fades of it. rate as the integrated vector, per unit of pseudo-time.
+   !> docs/theory/integration.md section 2.2.
+   pure subroutine take_fading(transient, time, rate)
+      type(transient_t), intent(in) :: transient
+      real(wp), intent(in) :: time
+      real(wp), intent(inout) :: rate(NY)
+      real(wp) :: left
+
+      left = exp(-transient%speed*(time - transient%since))
+      rate = rate - left*(transient%parts(:, 1) + left*transient%parts(:, 2))
+   end subroutine take_fading
+
+   !> Adds to a vector what fades between two pseudo-times [-]. y as the integrated vector.
+   !> docs/theory/integration.md section 2.2.
+   pure subroutine add_faded(transient, from, to, y)
+      type(transient_t), intent(in) :: transient
+      real(wp), intent(in) :: from, to
+      real(wp), intent(inout) :: y(NY)
+      real(wp) :: before, after
+
+      before = exp(-transient%speed*(from - transient%since))
+      after = exp(-transient%speed*(to - transient%since))
+      y = y + ((before - after)/transient%speed) &
+          *(transient%parts(:, 1) + (0.5_wp*(before + after))*transient%parts(:, 2))
+   end subroutine add_faded
+
+   !> Changes of a rate, of which what fades is taken; its pseudo-time changes by dt. Arguments as in take_fading;
+   !> derivative of docs/theory/integration.md section 2.2.
+   pure subroutine take_changes_of_fading(transient, fading, time, dt, rate)
+      type(transient_t), intent(in) :: transient
+      type(fading_t), intent(in) :: fading
+      real(wp), intent(in) :: time, dt(LANES)
+      real(wp), intent(inout) :: rate(LANES, NY)
+      real(wp) :: left, d_left(LANES)
+      integer :: i
+
+      call change_of_left(transient, fading, time, dt, left, d_left)
+      do i = 1, NY
+         rate(:, i) = rate(:, i) - left*(fading%parts(:, i, 1) + left*fading%parts(:, i, 2)) &
+                      - d_left*(transient%parts(i, 1) + 2.0_wp*left*transient%parts(i, 2))
+      end do
+   end subroutine take_changes_of_fading
+
+   !> Changes of a vector to which what fades is added; both pseudo-times change. Arguments as in add_faded; derivative
+   !> of docs/theory/integration.md section 2.2.
+   pure subroutine add_changes_of_faded(transient, fading, from, to, d_from, d_to, y)
+      type(transient_t), intent(in) :: transient
+      type(fading_t), intent(in) :: fading
+      real(wp), intent(in) :: from, to, d_from(LANES), d_to(LANES)
+      real(wp), intent(inout) :: y(LANES, NY)
+      real(wp) :: before, after, first, second
+      real(wp), dimension(LANES) :: d_before, d_after, d_first, d_second
+      integer :: i
+
+      call change_of_left(transient, fading, from, d_from, before, d_before)
+      call change_of_left(transient, fading, to, d_to, after, d_after)
+      first = (before - after)/transient%speed
+      second = 0.5_wp*(before + after)*first
+      d_first = (d_before - d_after - first*fading%speed)/transient%speed
+      d_second = (before*d_before - after*d_after - second*fading%speed)/transient%speed
+      do i = 1, NY
+         y(:, i) = y(:, i) + first*fading%parts(:, i, 1) + second*fading%parts(:, i, 2) &
+                   + d_first*transient%parts(i, 1) + d_second*transient%parts(i, 2)
+      end do
+   end subroutine add_changes_of_faded
+
+   !> What is left of the first part at a pseudo-time that changes by dt, and its change [-].
+   pure subroutine change_of_left(transient, fading, time, dt, left, change)
+      type(transient_t), intent(in) :: transient
+      type(fading_t), intent(in) :: fading
+      real(wp), intent(in) :: time, dt(LANES)
+      real(wp), intent(out) :: left, change(LANES)
+
+      left = exp(-transient%speed*(time - transient%since))
+      change = -left*((time - transient%since)*fading%speed + transient%speed*(dt - fading%since))
+   end subroutine change_of_left
+end module mud_transient
