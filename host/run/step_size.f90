@@ -28,7 +28,8 @@ module step_size
    real(wp), parameter :: PRESSURE_SHARE = 0.3_wp !< The same of pressures in dynamic stages, of the accuracy: they
                                                   !< follow every impact and fade; three such steps use it up.
    real(wp), parameter :: PRESSURE_BUDGET = 2.0_wp   !< Times the accuracy that impacts may leave at a point in all.
-   real(wp), parameter :: PRESSURE_RESERVE = 0.2_wp  !< Share that a step is allowed when they have left that.
+   real(wp), parameter :: PRESSURE_RESERVE = 0.2_wp  !< Share that a step is allowed when they have left that,
+   real(wp), parameter :: PRESSURE_END = 2.95_wp     !< until they have left so much: less than what ends a run.
    real(wp), parameter :: PEAK = 1.57_wp          !< Of a sine over the mean of its magnitude.
    real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Share of its change by which the second step after a sudden load
                                                   !< is in error, since flow begins with the root of time.
@@ -65,6 +66,8 @@ contains
          if (.not. stage%controlled) return
          c%controller = new_controller(first_step(model, stage, run))
          c%start_up = START_UP_STEPS*c%controller%dt
+         ! What moves already and meets something errs in the first step as in any later one.
+         if (stage%kind == DYNAMIC .and. any(abs(run%state%v(:DISPLACEMENTS, :)) > 0.0_wp)) c%start_up = 0.0_wp
       end associate
    end subroutine begin_control
 
@@ -75,11 +78,13 @@ contains
       type(run_t), intent(in) :: run
       real(wp) :: span
 
-      if (stage%dt > 0.0_wp) then
+      span = next_time(model, stage, run, stage%duration) - run%state%time
+      ! Nothing tells of the error of the first step of a flow: that of the scene may be shorter than what the accuracy
+      ! asks for, or the whole stage, not between.
+      if (stage%dt > 0.0_wp .and. .not. (stage%kind == QUASI_STATIC .and. stage%dt < span)) then
          dt = min(stage%dt, stage%dt_max)
          return
       end if
-      span = next_time(model, stage, run, stage%duration) - run%state%time
       select case (stage%kind)
       case (STATIC)
          ! The answer of a material with a memory depends on the way there; nothing tells of the error of a single step.
@@ -94,6 +99,7 @@ contains
          ! Nothing is there yet to compare its error with, and what it leaves is carried on by the soil's memory.
          dt = span*FIRST_SHARE*sqrt(stage%accuracy)
       end select
+      if (stage%dt > 0.0_wp) dt = min(dt, stage%dt)
       dt = min(dt, stage%dt_max)
    end function first_step
 
@@ -337,7 +343,7 @@ contains
          if (stage%kind == DYNAMIC) allowed(:DISPLACEMENTS) = max(allowed(:DISPLACEMENTS), &
                                                                   GROWTH*added_share(run, bodies))
          ratios = norm/(allowed*scales(run, bodies))
-         ratios = max(ratios, ratios_of_points(model, stage, run, error, share, bodies))
+         ratios = max(ratios, ratios_of_points(model, stage, run, error, share, dt/elapsed, bodies))
          if (stage%kind == DYNAMIC) ratios(AT_U_Z) = max(ratios(AT_U_Z), ratio_of_plates(model, stage, dt, run, error, &
             changes)/allowed(AT_U_Z))
          ratios = ratios/(stage%accuracy*max(1.0_wp, c%start_up/elapsed)**2)
@@ -372,11 +378,12 @@ contains
 
    !> Errors at the named points over what is allowed of their own changes, the worst of every field; 1: allowed is the
    !> whole change. No less is asked for than that of a point that changes by a share of its field.
-   pure function ratios_of_points(model, stage, run, error, share, bodies) result(ratios)
+   pure function ratios_of_points(model, stage, run, error, share, fading, bodies) result(ratios)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: error(:, :), share(:)   !< (FIELDS, nodes) [m, kPa]; (FIELDS) of the accuracy.
+      real(wp), intent(in) :: fading   !< Share of earlier errors of pressures that fades in the step [-].
       integer, intent(in) :: bodies
       real(wp) :: ratios(FIELDS), before(FIELDS), now(FIELDS), least(FIELDS), allowed
       integer :: i, f
@@ -393,8 +400,8 @@ contains
                   allowed = share(f)
                   if (stage%kind == DYNAMIC) then
                      if (f > DISPLACEMENTS) then
-                        allowed = allowed*max(PRESSURE_RESERVE, &
-                           1 - abs(c%point_gathered(f, i))/(PRESSURE_BUDGET*stage%accuracy*now(f)))
+                        allowed = max(fading, allowed*pressure_left(abs(c%point_gathered(f, i)) &
+                                                                    /(stage%accuracy*now(f))))
                      else
                         allowed = max(allowed, GROWTH*(1 - before(f)/now(f)))
                      end if
@@ -405,6 +412,14 @@ contains
          end do
       end associate
    end function ratios_of_points
+
+   !> What impacts that have left errors of a pressure, `used` times the accuracy, leave to a step: less as they use the
+   !> budget up, then a reserve, and nothing where the promise of the accuracy would be broken.
+   pure real(wp) function pressure_left(used) result(left)
+      real(wp), intent(in) :: used   !< [-]
+
+      left = max(1 - used/PRESSURE_BUDGET, PRESSURE_RESERVE*min(1.0_wp, 10*(PRESSURE_END - used)), 0.0_wp)
+   end function pressure_left
 
    !> Changes of the fields at a point; of a displacement the larger one of its components. 0 before the first step.
    pure function ranges(low, high)
