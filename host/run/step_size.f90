@@ -28,8 +28,8 @@ module step_size
    real(wp), parameter :: PRESSURE_SHARE = 0.3_wp !< The same of pressures in dynamic stages, of the accuracy: they
                                                   !< follow every impact and fade; three such steps use it up.
    real(wp), parameter :: PRESSURE_BUDGET = 2.0_wp   !< Times the accuracy that impacts may leave at a point in all.
-   real(wp), parameter :: PRESSURE_RESERVE = 0.2_wp  !< Share that a step is allowed when they have left that,
-   real(wp), parameter :: PRESSURE_END = 2.95_wp     !< until they have left so much: less than what ends a run.
+   real(wp), parameter :: PRESSURE_RESERVE = 0.2_wp  !< Share that a step is allowed when they have left that.
+   real(wp), parameter :: PRESSURE_END = 2.95_wp     !< Times the accuracy at which that share ends, below 3.
    real(wp), parameter :: PEAK = 1.57_wp          !< Of a sine over the mean of its magnitude.
    real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Share of its change by which the second step after a sudden load
                                                   !< is in error, since flow begins with the root of time.
