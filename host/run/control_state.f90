@@ -36,6 +36,7 @@ module control_state
       real(wp) :: dissipated_0 = 0.0_wp          !< By damping and seepage where the stage began [kJ].
       real(wp) :: motion = 0.0_wp                !< Kinetic energy over the time of the stage [kJ s].
       real(wp), allocatable :: touching(:)       !< 1: the contact was closed at the start of the step, else 0.
+      logical :: located = .false.               !< The attempt before was repeated to end where a contact closes.
       ! Of the fields at the named points, (FIELDS, points).
       real(wp), allocatable :: low(:, :), high(:, :), point_gathered(:, :), point_largest(:, :)
       real(wp), allocatable :: x_first(:, :)     !< Unknowns at the start of the stage.

@@ -214,12 +214,15 @@ contains
       if (stage%kind == DYNAMIC) touching = closed_contacts(run, run%next%x)
       changes = any(abs(touching - run%control%touching) > 0.5_wp)
       accepted = .true.
+      if (stage%controlled .and. any(touching > run%control%touching)) accepted = ends_at_closing(stage, dt, run)
+      if (.not. accepted) return
       if (stage%controlled) call weigh_error(model, stage, dt, elapsed, error, norm, known, changes, run, accepted)
       if (.not. accepted) then
          if (any(touching > run%control%touching)) call end_where_it_closes(dt, run)
          return
       end if
       run%control%touching = touching
+      run%control%located = .false.
       associate (c => run%control, change => field_norms(run%next%x(:, :bodies) - run%state%x(:, :bodies)))
          if (.not. (known(AT_U_R) .or. stage%kind == QUASI_STATIC .and. c%fresh == 1) .and. depends_on_path(model)) &
             c%unseen(:DISPLACEMENTS) = c%unseen(:DISPLACEMENTS) + change(:DISPLACEMENTS)
@@ -246,6 +249,23 @@ contains
          end associate
       end do
    end function closed_contacts
+
+   !> Whether a step in which a contact closes ends there, or has been repeated so that it should. If not, the next
+   !> attempt does: what meets within a step leaves no error of its own size in it, since it is hardly stopped.
+   logical function ends_at_closing(stage, dt, run) result(ends)
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: dt   !< That was tried [s].
+      type(run_t), intent(inout) :: run
+
+      associate (c => run%control)
+         ends = c%located .or. dt <= SHORTEST*stage%duration
+         if (ends) return
+         call end_where_it_closes(dt, run)
+         ends = c%controller%dt >= dt*(1 - LAST_STEP)
+         c%located = .not. ends
+         if (.not. ends) c%rejected = c%rejected + 1
+      end associate
+   end function ends_at_closing
 
    !> The next attempt ends where a contact closes, which is looked for along the motion that keeps its accelerations:
    !> exact for bodies in free flight. Where that motion closes none the step stays as its error asks for.
