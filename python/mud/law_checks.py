@@ -503,7 +503,7 @@ def cycles(law: Law, at: Setting, count: int = 20) -> list[Finding]:
 def oscillation(law: Law, at: Setting) -> list[Finding]:
     """A straight path, and the same path that goes back by a hundredth of an increment after every increment."""
     path = straight(at)
-    shaken, zigzag = [], [d for d in path for d in (1.01 * d, -0.01 * d)]
+    zigzag = [part for d in path for part in (1.01 * d, -0.01 * d)]
     plain = way(law, begin(law, at), path)
     shaken = way(law, begin(law, at), zigzag)
     change = norm(plain[-1].stress - at.stress) + _EPS
