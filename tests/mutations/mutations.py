@@ -161,14 +161,13 @@ MUTATIONS = [
     ("growth right after a rejection", (SUBSTEP, "factor = min(factor, 1.0_wp)", "factor = min(factor, 2.0_wp)")),
     # tension cut-off
     ("p' is not held at the opening",
-     (EVENTS, "if (trace(trial%y(1:6)) < 3.0_wp*par%p_min) then", "if (trace(trial%y(1:6)) < -huge(1.0_wp)) then")),
+     (CUTOFF, "trace(sigma) < 3.0_wp*par%p_min", "trace(sigma) < -huge(1.0_wp)")),
     ("the place of a jump is found like that of other events",
      (LANDING, "width = JUMP_SHARE*h/max(error, 1.0_wp)", "width = 0.0_wp*h/max(error, 1.0_wp)")),
     ("closing remembers the gap", (TRANSITIONS, "it%state%memory = new_memory(r)", "it%state%memory%depth = it%state%memory%depth")),
     ("open stress ratio beyond the bounding surface", (BOUNDING, "if (beyond > 0.0_wp) r_limited", "if (beyond > 1.0e9_wp) r_limited")),
     ("an open point never closes",
-     (TRANSITIONS, "closing_rate(it%inc, it%trial, it%trial%w(1)) <= 0.0_wp",
-      "closing_rate(it%inc, it%trial, it%trial%w(1)) <= huge(1.0_wp)")),
+     (CUTOFF, "closing_rate(inc, openings, w) <= 0.0_wp", "closing_rate(inc, openings, w) <= huge(1.0_wp)")),
     ("tension is not reported", (POINT, "if (has_tension(state1%sigma)) counters%tensile = 1", "continue")),
     # elastic domain
     ("the elastic domain forgets the strain inside",

@@ -2,7 +2,7 @@
 !> Tangent blocks of an update that are not carried through its substeps: elastic, and continuum by the last rate.
 module mud_blocks
    use mud_kinds, only: wp
-   use mud_cutoff, only: slides, held_rate
+   use mud_cutoff, only: held_tangent, MODE_HELD
    use mud_elastic, only: bulk_modulus, shear_modulus, elastic_tangent
    use mud_increment, only: increment_t, has_aside, direction_at
    use mud_params, only: params_t
@@ -10,8 +10,8 @@ module mud_blocks
    use mud_rates, only: stress_ratio, MODE_ELASTIC
    use mud_state, only: state_t
    use mud_tangent, only: continuum_tangent
-   use mud_tensor, only: SHEAR_WEIGHT, deviator, outer_add
-   use mud_trial, only: trial_t, MODE_HELD
+   use mud_tensor, only: SHEAR_WEIGHT, outer_add
+   use mud_trial, only: trial_t
    implicit none (type, external)
    private
    public :: blocks_t, elastic_blocks, continuum_blocks
@@ -48,7 +48,7 @@ contains
       type(blocks_t), intent(inout) :: blocks
 
       if (trial%mode == MODE_HELD) then
-         call held_tangent(par, inc, state, blocks)
+         call held_tangent(par, inc, state%sigma, state%e, state%p_c, blocks%dsig_deps, blocks%dsig_dpc)
          return
       end if
       call continuum_tangent(par, trial%w(inc%scheme%stages), blocks%dsig_deps, blocks%dsig_dpc)
@@ -73,25 +73,4 @@ contains
       c = elastic
       call outer_add(along, nu, c)
    end subroutine project
-
-   !> Tangent of a point held by the tension cut-off: p' rests, the stress ratio moves.
-   pure subroutine held_tangent(par, inc, state, blocks)
-      type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
-      type(state_t), intent(in) :: state
-      type(blocks_t), intent(inout) :: blocks
-      real(wp) :: unit(6), r(6)
-      integer :: j
-      logical :: sliding
-
-      r = deviator(state%sigma)/par%p_min
-      sliding = slides(par, inc%bonded, state%e, state%p_c, r, inc%d_strain, inc%d_pc)
-      do j = 1, 6
-         unit = 0.0_wp
-         unit(j) = merge(1.0_wp, 0.5_wp, j <= 3)
-         blocks%dsig_deps(:, j) = par%p_min*held_rate(par, inc%bonded, state%e, state%p_c, r, sliding, unit, 0.0_wp)
-      end do
-      unit = 0.0_wp
-      blocks%dsig_dpc = par%p_min*held_rate(par, inc%bonded, state%e, state%p_c, r, sliding, unit, 1.0_wp)
-   end subroutine held_tangent
 end module mud_blocks

@@ -7,12 +7,12 @@
 module mud_consistent
    use mud_kinds, only: wp
    use mud_loading, only: loading_t
-   use mud_cutoff, only: slide, change_of_slide
-   use mud_driving, only: driving_t, whole_increment, DIRECTIONS, AT_REST
+   use mud_cutoff, only: changes_through_hold, MODE_HELD
+   use mud_driving, only: driving_t, whole_increment, change_of_place, DIRECTIONS, AT_REST
    use mud_increment, only: increment_t, void_ratio_at, suction_at, changes_of_loading_strain, turning_of, NY
    use mud_params, only: params_t
    use mud_rate, only: rate_t
-   use mud_rates, only: stress_ratio, MODE_ORDINARY
+   use mud_rates, only: stress_ratio, p_follows, MODE_ORDINARY
    use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, MAX_INTERRUPTED
    use mud_relaxation, only: relax
    use mud_reversal, only: interrupted_share
@@ -22,7 +22,7 @@ module mud_consistent
    use mud_tensor, only: IDENTITY, trace, deviator, norm, contracted, tensors_t, ZERO_TENSORS, ANY_TENSORS
    use mud_transient, only: fading_t, NO_FADING, without_turn, half_way, begin_fading, take_changes_of_fading, &
       add_changes_of_faded
-   use mud_trial, only: trial_t, stage_of_trial, MODE_HELD
+   use mud_trial, only: trial_t, stage_of_trial
    use mud_elastic_domain, only: turning_t
    use mud_point_changes, only: changes_t
    use mud_linearise, only: linearised_t, linearise
@@ -132,52 +132,11 @@ contains
       real(wp), intent(inout) :: y(DIRECTIONS, NY)
 
       if (trial%mode == MODE_HELD) then
-         call through_held(par, inc, trial, h, shift, dh, driving, y)
+         call changes_through_hold(par, inc, trial%y0(1:6), trial%time, h, shift, dh, driving, y)
       else
          call through_stages(par, inc, trial, h, at_rest, ends, shift, dh, r_in, driving, fading, y)
       end if
    end subroutine through_substep
-
-   !> Derivatives of the stress ratio of a held point, whose p' rests: two half steps.
-   pure subroutine through_held(par, inc, trial, h, shift, dh, driving, y)
-      type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
-      type(trial_t), intent(in) :: trial
-      real(wp), intent(in) :: h, shift(DIRECTIONS), dh(DIRECTIONS)
-      type(driving_t), intent(in) :: driving
-      real(wp), intent(inout) :: y(DIRECTIONS, NY)
-      real(wp), dimension(DIRECTIONS) :: de_half, dp_c_half, de, dp_c, offset
-      real(wp) :: r0(6), r_half(6), dr(6), strain(6), half, middle
-      integer :: j
-
-      half = 0.5_wp*h
-      middle = trial%time + half
-      r0 = deviator(trial%y0(1:6))/par%p_min
-      r_half = slide(par, inc, r0, trial%time, half)
-      call change_of_place(inc, middle, void_ratio_at(inc, middle), shift + 0.5_wp*dh, driving, de_half, dp_c_half)
-      call change_of_place(inc, trial%time + h, void_ratio_at(inc, trial%time + h), shift + dh, driving, de, dp_c)
-      offset = 0.0_wp
-      if (driving%scans) offset = driving%offset
-      do j = 1, DIRECTIONS
-         strain = driving%d_strain%of(j, :) + (dh(j)/h)*inc%d_strain
-         dr = y(j, 1:6)
-         dr = change_of_slide(par, inc, r0, trial%time, half, deviator(dr)/par%p_min, strain, de_half(j), &
-                              dp_c_half(j), offset(j))
-         y(j, 1:6) = par%p_min*change_of_slide(par, inc, r_half, middle, half, dr, strain, de(j), dp_c(j), &
-                                               offset(j))
-      end do
-   end subroutine through_held
-
-   !> Derivatives of void ratio and suction at a pseudo-time that itself changes by dt.
-   pure subroutine change_of_place(inc, time, e, dt, driving, de, dp_c)
-      type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: time, e, dt(DIRECTIONS)   !< e: void ratio there
-      type(driving_t), intent(in) :: driving
-      real(wp), dimension(DIRECTIONS), intent(out) :: de, dp_c
-
-      de = -(1.0_wp + e)*(time*driving%d_v + inc%d_v*dt)
-      dp_c = time*driving%d_pc + inc%d_pc*dt
-   end subroutine change_of_place
 
    !> The scheme applied to all directions as one long vector.
    pure subroutine through_stages(par, inc, trial, h, at_rest, ends, shift, dh, r_in, driving, fading, y1)
@@ -360,7 +319,7 @@ contains
       mean = (y(:, 1) + y(:, 2) + y(:, 3))/3.0_wp
       do i = 1, 6
          dr(:, i) = (y(:, i) - IDENTITY(i)*mean)/p
-         if (trace(sigma) >= 3.0_wp*par%p_min) dr(:, i) = dr(:, i) - (r(i)/p)*mean
+         if (p_follows(par, sigma)) dr(:, i) = dr(:, i) - (r(i)/p)*mean
       end do
    end function changes_of_ratio
 

@@ -8,7 +8,7 @@ module mud_driving
    use mud_tensor, only: DIRECTIONS => LANES, tensors_t, ZERO_TENSORS, ANY_TENSORS, strain_directions
    implicit none (type, external)
    private
-   public :: driving_t, whole_increment, change_of_zero_suction, change_of_turn, DIRECTIONS, AT_REST
+   public :: driving_t, whole_increment, change_of_place, change_of_zero_suction, change_of_turn, DIRECTIONS, AT_REST
 
    !> Derivatives of what drives the increment along six engineering strains and the suction at the end of the
    !> increment, side by side. The eighth direction is idle: along it nothing changes.
@@ -49,6 +49,17 @@ contains
       end do
       driving%from_centre%kind = ANY_TENSORS
    end subroutine whole_increment
+
+   !> Derivatives of void ratio [-] and suction at a pseudo-time that itself changes by dt [-].
+   pure subroutine change_of_place(inc, time, e, dt, driving, de, dp_c)
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time, e, dt(DIRECTIONS)   !< e: void ratio there
+      type(driving_t), intent(in) :: driving
+      real(wp), dimension(DIRECTIONS), intent(out) :: de, dp_c
+
+      de = -(1.0_wp + e)*(time*driving%d_v + inc%d_v*dt)
+      dp_c = time*driving%d_pc + inc%d_pc*dt
+   end subroutine change_of_place
 
    !> Changes of the pseudo-time at which suction passes zero [-]. inc%d_pc is not 0, which is not checked.
    !> docs/theory/integration.md section 1.

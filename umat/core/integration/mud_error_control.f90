@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Which error of a substep is allowed, and the size of the next attempt; docs/theory/integration.md sections 3, 3.1.
 module mud_error_control
+   use mud_cutoff, only: MODE_HELD
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
    use mud_params, only: params_t
@@ -8,7 +9,7 @@ module mud_error_control
    use mud_rates, only: MODE_ORDINARY
    use mud_registry, only: RULE_AS_PUBLISHED, SCHEME_AUTOMATIC
    use mud_substep, only: step_factor, THIRD_ORDER, SAFETY, SMALLEST_FACTOR, LARGEST_FACTOR
-   use mud_trial, only: trial_t, MODE_HELD
+   use mud_trial, only: trial_t
    implicit none (type, external)
    private
    public :: control_t, judge_attempt, proposal, changes_root, STRICTNESS

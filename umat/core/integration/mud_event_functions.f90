@@ -4,19 +4,18 @@ module mud_event_functions
    use mud_kinds, only: wp
    use mud_bounding, only: psi_of, excess
    use mud_critical_state, only: bounding_ratio
-   use mud_elastic, only: bulk_slope
+   use mud_cutoff, only: rate_without_past, height, closing_function
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, NY
    use mud_params, only: params_t
    use mud_rate, only: rate_t
-   use mud_rates, only: stress_ratio, MODE_ORDINARY, MODE_ELASTIC
+   use mud_rates, only: stress_ratio
    use mud_return_point, only: place_t, place_at, forwardness, beyond_target
    use mud_state, only: counters_t
-   use mud_tensor, only: ddot, trace, norm, deviator
+   use mud_tensor, only: ddot, norm, deviator
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
-   public :: event_function, rate_at_end, rate_without_past, place_of, elastic_rate, closing_mode, closing_rate, &
-             change_of_closing_rate, psi_at, LARGEST_EXCESS
+   public :: event_function, rate_at_end, place_of, elastic_rate, psi_at, LARGEST_EXCESS
    public :: EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, EVENT_MECHANISM, &
              EVENT_TURN
 
@@ -29,13 +28,6 @@ module mud_event_functions
    integer, parameter :: EVENT_MECHANISM = 6  !< The isotropic mechanism begins or ends to act while suction changes.
    integer, parameter :: EVENT_TURN = 7       !< A process ceases to go forwards; its substep goes on.
 
-   !> An open point closes when p' would rise by this share of the elastic rate: opening and closing at the same rate
-   !> would chatter where the two pull the stress ratio to opposite sides [-].
-   real(wp), parameter :: CLOSING = 0.01_wp
-   !> Each time a point opens again in the same increment the share is that many times larger, up to a limit: where
-   !> the rate without a past rises and that of the process that follows falls, it would open and close at every turn
-   !> [-].
-   real(wp), parameter :: CLOSING_GROWTH = 4.0_wp, LARGEST_CLOSING = 0.32_wp
    !> At a low stress an elastic strain of rho_e may be more than the whole strength: r may exceed the bounding surface
    !> by this share. Softening sand is some per cent beyond it and must be able to return where it came from [-].
    real(wp), parameter :: LARGEST_EXCESS = 0.2_wp
@@ -64,20 +56,6 @@ contains
       end select
    end subroutine rate_at_end
 
-   !> The rate of a held point that closes: without a past. time is a share of inc [-], y as for rate_of.
-   !> docs/theory/material.md section 6.3.
-   pure subroutine rate_without_past(par, inc, time, y, w, counters)
-      type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: time, y(NY)
-      type(rate_t), intent(inout) :: w
-      type(counters_t), intent(inout) :: counters
-      real(wp) :: p, r(6)
-
-      call stress_ratio(par, y(1:6), p, r)
-      call rate_of(par, inc, time, y, r, closing_mode(inc), w, counters)
-   end subroutine rate_without_past
-
    !> Function of an event, dimensionless, negative beyond it. time is a share of inc [-]; y and w are state and rate
    !> there, w only for the events that rate_at_end knows. docs/theory/integration.md section 4.2.
    pure real(wp) function event_function(par, inc, event, trial, time, y, w) result(f)
@@ -91,7 +69,7 @@ contains
 
       select case (event)
       case (EVENT_OPENS)
-         f = trace(y(1:6))/(3.0_wp*par%p_min) - 1.0_wp
+         f = height(par, y(1:6))
       case (EVENT_BOUNDS)
          call stress_ratio(par, y(1:6), p, r)
          f = allowed_excess(par, inc, trial) - excess(par, psi_at(par, inc, time, p), r)
@@ -105,7 +83,7 @@ contains
          call stress_ratio(par, y(1:6), p, r)
          f = -beyond_target(par, trial%process, r, bounding_ratio(par, psi_at(par, inc, time, p)))
       case default
-         f = -closing_rate(inc, trial, w)/(w%k*norm(inc%d_strain) + abs(inc%d_pc))
+         f = closing_function(inc, trial%openings, w)
       end select
    end function event_function
 
@@ -138,46 +116,6 @@ contains
 
       t = (2.0_wp*w%g)*deviator(inc%d_strain) - (w%k*inc%d_v)*r
    end function elastic_rate
-
-   !> How a held point would go on if it closed: inside the elastic domain without plastic dilatancy. One of
-   !> MODE_ORDINARY and MODE_ELASTIC.
-   pure integer function closing_mode(inc)
-      type(increment_t), intent(in) :: inc
-
-      closing_mode = merge(MODE_ELASTIC, MODE_ORDINARY, inc%inside)
-   end function closing_mode
-
-   !> Share of the elastic rate at which an open point closes [-].
-   pure real(wp) function closing_share(trial)
-      type(trial_t), intent(in) :: trial
-
-      closing_share = min(CLOSING*CLOSING_GROWTH**max(trial%openings - 1, 0), LARGEST_CLOSING)
-   end function closing_share
-
-   !> How far the rate of p' is above the one at which an open point closes, positive if it closes [kPa].
-   !> docs/theory/material.md sections 6.1, 6.3.
-   pure real(wp) function closing_rate(inc, trial, w)
-      type(increment_t), intent(in) :: inc
-      type(trial_t), intent(in) :: trial
-      type(rate_t), intent(in) :: w        !< at p_min, without a past
-
-      closing_rate = w%d_p - closing_share(trial)*(w%k*norm(inc%d_strain) + abs(inc%d_pc))
-   end function closing_rate
-
-   !> Its change with the rate of p', the void ratio, the strain and the suction step [kPa]. e, de and d_strain [-],
-   !> d_rate and d_pc [kPa]; e is the void ratio at the place. Derivative of docs/theory/material.md sections 6.1, 6.3.
-   pure real(wp) function change_of_closing_rate(inc, trial, w, e, d_rate, de, d_strain, d_pc) result(change)
-      type(increment_t), intent(in) :: inc
-      type(trial_t), intent(in) :: trial
-      type(rate_t), intent(in) :: w
-      real(wp), intent(in) :: e, d_rate, de, d_strain(6), d_pc
-      real(wp) :: length
-
-      length = norm(inc%d_strain)
-      change = w%k*length*de*bulk_slope(e) + sign(1.0_wp, inc%d_pc)*d_pc
-      if (length > 0.0_wp) change = change + w%k*ddot(inc%d_strain, d_strain)/length
-      change = d_rate - closing_share(trial)*change
-   end function change_of_closing_rate
 
    !> How far r may be beyond the bounding surface in a substep inside the elastic domain: from farther outside it is
    !> the excess at the start.

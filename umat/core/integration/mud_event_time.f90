@@ -6,19 +6,19 @@ module mud_event_time
    use mud_bounding, only: change_of_psi, change_of_excess
    use mud_consistent, only: sensitivity_t, change_with_size, changes_along, changes_of_ratio, linearise_stage
    use mud_critical_state, only: bounding_ratio, bounding_slope
+   use mud_cutoff, only: changes_of_height, closing_mode, rate_without_past, change_of_closing_rate, MODE_HELD
    use mud_driving, only: driving_t, DIRECTIONS
    use mud_error_control, only: changes_root
-   use mud_event_functions, only: EVENT_OPENS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, closing_mode, &
-      change_of_closing_rate, rate_without_past, psi_at
+   use mud_event_functions, only: EVENT_OPENS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, psi_at
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, turning_of, NY
    use mud_params, only: params_t
    use mud_rate, only: rate_t
-   use mud_rates, only: stress_ratio
+   use mud_rates, only: stress_ratio, p_follows
    use mud_return_point, only: target_limit, is_limited
    use mud_sensitivity, only: changes_of_rate, changes_of_drive
    use mud_state, only: counters_t
    use mud_tensor, only: ddot, trace, contractions, tensors_t, ANY_TENSORS
-   use mud_trial, only: trial_t, MODE_HELD
+   use mud_trial, only: trial_t
    use mud_elastic_domain, only: turning_t
    use mud_point_changes, only: changes_t
    use mud_linearise, only: linearised_t
@@ -103,7 +103,7 @@ contains
       dr = changes_of_ratio(par, trial%y(1:6), y)
       select case (event)
       case (EVENT_OPENS)
-         slopes = y(:, 1) + y(:, 2) + y(:, 3)
+         slopes = changes_of_height(y)
       case (EVENT_REVERSAL)
          if (jumps(par, trial, w)) then
             slopes = changes_of_drive(par, w, lin, y, driving%d_strain, driving%from_centre, changes)
@@ -127,7 +127,8 @@ contains
                               driving%from_centre, changes, .false., rates)
          do j = 1, DIRECTIONS
             strain_j = driving%d_strain%of(j, :)
-            slopes(j) = change_of_closing_rate(inc, trial, w, lin%e, (rates(j, 1) + rates(j, 2) + rates(j, 3))/3.0_wp, &
+            slopes(j) = change_of_closing_rate(inc, trial%openings, w, lin%e, &
+                                               (rates(j, 1) + rates(j, 2) + rates(j, 3))/3.0_wp, &
                                                changes%e(j), strain_j, changes%d_pc(j))
          end do
       end select
@@ -156,7 +157,7 @@ contains
 
       call stress_ratio(par, trial%y(1:6), p, r)
       psi = psi_at(par, inc, time, p)
-      dp = merge(trace(y(1:6))/3.0_wp, 0.0_wp, trace(trial%y(1:6)) >= 3.0_wp*par%p_min)
+      dp = merge(trace(y(1:6))/3.0_wp, 0.0_wp, p_follows(par, trial%y(1:6)))
       dpsi = change_of_psi(par, inc%bonded, void_ratio_at(inc, time), suction_at(inc, time), p, de, &
                                        dp_c, dp, d_offset)
       if (event == EVENT_BOUNDS) then

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Events inside a substep: where one happens, the substep is shortened to end just beyond it.
 module mud_events
+   use mud_cutoff, only: is_below, MODE_HELD
    use mud_error_control, only: changes_root
    use mud_event_functions, only: event_function, rate_at_end, place_of, EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, &
       EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, EVENT_MECHANISM, EVENT_TURN
@@ -14,8 +15,7 @@ module mud_events
    use mud_return_point, only: place_t, forwardness, note_progress, note_farthest
    use mud_state, only: memory_t, counters_t
    use mud_substep, only: LARGEST_FACTOR, cubic_point
-   use mud_tensor, only: trace
-   use mud_trial, only: trial_t, take_step, MODE_HELD
+   use mud_trial, only: trial_t, take_step
    implicit none (type, external)
    private
    public :: stop_at_event, note_turning_point
@@ -44,11 +44,7 @@ contains
          call land_on(par, inc, EVENT_CLOSES, error, h, trial, counters, event)
          return
       end if
-      if (par%cutoff) then
-         if (trace(trial%y(1:6)) < 3.0_wp*par%p_min) then
-            call land_on(par, inc, EVENT_OPENS, error, h, trial, counters, event)
-         end if
-      end if
+      if (is_below(par, trial%y(1:6))) call land_on(par, inc, EVENT_OPENS, error, h, trial, counters, event)
       if (trial%mode == MODE_ELASTIC) then
          call land_on(par, inc, EVENT_BOUNDS, error, h, trial, counters, event)
          return

@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> Where in a substep an event happens: the substep is shortened to end there; docs/theory/integration.md section 4.1.
 module mud_landing
-   use mud_event_functions, only: event_function, rate_at_end, rate_without_past, EVENT_OPENS, EVENT_CLOSES, &
+   use mud_cutoff, only: rate_without_past, height_rate, MODE_HELD
+   use mud_event_functions, only: event_function, rate_at_end, EVENT_OPENS, EVENT_CLOSES, &
       EVENT_REVERSAL, EVENT_MECHANISM, EVENT_TURN
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
@@ -9,7 +10,7 @@ module mud_landing
    use mud_rate, only: rate_t
    use mud_state, only: counters_t
    use mud_tensor, only: ddot
-   use mud_trial, only: trial_t, take_step, MODE_HELD
+   use mud_trial, only: trial_t, take_step
    implicit none (type, external)
    private
    public :: land_on, EVENT_TOLERANCE
@@ -78,7 +79,7 @@ contains
       end if
       divided = event == EVENT_OPENS .and. f_low <= AT_START*(f_low - f_high) .and. trial%w(1)%d_p > 0.0_wp
       if (divided) then
-         f_low = trial%w(1)%d_p/par%p_min
+         f_low = height_rate(par, trial%w(1))
          f_high = f_high/h
          zero = max(max(EVENT_RESIDUAL, EVENT_TOLERANCE/h)*(f_low - f_high), ROUNDING/h)
       end if

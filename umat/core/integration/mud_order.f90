@@ -3,6 +3,7 @@
 !> end, otherwise the third order, linearly implicit where the rates are stiff; docs/theory/integration.md section 2.
 module mud_order
    use mud_consistent, only: linearise_stage
+   use mud_cutoff, only: MODE_HELD
    use mud_increment, only: increment_t, void_ratio_at, turning_of, changes_of_loading_strain
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
@@ -13,7 +14,7 @@ module mud_order
    use mud_sensitivity, only: changes_of_rate
    use mud_substep, only: SECOND_ORDER, THIRD_ORDER, AS_SECOND_ORDER, LINEARLY_IMPLICIT, step_factor
    use mud_tensor, only: LANES, tensors_t, ZERO_TENSORS
-   use mud_trial, only: trial_t, error_norm, MODE_HELD
+   use mud_trial, only: trial_t, error_norm
    use mud_elastic_domain, only: turning_t
    use mud_point_changes, only: changes_t, NRATES
    use mud_linearise, only: linearised_t

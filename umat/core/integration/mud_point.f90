@@ -7,12 +7,13 @@ module mud_point
    use mud_branches, only: course_t, begin_course, end_course
    use mud_checks, only: check_increment
    use mud_consistent, only: no_sensitivity
+   use mud_cutoff, only: lifted
    use mud_extent, only: extent_of
    use mud_increment, only: new_increment, void_ratio_at
    use mud_integration, only: integration_t
    use mud_params, only: params_t
    use mud_phases, only: integrate_phases
-   use mud_start, only: lift_to_limit, finish_state, has_tension
+   use mud_start, only: finish_state, has_tension
    use mud_state, only: state_t, counters_t, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO
    use mud_trace, only: trace_t
@@ -91,7 +92,9 @@ contains
       integer, intent(in) :: tangent
       type(integration_t), intent(inout) :: it
 
-      if (par%cutoff) call lift_to_limit(par, is_bonded(par, it%state%p_c), it%state)
+      associate (state => it%state)
+         if (par%cutoff) state%sigma = lifted(par, is_bonded(par, state%p_c), state%sigma, state%e, state%p_c)
+      end associate
       it%size = extent_of(par, it%inc, it%state)
       it%consistent = tangent == TANGENT_CONSISTENT .and. it%size > 0.0_wp
       if (it%consistent) call no_sensitivity(it%state%memory%depth, it%inc, it%sens)

@@ -4,9 +4,9 @@ module mud_start
    use mud_kinds, only: wp
    use mud_blocks, only: blocks_t
    use mud_bonding, only: bonding_t, is_bonded, bonding, UNBONDED
-   use mud_bounding, only: psi_of, limited
    use mud_checks, only: check_stress
    use mud_critical_state, only: state_parameter
+   use mud_cutoff, only: lifted
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio
    use mud_retention, only: saturation_t, saturation
@@ -14,11 +14,10 @@ module mud_start
    use mud_scanning, only: branch_from, preset_saturation
    use mud_state, only: state_t, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_VOID_RATIO, ON_VOID_RATIO
-   use mud_tensor, only: IDENTITY, trace, deviator, is_finite
-   use mud_transitions, only: AT_LIMIT
+   use mud_tensor, only: trace, is_finite
    implicit none (type, external)
    private
-   public :: initial_state, lift_to_limit, finish_state, has_tension
+   public :: initial_state, finish_state, has_tension
 
 contains
    !> State of a point that starts at a stress, a void ratio and a suction without a past. A mean stress below p_min is
@@ -44,7 +43,6 @@ contains
          status = fail(MUD_BAD_VOID_RATIO, ON_VOID_RATIO, 0, e, E_LOWER, E_UPPER)
          return
       end if
-      state%sigma = sigma
       state%e = e
       state%p_c = p_c
       state%z = 0.0_wp
@@ -58,27 +56,15 @@ contains
          call preset_saturation(par, p_c, e, state%s_w, status)
          if (status%code /= MUD_OK) return
          branch = branch_from(par, .true., p_c, e, state%s_w)
-         call lift_to_limit(branch, is_bonded(par, p_c), state)
+         state%sigma = lifted(branch, is_bonded(par, p_c), sigma, e, p_c)
          call finish_state(branch, state)
       else
-         call lift_to_limit(par, is_bonded(par, p_c), state)
+         state%sigma = lifted(par, is_bonded(par, p_c), sigma, e, p_c)
          call finish_state(par, state)
       end if
       call stress_ratio(par, state%sigma, p, r)
       state%memory = new_memory(r)
    end subroutine initial_state
-
-   !> Mean stress below p_min, as at a free surface: p_min, with a stress ratio on or inside the bounding surface. In
-   !> the unit of p_atm, compression positive. docs/theory/material.md section 1.4.
-   pure subroutine lift_to_limit(par, bonded, state)
-      type(params_t), intent(in) :: par
-      logical, intent(in) :: bonded
-      type(state_t), intent(inout) :: state
-
-      if (trace(state%sigma) >= 3.0_wp*par%p_min*(1.0_wp - AT_LIMIT)) return
-      state%sigma = par%p_min*(IDENTITY + limited(par, psi_of(par, bonded, state%e, state%p_c, par%p_min), &
-                                                  deviator(state%sigma)/par%p_min))
-   end subroutine lift_to_limit
 
    !> Saturation and state parameter of a state, and the saturation's slopes. S_w [-], psi [-]; slopes [-] against
    !> volumetric strain, compression positive, and [1/kPa] against suction. docs/theory/material.md sections 2.1, 3.2.

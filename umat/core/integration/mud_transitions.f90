@@ -5,7 +5,8 @@ module mud_transitions
    use mud_kinds, only: wp
    use mud_bounding, only: excess
    use mud_consistent, only: jump_of_memory, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
-   use mud_event_functions, only: elastic_rate, closing_mode, closing_rate, psi_at, LARGEST_EXCESS, EVENT_NONE, &
+   use mud_cutoff, only: landed, may_open, closing_mode, closes, MODE_HELD
+   use mud_event_functions, only: elastic_rate, psi_at, LARGEST_EXCESS, EVENT_NONE, &
       EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN
    use mud_events, only: note_turning_point
    use mud_increment, only: rate_of
@@ -17,13 +18,11 @@ module mud_transitions
    use mud_return_point, only: watched_process, beyond_target, resume_process
    use mud_reversal, only: new_memory, begin_process, accept_process
    use mud_state, only: memory_t
-   use mud_tensor, only: IDENTITY, ddot, trace, deviator
-   use mud_trial, only: MODE_HELD
+   use mud_tensor, only: ddot
    implicit none (type, external)
    private
-   public :: begin_phase, begin_substep, accept_substep, rate_is_known, AT_LIMIT
+   public :: begin_phase, begin_substep, accept_substep, rate_is_known
 
-   real(wp), parameter :: AT_LIMIT = 1.0e-9_wp               !< p' this close (relative) to p_min is at p_min [-].
 contains
    !> What a trial holds before the first substep of an increment or phase. Its stress and rate are those of
    !> begin_substep.
@@ -82,11 +81,7 @@ contains
          it%trial%advanced = it%state%memory%x_running > 0.0_wp .or. it%trial%w(1)%x > 0.0_wp
       end if
 
-      if (par%cutoff .and. it%trial%w(1)%d_p <= 0.0_wp) then
-         if (trace(it%state%sigma) <= 3.0_wp*par%p_min*(1.0_wp + AT_LIMIT)) then
-            call try_to_close(par, r, it)
-         end if
-      end if
+      if (may_open(par, it%state%sigma, it%trial%w(1)%d_p)) call try_to_close(par, r, it)
       if (it%jump /= JUMP_NONE .or. it%trial%mode /= MODE_ORDINARY) then
          it%trial%transient%sought = .false.
          it%trial%transient%known = .false.
@@ -207,7 +202,7 @@ contains
       it%trial%r_in = r
       it%trial%mode = closing_mode(it%inc)
       call first_rate(par, it)
-      it%state%open = closing_rate(it%inc, it%trial, it%trial%w(1)) <= 0.0_wp
+      it%state%open = .not. closes(it%inc, it%trial%openings, it%trial%w(1))
       it%trial%watched = 0
       if (it%state%open) then
          it%trial%mode = MODE_HELD
@@ -235,9 +230,7 @@ contains
       end if
       it%state%z = it%trial%y(7:12)
       it%state%eps_q_total = it%state%eps_q_total + it%trial%y(13)
-      if (par%cutoff .and. trace(it%state%sigma) < 3.0_wp*par%p_min) then
-         it%state%sigma = deviator(it%state%sigma) + par%p_min*IDENTITY
-      end if
+      it%state%sigma = landed(par, it%state%sigma)
       if (it%trial%mode == MODE_ORDINARY) then
          associate (w => it%trial%w(latest_forwards(it)))
             call accept_process(w%loading, w%x, it%trial%y(13), it%state%memory)

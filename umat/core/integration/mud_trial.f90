@@ -2,20 +2,19 @@
 !> One trial substep: the scheme's stages and the error, or a step held by the tension cut-off.
 module mud_trial
    use mud_kinds, only: wp
-   use mud_cutoff, only: slide
+   use mud_cutoff, only: hold, MODE_HELD
    use mud_increment, only: increment_t, rate_of, store_rate, NY
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_relaxation, only: relaxation_t, relax
    use mud_state, only: counters_t, interrupted_t
    use mud_substep, only: scheme_t, MAX_STAGES, stage_point, solution, error_vector
-   use mud_tensor, only: IDENTITY, deviator, norm
+   use mud_tensor, only: norm
    use mud_transient, only: transient_t, take_fading, add_faded
    implicit none (type, external)
    private
-   public :: trial_t, take_step, stage_of_trial, error_norm, MODE_HELD
+   public :: trial_t, take_step, stage_of_trial, error_norm
 
-   integer, parameter :: MODE_HELD = 2   !< A substep held at p_min by the tension cut-off; see MODE_* of mud_rates.
    real(wp), parameter :: PLASTIC_SHEAR_SCALE = 0.01_wp   !< Of the error norm [-].
    !> Errors of stresses below this share of p_atm count as if the stress were that large: 1e-5 of 0.1 kPa is nothing
    !> that a host could see, and costs thousands of rates an update [-].
@@ -52,7 +51,8 @@ contains
       integer :: i
 
       if (trial%mode == MODE_HELD) then
-         call hold(par, inc, h, trial)
+         trial%y = trial%y0
+         call hold(par, inc, trial%time, h, trial%y(1:6), trial%held_error)
          return
       end if
       call store_rate(trial%w(1), trial%rates(:, 1))
@@ -84,23 +84,6 @@ contains
       if (trial%transient%known) &
          call add_faded(trial%transient, trial%time, trial%time + inc%scheme%node(i)*h, y)
    end subroutine stage_of_trial
-
-   !> A substep at p_min: two half steps, the error against the whole one.
-   pure subroutine hold(par, inc, h, trial)
-      type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: h
-      type(trial_t), intent(inout) :: trial
-      real(wp) :: whole(6), half(6)
-
-      half = deviator(trial%y0(1:6))/par%p_min
-      whole = slide(par, inc, half, trial%time, h)
-      half = slide(par, inc, half, trial%time, 0.5_wp*h)
-      half = slide(par, inc, half, trial%time + 0.5_wp*h, 0.5_wp*h)
-      trial%y = trial%y0
-      trial%y(1:6) = par%p_min*(half + IDENTITY)
-      trial%held_error = norm(half - whole)
-   end subroutine hold
 
    !> Relative error of a trial substep; the void ratio is exact. A held point's is that of its stress, p_min times its
    !> stress ratio. [-]; h is the size of the trial, a share of its increment. docs/theory/integration.md section 3.

@@ -10,6 +10,7 @@ module mud_linearise
    use mud_loading, only: loading_t
    use mud_hardening, only: kinematic_slope
    use mud_rate, only: rate_t
+   use mud_rates, only: p_follows
    use mud_tensor, only: ddot, trace
    implicit none (type, external)
    private
@@ -45,7 +46,7 @@ contains
       type(linearised_t), intent(inout) :: lin
       real(wp) :: m(3, 3), traces(2)
 
-      lin%held_p = trace(sigma) < 3.0_wp*par%p_min
+      lin%held_p = .not. p_follows(par, sigma)
       lin%e = e
       traces = [trace(loading%basis(:, 1)), trace(loading%basis(:, 2))]
       lin%d_v = loading%part(1)*traces(1) + loading%part(2)*traces(2)

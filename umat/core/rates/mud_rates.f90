@@ -16,7 +16,7 @@ module mud_rates
    use mud_rate, only: rate_t
    implicit none (type, external)
    private
-   public :: rate_at, stress_ratio, MODE_ORDINARY, MODE_ELASTIC
+   public :: rate_at, stress_ratio, p_follows, MODE_ORDINARY, MODE_ELASTIC
 
    integer, parameter :: MODE_ORDINARY = 0   !< Both mechanisms act.
    integer, parameter :: MODE_ELASTIC = 1    !< L = 0: inside the elastic domain.
@@ -36,6 +36,15 @@ contains
       p = max(trace(sigma)/3.0_wp, par%p_min)
       r = deviator(sigma)/p
    end subroutine stress_ratio
+
+   !> True where p' is the mean of a stress, not its lower bound. sigma' in the unit of p_atm. docs/theory/material.md
+   !> section 1.2.
+   pure logical function p_follows(par, sigma)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: sigma(6)
+
+      p_follows = trace(sigma) >= 3.0_wp*par%p_min
+   end function p_follows
 
    !> Rates of stress, fabric and plastic shear for a strain rate and a suction rate. Compression positive, tensor
    !> shear. docs/theory/material.md sections 4 and 5; nothing is refused, w%no_root tells that no direction was found
