@@ -5,7 +5,7 @@ module material_mud
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use key_schema, only: key_t, NONE
-   use library_tables, only: property_count, property_index, property_name, property_option, property_range, &
+   use library_tables, only: property_count, property_index, property_name, property_range, &
                              range_for, state_count, statev_index, statev_name, statev_unit
    use material_point, only: material_t, response_t, report_t, remark_t, NAME_LENGTH, NO_PRESET
    use retention_curves, only: saturation_t
@@ -105,18 +105,13 @@ contains
          'The library keeps no void_ratio or no saturation; program and library do not match.')
    end subroutine fill_mud
 
-   !> Whether nothing keeps p' above zero: without the tension cut-off, which the rule as_published switches off too.
+   !> Whether nothing keeps p' above zero: without the tension cut-off.
    logical function releases_pressure(props)
       real(wp), intent(in) :: props(:)
-      real(wp) :: published
-      integer :: rule, guard
-      logical :: known
+      integer :: guard
 
-      rule = property_index('memory_rule')
-      call property_option(rule, 'as_published', published, known)
-      releases_pressure = known .and. nint(props(rule)) == nint(published)
       guard = property_index('cutoff')
-      releases_pressure = releases_pressure .or. nint(props(guard)) == 0
+      releases_pressure = nint(props(guard)) == 0
    end function releases_pressure
 
    logical function not_the_default(name, value)

@@ -24,7 +24,7 @@ module material_point
 
    !> What a user is told of a point without mean effective stress. The library says it to hosts of umat_.
    character(*), parameter :: PRESSURE_LOST = 'the model has no meaning below 0, and its tension cut-off is off. '// &
-      'Do not use the results from here on; set cutoff = 1, with a memory_rule other than ''as_published''.'
+      'Do not use the results from here on; set cutoff = 1.'
 
    !> What a batch of updates did.
    type :: report_t

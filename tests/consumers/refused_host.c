@@ -11,7 +11,7 @@
  *    refused_host contradiction         PREDEF is the suction at the end of the increment
  *    refused_host null                  DSTRAN and NPROPS are NULL, one after the other
  *    refused_host units                 p_atm in Pa, everything else in kPa
- *    refused_host tension RULE          expands by 2 % from p' = 20 kPa with this memory_rule, at two points
+ *    refused_host tension CUTOFF        expands by 2 % from p' = 20 kPa with this cutoff, at two points
  *    refused_host threads               eight threads fail a thousand times each, in two ways
  *    refused_host fork                  fails, forks; the child fails in the same way, then in another one */
 #define _POSIX_C_SOURCE 200809L
@@ -181,14 +181,14 @@ static int null(void)
    return pnewdt < 1.0 ? 0 : 1;
 }
 
-static int tension(int rule)
+static int tension(int cutoff)
 {
    host_t h;
    double pnewdt = 1.0;
    for (int point = 1; point <= 2; point++) {
       set_up(&h);
       h.pnewdt = &pnewdt, h.point = point;
-      h.props[mud_index(MUD_PROPS, "memory_rule")] = rule;
+      h.props[mud_index(MUD_PROPS, "cutoff")] = cutoff;
       for (int i = 0; i < 3; i++)
          h.stress[i] = -20.0;
       for (int i = 0; i < 3; i++)

@@ -78,6 +78,7 @@ LAYOUT = re.search(r"STATE_LAYOUT = (\d+)", (root / "umat/core/base/mud_registry
 # What the first column of a row says: what the programs say of it today, and what has to be in that.
 CASES = {
     "STATEV layout 1": (old_layout, ["layout", LAYOUT]),
+    "`memory_rule` 4 `as_published`": (lambda: case("memory_rule = 4"), ["memory_rule", "from 0 to 3"]),
     "PROPS 45 entries": (short_props, ["-1", "45", "46"]),
     "a `&retention` of its own": (lambda: scene(MUD.format("", "retention = 'r'") + RETENTION),
                                   ["retention = 'material'"]),

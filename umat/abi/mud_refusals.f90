@@ -209,7 +209,7 @@ contains
       if (.not. sum(stress(1:3)) > 0.0_wp) return
       if (first_time(ON_PRESSURE)) call remark('the mean effective stress p'' is '// &
          trim(number(-sum(stress(1:3))/3.0_wp))//'. The model has no meaning below 0, and its tension cut-off is '// &
-         'off: do not use the results from here on; set cutoff = 1, with a memory_rule other than 4 (as_published)', &
+         'off: do not use the results from here on; set cutoff = 1', &
          place)
    end subroutine remark_on_pressure
 

@@ -63,7 +63,7 @@ typedef struct mud_report {
    int n_hysteresis;        /* substeps whose reset the hysteresis x_rev held back                     */
    int n_iso_kept;          /* rates where the isotropic mechanism contradicted itself                 */
    int n_no_root;           /* rates without an admissible direction, taken as elastic                 */
-   int n_min_step;          /* substeps accepted at the minimum size (rule as_published)               */
+   int n_min_step;          /* substeps accepted at the minimum size (without any guard)              */
    int n_open;              /* substeps held by the tension cut-off                                    */
    int n_tensile;           /* 1 if the increment ended with a tensile principal effective stress      */
    double value;            /* offending value                                                         */

@@ -12,7 +12,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "common"))
 import tables  # noqa: E402 (its folder is known only now)
 
-RULES = {"classic": 0, "threshold": 1, "repositioning": 2, "return_point": 3, "as_published": 4}
+RULES = {"classic": 0, "threshold": 1, "repositioning": 2, "return_point": 3}
 
 
 @dataclasses.dataclass(frozen=True)

@@ -17,6 +17,9 @@ from . import tables
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASES = ROOT / "drivers" / "cases"
 MATERIAL = ROOT / "drivers" / "materials" / "toyoura.nml"
+# The model as it was published, without any guard of this library (docs/theory/material.md section 5).
+GUARDS = ("x_0", "x_rev", "cap_d", "cap_h", "cutoff")
+AS_PUBLISHED = dict(memory_rule=0, rho_e=0.0, scheme=1, **dict.fromkeys(GUARDS, 0))
 
 
 @dataclass(frozen=True)

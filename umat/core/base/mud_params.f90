@@ -2,9 +2,8 @@
 !> Material parameters: from PROPS to named values, checked against the registry.
 module mud_params
    use mud_kinds, only: wp, SQRT_6
-   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, PROPERTIES, KIND_REAL, RULE_AS_PUBLISHED, &
-      SCHEME_AUTOMATIC, SCHEME_OF_PAPER, &
-      P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, P_H_0, P_C_H, &
+   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, PROPERTIES, KIND_REAL, &
+            P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, P_H_0, P_C_H, &
       P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, P_P_ATM, P_P_MIN, &
       P_BONDING, P_FABRIC, P_ISOTROPIC, P_LODE, P_MEMORY_RULE, P_EPS_HAT, P_J_EXP, P_X_0, P_X_REV, P_CAP_D, P_CAP_H, &
       P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, P_TANGENT, P_RHO_E, P_SHEAR_ORDER, &
@@ -15,9 +14,9 @@ module mud_params
    implicit none (type, external)
    private
    public :: params_t, scanning_t, read_params, completed, is_length, check_bounds, default_props
-   public :: FLOOR_AS_PUBLISHED, NOT_SCANNING
+   public :: NO_FLOOR, NOT_SCANNING
 
-   real(wp), parameter :: FLOOR_AS_PUBLISHED = 1.0e-15_wp   !< The only floor of (r - r_in):n with the guard off [-].
+   real(wp), parameter :: NO_FLOOR = 1.0e-15_wp   !< The only floor of (r - r_in):n with the guard off [-].
 
    ! Side by side: an update checks them every time, and entries of PROPERTIES are several hundred bytes apart.
    real(wp), parameter :: LOWER(NPROPS) = PROPERTIES%lower, UPPER(NPROPS) = PROPERTIES%upper
@@ -44,12 +43,14 @@ module mud_params
       logical :: bonding, fabric, isotropic, lode, cutoff
       integer :: memory_rule
       real(wp) :: eps_hat, j_exp
-      real(wp) :: x_floor   !< Floor of (r - r_in):n, FLOOR_AS_PUBLISHED with the guard off [-].
+      real(wp) :: x_floor   !< Floor of (r - r_in):n, NO_FLOOR with the guard off [-].
       logical :: floored    !< The floor guard is on.
       real(wp) :: x_rev     !< Hysteresis of the reversal test, 0 with the guard off [-].
       real(wp) :: cap_d     !< Contraction cap, 0 with the guard off [-].
       real(wp) :: cap_h     !< Softening cap, 0 with the guard off [-].
-      logical :: accept_minimum   !< Accept a substep at the minimum size (as_published).
+      !> Some guard is on. Without any the model is the published one, which always goes on: reversals are tested where
+      !> substeps begin, elastic rates replace missing directions, substeps of the minimum size are accepted.
+      logical :: guarded
       integer :: scheme, tangent, max_substeps
       integer :: shear_order   !< Of umat_ alone: 0 as 12, 13, 23, 1 as 12, 23, 13.
       real(wp) :: tolerance, h_min
@@ -108,7 +109,6 @@ contains
       real(wp), intent(in) :: props(NPROPS)
       type(params_t), intent(out) :: params
       type(mud_status_t), intent(out) :: status
-      logical :: published
 
       call check_props(props, status)
       if (status%code /= 0) return
@@ -162,16 +162,14 @@ contains
       params%c4 = params%c**4
       params%lode_bend = SQRT_6*(1.0_wp - params%c4)/(8.0_wp*params%c4)
 
-      ! `as_published` is the classic rule with every guard off, whatever the guards' entries say.
-      published = params%memory_rule == RULE_AS_PUBLISHED
-      params%accept_minimum = published
-      if (published .and. params%scheme == SCHEME_AUTOMATIC) params%scheme = SCHEME_OF_PAPER
-      params%floored = props(P_X_0) > 0.0_wp .and. .not. published
-      params%x_floor = merge(props(P_X_0), FLOOR_AS_PUBLISHED, params%floored)
-      params%x_rev = merge(0.0_wp, props(P_X_REV), published)
-      params%cap_d = merge(0.0_wp, props(P_CAP_D), published)
-      params%cap_h = merge(0.0_wp, props(P_CAP_H), published)
-      params%cutoff = whole(props(P_CUTOFF)) == 1 .and. .not. published
+      params%floored = props(P_X_0) > 0.0_wp
+      params%x_floor = merge(props(P_X_0), NO_FLOOR, params%floored)
+      params%x_rev = props(P_X_REV)
+      params%cap_d = props(P_CAP_D)
+      params%cap_h = props(P_CAP_H)
+      params%cutoff = whole(props(P_CUTOFF)) == 1
+      params%guarded = params%floored .or. params%cutoff .or. &
+                       max(params%x_rev, params%cap_d, params%cap_h) > 0.0_wp
    end subroutine read_all
 
    !> The main wetting curve; what is zero follows the drying curve.

@@ -9,7 +9,7 @@ module mud_registry
    public :: UNIT_STRESS, UNIT_STRESS_TO_LAMBDA, NPROPS_WITHOUT_HYSTERESIS
    public :: KIND_REAL, KIND_SWITCH, KIND_OPTION, KIND_COUNT
    public :: option_t, OPTIONS, property_meaning, property_index, statev_index, statev_name, statev_variable, COMPONENTS
-   public :: RULE_CLASSIC, RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, RULE_AS_PUBLISHED, SCHEME_AUTOMATIC, &
+   public :: RULE_CLASSIC, RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, SCHEME_AUTOMATIC, &
              SCHEME_OF_PAPER
 
    public :: P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, &
@@ -25,8 +25,7 @@ module mud_registry
 
    integer, parameter :: STATE_LAYOUT = 2   !< Layout number that an initialised STATEV carries.
    integer, parameter :: KIND_REAL = 0, KIND_SWITCH = 1, KIND_OPTION = 2, KIND_COUNT = 3
-   integer, parameter :: RULE_CLASSIC = 0, RULE_THRESHOLD = 1, RULE_REPOSITIONING = 2, RULE_RETURN_POINT = 3, &
-                         RULE_AS_PUBLISHED = 4
+   integer, parameter :: RULE_CLASSIC = 0, RULE_THRESHOLD = 1, RULE_REPOSITIONING = 2, RULE_RETURN_POINT = 3
    !> The order follows the error; other values are pairs of mud_substep, modified Euler first.
    integer, parameter :: SCHEME_AUTOMATIC = 0, SCHEME_OF_PAPER = 1
    !> Units of the entries of PROPS that change with the unit of p_atm. Their bounds and defaults below are those for
@@ -199,7 +198,7 @@ module mud_registry
          '1: isotropic mechanism, eq. (4); 0: none'), &
       property_t(P_LODE, 'lode', 'lode', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 1.0_wp, 'rebuilt', &
          '1: strength depends on the Lode angle; 0: circle of M_c'), &
-      property_t(P_MEMORY_RULE, 'memory_rule', 'rule', '1', KIND_OPTION, 0.0_wp, 4.0_wp, 3.0_wp, 'ours', &
+      property_t(P_MEMORY_RULE, 'memory_rule', 'rule', '1', KIND_OPTION, 0.0_wp, 3.0_wp, 3.0_wp, 'ours', &
          ''), &
       property_t(P_EPS_HAT, 'eps_hat', 'eps_hat', '1', KIND_REAL, 1e-12_wp, 1.0_wp, 0.0001_wp, 'paper', &
          'plastic shear below which a process counts as an oscillation, eq. (16); value of Dafalias & Taiebat 2016'), &
@@ -305,7 +304,7 @@ module mud_registry
       variable_t(S_N_NO_ROOT, 1, 'n_no_root', '-', '1', .false., 'ours', &
          'total: rates without an admissible direction, taken as elastic', '0', 'adds up'), &
       variable_t(S_N_MIN_STEP, 1, 'n_min_step', '-', '1', .false., 'ours', &
-         'total: substeps accepted at the minimum size (rule as_published)', '0', 'adds up'), &
+         'total: substeps accepted at the minimum size (without any guard)', '0', 'adds up'), &
       variable_t(S_N_OPEN, 1, 'n_open', '-', '1', .false., 'ours', &
          'total: substeps held by the tension cut-off', '0', 'adds up'), &
       variable_t(S_N_TENSILE, 1, 'n_tensile', '-', '1', .false., 'ours', &
@@ -348,7 +347,6 @@ module mud_registry
       option_t(P_MEMORY_RULE, RULE_THRESHOLD, 'threshold'), &
       option_t(P_MEMORY_RULE, RULE_REPOSITIONING, 'repositioning'), &
       option_t(P_MEMORY_RULE, RULE_RETURN_POINT, 'return_point'), &
-      option_t(P_MEMORY_RULE, RULE_AS_PUBLISHED, 'as_published'), &
       option_t(P_SCHEME, SCHEME_AUTOMATIC, 'automatic'), &
       option_t(P_SCHEME, SCHEME_OF_PAPER, 'modified Euler 2(1)'), &
       option_t(P_SCHEME, 2, 'Bogacki-Shampine 3(2)'), &

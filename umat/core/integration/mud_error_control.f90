@@ -7,7 +7,7 @@ module mud_error_control
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: MODE_ORDINARY
-   use mud_registry, only: RULE_AS_PUBLISHED, SCHEME_AUTOMATIC
+   use mud_registry, only: SCHEME_AUTOMATIC
    use mud_substep, only: step_factor, THIRD_ORDER, SAFETY, SMALLEST_FACTOR, LARGEST_FACTOR
    use mud_trial, only: trial_t
    implicit none (type, external)
@@ -50,8 +50,7 @@ contains
 
       jump = .false.
       changes = .false.
-      if (trial%mode == MODE_ORDINARY .and. par%memory_rule /= RULE_AS_PUBLISHED) &
-         changes = changes_root(trial%w(1:inc%scheme%stages))
+      if (trial%mode == MODE_ORDINARY .and. par%guarded) changes = changes_root(trial%w(1:inc%scheme%stages))
       if (.not. may_grow) jump = error > control%error*(h/control%h)**FIRST_ORDER
       if (jump .and. changes) control%jumps = control%jumps + 1
       control%error = error

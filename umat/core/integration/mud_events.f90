@@ -11,7 +11,6 @@ module mud_events
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: MODE_ELASTIC
-   use mud_registry, only: RULE_AS_PUBLISHED
    use mud_return_point, only: place_t, forwardness, note_progress, note_farthest
    use mud_state, only: memory_t, counters_t
    use mud_substep, only: LARGEST_FACTOR, cubic_point
@@ -84,16 +83,15 @@ contains
    !> if it went on at twice the rate with which the substep begins. A parabola that comes back falls a quarter as far.
    !> Where it stays between 0 and -x_rev, as in soil that hardly moves, nothing is looked for. A process that drifts
    !> backwards from its beginning (softening outside the bounding surface) is not looked at: there the floor makes the
-   !> rates independent of the memory, and it is enough to begin anew where a substep begins. The rule as_published
-   !> tests there and nowhere else.
+   !> rates independent of the memory, and it is enough to begin anew where a substep begins. Without any
+   !> guard that is so everywhere.
    pure logical function may_reverse(par, inc, trial)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
       real(wp) :: fall
 
-      may_reverse = par%memory_rule /= RULE_AS_PUBLISHED .and. trial%advanced .and. trial%w(1)%loading .and. &
-                    trial%w(1)%x >= -par%x_rev
+      may_reverse = par%guarded .and. trial%advanced .and. trial%w(1)%loading .and. trial%w(1)%x >= -par%x_rev
       if (may_reverse) then
          associate (first => trial%w(1), second => trial%w(2), last => trial%w(inc%scheme%stages))
             fall = 0.0_wp

@@ -63,7 +63,7 @@ contains
    end subroutine begin_process
 
    !> m of paper eq. (16): 1 for a process that has hardly begun, 0 for a genuine one. eps_q_p and m [-];
-   !> docs/theory/memory-rules.md section 2.3.
+   !> docs/theory/memory-rules.md section 2.2.
    pure real(wp) function interrupted_share(par, eps_q_p) result(m)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: eps_q_p
@@ -73,7 +73,7 @@ contains
    end function interrupted_share
 
    !> After an accepted substep whose place that counts has (r - r_in):n = x. x and the plastic shear d_eps_q of the
-   !> substep [-]; x below 0 is not kept. docs/theory/memory-rules.md section 2.4.
+   !> substep [-]; x below 0 is not kept. docs/theory/memory-rules.md section 2.3.
    pure subroutine accept_process(loading, x, d_eps_q, memory)
       logical, intent(in) :: loading   !< There was a loading direction.
       real(wp), intent(in) :: x, d_eps_q

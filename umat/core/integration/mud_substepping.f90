@@ -13,7 +13,7 @@ module mud_substepping
    use mud_landing, only: EVENT_TOLERANCE
    use mud_order, only: choose_stepping, choose_order, second_share, next_size, LAST_SLIVER
    use mud_params, only: params_t
-   use mud_registry, only: RULE_AS_PUBLISHED, SCHEME_AUTOMATIC
+   use mud_registry, only: SCHEME_AUTOMATIC
    use mud_state, only: state_t
    use mud_substep, only: THIRD_ORDER
    use mud_status, only: fail, MUD_OK, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, MUD_NOT_FINITE, &
@@ -77,7 +77,7 @@ contains
          call stop_at_event(par, it%inc, step%error, h, it%trial, it%counters, it%event)
          if (it%event == EVENT_OPENS) it%trial%openings = it%trial%openings + 1
          if (it%trial%w(1)%no_root) step%elastic = step%elastic + 1
-         if (step%elastic > 1 .and. par%memory_rule /= RULE_AS_PUBLISHED) then
+         if (step%elastic > 1 .and. par%guarded) then
             it%status = fail(MUD_NO_DIRECTION)
             call record(par, h, step%error, it%trial%y(1:6), SUBSTEP_FAILED, it)
             return
@@ -129,12 +129,12 @@ contains
          call judge_attempt(par, it%inc, it%trial, h, step%error, may_grow, step%control, tolerance, step%factor)
          if (step%error <= tolerance) return
          if (min(step%h, h) <= par%h_min*(1.0_wp + LAST_SLIVER)) then
-            if (par%accept_minimum) then
-               it%counters%min_step = it%counters%min_step + 1
-               step%factor = 1.0_wp
-            else
+            if (par%guarded) then
                it%status = fail(MUD_MINIMUM_STEP, value=step%error, lower=0.0_wp, upper=par%tolerance)
                call record(par, h, step%error, it%trial%y(1:6), SUBSTEP_FAILED, it)
+            else
+               it%counters%min_step = it%counters%min_step + 1
+               step%factor = 1.0_wp
             end if
             return
          end if

@@ -11,9 +11,11 @@ import sys
 from dataclasses import dataclass, replace
 from typing import Callable
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "material"))
+VERIFICATION = pathlib.Path(__file__).parents[2]
+sys.path[:0] = [str(VERIFICATION / "material"), str(VERIFICATION)]
 from point_steps import distance, last  # noqa: E402
 from point_walk import RULES, Path, Soil  # noqa: E402
+from tools.bench import AS_PUBLISHED  # noqa: E402
 
 NUDGE = 1e-9
 CONTINUITY = 0.1        # % of the stress: the third digit
@@ -31,12 +33,13 @@ class Setting:
     scheme: int = None
     tolerance: float = None
     nudge: float = 0.0
+    keys: tuple = ()         # further (name, value) of the material
     converges: bool = True   # whether there is an answer at the tolerance 1e-8 to hold its own against
 
     def start(self, e, p=100.0, stress=None, suction=0.0, **properties):
         """A path that begins at an isotropic effective stress p or at six components [kPa]."""
         chosen = {name: value for name, value in (("scheme", self.scheme), ("tolerance", self.tolerance)) if value is not None}
-        soil = Soil(None if self.rule is None else RULES[self.rule], self.rho_e).having(**{**chosen, **properties})
+        soil = Soil(None if self.rule is None else RULES[self.rule], self.rho_e).having(**{**chosen, **dict(self.keys), **properties})
         stress = tuple(s * (1 + self.nudge) for s in (stress or (p, p, p, 0.0, 0.0, 0.0)))
         return Path(soil, e, stress=stress, suction=suction)
 
@@ -58,7 +61,7 @@ SETTINGS = (
     Setting("loose", tolerance=1e-3),
     Setting("tight", tolerance=1e-7),
     # Without the guards a reversal begins with an infinite slope: substeps of the smallest size, accepted; tighter tolerances do not end.
-    Setting("as published", rule="as_published", rho_e=0.0, converges=False),
+    Setting("as published", keys=tuple(AS_PUBLISHED.items()), converges=False),
 )
 
 

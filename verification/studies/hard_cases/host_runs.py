@@ -41,7 +41,7 @@ def host():
 def sand(setting, **more):
     """The group of the material: what the setting says, the rest by default."""
     keys = {"memory_rule": None if setting.rule is None else RULES[setting.rule], "rho_e": setting.rho_e, "scheme": setting.scheme,
-            "tolerance": setting.tolerance, "tangent": 3, **more}
+            "tolerance": setting.tolerance, "tangent": 3, **dict(setting.keys), **more}
     return "&mud name='sand' " + " ".join(f"{key}={value}" for key, value in keys.items() if value is not None) + " /\n"
 
 

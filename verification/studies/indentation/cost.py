@@ -14,14 +14,15 @@ import sys
 
 import numpy as np
 from analysis import Job, build, impact_of, program, read_rows, results_folder, root, run_all, scene, write_rows
+from tools.bench import AS_PUBLISHED
 
 FOLDER = root / "build/indentation"
 PROPS, STATEV = 1, 2   # enum mud_list
 SUCTIONS = (30, 200, 1000)
-# Rule and threshold. With a threshold of 1e-12 no process is ever interrupted: the integration takes exactly the path
-# of
+# Entries of PROPS. With a threshold of 1e-12 no process is ever interrupted: the integration takes exactly the path of
 # `classic`, and what it does more is the remedy's bookkeeping.
-RULES = {"classic": (0, 1e-4), "remedy, never acting": (1, 1e-12), "remedy": (1, 1e-4), "as_published": (4, 1e-4)}
+RULES = {"classic": dict(memory_rule=0), "remedy, never acting": dict(memory_rule=1, eps_hat=1e-12),
+         "remedy": dict(memory_rule=1), "as_published": AS_PUBLISHED}
 
 
 def axis(breaks, cells, ratios):
@@ -80,7 +81,7 @@ def path_of(job, name, corners):
             "suction": suction}
 
 
-def walk(file, rule, threshold, tangent):
+def walk(file, rule, tangent):
     """Along a recorded path through the library; callgrind counts kernel_point alone, which mud_update ends in."""
     path = np.load(file)
     mud = ctypes.CDLL(str(build / "umat/libmud.so"))
@@ -91,7 +92,7 @@ def walk(file, rule, threshold, tangent):
     def of(array):
         return array.ctypes.data_as(double)
     mud.mud_default_props(of(props), n_props)
-    for key, value in (("memory_rule", rule), ("rho_e", 0.0), ("eps_hat", threshold)):
+    for key, value in {"rho_e": 0.0, **RULES[rule]}.items():
         props[mud.mud_index(PROPS, key.encode())] = value
     stress = path["start"][:6].copy()
     text = ctypes.create_string_buffer(200)
@@ -110,11 +111,11 @@ def walk(file, rule, threshold, tangent):
     print(*(int(state[mud.mud_index(STATEV, key)]) for key in (b"n_rate", b"n_substep", b"n_reset")))
 
 
-def count(file, rule, threshold, tangent=0):
+def count(file, rule, tangent=0):
     """(instructions in mud_update, rates, substeps, resets)."""
     done = subprocess.run(["valgrind", "--tool=callgrind", "--toggle-collect=__mud_kernel_MOD_kernel_point",
                            "--callgrind-out-file=/dev/null",
-                           sys.executable, __file__, "--walk", file, str(rule), str(threshold), str(tangent)],
+                           sys.executable, __file__, "--walk", file, rule, str(tangent)],
                           capture_output=True, text=True)
     if done.returncode:
         sys.exit(done.stdout + done.stderr)
@@ -157,10 +158,10 @@ def sixteen(results):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--walk", nargs=4, help=argparse.SUPPRESS)
+    parser.add_argument("--walk", nargs=3, help=argparse.SUPPRESS)
     args = parser.parse_args()
     if args.walk:
-        walk(args.walk[0], float(args.walk[1]), float(args.walk[2]), args.walk[3])
+        walk(*args.walk)
         return
     results = results_folder(__file__, False)
     jobs = [recording(s) for s in SUCTIONS]
@@ -172,11 +173,11 @@ def main():
             path = path_of(job, name, corners)
             file = job.folder / f"{name}.npz"
             np.savez(file, **path)
-            for rule, (number, threshold) in RULES.items():
+            for rule in RULES:
                 title = f"{job.facts['suction']} kPa, {name}"
                 if f"{title}, {rule}" in rows:
                     continue
-                n, rates, substeps, resets = count(file, number, threshold)
+                n, rates, substeps, resets = count(file, rule)
                 rows[f"{title}, {rule}"] = dict(name=f"{title}, {rule}", path=title, rule=rule,
                                                 updates=len(path["strain"]), rates=rates,
                                                 substeps=substeps, resets=resets, instructions=n, program=digest,

@@ -11,10 +11,11 @@ program mud_oscillation
    integer :: rule, scheme, events, seed
    real(wp) :: e, p, suction, from, to, last, top, size, growth, increment, tolerance, rho_e, eps_hat
    logical :: drained, random_events
+   character(12) :: off(8)   !< Entries of PROPS that are 0, the rest is empty.
    integer :: code
    character(200) :: message
    namelist /run/ id, path, noise, rule, scheme, events, seed, e, p, suction, from, to, last, top, size, growth, &
-      increment, tolerance, rho_e, eps_hat, drained, random_events
+      increment, tolerance, rho_e, eps_hat, drained, random_events, off
 
    write (output_unit, '(a)') 'id,status,s11,s22,s33,s12,s13,s23,e,substeps,rejects,rates,resets,halvings'
    do
@@ -51,6 +52,7 @@ contains
       eps_hat = 1.0e-4_wp
       drained = .false.
       random_events = .false.
+      off = ''
    end subroutine set_defaults
 
    !> Along the path to `last`, with events between `from` and `to`: equally spaced and sized, or at random places with
@@ -60,11 +62,12 @@ contains
       type(random_t) :: random
       real(wp) :: place(max(events, 1)), steps(6, MAX_STEPS), s, event_size
       logical :: failed
-      integer :: i, j, n
+      integer :: i, j, n, n_off
 
       random%seed = 7919_int64*seed
-      call new_soil([character(12) :: 'memory_rule', 'scheme', 'tolerance', 'rho_e', 'eps_hat'], &
-                    [real(rule, wp), real(scheme, wp), tolerance, rho_e, eps_hat], p, e, suction, &
+      n_off = count(off /= '')
+      call new_soil([character(12) :: 'memory_rule', 'scheme', 'tolerance', 'rho_e', 'eps_hat', off(:n_off)], &
+                    [real(rule, wp), real(scheme, wp), tolerance, rho_e, eps_hat, (0.0_wp, i=1, n_off)], p, e, suction, &
                     [.false., drained, drained, .false., drained .and. noise /= 'shear', drained], soil)
       do i = 1, events
          place(i) = from + (to - from)*real(i - 1, wp)/events

@@ -19,14 +19,14 @@ import tempfile
 import time
 
 from tools import tables
-from tools.bench import ROOT, Bench
+from tools.bench import GUARDS, ROOT, Bench
 from tools.results import folder
 
 sys.path.insert(0, str(ROOT / "verification/material/verdugo_ishihara"))
 import laboratory as tests_of_verdugo_ishihara  # noqa: E402
 
 RULES = {"classic": (0, 0.0), "threshold": (1, 0.0), "repositioning": (2, 0.0), "return_point": (3, 0.0),
-         "as_published": (4, 0.0), "elastic_domain": (1, 5e-5), "return_point_2e-5": (3, 2e-5)}   # name: memory_rule, rho_e
+         "as_published": (0, 0.0), "elastic_domain": (1, 5e-5), "return_point_2e-5": (3, 2e-5)}   # name: memory_rule, rho_e
 SIZES = [10.0 ** k for k in range(-9, -2)]
 SETTINGS = [dict(e=e, drained=drained, path=path, suction=suction) for e, drained, path, suction in itertools.product(
     (0.735, 0.907), (False, True), ("straight", "turning"), (0.0, 100.0))]
@@ -114,11 +114,13 @@ GROUPS = {f.__name__: f for f in (clean, transverse, hard, single, many, numeric
 def clean_key(values, own_rule):
     key = tuple(values[k] for k in ("e", "drained", "path", "suction", "last",
                                     "top")) + (values["increment"] * (values["path"] == "turning"),)
-    return key + ((values["memory"], values["rho_e"]) if own_rule else ())
+    return key + ((values["rule"], values["rho_e"]) if own_rule else ())
 
 
 def namelist(name, values, **changed):
     text = [f"&run id='{name}' rule={values['memory']} rho_e={values['rho_e']}"]
+    if values["rule"] == "as_published":
+        text.append("off=" + ",".join(f"'{guard}'" for guard in GUARDS))
     for key in DEFAULT:
         value = changed.get(key, values[key])
         text.append(f"{key}={value!r}" if isinstance(value, str) else
