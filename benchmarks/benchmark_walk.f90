@@ -9,7 +9,7 @@ module benchmark_walk
       MUD_STATEV, MUD_TANGENT_NONE
    use mud_params, only: params_t, read_params
    use mud_rates, only: rate_at, MODE_ORDINARY
-   use mud_direction, only: rate_t
+   use mud_rate, only: rate_t
    use mud_status, only: mud_status_t
    use mud_tensor, only: ddot, norm
    implicit none (type, external)
@@ -279,6 +279,7 @@ contains
       fabric = mud_index(MUD_STATEV, 'fabric_11'//c_null_char)
       memory = mud_index(MUD_STATEV, 'memory_11'//c_null_char)
       e = mud_index(MUD_STATEV, 'void_ratio'//c_null_char) + 1
+      n_statev = mud_count(MUD_STATEV)
       seed = 1
       count = 0
       i = 0

@@ -88,14 +88,21 @@ contains
       real(wp), intent(in) :: h, end_shift(DIRECTIONS)
       logical, intent(in) :: last
       type(sensitivity_t), intent(inout) :: sens
-      real(wp) :: dh(DIRECTIONS)
+      real(wp) :: dh(DIRECTIONS), first(DIRECTIONS, NY)
 
       dh = h*sens%stretch
       if (last) dh = end_shift - sens%shift
-      ! at the end of the whole increment only the stress is asked for
-      if (trial%transient%known) call change_of_transient(par, inc, trial, sens)
-      call through_substep(par, inc, trial, h, sens%at_rest, last .and. inc%to >= 1.0_wp, sens%shift, dh, sens%r_in, &
-                           sens%driving, sens%fading, sens%y)
+      if (trial%mode == MODE_HELD) then
+         call changes_through_hold(par, inc, trial%y0(1:6), trial%time, h, sens%shift, dh, sens%driving, sens%y)
+      else
+         call change_of_stage(par, inc, trial%mode, trial%w(1), trial%y0, trial%time, sens%at_rest, .false., &
+                              sens%shift, sens%r_in, sens%driving, sens%y, first)
+         if (trial%transient%known .and. trial%transient%since >= trial%time) &
+            call change_of_transient(par, inc, trial, first, sens)
+         ! at the end of the whole increment only the stress is asked for
+         call through_stages(par, inc, trial, h, last .and. inc%to >= 1.0_wp, sens%shift, dh, sens%r_in, &
+                             sens%driving, sens%fading, first, sens%y)
+      end if
       sens%at_rest = .false.
       sens%shift = sens%shift + dh
    end subroutine propagate
@@ -108,46 +115,32 @@ contains
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h
       real(wp), intent(out) :: change(NY)
-      real(wp) :: none(DIRECTIONS), one(DIRECTIONS), y(DIRECTIONS, NY)
+      real(wp) :: none(DIRECTIONS), one(DIRECTIONS), first(DIRECTIONS, NY), y(DIRECTIONS, NY)
 
       none = 0.0_wp
       one = 1.0_wp
+      first = 0.0_wp
       y = 0.0_wp
-      call through_substep(par, inc, trial, h, .false., .false., none, one, AT_REST%d_strain, AT_REST, &
-                           NO_FADING, y)
+      if (trial%mode == MODE_HELD) then
+         call changes_through_hold(par, inc, trial%y0(1:6), trial%time, h, none, one, AT_REST, y)
+      else
+         call through_stages(par, inc, trial, h, .false., none, one, AT_REST%d_strain, AT_REST, NO_FADING, first, y)
+      end if
       change = y(1, :)
    end subroutine change_with_size
 
-   !> Derivatives across a substep: its start moves by `shift` in pseudo-time, its size changes by dh.
-   pure subroutine through_substep(par, inc, trial, h, at_rest, ends, shift, dh, r_in, driving, fading, y)
-      type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
-      type(trial_t), intent(in) :: trial
-      real(wp), intent(in) :: h
-      logical, intent(in) :: at_rest, ends
-      real(wp), intent(in) :: shift(DIRECTIONS), dh(DIRECTIONS)
-      type(tensors_t), intent(in) :: r_in
-      type(driving_t), intent(in) :: driving
-      type(fading_t), intent(in) :: fading
-      real(wp), intent(inout) :: y(DIRECTIONS, NY)
-
-      if (trial%mode == MODE_HELD) then
-         call changes_through_hold(par, inc, trial%y0(1:6), trial%time, h, shift, dh, driving, y)
-      else
-         call through_stages(par, inc, trial, h, at_rest, ends, shift, dh, r_in, driving, fading, y)
-      end if
-   end subroutine through_substep
-
-   !> The scheme applied to all directions as one long vector.
-   pure subroutine through_stages(par, inc, trial, h, at_rest, ends, shift, dh, r_in, driving, fading, y1)
+   !> The scheme applied to all directions as one long vector, from the changes of its first rate: its start moves by
+   !> `shift` in pseudo-time, its size changes by dh.
+   pure subroutine through_stages(par, inc, trial, h, ends, shift, dh, r_in, driving, fading, first, y1)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h, shift(DIRECTIONS), dh(DIRECTIONS)
       type(tensors_t), intent(in) :: r_in
-      logical, intent(in) :: at_rest, ends
+      logical, intent(in) :: ends
       type(driving_t), intent(in) :: driving
       type(fading_t), intent(in) :: fading
+      real(wp), intent(in) :: first(DIRECTIONS*NY)
       real(wp), intent(inout) :: y1(DIRECTIONS*NY)
       real(wp) :: rates(DIRECTIONS*NY, MAX_STAGES), y0(DIRECTIONS*NY), y(DIRECTIONS*NY), point(NY), time, &
          dt(DIRECTIONS)
@@ -158,8 +151,7 @@ contains
       last = inc%scheme%stages
       if (inc%scheme%first_same_as_last) last = last - 1
       moves = any(abs(dh) > 0.0_wp)
-      call change_of_stage(par, inc, trial%mode, trial%w(1), trial%y0, trial%time, at_rest, .false., shift, r_in, &
-                           driving, y1, rates(:, 1))
+      rates(:, 1) = first
       if (trial%transient%known) call take_changes_of_fading(trial%transient, fading, trial%time, shift, rates(:, 1))
       call finish_stage(trial, h, 1, moves, dh, rates)
       do i = 2, last
@@ -185,26 +177,34 @@ contains
                                                            shift + dh, y1)
    end subroutine through_stages
 
-   !> Derivatives of what fades of the rates from the start of this substep on.
-   pure subroutine change_of_transient(par, inc, trial, sens)
+   !> Derivatives of what fades of the rates from the start of this substep on, whose first rate changes by now. Where the
+   !> strain does not turn yet, what a turn would add fades too: by the first power of its angle as exp(-k t).
+   pure subroutine change_of_transient(par, inc, trial, now, sens)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
+      real(wp), intent(in) :: now(DIRECTIONS, NY)
       type(sensitivity_t), intent(inout) :: sens
-      real(wp), dimension(DIRECTIONS, NY) :: now, far, half
+      real(wp), dimension(DIRECTIONS, NY) :: far, half
       real(wp) :: speed(DIRECTIONS)
 
-      if (trial%transient%since < trial%time) return
       speed = contracted(sens%driving%d_strain, inc%d_strain)/(norm(inc%d_strain)*inc%rho)
       associate (transient => trial%transient, at_rest => sens%at_rest, shift => sens%shift)
-         call change_of_stage(par, inc, MODE_ORDINARY, trial%w(1), trial%y0, trial%time, at_rest, .false., shift, &
-                              sens%r_in, sens%driving, sens%y, now)
-         call change_of_stage(par, without_turn(inc), MODE_ORDINARY, transient%far, trial%y0, trial%time, at_rest, &
-                              .false., shift, sens%r_in, sens%driving, sens%y, far)
+         if (transient%terms == 0) then
+            call change_of_stage(par, without_turn(inc), MODE_ORDINARY, trial%w(1), trial%y0, trial%time, at_rest, &
+                                 .false., shift, sens%r_in, sens%driving, sens%y, far)
+         else
+            call change_of_stage(par, without_turn(inc), MODE_ORDINARY, transient%far, trial%y0, trial%time, at_rest, &
+                                 .false., shift, sens%r_in, sens%driving, sens%y, far)
+         end if
+         if (transient%terms < 2) then
+            call begin_fading(now, far, speed, shift, sens%fading)
+            return
+         end if
          call change_of_stage(par, inc, MODE_ORDINARY, transient%half, trial%y0, half_way(transient), at_rest, &
                               .false., shift - ((half_way(transient) - trial%time)/transient%speed)*speed, sens%r_in, &
                               sens%driving, sens%y, half)
-         call begin_fading(now, far, half, speed, shift, sens%fading)
+         call begin_fading(now, far, speed, shift, sens%fading, half)
       end associate
    end subroutine change_of_transient
 

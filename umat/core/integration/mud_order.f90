@@ -94,7 +94,7 @@ contains
       if (par%scheme /= SCHEME_AUTOMATIC .or. trial%mode == MODE_HELD) return
       if (inc%scheme%order == SECOND_ORDER%order) then
          size = size/share
-      else if (whole .and. .not. trial%transient%known .and. inc%scheme%first_same_as_last) then
+      else if (whole .and. inc%scheme%first_same_as_last) then
          error = error_norm(par, AS_SECOND_ORDER, trial, h)
          size = max(size, step_factor(AS_SECOND_ORDER, error, par%tolerance, .true.)*h/share)
       end if

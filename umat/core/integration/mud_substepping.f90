@@ -15,7 +15,6 @@ module mud_substepping
    use mud_params, only: params_t
    use mud_registry, only: SCHEME_AUTOMATIC
    use mud_state, only: state_t
-   use mud_substep, only: THIRD_ORDER
    use mud_status, only: fail, MUD_OK, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, MUD_NOT_FINITE, &
       ON_STRESS
    use mud_rates, only: MODE_ORDINARY
@@ -40,13 +39,12 @@ module mud_substepping
       type(control_t) :: control
    end type stepping_t
 
-   real(wp), parameter :: ALIGNED = 1.0e-8_wp                !< Cosine this close to 1 is no turn [-].
    !> From this on, some degrees, a turn of the domain is followed by the higher order: it is a transient that modified
    !> Euler pays for with many substeps, and whose errors add up along turning paths [-].
    real(wp), parameter :: SHARP = 1.0e-3_wp
-   !> First substep where the domain turns sharply, share of its radius: a divisor of few round increments. Those of
-   !> third order are longer, in inverse proportion to the angle, below NARROW, the root of 1 minus its cosine:
-   !> what the fading parts of the rates leave is of the angle's third power [-].
+   !> First substep where the domain turns sharply, share of its radius: a divisor of few round increments. It is longer,
+   !> in inverse proportion to the angle, below NARROW, the root of 1 minus its cosine: what the fading parts of the
+   !> rates leave is of the angle's third power [-].
    real(wp), parameter :: TURN_PIECE = 0.7_wp, NARROW = 0.12_wp
 contains
    !> Integrates the phase of it%inc. Its end moves by end_shift along the directions of the derivatives [-]. Errors in
@@ -115,7 +113,7 @@ contains
          if (h*(1.0_wp + LAST_SLIVER) >= rest) h = rest
          if (it%trial%relaxation%speed > 0.0_wp) then
             it%trial%transient%known = .false.
-         else if (it%trial%mode == MODE_ORDINARY .and. it%inc%scheme%order > 2) then
+         else if (it%trial%mode == MODE_ORDINARY) then
             call find_transient(par, it%inc, it%trial%time, h, it%trial%y0, it%trial%r_in, it%trial%w(1), &
                                 it%trial%transient, it%counters)
          end if
@@ -171,7 +169,6 @@ contains
       type(integration_t), intent(in) :: it
       type(stepping_t) :: step
       real(wp) :: length, turn, share, pieces, piece
-      logical :: fades
 
       length = it%inc%to - it%inc%from
       turn = turn_of(it%inc)
@@ -185,10 +182,8 @@ contains
       ! an elastic phase goes in one step if it can, and leaves the remembered step to the next plastic one
       if (it%state%last_step > 0.0_wp .and. .not. it%inc%inside) step%h = min(step%h, it%state%last_step/it%size)
       ! a whole number of pieces, so that a small change of the strain does not change their size
-      fades = par%scheme == SCHEME_AUTOMATIC .or. it%inc%scheme%order == THIRD_ORDER%order
-      if (turn > merge(SHARP, ALIGNED, fades)) then
-         piece = TURN_PIECE*it%inc%rho
-         if (fades) piece = piece*max(NARROW/sqrt(turn), 1.0_wp)
+      if (step%turns) then
+         piece = TURN_PIECE*it%inc%rho*max(NARROW/sqrt(turn), 1.0_wp)
          pieces = real(ceiling(min(length*norm(it%inc%d_strain)/piece, 1.0e6_wp)), wp)
          step%h = min(step%h, length/(share*pieces))
       end if

@@ -9,7 +9,7 @@ module mud_transient
    use mud_rate, only: rate_t
    use mud_rates, only: MODE_ORDINARY
    use mud_state, only: counters_t
-   use mud_tensor, only: LANES, ddot, norm
+   use mud_tensor, only: LANES, norm
    implicit none (type, external)
    private
    public :: transient_t, fading_t, NO_FADING, find_transient, without_turn, half_way, begin_fading, &
@@ -19,10 +19,11 @@ module mud_transient
    type :: transient_t
       logical :: sought = .false.   !< They were looked for ...
       logical :: known = .false.    !< ... and found.
+      integer :: terms              !< 0: the strain does not turn, nothing fades but what changes of it would; 1, 2.
       real(wp) :: since             !< Pseudo-time from which they fade [-].
       real(wp) :: speed             !< k [-]
       real(wp) :: parts(NY, 2)
-      type(rate_t) :: far, half     !< Rates from the same start without the turn, and half-way through it.
+      type(rate_t) :: far, half     !< Rates from the same start without the turn; half-way, where there are two terms.
    end type transient_t
 
    !> Their changes along the directions of a derivative.
@@ -35,15 +36,16 @@ module mud_transient
    !> Shorter attempts, as shares of the radius, follow the turn as it is, and so does a last piece that ends before the
    !> turn is half-way [-].
    real(wp), parameter :: LONG = 0.3_wp
-   !> A turn is followed, too, where the strain across the way of an attempt would move the stress by less than this
-   !> share or the tolerance [-].
-   real(wp), parameter :: NOTABLE = 1.0e-5_wp
+   !> The strain does not turn where nu is this close to its direction: what that moves is rounding [-].
+   real(wp), parameter :: STRAIGHT = 1.0e-10_wp
+   !> The second part, of the second power of the angle, is left out where the stress that the centre lags behind moves
+   !> by less than this share of the tolerance [-].
+   real(wp), parameter :: ONE_TERM = 0.1_wp
    !> 1 minus the cosine of the angle, 60 degrees, beyond which two parts do not describe the turn [-].
    real(wp), parameter :: LARGEST = 0.5_wp
 contains
-   !> Looks for the parts at the start of an attempt h that is ordinary, from its first rate. They are not looked for
-   !> where the turn hardly moves the stress. time and h are shares of inc [-].
-   !> docs/theory/integration.md section 2.2.
+   !> Looks for the parts at the start of an attempt h that is ordinary, from its first rate. time and h are shares of
+   !> inc [-]. docs/theory/integration.md section 2.2.
    pure subroutine find_transient(par, inc, time, h, y0, r_in, first, transient, counters)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -51,24 +53,31 @@ contains
       type(rate_t), intent(in) :: first
       type(transient_t), intent(inout) :: transient
       type(counters_t), intent(inout) :: counters
-      real(wp) :: length, cosine, now(NY), far(NY), half(NY)
+      real(wp) :: length, across, now(NY), far(NY), half(NY)
 
       if (transient%sought .or. .not. has_aside(inc, MODE_ORDINARY) .or. .not. first%loading) return
       length = norm(inc%d_strain)
       if (length*h < LONG*inc%rho .or. length*(inc%to - time) < LN_2*inc%rho) return
-      cosine = ddot(direction_at(inc, time), inc%d_strain)/length
-      if (1.0_wp - cosine > LARGEST) return
-      if (2.0_wp*first%g*(length*h)*sqrt(max(1.0_wp - cosine**2, 0.0_wp)) &
-          < max(par%tolerance, NOTABLE)*norm(y0(1:6))) return
+      across = norm(direction_at(inc, time) - inc%d_strain/length)   ! twice the sine of half the angle
+      if (0.5_wp*across**2 > LARGEST) return
       transient%sought = .true.
+      transient%known = .true.
       transient%since = time
       transient%speed = length/inc%rho
+      transient%parts = 0.0_wp
+      transient%terms = 0
+      if (across < STRAIGHT) return
       call rate_of(par, without_turn(inc), time, y0, r_in, MODE_ORDINARY, transient%far, counters, first)
-      call rate_of(par, inc, half_way(transient), y0, r_in, MODE_ORDINARY, transient%half, counters, first)
-      transient%known = transient%far%loading .and. transient%half%loading
+      transient%known = transient%far%loading
       call store_rate(first, now)
       call store_rate(transient%far, far)
+      transient%terms = 1
+      transient%parts(:, 1) = now - far
+      if (2.0_wp*first%g*inc%rho*across**2 < ONE_TERM*par%tolerance*norm(y0(1:6))) return
+      call rate_of(par, inc, half_way(transient), y0, r_in, MODE_ORDINARY, transient%half, counters, first)
+      transient%known = transient%known .and. transient%half%loading
       call store_rate(transient%half, half)
+      transient%terms = 2
       call split(now, far, half, transient%parts(:, 1), transient%parts(:, 2))
    end subroutine find_transient
 
@@ -97,14 +106,20 @@ contains
       first = now - far - second
    end subroutine split
 
-   !> Changes of the parts from those of the three rates; k changes by speed, the time from which they fade by since.
-   !> Derivative of docs/theory/integration.md section 2.2.
-   pure subroutine begin_fading(now, far, half, speed, since, fading)
-      real(wp), intent(in), dimension(LANES, NY) :: now, far, half
+   !> Changes of the parts from those of the three rates, half that of two terms; k changes by speed, the time from which
+   !> they fade by since. Derivative of docs/theory/integration.md section 2.2.
+   pure subroutine begin_fading(now, far, speed, since, fading, half)
+      real(wp), intent(in), dimension(LANES, NY) :: now, far
       real(wp), intent(in), dimension(LANES) :: speed, since
       type(fading_t), intent(inout) :: fading
+      real(wp), intent(in), optional :: half(LANES, NY)
 
-      call split(now, far, half, fading%parts(:, :, 1), fading%parts(:, :, 2))
+      if (present(half)) then
+         call split(now, far, half, fading%parts(:, :, 1), fading%parts(:, :, 2))
+      else
+         fading%parts(:, :, 1) = now - far
+         fading%parts(:, :, 2) = 0.0_wp
+      end if
       fading%speed = speed
       fading%since = since
    end subroutine begin_fading
@@ -117,6 +132,7 @@ contains
       real(wp), intent(inout) :: rate(NY)
       real(wp) :: left
 
+      if (transient%terms == 0) return
       left = exp(-transient%speed*(time - transient%since))
       rate = rate - left*(transient%parts(:, 1) + left*transient%parts(:, 2))
    end subroutine take_fading
@@ -129,6 +145,7 @@ contains
       real(wp), intent(inout) :: y(NY)
       real(wp) :: before, after
 
+      if (transient%terms == 0) return
       before = exp(-transient%speed*(from - transient%since))
       after = exp(-transient%speed*(to - transient%since))
       y = y + ((before - after)/transient%speed) &

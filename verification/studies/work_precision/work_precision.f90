@@ -8,8 +8,8 @@
 program work_precision
    use, intrinsic :: iso_c_binding, only: c_int, c_double, c_null_char
    use, intrinsic :: iso_fortran_env, only: int64
-   use mud_interface, only: mud_default_props, mud_prepared_size, mud_prepare, mud_init, mud_update, mud_index, mud_count, mud_report, &
-      MUD_PROPS, MUD_STATEV, MUD_TANGENT_NONE
+   use mud_interface, only: mud_default_props, mud_prepared_size, mud_prepare, mud_init, mud_update, mud_index, &
+      mud_count, mud_report, MUD_PROPS, MUD_STATEV, MUD_TANGENT_NONE
    implicit none (type, external)
 
    integer, parameter :: wp = c_double, WORDS = 128, PARTS = 3, ROUNDS = 7, DECADES = 9
@@ -80,8 +80,8 @@ contains
       result%stress = path%p*EQUAL
       suction = path%suction
       code = mud_prepare(props, n_props, material, size(material), text, 0_c_int)
-      if (code == 0) code = mud_init(material, result%stress, suction, path%void_ratio, 0.0_wp, statev, n_statev, text, &
-                                     0_c_int)
+      if (code == 0) code = mud_init(material, result%stress, suction, path%void_ratio, 0.0_wp, statev, n_statev, &
+                                     text, 0_c_int)
       if (code /= 0) error stop 'work_precision: a start is not accepted'
       call system_clock(before, per_second)
       do part = 1, PARTS
