@@ -177,8 +177,8 @@ contains
                                                            shift + dh, y1)
    end subroutine through_stages
 
-   !> Derivatives of what fades of the rates from the start of this substep on, whose first rate changes by now. Where the
-   !> strain does not turn yet, what a turn would add fades too: by the first power of its angle as exp(-k t).
+   !> Derivatives of what fades of the rates from the start of this substep on, whose first rate changes by now. Where
+   !> the strain does not turn yet, what a turn would add fades too: by the first power of its angle as exp(-k t).
    pure subroutine change_of_transient(par, inc, trial, now, sens)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc

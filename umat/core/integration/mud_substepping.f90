@@ -42,9 +42,9 @@ module mud_substepping
    !> From this on, some degrees, a turn of the domain is followed by the higher order: it is a transient that modified
    !> Euler pays for with many substeps, and whose errors add up along turning paths [-].
    real(wp), parameter :: SHARP = 1.0e-3_wp
-   !> First substep where the domain turns sharply, share of its radius: a divisor of few round increments. It is longer,
-   !> in inverse proportion to the angle, below NARROW, the root of 1 minus its cosine: what the fading parts of the
-   !> rates leave is of the angle's third power [-].
+   !> First substep where the domain turns sharply, share of its radius: a divisor of few round increments. It is
+   !> longer, in inverse proportion to the angle, below NARROW, the root of 1 minus its cosine: what the fading parts of
+   !> the rates leave is of the angle's third power [-].
    real(wp), parameter :: TURN_PIECE = 0.7_wp, NARROW = 0.12_wp
 contains
    !> Integrates the phase of it%inc. Its end moves by end_shift along the directions of the derivatives [-]. Errors in

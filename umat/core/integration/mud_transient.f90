@@ -106,8 +106,8 @@ contains
       first = now - far - second
    end subroutine split
 
-   !> Changes of the parts from those of the three rates, half that of two terms; k changes by speed, the time from which
-   !> they fade by since. Derivative of docs/theory/integration.md section 2.2.
+   !> Changes of the parts from those of the three rates, half that of two terms; k changes by speed, the time from
+   !> which they fade by since. Derivative of docs/theory/integration.md section 2.2.
    pure subroutine begin_fading(now, far, speed, since, fading, half)
       real(wp), intent(in), dimension(LANES, NY) :: now, far
       real(wp), intent(in), dimension(LANES) :: speed, since
