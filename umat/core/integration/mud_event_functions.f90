@@ -5,6 +5,8 @@ module mud_event_functions
    use mud_bounding, only: psi_of, excess
    use mud_critical_state, only: bounding_ratio
    use mud_cutoff, only: rate_without_past, height, closing_function
+   use mud_event_table, only: EVENTS, EVENT_OPENS, EVENT_BOUNDS, EVENT_MECHANISM, EVENT_REVERSAL, EVENT_RETURN, &
+      EVENT_TURN, RATE_THERE, RATE_IF_CLOSED
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, NY
    use mud_params, only: params_t
    use mud_rate, only: rate_t
@@ -15,18 +17,7 @@ module mud_event_functions
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
-   public :: event_function, rate_at_end, place_of, elastic_rate, psi_at, LARGEST_EXCESS
-   public :: EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, EVENT_MECHANISM, &
-             EVENT_TURN
-
-   integer, parameter :: EVENT_NONE = 0
-   integer, parameter :: EVENT_OPENS = 1      !< p' falls to p_min.
-   integer, parameter :: EVENT_CLOSES = 2     !< p' would rise from p_min.
-   integer, parameter :: EVENT_BOUNDS = 3     !< r exceeds the bounding surface inside the elastic domain.
-   integer, parameter :: EVENT_REVERSAL = 4   !< (r - r_in):n falls to -x_rev.
-   integer, parameter :: EVENT_RETURN = 5     !< r reaches the target of an interrupted process.
-   integer, parameter :: EVENT_MECHANISM = 6  !< The isotropic mechanism begins or ends to act while suction changes.
-   integer, parameter :: EVENT_TURN = 7       !< A process ceases to go forwards; its substep goes on.
+   public :: event_function, rate_at_start, rate_at_end, place_of, elastic_rate, psi_at, LARGEST_EXCESS
 
    !> At a low stress an elastic strain of rho_e may be more than the whole strength: r may exceed the bounding surface
    !> by this share. Softening sand is some per cent beyond it and must be able to return where it came from [-].
@@ -44,17 +35,34 @@ contains
       type(rate_t), intent(inout) :: w
       type(counters_t), intent(inout) :: counters
 
-      select case (event)
-      case (EVENT_REVERSAL, EVENT_MECHANISM, EVENT_TURN)
+      select case (EVENTS(event)%looks_at)
+      case (RATE_THERE)
          if (inc%scheme%first_same_as_last) then
             w = trial%w(inc%scheme%stages)
          else
             call rate_of(par, inc, trial%time + h, trial%y, trial%r_in, trial%mode, w, counters)
          end if
-      case (EVENT_CLOSES)
+      case (RATE_IF_CLOSED)
          call rate_without_past(par, inc, trial%time + h, trial%y, w, counters)
       end select
    end subroutine rate_at_end
+
+   !> The rate that an event looks at where the trial's substep begins.
+   pure subroutine rate_at_start(par, inc, event, trial, w, counters)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: event
+      type(trial_t), intent(in) :: trial
+      type(rate_t), intent(inout) :: w
+      type(counters_t), intent(inout) :: counters
+
+      select case (EVENTS(event)%looks_at)
+      case (RATE_THERE)
+         w = trial%w(1)
+      case (RATE_IF_CLOSED)
+         call rate_without_past(par, inc, trial%time, trial%y0, w, counters)
+      end select
+   end subroutine rate_at_start
 
    !> Function of an event, dimensionless, negative beyond it. time is a share of inc [-]; y and w are state and rate
    !> there, w only for the events that rate_at_end knows. docs/theory/integration.md section 4.2.

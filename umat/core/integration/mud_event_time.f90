@@ -9,7 +9,9 @@ module mud_event_time
    use mud_cutoff, only: changes_of_height, closing_mode, rate_without_past, change_of_closing_rate, MODE_HELD
    use mud_driving, only: driving_t, DIRECTIONS
    use mud_error_control, only: changes_root
-   use mud_event_functions, only: EVENT_OPENS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, psi_at
+   use mud_event_functions, only: psi_at
+   use mud_event_table, only: EVENTS, EVENT_OPENS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, NO_RATE, RATE_THERE, &
+      RATE_IF_CLOSED
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, turning_of, NY
    use mud_params, only: params_t
    use mud_rate, only: rate_t
@@ -57,11 +59,12 @@ contains
       if (mode == MODE_HELD) mode = closing_mode(inc)
       e = void_ratio_at(inc, time)
       turning = turning_of(inc, mode, time)
-      if (event == EVENT_REVERSAL) then
+      select case (EVENTS(event)%looks_at)
+      case (RATE_THERE)
          call rate_of(par, inc, time, trial%y, trial%r_in, mode, w, uncounted)
-      else if (trial%mode == MODE_HELD) then
+      case (RATE_IF_CLOSED)
          call rate_without_past(par, inc, time, trial%y, w, uncounted)
-      end if
+      end select
       call change_with_size(par, inc, trial, h, with_size)
       y = sens%y
       y(BY_SIZE, :) = with_size
@@ -70,9 +73,8 @@ contains
       dt = sens%shift
       dt(BY_SIZE) = 1.0_wp
       call changes_along(inc, mode, time, e, turning, dt, sens%driving, changes)
-      if (event == EVENT_REVERSAL .or. trial%mode == MODE_HELD) then
+      if (EVENTS(event)%looks_at /= NO_RATE) &
          call linearise_stage(par, inc, w, trial%y, time, e, changes%loading, lin)
-      end if
       slopes = slopes_of_event(par, inc, event, trial, time, w, lin, y, r_in, sens%driving, changes)
       do j = 1, DIRECTIONS - 1
          if (abs(slopes(BY_SIZE)) <= GRAZING*abs(slopes(j))) cycle

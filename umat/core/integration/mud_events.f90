@@ -3,8 +3,8 @@
 module mud_events
    use mud_cutoff, only: is_below, MODE_HELD
    use mud_error_control, only: changes_root
-   use mud_event_functions, only: event_function, rate_at_end, place_of, EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, &
-      EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, EVENT_MECHANISM, EVENT_TURN
+   use mud_event_functions, only: rate_at_end, place_of
+   use mud_event_table, only: EVENTS, EVENT_NONE, EVENT_OPENS, EVENT_MECHANISM, EVENT_REVERSAL, EVENT_RETURN, EVENT_TURN
    use mud_increment, only: increment_t, rate_of, store_rate, NY
    use mud_kinds, only: wp
    use mud_landing, only: land_on, EVENT_TOLERANCE
@@ -25,8 +25,9 @@ module mud_events
    !> A drive of the isotropic mechanism this much smaller than at the end of a substep is where it switched before [-].
    real(wp), parameter :: AT_SWITCH = 1.0e-6_wp
 contains
-   !> Shortens an accepted substep so that it lands where the first event happens that its mode knows. h is a share of
-   !> inc [-]; it stays where there is no event. docs/theory/integration.md sections 4.1, 4.2.
+   !> Shortens an accepted substep so that it lands where the first event happens that concerns it: each is looked for
+   !> in what those before it have left. h is a share of inc [-]; it stays where there is no event.
+   !> docs/theory/integration.md sections 4.1, 4.2.
    pure subroutine stop_at_event(par, inc, error, h, trial, counters, event)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -35,35 +36,51 @@ contains
       type(trial_t), intent(inout) :: trial
       type(counters_t), intent(inout) :: counters
       integer, intent(out) :: event        !< EVENT_* at the end of the substep
-      real(wp) :: reversal
-      logical :: reverses
+      integer :: i
+      logical :: possible
 
       event = EVENT_NONE
-      if (trial%mode == MODE_HELD) then
-         call land_on(par, inc, EVENT_CLOSES, error, h, trial, counters, event)
-         return
-      end if
-      if (is_below(par, trial%y(1:6))) call land_on(par, inc, EVENT_OPENS, error, h, trial, counters, event)
-      if (trial%mode == MODE_ELASTIC) then
-         call land_on(par, inc, EVENT_BOUNDS, error, h, trial, counters, event)
-         return
-      end if
-      if (error > SHARP_KINK*par%tolerance) then
-         if (mechanism_switches(inc, trial)) call land_on(par, inc, EVENT_MECHANISM, error, h, trial, counters, event)
-      end if
-      if (may_reverse(par, inc, trial)) then
-         reversal = h
-         call find_reversal(par, inc, trial, counters, reversal, reverses)
-         if (reverses) then
-            if (reversal < h) then
-               h = reversal
-               call take_step(par, inc, h, trial, counters)
-            end if
-            call land_on(par, inc, EVENT_REVERSAL, error, h, trial, counters, event)
-         end if
-      end if
-      if (trial%watched > 0) call land_on(par, inc, EVENT_RETURN, error, h, trial, counters, event)
+      do i = 1, ubound(EVENTS, 1)
+         if (.not. EVENTS(i)%concerns(trial%mode)) cycle
+         call look_ahead(par, inc, i, error, h, trial, counters, possible)
+         if (possible) call land_on(par, inc, i, error, h, trial, counters, event)
+      end do
    end subroutine stop_at_event
+
+   !> Whether an event is possible in a substep, for what its function costs. Arguments as in stop_at_event.
+   pure subroutine look_ahead(par, inc, event, error, h, trial, counters, possible)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: event
+      real(wp), intent(in) :: error
+      real(wp), intent(inout) :: h
+      type(trial_t), intent(inout) :: trial
+      type(counters_t), intent(inout) :: counters
+      logical, intent(out) :: possible
+      real(wp) :: reversal
+
+      possible = .true.
+      select case (event)
+      case (EVENT_OPENS)
+         possible = is_below(par, trial%y(1:6))
+      case (EVENT_MECHANISM)
+         if (error > SHARP_KINK*par%tolerance) then
+            possible = mechanism_switches(inc, trial)
+         else
+            possible = .false.
+         end if
+      case (EVENT_REVERSAL)
+         possible = may_reverse(par, inc, trial)
+         if (.not. possible) return
+         reversal = h
+         call find_reversal(par, inc, trial, counters, reversal, possible)
+         if (.not. possible .or. reversal >= h) return
+         h = reversal
+         call take_step(par, inc, h, trial, counters)
+      case (EVENT_RETURN)
+         possible = trial%watched > 0
+      end select
+   end subroutine look_ahead
 
    !> True where the isotropic mechanism begins or ends to act inside the substep. Its rates have a kink there, which is
    !> sharp while suction changes: a substep across it has an error that depends on where in it the kink lies, and

@@ -2,7 +2,7 @@
 !> What the integration of an increment carries along.
 module mud_integration
    use mud_consistent, only: sensitivity_t, JUMP_NONE
-   use mud_event_functions, only: EVENT_NONE
+   use mud_event_table, only: EVENT_NONE
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
    use mud_params, only: params_t

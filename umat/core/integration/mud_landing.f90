@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
 !> Where in a substep an event happens: the substep is shortened to end there; docs/theory/integration.md section 4.1.
 module mud_landing
-   use mud_cutoff, only: rate_without_past, height_rate, MODE_HELD
-   use mud_event_functions, only: event_function, rate_at_end, EVENT_OPENS, EVENT_CLOSES, &
-      EVENT_REVERSAL, EVENT_MECHANISM, EVENT_TURN
+   use mud_cutoff, only: height_rate, MODE_HELD
+   use mud_event_functions, only: event_function, rate_at_start, rate_at_end
+   use mud_event_table, only: EVENTS, EVENT_OPENS, BEFORE, BEYOND
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
    use mud_params, only: params_t
@@ -17,15 +17,12 @@ module mud_landing
 
    !> Width of the bracket of an event, share of increment [-].
    real(wp), parameter :: EVENT_TOLERANCE = 1.0e-13_wp
-   !> An event's function is zero below this share of its change over the substep: far enough above rounding that
-   !> rounding does not decide how many trials are made; and below rounding [-].
-   real(wp), parameter :: EVENT_RESIDUAL = 1.0e-12_wp, ROUNDING = 4.0e-16_wp
+   real(wp), parameter :: ROUNDING = 4.0e-16_wp   !< A function is zero below it, too [-].
    !> A function this small at the start, as a share of its change, is zero there but for where the event before was
    !> found: false position would creep away from it [-].
    real(wp), parameter :: AT_START = 1.0e-6_wp
    !> A function that has no zero by then jumps there, as (r - r_in):n does from one direction to another: bisection.
    integer, parameter :: SMOOTH_ITERATIONS = 16
-   integer, parameter :: MAX_EVENT_ITERATIONS = 100          !< Bisection alone needs about 45.
    !> It jumps where, after some trials and over a bracket shorter than this share of the substep, it still changes by
    !> more than that share of its change over the whole: bisection. Only where the direction turns to its opposite does
    !> the convergence of a host's Newton method depend on the place; elsewhere the error of the stress bounds the
@@ -35,10 +32,6 @@ module mud_landing
    !> A jump in a substep leaves an error of a tenth to a twentieth of its change of the stress. This share of the
    !> substep that has the error of the tolerance is a tenth of the tolerance, then [-].
    real(wp), parameter :: JUMP_SHARE = 0.01_wp
-   !> A turning point ends no substep and need not be as exact; where the direction jumps, it is found to a thousandth
-   !> of the substep.
-   real(wp), parameter :: TURN_RESIDUAL = 1.0e-6_wp
-   integer, parameter :: TURN_ITERATIONS = 10
 contains
    !> Finds the end of the substep where the event's function turns negative (false position as Anderson and Bjoerck
    !> accelerate it), and leaves the trial there, just beyond or, at a kink, just before. A point that has just closed
@@ -55,8 +48,8 @@ contains
       type(counters_t), intent(inout) :: counters
       integer, intent(inout) :: landed     !< becomes the event if it happens
       type(rate_t) :: w
-      real(wp) :: low, high, f_low, f_high, f, h_trial, width, zero, before, value_low, value_high, change, narrow
-      integer :: iteration, side, most
+      real(wp) :: low, high, f_low, f_high, f, h_trial, width, zero, ahead, value_low, value_high, change, narrow
+      integer :: iteration, side
       logical :: divided, bisects, jumps
 
       call rate_at_end(par, inc, event, trial, h, w, counters)
@@ -65,23 +58,19 @@ contains
       landed = event
       call rate_at_start(par, inc, event, trial, w, counters)
       f_low = event_function(par, inc, event, trial, trial%time, trial%y0, w)
-      most = merge(TURN_ITERATIONS, MAX_EVENT_ITERATIONS, event == EVENT_TURN)
-      zero = max(merge(TURN_RESIDUAL, max(EVENT_RESIDUAL, EVENT_TOLERANCE/h), event == EVENT_TURN)*(f_low - f_high), &
-                 ROUNDING)
-      before = 0.0_wp
-      if (event == EVENT_MECHANISM) then
-         ! The last stage stands at a kink. Whatever the rounding, it must be on the side of its substep: its
-         ! derivatives are those of that side.
+      zero = max(max(EVENTS(event)%residual, EVENT_TOLERANCE/h)*(f_low - f_high), ROUNDING)
+      ahead = 0.0_wp
+      if (EVENTS(event)%side == BEFORE) then   ! whatever the rounding
          zero = 0.5_wp*zero
-         before = zero
-         f_low = f_low - before
-         f_high = f_high - before
+         ahead = zero
+         f_low = f_low - ahead
+         f_high = f_high - ahead
       end if
       divided = event == EVENT_OPENS .and. f_low <= AT_START*(f_low - f_high) .and. trial%w(1)%d_p > 0.0_wp
       if (divided) then
          f_low = height_rate(par, trial%w(1))
          f_high = f_high/h
-         zero = max(max(EVENT_RESIDUAL, EVENT_TOLERANCE/h)*(f_low - f_high), ROUNDING/h)
+         zero = max(max(EVENTS(event)%residual, EVENT_TOLERANCE/h)*(f_low - f_high), ROUNDING/h)
       end if
       low = 0.0_wp
       high = h
@@ -94,7 +83,7 @@ contains
       bisects = .false.
       jumps = .false.
       narrow = jump_width(inc, h, error/par%tolerance, trial)
-      do iteration = 1, most
+      do iteration = 1, EVENTS(event)%trials
          if (high - low <= merge(narrow, EVENT_TOLERANCE, jumps) .or. high <= par%h_min) exit
          if (iteration > TRIALS) then
             bisects = value_low - value_high > JUMP*change
@@ -111,7 +100,7 @@ contains
          call rate_at_end(par, inc, event, trial, h_trial, w, counters)
          f = event_function(par, inc, event, trial, trial%time + h_trial, trial%y, w)
          if (divided) f = f/h_trial
-         f = f - before
+         f = f - ahead
          if (f < 0.0_wp) then
             if (side < 0) f_low = f_low*remaining(f, f_high)
             high = h_trial
@@ -124,8 +113,8 @@ contains
             f_low = f
             value_low = f
             side = 1
-            ! at the event but for rounding; a held point must be beyond it, or it would not close
-            if (f < zero .and. event /= EVENT_CLOSES) high = low
+            ! at the event but for rounding
+            if (f < zero .and. EVENTS(event)%side /= BEYOND) high = low
          end if
          if (f_high > -zero) exit
       end do
@@ -145,23 +134,6 @@ contains
       end if
       width = max(width, EVENT_TOLERANCE)
    end function jump_width
-
-   !> The rate that an event looks at where the trial's substep begins.
-   pure subroutine rate_at_start(par, inc, event, trial, w, counters)
-      type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
-      integer, intent(in) :: event
-      type(trial_t), intent(in) :: trial
-      type(rate_t), intent(inout) :: w
-      type(counters_t), intent(inout) :: counters
-
-      select case (event)
-      case (EVENT_REVERSAL, EVENT_MECHANISM, EVENT_TURN)
-         w = trial%w(1)
-      case (EVENT_CLOSES)
-         call rate_without_past(par, inc, trial%time, trial%y0, w, counters)
-      end select
-   end subroutine rate_at_start
 
    !> What Anderson and Bjoerck's false position leaves of the value at the end of the bracket that rests, after a new
    !> value on the other side.

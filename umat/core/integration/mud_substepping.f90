@@ -5,7 +5,7 @@ module mud_substepping
    use mud_consistent, only: propagate
    use mud_driving, only: DIRECTIONS
    use mud_error_control, only: control_t, judge_attempt, proposal
-   use mud_event_functions, only: EVENT_NONE, EVENT_OPENS, EVENT_MECHANISM
+   use mud_event_table, only: EVENTS, EVENT_NONE
    use mud_event_time, only: move_event
    use mud_events, only: stop_at_event
    use mud_increment, only: increment_t, void_ratio_at, suction_at, direction_at
@@ -73,7 +73,6 @@ contains
 
          step%h = next_size(par, it%inc, it%trial, step%share, h, step%factor, h >= it%inc%to - it%inc%from)
          call stop_at_event(par, it%inc, step%error, h, it%trial, it%counters, it%event)
-         if (it%event == EVENT_OPENS) it%trial%openings = it%trial%openings + 1
          if (it%trial%w(1)%no_root) step%elastic = step%elastic + 1
          if (step%elastic > 1 .and. par%guarded) then
             it%status = fail(MUD_NO_DIRECTION)
@@ -154,8 +153,7 @@ contains
       it%state%p_c = suction_at(it%inc, time)
       if (it%consistent) then
          call propagate(par, it%inc, it%trial, h, time >= it%inc%to, end_shift, it%sens)
-         ! where the mechanism switches the rates are continuous: when that happens does not matter
-         if (it%event /= EVENT_NONE .and. it%event /= EVENT_MECHANISM .and. time < it%inc%to) &
+         if (EVENTS(it%event)%moves .and. time < it%inc%to) &
             call move_event(par, it%inc, it%event, it%trial, h, it%sens)
       end if
       call accept_substep(par, h, it)

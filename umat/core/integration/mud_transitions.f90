@@ -6,8 +6,8 @@ module mud_transitions
    use mud_bounding, only: excess
    use mud_consistent, only: jump_of_memory, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
    use mud_cutoff, only: landed, may_open, closing_mode, closes, MODE_HELD
-   use mud_event_functions, only: elastic_rate, psi_at, LARGEST_EXCESS, EVENT_NONE, &
-      EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN
+   use mud_event_functions, only: elastic_rate, psi_at, LARGEST_EXCESS
+   use mud_event_table, only: EVENT_NONE, EVENT_OPENS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN
    use mud_events, only: note_turning_point
    use mud_increment, only: rate_of
    use mud_integration, only: integration_t
@@ -59,8 +59,6 @@ contains
          return
       end if
 
-      ! beyond the surface by a landing, whichever way the strain leads: suction may move the surface
-      if (it%event == EVENT_BOUNDS) it%trial%pressed = .true.
       if (it%inc%inside .and. .not. it%trial%pressed) then
          it%trial%mode = MODE_ELASTIC
          call first_rate(par, it)
@@ -231,6 +229,9 @@ contains
       it%state%z = it%trial%y(7:12)
       it%state%eps_q_total = it%state%eps_q_total + it%trial%y(13)
       it%state%sigma = landed(par, it%state%sigma)
+      if (it%event == EVENT_OPENS) it%trial%openings = it%trial%openings + 1
+      ! beyond the surface by a landing, whichever way the strain leads: suction may move the surface
+      if (it%event == EVENT_BOUNDS) it%trial%pressed = .true.
       if (it%trial%mode == MODE_ORDINARY) then
          associate (w => it%trial%w(latest_forwards(it)))
             call accept_process(w%loading, w%x, it%trial%y(13), it%state%memory)
