@@ -22,9 +22,9 @@ module mud_event_table
    integer, parameter :: EVENT_RETURN = 6     !< r reaches the target of an interrupted process.
    integer, parameter :: EVENT_TURN = 7       !< A process ceases to go forwards; its substep goes on.
 
-   integer, parameter :: NO_RATE = 0             !< The function looks at the state alone,
-   integer, parameter :: RATE_THERE = 1          !< at the rate there,
-   integer, parameter :: RATE_IF_CLOSED = 2   !< at that of a point without a past.
+   integer, parameter :: NO_RATE = 0          !< The function looks at the state alone.
+   integer, parameter :: RATE_THERE = 1       !< It looks at the rate there.
+   integer, parameter :: RATE_IF_CLOSED = 2   !< It looks at the rate of a held point that closes, without a past.
 
    integer, parameter :: BEFORE = -1   !< A substep ends on its own side: its derivatives are those of that side.
    integer, parameter :: AT = 0        !< It may end on either, within rounding.
