@@ -7,15 +7,15 @@ module abi_host
       MUD_TANGENT_ELASTIC
    use mud_kinds, only: wp
    use mud_params, only: default_props
-   use mud_registry, only: NPROPS, NSTATV, P_HYSTERESIS, P_MEMORY_RULE, S_LAYOUT, S_VOID_RATIO, S_SATURATION, &
-      S_SUCTION
+   use mud_registry, only: NPROPS, NSTATV, P_HYSTERESIS, P_MEMORY_RULE, P_SCHEME, P_X_0, P_X_REV, P_CAP_D, P_CAP_H, &
+      P_CUTOFF, RULE_CLASSIC, RULE_RETURN_POINT, SCHEME_OF_PAPER, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION
    use mud_tensor, only: is_finite
    use random_states, only: random_t, uniform, random_tensor
    implicit none (type, external)
    private
-   public :: umat_call_t, call_umat, new_call, walked_call, walk, random_strain, same_bits, untouched, refusal, &
-             elastic_matrix, common_refusal, begin_once, update_once, prepared_of, not_a_number, infinite, MARK, &
-             N_ARGUMENTS, UNIT_MATRIX
+   public :: umat_call_t, call_umat, new_call, walked_call, take_rule, walk, random_strain, same_bits, untouched, &
+             refusal, elastic_matrix, common_refusal, begin_once, update_once, prepared_of, not_a_number, infinite, MARK, &
+             N_ARGUMENTS, UNIT_MATRIX, WITHOUT_GUARDS
    public :: A_STRESS, A_STATEV, A_DDSDDE, A_SCD, A_DSTRAN, A_PREDEF, A_DPRED, A_NDI, A_NTENS, A_NSTATV, A_PROPS, &
              A_NPROPS, A_DROT, A_PNEWDT, MANDATORY, TOUCHED, NO_CUT
 
@@ -24,6 +24,8 @@ module abi_host
    integer, parameter :: A_STRESS = 1, A_STATEV = 2, A_DDSDDE = 3, A_SCD = 6, A_DSTRAN = 12, A_PREDEF = 17, &
                          A_DPRED = 18, A_NDI = 20, A_NTENS = 22, A_NSTATV = 23, A_PROPS = 24, A_NPROPS = 25, &
                          A_DROT = 27, A_PNEWDT = 28
+   !> The published model where a number of a memory rule is asked for: the next one after the rules.
+   integer, parameter :: WITHOUT_GUARDS = RULE_RETURN_POINT + 1
    !> The arguments without which there is no answer.
    integer, parameter :: MANDATORY(7) = [A_STRESS, A_STATEV, A_DSTRAN, A_NTENS, A_NSTATV, A_PROPS, A_NPROPS]
    !> What `refusal` says if a failure wrote too much, asked for no cut.
@@ -85,6 +87,17 @@ contains
       host%statev(1:NSTATV) = 0.0_wp
    end function new_call
 
+   !> A memory rule, or the published model: classic, its scheme and no guard.
+   subroutine take_rule(host, rule)
+      type(umat_call_t), intent(inout) :: host
+      integer, intent(in) :: rule   !< 0 to WITHOUT_GUARDS.
+
+      host%props(P_MEMORY_RULE) = real(merge(RULE_CLASSIC, rule, rule == WITHOUT_GUARDS), wp)
+      if (rule /= WITHOUT_GUARDS) return
+      host%props([P_X_0, P_X_REV, P_CAP_D, P_CAP_H, P_CUTOFF]) = 0.0_wp
+      host%props(P_SCHEME) = real(SCHEME_OF_PAPER, wp)
+   end subroutine take_rule
+
    !> The same after a general path of six components, at a suction [kPa]; ready for the next increment.
    type(umat_call_t) function walked_call(rule, suction) result(host)
       integer, intent(in), optional :: rule
@@ -92,7 +105,7 @@ contains
       type(random_t) :: random
 
       host = new_call()
-      if (present(rule)) host%props(P_MEMORY_RULE) = real(rule, wp)
+      if (present(rule)) call take_rule(host, rule)
       if (present(suction)) host%predef = suction
       call walk(host, random, 20, 2.0e-4_wp)
       host%dstran(1:6) = [-3.0e-4_wp, 1.0e-4_wp, 0.5e-4_wp, 2.0e-4_wp, -1.0e-4_wp, 1.5e-4_wp]
