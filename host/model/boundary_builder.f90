@@ -7,7 +7,7 @@ module boundary_builder
    use model_types, only: model_t
    use name_search, only: mesh_group, defined_name
    use scene_types, only: initial_t, fix_t, load_t, plate_t, contact_pair_t, absorber_t, tie_t, acts_in, &
-                          place_of, LOAD_WATER, LOAD_AIR, LOAD_FORCE_R, PRESCRIBED_P_A
+                          place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, PRESCRIBED_P_A
    use texts, only: short, whole
    use triangle_mesh, only: find_group, add_group
    use unknown_fields, only: FIELD_NAMES, AT_P_W, AT_P_C
@@ -16,6 +16,8 @@ module boundary_builder
    public :: build_plates, build_boundaries
 
    character(3), parameter :: WORD_OF(*) = [FIELD_NAMES, 'p_a']
+   character(*), parameter :: NO_SUBTRACTION = 'initial_flow = ''subtract'' of &scene takes a flow away that a '// &
+      'seepage face or rain has to see; start from water at rest, or let a stage find the flow (initial_flow = ''drain'').'
 contains
    !> Plates come first: those with a face of their own become nodes of the mesh, and all become groups of it.
    !> docs/theory/host.md section 7.3. Fault EXIT_GROUP: the name is that of a group of the mesh, or the boundary or
@@ -121,6 +123,15 @@ contains
                     'u_z), a history, and not hold = ''yes''.')
          return
       end if
+      if (fix%limits .and. (fix%field /= AT_P_W .or. fix%hold)) then
+         call raise(fault, EXIT_INPUT, place_of(fix)//'kind = ''seepage'' needs field = ''p_w'', and not hold = '// &
+                    '''yes'': its value is the largest p_w, 0 where the face is open to the air.')
+         return
+      end if
+      if (fix%limits .and. model%subtract_flow) then
+         call raise(fault, EXIT_INPUT, place_of(fix)//NO_SUBTRACTION)
+         return
+      end if
       if ((fix%field == AT_P_W .and. .not. model%domain%with_w) .or. &
           (fix%field >= AT_P_C .and. .not. model%domain%with_c)) call raise(fault, EXIT_INPUT, &
          place_of(fix)//'the scene has no field '//WORD_OF(fix%field)//'; see fields in &scene.')
@@ -136,12 +147,36 @@ contains
       if (fault%code /= 0) return
       if (load%kind < LOAD_FORCE_R .and. size(model%domain%mesh%groups(load%group)%edges, 2) == 0) then
          call raise(fault, EXIT_GROUP, place_of(load)//'group '''//trim(load%group_name)//''' has no edges to load.')
-      else if ((load%kind == LOAD_WATER .and. .not. model%domain%with_w) .or. &
+      else if ((any(load%kind == [LOAD_WATER, LOAD_RAIN]) .and. .not. model%domain%with_w) .or. &
                (load%kind == LOAD_AIR .and. .not. model%domain%with_c)) then
          call raise(fault, EXIT_INPUT, place_of(load)//'the scene has no field for such an inflow; see '// &
                     'fields in &scene.')
+      else if (load%kind == LOAD_RAIN) then
+         call check_rain(model, load, fault)
       end if
    end subroutine build_load
+
+   !> Rain falls, it is not drawn up; and its pond has a pressure by its weight.
+   subroutine check_rain(model, load, fault)
+      type(model_t), intent(in) :: model
+      type(load_t), intent(in) :: load
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: least
+
+      least = load%value
+      if (load%amplitude > 0) least = min(load%value*minval(model%amplitudes(load%amplitude)%values), &
+                                          load%value*maxval(model%amplitudes(load%amplitude)%values))
+      if (least < 0.0_wp .or. abs(load%value_slope) > 0.0_wp) then
+         call raise(fault, EXIT_INPUT, place_of(load)//'rain has a value times its history of 0 or more, and no '// &
+                    'value_slope; here it becomes '//short(least)//' m/s. For evaporation give a kind = ''water'' '// &
+                    'with a negative value, which acts whatever the suction.')
+      else if (load%ponding > 0.0_wp .and. .not. model%domain%gravity > 0.0_wp) then
+         call raise(fault, EXIT_INPUT, place_of(load)//'ponding = '//short(load%ponding)//' m: without gravity in '// &
+                    '&scene the pond has no pressure; set gravity, or leave ponding out.')
+      else if (model%subtract_flow) then
+         call raise(fault, EXIT_INPUT, place_of(load)//NO_SUBTRACTION)
+      end if
+   end subroutine check_rain
 
    subroutine build_contact(model, contact, fault)
       type(model_t), intent(in) :: model

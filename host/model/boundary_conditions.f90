@@ -5,10 +5,11 @@ module boundary_conditions
    use contact_drainage, only: drainage_t, is_released
    use degrees_of_freedom, only: dofs_t
    use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
-   use model_types, only: model_t, factor_at
+   use limited_pressures, only: begin_sides
+   use model_types, only: model_t, factor_at, gravity_at
    use porous_domain, only: state_t
    use prescribed_values, only: constraint_t
-   use scene_types, only: acts_in, stage_t, fix_t, PRESCRIBED_P_A
+   use scene_types, only: acts_in, stage_t, fix_t, LOAD_RAIN, PRESCRIBED_P_A
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
@@ -25,30 +26,34 @@ contains
       integer :: i, nodes
 
       nodes = size(model%domain%mesh%x, 2)
-      allocate (constraint%fixed(dofs%n), source=.false.)
+      allocate (constraint%fixed(dofs%n), constraint%limited(dofs%n), source=.false.)
+      allocate (constraint%limited_by(dofs%n), constraint%releases(dofs%n), source=0)
       allocate (constraint%air(nodes), source=.false.)
       allocate (constraint%target(dofs%n), constraint%load_0(dofs%n), constraint%load_1(dofs%n), &
-                constraint%offset(dofs%n), constraint%mass(dofs%n), source=0.0_wp)
+                constraint%rain_0(dofs%n), constraint%rain_1(dofs%n), constraint%offset(dofs%n), &
+                constraint%mass(dofs%n), source=0.0_wp)
       allocate (constraint%air_target(nodes), source=0.0_wp)
       do i = 1, size(model%plates)
          constraint%mass(dofs%of(AT_U_Z, model%plates(i)%node)) = model%plates(i)%mass
       end do
    end function new_constraint
 
-   !> Prescribed values at the end of a step; x_start: unknowns at the start of the stage, which some are held at.
-   !> docs/theory/host.md sections 3.5 and 7.1. Accelerations: see follow_accelerations.
-   subroutine constrain_step(model, stage, dofs, drainage, time, x_start, constraint)
+   !> Prescribed values at the end of a step; x_start: unknowns at the start of the stage, which some are held at; x: at
+   !> the start of the step, where pressures with a limit begin on one of its sides.
+   !> docs/theory/host.md sections 3.5, 7.1 and 7.7. Accelerations: see follow_accelerations.
+   subroutine constrain_step(model, stage, dofs, drainage, time, x_start, x, constraint)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       type(dofs_t), intent(in) :: dofs
       type(drainage_t), intent(in) :: drainage
-      real(wp), intent(in) :: time, x_start(:, :)   !< At its end [s]; (FIELDS, nodes) [m, kPa].
+      real(wp), intent(in) :: time, x_start(:, :), x(:, :)   !< At its end [s]; (FIELDS, nodes) [m, kPa], twice.
       type(constraint_t), intent(inout) :: constraint
       real(wp) :: value, factor
       integer :: i, k, node, at
 
       constraint%fixed = .false.
       constraint%air = .false.
+      constraint%limited = .false.
       ! Where drained regions begin pressures are theirs.
       do k = 1, size(model%domain%open_nodes)
          node = model%domain%open_nodes(k)
@@ -61,12 +66,12 @@ contains
       end do
       do i = 1, size(model%fixes)
          associate (fix => model%fixes(i))
-            if (.not. acts(fix, stage, time)) cycle
+            if (.not. acts(fix, stage, time) .or. fix%limits) cycle
             factor = factor_at(model, fix%amplitude, time)
             do k = 1, size(model%domain%mesh%groups(fix%group)%nodes)
                node = model%domain%mesh%groups(fix%group)%nodes(k)
                if (is_released(drainage, i, node)) cycle
-               value = (fix%value + fix%value_slope*(model%domain%mesh%x(2, node) - fix%datum))*factor
+               value = value_of(fix, model%domain%mesh%x(2, node), factor)
                if (fix%field == PRESCRIBED_P_A) then
                   if (dofs%of(AT_P_C, node) == 0) cycle
                   constraint%air(node) = .true.
@@ -82,6 +87,7 @@ contains
             end do
          end associate
       end do
+      if (stage%kind /= STATIC) call limit_pressures(model, stage, dofs, drainage, time, constraint)
       ! Air pressure and one of the others: then the third is known too.
       do node = 1, size(constraint%air)
          if (.not. constraint%air(node)) cycle
@@ -97,6 +103,7 @@ contains
             constraint%air(node) = .false.
          end associate
       end do
+      call begin_sides(dofs, x, constraint)
       if (stage%kind /= STATIC) return
       do i = 1, dofs%n
          if (dofs%field(i) <= DISPLACEMENTS) cycle
@@ -105,6 +112,65 @@ contains
       end do
       constraint%air = .false.
    end subroutine constrain_step
+
+   !> Value of a &fix at a height z, its history the factor.
+   pure real(wp) function value_of(fix, z, factor) result(value)
+      type(fix_t), intent(in) :: fix
+      real(wp), intent(in) :: z, factor   !< [m, -]
+
+      value = (fix%value + fix%value_slope*(z - fix%datum))*factor
+   end function value_of
+
+   !> Largest water pressures of seepage faces, and under rain those of its pond; of several the smallest, whose group
+   !> has the run-off. What another &fix gives has no limit. The air of such a face is that outside.
+   !> docs/theory/host.md section 7.7.
+   subroutine limit_pressures(model, stage, dofs, drainage, time, constraint)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(dofs_t), intent(in) :: dofs
+      type(drainage_t), intent(in) :: drainage
+      real(wp), intent(in) :: time   !< At the end of the step [s].
+      type(constraint_t), intent(inout) :: constraint
+      integer :: i, k
+
+      do i = 1, size(model%fixes)
+         associate (fix => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
+            if (.not. fix%limits .or. .not. acts(fix, stage, time)) cycle
+            do k = 1, size(nodes)
+               if (.not. is_released(drainage, i, nodes(k))) call limit(nodes(k), value_of(fix, &
+                  model%domain%mesh%x(2, nodes(k)), factor_at(model, fix%amplitude, time)), fix%group)
+            end do
+         end associate
+      end do
+      do i = 1, size(model%loads)
+         associate (load => model%loads(i), nodes => model%domain%mesh%groups(model%loads(i)%group)%nodes)
+            if (load%kind /= LOAD_RAIN .or. .not. acts_in(load%stages, stage%name)) cycle
+            do k = 1, size(nodes)
+               call limit(nodes(k), model%domain%fluids%rho_w*gravity_at(model, time)*load%ponding, load%group)
+            end do
+         end associate
+      end do
+   contains
+      subroutine limit(node, value, group)
+         integer, intent(in) :: node, group
+         real(wp), intent(in) :: value   !< [kPa]
+
+         associate (at => dofs%of(AT_P_W, node))
+            if (at == 0) return
+            if (constraint%fixed(at)) return
+            if (constraint%limited(at) .and. constraint%target(at) <= value) return
+            constraint%limited(at) = .true.
+            constraint%target(at) = value
+            constraint%limited_by(at) = group
+         end associate
+         associate (at => dofs%of(AT_P_C, node))
+            if (at == 0 .or. constraint%air(node)) return
+            if (constraint%fixed(at)) return
+         end associate
+         constraint%air(node) = .true.
+         constraint%air_target(node) = 0.0_wp
+      end subroutine limit
+   end subroutine limit_pressures
 
    !> Displacements at the end of a step whose accelerations are prescribed: those that the scheme gives them, so that
    !> inertia is exact and free of the ringing that a prescribed displacement has. Accelerations of the scheme belong to
@@ -195,7 +261,7 @@ contains
       air_by = 0
       do i = 1, size(model%fixes)
          associate (fix => model%fixes(i))
-            if (.not. acts(fix, stage, time)) cycle
+            if (.not. acts(fix, stage, time) .or. fix%limits) cycle
             do k = 1, size(model%domain%mesh%groups(fix%group)%nodes)
                node = model%domain%mesh%groups(fix%group)%nodes(k)
                if (is_released(drainage, i, node)) cycle

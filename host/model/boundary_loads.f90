@@ -4,14 +4,14 @@ module boundary_loads
    use kinds, only: wp, PI
    use given_pressures, only: edges_with_flow
    use model_types, only: model_t, factor_at, gravity_at
-   use scene_types, only: acts_in, LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_AIR, LOAD_FORCE_R, &
-                          stage_t, load_t, plate_t
+   use scene_types, only: acts_in, LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, &
+                          LOAD_FORCE_R, stage_t, load_t, plate_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    use degrees_of_freedom, only: dofs_t, tie, tie_pairs
    use shape_functions, only: edge_quadratic, edge_rule
    implicit none (type, external)
    private
-   public :: shape_loads, ties_of, load_at, plate_load
+   public :: shape_loads, ties_of, load_at, rain_at, plate_load
 contains
    !> Nodes that plates make move together: those of the boundaries that they are joined to. And those of &tie. (FIELDS,
    !> nodes), as number_unknowns takes them: docs/theory/host.md sections 7.3 and 7.6.
@@ -63,7 +63,7 @@ contains
       associate (group => model%domain%mesh%groups(load%group))
          if (load%kind < LOAD_FORCE_R) then
             acts = .true.
-            if (load%kind == LOAD_WATER .or. load%kind == LOAD_AIR) acts = edges_with_flow(model%domain, load%group)
+            if (any(load%kind == [LOAD_WATER, LOAD_RAIN, LOAD_AIR])) acts = edges_with_flow(model%domain, load%group)
             do e = 1, size(group%edges, 2)
                if (.not. acts(e)) cycle
                call add_edge(model, dofs, group%edges(:, e), load%kind, base, slope, shape)
@@ -111,6 +111,9 @@ contains
                call add(AT_U_Z, i, n(i)*norm2(tangent)*weight)
             case (LOAD_WATER)
                call add(AT_P_W, i, m(i)*norm2(tangent)*weight)
+            case (LOAD_RAIN)
+               ! It falls vertically, on what looks upwards.
+               call add(AT_P_W, i, m(i)*max(0.0_wp, -tangent(1))*weight)
             case (LOAD_AIR)
                call add(AT_P_W, i, m(i)*norm2(tangent)*weight)
                call add(AT_P_C, i, m(i)*norm2(tangent)*weight)
@@ -155,6 +158,24 @@ contains
          end associate
       end do
    end function load_at
+
+   !> The rain of a stage at a time, before what runs off [m3/s]. (unknowns) docs/theory/host.md section 7.7.
+   pure function rain_at(model, stage, dofs, time) result(rain)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(dofs_t), intent(in) :: dofs
+      real(wp), intent(in) :: time   !< [s]
+      real(wp) :: rain(dofs%n)
+      integer :: i
+
+      rain = 0.0_wp
+      do i = 1, size(model%loads)
+         associate (one => model%loads(i))
+            if (one%kind == LOAD_RAIN .and. acts_in(one%stages, stage%name)) &
+               rain = rain + factor_at(model, one%amplitude, time)*one%value*one%shape
+         end associate
+      end do
+   end function rain_at
 
    !> Force on a plate and its weight, upwards [kN]. docs/theory/host.md section 7.3.
    pure real(wp) function plate_load(model, plate, time)

@@ -5,7 +5,7 @@ module boundary_warnings
    use given_pressures, only: nodes_with_flow, edges_with_flow
    use idle_keys, only: add_warning, WARNING_LENGTH
    use model_types, only: model_t
-   use scene_types, only: scene_item_t, acts_in, amplitude_at, place_of, LOAD_WATER, LOAD_AIR, stage_t, fix_t, &
+   use scene_types, only: scene_item_t, acts_in, amplitude_at, place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t, fix_t, &
                           PRESCRIBED_P_A
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C, FIELD_NAMES
@@ -39,6 +39,8 @@ contains
          associate (one => model%fixes(i))
             before: do j = 1, i - 1
                if (model%fixes(j)%field /= one%field .or. .not. differ(model%fixes(j), one)) cycle
+               ! Where one side is given and another limited, as at a water level, the given one counts.
+               if (model%fixes(j)%limits .neqv. one%limits) cycle
                if (model%fixes(j)%from >= one%until .or. one%from >= model%fixes(j)%until) cycle
                do s = 1, size(model%stages)
                   if (.not. (acts_in(one%stages, model%stages(s)%name) .and. &
@@ -112,10 +114,10 @@ contains
 
       do i = 1, size(model%loads)
          associate (one => model%loads(i), edges => model%domain%mesh%groups(model%loads(i)%group)%edges)
-            if (one%kind /= LOAD_WATER .and. one%kind /= LOAD_AIR) cycle
+            if (all(one%kind /= [LOAD_WATER, LOAD_RAIN, LOAD_AIR])) cycle
             do s = 1, size(model%stages)
                if (.not. acts_in(one%stages, model%stages(s)%name)) cycle
-               if (one%kind == LOAD_WATER) then
+               if (one%kind /= LOAD_AIR) then
                   taken = has_given(model, model%stages(s), AT_P_W)
                   taken = taken .or. (has_given(model, model%stages(s), AT_P_C) .and. &
                                       has_given(model, model%stages(s), PRESCRIBED_P_A))
@@ -129,7 +131,7 @@ contains
                call add_warning(place_of(one)//'the inflow has no effect on '//whole(lost)//' of the '// &
                   whole(size(edges, 2))//' edges of '''//trim(one%group_name)//''' in stage '// &
                   trim(model%stages(s)%name)//': a &fix prescribes the pressure of '// &
-                  trim(merge('water', 'air  ', one%kind == LOAD_WATER))//' there.', warnings)
+                  trim(merge('air  ', 'water', one%kind == LOAD_AIR))//' there.', warnings)
                exit
             end do
          end associate
@@ -147,7 +149,7 @@ contains
       has = .false.
       do i = 1, size(model%fixes)
          associate (one => model%fixes(i))
-            if (one%field /= field .or. .not. acts_in(one%stages, stage%name)) cycle
+            if (one%field /= field .or. one%limits .or. .not. acts_in(one%stages, stage%name)) cycle
             if (one%from > -huge(1.0_wp) .or. one%until < huge(1.0_wp)) cycle
             has(model%domain%mesh%groups(one%group)%nodes) = .true.
          end associate
@@ -227,7 +229,7 @@ contains
       end do
       do i = 1, size(model%loads)
          associate (one => model%loads(i))
-            if (one%kind /= LOAD_WATER .and. one%kind /= LOAD_AIR) cycle
+            if (all(one%kind /= [LOAD_WATER, LOAD_RAIN, LOAD_AIR])) cycle
             associate (edges => edges_with_flow(model%domain, one%group))
                if (.not. all(edges)) call add_warning(place_of(one)//'fluid flows in through '//whole(count(edges))// &
                   ' of the '//whole(size(edges))//' edges of '''//trim(one%group_name)//''': the others belong to '// &

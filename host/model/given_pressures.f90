@@ -8,7 +8,7 @@ module given_pressures
    use faults, only: fault_t, raise
    use model_types, only: model_t
    use porous_domain, only: domain_t, COUPLED, DRAINED, UNDRAINED, DRY
-   use scene_types, only: place_of, LOAD_WATER, LOAD_AIR, initial_t
+   use scene_types, only: place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, initial_t
    use texts, only: whole
    use unknown_fields, only: FIELD_NAMES, AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
@@ -153,7 +153,7 @@ contains
          end do
          do i = 1, size(model%loads)
             associate (load => model%loads(i))
-               if (load%kind /= LOAD_WATER .and. load%kind /= LOAD_AIR) cycle
+               if (all(load%kind /= [LOAD_WATER, LOAD_RAIN, LOAD_AIR])) cycle
                if (any(edges_with_flow(domain, load%group))) cycle
                call raise(fault, EXIT_GROUP, place_of(load)//'no edge of '''//trim(load%group_name)//''' belongs '// &
                           'to a region with drainage = ''coupled'': nothing can flow in; leave this &load out, or '// &

@@ -9,16 +9,16 @@ module reaction_rows
    use generalised_alpha, only: scheme_t, make_scheme, STATIC
    use model_types, only: model_t, factor_at
    use prescribed_values, only: constraint_t
-   use scene_types, only: acts_in, LOAD_WATER, LOAD_AIR, stage_t
+   use scene_types, only: acts_in, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t
    use unknown_fields, only: DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private
    public :: reaction_columns, reaction_row
 
-   integer, parameter :: SUFFIXES = 8
+   integer, parameter :: SUFFIXES = 9
    character(10), parameter :: SUFFIX(SUFFIXES) = [character(10) :: 'force_r', 'force_z', 'outflow_w', 'outflow_a', &
-                                                   'load_r', 'load_z', 'inflow_w', 'inflow_a']
-   integer, parameter :: OUT_W = 3, OUT_A = 4, LOAD_R = 5, LOAD_Z = 6, IN_W = 7, IN_A = 8
+                                                   'load_r', 'load_z', 'inflow_w', 'inflow_a', 'at_limit']
+   integer, parameter :: OUT_W = 3, OUT_A = 4, LOAD_R = 5, LOAD_Z = 6, IN_W = 7, IN_A = 8, LIMIT = 9
 contains
    !> Columns of a stage's table; empty where the stage prescribes and loads nothing. docs/theory/host.md section 9.1.
    function reaction_columns(model, stage) result(head)
@@ -52,6 +52,7 @@ contains
             else
                call add(fix%group, OUT_W)
                if (model%domain%with_c) call add(fix%group, OUT_A)
+               if (fix%limits) call add(fix%group, LIMIT)
             end if
          end associate
       end do
@@ -61,6 +62,11 @@ contains
             select case (load%kind)
             case (LOAD_WATER)
                call add(load%group, IN_W)
+            case (LOAD_RAIN)
+               call add(load%group, IN_W)
+               call add(load%group, OUT_W)
+               if (model%domain%with_c) call add(load%group, OUT_A)
+               call add(load%group, LIMIT)
             case (LOAD_AIR)
                call add(load%group, IN_A)
             case default
@@ -107,7 +113,7 @@ contains
       end function picked
 
       subroutine add_reactions()
-         integer :: by(model%dofs%n), air_by(size(model%domain%mesh%x, 2)), i, k
+         integer :: by(model%dofs%n), air_by(size(model%domain%mesh%x, 2)), i, k, group
          real(wp) :: w, a
 
          call prescribing_fixes(model, stage, model%dofs, drainage, time, by, air_by)
@@ -125,8 +131,17 @@ contains
                   ! The first balance is that of both fluids; where the air pressure is given, that of the water.
                   if (.not. constraint%air(i)) w = w - a
                end if
-               if (k == 0) cycle
-               sums([OUT_W, OUT_A], model%fixes(k)%group) = sums([OUT_W, OUT_A], model%fixes(k)%group) - [w, a]
+               group = 0
+               if (k > 0) group = model%fixes(k)%group
+               associate (at => dofs%of(AT_P_W, i))
+                  if (constraint%limited(at)) then
+                     group = constraint%limited_by(at)
+                     if (constraint%fixed(at)) sums(LIMIT, group) = sums(LIMIT, group) + 1
+                     ! What a free node's balance leaves is Newton's, and no flow.
+                     if (.not. constraint%fixed(at)) w = 0.0_wp
+                  end if
+               end associate
+               if (group > 0) sums([OUT_W, OUT_A], group) = sums([OUT_W, OUT_A], group) - [w, a]
             end do
          end associate
       end subroutine add_reactions
@@ -144,7 +159,7 @@ contains
                factor = factor + scheme%l_f*(factor_at(model, load%amplitude, time) - factor)
                associate (sum_of => sums(:, load%group))
                   select case (load%kind)
-                  case (LOAD_WATER)
+                  case (LOAD_WATER, LOAD_RAIN)
                      sum_of(IN_W) = sum_of(IN_W) + factor*sum(vector, mask=field == AT_P_W)
                   case (LOAD_AIR)
                      sum_of(IN_A) = sum_of(IN_A) + factor*sum(vector, mask=field == AT_P_C)

@@ -30,7 +30,7 @@ module energy_ledger
       real(wp) :: contact = 0.0_wp    !< Work done on the penalty of contacts [kJ].
       real(wp) :: seepage = 0.0_wp    !< Dissipated by seepage [kJ].
       real(wp) :: damping = 0.0_wp    !< Dissipated by the damping of regions [kJ].
-      real(wp) :: outflow = 0.0_wp, outflow_air = 0.0_wp !< Through prescribed pressures: both fluids, air [m3].
+      real(wp) :: outflow = 0.0_wp, outflow_air = 0.0_wp !< Through prescribed pressures, less rain: both, air [m3].
       real(wp) :: largest_work = 0.0_wp !< Largest of the works and of the kinetic energy at the start, so far [kJ].
       real(wp) :: open_0 = 0.0_wp       !< What the balance left open where the present stage began [kJ].
       real(wp) :: most_created = 0.0_wp !< Largest energy that a dynamic stage has created, so far [kJ].
@@ -169,7 +169,7 @@ contains
       end do
    end subroutine book_forces
 
-   !> Flow out through prescribed pressures.
+   !> Flow out through prescribed pressures and past limits, less the rain: what runs off never entered.
    subroutine book_outflow(dofs, scheme, constraint, reaction, ledger)
       type(dofs_t), intent(in) :: dofs
       type(scheme_t), intent(in) :: scheme
@@ -179,6 +179,8 @@ contains
       integer :: i
 
       if (scheme%kind == STATIC) return
+      ledger%outflow = ledger%outflow &
+         - scheme%dt*sum(constraint%rain_0 + scheme%l_f*(constraint%rain_1 - constraint%rain_0))
       do i = 1, dofs%n
          if (dofs%field(i) == AT_P_W .and. constraint%fixed(i)) ledger%outflow = ledger%outflow - scheme%dt*reaction(i)
          if (dofs%field(i) /= AT_P_C) cycle

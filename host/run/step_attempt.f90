@@ -5,7 +5,7 @@ module step_attempt
    use kinds, only: wp
    use faults, only: fault_t
    use boundary_conditions, only: constrain_step, follow_accelerations, starting_accelerations
-   use boundary_loads, only: load_at
+   use boundary_loads, only: load_at, rain_at
    use contact_drainage, only: freeze_drainage
    use convergence, only: control_t, log_t
    use energy_ledger, only: kinetic_energy
@@ -72,6 +72,8 @@ contains
       end if
       run%constraint%load_0 = load_at(model, stage, model%dofs, run%state%time)
       run%constraint%load_1 = load_at(model, stage, model%dofs, run%state%time + dt)
+      run%constraint%rain_0 = rain_at(model, stage, model%dofs, run%state%time)
+      run%constraint%rain_1 = rain_at(model, stage, model%dofs, run%state%time + dt)
       if (allocated(run%constraint%dashpots)) call set_incoming_waves(model, stage, dt, run)
       run%next%gravity = gravity_at(model, run%state%time + dt)
       call prescribe(model, stage, run%state%time + dt, run, fault)
@@ -135,7 +137,8 @@ contains
 
       call freeze_drainage(model, run%drainage, run%system%contacts, run%state%x, fault)
       if (fault%code /= 0) return
-      call constrain_step(model, stage, model%dofs, run%drainage, time, run%at%x_start, run%constraint)
+      call constrain_step(model, stage, model%dofs, run%drainage, time, run%at%x_start, run%state%x, &
+                          run%constraint)
    end subroutine prescribe
 
    subroutine first_accelerations(model, stage, run, fault)

@@ -379,6 +379,8 @@ contains
       fix%scene_item_t = item_of(k%group)
       call k%text('group', fix%group_name, 'boundary, region or node group', REQUIRED)
       call k%word('field', fix%field, 'u_r|u_z|p_w|p_c|p_a', 'what is prescribed', REQUIRED)
+      call k%flag('kind', fix%limits, 'value|seepage', 'seepage', &
+                  'seepage: p_w is at most the value; water may leave there, none enters', 'field=p_w')
       call k%number('value', fix%value, -BIG, BIG, 'prescribed value, at the datum [m, kPa]', 'hold=no')
       call k%number('value_slope', fix%value_slope, -BIG, BIG, 'change of the value with z [-, kPa/m]', 'hold=no')
       call k%number('datum', fix%datum, -BIG, BIG, 'z of the datum [m]', '+value_slope')
@@ -399,11 +401,13 @@ contains
 
       load%scene_item_t = item_of(k%group)
       call k%text('group', load%group_name, 'boundary (for force: node group)', REQUIRED)
-      call k%word('kind', load%kind, 'pressure|shear_r|shear_z|water|air|force_r|force_z', &
+      call k%word('kind', load%kind, 'pressure|shear_r|shear_z|water|rain|air|force_r|force_z', &
                   'kind of load, see host/README.md', REQUIRED)
       call k%number('value', load%value, -BIG, BIG, 'value of the load, at the datum [kPa, m/s, kN]', REQUIRED)
       call k%number('value_slope', load%value_slope, -BIG, BIG, 'change of the value with z [kPa/m, 1/s, kN/m]')
       call k%number('datum', load%datum, -BIG, BIG, 'z of the datum [m]', '+value_slope')
+      call k%number('ponding', load%ponding, ZERO, 1000*ONE, &
+                    'rain: depth of water that the surface holds before the rest runs off [m]', 'kind=rain')
       call k%text('history', load%amplitude_name, 'factor on the value')
       call k%texts('stages', load%stages, STAGES)
       scene%loads = [scene%loads, load]

@@ -18,7 +18,7 @@ module scene_types
    public :: initial_t, amplitude_t, stage_t, fix_t, load_t, plate_t, contact_pair_t, absorber_t, tie_t, point_t
    public :: NAME_LENGTH, FINGERPRINT_LENGTH, acts_in, place_of, amplitude_at
    public :: WITH_U, WITH_P_W, WITH_P_C, PRESCRIBED_P_A
-   public :: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z
+   public :: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z
 
    integer, parameter :: NAME_LENGTH = 64         !< Longest name that a scene gives.
    integer, parameter :: FINGERPRINT_LENGTH = 16
@@ -29,8 +29,9 @@ module scene_types
    integer, parameter :: PRESCRIBED_P_A = FIELDS + 1   !< &fix field, after those of unknown_fields: air pressure.
    integer, parameter :: LOAD_PRESSURE = 1    !< &load kind: against the outward normal [kPa].
    integer, parameter :: LOAD_SHEAR_R = 2, LOAD_SHEAR_Z = 3   !< &load kind: along the axes [kPa].
-   integer, parameter :: LOAD_WATER = 4, LOAD_AIR = 5         !< &load kind: inflow [m/s].
-   integer, parameter :: LOAD_FORCE_R = 6, LOAD_FORCE_Z = 7   !< &load kind: on every node of a group [kN].
+   integer, parameter :: LOAD_WATER = 4, LOAD_AIR = 6         !< &load kind: inflow [m/s].
+   integer, parameter :: LOAD_RAIN = 5        !< &load kind: inflow until the surface ponds [m/s].
+   integer, parameter :: LOAD_FORCE_R = 7, LOAD_FORCE_Z = 8   !< &load kind: on every node of a group [kN].
    real(wp), parameter :: NEVER = huge(1.0_wp)
 
    !> Where a group of the scene begins, for sentences about it.
@@ -99,6 +100,7 @@ module scene_types
       integer :: field = 0                           !< AT_... of unknown_fields, or PRESCRIBED_P_A.
       real(wp) :: value = 0.0_wp, value_slope = 0.0_wp, datum = 0.0_wp, from = -NEVER, until = NEVER
       logical :: hold = .false., acceleration = .false.
+      logical :: limits = .false.                    !< The value is the largest p_w: water leaves, none enters.
       character(LENGTH), allocatable :: stages(:)
    end type fix_t
 
@@ -107,6 +109,7 @@ module scene_types
       integer :: group = 0, amplitude = 0
       integer :: kind = 0                            !< LOAD_...
       real(wp) :: value = 0.0_wp, value_slope = 0.0_wp, datum = 0.0_wp
+      real(wp) :: ponding = 0.0_wp                   !< Depth of water that stays on the surface, of rain [m].
       character(LENGTH), allocatable :: stages(:)
       real(wp), allocatable :: shape(:)              !< Load vector of a unit value.
       real(wp), allocatable :: rise(:)               !< Load vector of the value z - datum, where it changes with z.

@@ -14,6 +14,7 @@ module newton_step
    use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
    use carried_slopes, only: AS_BEFORE
    use generalised_alpha, only: scheme_t, predict, advance_rates, DYNAMIC
+   use limited_pressures, only: choose_sides
    use linear_system, only: system_t, solve_step, asked_for, look_at_contacts, MOST_STEPS, T_ASSEMBLY, &
                             T_REST, T_MATERIAL, T_CONTACT
    use porous_domain, only: domain_t, state_t
@@ -40,7 +41,7 @@ contains
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(inout) :: pattern   !< Grows with the contacts.
       type(scheme_t), intent(in) :: scheme
-      type(constraint_t), intent(in) :: constraint
+      type(constraint_t), intent(inout) :: constraint   !< Pressures with a limit change their side.
       type(control_t), intent(in) :: control
       type(state_t), intent(in) :: old
       type(state_t), intent(inout) :: new
@@ -51,7 +52,7 @@ contains
       real(wp), allocatable :: touched(:)   !< Forces of contacts before, where steps are measured by what they change.
       real(wp) :: norm, norm_0, t0
       integer :: status
-      logical :: with_tangent, guessed
+      logical :: with_tangent, guessed, turned
 
       t0 = clock()
       allocate (rhs(dofs%n), dx(dofs%n))
@@ -78,6 +79,8 @@ contains
             cycle
          end if
          if (log%iterations > 0) then
+            call choose_sides(dofs, pattern, assembly%values, new%x, rhs, assembly%scale, control%tolerance, constraint, &
+                              turned)
             call measure(dofs, constraint, assembly, rhs, system%rounding, system%largest, log)
             if (log%iterations == 1) log%first_error = log%error
             norm = norm2(pack(rhs, .not. constraint%fixed))
@@ -87,9 +90,12 @@ contains
                norm_0 = max(norm_0, norm, ROUNDING*norm2(assembly%scale))
             end if
             log%reduction = norm/max(norm_0, tiny(1.0_wp))
-            if (good_enough(control, log)) exit
-            call look_for_stagnation(control, log)
-            if (log%stagnated) exit
+            ! A pressure that turned to the other side of its limit has not been solved for yet.
+            if (.not. turned) then
+               if (good_enough(control, log)) exit
+               call look_for_stagnation(control, log)
+               if (log%stagnated) exit
+            end if
             if (log%iterations >= control%max_iterations .or. .not. all(log%error < HOPELESS)) then
                log%outcome = NOT_CONVERGED
                system%reassemble_tangent = .true.

@@ -16,6 +16,11 @@ module prescribed_values
       real(wp), allocatable :: target(:)      !< their values at the end of the step
       logical, allocatable :: air(:)          !< Nodes with a prescribed air pressure
       real(wp), allocatable :: air_target(:)
+      ! Where a pressure has a limit the target is that, and `fixed` says whether it stands there.
+      logical, allocatable :: limited(:)      !< Unknowns with a limit: water pressures.
+      integer, allocatable :: limited_by(:)   !< The group of the mesh that their run-off belongs to.
+      integer, allocatable :: releases(:)     !< How often they left their limit in this step.
+      real(wp), allocatable :: rain_0(:), rain_1(:)   !< Rain in the loads below, before and after [m3/s].
       real(wp), allocatable :: load_0(:), load_1(:)   !< Loads before and after.
       real(wp), allocatable :: offset(:)      !< Flow of the initial state that is subtracted, forces that hold ground.
       type(dashpots_t), allocatable :: dashpots(:)   !< Of absorbing boundaries.
