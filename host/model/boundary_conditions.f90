@@ -137,8 +137,9 @@ contains
          associate (fix => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
             if (.not. fix%limits .or. .not. acts(fix, stage, time)) cycle
             do k = 1, size(nodes)
-               if (.not. is_released(drainage, i, nodes(k))) call limit(nodes(k), value_of(fix, &
-                  model%domain%mesh%x(2, nodes(k)), factor_at(model, fix%amplitude, time)), fix%group)
+               ! The water outside, where it stands, else the air.
+               if (.not. is_released(drainage, i, nodes(k))) call limit(nodes(k), max(0.0_wp, value_of(fix, &
+                  model%domain%mesh%x(2, nodes(k)), factor_at(model, fix%amplitude, time))), fix%group)
             end do
          end associate
       end do

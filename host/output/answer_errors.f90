@@ -63,7 +63,7 @@ contains
          held = .false.
          do k = 1, size(model%fixes)
             associate (fix => model%fixes(k))
-               if (fix%field /= field .or. .not. acts_in(fix%stages, model%stages(i)%name)) cycle
+               if (fix%field /= field .or. fix%limits .or. .not. acts_in(fix%stages, model%stages(i)%name)) cycle
                if (fix%from > -huge(1.0_wp) .or. fix%until < huge(1.0_wp)) cycle
                held = held .or. any(model%domain%mesh%groups(fix%group)%nodes == node)
             end associate

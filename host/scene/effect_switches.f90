@@ -4,15 +4,15 @@
 module effect_switches
    use kinds, only: wp
    use effect_types, only: effect_t, EFFECT_NAMES, EFFECTS, OF_INERTIA, OF_SEEPAGE, OF_P_W, OF_P_C, OF_GRAVITY, &
-      OF_CONTACT, OF_DAMPING, OF_ABSORBING, OF_DRAINAGE, OF_VOID_RATIO, OF_HYSTERESIS, OF_BONDING, &
+      OF_CONTACT, OF_DAMPING, OF_ABSORBING, OF_DRAINAGE, OF_LIMITS, OF_VOID_RATIO, OF_HYSTERESIS, OF_BONDING, &
       OF_ELASTIC_DOMAIN, OF_FLOW
    use faults, only: fault_t
    use key_schema, only: given
    use library_tables, only: property_index, property_range
    use namelists, only: set_entry
    use parameter_groups, only: read_parameters
-   use scene_types, only: scene_t, NAME_LENGTH, WITH_U, WITH_P_W, WITH_P_C, PRESCRIBED_P_A, LOAD_WATER, LOAD_AIR, &
-                          acts_in
+   use scene_types, only: scene_t, NAME_LENGTH, WITH_U, WITH_P_W, WITH_P_C, PRESCRIBED_P_A, LOAD_WATER, LOAD_RAIN, &
+                          LOAD_AIR, acts_in
    use generalised_alpha, only: STATIC, QUASI_STATIC, DYNAMIC
    use unknown_fields, only: AT_P_W, AT_P_C
    use porous_domain, only: COUPLED, DRAINED, UNDRAINED, DRY
@@ -142,6 +142,8 @@ contains
          has_meaning = is_present(scene, kind, 1)
       case (OF_ABSORBING)
          has_meaning = size(scene%absorbers) > 0
+      case (OF_LIMITS)
+         has_meaning = is_present(scene, kind, 1)
       case (OF_VOID_RATIO)
          has_meaning = is_present(scene, kind, 1)
       case (OF_HYSTERESIS)
@@ -181,6 +183,8 @@ contains
          present = size(scene%absorbers) > 0
       case (OF_DRAINAGE)
          present = any(scene%contacts%drains_by_state)
+      case (OF_LIMITS)
+         present = scene%fields /= WITH_U .and. (any(scene%fixes%limits) .or. any(scene%loads%kind == LOAD_RAIN))
       case (OF_VOID_RATIO)
          if (scene%fields == WITH_P_C) &
             present = any([(parameter_of(scene, i, 'Omega') > 0.0_wp, i=1, size(scene%materials))])
@@ -290,6 +294,12 @@ contains
          scene%absorbers = scene%absorbers(:0)
       case (OF_DRAINAGE)
          scene%contacts%drains_by_state = on
+      case (OF_LIMITS)
+         ! The limit is prescribed, and all rain flows in.
+         if (.not. on) then
+            scene%fixes%limits = .false.
+            where (scene%loads%kind == LOAD_RAIN) scene%loads%kind = LOAD_WATER
+         end if
       case (OF_VOID_RATIO)
          call freeze_retention(scene, why)
       case (OF_FLOW)

@@ -108,6 +108,7 @@ check("without gravity, but geostatic: refused with the reason",
 
 # Every effect is one key, and its word in `without` is that key: the same bytes, and another answer than with it.
 TOUCH = "&contact name = 'c' slave = 'top' master = 'plate' drainage = 'state' penalty = 1e6 /"
+FACE = "&fix group = 'bottom' field = 'p_w' kind = 'seepage' /"
 WHOLE = """&scene name = 'whole' fields = 'u-p_w-p_c' gravity = 9.81 seepage_inertia = 'yes' /
 &mesh r = 0, 0.2 r_cells = 2 z = -0.2, 0 z_cells = 2 /
 &mud name = 'sand' file = '{materials}/toyoura.nml' hysteresis = 1 fabric = 1 bonding = 1 isotropic = 1 lode = 1
@@ -123,15 +124,16 @@ WHOLE = """&scene name = 'whole' fields = 'u-p_w-p_c' gravity = 9.81 seepage_ine
 &fix group = 'bottom' field = 'u_z' /
 &fix group = 'top' field = 'p_w' value = -30 /
 &fix group = 'top' field = 'p_c' value = 30 /
+{face}
 &stage name = 'shake' analysis = 'dynamic' duration = 0.012 dt = 1e-3 rho_inf = 0 created_energy = 1e9 /
 &point name = 'centre' r = 0 z = 0 /
 &point name = 'base' r = 0 z = -0.2 /
-""".replace("{contact}", TOUCH)
+""".replace("{contact}", TOUCH).replace("{face}", FACE)
 WET = (("&fix group = 'top' field = 'p_c' value = 30 /", ""), ("fields = 'u-p_w-p_c'", "fields = 'u-p_w'"))
 KEYS = {
     "inertia": (("'dynamic'", "'quasi_static'"), ("'yes'", "'no'")),
     "relative_acceleration": (("'yes'", "'no'"),),
-    "p_w": (*WET, ("&fix group = 'top' field = 'p_w' value = -30 /", ""), ("fields = 'u-p_w'", "fields = 'u'"),
+    "p_w": (*WET, ("&fix group = 'top' field = 'p_w' value = -30 /", ""), (FACE, ""), ("fields = 'u-p_w'", "fields = 'u'"),
             ("'yes'", "'no'"), ("'state'", "'fixed'")),
     "p_c": WET,
     "gravity": (("gravity = 9.81", "gravity = 0"),),
@@ -139,6 +141,7 @@ KEYS = {
     "damping": (("damping = 5", "damping = 0"),),
     "absorbing": (("&absorbing group = 'right' /", ""),),
     "contact_drainage": (("'state'", "'fixed'"),),
+    "seepage_face": (("'seepage'", "'value'"),),
     "void_ratio_in_retention": (("lode = 1", f"lode = 1 Omega = 0 P_a = {5.0 * 0.7**-2.0:.16e}"),),
     "hysteresis": (("hysteresis = 1", "hysteresis = 0"),),
     "bonding": (("bonding = 1", "bonding = 0"),),

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from host_runs import BOTH, SETTINGS, HostCase
-from host_scenes import column, falling, footing, impact, meshes, rectangle, square, tolerant
+from host_scenes import column, falling, footing, impact, meshes, rectangle, showers, square, tolerant
 
 DEFAULT = SETTINGS[:1]
 CONTACT, WATER, FAILURE, MESH = "contact", "pore water", "failure", "mesh"
@@ -63,6 +63,21 @@ def off_the_limit(runs):
     """Largest difference of settlement and of largest pore pressure between two permeabilities that are as good as none [%]."""
     pairs = zip(*((settlement(run), float(np.max(np.abs(run.histories["centre.p_w"])))) for run in runs.values()))
     return max(100 * abs(a / b - 1) for a, b in pairs)
+
+
+def above_limit(runs):
+    """Pressure of the surface above that of its pond, and rain that neither entered nor ran off, of what fell [%]."""
+    worst = 0.0
+    for run in runs.values():
+        row, pressure = run.table("reactions_rain"), run.histories["centre.p_w"]
+        fallen = np.sum(row["top.inflow_w"])
+        worst = max(worst, 100 * float(np.max(pressure)) / (9.81 * 0.02) - 100, 100 * float(np.sum(np.maximum(0, -row["top.outflow_w"])) / fallen),
+                    100 * float(np.sum(np.maximum(0, row["top.outflow_w"] - row["top.inflow_w"])) / fallen))
+    return worst
+
+
+def surface_pressures(runs):
+    return [float(run.histories["centre.p_w"][-1]) for run in runs.values()]
 
 
 def base_pressures(runs):
@@ -135,6 +150,9 @@ CASES = (
              limit="displacements and pressures of one order have no stable pressures without drainage: `pressures = 'linear'` is the remedy"),
     HostCase("permeability 1e-8 to 1e-14 m2, linear pressures", WATER, "as before, with pressures an order below displacements",
              PRESSURE, 10, lambda s: {f"{k:.0e}": column(s, k, "linear") for k in PERMEABILITIES}, off_terzaghi, base_pressures, DEFAULT),
+    HostCase("showers", WATER, "rain of three times the conductivity, five times on and off: the surface of unsaturated sand ponds and dries",
+             "pressure above the pond's, water drawn in at the limit, and run-off beyond the rain, of pond and rain [%]", 0.1,
+             lambda s: {"": showers(s)}, above_limit, surface_pressures, DEFAULT),
     footing_case("footing on loose sand", "the tangent of a softening or perfectly plastic soil is nearly singular", void_ratio=0.907),
     footing_case("footing on dense sand", "softening and dilation under the edge", void_ratio=0.75),
     footing_case("footing on undrained sand", "no volume change, and loose sand loses its strength", void_ratio=0.907, undrained=True,

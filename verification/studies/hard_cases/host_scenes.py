@@ -55,6 +55,20 @@ def column(setting, k, pressures, dt=1e-3, steps=1):
             f"&fix group='top' field='p_w' /\n&load group='top' kind='pressure' value={load(setting, 100.0)} /\n&point name='base' r=0 z=0 /\n")
 
 
+def showers(setting, dt=30):
+    """Sand above a water table in showers of three times its conductivity: the surface ponds and dries again and again."""
+    times = [300.0 * i + x for i in range(10) for x in (0.0, 0.1)]
+    values = [x for i in range(10) for x in ((0, 1) if i % 2 == 0 else (1, 0))]
+    return ("&scene name='showers' geometry='plane_strain' fields='u-p_w-p_c' pressures='linear' gravity=9.81 /\n"
+            f"&mesh r=0,0.25 r_cells=1 z=-2,0 z_cells=10 z_ratio=0.8 /\n{sand(setting)}"
+            "&permeability name='k' intrinsic=1e-11 /\n&region material='sand' retention='material' permeability='k' void_ratio=0.8 /\n"
+            "&initial stress='geostatic' k_0=0.5 surcharge=2 p_w_slope=-9.81 p_c_slope=9.81 datum=-2 /\n"
+            f"&history name='clouds' times={','.join(map(str, times))} values={','.join(map(str, values))} /\n"
+            f"&stage name='rain' analysis='quasi_static' duration=3000 dt={dt} rho_inf=0 max_iterations=20 /\n{SIDES}"
+            "&fix group='bottom' field='p_w' /\n&fix group='bottom' field='p_c' /\n&load group='top' kind='pressure' value=2 /\n"
+            f"&load group='top' kind='rain' value={load(setting, 3e-4)} history='clouds' ponding=0.02 /\n&point name='centre' r=0 z=0 /\n")
+
+
 FOOTING_MESH = "&mesh r=0,0.5,4 r_cells=2,3 r_ratio=0.7,1.9 z=-4,-0.6,0 z_cells=2,2 z_ratio=0.4,0.7 /\n"
 
 
