@@ -17,7 +17,7 @@ module boundary_builder
 
    character(3), parameter :: WORD_OF(*) = [FIELD_NAMES, 'p_a']
    character(*), parameter :: NO_SUBTRACTION = 'initial_flow = ''subtract'' of &scene takes a flow away that a '// &
-      'seepage face or rain has to see; start from water at rest, or let a stage find the flow (initial_flow = ''drain'').'
+      'seepage face or rain has to see; start from water at rest, or let a stage find the flow (''drain'').'
 contains
    !> Plates come first: those with a face of their own become nodes of the mesh, and all become groups of it.
    !> docs/theory/host.md section 7.3. Fault EXIT_GROUP: the name is that of a group of the mesh, or the boundary or

@@ -11,8 +11,8 @@ module limited_pressures
    private
    public :: begin_sides, choose_sides
 
-   real(wp), parameter :: AT_LIMIT = 1.0e-6_wp    !< Share of the limit, and [kPa]: as near a step leaves a held pressure.
-   real(wp), parameter :: FLOW_SHARE = 0.01_wp    !< Of Newton's tolerance, of the flows at a node: less decides nothing.
+   real(wp), parameter :: AT_LIMIT = 1.0e-6_wp    !< Share of the limit, and [kPa]: so near a step leaves what it holds.
+   real(wp), parameter :: FLOW_SHARE = 0.01_wp    !< Of Newton's tolerance, of a node's flows: less decides nothing.
    integer, parameter :: MOST_RELEASES = 3        !< In a step; then a node that alternates keeps its limit.
 contains
    !> The sides at the start of a step follow from the pressures there, so that a step that is cut, and a restart, begin
@@ -50,7 +50,8 @@ contains
       changed = .false.
       do i = 1, dofs%n
          if (.not. constraint%limited(i)) cycle
-         side = run_off(i) + abs(values(place_of(pattern, i, i)))*(x(dofs%field(i), dofs%node(i)) - constraint%target(i))
+         side = run_off(i) &
+                + abs(values(place_of(pattern, i, i)))*(x(dofs%field(i), dofs%node(i)) - constraint%target(i))
          least = FLOW_SHARE*tolerance*flows(i)
          if (constraint%fixed(i) .and. side < -least .and. constraint%releases(i) < MOST_RELEASES) then
             constraint%fixed(i) = .false.

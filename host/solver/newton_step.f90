@@ -79,8 +79,8 @@ contains
             cycle
          end if
          if (log%iterations > 0) then
-            call choose_sides(dofs, pattern, assembly%values, new%x, rhs, assembly%scale, control%tolerance, constraint, &
-                              turned)
+            call choose_sides(dofs, pattern, assembly%values, new%x, rhs, assembly%scale, control%tolerance, &
+                              constraint, turned)
             call measure(dofs, constraint, assembly, rhs, system%rounding, system%largest, log)
             if (log%iterations == 1) log%first_error = log%error
             norm = norm2(pack(rhs, .not. constraint%fixed))

@@ -108,7 +108,6 @@ check("without gravity, but geostatic: refused with the reason",
 
 # Every effect is one key, and its word in `without` is that key: the same bytes, and another answer than with it.
 TOUCH = "&contact name = 'c' slave = 'top' master = 'plate' drainage = 'state' penalty = 1e6 /"
-FACE = "&fix group = 'bottom' field = 'p_w' kind = 'seepage' /"
 WHOLE = """&scene name = 'whole' fields = 'u-p_w-p_c' gravity = 9.81 seepage_inertia = 'yes' /
 &mesh r = 0, 0.2 r_cells = 2 z = -0.2, 0 z_cells = 2 /
 &mud name = 'sand' file = '{materials}/toyoura.nml' hysteresis = 1 fabric = 1 bonding = 1 isotropic = 1 lode = 1
@@ -124,24 +123,22 @@ WHOLE = """&scene name = 'whole' fields = 'u-p_w-p_c' gravity = 9.81 seepage_ine
 &fix group = 'bottom' field = 'u_z' /
 &fix group = 'top' field = 'p_w' value = -30 /
 &fix group = 'top' field = 'p_c' value = 30 /
-{face}
 &stage name = 'shake' analysis = 'dynamic' duration = 0.012 dt = 1e-3 rho_inf = 0 created_energy = 1e9 /
 &point name = 'centre' r = 0 z = 0 /
 &point name = 'base' r = 0 z = -0.2 /
-""".replace("{contact}", TOUCH).replace("{face}", FACE)
+""".replace("{contact}", TOUCH)
 WET = (("&fix group = 'top' field = 'p_c' value = 30 /", ""), ("fields = 'u-p_w-p_c'", "fields = 'u-p_w'"))
 KEYS = {
     "inertia": (("'dynamic'", "'quasi_static'"), ("'yes'", "'no'")),
     "relative_acceleration": (("'yes'", "'no'"),),
-    "p_w": (*WET, ("&fix group = 'top' field = 'p_w' value = -30 /", ""), (FACE, ""), ("fields = 'u-p_w'", "fields = 'u'"),
-            ("'yes'", "'no'"), ("'state'", "'fixed'")),
+    "p_w": (*WET, ("&fix group = 'top' field = 'p_w' value = -30 /", ""),
+            ("fields = 'u-p_w'", "fields = 'u'"), ("'yes'", "'no'"), ("'state'", "'fixed'")),
     "p_c": WET,
     "gravity": (("gravity = 9.81", "gravity = 0"),),
     "contact": ((TOUCH, ""),),
     "damping": (("damping = 5", "damping = 0"),),
     "absorbing": (("&absorbing group = 'right' /", ""),),
     "contact_drainage": (("'state'", "'fixed'"),),
-    "seepage_face": (("'seepage'", "'value'"),),
     "void_ratio_in_retention": (("lode = 1", f"lode = 1 Omega = 0 P_a = {5.0 * 0.7**-2.0:.16e}"),),
     "hysteresis": (("hysteresis = 1", "hysteresis = 0"),),
     "bonding": (("bonding = 1", "bonding = 0"),),
@@ -165,7 +162,27 @@ for word in list(KEYS)[:2 if brief else 6 if light else None]:
     check(f"without {word}: another answer", without != whole)
 said = start(WHOLE.replace("gravity = 9.81", "without = 'wind' gravity = 9.81"), "words").stderr
 words = max(re.findall(r"[\w|]+", said), key=len).split("|")
-check("the words of without are these effects", set(words) == set(KEYS), said)
+check("the words of without are these effects", set(words) == {*KEYS, "seepage_face"}, said)
+FACE = """&scene name = 'face' geometry = 'plane_strain' fields = 'u-p_w' gravity = 10 /
+&mesh r = 0, 1 r_cells = 2 z = 0, 1 z_cells = 1 /
+&elastic name = 'soil' young = 1.0e4 poisson = 0.25 /
+&permeability name = 'k' intrinsic = 2.0e-10 law = 'constant' /
+&region material = 'soil' void_ratio = 1 permeability = 'k' /
+&stage name = 's' analysis = 'quasi_static' duration = 10 dt = 1 rho_inf = 0 /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'bottom' field = 'p_w' value = 4 /
+&initial p_w_slope = -10 /
+&fix group = 'right' field = 'p_w' kind = 'seepage' value = 1 /
+&load group = 'top' kind = 'rain' value = 4e-3 /
+&point name = 'top' r = 0 z = 1 /
+"""
+run(FACE, "face")
+run(FACE.replace("gravity = 10", "without = 'seepage_face' gravity = 10"), "by_word")
+run(FACE.replace("kind = 'seepage'", "kind = 'value'").replace("'rain'", "'water'"), "by_key")
+without = (work / "by_word/histories.csv").read_bytes()
+check("without seepage_face: as by its keys, byte for byte", without == (work / "by_key/histories.csv").read_bytes())
+check("without seepage_face: another answer", without != (work / "face/histories.csv").read_bytes())
 
 # A pulse on a slow load, between the steps of the pilots: they cannot see it, the watch does; `stop` ends the run.
 missed = dict(times="0, 5, 5.012, 5.02, 5.028", values="0, 0.05, 0.05, 1, 0.05", stage="duration = 10 dt = 0.004")

@@ -112,8 +112,8 @@ folder = run(still.format(0).replace("&fix group = 'right' field = 'p_w' value =
 near("an inflow linear in z comes out again", last(folder)["left.outflow_w"], 3 * 1e-4 + 4.5 * 2e-5, 1e-6)
 near("and has a column", last(folder)["right.inflow_w"], 3 * 1e-4 + 4.5 * 2e-5, 1e-6)
 
-# A metre of soil of k/eta_w 2e-4 m2/(kPa s), water of 10 kPa/m, the pressure at its base given, at rest after 1e6 s. What
-# follows is Darcy's law over one metre: the flow is 2e-4 times the difference of p_w + 10 z.
+# A metre of soil of k/eta_w 2e-4 m2/(kPa s), water of 10 kPa/m, the pressure at its base given, at rest after 1e6 s.
+# What follows is Darcy's law over one metre: the flow is 2e-4 times the difference of p_w + 10 z.
 COLUMN = """&scene name = 'column' geometry = 'plane_strain' fields = '{fields}' gravity = 10 /
 &mesh r = 0, 1 r_cells = 1 z = 0, 1 z_cells = 1 /
 &elastic name = 'soil' young = 1.0e4 poisson = 0.25 /
@@ -140,7 +140,9 @@ SIDES = (   # what acts on top, pressure at the base; flow out of the top and th
     ("rain on a face: the lower limit", RAIN.format(2e-3, "ponding = 0.5") + FACE.format(""), 4, 0.8e-3, 1.2e-3, 3),
 )
 for fields, retention, suction in (("u-p_w", "", ""), ("u-p_w-p_c", "retention = 'flat'", "p_c_slope = 10")):
-    text = COLUMN + ("&retention name = 'flat' law = 'table' suction = 0, 1e6 saturation = 0.6, 0.6 /\n" if retention else "")
+    text = COLUMN
+    if retention:
+        text += "&retention name = 'flat' law = 'table' suction = 0, 1e6 saturation = 0.6, 0.6 /\n"
     for number, (what, acts, base, top, bottom, nodes) in enumerate(SIDES):
         if retention and "0.5 m" in what:
             continue   # its gas would have to be compressed, which takes longer
@@ -158,7 +160,8 @@ near("no rain on a wall", row["right.inflow_w"], 0, 1e-3)
 near("all of it on what is level", row["top.inflow_w"], 1e-3, 1e-3)
 
 # Taken up between two steps, while the face of rain turns from one side to the other: the same bytes.
-storm = COLUMN.format(fields="u-p_w", retention="", suction="", base=4).replace("gravity = 10", "gravity = 10 checkpoint_steps = 9") \
+storm = COLUMN.format(fields="u-p_w", retention="", suction="", base=4) \
+    .replace("gravity = 10", "gravity = 10 checkpoint_steps = 9") \
     .replace("duration = 1e6 dt = 1e6", "duration = 16 dt = 1").replace("k_w = 1e15", "k_w = 1e3") + \
     RAIN.format(2e-3, "history = 'h'") + "&history name = 'h' times = 0, 4, 10, 12, 16 values = 0, 1, 0, 1, 1 /\n"
 folder = run(storm, "storm")
@@ -188,7 +191,8 @@ for what, acts, words in (
     text = text.replace("gravity = 10", "gravity = 0" if "without weight" in what else
                         "gravity = 10 initial_flow = 'subtract'" if "subtracted" in what else "gravity = 10")
     done, _ = start(text, "refused")
-    check(f"{what}: refused", done.returncode in (2, 11) and words in done.stderr and len(done.stderr.splitlines()) == 1,
+    check(f"{what}: refused",
+          done.returncode in (2, 11) and words in done.stderr and len(done.stderr.splitlines()) == 1,
           f"{done.returncode} {done.stderr}")
 
 # Both fluids, p_w and p_c given on both sides: the flow of each by its own permeability.
