@@ -5,6 +5,7 @@ program mud_host
    use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
    use answer_verification, only: history_t, read_history, differences, force_error_t, compare_forces
    use answer_errors, only: write_answers, print_answers, judge_answers
+   use changed_scenes, only: read_changed
    use checkpoints, only: read_checkpoint
    use kinds, only: wp
    use wall_clock, only: clock
@@ -17,13 +18,14 @@ program mud_host
    use linear_system, only: T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST
    use output_tables, only: check_tables, COLUMNS_OF_A_POINT
    use pilot_budget, only: pilots_account_t
+   use price_table, only: print_price, write_price
    use process_settings, only: settle_process
    use run_output, only: run_output_t
    use run_setup, only: prepare_run
    use run_size, only: size_of_run
    use run_state, only: run_t
-   use scene_accuracy, only: shorten_given_steps
    use scene_keys, only: print_template
+   use scene_price, only: price_t, price_scene
    use scene_reader, only: read_scene
    use scene_types, only: scene_t
    use scene_warnings, only: list_warnings
@@ -34,7 +36,7 @@ program mud_host
    use texts, only: short, whole
    implicit none (type, external)
    character(*), parameter :: USAGE = 'usage: mud_host SCENE.nml [options] | --template | --help'
-   type(option_t) :: options(10) = [ &
+   type(option_t) :: options(12) = [ &
       option_t('--help', letter='-h', answers=.true.), &
       option_t('--template', answers=.true.), &
       option_t('--quiet'), &
@@ -43,7 +45,9 @@ program mud_host
       option_t('--verify'), &
       option_t('--effects'), &
       option_t('--ablate'), &
+      option_t('--price'), &
       option_t('--accuracy', 'a share, as 1e-2'), &
+      option_t('--fineness', 'a factor, as 2'), &
       option_t('--restart', 'a checkpoint')]
    character(WORD_LENGTH) :: file
    character(:), allocatable :: folder, restart
@@ -81,12 +85,17 @@ program mud_host
    if (fault%code == 0 .and. option_given(options, '--verify') .and. restart /= '') call raise(fault, EXIT_INPUT, &
       '--verify repeats a whole run: leave --restart out.')
    t0 = clock()
-   if (fault%code == 0) call read_scene(trim(file), scene, fault, option_value(options, '--accuracy'))
+   if (fault%code == 0) call read_scene(trim(file), scene, fault, option_value(options, '--accuracy'), &
+                                         option_value(options, '--fineness'))
    if (fault%code == 0) call find_effects()
    if (only_effects) call leave()
    if (fault%code == 0) call build_model(scene, model, fault)
    if (fault%code == 0) call prepare_run(model, run, fault)
    if (fault%code == 0 .and. .not. quiet) call announce()
+   if (option_given(options, '--price') .and. .not. only_check) then
+      if (fault%code == 0) call find_price()
+      call leave()
+   end if
    if (fault%code == 0 .and. only_check .and. restart /= '') then
       call check_restart()
    else if (fault%code == 0 .and. .not. only_check) then
@@ -137,20 +146,42 @@ contains
       call apply_effects(effects, scene)
    end subroutine find_effects
 
+   !> What accuracy costs: runs of coarser meshes, and what follows from them for others.
+   subroutine find_price()
+      type(price_t) :: price
+
+      call price_scene(trim(file), accuracy_asked(), effects, quiet, price, fault)
+      if (fault%code /= 0) return
+      call print_price(output_unit, price)
+      call make_folder(folder)
+      call write_price(folder, price, fault)
+   end subroutine find_price
+
+   !> Accuracy of the controlled stages, the largest [-]; 0: all steps are given.
+   real(wp) function accuracy_asked() result(asked)
+      asked = 0.0_wp
+      if (any(model%stages%controlled)) asked = maxval(model%stages%accuracy, mask=model%stages%controlled)
+   end function accuracy_asked
+
    subroutine print_help()
-      character(*), parameter :: LINES(15) = [character(104) :: &
+      character(*), parameter :: LINES(20) = [character(104) :: &
          'Solves the boundary-value problem of a scene. Units m, s, kPa, Mg; tension positive.', &
          '  --output FOLDER       folder of the results, made if missing; default: output, with --restart that of', &
          '                        the checkpoint', &
          '  --restart FILE        continues from a checkpoint of the same scene', &
          '  --accuracy A          relative error wanted in the histories of the points; in place of the key', &
          '                        accuracy of &scene', &
+         '  --fineness F          F times the cells of the mesh along each axis, in place of the key fineness of', &
+         '                        &mesh', &
          '  --verify              repeats the run at a quarter of the accuracy, given steps a quarter as long, and', &
          '                        reports the difference as the error of points and forces; not with --restart', &
          '  --effects             runs coarse pilots of the scene, with every effect and without each; prints', &
          '                        what each changes in the results, writes effects.csv, and ends', &
          '  --ablate              the same with the full scene instead of pilots, and also with each effect', &
          '                        that the scene does not have', &
+         '  --price               runs the scene on coarser meshes; prints what accuracy costs, the error of the', &
+         '                        mesh included: error and time of meshes and accuracies, the cheapest way to', &
+         '                        10, 3 and 1 %; writes price.csv and price_answers.csv, and ends', &
          '  --check               reads and checks scene and checkpoint, runs nothing', &
          '  --quiet               prints errors only', &
          '  --template            prints every group and key of a scene']
@@ -202,15 +233,8 @@ contains
       type(run_t) :: fine_run
       type(run_output_t) :: fine_output
       type(history_t) :: one, two
-      character(16) :: quarter
 
-      quarter = ''
-      if (any(model%stages%controlled)) write (quarter, '(es12.5)') &
-         QUARTER_SHARE*maxval(model%stages%accuracy, mask=model%stages%controlled)
-      call read_scene(trim(file), fine_scene, fault, trim(adjustl(quarter)))
-      if (fault%code == 0) call settle_scene(fine_scene, fault)
-      if (fault%code == 0 .and. allocated(effects)) call apply_effects(effects, fine_scene)
-      if (fault%code == 0) call shorten_given_steps(fine_scene%stages, QUARTER_SHARE)
+      call read_changed(trim(file), accuracy_asked(), QUARTER_SHARE, scene%mesh%fineness, effects, fine_scene, fault)
       if (fault%code == 0) call build_model(fine_scene, fine_model, fault)
       if (fault%code == 0) call prepare_run(fine_model, fine_run, fault)
       if (fault%code /= 0) return

@@ -8,6 +8,7 @@ module mesh_builder
    use gmsh_reader, only: read_gmsh
    use graded_rectangle, only: graded_mesh
    use scene_types, only: scene_mesh_t, place_of
+   use split_triangles, only: split_mesh
    use triangle_mesh, only: mesh_t
    implicit none (type, external)
    private
@@ -21,11 +22,18 @@ contains
       type(scene_mesh_t), intent(in) :: scene
       type(mesh_t), intent(out) :: mesh
       type(fault_t), intent(inout) :: fault
+      type(mesh_t) :: finer
       real(wp) :: elements
+      integer :: k
 
       if (scene%mesh_file /= '') then
          call read_gmsh(trim(scene%mesh_file), mesh, fault)
-         if (fault%code == 0) mesh%x = scene%scale*mesh%x
+         if (fault%code /= 0) return
+         mesh%x = scene%scale*mesh%x
+         do k = 1, scene%splits
+            call split_mesh(mesh, finer)
+            mesh = finer
+         end do
          return
       end if
       elements = 2*sum(real(scene%r_cells, wp))*sum(real(scene%z_cells, wp))
@@ -43,7 +51,8 @@ contains
             call raise(fault, EXIT_MESH, place_of(scene)//'r_cells, z_cells: '//short(elements)//' elements; '// &
                        'at most '//short(MOST_ELEMENTS)//'.')
          else
-            call graded_mesh(r, scene%r_cells, scene%r_ratio, z, scene%z_cells, scene%z_ratio, mesh)
+            call graded_mesh(r, scene%r_cells, scene%r_ratio, scene%r_number, z, scene%z_cells, scene%z_ratio, &
+                             scene%z_number, mesh)
          end if
       end associate
    end subroutine build_mesh

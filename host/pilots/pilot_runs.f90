@@ -8,12 +8,14 @@ module pilot_runs
    use effect_types, only: effect_t, EFFECTS, OF_FLOW
    use faults, only: fault_t, raise, EXIT_INPUT
    use generalised_alpha, only: scheme_t, make_scheme
+   use linear_system, only: T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST
    use model_builder, only: build_model
    use model_types, only: model_t
    use moving_supports, only: find_moving, forces_of_moving
    use porous_domain, only: state_t, copy_state
    use run_observer, only: run_observer_t, step_report_t
    use run_setup, only: prepare_run
+   use run_size, only: memory_of
    use run_state, only: run_t
    use scene_types, only: scene_t
    use time_stepping, only: run_stages
@@ -21,11 +23,13 @@ module pilot_runs
    use wall_clock, only: clock
    implicit none (type, external)
    private
-   public :: pilot_t, stage_ends_t, run_pilot
+   public :: pilot_t, stage_ends_t, run_pilot, PHASES
 
    integer, parameter :: NODES_WITHOUT_POINTS = 50    !< Answers of a scene that names no points.
    ! A pass over an element with its share of the solution, on a usual processor: measured, rounded [s].
    real(wp), parameter :: OF_ELASTIC = 3.0e-5_wp, OF_PLASTIC = 1.0e-4_wp
+
+   integer, parameter :: PHASES = size([T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST]) + 1
 
    type :: stage_ends_t
       real(wp), allocatable :: times(:)               !< Ends of the steps, from the start of the stage [s].
@@ -49,6 +53,9 @@ module pilot_runs
       real(wp), allocatable :: indicators(:, :)       !< Largest, (see indicator_place, stages).
       type(stage_ends_t), allocatable :: ends(:)      !< Of the stages.
       real(wp), allocatable :: rho_inf(:)             !< Of the stages.
+      real(wp) :: phases(PHASES) = 0.0_wp             !< Wall time by T_... of linear_system, then of all else [s].
+      integer :: iterations = 0, cuts = 0
+      real(wp) :: megabytes(2) = 0.0_wp               !< Lists over points, elements and unknowns; factors.
    end type pilot_t
 
    type, extends(run_observer_t) :: watcher_t
@@ -98,6 +105,11 @@ contains
       pilot%elements = size(model%domain%mesh%t6, 2)
       pilot%unknowns = model%dofs%n
       pilot%has = any(model%dofs%of(:FIELDS, :) > 0, dim=2)
+      pilot%phases(:PHASES - 1) = run%system%seconds
+      pilot%phases(PHASES) = pilot%seconds - sum(run%system%seconds)
+      pilot%iterations = run%iterations
+      pilot%cuts = run%cuts
+      pilot%megabytes = memory_of(run)
    end subroutine run_pilot
 
    !> Chooses the nodes whose answers are kept, and keeps their values at the start. Raises no fault.

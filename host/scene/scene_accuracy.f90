@@ -9,7 +9,7 @@ module scene_accuracy
    use scene_types, only: stage_t
    implicit none (type, external)
    private
-   public :: ask_accuracy, ask_steps, ask_stress, shorten_given_steps
+   public :: ask_key, ask_steps, ask_stress, shorten_given_steps
 
    real(wp), parameter :: DEFAULT_ACCURACY = 1.0e-2_wp   !< Of stages without dt in scenes that ask for none.
    real(wp), parameter :: NEWTON_SHARE = 0.1_wp          !< Newton's tolerance as a share of the accuracy.
@@ -17,16 +17,17 @@ module scene_accuracy
    real(wp), parameter :: STRESS_LEAST = 1.0e-10_wp, STRESS_LARGEST = 1.0e-3_wp   !< Its bounds.
    real(wp), parameter :: TIGHT = 1.0e-3_wp              !< Below it the scheme of order 3 costs less.
 contains
-   !> The accuracy of the command line, as if the scene said it. The key is checked with the others.
-   pure subroutine ask_accuracy(accuracy, groups)
-      character(*), intent(in) :: accuracy   !< Empty: none.
+   !> A key of the command line, as if the scene said it. It is checked with the others.
+   pure subroutine ask_key(group, key, value, groups)
+      character(*), intent(in) :: group, key
+      character(*), intent(in) :: value           !< Empty: none.
       type(group_t), intent(inout) :: groups(:)   !< (groups of the scene)
       integer :: i
 
-      if (accuracy == '') return
-      i = findloc(groups%name, 'scene', dim=1)
-      if (i > 0) call set_entry(groups(i), 'accuracy', accuracy)
-   end subroutine ask_accuracy
+      if (value == '') return
+      i = findloc([(groups(i)%name == group, i=1, size(groups))], .true., dim=1)
+      if (i > 0) call set_entry(groups(i), key, value)
+   end subroutine ask_key
 
    !> Steps and tolerance of a stage. docs/theory/host.md section 4.5. Fault EXIT_INPUT: steps = "given" without dt.
    subroutine ask_steps(group, accuracy, by_error, stage, fault)

@@ -157,6 +157,7 @@ contains
       type(key_table_t), intent(inout) :: k
       type(scene_t), intent(inout) :: scene
       character(*), parameter :: RATIO = 'size of a cell over that of the previous one; default 1'
+      integer :: i
 
       associate (mesh => scene%mesh)
          mesh%scene_item_t = item_of(k%group)
@@ -169,12 +170,16 @@ contains
          call k%numbers('z', mesh%z, -BIG, BIG, 'breaks along z [m], ascending', '-file')
          call k%wholes('z_cells', mesh%z_cells, 1, 100000, 'cells between two breaks of z', '-file')
          call k%numbers('z_ratio', mesh%z_ratio, 0.01_wp, 100*ONE, RATIO, '-file')
+         call k%number('fineness', mesh%fineness, 0.01_wp, 64*ONE, 'times as many cells along each axis, breaks at '// &
+                       'points; of a file 1, 2, 4, 8')
          mesh%scale_given = k%given('scale')
          ! A path is relative to the file of the scene.
          if (k%given('file') .and. index(mesh%mesh_file, '/') /= 1) &
             mesh%mesh_file = k%group%file(:index(k%group%file, '/', back=.true.))//mesh%mesh_file
          if (size(mesh%r_ratio) == 0) mesh%r_ratio = spread(ONE, 1, size(mesh%r_cells))
          if (size(mesh%z_ratio) == 0) mesh%z_ratio = spread(ONE, 1, size(mesh%z_cells))
+         mesh%r_number = [(i, i=1, size(mesh%r_cells))]
+         mesh%z_number = [(i, i=1, size(mesh%z_cells))]
       end associate
    end subroutine take_mesh
 

@@ -6,9 +6,11 @@ module scene_reader
    use namelists, only: group_t, read_groups
    use exit_codes, only: EXIT_GROUP
    use scene_fingerprint, only: fingerprint_of, sealed
-   use scene_accuracy, only: ask_accuracy
+   use scene_accuracy, only: ask_key
    use scene_keys, only: check_keys, make_lists, take_group
+   use kinds, only: wp
    use scene_names, only: check_names
+   use scene_refinement, only: refine_scene
    use scene_types, only: scene_t, scene_item_t, place_of
    implicit none (type, external)
    private
@@ -16,17 +18,19 @@ module scene_reader
 contains
    !> Reads and checks a scene; a fault names file, line, value, range and the nearest name. Fault EXIT_INPUT: the file
    !> cannot be read, or a group, key or value is refused; EXIT_GROUP: a stage that nobody defines.
-   subroutine read_scene(file, scene, fault, accuracy)
+   subroutine read_scene(file, scene, fault, accuracy, fineness)
       character(*), intent(in) :: file
       type(scene_t), intent(out) :: scene
       type(fault_t), intent(inout) :: fault
       character(*), intent(in), optional :: accuracy   !< In place of that of the scene; empty: none.
+      character(*), intent(in), optional :: fineness   !< Of the mesh, likewise.
       type(group_t), allocatable :: groups(:)
       type(key_table_t) :: table
       integer :: i
 
       call read_groups(file, groups, fault)
-      if (present(accuracy) .and. fault%code == 0) call ask_accuracy(accuracy, groups)
+      if (present(accuracy) .and. fault%code == 0) call ask_key('scene', 'accuracy', accuracy, groups)
+      if (present(fineness) .and. fault%code == 0) call ask_key('mesh', 'fineness', fineness, groups)
       if (fault%code == 0) call check_keys(groups, fault)
       if (fault%code == 0) call check_names(groups, fault)
       if (fault%code == 0) call check_counts(file, groups, fault)
@@ -45,6 +49,7 @@ contains
          call take_group(table, scene, fault)
       end do
       if (fault%code == 0) call check_stages(scene, fault)
+      if (fault%code == 0 .and. scene%mesh%fineness > 0.0_wp) call refine_scene(scene, fault)
    end subroutine read_scene
 
    !> Groups that occur once, and those without which there is nothing to do.

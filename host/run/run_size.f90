@@ -8,7 +8,7 @@ module run_size
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: size_of_run
+   public :: size_of_run, memory_of
 
    real(wp), parameter :: MEGABYTE = 1.0e6_wp, OF_A_NUMBER = 8.0_wp   !< [bytes]
 contains
@@ -33,6 +33,16 @@ contains
          short(run%system%sparse%entries*OF_A_NUMBER/MEGABYTE)//' MB'
       text = text//'.'
    end function size_of_run
+
+   !> The same as numbers: lists over points, elements and unknowns; factors. [MB]
+   pure function memory_of(run) result(megabytes)
+      type(run_t), intent(in) :: run
+      real(wp) :: megabytes(2)
+
+      megabytes(1) = OF_A_NUMBER/MEGABYTE*(2.0_wp*(size(run%state%state) + size(run%state%stress) + size(run%state%e) &
+                     + size(run%state%s) + size(run%state%s_rate)) + size(run%assembly%k) + size(run%pattern%col))
+      megabytes(2) = OF_A_NUMBER/MEGABYTE*run%system%sparse%entries
+   end function memory_of
 
    !> So many numbers.
    function megabytes(numbers) result(text)
