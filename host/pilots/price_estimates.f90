@@ -9,7 +9,7 @@ module price_estimates
    use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: answer_t, quote_t, answers_of, distances, mesh_error, judge_meshes, observed_order, likeness, &
+   public :: answer_t, quote_t, list_answers, distances, mesh_error, judge_meshes, observed_order, likeness, &
              quote, total_error
    public :: ASSUMED, CERTAIN, UNCERTAIN, NOT_CONVERGING, MASKED, STATE_WORDS
 
@@ -49,9 +49,9 @@ module price_estimates
 contains
    !> The answers of a run: displacements and pressures of its points, forces of moving supports, without what is
    !> prescribed or hardly changes beside others of its kind.
-   pure function answers_of(pilot) result(answers)
+   pure subroutine list_answers(pilot, answers)
       type(pilot_t), intent(in) :: pilot
-      type(answer_t), allocatable :: answers(:)
+      type(answer_t), allocatable, intent(out) :: answers(:)
       real(wp) :: range(FIELDS, size(pilot%names)), force_range(size(pilot%supports)), largest
       integer :: i, f
 
@@ -73,7 +73,7 @@ contains
          if (force_range(i) > NO_ANSWER*maxval(force_range)) answers = [answers, &
             answer_t(pilot%supports(i), 0, 0, i, force_range(i))]
       end do
-   end function answers_of
+   end subroutine list_answers
 
    !> History of an answer: forces less their first value, so that weight hides no error.
    pure subroutine history_of(answer, pilot, time, values)

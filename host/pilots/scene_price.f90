@@ -8,7 +8,7 @@ module scene_price
    use faults, only: fault_t, raise, EXIT_INPUT
    use kinds, only: wp
    use pilot_runs, only: pilot_t, run_pilot
-   use price_estimates, only: answer_t, quote_t, answers_of, distances, judge_meshes, quote
+   use price_estimates, only: answer_t, quote_t, list_answers, distances, judge_meshes, quote
    use scene_refinement, only: refinement, cells_allow, elements_at
    use scene_types, only: scene_t
    use texts, only: short, whole
@@ -68,7 +68,7 @@ contains
       call pilot(2, 1.0_wp, TIGHT_NEWTON, tighter)
       if (fault%code /= 0) return
       price%mesh = mesh(2)
-      price%answers = answers_of(middle)
+      call list_answers(middle, price%answers)
       price%answers%steps = OF_A_QUARTER*distances(price%answers, middle, shorter)
       price%answers%newton = distances(price%answers, middle, tighter)
       call judge_meshes(price%answers, coarse, middle, refinement(scenes(1)%mesh, scenes(2)%mesh))
