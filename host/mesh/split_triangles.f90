@@ -17,7 +17,7 @@ contains
    subroutine split_mesh(mesh, finer)
       type(mesh_t), intent(in) :: mesh
       type(mesh_t), intent(out) :: finer
-      integer, allocatable :: quarters(:, :)   !< (2, nodes) of a middle: nodes beside it, first that of the lower corner.
+      integer, allocatable :: quarters(:, :)   !< (2, nodes) Beside a middle; first that of the lower corner.
       real(wp), allocatable :: x(:, :)
       real(wp) :: shape(6), slopes(2, 6)
       integer :: c(6), q(2, 3), m(3), e, k, n

@@ -31,8 +31,8 @@ contains
                trim(merge(' by the error of the steps', repeat(' ', 26), a%state == MASKED))
          end associate
       end do
-      write (unit, '(a)') 'Total error of the worst answer, and time of the run [s] (error within a factor of three, '// &
-         'time from half to three times):'
+      write (unit, '(a)') 'Total error of the worst answer, and time of the run [s] (error within a factor of '// &
+         'three, time from half to three times):'
       write (unit, '(3x,a)') head()
       k = 1
       do while (k <= size(price%quotes))
@@ -49,8 +49,8 @@ contains
       end do
       if (price%meshes_run == 2) write (unit, '(3x,a)') 'The order of convergence is assumed: a third mesh costs '// &
          'more than all pilots.'
-      if (price%troubled) write (unit, '(3x,a)') 'Pilots cut more than a tenth of their steps: finer meshes may cost '// &
-         'many times their quote.'
+      if (price%troubled) write (unit, '(3x,a)') 'Pilots cut more than a tenth of their steps: finer meshes may '// &
+         'cost many times their quote.'
       write (unit, '(3x,a)') whole(price%runs)//' pilots in '//short(price%seconds)//' s. Stress integration and '// &
          'what the scene leaves out are not in the errors.'
    contains
@@ -148,8 +148,8 @@ contains
       text = short(anint(value/unit)*unit)
    end function rounded
 
-   !> price.csv: a row a run that could be made; price_answers.csv: the errors of each answer on the finest mesh that was
-   !> run. docs/theory/host.md section 12. Fault EXIT_OUTPUT: they cannot be written.
+   !> price.csv: a row a run that could be made; price_answers.csv: the errors of each answer on the finest mesh that
+   !> was run. docs/theory/host.md section 12. Fault EXIT_OUTPUT: they cannot be written.
    subroutine write_price(folder, price, fault)
       character(*), intent(in) :: folder
       type(price_t), intent(in) :: price
@@ -176,8 +176,8 @@ contains
       do k = 1, size(price%answers)
          if (fault%code /= 0) exit
          associate (a => price%answers(k))
-            write (table%row, '(a,",",6(es14.6e3,","),a)') trim(a%name), price%mesh, a%range, a%mesh, a%steps, a%newton, &
-               a%order, trim(STATE_WORDS(a%state))
+            write (table%row, '(a,",",6(es14.6e3,","),a)') trim(a%name), price%mesh, a%range, a%mesh, a%steps, &
+               a%newton, a%order, trim(STATE_WORDS(a%state))
          end associate
          call write_row(table, fault)
       end do

@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> A scene read again with other steps or another mesh: what `--verify` and `--price` run. docs/theory/host.md section 12.
+!> A scene read again with other steps or another mesh: what `--verify` and `--price` run.
+!> docs/theory/host.md section 12.
 module changed_scenes
    use kinds, only: wp
    use effect_pilots, only: settle_scene, apply_effects
@@ -12,8 +13,9 @@ module changed_scenes
    private
    public :: read_changed
 contains
-   !> The scene of a file, settled, with `fineness` times the accuracy of its controlled stages and given steps `fineness`
-   !> times as long, on a mesh of its own; with the effects of a table where one was made. Faults: those of read_scene and settle_scene.
+   !> The scene of a file, settled, with `fineness` times the accuracy of its controlled stages and given steps
+   !> `fineness` times as long, on a mesh of its own; with the effects of a table where one was made. Faults: those of
+   !> read_scene and settle_scene.
    subroutine read_changed(file, asked, fineness, mesh, effects, scene, fault)
       character(*), intent(in) :: file
       real(wp), intent(in) :: asked      !< Accuracy of the controlled stages before the change [-]; 0: none.

@@ -90,8 +90,8 @@ contains
       end if
    end subroutine history_of
 
-   !> How far two runs lie apart, as shares of each answer's range; but not within the first step of a stage, where a load
-   !> may act at once. [-] (answers)
+   !> How far two runs lie apart, as shares of each answer's range; but not within the first step of a stage, where a
+   !> load may act at once. [-] (answers)
    pure function distances(answers, one, two) result(apart)
       type(answer_t), intent(in) :: answers(:)
       type(pilot_t), intent(in) :: one, two
@@ -103,7 +103,8 @@ contains
          call history_of(answers(i), one, time, values)
          call history_of(answers(i), two, other_time, other_values)
          associate (counts => counted(time, one, two))
-            apart(i) = abs(farthest(pack(time, counts), pack(values, counts), other_time, other_values))/answers(i)%range
+            apart(i) = abs(farthest(pack(time, counts), pack(values, counts), other_time, other_values))/ &
+                       answers(i)%range
          end associate
       end do
    end function distances

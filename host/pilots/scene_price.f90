@@ -127,8 +127,8 @@ contains
                        short(fineness)//' times the steps and '//short(newton)//' times Newton''s tolerance fails: '// &
                        trim(run%why))
          else if (.not. quiet) then
-            write (output_unit, '(a)') '   pilot '//whole(price%runs)//': '//whole(run%elements)//' elements, steps '// &
-               'times '//short(fineness)//', Newton''s tolerance times '//short(newton)//': '//whole(run%steps)// &
+            write (output_unit, '(a)') '   pilot '//whole(price%runs)//': '//whole(run%elements)// &
+               ' elements, steps times '//short(fineness)//', Newton''s tolerance times '//short(newton)//': '//whole(run%steps)// &
                ' steps, '//whole(run%iterations)//' iterations, '//whole(run%cuts)//' cuts, '//short(run%seconds)//' s'
          end if
       end subroutine pilot

@@ -23,8 +23,8 @@ contains
             mesh%splits = nint(log(mesh%fineness)/log(2.0_wp))
             if (mesh%splits < 0 .or. mesh%splits > MOST_SPLITS .or. &
                 abs(mesh%fineness - 2.0_wp**mesh%splits) > 1.0e-9_wp) call raise(fault, EXIT_INPUT, place_of(mesh)// &
-               'fineness = '//short(mesh%fineness)//' of &mesh with a file; its triangles can be split once, twice or '// &
-               'three times: 1, 2, 4 or 8.')
+               'fineness = '//short(mesh%fineness)//' of &mesh with a file; its triangles can be split once, '// &
+               'twice or three times: 1, 2, 4 or 8.')
             return
          end if
          call put_breaks_at_points(scene)
@@ -43,8 +43,8 @@ contains
          mesh%z_cells))/(real(sum(mesh%r_cells), wp)*sum(mesh%z_cells))
    end function elements_at
 
-   !> Breaks at the points of a scene, so that every mesh has nodes there; pieces keep their numbers. Meshes of files have
-   !> the same nodes after splitting. Points outside the mesh, or where a piece has one cell, stay as they are.
+   !> Breaks at the points of a scene, so that every mesh has nodes there; pieces keep their numbers. Meshes of files
+   !> have the same nodes after splitting. Points outside the mesh, or where a piece has one cell, stay as they are.
    subroutine put_breaks_at_points(scene)
       type(scene_t), intent(inout) :: scene
       integer :: i
