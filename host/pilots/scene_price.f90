@@ -128,8 +128,9 @@ contains
                        trim(run%why))
          else if (.not. quiet) then
             write (output_unit, '(a)') '   pilot '//whole(price%runs)//': '//whole(run%elements)// &
-               ' elements, steps times '//short(fineness)//', Newton''s tolerance times '//short(newton)//': '//whole(run%steps)// &
-               ' steps, '//whole(run%iterations)//' iterations, '//whole(run%cuts)//' cuts, '//short(run%seconds)//' s'
+               ' elements, steps times '//short(fineness)//', Newton''s tolerance times '//short(newton)//': '// &
+               whole(run%steps)//' steps, '//whole(run%iterations)//' iterations, '//whole(run%cuts)//' cuts, '// &
+               short(run%seconds)//' s'
          end if
       end subroutine pilot
    end subroutine price_scene
