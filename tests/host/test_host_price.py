@@ -72,7 +72,8 @@ if check("a finer run leaves checkpoints", done.returncode == 0 and kept, done.s
     check("and is not taken up on another mesh", done.returncode != 0 and "fineness" in done.stderr, done.stderr)
 
 # The picture.
-done = subprocess.run([sys.executable, root / "host/plot_run.py", work / "price", "--price"], capture_output=True, text=True)
+done = subprocess.run([sys.executable, root / "host/plot_run.py", work / "price", "--price"], capture_output=True,
+                      text=True)
 check("a picture of the price", done.returncode == 0 and (work / "price/price.png").stat().st_size > 10000, done.stderr)
 done = subprocess.run([sys.executable, root / "host/plot_run.py", here, "--price"], capture_output=True, text=True)
 check("no picture of a run without one", done.returncode == 1 and "holds no price" in done.stderr, done.stderr)
