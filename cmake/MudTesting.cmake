@@ -72,8 +72,8 @@ function(mud_add_pfunit_suite name)
    mud_set_test_environment(${name})
 endfunction()
 
-# mud_add_script_suite(NAME FILE.py): a Python program that closes with `N passed, M failed`.
+# mud_add_script_suite(NAME FILE.py): tests of pytest; tests/conftest.py closes with `N passed, M failed`.
 function(mud_add_script_suite name file)
-   add_test(NAME ${name} COMMAND ${MUD_PYTHON} ${file})
+   add_test(NAME ${name} COMMAND ${MUD_PYTHON} -m pytest ${file})
    mud_set_test_environment(${name})
 endfunction()

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Run every test suite of a build folder and add up the single tests.
 
-Usage: run_suites.py BUILD_DIR [-j N] [--tier fast|check|nightly]. The suites are those ctest knows, of
-the tier `fast` those with that label. The seconds told are of the processor, of a suite with all
-that it starts. Each has to close with `N passed, M failed` (or with pFUnit's summary); one that does not, because it crashed, stopped or
-hung, is run again test by test, so that every test is counted and the culprit is named.
+Usage: run_suites.py BUILD_DIR [-j N] [--tier fast|check|nightly]. The suites are those ctest knows, of the tier `fast`
+those with that label. The seconds told are of the processor, of a suite with all that it starts. Each has to close with
+`N passed, M failed` (tests/conftest.py says so for pytest) or with pFUnit's summary; one that does not, because it
+crashed, stopped or hung, is run again test by test where it lists its tests, so that every test is counted and the
+culprit is named.
 """
 import argparse
 import concurrent.futures
@@ -16,7 +17,7 @@ import sys
 import tempfile
 import threading
 
-CLOSING = re.compile(r"^(\d+) passed, (\d+) failed$")
+CLOSING = re.compile(r"^(\d+) passed, (\d+) failed(, \d+ skipped)?$")   # skipped: nothing else was there
 PFUNIT_OK = re.compile(r"^ ?OK\s*$\s*\((\d+) tests?", re.MULTILINE)
 PFUNIT_BAD = re.compile(r"^Tests run: (\d+), Failures: (\d+), Errors: (\d+)", re.MULTILINE)
 TIMEOUT = 900  # s; a suite takes seconds, the heaviest in the debug build minutes
@@ -65,7 +66,7 @@ def counts(code, output):
         passed, failed = int(ok[1]), 0
     else:
         return None
-    if (code == 0) != (failed == 0) or passed + failed == 0:
+    if (code == 0) != (failed == 0) or passed + failed == 0 and not (found and found[3]):
         return None
     return passed, failed
 

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Layers and style that a compiler does not hold: reads the sources. Every rule is first shown a planted offence."""
-import os
-import pathlib
 import re
-import sys
 
-root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2])
+from checking import check, root
+
 COLUMNS = 120
 SHOWN = 30  # findings that are printed of one rule
 LAYERS = ["base", "laws", "rates", "integration"]  # folders of the core, lowest first
@@ -177,21 +175,13 @@ def planted_offences():
             + [f"{name}: innocent text is blamed" for name, rule, _, good in cases if rule(good)])
 
 
-def report(checks):
-    """Prints rules that are broken, (rule, findings), and whether there is one."""
-    failed = 0
-    for name, findings in checks:
-        failed += bool(findings)
-        if findings:
-            print(f"FAILED {name}:")
-            print("\n".join("  " + finding for finding in findings[:SHOWN]))
-            if len(findings) > SHOWN:
-                print(f"  and {len(findings) - SHOWN} more")
-    print(f"{len(checks) - failed} passed, {failed} failed")
-    return failed > 0
+def shown(findings):
+    """Findings a line each, the first ones."""
+    more = [f"and {len(findings) - SHOWN} more"] if len(findings) > SHOWN else []
+    return "".join("\n  " + line for line in [*findings[:SHOWN], *more])
 
 
-def main():
+def test_the_sources_keep_the_rules():
     core, abi = cmake_order()
     inside = core + abi
     core_files, abi_files = sources("umat/core/*/*.f90"), sources("umat/abi/*.f90")
@@ -235,8 +225,5 @@ def main():
         (f"no line has more than {COLUMNS} columns",
          over(library + clients + helpers + suites + others, long_lines)),
         ("every test asserts something", over(suites, idle_tests))]
-    return report(checks)
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    for name, findings in checks:
+        check(name, not findings, shown(findings))

@@ -4,10 +4,8 @@ first shown a planted offence."""
 import pathlib
 import re
 import subprocess
-import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import check, finish, root  # noqa: E402
+from checking import check, root
 
 COLUMNS = 120
 LANGUAGES = (".f90", ".pf", ".py", ".c", ".h", ".sh", ".cmake")
@@ -121,27 +119,31 @@ def rule(name, findings):
     check(name, not findings, "\n  " + "\n  ".join(findings[:30]))
 
 
-sources = files(*LANGUAGES, "CMakeLists.txt", "check", "demo", "run", "benchmark")
-rule("every rule sees its planted offence and nothing else", planted())
-check("there are sources of every language to look at",
-      {".f90", ".pf", ".py", ".c", ".h"} <= {pathlib.Path(name).suffix for name in sources}, len(sources))
-# Scripts of clients/ run in the Python of a foreign program, and the Python package is installed, without this tree.
-rule("tables are read by common/tables.py", over(
-    [name for name in files(".py") if not name.startswith("clients/")
-     and name not in ("common/tables.py", "python/mud/_csv.py", "tests/architecture/test_house.py")], own_readers))
-rule("texts say the words of today", over(
-    [name for name in files(*LANGUAGES, ".md", ".nml")
-     if name not in ("CHANGELOG.md", "tests/architecture/test_house.py", "tests/docs/test_changelog.py")],
-    old_words))
-rule("public procedures have a comment", over(
-    [name for name in files(".f90") if name.split("/")[0] in ("common", "umat", "materials", "host", "drivers")],
-    uncommented))
-rule("a comment ends before the next declaration", over(
-    [name for name in files(".f90") if not name.startswith("tests/")], unfinished))
-rule("documents name only what is there", [
-    f"{name}: {what}" for name in files(".md") if name != "CHANGELOG.md" and not name.startswith("docs/site/")
-    for what in gone((root / name).read_text(encoding="utf-8"), (root / name).parent, pathlib.Path.exists)])
-rule(f"pages are wrapped at {COLUMNS} columns", over(
-    [name for name in files(".md") if not name.startswith(("tests/mutations/", "benchmarks/results/"))
-     and not re.fullmatch(r"CHANGELOG.md|calibration/\w+/README.md", name)], wide))
-finish()
+def test_there_are_sources_of_every_language_to_look_at():
+    sources = files(*LANGUAGES, "CMakeLists.txt", "check", "demo", "run", "benchmark")
+    rule("every rule sees its planted offence and nothing else", planted())
+    check("there are sources of every language to look at",
+          {".f90", ".pf", ".py", ".c", ".h"} <= {pathlib.Path(name).suffix for name in sources}, len(sources))
+
+
+def test_sources_and_pages_keep_the_rules():
+    # Scripts of clients/ run in the Python of a foreign program, and the
+    # Python package is installed, without this tree.
+    rule("tables are read by common/tables.py", over(
+        [name for name in files(".py") if not name.startswith("clients/")
+         and name not in ("common/tables.py", "python/mud/_csv.py", "tests/architecture/test_house.py")], own_readers))
+    rule("texts say the words of today", over(
+        [name for name in files(*LANGUAGES, ".md", ".nml")
+         if name not in ("CHANGELOG.md", "tests/architecture/test_house.py", "tests/docs/test_changelog.py")],
+        old_words))
+    rule("public procedures have a comment", over(
+        [name for name in files(".f90") if name.split("/")[0] in ("common", "umat", "materials", "host", "drivers")],
+        uncommented))
+    rule("a comment ends before the next declaration", over(
+        [name for name in files(".f90") if not name.startswith("tests/")], unfinished))
+    rule("documents name only what is there", [
+        f"{name}: {what}" for name in files(".md") if name != "CHANGELOG.md" and not name.startswith("docs/site/")
+        for what in gone((root / name).read_text(encoding="utf-8"), (root / name).parent, pathlib.Path.exists)])
+    rule(f"pages are wrapped at {COLUMNS} columns", over(
+        [name for name in files(".md") if not name.startswith(("tests/mutations/", "benchmarks/results/"))
+         and not re.fullmatch(r"CHANGELOG.md|calibration/\w+/README.md", name)], wide))

@@ -2,9 +2,9 @@
 """Layers of the whole tree, read from the `use` lines: which folder may use which, that a module hands on nothing of
 another, and where foreign libraries live. Every rule is first shown a planted offence."""
 import re
-import sys
 
-from test_architecture import code_lines, report, root, sources, uses
+from checking import check
+from test_architecture import code_lines, root, shown, sources, uses
 
 # Folders, lowest first; a folder uses those above it in the list of its group and the groups named.
 HOST = ("host/base", "host/time", "host/mesh", "host/element", "host/contact", "host/solver", "host/scene",
@@ -167,7 +167,7 @@ def read():
     return found
 
 
-def main():
+def test_folders_use_what_their_layer_may():
     files = read()
     have = {place(folder)[0] for folder, _ in files.values()}
     checks = [
@@ -182,8 +182,5 @@ def main():
                                           if file.parent.name != "__pycache__"],
                                          {str(folder.relative_to(root)) for folder in sources("*", "*/*", "*/*/*")
                                           if folder.is_dir() and folder.parts[len(root.parts)] != "tests"}))]
-    return report(checks)
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    for name, findings in checks:
+        check(name, not findings, shown(findings))

@@ -4,15 +4,12 @@ them takes minutes and is not part of this."""
 import subprocess
 import sys
 
-from test_architecture import root
+import pytest
+from checking import check, root
 
-failed = 0
-LISTS = ([], ["--contact"], ["--regions"])
-for which in LISTS:
+
+@pytest.mark.parametrize("which", [[], ["--contact"], ["--regions"]], ids=["model", "contact", "regions"])
+def test_every_mutation_finds_its_lines(which):
     done = subprocess.run([sys.executable, root / "tests/mutations/run_mutations.py", "--apply", *which],
                           capture_output=True, text=True)
-    if done.returncode:
-        failed += 1
-        print(f"FAILED mutations {' '.join(which)}:\n{done.stdout}{done.stderr}")
-print(f"{len(LISTS) - failed} passed, {failed} failed")
-sys.exit(failed > 0)
+    check(f"mutations {' '.join(which)}", done.returncode == 0, done.stdout + done.stderr)

@@ -7,10 +7,8 @@ import functools
 import os
 import pathlib
 import re
-import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import check, finish, root  # noqa: E402
+from checking import check, root
 
 SKIPPED = {".git", "build", "__pycache__", "node_modules"}
 READ = {".f90", ".pf", ".py", ".md", ".h", ".c", ".nml", ".csv", ".cmake", ".txt", ".sh", ".inp", ".cff", ""}
@@ -167,7 +165,7 @@ def report(name, findings):
     check(name, not findings, "\n  " + "\n  ".join(findings[:SHOWN]) if findings else "")
 
 
-def main():
+def test_the_theory_and_what_cites_it_agree():
     folder = root/"docs/theory"
     chapters = {path.name: path.read_text(encoding="utf-8") for path in sorted(folder.glob("*.md"))}
     headings = {name: sections(text) for name, text in chapters.items()}
@@ -206,8 +204,3 @@ def main():
            missing_files((root/"CONTRIBUTING.md").read_text(encoding="utf-8"),
                          lambda path: path.startswith("build/") or (root/path).exists()))
     report("links of the Markdown pages resolve", links)
-    finish()
-
-
-if __name__ == "__main__":
-    main()

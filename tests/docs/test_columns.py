@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: MIT
 """host/README.md gives a unit and a meaning for every column of the tables that mud_host writes."""
-import pathlib
 import re
 import subprocess
-import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish, root, work  # noqa: E402
+from checking import build, check, root, work
 import tables  # noqa: E402
 
 # Short runs that write every kind of table: contact with a plate and drainage; supports, loads, controlled steps.
@@ -39,17 +36,17 @@ def described(text):
     return names
 
 
-names = described((root / "host/README.md").read_text(encoding="utf-8"))
-check("the manual has the table", len(names) > 40, names)
-written = set()
-for name, text in (("drain", DRAIN), ("block", BLOCK)):
-    (work / f"{name}.nml").write_text(text)
-    done = subprocess.run([build / "host/mud_host", work / f"{name}.nml", "--output", work / name, "--quiet"],
-                          capture_output=True, text=True)
-    check(f"{name} runs", done.returncode == 0, done.stderr)
-    for path in (work / name).glob("*.csv"):
-        written.add(path.stem.split("_")[0])
-        columns = {column.split(".")[-1] for column in tables.header(path)}
-        check(f"{name}/{path.name}: every column is described", columns <= names, columns - names)
-check("the runs write every kind of table", KINDS <= written, KINDS - written)
-finish()
+def test_the_manual_has_the_table():
+    names = described((root / "host/README.md").read_text(encoding="utf-8"))
+    check("the manual has the table", len(names) > 40, names)
+    written = set()
+    for name, text in (("drain", DRAIN), ("block", BLOCK)):
+        (work / f"{name}.nml").write_text(text)
+        done = subprocess.run([build / "host/mud_host", work / f"{name}.nml", "--output", work / name, "--quiet"],
+                              capture_output=True, text=True)
+        check(f"{name} runs", done.returncode == 0, done.stderr)
+        for path in (work / name).glob("*.csv"):
+            written.add(path.stem.split("_")[0])
+            columns = {column.split(".")[-1] for column in tables.header(path)}
+            check(f"{name}/{path.name}: every column is described", columns <= names, columns - names)
+    check("the runs write every kind of table", KINDS <= written, KINDS - written)

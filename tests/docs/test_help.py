@@ -4,10 +4,8 @@ code 0, runs nothing and leaves no file behind."""
 import os
 import subprocess
 import sys
-import pathlib
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish, light, root, work  # noqa: E402
+from checking import build, check, light, root, work
 
 SECONDS = 60   # a help text takes less than one; more only on a machine that is very busy
 PROGRAMS = [build / name for name in ("drivers/mud_triax", "drivers/mud_describe",
@@ -44,14 +42,14 @@ def helps(name, *command):
     check(f"{name} --help leaves no file behind", not list(folder.iterdir()), [one.name for one in folder.iterdir()])
 
 
-for program in PROGRAMS:
-    helps(program.name, program)
-if not light:   # scripts are the same in every build
-    for name in PYTHON:
-        helps(name, sys.executable, root / name)
-    helps("mud_calibrate", sys.executable, "-m", "mud.calibration.command")
-    for name in SHELL:
-        helps(name, root / name)
-missing = executables() - set(SHELL) - set(PYTHON)
-check("every executable script of the tree is tried here", not missing, sorted(missing))
-finish()
+def test_every_executable_script_of_the_tree_is_tried_here():
+    for program in PROGRAMS:
+        helps(program.name, program)
+    if not light:   # scripts are the same in every build
+        for name in PYTHON:
+            helps(name, sys.executable, root / name)
+        helps("mud_calibrate", sys.executable, "-m", "mud.calibration.command")
+        for name in SHELL:
+            helps(name, root / name)
+    missing = executables() - set(SHELL) - set(PYTHON)
+    check("every executable script of the tree is tried here", not missing, sorted(missing))

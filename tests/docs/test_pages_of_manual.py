@@ -3,7 +3,7 @@
 and recipes run and say what is printed, troubleshooting quotes messages as they are, and the snippet of README.md
 compiles.
 
-`--heavy` also runs the blocks `console heavy` (a fit, an installation).
+The nightly tier also runs the blocks `console heavy` (a fit, an installation).
 """
 import os
 import pathlib
@@ -12,12 +12,11 @@ import shutil
 import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from checking import build, check, finish, light, root, work  # noqa: E402
+from checking import build, check, light, nightly, root, work
 import pages  # noqa: E402
 
-HEAVY = "--heavy" in sys.argv
+HEAVY = nightly and not light
 RUN = ("docs/tutorials/", "docs/how-to/")
 # Of fenced blocks: Pygments knows them; namelists are read as Fortran.
 LANGUAGES = ("console", "c", "cmake", "fortran", "math", "python", "sh", "text", "toml")
@@ -148,25 +147,26 @@ def snippet_compiles():
     check("the C of README.md compiles and updates a point", said == "0 1.000000\n", said)
 
 
-texts = {name: (root / name).read_text(encoding="utf-8") for name in files("*.md")}
-rule("every rule sees its planted offence and nothing else", planted())
-check("there are pages to look at", len(texts) > 50 and "README.md" in texts, len(texts))
-rule("links lead to files and headings that there are", [
-    f"{name}: {what}" for name, text in texts.items() if name != "CHANGELOG.md"
-    for what in pages.broken(name, text, root, anchors_of)])
-rule("commands have options that their programs know", [
-    f"{name}: {what}" for name, text in texts.items() for what in unknown_options(text)])
-rule("code is of a language that the site can colour, or of none", [
-    f"{name}, line {block.line}: {block.words[0]}" for name, text in texts.items() for block in pages.blocks(text)
-    if block.words and block.words[0] not in LANGUAGES])
-rule("troubleshooting quotes messages as they are", unsaid(texts["docs/troubleshooting.md"]))
-# The checking builds print the same; their sanitizers have nothing to find in a page.
-if not light:
-    snippet_compiles()
-    for page in [name for name in texts if name.startswith(RUN)]:
-        top = tree()
-        wrong, commands = run_page(page, top)
-        check(f"{page} runs as it is printed", not wrong, "\n" + "\n".join(wrong))
-        check(f"{page} has commands that run", commands > 0)
-        shutil.rmtree(top)
-finish()
+def test_there_are_pages_to_look_at():
+    texts = {name: (root / name).read_text(encoding="utf-8") for name in files("*.md")}
+    rule("every rule sees its planted offence and nothing else", planted())
+    check("there are pages to look at", len(texts) > 50 and "README.md" in texts, len(texts))
+    rule("links lead to files and headings that there are", [
+        f"{name}: {what}" for name, text in texts.items() if name != "CHANGELOG.md"
+        for what in pages.broken(name, text, root, anchors_of)])
+    rule("commands have options that their programs know", [
+        f"{name}: {what}" for name, text in texts.items() for what in unknown_options(text)])
+    rule("code is of a language that the site can colour, or of none", [
+        f"{name}, line {block.line}: {block.words[0]}" for name, text in texts.items() for block in pages.blocks(text)
+        if block.words and block.words[0] not in LANGUAGES])
+    rule("troubleshooting quotes messages as they are", unsaid(texts["docs/troubleshooting.md"]))
+
+    # The checking builds print the same; their sanitizers have nothing to find in a page.
+    if not light:
+        snippet_compiles()
+        for page in [name for name in texts if name.startswith(RUN)]:
+            top = tree()
+            wrong, commands = run_page(page, top)
+            check(f"{page} runs as it is printed", not wrong, "\n" + "\n".join(wrong))
+            check(f"{page} has commands that run", commands > 0)
+            shutil.rmtree(top)

@@ -7,9 +7,8 @@ import re
 import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from checking import build, check, finish, light, root, work  # noqa: E402
+from checking import build, check, light, root, work
 import pages  # noqa: E402
 
 PAGES = ["README.md", "umat/README.md", "python/README.md", "host/README.md", "drivers/README.md",
@@ -33,7 +32,7 @@ ELSEWHERE = {
     "mud_describe props": ("tests/umat/test_readme.py", "mud_describe"),
     "mud_describe HOST": ("tests/drivers/test_describe.py", "abaqus"),
     "build/release/drivers/mud_triax drivers/cases/undrained_e833_p100.nml --material out":
-        ("tests/python/test_python_calibration.py", "mud_triax")}
+        ("tests/python/test_python_calibration.py", '"--material", path, "--output"')}
 # Typed as they stand, in this order, in a folder that looks like the top of the tree.
 HERE = ("build/release/host/mud_host", "build/venv/bin/python3 host/plot_run.py", "mud_triax --")
 LONG = subprocess.run([root / "scripts/before_release", "--list"], capture_output=True, text=True).stdout
@@ -69,25 +68,29 @@ def tree():
 
 
 read = lambda name: (root / name).read_text(encoding="utf-8")  # noqa: E731
-sample = ("```\nmud_triax --help      all keys\n```\n\n    scripts/nothing --all   # what\n    not a command\n\n"
-          "```c\nrun x\n```\n")
-check("commands are found, and nothing else", commands(sample) == ["mud_triax --help", "scripts/nothing --all"],
-      commands(sample))
-check("a command that nobody types is seen", not typed_elsewhere("scripts/nothing --all", read))
-check("before_release says what it runs", "clients/check all" in LONG and "scripts/site" in LONG, LONG)
 
-found = [(page, command) for page in PAGES for command in commands(read(page))]
-here = [(page, command) for page, command in found if command.startswith(HERE) and not any(
-    command.startswith(beginning) for beginning in ELSEWHERE)]
-idle = [f"{page}: {command}" for page, command in found if (page, command) not in here
-        and not typed_elsewhere(command, read)]
-check("every command of the pages is typed by a test or before a release", not idle, "\n  " + "\n  ".join(idle))
-check("there are commands to look at", len(found) > 12, found)
-if not light:
-    top = tree()
-    environment = dict(os.environ, MPLBACKEND="Agg", OMP_NUM_THREADS="1",
-                       PATH=f"{build / 'drivers'}:{build / 'host'}:{os.environ['PATH']}")
-    for page, command in here:
-        done = subprocess.run(["bash", "-c", command], cwd=top, capture_output=True, text=True, env=environment)
-        check(f"{page}: {command}", done.returncode == 0, (done.stdout + done.stderr)[-1500:])
-finish()
+
+def test_commands_are_found_and_nothing_else():
+    sample = ("```\nmud_triax --help      all keys\n```\n\n    scripts/nothing --all   # what\n    not a command\n\n"
+              "```c\nrun x\n```\n")
+    check("commands are found, and nothing else", commands(sample) == ["mud_triax --help", "scripts/nothing --all"],
+          commands(sample))
+    check("a command that nobody types is seen", not typed_elsewhere("scripts/nothing --all", read))
+    check("before_release says what it runs", "clients/check all" in LONG and "scripts/site" in LONG, LONG)
+
+
+def test_every_command_of_the_pages_is_typed_by_a_test_or_before_a():
+    found = [(page, command) for page in PAGES for command in commands(read(page))]
+    here = [(page, command) for page, command in found if command.startswith(HERE) and not any(
+        command.startswith(beginning) for beginning in ELSEWHERE)]
+    idle = [f"{page}: {command}" for page, command in found if (page, command) not in here
+            and not typed_elsewhere(command, read)]
+    check("every command of the pages is typed by a test or before a release", not idle, "\n  " + "\n  ".join(idle))
+    check("there are commands to look at", len(found) > 12, found)
+    if not light:
+        top = tree()
+        environment = dict(os.environ, MPLBACKEND="Agg", OMP_NUM_THREADS="1",
+                           PATH=f"{build / 'drivers'}:{build / 'host'}:{os.environ['PATH']}")
+        for page, command in here:
+            done = subprocess.run(["bash", "-c", command], cwd=top, capture_output=True, text=True, env=environment)
+            check(f"{page}: {command}", done.returncode == 0, (done.stdout + done.stderr)[-1500:])

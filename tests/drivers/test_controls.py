@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Controls of mud_triax: what is held is held, what leads arrives, cycles turn where they should, stops stop."""
 import math
-import pathlib
 import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish, root, work  # noqa: E402
+from checking import build, check, root, work
 import tables  # noqa: E402 (checking knows its folder)
 
 triax = build / "drivers/mud_triax"
@@ -59,84 +57,6 @@ CASES = [
     ("stress_path, d_sigma = 10, 0, 50, 0, 20, 0", lambda r: r["sig_22"], lambda r: r["sig_13"], 20),
     ("strain_path, d_eps = 0, 0, 0.01, 0, 0.02, 0", lambda r: 1 + r["eps_r"], lambda r: r["gamma_13"], 0.02),
 ]
-for stage, held, lead, end in CASES:
-    control, _, rest = stage.partition(", ")
-    rows, _ = run(f"control = '{control}', {rest}")
-    check(f"{stage}: what is held", spread(rows, held) <= HELD*abs(held(rows[0])), spread(rows, held))
-    check(f"{stage}: what leads", abs(lead(rows[-1]) - end) <= HELD*(NORM if abs(end) > 1 else 1), lead(rows[-1]))
-    check(f"{stage}: something happens", rows[-1]["n_substep"] > 0)
-
-# As many intervals as no integer of four bytes counts: every increment has its row.
-rows, _ = run("control = 'undrained', eps_a_end = 0.02, increment = 1e-3, output_interval = 1e-12")
-check("the least output_interval gives every increment", len(rows) == 21, len(rows))
-
-rows, _ = run("control = 'drained', eps_a_end = 0.02", initial="p_eff = 100.0, void_ratio = 0.833, suction = 50.0")
-check("net radial stress is held", spread(rows, lambda r: net(r, "sigma_r")) <= HELD*100, "")
-check("and the effective one is not", spread(rows, lambda r: r["sigma_r"]) > 1e-3, "")
-rows, _ = run("control = 'drained', stress = 'effective', eps_a_end = 0.02",
-              initial="p_eff = 100.0, void_ratio = 0.833, suction = 50.0")
-check("effective radial stress is held", spread(rows, lambda r: r["sigma_r"]) <= HELD*100, "")
-rows, _ = run("control = 'drained', water = 'constant', eps_a_end = 0.02",
-              initial="p_eff = 100.0, void_ratio = 0.833, suction = 50.0")
-check("water content is held", spread(rows, lambda r: r["s_w"]*r["e"]) <= HELD, "")
-check("suction follows", spread(rows, lambda r: r["suction"]) > 1e-3, "")
-check("net radial stress is held beside it", spread(rows, lambda r: net(r, "sigma_r")) <= HELD*100, "")
-
-# The same path, by name and as linear constraints; a mixed constraint of strain and stress (an elastic membrane).
-named, _ = run("control = 'constant_p', eps_a_end = 0.01")
-free, _ = run("control = 'linear'\n strain_1 = 0,0,1,0,0,0\n change_1 = 0.01\n strain_2 = 1,-1,0,0,0,0\n "
-              "stress_3 = 1,1,1,0,0,0\n strain_4 = 0,0,0,1,0,0\n strain_5 = 0,0,0,0,1,0\n strain_6 = 0,0,0,0,0,1\n "
-              "increment = 0.01")
-check("linear constraints give a named control", abs(named[-1]["q"] - free[-1]["q"]) <= 1e-8*named[-1]["q"],
-      f"{named[-1]['q']} {free[-1]['q']}")
-membrane = "control = 'linear'\n strain_1 = 0,0,1,0,0,0\n change_1 = 0.01\n"
-for i, j in ((2, 1), (3, 2)):
-    row = ",".join("1" if k == j else "0" for k in range(1, 7))
-    stiff = ",".join("5000" if k == j else "0" for k in range(1, 7))
-    membrane += f" stress_{i} = {row}\n strain_{i} = {stiff}\n"
-membrane += " strain_4 = 0,0,0,1,0,0\n strain_5 = 0,0,0,0,1,0\n strain_6 = 0,0,0,0,0,1"
-rows, _ = run(membrane)
-check("an elastic membrane: sigma_r + 5000 eps_r is constant",
-      spread(rows, lambda r: r["sigma_r"] + 5000*r["eps_r"]) <= 100*HELD, "")
-check("and the radial stress grows", rows[-1]["sigma_r"] > 101, rows[-1]["sigma_r"])
-
-# Cycles.
-rows, notes = run("control = 'undrained', cycle_by = 'eps_a', amplitude = 1e-3, cycles = 3")
-turns = [r["eps_a"] for r in rows]
-turns = [a for b, a, c in zip(turns, turns[1:], turns[2:]) if (a - b)*(c - a) < 0]
-check("strain cycles turn at the amplitude", [round(t, 12) for t in turns] == [1e-3, -1e-3]*3, turns)
-check("and end at the centre", abs(rows[-1]["eps_a"]) < LANDED and rows[-1]["cycle"] == 3, rows[-1]["eps_a"])
-rows, _ = run("control = 'drained', cycle_by = 'q', amplitude = -30.0, centre = 10.0, cycles = 2, increment = 2e-5")
-turns = [r["q"] for r in rows]
-check("stress cycles turn at centre and amplitude, the first way backwards",
-      abs(min(turns) + 20) < 30e-7 and abs(max(turns) - 40) < 30e-7
-      and [q for q in turns if abs(q - 10) > 29.9][0] < 0, f"{min(turns)} {max(turns)}")
-check("they end at the centre", abs(turns[-1] - 10) < 30e-7, turns[-1])
-rows, notes = run("control = 'undrained', cycle_by = 'q', amplitude = 25, cycles = 50, stop_r_u = 0.6, "
-                  "increment = 2e-5")
-check("r_u stops a stage", 0.6 <= rows[-1]["r_u"] < 0.65 and rows[-1]["cycle"] < 50, rows[-1])
-check("and says so", any("pore pressure ratio 0.6 reached in cycle" in note for note in notes), notes)
-check("r_u is u over the confining stress", abs(rows[-1]["u"]/100 - rows[-1]["r_u"]) < 1e-12, rows[-1])
-rows, notes = run("control = 'simple_shear_constant_volume', cycle_by = 'tau', amplitude = 15, cycles = 50, "
-                  "stop_double_amplitude = 0.02, increment = 1e-4")
-check("double amplitude stops a stage", any("double amplitude 0.02 reached" in note for note in notes), notes)
-
-# Stages follow one another.
-rows, _ = run("control = 'k0', sigma_a_end = 200.0", "control = 'undrained', eps_a_end = 0.02",
-              "control = 'constant_p', q_end = 0.0")
-check("three stages", [r["stage"] for r in rows][-1] == 3 and abs(rows[-1]["q"]) < 1e-7, rows[-1])
-
-# Failures are explained.
-done = call("control = 'drained', q_end = 800.0")
-check("a stress that cannot be reached ends with code 3", done.returncode == 3, done.returncode)
-check("and says where", "halved 20 times" in done.stderr and "eps_a" in done.stderr, done.stderr)
-check("and keeps its rows", (work / "case.csv").read_text().count("\n") > 20)
-done = call("control = 'undrained', cycle_by = 'q', amplitude = 500.0, cycles = 2",
-            initial="p_eff = 100.0, void_ratio = 0.95")
-check("a stress cycle beyond the strength is explained", done.returncode == 3 and "does not reach 500" in done.stderr,
-      done.stderr)
-done = call("control = 'drained', water = 'constant', eps_a_end = 0.01")
-check("constant water needs suction", done.returncode == 3 and "suction" in done.stderr, done.stderr)
 
 # Mistakes: exit code 2, the line, what is meant, nothing written.
 MISTAKES = {
@@ -154,44 +74,140 @@ MISTAKES = {
     "control = 'linear', strain_1 = 1,0,0,0,0,0": ["constraint 2"],
     "control = 'stress_path', d_sigma = 0,0,0,0,0,0": ["d_sigma"],
 }
-for stage, words in MISTAKES.items():
-    done = call(stage)
-    check(f"refused: {stage}", done.returncode == 2 and all(word in done.stderr for word in words)
-          and not (work / "case.csv").exists(), f"{done.returncode} {done.stderr}")
-help_text = subprocess.run([triax, "--help"], capture_output=True, text=True).stdout
-check("--help lists keys and controls", all(w in help_text for w in ("stop_r_u", "constant_q", "cycle_by", "strain_6")))
 
-# HDF5 holds what the CSV file holds.
-stage = "control = 'simple_shear_constant_volume', cycle_by = 'tau', amplitude = 15, cycles = 2"
-rows, _ = run(stage)
-done = call(stage, output="case.h5")
-try:
-    import h5py
-except ImportError:
-    h5py = None
-if "built without HDF5" in done.stderr:
-    check("without HDF5 the driver says so", done.returncode == 4, done.returncode)
-elif h5py is not None:
-    with h5py.File(work / "case.h5") as file:
-        same = all(math.isclose(a, row[name], rel_tol=1e-14, abs_tol=1e-300)
-                   for name in file for a, row in zip(file[name], rows))
-        check("HDF5 and CSV agree", same and set(file) == set(rows[0]) and len(file["q"]) == len(rows))
-        check("every column has unit and description",
-              all(file[name].attrs["unit"] and file[name].attrs["description"] for name in file))
-        check("the run is described", file.attrs["material"] == b"Toyoura sand" and b"MUD" in file.attrs["library"])
-done = call("control = 'drained', eps_a_end = 0.01", output="absent/case.h5")
-check("an HDF5 file that cannot be made is refused", done.returncode == 4 and "absent" in done.stderr, done.stderr)
 
-try:
-    import matplotlib  # noqa: F401
-except ImportError:
-    matplotlib = None
-if matplotlib is not None:
-    run("control = 'undrained', eps_a_end = 0.01")
-    plot = [sys.executable, root / "drivers/plot_case.py"]
-    done = subprocess.run([*plot, work / "case.csv"], capture_output=True, text=True)
-    check("plot_case draws a page", done.returncode == 0 and (work / "case.png").stat().st_size > 20000, done.stderr)
-    done = subprocess.run([*plot, work / "case.nml"], capture_output=True, text=True)
-    check("plot_case refuses what is no result", done.returncode == 1 and "cannot be read" in done.stderr, done.stderr)
+def test_what_is_held():
+    for stage, held, lead, end in CASES:
+        control, _, rest = stage.partition(", ")
+        rows, _ = run(f"control = '{control}', {rest}")
+        check(f"{stage}: what is held", spread(rows, held) <= HELD*abs(held(rows[0])), spread(rows, held))
+        check(f"{stage}: what leads", abs(lead(rows[-1]) - end) <= HELD*(NORM if abs(end) > 1 else 1), lead(rows[-1]))
+        check(f"{stage}: something happens", rows[-1]["n_substep"] > 0)
 
-finish()
+
+def test_the_least_output_interval_gives_every_increment():
+    # As many intervals as no integer of four bytes counts: every increment has its row.
+    rows, _ = run("control = 'undrained', eps_a_end = 0.02, increment = 1e-3, output_interval = 1e-12")
+    check("the least output_interval gives every increment", len(rows) == 21, len(rows))
+
+
+def test_net_radial_stress_is_held():
+    rows, _ = run("control = 'drained', eps_a_end = 0.02", initial="p_eff = 100.0, void_ratio = 0.833, suction = 50.0")
+    check("net radial stress is held", spread(rows, lambda r: net(r, "sigma_r")) <= HELD*100, "")
+    check("and the effective one is not", spread(rows, lambda r: r["sigma_r"]) > 1e-3, "")
+    rows, _ = run("control = 'drained', stress = 'effective', eps_a_end = 0.02",
+                  initial="p_eff = 100.0, void_ratio = 0.833, suction = 50.0")
+    check("effective radial stress is held", spread(rows, lambda r: r["sigma_r"]) <= HELD*100, "")
+    rows, _ = run("control = 'drained', water = 'constant', eps_a_end = 0.02",
+                  initial="p_eff = 100.0, void_ratio = 0.833, suction = 50.0")
+    check("water content is held", spread(rows, lambda r: r["s_w"]*r["e"]) <= HELD, "")
+    check("suction follows", spread(rows, lambda r: r["suction"]) > 1e-3, "")
+    check("net radial stress is held beside it", spread(rows, lambda r: net(r, "sigma_r")) <= HELD*100, "")
+
+
+def test_linear_constraints_give_a_named_control():
+    # The same path, by name and as linear constraints; a mixed constraint of strain and stress (an elastic membrane).
+    named, _ = run("control = 'constant_p', eps_a_end = 0.01")
+    free, _ = run("control = 'linear'\n strain_1 = 0,0,1,0,0,0\n change_1 = 0.01\n strain_2 = 1,-1,0,0,0,0\n "
+                  "stress_3 = 1,1,1,0,0,0\n strain_4 = 0,0,0,1,0,0\n strain_5 = 0,0,0,0,1,0\n strain_6 = 0,0,0,0,0,1\n "
+                  "increment = 0.01")
+    check("linear constraints give a named control", abs(named[-1]["q"] - free[-1]["q"]) <= 1e-8*named[-1]["q"],
+          f"{named[-1]['q']} {free[-1]['q']}")
+    membrane = "control = 'linear'\n strain_1 = 0,0,1,0,0,0\n change_1 = 0.01\n"
+    for i, j in ((2, 1), (3, 2)):
+        row = ",".join("1" if k == j else "0" for k in range(1, 7))
+        stiff = ",".join("5000" if k == j else "0" for k in range(1, 7))
+        membrane += f" stress_{i} = {row}\n strain_{i} = {stiff}\n"
+    membrane += " strain_4 = 0,0,0,1,0,0\n strain_5 = 0,0,0,0,1,0\n strain_6 = 0,0,0,0,0,1"
+    rows, _ = run(membrane)
+    check("an elastic membrane: sigma_r + 5000 eps_r is constant",
+          spread(rows, lambda r: r["sigma_r"] + 5000*r["eps_r"]) <= 100*HELD, "")
+    check("and the radial stress grows", rows[-1]["sigma_r"] > 101, rows[-1]["sigma_r"])
+
+
+def test_strain_cycles_turn_at_the_amplitude():
+    # Cycles.
+    rows, notes = run("control = 'undrained', cycle_by = 'eps_a', amplitude = 1e-3, cycles = 3")
+    turns = [r["eps_a"] for r in rows]
+    turns = [a for b, a, c in zip(turns, turns[1:], turns[2:]) if (a - b)*(c - a) < 0]
+    check("strain cycles turn at the amplitude", [round(t, 12) for t in turns] == [1e-3, -1e-3]*3, turns)
+    check("and end at the centre", abs(rows[-1]["eps_a"]) < LANDED and rows[-1]["cycle"] == 3, rows[-1]["eps_a"])
+    rows, _ = run("control = 'drained', cycle_by = 'q', amplitude = -30.0, centre = 10.0, cycles = 2, increment = 2e-5")
+    turns = [r["q"] for r in rows]
+    check("stress cycles turn at centre and amplitude, the first way backwards",
+          abs(min(turns) + 20) < 30e-7 and abs(max(turns) - 40) < 30e-7
+          and [q for q in turns if abs(q - 10) > 29.9][0] < 0, f"{min(turns)} {max(turns)}")
+    check("they end at the centre", abs(turns[-1] - 10) < 30e-7, turns[-1])
+    rows, notes = run("control = 'undrained', cycle_by = 'q', amplitude = 25, cycles = 50, stop_r_u = 0.6, "
+                      "increment = 2e-5")
+    check("r_u stops a stage", 0.6 <= rows[-1]["r_u"] < 0.65 and rows[-1]["cycle"] < 50, rows[-1])
+    check("and says so", any("pore pressure ratio 0.6 reached in cycle" in note for note in notes), notes)
+    check("r_u is u over the confining stress", abs(rows[-1]["u"]/100 - rows[-1]["r_u"]) < 1e-12, rows[-1])
+    rows, notes = run("control = 'simple_shear_constant_volume', cycle_by = 'tau', amplitude = 15, cycles = 50, "
+                      "stop_double_amplitude = 0.02, increment = 1e-4")
+    check("double amplitude stops a stage", any("double amplitude 0.02 reached" in note for note in notes), notes)
+
+
+def test_three_stages():
+    # Stages follow one another.
+    rows, _ = run("control = 'k0', sigma_a_end = 200.0", "control = 'undrained', eps_a_end = 0.02",
+                  "control = 'constant_p', q_end = 0.0")
+    check("three stages", [r["stage"] for r in rows][-1] == 3 and abs(rows[-1]["q"]) < 1e-7, rows[-1])
+
+
+def test_a_stress_that_cannot_be_reached_ends_with_code_3():
+    # Failures are explained.
+    done = call("control = 'drained', q_end = 800.0")
+    check("a stress that cannot be reached ends with code 3", done.returncode == 3, done.returncode)
+    check("and says where", "halved 20 times" in done.stderr and "eps_a" in done.stderr, done.stderr)
+    check("and keeps its rows", (work / "case.csv").read_text().count("\n") > 20)
+    done = call("control = 'undrained', cycle_by = 'q', amplitude = 500.0, cycles = 2",
+                initial="p_eff = 100.0, void_ratio = 0.95")
+    check("a stress cycle beyond the strength is explained", done.returncode ==
+          3 and "does not reach 500" in done.stderr, done.stderr)
+    done = call("control = 'drained', water = 'constant', eps_a_end = 0.01")
+    check("constant water needs suction", done.returncode == 3 and "suction" in done.stderr, done.stderr)
+    for stage, words in MISTAKES.items():
+        done = call(stage)
+        check(f"refused: {stage}", done.returncode == 2 and all(word in done.stderr for word in words)
+              and not (work / "case.csv").exists(), f"{done.returncode} {done.stderr}")
+    help_text = subprocess.run([triax, "--help"], capture_output=True, text=True).stdout
+    check("--help lists keys and controls",
+          all(w in help_text for w in ("stop_r_u", "constant_q", "cycle_by", "strain_6")))
+
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        matplotlib = None
+    if matplotlib is not None:
+        run("control = 'undrained', eps_a_end = 0.01")
+        plot = [sys.executable, root / "drivers/plot_case.py"]
+        done = subprocess.run([*plot, work / "case.csv"], capture_output=True, text=True)
+        check("plot_case draws a page", done.returncode == 0 and (work / "case.png").stat().st_size > 20000,
+              done.stderr)
+        done = subprocess.run([*plot, work / "case.nml"], capture_output=True, text=True)
+        check("plot_case refuses what is no result", done.returncode ==
+              1 and "cannot be read" in done.stderr, done.stderr)
+
+
+def test_without_hdf5_the_driver_says_so():
+    # HDF5 holds what the CSV file holds.
+    stage = "control = 'simple_shear_constant_volume', cycle_by = 'tau', amplitude = 15, cycles = 2"
+    rows, _ = run(stage)
+    done = call(stage, output="case.h5")
+    try:
+        import h5py
+    except ImportError:
+        h5py = None
+    if "built without HDF5" in done.stderr:
+        check("without HDF5 the driver says so", done.returncode == 4, done.returncode)
+    elif h5py is not None:
+        with h5py.File(work / "case.h5") as file:
+            same = all(math.isclose(a, row[name], rel_tol=1e-14, abs_tol=1e-300)
+                       for name in file for a, row in zip(file[name], rows))
+            check("HDF5 and CSV agree", same and set(file) == set(rows[0]) and len(file["q"]) == len(rows))
+            check("every column has unit and description",
+                  all(file[name].attrs["unit"] and file[name].attrs["description"] for name in file))
+            check("the run is described", file.attrs["material"] == b"Toyoura sand" and b"MUD" in file.attrs["library"])
+    done = call("control = 'drained', eps_a_end = 0.01", output="absent/case.h5")
+    check("an HDF5 file that cannot be made is refused", done.returncode == 4 and "absent" in done.stderr, done.stderr)

@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: MIT
 """mud_triax in any unit of stress: a case in Pa, MPa or psi gives what it gives in kPa, limits and texts follow the
 unit that p_atm tells, and mixed units draw a warning."""
-import pathlib
 import re
 import subprocess
-import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish, root, work  # noqa: E402
+from checking import build, check, root, work
 import tables  # noqa: E402 (checking knows its folder)
 
 triax, describe = build / "drivers/mud_triax", build / "drivers/mud_describe"
@@ -76,40 +73,47 @@ for (name, unit), rows in ends.items():
 
 # Limits: 1e-6 to 1e7 kPa in any unit.
 REST = " void_ratio = 0.8\n/\n&stage\n control = 'undrained'\n eps_a_end = 0.0001\n/\n"
-for unit, limit in (("kPa", 1e7), ("Pa", 1e10), ("MPa", 1e4)):
-    done = call(material(unit) + f"&initial\n p_eff = {1.01*limit}\n{REST}")
-    check(f"more than the limit in {unit}", done.returncode == 2 and f"p_eff = {1.01*limit}" in done.stderr
-          and f"{unit}: mean effective stress" in done.stderr, done.stderr)
-done = call(material("Pa") + f"&initial\n p_eff = 3e7\n{REST}")
-check("30 MPa said in Pa are no more than the limit in kPa", done.returncode == 0, done.stderr)
-done = call(re.sub(r"P_a = .*", "P_a = 2e9", material("Pa")) + f"&initial\n p_eff = 1e5\n{REST}")
-check("the range of a parameter is told in its unit", done.returncode == 2 and " Pa, default " in done.stderr,
-      done.stderr)
-done = call("&material\n p_atm = 101325\n alpha_csl = 3.37e6\n P_a = 5000\n N_c = 240.9\n N_l = 322.06\n/\n"
-            f"&initial\n p_eff = 1e5\n{REST}")
-check("limits of parameters follow a p_atm of the same group", done.returncode == 0 and not done.stderr, done.stderr)
 
-# A warning where p_atm and the others disagree: heard, kept with the rows, and no refusal.
-done = call(f"&material\n file = '{TOYOURA}'\n p_atm = 101325.0\n/\n&initial\n p_eff = 1e5\n{REST}")
-told = [line for line in done.stderr.splitlines() if line.startswith("mud_triax: warning: ")]
-check("mixed units draw a warning", done.returncode == 0 and len(told) == 1 and "P_a" in told[0] and "p_atm" in told[0]
-      and "case.nml:" in told[0], done.stderr)
-check("which stands with the rows", "warning" in str(tables.comments(work / "case.csv")))
-done = call(f"&material\n file = '{TOYOURA}'\n P_a = 5000\n/\n&initial\n p_eff = 100\n{REST}")
-check("it names the line", "case.nml:3: " in done.stderr and "P_a" in done.stderr, done.stderr)
-mixed = work / "mixed.nml"
-mixed.write_text("&material\n p_atm = 101325.0\n/\n")
-for how, words, text in (("--material", ["--material", mixed], "&material\n/\n"),
-                         ("file = ...", [], f"&material\n file = '{mixed}'\n/\n")):
-    done = call(text + f"&initial\n p_eff = 1e5\n{REST}", *words)
-    check(f"a file read by {how} is named with its line", f"mud_triax: warning: {mixed}:2: " in done.stderr,
+
+def test_more_than_the_limit_in():
+    for unit, limit in (("kPa", 1e7), ("Pa", 1e10), ("MPa", 1e4)):
+        done = call(material(unit) + f"&initial\n p_eff = {1.01*limit}\n{REST}")
+        check(f"more than the limit in {unit}", done.returncode == 2 and f"p_eff = {1.01*limit}" in done.stderr
+              and f"{unit}: mean effective stress" in done.stderr, done.stderr)
+    done = call(material("Pa") + f"&initial\n p_eff = 3e7\n{REST}")
+    check("30 MPa said in Pa are no more than the limit in kPa", done.returncode == 0, done.stderr)
+    done = call(re.sub(r"P_a = .*", "P_a = 2e9", material("Pa")) + f"&initial\n p_eff = 1e5\n{REST}")
+    check("the range of a parameter is told in its unit", done.returncode == 2 and " Pa, default " in done.stderr,
           done.stderr)
-done = subprocess.run([describe, "plain", mixed], capture_output=True, text=True)
-check("mud_describe warns too", done.returncode == 0 and "mud_describe: warning: " in done.stderr, done.stderr)
+    done = call("&material\n p_atm = 101325\n alpha_csl = 3.37e6\n P_a = 5000\n N_c = 240.9\n N_l = 322.06\n/\n"
+                f"&initial\n p_eff = 1e5\n{REST}")
+    check("limits of parameters follow a p_atm of the same group",
+          done.returncode == 0 and not done.stderr, done.stderr)
 
-# A file in another unit is converted from its own.
-(work / "pascal.nml").write_text(material("Pa"))
-back = [float(word) for word in said("plain", work / "pascal.nml", "--unit", "kPa").split()]
-there = [float(word) for word in said("plain", TOYOURA).split()]
-check("a file in Pa comes back to kPa", all(abs(a - b) <= 1e-12*abs(b) for a, b in zip(back, there)), back)
-finish()
+
+def test_mixed_units_draw_a_warning():
+    # A warning where p_atm and the others disagree: heard, kept with the rows, and no refusal.
+    done = call(f"&material\n file = '{TOYOURA}'\n p_atm = 101325.0\n/\n&initial\n p_eff = 1e5\n{REST}")
+    told = [line for line in done.stderr.splitlines() if line.startswith("mud_triax: warning: ")]
+    check("mixed units draw a warning", done.returncode == 0 and len(told) ==
+          1 and "P_a" in told[0] and "p_atm" in told[0] and "case.nml:" in told[0], done.stderr)
+    check("which stands with the rows", "warning" in str(tables.comments(work / "case.csv")))
+    done = call(f"&material\n file = '{TOYOURA}'\n P_a = 5000\n/\n&initial\n p_eff = 100\n{REST}")
+    check("it names the line", "case.nml:3: " in done.stderr and "P_a" in done.stderr, done.stderr)
+    mixed = work / "mixed.nml"
+    mixed.write_text("&material\n p_atm = 101325.0\n/\n")
+    for how, words, text in (("--material", ["--material", mixed], "&material\n/\n"),
+                             ("file = ...", [], f"&material\n file = '{mixed}'\n/\n")):
+        done = call(text + f"&initial\n p_eff = 1e5\n{REST}", *words)
+        check(f"a file read by {how} is named with its line", f"mud_triax: warning: {mixed}:2: " in done.stderr,
+              done.stderr)
+    done = subprocess.run([describe, "plain", mixed], capture_output=True, text=True)
+    check("mud_describe warns too", done.returncode == 0 and "mud_describe: warning: " in done.stderr, done.stderr)
+
+
+def test_a_file_in_pa_comes_back_to_kpa():
+    # A file in another unit is converted from its own.
+    (work / "pascal.nml").write_text(material("Pa"))
+    back = [float(word) for word in said("plain", work / "pascal.nml", "--unit", "kPa").split()]
+    there = [float(word) for word in said("plain", TOYOURA).split()]
+    check("a file in Pa comes back to kPa", all(abs(a - b) <= 1e-12*abs(b) for a, b in zip(back, there)), back)

@@ -1,15 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Accuracy asked of mud_triax: increments and the tolerance of the stresses follow, the estimated errors are those of a
 far finer run within a band, what is given by hand stays."""
-import pathlib
 import re
 import subprocess
-import sys
 
-import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish, root, work  # noqa: E402
+from checking import build, check, root, work
 import tables  # noqa: E402 (checking knows its folder)
 
 triax = build / "drivers/mud_triax"
@@ -49,47 +45,53 @@ def estimated(said):
     return {name: (float(error)/100, float(change)) for name, error, change in lines}
 
 
-for name in CASES:
-    done, fine = run("fine", text_of(name, "tolerance = 1e-10 scheme = 3", "increment = 2e-6"), "--quiet")
-    for accuracy in ("3e-2", "1e-3"):
-        done, rows = run("asked", text_of(name), "--accuracy", accuracy)
-        check(f"{name}, {accuracy}: runs", done.returncode == 0 and not done.stderr, done.stderr)
-        told, true = estimated(done.stdout), {}
-        for answer in ("q", "p_eff", "eps_v", "suction"):
-            if answer in told and told[answer][1] > 0 and len(rows) > 1:
-                true[answer] = abs(rows[-1][answer] - fine[-1][answer])/told[answer][1]
-        worst = max(true.values(), default=9)
-        check(f"{name}, {accuracy}: what was asked for", worst < float(accuracy), (true, told))
-        # At the end of the test the error may be less than the largest, but no more than the band allows.
-        good = all(error < BAND[1]*told[answer][0] + 1e-9 for answer, error in true.items())
-        check(f"{name}, {accuracy}: no error beyond its estimate", good, (true, told))
+def test_what_was_asked_for():
+    for name in CASES:
+        done, fine = run("fine", text_of(name, "tolerance = 1e-10 scheme = 3", "increment = 2e-6"), "--quiet")
+        for accuracy in ("3e-2", "1e-3"):
+            done, rows = run("asked", text_of(name), "--accuracy", accuracy)
+            check(f"{name}, {accuracy}: runs", done.returncode == 0 and not done.stderr, done.stderr)
+            told, true = estimated(done.stdout), {}
+            for answer in ("q", "p_eff", "eps_v", "suction"):
+                if answer in told and told[answer][1] > 0 and len(rows) > 1:
+                    true[answer] = abs(rows[-1][answer] - fine[-1][answer])/told[answer][1]
+            worst = max(true.values(), default=9)
+            check(f"{name}, {accuracy}: what was asked for", worst < float(accuracy), (true, told))
+            # At the end of the test the error may be less than the largest, but no more than the band allows.
+            good = all(error < BAND[1]*told[answer][0] + 1e-9 for answer, error in true.items())
+            check(f"{name}, {accuracy}: no error beyond its estimate", good, (true, told))
 
-# The price: an accuracy takes fewer updates than the default increments where it asks for little.
-done, rows = run("asked", text_of("drained"), "--accuracy", "3e-2")
-coarse = counted(done)
-done, rows = run("default", text_of("drained"))
-check("3 % takes fewer increments than the default", coarse < counted(done), coarse)
-check("without an accuracy nothing is told of it", "accuracy" not in done.stdout, done.stdout)
 
-# Given by hand: increments and tolerance stay, are measured, and a warning says that they do not reach it.
-done, rows = run("hand", text_of("drained", given="increment = 5e-3"), "--accuracy", "1e-6", "--quiet")
-check("given increments stay and are told", done.returncode == 0 and "not reached" in done.stderr
-      and "the increments" in done.stderr, done.stderr)
-done, plain = run("plain", text_of("drained", "tolerance = 1e-3 scheme = 1", "increment = 5e-3"), "--quiet")
-done, rows = run("hand", text_of("drained", "tolerance = 1e-3 scheme = 1", "increment = 5e-3"), "--accuracy", "0.3",
-                 "--quiet")
-check("what is given by hand stays", rows == plain and len(rows) > 3, (len(rows), len(plain)))
+def test_3_takes_fewer_increments_than_the_default():
+    # The price: an accuracy takes fewer updates than the default increments where it asks for little.
+    done, rows = run("asked", text_of("drained"), "--accuracy", "3e-2")
+    coarse = counted(done)
+    done, rows = run("default", text_of("drained"))
+    check("3 % takes fewer increments than the default", coarse < counted(done), coarse)
+    check("without an accuracy nothing is told of it", "accuracy" not in done.stdout, done.stdout)
 
-# In the case, in the results, and verified.
-done, rows = run("inside", "&case accuracy = 1e-2 /\n" + text_of("drained"), "--verify")
-check("accuracy of &case, --verify", done.returncode == 0 and "verified" in done.stdout, done.stdout + done.stderr)
-check("the results tell it", "# accuracy: asked 1 %, verified" in (work / "inside.csv").read_text())
-verified = estimated(done.stdout)
-done, rows = run("inside", "&case accuracy = 1e-2 /\n" + text_of("drained"))
-ratio = verified["q"][0]/estimated(done.stdout)["q"][0]
-check("--verify finds the estimated error within the band", BAND[0] < ratio < BAND[1], ratio)
-for words, said in ((("--accuracy", "0"), "accuracy"), (("--accuracy", "fine"), "accuracy"),
-                    (("--verify",), "ask for")):
-    done, rows = run("bad", text_of("drained"), *words)
-    check(f"{words}: refused", done.returncode == 2 and said in done.stderr and not rows, done.stderr)
-finish()
+
+def test_given_increments_stay_and_are_told():
+    # Given by hand: increments and tolerance stay, are measured, and a warning says that they do not reach it.
+    done, rows = run("hand", text_of("drained", given="increment = 5e-3"), "--accuracy", "1e-6", "--quiet")
+    check("given increments stay and are told", done.returncode == 0 and "not reached" in done.stderr
+          and "the increments" in done.stderr, done.stderr)
+    done, plain = run("plain", text_of("drained", "tolerance = 1e-3 scheme = 1", "increment = 5e-3"), "--quiet")
+    done, rows = run("hand", text_of("drained", "tolerance = 1e-3 scheme = 1", "increment = 5e-3"), "--accuracy", "0.3",
+                     "--quiet")
+    check("what is given by hand stays", rows == plain and len(rows) > 3, (len(rows), len(plain)))
+
+
+def test_accuracy_of_case_verify():
+    # In the case, in the results, and verified.
+    done, rows = run("inside", "&case accuracy = 1e-2 /\n" + text_of("drained"), "--verify")
+    check("accuracy of &case, --verify", done.returncode == 0 and "verified" in done.stdout, done.stdout + done.stderr)
+    check("the results tell it", "# accuracy: asked 1 %, verified" in (work / "inside.csv").read_text())
+    verified = estimated(done.stdout)
+    done, rows = run("inside", "&case accuracy = 1e-2 /\n" + text_of("drained"))
+    ratio = verified["q"][0]/estimated(done.stdout)["q"][0]
+    check("--verify finds the estimated error within the band", BAND[0] < ratio < BAND[1], ratio)
+    for words, said in ((("--accuracy", "0"), "accuracy"), (("--accuracy", "fine"), "accuracy"),
+                        (("--verify",), "ask for")):
+        done, rows = run("bad", text_of("drained"), *words)
+        check(f"{words}: refused", done.returncode == 2 and said in done.stderr and not rows, done.stderr)

@@ -2,14 +2,12 @@
 """Boundaries of dynamic stages in mud_host: base motion by acceleration, Rayleigh damping, tied sides, ground that
 stays at rest behind an absorbing boundary. Waves and transfer functions: verification/host/waves."""
 import os
-import pathlib
 import subprocess
 import sys
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish, root, work  # noqa: E402
+from checking import build, check, root, work
 
 sys.path.insert(0, str(root / "common"))
 import tables  # noqa: E402
@@ -54,7 +52,6 @@ def stage(name, duration, dt, rho_inf=1.0, more=""):
 # double integral.
 TIED = "&tie first = 'left' second = 'right' /\n&fix group = 'all' field = 'u_z' /\n"
 MOVED = "&fix group = 'bottom' field = 'u_r' motion = 'acceleration' value = 3 history = 'h' /\n"
-shaken = column() + TIED + MOVED + "&history name = 'h' times = 0.1, 0.4, 0.5 values = 0, 1, 0.2 /\n"
 
 
 def exact(t):
@@ -69,106 +66,123 @@ def exact(t):
     return 3 * (x + r * v + 0.1 * r**2)
 
 
-for rho_inf in (1.0, 0.5):
-    h, _ = run(shaken + stage("a", 0.3, 0.01, rho_inf) + stage("b", 0.4, 0.005, rho_inf), "motion")
-    wanted = np.array([exact(t) for t in h["time"]])
-    # Second order: corners of the history cost (slope dt**2) of velocity each, and so 2e-3 of the path.
-    check(f"the base moves by the double integral, rho_inf {rho_inf}", np.abs(h["base.u_r"] - wanted).max()
-          < 2e-3 * wanted.max(), np.abs(h["base.u_r"] - wanted).max() / wanted.max())
-    # The scheme's accelerations belong to (gamma - 1/2) dt before the end of a step: (1 - rho)/(1 + rho) dt.
-    steps = np.diff(h["time"])
-    given = 3 * np.interp(h["time"][1:] - (1 - rho_inf) / (1 + rho_inf) * steps, [0.1, 0.4, 0.5], [0, 1, 0.2])
-    check(f"and has the acceleration, rho_inf {rho_inf}", np.abs(h["base.a_r"][1:] - given).max() < ROUNDING * 1e3,
-          np.abs(h["base.a_r"][1:] - given).max())
-check("tied sides move as one", (h["top.u_r"] == h["corner.u_r"]).all() and np.ptp(h["top.u_r"]) > 0)
-
-# Works of one step are those of the same moment: what a moving base does against reactions of another one would be of
-# first order in the step, and energy out of nothing or into nothing.
-open_at = {}
-for dt in (0.01, 0.005):
-    _, folder = run(column(damping="damping = 2") + TIED + MOVED.replace("value = 3", "value = 1")
-                    + "&history name = 'h' times = 0, 0.05, 0.1, 0.15, 0.2, 0.3 values = 0, 1, 0, -1, 0, 0 /\n"
-                    + stage("a", 0.3, dt, 0.6), "works")
-    ledger = tables.columns(folder / "ledger.csv")
-    open_at[dt] = np.abs(ledger["imbalance"]).max() / np.abs(ledger["supports"]).max()
-check("what the balance of a shaken column leaves open is of second order", open_at[0.005] < open_at[0.01] / 3, open_at)
-
 # Rayleigh: a column in its first mode, omega = pi c/(2 H), loses alpha/(2 omega) + beta omega/2 of critical.
 ALPHA, BETA, SPEED = 3.0, 2.0e-3, 1.0e-3
-omega = np.pi / 8 * np.sqrt(2.4e4 / 2)
-for name, alpha, beta in (("mass", ALPHA, 0), ("stiffness", 0, BETA), ("both", ALPHA, BETA)):
-    text = column(cells=8, damping=f"damping = {alpha} stiffness_damping = {beta}") + (
-        "&fix group = 'all' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' /\n"
-        f"&initial wave = {SPEED} wave_number = {np.pi / 8} datum = -4 /\n") + stage("swing", 0.6, 1e-3)
-    h, folder = run(text, f"rayleigh_{name}")
-    xi = alpha / 2 / omega + beta * omega / 2
-    free = omega * np.sqrt(1 - xi**2)
-    wanted = SPEED / free * np.exp(-xi * omega * h["time"]) * np.sin(free * h["time"])
-    # Steps of 1/146 of a period: (omega dt)**2/12 of the phase in four periods, and as much of the first step of beta.
-    check(f"Rayleigh damping, {name}", np.abs(h["top.u_z"] - wanted).max() < 5e-3 * wanted.max(),
-          np.abs(h["top.u_z"] - wanted).max() / wanted.max())
-    ledger = tables.columns(folder / "ledger.csv")
-    check(f"its loss is booked, {name}", np.abs(ledger["imbalance"]).max() < 5e-3 * 0.5 * 2 * 4 * SPEED**2 / 2
-          and ledger["damping"][-1] > 0, ledger["imbalance"][-1])
 
-# Ground at rest stays at rest when a side becomes absorbing: saturated, with weight, held by a support before.
-still = column("u-p_w", 9.81, void=0.6, more="{}") + (
-    "&initial p_w_slope = -9.81 stress = 'geostatic' k_0 = 0.6 surface = 0 surcharge = 10 /\n"
-    "&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 tolerance = 1e-10 /\n"
-    "&fix group = 'left' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' /\n&fix group = 'top' field = 'p_w' /\n"
-    "&fix group = 'right' field = 'u_r' stages = 'rest' /\n&absorbing group = 'right' /\n"
-    "&load group = 'top' kind = 'pressure' value = 10 {} /\n")
-quiet = still.format("", "") + stage("go", 0.1, 2e-3)
-h, _ = run(quiet, "still")
-check("ground behind an absorbing side stays at rest",
-      max(np.abs(h[f"corner.{u}"]).max() for u in ("u_r", "u_z")) < 1e-9,
-      np.abs(h["corner.u_r"]).max())
-# The ground behind a side is that of the scene, or what rho, c_p and c_s say: given alike they give the same answer,
-# given softer another.
-behind = column() + "&fix group = 'left' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' /\n" + (
-    "&load group = 'top' kind = 'pressure' value = 10 history = 'h' /\n"
-    "&history name = 'h' times = 0, 0.02 values = 0, 1 /\n") + stage("go", 0.1, 2e-3)
-sides = {name: run(behind + f"&absorbing group = 'right' {given} /\n", f"behind_{name}")[0]["corner.u_r"]
-         for name, given in (("scene", ""), ("alike", f"rho = 2 c_p = {12000 ** 0.5!r} c_s = {4000 ** 0.5!r}"),
-                             ("softer", f"rho = 2 c_p = {3000 ** 0.5!r} c_s = {4000 ** 0.5!r}"))}
-check("ground behind a side, given alike", np.abs(sides["alike"] - sides["scene"]).max()
-      < ROUNDING * np.abs(sides["scene"]).max(), np.abs(sides["alike"] - sides["scene"]).max())
-check("softer ground behind a side gives way more", sides["softer"][-1] > 1.02 * sides["scene"][-1] > 0,
-      (sides["softer"][-1], sides["scene"][-1]))
-# Pushed, it moves, the balance of energy closes, and a run taken up from a checkpoint writes the same bytes.
-pushed = still.format("checkpoint_steps = 20", "history = 'push'") + stage("go", 0.1, 2e-3) + (
-    "&history name = 'push' times = 1, 1.02 values = 1, 2 /\n")
-h, whole = run(pushed, "pushed")
-ledger = tables.columns(whole / "ledger.csv")
-check("pushed, it moves", np.abs(h["corner.u_r"]).max() > 1e-6, h["corner.u_r"][-1])
-check("the dashpots' work is booked", np.abs(ledger["imbalance"][1:] - ledger["imbalance"][0]).max()
-      < 0.02 * np.abs(ledger["damping"]).max() and ledger["damping"][-1] > 0, ledger["imbalance"][-1])
-names = [p.name for p in whole.iterdir() if p.suffix == ".csv"]
-before = {name: (whole / name).read_bytes() for name in names}
-run(pushed, "pushed", "--restart", whole / "checkpoint.h5")
-check("restart with an absorbing side: same bytes", all((whole / name).read_bytes() == before[name] for name in names))
 
-# Pressures of tied sides are one where that is asked for, though one side alone has an inflow.
-flow = column("u-p_w", void=0.6) + ("&fix group = 'all' field = 'u_r' /\n&fix group = 'all' field = 'u_z' /\n"
-                                    "&fix group = 'bottom' field = 'p_w' /\n&stage name = 'q' "
-                                    "analysis = 'quasi_static' duration = 1 dt = 0.1 /\n"
-                                    "&load group = 'left' kind = 'water' value = 1e-5 /\n"
-                                    "&tie first = 'left' second = 'right' {} /\n")
-for words, same in (("", False), ("pressures = 'yes'", True)):
-    h, _ = run(flow.format(words), f"flow_{same}")
-    check(f"pressures of tied sides {words}", (h["top.p_w"][-1] == h["corner.p_w"][-1]) is np.bool_(same)
-          and h["top.p_w"][-1] > 0, (h["top.p_w"][-1], h["corner.p_w"][-1]))
+def test_the_base_moves_by_the_double_integral_rho_inf():
+    shaken = column() + TIED + MOVED + "&history name = 'h' times = 0.1, 0.4, 0.5 values = 0, 1, 0.2 /\n"
 
-for name, old, new, words in (
-        ("acceleration without a history", " history = 'h' /\n&history", " /\n&history", "needs a displacement"),
-        ("acceleration of a pressure", "'bottom' field = 'u_r' motion", "'bottom' field = 'p_w' motion",
-         "needs a displacement"),
-        ("a tie of unequal sides", "second = 'right'", "second = 'top'", "as many nodes"),
-        ("a tie of different heights", "first = 'left' second = 'right'", "first = 'top' second = 'bottom'",
-         "no node of 'bottom' lies at the height"),
-        ("no edges", "&tie", "&absorbing group = 'all' /\n&tie", "no edges")):
-    text = shaken.replace(old, new) + stage("a", 0.3, 0.02)
-    check(f"{name}: changed", text != shaken + stage("a", 0.3, 0.02))
-    done, _ = start(text, "refused")
-    check(f"refused: {name}", done.returncode in (2, 11) and words in done.stderr, done.stderr)
-finish()
+    for rho_inf in (1.0, 0.5):
+        h, _ = run(shaken + stage("a", 0.3, 0.01, rho_inf) + stage("b", 0.4, 0.005, rho_inf), "motion")
+        wanted = np.array([exact(t) for t in h["time"]])
+        # Second order: corners of the history cost (slope dt**2) of velocity each, and so 2e-3 of the path.
+        check(f"the base moves by the double integral, rho_inf {rho_inf}", np.abs(h["base.u_r"] - wanted).max()
+              < 2e-3 * wanted.max(), np.abs(h["base.u_r"] - wanted).max() / wanted.max())
+        # The scheme's accelerations belong to (gamma - 1/2) dt before the end of a step: (1 - rho)/(1 + rho) dt.
+        steps = np.diff(h["time"])
+        given = 3 * np.interp(h["time"][1:] - (1 - rho_inf) / (1 + rho_inf) * steps, [0.1, 0.4, 0.5], [0, 1, 0.2])
+        check(f"and has the acceleration, rho_inf {rho_inf}", np.abs(h["base.a_r"][1:] - given).max() < ROUNDING * 1e3,
+              np.abs(h["base.a_r"][1:] - given).max())
+    check("tied sides move as one", (h["top.u_r"] == h["corner.u_r"]).all() and np.ptp(h["top.u_r"]) > 0)
+
+    for name, old, new, words in (
+            ("acceleration without a history", " history = 'h' /\n&history", " /\n&history", "needs a displacement"),
+            ("acceleration of a pressure", "'bottom' field = 'u_r' motion", "'bottom' field = 'p_w' motion",
+             "needs a displacement"),
+            ("a tie of unequal sides", "second = 'right'", "second = 'top'", "as many nodes"),
+            ("a tie of different heights", "first = 'left' second = 'right'", "first = 'top' second = 'bottom'",
+             "no node of 'bottom' lies at the height"),
+            ("no edges", "&tie", "&absorbing group = 'all' /\n&tie", "no edges")):
+        text = shaken.replace(old, new) + stage("a", 0.3, 0.02)
+        check(f"{name}: changed", text != shaken + stage("a", 0.3, 0.02))
+        done, _ = start(text, "refused")
+        check(f"refused: {name}", done.returncode in (2, 11) and words in done.stderr, done.stderr)
+
+
+def test_what_the_balance_of_a_shaken_column_leaves_open_is_of_second():
+    # Works of one step are those of the same moment: what a moving base does against reactions of another one would be
+    # of first order in the step, and energy out of nothing or into nothing.
+    open_at = {}
+    for dt in (0.01, 0.005):
+        _, folder = run(column(damping="damping = 2") + TIED + MOVED.replace("value = 3", "value = 1")
+                        + "&history name = 'h' times = 0, 0.05, 0.1, 0.15, 0.2, 0.3 values = 0, 1, 0, -1, 0, 0 /\n"
+                        + stage("a", 0.3, dt, 0.6), "works")
+        ledger = tables.columns(folder / "ledger.csv")
+        open_at[dt] = np.abs(ledger["imbalance"]).max() / np.abs(ledger["supports"]).max()
+    check("what the balance of a shaken column leaves open is of second order",
+          open_at[0.005] < open_at[0.01] / 3, open_at)
+    omega = np.pi / 8 * np.sqrt(2.4e4 / 2)
+    for name, alpha, beta in (("mass", ALPHA, 0), ("stiffness", 0, BETA), ("both", ALPHA, BETA)):
+        text = column(cells=8, damping=f"damping = {alpha} stiffness_damping = {beta}") + (
+            "&fix group = 'all' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' /\n"
+            f"&initial wave = {SPEED} wave_number = {np.pi / 8} datum = -4 /\n") + stage("swing", 0.6, 1e-3)
+        h, folder = run(text, f"rayleigh_{name}")
+        xi = alpha / 2 / omega + beta * omega / 2
+        free = omega * np.sqrt(1 - xi**2)
+        wanted = SPEED / free * np.exp(-xi * omega * h["time"]) * np.sin(free * h["time"])
+        # Steps of 1/146 of a period: (omega dt)**2/12 of the phase in four
+        # periods, and as much of the first step of beta.
+        check(f"Rayleigh damping, {name}", np.abs(h["top.u_z"] - wanted).max() < 5e-3 * wanted.max(),
+              np.abs(h["top.u_z"] - wanted).max() / wanted.max())
+        ledger = tables.columns(folder / "ledger.csv")
+        check(f"its loss is booked, {name}", np.abs(ledger["imbalance"]).max() < 5e-3 * 0.5 * 2 * 4 * SPEED**2 / 2
+              and ledger["damping"][-1] > 0, ledger["imbalance"][-1])
+
+
+def test_ground_behind_an_absorbing_side_stays_at_rest():
+    # Ground at rest stays at rest when a side becomes absorbing: saturated, with weight, held by a support before.
+    still = column("u-p_w", 9.81, void=0.6, more="{}") + (
+        "&initial p_w_slope = -9.81 stress = 'geostatic' k_0 = 0.6 surface = 0 surcharge = 10 /\n"
+        "&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 tolerance = 1e-10 /\n"
+        "&fix group = 'left' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' /\n"
+        "&fix group = 'top' field = 'p_w' /\n"
+        "&fix group = 'right' field = 'u_r' stages = 'rest' /\n&absorbing group = 'right' /\n"
+        "&load group = 'top' kind = 'pressure' value = 10 {} /\n")
+    quiet = still.format("", "") + stage("go", 0.1, 2e-3)
+    h, _ = run(quiet, "still")
+    check("ground behind an absorbing side stays at rest",
+          max(np.abs(h[f"corner.{u}"]).max() for u in ("u_r", "u_z")) < 1e-9,
+          np.abs(h["corner.u_r"]).max())
+
+    # Pushed, it moves, the balance of energy closes, and a run taken up from a checkpoint writes the same bytes.
+    pushed = still.format("checkpoint_steps = 20", "history = 'push'") + stage("go", 0.1, 2e-3) + (
+        "&history name = 'push' times = 1, 1.02 values = 1, 2 /\n")
+    h, whole = run(pushed, "pushed")
+    ledger = tables.columns(whole / "ledger.csv")
+    check("pushed, it moves", np.abs(h["corner.u_r"]).max() > 1e-6, h["corner.u_r"][-1])
+    check("the dashpots' work is booked", np.abs(ledger["imbalance"][1:] - ledger["imbalance"][0]).max()
+          < 0.02 * np.abs(ledger["damping"]).max() and ledger["damping"][-1] > 0, ledger["imbalance"][-1])
+    names = [p.name for p in whole.iterdir() if p.suffix == ".csv"]
+    before = {name: (whole / name).read_bytes() for name in names}
+    run(pushed, "pushed", "--restart", whole / "checkpoint.h5")
+    check("restart with an absorbing side: same bytes", all(
+        (whole / name).read_bytes() == before[name] for name in names))
+
+
+def test_ground_behind_a_side_given_alike():
+    # The ground behind a side is that of the scene, or what rho, c_p and c_s say: given alike they give the same
+    # answer, given softer another.
+    behind = column() + "&fix group = 'left' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' /\n" + (
+        "&load group = 'top' kind = 'pressure' value = 10 history = 'h' /\n"
+        "&history name = 'h' times = 0, 0.02 values = 0, 1 /\n") + stage("go", 0.1, 2e-3)
+    sides = {name: run(behind + f"&absorbing group = 'right' {given} /\n", f"behind_{name}")[0]["corner.u_r"]
+             for name, given in (("scene", ""), ("alike", f"rho = 2 c_p = {12000 ** 0.5!r} c_s = {4000 ** 0.5!r}"),
+                                 ("softer", f"rho = 2 c_p = {3000 ** 0.5!r} c_s = {4000 ** 0.5!r}"))}
+    check("ground behind a side, given alike", np.abs(sides["alike"] - sides["scene"]).max()
+          < ROUNDING * np.abs(sides["scene"]).max(), np.abs(sides["alike"] - sides["scene"]).max())
+    check("softer ground behind a side gives way more", sides["softer"][-1] > 1.02 * sides["scene"][-1] > 0,
+          (sides["softer"][-1], sides["scene"][-1]))
+
+
+def test_pressures_of_tied_sides():
+    # Pressures of tied sides are one where that is asked for, though one side alone has an inflow.
+    flow = column("u-p_w", void=0.6) + ("&fix group = 'all' field = 'u_r' /\n&fix group = 'all' field = 'u_z' /\n"
+                                        "&fix group = 'bottom' field = 'p_w' /\n&stage name = 'q' "
+                                        "analysis = 'quasi_static' duration = 1 dt = 0.1 /\n"
+                                        "&load group = 'left' kind = 'water' value = 1e-5 /\n"
+                                        "&tie first = 'left' second = 'right' {} /\n")
+    for words, same in (("", False), ("pressures = 'yes'", True)):
+        h, _ = run(flow.format(words), f"flow_{same}")
+        check(f"pressures of tied sides {words}", (h["top.p_w"][-1] == h["corner.p_w"][-1]) is np.bool_(same)
+              and h["top.p_w"][-1] > 0, (h["top.p_w"][-1], h["corner.p_w"][-1]))

@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Keys of a scene that no page of the verification uses, against answers known in closed form."""
 import os
-import pathlib
 import subprocess
-import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish, root, work  # noqa: E402
+from checking import build, check, root, work
 import tables  # noqa: E402 (checking knows its folder)
 
 host = build / "host/mud_host"
@@ -39,50 +36,58 @@ def near(what, value, wanted):
 
 
 once = BLOCK.format(1, 1)
-rows, _ = run(once + "&fix group = 'all' field = 'u_z' /\n&fix group = 'bottom' field = 'u_r' /\n"
-              "&load group = 'top' kind = 'shear_r' value = 10 /\n", "shear_r")
-near("shear along r: 10 kPa over G", rows[-1]["corner.u_r"], 10 / SHEAR)
-rows, _ = run(once + "&fix group = 'all' field = 'u_r' /\n&fix group = 'left' field = 'u_z' /\n"
-              "&load group = 'right' kind = 'shear_z' value = 10 /\n", "shear_z")
-near("shear along z: 10 kPa over G", rows[-1]["corner.u_z"], 10 / SHEAR)
 
 # A plate makes the three nodes of the top one unknown, so that 2 kN a node are 6 kN on 1 m2.
 held = "&fix group = 'all' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' /\n"
-plate = "&plate name = 'lid' group = 'top' mass = 1 /\n"
-rows, folder = run(once + held + plate + "&load group = 'top' kind = 'force_z' value = -2 /\n", "force_z")
-near("forces on nodes: 6 kN over M", rows[-1]["corner.u_z"], -6 / CONSTRAINED)
-row = tables.numbers(folder / "contact.csv")[-1]
-near("a joined plate tells its motion", row["lid.u_z"], -6 / CONSTRAINED)
-weightless = once.replace("fields = 'u'", "fields = 'u' gravity = 10").replace("void_ratio", "rho_s = 0 void_ratio")
-rows, _ = run(weightless + held
-              + "&plate name = 'lid' group = 'top' mass = 0.3 weight = 'yes' force = -3 /\n", "lid")
-near("a joined plate has its force and its weight", rows[-1]["corner.u_z"], -(3 + 0.3 * 10) / CONSTRAINED)
-rows, _ = run(once + held + plate + "&fix group = 'lid' field = 'u_z' value = -1e-3 /\n", "group")
-near("the name of a joined plate is a group", rows[-1]["corner.u_z"], -1e-3)
 
-# A support that goes after 1 s leaves an elastic block to its load of 12 kPa, over M.
-rows, _ = run(BLOCK.format(2, 0.5) + held + "&fix group = 'top' field = 'u_z' value = -2e-3 until = 1 /\n"
-              "&load group = 'top' kind = 'pressure' value = 12 /\n", "until")
-moved = {float(row["time"]): float(row["corner.u_z"]) for row in rows}
-near("a support holds up to `until`", moved.get(1.0, 0), -2e-3)
-near("and releases it afterwards", moved.get(1.5, 0), -1e-3)
 
-# Wall time: shorter than any step, so that there is one after every step; the last one is whole and goes on.
-text = BLOCK.format(1, 0.25).replace("fields = 'u'", "fields = 'u' checkpoint_seconds = 1e-9") + held + \
-    "&load group = 'top' kind = 'pressure' value = 10 /\n"
-_, folder = run(text, "seconds")
-check("checkpoints by wall time", (folder / "checkpoint.h5").exists(), sorted(f.name for f in folder.iterdir()))
-if (folder / "checkpoint.h5").exists():
-    before = (folder / "histories.csv").read_bytes()
-    run(text, "seconds", "--restart", folder / "checkpoint.h5")
-    check("and the run goes on from the last one", (folder / "histories.csv").read_bytes() == before)
+def test_shear_on_an_edge_over_the_shear_modulus():
+    rows, _ = run(once + "&fix group = 'all' field = 'u_z' /\n&fix group = 'bottom' field = 'u_r' /\n"
+                  "&load group = 'top' kind = 'shear_r' value = 10 /\n", "shear_r")
+    near("shear along r: 10 kPa over G", rows[-1]["corner.u_r"], 10 / SHEAR)
+    rows, _ = run(once + "&fix group = 'all' field = 'u_r' /\n&fix group = 'left' field = 'u_z' /\n"
+                  "&load group = 'right' kind = 'shear_z' value = 10 /\n", "shear_z")
+    near("shear along z: 10 kPa over G", rows[-1]["corner.u_z"], 10 / SHEAR)
+    plate = "&plate name = 'lid' group = 'top' mass = 1 /\n"
+    rows, folder = run(once + held + plate + "&load group = 'top' kind = 'force_z' value = -2 /\n", "force_z")
+    near("forces on nodes: 6 kN over M", rows[-1]["corner.u_z"], -6 / CONSTRAINED)
+    row = tables.numbers(folder / "contact.csv")[-1]
+    near("a joined plate tells its motion", row["lid.u_z"], -6 / CONSTRAINED)
+    weightless = once.replace("fields = 'u'", "fields = 'u' gravity = 10").replace("void_ratio", "rho_s = 0 void_ratio")
+    rows, _ = run(weightless + held
+                  + "&plate name = 'lid' group = 'top' mass = 0.3 weight = 'yes' force = -3 /\n", "lid")
+    near("a joined plate has its force and its weight", rows[-1]["corner.u_z"], -(3 + 0.3 * 10) / CONSTRAINED)
+    rows, _ = run(once + held + plate + "&fix group = 'lid' field = 'u_z' value = -1e-3 /\n", "group")
+    near("the name of a joined plate is a group", rows[-1]["corner.u_z"], -1e-3)
 
-# A plate 0.01 mm above the ground, which it meets within 1 ms; edges farther apart than the search radius do not meet.
-fall = (root / "verification/host/contact/fall.nml").read_text().replace("duration = 0.006", "duration = 0.001")
-for radius, meets in (("0", True), ("1.0e-3", True), ("1.0e-9", False)):
-    near_by = fall.replace("penalty = 1.0e7", f"penalty = 1.0e7\n   search_radius = {radius}")
-    _, folder = run(near_by, f"radius_{radius}")
-    thrust = max(row["soil_plate.thrust"] for row in tables.numbers(folder / "contact.csv"))
-    check(f"search radius {radius}", (thrust > 0) == meets, thrust)
 
-finish()
+def test_a_support_holds_until_it_is_released():
+    # A support that goes after 1 s leaves an elastic block to its load of 12 kPa, over M.
+    rows, _ = run(BLOCK.format(2, 0.5) + held + "&fix group = 'top' field = 'u_z' value = -2e-3 until = 1 /\n"
+                  "&load group = 'top' kind = 'pressure' value = 12 /\n", "until")
+    moved = {float(row["time"]): float(row["corner.u_z"]) for row in rows}
+    near("a support holds up to `until`", moved.get(1.0, 0), -2e-3)
+    near("and releases it afterwards", moved.get(1.5, 0), -1e-3)
+
+
+def test_checkpoints_by_wall_time():
+    # Wall time: shorter than any step, so that there is one after every step; the last one is whole and goes on.
+    text = BLOCK.format(1, 0.25).replace("fields = 'u'", "fields = 'u' checkpoint_seconds = 1e-9") + held + \
+        "&load group = 'top' kind = 'pressure' value = 10 /\n"
+    _, folder = run(text, "seconds")
+    check("checkpoints by wall time", (folder / "checkpoint.h5").exists(), sorted(f.name for f in folder.iterdir()))
+    if (folder / "checkpoint.h5").exists():
+        before = (folder / "histories.csv").read_bytes()
+        run(text, "seconds", "--restart", folder / "checkpoint.h5")
+        check("and the run goes on from the last one", (folder / "histories.csv").read_bytes() == before)
+
+
+def test_search_radius():
+    # A plate 0.01 mm above the ground, which it meets within 1 ms; edges
+    # farther apart than the search radius do not meet.
+    fall = (root / "verification/host/contact/fall.nml").read_text().replace("duration = 0.006", "duration = 0.001")
+    for radius, meets in (("0", True), ("1.0e-3", True), ("1.0e-9", False)):
+        near_by = fall.replace("penalty = 1.0e7", f"penalty = 1.0e7\n   search_radius = {radius}")
+        _, folder = run(near_by, f"radius_{radius}")
+        thrust = max(row["soil_plate.thrust"] for row in tables.numbers(folder / "contact.csv"))
+        check(f"search radius {radius}", (thrust > 0) == meets, thrust)

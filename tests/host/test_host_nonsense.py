@@ -12,10 +12,8 @@ import re
 import shutil
 import signal
 import subprocess
-import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import add, build, check, finish, light, nightly, root, work  # noqa: E402
+from checking import add, build, check, light, nightly, root, work
 from nonsense import Grammar  # noqa: E402
 
 HOST = build / "host/mud_host"
@@ -105,7 +103,7 @@ def read_together(texts):
     return found
 
 
-def main():
+def test_scenes_of_nonsense_run_or_are_refused_by_a_sentence():
     grammar = Grammar(subprocess.run([HOST, "--template"], capture_output=True, text=True, check=True).stdout)
     check("the grammar has the groups of the template", len(grammar.groups) > 15 and len(grammar.words) > 15,
           f"{grammar.groups.keys()}")
@@ -123,7 +121,3 @@ def main():
                 print(f"FAILED scene {number} (MUD_NONSENSE_FIRST={number} MUD_NONSENSE=1): {wrong}")
     print("answers: " + ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items())))
     add(passed, failed)
-    finish()
-
-
-main()

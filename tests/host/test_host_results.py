@@ -2,15 +2,12 @@
 """What people read from a run of mud_host: reactions, flow and thrust of every group against statics and Darcy; loads
 and supports that change with z; retention from files; a run that goes on with more stages or for longer."""
 import os
-import pathlib
 import shutil
 import subprocess
-import sys
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish, work  # noqa: E402
+from checking import build, check, work
 import tables  # noqa: E402 (checking knows its folder)
 
 host = build / "host/mud_host"
@@ -60,57 +57,6 @@ def near(what, value, wanted, size=1.0):
 # holds it is counted once.
 HELD = "&fix group = 'left' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' /\n" \
     "&fix group = 'bottom' field = 'u_r' /\n"
-folder = run(block(gravity=10) + HELD
-             + "&load group = 'right' kind = 'pressure' value = 0 value_slope = -10 datum = 3 /\n"
-             "&load group = 'top' kind = 'shear_r' value = 7 /\n&load group = 'top' kind = 'pressure' value = 5 /\n",
-             "statics")
-row = last(folder)
-near("thrust of water, 10 kPa/m over 3 m: to the left", row["right.load_r"], -45.0)
-near("loads of one group in one column", row["top.load_r"], 14.0)
-near("and in the other", row["top.load_z"], -10.0)
-near("supports along r hold what acts", row["left.force_r"] + row["bottom.force_r"], 45.0 - 14.0)
-points = tables.numbers(folder / "points_s.csv")
-weight = 10 * 2.65 * sum(p["weight"] / (1 + p["e"]) for p in points)
-near("the base carries weight and load", row["bottom.force_z"], weight + 10.0)
-check("the weight is that of 6 m2", abs(weight - 0.5 * 2.65 * 6 * 10) < 0.01 * weight, weight)
-near("forces of a static stage are those of its end", row["time_of_forces"], row["time"])
-check("a column a group and direction", list(row) == [
-    "time", "time_of_forces", "left.force_r", "bottom.force_z", "bottom.force_r", "right.load_r", "right.load_z",
-    "top.load_r", "top.load_z"], list(row))
-row = last(run(block().replace("'plane_strain'", "'axisymmetric'") + HELD
-               + "&load group = 'right' kind = 'pressure' value = 2 value_slope = 1 datum = 1 /\n", "ring"))
-near("around the axis: 2 pi R times the integral of 1 + z", row["right.load_r"], -2 * np.pi * 2 * (3 + 4.5))
-row = last(run(block() + HELD + "&load group = 'right' kind = 'force_z' value = -1 value_slope = -2 datum = 3 /\n",
-               "forces"))
-near("forces on nodes at heights of 0, 0.5 .. 3", row["right.load_z"], -sum(1 + 2 * (z / 2 - 3) for z in range(7)))
-
-# nu = 0 and a pressure linear in z: u_r = -r p/E, u_z = r^2 slope/(2 E) solve the equations exactly.
-text = block(poisson=0) + ("&load group = 'right' kind = 'pressure' value = 20 value_slope = -6 datum = 1 /\n"
-                           "&fix group = 'left' field = 'u_r' /\n&fix group = 'left' field = 'u_z' /\n")
-row = last(run(text, "bending"), "histories.csv")
-near("where the load is smaller", row["corner.u_r"], -2 * (20 - 6 * 2) / 1e4, 1e-3)
-near("where the load is larger", row["foot.u_r"], -2 * (20 + 6) / 1e4, 1e-3)
-near("and the block bends", row["corner.u_z"], -6 * 4 / 2e4, 1e-3)
-
-# A support linear in z: simple shear, u_r = 1e-3 + 2e-3 z; and the pressure of water at rest, which does not flow.
-row = last(run(block() + "&fix group = 'all' field = 'u_r' value = 1e-3 value_slope = 2e-3 datum = 0 /\n"
-               "&fix group = 'all' field = 'u_z' /\n", "shear"), "histories.csv")
-near("prescribed along a line", row["corner.u_r"], 7e-3, 1e-3)
-near("a strain of 2e-3 times G", row["corner.s_rz"], 4000 * 2e-3)
-still = block("u-p_w", 10, analysis="quasi_static", dt=0.5) + (
-    "&fix group = 'all' field = 'u_r' /\n&fix group = 'all' field = 'u_z' /\n"
-    "&initial p_w = 30 p_w_slope = -10 /\n&fix group = 'left' field = 'p_w' value_slope = -10 datum = 3 /\n"
-    "&fix group = 'right' field = 'p_w' value = {} value_slope = -10 datum = 3 /\n")
-row = last(run(still.format(0), "rest"))
-check("water at rest does not flow", abs(row["left.outflow_w"]) + abs(row["right.outflow_w"]) < 1e-12, row)
-row = last(run(still.format(8), "flow"))
-near("Darcy: k/eta_w times 8 kPa over 2 m, height of 3 m", row["left.outflow_w"], 2e-4 * 8 / 2 * 3, 1e-6)
-near("and in on the other side", row["right.outflow_w"], -2e-4 * 8 / 2 * 3, 1e-6)
-folder = run(still.format(0).replace("&fix group = 'right' field = 'p_w' value = 0 value_slope = -10 datum = 3 /",
-                                     "&load group = 'right' kind = 'water' value = 1e-4 value_slope = 2e-5 /"),
-             "inflow")
-near("an inflow linear in z comes out again", last(folder)["left.outflow_w"], 3 * 1e-4 + 4.5 * 2e-5, 1e-6)
-near("and has a column", last(folder)["right.inflow_w"], 3 * 1e-4 + 4.5 * 2e-5, 1e-6)
 
 # A metre of soil of k/eta_w 2e-4 m2/(kPa s), water of 10 kPa/m, the pressure at its base given, at rest after 1e6 s.
 # What follows is Darcy's law over one metre: the flow is 2e-4 times the difference of p_w + 10 z.
@@ -139,137 +85,212 @@ SIDES = (   # what acts on top, pressure at the base; flow out of the top and th
     ("rain where water rises", RAIN.format(1e-3, ""), 25, 1e-3 + 3e-3, -3e-3, 3),
     ("rain on a face: the lower limit", RAIN.format(2e-3, "ponding = 0.5") + FACE.format(""), 4, 0.8e-3, 1.2e-3, 3),
 )
-for fields, retention, suction in (("u-p_w", "", ""), ("u-p_w-p_c", "retention = 'flat'", "p_c_slope = 10")):
-    text = COLUMN
-    if retention:
-        text += "&retention name = 'flat' law = 'table' suction = 0, 1e6 saturation = 0.6, 0.6 /\n"
-    for number, (what, acts, base, top, bottom, nodes) in enumerate(SIDES):
-        if retention and "0.5 m" in what:
-            continue   # its gas would have to be compressed, which takes longer
-        folder = run(text.format(**locals()) + acts, f"side_{len(fields)}_{number}")
-        row = last(folder)
-        near(f"{what}, {fields}: out of the top", row["top.outflow_w"], top, 1e-3)
-        near(f"{what}, {fields}: out of the base", row["bottom.outflow_w"], bottom, 1e-3)
-        check(f"{what}, {fields}: nodes at the limit", row["top.at_limit"] == nodes, row)
-        ledger = last(folder, "ledger.csv")
-        near(f"{what}, {fields}: what runs off never entered", ledger["outflow"] - ledger["outflow_air"], 0, 1e3)
-# Rain counts per horizontal area: none falls on a wall, none from below.
-row = last(run(COLUMN.format(fields="u-p_w", retention="", suction="", base=4)
-               + RAIN.format(1e-3, "").replace("'top'", "'right'") + RAIN.format(1e-3, ""), "wall"))
-near("no rain on a wall", row["right.inflow_w"], 0, 1e-3)
-near("all of it on what is level", row["top.inflow_w"], 1e-3, 1e-3)
 
-# Taken up between two steps, while the face of rain turns from one side to the other: the same bytes.
-storm = COLUMN.format(fields="u-p_w", retention="", suction="", base=4) \
-    .replace("gravity = 10", "gravity = 10 checkpoint_steps = 9") \
-    .replace("duration = 1e6 dt = 1e6", "duration = 16 dt = 1").replace("k_w = 1e15", "k_w = 1e3") + \
-    RAIN.format(2e-3, "history = 'h'") + "&history name = 'h' times = 0, 4, 10, 12, 16 values = 0, 1, 0, 1, 1 /\n"
-folder = run(storm, "storm")
-limits = [row["top.at_limit"] for row in tables.numbers(folder / "reactions_s.csv")]
-check("the storm wets and dries", limits[8:9] != limits[-1:] and len(set(limits)) > 1, limits)
-if (folder / "checkpoint.h5").exists():   # there is HDF5
-    kept = {path.name: path.read_bytes() for path in folder.glob("*.csv")}
-    done, _ = start(storm, "storm", "--restart", folder / "checkpoint.h5")
-    check("storm: taken up", done.returncode == 0, done.stderr)
-    check("storm: the same bytes", all((folder / name).read_bytes() == content for name, content in kept.items()))
 
-# What contradicts itself is refused.
-for what, acts, words in (
-        ("a face of another field", "&fix group = 'top' field = 'u_z' kind = 'seepage' /", "needs field = 'p_w'"),
-        ("a face that is held", FACE.format("hold = 'yes'"), "not hold"),
-        ("rain that falls upwards", RAIN.format(-1e-3, ""), "it becomes -0.001 m/s"),
-        ("rain whose history is negative", RAIN.format(1e-3, "history = 'h'")
-         + "&history name = 'h' times = 0, 1 values = 1, -2 /", "it becomes -0.002 m/s"),
-        ("a pond without weight", RAIN.format(1e-3, "ponding = 0.1"), "without gravity"),
-        ("a pond of negative depth", RAIN.format(1e-3, "ponding = -0.1"), "ponding"),
-        ("rain without water", RAIN.format(1e-3, ""), "no field"),
-        ("a flow that is subtracted", FACE.format(""), "initial_flow"),
-        ("rain on a flow that is subtracted", RAIN.format(1e-3, ""), "initial_flow")):
-    text = COLUMN.format(fields="u" if "without water" in what else "u-p_w", retention="", suction="", base=4) + acts
-    if "without water" in what:
-        text = text.replace("&fix group = 'bottom' field = 'p_w' value = 4 /", "")
-    text = text.replace("gravity = 10", "gravity = 0" if "without weight" in what else
-                        "gravity = 10 initial_flow = 'subtract'" if "subtracted" in what else "gravity = 10")
-    done, _ = start(text, "refused")
-    check(f"{what}: refused",
-          done.returncode in (2, 11) and words in done.stderr and len(done.stderr.splitlines()) == 1,
-          f"{done.returncode} {done.stderr}")
+def test_the_weight_is_that_of_6_m2():
+    folder = run(
+        block(gravity=10) +HELD +
+        "&load group = 'right' kind = 'pressure' value = 0 value_slope = -10 datum = 3 /\n"
+        "&load group = 'top' kind = 'shear_r' value = 7 /\n&load group = 'top' kind = 'pressure' value = 5 /\n",
+        "statics")
+    row = last(folder)
+    near("thrust of water, 10 kPa/m over 3 m: to the left", row["right.load_r"], -45.0)
+    near("loads of one group in one column", row["top.load_r"], 14.0)
+    near("and in the other", row["top.load_z"], -10.0)
+    near("supports along r hold what acts", row["left.force_r"] + row["bottom.force_r"], 45.0 - 14.0)
+    points = tables.numbers(folder / "points_s.csv")
+    weight = 10 * 2.65 * sum(p["weight"] / (1 + p["e"]) for p in points)
+    near("the base carries weight and load", row["bottom.force_z"], weight + 10.0)
+    check("the weight is that of 6 m2", abs(weight - 0.5 * 2.65 * 6 * 10) < 0.01 * weight, weight)
+    near("forces of a static stage are those of its end", row["time_of_forces"], row["time"])
+    check("a column a group and direction", list(row) == [
+        "time", "time_of_forces", "left.force_r", "bottom.force_z", "bottom.force_r", "right.load_r", "right.load_z",
+        "top.load_r", "top.load_z"], list(row))
+    row = last(run(block().replace("'plane_strain'", "'axisymmetric'") + HELD
+                   + "&load group = 'right' kind = 'pressure' value = 2 value_slope = 1 datum = 1 /\n", "ring"))
+    near("around the axis: 2 pi R times the integral of 1 + z", row["right.load_r"], -2 * np.pi * 2 * (3 + 4.5))
+    row = last(run(block() + HELD + "&load group = 'right' kind = 'force_z' value = -1 value_slope = -2 datum = 3 /\n",
+                   "forces"))
+    near("forces on nodes at heights of 0, 0.5 .. 3", row["right.load_z"], -sum(1 + 2 * (z / 2 - 3) for z in range(7)))
 
-# Both fluids, p_w and p_c given on both sides: the flow of each by its own permeability.
-both = block("u-p_w-p_c", analysis="quasi_static", dt=0.5).replace("law = 'constant'", "law = 'constant' k_ra = 0.5") \
-    .replace("permeability = 'k' /", "permeability = 'k' retention = 'flat' /") + (
-    "&retention name = 'flat' law = 'table' suction = 0, 1e6 saturation = 0.6, 0.6 /\n"
-    "&initial p_w = -20 p_c = 20 /\n"
-    "&fix group = 'all' field = 'u_r' /\n&fix group = 'all' field = 'u_z' /\n"
-    "&fix group = 'left' field = 'p_w' value = -20 /\n&fix group = 'left' field = '{}' value = {} /\n"
-    "&fix group = 'right' field = 'p_w' value = -14 /\n&fix group = 'right' field = 'p_c' value = 18 /\n")
-for field, value in (("p_c", 20), ("p_a", 0)):
-    row = last(run(both.format(field, value), f"fluids_{field}"))
-    near(f"water of two fluids, {field} given", row["left.outflow_w"], 2e-4 * 6 / 2 * 3, 1e-6)
-    near(f"air of two fluids, {field} given", row["left.outflow_a"], 0.5 * 2e-10 / 2e-8 * 4 / 2 * 3, 1e-6)
 
-# Retention from a file is that of the lists, and van Genuchten's that of a fine table of it.
-curve = [(p, (1 + (0.1 * p)**1.6)**-0.375 if p > 0 else 1.0) for p in np.linspace(0, 60, 3001)]
-(work / "curve.txt").write_text("# suction saturation\n" + "".join(f"{p:.17g} {s:.17g}\n" for p, s in curve))
-column = both.format("p_c", 40).replace("value = 18", "value = 5")
-laws = {"lists": "law = 'table' suction =\n" + ",\n".join(f"{p:.17g}" for p, _ in curve[::50])
-        + " saturation =\n" + ",\n".join(f"{s:.17g}" for _, s in curve[::50]),
-        "file": "law = 'table' file = 'curve.txt'",
-        "genuchten": "law = 'van_genuchten' alpha = 0.1 n = 1.6"}
-old = "law = 'table' suction = 0, 1e6 saturation = 0.6, 0.6"
-water = {}
-for name, law in laws.items():
-    folder = run(column.replace(old, law), f"retention_{name}")
-    water[name] = tables.columns(folder / "points_s.csv")["S_w"]
-check("a table of 3001 pairs is the curve", np.abs(water["file"] - water["genuchten"]).max() < 1e-5
-      and np.ptp(water["file"]) > 0.1, np.abs(water["file"] - water["genuchten"]).max())
-check("a table of 61 pairs is coarser", 1e-5 < np.abs(water["lists"] - water["genuchten"]).max() < 2e-2)
-for name, law, words in (("alpha", "law = 'van_genuchten' n = 2", "needs alpha"),
-                         ("n", "law = 'van_genuchten' alpha = 1 n = 0.9", "above 1"),
-                         ("pair", "law = 'table' file = 'bad.txt'", "allowed is 0 to 1"),
-                         ("file", "law = 'table' file = 'none.txt'", "cannot be read")):
-    (work / "bad.txt").write_text("0 1\n10 1.5\n")
-    done, _ = start(column.replace(old, law), f"refused_{name}")
-    check(f"refused: {name}", done.returncode == 2 and words in done.stderr, done.stderr)
+def test_a_load_that_varies_along_an_edge_bends():
+    # nu = 0 and a pressure linear in z: u_r = -r p/E, u_z = r^2 slope/(2 E) solve the equations exactly.
+    text = block(poisson=0) + ("&load group = 'right' kind = 'pressure' value = 20 value_slope = -6 datum = 1 /\n"
+                               "&fix group = 'left' field = 'u_r' /\n&fix group = 'left' field = 'u_z' /\n")
+    row = last(run(text, "bending"), "histories.csv")
+    near("where the load is smaller", row["corner.u_r"], -2 * (20 - 6 * 2) / 1e4, 1e-3)
+    near("where the load is larger", row["foot.u_r"], -2 * (20 + 6) / 1e4, 1e-3)
+    near("and the block bends", row["corner.u_z"], -6 * 4 / 2e4, 1e-3)
 
-# A run goes on: further stages with loads of their own give the bytes of the run that had them from the beginning.
-first = block("u-p_w", 10, analysis="quasi_static", dt=0.125, more="checkpoint_end = 'yes'") + HELD + (
-    "&history name = 'h' times = 0, 1 values = 0, 1 /\n&initial p_w = 30 p_w_slope = -10 /\n"
-    "&fix group = 'top' field = 'p_w' /\n&load group = 'top' kind = 'pressure' value = 10 history = 'h' /\n")
-more = first.replace("times = 0, 1 values = 0, 1", "times = 0, 1, 2 values = 0, 1, 3") + (
-    "&stage name = 'more' analysis = 'quasi_static' duration = 1 dt = 0.25 /\n"
-    "&load group = 'right' kind = 'pressure' value = 3 stages = 'more' /\n"
-    "&fix group = 'right' field = 'p_w' hold = 'yes' stages = 'more' /\n")
-at_once = run(more.replace("checkpoint_end", "checkpoint_steps = 8 checkpoint_end"), "at_once")
-begun = run(first, "begun")
-shutil.copytree(begun, work / "kept")
-gone_on = run(more, "begun", "--restart", begun / "checkpoint.h5")
-names = {p.name for folder in (at_once, gone_on) for p in folder.iterdir()} - {"mesh.h5", "checkpoint.h5"}
-moved = [n for n in sorted(names) if not (at_once / n).exists() or not (gone_on / n).exists()
-         or (at_once / n).read_bytes() != (gone_on / n).read_bytes()]
-check("further stages: the bytes of the run that had them", "reactions_more.csv" in names and not moved, moved)
-again = run(more.replace("duration = 1 dt = 0.25", "duration = 2 dt = 0.25"), "begun", "--restart",
-            begun / "checkpoint.h5")
-check("and once more, for longer", abs(last(again, "histories.csv")["time"] - 3) < 1e-12,
-      last(again, "histories.csv")["time"])
-longer = first.replace("duration = 1", "duration = 2")
-shutil.copytree(work / "kept", work / "longer")
-whole, part = run(longer, "whole"), run(longer, "longer", "--restart", work / "longer/checkpoint.h5")
-a, b = (np.stack([*tables.columns(f / "histories.csv").values()], axis=1) for f in (whole, part))
-check("a longer stage: the same to rounding", a.shape == b.shape
-      and (np.abs(a - b).max(0) <= 1e-8 * np.abs(a).max(0) + 1e-12).all(), np.abs(a - b).max(0))
-# What is past must not change: a value, a history before the moment, a stage cut off before it, a derived scene.
-for name, old, new, words in (
-        ("value", "value = 10", "value = 11", "later stages"),
-        ("history", "values = 0, 1,", "values = 0.1, 1,", "later stages"),
-        ("end of a history", "times = 0, 1, 2 values = 0, 1, 3", "times = 0, 2 values = 0, 3", "later stages"),
-        ("mesh", "r_cells = 2", "r_cells = 3", "later stages"),
-        ("stage", "duration = 1 dt = 0.125", "duration = 0.5 dt = 0.125", "after the end of stage s"),
-        ("effects", "checkpoint_end", "effects = 'auto' checkpoint_end", "later stages")):
-    text = more.replace(old, new)
-    check(f"refused past, {name}: changed", text != more)
-    folder = work / f"past_{name.replace(' ', '_')}"
-    shutil.copytree(work / "kept", folder)
-    done, _ = start(text, folder.name, "--restart", folder / "checkpoint.h5")
-    check(f"refused past, {name}", done.returncode == 17 and words in done.stderr, done.stderr)
-finish()
+
+def test_water_at_rest_does_not_flow():
+    # A support linear in z: simple shear, u_r = 1e-3 + 2e-3 z; and the pressure of water at rest, which does not flow.
+    row = last(run(block() + "&fix group = 'all' field = 'u_r' value = 1e-3 value_slope = 2e-3 datum = 0 /\n"
+                   "&fix group = 'all' field = 'u_z' /\n", "shear"), "histories.csv")
+    near("prescribed along a line", row["corner.u_r"], 7e-3, 1e-3)
+    near("a strain of 2e-3 times G", row["corner.s_rz"], 4000 * 2e-3)
+    still = block("u-p_w", 10, analysis="quasi_static", dt=0.5) + (
+        "&fix group = 'all' field = 'u_r' /\n&fix group = 'all' field = 'u_z' /\n"
+        "&initial p_w = 30 p_w_slope = -10 /\n&fix group = 'left' field = 'p_w' value_slope = -10 datum = 3 /\n"
+        "&fix group = 'right' field = 'p_w' value = {} value_slope = -10 datum = 3 /\n")
+    row = last(run(still.format(0), "rest"))
+    check("water at rest does not flow", abs(row["left.outflow_w"]) + abs(row["right.outflow_w"]) < 1e-12, row)
+    row = last(run(still.format(8), "flow"))
+    near("Darcy: k/eta_w times 8 kPa over 2 m, height of 3 m", row["left.outflow_w"], 2e-4 * 8 / 2 * 3, 1e-6)
+    near("and in on the other side", row["right.outflow_w"], -2e-4 * 8 / 2 * 3, 1e-6)
+    folder = run(still.format(0).replace("&fix group = 'right' field = 'p_w' value = 0 value_slope = -10 datum = 3 /",
+                                         "&load group = 'right' kind = 'water' value = 1e-4 value_slope = 2e-5 /"),
+                 "inflow")
+    near("an inflow linear in z comes out again", last(folder)["left.outflow_w"], 3 * 1e-4 + 4.5 * 2e-5, 1e-6)
+    near("and has a column", last(folder)["right.inflow_w"], 3 * 1e-4 + 4.5 * 2e-5, 1e-6)
+    for fields, retention, suction in (("u-p_w", "", ""), ("u-p_w-p_c", "retention = 'flat'", "p_c_slope = 10")):
+        text = COLUMN
+        if retention:
+            text += "&retention name = 'flat' law = 'table' suction = 0, 1e6 saturation = 0.6, 0.6 /\n"
+        for number, (what, acts, base, top, bottom, nodes) in enumerate(SIDES):
+            if retention and "0.5 m" in what:
+                continue   # its gas would have to be compressed, which takes longer
+            folder = run(text.format(**locals()) + acts, f"side_{len(fields)}_{number}")
+            row = last(folder)
+            near(f"{what}, {fields}: out of the top", row["top.outflow_w"], top, 1e-3)
+            near(f"{what}, {fields}: out of the base", row["bottom.outflow_w"], bottom, 1e-3)
+            check(f"{what}, {fields}: nodes at the limit", row["top.at_limit"] == nodes, row)
+            ledger = last(folder, "ledger.csv")
+            near(f"{what}, {fields}: what runs off never entered", ledger["outflow"] - ledger["outflow_air"], 0, 1e3)
+
+
+def test_rain_counts_per_horizontal_area():
+    # Rain counts per horizontal area: none falls on a wall, none from below.
+    row = last(run(COLUMN.format(fields="u-p_w", retention="", suction="", base=4)
+                   + RAIN.format(1e-3, "").replace("'top'", "'right'") + RAIN.format(1e-3, ""), "wall"))
+    near("no rain on a wall", row["right.inflow_w"], 0, 1e-3)
+    near("all of it on what is level", row["top.inflow_w"], 1e-3, 1e-3)
+
+
+def test_the_storm_wets_and_dries():
+    # Taken up between two steps, while the face of rain turns from one side to the other: the same bytes.
+    storm = COLUMN.format(fields="u-p_w", retention="", suction="", base=4) \
+        .replace("gravity = 10", "gravity = 10 checkpoint_steps = 9") \
+        .replace("duration = 1e6 dt = 1e6", "duration = 16 dt = 1").replace("k_w = 1e15", "k_w = 1e3") + \
+        RAIN.format(2e-3, "history = 'h'") + "&history name = 'h' times = 0, 4, 10, 12, 16 values = 0, 1, 0, 1, 1 /\n"
+    folder = run(storm, "storm")
+    limits = [row["top.at_limit"] for row in tables.numbers(folder / "reactions_s.csv")]
+    check("the storm wets and dries", limits[8:9] != limits[-1:] and len(set(limits)) > 1, limits)
+    if (folder / "checkpoint.h5").exists():   # there is HDF5
+        kept = {path.name: path.read_bytes() for path in folder.glob("*.csv")}
+        done, _ = start(storm, "storm", "--restart", folder / "checkpoint.h5")
+        check("storm: taken up", done.returncode == 0, done.stderr)
+        check("storm: the same bytes", all((folder / name).read_bytes() == content for name, content in kept.items()))
+
+
+def test_refused():
+    # What contradicts itself is refused.
+    for what, acts, words in (
+            ("a face of another field", "&fix group = 'top' field = 'u_z' kind = 'seepage' /", "needs field = 'p_w'"),
+            ("a face that is held", FACE.format("hold = 'yes'"), "not hold"),
+            ("rain that falls upwards", RAIN.format(-1e-3, ""), "it becomes -0.001 m/s"),
+            ("rain whose history is negative", RAIN.format(1e-3, "history = 'h'")
+             + "&history name = 'h' times = 0, 1 values = 1, -2 /", "it becomes -0.002 m/s"),
+            ("a pond without weight", RAIN.format(1e-3, "ponding = 0.1"), "without gravity"),
+            ("a pond of negative depth", RAIN.format(1e-3, "ponding = -0.1"), "ponding"),
+            ("rain without water", RAIN.format(1e-3, ""), "no field"),
+            ("a flow that is subtracted", FACE.format(""), "initial_flow"),
+            ("rain on a flow that is subtracted", RAIN.format(1e-3, ""), "initial_flow")):
+        text = COLUMN.format(fields="u" if "without water" in what else "u-p_w",
+                             retention="", suction="", base=4) + acts
+        if "without water" in what:
+            text = text.replace("&fix group = 'bottom' field = 'p_w' value = 4 /", "")
+        text = text.replace("gravity = 10", "gravity = 0" if "without weight" in what else
+                            "gravity = 10 initial_flow = 'subtract'" if "subtracted" in what else "gravity = 10")
+        done, _ = start(text, "refused")
+        check(f"{what}: refused",
+              done.returncode in (2, 11) and words in done.stderr and len(done.stderr.splitlines()) == 1,
+              f"{done.returncode} {done.stderr}")
+
+
+def test_a_table_of_3001_pairs_is_the_curve():
+    # Both fluids, p_w and p_c given on both sides: the flow of each by its own permeability.
+    both = block(
+    "u-p_w-p_c",
+    analysis="quasi_static",
+    dt=0.5).replace(
+        "law = 'constant'",
+        "law = 'constant' k_ra = 0.5") .replace(
+            "permeability = 'k' /",
+            "permeability = 'k' retention = 'flat' /") + (
+                "&retention name = 'flat' law = 'table' suction = 0, 1e6 saturation = 0.6, 0.6 /\n"
+                "&initial p_w = -20 p_c = 20 /\n"
+                "&fix group = 'all' field = 'u_r' /\n&fix group = 'all' field = 'u_z' /\n"
+                "&fix group = 'left' field = 'p_w' value = -20 /\n&fix group = 'left' field = '{}' value = {} /\n"
+                "&fix group = 'right' field = 'p_w' value = -14 /\n&fix group = 'right' field = 'p_c' value = 18 /\n")
+    for field, value in (("p_c", 20), ("p_a", 0)):
+        row = last(run(both.format(field, value), f"fluids_{field}"))
+        near(f"water of two fluids, {field} given", row["left.outflow_w"], 2e-4 * 6 / 2 * 3, 1e-6)
+        near(f"air of two fluids, {field} given", row["left.outflow_a"], 0.5 * 2e-10 / 2e-8 * 4 / 2 * 3, 1e-6)
+
+    # Retention from a file is that of the lists, and van Genuchten's that of a fine table of it.
+    curve = [(p, (1 + (0.1 * p)**1.6)**-0.375 if p > 0 else 1.0) for p in np.linspace(0, 60, 3001)]
+    (work / "curve.txt").write_text("# suction saturation\n" + "".join(f"{p:.17g} {s:.17g}\n" for p, s in curve))
+    column = both.format("p_c", 40).replace("value = 18", "value = 5")
+    laws = {"lists": "law = 'table' suction =\n" + ",\n".join(f"{p:.17g}" for p, _ in curve[::50])
+            + " saturation =\n" + ",\n".join(f"{s:.17g}" for _, s in curve[::50]),
+            "file": "law = 'table' file = 'curve.txt'",
+            "genuchten": "law = 'van_genuchten' alpha = 0.1 n = 1.6"}
+    old = "law = 'table' suction = 0, 1e6 saturation = 0.6, 0.6"
+    water = {}
+    for name, law in laws.items():
+        folder = run(column.replace(old, law), f"retention_{name}")
+        water[name] = tables.columns(folder / "points_s.csv")["S_w"]
+    check("a table of 3001 pairs is the curve", np.abs(water["file"] - water["genuchten"]).max() < 1e-5
+          and np.ptp(water["file"]) > 0.1, np.abs(water["file"] - water["genuchten"]).max())
+    check("a table of 61 pairs is coarser", 1e-5 < np.abs(water["lists"] - water["genuchten"]).max() < 2e-2)
+    for name, law, words in (("alpha", "law = 'van_genuchten' n = 2", "needs alpha"),
+                             ("n", "law = 'van_genuchten' alpha = 1 n = 0.9", "above 1"),
+                             ("pair", "law = 'table' file = 'bad.txt'", "allowed is 0 to 1"),
+                             ("file", "law = 'table' file = 'none.txt'", "cannot be read")):
+        (work / "bad.txt").write_text("0 1\n10 1.5\n")
+        done, _ = start(column.replace(old, law), f"refused_{name}")
+        check(f"refused: {name}", done.returncode == 2 and words in done.stderr, done.stderr)
+
+    # A run goes on: further stages with loads of their own give the bytes of the run that had them from the beginning.
+    first = block("u-p_w", 10, analysis="quasi_static", dt=0.125, more="checkpoint_end = 'yes'") + HELD + (
+        "&history name = 'h' times = 0, 1 values = 0, 1 /\n&initial p_w = 30 p_w_slope = -10 /\n"
+        "&fix group = 'top' field = 'p_w' /\n&load group = 'top' kind = 'pressure' value = 10 history = 'h' /\n")
+    more = first.replace("times = 0, 1 values = 0, 1", "times = 0, 1, 2 values = 0, 1, 3") + (
+        "&stage name = 'more' analysis = 'quasi_static' duration = 1 dt = 0.25 /\n"
+        "&load group = 'right' kind = 'pressure' value = 3 stages = 'more' /\n"
+        "&fix group = 'right' field = 'p_w' hold = 'yes' stages = 'more' /\n")
+    at_once = run(more.replace("checkpoint_end", "checkpoint_steps = 8 checkpoint_end"), "at_once")
+    begun = run(first, "begun")
+    shutil.copytree(begun, work / "kept")
+    gone_on = run(more, "begun", "--restart", begun / "checkpoint.h5")
+    names = {p.name for folder in (at_once, gone_on) for p in folder.iterdir()} - {"mesh.h5", "checkpoint.h5"}
+    moved = [n for n in sorted(names) if not (at_once / n).exists() or not (gone_on / n).exists()
+             or (at_once / n).read_bytes() != (gone_on / n).read_bytes()]
+    check("further stages: the bytes of the run that had them", "reactions_more.csv" in names and not moved, moved)
+    again = run(more.replace("duration = 1 dt = 0.25", "duration = 2 dt = 0.25"), "begun", "--restart",
+                begun / "checkpoint.h5")
+    check("and once more, for longer", abs(last(again, "histories.csv")["time"] - 3) < 1e-12,
+          last(again, "histories.csv")["time"])
+    longer = first.replace("duration = 1", "duration = 2")
+    shutil.copytree(work / "kept", work / "longer")
+    whole, part = run(longer, "whole"), run(longer, "longer", "--restart", work / "longer/checkpoint.h5")
+    a, b = (np.stack([*tables.columns(f / "histories.csv").values()], axis=1) for f in (whole, part))
+    check("a longer stage: the same to rounding", a.shape == b.shape
+          and (np.abs(a - b).max(0) <= 1e-8 * np.abs(a).max(0) + 1e-12).all(), np.abs(a - b).max(0))
+
+    # What is past must not change: a value, a history before the moment, a stage cut off before it, a derived scene.
+    for name, old, new, words in (
+            ("value", "value = 10", "value = 11", "later stages"),
+            ("history", "values = 0, 1,", "values = 0.1, 1,", "later stages"),
+            ("end of a history", "times = 0, 1, 2 values = 0, 1, 3", "times = 0, 2 values = 0, 3", "later stages"),
+            ("mesh", "r_cells = 2", "r_cells = 3", "later stages"),
+            ("stage", "duration = 1 dt = 0.125", "duration = 0.5 dt = 0.125", "after the end of stage s"),
+            ("effects", "checkpoint_end", "effects = 'auto' checkpoint_end", "later stages")):
+        text = more.replace(old, new)
+        check(f"refused past, {name}: changed", text != more)
+        folder = work / f"past_{name.replace(' ', '_')}"
+        shutil.copytree(work / "kept", folder)
+        done, _ = start(text, folder.name, "--restart", folder / "checkpoint.h5")
+        check(f"refused past, {name}", done.returncode == 17 and words in done.stderr, done.stderr)

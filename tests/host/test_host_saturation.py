@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Soil with hydraulic hysteresis starts from a given degree of saturation, in the driver and in the host; a run of
 regions with different drainage, taken up again, gives the same bytes; a drainage that does not exist is refused."""
-import pathlib
 import subprocess
-import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish, root, work  # noqa: E402
+from checking import build, check, root, work
 import tables  # noqa: E402 (checking knows its folder)
 
 HOST, DRIVER = build / "host/mud_host", build / "drivers/mud_triax"
@@ -37,18 +34,6 @@ def saturation(text, name):
     return tables.columns(work / f"{name}.csv")["s_w"]
 
 
-main, between = saturation(drying(""), "main"), saturation(drying("saturation = 0.62"), "between")
-check("driver: without a preset it starts on the main drying curve", abs(main[0] - DRY_END) < 1e-3, main)
-check("driver: it starts from the preset", abs(between[0] - 0.62) < 1e-12, between)
-check("driver: between the main curves it dries less than on one",
-      0 < between[0] - between[1] < 0.7 * (main[0] - main[1]), (main, between))
-done = start(DRIVER, drying("saturation = 0.9"), "outside")
-check("driver: a preset above main drying is refused, with what is allowed", done.returncode == 2
-      and all(word in done.stderr for word in ("saturation", "0.9", str(DRY_END), str(WET_END))), done.stderr)
-done = start(DRIVER, drying("saturation = 0.62", 0), "single")
-check("driver: a preset without hysteresis is refused, with the remedy", done.returncode == 2
-      and "hysteresis = 1" in done.stderr, done.stderr)
-
 SCENE = """&scene name = 'regions' geometry = 'plane_strain' fields = 'u-p_w-p_c' checkpoint_steps = 3 /
 &mesh r = 0, 0.1 r_cells = 1 z = 0, 0.1, 0.2, 0.3, 0.4 z_cells = 1, 1, 1, 1 /
 &mud name = 'sand' file = '{material}' hysteresis = 1 /
@@ -76,25 +61,44 @@ def files(folder):
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.suffix == ".csv"}
 
 
-done = start(HOST, SCENE.format(preset="saturation = 0.62"), "regions")
-check("host: four drainages in one scene run", done.returncode == 0, done.stderr)
-first = tables.columns(work / "regions/histories.csv")["top.S_w"][0]
-check("host: it starts from the preset", abs(first - 0.62) < 0.01, first)
-before = files(work / "regions")
-done = start(HOST, SCENE.format(preset="saturation = 0.62"), "regions", "--restart", work / "regions/checkpoint.h5")
-if (work / "regions/checkpoint.h5").exists():
-    check("host: a run of regions that is taken up again", done.returncode == 0, done.stderr)
-    after = files(work / "regions")
-    for name, content in before.items():
-        check(f"host: restart with regions, {name}, byte for byte", after.get(name) == content)
-    other = SCENE.format(preset="saturation = 0.62").replace("'undrained'", "'drained'")
-    done = start(HOST, other, "regions", "--restart", work / "regions/checkpoint.h5")
-    check("host: not with another drainage", done.returncode == 17, (done.returncode, done.stderr))
-done = start(HOST, SCENE.format(preset="saturation = 0.62").replace("hysteresis = 1", "hysteresis = 0"), "single_curve")
-check("host: a preset without hysteresis is refused, with the remedy", done.returncode != 0
-      and "hysteresis = 1" in done.stderr, done.stderr)
-done = start(HOST, SCENE.format(preset="").replace("'undrained'", "'sealed'"), "sealed")
-check("host: an unknown drainage is refused, with the known ones", done.returncode == 2
-      and all(word in done.stderr for word in ("sealed", "drainage", "coupled|drained|undrained|dry")), done.stderr)
+def test_driver_without_a_preset_it_starts_on_the_main_drying_curve():
+    main, between = saturation(drying(""), "main"), saturation(drying("saturation = 0.62"), "between")
+    check("driver: without a preset it starts on the main drying curve", abs(main[0] - DRY_END) < 1e-3, main)
+    check("driver: it starts from the preset", abs(between[0] - 0.62) < 1e-12, between)
+    check("driver: between the main curves it dries less than on one",
+          0 < between[0] - between[1] < 0.7 * (main[0] - main[1]), (main, between))
+    done = start(DRIVER, drying("saturation = 0.9"), "outside")
+    check("driver: a preset above main drying is refused, with what is allowed", done.returncode == 2
+          and all(word in done.stderr for word in ("saturation", "0.9", str(DRY_END), str(WET_END))), done.stderr)
+    done = start(DRIVER, drying("saturation = 0.62", 0), "single")
+    check("driver: a preset without hysteresis is refused, with the remedy", done.returncode == 2
+          and "hysteresis = 1" in done.stderr, done.stderr)
 
-finish()
+
+def test_host_four_drainages_in_one_scene_run():
+    done = start(HOST, SCENE.format(preset="saturation = 0.62"), "regions")
+    check("host: four drainages in one scene run", done.returncode == 0, done.stderr)
+    first = tables.columns(work / "regions/histories.csv")["top.S_w"][0]
+    check("host: it starts from the preset", abs(first - 0.62) < 0.01, first)
+    before = files(work / "regions")
+    done = start(HOST, SCENE.format(preset="saturation = 0.62"), "regions", "--restart", work / "regions/checkpoint.h5")
+    if (work / "regions/checkpoint.h5").exists():
+        check("host: a run of regions that is taken up again", done.returncode == 0, done.stderr)
+        after = files(work / "regions")
+        for name, content in before.items():
+            check(f"host: restart with regions, {name}, byte for byte", after.get(name) == content)
+        other = SCENE.format(preset="saturation = 0.62").replace("'undrained'", "'drained'")
+        done = start(HOST, other, "regions", "--restart", work / "regions/checkpoint.h5")
+        check("host: not with another drainage", done.returncode == 17, (done.returncode, done.stderr))
+    done = start(
+    HOST,
+    SCENE.format(
+        preset="saturation = 0.62").replace(
+            "hysteresis = 1",
+            "hysteresis = 0"),
+             "single_curve")
+    check("host: a preset without hysteresis is refused, with the remedy", done.returncode != 0
+          and "hysteresis = 1" in done.stderr, done.stderr)
+    done = start(HOST, SCENE.format(preset="").replace("'undrained'", "'sealed'"), "sealed")
+    check("host: an unknown drainage is refused, with the known ones", done.returncode == 2
+          and all(word in done.stderr for word in ("sealed", "drainage", "coupled|drained|undrained|dry")), done.stderr)

@@ -2,12 +2,10 @@
 """What mud_host warns about at the start and with --check: a scene without a doubt draws nothing, every doubt its own
 sentence, and the run goes on."""
 import os
-import pathlib
 import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish, root, work  # noqa: E402
+from checking import build, check, root, work
 
 sys.path.insert(0, str(root / "common"))
 import tables  # noqa: E402
@@ -42,7 +40,6 @@ def warnings(text, *words):
     return [line for line in done.stdout.splitlines() if line.startswith("Warning: ")]
 
 
-check("no doubt, no warning", warnings(SCENE, "--check") == [], warnings(SCENE, "--check"))
 DOUBTS = [
     ("point that is no node", "r = 0 z = -2", "r = 0.1 z = -1.9", ["no node of the mesh", "node at (0, -2) m"]),
     ("point outside", "r = 0 z = -2", "r = 0.1 z = 0.5", ["outside the mesh", "node at (0, 0) m"]),
@@ -86,18 +83,6 @@ DOUBTS = [
      ["gravity_history of &scene has no effect without gravity"]),
     ("history of nobody", " history = 'h'", "", ["&history 'h' has no effect"]),
 ]
-(work / "h.txt").write_text("0 0\n1 1\n")
-for what, old, new, words in DOUBTS:
-    check(f"{what}: the text is there", SCENE.count(old) == 1, old)
-    if "fields" in SCENE and what == "key of a field":
-        text = SCENE.replace(old, new).replace("&fix group = 'top' field = 'p_w' /\n", "")
-    else:
-        text = SCENE.replace(old, new)
-    told = warnings(text, "--check")
-    check(what, any(all(word in line for word in words) for line in told), told)
-# What is meant: an incompressible water, a second cycle of a history that has begun before.
-meant = SCENE.replace("rho_w = 1 ", "k_w = 1e12 eta_w = 1e-4 ")
-check("an incompressible, viscous water is no doubt", warnings(meant, "--check") == [], warnings(meant, "--check"))
 
 
 def refused(what, text, code, *words):
@@ -108,20 +93,6 @@ def refused(what, text, code, *words):
               and len(done.stderr.splitlines()) == 1, f"{done.returncode} {done.stderr}")
 
 
-# Which of two regions an element belongs to is said, or refused; the order of the groups decides nothing.
-refused("two regions of one element", SCENE.replace("&region material", "&region group = 'all' material"), 11,
-        "'block_1_1' and 'all'", "have 4 elements in common", "without group")
-ground = "&region material = 'sand' void_ratio = 0.8 permeability = 'k' /\n"
-beam = "&region group = 'block_1_1' material = 'rock' void_ratio = 0.1 permeability = 'k' /\n"
-check("the regions are there", ground + beam in SCENE)
-for name, text in (("one", SCENE), ("two", SCENE.replace(ground + beam, beam + ground))):
-    (work / "scene.nml").write_text(text)
-    done = subprocess.run([host, work / "scene.nml", "--quiet", "--output", work / name], capture_output=True,
-                          text=True, env=environment)
-    check(f"order {name} runs", done.returncode == 0, done.stderr)
-check("the region without a group has the rest, wherever it stands",
-      (work / "one/histories.csv").read_bytes() == (work / "two/histories.csv").read_bytes())
-
 # A body that nothing holds is named, with the motion and a group of it; what a tie, a plate or a contact holds is not.
 FREE = """&scene name = 'free' geometry = 'plane_strain' /
 &mesh r = 0, 1, 2 r_cells = 1, 1 z = 0, 1 z_cells = 1 /
@@ -131,50 +102,6 @@ FREE = """&scene name = 'free' geometry = 'plane_strain' /
 &load group = 'top' kind = 'pressure' value = 1 /
 """
 LEFT, BOTTOM = "&fix group = 'left' field = 'u_r' /\n", "&fix group = 'bottom' field = 'u_z' /\n"
-refused("a body without a support", FREE, 13, "Stage push: nothing holds the body with the groups 'bottom'", "u_r")
-refused("a body that slides", FREE + LEFT, 13, "against moving along z (y)")
-refused("a body that slides sideways", FREE + BOTTOM, 13, "against moving along r (x)")
-refused("a body that turns", FREE + LEFT + "&fix group = 'left' field = 'u_z' /\n".replace("'left'", "'corner'"), 11,
-        "no group 'corner'")
-refused("a body that turns about a line of supports", FREE + BOTTOM.replace("u_z", "u_r") + BOTTOM.replace(
-    "u_z", "u_r"), 13, "against moving along z (y)")
-refused("a plate without a contact", FREE + LEFT + BOTTOM + "&plate name = 'p' r = 0, 1 z = 2 mass = 1 /\n", 13,
-        "nothing holds the plate 'p'")
-for what, text in (("held", FREE + LEFT + BOTTOM), ("in axial symmetry", FREE.replace("'plane_strain'",
-                                                                                     "'axisymmetric'") + BOTTOM),
-                   ("dynamic", FREE.replace("'static'", "'dynamic'")),
-                   ("held by a contact", FREE + LEFT + "&plate name = 'p' r = 0, 2 z = 0 face = 'up' mass = 1 /\n"
-                    "&contact name = 'c' slave = 'bottom' master = 'p' /\n&fix group = 'p' field = 'u_z' /\n")):
-    check(f"a body that is {what} is no doubt", warnings(text, "--check") == [], text)
-
-# A byte-order mark is skipped, in a scene and in a history.
-(work / "h.txt").write_bytes(b"\xef\xbb\xbf0 0\n1 1\n")
-(work / "marked.nml").write_bytes(b"\xef\xbb\xbf" + SCENE.replace("times = 0, 1 values = 0, 1",
-                                                                  "file = 'h.txt'").encode())
-done = subprocess.run([host, work / "marked.nml", "--quiet", "--output", work / "marked"], capture_output=True,
-                      text=True, env=environment)
-check("a byte-order mark is skipped", done.returncode == 0 and (work / "marked/histories.csv").read_bytes()
-      == (work / "one/histories.csv").read_bytes(), done.stderr)
-
-# Sand without stress: where Newton's method fails for it, the cause is named.
-bare = SCENE.replace("stress = 'geostatic' surface = 0 surcharge = 5", "").replace("dt = 0.5", "dt = 0.5 cuts = 0")
-bare = bare.replace("value = 5 history", "value = 500 history").replace("'quasi_static'", "'static'").replace(
-    " rho_inf = 0", "")
-(work / "scene.nml").write_text(bare)
-done = subprocess.run([host, work / "scene.nml", "--quiet", "--output", work / "out"], capture_output=True, text=True,
-                      env=environment)
-check("a failure names sand without stress", done.returncode in (13, 14, 15)
-      and "points of MUD began without effective stress" in done.stderr, f"{done.returncode} {done.stderr}")
-
-small = SCENE.replace("r = 0, 1, 2", "r = 0, 1e-4, 2e-4").replace("z = -2, 0", "z = -2e-4, 0").replace("z = -2 /",
-                                                                                                     "z = -2e-4 /")
-check("small mesh", any("the mesh is 2e-4 m large" in line for line in warnings(small, "--check")), small)
-same = SCENE.replace("&fix group = 'bottom' field = 'u_r' /", "&fix group = 'bottom' field = 'u_r' value = 0 /\n"
-                     "&fix group = 'left' field = 'u_r' stages = 'load' /")
-check("two supports of one value are no doubt", warnings(same, "--check") == [], warnings(same, "--check"))
-doubtful = SCENE.replace("surface = 0", "surface = 0 sigma = 1, 1, 1")
-check("told at the start of a run", len(warnings(doubtful)) == 1)
-check("--quiet tells errors only", warnings(doubtful, "--quiet") == [])
 
 # A corner that gets through a contact whose mean gaps are open: the top of a tilted block stands 2 mm in a plate at one
 # end and 60 mm below it at the other. The default gap presses it.
@@ -202,13 +129,6 @@ def told_of_penetration(gap):
             float(tables.rows(work / f"tilted_{gap}/contact.csv")[-1]["face.thrust"]))
 
 
-told, thrust = told_of_penetration("nodal")
-check("a penetration without pressure is told once, with its place and share of the edge",
-      len(told) == 1 and "contact face" in told[0] and "near (0.5" in told[0] and "% of an edge" in told[0], told)
-check("mean gaps let the corner through", thrust == 0, thrust)
-told, thrust = told_of_penetration("combined")
-check("combined gaps press the corner, and tell nothing", not told and thrust != 0, (told, thrust))
-
 # Pressures that jump from node to node are told while the run goes on: a column that hardly drains, and its measure.
 COLUMN = """&scene name = 'column' fields = 'u-p_w' geometry = 'plane_strain' /
 &mesh r = 0, 0.25 r_cells = 1 z = 0, 1 z_cells = 8 /
@@ -222,16 +142,6 @@ COLUMN = """&scene name = 'column' fields = 'u-p_w' geometry = 'plane_strain' /
 &fix group = 'top' field = 'p_w' /
 &load group = 'top' kind = 'pressure' value = 100 /
 """
-for what, text, said in (("quadratic pressures without drainage", COLUMN, 1),
-                         ("linear pressures without drainage",
-                          COLUMN.replace("'u-p_w'", "'u-p_w' pressures = 'linear'"), 0),
-                         ("quadratic pressures that drain", COLUMN.replace("1e-12", "1e-8"), 0)):
-    (work / "scene.nml").write_text(text)
-    done = subprocess.run([host, work / "scene.nml", "--output", work / "out", "--quiet"], capture_output=True,
-                          text=True, env=environment)
-    lines = [line for line in done.stderr.splitlines() if "oscillate from node to node" in line]
-    check(f"{what}: warned {said} times", done.returncode == 0 and len(lines) == said, done.stderr)
-    check(f"{what}: the measure is named", not said or "pressures = 'linear'" in lines[0], lines)
 
 # A point that is expanded: without the tension cut-off p' falls below zero, which is told once, with its place.
 EXPANDED = """&scene name = 'expanded' geometry = 'plane_strain' /
@@ -246,12 +156,111 @@ EXPANDED = """&scene name = 'expanded' geometry = 'plane_strain' /
 &fix group = 'top' field = 'u_z' value = 0.01 history = 'ramp' /
 &history name = 'ramp' times = 0, 1 values = 0, 1 /
 """
-for what, keys, said in (("with the cut-off", "", 0), ("without it", "cutoff = 0", 1)):
-    (work / "scene.nml").write_text(EXPANDED.format(keys))
-    done = subprocess.run([host, work / "scene.nml", "--output", work / "out", "--quiet"], capture_output=True,
-                          text=True, env=environment)
-    lines = [line for line in done.stderr.splitlines() if "the mean effective stress p' at (" in line]
-    check(f"{what}, p' below zero is told {said} times", len(lines) == said and done.returncode == 0,
-          f"{done.returncode} {done.stderr}")
 
-finish()
+
+def test_no_doubt_no_warning():
+    check("no doubt, no warning", warnings(SCENE, "--check") == [], warnings(SCENE, "--check"))
+    (work / "h.txt").write_text("0 0\n1 1\n")
+    for what, old, new, words in DOUBTS:
+        check(f"{what}: the text is there", SCENE.count(old) == 1, old)
+        if "fields" in SCENE and what == "key of a field":
+            text = SCENE.replace(old, new).replace("&fix group = 'top' field = 'p_w' /\n", "")
+        else:
+            text = SCENE.replace(old, new)
+        told = warnings(text, "--check")
+        check(what, any(all(word in line for word in words) for line in told), told)
+
+
+def test_an_incompressible_viscous_water_is_no_doubt():
+    # What is meant: an incompressible water, a second cycle of a history that has begun before.
+    meant = SCENE.replace("rho_w = 1 ", "k_w = 1e12 eta_w = 1e-4 ")
+    check("an incompressible, viscous water is no doubt", warnings(meant, "--check") == [], warnings(meant, "--check"))
+
+
+def test_the_regions_are_there():
+    # Which of two regions an element belongs to is said, or refused; the order of the groups decides nothing.
+    refused("two regions of one element", SCENE.replace("&region material", "&region group = 'all' material"), 11,
+            "'block_1_1' and 'all'", "have 4 elements in common", "without group")
+    ground = "&region material = 'sand' void_ratio = 0.8 permeability = 'k' /\n"
+    beam = "&region group = 'block_1_1' material = 'rock' void_ratio = 0.1 permeability = 'k' /\n"
+    check("the regions are there", ground + beam in SCENE)
+    for name, text in (("one", SCENE), ("two", SCENE.replace(ground + beam, beam + ground))):
+        (work / "scene.nml").write_text(text)
+        done = subprocess.run([host, work / "scene.nml", "--quiet", "--output", work / name], capture_output=True,
+                              text=True, env=environment)
+        check(f"order {name} runs", done.returncode == 0, done.stderr)
+    check("the region without a group has the rest, wherever it stands",
+          (work / "one/histories.csv").read_bytes() == (work / "two/histories.csv").read_bytes())
+    refused("a body without a support", FREE, 13, "Stage push: nothing holds the body with the groups 'bottom'", "u_r")
+    refused("a body that slides", FREE + LEFT, 13, "against moving along z (y)")
+    refused("a body that slides sideways", FREE + BOTTOM, 13, "against moving along r (x)")
+    refused(
+        "a body that turns", FREE +LEFT +"&fix group = 'left' field = 'u_z' /\n".replace("'left'", "'corner'"),
+        11, "no group 'corner'")
+    refused("a body that turns about a line of supports", FREE + BOTTOM.replace("u_z", "u_r") + BOTTOM.replace(
+        "u_z", "u_r"), 13, "against moving along z (y)")
+    refused("a plate without a contact", FREE + LEFT + BOTTOM + "&plate name = 'p' r = 0, 1 z = 2 mass = 1 /\n", 13,
+            "nothing holds the plate 'p'")
+    for what, text in (("held", FREE + LEFT + BOTTOM), ("in axial symmetry", FREE.replace("'plane_strain'",
+                                                                                         "'axisymmetric'") + BOTTOM),
+                       ("dynamic", FREE.replace("'static'", "'dynamic'")),
+                       ("held by a contact", FREE + LEFT + "&plate name = 'p' r = 0, 2 z = 0 face = 'up' mass = 1 /\n"
+                        "&contact name = 'c' slave = 'bottom' master = 'p' /\n&fix group = 'p' field = 'u_z' /\n")):
+        check(f"a body that is {what} is no doubt", warnings(text, "--check") == [], text)
+
+    # A byte-order mark is skipped, in a scene and in a history.
+    (work / "h.txt").write_bytes(b"\xef\xbb\xbf0 0\n1 1\n")
+    (work / "marked.nml").write_bytes(b"\xef\xbb\xbf" + SCENE.replace("times = 0, 1 values = 0, 1",
+                                                                      "file = 'h.txt'").encode())
+    done = subprocess.run([host, work / "marked.nml", "--quiet", "--output", work / "marked"], capture_output=True,
+                          text=True, env=environment)
+    check("a byte-order mark is skipped", done.returncode == 0 and (work / "marked/histories.csv").read_bytes()
+          == (work / "one/histories.csv").read_bytes(), done.stderr)
+
+
+def test_a_failure_names_sand_without_stress():
+    # Sand without stress: where Newton's method fails for it, the cause is named.
+    bare = SCENE.replace("stress = 'geostatic' surface = 0 surcharge = 5", "").replace("dt = 0.5", "dt = 0.5 cuts = 0")
+    bare = bare.replace("value = 5 history", "value = 500 history").replace("'quasi_static'", "'static'").replace(
+        " rho_inf = 0", "")
+    (work / "scene.nml").write_text(bare)
+    done = subprocess.run([host, work / "scene.nml", "--quiet", "--output", work / "out"],
+                          capture_output=True, text=True, env=environment)
+    check("a failure names sand without stress", done.returncode in (13, 14, 15)
+          and "points of MUD began without effective stress" in done.stderr, f"{done.returncode} {done.stderr}")
+
+    told, thrust = told_of_penetration("nodal")
+    check("a penetration without pressure is told once, with its place and share of the edge",
+          len(told) == 1 and "contact face" in told[0] and "near (0.5" in told[0] and "% of an edge" in told[0], told)
+    check("mean gaps let the corner through", thrust == 0, thrust)
+    told, thrust = told_of_penetration("combined")
+    check("combined gaps press the corner, and tell nothing", not told and thrust != 0, (told, thrust))
+    for what, text, said in (("quadratic pressures without drainage", COLUMN, 1),
+                             ("linear pressures without drainage",
+                              COLUMN.replace("'u-p_w'", "'u-p_w' pressures = 'linear'"), 0),
+                             ("quadratic pressures that drain", COLUMN.replace("1e-12", "1e-8"), 0)):
+        (work / "scene.nml").write_text(text)
+        done = subprocess.run([host, work / "scene.nml", "--output", work / "out", "--quiet"], capture_output=True,
+                              text=True, env=environment)
+        lines = [line for line in done.stderr.splitlines() if "oscillate from node to node" in line]
+        check(f"{what}: warned {said} times", done.returncode == 0 and len(lines) == said, done.stderr)
+        check(f"{what}: the measure is named", not said or "pressures = 'linear'" in lines[0], lines)
+    for what, keys, said in (("with the cut-off", "", 0), ("without it", "cutoff = 0", 1)):
+        (work / "scene.nml").write_text(EXPANDED.format(keys))
+        done = subprocess.run([host, work / "scene.nml", "--output", work / "out", "--quiet"], capture_output=True,
+                              text=True, env=environment)
+        lines = [line for line in done.stderr.splitlines() if "the mean effective stress p' at (" in line]
+        check(f"{what}, p' below zero is told {said} times", len(lines) == said and done.returncode == 0,
+              f"{done.returncode} {done.stderr}")
+
+
+def test_small_mesh():
+    small = SCENE.replace("r = 0, 1, 2", "r = 0, 1e-4, 2e-4").replace("z = -2, 0", "z = -2e-4, 0").replace("z = -2 /",
+                                                                                                         "z = -2e-4 /")
+    check("small mesh", any("the mesh is 2e-4 m large" in line for line in warnings(small, "--check")), small)
+    same = SCENE.replace("&fix group = 'bottom' field = 'u_r' /", "&fix group = 'bottom' field = 'u_r' value = 0 /\n"
+                         "&fix group = 'left' field = 'u_r' stages = 'load' /")
+    check("two supports of one value are no doubt", warnings(same, "--check") == [], warnings(same, "--check"))
+    doubtful = SCENE.replace("surface = 0", "surface = 0 sigma = 1, 1, 1")
+    check("told at the start of a run", len(warnings(doubtful)) == 1)
+    check("--quiet tells errors only", warnings(doubtful, "--quiet") == [])

@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Every key of scenes and cases is used by a test, a page or a case: one without use has no proof that it works. The
 orderings of the unknowns give one answer."""
-import pathlib
 import re
 import subprocess
-import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish, root, work  # noqa: E402
+from checking import build, check, root, work
 import tables  # noqa: E402 (checking knows its folder)
 
 PLACES = ("tests", "verification", "drivers/cases", "benchmarks")
@@ -33,17 +30,20 @@ def keys(program):
     return found
 
 
-for folder, name in (("host", "mud_host"), ("drivers", "mud_triax")):
-    found = keys(build / folder / name)
-    idle = [f"&{group} {key}" for group, key in found if group not in EXEMPT[name] and key not in USED]
-    check(f"every key of {name} --template is used", len(found) > 10 and not idle, idle)
+def test_every_key_of_template_is_used():
+    for folder, name in (("host", "mud_host"), ("drivers", "mud_triax")):
+        found = keys(build / folder / name)
+        idle = [f"&{group} {key}" for group, key in found if group not in EXEMPT[name] and key not in USED]
+        check(f"every key of {name} --template is used", len(found) > 10 and not idle, idle)
 
-# The order of the unknowns is no part of the equations. Newton ends at 1e-10 of the forces; a solution by other factors
-# differs by rounding times the condition of the matrix, some 1e-16*1e6.
-answers = {}
-for ordering in ("amd", "auto", "metis", "best"):
-    scene = work / f"{ordering}.nml"
-    scene.write_text(f"""&scene name = 'column' geometry = 'plane_strain' fields = 'u-p_w' ordering = '{ordering}' /
+
+def test_ordering_gives_the_answer_of_amd():
+    # The order of the unknowns is no part of the equations. Newton ends at 1e-10 of the forces; a solution by other
+    # factors differs by rounding times the condition of the matrix, some 1e-16*1e6.
+    answers = {}
+    for ordering in ("amd", "auto", "metis", "best"):
+        scene = work / f"{ordering}.nml"
+        scene.write_text(f"""&scene name = 'column' geometry = 'plane_strain' fields = 'u-p_w' ordering = '{ordering}' /
 &mesh r = 0, 0.1 r_cells = 2 z = 0, 1 z_cells = 12 /
 &elastic name = 'soil' young = 1.0e4 poisson = 0.25 /
 &permeability name = 'k' intrinsic = 1.0e-10 law = 'constant' /
@@ -55,13 +55,13 @@ for ordering in ("amd", "auto", "metis", "best"):
 &fix group = 'top' field = 'p_w' /
 &load group = 'top' kind = 'pressure' value = 10 /
 """)
-    done = subprocess.run([build / "host/mud_host", scene, "--output", work / ordering, "--quiet"], capture_output=True,
-                          text=True)
-    answers[ordering] = tables.numbers(work / ordering / "nodes_load.csv") if done.returncode == 0 else []
-amd = answers["amd"]
-for ordering in ("auto", "metis", "best"):
-    apart = [abs(a[name] - b[name])/max(abs(c[name]) for c in amd) for a, b in zip(amd, answers[ordering])
-             for name in ("u_z", "p_w")]
-    check(f"ordering = '{ordering}' gives the answer of amd", apart and len(amd) == len(answers[ordering])
-          and max(apart) <= 1e-9, f"{max(apart, default='no rows')}")
-finish()
+        done = subprocess.run(
+            [build / "host/mud_host", scene, "--output", work / ordering, "--quiet"],
+            capture_output=True, text=True)
+        answers[ordering] = tables.numbers(work / ordering / "nodes_load.csv") if done.returncode == 0 else []
+    amd = answers["amd"]
+    for ordering in ("auto", "metis", "best"):
+        apart = [abs(a[name] - b[name])/max(abs(c[name]) for c in amd) for a, b in zip(amd, answers[ordering])
+                 for name in ("u_z", "p_w")]
+        check(f"ordering = '{ordering}' gives the answer of amd", apart and len(amd) == len(answers[ordering])
+              and max(apart) <= 1e-9, f"{max(apart, default='no rows')}")

@@ -2,17 +2,12 @@
 """mud_check_law: a law without mistakes passes, every planted mistake is found by the check that is made for it."""
 import json
 import os
-import pathlib
 import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish, root, work  # noqa: E402
+from checking import build, check, needs_release, root, work
 
-if os.environ.get("MUD_PRESET") in ("debug", "sanitize"):
-    print("note: the program is Python and the law is planted: one build runs them")
-    check("the laws are built", (build / "tests/umats/planted_law.so").exists())
-    finish()
+needs_release("the program is Python and the law is planted: one build runs them")
 environment = {**os.environ, "MUD_LIBRARY_DIR": str(build), "PYTHONPATH": str(root / "python"), "MPLBACKEND": "Agg",
                "MUD_MESSAGES": "off"}
 # Mistake of planted_law.c, its check, and words of the sentence.
@@ -46,42 +41,50 @@ def planted(mistake, *words):
     return run(build / "tests/umats/planted_law.so", f"--props={mistake},4000,8000,20,2000", "--nstatv=13", *words)
 
 
-done = planted(0, "--output=clean")
-check("a law without mistakes has no fault", done.returncode == 0 and "0 faults" in done.stdout,
-      done.stdout + done.stderr)
-found = json.loads((work / "clean/findings.json").read_text()) if done.returncode == 0 else []
-check("its tangent is told consistent", any("(consistent)" in f["sentence"] for f in found), found)
-check("every check was made", len({f["check"] for f in found}) == 20, sorted({f["check"] for f in found}))
-check("tension that it carries is noted", [f["verdict"] for f in found if f["check"] == "tension"] == ["note"]*2, found)
-report = work / "clean/report.md"
-links = [word.split(")")[0] for word in report.read_text().split("](")[1:]] if report.exists() else []
-check("the report has pictures and cases, and they exist", len(links) >= 4
-      and all((work / "clean" / link).stat().st_size for link in links), links)
-for case in (work / "clean").glob("*.nml"):
-    done = subprocess.run([build / "drivers/mud_triax", case, "--output", work / "case.csv", "--quiet"],
-                          capture_output=True, text=True)
-    check(f"mud_triax runs {case.name}", done.returncode == 0, done.stderr)
-for mistake, name, words in PLANTED:
-    done = planted(mistake, f"--only={name}", f"--output=planted_{mistake}")
-    lines = [line for line in done.stdout.splitlines() if line.startswith("fault")]
-    check(f"planted mistake {mistake} is found by '{name}'", done.returncode == 1
-          and any(f" {name}: " in line and words in line for line in lines), done.stdout + done.stderr)
-
-# A law with an elastic tangent, and this library through the door of PLAXIS.
-done = run(build / "tests/umats/mohr_coulomb.so", "--props=1e4,0.25,5,30,10", "--only=tangent", "--reach=0.1")
-check("an elastic tangent is told", "the elastic one" in done.stdout, done.stdout + done.stderr)
 sys.path[:0] = [str(root / "python")]
 os.environ["MUD_LIBRARY_DIR"] = str(build)
 import mud  # noqa: E402
 
-sand = ",".join(repr(float(x)) for x in mud.Material("toyoura").props[:46])
-done = run(build / "umat/libmud.so", "--kind=udsm", f"--props={sand}", f"--nstatv={len(mud.states)}",
-           *(f"--only={name}" for name in ("first call", "arrays", "conventions", "increments", "restart")))
-check("MUD as PLAXIS calls it has no fault", done.returncode == 0, done.stdout + done.stderr)
-for words, told in ((("--stress=1,2",), "--stress has 2"), (("--only=nothing",), "there is no check"),
-                    (("--nstatv=2", "--statev=1"), "--statev has 1")):
-    done = planted(0, *words)
-    check(f"refused: {words[-1]}", done.returncode == 2 and told in done.stderr, done.stdout + done.stderr)
-done = run(work / "missing.so")
-check("a library that is missing", done.returncode == 2 and "cannot be called as a umat" in done.stderr, done.stderr)
-finish()
+
+def test_a_law_without_mistakes_has_no_fault():
+    done = planted(0, "--output=clean")
+    check("a law without mistakes has no fault", done.returncode == 0 and "0 faults" in done.stdout,
+          done.stdout + done.stderr)
+    found = json.loads((work / "clean/findings.json").read_text()) if done.returncode == 0 else []
+    check("its tangent is told consistent", any("(consistent)" in f["sentence"] for f in found), found)
+    check("every check was made", len({f["check"] for f in found}) == 20, sorted({f["check"] for f in found}))
+    check("tension that it carries is noted", [f["verdict"]
+          for f in found if f["check"] == "tension"] == ["note"]*2, found)
+    report = work / "clean/report.md"
+    links = [word.split(")")[0] for word in report.read_text().split("](")[1:]] if report.exists() else []
+    check("the report has pictures and cases, and they exist", len(links) >= 4
+          and all((work / "clean" / link).stat().st_size for link in links), links)
+    for case in (work / "clean").glob("*.nml"):
+        done = subprocess.run([build / "drivers/mud_triax", case, "--output", work / "case.csv", "--quiet"],
+                              capture_output=True, text=True)
+        check(f"mud_triax runs {case.name}", done.returncode == 0, done.stderr)
+    for mistake, name, words in PLANTED:
+        done = planted(mistake, f"--only={name}", f"--output=planted_{mistake}")
+        lines = [line for line in done.stdout.splitlines() if line.startswith("fault")]
+        check(f"planted mistake {mistake} is found by '{name}'", done.returncode == 1
+              and any(f" {name}: " in line and words in line for line in lines), done.stdout + done.stderr)
+
+
+def test_an_elastic_tangent_is_told():
+    # A law with an elastic tangent, and this library through the door of PLAXIS.
+    done = run(build / "tests/umats/mohr_coulomb.so", "--props=1e4,0.25,5,30,10", "--only=tangent", "--reach=0.1")
+    check("an elastic tangent is told", "the elastic one" in done.stdout, done.stdout + done.stderr)
+
+
+def test_mud_as_plaxis_calls_it_has_no_fault():
+    sand = ",".join(repr(float(x)) for x in mud.Material("toyoura").props[:46])
+    done = run(build / "umat/libmud.so", "--kind=udsm", f"--props={sand}", f"--nstatv={len(mud.states)}",
+               *(f"--only={name}" for name in ("first call", "arrays", "conventions", "increments", "restart")))
+    check("MUD as PLAXIS calls it has no fault", done.returncode == 0, done.stdout + done.stderr)
+    for words, told in ((("--stress=1,2",), "--stress has 2"), (("--only=nothing",), "there is no check"),
+                        (("--nstatv=2", "--statev=1"), "--statev has 1")):
+        done = planted(0, *words)
+        check(f"refused: {words[-1]}", done.returncode == 2 and told in done.stderr, done.stdout + done.stderr)
+    done = run(work / "missing.so")
+    check("a library that is missing", done.returncode == 2 and "cannot be called as a umat" in done.stderr,
+          done.stderr)

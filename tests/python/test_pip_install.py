@@ -3,15 +3,12 @@
 
 The libraries are compiled without optimisation here; scripts/before_release makes the wheel as a user gets it.
 """
-import pathlib
 import re
 import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import check, finish, light, root, work  # noqa: E402
-
-version = re.search(r'^version = "(.*)"', (root / "pyproject.toml").read_text(encoding="utf-8"), re.MULTILINE)[1]
+import pytest
+from checking import check, needs_release, root, work
 
 
 def run(*command):
@@ -19,22 +16,22 @@ def run(*command):
     return done.returncode == 0, (done.stdout + done.stderr)[-3000:]
 
 
-if light:
-    print("note: pip compiles the same whatever the preset; the release tries it")
-    check("left to the release", True)
-    finish()
-python = work / "venv/bin/python3"
-good, told = run(sys.executable, "-m", "venv", work / "venv")
-check("there is a fresh environment", good, told)
-reached, told = run(python, "-m", "pip", "download", "--no-deps", "--dest", work, "numpy>=1.26")
-if not reached:
+needs_release("pip compiles the same whatever the preset; the release tries it")
+
+
+def test_there_is_a_fresh_environment():
+    version = re.search(r'^version = "(.*)"', (root / "pyproject.toml").read_text(encoding="utf-8"), re.MULTILINE)[1]
+
+    python = work / "venv/bin/python3"
+    good, told = run(sys.executable, "-m", "venv", work / "venv")
+    check("there is a fresh environment", good, told)
+    reached, told = run(python, "-m", "pip", "download", "--no-deps", "--dest", work, "numpy>=1.26")
     check("the version is told", version)
-    print(f"note: no index of Python packages is reached, so nothing is installed: {told.splitlines()[-1:]}")
-    finish()
-good, told = run(python, "-m", "pip", "install", "--disable-pip-version-check", "--find-links", work, root,
-                 "--config-settings", f"build-dir={work / 'wheel'}",
-                 "--config-settings", "cmake.define.CMAKE_Fortran_FLAGS_RELEASE=-O0")
-check("pip installs the package from the tree", good, told)
-good, told = run(python, root / "tests/python/try_package.py", version)
-check("it says its version, updates without LAPACK, and runs an element test", good, told)
-finish()
+    if not reached:
+        pytest.skip(f"no index of Python packages is reached, so nothing is installed: {told.splitlines()[-1:]}")
+    good, told = run(python, "-m", "pip", "install", "--disable-pip-version-check", "--find-links", work, root,
+                     "--config-settings", f"build-dir={work / 'wheel'}",
+                     "--config-settings", "cmake.define.CMAKE_Fortran_FLAGS_RELEASE=-O0")
+    check("pip installs the package from the tree", good, told)
+    good, told = run(python, root / "tests/python/try_package.py", version)
+    check("it says its version, updates without LAPACK, and runs an element test", good, told)

@@ -3,18 +3,13 @@
 liquefaction, loops of retention, isotropic cycles, radial stress on unloading."""
 
 import os
-import pathlib
 import sys
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish, root, work  # noqa: E402
+from checking import build, check, needs_plain_library, root, work
 
-if os.environ.get("MUD_PRESET") == "sanitize":
-    print("note: a Python without sanitizers cannot load a library with them; the other builds run the tests")
-    check("the libraries are built", (build / "drivers/libmud_triax.so").exists())
-    finish()
+needs_plain_library()
 os.environ["MUD_LIBRARY_DIR"] = str(build)
 os.environ["MPLBACKEND"] = "Agg"
 sys.path[:0] = [str(root / "python")]
@@ -37,89 +32,93 @@ def missed(table, material=sand, **settings):
     return misfits_of(task.items, answers)[0], next(iter(answers.values()))
 
 
-# G_max in closed form, eq. (3): G_0 p_atm (2.97 - e)^2/(1 + e) sqrt(p/p_atm).
-points = [(50.0, 0.7), (100.0, 0.8), (400.0, 0.9)]
-moduli = [125.0 * 101.325 * (2.97 - e) ** 2 / (1 + e) * np.sqrt(p / 101.325) for p, e in points]
-rows = "".join(f"{p / 1000},{e},{g / 1000:.10f}\n" for (p, e), g in zip(points, moduli))
-stiffness = written("stiffness.csv", "p_MPa,e,Gmax [MPa]\n" + rows)
-told, _ = missed(stiffness)
-check("small-strain moduli are those of eq. (3)", told.G < 1e-4, told)
-known = {"K_0": 150.0, "e_l10": 0.8278, "theta": 0.2}
-task = make_task("g", [stiffness], known=known, groups=["elasticity and compression"])
-task.base["G_0"] = 60.0
-result = calibrate(task, Effort(samples=2, starts=1, joint=10, members=4), 1, None)
-check("G_0 comes back from them", abs(result.values["G_0"] / 125.0 - 1) < 2e-3, result.values)
-
-# G/G_max and damping: an elastic loop at small strain, then softer and wider, never more than a plastic one (2/pi).
-head = "test,gamma,G_ratio,damping_percent,p_0_kPa,e_0\n"
-strains = (1e-6, 1e-4, 1e-3, 5e-3)
-told, answer = missed(written("modulus.csv", head + "".join(f"m,{g},0.5,10,100,0.8\n" for g in strains)))
-ratio, damping = answer.columns["G_ratio"], answer.columns["damping"]
-small = abs(ratio[0] - 1) < 1e-3 and damping[0] < 1e-3
-check("a loop inside the elastic domain has G_max and no damping", small, (ratio, damping))
-check("the modulus falls with strain", np.all(np.diff(ratio) < 0) and ratio[-1] > 0, ratio)
-check("damping rises with strain, below 2/pi", np.all(np.diff(damping) > 0) and damping[-1] < 2 / np.pi, damping)
-# The secant modulus again, from the stresses at the turns of a run of its own.
-run = mud.element_test(
-    sand, mud.Stage("simple_shear_drained", cycle_by="gamma", amplitude=1e-3, cycles=2, increment=1e-5),
-    p_eff=100.0, void_ratio=0.8,
-)
-ends = [run["sig_13"][np.argmin(np.abs(run["gamma_13"] - end) + (run["cycle"] != 2))] for end in (-1e-3, 1e-3)]
-off = (ends[1] - ends[0]) / 2e-3 / moduli[1] - ratio[2]
-check("the secant modulus is that between the turns of the second cycle", abs(off) < 0.01, (off, ratio))
-check("misfits of both are told", told.G > 1 and told.damping > 1, told)
-
-# Cycles to liquefaction: those of a test by hand; a sample that stands counts as standing four times as long.
-stage = mud.Stage("undrained", cycle_by="q", amplitude=30.0, cycles=60, stop_r_u=0.95, increment=1e-4)
-run = mud.element_test(sand, stage, p_eff=100.0, void_ratio=0.907)
-count = run["cycle"][-1]
-head = "Test,CSR,N,p_0_kPa,e_0\n"
-told, answer = missed(written("liquefaction.csv", head + f"L,0.15,{count:.0f},100,0.907\n"))
-check("cycles to liquefaction are those of a test by hand", 1 < count < 60 and abs(told.N - 1) < 1e-9, (count, told))
-_, answer = missed(written("liquefaction_stands.csv", head + "L,0.01,2,100,0.7\n"))
-check("a sample that stands counts as standing so long", abs(10 ** answer.columns["log_N"][0] - 9) < 1e-9, answer)
-
 # Loops of retention with hysteresis: 72 points, rms 0.0158 (verification/material/hysteresis, by another program).
 loops = {"file": root / "calibration/data/hostun_sand_retention_loops.csv", "kind": "retention"}
-told, _ = missed(loops, mud.Material("hostun_hysteresis"))
-check("loops of retention are followed with hysteresis", abs(told.S_w - 0.0158) < 3e-4, told)
-told, _ = missed(loops, mud.Material("hostun_retention"))
-check("and missed without it", told.S_w > 0.1, told)
 
-# Isotropic cycles and the radial stress of an oedometer test, made by the model and met by it.
-ends = (400.0, 100.0, 400.0, 50.0, 800.0)
-run = mud.element_test(
-    sand, *(mud.Stage("isotropic", p_end=end, increment=5.0, output_interval=25.0) for end in ends),
-    p_eff=50.0, void_ratio=0.85,
-)
-lines = "".join(f"{p:.8f},{e:.10f}\n" for p, e in zip(run["p_eff"], run["e"]))
-told, _ = missed(written("isotropic.csv", "p_kPa,e\n" + lines))
-check("isotropic cycles are met", not told.stopped and told.e < 3e-4, told)
-run = mud.element_test(
-    sand, *(mud.Stage("oedometer", sigma_a_end=end, increment=5.0, output_interval=25.0) for end in (400.0, 50.0)),
-    sigma_a=50.0, sigma_r=25.0, void_ratio=0.85,
-)
-lines = "".join(f"{a:.8f},{r:.8f},{e:.10f}\n" for a, r, e in zip(run["sigma_a"], run["sigma_r"], run["e"]))
-oedometer = written("oedometer.csv", "sigma_1_kPa,sigma_3_kPa,e\n" + lines)
-told, _ = missed(oedometer)
-check("the radial stress is met in loading and unloading", told.sigma_r < 0.5 and told.e < 3e-4, told)
-told, _ = missed(oedometer, M_c=1.0)
-check("and missed by another strength", told.sigma_r > 1.0, told)
 
-# The page has a picture and a line for each kind.
-tables = [stiffness, oedometer, loops, *({"file": work / f"{k}.csv", "kind": k} for k in ("modulus", "liquefaction"))]
-page = write_report(evaluate(make_task("kinds", tables), sand), work / "page")
-text = page.read_text()
-check(
-    "every kind has its part of the page",
-    all((page.parent / f"fitted_{table['kind']}.png").stat().st_size > 5000 for table in tables)
-    and all(word in text for word in ("shear modulus", "damping", "cycles to liquefaction", "radial stress", "S_w")),
-    text[:1500],
-)
-told = ""
-try:
-    make_task("bad", [written("liquefaction_bad.csv", head + "L,0.2,0,100,0.8\n")])
-except mud.InputError as problem:
-    told = str(problem)
-check("no cycles are refused", "N must be above zero" in told, told)
-finish()
+def test_small_strain_moduli_are_those_of_eq_3():
+    # G_max in closed form, eq. (3): G_0 p_atm (2.97 - e)^2/(1 + e) sqrt(p/p_atm).
+    points = [(50.0, 0.7), (100.0, 0.8), (400.0, 0.9)]
+    moduli = [125.0 * 101.325 * (2.97 - e) ** 2 / (1 + e) * np.sqrt(p / 101.325) for p, e in points]
+    rows = "".join(f"{p / 1000},{e},{g / 1000:.10f}\n" for (p, e), g in zip(points, moduli))
+    stiffness = written("stiffness.csv", "p_MPa,e,Gmax [MPa]\n" + rows)
+    told, _ = missed(stiffness)
+    check("small-strain moduli are those of eq. (3)", told.G < 1e-4, told)
+    known = {"K_0": 150.0, "e_l10": 0.8278, "theta": 0.2}
+    task = make_task("g", [stiffness], known=known, groups=["elasticity and compression"])
+    task.base["G_0"] = 60.0
+    result = calibrate(task, Effort(samples=2, starts=1, joint=10, members=4), 1, None)
+    check("G_0 comes back from them", abs(result.values["G_0"] / 125.0 - 1) < 2e-3, result.values)
+
+    # G/G_max and damping: an elastic loop at small strain, then softer and wider, never more than a plastic one (2/pi).
+    head = "test,gamma,G_ratio,damping_percent,p_0_kPa,e_0\n"
+    strains = (1e-6, 1e-4, 1e-3, 5e-3)
+    told, answer = missed(written("modulus.csv", head + "".join(f"m,{g},0.5,10,100,0.8\n" for g in strains)))
+    ratio, damping = answer.columns["G_ratio"], answer.columns["damping"]
+    small = abs(ratio[0] - 1) < 1e-3 and damping[0] < 1e-3
+    check("a loop inside the elastic domain has G_max and no damping", small, (ratio, damping))
+    check("the modulus falls with strain", np.all(np.diff(ratio) < 0) and ratio[-1] > 0, ratio)
+    check("damping rises with strain, below 2/pi", np.all(np.diff(damping) > 0) and damping[-1] < 2 / np.pi, damping)
+
+    # The secant modulus again, from the stresses at the turns of a run of its own.
+    run = mud.element_test(
+        sand, mud.Stage("simple_shear_drained", cycle_by="gamma", amplitude=1e-3, cycles=2, increment=1e-5),
+        p_eff=100.0, void_ratio=0.8,
+    )
+    ends = [run["sig_13"][np.argmin(np.abs(run["gamma_13"] - end) + (run["cycle"] != 2))] for end in (-1e-3, 1e-3)]
+    off = (ends[1] - ends[0]) / 2e-3 / moduli[1] - ratio[2]
+    check("the secant modulus is that between the turns of the second cycle", abs(off) < 0.01, (off, ratio))
+    check("misfits of both are told", told.G > 1 and told.damping > 1, told)
+
+    # Cycles to liquefaction: those of a test by hand; a sample that stands counts as standing four times as long.
+    stage = mud.Stage("undrained", cycle_by="q", amplitude=30.0, cycles=60, stop_r_u=0.95, increment=1e-4)
+    run = mud.element_test(sand, stage, p_eff=100.0, void_ratio=0.907)
+    count = run["cycle"][-1]
+    head = "Test,CSR,N,p_0_kPa,e_0\n"
+    told, answer = missed(written("liquefaction.csv", head + f"L,0.15,{count:.0f},100,0.907\n"))
+    check("cycles to liquefaction are those of a test by hand", 1 < count < 60 and abs(told.N - 1) < 1e-9,
+          (count, told))
+    _, answer = missed(written("liquefaction_stands.csv", head + "L,0.01,2,100,0.7\n"))
+    check("a sample that stands counts as standing so long", abs(10 ** answer.columns["log_N"][0] - 9) < 1e-9, answer)
+    told, _ = missed(loops, mud.Material("hostun_hysteresis"))
+    check("loops of retention are followed with hysteresis", abs(told.S_w - 0.0158) < 3e-4, told)
+    told, _ = missed(loops, mud.Material("hostun_retention"))
+    check("and missed without it", told.S_w > 0.1, told)
+
+    # Isotropic cycles and the radial stress of an oedometer test, made by the model and met by it.
+    ends = (400.0, 100.0, 400.0, 50.0, 800.0)
+    run = mud.element_test(
+        sand, *(mud.Stage("isotropic", p_end=end, increment=5.0, output_interval=25.0) for end in ends),
+        p_eff=50.0, void_ratio=0.85,
+    )
+    lines = "".join(f"{p:.8f},{e:.10f}\n" for p, e in zip(run["p_eff"], run["e"]))
+    told, _ = missed(written("isotropic.csv", "p_kPa,e\n" + lines))
+    check("isotropic cycles are met", not told.stopped and told.e < 3e-4, told)
+    run = mud.element_test(
+        sand, *(mud.Stage("oedometer", sigma_a_end=end, increment=5.0, output_interval=25.0) for end in (400.0, 50.0)),
+        sigma_a=50.0, sigma_r=25.0, void_ratio=0.85,
+    )
+    lines = "".join(f"{a:.8f},{r:.8f},{e:.10f}\n" for a, r, e in zip(run["sigma_a"], run["sigma_r"], run["e"]))
+    oedometer = written("oedometer.csv", "sigma_1_kPa,sigma_3_kPa,e\n" + lines)
+    told, _ = missed(oedometer)
+    check("the radial stress is met in loading and unloading", told.sigma_r < 0.5 and told.e < 3e-4, told)
+    told, _ = missed(oedometer, M_c=1.0)
+    check("and missed by another strength", told.sigma_r > 1.0, told)
+
+    # The page has a picture and a line for each kind.
+    tables = [stiffness, oedometer, loops, *({"file": work / f"{k}.csv", "kind": k}
+                                             for k in ("modulus", "liquefaction"))]
+    page = write_report(evaluate(make_task("kinds", tables), sand), work / "page")
+    text = page.read_text()
+    check(
+        "every kind has its part of the page",
+        all((page.parent / f"fitted_{table['kind']}.png").stat().st_size >5000 for table in tables)
+        and
+        all(word in text for word in ("shear modulus", "damping", "cycles to liquefaction", "radial stress", "S_w")),
+        text[: 1500],)
+    told = ""
+    try:
+        make_task("bad", [written("liquefaction_bad.csv", head + "L,0.2,0,100,0.8\n")])
+    except mud.InputError as problem:
+        told = str(problem)
+    check("no cycles are refused", "N must be above zero" in told, told)

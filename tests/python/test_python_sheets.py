@@ -2,18 +2,13 @@
 """Sheets as laboratories write them: separators, decimal commas, workbooks, heads in words, missing void ratios."""
 
 import os
-import pathlib
 import sys
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish, root, work  # noqa: E402
+from checking import build, check, needs_plain_library, root, work
 
-if os.environ.get("MUD_PRESET") == "sanitize":
-    print("note: a Python without sanitizers cannot load a library with them; the other builds read the sheets")
-    check("the libraries are built", (build / "drivers/libmud_triax.so").exists())
-    finish()
+needs_plain_library()
 os.environ["MUD_LIBRARY_DIR"] = str(build)
 os.environ["MPLBACKEND"] = "Agg"
 sys.path[:0] = [str(root / "python")]
@@ -50,108 +45,119 @@ def body(mark=",", row=lambda r: r, point="."):
     return "".join("A" + mark + mark.join(f"{x:.12g}".replace(".", point) for x in row(r)) + "\n" for r in ROWS)
 
 
-test = read_table(written(PLAIN + body()), "drained")[0]
-same("a plain table is read", test)
-check("of a plain table nothing had to be understood", test.understood == [], test.understood)
-test = read_table(written((PLAIN + body(point="#")).replace(",", ";").replace("#", ",")), "drained")[0]
-same("semicolons and decimal commas are read", test)
-check("and told", any("semicolons" in given for given, _ in test.understood), test.understood)
-same("tabs are read", read_table(written((PLAIN + body()).replace(",", "\t")), "drained")[0])
-words = "Sample;Axial strain (%);Volumetric strain [%];Deviator stress (MPa);Mean effective stress (bar);Void ratio;;\n"
-heads = "Laboratory of soil;;;\n;;;\nProject 12;dry;;\n\n" + words
-mega = body(";", lambda r: (r[0], r[1], r[2] / 1000, r[3] / 100, r[4]), ",").replace("\n", ";;\n\n;;;;;;\n")
-test = read_table(written(heads + mega), "drained")[0]
-same("heads in words, MPa and bar, blank rows and columns and lines above are read", test)
-told = dict(test.understood)
-check(
-    "and the user can check each of them",
-    told["Deviator stress (MPa)"] == "q in MPa" and told["Axial strain (%)"] == "eps_a in %" and len(told) >= 7,
-    told,
-)
-units = "test,eps_a,eps_v,q,p,e\n,%,%,kPa,kPa,-\n"
-same("a line of units below the names is read", read_table(written(units + body()), "drained")[0])
-letters = "Probe1,ε1 [%],εv [%],σ'1 [kPa],σ'3 [kPa],e\n".replace("Probe1", "test")
-stresses = body(row=lambda r: (r[0], r[1], 100 + r[2], 100, r[4]))
-test = read_table(written(letters + stresses), "drained")[0]
-same("sigma_1 and sigma_3 without q give q and p", test, sigma_r=100.0)
-check("which is told", any("q = sigma_1 - sigma_3" in meant for _, meant in test.understood), test.understood)
-shares = "test,Axial strain [-],eps_v,q,p,e\n" + body(row=lambda r: (r[0] / 100, r[1] / 100, *r[2:]))
-same("fractions stay fractions", read_table(written(shares), "drained")[0])
-test = read_table(written("Sample,Axial strain (%),q (kPa),p' (kPa),e\n" + body(row=lambda r: (r[0], *r[2:])).replace(
-    "A", "Prüfung"), encoding="cp1252"), "drained")[0]
-same("letters of Windows are read", test)
-check("a name with them too", test.name == "Prüfung", test.name)
-
-# Undrained: total stresses and a pore pressure; e_0 in place of e.
-head = "test,eps_a_percent,sigma_1_kPa,sigma_3_kPa,u_kPa,e_0\n"
-rows = ((0, 200, 200, 100), (1, 240, 200, 140), (5, 260, 200, 150), (10, 280, 200, 145))
-test = read_table(written(head + "".join(f"U,{a},{s},{t},{u},0.8\n" for a, s, t, u in rows)), "undrained")[0]
-check(
-    "total stresses less the pore pressure are effective, e_0 is the void ratio of every row",
-    np.allclose(test["p"], [100, 240 / 3 + 400 / 3 - 140, 260 / 3 + 400 / 3 - 150, 280 / 3 + 400 / 3 - 145])
-    and np.allclose(test["q"], [0, 40, 60, 80])
-    and np.allclose(test["e"], 0.8)
-    and any("u is taken off" in meant for _, meant in test.understood),
-    (test["p"], test.understood),
-)
-check("S_w in per cent with its unit is read", read_table(
-    written("Suction [kPa],Degree of saturation (%)\n1,98\n5,60\n10,20\n"), "retention")[0]["S_w"][0] == 0.98)
-told = refusal(lambda: read_table(written("suction_kPa,e_percent,S_w\n1,80,1\n2,80,.9\n3,80,.8\n"), "retention"))
-check("a unit that a void ratio cannot have is still refused", "e_percent" in told, told)
-told = refusal(lambda: read_table(written(PLAIN.replace("q_kPa", "load (N)") + body()), "drained"))
-check("a head that nobody understands is still refused", "needs the column q" in told and "load (N)" in told, told)
-told = refusal(lambda: read_table(written("\0\1\2"), "drained"))
-check("what is no text is refused", "no text" in told, told)
-
 # Workbooks.
 import openpyxl  # noqa: E402
 
-book = openpyxl.Workbook()
-sheet = book.active
-sheet.title = "CD tests"
-for row in (["Triaxial tests"], [], words.strip(";\n").split(";"), []):
-    sheet.append(row)
-for r in ROWS:
-    sheet.append(["A", r[0], r[1], r[2] / 1000, r[3] / 100, r[4]])
-book.create_sheet("notes").append(["nothing"])
-book.save(work / "lab.xlsx")
-test = read_table(work / "lab.xlsx", "drained")[0]
-same("a workbook is read", test)
-unread = any("not read: notes" in meant for _, meant in test.understood)
-check("what was not read of it is told", unread, test.understood)
-told = refusal(lambda: read_table(written("no workbook", "bad.xlsx"), "drained"))
-check("what is no workbook is refused", "no workbook" in told, told)
 
-# A missing void ratio is an unknown of the fit: the one of the sample that the model made comes back.
-sand, lines = mud.Material("toyoura"), ["test;eps_a_percent;eps_v_percent;q_kPa;p_kPa;e_0"]
-for name, e in (("A", 0.75), ("B", 0.9), ("C", 0.82)):
-    run = mud.element_test(
-        sand, mud.Stage("drained", eps_a_end=0.2, increment=2e-3, output_interval=2e-2), p_eff=100.0, void_ratio=e
+def test_of_a_plain_table_nothing_had_to_be_understood():
+    test = read_table(written(PLAIN + body()), "drained")[0]
+    same("a plain table is read", test)
+    check("of a plain table nothing had to be understood", test.understood == [], test.understood)
+    test = read_table(written((PLAIN + body(point="#")).replace(",", ";").replace("#", ",")), "drained")[0]
+    same("semicolons and decimal commas are read", test)
+    check("and told", any("semicolons" in given for given, _ in test.understood), test.understood)
+    same("tabs are read", read_table(written((PLAIN + body()).replace(",", "\t")), "drained")[0])
+    words = ("Sample;Axial strain (%);Volumetric strain [%];Deviator stress (MPa);Mean effective stress (bar);"
+             "Void ratio;;\n")
+    heads = "Laboratory of soil;;;\n;;;\nProject 12;dry;;\n\n" + words
+    mega = body(";", lambda r: (r[0], r[1], r[2] / 1000, r[3] / 100, r[4]), ",").replace("\n", ";;\n\n;;;;;;\n")
+    test = read_table(written(heads + mega), "drained")[0]
+    same("heads in words, MPa and bar, blank rows and columns and lines above are read", test)
+    told = dict(test.understood)
+    check(
+        "and the user can check each of them",
+        told["Deviator stress (MPa)"] == "q in MPa" and told["Axial strain (%)"] == "eps_a in %" and len(told) >= 7,
+        told,
     )
-    lines += [
-        f"{name};{100 * a:.8f};{100 * v:.8f};{q:.6f};{100 + q / 3:.6f};{'' if name == 'C' else e}"
-        for a, v, q in zip(run.axial_strain, run.volumetric_strain, run["q"])
-    ]
-path = written("\n".join(lines).replace(".", ","))
-names = ("M_c", "N_c", "lambda", "alpha_csl", "A_0", "G_0", "K_0", "N_l", "n_b", "theta", "n_d", "c_h")
-known = {n: sand[n] for n in names}
-task = make_task("missing", [{"file": path, "kind": "drained"}], start="toyoura", known=known)
-check("its prior is the mean of the others", abs(task.items[2].test.e_0 - 0.825) < 1e-12, task.items[2].test.e_0)
-result = calibrate(task, Effort(samples=1, starts=1, joint=8, members=4), 1, None)
-check(
-    "a missing void ratio is found",
-    abs(result.values["e_0 of C"] - 0.82) < 2e-3 and abs(result.item("C").test.e_0 - 0.82) < 2e-3,
-    result.values,
-)
-check("and told before the fit", any("no void ratio in test C" in note for note in result.notes), result.notes)
-page = write_report(result, work / "page").read_text()
-check(
-    "the page has the table of what was understood",
-    "understood to say" in page and "| semicolons between cells |" in page and "`e_0 of C`" in page,
-    page[:800],
-)
-check("a material is compared with such tests too", len(evaluate(task, "toyoura").misfits) == 3)
-alone = "\n".join(line for line in lines if line[:2] not in ("A;", "B;"))
-told = refusal(lambda: read_table(written(alone), "drained"))
-check("a table without any void ratio is refused", "no test of the table has a void ratio" in told, told)
-finish()
+    units = "test,eps_a,eps_v,q,p,e\n,%,%,kPa,kPa,-\n"
+    same("a line of units below the names is read", read_table(written(units + body()), "drained")[0])
+    letters = "Probe1,ε1 [%],εv [%],σ'1 [kPa],σ'3 [kPa],e\n".replace("Probe1", "test")
+    stresses = body(row=lambda r: (r[0], r[1], 100 + r[2], 100, r[4]))
+    test = read_table(written(letters + stresses), "drained")[0]
+    same("sigma_1 and sigma_3 without q give q and p", test, sigma_r=100.0)
+    check("which is told", any("q = sigma_1 - sigma_3" in meant for _, meant in test.understood), test.understood)
+    shares = "test,Axial strain [-],eps_v,q,p,e\n" + body(row=lambda r: (r[0] / 100, r[1] / 100, *r[2:]))
+    same("fractions stay fractions", read_table(written(shares), "drained")[0])
+    test = read_table(
+                      written(
+                          "Sample,Axial strain (%),q (kPa),p' (kPa),e\n" +
+                          body(row=lambda r: (r[0],
+                                             *r[2:])).replace("A", "Prüfung"),
+                          encoding="cp1252"),
+                      "drained") [0]
+    same("letters of Windows are read", test)
+    check("a name with them too", test.name == "Prüfung", test.name)
+
+    book = openpyxl.Workbook()
+    sheet = book.active
+    sheet.title = "CD tests"
+    for row in (["Triaxial tests"], [], words.strip(";\n").split(";"), []):
+        sheet.append(row)
+    for r in ROWS:
+        sheet.append(["A", r[0], r[1], r[2] / 1000, r[3] / 100, r[4]])
+    book.create_sheet("notes").append(["nothing"])
+    book.save(work / "lab.xlsx")
+    test = read_table(work / "lab.xlsx", "drained")[0]
+    same("a workbook is read", test)
+    unread = any("not read: notes" in meant for _, meant in test.understood)
+    check("what was not read of it is told", unread, test.understood)
+    told = refusal(lambda: read_table(written("no workbook", "bad.xlsx"), "drained"))
+    check("what is no workbook is refused", "no workbook" in told, told)
+
+
+def test_total_stresses_less_the_pore_pressure_are_effective_e_0_is_the():
+    # Undrained: total stresses and a pore pressure; e_0 in place of e.
+    head = "test,eps_a_percent,sigma_1_kPa,sigma_3_kPa,u_kPa,e_0\n"
+    rows = ((0, 200, 200, 100), (1, 240, 200, 140), (5, 260, 200, 150), (10, 280, 200, 145))
+    test = read_table(written(head + "".join(f"U,{a},{s},{t},{u},0.8\n" for a, s, t, u in rows)), "undrained")[0]
+    check(
+        "total stresses less the pore pressure are effective, e_0 is the void ratio of every row",
+        np.allclose(test["p"], [100, 240 / 3 + 400 / 3 - 140, 260 / 3 + 400 / 3 - 150, 280 / 3 + 400 / 3 - 145])
+        and np.allclose(test["q"], [0, 40, 60, 80])
+        and np.allclose(test["e"], 0.8)
+        and any("u is taken off" in meant for _, meant in test.understood),
+        (test["p"], test.understood),
+    )
+    check("S_w in per cent with its unit is read", read_table(
+        written("Suction [kPa],Degree of saturation (%)\n1,98\n5,60\n10,20\n"), "retention")[0]["S_w"][0] == 0.98)
+    told = refusal(lambda: read_table(written("suction_kPa,e_percent,S_w\n1,80,1\n2,80,.9\n3,80,.8\n"), "retention"))
+    check("a unit that a void ratio cannot have is still refused", "e_percent" in told, told)
+    told = refusal(lambda: read_table(written(PLAIN.replace("q_kPa", "load (N)") + body()), "drained"))
+    check("a head that nobody understands is still refused", "needs the column q" in told and "load (N)" in told, told)
+    told = refusal(lambda: read_table(written("\0\1\2"), "drained"))
+    check("what is no text is refused", "no text" in told, told)
+
+
+def test_its_prior_is_the_mean_of_the_others():
+    # A missing void ratio is an unknown of the fit: the one of the sample that the model made comes back.
+    sand, lines = mud.Material("toyoura"), ["test;eps_a_percent;eps_v_percent;q_kPa;p_kPa;e_0"]
+    for name, e in (("A", 0.75), ("B", 0.9), ("C", 0.82)):
+        run = mud.element_test(
+            sand, mud.Stage("drained", eps_a_end=0.2, increment=2e-3, output_interval=2e-2), p_eff=100.0, void_ratio=e
+        )
+        lines += [
+            f"{name};{100 * a:.8f};{100 * v:.8f};{q:.6f};{100 + q / 3:.6f};{'' if name == 'C' else e}"
+            for a, v, q in zip(run.axial_strain, run.volumetric_strain, run["q"])
+        ]
+    path = written("\n".join(lines).replace(".", ","))
+    names = ("M_c", "N_c", "lambda", "alpha_csl", "A_0", "G_0", "K_0", "N_l", "n_b", "theta", "n_d", "c_h")
+    known = {n: sand[n] for n in names}
+    task = make_task("missing", [{"file": path, "kind": "drained"}], start="toyoura", known=known)
+    check("its prior is the mean of the others", abs(task.items[2].test.e_0 - 0.825) < 1e-12, task.items[2].test.e_0)
+    result = calibrate(task, Effort(samples=1, starts=1, joint=8, members=4), 1, None)
+    check(
+        "a missing void ratio is found",
+        abs(result.values["e_0 of C"] - 0.82) < 2e-3 and abs(result.item("C").test.e_0 - 0.82) < 2e-3,
+        result.values,
+    )
+    check("and told before the fit", any("no void ratio in test C" in note for note in result.notes), result.notes)
+    page = write_report(result, work / "page").read_text()
+    check(
+        "the page has the table of what was understood",
+        "understood to say" in page and "| semicolons between cells |" in page and "`e_0 of C`" in page,
+        page[:800],
+    )
+    check("a material is compared with such tests too", len(evaluate(task, "toyoura").misfits) == 3)
+    alone = "\n".join(line for line in lines if line[:2] not in ("A;", "B;"))
+    told = refusal(lambda: read_table(written(alone), "drained"))
+    check("a table without any void ratio is refused", "no test of the table has a void ratio" in told, told)

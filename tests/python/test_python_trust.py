@@ -3,7 +3,6 @@
 is interrupted and goes on; a material that is compared and not fitted."""
 
 import os
-import pathlib
 import signal
 import subprocess
 import sys
@@ -11,13 +10,9 @@ import time
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish, light, root, work  # noqa: E402
+from checking import build, check, light, needs_plain_library, root, work
 
-if os.environ.get("MUD_PRESET") == "sanitize":
-    print("note: a Python without sanitizers cannot load a library with them; the other builds run the fits")
-    check("the libraries are built", (build / "drivers/libmud_triax.so").exists())
-    finish()
+needs_plain_library()
 os.environ["MUD_LIBRARY_DIR"] = str(build)
 os.environ["MPLBACKEND"] = "Agg"
 sys.path[:0] = [str(root / "python")]
@@ -66,183 +61,195 @@ def table(name, factors=None):
     return [{"file": work / name, "kind": "drained"}]
 
 
-known = {n: truth[n] for n in ("M_c", "N_c", "lambda", "alpha_csl", "A_0", "G_0", "K_0", "N_l", "n_b", "theta")}
-effort = Effort(samples=4, starts=2, trial=4, joint=8, members=24)
-
-# Compression that begins near zero counts from 10 kPa on, and says so.
-tests = read_table(DATA / "karlsruhe_fine_sand_oedometer.csv", "oedometer")
-use = use_of(tests[0])
-check(
-    "compression that begins at zero stress counts from 10 kPa on, and says so",
-    tests[0]["sigma_a"][0] == 0.0 and tests[0]["sigma_a"][use.start] >= 10.0 and "10 kPa" in use.note,
-    (tests[0]["sigma_a"][use.start], use.note),
-)
-check("a first that is given is taken without a word", not use_of(tests[0], first=5.0).note)
-task = make_task("oed", [{"file": DATA / "karlsruhe_fine_sand_oedometer.csv", "kind": "oedometer"}])
-answers = answers_of(mud.Material("karlsruhe", **SETTINGS), task.items)
-check("so the oedometer tests of the library run", not any(a.stopped for a in answers.values()))
-
-# Tests that no set of parameters brings to their end: from a stress of nothing, and beyond what the model can reach.
-bad = make_task("bad", [{"file": DATA / "karlsruhe_fine_sand_oedometer.csv", "kind": "oedometer", "first": 1e-9}])
-told = refusal(lambda: calibrate(bad, effort, 1, None))
-words = ("no test can be fitted", "OE12", "first")
-check("nine tests that cannot run are no fit", all(word in told for word in words), told)
-(work / "cut.csv").write_text(
-    "test,eps_a_percent,q_kPa,p_kPa,e_0\n"
-    + "".join(f"U,{a},{50 + a},{p},0.7\n" for a, p in zip(range(8), range(100, 108)))
-)
-task = make_task("cut", [*table("good.csv"), {"file": work / "cut.csv", "kind": "undrained"}], known=known)
-item = task.items[-1]
-item.test.columns["eps_a"][-3:] = [0.9, 0.95, 0.9999]  # a natural strain of 9: no set of parameters comes there
-screened = screen(task, trial_sets(task, task.variables(), 4))
-kept = [i for i in screened.task.items if i.test.name == "U"]
-check(
-    "a test that stops under every set is cut there or left out, with the reason",
-    len(screened.notes) == 1
-    and screened.notes[0].startswith("U is ")
-    and (not kept or len(kept[0].use.rows) < len(item.use.rows))
-    and [i.test.name for i in screened.task.items[:5]] == list("ABCDE"),
-    screened.notes,
-)
-
-# What the tests say nothing about keeps its prior; what they tell comes back, from several starts, with bands.
-# Drained compression that is never reversed tells nothing of extension (c) and of fabric (c_z, z_max).
-freed = {k: v for k, v in known.items() if k != "theta"}
-task = make_task("again", table("good.csv"), held_out=["E"], start="toyoura", known=freed)
-result = calibrate(task, effort, 1, None)
-told = " ".join(result.diagnosis.sentences)
-check(
-    "what drained tests do not tell keeps its prior, and the page says so",
-    all(
-        result.material[name] == mud.Material("toyoura")[name] and f"do not determine {name}: " in told
-        for name in ("c", "c_z", "z_max")
-    ),
-    told,
-)
-check(
-    "what they tell is found",
-    abs(result.values["h_0"] / 5.0 - 1) < 0.05 and abs(result.values["n_d"] / 3.0 - 1) < 0.05,
-    result.values,
-)
-findings = {f.variable.name: f for f in result.diagnosis.findings}
-check(
-    "intervals hold the truth",
-    all(findings[name].low <= truth[name] <= findings[name].high for name in ("h_0", "n_d")),
-    [(findings[name].low, findings[name].high) for name in ("h_0", "n_d")],
-)
-check("every variable of the ensemble is within its bounds", all(
-    f.variable.lower <= m[f.variable.name] <= f.variable.upper
-    for m in result.ensemble.members for f in result.diagnosis.findings if f.fitted))
-shares = result.ensemble.coverage(result.task.items, True)
-check("the bands hold what the model itself made", shares[""][0] > 0.97 and shares[""][1] == 20, shares)
-# Without an error of the parameters a band is 1.645 times the scatter to both sides: hypotenuse of 3 kPa and 5 % of q.
-alone = Ensemble([result.values], np.ones(1), 1.0, 1.0, {}, {})
 from mud.calibration.ensemble import _band  # noqa: E402
 
-item, answer = result.item("E"), result.answers["E"]
-band = _band(item, "q", [answer], alone.weights, 1.0)
-q = answer.columns["q"]
-# Nine nodes stand for the normal distribution: the outermost are the 5 and 95 % points within 10 %.
-off = np.abs((band.high - q) / (1.645 * np.hypot(3.0, 0.05 * q)) - 1)
-check("a band of one member is that of the measurement", off.max() < 0.15 and np.all(band.low < q), off)
-check("weighted quantiles", quantile(np.array([3.0, 1.0, 2.0]), np.array([0.2, 0.5, 0.3]), 0.6) == 2.0)
-weights, exponent = _weights(-50.0 * np.arange(16.0))
-effective = 1 / np.sum(weights**2)
-check("weights that leave one member are evened out, and tell it", exponent < 1 and effective >= 4, effective)
-# One parameter and one residual r = a s: the posterior deviation is that of the product of two normal distributions.
-spread = posterior(np.array([[3.0]]), 2.0)
-check("the posterior is that of prior and data", abs(1 / spread[0, 0] - (9.0 / 2.0 + 1 / PRIOR**2)) < 1e-12, spread)
-ends = [Minimum({"h_0": value}, 1.0, np.eye(1), 1) for value in (1.0, 9.0)]
-told = Ensemble([{"h_0": 5.0}, {"h_0": 5.1}], np.full(2, 0.5), 2.0, 1.0, {}, {}).interval("h_0", ends)
-check("an interval holds every minimum that is told", told == (1.0, 9.0), told)
 
-# Retention and mechanics do not interact: together they are fitted as well as alone.
-(work / "r.csv").write_text(
-    "suction_kPa,S_w,e\n"
-    + "".join(f"{s},{truth.saturation(s, 0.8):.12f},0.8\n" for s in (1.0, 3.0, 8.0, 20.0, 100.0))
-)
-fixed = {"Omega": truth["Omega"], "S_max": 1.0}
-curve = {"file": work / "r.csv", "kind": "retention"}
-both = make_task("both", [*table("good.csv"), curve], start="karlsruhe", known={**known, **fixed})
-fit = Fit(both, effort, 1, None)
-check(
-    "retention is a part of its own",
-    [sorted({both.items[i].test.kind for i in p.numbers}) for p in fit.parts] == [["retention"], ["drained"]]
-    and {v.group for v in fit.parts[0].variables} == {"retention"},
-)
-if not light:  # the checking builds have seen a fit
-    joint = calibrate(both, Effort(samples=8, starts=2, trial=4, joint=20, members=0), 1, None)
-    missed = {m.name: m for m in joint.misfits}
-    check("a joint fit meets the retention curve", missed["r"].S_w < 0.01, missed["r"])
+def test_nine_tests_that_cannot_run_are_no_fit():
+    known = {n: truth[n] for n in ("M_c", "N_c", "lambda", "alpha_csl", "A_0", "G_0", "K_0", "N_l", "n_b", "theta")}
+    effort = Effort(samples=4, starts=2, trial=4, joint=8, members=24)
 
-# A test whose q is 1.3 times too large is named, and no other; without it nothing is said.
-for factors, names in (({}, []), ({"C": 1.3}, ["C"]))[light:]:
-    one = Effort(samples=1, starts=1, joint=6)
-    fit = Fit(make_task("odd", table("odd.csv", factors), start="toyoura", known=known), one, 1, None)
-    values = fit.run()
-    answers = answers_of(fit.evaluator.material(values, **SETTINGS), fit.task.items)
-    told = disagreeing(fit, fit.jacobian(fit.variables, values), answers)
-    named = [sentence.split()[0] for sentence in told if "its q is" in sentence]
-    check(f"q of {names or 'no test'} times 1.3: it alone is named", named == names, told)
-
-# Unloading: what the fitted set of Karlsruhe sand does wrongly.
-told = unloading(mud.Material("karlsruhe", **SETTINGS), task.items[:1], {task.items[0].test.name: answer})
-check("K0 that does not rise on unloading is told", any("K0 does not rise" in t for t in told), told)
-only = {"file": DATA / "karlsruhe_fine_sand_oedometer.csv", "kind": "oedometer", "only": ["OE4"]}
-item = make_task("o", [only]).items[0]
-wrong = answers_of(mud.Material("karlsruhe", **SETTINGS), [item])
-top = int(np.argmax(np.diff(item.test["sigma_a"][item.use.rows]) < 0))  # where unloading begins
-wrong["OE4"].columns["e"][top + 1 :] += 0.05
-told = unloading(mud.Material("karlsruhe", **SETTINGS), [item], wrong)
-wrongly = any(t.startswith("OE4: on unloading") for t in told)
-check("a void ratio that rises wrongly on unloading is told", wrongly, told)
-
-# The command: a folder that cannot be written, a material that is compared, a fit that is interrupted.
-(work / "file").write_text("in the way")
-words = ["--name", "again", "--drained", str(work / "good.csv"), "--start", "toyoura", "--workers", "1"]
-for name in known:
-    words += ["--known", f"{name}={truth[name]!r}"]
-begin = time.monotonic()
-check("a place that cannot be written is refused before the fit", main([*words, "--output", str(work / "file")]) == 2)
-code = main([*words[:4], "--evaluate", "toyoura", "--held-out", "A", "--output", str(work / "seen"), "--quiet"])
-page = (work / "seen/again/README.md").read_text()
-check(
-    "a material is compared and nothing fitted, with every test held out too",
-    code == 0
-    and "comparison" in page
-    and "| A | **held out**" in page
-    and not (work / "seen/materials").exists()
-    and evaluate(make_task("x", table("good.csv"), held_out=list("ABCDE")), "toyoura").diagnosis is None,
-    page[:300],
-)
-if not light:
-    words += ["--samples", "4", "--starts", "2", "--evaluations", "6", "--members", "8"]
-    words += ["--output", str(work / "going")]
-    environment = {**os.environ, "PYTHONPATH": str(root / "python")}
-    command = [sys.executable, "-m", "mud.calibration.command", *words]
-    place = work / "going/again" / UNFINISHED
-    # What a shell starts in the background ignores the interrupt, and hands that on.
-    begun = subprocess.Popen(
-        command,
-        env=environment,
-        stderr=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    # Tests that no set of parameters brings to their end: from a stress of
+    # nothing, and beyond what the model can reach.
+    bad = make_task("bad", [{"file": DATA / "karlsruhe_fine_sand_oedometer.csv", "kind": "oedometer", "first": 1e-9}])
+    told = refusal(lambda: calibrate(bad, effort, 1, None))
+    words = ("no test can be fitted", "OE12", "first")
+    check("nine tests that cannot run are no fit", all(word in told for word in words), told)
+    (work / "cut.csv").write_text(
+        "test,eps_a_percent,q_kPa,p_kPa,e_0\n"
+        + "".join(f"U,{a},{50 + a},{p},0.7\n" for a, p in zip(range(8), range(100, 108)))
     )
-    while begun.poll() is None and not (place.exists() and place.stat().st_size > 30000):
-        time.sleep(0.01)
-    begun.send_signal(signal.SIGINT)
-    _, told = begun.communicate()
-    saved = begun.returncode == 130 and place.exists()
-    check("an interrupted fit saves what it has", saved and "same command" in told, told)
-    done = subprocess.run(command, env=environment, capture_output=True, text=True)
+    task = make_task("cut", [*table("good.csv"), {"file": work / "cut.csv", "kind": "undrained"}], known=known)
+    item = task.items[-1]
+    item.test.columns["eps_a"][-3:] = [0.9, 0.95, 0.9999]  # a natural strain of 9: no set of parameters comes there
+    screened = screen(task, trial_sets(task, task.variables(), 4))
+    kept = [i for i in screened.task.items if i.test.name == "U"]
     check(
-        "the same command goes on from there",
-        done.returncode == 0 and "goes on from" in done.stderr and not place.exists(),
-        done.stderr,
+        "a test that stops under every set is cut there or left out, with the reason",
+        len(screened.notes) == 1
+        and screened.notes[0].startswith("U is ")
+        and (not kept or len(kept[0].use.rows) < len(item.use.rows))
+        and [i.test.name for i in screened.task.items[:5]] == list("ABCDE"),
+        screened.notes,
     )
-    whole = main([*words[:-1], str(work / "whole"), "--quiet"])
-    first, second = ((work / f"{name}/materials/again.nml").read_text() for name in ("going", "whole"))
-    check("and ends where a fit without interruption ends", whole == 0 and first == second)
-finish()
+
+    # What the tests say nothing about keeps its prior; what they tell comes back, from several starts, with bands.
+    # Drained compression that is never reversed tells nothing of extension (c) and of fabric (c_z, z_max).
+    freed = {k: v for k, v in known.items() if k != "theta"}
+    task = make_task("again", table("good.csv"), held_out=["E"], start="toyoura", known=freed)
+    result = calibrate(task, effort, 1, None)
+    told = " ".join(result.diagnosis.sentences)
+    check(
+        "what drained tests do not tell keeps its prior, and the page says so",
+        all(
+            result.material[name] == mud.Material("toyoura")[name] and f"do not determine {name}: " in told
+            for name in ("c", "c_z", "z_max")
+        ),
+        told,
+    )
+    check(
+        "what they tell is found",
+        abs(result.values["h_0"] / 5.0 - 1) < 0.05 and abs(result.values["n_d"] / 3.0 - 1) < 0.05,
+        result.values,
+    )
+    findings = {f.variable.name: f for f in result.diagnosis.findings}
+    check(
+        "intervals hold the truth",
+        all(findings[name].low <= truth[name] <= findings[name].high for name in ("h_0", "n_d")),
+        [(findings[name].low, findings[name].high) for name in ("h_0", "n_d")],
+    )
+    check("every variable of the ensemble is within its bounds", all(
+        f.variable.lower <= m[f.variable.name] <= f.variable.upper
+        for m in result.ensemble.members for f in result.diagnosis.findings if f.fitted))
+    shares = result.ensemble.coverage(result.task.items, True)
+    check("the bands hold what the model itself made", shares[""][0] > 0.97 and shares[""][1] == 20, shares)
+
+    # Without an error of the parameters a band is 1.645 times the scatter to
+    # both sides: hypotenuse of 3 kPa and 5 % of q.
+    alone = Ensemble([result.values], np.ones(1), 1.0, 1.0, {}, {})
+
+    item, answer = result.item("E"), result.answers["E"]
+    band = _band(item, "q", [answer], alone.weights, 1.0)
+    q = answer.columns["q"]
+
+    # Nine nodes stand for the normal distribution: the outermost are the 5 and 95 % points within 10 %.
+    off = np.abs((band.high - q) / (1.645 * np.hypot(3.0, 0.05 * q)) - 1)
+    check("a band of one member is that of the measurement", off.max() < 0.15 and np.all(band.low < q), off)
+    check("weighted quantiles", quantile(np.array([3.0, 1.0, 2.0]), np.array([0.2, 0.5, 0.3]), 0.6) == 2.0)
+    weights, exponent = _weights(-50.0 * np.arange(16.0))
+    effective = 1 / np.sum(weights**2)
+    check("weights that leave one member are evened out, and tell it", exponent < 1 and effective >= 4, effective)
+
+    # Retention and mechanics do not interact: together they are fitted as well as alone.
+    (work / "r.csv").write_text(
+        "suction_kPa,S_w,e\n"
+        + "".join(f"{s},{truth.saturation(s, 0.8):.12f},0.8\n" for s in (1.0, 3.0, 8.0, 20.0, 100.0))
+    )
+    fixed = {"Omega": truth["Omega"], "S_max": 1.0}
+    curve = {"file": work / "r.csv", "kind": "retention"}
+    both = make_task("both", [*table("good.csv"), curve], start="karlsruhe", known={**known, **fixed})
+    fit = Fit(both, effort, 1, None)
+    check(
+        "retention is a part of its own",
+        [sorted({both.items[i].test.kind for i in p.numbers}) for p in fit.parts] == [["retention"], ["drained"]]
+        and {v.group for v in fit.parts[0].variables} == {"retention"},
+    )
+    if not light:  # the checking builds have seen a fit
+        joint = calibrate(both, Effort(samples=8, starts=2, trial=4, joint=20, members=0), 1, None)
+        missed = {m.name: m for m in joint.misfits}
+        check("a joint fit meets the retention curve", missed["r"].S_w < 0.01, missed["r"])
+
+    # A test whose q is 1.3 times too large is named, and no other; without it nothing is said.
+    for factors, names in (({}, []), ({"C": 1.3}, ["C"]))[light:]:
+        one = Effort(samples=1, starts=1, joint=6)
+        fit = Fit(make_task("odd", table("odd.csv", factors), start="toyoura", known=known), one, 1, None)
+        values = fit.run()
+        answers = answers_of(fit.evaluator.material(values, **SETTINGS), fit.task.items)
+        told = disagreeing(fit, fit.jacobian(fit.variables, values), answers)
+        named = [sentence.split()[0] for sentence in told if "its q is" in sentence]
+        check(f"q of {names or 'no test'} times 1.3: it alone is named", named == names, told)
+
+    # Unloading: what the fitted set of Karlsruhe sand does wrongly.
+    told = unloading(mud.Material("karlsruhe", **SETTINGS), task.items[:1], {task.items[0].test.name: answer})
+    check("K0 that does not rise on unloading is told", any("K0 does not rise" in t for t in told), told)
+    only = {"file": DATA / "karlsruhe_fine_sand_oedometer.csv", "kind": "oedometer", "only": ["OE4"]}
+    item = make_task("o", [only]).items[0]
+    wrong = answers_of(mud.Material("karlsruhe", **SETTINGS), [item])
+    top = int(np.argmax(np.diff(item.test["sigma_a"][item.use.rows]) < 0))  # where unloading begins
+    wrong["OE4"].columns["e"][top + 1 :] += 0.05
+    told = unloading(mud.Material("karlsruhe", **SETTINGS), [item], wrong)
+    wrongly = any(t.startswith("OE4: on unloading") for t in told)
+    check("a void ratio that rises wrongly on unloading is told", wrongly, told)
+
+    # The command: a folder that cannot be written, a material that is compared, a fit that is interrupted.
+    (work / "file").write_text("in the way")
+    words = ["--name", "again", "--drained", str(work / "good.csv"), "--start", "toyoura", "--workers", "1"]
+    for name in known:
+        words += ["--known", f"{name}={truth[name]!r}"]
+    check("a place that cannot be written is refused before the fit",
+          main([*words, "--output", str(work / "file")]) == 2)
+    code = main([*words[:4], "--evaluate", "toyoura", "--held-out", "A", "--output", str(work / "seen"), "--quiet"])
+    page = (work / "seen/again/README.md").read_text()
+    check(
+        "a material is compared and nothing fitted, with every test held out too",
+        code == 0
+        and "comparison" in page
+        and "| A | **held out**" in page
+        and not (work / "seen/materials").exists()
+        and evaluate(make_task("x", table("good.csv"), held_out=list("ABCDE")), "toyoura").diagnosis is None,
+        page[:300],
+    )
+    if not light:
+        words += ["--samples", "4", "--starts", "2", "--evaluations", "6", "--members", "8"]
+        words += ["--output", str(work / "going")]
+        environment = {**os.environ, "PYTHONPATH": str(root / "python")}
+        command = [sys.executable, "-m", "mud.calibration.command", *words]
+        place = work / "going/again" / UNFINISHED
+        # What a shell starts in the background ignores the interrupt, and hands that on.
+        begun = subprocess.Popen(
+            command,
+            env=environment,
+            stderr=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+        )
+        while begun.poll() is None and not (place.exists() and place.stat().st_size > 30000):
+            time.sleep(0.01)
+        begun.send_signal(signal.SIGINT)
+        _, told = begun.communicate()
+        saved = begun.returncode == 130 and place.exists()
+        check("an interrupted fit saves what it has", saved and "same command" in told, told)
+        done = subprocess.run(command, env=environment, capture_output=True, text=True)
+        check(
+            "the same command goes on from there",
+            done.returncode == 0 and "goes on from" in done.stderr and not place.exists(),
+            done.stderr,
+        )
+        whole = main([*words[:-1], str(work / "whole"), "--quiet"])
+        first, second = ((work / f"{name}/materials/again.nml").read_text() for name in ("going", "whole"))
+        check("and ends where a fit without interruption ends", whole == 0 and first == second)
+
+
+def test_compression_that_begins_at_zero_stress_counts_from_10_kpa_on():
+    # Compression that begins near zero counts from 10 kPa on, and says so.
+    tests = read_table(DATA / "karlsruhe_fine_sand_oedometer.csv", "oedometer")
+    use = use_of(tests[0])
+    check(
+        "compression that begins at zero stress counts from 10 kPa on, and says so",
+        tests[0]["sigma_a"][0] == 0.0 and tests[0]["sigma_a"][use.start] >= 10.0 and "10 kPa" in use.note,
+        (tests[0]["sigma_a"][use.start], use.note),
+    )
+    check("a first that is given is taken without a word", not use_of(tests[0], first=5.0).note)
+    task = make_task("oed", [{"file": DATA / "karlsruhe_fine_sand_oedometer.csv", "kind": "oedometer"}])
+    answers = answers_of(mud.Material("karlsruhe", **SETTINGS), task.items)
+    check("so the oedometer tests of the library run", not any(a.stopped for a in answers.values()))
+
+
+def test_the_posterior_is_that_of_prior_and_data():
+    # One parameter and one residual r = a s: the posterior deviation is that
+    # of the product of two normal distributions.
+    spread = posterior(np.array([[3.0]]), 2.0)
+    check("the posterior is that of prior and data", abs(1 / spread[0, 0] - (9.0 / 2.0 + 1 / PRIOR**2)) < 1e-12, spread)
+    ends = [Minimum({"h_0": value}, 1.0, np.eye(1), 1) for value in (1.0, 9.0)]
+    told = Ensemble([{"h_0": 5.0}, {"h_0": 5.1}], np.full(2, 0.5), 2.0, 1.0, {}, {}).interval("h_0", ends)
+    check("an interval holds every minimum that is told", told == (1.0, 9.0), told)

@@ -15,8 +15,7 @@ module abi_host
    private
    public :: umat_call_t, call_umat, new_call, walked_call, take_rule, walk, random_strain, same_bits, untouched, &
              refusal, elastic_matrix, common_refusal, begin_once, update_once, prepared_of, not_a_number, infinite, &
-              MARK, &
-             N_ARGUMENTS, UNIT_MATRIX, WITHOUT_GUARDS
+             MARK, N_ARGUMENTS, UNIT_MATRIX, WITHOUT_GUARDS
    public :: A_STRESS, A_STATEV, A_DDSDDE, A_SCD, A_DSTRAN, A_PREDEF, A_DPRED, A_NDI, A_NTENS, A_NSTATV, A_PROPS, &
              A_NPROPS, A_DROT, A_PNEWDT, MANDATORY, TOUCHED, NO_CUT
 

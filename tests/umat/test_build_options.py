@@ -3,19 +3,14 @@
 
 One folder, without optimisation: one option after another is off, so that only what it changes is compiled again.
 """
-import pathlib
 import re
 import shutil
 import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish, light, root, work  # noqa: E402
+from checking import build, check, needs_release, root, work
 
-if light:
-    print("note: which options exist does not depend on how the library is compiled; the release tries them")
-    check("left to the release", True)
-    finish()
+needs_release("which options exist does not depend on how the library is compiled; the release tries them")
 
 cache = dict(re.findall(r"^(\w+):\w+=(.*)$", (build / "CMakeCache.txt").read_text(encoding="utf-8"), re.MULTILINE))
 folder = work / "options"
@@ -64,28 +59,29 @@ def contradictions(*off):
                     for code, told in [run(found[0], "--help")] if code != 0]
 
 
-base = ("MUD_WITH_HDF5",)
-good, told = built_without(*base)
-check("it builds without HDF5 and without tests", good, told)
-check("everything is installed, and the programs run", not contradictions(), contradictions())
-case = root / "drivers/cases/undrained_e735_p100.nml"
-code, told = run(work / "prefix/bin/mud_triax", case, "--output", work / "rows.csv")
-check("mud_triax without HDF5 writes its table",
-      code == 0 and len((work / "rows.csv").read_text().splitlines()) > 10, told)
-code, told = run(work / "prefix/bin/mud_triax", case, "--output", work / "rows.h5")
-check("mud_triax without HDF5 says so where it is asked for a file of that kind",
-      code != 0 and "HDF5" in told and not (work / "rows.h5").exists(), told)
-scene = (root / "host/README.md").read_text(encoding="utf-8").split("<!-- first scene -->\n```\n")[1].split("```")[0]
-(work / "scene.nml").write_text(scene)
-code, told = run(work / "prefix/bin/mud_host", work / "scene.nml", "--output", work / "out", "--quiet")
-check("mud_host without HDF5 runs its first scene", code == 0 and (work / "out/histories.csv").exists(), told)
+def test_it_builds_without_hdf5_and_without_tests():
+    base = ("MUD_WITH_HDF5",)
+    good, told = built_without(*base)
+    check("it builds without HDF5 and without tests", good, told)
+    check("everything is installed, and the programs run", not contradictions(), contradictions())
+    case = root / "drivers/cases/undrained_e735_p100.nml"
+    code, told = run(work / "prefix/bin/mud_triax", case, "--output", work / "rows.csv")
+    check("mud_triax without HDF5 writes its table",
+          code == 0 and len((work / "rows.csv").read_text().splitlines()) > 10, told)
+    code, told = run(work / "prefix/bin/mud_triax", case, "--output", work / "rows.h5")
+    check("mud_triax without HDF5 says so where it is asked for a file of that kind",
+          code != 0 and "HDF5" in told and not (work / "rows.h5").exists(), told)
+    scene = (
+        root / "host/README.md").read_text(encoding="utf-8").split("<!-- first scene -->\n```\n")[1].split("```")[0]
+    (work / "scene.nml").write_text(scene)
+    code, told = run(work / "prefix/bin/mud_host", work / "scene.nml", "--output", work / "out", "--quiet")
+    check("mud_host without HDF5 runs its first scene", code == 0 and (work / "out/histories.csv").exists(), told)
 
-single = {"MUD_BUILD_STATIC", "MUD_BUILD_SHARED", "MUD_BUILD_DRIVERS", "MUD_BUILD_HOST", "MUD_INSTALL"}
-check("every option is tried here or stands off", options() == single | {
-    "MUD_WITH_HDF5", "MUD_BUILD_TESTS", "MUD_BUILD_BENCHMARKS", "MUD_BUILD_PYTHON", "MUD_WERROR"}, options())
-for option in sorted(single):
-    good, told = built_without(*base, option)
-    check(f"it builds with {option}=OFF", good, told)
-    wrong = contradictions(option)
-    check(f"with {option}=OFF what is on is installed, and nothing else", not wrong, wrong)
-finish()
+    single = {"MUD_BUILD_STATIC", "MUD_BUILD_SHARED", "MUD_BUILD_DRIVERS", "MUD_BUILD_HOST", "MUD_INSTALL"}
+    check("every option is tried here or stands off", options() == single | {
+        "MUD_WITH_HDF5", "MUD_BUILD_TESTS", "MUD_BUILD_BENCHMARKS", "MUD_BUILD_PYTHON", "MUD_WERROR"}, options())
+    for option in sorted(single):
+        good, told = built_without(*base, option)
+        check(f"it builds with {option}=OFF", good, told)
+        wrong = contradictions(option)
+        check(f"with {option}=OFF what is on is installed, and nothing else", not wrong, wrong)

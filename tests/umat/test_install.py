@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Installs library and programs and uses them as a stranger would: find_package, pkg-config, plain compilers."""
-import concurrent.futures
 import ctypes
 import os
 import pathlib
@@ -10,9 +9,9 @@ import subprocess
 import sys
 import tempfile
 
-root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2]).resolve()
-build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release").resolve()
-preset = os.environ.get("MUD_PRESET") or build.name
+import pytest
+from checking import build, preset, root
+
 cache = dict(re.findall(r"^(\w+):\w+=(.*)$", (build / "CMakeCache.txt").read_text(encoding="utf-8"), re.MULTILINE))
 consumers = root / "tests/consumers"
 header = re.sub(r"/\*.*?\*/", "", (root / "umat/include/mud.h").read_text(encoding="utf-8"), flags=re.DOTALL)
@@ -349,39 +348,24 @@ def a_program_without_any_shared_library_links(folder, prefix):
         expect(not needed(host), needed(host))
 
 
-def outcome(job):
-    sentence, function, folder, prefix = job
-    try:
-        function(folder, prefix)
-    except Wrong as problem:
-        return f"FAILED {sentence}: {problem}"
-    except (OSError, LookupError, StopIteration, AttributeError) as problem:
-        return f"FAILED {sentence}: {type(problem).__name__}: {problem}"
-    return ""
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("install")
 
 
-def main():
-    todo = [entry for entry in checks if preset in entry[1] or preset not in ALL]
-    if len(todo) < len(checks):
-        fewer = len(checks) - len(todo)
-        print(f"note: {fewer} of {len(checks)} checks are left out in the {preset} preset: {WHY_FEWER[preset]}")
-    without = [entry for entry in todo if "pkg config" in entry[0] or "any shared" in entry[0]]
+@pytest.fixture(scope="module")
+def prefix(folder):
+    return install(folder / "prefix")
+
+
+def todo():
+    """The checks of this preset; WHY_FEWER says what is left out."""
+    found = [entry for entry in checks if preset in entry[1] or preset not in ALL]
     if not shutil.which("pkg-config"):
-        todo = [entry for entry in todo if entry not in without]
-        print(f"note: there is no pkg-config on this machine: {len(without)} checks fewer")
-    with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        try:
-            prefix = install(folder / "prefix")
-        except Wrong as problem:
-            print(f"FAILED cmake --install: {problem}\n0 passed, {len(todo)} failed")
-            return True
-        with concurrent.futures.ThreadPoolExecutor(2) as pool:
-            findings = list(filter(None, pool.map(outcome, [(s, f, folder, prefix) for s, _, f in todo])))
-    print("".join(finding + "\n" for finding in findings), end="")
-    print(f"{len(todo) - len(findings)} passed, {len(findings)} failed")
-    return bool(findings)
+        found = [entry for entry in found if "pkg config" not in entry[0] and "any shared" not in entry[0]]
+    return [pytest.param(function, id=sentence) for sentence, _, function in found]
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+@pytest.mark.parametrize("function", todo())
+def test_the_installed_library(function, folder, prefix):
+    function(folder, prefix)

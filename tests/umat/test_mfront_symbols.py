@@ -8,9 +8,9 @@ import subprocess
 import sys
 import tempfile
 
-root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2])
-build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
-preset = os.environ.get("MUD_PRESET") or build.name
+sys.path.append(str(pathlib.Path(__file__).parents[1] / "support"))
+from checking import build, check, loads_library
+
 library = build / "umat/libmud.so"
 HYPOTHESES = ["Tridimensional", "PlaneStrain", "Axisymmetrical", "GeneralisedPlaneStrain",
               "AxisymmetricalGeneralisedPlaneStrain"]
@@ -19,15 +19,6 @@ SCALAR, SYMMETRIC = 0, 1
 # is fatal or silently another one.
 TAKEN = {"saturation", "void_ratio", "suction", "porosity", "layout", "Saturation", "Stress", "Strain", "Temperature",
          "EquivalentPlasticStrain", "material_state_variable_saturation", "displacement", "pressure", "sigma", "open"}
-passed, failed = 0, 0
-
-
-def check(sentence, good, seen=""):
-    global passed, failed
-    passed += bool(good)
-    failed += not good
-    if not good:
-        print(f"FAILED {sentence}: {seen}")
 
 
 class Behaviour:
@@ -160,14 +151,15 @@ def failures_are_heard_and_saved():
     check("the increment is saved", saved == ["mud_failed_too_many_substeps.nml"], saved)
 
 
-if sys.argv[1:] == ["fail"]:
-    fail()
-    sys.exit()
-both_show_the_same()
-if preset == "sanitize":
-    print("note: a sanitized library is not loaded into a plain Python; test_mfront calls it (one check here)")
-else:
+def test_both_views_show_the_same():
+    both_show_the_same()
+
+
+@loads_library
+def test_a_host_of_mgis_reads_and_calls_the_behaviours():
     main()
     failures_are_heard_and_saved()
-print(f"{passed} passed, {failed} failed")
-sys.exit(failed > 0)
+
+
+if __name__ == "__main__" and sys.argv[1:] == ["fail"]:
+    fail()

@@ -6,6 +6,8 @@ import re
 import subprocess
 import sys
 
+import pytest
+
 root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2])
 build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
 readme = root / "umat/README.md"
@@ -19,15 +21,13 @@ def content(block):
 
 
 text = readme.read_text(encoding="utf-8")
-if "--write" in sys.argv:
+
+
+@pytest.mark.parametrize("what", sorted({what for _, what, _, _ in BLOCK.findall(text)} | PROMISED))
+def test_the_table_is_what_the_library_says(what):
+    held = [block for _, name, block, _ in BLOCK.findall(text) if name == what]
+    assert held == [content(what)], "renew with tests/umat/test_readme.py --write"
+
+
+if __name__ == "__main__" and "--write" in sys.argv:
     readme.write_text(BLOCK.sub(lambda m: m[1] + content(m[2]) + m[4], text), encoding="utf-8")
-    sys.exit()
-blocks = BLOCK.findall(text)
-wrong = [what for _, what, held, _ in blocks if held != content(what)]
-missing = PROMISED - {what for _, what, _, _ in blocks}
-for what in wrong:
-    print(f"FAILED umat/README.md, block {what}: not what it should be; renew with tests/umat/test_readme.py --write")
-for what in missing:
-    print(f"FAILED umat/README.md: no block {what}")
-print(f"{len(blocks) - len(wrong)} passed, {len(wrong) + len(missing)} failed")
-sys.exit(bool(wrong or missing))

@@ -5,16 +5,11 @@ The recipe of Spack is run here by stand-ins for the directives of Spack; script
 """
 import re
 import sys
-import pathlib
 import types
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import check, finish, root  # noqa: E402
+from checking import check, root
 
 read = lambda name: (root / name).read_text(encoding="utf-8")  # noqa: E731
-OPTIONS = set(re.findall(r"^option\((MUD_\w+) ", read("CMakeLists.txt") + read("common/CMakeLists.txt"), re.MULTILINE))
-CMAKE = re.search(r"cmake_minimum_required\(VERSION ([\d.]+)", read("CMakeLists.txt"))[1]
-PYTHON = re.search(r"sys.version_info < \((\d+), (\d+)\)", read("scripts/python_environment.sh")).groups()
 
 
 class CMakePackage:
@@ -51,31 +46,41 @@ def spack():
     return scope["Mud"], told
 
 
-recipe, told = spack()
-variants = {first: more["default"] for name, first, more in told if name == "variant"}
-needs = {first: more for name, first, more in told if name == "depends_on"}
-check("Spack: the recipe is one of CMake, with a version and a licence", issubclass(recipe, CMakePackage) and
-      {"version", "license"} <= {name for name, *_ in told}, told)
-recipe.chosen = variants
-usual = dict(recipe().cmake_args())
-check("Spack: what it defines are options of CMakeLists.txt", set(usual) <= OPTIONS, set(usual) - OPTIONS)
-for variant in variants:
-    recipe.chosen = {**variants, variant: not variants[variant]}
-    changed = [name for name, value in recipe().cmake_args() if value != usual[name]]
-    check(f"Spack: the variant {variant} switches one option", len(changed) == 1, changed)
-unknown = [more["when"] for more in needs.values() if more.get("when", "+host").strip("+~") not in variants]
-check("Spack: what is needed sometimes depends on a variant that there is", not unknown, unknown)
-check("Spack: compilers, CMake and Python are those that the build needs",
-      {"c", "fortran", f"cmake@{CMAKE}:", "python@{}.{}:".format(*PYTHON), "lapack"} <= set(needs), needs)
-# HDF5 and the host need libraries of their own.
-check("Spack: the host brings its sparse solver, HDF5 its Fortran interface",
-      needs["suite-sparse"].get("when") == "+host" and needs["hdf5+fortran"].get("when") == "+hdf5", needs)
+def test_spack_the_recipe_is_one_of_cmake_with_a_version_and_a_licence():
+    OPTIONS = set(
+    re.findall(
+        r"^option\((MUD_\w+) ",
+        read("CMakeLists.txt") +
+        read("common/CMakeLists.txt"),
+         re.MULTILINE))
+    CMAKE = re.search(r"cmake_minimum_required\(VERSION ([\d.]+)", read("CMakeLists.txt"))[1]
+    PYTHON = re.search(r"sys.version_info < \((\d+), (\d+)\)", read("scripts/python_environment.sh")).groups()
 
-text = read("packaging/conda/recipe.yaml")
-defined = dict(re.findall(r"-D(MUD_\w+)=(\w+)", text))
-check("conda: what it defines are options of CMakeLists.txt", defined and set(defined) <= OPTIONS, defined)
-check("conda: CMake and Python are those that the build needs",
-      f"cmake >={CMAKE}" in text and "python >={}.{}".format(*PYTHON) in text, text)
-check("conda: without the host it needs no sparse solver, and without HDF5 none of it",
-      defined["MUD_BUILD_HOST"] == defined["MUD_WITH_HDF5"] == "OFF" and "suitesparse" not in text, text)
-finish()
+    recipe, told = spack()
+    variants = {first: more["default"] for name, first, more in told if name == "variant"}
+    needs = {first: more for name, first, more in told if name == "depends_on"}
+    check("Spack: the recipe is one of CMake, with a version and a licence", issubclass(recipe, CMakePackage) and
+          {"version", "license"} <= {name for name, *_ in told}, told)
+    recipe.chosen = variants
+    usual = dict(recipe().cmake_args())
+    check("Spack: what it defines are options of CMakeLists.txt", set(usual) <= OPTIONS, set(usual) - OPTIONS)
+    for variant in variants:
+        recipe.chosen = {**variants, variant: not variants[variant]}
+        changed = [name for name, value in recipe().cmake_args() if value != usual[name]]
+        check(f"Spack: the variant {variant} switches one option", len(changed) == 1, changed)
+    unknown = [more["when"] for more in needs.values() if more.get("when", "+host").strip("+~") not in variants]
+    check("Spack: what is needed sometimes depends on a variant that there is", not unknown, unknown)
+    check("Spack: compilers, CMake and Python are those that the build needs",
+          {"c", "fortran", f"cmake@{CMAKE}:", "python@{}.{}:".format(*PYTHON), "lapack"} <= set(needs), needs)
+
+    # HDF5 and the host need libraries of their own.
+    check("Spack: the host brings its sparse solver, HDF5 its Fortran interface",
+          needs["suite-sparse"].get("when") == "+host" and needs["hdf5+fortran"].get("when") == "+hdf5", needs)
+
+    text = read("packaging/conda/recipe.yaml")
+    defined = dict(re.findall(r"-D(MUD_\w+)=(\w+)", text))
+    check("conda: what it defines are options of CMakeLists.txt", defined and set(defined) <= OPTIONS, defined)
+    check("conda: CMake and Python are those that the build needs",
+          f"cmake >={CMAKE}" in text and "python >={}.{}".format(*PYTHON) in text, text)
+    check("conda: without the host it needs no sparse solver, and without HDF5 none of it",
+          defined["MUD_BUILD_HOST"] == defined["MUD_WITH_HDF5"] == "OFF" and "suitesparse" not in text, text)

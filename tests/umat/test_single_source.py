@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: MIT
 """The library as one source file compiles alone and is, bit by bit, the library; called as Abaqus calls a UMAT."""
-import os
 import pathlib
 import re
 import subprocess
 import sys
 import tempfile
 
-root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2]).resolve()
-build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release").resolve()
+from checking import build, check, root
+
 cache = dict(re.findall(r"^(\w+):\w+=(.*)$", (build / "CMakeCache.txt").read_text(encoding="utf-8"), re.MULTILINE))
 built = build / "umat/mud_umat_single.f90"
 WARNINGS = ["-std=f2018", "-Wall", "-Wextra", "-Wuse-without-only", "-Werror"]
@@ -65,7 +64,7 @@ def refusal(folder):
     return done.stderr if done.returncode and not (copy / "out.f90").exists() else ""
 
 
-def main():
+def test_one_file_is_the_library():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         alone = folder / "alone"
@@ -105,14 +104,5 @@ def main():
             ("all its bits are those of the library", one == many and near(many), f"{one[:500]}\n{many[:500]}"),
             ("a list out of order is refused with the module's name", "uses mud_kinds" in refusal(folder),
              refusal(folder))]
-        failed = 0
         for sentence, good, why in checks:
-            if not good:
-                failed += 1
-                print(f"FAILED {sentence}: {why}".rstrip())
-        print(f"{len(checks) - failed} passed, {failed} failed")
-    return failed > 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+            check(sentence, good, why)

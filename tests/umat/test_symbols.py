@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The archive keeps nothing between calls but which sentences were said, and offers what mud.h promises."""
 import os
-import pathlib
 import re
 import subprocess
-import sys
 
-root = pathlib.Path(os.environ.get("MUD_SOURCE_DIR") or pathlib.Path(__file__).parents[2])
-build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
-preset = os.environ.get("MUD_PRESET") or build.name
+from checking import build, check, preset, root
+
 
 WRITABLE = "BbCcDdGgSs"  # nm's letters of .bss, common and .data, global or local
 # Descriptors that gfortran makes of every derived type. It never writes them, but does not mark them read-only either.
@@ -47,41 +44,39 @@ def promised():
 OF_MFRONT = re.compile(r"MUD_(StressSaturation_)?[A-Za-z_]+$")
 
 
-archive = build / "umat/libmud.a"
-found = symbols(archive)
-defined = {name for _, letter, name in found if letter == "T"}
-names = promised()
-failures, passed = [], 0
+def test_the_archive_keeps_nothing_and_offers_what_is_promised():
+    archive = build / "umat/libmud.a"
+    found = symbols(archive)
+    defined = {name for _, letter, name in found if letter == "T"}
+    names = promised()
 
-# Fewer functions than the first version of the header had would mean that the expression above no longer reads it.
-checks = [("mud.h: fewer than 12 functions found", len(names) < 13)]
-checks += [(f"{name} is not a defined global symbol", name not in defined) for name in sorted(names)]
-# A C name that no header promises would collide with other people's: gfortran's own begin with __.
-checks += [(f"{name} is global but no promised name", name not in names)
-           for name in sorted(defined) if not name.startswith(("__mud_", "_GLOBAL_")) and not OF_MFRONT.match(name)]
-if preset == "sanitize":
-    print("note: writable data is not looked for here, because the sanitizers add their own (1 check fewer)")
-else:
-    fixed = constants(archive)
-    writable = [(member, letter, name) for member, letter, name in found
-                if letter in WRITABLE and not DESCRIPTOR.match(name) and name != SAID and name not in fixed]
-    for member, letter, name in writable:
-        print(f"  {member}: {name} ({letter})")
-    checks.append((f"{SAID} is not there: the exception is for nothing", SAID not in {name for _, _, name in found}))
-    once = subprocess.run(["nm", "--undefined-only", archive], check=True, capture_output=True, text=True).stdout
-    once = once[once.index("mud_once.f90.o:"):].split("\n\n")[0]
-    checks.append(("mud_once needs a run-time library for its atomic operations",
-                   bool(re.search(r"GOMP|omp_|atomic", once))))
-    code = subprocess.run(["objdump", "-d", archive], check=True, capture_output=True, text=True).stdout
-    code = code[code.index("<__mud_once_MOD_first_time>:"):].split("\n\n")[0]
-    checks.append(("the exchange in mud_once is not atomic", os.uname().machine == "x86_64" and "lock " not in code))
-    checks.append((f"{len(writable)} writable symbols: state between calls, and threads that share it", bool(writable)))
+    # Fewer functions than the first version of the header had would mean that the expression above no longer reads it.
+    checks = [("mud.h: fewer than 12 functions found", len(names) < 13)]
+    checks += [(f"{name} is not a defined global symbol", name not in defined) for name in sorted(names)]
 
-for text, wrong in checks:
-    if wrong:
-        failures.append(text)
-        print(f"FAILED {archive.name} ({preset}): {text}")
+    # A C name that no header promises would collide with other people's: gfortran's own begin with __.
+    checks += [(f"{name} is global but no promised name", name not in names)
+               for name in sorted(defined) if not name.startswith(("__mud_", "_GLOBAL_")) and not OF_MFRONT.match(name)]
+    if preset == "sanitize":
+        print("note: writable data is not looked for here, because the sanitizers add their own (1 check fewer)")
     else:
-        passed += 1
-print(f"{passed} passed, {len(failures)} failed")
-sys.exit(bool(failures))
+        fixed = constants(archive)
+        writable = [(member, letter, name) for member, letter, name in found
+                    if letter in WRITABLE and not DESCRIPTOR.match(name) and name != SAID and name not in fixed]
+        for member, letter, name in writable:
+            print(f"  {member}: {name} ({letter})")
+        checks.append((f"{SAID} is not there: the exception is for nothing",
+                      SAID not in {name for _, _, name in found}))
+        once = subprocess.run(["nm", "--undefined-only", archive], check=True, capture_output=True, text=True).stdout
+        once = once[once.index("mud_once.f90.o:"):].split("\n\n")[0]
+        checks.append(("mud_once needs a run-time library for its atomic operations",
+                       bool(re.search(r"GOMP|omp_|atomic", once))))
+        code = subprocess.run(["objdump", "-d", archive], check=True, capture_output=True, text=True).stdout
+        code = code[code.index("<__mud_once_MOD_first_time>:"):].split("\n\n")[0]
+        checks.append(("the exchange in mud_once is not atomic",
+     os.uname().machine == "x86_64" and "lock " not in code))
+        checks.append(
+    (f"{len(writable)} writable symbols: state between calls, and threads that share it", bool(writable)))
+
+    for text, wrong in checks:
+        check(text, not wrong)

@@ -6,14 +6,10 @@ import pathlib
 import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, finish  # noqa: E402
+sys.path.append(str(pathlib.Path(__file__).parents[1] / "support"))
+from checking import build, check, needs_plain_library
 
-if os.environ.get("MUD_PRESET") == "sanitize":
-    print("note: a Python without sanitizers cannot load a library with them; the other builds call the doors")
-    check("the library is built", (build / "umat/libmud.so").exists())
-    finish()
-plain = {name: value for name, value in os.environ.items() if not name.startswith("MUD_")}
+needs_plain_library()
 INTS, DOUBLES, POINTER = ctypes.c_int, ctypes.c_double, ctypes.c_void_p
 
 
@@ -61,17 +57,20 @@ def host(door, p_atm):
             assert other[0] < -99.0   # no NaN
 
 
-if len(sys.argv) == 3:
-    host(sys.argv[1], float(sys.argv[2]))
-    sys.exit()
+def test_warns_once_of_p_atm_in_pa_among_kpa():
+    plain = {name: value for name, value in os.environ.items() if not name.startswith("MUD_")}
 
-for door in ("MFront", "user_mod_", "vumat_"):
-    done = subprocess.run([sys.executable, __file__, door, "101325"], capture_output=True, text=True, env={
-        **plain, "MUD_BUILD_DIR": str(build)})
-    check(f"{door} warns once of p_atm in Pa among kPa", done.returncode == 0 and done.stderr.count("\n") == 1 and
-          f"remark of {door} at" in done.stderr and "do all PROPS have the unit of stress of p_atm?" in done.stderr,
-          done.stdout + done.stderr)
-    done = subprocess.run([sys.executable, __file__, door, "101.325"], capture_output=True, text=True, env={
-        **plain, "MUD_BUILD_DIR": str(build)})
-    check(f"{door} says nothing of p_atm in kPa", done.returncode == 0 and done.stderr == "", done.stdout + done.stderr)
-finish()
+    for door in ("MFront", "user_mod_", "vumat_"):
+        done = subprocess.run([sys.executable, __file__, door, "101325"], capture_output=True, text=True, env={
+            **plain, "MUD_BUILD_DIR": str(build)})
+        check(f"{door} warns once of p_atm in Pa among kPa", done.returncode == 0 and done.stderr.count("\n") == 1 and
+              f"remark of {door} at" in done.stderr and "do all PROPS have the unit of stress of p_atm?" in done.stderr,
+              done.stdout + done.stderr)
+        done = subprocess.run([sys.executable, __file__, door, "101.325"], capture_output=True, text=True, env={
+            **plain, "MUD_BUILD_DIR": str(build)})
+        check(f"{door} says nothing of p_atm in kPa", done.returncode ==
+              0 and done.stderr == "", done.stdout + done.stderr)
+
+
+if __name__ == '__main__':
+    host(sys.argv[1], float(sys.argv[2]))

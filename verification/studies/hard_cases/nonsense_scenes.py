@@ -23,7 +23,7 @@ SUITE = HERE.parents[2] / "tests/host/test_host_nonsense.py"
 
 
 def block(first):
-    done = subprocess.run([sys.executable, SUITE], capture_output=True, text=True,
+    done = subprocess.run([sys.executable, "-m", "pytest", "-s", SUITE], capture_output=True, text=True,
                           env={**os.environ, "MUD_PRESET": "release", "MUD_NONSENSE": str(BLOCK), "MUD_NONSENSE_FIRST": str(first),
                                "MUD_NONSENSE_SECONDS": str(RUNNING),
                                "MUD_NONSENSE_RUN": str(EVERY), "MUD_NONSENSE_TOGETHER": "1"})
