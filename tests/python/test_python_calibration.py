@@ -293,7 +293,8 @@ def test_the_fit_finds_h_0_and_n_d_again():
         path.read_text(),
     )
     done = subprocess.run([build / "drivers/mud_triax", root / "drivers/cases/undrained_e833_p100.nml",
-                           "--material", path, "--output", work / "typed.csv", "--quiet"], capture_output=True, text=True)
+                           "--material", path, "--output", work / "typed.csv", "--quiet"],
+                          capture_output=True, text=True)
     check("mud_triax takes the material file", done.returncode == 0 and (work / "typed.csv").exists(), done.stderr)
     lines = [line for line in path.read_text().splitlines()
              if " = " in line and "name" not in line and "reference" not in line]
