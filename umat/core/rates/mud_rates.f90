@@ -6,7 +6,7 @@
 module mud_rates
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
-   use mud_tensor, only: IDENTITY, trace, deviator, norm
+   use mud_tensor, only: IDENTITY, ddot, trace, deviator, norm
    use mud_elastic, only: bulk_modulus, shear_modulus, swelling_slope
    use mud_bonding, only: bonding, UNBONDED
    use mud_critical_state, only: state_parameter, bounding_ratio, dilatancy_ratio, bounding_norm
@@ -68,28 +68,24 @@ contains
       d_norm = norm(d_strain)
       call evaluate_point(par, bonded, sigma, e, p_c, z, r_in, w)
 
-      w%loading = .false.
-      if (present(near)) then
-         w%loading = near%loading .and. .not. near%several   ! of several roots the first counts
-         w%n = near%n
-      end if
+      call start_direction(near, w)
       w%iso_kept = .false.
-      w%iso_active = .false.
-      w%k_e = w%k
-      w%b_rate = 0.0_wp
-      call load(par, d_v, d_e, d_norm, mode, w)
-      w%iso_drive = w%iso%a*w%d_p/w%p + w%iso%b*d_pc
-      if (w%iso_drive > 0.0_wp) then
-         w%iso_active = .true.
-         w%k_e = w%k/(1.0_wp + w%k*w%iso%a/w%p)
-         w%b_rate = w%iso%b*d_pc
-         call load(par, d_v, d_e, d_norm, mode, w)
-         if (w%iso%a*w%d_p/w%p + w%b_rate < 0.0_wp) then
-            w%iso_kept = .true.
-            w%iso_active = .false.
-            w%k_e = w%k
-            w%b_rate = 0.0_wp
-            call load(par, d_v, d_e, d_norm, mode, w)
+      w%iso_drive = -1.0_wp
+      if (present(near)) then
+         ! where nothing but dp' drives the mechanism
+         if (near%iso_active .and. abs(w%iso%b*d_pc) <= 0.0_wp) then
+            call load(par, d_v, d_e, d_norm, d_pc, mode, .true., w)
+            if (is_certain(par, d_v, d_e, w)) w%iso_drive = w%iso%a*w%d_p/w%p
+            if (w%iso_drive <= 0.0_wp) call start_direction(near, w)
+         end if
+      end if
+      if (w%iso_drive <= 0.0_wp) then
+         call load(par, d_v, d_e, d_norm, d_pc, mode, .false., w)
+         w%iso_drive = w%iso%a*w%d_p/w%p + w%iso%b*d_pc
+         if (w%iso_drive > 0.0_wp) then
+            call load(par, d_v, d_e, d_norm, d_pc, mode, .true., w)
+            w%iso_kept = w%iso%a*w%d_p/w%p + w%b_rate < 0.0_wp
+            if (w%iso_kept) call load(par, d_v, d_e, d_norm, d_pc, mode, .false., w)
          end if
       end if
 
@@ -97,6 +93,34 @@ contains
       w%d_z = fabric_rate(par, w%l, w%d, w%n, z)
       w%d_eps_q = SQRT_2_3*w%l
    end subroutine rate_at
+
+   !> The direction of a rate of nearly the same state is where to begin.
+   pure subroutine start_direction(near, w)
+      type(rate_t), intent(in), optional :: near
+      type(rate_t), intent(inout) :: w
+
+      w%loading = .false.
+      if (.not. present(near)) return
+      w%loading = near%loading .and. .not. near%several   ! of several roots the first counts
+      w%n = near%n
+   end subroutine start_direction
+
+   !> True where the sign of the drive of the isotropic mechanism, which acts, would be the same if it did not: where the
+   !> drive vanishes both have the same solution, so that between them it vanishes nowhere as long as there is one root
+   !> and no cap, which depends on K_e, and x does not pass its floor between either t and the root.
+   !> docs/theory/material.md section 4.5.
+   pure logical function is_certain(par, d_v, d_e, w)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: d_v, d_e(6)
+      type(rate_t), intent(in) :: w
+      real(wp) :: t(6)
+
+      is_certain = .not. (w%several .or. w%no_root .or. w%capped_d .or. w%capped_h)
+      if (.not. (is_certain .and. w%loading)) return
+      t = 2.0_wp*w%g*d_e - (w%k*d_v)*w%r
+      is_certain = (ddot(w%r_moved, w%t) < par%x_floor*w%t_norm .eqv. w%floored) .and. &
+                   (ddot(w%r_moved, t) < par%x_floor*norm(t) .eqv. w%floored)
+   end function is_certain
 
    !> What depends on the state alone.
    pure subroutine evaluate_point(par, bonded, sigma, e, p_c, z, r_in, w)
@@ -127,15 +151,25 @@ contains
       end if
    end subroutine evaluate_point
 
-   !> Loading index, direction and rate of p' for the present choice of the isotropic mechanism (k_e, b_rate).
-   pure subroutine load(par, d_v, d_e, d_norm, mode, w)
+   !> Loading index, direction and rate of p' with or without the isotropic mechanism.
+   pure subroutine load(par, d_v, d_e, d_norm, d_pc, mode, active, w)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: d_v, d_e(6), d_norm   !< volumetric and deviatoric strain rate, norm of the whole [-]
+      real(wp), intent(in) :: d_pc                  !< suction rate [kPa]
       integer, intent(in) :: mode
+      logical, intent(in) :: active      !< The isotropic mechanism acts.
       type(rate_t), intent(inout) :: w   !< w%loading: w%n is the direction for another choice
       real(wp) :: volumetric, terms
       logical :: known
 
+      w%iso_active = active
+      if (active) then
+         w%k_e = w%k/(1.0_wp + w%k*w%iso%a/w%p)
+         w%b_rate = w%iso%b*d_pc
+      else
+         w%k_e = w%k
+         w%b_rate = 0.0_wp
+      end if
       volumetric = w%k_e*(d_v - w%b_rate)
       w%t = 2.0_wp*w%g*d_e - w%r*volumetric
       w%t_norm = norm(w%t)
