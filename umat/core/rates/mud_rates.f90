@@ -105,9 +105,9 @@ contains
       w%n = near%n
    end subroutine start_direction
 
-   !> True where the sign of the drive of the isotropic mechanism, which acts, would be the same if it did not: where the
-   !> drive vanishes both have the same solution, so that between them it vanishes nowhere as long as there is one root
-   !> and no cap, which depends on K_e, and x does not pass its floor between either t and the root.
+   !> True where the sign of the drive of the isotropic mechanism, which acts, would be the same if it did not: where
+   !> the drive vanishes both have the same solution, so that between them it vanishes nowhere as long as there is one
+   !> root and no cap, which depends on K_e, and x does not pass its floor between either t and the root.
    !> docs/theory/material.md section 4.5.
    pure logical function is_certain(par, d_v, d_e, w)
       type(params_t), intent(in) :: par
