@@ -3,8 +3,8 @@
 program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit, int64
    use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
-   use answer_verification, only: history_t, read_history, differences, force_error_t, compare_forces
-   use answer_errors, only: write_answers, print_answers, judge_answers
+   use answer_verification, only: history_t, read_history, differences
+   use answer_errors, only: worst_unknown, write_answers, print_answers, judge_answers
    use changed_scenes, only: read_changed
    use checkpoints, only: read_checkpoint
    use kinds, only: wp
@@ -31,7 +31,9 @@ program mud_host
    use scene_warnings, only: list_warnings
    use idle_keys, only: WARNING_LENGTH
    use time_stepping, only: run_stages
+   use unknown_fields, only: DISPLACEMENTS
    use files, only: limits_are_errors, folder_of, make_folder
+   use force_answers, only: force_answer_t, list_forces, measure_forces
    use faults, only: fault_t, raise, EXIT_INPUT
    use texts, only: short, whole
    implicit none (type, external)
@@ -58,7 +60,7 @@ program mud_host
    type(fault_t) :: fault
    type(pilots_account_t) :: pilots
    type(effect_t), allocatable :: effects(:)
-   type(force_error_t), allocatable :: forces(:)
+   type(force_answer_t), allocatable :: forces(:)
    logical :: quiet, only_check, only_effects
    real(wp), parameter :: QUARTER_SHARE = 0.25_wp
    double precision :: t0
@@ -105,8 +107,9 @@ program mud_host
       if (output%resume) call read_checkpoint(restart, model, run, output%tables, fault)
       if (fault%code == 0) call run_stages(model, run, fault, output)
       if (fault%code == 0 .and. allocated(run%control%x_first)) then
-         allocate (forces(0))
-         if (option_given(options, '--verify')) call verify()
+         call list_forces(folder, model, run%control, worst_unknown(model, run%control), &
+                          maxval(run%assembly%scale, mask=model%dofs%field <= DISPLACEMENTS), forces, fault)
+         if (fault%code == 0 .and. option_given(options, '--verify')) call verify()
          if (fault%code == 0) call write_answers(folder, model, run%control, forces, fault)
          if (fault%code == 0 .and. .not. quiet) call print_answers(output_unit, model, run%control, &
                                                                    option_given(options, '--verify'), forces)
@@ -244,7 +247,7 @@ contains
       if (fault%code == 0) call read_history(folder, size(model%points), COLUMNS_OF_A_POINT, one, fault)
       if (fault%code == 0) call read_history(folder//'/verify', size(model%points), COLUMNS_OF_A_POINT, two, fault)
       if (fault%code == 0) run%control%point_largest = differences(one, two)
-      if (fault%code == 0) call compare_forces(folder, folder//'/verify', model%stages, forces, fault)
+      if (fault%code == 0) call measure_forces(folder, folder//'/verify', model, forces, fault)
    end subroutine verify
 
    !> Time that each part of the run took.

@@ -4,11 +4,11 @@
 module answer_errors
    use, intrinsic :: iso_fortran_env, only: error_unit
    use kinds, only: wp
-   use answer_verification, only: force_error_t
    use control_state, only: control_state_t, LIMIT_NAMES, BY_LARGEST, BY_SMALLEST
    use csv, only: csv_t, new_csv, write_row, close_csv
    use exit_codes, only: EXIT_ACCURACY
    use faults, only: fault_t, raise
+   use force_answers, only: force_answer_t
    use error_norms, only: PATH
    use generalised_alpha, only: DYNAMIC
    use model_types, only: model_t
@@ -17,7 +17,7 @@ module answer_errors
    use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: write_answers, print_answers, judge_answers
+   public :: worst_unknown, write_answers, print_answers, judge_answers
 
    real(wp), parameter :: NO_CHANGE = 1.0e-9_wp   !< Share of the field's largest change that is no change of an answer.
    !> Of an answer: the warning is given from here on. In dynamic stages the magnitudes of errors add up, to ten times
@@ -72,6 +72,35 @@ contains
       end do
    end function is_prescribed
 
+   !> Largest estimate of an unknown, as a share of its change: of the named points, and of all nodes together.
+   real(wp) function worst_unknown(model, control) result(worst)
+      type(model_t), intent(in) :: model
+      type(control_state_t), intent(in) :: control
+      real(wp) :: change, error
+      integer :: i, f
+
+      worst = 0.0_wp
+      do f = 1, FIELDS
+         do i = 1, size(model%points)
+            if (estimate(model, control, i, f, change, error)) then
+               if (is_answer(model, control, f, change)) worst = max(worst, error)
+            end if
+         end do
+         if (is_answer(model, control, f, control%scale(f))) worst = max(worst, control%largest(f)/control%scale(f))
+      end do
+   end function worst_unknown
+
+   !> Whether a change is large enough to be judged: more than Newton's tolerance of its field lets it err by.
+   pure logical function is_answer(model, control, field, change)
+      type(model_t), intent(in) :: model
+      type(control_state_t), intent(in) :: control
+      integer, intent(in) :: field
+      real(wp), intent(in) :: change   !< [m or kPa]
+
+      is_answer = change > minval(model%stages%tolerance)*control%scale(field) .and. &
+                  (field <= DISPLACEMENTS .or. change > LEAST_PRESSURE)
+   end function is_answer
+
    !> Judges every answer by its own change, of the fields where no point is named; an answer that changes by less than
    !> Newton's tolerance of its field is no answer. Given steps: a warning on standard error, also where the run is
    !> quiet, of the worst one beyond 10 % (30 % with dynamic stages). Controlled steps: fault EXIT_ACCURACY where the
@@ -80,7 +109,7 @@ contains
       type(model_t), intent(in) :: model
       type(control_state_t), intent(in) :: control
       logical, intent(in) :: verified   !< The errors are differences to a finer run.
-      type(force_error_t), intent(in) :: forces(:)   !< As compare_forces gives them.
+      type(force_answer_t), intent(in) :: forces(:)   !< As list_forces gives them.
       type(fault_t), intent(inout) :: fault
       character(*), parameter :: SHORTER = &
          'Leave dt out (steps are then controlled by their error) or shorten it; --verify measures the error.'
@@ -97,11 +126,12 @@ contains
       do f = 1, FIELDS
          do i = 1, size(model%points)
             if (.not. estimate(model, control, i, f, change, error)) cycle
-            if (change > minval(model%stages%tolerance)*control%scale(f) .and. &
-                (f <= DISPLACEMENTS .or. change > LEAST_PRESSURE)) &
+            if (is_answer(model, control, f, change)) &
                call compare(trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f)), error)
          end do
-         if (size(model%points) > 0 .or. f < DISPLACEMENTS .or. .not. control%scale(f) > 0.0_wp) cycle
+         ! A second run measures named answers alone.
+         if (size(model%points) > 0 .or. verified .and. size(forces) > 0) cycle
+         if (f < DISPLACEMENTS .or. .not. control%scale(f) > 0.0_wp) cycle
          if (f > DISPLACEMENTS .and. .not. control%scale(f) > LEAST_PRESSURE) cycle
          call compare('the '//trim(OF_ALL(max(f, DISPLACEMENTS)))//' (root mean square of all nodes)', &
                       control%largest(f)/control%scale(f))
@@ -164,7 +194,7 @@ contains
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model
       type(control_state_t), intent(in) :: control
-      type(force_error_t), intent(in) :: forces(:)   !< As compare_forces gives them; none without a second run.
+      type(force_answer_t), intent(in) :: forces(:)   !< As list_forces gives them.
       type(fault_t), intent(inout) :: fault
       type(csv_t) :: table
       real(wp) :: change, error
@@ -194,7 +224,7 @@ contains
       type(model_t), intent(in) :: model
       type(control_state_t), intent(in) :: control
       logical, intent(in) :: verified   !< The errors are differences to a run at a quarter of the accuracy.
-      type(force_error_t), intent(in) :: forces(:)   !< As compare_forces gives them.
+      type(force_answer_t), intent(in) :: forces(:)   !< As list_forces gives them.
       real(wp) :: change, error, share
       integer :: i, f
 

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Two runs of a scene compared: how far the histories of the named points, and the forces of the supports, lie apart.
+!> Two runs of a scene compared: how far the histories of the named points lie apart.
 !> docs/theory/host.md section 4.5.
 module answer_verification
    use kinds, only: wp
@@ -7,27 +7,18 @@ module answer_verification
    use faults, only: fault_t, raise, EXIT_OUTPUT
    use files, only: read_whole
    use history_distance, only: farthest
-   use output_tables, only: reactions_of
    use unknown_fields, only: FIELDS
-   use scene_types, only: stage_t
    implicit none (type, external)
    private
-   public :: history_t, read_history, differences, force_error_t, compare_forces
+   public :: history_t, read_history, differences, read_numbers, NAME_LENGTH
 
    integer, parameter :: NAME_LENGTH = 160         !< Characters of the name of a column.
-   integer, parameter :: TIME_OF_FORCES = 2        !< Column of a table of reactions.
-   real(wp), parameter :: NO_FORCE = 1.0e-3_wp     !< Share of the stage's largest change of a force that is none.
 
    type :: history_t
       real(wp), allocatable :: time(:)             !< [s]
       real(wp), allocatable :: x(:, :, :)          !< (FIELDS, points, rows)
    end type history_t
 
-   !> A force of a support in two runs.
-   type :: force_error_t
-      character(NAME_LENGTH) :: name = ''          !< "stage: group.force_z".
-      real(wp) :: change = 0.0_wp, error = 0.0_wp  !< Largest change [kN]; largest distance as a share of it [-].
-   end type force_error_t
 contains
    !> The histories that a run has written. Fault EXIT_OUTPUT: histories.csv of the folder cannot be read.
    subroutine read_history(folder, points, columns, history, fault)
@@ -79,43 +70,6 @@ contains
       end if
       if (.not. good) call raise(fault, EXIT_OUTPUT, path//' cannot be read back for the comparison of the two runs.')
    end subroutine read_numbers
-
-   !> Forces of the supports of every stage, from two runs of a scene: largest change, and
-   !> largest distance as a share of it, at the times that the forces hold for. docs/theory/host.md section 4.5.
-   !> Fault EXIT_OUTPUT: reactions_STAGE.csv cannot be read.
-   subroutine compare_forces(folder, other_folder, stages, forces, fault)
-      character(*), intent(in) :: folder, other_folder
-      type(stage_t), intent(in) :: stages(:)
-      type(force_error_t), allocatable, intent(out) :: forces(:)
-      type(fault_t), intent(inout) :: fault
-      character(NAME_LENGTH), allocatable :: names(:)
-      real(wp), allocatable :: one(:, :), two(:, :), change(:)
-      logical :: there
-      integer :: i, k
-
-      allocate (forces(0))
-      do i = 1, size(stages)
-         inquire (file=reactions_of(folder, stages(i)%name), exist=there)
-         if (.not. there) cycle
-         call read_numbers(reactions_of(folder, stages(i)%name), names, one, fault)
-         if (fault%code == 0) call read_numbers(reactions_of(other_folder, stages(i)%name), names, two, fault)
-         if (fault%code /= 0) return
-         change = maxval(one, dim=2) - minval(one, dim=2)
-         where (.not. is_force(names)) change = 0.0_wp
-         do k = 1, size(names)
-            if (.not. change(k) > NO_FORCE*maxval(change)) cycle
-            forces = [forces, force_error_t(trim(stages(i)%name)//': '//names(k), change(k), &
-               abs(farthest(one(TIME_OF_FORCES, :), one(k, :), two(TIME_OF_FORCES, :), two(k, :)))/change(k))]
-         end do
-      end do
-   end subroutine compare_forces
-
-   !> Whether a column is a force of a support.
-   elemental logical function is_force(name)
-      character(*), intent(in) :: name
-
-      is_force = index(name, '.force_') > 0
-   end function is_force
 
    !> Largest distance of two histories at the times of the first, straight lines between the rows of the second. [m,
    !> kPa] docs/theory/host.md section 4.5.

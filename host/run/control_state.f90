@@ -3,6 +3,7 @@
 module control_state
    use kinds, only: wp
    use error_norms, only: rate_memory_t, new_memory
+   use force_errors, only: force_memory_t, FORCE_NUMBERS, numbers_of_force, take_force
    use step_control, only: controller_t
    use unknown_fields, only: FIELDS
    implicit none (type, external)
@@ -36,6 +37,7 @@ module control_state
       real(wp) :: dissipated_0 = 0.0_wp          !< By damping and seepage where the stage began [kJ].
       real(wp) :: motion = 0.0_wp                !< Kinetic energy over the time of the stage [kJ s].
       real(wp), allocatable :: touching(:)       !< 1: the contact was closed at the start of the step, else 0.
+      type(force_memory_t), allocatable :: thrust(:)   !< Of the contacts.
       logical :: located = .false.               !< The attempt before was repeated to end where a contact closes.
       ! Of the fields at the named points, (FIELDS, points).
       real(wp), allocatable :: low(:, :), high(:, :), point_gathered(:, :), point_largest(:, :)
@@ -50,6 +52,7 @@ contains
       state%memory = new_memory(FIELDS, nodes, points)
       allocate (state%x_first(FIELDS, nodes), source=0.0_wp)
       allocate (state%touching(contacts), source=0.0_wp)
+      allocate (state%thrust(contacts))
       allocate (state%low(FIELDS, named), source=huge(1.0_wp))
       allocate (state%high(FIELDS, named), source=-huge(1.0_wp))
       allocate (state%point_gathered(FIELDS, named), state%point_largest(FIELDS, named), source=0.0_wp)
@@ -60,20 +63,22 @@ contains
       type(control_state_t), intent(in) :: state   !< After new_control_state.
 
       n = SCALARS + 4*FIELDS + LIMITS + size(state%x_first) + size(state%memory%rate) &
-          + size(state%memory%s_rate) + 4*size(state%low) + size(state%touching)
+          + size(state%memory%s_rate) + 4*size(state%low) + size(state%touching) + FORCE_NUMBERS*size(state%thrust)
    end function count_of_numbers
 
    !> Everything as one list, for a checkpoint. Each number in its own unit, in the order that take_numbers reads.
    pure function numbers_of(state) result(list)
       type(control_state_t), intent(in) :: state
       real(wp) :: list(count_of_numbers(state))
+      integer :: i
 
       associate (c => state%controller, m => state%memory)
          list = [c%dt, c%last_ratio, merge(1.0_wp, 0.0_wp, c%held), state%t_sudden, real(state%fresh, wp), &
                  state%start_up, real(state%rejected, wp), merge(1.0_wp, 0.0_wp, m%known), m%dt, &
                  m%span, state%dissipated_0, state%motion, state%unseen, state%scale, state%gathered, &
                  state%largest, state%limits, state%touching, state%x_first, m%rate, m%s_rate, state%low, &
-                 state%high, state%point_gathered, state%point_largest]
+                 state%high, state%point_gathered, state%point_largest, &
+                 (numbers_of_force(state%thrust(i)), i=1, size(state%thrust))]
       end associate
    end function numbers_of
 
@@ -81,7 +86,7 @@ contains
    subroutine take_numbers(list, state)
       real(wp), intent(in) :: list(:)   !< (count_of_numbers)
       type(control_state_t), intent(inout) :: state
-      integer :: at
+      integer :: at, i
 
       associate (c => state%controller, m => state%memory)
          c%dt = list(1)
@@ -110,6 +115,10 @@ contains
          call take(state%high)
          call take(state%point_gathered)
          call take(state%point_largest)
+         do i = 1, size(state%thrust)
+            call take_force(list(at + 1:at + FORCE_NUMBERS), state%thrust(i))
+            at = at + FORCE_NUMBERS
+         end do
       end associate
    contains
       subroutine take_row(values)

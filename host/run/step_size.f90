@@ -5,7 +5,8 @@ module step_size
    use kinds, only: wp
    use contact_interfaces, only: probe_contacts
    use control_state, only: new_control_state, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
-   use error_norms, only: keep_rates, shift_rates, local_errors, remember, forget, rms
+   use error_norms, only: keep_rates, shift_rates, local_errors, remember, forget, constant_of_accelerations, rms
+   use force_errors, only: force_error, remember_force
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, QUASI_STATIC, DYNAMIC
    use model_types, only: model_t
    use run_state, only: run_t
@@ -267,8 +268,9 @@ contains
       end associate
    end function ends_at_closing
 
-   !> The next attempt ends where a contact closes, which is looked for along the motion that keeps its accelerations:
-   !> exact for bodies in free flight. Where that motion closes none the step stays as its error asks for.
+   !> The next attempt ends where a contact closes, if that is shorter than what its error asks for. The time is looked
+   !> for along the motion that keeps its accelerations: exact for bodies in free flight. Where that motion closes none
+   !> the step stays as its error asks for.
    subroutine end_where_it_closes(dt, run)
       real(wp), intent(in) :: dt   !< That was tried [s].
       type(run_t), intent(inout) :: run
@@ -287,7 +289,9 @@ contains
          end if
       end do
       ! Much nearer than what the error asks for: such a step may hold the closing as well.
-      if (shut > EVENT*run%control%controller%dt) run%control%controller%dt = shut
+      associate (dt_next => run%control%controller%dt)
+         if (shut > EVENT*dt_next) dt_next = min(dt_next, shut)
+      end associate
    contains
       logical function closes_after(time)
          real(wp), intent(in) :: time   !< [s]
@@ -433,6 +437,19 @@ contains
       end associate
    end function ratios_of_points
 
+   !> Error of the thrust of a contact in the dynamic step under way [kN].
+   pure real(wp) function error_of_thrust(stage, dt, run, contact) result(error)
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: dt         !< [s]
+      type(run_t), intent(in) :: run
+      integer, intent(in) :: contact     !< Its number.
+
+      associate (scheme => make_scheme(stage%kind, stage%rho_inf, dt))
+         error = force_error(run%control%thrust(contact), PEAK*constant_of_accelerations(scheme), dt, &
+                             run%next%time - (1 - scheme%l_f)*dt, run%system%contacts%interfaces(contact)%thrust)
+      end associate
+   end function error_of_thrust
+
    !> What impacts that have left errors of a pressure, `used` times the accuracy, leave to a step: less as they use the
    !> budget up, then a reserve, and nothing where the promise of the accuracy would be broken.
    pure real(wp) function pressure_left(used) result(left)
@@ -559,6 +576,19 @@ contains
                *max(0.0_wp, dissipated(model, run) - c%dissipated_0)/c%motion)
             kept(DISPLACEMENTS + 1:) = min(kept(AT_U_R), before/after)
          end if
+         do i = 1, size(c%thrust)
+            associate (scheme => make_scheme(stage%kind, stage%rho_inf, after - before), &
+                       thrust => run%system%contacts%interfaces(i)%thrust)
+               if (stage%kind == DYNAMIC) then
+                  call remember_force(c%thrust(i), error_of_thrust(stage, after - before, run, i), kept(AT_U_R), &
+                                      run%next%time - (1 - scheme%l_f)*(after - before), thrust)
+               else
+                  ! Nothing of it counts in a motion to come.
+                  call remember_force(c%thrust(i), 0.0_wp, 0.0_wp, run%next%time, thrust)
+                  c%thrust(i)%known = 0
+               end if
+            end associate
+         end do
          c%scale = scales(run, size(run%state%x, 2) - size(model%domain%bodies))
          c%gathered = kept*c%gathered + norm
          c%largest = max(c%largest, c%gathered)

@@ -206,8 +206,10 @@ def test_given_steps_stay():
         check(f"prescribed displacement, {name}: runs", done.returncode == 0, done.stderr)
         forces[name] = tables.columns(work / f"push{name}/reactions_push.csv")["top_1.force_z"]
         if words:
-            check(f"prescribed displacement, {name}: is no answer", not estimated(work / f"push{name}")
-                  and "all nodes, displacements" in done.stdout and "Not estimated" not in done.stdout, done.stdout)
+            check(f"prescribed displacement, {name}: is no answer, what it takes is",
+                  all(word.startswith("push: ") for word in estimated(work / f"push{name}"))
+                  and "push: top_1.force_z" in estimated(work / f"push{name}") and "Not estimated" not in done.stdout
+                  and "all nodes, displacements" in done.stdout, done.stdout)
     for name in ("1e-1", "1e-2"):
         miss = abs(forces[name][-1]/forces["fine"][-1] - 1)
         check(f"prescribed displacement, {name}: force", miss < 0.5*float(name), (miss, len(forces[name])))
@@ -240,6 +242,10 @@ def test_fall_speed_of_the_reference():
         miss = np.abs(landing(work / "drop")/exact - 1)
         check(f"fall, {accuracy}: speed, thrust and settlement", done.returncode == 0 and max(miss) < float(accuracy),
               (miss, done.stderr))
+        # Forces and thrusts are answers; that of the axis is none, since no support is there but the symmetry.
+        found = estimated(work / "drop")
+        check(f"fall, {accuracy}: forces and thrusts are answers", found["face.thrust"] >= found["centre.u_z"] > 0 and
+              "fall: bottom.force_z" in found and "fall: left.force_r" not in found, found)
         # Where the contact closes follows from free fall: a step ends there.
         times = tables.columns(work / "drop/ledger.csv")["time"]
         touch = np.sqrt(2*0.02/9.81)
@@ -259,6 +265,13 @@ def test_a_missed_accuracy_its_code_the_last_line_names_answer_cause():
         word in done.stderr.splitlines()[-1] for word in ("was asked for", "kept short by", "results are written",
                                                           "top.u_z", "Ask for an accuracy of")), done.stderr)
     check("a missed accuracy: its answers are written", estimated(work / "missed")["top.u_z"] > 3e-3, "")
+    # A force is judged like any other answer: no point is named here, and the second run begins with a quarter of the
+    # step.
+    unnamed = SWING[:SWING.index("&point")].replace("dt = 0.005", "dt = 0.1")
+    done = run(written("force", unnamed), work / "force", "--accuracy", "1e-3", "--verify")
+    check("--verify: a force misses the accuracy",
+          done.returncode == MISSED and "measured error of swing: " in done.stderr and ".force_" in done.stderr
+          and estimated(work / "force")["swing: bottom.force_z"] > 3e-3, done.stderr)
     done = run(written("met", SWING), work / "met", "--accuracy", "1e-2")
     check("an accuracy that is met ends with 0", done.returncode == 0, done.stderr)
 
