@@ -7,6 +7,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
+from point_walk import Soil  # noqa: E402
 from tools import results, runner, tables  # noqa: E402
 from tools.bench import ROOT, Bench  # noqa: E402
 from tools.page import Tolerance  # noqa: E402
@@ -16,9 +17,15 @@ PUBLISHED, DEFAULT = "published (classic, rho_e 0)", "default"
 PARAMETERS = {PUBLISHED: {"memory_rule": 0, "rho_e": 0.0}, DEFAULT: {}}
 DRIVER = {PUBLISHED: "   memory_rule = 'classic'\n   rho_e = 0.0\n", DEFAULT: ""}
 
+
 NONE = Tolerance("recorded for the same paths", absolute=0.0)
 AGAIN = Tolerance("the recorded value has 5 digits; other compilers round otherwise and the integration is good to 1e-5 a substep", relative=2e-3,
                   absolute=1e-6)
+
+
+def soils():
+    """The materials of the two columns, for mud_walk."""
+    return {name: Soil(p.get("memory_rule"), p.get("rho_e")) for name, p in PARAMETERS.items()}
 
 
 def make(script):

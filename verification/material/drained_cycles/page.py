@@ -2,7 +2,7 @@
 """Volumetric and axial strain of many drained stress cycles."""
 import recorded
 from point_steps import MIDDLE
-from point_walk import Path, Soil, Walker
+from point_walk import Path, Walker
 from tools.page import Page, Script
 from tools.pictures import COLOURS
 
@@ -15,10 +15,6 @@ PAGE = Page(
 MAKES = (Script("make_results.py", ("results.csv",), 3),)
 
 CENTRES, AMPLITUDE, CYCLES = (0.0, -30.0), 10.0, 1000
-
-
-def soils():
-    return {name: Soil(p.get("memory_rule"), p.get("rho_e")) for name, p in recorded.PARAMETERS.items()}
 
 
 def path(soil, centre, rows_at, cycles=CYCLES):
@@ -44,7 +40,7 @@ def strains(rows):
 
 def measure(bench, marks=(10, 100, 1000)):
     walker, found = Walker(bench.build), {}
-    runs = {(centre, name): walker.start(path(soil, centre, marks, max(marks))) for centre in CENTRES for name, soil in soils().items()}
+    runs = {(centre, name): walker.start(path(soil, centre, marks, max(marks))) for centre in CENTRES for name, soil in recorded.soils().items()}
     for centre in CENTRES:
         for k, quantity in enumerate(("axial", "volumetric")):
             for i in marks:
@@ -68,7 +64,7 @@ def draw(bench, _, plt):
     at = sorted({round(10 ** (k / 8)) for k in range(25)})
     figure, axes = plt.subplots(1, 2, figsize=(10, 4.2))
     for axis, centre in zip(axes, CENTRES):
-        for (name, soil), colour in zip(soils().items(), COLOURS):
+        for (name, soil), colour in zip(recorded.soils().items(), COLOURS):
             found = strains(walker.run(path(soil, centre, at)))
             for k, (quantity, style) in enumerate((("axial", "--"), ("volumetric", "-"))):
                 axis.semilogx(list(found), [v[k] for v in found.values()], style, color=colour, label=f"{quantity}, {name.split(' (')[0]}")

@@ -3,7 +3,7 @@
 import math
 
 import recorded
-from point_walk import Path, Soil, Walker
+from point_walk import Path, Walker
 from tools.page import Page, Script
 from tools.pictures import COLOURS
 
@@ -20,10 +20,6 @@ MAKES = (Script("make_results.py", ("results.csv",), 3),)
 TOP, VOID_RATIOS, STARTS, OCRS = 400.0, (0.85, 0.75, 0.65), (1.0, 20.0), (1, 2, 4, 8, 16)
 SIN_PHI = 3 * 1.25 / (6 + 1.25)
 LITERATURE = "Jaky; Mayne & Kulhawy"
-
-
-def soils():
-    return {name: Soil(p.get("memory_rule"), p.get("rho_e")) for name, p in recorded.PARAMETERS.items()}
 
 
 def path(soil, e, start):
@@ -46,7 +42,7 @@ def k0(row):
 
 def measure(bench):
     walker, found = Walker(bench.build), {}
-    runs = {(e, start, name): walker.start(path(soil, e, start)) for start in STARTS for e in VOID_RATIOS for name, soil in soils().items()}
+    runs = {(e, start, name): walker.start(path(soil, e, start)) for start in STARTS for e in VOID_RATIOS for name, soil in recorded.soils().items()}
     for start in STARTS:
         for e in VOID_RATIOS:
             for ocr in OCRS:
@@ -74,7 +70,7 @@ def draw(bench, _, plt):
     figure, axes = plt.subplots(1, 2, figsize=(10, 4.2))
     for axis, start in zip(axes, STARTS):
         for e, colour in zip(VOID_RATIOS, COLOURS):
-            for (name, soil), style in zip(soils().items(), ("--", "-")):
+            for (name, soil), style in zip(recorded.soils().items(), ("--", "-")):
                 rows = walker.run(path(soil, e, start))
                 axis.semilogx([r["stress"][0] for r in rows], [k0(r) for r in rows], style, color=colour,
                               label=f"e {e}, {name.split(' (')[0]}")

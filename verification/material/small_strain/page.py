@@ -4,7 +4,7 @@ import math
 
 import recorded
 from point_steps import ACROSS, MIDDLE, times
-from point_walk import Path, Soil, Walker
+from point_walk import Path, Walker
 from tools.page import Page, Script
 from tools.pictures import COLOURS
 
@@ -53,13 +53,9 @@ def darendeli(size, pressure=1.0, cycles=10, frequency=1.0):
     return ratio, least + (0.6329 - 0.0057 * math.log(cycles)) * ratio ** 0.1 * masing
 
 
-def soils():
-    return {name: Soil(p.get("memory_rule"), p.get("rho_e")) for name, p in recorded.PARAMETERS.items()}
-
-
 def measure(bench):
     walker, found = Walker(bench.build), {}
-    runs = {(size, name): walker.start(cycle(soil, size)) for size in SIZES for name, soil in soils().items()}
+    runs = {(size, name): walker.start(cycle(soil, size)) for size in SIZES for name, soil in recorded.soils().items()}
     for k, quantity in enumerate(("G/G_max", "damping [%]")):
         for size in SIZES:
             found[f"{quantity} at {size:.0e}", LITERATURE] = darendeli(size)[k]
@@ -83,7 +79,7 @@ def draw(bench, _, plt):
     figure, axes = plt.subplots(1, 2, figsize=(10, 4.2))
     sizes = [10 ** (-6 + k / 4) for k in range(17)]
     curves = {LITERATURE: [darendeli(size) for size in sizes]}
-    for name, soil in soils().items():
+    for name, soil in recorded.soils().items():
         runs = walker.run_all([cycle(soil, size) for size in sizes])
         curves[name] = [stiffness_damping(rows, size) for rows, size in zip(runs, sizes)]
     for (name, values), colour, style in zip(curves.items(), ("black", COLOURS[0], COLOURS[1]), ("--", "-", "-")):
