@@ -14,9 +14,13 @@ module mud_params
    implicit none (type, external)
    private
    public :: params_t, scanning_t, read_params, completed, is_length, check_bounds, default_props
-   public :: NO_FLOOR, NOT_SCANNING
+   public :: NO_FLOOR, NOT_SCANNING, STRICTNESS
 
    real(wp), parameter :: NO_FLOOR = 1.0e-15_wp   !< The only floor of (r - r_in):n with the guard off [-].
+
+   !> The share of the tolerance that the scheme automatic allows to substeps of third order: they are long, and their
+   !> errors are what their estimate says, while those of modified Euler are smaller [-].
+   real(wp), parameter :: STRICTNESS = 0.3_wp
 
    ! Side by side: an update checks them every time, and entries of PROPERTIES are several hundred bytes apart.
    real(wp), parameter :: LOWER(NPROPS) = PROPERTIES%lower, UPPER(NPROPS) = PROPERTIES%upper
@@ -54,6 +58,9 @@ module mud_params
       integer :: scheme, tangent, max_substeps
       integer :: shear_order   !< Of umat_ alone: 0 as 12, 13, 23, 1 as 12, 23, 13.
       real(wp) :: tolerance, h_min
+      !> What a substep of modified Euler is of one of third order where both have the error that they may have, and the
+      !> rates change by their own size within the same strain; docs/theory/integration.md section 2 [-].
+      real(wp) :: second_share
       real(wp) :: rho_e     !< Radius of the elastic domain, 0: none [-].
       logical :: hysteresis
       real(wp) :: p_aw, n_w, m_w, b_d, b_w   !< Those left to others have their values.
@@ -151,6 +158,7 @@ contains
       params%j_exp = props(P_J_EXP)
       params%scheme = whole(props(P_SCHEME))
       params%tolerance = props(P_TOLERANCE)
+      params%second_share = min(sqrt(params%tolerance)*(STRICTNESS*params%tolerance)**(-1.0_wp/3.0_wp), 1.0_wp)
       params%h_min = props(P_H_MIN)
       params%max_substeps = whole(props(P_MAX_SUBSTEPS))
       params%tangent = whole(props(P_TANGENT))

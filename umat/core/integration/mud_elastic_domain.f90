@@ -11,7 +11,7 @@ module mud_elastic_domain
    implicit none (type, external)
    private
    public :: turning_t, exit_share, changes_of_exit, loading_direction, turning_at, combination_t, &
-             combination_of_turning, changes_of_turning
+             combination_of_turning
 
    !> The direction nu at one pseudo-time.
    type :: turning_t
@@ -104,25 +104,8 @@ contains
       end associate
    end function turning_at
 
-   !> Its changes with d (which stays on the sphere) and the increment. All [-]. Derivative of
+   !> What the changes of nu with d, which stays on the sphere, and the increment are made of. All [-]. Derivative of
    !> docs/theory/memory-rules.md section 4.2.
-   pure function changes_of_turning(turning, d_changes, increment_changes) result(changes)
-      type(turning_t), intent(in) :: turning
-      type(tensors_t), intent(in) :: d_changes, increment_changes
-      real(wp) :: changes(LANES, 6)
-      type(combination_t) :: by
-      integer :: i, j
-
-      call combination_of_turning(turning, d_changes, increment_changes, by)
-      do j = 1, LANES
-         do i = 1, 6
-            changes(j, i) = by%of_d*d_changes%of(j, i) + by%of_increment*increment_changes%of(j, i) &
-                            + by%along_d(j)*turning%d(i) + by%along_u(j)*turning%u(i)
-         end do
-      end do
-   end function changes_of_turning
-
-   !> What these changes are made of. All [-]; docs/theory/memory-rules.md section 4.2.
    pure subroutine combination_of_turning(turning, d_changes, increment_changes, by)
       type(turning_t), intent(in) :: turning
       type(tensors_t), intent(in) :: d_changes, increment_changes

@@ -4,7 +4,7 @@ module mud_error_control
    use mud_cutoff, only: MODE_HELD
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
-   use mud_params, only: params_t
+   use mud_params, only: params_t, STRICTNESS
    use mud_rate, only: rate_t
    use mud_rates, only: MODE_ORDINARY
    use mud_registry, only: SCHEME_AUTOMATIC
@@ -12,13 +12,11 @@ module mud_error_control
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
-   public :: control_t, judge_attempt, proposal, changes_root, STRICTNESS
+   public :: control_t, judge_attempt, proposal, changes_root
 
-   !> The share of the tolerance that the scheme automatic allows to substeps of third order: they are long, and their
-   !> errors are what their estimate says, while those of modified Euler are smaller. Across a kink of the rates the
-   !> estimate misses a part of the error: that share again, but not below LEAST_ACROSS, where substeps would become
-   !> shorter than their minimum [-].
-   real(wp), parameter :: STRICTNESS = 0.3_wp, ACROSS_KINK = 0.3_wp, LEAST_ACROSS = 1.0e-11_wp
+   !> Across a kink of the rates the estimate of third order misses a part of the error: this share of the tolerance
+   !> again, but not below LEAST_ACROSS, where substeps would become shorter than their minimum [-].
+   real(wp), parameter :: ACROSS_KINK = 0.3_wp, LEAST_ACROSS = 1.0e-11_wp
    !> An error that has fallen by less than this power of the size is that of a jump of the rates: of a smooth substep
    !> the power is the order, at least 2, and so it is across a kink [-].
    real(wp), parameter :: FIRST_ORDER = 1.5_wp

@@ -10,7 +10,6 @@ module mud_order
    use mud_rates, only: MODE_ORDINARY
    use mud_registry, only: SCHEME_AUTOMATIC
    use mud_relaxation, only: relaxation_t, relaxation_speed, new_relaxation
-   use mud_error_control, only: STRICTNESS
    use mud_sensitivity, only: changes_of_rate
    use mud_substep, only: SECOND_ORDER, THIRD_ORDER, AS_SECOND_ORDER, LINEARLY_IMPLICIT, step_factor
    use mud_tensor, only: LANES, tensors_t, ZERO_TENSORS
@@ -20,7 +19,7 @@ module mud_order
    use mud_linearise, only: linearised_t
    implicit none (type, external)
    private
-   public :: choose_stepping, choose_order, second_share, next_size, LAST_SLIVER
+   public :: choose_stepping, choose_order, next_size, LAST_SLIVER
 
    !> A substep is linearly implicit where the stiff direction would relax by more than this in it, as a rate: explicit
    !> pairs are unstable from 2 to 3.3 on. It remains so down to less [-].
@@ -58,7 +57,7 @@ contains
    pure subroutine choose_order(par, rest, h, share, inc, trial)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: rest, h
-      real(wp), intent(in) :: share     !< second_share, 0: third order whatever the size [-]
+      real(wp), intent(in) :: share     !< par%second_share, 0: third order whatever the size [-]
       type(increment_t), intent(inout) :: inc
       type(trial_t), intent(in) :: trial
 
@@ -70,22 +69,13 @@ contains
       end if
    end subroutine choose_order
 
-   !> What a substep of modified Euler is of one of third order where both have the error that they may have, and the
-   !> rates change by their own size within the same strain [-].
-   pure real(wp) function second_share(par)
-      type(params_t), intent(in) :: par
-
-      second_share = min(sqrt(par%tolerance)*(STRICTNESS*par%tolerance)**(-1.0_wp/3.0_wp), 1.0_wp)
-   end function second_share
-
    !> The size that an attempt h proposes for the next, as one of third order with the scheme automatic. Where one
    !> substep of third order did a whole increment or phase, and modified Euler would have done, it is the size that
    !> pair would propose. Shares of inc [-].
-   pure real(wp) function next_size(par, inc, trial, share, h, factor, whole) result(size)
+   pure real(wp) function next_size(par, inc, trial, h, factor, whole) result(size)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
-      real(wp), intent(in) :: share    !< second_share [-]
       real(wp), intent(in) :: h, factor
       logical, intent(in) :: whole     !< h was accepted and is all of inc
       real(wp) :: error
@@ -93,10 +83,10 @@ contains
       size = h*factor
       if (par%scheme /= SCHEME_AUTOMATIC .or. trial%mode == MODE_HELD) return
       if (inc%scheme%order == SECOND_ORDER%order) then
-         size = size/share
+         size = size/par%second_share
       else if (whole .and. inc%scheme%first_same_as_last) then
          error = error_norm(par, AS_SECOND_ORDER, trial, h)
-         size = max(size, step_factor(AS_SECOND_ORDER, error, par%tolerance, .true.)*h/share)
+         size = max(size, step_factor(AS_SECOND_ORDER, error, par%tolerance, .true.)*h/par%second_share)
       end if
    end function next_size
 

@@ -11,7 +11,7 @@ module mud_substepping
    use mud_increment, only: increment_t, void_ratio_at, suction_at, direction_at
    use mud_integration, only: integration_t, record
    use mud_landing, only: EVENT_TOLERANCE
-   use mud_order, only: choose_stepping, choose_order, second_share, next_size, LAST_SLIVER
+   use mud_order, only: choose_stepping, choose_order, next_size, LAST_SLIVER
    use mud_params, only: params_t
    use mud_registry, only: SCHEME_AUTOMATIC
    use mud_state, only: state_t
@@ -33,7 +33,6 @@ module mud_substepping
       real(wp) :: planned    !< Before the phase cut it short, in units of strain, 0: none.
       real(wp) :: error      !< Of the last attempt.
       real(wp) :: factor     !< That its error allows on its size.
-      real(wp) :: share      !< second_share.
       logical :: turns       !< The elastic domain turns sharply: third order.
       integer :: elastic     !< Substeps without a direction so far.
       type(control_t) :: control
@@ -71,7 +70,7 @@ contains
          call try_substep(par, step, h, it)
          if (it%status%code /= MUD_OK) return
 
-         step%h = next_size(par, it%inc, it%trial, step%share, h, step%factor, h >= it%inc%to - it%inc%from)
+         step%h = next_size(par, it%inc, it%trial, h, step%factor, h >= it%inc%to - it%inc%from)
          call stop_at_event(par, it%inc, step%error, h, it%trial, it%counters, it%event)
          if (it%trial%w(1)%no_root) step%elastic = step%elastic + 1
          if (step%elastic > 1 .and. par%guarded) then
@@ -107,7 +106,7 @@ contains
             return
          end if
          step%h = max(step%h, par%h_min)
-         call choose_order(par, rest, step%h, merge(0.0_wp, step%share, step%turns), it%inc, it%trial)
+         call choose_order(par, rest, step%h, merge(0.0_wp, par%second_share, step%turns), it%inc, it%trial)
          h = step%h
          if (h*(1.0_wp + LAST_SLIVER) >= rest) h = rest
          if (it%trial%relaxation%speed > 0.0_wp) then
@@ -138,7 +137,7 @@ contains
          it%counters%reject = it%counters%reject + 1
          call record(par, h, step%error, it%trial%y(1:6), SUBSTEP_REJECTED, it)
          may_grow = .false.
-         step%h = next_size(par, it%inc, it%trial, step%share, h, min(step%factor, 0.9_wp), .false.)
+         step%h = next_size(par, it%inc, it%trial, h, min(step%factor, 0.9_wp), .false.)
          step%planned = step%h*it%size
       end do
    end subroutine try_substep
@@ -170,12 +169,11 @@ contains
 
       length = it%inc%to - it%inc%from
       turn = turn_of(it%inc)
-      step%share = 1.0_wp
-      if (par%scheme == SCHEME_AUTOMATIC) step%share = second_share(par)
       step%turns = turn > SHARP
       step%elastic = 0
       step%planned = it%state%last_step
-      share = merge(1.0_wp, step%share, step%turns)   ! of the pair that is tried first
+      ! of the pair that is tried first
+      share = merge(par%second_share, 1.0_wp, par%scheme == SCHEME_AUTOMATIC .and. .not. step%turns)
       step%h = length/share
       ! an elastic phase goes in one step if it can, and leaves the remembered step to the next plastic one
       if (it%state%last_step > 0.0_wp .and. .not. it%inc%inside) step%h = min(step%h, it%state%last_step/it%size)
