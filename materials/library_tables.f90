@@ -3,7 +3,8 @@
 module library_tables
    use, intrinsic :: iso_c_binding, only: c_int, c_null_char
    use kinds, only: wp
-   use mud_interface, only: mud_version, mud_count, mud_index, mud_text, mud_option, mud_bounds, mud_bounds_for, &
+   use mud_interface, only: mud_version, mud_count, mud_prepared_size, mud_prepared_statev, mud_prepare, &
+                            mud_index, mud_text, mud_option, mud_bounds, mud_bounds_for, &
                             MUD_PROPS, &
                             MUD_STATEV, MUD_NAME, MUD_UNIT, MUD_ORIGIN, MUD_MEANING
    use texts, only: from_c, lower_case
@@ -33,8 +34,14 @@ contains
    end function property_count
 
    !> Number of entries of STATEV.
-   integer function state_count()
+   integer function state_count(props)
+      real(wp), intent(in) :: props(:)   !< All of them, checked.
+      real(wp) :: prepared(mud_prepared_size())
+      character(1) :: text(1)
+
       state_count = mud_count(MUD_STATEV)
+      if (mud_prepare(props, size(props), prepared, size(prepared), text(1), 0) == 0) &
+         state_count = mud_prepared_statev(prepared)
    end function state_count
 
    !> Place of a parameter in PROPS, from 1; 0 if there is none of that name.

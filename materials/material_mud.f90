@@ -6,10 +6,11 @@ module material_mud
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use key_schema, only: key_t, NONE
    use library_tables, only: property_count, property_index, property_name, property_range, &
-                             range_for, state_count, statev_index, statev_name, statev_unit
+                             range_for, statev_index, statev_name, statev_unit
    use material_point, only: material_t, response_t, report_t, remark_t, NAME_LENGTH, NO_PRESET
    use retention_curves, only: saturation_t
-   use mud_interface, only: mud_report, mud_blocks, mud_prepared_size, mud_prepare, mud_init, mud_update, &
+   use mud_interface, only: mud_report, mud_blocks, mud_prepared_size, mud_prepared_statev, mud_prepare, mud_init, &
+                            mud_update, &
                             mud_saturation, mud_save_increment, mud_message, MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, &
                             MUD_TANGENT_CONSISTENT
    use namelists, only: group_t
@@ -93,7 +94,7 @@ contains
       law%e_0 = law%props(property_index('e_0'))
       law%n_guards = size(GUARDS)
       law%guard_names(:size(GUARDS)) = GUARDS
-      law%n_state = state_count()
+      law%n_state = mud_prepared_statev(law%prepared)
       allocate (law%state_names(law%n_state), law%state_units(law%n_state))
       do i = 1, law%n_state
          law%state_names(i) = statev_name(i)

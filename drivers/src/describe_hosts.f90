@@ -148,8 +148,8 @@ contains
       write (output_unit, '(2a)') '*User material, constants=', whole(size(material%props))
       call print_cards(material%props)
       write (output_unit, '(a)') '*Depvar'
-      write (output_unit, '(2a)') whole(state_count()), ','
-      do i = 1, state_count()
+      write (output_unit, '(2a)') whole(state_count(material%props)), ','
+      do i = 1, state_count(material%props)
          write (output_unit, '(*(a))') whole(i), ', ', statev_name(i), ', "', text(MUD_STATEV, i - 1, MUD_MEANING), '"'
       end do
    end subroutine print_abaqus
@@ -165,7 +165,7 @@ contains
          '*MATERIAL, NAME=@ABAQUS_MUD'
       write (output_unit, '(2a)') '*USER MATERIAL, CONSTANTS=', whole(size(material%props))
       call print_cards(material%props)
-      write (output_unit, '(a)') '*DEPVAR', whole(state_count())
+      write (output_unit, '(a)') '*DEPVAR', whole(state_count(material%props))
    end subroutine print_calculix
 
    !> One entry of "properties", with the Variables that carry the soil.
@@ -178,7 +178,7 @@ contains
 
       props = material%props
       if (.not. by_udsm) props(property_index('shear_order')) = 1.0_wp
-      allocate (state(state_count()), source=0.0_wp)
+      allocate (state(state_count(material%props)), source=0.0_wp)
       write (output_unit, '(a)') '{"properties": [{', '   "model_part_name": "PorousDomain.Soil",', &
          '   "properties_id": 1,', '   "Material": {'
       write (output_unit, '(3a)') '      "constitutive_law": {"name": "SmallStrain', merge('UDSM', 'UMAT', by_udsm), &
@@ -246,8 +246,8 @@ contains
       integer :: i
 
       stress = EXAMPLE_STRESS*material%unit%factor
-      write (output_unit, '(a)') '6', (exact(stress), i=1, 3), '0.0', '0.0', '0.0', whole(state_count())
-      do i = 1, state_count()
+      write (output_unit, '(a)') '6', (exact(stress), i=1, 3), '0.0', '0.0', '0.0', whole(state_count(material%props))
+      do i = 1, state_count(material%props)
          if (statev_name(i) == 'void_ratio') then
             write (output_unit, '(a)') exact(material%props(property_index('e_0')))
          else

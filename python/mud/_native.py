@@ -90,6 +90,7 @@ _SIGNATURES = {
     "mud_validate_props": [c_void_p, c_int, c_char_p, c_int],
     "mud_convert_props": [c_void_p, c_int, c_double],
     "mud_prepared_size": [],
+    "mud_prepared_statev": [c_void_p],
     "mud_prepare": [c_void_p, c_int, c_void_p, c_int, c_char_p, c_int],
     "mud_init": [c_void_p, c_void_p, c_double, c_double, c_double, c_void_p, c_int, c_char_p, c_int],
     "mud_update": [c_void_p, c_void_p, c_void_p, c_int, c_void_p, c_double, c_int] + 4 * [c_void_p],

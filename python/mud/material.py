@@ -127,7 +127,7 @@ class Material(Points, Mapping):
     unknown parameter.
     """
 
-    _OWN = ("props", "title", "_storage", "_address")
+    _OWN = ("props", "title", "_storage", "_address", "_unused")
 
     def __init__(self, source: str | os.PathLike | None = None, /, **values: float | str):
         self.props = np.empty(len(parameters))  #: (n_parameters,) PROPS
@@ -152,6 +152,8 @@ class Material(Points, Mapping):
         if code != 0:
             raise fault_of(code, sentence)
         self._address = self._storage.ctypes.data
+        # numbers of STATEV that no point of this material has, in the outputs of an update
+        self._unused = slice(6 + _native.mud.mud_prepared_statev(self._address), 6 + len(states))
 
     def __setstate__(self, state: dict) -> None:
         self.__dict__.update(state)
@@ -284,6 +286,7 @@ class Material(Points, Mapping):
         if code != 0:
             raise fault_of(code, report=_native.Report.from_buffer_copy(report))
         end = end.copy()
+        end[self._unused] = 0.0
         return Response(end[:6], end[_STATE], end[_SLOPES] if kind else None, bytes(report))
 
     def save_increment(

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include "mud.h"
 
-enum { MAX = 128, POINTS = 400 };   /* room for PROPS and STATEV; points of a batch */
+enum { MAX = 160, POINTS = 400 };   /* room for PROPS and STATEV; points of a batch */
 
 static volatile long allocations;
 

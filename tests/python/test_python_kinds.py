@@ -32,7 +32,7 @@ def missed(table, material=sand, **settings):
     return misfits_of(task.items, answers)[0], next(iter(answers.values()))
 
 
-# Loops of retention with hysteresis: 72 points, rms 0.0158 (verification/material/hysteresis, by another program).
+# Loops of retention with hysteresis: 72 points, rms 0.0159 (verification/material/hysteresis, by another program).
 loops = {"file": root / "calibration/data/hostun_sand_retention_loops.csv", "kind": "retention"}
 
 
@@ -81,7 +81,7 @@ def test_small_strain_moduli_are_those_of_eq_3():
     _, answer = missed(written("liquefaction_stands.csv", head + "L,0.01,2,100,0.7\n"))
     check("a sample that stands counts as standing so long", abs(10 ** answer.columns["log_N"][0] - 9) < 1e-9, answer)
     told, _ = missed(loops, mud.Material("hostun_hysteresis"))
-    check("loops of retention are followed with hysteresis", abs(told.S_w - 0.0158) < 3e-4, told)
+    check("loops of retention are followed with hysteresis", abs(told.S_w - 0.0159) < 3e-4, told)
     told, _ = missed(loops, mud.Material("hostun_retention"))
     check("and missed without it", told.S_w > 0.1, told)
 

@@ -136,7 +136,7 @@ def test_the_state_begins_with_the_void_ratio_of_the_material():
         mud.state(state, "void_ratio") == 0.735 and mud.state(state, "fabric").shape == (6,),
     )
     answer = sand.update(stress, state, SHEAR, tangent="consistent")
-    direct = np.empty(6), np.empty(len(mud.states))
+    direct = np.empty(6), np.zeros(len(mud.states))
     library, material = ctypes.CDLL(str(build / "umat/libmud.so")), np.zeros(_native.mud.mud_prepared_size())
     pointer, number, count = ctypes.c_void_p, ctypes.c_double, ctypes.c_int
     library.mud_prepare.argtypes = [pointer, count, pointer, count, pointer, count]

@@ -83,7 +83,7 @@ static void *walk(void *argument)
 {
    walk_t *w = argument;
    double material[MAX_MATERIAL], stress[6], statev[MAX_STATEV];
-   const int nstatev = mud_count(MUD_STATEV);
+   int nstatev = 0;
    mud_blocks blocks;
    unsigned seed = w->seed;
 
@@ -91,8 +91,10 @@ static void *walk(void *argument)
    for (int i = 0; i < 6; i++)
       w->stress[i] = i < 3 ? -80.0 : 0.0;
    w->status = prepare(material);
-   if (w->status == MUD_OK)
+   if (w->status == MUD_OK) {
+      nstatev = mud_prepared_statev(material);
       w->status = mud_init(material, w->stress, 25.0, 0.0, 0.0, w->statev, nstatev, NULL, 0);
+   }
    for (int step = 0; step < STEPS && w->status == MUD_OK; step++) {
       double dstrain[6], *to_stress = w->in_place ? w->stress : stress, *to_statev = w->in_place ? w->statev : statev;
       for (int i = 0; i < 6; i++)

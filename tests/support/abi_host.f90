@@ -7,8 +7,9 @@ module abi_host
       MUD_TANGENT_ELASTIC
    use mud_kinds, only: wp
    use mud_params, only: default_props
-   use mud_registry, only: NPROPS, NSTATV, P_HYSTERESIS, P_MEMORY_RULE, P_SCHEME, P_X_0, P_X_REV, P_CAP_D, P_CAP_H, &
-      P_CUTOFF, RULE_CLASSIC, RULE_RETURN_POINT, SCHEME_OF_PAPER, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION
+   use mud_registry, only: NPROPS, NSTATV, NSTATV_WITHOUT_HYSTERESIS, P_HYSTERESIS, P_MEMORY_RULE, P_SCHEME, &
+      P_X_0, P_X_REV, P_CAP_D, P_CAP_H, P_CUTOFF, RULE_CLASSIC, RULE_RETURN_POINT, SCHEME_OF_PAPER, S_LAYOUT, &
+      S_VOID_RATIO, S_SATURATION, S_SUCTION
    use mud_tensor, only: is_finite
    use random_states, only: random_t, uniform, random_tensor
    implicit none (type, external)
@@ -269,7 +270,7 @@ contains
       code = mud_prepare(props, n_props, material, size(material), text, LONG)
       stress = stress0
       statev = statev0
-      if (code == 0 .and. n_statev >= NSTATV) then
+      if (code == 0 .and. n_statev >= NSTATV_WITHOUT_HYSTERESIS) then
          began = .true.
          if (is_finite(statev0(S_LAYOUT))) began = abs(statev0(S_LAYOUT)) > 0.0_wp
          if (.not. began) then

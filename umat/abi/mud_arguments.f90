@@ -5,7 +5,8 @@ module mud_arguments
    use mud_host_increment, only: suction_change
    use mud_kinds, only: wp
    use mud_params, only: completed, is_length
-   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NSTATV, P_SHEAR_ORDER, S_LAYOUT, S_SUCTION
+   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NSTATV_WITHOUT_HYSTERESIS, P_SHEAR_ORDER, &
+      S_LAYOUT, S_SUCTION
    use mud_status, only: fail, mud_status_t, MUD_OK, MUD_BAD_NTENS, MUD_NULL_ARGUMENT, MUD_BAD_NPROPS, MUD_BAD_NSTATV, &
       MUD_BAD_INPUT, ON_ARGUMENT, ON_PROPS, ON_STATEV, ON_ROTATION
    use mud_tensor, only: is_finite
@@ -74,12 +75,13 @@ contains
       if (n < 1) status = fail(MUD_BAD_NPROPS, ON_PROPS, 0, real(n, wp), &
                                     real(NPROPS_WITHOUT_HYSTERESIS, wp), real(NPROPS, wp))
       n = integer_at(nstatv_)
-      if (n < NSTATV) status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n, wp), real(NSTATV, wp), huge(1.0_wp))
+      if (n < NSTATV_WITHOUT_HYSTERESIS) &
+         status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n, wp), real(NSTATV_WITHOUT_HYSTERESIS, wp), huge(1.0_wp))
    end subroutine check_arguments
 
    !> True of a STATEV that has been initialised, by whatever layout. A layout that is not finite is no past.
    pure logical function has_past(statev)
-      real(wp), intent(in) :: statev(NSTATV)
+      real(wp), intent(in) :: statev(:)
 
       has_past = is_finite(statev(S_LAYOUT))
       if (has_past) has_past = abs(statev(S_LAYOUT)) > 0.0_wp
@@ -193,7 +195,7 @@ contains
    !> True if there is something to rotate: a rotation that is not exactly none, and numbers. False for a STATEV that is
    !> not finite: the update refuses it.
    pure logical function rotates(rotation, statev)
-      real(wp), intent(in) :: rotation(3, 3), statev(NSTATV)
+      real(wp), intent(in) :: rotation(3, 3), statev(:)
 
       rotates = any(abs(rotation - unit_matrix()) > 0.0_wp)
       if (rotates) rotates = all(is_finite(statev))
@@ -215,7 +217,7 @@ contains
    !> too large is handed on as it is.
    type(suction_t) function read_suction(predef, dpred, pnewdt, statev, props) result(suction)
       type(c_ptr), intent(in) :: predef, dpred, pnewdt
-      real(wp), intent(in) :: statev(NSTATV), props(:)
+      real(wp), intent(in) :: statev(:), props(:)
       real(wp) :: stored, unit
 
       suction = suction_t(something_at(predef), something_at(dpred))

@@ -7,10 +7,10 @@ module mud_batch
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_prepared, only: prepared_t, find_materials
-   use mud_registry, only: NSTATV, S_OPEN, S_SATURATION, S_SUCTION, S_VOID_RATIO
+   use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, S_OPEN, S_SATURATION, S_SUCTION, S_VOID_RATIO
    use mud_retention, only: saturation_t, saturation
    use mud_retention_point, only: state_saturation
-   use mud_state, only: E_LOWER, E_UPPER
+   use mud_state, only: statev_size, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, ON_STATEV, &
       ON_ARGUMENT
    use mud_tensor, only: is_finite
@@ -148,7 +148,7 @@ contains
       end select
       if (.not. complete) then
          status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
-      else if (given%n_statev < NSTATV) then
+      else if (given%n_statev < NSTATV_WITHOUT_HYSTERESIS) then
          status = fail(MUD_BAD_NSTATV, ON_STATEV)
       else if (given%n < 0 .or. kind_of(given%tangent) < 0) then
          status = fail(MUD_BAD_OPTION, ON_ARGUMENT)
@@ -216,6 +216,7 @@ contains
       logical, intent(out) :: raised
       type(report_t), intent(out) :: report
       real(wp) :: stress(6), begun(6), statev(NSTATV), suction, e, preset
+      integer :: n
 
       raised = .false.
       suction = number_at(arrays%suction, j)
@@ -224,12 +225,14 @@ contains
       begun = arrays%stress0(:, j)
       if (total) begun = effective_stress(begun, 0.0_wp, first_saturation(par, suction, e, preset), suction)
       stress = begun
-      call kernel_begin(par, begun, suction, e, statev, report, preset)
+      n = min(size(arrays%statev1, 1), NSTATV)
+      call kernel_begin(par, begun, suction, e, statev(:n), report, preset)
       if (report%status /= MUD_OK) return
+      n = min(n, statev_size(par%hysteresis))
       raised = any(abs(begun - stress) > 0.0_wp)
       if (total) begun = total_stress(begun, 0.0_wp, statev(S_SATURATION), suction)
       arrays%stress1(:, j) = begun
-      arrays%statev1(1:NSTATV, j) = statev
+      arrays%statev1(1:n, j) = statev(1:n)
       if (associated(arrays%s_w)) arrays%s_w(j) = statev(S_SATURATION)
    end subroutine begin_point
 
@@ -264,11 +267,12 @@ contains
       if (associated(arrays%strain)) strain = arrays%strain(:, j)
       suction = arrays%statev0(S_SUCTION, j)
       if (associated(arrays%suction)) suction = arrays%suction(j)
-      call host_increment(par, arrays%stress0(:, j), arrays%statev0(:NSTATV, j), strain, suction, int(tangent), &
+      call host_increment(par, arrays%stress0(:, j), arrays%statev0(:, j), strain, suction, int(tangent), &
                           output, report)
       if (report%status /= MUD_OK) return
       if (associated(arrays%stress1)) arrays%stress1(:, j) = output%stress
-      if (associated(arrays%statev1)) arrays%statev1(1:NSTATV, j) = output%statev
+      if (associated(arrays%statev1)) arrays%statev1(1:output%n_statev, j) = &
+         output%statev(1:output%n_statev)
       if (output%has_tangent) then
          if (associated(arrays%c)) arrays%c(:, :, j) = output%dsig_deps
          if (associated(arrays%c_pc)) arrays%c_pc(:, j) = output%dsig_dpc
@@ -290,7 +294,7 @@ contains
 
       suction = arrays%statev0(S_SUCTION, j)
       if (associated(arrays%suction)) suction = arrays%suction(j)
-      call state_saturation(par, arrays%statev0(:NSTATV, j), suction, sat, status)
+      call state_saturation(par, arrays%statev0(:, j), suction, sat, status)
       report = failed_report(status)
       if (status%code /= MUD_OK) return
       if (associated(arrays%s_w)) arrays%s_w(j) = sat%s_w

@@ -5,7 +5,7 @@ module mud_host_increment
    use mud_kernel, only: report_t, output_t, kernel_point, kernel_tangent, failed_report
    use mud_kinds, only: wp
    use mud_params, only: params_t
-   use mud_registry, only: NSTATV, STATE_LAYOUT, S_LAYOUT, S_SATURATION, S_SUCTION
+   use mud_registry, only: STATE_LAYOUT, S_LAYOUT, S_SATURATION, S_SUCTION
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_OPTION, MUD_BAD_STATE, ON_ARGUMENT, ON_STATEV
    use mud_tensor, only: is_finite
    use mud_total, only: effective_stress, total_stress, total_blocks
@@ -45,7 +45,8 @@ contains
    !> unit of p_atm. MUD_BAD_OPTION, MUD_BAD_STATE for a state that never began, else the codes of kernel_point.
    pure subroutine host_increment(par, stress, statev, d_strain, suction, options, output, report, trace)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: stress(6), statev(NSTATV), d_strain(6)
+      real(wp), intent(in) :: stress(6), d_strain(6)
+      real(wp), intent(in), contiguous :: statev(:)   !< Of at least the numbers without hysteresis.
       real(wp), intent(in) :: suction             !< At the end.
       integer, intent(in) :: options              !< A kind of tangent, perhaps with WITH_TOTAL_STRESS.
       type(output_t), intent(inout) :: output
@@ -77,7 +78,7 @@ contains
 
    !> Layout 0: no start has filled it. One that is not finite is refused elsewhere.
    pure logical function never_began(statev)
-      real(wp), intent(in) :: statev(NSTATV)
+      real(wp), intent(in) :: statev(:)
 
       never_began = is_finite(statev(S_LAYOUT))
       if (never_began) never_began = abs(statev(S_LAYOUT)) <= 0.0_wp

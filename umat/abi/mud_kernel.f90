@@ -10,10 +10,11 @@ module mud_kernel
    use mud_blocks, only: blocks_t
    use mud_start, only: initial_state
    use mud_rates, only: stress_ratio
-   use mud_registry, only: NSTATV, VARIABLES, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION, S_DSIGMA_DPC, &
-      S_DSW_DPC, S_DSW_DEV, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE
+   use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, VARIABLES, S_LAYOUT, S_VOID_RATIO, S_SATURATION, &
+      S_SUCTION, S_DSIGMA_DPC, &
+      S_DSW_DPC, S_DSW_DEV, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, S_TURNS
    use mud_scanning, only: check_curves, check_saturation
-   use mud_state, only: state_t, counters_t, pack_state, unpack_state, E_LOWER, E_UPPER
+   use mud_state, only: state_t, counters_t, pack_state, unpack_state, statev_size, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_BAD_STATE, MUD_BAD_INPUT, MUD_BAD_OPTION, &
       MUD_NOT_FINITE, ON_STATEV, ON_STRESS, ON_STRAIN, ON_SUCTION, ON_ARGUMENT
    use mud_tensor, only: is_finite, all_finite, norm, rotate
@@ -47,12 +48,13 @@ module mud_kernel
    !> What a successful update returns, UMAT conventions.
    type :: output_t
       real(wp) :: stress(6), statev(NSTATV)
+      integer :: n_statev   !< So many of statev are set.
       real(wp) :: dsig_deps(6, 6), dsig_dpc(6), dsw_deps(6), dsw_dpc
       logical :: has_tangent
    end type output_t
 contains
    !> Initialises a point. stress and statev are written on success only. Tension positive, stress and suction in the
-   !> unit of p_atm, void ratio [-]; statev(:) of at least NSTATV. Codes of read_params, else those of kernel_begin.
+   !> unit of p_atm, void ratio [-]; statev(:) as in kernel_begin. Codes of read_params, else those of kernel_begin.
    !> props(:) as read_params takes them.
    pure subroutine kernel_init(props, stress, suction, void_ratio, statev, report)
       real(wp), intent(in), contiguous :: props(:)
@@ -71,8 +73,8 @@ contains
       end if
    end subroutine kernel_init
 
-   !> The same for checked parameters. statev(:) has at least NSTATV entries, else MUD_BAD_NSTATV; MUD_BAD_STATE for a
-   !> saturation without hysteresis; otherwise the codes of initialise.
+   !> The same for checked parameters. statev(:) has the numbers of statev_size, else MUD_BAD_NSTATV; MUD_BAD_STATE
+   !> for a saturation without hysteresis; otherwise the codes of initialise.
    pure subroutine kernel_begin(par, stress, suction, void_ratio, statev, report, saturation)
       type(params_t), intent(in) :: par
       real(wp), intent(inout) :: stress(6)
@@ -86,13 +88,13 @@ contains
 
       preset = 0.0_wp
       if (present(saturation)) preset = saturation
-      if (size(statev) < NSTATV) status = wrong_nstatv(size(statev))
+      if (size(statev) < statev_size(par%hysteresis)) status = wrong_nstatv(size(statev), par%hysteresis)
       if (status%code == MUD_OK .and. .not. par%hysteresis) call refuse_preset(preset, status)
       if (status%code == MUD_OK) call initialise(par, stress, suction, void_ratio, preset, state, packed, status)
       report = failed_report(status)
       if (status%code /= MUD_OK) return
       stress = to_umat_stress(state%sigma)
-      statev(1:NSTATV) = packed
+      statev(1:statev_size(par%hysteresis)) = packed(1:statev_size(par%hysteresis))
    end subroutine kernel_begin
 
    !> Without hysteresis S_w is a function of suction and void ratio: another one of a start would be lost in silence.
@@ -107,7 +109,7 @@ contains
    end subroutine refuse_preset
 
    !> One increment of a material as PROPS give it. On failure output is undefined. Arguments as in kernel_point. Codes
-   !> of read_params, else those of kernel_point. props(:) as read_params takes them, statev(:) of at least NSTATV.
+   !> of read_params, else those of kernel_point. props(:) as read_params takes them.
    pure subroutine kernel_update(props, stress, statev, d_strain, suction, d_suction, tangent, output, report, trace)
       real(wp), intent(in), contiguous :: props(:)
       real(wp), intent(in) :: stress(6), d_strain(6), suction, d_suction
@@ -128,7 +130,7 @@ contains
       end if
    end subroutine kernel_update
 
-   !> The same for checked parameters. Tension positive; statev(:) of at least NSTATV entries, else MUD_BAD_NSTATV.
+   !> The same for checked parameters. Tension positive; statev(:) has the numbers of statev_size, else MUD_BAD_NSTATV.
    !> MUD_BAD_OPTION for an unknown tangent, codes of unpack_state or initial_state and of update_point. On failure
    !> output is undefined.
    pure subroutine kernel_point(par, stress, statev, d_strain, suction, d_suction, tangent, output, report, trace)
@@ -159,14 +161,14 @@ contains
          call update_point(par, state0, from_umat_strain(d_strain), d_suction, kind, state1, blocks, counters, &
                            reached, status, trace)
       end if
-      if (status%code == MUD_OK) call write_output(state1, blocks, counters, kind > 0, output, status)
+      if (status%code == MUD_OK) call write_output(par%hysteresis, state1, blocks, counters, kind > 0, output, status)
       report = report_of(status, counters, reached)
    end subroutine kernel_point
 
    !> Slopes with which a state goes on in a direction of strain and suction of any length. No strain: that in which the
    !> state strained last, as far as its elastic domain remembers it; of the suction only the sense counts then, for how
    !> fast it changes against a remembered strain nobody said. Only the blocks of output mean something. Tension
-   !> positive, stress in the unit of p_atm, statev(:) of at least NSTATV. MUD_BAD_INPUT for a direction that is not
+   !> positive, stress in the unit of p_atm. MUD_BAD_INPUT for a direction that is not
    !> finite, else the codes of kernel_point. docs/theory/integration.md sections 5.2 and 5.4.
    pure subroutine kernel_tangent(par, stress, statev, direction, suction, d_suction, output, report)
       type(params_t), intent(in) :: par
@@ -190,7 +192,7 @@ contains
       end if
       ahead = direction
       suction_ahead = d_suction
-      if (maxval(abs(direction)) <= 0.0_wp .and. size(statev) >= NSTATV) then
+      if (maxval(abs(direction)) <= 0.0_wp .and. size(statev) >= NSTATV_WITHOUT_HYSTERESIS) then
          ahead = statev(S_ELASTIC_DOMAIN:S_ELASTIC_DOMAIN + 5)*[-1.0_wp, -1.0_wp, -1.0_wp, -2.0_wp, -2.0_wp, -2.0_wp]
          if (.not. all(is_finite(ahead))) ahead = 0.0_wp   ! said by the update
          if (abs(d_suction) > 0.0_wp .and. maxval(abs(ahead)) > 0.0_wp) &
@@ -204,10 +206,11 @@ contains
       call kernel_point(par, stress, statev, ahead, suction, suction_ahead, LAST_RATE, output, report)
    end subroutine kernel_tangent
 
-   !> Rotates every tensor of STATEV by DROT, as Abaqus asks for. That drot is a rotation is not checked.
+   !> Rotates every tensor of STATEV by DROT, as Abaqus asks for. That drot is a rotation is not checked; statev(:) has
+   !> at least the numbers without hysteresis.
    pure subroutine rotate_statev(drot, statev)
       real(wp), intent(in) :: drot(3, 3)
-      real(wp), intent(inout) :: statev(NSTATV)
+      real(wp), intent(inout) :: statev(:)
       integer :: i, first
 
       do i = 1, size(VARIABLES)
@@ -234,8 +237,8 @@ contains
       real(wp), intent(inout) :: packed(NSTATV)   !< Totals so far.
       type(mud_status_t), intent(out) :: status
 
-      if (size(statev) < NSTATV) then
-         status = wrong_nstatv(size(statev))
+      if (size(statev) < statev_size(par%hysteresis)) then
+         status = wrong_nstatv(size(statev), par%hysteresis)
          return
       end if
       if (.not. is_finite(statev(S_LAYOUT))) then
@@ -245,22 +248,25 @@ contains
       if (abs(statev(S_LAYOUT)) <= 0.0_wp) then
          call initialise(par, stress, suction, statev(S_VOID_RATIO), statev(S_SATURATION), state, packed, status)
       else
-         call unpack_state(statev, state, status)
+         call unpack_state(statev, par%hysteresis, state, status)
          if (par%hysteresis .and. status%code == MUD_OK) then
             call check_saturation(par, state%p_c, state%e, state%s_w, status)
          end if
-         call copy_statev(statev, packed)
+         call copy_statev(par%hysteresis, statev, packed)
          state%sigma = -stress
          state%p_c = suction
       end if
    end subroutine read_state
 
-   !> All of STATEV at once: its length is known. Units as in mud_registry.
-   pure subroutine copy_statev(from, to)
-      real(wp), intent(in) :: from(NSTATV)
-      real(wp), intent(out) :: to(NSTATV)
+   !> The numbers of a point at once: their count is known. Units as in mud_registry; from and to have the numbers of
+   !> statev_size, and what is behind them stays.
+   pure subroutine copy_statev(hysteresis, from, to)
+      logical, intent(in) :: hysteresis
+      real(wp), intent(in), contiguous :: from(:)
+      real(wp), intent(inout), contiguous :: to(:)
 
-      to = from
+      to(1:NSTATV_WITHOUT_HYSTERESIS) = from(1:NSTATV_WITHOUT_HYSTERESIS)
+      if (hysteresis) to(S_TURNS:NSTATV) = from(S_TURNS:NSTATV)
    end subroutine copy_statev
 
    !> A state without a past; a void ratio of zero means that of the parameters, stress zero means p_min. Codes of
@@ -283,7 +289,7 @@ contains
       if (status%code /= MUD_OK) return
       call initial_state(par, -stress, e, suction, state, status, s_w)
       if (status%code == MUD_OK) call check_strength(par, state, status)
-      if (status%code == MUD_OK) call pack_state(state, counters_t(), packed)
+      if (status%code == MUD_OK) call pack_state(state, par%hysteresis, counters_t(), packed)
    end subroutine initialise
 
    !> A start far beyond the bounding surface, which no loading reaches: MUD_BAD_INPUT with q/p' and the largest that is
@@ -301,7 +307,8 @@ contains
    end subroutine check_strength
 
    !> From the core's results to UMAT conventions; a result that is not finite is a failure.
-   pure subroutine write_output(state, blocks, counters, has_tangent, output, status)
+   pure subroutine write_output(hysteresis, state, blocks, counters, has_tangent, output, status)
+      logical, intent(in) :: hysteresis
       type(state_t), intent(in) :: state
       type(blocks_t), intent(in) :: blocks
       type(counters_t), intent(in) :: counters
@@ -314,7 +321,8 @@ contains
       used = S_STACK - 1 + ENTRY_SIZE*state%memory%depth
       output%has_tangent = has_tangent
       output%stress = to_umat_stress(state%sigma)
-      call pack_state(state, counters, output%statev)
+      call pack_state(state, hysteresis, counters, output%statev)
+      output%n_statev = statev_size(hysteresis)
       output%dsw_deps = 0.0_wp
       output%dsw_deps(1:3) = -blocks%dsw_dev
       output%dsw_dpc = blocks%dsw_dpc
@@ -371,11 +379,12 @@ contains
       host_factor = merge(2.0_wp, 1.0_wp, status%subject == ON_STRAIN .and. status%index > 3)
    end function host_factor
 
-   pure function wrong_nstatv(n) result(status)
+   pure function wrong_nstatv(n, hysteresis) result(status)
       integer, intent(in) :: n
+      logical, intent(in) :: hysteresis
       type(mud_status_t) :: status
 
-      status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n, wp), real(NSTATV, wp), huge(1.0_wp))
+      status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n, wp), real(statev_size(hysteresis), wp), huge(1.0_wp))
    end function wrong_nstatv
 
    pure function report_of(status, counters, reached) result(report)

@@ -10,7 +10,8 @@ module mud_mfront
    use mud_messages, only: report_text
    use mud_params, only: params_t, read_params, completed
    use mud_refusals, only: place_t, say_refusal, remark_on_props, remark_on_pressure, save_if_asked
-   use mud_registry, only: NPROPS_WITHOUT_HYSTERESIS, NSTATV, S_VOID_RATIO, S_SATURATION, S_SUCTION
+   use mud_registry, only: NPROPS_WITHOUT_HYSTERESIS, NSTATV => NSTATV_WITHOUT_HYSTERESIS, &
+      S_VOID_RATIO, S_SATURATION, S_SUCTION
    use mud_retention, only: saturation_t, saturation
    use mud_state, only: E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_STATE, MUD_BAD_INPUT, MUD_BAD_OPTION, &
@@ -201,7 +202,7 @@ contains
       if (.not. has_past(point%state0)) call remark_on_props(completed(point%props), place_t(DOOR))
       if (.not. predicts) then
          call remark_on_pressure(output%stress, place_t(DOOR))
-         point%state1(1:NSTATV) = output%statev
+         point%state1(1:NSTATV) = output%statev(:NSTATV)
          stress = output%stress
          if (unsaturated) stress = total_stress(stress, 0.0_wp, output%statev(S_SATURATION), suction(2))
          point%force1(1:n) = stress(1:n)*MANDEL(1:n)

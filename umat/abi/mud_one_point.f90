@@ -7,7 +7,8 @@ module mud_one_point
    use mud_kinds, only: wp
    use mud_messages, only: report_text
    use mud_prepared, only: prepared_t, find_prepared
-   use mud_registry, only: NSTATV, S_SATURATION
+   use mud_registry, only: NSTATV_WITHOUT_HYSTERESIS, S_SATURATION
+   use mud_state, only: statev_size
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_NSTATV, MUD_BAD_OPTION, ON_ARGUMENT, &
       ON_STATEV
    use mud_to_host, only: put
@@ -130,17 +131,19 @@ contains
       type(start_t), intent(out) :: start
       type(mud_status_t), intent(out) :: status
       real(c_double), pointer, contiguous :: strain(:)
+      integer :: n
 
       call find_prepared(storage, start%material, status)
       if (.not. (c_associated(stress0) .and. c_associated(statev0) .and. &
                  (c_associated(dstrain) .or. is_present(tangent)))) status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
       if (status%code == MUD_OK .and. kind_of(tangent) < 0) &
          status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(tangent, wp))
-      if (status%code == MUD_OK .and. n_statev < NSTATV) &
-         status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n_statev, wp), real(NSTATV, wp), huge(1.0_wp))
+      if (status%code /= MUD_OK) return
+      n = statev_size(start%material%par%hysteresis)
+      if (n_statev < n) status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n_statev, wp), real(n, wp), huge(1.0_wp))
       if (status%code /= MUD_OK) return
       call c_f_pointer(stress0, start%stress, [6])
-      call c_f_pointer(statev0, start%statev, [NSTATV])
+      call c_f_pointer(statev0, start%statev, [n])
       if (.not. c_associated(dstrain)) return
       call c_f_pointer(dstrain, strain, [6])
       start%d_strain = strain
@@ -153,8 +156,8 @@ contains
 
       call c_f_pointer(stress1, array, [6])
       array = output%stress
-      call c_f_pointer(statev1, array, [NSTATV])
-      call copy_statev(output%statev, array)
+      call c_f_pointer(statev1, array, [output%n_statev])
+      call copy_statev(output%n_statev > NSTATV_WITHOUT_HYSTERESIS, output%statev, array)
    end subroutine give_state
 
    !> The slopes against strain and suction of stress only where a tangent was asked for.

@@ -4,7 +4,6 @@ module mud_pieces
    use mud_kernel, only: report_t, output_t, kernel_point
    use mud_kinds, only: wp
    use mud_params, only: params_t
-   use mud_registry, only: NSTATV
    use mud_status, only: MUD_OK
    implicit none (type, external)
    private
@@ -17,11 +16,12 @@ contains
    !> Arguments, units and codes as in kernel_point.
    pure subroutine update_in_pieces(par, stress, statev, d_strain, suction, d_suction, tangent, output, report)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: stress(6), statev(NSTATV), d_strain(6), suction, d_suction
+      real(wp), intent(in) :: stress(6), d_strain(6), suction, d_suction
+      real(wp), intent(in), contiguous :: statev(:)
       integer, intent(in) :: tangent
       type(output_t), intent(inout) :: output
       type(report_t), intent(out) :: report
-      real(wp) :: stress0(6), statev0(NSTATV), share
+      real(wp) :: stress0(6), statev0(size(statev)), share
       integer :: halving, piece, pieces
 
       call kernel_point(par, stress, statev, d_strain, suction, d_suction, tangent, output, report)
@@ -36,7 +36,7 @@ contains
                               share*d_suction, tangent, output, report)
             if (report%status /= MUD_OK) exit
             stress0 = output%stress
-            statev0 = output%statev
+            statev0(:output%n_statev) = output%statev(:output%n_statev)
          end do
       end do
    end subroutine update_in_pieces

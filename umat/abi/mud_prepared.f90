@@ -8,12 +8,13 @@ module mud_prepared
    use mud_messages, only: report_text
    use mud_params, only: params_t, read_params, completed
    use mud_registry, only: NPROPS
-   use mud_scanning, only: check_curves
+   use mud_scanning, only: check_curves, find_least
+   use mud_state, only: statev_size
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_NOT_PREPARED, MUD_BAD_OPTION, ON_ARGUMENT
    use mud_to_host, only: put
    implicit none (type, external)
    private
-   public :: prepared_t, find_prepared, find_materials, mud_prepared_size, mud_prepare
+   public :: prepared_t, find_prepared, find_materials, mud_prepared_size, mud_prepared_statev, mud_prepare
 
    !> What the caller's storage holds. The marks at both ends tell it from storage that was never prepared, was prepared
    !> by a library with other parameters, or was written over at an edge.
@@ -34,6 +35,18 @@ contains
       mud_prepared_size = ceiling(storage_size(material)/BITS_OF_A_DOUBLE, c_int)
    end function mud_prepared_size
 
+   !> Numbers of STATEV that a point of a prepared material has: those of hysteresis only with it. MUD_NULL_ARGUMENT,
+   !> MUD_NOT_PREPARED.
+   integer(c_int) function mud_prepared_statev(storage) bind(c, name='mud_prepared_statev')
+      type(c_ptr), value :: storage
+      type(prepared_t), pointer :: material
+      type(mud_status_t) :: status
+
+      call find_prepared(storage, material, status)
+      mud_prepared_statev = status%code
+      if (status%code == MUD_OK) mud_prepared_statev = statev_size(material%par%hysteresis)
+   end function mud_prepared_statev
+
    !> Checks PROPS and writes the material; on an error the storage is no prepared material. MUD_NULL_ARGUMENT,
    !> MUD_NOT_PREPARED where size_ (doubles) is too small, else the codes of read_params and check_curves; text says
    !> which. Stresses in the unit of p_atm.
@@ -53,7 +66,10 @@ contains
          call c_f_pointer(props, values, [max(n_props, 0)])
          call c_f_pointer(storage, material)
          call read_params(values, par, status)
-         if (status%code == MUD_OK .and. par%hysteresis) call check_curves(par, status)
+         if (status%code == MUD_OK .and. par%hysteresis) then
+            call check_curves(par, status)
+            par%least = find_least(par)
+         end if
          material%head = 0
          material%tail = 0
          if (status%code == MUD_OK) then

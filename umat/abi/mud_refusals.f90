@@ -11,7 +11,7 @@ module mud_refusals
    use mud_kinds, only: wp
    use mud_messages, only: report_text, failure_name, number, MESSAGE_LENGTH
    use mud_once, only: first_time, write_message, report_at_exit, environment_is
-   use mud_registry, only: NPROPS, NSTATV, P_TANGENT
+   use mud_registry, only: NPROPS, P_TANGENT
    use mud_save, only: write_increment, PATH_LENGTH
    use mud_status, only: MUD_NULL_ARGUMENT, MUD_NOT_WRITTEN
    use mud_tensor, only: is_finite
@@ -242,7 +242,7 @@ contains
    !> each, whichever thread or process meets it first. That nothing could be written is said and changes nothing.
    !> Tension positive, engineering shear [-], stress and suction in the unit of p_atm.
    subroutine save_if_asked(props, stress, statev, d_strain, suction, d_suction, place, report)
-      real(wp), intent(in) :: props(NPROPS), stress(6), statev(NSTATV), d_strain(6), suction, d_suction
+      real(wp), intent(in) :: props(NPROPS), stress(6), statev(:), d_strain(6), suction, d_suction
       type(place_t), intent(in) :: place
       type(report_t), intent(in) :: report
       character(PATH_LENGTH) :: folder, path

@@ -5,10 +5,10 @@ module mud_retention_point
    use mud_kinds, only: wp
    use mud_prepared, only: prepared_t, find_prepared
    use mud_params, only: params_t
-   use mud_registry, only: NSTATV, STATE_LAYOUT, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION
-   use mud_retention, only: saturation_t, saturation
-   use mud_scanning, only: branch_from, clipped
-   use mud_state, only: E_LOWER, E_UPPER
+   use mud_registry, only: STATE_LAYOUT, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION
+   use mud_retention, only: saturation_t, saturation, log_suction
+   use mud_scanning, only: path_t, keep_turns, saturation_after, check_saturation
+   use mud_state, only: state_t, unpack_state, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_INPUT, MUD_BAD_VOID_RATIO, MUD_BAD_STATE, ON_STATEV, &
       ON_SUCTION
    use mud_tensor, only: is_finite
@@ -48,7 +48,8 @@ contains
    !> docs/theory/material.md sections 2.1, 2.1.1.
    pure subroutine state_saturation(par, statev, suction, sat, status)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: statev(NSTATV), suction
+      real(wp), intent(in), contiguous :: statev(:)
+      real(wp), intent(in) :: suction
       type(saturation_t), intent(inout) :: sat   !< Untouched where it is refused.
       type(mud_status_t), intent(out) :: status
       integer, parameter :: READ(4) = [S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION]
@@ -67,23 +68,29 @@ contains
       else if (statev(S_VOID_RATIO) <= E_LOWER .or. statev(S_VOID_RATIO) >= E_UPPER) then
          status = fail(MUD_BAD_STATE, ON_STATEV, S_VOID_RATIO, statev(S_VOID_RATIO), E_LOWER, E_UPPER)
       else if (par%hysteresis) then
-         sat = scanned(par, statev(S_SUCTION), statev(S_VOID_RATIO), statev(S_SATURATION), suction)
+         call scanned_saturation(par, statev, suction, sat, status)
       else
          sat = saturation(par, suction, statev(S_VOID_RATIO))
       end if
    end subroutine state_saturation
 
-   !> Degree of saturation after a change of suction at constant void ratio.
-   pure function scanned(par, from, e, s_w, to) result(sat)
+   !> Degree of saturation after a change of suction at constant void ratio, as the next update has it.
+   pure subroutine scanned_saturation(par, statev, suction, sat, status)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: from, e, s_w, to   !< [kPa, -, -, kPa]
-      type(saturation_t) :: sat
-      real(wp) :: inside
-      integer :: count
+      real(wp), intent(in), contiguous :: statev(:)
+      real(wp), intent(in) :: suction
+      type(saturation_t), intent(inout) :: sat
+      type(mud_status_t), intent(out) :: status
+      type(state_t) :: state
+      type(path_t) :: path
+      type(params_t) :: branch
+      logical :: cleared
 
-      inside = s_w
-      count = 0
-      call clipped(par, from, e, inside, count)
-      sat = saturation(branch_from(par, to >= from, from, e, inside), to, e)
-   end function scanned
+      call unpack_state(statev, par%hysteresis, state, status)
+      if (status%code == MUD_OK) call check_saturation(par, state%p_c, state%e, state%s_w, status)
+      if (status%code /= MUD_OK) return
+      path = path_t(log_suction(par, state%p_c, state%e), state%s_w, state%turns)
+      call keep_turns(par, path, cleared)
+      call saturation_after(par, suction, state%e, path, sat, branch)
+   end subroutine scanned_saturation
 end module mud_retention_point

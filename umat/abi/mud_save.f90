@@ -9,10 +9,11 @@ module mud_save
    use mud_kernel, only: report_t, output_t, kernel_begin
    use mud_kinds, only: wp
    use mud_messages, only: status_text, report_text
-   use mud_params, only: params_t, read_params
+   use mud_params, only: has_hysteresis, params_t, read_params
    use mud_prepared, only: prepared_t, find_prepared
    use mud_registry, only: NPROPS, NSTATV, P_TANGENT, PROPERTIES, S_LAYOUT, S_VOID_RATIO, S_SATURATION, &
       S_SUCTION, statev_name
+   use mud_state, only: statev_size
    use mud_status, only: mud_status_t, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_NOT_WRITTEN
    use mud_tensor, only: is_finite
    use mud_to_host, only: put
@@ -68,7 +69,9 @@ contains
 
       call find_prepared(storage, material, status)
       mud_save_increment = status%code
-      if (status%code == MUD_OK .and. n_statev < NSTATV) mud_save_increment = MUD_BAD_NSTATV
+      if (status%code == MUD_OK) then
+         if (n_statev < statev_size(material%par%hysteresis)) mud_save_increment = MUD_BAD_NSTATV
+      end if
       if (tangent < 0 .or. tangent > LAST_TANGENT) mud_save_increment = MUD_BAD_OPTION
       if (.not. (c_associated(path) .and. c_associated(stress0) .and. c_associated(statev0) .and. &
                  c_associated(dstrain))) mud_save_increment = MUD_NULL_ARGUMENT
@@ -76,7 +79,7 @@ contains
       if (mud_save_increment /= MUD_OK) return
 
       call c_f_pointer(stress0, stress_in, [6])
-      call c_f_pointer(statev0, statev_in, [NSTATV])
+      call c_f_pointer(statev0, statev_in, [statev_size(material%par%hysteresis)])
       call c_f_pointer(dstrain, dstrain_in, [6])
       call get(origin, whence, whole)
       call get(path, name, whole)
@@ -92,8 +95,8 @@ contains
    end function mud_save_increment
 
    !> Writes a new file or none: one of that name is never touched, one that cannot be finished is removed. props(:) of
-   !> NPROPS, statev(:) of at least NSTATV; tension positive, engineering shear [-], stress and suction in the unit of
-   !> p_atm.
+   !> NPROPS, statev(:) with the numbers of a point; tension positive, engineering shear [-], stress and suction in the
+   !> unit of p_atm.
    subroutine write_increment(path, origin, props, stress, statev, d_strain, suction, d_suction, tangent, report, &
                               problem)
       character(*), intent(in) :: path, origin
@@ -106,7 +109,7 @@ contains
       real(wp) :: start(6), state(NSTATV)
       character(80) :: digits
       logical :: good, taken
-      integer :: i
+      integer :: i, n
 
       ! "x": a file that exists, were it made by another thread a moment ago, is an error.
       file = c_fopen(trim(path)//c_null_char, 'wx'//c_null_char)
@@ -119,8 +122,9 @@ contains
       end if
       problem = ''
       start = stress
-      state = statev(1:NSTATV)
-      call begin_as_umat(props, suction, start, state)
+      n = min(size(statev), statev_size(has_hysteresis(props)))
+      state(:n) = statev(:n)
+      call begin_as_umat(props, suction, start, state(:n))
       call line('! An increment of MUD, for mud_triax: compression positive, engineering shear, stresses in the '// &
                 'unit of p_atm.')
       call line('! Library '//VERSION//'. '//report_text(report))
@@ -145,7 +149,7 @@ contains
          call line('      '//trim(bits(-start(i)))//'   ! '//COMPONENT(i))
       end do
       call line('   state_variables =')
-      do i = 1, NSTATV
+      do i = 1, n
          call line('      '//trim(bits(state(i)))//'   ! '//trim(statev_name(i)))
       end do
       call line('/')
@@ -180,7 +184,7 @@ contains
    subroutine begin_as_umat(props, suction, stress, statev)
       real(wp), intent(in), contiguous :: props(:)
       real(wp), intent(in) :: suction
-      real(wp), intent(inout) :: stress(6), statev(NSTATV)
+      real(wp), intent(inout) :: stress(6), statev(:)
       type(params_t) :: par
       type(mud_status_t) :: status
       type(report_t) :: report

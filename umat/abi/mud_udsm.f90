@@ -11,7 +11,8 @@ module mud_udsm
    use mud_params, only: params_t, read_params, completed
    use mud_pieces, only: update_in_pieces
    use mud_refusals, only: place_t, say_refusal, remark_on_props, remark_on_pressure, save_if_asked
-   use mud_registry, only: NPROPS_WITHOUT_HYSTERESIS, NSTATV, PROPERTIES, VARIABLES, statev_name, statev_variable, &
+   use mud_registry, only: NPROPS_WITHOUT_HYSTERESIS, &
+      NSTATV => NSTATV_WITHOUT_HYSTERESIS, PROPERTIES, VARIABLES, statev_name, statev_variable, &
       S_LAYOUT, S_VOID_RATIO, S_SUCTION, S_OPEN, S_EPS_Q_P_TOTAL
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, ON_ARGUMENT
    use mud_tensor, only: is_finite
@@ -161,7 +162,7 @@ contains
       call c_f_pointer(sig, stress, [6])
       stress = output%stress(ORDER)
       call c_f_pointer(stvar, state1, [NSTATV])
-      state1 = output%statev
+      state1 = output%statev(:NSTATV)
       if (.not. (c_associated(swp0) .and. c_associated(swp))) return
       call c_f_pointer(swp0, pore0)
       call c_f_pointer(swp, pore)

@@ -8,8 +8,9 @@ module mud_umat
    use mud_kinds, only: wp
    use mud_refusals, only: place_t, refuse, remark_on_suction, remark_on_props, remark_on_pressure, &
       remark_on_late_start, remark_on_rotation, remark_on_green_strain, save_if_asked
-   use mud_params, only: completed, is_length
-   use mud_registry, only: NPROPS, NSTATV, P_TANGENT, S_SUCTION
+   use mud_params, only: has_hysteresis, completed, is_length
+   use mud_registry, only: NPROPS, NSTATV, NSTATV_WITHOUT_HYSTERESIS, P_TANGENT, S_SUCTION
+   use mud_state, only: statev_size
    use mud_status, only: mud_status_t, MUD_OK
    implicit none (type, external)
    private
@@ -57,7 +58,7 @@ contains
       type(place_t), intent(in) :: place
       real(c_double), pointer, contiguous :: state(:), times(:)
 
-      call c_f_pointer(statev, state, [NSTATV])
+      call c_f_pointer(statev, state, [NSTATV_WITHOUT_HYSTERESIS])
       if (begins_late(has_past(state), time, dtime, pnewdt)) then
          call c_f_pointer(time, times, [2])
          call remark_on_late_start(times(2), place)
@@ -78,7 +79,7 @@ contains
       real(wp) :: stress6(6), dstran6(6), statev0(NSTATV), rotation(3, 3)
       type(mud_status_t) :: status
       type(suction_t) :: suction
-      integer :: order(6)
+      integer :: order(6), n
 
       call c_f_pointer(stress, stress_in, [ntens])
       call c_f_pointer(statev, statev_in, [n_statev])
@@ -91,33 +92,34 @@ contains
       order = component_order(props_in)
       stress6 = stress6(order)
       dstran6 = dstran6(order)
-      statev0 = statev_in(1:NSTATV)
-      call read_rotation(drot, has_past(statev0), pnewdt, rotation, status)
+      n = min(n_statev, statev_size(has_hysteresis(props_in)))
+      statev0(1:n) = statev_in(1:n)
+      call read_rotation(drot, has_past(statev0(:n)), pnewdt, rotation, status)
       if (status%code /= MUD_OK) then
          report = failed_report(status)
-         call give_elastic(props_in, stress6, statev0, order(1:ntens), pnewdt, ddsdde)
+         call give_elastic(props_in, stress6, statev0(:n), order(1:ntens), pnewdt, ddsdde)
          return
       end if
-      if (rotates(rotation, statev0)) call rotate_statev(rotation, statev0)
+      if (rotates(rotation, statev0(:n))) call rotate_statev(rotation, statev0(:n))
 
-      suction = read_suction(predef, dpred, pnewdt, statev0, props_in)
+      suction = read_suction(predef, dpred, pnewdt, statev0(:n), props_in)
       if (suction%reading /= SUCTION_AS_GIVEN) call remark_on_suction(suction, place)
 
-      call kernel_update(props_in, stress6, statev0, dstran6, suction%start, suction%change, TANGENT_FROM_PROPS, &
-                         output, report)
+      call kernel_update(props_in, stress6, statev0(:n), dstran6, suction%start, suction%change, &
+                         TANGENT_FROM_PROPS, output, report)
       if (report%status /= MUD_OK) then
          if (is_length(n_props)) then
-            call save_if_asked(completed(props_in), stress6, statev0, dstran6, suction%start, suction%change, place, &
-                               report)
+            call save_if_asked(completed(props_in), stress6, statev0(:n), dstran6, suction%start, suction%change, &
+                               place, report)
          end if
-         call give_elastic(props_in, stress6, statev0, order(1:ntens), pnewdt, ddsdde)
+         call give_elastic(props_in, stress6, statev0(:n), order(1:ntens), pnewdt, ddsdde)
          return
       end if
-      if (.not. has_past(statev0)) call remark_on_props(completed(props_in), place)
+      if (.not. has_past(statev0(:n))) call remark_on_props(completed(props_in), place)
       call remark_on_pressure(output%stress, place)
       output%stress = output%stress(order)
       stress_in = output%stress(1:ntens)
-      statev_in(1:NSTATV) = output%statev
+      statev_in(1:output%n_statev) = output%statev(1:output%n_statev)
       if (output%has_tangent .and. c_associated(ddsdde)) then
          call c_f_pointer(ddsdde, tangent_out, [ntens, ntens])
          tangent_out = output%dsig_deps(order(1:ntens), order(1:ntens))
@@ -129,7 +131,8 @@ contains
    !> PROPS, stress or state are so wrong that they have no stiffness. Stress and state as the update has them.
    subroutine give_elastic(props, stress, statev, order, pnewdt, ddsdde)
       real(wp), intent(in), contiguous :: props(:)
-      real(wp), intent(in) :: stress(6), statev(NSTATV)
+      real(wp), intent(in) :: stress(6)
+      real(wp), intent(in), contiguous :: statev(:)
       integer, intent(in) :: order(:)   !< As many as NTENS.
       type(c_ptr), intent(in) :: pnewdt, ddsdde
       type(output_t) :: output

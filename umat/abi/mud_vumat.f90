@@ -12,7 +12,9 @@ module mud_vumat
    use mud_params, only: params_t, read_params, completed, is_length
    use mud_pieces, only: update_in_pieces
    use mud_refusals, only: place_t, say_refusal, remark_on_props, remark_on_pressure, save_if_asked, KEEP_VARIABLE
-   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NSTATV, S_SUCTION
+   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NSTATV, &
+      NSTATV_WITHOUT_HYSTERESIS, S_SUCTION
+   use mud_state, only: statev_size
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_NTENS, MUD_BAD_NSTATV, MUD_BAD_NPROPS, &
       ON_ARGUMENT, ON_STATEV, ON_PROPS
    use mud_tensor, only: is_finite
@@ -113,8 +115,9 @@ contains
          status = fail(MUD_BAD_NTENS, ON_ARGUMENT, 0, real(integer_at(counts(2)), wp), 3.0_wp, 3.0_wp)
       else if (points%n_shear /= 1 .and. points%n_shear /= 3) then
          status = fail(MUD_BAD_NTENS, ON_ARGUMENT, 0, real(points%n_shear + 3, wp), 4.0_wp, 6.0_wp)
-      else if (n_state < NSTATV) then
-         status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n_state, wp), real(NSTATV, wp), huge(1.0_wp))
+      else if (n_state < NSTATV_WITHOUT_HYSTERESIS) then
+         status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n_state, wp), real(NSTATV_WITHOUT_HYSTERESIS, wp), &
+                       huge(1.0_wp))
       else if (.not. is_length(integer_at(counts(5)))) then
          status = fail(MUD_BAD_NPROPS, ON_PROPS, 0, real(integer_at(counts(5)), wp), &
                        real(NPROPS_WITHOUT_HYSTERESIS, wp), real(NPROPS, wp))
@@ -137,36 +140,38 @@ contains
       real(wp) :: stress(6, CHUNK), state(NSTATV, CHUNK)
       type(output_t) :: output
       type(report_t) :: report
-      integer :: i, k
+      integer :: i, k, m
 
+      m = min(size(points%state0, 2), statev_size(par%hysteresis))
       do i = 1, n
          k = first + i - 1
          old%stress(:, i) = read_six(points%stress0(k, :))
          old%strain(:, i) = read_six(points%strain(k, :))*ENGINEERING
-         old%state(:, i) = points%state0(k, 1:NSTATV)
-         call read_suction(points, k, old%state(:, i), old%suction(i), old%d_suction(i))
+         old%state(:m, i) = points%state0(k, 1:m)
+         call read_suction(points, k, old%state(:m, i), old%suction(i), old%d_suction(i))
       end do
       do i = 1, n
          if (elastic_only) then
-            call kernel_point(par, old%stress(:, i), old%state(:, i), spread(0.0_wp, 1, 6), old%suction(i), 0.0_wp, &
+            call kernel_point(par, old%stress(:, i), old%state(:m, i), spread(0.0_wp, 1, 6), old%suction(i), 0.0_wp, &
                               ELASTIC, output, report)
             if (report%status == MUD_OK) stress(:, i) = old%stress(:, i) + matmul(output%dsig_deps, old%strain(:, i))
-            state(:, i) = old%state(:, i)
+            state(:m, i) = old%state(:m, i)
          else
-            call kernel_point(par, old%stress(:, i), old%state(:, i), old%strain(:, i), old%suction(i), &
+            call kernel_point(par, old%stress(:, i), old%state(:m, i), old%strain(:, i), old%suction(i), &
                               old%d_suction(i), NONE, output, report)
             if (report%status == MUD_OK) then
                stress(:, i) = output%stress
-               state(:, i) = output%statev
+               state(:m, i) = output%statev(:m)
             end if
          end if
          old%status(i) = report%status
       end do
       do i = 1, n
-         if (old%status(i) /= MUD_OK) call try_in_pieces(points, par, old, i, stress(:, i), state(:, i))
-         if (.not. has_past(old%state(:, i))) call remark_on_props(completed(points%props), place_t('vumat_'))
+         if (old%status(i) /= MUD_OK) call try_in_pieces(points, par, old, i, stress(:, i), &
+                                                            state(:m, i))
+         if (.not. has_past(old%state(:m, i))) call remark_on_props(completed(points%props), place_t('vumat_'))
          if (.not. elastic_only) call remark_on_pressure(stress(:, i), place_t('vumat_'))
-         call write_point(points, first + i - 1, old%strain(:, i), stress(:, i), state(:, i))
+         call write_point(points, first + i - 1, old%strain(:, i), stress(:, i), state(:m, i))
       end do
    end subroutine update_chunk
 
@@ -174,7 +179,7 @@ contains
    subroutine read_suction(points, k, state, start, change)
       type(block_t), intent(in) :: points
       integer, intent(in) :: k
-      real(wp), intent(in) :: state(NSTATV)
+      real(wp), intent(in) :: state(:)
       real(wp), intent(out) :: start, change
 
       start = state(S_SUCTION)
@@ -191,20 +196,23 @@ contains
       type(params_t), intent(in) :: par
       type(chunk_t), intent(in) :: old
       integer, intent(in) :: i
-      real(wp), intent(out) :: stress(6), state(NSTATV)
+      real(wp), intent(out) :: stress(6)
+      real(wp), intent(inout) :: state(:)   !< As many as a point has.
       type(output_t) :: output
       type(report_t) :: report
+      integer :: m
 
-      call update_in_pieces(par, old%stress(:, i), old%state(:, i), old%strain(:, i), old%suction(i), &
+      m = size(state)
+      call update_in_pieces(par, old%stress(:, i), old%state(:m, i), old%strain(:, i), old%suction(i), &
                             old%d_suction(i), NONE, output, report)
       if (report%status == MUD_OK) then
          stress = output%stress
-         state = output%statev
+         state = output%statev(:m)
          return
       end if
-      call save_if_asked(completed(points%props), old%stress(:, i), old%state(:, i), old%strain(:, i), old%suction(i), &
-                         old%d_suction(i), place_t('vumat_'), report)
-      state = old%state(:, i)
+      call save_if_asked(completed(points%props), old%stress(:, i), old%state(:m, i), old%strain(:, i), &
+                         old%suction(i), old%d_suction(i), place_t('vumat_'), report)
+      state = old%state(:m, i)
       if (environment_is(KEEP_VARIABLE, 'keep')) then
          stress = old%stress(:, i)
          call say_refusal(report, place_t('vumat_'), '. The old stress is kept: what the host computes from here '// &
@@ -220,12 +228,12 @@ contains
    subroutine write_point(points, k, strain, stress, state)
       type(block_t), intent(in) :: points
       integer, intent(in) :: k
-      real(wp), intent(in) :: strain(6), stress(6), state(NSTATV)
+      real(wp), intent(in) :: strain(6), stress(6), state(:)
       real(wp) :: before(6), host(6)
 
       before = read_six(points%stress0(k, :))
       host = stress(ORDER)
-      points%state1(k, 1:NSTATV) = state
+      points%state1(k, 1:size(state)) = state
       if (associated(points%energy0) .and. associated(points%energy1)) points%energy1(k) = points%energy0(k)
       if (associated(points%energy0) .and. associated(points%energy1) .and. associated(points%density)) then
          if (all(is_finite(stress)) .and. points%density(k) > 0.0_wp) points%energy1(k) = points%energy0(k) &

@@ -75,7 +75,7 @@ typedef struct mud_report {
 /* --- the library and its tables --------------------------------------------------------------------- */
 int mud_abi_version(void);
 int mud_version(char *text, int len);                       /* such as "0.2.0" */
-int mud_count(int list);                                    /* entries of PROPS or STATEV; MUD_BAD_OPTION */
+int mud_count(int list);                                    /* all of PROPS or STATEV; MUD_BAD_OPTION */
 int mud_index(int list, const char *name);                  /* index from 0; -1: no such name (case is ignored) */
 int mud_text(int list, int index, int field, char *text, int len);
 /* Entries of PROPS that stand for a choice: the number-th value, from 0, and its word. MUD_BAD_OPTION: no such value,
@@ -95,7 +95,8 @@ int mud_convert_props(double *props, int nprops, double factor);
 int mud_validate_props(const double *props, int nprops, char *text, int len);
 
 /* The same names as constants, for tables of your own that the linker fills; as many as mud_count says. They are those
- * of the library that is linked, so do not copy their number into code. */
+ * of the library that is linked, so do not copy their number into code. A point without hysteresis has fewer numbers
+ * of STATEV, mud_prepared_statev tells how many; those behind them are never touched. */
 extern const int mud_props_count, mud_statev_count;
 extern const char *const mud_props_names[], *const mud_props_units[];
 extern const char *const mud_statev_names[], *const mud_statev_units[];
@@ -105,6 +106,7 @@ extern const char *const mud_statev_names[], *const mud_statev_units[];
  * be copied in memory, not to be kept in a file. Whatever uses it only reads it, so threads may share it. After an
  * error the storage is no material; storage that is no material of this library: MUD_NOT_PREPARED. */
 int mud_prepared_size(void);
+int mud_prepared_statev(const double *material);            /* numbers of STATEV that its points have */
 int mud_prepare(const double *props, int nprops, double *material, int size, char *text, int len);
 
 /* Degree of saturation at a suction and a void ratio (above 0), and its slopes against either at constant other; each

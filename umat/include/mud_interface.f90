@@ -7,8 +7,9 @@ module mud_interface
    private
    public :: mud_report, mud_blocks, mud_points, mud_summary, mud_substep, mud_abi_version, mud_version, mud_count, &
              mud_index, mud_text, mud_option, mud_bounds, mud_bounds_for, mud_default_props, mud_convert_props, &
-             mud_validate_props, mud_prepared_size, mud_prepare, mud_saturation, mud_init, mud_update, &
-             mud_init_points, mud_update_points, mud_saturation_points, mud_trace_increment, mud_save_increment, &
+             mud_validate_props, mud_prepared_size, mud_prepared_statev, mud_prepare, mud_saturation, mud_init, &
+             mud_update, mud_init_points, mud_update_points, mud_saturation_points, mud_trace_increment, &
+             mud_save_increment, &
              mud_status_text, mud_message
    public :: MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL, &
       MUD_ROTATION, MUD_EVOLUTION
@@ -135,6 +136,12 @@ module mud_interface
       pure integer(c_int) function mud_prepared_size() bind(c, name='mud_prepared_size')
          import :: c_int
       end function mud_prepared_size
+
+      !> Numbers of STATEV that a point of a prepared material has; MUD_NOT_PREPARED.
+      integer(c_int) function mud_prepared_statev(material) bind(c, name='mud_prepared_statev')
+         import :: c_int, c_double
+         real(c_double), intent(in) :: material(*)
+      end function mud_prepared_statev
 
       integer(c_int) function mud_prepare(props, nprops, material, size_, text, len) bind(c, name='mud_prepare')
          import :: c_int, c_double, c_char

@@ -3,7 +3,8 @@
 !> behaviours for the generic interface of MFront. Run by the build: mud_write_tables VERSION > mud_tables.c
 program mud_write_tables
    use, intrinsic :: iso_fortran_env, only: output_unit
-   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NSTATV, PROPERTIES, VARIABLES, statev_name, &
+   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NSTATV, NSTATV_WITHOUT_HYSTERESIS, &
+      PROPERTIES, VARIABLES, statev_name, &
       statev_variable
    implicit none (type, external)
    integer, parameter :: LONG = 64
@@ -79,8 +80,9 @@ contains
       call numbers('const int '//name//'_ThermodynamicForcesTypes', types, .true.)
       call list(name//'_', 'TangentOperatorBlocks', blocks)
       call list(name//'_', 'MaterialProperties', props(:NPROPS_WITHOUT_HYSTERESIS))
-      call list(name//'_', 'InternalStateVariables', PREFIX//statev)
-      call numbers('const int '//name//'_InternalStateVariablesTypes', [(SCALAR, k=1, NSTATV)], .true.)
+      call list(name//'_', 'InternalStateVariables', PREFIX//statev(:NSTATV_WITHOUT_HYSTERESIS))
+      call numbers('const int '//name//'_InternalStateVariablesTypes', &
+                   [(SCALAR, k=1, NSTATV_WITHOUT_HYSTERESIS)], .true.)
       call list(name//'_', 'ExternalStateVariables', none)
       call numbers('const int '//name//'_ExternalStateVariablesTypes', no, .true.)
       call list(name//'_', 'Parameters', none)

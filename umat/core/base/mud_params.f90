@@ -2,7 +2,7 @@
 !> Material parameters: from PROPS to named values, checked against the registry.
 module mud_params
    use mud_kinds, only: wp, SQRT_6
-   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, PROPERTIES, KIND_REAL, &
+   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, PROPERTIES, KIND_REAL, MAX_TURNS, &
             P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, P_H_0, P_C_H, &
       P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, P_P_ATM, P_P_MIN, &
       P_BONDING, P_FABRIC, P_ISOTROPIC, P_LODE, P_MEMORY_RULE, P_EPS_HAT, P_J_EXP, P_X_0, P_X_REV, P_CAP_D, P_CAP_H, &
@@ -13,8 +13,9 @@ module mud_params
    use mud_units, only: stress_unit, bounds_for, minimum_stress, LARGEST_STRESS, LARGEST_SUCTION_STEP, SMALLEST_MINIMUM
    implicit none (type, external)
    private
-   public :: params_t, scanning_t, read_params, completed, is_length, check_bounds, default_props
-   public :: NO_FLOOR, NOT_SCANNING, STRICTNESS
+   public :: params_t, scanning_t, branch_t, least_t, read_params, completed, is_length, has_hysteresis, &
+             check_bounds, default_props
+   public :: NO_FLOOR, NOT_SCANNING, STRICTNESS, NO_BRANCH, NO_OFFSET, MAX_LEAST
 
    real(wp), parameter :: NO_FLOOR = 1.0e-15_wp   !< The only floor of (r - r_in):n with the guard off [-].
 
@@ -28,19 +29,41 @@ module mud_params
    integer, parameter :: WHOLE_ENTRIES(*) = pack(PROPERTIES%index, PROPERTIES%kind /= KIND_REAL)
    real(wp), parameter :: NEARLY_WHOLE = 1.0e-9_wp   !< A number this close to a whole one is it [-].
 
-   !> Where S_w goes between the main curves, docs/theory/material.md section 2.1.1: the suction y of a main curve at
-   !> the same S_w follows y**q = x**q + offset**q.
+   integer, parameter :: MAX_LEAST = 4   !< Of each direction; none or one in every set tried.
+
+   !> A scanning branch of S_w, docs/theory/material.md section 2.1.1: the suction y of a main curve at the same S_w
+   !> follows y**q = x**q + offset**q. Suctions are ln(x/P_a).
+   type :: branch_t
+      logical :: dries
+      real(wp) :: log_x, s_w   !< Where it begins [-].
+      real(wp) :: log_offset   !< q ln(offset/P_a), NO_OFFSET: no offset [-].
+      real(wp) :: share        !< By which its changes are scaled so that it ends where its loop closes [-].
+      logical :: straight      !< In ln x, of slope `share`: S_w hardly changes, and a scale would be rounding.
+   end type branch_t
+
+   !> Where S_w goes: along the last branch, which is limited by those that it left. docs/theory/material.md 2.1.1.
    type :: scanning_t
-      logical :: between      !< Off a main curve.
-      real(wp) :: q           !< 1 + b_d in drying, 1 - b_w in wetting [-].
-      real(wp) :: log_offset  !< q ln(offset/P_a), P_a that of the main curve [-].
+      logical :: acts
+      integer :: n              !< Number of branches, at least 1; the last is the present one.
+      type(branch_t) :: branches(MAX_TURNS)
+      logical :: moves          !< The present branch begins at a turn inside the increment, and depends on that.
+      real(wp) :: s_w_rate, offset_rate, share_rate   !< Derivatives with its ln x; not set otherwise [-].
    end type scanning_t
 
-   type(scanning_t), parameter :: NOT_SCANNING = scanning_t(.false., 1.0_wp, 0.0_wp)
+   !> Least offsets of branches that touch the opposite main curve from inside; first index 1 in wetting, 2 in drying.
+   type :: least_t
+      logical :: known
+      integer :: n(2)
+      real(wp) :: log_x(2, MAX_LEAST), log_offset(2, MAX_LEAST)
+   end type least_t
+
+   real(wp), parameter :: NO_OFFSET = -huge(1.0_wp)
+   type(branch_t), parameter :: NO_BRANCH = branch_t(.true., 0.0_wp, 0.0_wp, NO_OFFSET, 1.0_wp, .false.)
+   type(scanning_t), parameter :: NOT_SCANNING = scanning_t(.false., 1, NO_BRANCH, .false., 0.0_wp, 0.0_wp, 0.0_wp)
    real(wp), parameter :: WETTING_SHARE = 0.5_wp   !< P_aw of P_a where it is not given [-].
 
    !> Parameters of one material; names and units as in mud_registry. With hysteresis a phase of an increment has a copy
-   !> whose p_a, n_x, m_x are those of the main curve that its scanning curve approaches.
+   !> that scans.
    type :: params_t
       real(wp) :: k_0, g_0, n_c, lambda, alpha_csl, n_l, theta, m_c, c, n_b, n_d, a_0, h_0, c_h, c_z, z_max
       real(wp) :: b_1, b_2, s_max, s_min, p_a, omega, n_x, m_x, e_0, p_atm, p_min
@@ -64,6 +87,8 @@ module mud_params
       real(wp) :: rho_e     !< Radius of the elastic domain, 0: none [-].
       logical :: hysteresis
       real(wp) :: p_aw, n_w, m_w, b_d, b_w   !< Those left to others have their values.
+      real(wp) :: log_wetting                !< ln(P_aw/P_a) [-].
+      type(least_t) :: least
       type(scanning_t) :: scanning           !< Of a phase.
       real(wp) :: c4        !< c**4, for the Lode function [-].
       real(wp) :: lode_bend !< sqrt(6) (1 - c**4)/(8 c**4), for its slope [-].
@@ -83,6 +108,15 @@ contains
 
       is_length = n == NPROPS .or. n == NPROPS_WITHOUT_HYSTERESIS
    end function is_length
+
+   !> True if PROPS, of any length and not yet checked, switch hysteresis on.
+   pure logical function has_hysteresis(props)
+      real(wp), intent(in) :: props(:)
+
+      has_hysteresis = .false.
+      if (size(props) < NPROPS) return
+      if (is_finite(props(P_HYSTERESIS))) has_hysteresis = props(P_HYSTERESIS) > 0.5_wp
+   end function has_hysteresis
 
    !> PROPS of an allowed length in full. The size of given(:) is one that is_length takes, which is not checked; what
    !> is left out is the default of the registry.
@@ -165,7 +199,8 @@ contains
       params%rho_e = props(P_RHO_E)
       params%shear_order = whole(props(P_SHEAR_ORDER))
       params%hysteresis = whole(props(P_HYSTERESIS)) == 1
-      params%scanning = NOT_SCANNING
+      params%scanning%acts = .false.
+      params%scanning%moves = .false.
       if (params%hysteresis) call read_wetting(props, params)
       params%c4 = params%c**4
       params%lode_bend = SQRT_6*(1.0_wp - params%c4)/(8.0_wp*params%c4)
@@ -193,6 +228,8 @@ contains
       if (params%m_w <= 0.0_wp) params%m_w = params%m_x
       params%b_d = props(P_B_D)
       params%b_w = props(P_B_W)
+      params%log_wetting = log(params%p_aw/params%p_a)
+      params%least%known = .false.
    end subroutine read_wetting
 
    !> Names the first entry that is not finite, out of its bounds or not the integer it should be. What stands behind

@@ -6,7 +6,7 @@ module mud_registry
    implicit none (type, external)
    private
    public :: property_t, variable_t, PROPERTIES, VARIABLES, NPROPS, NSTATV, NVARIABLES, STATE_LAYOUT
-   public :: UNIT_STRESS, UNIT_STRESS_TO_LAMBDA, NPROPS_WITHOUT_HYSTERESIS
+   public :: UNIT_STRESS, UNIT_STRESS_TO_LAMBDA, NPROPS_WITHOUT_HYSTERESIS, NSTATV_WITHOUT_HYSTERESIS
    public :: KIND_REAL, KIND_SWITCH, KIND_OPTION, KIND_COUNT
    public :: option_t, OPTIONS, property_meaning, property_index, statev_index, statev_name, statev_variable, COMPONENTS
    public :: RULE_CLASSIC, RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, SCHEME_AUTOMATIC, &
@@ -21,7 +21,7 @@ module mud_registry
              S_X_BEFORE, S_X_RUNNING, S_TARGET, S_INTERRUPTED, S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, &
              S_MEMORY_BEFORE, S_DIRECTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, S_N_RATE, &
              S_N_SUBSTEP, S_N_REJECT, S_N_RESET, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, &
-             S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED
+             S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED, S_TURNS, S_N_CLEARED, S_TURN, MAX_TURNS
 
    integer, parameter :: STATE_LAYOUT = 2   !< Layout number that an initialised STATEV carries.
    integer, parameter :: KIND_REAL = 0, KIND_SWITCH = 1, KIND_OPTION = 2, KIND_COUNT = 3
@@ -133,7 +133,13 @@ module mud_registry
    !> Interrupted processes of the rule return_point, the oldest first: memory, direction and target of each.
    integer, parameter :: MAX_INTERRUPTED = 4, ENTRY_SIZE = 13
    integer, parameter :: S_STACK = S_ELASTIC_DOMAIN + 6
-   integer, parameter :: NSTATV = S_STACK - 1 + ENTRY_SIZE*MAX_INTERRUPTED
+   !> STATEV may end here without hysteresis.
+   integer, parameter :: NSTATV_WITHOUT_HYSTERESIS = S_STACK - 1 + ENTRY_SIZE*MAX_INTERRUPTED
+   !> Turning points of suction, the oldest first: ln(x/P_a) and S_w of each. Four leave a finite effect of vanishing
+   !> noise, six are the least, eight bear noise on five nested loops.
+   integer, parameter :: MAX_TURNS = 8
+   integer, parameter :: S_TURNS = NSTATV_WITHOUT_HYSTERESIS + 1, S_N_CLEARED = S_TURNS + 1, S_TURN = S_N_CLEARED + 1
+   integer, parameter :: NSTATV = S_TURN - 1 + 2*MAX_TURNS
 
    type(property_t), parameter :: PROPERTIES(NPROPS) = [ &
       property_t(P_K_0, 'K_0', 'K_0', '1', KIND_REAL, 0.001_wp, 1.0e5_wp, 150.0_wp, 'paper', &
@@ -299,7 +305,7 @@ module mud_registry
       variable_t(S_N_RESET, 1, 'n_reset', '-', '1', .false., 'ours', &
          'total: resets of the memory', '0', 'adds up'), &
       variable_t(S_N_GUARD, 1, 'n_guard', '-', '1', .false., 'ours', &
-         'total: times the floor, a cap or x_rev acted, the isotropic mechanism contradicted itself, S_w was clipped', &
+         'total: times the floor, a cap or x_rev acted or the isotropic mechanism contradicted itself', &
          '0', 'adds up'), &
       variable_t(S_N_NO_ROOT, 1, 'n_no_root', '-', '1', .false., 'ours', &
          'total: rates without an admissible direction, taken as elastic', '0', 'adds up'), &
@@ -339,7 +345,53 @@ module mud_registry
       variable_t(S_STACK + 45, 6, 'direction_4', 'n_4', '1', .true., 'ours', &
          'direction of the interrupted process 4', '0', 'set where the process is interrupted'), &
       variable_t(S_STACK + 51, 1, 'target_4', 'T:n_4', '1', .false., 'ours', &
-         'r:direction_4 at which the process 4 goes on', '0', 'set where the process is interrupted')]
+         'r:direction_4 at which the process 4 goes on', '0', 'set where the process is interrupted'), &
+      variable_t(S_TURNS, 1, 'turns', '-', '1', .false., 'ours', &
+         '1 + number of turning points of suction, positive in drying, negative in wetting; with hysteresis', '1', &
+         'grows where suction turns, falls where it passes a turning point'), &
+      variable_t(S_N_CLEARED, 1, 'n_turns_cleared', '-', '1', .false., 'ours', &
+         'total: increments whose S_w was off its branch, so that the turning points were forgotten; with hysteresis', &
+         '0', 'adds up'), &
+      variable_t(S_TURN + 0, 1, 'turn_x_1', 'ln(x_1/P_a)', '1', .false., 'ours', &
+         'modified suction of turning point 1; the first is the oldest; with hysteresis', '0', &
+         'set where suction turns'), &
+      variable_t(S_TURN + 1, 1, 'turn_s_w_1', 'S_1', '1', .false., 'ours', &
+         'degree of saturation of turning point 1; with hysteresis', '0', 'set where suction turns'), &
+      variable_t(S_TURN + 2, 1, 'turn_x_2', 'ln(x_2/P_a)', '1', .false., 'ours', &
+         'modified suction of turning point 2; the first is the oldest; with hysteresis', '0', &
+         'set where suction turns'), &
+      variable_t(S_TURN + 3, 1, 'turn_s_w_2', 'S_2', '1', .false., 'ours', &
+         'degree of saturation of turning point 2; with hysteresis', '0', 'set where suction turns'), &
+      variable_t(S_TURN + 4, 1, 'turn_x_3', 'ln(x_3/P_a)', '1', .false., 'ours', &
+         'modified suction of turning point 3; the first is the oldest; with hysteresis', '0', &
+         'set where suction turns'), &
+      variable_t(S_TURN + 5, 1, 'turn_s_w_3', 'S_3', '1', .false., 'ours', &
+         'degree of saturation of turning point 3; with hysteresis', '0', 'set where suction turns'), &
+      variable_t(S_TURN + 6, 1, 'turn_x_4', 'ln(x_4/P_a)', '1', .false., 'ours', &
+         'modified suction of turning point 4; the first is the oldest; with hysteresis', '0', &
+         'set where suction turns'), &
+      variable_t(S_TURN + 7, 1, 'turn_s_w_4', 'S_4', '1', .false., 'ours', &
+         'degree of saturation of turning point 4; with hysteresis', '0', 'set where suction turns'), &
+      variable_t(S_TURN + 8, 1, 'turn_x_5', 'ln(x_5/P_a)', '1', .false., 'ours', &
+         'modified suction of turning point 5; the first is the oldest; with hysteresis', '0', &
+         'set where suction turns'), &
+      variable_t(S_TURN + 9, 1, 'turn_s_w_5', 'S_5', '1', .false., 'ours', &
+         'degree of saturation of turning point 5; with hysteresis', '0', 'set where suction turns'), &
+      variable_t(S_TURN + 10, 1, 'turn_x_6', 'ln(x_6/P_a)', '1', .false., 'ours', &
+         'modified suction of turning point 6; the first is the oldest; with hysteresis', '0', &
+         'set where suction turns'), &
+      variable_t(S_TURN + 11, 1, 'turn_s_w_6', 'S_6', '1', .false., 'ours', &
+         'degree of saturation of turning point 6; with hysteresis', '0', 'set where suction turns'), &
+      variable_t(S_TURN + 12, 1, 'turn_x_7', 'ln(x_7/P_a)', '1', .false., 'ours', &
+         'modified suction of turning point 7; the first is the oldest; with hysteresis', '0', &
+         'set where suction turns'), &
+      variable_t(S_TURN + 13, 1, 'turn_s_w_7', 'S_7', '1', .false., 'ours', &
+         'degree of saturation of turning point 7; with hysteresis', '0', 'set where suction turns'), &
+      variable_t(S_TURN + 14, 1, 'turn_x_8', 'ln(x_8/P_a)', '1', .false., 'ours', &
+         'modified suction of turning point 8; the first is the oldest; with hysteresis', '0', &
+         'set where suction turns'), &
+      variable_t(S_TURN + 15, 1, 'turn_s_w_8', 'S_8', '1', .false., 'ours', &
+         'degree of saturation of turning point 8; with hysteresis', '0', 'set where suction turns')]
    integer, parameter :: NVARIABLES = size(VARIABLES)
 
    type(option_t), parameter :: OPTIONS(*) = [ &

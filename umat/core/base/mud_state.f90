@@ -2,21 +2,24 @@
 !> State of an integration point, and its place in STATEV.
 module mud_state
    use mud_kinds, only: wp
-   use mud_registry, only: NSTATV, STATE_LAYOUT, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION, S_STATE_PARAMETER, &
-      S_EPS_Q_P, S_EPS_Q_P_TOTAL, S_X_BEFORE, S_X_RUNNING, S_TARGET, S_INTERRUPTED, S_OPEN, S_LAST_STEP, S_FABRIC, &
-      S_MEMORY, S_MEMORY_BEFORE, S_DIRECTION, S_N_RATE, S_N_SUBSTEP, S_N_REJECT, S_N_RESET, S_N_GUARD, S_N_NO_ROOT, &
-      S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED
+   use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, STATE_LAYOUT, S_LAYOUT, S_VOID_RATIO, S_SATURATION, &
+      S_SUCTION, S_STATE_PARAMETER, S_EPS_Q_P, S_EPS_Q_P_TOTAL, S_X_BEFORE, S_X_RUNNING, S_TARGET, S_INTERRUPTED, &
+      S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, S_MEMORY_BEFORE, S_DIRECTION, S_N_RATE, S_N_SUBSTEP, S_N_REJECT, &
+      S_N_RESET, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, &
+      MAX_INTERRUPTED, S_TURNS, S_N_CLEARED, S_TURN, MAX_TURNS
    use mud_status, only: mud_status_t, fail, MUD_BAD_STATE, MUD_BAD_NSTATV, ON_STATEV
    use mud_tensor, only: is_finite, all_finite
    implicit none (type, external)
    private
-   public :: memory_t, interrupted_t, state_t, counters_t, guard_count, pack_state, unpack_state, E_LOWER, E_UPPER
+   public :: memory_t, interrupted_t, turns_t, state_t, counters_t, guard_count, pack_state, unpack_state, &
+             statev_size, E_LOWER, E_UPPER, NO_TURNS
 
    real(wp), parameter :: E_LOWER = 0.01_wp, E_UPPER = 5.0_wp   !< Range of the void ratio [-].
 
    real(wp), parameter :: LARGEST_RATIO = 1.0e11_wp       !< A stress ratio beyond it is no state [-].
    real(wp), parameter :: LARGEST_FABRIC = 1.0e6_wp       !< Likewise; z_max is at most 1e3 [-].
    real(wp), parameter :: LARGEST_FROM_CENTRE = 1.0_wp    !< Strain from the elastic domain's centre; rho_e <= 0.01 [-].
+   real(wp), parameter :: LARGEST_LOG_SUCTION = 1.0e3_wp  !< ln of a double [-].
    real(wp), parameter :: LARGEST_DIRECTION = 1.01_wp     !< Components of a unit tensor [-].
 
    !> A loading process that was interrupted (rule return_point).
@@ -39,6 +42,15 @@ module mud_state
       type(interrupted_t) :: interrupted(MAX_INTERRUPTED)   !< The oldest first; beyond depth without meaning.
    end type memory_t
 
+   !> Where the modified suction x = p_c e^Omega turned (hysteresis), and where it goes.
+   type :: turns_t
+      logical :: dries             !< The present direction.
+      integer :: depth             !< Number of turning points.
+      real(wp) :: log_x(MAX_TURNS) !< ln(x/P_a) of each, the oldest first; beyond depth without meaning [-].
+      real(wp) :: s_w(MAX_TURNS)   !< S_w of each, likewise [-].
+   end type turns_t
+   type(turns_t), parameter :: NO_TURNS = turns_t(.true., 0, 0.0_wp, 0.0_wp)
+
    type :: state_t
       real(wp) :: sigma(6)     !< sigma' [kPa], compression positive
       real(wp) :: z(6)         !< fabric [-]
@@ -51,29 +63,39 @@ module mud_state
       real(wp) :: from_centre(6)   !< strain from the centre of the elastic domain [-]
       logical :: open          !< held by the tension cut-off
       type(memory_t) :: memory
+      type(turns_t) :: turns   !< With hysteresis; otherwise without meaning.
    end type state_t
 
    !> What an update did.
    type :: counters_t
       integer :: rate = 0, substep = 0, reject = 0, reset = 0, floor = 0, cap_d = 0, cap_h = 0, hysteresis = 0, &
-                 iso_kept = 0, no_root = 0, min_step = 0, open = 0, tensile = 0, clip = 0
+                 iso_kept = 0, no_root = 0, min_step = 0, open = 0, tensile = 0, cleared = 0
    end type counters_t
 contains
-   !> Reads a state from an initialised STATEV; the stress is set by the caller. statev(:) has at least NSTATV entries,
-   !> else MUD_BAD_NSTATV; units as in mud_registry, tensors with the sign of the core. MUD_BAD_STATE names the first
-   !> entry that is not finite or out of its range; the state is then of no use.
-   pure subroutine unpack_state(statev, state, status)
+   !> Numbers of a point in STATEV.
+   pure integer function statev_size(hysteresis) result(n)
+      logical, intent(in) :: hysteresis
+
+      n = merge(NSTATV, NSTATV_WITHOUT_HYSTERESIS, hysteresis)
+   end function statev_size
+
+   !> Reads a state from an initialised STATEV; the stress is set by the caller. statev(:) has at least the numbers of
+   !> statev_size, else MUD_BAD_NSTATV; units as in mud_registry, tensors with the sign of the core. MUD_BAD_STATE names
+   !> the first entry that is not finite or out of its range; the state is then of no use.
+   pure subroutine unpack_state(statev, hysteresis, state, status)
       real(wp), intent(in), contiguous :: statev(:)
+      logical, intent(in) :: hysteresis
       type(state_t), intent(inout) :: state
       type(mud_status_t), intent(out) :: status
       integer :: i
 
-      if (size(statev) < NSTATV) then
-         status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(size(statev), wp), real(NSTATV, wp), huge(1.0_wp))
+      if (size(statev) < statev_size(hysteresis)) then
+         status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(size(statev), wp), real(statev_size(hysteresis), wp), &
+                       huge(1.0_wp))
          return
       end if
-      if (.not. all_finite(statev(1:NSTATV))) then
-         i = findloc(is_finite(statev(1:NSTATV)), .false., dim=1)
+      if (.not. all_finite(statev(1:NSTATV_WITHOUT_HYSTERESIS))) then
+         i = findloc(is_finite(statev(1:NSTATV_WITHOUT_HYSTERESIS)), .false., dim=1)
          status = fail(MUD_BAD_STATE, ON_STATEV, i, statev(i), -huge(1.0_wp), huge(1.0_wp))
          return
       end if
@@ -96,6 +118,7 @@ contains
       end do
       if (status%code /= 0) return
       call unpack_stack(statev, state%memory, status)
+      if (hysteresis) call unpack_turns(statev, state%turns, status)
       if (status%code /= 0) return
 
       state%e = statev(S_VOID_RATIO)
@@ -137,6 +160,45 @@ contains
       end do
    end subroutine unpack_stack
 
+   !> Reads the turning points of suction; places beyond their number are not looked at. No number, of a state that had
+   !> no hysteresis: none.
+   pure subroutine unpack_turns(statev, turns, status)
+      real(wp), intent(in) :: statev(:)
+      type(turns_t), intent(inout) :: turns
+      type(mud_status_t), intent(inout) :: status
+      integer :: k, i
+
+      i = findloc(is_finite(statev(S_TURNS:NSTATV)), .false., dim=1)
+      if (i > 0 .and. status%code == 0) &
+         status = fail(MUD_BAD_STATE, ON_STATEV, S_TURNS - 1 + i, statev(S_TURNS - 1 + i), -huge(1.0_wp), huge(1.0_wp))
+      if (status%code /= 0) return
+      call require(statev, S_TURNS, -real(1 + MAX_TURNS, wp), real(1 + MAX_TURNS, wp), status)
+      turns = NO_TURNS
+      if (status%code /= 0) return
+      turns%dries = statev(S_TURNS) >= 0.0_wp
+      turns%depth = max(nint(abs(statev(S_TURNS))) - 1, 0)
+      do k = 1, turns%depth
+         call require(statev, S_TURN + 2*k - 2, -LARGEST_LOG_SUCTION, LARGEST_LOG_SUCTION, status)
+         call require(statev, S_TURN + 2*k - 1, 0.0_wp, 1.0_wp, status)
+         turns%log_x(k) = statev(S_TURN + 2*k - 2)
+         turns%s_w(k) = statev(S_TURN + 2*k - 1)
+      end do
+   end subroutine unpack_turns
+
+   !> Writes the turning points; unused places become zero.
+   pure subroutine pack_turns(turns, statev)
+      type(turns_t), intent(in) :: turns
+      real(wp), intent(inout) :: statev(:)
+      integer :: k
+
+      statev(S_TURNS) = real(merge(1, -1, turns%dries)*(1 + turns%depth), wp)
+      statev(S_TURN:NSTATV) = 0.0_wp
+      do k = 1, turns%depth
+         statev(S_TURN + 2*k - 2) = turns%log_x(k)
+         statev(S_TURN + 2*k - 1) = turns%s_w(k)
+      end do
+   end subroutine pack_turns
+
    !> Writes the interrupted processes; unused places become zero.
    pure subroutine pack_stack(memory, statev)
       type(memory_t), intent(in) :: memory
@@ -166,9 +228,11 @@ contains
    end subroutine require
 
    !> Writes a state and the sums of the counters to STATEV; the tangent outputs are the caller's. statev(:) has at
-   !> least NSTATV entries, which is not checked; units as in mud_registry, tensors with the sign of the core.
-   pure subroutine pack_state(state, counters, statev)
+   !> least the numbers of statev_size, which is not checked; units as in mud_registry, tensors with the sign of the
+   !> core.
+   pure subroutine pack_state(state, hysteresis, counters, statev)
       type(state_t), intent(in) :: state
+      logical, intent(in) :: hysteresis
       type(counters_t), intent(in) :: counters
       real(wp), intent(inout) :: statev(:)   !< Holds the totals so far.
 
@@ -200,14 +264,16 @@ contains
       statev(S_N_MIN_STEP) = statev(S_N_MIN_STEP) + counters%min_step
       statev(S_N_OPEN) = statev(S_N_OPEN) + counters%open
       statev(S_N_TENSILE) = statev(S_N_TENSILE) + counters%tensile
+      if (.not. hysteresis) return
+      call pack_turns(state%turns, statev)
+      statev(S_N_CLEARED) = statev(S_N_CLEARED) + counters%cleared
    end subroutine pack_state
 
    !> How often a guard acted: floor, caps, hysteresis of the reversal test, the isotropic mechanism that contradicts
-   !> itself, and S_w clipped to its main curves.
+   !> itself.
    pure integer function guard_count(counters)
       type(counters_t), intent(in) :: counters
 
-      guard_count = counters%floor + counters%cap_d + counters%cap_h + counters%hysteresis + counters%iso_kept &
-                    + counters%clip
+      guard_count = counters%floor + counters%cap_d + counters%cap_h + counters%hysteresis + counters%iso_kept
    end function guard_count
 end module mud_state

@@ -1,50 +1,69 @@
 ! SPDX-License-Identifier: MIT
-!> Hydraulic hysteresis along an increment: where the modified suction x = p_c e^Omega turns, and the scanning curve on
-!> either side; docs/theory/material.md section 2.1.1. Void ratio and suction are known beforehand at every pseudo-time,
-!> so both are exact: nothing here depends on substeps.
+!> Hydraulic hysteresis along an increment: where the modified suction x = p_c e^Omega turns and passes turning points,
+!> and the branch in between; docs/theory/material.md section 2.1.1. Void ratio and suction are known beforehand at
+!> every pseudo-time, so all of this is: nothing here depends on substeps.
 module mud_branches
    use mud_kinds, only: wp
-   use mud_blocks, only: blocks_t
-   use mud_increment, only: increment_t, void_ratio_at, suction_at
+   use mud_driving, only: slopes_of_suction
+   use mud_increment, only: increment_t, void_ratio_at, suction_at, SHORTEST_PHASE
    use mud_integration, only: integration_t
    use mud_params, only: params_t
-   use mud_retention, only: saturation_t, saturation, change_of_offset, offset_with_turn
-   use mud_scanning, only: branch_from, clipped, main_curve
+   use mud_registry, only: MAX_TURNS
+   use mud_retention, only: saturation_t, change_with_turn, log_suction
+   use mud_scanning, only: path_t, go_on, pass, branch_of, begin_at_turn, saturation_after, keep_turns, find_least
    use mud_state, only: state_t, counters_t
    implicit none (type, external)
    private
-   public :: course_t, begin_course, turn_around, end_course
+   public :: course_t, begin_course, list_passed, take_branch, turn_around, end_course, MAX_PASSED
 
    integer, parameter :: HALVINGS = 60            !< Of an increment: more than a double can tell apart.
+   integer, parameter :: MAX_PASSED = MAX_TURNS   !< Turning points on the ways to a turn and from it.
 
    !> How S_w changes through an increment.
    type :: course_t
       real(wp) :: turn        !< Share of the increment after which x no longer rises, 1 if it does not turn [-].
-      real(wp) :: s_w         !< At the start, between the main curves [-].
-      logical :: at_rest      !< x does not change.
-      type(params_t) :: branch   !< Parameters whose saturation is that of the present scanning curve.
-      real(wp) :: change_pc, change_v   !< Of S_w at the end with suction step and volume, through the turn [1/kPa, -].
+      real(wp) :: log_turn, log_end   !< ln(x/P_a) there and at the end [-].
+      type(params_t) :: material      !< Without a branch.
+      type(params_t) :: branch        !< Parameters whose saturation is that of the present branch.
+      type(path_t) :: path    !< Where x began to go the way that it goes: at the start, or at the turn.
+      logical :: turned
+      real(wp) :: slope       !< dS_w/d ln x where it turned, of the branch before [-].
+      real(wp) :: with_increment(2)   !< d ln x there with suction step and volume [1/kPa, -].
    end type course_t
 contains
-   !> Clips S_w of the state that an increment begins with and finds the first branch; a saturation that was clipped is
-   !> counted. docs/theory/material.md section 2.1.1.
+   !> The turn of an increment, and the way of x to it. A state that is not on its branch loses its turning points,
+   !> which is counted. docs/theory/material.md section 2.1.1.
    pure subroutine begin_course(par, inc, state, counters, course)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
-      type(state_t), intent(inout) :: state
+      type(state_t), intent(in) :: state
       type(counters_t), intent(inout) :: counters
       type(course_t), intent(out) :: course
-      logical :: dries
+      logical :: cleared
 
-      call clipped(par, inc%p_c0, inc%e0, state%s_w, counters%clip)
-      course%s_w = state%s_w
-      course%change_pc = 0.0_wp
-      course%change_v = 0.0_wp
-      course%at_rest = abs(inc%d_pc) <= 0.0_wp .and. abs(inc%d_v) <= 0.0_wp
+      course%material = par
+      if (.not. par%least%known) course%material%least = find_least(par)
+      course%path = path_t(log_at(par, inc, 0.0_wp), state%s_w, state%turns)
+      call keep_turns(course%material, course%path, cleared)
+      if (cleared) counters%cleared = counters%cleared + 1
+      course%turned = .false.
+      course%slope = 0.0_wp
+      course%with_increment = 0.0_wp
       course%turn = turn_of_suction(par%omega, inc)
-      dries = course%at_rest .or. rise(par%omega, inc, 0.0_wp) > 0.0_wp
-      course%branch = branch_from(par, dries, inc%p_c0, inc%e0, state%s_w)
+      if (course%turn < SHORTEST_PHASE .or. course%turn > 1.0_wp - SHORTEST_PHASE) course%turn = 1.0_wp
+      course%log_turn = log_at(par, inc, course%turn)
+      course%log_end = log_at(par, inc, 1.0_wp)
+      course%branch = branch_of(course%material, course%path)
    end subroutine begin_course
+
+   !> ln(x/P_a) at a pseudo-time [-].
+   pure real(wp) function log_at(par, inc, time)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time
+
+      log_at = log_suction(par, suction_at(inc, time), void_ratio_at(inc, time))
+   end function log_at
 
    !> e^-Omega dx/dt [kPa], t the share of the increment.
    pure real(wp) function rise(omega, inc, time)
@@ -77,61 +96,128 @@ contains
       end do
    end function turn_of_suction
 
-   !> The wetting branch behind a turn, how q ln of its offset changes with suction step and volume of the increment,
-   !> and how S_w at the end does through that. x is stationary where it turns: the place of the turn does not matter.
-   !> docs/theory/material.md section 2.1.1.
-   pure subroutine turn_around(par, share, course, it)
-      type(params_t), intent(in) :: par      !< Of the material.
-      real(wp), intent(in) :: share          !< Where it turns [-].
+   !> Pseudo-times at which x passes turning points, n of them in their order. Only x of the turning points matters, so
+   !> they are known beforehand, behind a turn too. docs/theory/material.md section 2.1.1.
+   pure subroutine list_passed(inc, course, times, n)
+      type(increment_t), intent(in) :: inc
+      type(course_t), intent(in) :: course
+      real(wp), intent(out) :: times(MAX_PASSED)   !< Beyond n without meaning [-].
+      integer, intent(out) :: n
+      type(path_t) :: path
+      real(wp) :: passed(MAX_TURNS/2)
+      integer :: i, k
+
+      path = course%path
+      times = 0.0_wp
+      call pass(course%log_turn, path, passed, n)
+      do i = 1, n
+         times(i) = time_of_passing(course%material, inc, 0.0_wp, course%turn, passed(i))
+      end do
+      if (course%turn >= 1.0_wp) return
+      path%log_x = course%log_turn
+      call pass(course%log_end, path, passed, k)
+      do i = 1, k
+         times(n + i) = time_of_passing(course%material, inc, course%turn, 1.0_wp, passed(i))
+      end do
+      n = n + k
+   end subroutine list_passed
+
+   !> Pseudo-time in a range at which ln(x/P_a), which goes one way there, has a value [-].
+   pure real(wp) function time_of_passing(par, inc, from, to, log_x) result(time)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: from, to, log_x
+      real(wp) :: before, middle
+      logical :: dries
+      integer :: i
+
+      dries = log_at(par, inc, to) > log_at(par, inc, from)
+      before = from
+      time = to
+      do i = 1, HALVINGS
+         middle = 0.5_wp*(before + time)
+         if (dries .eqv. log_at(par, inc, middle) < log_x) then
+            before = middle
+         else
+            time = middle
+         end if
+      end do
+   end function time_of_passing
+
+   !> The branch of the phase between two pseudo-times; its middle tells what x has passed.
+   pure subroutine take_branch(from, to, course, it)
+      real(wp), intent(in) :: from, to
       type(course_t), intent(inout) :: course
       type(integration_t), intent(inout) :: it
-      type(saturation_t) :: before, finish
-      type(params_t) :: turned
-      real(wp) :: p_c, e, with_offset(3), with_turn(2)
 
-      p_c = suction_at(it%inc, share)
-      e = void_ratio_at(it%inc, share)
-      before = saturation(course%branch, p_c, e)
-      turned = branch_from(par, .false., p_c, e, before%s_w)
-      with_turn = share*[1.0_wp/p_c, -par%omega*(1.0_wp + e)/e] &
-                  *offset_with_turn(turned, before, saturation(turned, p_c, e), p_c, e)
-      if (it%consistent) then
-         it%sens%driving%scans = turned%scanning%between
-         it%sens%driving%offset = with_turn(1)*it%sens%driving%d_pc + with_turn(2)*it%sens%driving%d_v
+      call follow(log_at(course%material, it%inc, 0.5_wp*(from + to)), course)
+      if (it%consistent) it%sens%driving%scans = course%branch%scanning%moves
+   end subroutine take_branch
+
+   !> The branch on which x goes to a value [-].
+   pure subroutine follow(log_x, course)
+      real(wp), intent(in) :: log_x
+      type(course_t), intent(inout) :: course
+      type(path_t) :: path
+
+      path = course%path
+      call go_on(course%material, log_x, path)
+      if (begins_at_turn(course, path)) then
+         course%branch = begin_at_turn(course%material, path, course%slope)
+      else
+         course%branch = branch_of(course%material, path)
       end if
-      course%branch = turned
-      p_c = suction_at(it%inc, 1.0_wp)
-      e = void_ratio_at(it%inc, 1.0_wp)
-      finish = saturation(turned, p_c, e)
-      with_offset = change_of_offset(turned, finish, p_c, e)
-      course%change_pc = with_offset(1)*with_turn(1)
-      course%change_v = with_offset(1)*with_turn(2)
+   end subroutine follow
+
+   !> True if the present branch begins where the increment turned.
+   pure logical function begins_at_turn(course, path)
+      type(course_t), intent(in) :: course
+      type(path_t), intent(in) :: path
+
+      begins_at_turn = course%turned .and. path%turns%depth > 0
+      if (begins_at_turn) begins_at_turn = abs(path%turns%log_x(path%turns%depth) - course%log_turn) <= 0.0_wp
+   end function begins_at_turn
+
+   !> Where x turns: the turning point goes with suction step and volume of the increment. x is stationary there: its
+   !> place does not matter. docs/theory/material.md section 2.1.1.
+   pure subroutine turn_around(course, it)
+      type(course_t), intent(inout) :: course
+      type(integration_t), intent(inout) :: it
+      type(saturation_t) :: sat
+      real(wp) :: p_c
+
+      p_c = suction_at(it%inc, course%turn)
+      call saturation_after(course%material, p_c, void_ratio_at(it%inc, course%turn), course%path, sat, course%branch)
+      course%slope = sat%ds_dpc*p_c
+      course%turned = .true.
+      course%with_increment = course%turn*slopes_of_suction(it%inc, course%turn, course%material%omega)
+      if (it%consistent) it%sens%driving%turn = course%with_increment(1)*it%sens%driving%d_pc &
+                                                + course%with_increment(2)*it%sens%driving%d_v
    end subroutine turn_around
 
-   !> S_w at the end, between the main curves, with the slopes of what it follows there. A saturation that was clipped
-   !> is counted and has the slopes of the main curve. docs/theory/material.md section 2.1.1.
-   pure subroutine end_course(par, course, state, counters, blocks)
-      type(params_t), intent(in) :: par
-      type(course_t), intent(in) :: course
-      type(state_t), intent(inout) :: state      !< e, p_c and, along the branch, s_w are those of the end.
-      type(counters_t), intent(inout) :: counters
-      type(blocks_t), intent(inout) :: blocks
-      type(saturation_t) :: curve
-      real(wp) :: s_w
-      integer :: count
+   !> S_w and turning points at the end, the branch there, and what the turn adds to the slopes of S_w.
+   !> docs/theory/material.md section 2.1.1.
+   pure subroutine end_course(inc, course, state, with_turn)
+      type(increment_t), intent(in) :: inc
+      type(course_t), intent(inout) :: course
+      type(state_t), intent(inout) :: state
+      real(wp), intent(out) :: with_turn(2)   !< By suction step and volume [1/kPa, -].
+      type(saturation_t) :: sat
+      type(params_t) :: branch
+      type(path_t) :: path
+      real(wp) :: p_c, e, change(3)
 
-      if (course%at_rest) state%s_w = course%s_w
-      s_w = state%s_w
-      count = 0
-      call clipped(par, state%p_c, state%e, state%s_w, count)
-      if (count == 0) then
-         blocks%dsw_dpc = blocks%dsw_dpc + course%change_pc
-         blocks%dsw_dev = blocks%dsw_dev + course%change_v
-         return
-      end if
-      counters%clip = counters%clip + count
-      curve = saturation(main_curve(par, state%s_w < s_w), state%p_c, state%e)
-      blocks%dsw_dpc = curve%ds_dpc
-      blocks%dsw_dev = -(1.0_wp + state%e)*curve%ds_de
+      p_c = suction_at(inc, 1.0_wp)
+      e = void_ratio_at(inc, 1.0_wp)
+      path = course%path
+      call saturation_after(course%material, p_c, e, path, sat, branch)
+      state%s_w = path%s_w
+      state%turns = path%turns
+      with_turn = 0.0_wp
+      course%branch = branch
+      if (.not. begins_at_turn(course, path)) return
+      course%branch = begin_at_turn(course%material, path, course%slope)
+      change = change_with_turn(course%branch, p_c, e)
+      with_turn = change(1)*course%with_increment
    end subroutine end_course
 end module mud_branches

@@ -301,7 +301,7 @@ contains
 
       changes%d_pc = driving%d_pc
       changes%scans = driving%scans
-      if (driving%scans) changes%offset = driving%offset
+      if (driving%scans) changes%turn = driving%turn
       call change_of_place(inc, time, e, dt, driving, changes%e, changes%p_c)
       call changes_of_loading_strain(inc, mode, turning, driving%d_strain, driving%from_centre, dt - driving%exit, &
                                      changes%loading)

@@ -131,7 +131,7 @@ contains
       real(wp), intent(in) :: time, h, shift(DIRECTIONS), dh(DIRECTIONS)
       type(driving_t), intent(in) :: driving
       real(wp), intent(inout) :: y(DIRECTIONS, NY)
-      real(wp), dimension(DIRECTIONS) :: de_half, dp_c_half, de, dp_c, offset
+      real(wp), dimension(DIRECTIONS) :: de_half, dp_c_half, de, dp_c, turn
       real(wp) :: r0(6), r_half(6), dr(6), strain(6), half, middle
       integer :: j
 
@@ -141,14 +141,14 @@ contains
       r_half = slide(par, inc, r0, time, half)
       call change_of_place(inc, middle, void_ratio_at(inc, middle), shift + 0.5_wp*dh, driving, de_half, dp_c_half)
       call change_of_place(inc, time + h, void_ratio_at(inc, time + h), shift + dh, driving, de, dp_c)
-      offset = 0.0_wp
-      if (driving%scans) offset = driving%offset
+      turn = 0.0_wp
+      if (driving%scans) turn = driving%turn
       do j = 1, DIRECTIONS
          strain = driving%d_strain%of(j, :) + (dh(j)/h)*inc%d_strain
          dr = y(j, 1:6)
          dr = change_of_slide(par, inc, r0, time, half, deviator(dr)/par%p_min, strain, de_half(j), dp_c_half(j), &
-                              offset(j))
-         y(j, 1:6) = par%p_min*change_of_slide(par, inc, r_half, middle, half, dr, strain, de(j), dp_c(j), offset(j))
+                              turn(j))
+         y(j, 1:6) = par%p_min*change_of_slide(par, inc, r_half, middle, half, dr, strain, de(j), dp_c(j), turn(j))
       end do
    end subroutine changes_through_hold
 
@@ -269,12 +269,12 @@ contains
    end function slide
 
    !> Change of that stress ratio with r0, with the increment's strain, with void ratio and suction at the end and with
-   !> a scanning curve, of q ln offset. All [-] but dp_c [kPa]; time and h are shares of inc. Derivative of
+   !> a branch, of ln x of its turn. All [-] but dp_c [kPa]; time and h are shares of inc. Derivative of
    !> docs/theory/material.md section 6.2.
-   pure function change_of_slide(par, inc, r0, time, h, dr0, d_strain, de, dp_c, d_offset) result(change)
+   pure function change_of_slide(par, inc, r0, time, h, dr0, d_strain, de, dp_c, d_turn) result(change)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: r0(6), time, h, dr0(6), d_strain(6), de, dp_c, d_offset
+      real(wp), intent(in) :: r0(6), time, h, dr0(6), d_strain(6), de, dp_c, d_turn
       real(wp) :: change(6), r(6), e, p_c, stiffness, psi, dpsi
 
       e = void_ratio_at(inc, time + h)
@@ -285,7 +285,7 @@ contains
       psi = psi_of(par, inc%bonded, e, p_c, par%p_min)
       if (norm(r) <= 0.0_wp) return
       if (excess(par, psi, r) <= 0.0_wp) return
-      dpsi = change_of_psi(par, inc%bonded, e, p_c, par%p_min, de, dp_c, 0.0_wp, d_offset)
+      dpsi = change_of_psi(par, inc%bonded, e, p_c, par%p_min, de, dp_c, 0.0_wp, d_turn)
       change = change_of_limited(par, psi, r, dpsi, change)
    end function change_of_slide
 

@@ -8,7 +8,8 @@ module mud_driving
    use mud_tensor, only: DIRECTIONS => LANES, tensors_t, ZERO_TENSORS, ANY_TENSORS, strain_directions
    implicit none (type, external)
    private
-   public :: driving_t, whole_increment, change_of_place, change_of_zero_suction, change_of_turn, DIRECTIONS, AT_REST
+   public :: driving_t, whole_increment, change_of_place, change_of_zero_suction, change_of_turn, change_of_passing, &
+             slopes_of_suction, DIRECTIONS, AT_REST
 
    !> Derivatives of what drives the increment along six engineering strains and the suction at the end of the
    !> increment, side by side. The eighth direction is idle: along it nothing changes.
@@ -18,8 +19,8 @@ module mud_driving
       real(wp) :: d_pc(DIRECTIONS)             !< of its suction step
       real(wp) :: exit(DIRECTIONS)             !< of the pseudo-time at which it leaves the elastic domain
       type(tensors_t) :: from_centre           !< of the strain from the centre of the elastic domain there
-      logical :: scans                         !< It is on a scanning curve that depends on the increment ...
-      real(wp) :: offset(DIRECTIONS)           !< ... by q ln of its offset; not set otherwise.
+      logical :: scans                         !< It is on a branch that depends on the increment ...
+      real(wp) :: turn(DIRECTIONS)             !< ... by ln x of the turn where it begins; not set otherwise.
    end type driving_t
 
    !> Nothing drives.
@@ -90,4 +91,27 @@ contains
                - omega*p_c*inc%d_v*(1.0_wp + e)/e**2*time*driving%d_v
       change = -change/slope
    end function change_of_turn
+
+   !> Derivatives of ln x, x the modified suction p_c e^Omega, by suction [1/kPa] and volume [-]. Suction is positive
+   !> there, which is not checked. docs/theory/material.md section 2.1.1.
+   pure function slopes_of_suction(inc, time, omega) result(slopes)
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time, omega
+      real(wp) :: slopes(2), e
+
+      e = void_ratio_at(inc, time)
+      slopes = [1.0_wp/suction_at(inc, time), -omega*(1.0_wp + e)/e]
+   end function slopes_of_suction
+
+   !> Changes of the pseudo-time at which ln x passes a turning point [-]. x moves there, which is not checked.
+   !> docs/theory/material.md section 2.1.1.
+   pure function change_of_passing(inc, time, omega, driving) result(change)
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time, omega
+      type(driving_t), intent(in) :: driving
+      real(wp) :: change(DIRECTIONS), slopes(2)
+
+      slopes = slopes_of_suction(inc, time, omega)
+      change = -time*(slopes(1)*driving%d_pc + slopes(2)*driving%d_v)/(slopes(1)*inc%d_pc + slopes(2)*inc%d_v)
+   end function change_of_passing
 end module mud_driving

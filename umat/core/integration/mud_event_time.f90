@@ -98,7 +98,7 @@ contains
       type(driving_t), intent(in) :: driving
       type(changes_t), intent(in) :: changes
       real(wp) :: slopes(DIRECTIONS), rates(DIRECTIONS, NY), dn(DIRECTIONS, 6), dr(DIRECTIONS, 6), p, r(6)
-      real(wp) :: y_j(NY), dr_j(6), strain_j(6), offset(DIRECTIONS)
+      real(wp) :: y_j(NY), dr_j(6), strain_j(6), turn(DIRECTIONS)
       integer :: j
 
       call stress_ratio(par, trial%y(1:6), p, r)
@@ -115,14 +115,14 @@ contains
             slopes = contractions(dr - r_in%of, w%n) + contractions(dn, r - trial%r_in)
          end if
       case (EVENT_BOUNDS, EVENT_RETURN)
-         offset = 0.0_wp
-         if (changes%scans) offset = changes%offset
+         turn = 0.0_wp
+         if (changes%scans) turn = changes%turn
          do j = 1, DIRECTIONS
             ! copies: a row that is passed as it is may be packed into memory of its own
             y_j = y(j, :)
             dr_j = dr(j, :)
             slopes(j) = slope_at_surface(par, inc, event, trial, time, y_j, dr_j, changes%e(j), changes%p_c(j), &
-                                        offset(j))
+                                        turn(j))
          end do
       case default
          call changes_of_rate(par, w, lin, .false., y, tensors_t(dr, ANY_TENSORS), driving%d_strain, &
@@ -149,19 +149,19 @@ contains
    end function jumps
 
    !> The same along one direction, where the event depends on the bounding surface.
-   pure real(wp) function slope_at_surface(par, inc, event, trial, time, y, dr, de, dp_c, d_offset) result(slope)
+   pure real(wp) function slope_at_surface(par, inc, event, trial, time, y, dr, de, dp_c, d_turn) result(slope)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: event
       type(trial_t), intent(in) :: trial
-      real(wp), intent(in) :: time, y(NY), dr(6), de, dp_c, d_offset
+      real(wp), intent(in) :: time, y(NY), dr(6), de, dp_c, d_turn
       real(wp) :: p, r(6), psi, dp, dpsi, m_b
 
       call stress_ratio(par, trial%y(1:6), p, r)
       psi = psi_at(par, inc, time, p)
       dp = merge(trace(y(1:6))/3.0_wp, 0.0_wp, p_follows(par, trial%y(1:6)))
       dpsi = change_of_psi(par, inc%bonded, void_ratio_at(inc, time), suction_at(inc, time), p, de, &
-                                       dp_c, dp, d_offset)
+                                       dp_c, dp, d_turn)
       if (event == EVENT_BOUNDS) then
          slope = change_of_excess(par, psi, r, dpsi, dr)
       else

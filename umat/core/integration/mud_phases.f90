@@ -1,10 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> An increment as a list of phases. Where suction turns or passes zero, and where the strain leaves the elastic domain,
-!> follows from strain, void ratio and suction alone: the list is made before anything is integrated.
+!> An increment as a list of phases. Where suction turns, passes zero or a turning point, and where the strain leaves
+!> the elastic domain, follows from strain, void ratio and suction alone: the list is made beforehand.
 module mud_phases
-   use mud_branches, only: course_t, turn_around
+   use mud_branches, only: course_t, list_passed, take_branch, turn_around, MAX_PASSED
    use mud_consistent, only: begin_stretch
-   use mud_driving, only: change_of_zero_suction, change_of_turn, DIRECTIONS
+   use mud_driving, only: change_of_zero_suction, change_of_turn, change_of_passing, DIRECTIONS
    use mud_increment, only: increment_t, take_phase, suction_at, end_in_domain, SHORTEST_PHASE
    use mud_integration, only: integration_t
    use mud_kinds, only: wp
@@ -15,7 +15,8 @@ module mud_phases
    private
    public :: integrate_phases
 
-   integer, parameter :: CUT_END = 0, CUT_TURN = 1, CUT_NO_SUCTION = 2, CUT_EXIT = 3
+   integer, parameter :: CUT_END = 0, CUT_TURN = 1, CUT_NO_SUCTION = 2, CUT_EXIT = 3, CUT_PASSED = 4
+   integer, parameter :: MAX_CUTS = 4 + MAX_PASSED
 
    !> Where a phase ends.
    type :: cut_t
@@ -28,16 +29,17 @@ contains
    !> substep. docs/theory/integration.md section 1.
    pure subroutine integrate_phases(par, course, it)
       type(params_t), intent(in) :: par
-      type(course_t), intent(inout) :: course   !< With hysteresis; otherwise its turn is 1.
+      type(course_t), intent(inout) :: course   !< With hysteresis; otherwise without meaning.
       type(integration_t), intent(inout) :: it
-      type(cut_t) :: cuts(4)
+      type(cut_t) :: cuts(MAX_CUTS)
       real(wp) :: from, end_shift(DIRECTIONS)
       integer :: i, n
 
-      call list_cuts(par, it%inc, course%turn, cuts, n)
+      call list_cuts(par, it%inc, course, cuts, n)
       from = 0.0_wp
       do i = 1, n
          call take_phase(par, from, cuts(i)%time, it%inc)
+         if (par%hysteresis) call take_branch(from, cuts(i)%time, course, it)
          if (it%consistent) then
             end_shift = change_of_cut(par, it, cuts(i))
             call begin_stretch(it%inc, end_shift, it%sens)
@@ -48,23 +50,31 @@ contains
             call integrate_phase(par, end_shift, it)
          end if
          if (it%status%code /= MUD_OK) return
-         if (cuts(i)%kind == CUT_TURN) call turn_around(par, cuts(i)%time, course, it)
+         if (cuts(i)%kind == CUT_TURN) call turn_around(course, it)
          from = cuts(i)%time
       end do
       if (it%inc%rho > 0.0_wp) it%state%from_centre = end_in_domain(it%inc)
    end subroutine integrate_phases
 
    !> The cuts of an increment in their order, its end the last. A phase that would be very short is joined to the next.
-   pure subroutine list_cuts(par, inc, turn, cuts, n)
+   pure subroutine list_cuts(par, inc, course, cuts, n)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: turn
-      type(cut_t), intent(out) :: cuts(4)
+      type(course_t), intent(in) :: course
+      type(cut_t), intent(out) :: cuts(MAX_CUTS)
       integer, intent(out) :: n
+      real(wp) :: times(MAX_PASSED)
+      integer :: i, k
 
       n = 1
       cuts(1) = cut_t(CUT_END, 1.0_wp)
-      call insert(cut_t(CUT_TURN, turn), cuts, n)
+      if (par%hysteresis) then
+         call insert(cut_t(CUT_TURN, course%turn), cuts, n)
+         call list_passed(inc, course, times, k)
+         do i = 1, k
+            call insert(cut_t(CUT_PASSED, times(i)), cuts, n)
+         end do
+      end if
       if (passes_zero(par, inc)) call insert(cut_t(CUT_NO_SUCTION, -inc%p_c0/inc%d_pc), cuts, n)
       if (inc%rho > 0.0_wp) call insert(cut_t(CUT_EXIT, inc%exit), cuts, n)
    end subroutine list_cuts
@@ -72,7 +82,7 @@ contains
    !> A cut at its place among others, unless it would leave a very short phase.
    pure subroutine insert(cut, cuts, n)
       type(cut_t), intent(in) :: cut
-      type(cut_t), intent(inout) :: cuts(4)
+      type(cut_t), intent(inout) :: cuts(MAX_CUTS)
       integer, intent(inout) :: n
       integer :: i
 
@@ -104,6 +114,8 @@ contains
       select case (cut%kind)
       case (CUT_TURN)
          change = change_of_turn(it%inc, cut%time, par%omega, it%sens%driving)
+      case (CUT_PASSED)
+         change = change_of_passing(it%inc, cut%time, par%omega, it%sens%driving)
       case (CUT_NO_SUCTION)
          change = change_of_zero_suction(it%inc, cut%time, it%sens%driving)
       case (CUT_EXIT)

@@ -42,6 +42,7 @@ contains
       type(trace_t), intent(inout), optional :: record
       type(integration_t) :: it
       type(course_t) :: course
+      real(wp) :: with_turn(2)
 
       reached = 0.0_wp
       call check_increment(par, state0, d_strain, d_pc, status)
@@ -58,7 +59,6 @@ contains
          it%traced = .true.
          it%trace = record
       end if
-      course%turn = 1.0_wp
       if (par%hysteresis) then
          call begin_course(par, it%inc, it%state, it%counters, course)
          call begin(course%branch, tangent, it)
@@ -75,8 +75,10 @@ contains
       it%state%e = void_ratio_at(it%inc, 1.0_wp)
       it%state%p_c = state0%p_c + d_pc
       if (par%hysteresis) then
+         call end_course(it%inc, course, it%state, with_turn)
          call finish_state(course%branch, it%state, blocks)
-         call end_course(par, course, it%state, counters, blocks)
+         blocks%dsw_dpc = blocks%dsw_dpc + with_turn(1)
+         blocks%dsw_dev = blocks%dsw_dev + with_turn(2)
          call fill_blocks(course%branch, tangent, it, blocks)
       else
          call finish_state(par, it%state, blocks)

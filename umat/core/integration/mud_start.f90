@@ -9,9 +9,9 @@ module mud_start
    use mud_cutoff, only: lifted
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio
-   use mud_retention, only: saturation_t, saturation
+   use mud_retention, only: saturation_t, saturation, log_suction
    use mud_reversal, only: new_memory
-   use mud_scanning, only: branch_from, preset_saturation
+   use mud_scanning, only: path_t, begin_path, branch_of, preset_saturation
    use mud_state, only: state_t, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_VOID_RATIO, ON_VOID_RATIO
    use mud_tensor, only: trace, is_finite
@@ -31,6 +31,7 @@ contains
       type(mud_status_t), intent(out) :: status
       real(wp), intent(in), optional :: preset   !< S_w, with hysteresis; none or 0: on the main drying curve [-].
       type(params_t) :: branch
+      type(path_t) :: path
       real(wp) :: p, r(6)
 
       call check_stress(par, sigma, p_c, status)
@@ -55,7 +56,9 @@ contains
          if (present(preset)) state%s_w = preset
          call preset_saturation(par, p_c, e, state%s_w, status)
          if (status%code /= MUD_OK) return
-         branch = branch_from(par, .true., p_c, e, state%s_w)
+         path = begin_path(par, log_suction(par, p_c, e), state%s_w)
+         state%turns = path%turns
+         branch = branch_of(par, path)
          state%sigma = lifted(branch, is_bonded(par, p_c), sigma, e, p_c)
          call finish_state(branch, state)
       else
@@ -66,8 +69,9 @@ contains
       state%memory = new_memory(r)
    end subroutine initial_state
 
-   !> Saturation and state parameter of a state, and the saturation's slopes. S_w [-], psi [-]; slopes [-] against
-   !> volumetric strain, compression positive, and [1/kPa] against suction. docs/theory/material.md sections 2.1, 3.2.
+   !> Saturation and state parameter of a state, and the saturation's slopes; with hysteresis S_w is the state's.
+   !> S_w and psi [-]; slopes [-] against volumetric strain, compression positive, and [1/kPa] against suction.
+   !> docs/theory/material.md sections 2.1, 3.2.
    pure subroutine finish_state(par, state, blocks)
       type(params_t), intent(in) :: par
       type(state_t), intent(inout) :: state
@@ -82,7 +86,7 @@ contains
       else
          sat = saturation(par, state%p_c, state%e)
       end if
-      state%s_w = sat%s_w
+      if (.not. par%hysteresis) state%s_w = sat%s_w
       state%psi = state_parameter(par, bond%f, state%e, max(trace(state%sigma)/3.0_wp, par%p_min))
       if (.not. present(blocks)) return
       blocks%dsw_dpc = sat%ds_dpc

@@ -4,10 +4,10 @@
 module mud_bonding
    use mud_kinds, only: wp
    use mud_params, only: params_t
-   use mud_retention, only: saturation_t, saturation, saturation_curvature, change_of_offset
+   use mud_retention, only: saturation_t, saturation, saturation_curvature, change_with_turn
    implicit none (type, external)
    private
-   public :: bonding_t, is_bonded, bonding, bonding_curvature, bonding_with_offset, UNBONDED
+   public :: bonding_t, is_bonded, bonding, bonding_curvature, bonding_with_turn, UNBONDED
 
    !> The factor f(zeta) and its slopes.
    type :: bonding_t
@@ -72,22 +72,22 @@ contains
       curvature = bond%slope*(curvature + par%b_2*[zeta_pc**2, zeta_pc*zeta_e, zeta_e**2])
    end function bonding_curvature
 
-   !> Derivatives [df (-), d2f/dp_c (1/kPa), d2f/de (-)] with respect to q ln offset of a scanning curve, at the suction
-   !> and void ratio of bond. Zeros on a main curve; docs/theory/material.md sections 2.1.1 and 2.2, bond is that of p_c
-   !> [kPa] and e [-].
-   pure function bonding_with_offset(par, bond, p_c, e) result(change)
+   !> Derivatives [df (-), d2f/dp_c (1/kPa), d2f/de (-)] with respect to ln x of the turn where a branch begins, at the
+   !> suction and void ratio of bond. Zeros where it does not move; bond is that of p_c [kPa] and e [-].
+   !> docs/theory/material.md sections 2.1.1 and 2.2.
+   pure function bonding_with_turn(par, bond, p_c, e) result(change)
       type(params_t), intent(in) :: par
       type(bonding_t), intent(in) :: bond
       real(wp), intent(in) :: p_c, e
       real(wp) :: change(3), s(3), zeta(3), zeta_pc, zeta_e
 
-      s = change_of_offset(par, bond%sat, p_c, e)
+      s = change_with_turn(par, p_c, e)
       zeta_pc = (1.0_wp - bond%sat%s_w)*bond%force_1 - bond%sat%ds_dpc*bond%force_0
       zeta_e = -bond%sat%ds_de*bond%force_0
       zeta = -s*bond%force_0
       zeta(2) = zeta(2) - s(1)*bond%force_1
       change = bond%slope*(zeta + par%b_2*zeta(1)*[0.0_wp, zeta_pc, zeta_e])
-   end function bonding_with_offset
+   end function bonding_with_turn
 
    !> g of paper eq. (1) and its first two derivatives with respect to suction [-, 1/kPa, 1/kPa2].
    pure function meniscus_force(par, p_c) result(force)

@@ -1,26 +1,52 @@
 ! SPDX-License-Identifier: MIT
 !> Water retention: how much of the pore space is water; docs/theory/material.md section 2.1. With hysteresis the
-!> parameters are those of a phase of an increment: see mud_scanning.
+!> parameters are those of a phase of an increment, whose S_w follows a scanning branch: see mud_scanning.
 module mud_retention
    use mud_kinds, only: wp
-   use mud_params, only: params_t, scanning_t
+   use mud_params, only: params_t, branch_t, NO_OFFSET
    implicit none (type, external)
    private
-   public :: saturation_t, saturation, saturation_curvature, change_of_offset, offset_with_turn, log_suction, &
-             LOG_LARGE, EULER
+   public :: saturation_t, saturation, saturation_curvature, change_with_turn, log_suction, NO_SUCTION
+   public :: main_curve_t, main_curve, on_main_curve_t, on_main_curve, bend_of, suction_on_curve, power_of, &
+             along_t, along_raw_branch, follow_branches, ON_CURVE
 
    real(wp), parameter :: EULER = 2.7182818284590452_wp      !< exp(1)
    !> Beyond it exp(1) is lost in exp(1) + a, and a might overflow.
    real(wp), parameter :: LOG_LARGE = 200.0_wp
+   real(wp), parameter :: LARGEST_LOG = 69.0_wp   !< ln of the largest ln(exp(1) + a) that is looked at [-].
+   !> S_w this close to a main curve, as a share of S_max, is on it: rounding of S_w, which near S_max would be a large
+   !> error of its suction [-].
+   real(wp), parameter :: ON_CURVE = 8.0_wp*epsilon(1.0_wp)
+   !> S_w of a branch this close to another one is beside it: what rounding of an offset makes of it where q is 1e-3, as
+   !> a share of S_max [-].
+   real(wp), parameter :: BESIDE = 1.0e-10_wp
+   real(wp), parameter :: NO_SUCTION = -1.0e4_wp  !< ln(x/P_a) where there is none: below every number's.
 
    !> Degree of saturation and its slopes.
    type :: saturation_t
       real(wp) :: s_w      !< S_w [-]
       real(wp) :: ds_dpc   !< dS_w/dp_c at constant e [1/kPa]
       real(wp) :: ds_de    !< dS_w/de at constant p_c [-]
-      real(wp) :: share    !< a/(exp(1) + a) of eq. (24), for the curvature [-]
+      real(wp) :: share    !< a/(exp(1) + a) of eq. (24), for the curvature; not of a branch [-]
       real(wp) :: log_sum  !< ln(exp(1) + a), likewise [-]
    end type saturation_t
+
+   !> A curve of eq. (24).
+   type :: main_curve_t
+      real(wp) :: log_entry   !< ln(P/P_a), P its suction of eq. (24) [-]
+      real(wp) :: n, m        !< Its exponents [-].
+   end type main_curve_t
+
+   !> A point of it.
+   type :: on_main_curve_t
+      real(wp) :: s_w, slope  !< S_w and dS_w/d ln x [-]
+      real(wp) :: share, log_sum   !< As in saturation_t.
+   end type on_main_curve_t
+
+   !> A point of a branch: S_w with its first two derivatives by ln x, and those of S_w and slope by q ln offset [-].
+   type :: along_t
+      real(wp) :: s_w, slope, bend, with_offset, slope_with_offset
+   end type along_t
 contains
    !> Degree of saturation at a suction [kPa] and a void ratio [-], paper eqs (23), (24). No suction: S_max, zero
    !> slopes. On a scanning branch that of docs/theory/material.md section 2.1.1. e > 0 is not checked.
@@ -28,71 +54,209 @@ contains
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: p_c, e
       type(saturation_t) :: sat
-      real(wp) :: log_x, log_a, a, share, log_sum, s_e, slope, weight
+      type(on_main_curve_t) :: at
+      type(along_t) :: along
+      logical :: limited
 
       sat = saturation_t(par%s_max, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp)
       if (p_c <= 0.0_wp) return
-      log_x = log_suction(par, p_c, e)
-      if (par%scanning%between) call to_main_curve(par%scanning, log_x, weight)
-      log_a = par%n_x*log_x                                     ! a = (p*/P_a)^n
-      if (log_a < -LOG_LARGE) return
-      if (log_a > LOG_LARGE) then
-         log_sum = log_a
-         share = 1.0_wp                                         ! a/(exp(1) + a)
-      else
-         a = exp(log_a)
-         log_sum = log(EULER + a)
-         share = a/(EULER + a)
+      if (par%scanning%acts) then
+         call follow_branches(par, log_suction(par, p_c, e), along, limited)
+         sat%s_w = along%s_w
+         sat%ds_dpc = along%slope/p_c
+         sat%ds_de = along%slope*par%omega/e
+         return
       end if
-      s_e = (par%s_max - par%s_min)*log_sum**(-par%m_x)
-      sat%s_w = par%s_min + s_e
-      slope = -par%m_x*s_e/log_sum*share*par%n_x                ! dS_w/d ln p*
-      if (par%scanning%between) slope = slope*weight
-      sat%ds_dpc = slope/p_c
-      sat%ds_de = slope*par%omega/e
-      sat%share = share
-      sat%log_sum = log_sum
+      at = on_main_curve(par, main_curve_t(0.0_wp, par%n_x, par%m_x), log_suction(par, p_c, e))
+      sat%s_w = at%s_w
+      sat%ds_dpc = at%slope/p_c
+      sat%ds_de = at%slope*par%omega/e
+      sat%share = at%share
+      sat%log_sum = at%log_sum
    end function saturation
 
-   !> ln(p*/P_a), paper eq. (23). It is ln(p_c/P_a) + Omega ln e [-]; the signs are not checked.
+   !> The main drying or the main wetting curve. docs/theory/material.md section 2.1.1.
+   pure function main_curve(par, dries) result(curve)
+      type(params_t), intent(in) :: par   !< With hysteresis.
+      logical, intent(in) :: dries
+      type(main_curve_t) :: curve
+
+      if (dries) then
+         curve = main_curve_t(0.0_wp, par%n_x, par%m_x)
+      else
+         curve = main_curve_t(par%log_wetting, par%n_w, par%m_w)
+      end if
+   end function main_curve
+
+   !> Paper eq. (24) at ln(x/P_a) [-]: S_w, its slope, and what its second derivative takes.
+   pure function on_main_curve(par, curve, log_x) result(at)
+      type(params_t), intent(in) :: par
+      type(main_curve_t), intent(in) :: curve
+      real(wp), intent(in) :: log_x
+      type(on_main_curve_t) :: at
+      real(wp) :: log_a, a, s_e
+
+      at = on_main_curve_t(par%s_max, 0.0_wp, 0.0_wp, 1.0_wp)
+      log_a = curve%n*(log_x - curve%log_entry)                 ! a = (x/P)^n
+      if (log_a < -LOG_LARGE) return
+      if (log_a > LOG_LARGE) then
+         at%log_sum = log_a
+         at%share = 1.0_wp                                      ! a/(exp(1) + a)
+      else
+         a = exp(log_a)
+         at%log_sum = log(EULER + a)
+         at%share = a/(EULER + a)
+      end if
+      s_e = (par%s_max - par%s_min)*at%log_sum**(-curve%m)
+      at%s_w = par%s_min + s_e
+      at%slope = -curve%m*s_e/at%log_sum*at%share*curve%n       ! dS_w/d ln x
+   end function on_main_curve
+
+   !> d2S_w/d(ln x)2 at a point of a main curve [-].
+   pure real(wp) function bend_of(curve, at) result(bend)
+      type(main_curve_t), intent(in) :: curve
+      type(on_main_curve_t), intent(in) :: at
+
+      bend = at%slope*curve%n*(1.0_wp - at%share*(1.0_wp + (curve%m + 1.0_wp)/at%log_sum))
+   end function bend_of
+
+   !> ln(x/P_a) of a main curve at a degree of saturation: eq. (24) the other way round [-].
+   pure real(wp) function suction_on_curve(par, curve, s_w) result(log_y)
+      type(params_t), intent(in) :: par
+      type(main_curve_t), intent(in) :: curve
+      real(wp), intent(in) :: s_w
+      real(wp) :: s_e, log_sum, a
+
+      log_y = curve%log_entry - LOG_LARGE/curve%n
+      s_e = (s_w - par%s_min)/(par%s_max - par%s_min)
+      if (s_e >= 1.0_wp) return
+      log_sum = exp(LARGEST_LOG)
+      if (s_e > 0.0_wp) log_sum = exp(min(-log(s_e)/curve%m, LARGEST_LOG))   ! ln(exp(1) + a)
+      if (log_sum > LOG_LARGE) then
+         log_y = curve%log_entry + log_sum/curve%n
+      else
+         a = exp(log_sum) - EULER
+         if (a > exp(-LOG_LARGE)) log_y = curve%log_entry + log(a)/curve%n
+      end if
+   end function suction_on_curve
+
+   !> ln(p*/P_a), paper eq. (23). It is ln(p_c/P_a) + Omega ln e [-]; e > 0 is not checked. NO_SUCTION without suction.
    pure real(wp) function log_suction(par, p_c, e)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: p_c, e   !< [kPa, -], p_c > 0
+      real(wp), intent(in) :: p_c, e   !< [kPa, -]
 
+      log_suction = NO_SUCTION
+      if (p_c <= 0.0_wp) return
       log_suction = log(p_c/par%p_a)
       if (par%omega > 0.0_wp) log_suction = log_suction + par%omega*log(e)
    end function log_suction
 
-   !> weight = d ln y/d ln x = (x/y)**q of a scanning curve, and 1 - weight without cancellation.
-   pure subroutine scanning_weights(par, p_c, e, weight, rest)
+   !> q of y**q = x**q + offset**q. docs/theory/material.md section 2.1.1.
+   pure real(wp) function power_of(par, dries) result(q)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: p_c, e   !< p_c > 0
-      real(wp), intent(out) :: weight, rest
-      real(wp) :: log_x, t
+      logical, intent(in) :: dries
 
-      log_x = log_suction(par, p_c, e)
-      t = par%scanning%log_offset - par%scanning%q*log_x
-      call to_main_curve(par%scanning, log_x, weight)
-      rest = 1.0_wp
-      if (t < LOG_LARGE) rest = exp(t)*weight
-   end subroutine scanning_weights
+      q = merge(1.0_wp + par%b_d, 1.0_wp - par%b_w, dries)
+   end function power_of
 
-   !> From the suction on a scanning curve to that of the main curve at the same S_w, both as ln(x/P_a).
-   pure subroutine to_main_curve(scanning, log_x, weight)
-      type(scanning_t), intent(in) :: scanning
-      real(wp), intent(inout) :: log_x
-      real(wp), intent(out) :: weight   !< d ln y/d ln x [-]
-      real(wp) :: t, log_weight
+   !> A point of a branch that nothing limits but the main curves, at ln(x/P_a) [-]: the solution of its differential
+   !> equation, which slides along the opposite main curve where that is flatter. docs/theory/material.md section 2.1.1.
+   pure function along_raw_branch(par, branch, log_x) result(along)
+      type(params_t), intent(in) :: par
+      type(branch_t), intent(in) :: branch
+      real(wp), intent(in) :: log_x
+      type(along_t) :: along
+      type(main_curve_t) :: curve, opposite
+      type(on_main_curve_t) :: at
+      real(wp) :: log_offset, q, t, log_weight, weight, rest, bend
+      integer :: i, way
+      logical :: slid
 
-      t = scanning%log_offset - scanning%q*log_x
-      if (t > LOG_LARGE) then
-         log_weight = -t
-      else
-         log_weight = -log(1.0_wp + exp(t))
+      way = merge(2, 1, branch%dries)
+      log_offset = branch%log_offset
+      slid = .false.
+      do i = 1, par%least%n(way)
+         if ((par%least%log_x(way, i) - branch%log_x)*(par%least%log_x(way, i) - log_x) >= 0.0_wp) cycle
+         if (par%least%log_offset(way, i) >= log_offset) cycle
+         log_offset = par%least%log_offset(way, i)
+         slid = .true.
+      end do
+      q = power_of(par, branch%dries)
+      log_weight = 0.0_wp
+      rest = 0.0_wp
+      if (log_offset > 0.5_wp*NO_OFFSET) then
+         t = log_offset - q*log_x
+         if (t > LOG_LARGE) then
+            log_weight = -t
+            rest = 1.0_wp
+         else
+            log_weight = -log(1.0_wp + exp(t))
+            rest = exp(t + log_weight)         ! 1 - weight without cancellation
+         end if
       end if
-      weight = exp(log_weight)
-      log_x = log_x - log_weight/scanning%q
-   end subroutine to_main_curve
+      weight = exp(log_weight)                 ! d ln y/d ln x = (x/y)**q
+      curve = main_curve(par, branch%dries)
+      at = on_main_curve(par, curve, log_x - log_weight/q)
+      bend = bend_of(curve, at)
+      along%s_w = at%s_w
+      along%slope = at%slope*weight
+      along%bend = bend*weight**2 + at%slope*q*weight*rest
+      along%with_offset = 0.0_wp
+      along%slope_with_offset = 0.0_wp
+      if (.not. slid) then
+         along%with_offset = at%slope*rest/q
+         along%slope_with_offset = weight*rest*(bend/q - at%slope)
+      end if
+      opposite = main_curve(par, .not. branch%dries)
+      at = on_main_curve(par, opposite, log_x)
+      call limit(par, branch%dries, along_t(at%s_w, at%slope, bend_of(opposite, at), 0.0_wp, 0.0_wp), along)
+   end function along_raw_branch
+
+   !> A branch does not cross another one: drying stays above it, wetting below. Where it leaves it both are equal but
+   !> for rounding; it is followed there with its own slope, unless that is steeper.
+   pure subroutine limit(par, dries, other, along, limited)
+      type(params_t), intent(in) :: par
+      logical, intent(in) :: dries
+      type(along_t), intent(in) :: other
+      type(along_t), intent(inout) :: along
+      logical, intent(out), optional :: limited   !< The other one is followed.
+      real(wp) :: beyond
+      logical :: acts
+
+      beyond = merge(other%s_w - along%s_w, along%s_w - other%s_w, dries)
+      acts = beyond > BESIDE*par%s_max .or. (beyond > 0.0_wp .and. abs(along%slope) > abs(other%slope))
+      if (acts) along = other
+      if (beyond > 0.0_wp) along%s_w = other%s_w
+      if (present(limited)) limited = acts
+   end subroutine limit
+
+   !> A point of the present branch at ln(x/P_a) [-]: every branch is scaled so that it closes its loop, and limited by
+   !> the one that it left, so that closed loops dissipate. docs/theory/material.md section 2.1.1.
+   pure subroutine follow_branches(par, log_x, along, limited)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: log_x
+      type(along_t), intent(out) :: along
+      logical, intent(out) :: limited   !< The last branch is not the one that is followed.
+      type(along_t) :: left
+      integer :: k
+
+      along = along_raw_branch(par, par%scanning%branches(1), log_x)
+      limited = .false.
+      do k = 2, par%scanning%n
+         left = along
+         associate (branch => par%scanning%branches(k))
+            if (branch%straight) then
+               along = along_t(branch%s_w + branch%share*(log_x - branch%log_x), branch%share, 0.0_wp, 0.0_wp, 0.0_wp)
+            else
+               along = along_raw_branch(par, branch, log_x)
+               along%s_w = branch%s_w + branch%share*(along%s_w - branch%s_w)
+               along%slope = branch%share*along%slope
+               along%bend = branch%share*along%bend
+            end if
+            call limit(par, branch%dries, left, along, limited)
+         end associate
+      end do
+   end subroutine follow_branches
 
    !> Second derivatives [d2S/dp_c2 (1/kPa2), d2S/dp_c de (1/kPa), d2S/de2 (-)] at the suction and void ratio of sat.
    !> sat is that of p_c [kPa] and e [-]; zeros without suction. Derivatives of paper eqs (23), (24) and of
@@ -101,70 +265,46 @@ contains
       type(params_t), intent(in) :: par
       type(saturation_t), intent(in) :: sat
       real(wp), intent(in) :: p_c, e
-      real(wp) :: curvature(3), slope, bend, weight, rest
+      type(along_t) :: along
+      real(wp) :: curvature(3), slope, bend
+      logical :: limited
 
       curvature = 0.0_wp
       if (p_c <= 0.0_wp) return
       slope = sat%ds_dpc*p_c                                    ! dS_w/d ln p*
-      bend = slope*par%n_x*(1.0_wp - sat%share*(1.0_wp + (par%m_x + 1.0_wp)/sat%log_sum))
-      if (par%scanning%between) then
-         call scanning_weights(par, p_c, e, weight, rest)
-         bend = bend*weight + slope*par%scanning%q*rest
+      if (par%scanning%acts) then
+         call follow_branches(par, log_suction(par, p_c, e), along, limited)
+         bend = along%bend
+      else
+         bend = bend_of(main_curve_t(0.0_wp, par%n_x, par%m_x), &
+                        on_main_curve_t(sat%s_w, slope, sat%share, sat%log_sum))
       end if
       ! one division after the other: the square of a tiny suction would be 0
       curvature = [(bend - slope)/p_c/p_c, bend*par%omega/p_c/e, (bend*par%omega - slope)*par%omega/e**2]
    end function saturation_curvature
 
-   !> Derivatives [dS_w (-), d2S_w/dp_c (1/kPa), d2S_w/de (-)] with respect to q ln offset of a scanning curve, at the
-   !> suction and void ratio of sat. sat is that of p_c [kPa] and e [-]; zeros without suction and on a main curve.
-   !> docs/theory/material.md section 2.1.1.
-   pure function change_of_offset(par, sat, p_c, e) result(change)
+   !> Derivatives [dS_w (-), d2S_w/dp_c (1/kPa), d2S_w/de (-)] with respect to ln x of the turn where the present branch
+   !> begins, at a suction [kPa] and a void ratio [-]. Zeros where it does not move. docs/theory/material.md section
+   !> 2.1.1.
+   pure function change_with_turn(par, p_c, e) result(change)
       type(params_t), intent(in) :: par
-      type(saturation_t), intent(in) :: sat
       real(wp), intent(in) :: p_c, e
-      real(wp) :: change(3), slope, weight, rest
+      type(along_t) :: along
+      real(wp) :: change(3), log_x
+      logical :: limited
 
       change = 0.0_wp
-      if (.not. par%scanning%between .or. p_c <= 0.0_wp) return
-      call scanning_weights(par, p_c, e, weight, rest)
-      slope = slope_of_main_curve(par, sat)
-      change(1) = slope*rest/par%scanning%q
-      change(2) = weight*rest*(bend_of_main_curve(par, sat, slope)/par%scanning%q - slope)   ! with ln x
+      if (.not. par%scanning%moves .or. p_c <= 0.0_wp) return
+      log_x = log_suction(par, p_c, e)
+      call follow_branches(par, log_x, along, limited)
+      if (limited) return
+      associate (scanning => par%scanning, branch => par%scanning%branches(par%scanning%n))
+         along = along_raw_branch(par, branch, log_x)
+         change(1) = (1.0_wp - branch%share)*scanning%s_w_rate + scanning%share_rate*(along%s_w - branch%s_w) &
+                     + branch%share*scanning%offset_rate*along%with_offset
+         change(2) = scanning%share_rate*along%slope + branch%share*scanning%offset_rate*along%slope_with_offset
+      end associate
       change(3) = change(2)*par%omega/e
       change(2) = change(2)/p_c
-   end function change_of_offset
-
-   !> dS_w/d ln y of the main curve, at the S_w of sat.
-   pure real(wp) function slope_of_main_curve(par, sat) result(slope)
-      type(params_t), intent(in) :: par
-      type(saturation_t), intent(in) :: sat
-
-      slope = -par%m_x*(sat%s_w - par%s_min)/sat%log_sum*sat%share*par%n_x
-   end function slope_of_main_curve
-
-   !> d2S_w/d(ln y)2, likewise.
-   pure real(wp) function bend_of_main_curve(par, sat, slope) result(bend)
-      type(params_t), intent(in) :: par
-      type(saturation_t), intent(in) :: sat
-      real(wp), intent(in) :: slope
-
-      bend = slope*par%n_x*(1.0_wp - sat%share*(1.0_wp + (par%m_x + 1.0_wp)/sat%log_sum))
-   end function bend_of_main_curve
-
-   !> d(q ln offset)/d ln x of the wetting curve in par that leaves a drying curve at p_c [kPa] and e [-], where
-   !> y**q = x**q + offset**q and S_w(y) changes along the drying curve. dries is the saturation on that, sat on the
-   !> wetting curve; 0 where no water moves. docs/theory/material.md section 2.1.1.
-   pure real(wp) function offset_with_turn(par, dries, sat, p_c, e) result(change)
-      type(params_t), intent(in) :: par
-      type(saturation_t), intent(in) :: dries, sat
-      real(wp), intent(in) :: p_c, e
-      real(wp) :: slope, weight, rest
-
-      change = 0.0_wp
-      if (.not. par%scanning%between) return
-      slope = slope_of_main_curve(par, sat)
-      if (abs(slope) <= 0.0_wp) return
-      call scanning_weights(par, p_c, e, weight, rest)
-      change = par%scanning%q*(dries%ds_dpc*p_c/slope - weight)/rest
-   end function offset_with_turn
+   end function change_with_turn
 end module mud_retention

@@ -1,120 +1,293 @@
 ! SPDX-License-Identifier: MIT
-!> Hydraulic hysteresis: S_w between a main drying and a main wetting curve; docs/theory/material.md section 2.1.1.
-!> While the modified suction x = p_c e^Omega rises, or while it falls, S_w is a function of x alone, a scanning curve
-!> in closed form. So a phase of an increment is integrated with a copy of the parameters that has this curve.
+!> Hydraulic hysteresis: S_w between a main drying and a main wetting curve, with the points where suction turned;
+!> docs/theory/material.md section 2.1.1. While the modified suction x = p_c e^Omega rises, or while it falls, between
+!> two turning points that it passes, S_w is a function of x alone. So a phase of an increment is integrated with a copy
+!> of the parameters that has this function. Suctions are ln(x/P_a) here.
 module mud_scanning
    use mud_kinds, only: wp
-   use mud_params, only: params_t, NOT_SCANNING
-   use mud_registry, only: P_P_AW, S_SATURATION
-   use mud_retention, only: saturation_t, saturation, log_suction, LOG_LARGE, EULER
+   use mud_params, only: params_t, branch_t, least_t, MAX_LEAST, NO_BRANCH, NO_OFFSET
+   use mud_registry, only: P_P_AW, S_SATURATION, MAX_TURNS
+   use mud_retention, only: saturation_t, saturation, along_t, along_raw_branch, follow_branches, main_curve_t, &
+      main_curve, on_main_curve_t, on_main_curve, suction_on_curve, power_of, log_suction, NO_SUCTION, ON_CURVE
+   use mud_state, only: turns_t, NO_TURNS
    use mud_status, only: mud_status_t, fail, MUD_BAD_PROPS, MUD_BAD_STATE, ON_PROPS, ON_STATEV
    use mud_tensor, only: is_finite
    implicit none (type, external)
    private
-   public :: branch_from, main_curve, clipped, check_curves, check_saturation, preset_saturation
+   public :: path_t, begin_path, go_on, pass, branch_of, saturation_after, keep_turns, begin_at_turn, find_least, &
+             check_curves, check_saturation, preset_saturation
 
-   !> S_w this close to a main curve, as a share of S_max, is on it: rounding of S_w, which near S_max would be a large
-   !> error of the suction that belongs to it [-].
-   real(wp), parameter :: ON_CURVE = 8.0_wp*epsilon(1.0_wp)
-   real(wp), parameter :: LARGEST_LOG = 69.0_wp   !< ln of the largest ln(exp(1) + a) that is looked at [-].
    real(wp), parameter :: PRESET_ROUNDING = 1.0e-6_wp   !< Of a preset of six digits, as a share of S_max [-].
-   !> Suctions at which check_curves compares: from S_w = S_max but some 1e-8 to a million times P_a; ln(x/P_a) of
-   !> both ends, the first with n_x. AS_MUCH: what rounding so close to S_max makes of ln P_aw [-].
+   !> Suctions at which the main curves are compared: from S_w = S_max but some 1e-8 to a million times P_a; ln(x/P_a)
+   !> of both ends, the first with n. AS_MUCH: what rounding so close to S_max makes of ln P_aw [-].
    integer, parameter :: POINTS = 200
    real(wp), parameter :: WET_END = -18.0_wp, DRY_END = 14.0_wp, AS_MUCH = 1.0e-6_wp
+   integer, parameter :: HALVINGS = 50
+   real(wp), parameter :: LARGEST_SCALE = 1.0e6_wp      !< Of a branch: beyond it the loop is rounding [-].
+
+   !> Where a point is on its way between the main curves.
+   type :: path_t
+      real(wp) :: log_x, s_w   !< The present point [-].
+      type(turns_t) :: turns
+   end type path_t
 contains
-   !> Parameters of the phase that begins at (p_c, e, s_w) and dries or wets: their saturation is that along the
-   !> scanning curve. s_w lies between the main curves. Without suction, or with s_w on the main curve, they are those
-   !> of the main curve. Closed form of docs/theory/material.md section 2.1.1; nothing is refused.
-   pure function branch_from(par, dries, p_c, e, s_w) result(branch)
+   !> A point without a past at ln(x/P_a) and S_w [-]: it dries, and wets where it is on the main wetting curve.
+   !> docs/theory/material.md section 2.1.1.
+   pure function begin_path(par, log_x, s_w) result(path)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: log_x, s_w
+      type(path_t) :: path
+      type(on_main_curve_t) :: dry, wet
+
+      path = path_t(log_x, s_w, NO_TURNS)
+      dry = on_main_curve(par, main_curve(par, .true.), log_x)
+      wet = on_main_curve(par, main_curve(par, .false.), log_x)
+      path%turns%dries = abs(s_w - wet%s_w) > ON_CURVE*par%s_max .or. abs(s_w - dry%s_w) <= ON_CURVE*par%s_max
+   end function begin_path
+
+   !> The turning points with which a point moves to a suction: a reversal adds the present one, and what is passed on
+   !> the way is forgotten with the loop that it closes. The present point is then where the branch that remains was
+   !> joined. Nothing happens where it does not move. docs/theory/material.md section 2.1.1.
+   pure subroutine go_on(par, to, path)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: to   !< ln(x/P_a), NO_SUCTION where there is none [-].
+      type(path_t), intent(inout) :: path
+
+      integer :: n
+      real(wp) :: passed(MAX_TURNS/2)
+
+      call pass(to, path, passed, n)
+      if (to <= NO_SUCTION) path = path_t(NO_SUCTION, par%s_max, NO_TURNS)
+   end subroutine go_on
+
+   !> The same, and the suctions of the n turning points that are passed, in their order; without suction they are kept.
+   pure subroutine pass(to, path, passed, n)
+      real(wp), intent(in) :: to
+      type(path_t), intent(inout) :: path
+      real(wp), intent(out) :: passed(MAX_TURNS/2)   !< ln(x/P_a); beyond n without meaning [-].
+      integer, intent(out) :: n
+      logical :: dries
+
+      n = 0
+      passed = 0.0_wp
+      if (abs(to - path%log_x) <= 0.0_wp) return
+      dries = to > path%log_x
+      associate (turns => path%turns)
+         if (dries .neqv. turns%dries) then
+            if (turns%depth == MAX_TURNS) turns%depth = turns%depth - 2   ! the smallest loop
+            turns%depth = turns%depth + 1
+            turns%log_x(turns%depth) = path%log_x
+            turns%s_w(turns%depth) = path%s_w
+            turns%dries = dries
+         end if
+         do while (turns%depth >= 2)
+            if (merge(to < turns%log_x(turns%depth - 1), to > turns%log_x(turns%depth - 1), dries)) exit
+            turns%depth = turns%depth - 2
+            path%log_x = turns%log_x(turns%depth + 1)
+            path%s_w = turns%s_w(turns%depth + 1)
+            n = n + 1
+            passed(n) = path%log_x
+         end do
+      end associate
+   end subroutine pass
+
+   !> Parameters whose saturation is that along the branch of a point. Closed form of docs/theory/material.md section
+   !> 2.1.1; nothing is refused.
+   pure function branch_of(par, path) result(branch)
       type(params_t), intent(in) :: par   !< Of the material.
-      logical, intent(in) :: dries
-      real(wp), intent(in) :: p_c, e, s_w   !< [kPa, -, -]
+      type(path_t), intent(in) :: path
       type(params_t) :: branch
-      type(saturation_t) :: main
-      real(wp) :: log_x, log_y, growth
+      integer :: k
+      logical :: dries
 
       branch = par
-      if (.not. dries) then
-         branch%p_a = par%p_aw
-         branch%n_x = par%n_w
-         branch%m_x = par%m_w
+      if (.not. branch%least%known) branch%least = find_least(par)
+      branch%scanning%acts = .true.
+      branch%scanning%moves = .false.
+      branch%scanning%n = max(path%turns%depth, 1)
+      if (path%turns%depth == 0) then
+         branch%scanning%branches(1) = raw_branch(par, path%turns%dries, path%log_x, path%s_w)
+         return
       end if
-      branch%scanning = NOT_SCANNING
-      if (p_c <= 0.0_wp) return
-      main = saturation(branch, p_c, e)
-      if (abs(s_w - main%s_w) <= ON_CURVE*par%s_max) return
+      dries = path%turns%dries .eqv. mod(path%turns%depth, 2) == 1
+      branch%scanning%branches(1) = raw_branch(par, dries, path%turns%log_x(1), path%turns%s_w(1))
+      do k = 2, path%turns%depth
+         dries = .not. dries
+         branch%scanning%branches(k) = raw_branch(par, dries, path%turns%log_x(k), path%turns%s_w(k))
+         call close_loop(branch, path%turns%log_x(k - 1), path%turns%s_w(k - 1), branch%scanning%branches(k))
+      end do
+   end function branch_of
 
-      branch%scanning%q = merge(1.0_wp + par%b_d, 1.0_wp - par%b_w, dries)
-      log_x = log_suction(branch, p_c, e)
-      log_y = suction_on_curve(branch, s_w)
-      growth = branch%scanning%q*(log_y - log_x)   ! offset**q = x**q (exp(growth) - 1)
-      if (growth <= epsilon(growth)) return
-      branch%scanning%between = .true.
-      branch%scanning%log_offset = branch%scanning%q*log_x
-      if (growth > LOG_LARGE) then
-         branch%scanning%log_offset = branch%scanning%log_offset + growth
-      else
-         branch%scanning%log_offset = branch%scanning%log_offset + log(exp(growth) - 1.0_wp)
-      end if
-   end function branch_from
-
-   !> ln(x/P_a) of the main curve in par at a degree of saturation.
-   pure real(wp) function suction_on_curve(par, s_w) result(log_y)
+   !> The branch that begins at a point between the main curves and ends on the one that it approaches.
+   pure function raw_branch(par, dries, log_x, s_w) result(branch)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: s_w
-      real(wp) :: s_e, log_sum, a
+      logical, intent(in) :: dries
+      real(wp), intent(in) :: log_x, s_w
+      type(branch_t) :: branch
+      type(main_curve_t) :: curve
+      type(on_main_curve_t) :: at
+      real(wp) :: q, growth
 
-      log_y = -LOG_LARGE/par%n_x
-      s_e = (s_w - par%s_min)/(par%s_max - par%s_min)
-      if (s_e >= 1.0_wp) return
-      log_sum = exp(LARGEST_LOG)
-      if (s_e > 0.0_wp) log_sum = exp(min(-log(s_e)/par%m_x, LARGEST_LOG))   ! ln(exp(1) + a)
-      if (log_sum > LOG_LARGE) then
-         log_y = log_sum/par%n_x
+      branch = NO_BRANCH
+      branch%dries = dries
+      branch%log_x = log_x
+      branch%s_w = s_w
+      curve = main_curve(par, dries)
+      at = on_main_curve(par, curve, log_x)
+      if (abs(s_w - at%s_w) <= ON_CURVE*par%s_max) return
+      q = power_of(par, dries)
+      growth = q*(suction_on_curve(par, curve, s_w) - log_x)   ! offset**q = x**q (exp(growth) - 1)
+      if (growth > epsilon(growth)) branch%log_offset = q*log_x + log_of_growth(growth)
+   end function raw_branch
+
+   !> ln(exp(growth) - 1) without cancellation.
+   pure real(wp) function log_of_growth(growth)
+      real(wp), intent(in) :: growth   !< > 0
+      real(wp), parameter :: LARGE = 200.0_wp
+
+      log_of_growth = growth
+      if (growth < LARGE) log_of_growth = 0.5_wp*growth + log(2.0_wp*sinh(0.5_wp*growth))
+   end function log_of_growth
+
+   !> Scales a branch so that it passes the turning point where its loop closes.
+   pure subroutine close_loop(par, log_x, s_w, branch)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: log_x, s_w
+      type(branch_t), intent(inout) :: branch
+      type(along_t) :: raw
+
+      raw = along_raw_branch(par, branch, log_x)
+      branch%straight = abs(raw%s_w - branch%s_w) <= 0.0_wp .or. &
+                        abs(s_w - branch%s_w) > LARGEST_SCALE*abs(raw%s_w - branch%s_w)
+      if (.not. branch%straight) then
+         branch%share = (s_w - branch%s_w)/(raw%s_w - branch%s_w)
+      else if (abs(log_x - branch%log_x) > 0.0_wp) then
+         branch%share = (s_w - branch%s_w)/(log_x - branch%log_x)
       else
-         a = exp(log_sum) - EULER
-         if (a > exp(-LOG_LARGE)) log_y = log(a)/par%n_x
+         branch%share = 0.0_wp
       end if
-   end function suction_on_curve
+   end subroutine close_loop
+
+   !> The branch of a point that has just turned, with its derivatives by ln x of the turn: S_w there goes with the
+   !> branch before it. docs/theory/material.md section 2.1.1.
+   pure function begin_at_turn(par, path, slope) result(branch)
+      type(params_t), intent(in) :: par
+      type(path_t), intent(in) :: path    !< Its last turning point is the turn.
+      real(wp), intent(in) :: slope       !< dS_w/d ln x of the branch before, there [-].
+      type(params_t) :: branch
+      type(along_t) :: here, target
+      real(wp) :: way, rise
+
+      branch = branch_of(par, path)
+      associate (scanning => branch%scanning, last => branch%scanning%branches(branch%scanning%n))
+         scanning%moves = .true.
+         scanning%s_w_rate = slope
+         scanning%share_rate = 0.0_wp
+         scanning%offset_rate = 0.0_wp
+         if (last%straight) then
+            scanning%moves = .false.      ! no water moves
+         else if (last%log_offset > 0.5_wp*NO_OFFSET) then
+            here = along_raw_branch(branch, last, last%log_x)
+            ! S_w(y(x, c)) stays that of the turn: dS/d ln c is with_offset, dS/d ln x the slope
+            if (abs(here%with_offset) > 0.0_wp) scanning%offset_rate = (slope - here%slope)/here%with_offset
+         end if
+         if (scanning%n > 1 .and. scanning%moves) then
+            target = along_raw_branch(branch, last, path%turns%log_x(scanning%n - 1))
+            way = path%turns%s_w(scanning%n - 1) - last%s_w
+            rise = target%s_w - last%s_w
+            scanning%share_rate = (-slope - last%share*(target%with_offset*scanning%offset_rate - slope))/rise
+         end if
+      end associate
+   end function begin_at_turn
+
+   !> Degree of saturation after the modified suction went one way from a state to a suction [kPa] and a void ratio [-],
+   !> and the branch there. The one answer to every question for S_w. docs/theory/material.md section 2.1.1.
+   pure subroutine saturation_after(par, p_c, e, path, sat, branch)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: p_c, e
+      type(path_t), intent(inout) :: path   !< That of the state; on return that of the end.
+      type(saturation_t), intent(inout) :: sat
+      type(params_t), intent(out) :: branch
+      real(wp) :: log_x, s_w
+      logical :: rests
+
+      log_x = log_suction(par, p_c, e)
+      s_w = path%s_w
+      rests = abs(log_x - path%log_x) <= 0.0_wp
+      call go_on(par, log_x, path)
+      branch = branch_of(par, path)
+      sat = saturation(branch, p_c, e)
+      if (rests) sat%s_w = s_w
+      path%log_x = log_x
+      path%s_w = sat%s_w
+   end subroutine saturation_after
+
+   !> A state's S_w, set between the main curves, and its turning points if S_w is on their branch. Otherwise they are
+   !> cleared. docs/theory/material.md section 2.1.1.
+   pure subroutine keep_turns(par, path, cleared)
+      type(params_t), intent(in) :: par
+      type(path_t), intent(inout) :: path
+      logical, intent(out) :: cleared
+      type(params_t) :: branch
+      type(along_t) :: along
+      logical :: limited
+
+      cleared = .false.
+      if (path%log_x <= NO_SUCTION) then
+         path = path_t(NO_SUCTION, par%s_max, NO_TURNS)
+         return
+      end if
+      path%s_w = between(par, path%log_x, path%s_w)
+      if (path%turns%depth == 0) return
+      cleared = .not. are_nested(path)
+      if (.not. cleared) then
+         branch = branch_of(par, path)
+         call follow_branches(branch, path%log_x, along, limited)
+         cleared = abs(along%s_w - path%s_w) > PRESET_ROUNDING*par%s_max
+      end if
+      if (cleared) path = begin_path(par, path%log_x, path%s_w)
+   end subroutine keep_turns
+
+   !> Every turning point inside the loop of the two before it, and the present point likewise.
+   pure logical function are_nested(path)
+      type(path_t), intent(in) :: path
+      real(wp) :: log_x(0:path%turns%depth + 1), way
+      integer :: k, n
+
+      n = path%turns%depth
+      log_x(1:n) = path%turns%log_x(:n)
+      log_x(n + 1) = path%log_x
+      are_nested = .true.
+      do k = 1, n
+         way = merge(1.0_wp, -1.0_wp, path%turns%dries .eqv. mod(n - k, 2) == 0)
+         are_nested = are_nested .and. way*(log_x(k + 1) - log_x(k)) >= 0.0_wp
+         if (k > 1) are_nested = are_nested .and. way*(log_x(k - 1) - log_x(k + 1)) >= 0.0_wp
+      end do
+   end function are_nested
+
+   !> S_w between the main curves at ln(x/P_a) [-].
+   pure real(wp) function between(par, log_x, s_w)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: log_x, s_w
+      type(on_main_curve_t) :: dry, wet
+
+      dry = on_main_curve(par, main_curve(par, .true.), log_x)
+      wet = on_main_curve(par, main_curve(par, .false.), log_x)
+      between = max(min(s_w, dry%s_w), wet%s_w)
+   end function between
 
    !> Degrees of saturation of the main wetting and the main drying curve [-].
    pure function main_curves(par, p_c, e) result(bounds)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: p_c, e
-      real(wp) :: bounds(2)
-      type(saturation_t) :: dry, wet
+      real(wp) :: bounds(2), log_x
+      type(on_main_curve_t) :: dry, wet
 
-      dry = saturation(main_curve(par, .true.), p_c, e)
-      wet = saturation(main_curve(par, .false.), p_c, e)
+      log_x = log_suction(par, p_c, e)
+      dry = on_main_curve(par, main_curve(par, .true.), log_x)
+      wet = on_main_curve(par, main_curve(par, .false.), log_x)
       bounds = [wet%s_w, dry%s_w]
    end function main_curves
-
-   !> Parameters with which saturation is that of main drying, or of main wetting. docs/theory/material.md section
-   !> 2.1.1.
-   pure function main_curve(par, dries) result(curve)
-      type(params_t), intent(in) :: par
-      logical, intent(in) :: dries
-      type(params_t) :: curve
-
-      ! there is no scanning curve from zero suction
-      curve = branch_from(par, dries, 0.0_wp, 1.0_wp, par%s_max)
-   end function main_curve
-
-   !> S_w between the main curves; count grows by one where it was not. At a suction [kPa] and a void ratio [-];
-   !> docs/theory/material.md section 2.1.1.
-   pure subroutine clipped(par, p_c, e, s_w, count)
-      type(params_t), intent(in) :: par
-      real(wp), intent(in) :: p_c, e
-      real(wp), intent(inout) :: s_w
-      integer, intent(inout) :: count
-      real(wp) :: bounds(2), inside
-
-      bounds = main_curves(par, p_c, e)
-      inside = max(min(s_w, bounds(2)), bounds(1))
-      if (abs(inside - s_w) > ON_CURVE*par%s_max) count = count + 1
-      s_w = inside
-   end subroutine clipped
 
    !> S_w of a point that begins at a preset one of STATEV, which must lie between the main curves; 0: on the main
    !> drying curve. At a suction [kPa] and a void ratio [-]. One that is not finite, or outside by more than 1e-6 S_max,
@@ -156,8 +329,8 @@ contains
    pure subroutine check_curves(par, status)
       type(params_t), intent(in) :: par
       type(mud_status_t), intent(inout) :: status
-      type(params_t) :: wet
-      type(saturation_t) :: dry
+      type(main_curve_t) :: wet
+      type(on_main_curve_t) :: dry
       real(wp) :: log_x, limit
       integer :: i
 
@@ -165,10 +338,82 @@ contains
       limit = log(par%p_a)
       do i = 0, POINTS
          log_x = WET_END/par%n_x + (DRY_END - WET_END/par%n_x)*real(i, wp)/POINTS
-         dry = saturation(par, par%p_a*exp(log_x), 1.0_wp)
-         limit = min(limit, log(par%p_a) + log_x - suction_on_curve(wet, dry%s_w))
+         dry = on_main_curve(par, main_curve(par, .true.), log_x)
+         limit = min(limit, log(par%p_aw) + log_x - suction_on_curve(par, wet, dry%s_w))
       end do
       if (log(par%p_aw) > limit + AS_MUCH) &
          status = fail(MUD_BAD_PROPS, ON_PROPS, P_P_AW, par%p_aw, 0.0_wp, exp(limit))
    end subroutine check_curves
+
+   !> The interior minima of the offset whose branch passes a point of the opposite main curve: a branch of a larger
+   !> offset slides along that curve and leaves it there. None where both curves have the same exponents.
+   !> docs/theory/material.md section 2.1.1.
+   pure function find_least(par) result(least)
+      type(params_t), intent(in) :: par
+      type(least_t) :: least
+      real(wp) :: from, to, low, high, step
+      integer :: way, i
+
+      least%known = .true.
+      least%n = 0
+      least%log_x = 0.0_wp
+      least%log_offset = 0.0_wp
+      if (abs(par%n_w - par%n_x) <= 0.0_wp .and. abs(par%m_w - par%m_x) <= 0.0_wp) return
+      from = WET_END/par%n_w + min(par%log_wetting, 0.0_wp)
+      step = (DRY_END - from)/POINTS
+      do way = 1, 2
+         low = rise_of_offset(par, way == 2, from)
+         do i = 1, POINTS
+            to = from + i*step
+            high = rise_of_offset(par, way == 2, to)
+            if (low < 0.0_wp .and. high >= 0.0_wp .and. least%n(way) < MAX_LEAST) call add_least(way, to - step, to)
+            low = high
+         end do
+      end do
+   contains
+      pure subroutine add_least(way, before, behind)
+         integer, intent(in) :: way
+         real(wp), intent(in) :: before, behind
+         type(on_main_curve_t) :: at
+         type(branch_t) :: branch
+         real(wp) :: a, b, middle
+         integer :: k
+
+         a = before
+         b = behind
+         do k = 1, HALVINGS
+            middle = 0.5_wp*(a + b)
+            if (rise_of_offset(par, way == 2, middle) < 0.0_wp) then
+               a = middle
+            else
+               b = middle
+            end if
+         end do
+         at = on_main_curve(par, main_curve(par, way == 1), b)
+         branch = raw_branch(par, way == 2, b, at%s_w)
+         least%n(way) = least%n(way) + 1
+         least%log_x(way, least%n(way)) = b
+         least%log_offset(way, least%n(way)) = branch%log_offset
+      end subroutine add_least
+   end function find_least
+
+   !> Of the sign of d ln offset/d ln x along the opposite main curve: q (d ln y/d ln x - (x/y)^q), with y of the main
+   !> curve at the same S_w. 0 where no water moves.
+   pure real(wp) function rise_of_offset(par, dries, log_x) result(rise)
+      type(params_t), intent(in) :: par
+      logical, intent(in) :: dries
+      real(wp), intent(in) :: log_x
+      type(main_curve_t) :: curve
+      type(on_main_curve_t) :: opposite, at
+      real(wp) :: log_y, q
+
+      rise = 0.0_wp
+      curve = main_curve(par, dries)
+      opposite = on_main_curve(par, main_curve(par, .not. dries), log_x)
+      log_y = suction_on_curve(par, curve, opposite%s_w)
+      at = on_main_curve(par, curve, log_y)
+      if (abs(at%slope) <= 0.0_wp) return
+      q = power_of(par, dries)
+      rise = q*(opposite%slope/at%slope - exp(min(q*(log_x - log_y), 0.0_wp)))
+   end function rise_of_offset
 end module mud_scanning

@@ -3,7 +3,7 @@
 module mud_bounding
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
-   use mud_bonding, only: bonding_t, bonding, bonding_with_offset, UNBONDED
+   use mud_bonding, only: bonding_t, bonding, bonding_with_turn, UNBONDED
    use mud_critical_state, only: state_parameter, state_parameter_slopes, bounding_ratio, bounding_slope, &
       bounding_norm, lode_gradient
    use mud_tensor, only: ddot, norm
@@ -23,23 +23,23 @@ contains
       psi = state_parameter(par, bond%f, e, p)
    end function psi_of
 
-   !> Its change with void ratio, suction and mean stress, and with a scanning curve, q ln of its offset [-]. At e [-],
-   !> p_c and p [kPa], for their changes de [-], dp_c and dp [kPa], d_offset [-]; derivative of docs/theory/material.md
+   !> Its change with void ratio, suction and mean stress, and with ln x of the turn of a branch [-]. At e [-],
+   !> p_c and p [kPa], for their changes de [-], dp_c and dp [kPa], d_turn [-]; derivative of docs/theory/material.md
    !> sections 2.1.1 and 3.2.
-   pure real(wp) function change_of_psi(par, bonded, e, p_c, p, de, dp_c, dp, d_offset) result(change)
+   pure real(wp) function change_of_psi(par, bonded, e, p_c, p, de, dp_c, dp, d_turn) result(change)
       type(params_t), intent(in) :: par
       logical, intent(in) :: bonded
       real(wp), intent(in) :: e, p_c, p, de, dp_c, dp
-      real(wp), intent(in), optional :: d_offset
+      real(wp), intent(in), optional :: d_turn
       type(bonding_t) :: bond
-      real(wp) :: df, with_offset(3), by_f, by_p
+      real(wp) :: df, with_turn(3), by_f, by_p
 
       bond = UNBONDED
       if (bonded) bond = bonding(par, p_c, e)
       df = bond%df_de*de + bond%df_dpc*dp_c
-      if (bonded .and. par%scanning%between .and. present(d_offset)) then
-         with_offset = bonding_with_offset(par, bond, p_c, e)
-         df = df + with_offset(1)*d_offset
+      if (bonded .and. par%scanning%moves .and. present(d_turn)) then
+         with_turn = bonding_with_turn(par, bond, p_c, e)
+         df = df + with_turn(1)*d_turn
       end if
       call state_parameter_slopes(par, state_parameter(par, bond%f, e, p), bond%f, e, p, by_f, by_p)
       change = de + by_f*df + by_p*dp

@@ -3,7 +3,7 @@
 module mud_linearise
    use mud_kinds, only: wp
    use mud_params, only: params_t
-   use mud_bonding, only: bonding_curvature, bonding_with_offset
+   use mud_bonding, only: bonding_curvature, bonding_with_turn
    use mud_critical_state, only: state_parameter_slopes, bounding_slope, lode_gradient
    use mud_direction_equation, only: slopes_t, slopes_at, gradients
    use mud_elastic, only: bulk_slope, shear_slope, swelling_slope
@@ -22,7 +22,7 @@ module mud_linearise
       real(wp) :: e, d_v, d_pc
       real(wp) :: aside_v                   !< Trace of the elastic strain rate beside (elastic domain pulled along).
       real(wp) :: curvature(3)              !< of f [1/kPa2, 1/kPa, -]
-      real(wp) :: with_offset(3)            !< of f, df/dp_c, df/de with a scanning curve [-, 1/kPa, -]
+      real(wp) :: with_turn(3)              !< of f, df/dp_c, df/de with ln x of the branch's turn [-, 1/kPa, -]
       real(wp) :: psi_f, psi_p, m_b_psi     !< slopes of psi by f and p', of M^b by psi [-, 1/kPa, -]
       real(wp) :: kappa
       real(wp) :: k_slope, g_slope, b_slope !< d ln K/de, d ln G/de, d ln b_0/de [-]
@@ -53,10 +53,10 @@ contains
       lin%aside_v = loading%whole(1)*traces(1) + loading%whole(2)*traces(2) - lin%d_v
       lin%d_pc = d_pc
       lin%curvature = 0.0_wp
-      lin%with_offset = 0.0_wp
+      lin%with_turn = 0.0_wp
       if (bonded) then
          lin%curvature = bonding_curvature(par, w%bond, p_c, e)
-         if (par%scanning%between) lin%with_offset = bonding_with_offset(par, w%bond, p_c, e)
+         if (par%scanning%moves) lin%with_turn = bonding_with_turn(par, w%bond, p_c, e)
       end if
       call state_parameter_slopes(par, w%psi, w%bond%f, e, w%p, lin%psi_f, lin%psi_p)
       lin%m_b_psi = bounding_slope(par, w%psi, w%m_b)

@@ -19,8 +19,8 @@ module mud_point_changes
    type :: changes_t
       real(wp), dimension(LANES) :: e, p_c, d_pc   !< of void ratio, suction and its rate [-, kPa, kPa]
       type(loading_t) :: loading                   !< of the strain rate that loads
-      logical :: scans                             !< The scanning curve changes too; otherwise offset is not set.
-      real(wp) :: offset(LANES)                    !< of q ln of its offset [-]
+      logical :: scans                             !< Its branch changes with its turn; otherwise turn is not set.
+      real(wp) :: turn(LANES)                      !< of ln x of that turn [-]
    end type changes_t
 
    !> What lies between the changes of a rate's arguments and those of its results.
@@ -78,10 +78,10 @@ contains
       x%f = w%bond%df_de*changes%e + w%bond%df_dpc*changes%p_c
       x%f_e = lin%curvature(3)*changes%e + lin%curvature(2)*changes%p_c
       x%f_pc = lin%curvature(2)*changes%e + lin%curvature(1)*changes%p_c
-      if (changes%scans) then   ! a scanning curve that moves changes S_w, and f with it
-         x%f = x%f + lin%with_offset(1)*changes%offset
-         x%f_pc = x%f_pc + lin%with_offset(2)*changes%offset
-         x%f_e = x%f_e + lin%with_offset(3)*changes%offset
+      if (changes%scans) then   ! a branch that moves changes S_w, and f with it
+         x%f = x%f + lin%with_turn(1)*changes%turn
+         x%f_pc = x%f_pc + lin%with_turn(2)*changes%turn
+         x%f_e = x%f_e + lin%with_turn(3)*changes%turn
       end if
       do j = 1, LANES
          x%p(j) = follows*x%mean(j)
