@@ -32,10 +32,8 @@ STEPS, DT = 1333, 3e-5
 # time.
 CHECKPOINT_STEPS = 500
 # Name: memory rule, Newton's tolerance (None: that of the template).
-SERIES = {"remedy": (1, None), "as_published": (0, None), "classic": (0, None), "resume": (None, None),
+SERIES = {"remedy": (1, None), "as_published": (0, None), "classic": (0, None),
           "remedy_tight": (1, 1e-5), "as_published_tight": (0, 1e-5)}
-# An earlier memory rule is withdrawn: its committed rows stand as they were measured, and cannot be made again.
-RUNNABLE = [name for name, (rule, _) in SERIES.items() if rule is not None]
 SURCHARGE = 0.2        # kPa, where the suction is 0
 SATURATED_FLOOR = 0.01   # least relative permeability of the three-field scene there
 CHECKPOINT_REFUSED = 17   # exit code of mud_host

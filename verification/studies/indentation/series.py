@@ -13,7 +13,7 @@ import sys
 import analysis
 import figures
 import numpy as np
-from analysis import (DT, RESULTS, RUNNABLE, SERIES, SUCTIONS, Job, balances, errors, histories, label, measure,
+from analysis import (DT, RESULTS, SERIES, SUCTIONS, Job, balances, errors, histories, label, measure,
                       program, read, read_rows, results_folder, root, run_all, scene, write_rows, write_table)
 
 # Table 1 of the paper: relative CPU time, relative difference of displacement, iterations with and without the remedy.
@@ -26,19 +26,19 @@ CASES = [(0, "u-p_w")] + [(s, "u-p_w-p_c") for s in SUCTIONS]
 
 def arguments():
     parser = analysis.parser_of(__doc__, SUCTIONS, 60)
-    parser.add_argument("--series", nargs="+", choices=[*RUNNABLE, "all"], default=["remedy", "as_published"])
+    parser.add_argument("--series", nargs="+", choices=[*SERIES, "all"], default=["remedy", "as_published"])
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="analyses by name, for example "
                                                                               "s0030_remedy")
     return parser.parse_args()
 
 
 def jobs_of(args, folder, steps):
-    names = RUNNABLE if "all" in args.series else args.series
+    names = list(SERIES) if "all" in args.series else args.series
     jobs = [Job(f"{label(s, f)}_{name}", scene(s, f, name, steps=steps), folder, steps, suction=s, fields=f,
                 series=name)
             for s, f in CASES if s in args.suction for name in names]
     if args.only:
-        everything = {f"{label(s, f)}_{name}": (s, f, name) for s, f in CASES for name in RUNNABLE}
+        everything = {f"{label(s, f)}_{name}": (s, f, name) for s, f in CASES for name in SERIES}
         unknown = [n for n in args.only if n not in everything]
         if unknown:
             sys.exit(f"there is no analysis {unknown[0]}; the names are {', '.join(everything)}")
