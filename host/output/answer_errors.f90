@@ -72,7 +72,8 @@ contains
       end do
    end function is_prescribed
 
-   !> Largest estimate of an unknown, as a share of its change: of the named points, and of all nodes together.
+   !> Largest estimate of an unknown that is judged, as a share of its change: of the named points, or where none is
+   !> named of all nodes together.
    real(wp) function worst_unknown(model, control) result(worst)
       type(model_t), intent(in) :: model
       type(control_state_t), intent(in) :: control
@@ -86,7 +87,8 @@ contains
                if (is_answer(model, control, f, change)) worst = max(worst, error)
             end if
          end do
-         if (is_answer(model, control, f, control%scale(f))) worst = max(worst, control%largest(f)/control%scale(f))
+         if (size(model%points) == 0 .and. is_answer(model, control, f, control%scale(f))) &
+            worst = max(worst, control%largest(f)/control%scale(f))
       end do
    end function worst_unknown
 

@@ -11,7 +11,6 @@ import re
 import sys
 
 import honest
-import numpy as np
 
 from honest import results, tables
 

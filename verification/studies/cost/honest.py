@@ -139,6 +139,11 @@ def of_run(folder, answer):
     return rows["time"], rows[answer]
 
 
+def is_force(answer):
+    """Whether an answer is a force of a support or a thrust."""
+    return ": " in answer or answer.endswith(".thrust")
+
+
 def contacts(time, thrust):
     """First and last row of every time that the contact is closed; a gap shorter than the contact before it is none."""
     closed = np.flatnonzero(thrust)
