@@ -54,7 +54,13 @@ contains
       type(contact_options_t), intent(in) :: options
       type(contact_status_t), intent(out) :: status
 
-      if (.not. all(is_finite([options%penalty, options%search_radius]))) then
+      if (.not. all(is_finite([options%friction, options%cohesion, options%tangential_penalty]))) then
+         status = contact_fail(CONTACT_BAD_OPTION, &
+                               value=options%friction + options%cohesion + options%tangential_penalty)
+      else if (any([options%friction, options%cohesion, options%tangential_penalty] < 0.0_wp)) then
+         status = contact_fail(CONTACT_BAD_OPTION, &
+                               value=min(options%friction, options%cohesion, options%tangential_penalty))
+      else if (.not. all(is_finite([options%penalty, options%search_radius]))) then
          status = contact_fail(CONTACT_BAD_OPTION, &
                                value=merge(options%search_radius, options%penalty, is_finite(options%penalty)))
       else if (options%penalty <= 0.0_wp) then

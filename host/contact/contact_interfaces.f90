@@ -3,9 +3,10 @@
 !> contacts nothing is allocated and nothing is done.
 module contact_interfaces
    use kinds, only: wp
+   use contact_friction, only: friction_t, has_friction
    use contact_geometry, only: contact_geometry_t, contact_prepare
    use contact_penalty, only: contact_workspace_t, contact_result_t, contact_point_t, new_workspace, new_result, &
-                              contact_evaluate, points_of
+                              contact_evaluate, points_of, slid_work
    use contact_plate, only: plate_response_t, new_plate_response, plate_positions, gather_on_plate, force_on_plate
    use contact_types, only: contact_options_t, contact_status_t, CONTACT_OK
    use degrees_of_freedom, only: dofs_t
@@ -14,6 +15,7 @@ module contact_interfaces
    implicit none (type, external)
    private
    public :: contacts_t, contact_interface_t, surface_t, surface_of, new_interface, plate_surface
+   public :: begin_friction, accept_friction
    public :: evaluate_contacts, probe_contacts, start_points, probe_interface, fit_pattern, add_contacts, &
              contact_forces, mean_contact_forces
 
@@ -31,6 +33,9 @@ module contact_interfaces
       type(contact_result_t) :: result      !< Outcome at the iterates of a step.
       type(contact_result_t) :: probe       !< Outcome at other displacements, independent of the step.
       type(contact_point_t), allocatable :: point(:)   !< Of every slave node at the start of the step.
+      logical :: rubs = .false.             !< It has friction.
+      type(friction_t) :: friction          !< What the step starts from.
+      real(wp), allocatable :: slave_u(:, :), master_u(:, :)   !< (2, nodes) Displacements there [m].
       type(plate_response_t) :: on_plate    !< Forces where the master is a plate.
       integer :: plate = 0                  !< Node of this plate, 0: the master is no plate.
       type(surface_t) :: slave, master
@@ -42,6 +47,8 @@ module contact_interfaces
       real(wp) :: energy = 0.0_wp           !< Of the penalty [kJ].
       real(wp) :: area = 0.0_wp             !< Of the active nodes [m2].
       integer :: active = 0
+      integer :: sliding = 0                !< Nodes whose friction is at its limit.
+      real(wp) :: drag = 0.0_wp             !< Friction on the master along the slave's tangent, summed up [kN].
       integer :: sealed = 0                 !< Slave nodes that are impervious in the step under way.
    end type contact_interface_t
 
@@ -104,6 +111,12 @@ contains
       one%point = points_of(one%probe)
       nodes = [slave%node, master%node]
       one%unknown = reshape(dofs%of(:DISPLACEMENTS, nodes), [DISPLACEMENTS*size(nodes)])
+      one%rubs = has_friction(options)
+      if (one%rubs) then
+         one%friction = friction_t(0*slave%x0, 0*master%x0, 0*one%result%gap, 0*one%result%gap)
+         one%slave_u = 0*slave%x0
+         one%master_u = 0*master%x0
+      end if
       if (plate == 0) return
       one%on_plate = new_plate_response(one%geometry)
       one%unknown = [one%unknown, dofs%of(AT_U_Z, plate)]
@@ -124,9 +137,10 @@ contains
             t%thrust = 0.0_wp
             t%energy = 0.0_wp
             t%area = 0.0_wp
+            t%sliding = 0
+            t%drag = 0.0_wp
             if (.not. t%acts) cycle
-            call probe_interface(t%geometry, t%slave, t%master, t%plate, x, with_tangent, t%work, t%result, &
-                                 contacts%status)
+            call probe_one(t, x, with_tangent, t%result, contacts%status)
             good = contacts%status%code == CONTACT_OK
             if (.not. good) return
             if (t%plate > 0) call gather_on_plate(t%geometry, t%result, t%on_plate)
@@ -134,6 +148,8 @@ contains
             t%thrust = sum(t%result%force(2:2*t%geometry%slave_nodes:2))
             t%energy = t%result%energy
             t%area = sum(t%result%weight, mask=t%result%active)
+            t%sliding = count(t%result%slides)
+            t%drag = dot_product(t%result%weight, t%result%traction)
          end associate
       end do
    end function evaluate_contacts
@@ -149,12 +165,91 @@ contains
       do i = 1, size(contacts%interfaces)
          associate (t => contacts%interfaces(i))
             if (.not. t%acts) cycle
-            call probe_interface(t%geometry, t%slave, t%master, t%plate, x, .false., t%work, t%probe, contacts%status)
+            call probe_one(t, x, .false., t%probe, contacts%status)
             good = contacts%status%code == CONTACT_OK
             if (.not. good) return
          end associate
       end do
    end function probe_contacts
+
+   !> One of them, with the friction that its step starts from. status: as of contact_evaluate.
+   subroutine probe_one(t, x, with_tangent, result, status)
+      type(contact_interface_t), intent(inout) :: t
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
+      logical, intent(in) :: with_tangent
+      type(contact_result_t), intent(inout) :: result
+      type(contact_status_t), intent(out) :: status
+
+      if (t%rubs) then
+         t%friction%slave_dx = x(:DISPLACEMENTS, t%slave%node) - t%slave_u
+         t%friction%master_dx = displacements_of_master(t, x) - t%master_u
+         call probe_interface(t%geometry, t%slave, t%master, t%plate, x, with_tangent, t%work, result, status, &
+                              t%friction)
+      else
+         call probe_interface(t%geometry, t%slave, t%master, t%plate, x, with_tangent, t%work, result, status)
+      end if
+   end subroutine probe_one
+
+   !> Of its nodes, or of the face of the plate [m].
+   pure function displacements_of_master(t, x) result(u)
+      type(contact_interface_t), intent(in) :: t
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
+      real(wp) :: u(DISPLACEMENTS, size(t%master%x0, 2))
+
+      if (t%plate > 0) then
+         u = plate_positions(t%master%x0, x(AT_U_Z, t%plate)) - t%master%x0
+      else
+         u = x(:DISPLACEMENTS, t%master%node)
+      end if
+   end function displacements_of_master
+
+   !> Sets the displacements and gaps that the friction of a step starts from; false if a kernel refuses them.
+   !> docs/theory/contact.md section 9.
+   logical function begin_friction(contacts, x) result(good)
+      type(contacts_t), intent(inout) :: contacts
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
+      integer :: i
+
+      good = .true.
+      if (.not. allocated(contacts%interfaces)) return
+      do i = 1, size(contacts%interfaces)
+         associate (t => contacts%interfaces(i))
+            if (.not. t%rubs) cycle
+            ! Where it does not act nothing is held.
+            if (.not. t%acts) t%friction%traction = 0.0_wp
+            if (.not. t%acts) cycle
+            t%slave_u = x(:DISPLACEMENTS, t%slave%node)
+            t%master_u = displacements_of_master(t, x)
+            t%friction%gap = 0.0_wp
+            call probe_one(t, x, .false., t%probe, contacts%status)
+            good = contacts%status%code == CONTACT_OK
+            if (.not. good) return
+            t%friction%gap = t%probe%gap
+         end associate
+      end do
+   end function begin_friction
+
+   !> Takes the tractions at the end of an accepted step; what sliding has dissipated in it [kJ].
+   !> docs/theory/contact.md section 9.
+   subroutine accept_friction(contacts, x, dissipated)
+      type(contacts_t), intent(inout) :: contacts
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) At the end of the step, displacements first [m].
+      real(wp), intent(out) :: dissipated
+      integer :: i
+
+      dissipated = 0.0_wp
+      if (.not. allocated(contacts%interfaces)) return
+      do i = 1, size(contacts%interfaces)
+         associate (t => contacts%interfaces(i))
+            if (.not. t%rubs .or. .not. t%acts) cycle
+            call probe_one(t, x, .false., t%probe, contacts%status)
+            ! What a step has ended with, no kernel refuses.
+            if (contacts%status%code /= CONTACT_OK) cycle
+            dissipated = dissipated + slid_work(t%geometry%options, t%friction, t%probe)
+            t%friction%traction = t%probe%traction
+         end associate
+      end do
+   end subroutine accept_friction
 
    !> Sets the states of the contact points at the displacements at the start of a step; false if a kernel refuses them.
    !> docs/theory/contact.md section 5. A step that is cut, and a restart, find the same states.
@@ -173,7 +268,7 @@ contains
    end function start_points
 
    !> One pair of surfaces at given displacements. status: as of contact_evaluate.
-   subroutine probe_interface(geometry, slave, master, plate, x, with_tangent, work, result, status)
+   subroutine probe_interface(geometry, slave, master, plate, x, with_tangent, work, result, status, friction)
       type(contact_geometry_t), intent(in) :: geometry
       type(surface_t), intent(in) :: slave, master
       integer, intent(in) :: plate   !< Node of the plate that is the master, or 0.
@@ -182,6 +277,7 @@ contains
       type(contact_workspace_t), intent(inout) :: work
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
+      type(friction_t), intent(in), optional :: friction
       real(wp) :: at(2, size(master%x0, 2))
 
       if (plate > 0) then
@@ -189,7 +285,8 @@ contains
       else
          at = master%x0 + x(:DISPLACEMENTS, master%node)
       end if
-      call contact_evaluate(geometry, slave%x0 + x(:DISPLACEMENTS, slave%node), at, with_tangent, work, result, status)
+      call contact_evaluate(geometry, slave%x0 + x(:DISPLACEMENTS, slave%node), at, with_tangent, work, result, &
+                            status, friction)
    end subroutine probe_interface
 
    !> Makes the pattern hold the slopes of the last evaluation. It grows only: a contact that opens leaves it alone.

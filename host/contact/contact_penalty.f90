@@ -1,7 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> Frictionless mortar contact by penalty: weights, gaps and pressures of the slave nodes, energy, nodal forces and the
-!> consistent tangent of both surfaces: docs/theory/contact.md sections 2 and 3; host/CONTACT.md has the limits.
+!> Mortar contact by penalty, with friction where it is asked for: weights, gaps, pressures and tractions of the slave
+!> nodes, energy, nodal forces and the consistent tangent of both surfaces: docs/theory/contact.md sections 2, 3 and 9;
+!> host/CONTACT.md has the limits.
 module contact_penalty
+   use contact_friction, only: friction_t, traction_t, pair_slips, drag_response, traction_at, &
+                               tangential_stiffness, touching_share
    use contact_geometry, only: contact_geometry_t, check_coordinates
    use contact_mortar, only: overlap_t, find_overlap, pair_gaps, penetration, hats, POINTS, POSITION, SHARE
    use contact_projection, only: edge_t, edge_of, place, tangent
@@ -13,7 +16,7 @@ module contact_penalty
    implicit none (type, external)
    private
    public :: contact_workspace_t, contact_result_t, contact_point_t, new_workspace, new_result, &
-             contact_evaluate, points_of
+             contact_evaluate, points_of, slid_work
 
    integer, parameter :: FIRST_ROOM = 1024   !< Triplets to begin with.
    real(wp), parameter :: POINTWISE_SHARE = 0.5_wp   !< Of the penalty, where both gaps are penalised [-].
@@ -23,6 +26,7 @@ module contact_penalty
       integer :: slave = 0, master = 0
       type(overlap_t) :: overlap
       real(wp) :: d_weight(12, 3) = 0.0_wp, d_weighted_gap(12, 3) = 0.0_wp, push(12, 3) = 0.0_wp
+      real(wp) :: d_weighted_slip(12, 3) = 0.0_wp, drag(12, 3) = 0.0_wp   !< With friction.
    end type pair_t
 
    !> Room for an evaluation; what it holds between two is of no meaning.
@@ -49,6 +53,9 @@ module contact_penalty
       real(wp), allocatable :: gap(:)           !< g_A, open > 0; 0 where w_A = 0 [m]
       real(wp), allocatable :: pressure(:)      !< p_A >= 0 [kPa]
       logical, allocatable :: active(:)         !< p_A > 0
+      real(wp), allocatable :: slip(:)          !< Since the start of the step, with friction [m]
+      real(wp), allocatable :: traction(:)      !< t_A, of the friction on the master along the slave's tangent [kPa]
+      logical, allocatable :: slides(:)         !< The traction is at its limit.
       real(wp) :: unpressed = 0.0_wp            !< Deepest penetration without pressure, over its edge [-].
       real(wp) :: unpressed_at(2) = 0.0_wp      !< Middle of the edge with this penetration [m].
       integer :: pairs = 0                      !< Pairs of edges opposite each other.
@@ -94,7 +101,8 @@ contains
       allocate (result%force(2*(geometry%slave_nodes + geometry%master_nodes)), source=0.0_wp)
       allocate (result%weight(geometry%slave_nodes), result%whole(geometry%slave_nodes), &
                 result%gap(geometry%slave_nodes), result%pressure(geometry%slave_nodes), source=0.0_wp)
-      allocate (result%active(geometry%slave_nodes), source=.false.)
+      allocate (result%active(geometry%slave_nodes), result%slides(geometry%slave_nodes), source=.false.)
+      allocate (result%slip(geometry%slave_nodes), result%traction(geometry%slave_nodes), source=0.0_wp)
       allocate (result%row(FIRST_ROOM), result%column(FIRST_ROOM), source=0)
       allocate (result%value(FIRST_ROOM), source=0.0_wp)
    end function new_result
@@ -103,13 +111,14 @@ contains
    !> docs/theory/contact.md sections 2 and 3, paper eqs (17), (18).
    !> status: as of check_coordinates; CONTACT_NO_PROJECTION where a normal of the slave misses the master edge
    !> opposite.
-   pure subroutine contact_evaluate(geometry, slave_x, master_x, with_tangent, work, result, status)
+   pure subroutine contact_evaluate(geometry, slave_x, master_x, with_tangent, work, result, status, friction)
       type(contact_geometry_t), intent(in) :: geometry
       real(wp), intent(in) :: slave_x(:, :), master_x(:, :)   !< (2, nodes): r and z, or x and y [m]
       logical, intent(in) :: with_tangent
       type(contact_workspace_t), intent(inout) :: work
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
+      type(friction_t), intent(in), optional :: friction   !< Needed where the options have friction.
 
       result%force = 0.0_wp
       result%triplets = 0
@@ -127,6 +136,7 @@ contains
       if (status%code /= CONTACT_OK) return
       call respond(geometry, slave_x, master_x, with_tangent, work, result, status)
       if (status%code /= CONTACT_OK) return
+      if (present(friction)) call rub(geometry, slave_x, master_x, with_tangent, friction, work, result)
       result%active = result%pressure > 0.0_wp
    end subroutine contact_evaluate
 
@@ -250,6 +260,112 @@ contains
       end if
    end subroutine respond
 
+   !> Friction: slips and tractions of the slave nodes, their forces and tangent. docs/theory/contact.md section 9.
+   pure subroutine rub(geometry, slave_x, master_x, with_tangent, friction, work, result)
+      type(contact_geometry_t), intent(in) :: geometry
+      real(wp), intent(in) :: slave_x(:, :), master_x(:, :)
+      logical, intent(in) :: with_tangent
+      type(friction_t), intent(in) :: friction
+      type(contact_workspace_t), intent(inout) :: work
+      type(contact_result_t), intent(inout) :: result
+      type(traction_t) :: t(geometry%slave_nodes)
+      type(response_t) :: response
+      real(wp) :: x(2, 6), dx(2, 6), weighted_slip(3)
+      integer :: unknown(12), i, j
+
+      result%slip = 0.0_wp
+      do i = 1, result%pairs
+         associate (pair => work%pair(i), nodes => geometry%slave_edges(:, work%pair(i)%slave))
+            x = gathered(slave_x, master_x)
+            dx = gathered(friction%slave_dx, friction%master_dx)
+            call pair_slips(x, dx, pair%overlap, geometry%options%axisymmetric, weighted_slip, pair%d_weighted_slip, &
+                            pair%drag)
+            result%slip(nodes) = result%slip(nodes) + weighted_slip
+         end associate
+      end do
+      where (result%weight > 0.0_wp) result%slip = result%slip/result%weight
+      do i = 1, geometry%slave_nodes
+         t(i) = traction_at(geometry%options, friction%traction(i), friction%gap(i), result%gap(i), result%slip(i))
+      end do
+      result%traction = t%value
+      result%slides = t%slides
+      do i = 1, result%pairs
+         associate (pair => work%pair(i))
+            if (.not. any(abs(result%traction(geometry%slave_edges(:, pair%slave))) > 0.0_wp)) cycle
+            x = gathered(slave_x, master_x)
+            call drag_response(x, pair%overlap, geometry%options%axisymmetric, &
+                               result%traction(geometry%slave_edges(:, pair%slave)), with_tangent, response)
+            unknown = unknowns_of(geometry, pair%slave, pair%master)
+            result%force(unknown) = result%force(unknown) + response%force
+            if (.not. with_tangent) cycle
+            call make_room(result, 144)
+            do j = 1, 12
+               call add_column(result, unknown, unknown(j), response%stiffness(:, j))
+            end do
+         end associate
+      end do
+      if (.not. with_tangent) return
+      do i = 1, geometry%slave_nodes
+         if (result%gap(i) < 0.0_wp) call add_traction(geometry, t(i), i, work, result)
+      end do
+   contains
+      !> What the nodes of pair i have, slave first.
+      pure function gathered(slave, master) result(of_pair)
+         real(wp), intent(in) :: slave(:, :), master(:, :)
+         real(wp) :: of_pair(2, 6)
+
+         of_pair(:, 1:3) = slave(:, geometry%slave_edges(:, work%pair(i)%slave))
+         of_pair(:, 4:6) = master(:, geometry%master_edges(:, work%pair(i)%master))
+      end function gathered
+   end subroutine rub
+
+   !> The change of a nodal traction: dt_A by slip and gap, times what a unit of t_A drags.
+   pure subroutine add_traction(geometry, t, node, work, result)
+      type(contact_geometry_t), intent(in) :: geometry
+      type(traction_t), intent(in) :: t
+      integer, intent(in) :: node
+      type(contact_workspace_t), intent(inout) :: work
+      type(contact_result_t), intent(inout) :: result
+      integer :: side, edge, i, a, n
+
+      call gather_unknowns(geometry, node, work, n)
+      do side = 1, 2
+         edge = geometry%edges_of(side, node)
+         if (edge == 0) cycle
+         do i = work%first_pair(edge), work%first_pair(edge + 1) - 1
+            a = findloc(geometry%slave_edges(:, work%pair(i)%slave), node, dim=1)
+            associate (pair => work%pair(i), at => work%position(unknowns_of(geometry, work%pair(i)%slave, &
+                                                                             work%pair(i)%master)))
+               work%right(at) = work%right(at) &
+                                + t%by_slip*(pair%d_weighted_slip(:, a) - result%slip(node)*pair%d_weight(:, a)) &
+                                + t%by_gap*(pair%d_weighted_gap(:, a) - result%gap(node)*pair%d_weight(:, a))
+               work%left(at) = work%left(at) + pair%drag(:, a)
+            end associate
+         end do
+      end do
+      work%right(:n) = work%right(:n)/result%weight(node)
+      call add_product(n, work, result)
+   end subroutine add_traction
+
+   !> What sliding has dissipated from the start of a step to an evaluation [kN m]: traction times the slip that is not
+   !> the penalty's. Never negative: sliding has the sign of its traction. docs/theory/contact.md section 9.
+   pure real(wp) function slid_work(options, friction, result) result(total)
+      type(contact_options_t), intent(in) :: options
+      type(friction_t), intent(in) :: friction
+      type(contact_result_t), intent(in) :: result
+      real(wp) :: stiffness, slip, before
+      integer :: i
+
+      stiffness = tangential_stiffness(options)
+      total = 0.0_wp
+      do i = 1, size(result%traction)
+         if (.not. result%slides(i)) cycle
+         before = merge(0.0_wp, friction%traction(i), friction%gap(i) > 0.0_wp)
+         slip = touching_share(friction%gap(i), result%gap(i))*result%slip(i)
+         total = total + result%weight(i)*result%traction(i)*(slip - (result%traction(i) - before)/stiffness)
+      end do
+   end function slid_work
+
    !> What a pair adds to forces, energy and tangent.
    pure subroutine add_pair(geometry, options, pair, x, with_tangent, work, result, status)
       type(contact_geometry_t), intent(in) :: geometry
@@ -331,14 +447,39 @@ contains
       type(contact_workspace_t), intent(inout) :: work
       type(contact_result_t), intent(inout) :: result
       real(wp) :: slope(12)
-      integer :: unknown(12), side, edge, i, a, j, n
+      integer :: side, edge, i, a, n
+
+      call gather_unknowns(geometry, node, work, n)
+      do side = 1, 2
+         edge = geometry%edges_of(side, node)
+         if (edge == 0) cycle
+         do i = work%first_pair(edge), work%first_pair(edge + 1) - 1
+            a = findloc(geometry%slave_edges(:, work%pair(i)%slave), node, dim=1)
+            associate (pair => work%pair(i), at => work%position(unknowns_of(geometry, work%pair(i)%slave, &
+                                                                             work%pair(i)%master)))
+               slope = pair%d_weighted_gap(:, a) - result%gap(node)*pair%d_weight(:, a)
+               work%right(at) = work%right(at) + slope
+               work%left(at) = work%left(at) - pair%push(:, a)
+            end associate
+         end do
+      end do
+      work%right(:n) = penalty/result%weight(node)*work%right(:n)
+      call add_product(n, work, result)
+   end subroutine add_node
+
+   !> Places of the unknowns that the gap of a node depends on; left and right are empty.
+   pure subroutine gather_unknowns(geometry, node, work, n)
+      type(contact_geometry_t), intent(in) :: geometry
+      integer, intent(in) :: node
+      type(contact_workspace_t), intent(inout) :: work
+      integer, intent(out) :: n   !< How many.
+      integer :: unknown(12), side, edge, i, j
 
       n = 0
       do side = 1, 2
          edge = geometry%edges_of(side, node)
          if (edge == 0) cycle
          do i = work%first_pair(edge), work%first_pair(edge + 1) - 1
-            a = findloc(geometry%slave_edges(:, work%pair(i)%slave), node, dim=1)
             unknown = unknowns_of(geometry, work%pair(i)%slave, work%pair(i)%master)
             do j = 1, 12
                if (work%position(unknown(j)) > 0) cycle
@@ -348,20 +489,23 @@ contains
                work%left(n) = 0.0_wp
                work%right(n) = 0.0_wp
             end do
-            associate (pair => work%pair(i), at => work%position(unknown))
-               slope = pair%d_weighted_gap(:, a) - result%gap(node)*pair%d_weight(:, a)
-               work%right(at) = work%right(at) + slope
-               work%left(at) = work%left(at) - pair%push(:, a)
-            end associate
          end do
       end do
-      work%right(:n) = penalty/result%weight(node)*work%right(:n)
+   end subroutine gather_unknowns
+
+   !> Adds left times right to the tangent and forgets the places.
+   pure subroutine add_product(n, work, result)
+      integer, intent(in) :: n
+      type(contact_workspace_t), intent(inout) :: work
+      type(contact_result_t), intent(inout) :: result
+      integer :: j
+
       call make_room(result, n*n)
       do j = 1, n
          work%position(work%touched(j)) = 0
          call add_column(result, work%touched(:n), work%touched(j), work%right(j)*work%left(:n))
       end do
-   end subroutine add_node
+   end subroutine add_product
 
    !> Numbers of the displacements of a pair of edges: first those of the slave's nodes, then those of the master's.
    pure function unknowns_of(geometry, slave, master) result(unknown)

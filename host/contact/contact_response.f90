@@ -11,7 +11,7 @@ module contact_response
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: response_t, pair_response
+   public :: response_t, pair_response, add_work
 
    !> What a pair adds, in local coordinates.
    type :: response_t
@@ -34,7 +34,7 @@ contains
       type(response_t), intent(out) :: response
       real(wp), intent(out) :: missed   !< [-]
       type(point_t) :: p
-      real(wp) :: position_of(POINTS), share_of(POINTS), at_point, d_at_point(12), gap
+      real(wp) :: position_of(POINTS), share_of(POINTS), at_point, d_at_point(12), gap, d_nu(2, 12)
       integer :: segment, k
 
       missed = 0.0_wp
@@ -55,22 +55,25 @@ contains
                response%energy = response%energy + 0.5_wp*options%penalty*gap**2*p%length*p%area
                response%load = response%load + p%area*p%length*hats(p%s)*at_point
             end if
-            call add_work(p, at_point, d_at_point, with_stiffness, response)
+            d_nu(1, :) = p%d_t(2, :)
+            d_nu(2, :) = -p%d_t(1, :)
+            call add_work(p, [p%t(2), -p%t(1)], d_nu, at_point, d_at_point, with_stiffness, response)
          end do
       end do
    end subroutine pair_response
 
-   !> The pressure acts along the slave's normal at both points: the forces of a pair of points cancel and lie on one
-   !> line, so that momentum and its moment are kept exactly.
-   pure subroutine add_work(p, pressure, d_pressure, with_stiffness, response)
+   !> A pressure acts along the slave's normal at both points: the forces of a pair of points cancel and lie on one
+   !> line, so that momentum and its moment are kept exactly. A traction acts along the slave's tangent.
+   !> docs/theory/contact.md sections 3 and 9.
+   pure subroutine add_work(p, nu, d_nu, pressure, d_pressure, with_stiffness, response)
       type(point_t), intent(in) :: p
+      real(wp), intent(in) :: nu(2), d_nu(2, 12)   !< Direction, as long as the slave's tangent [m], and its slopes [-].
       real(wp), intent(in) :: pressure, d_pressure(12)   !< At the point [kPa], by the local coordinates [kPa/m].
       logical, intent(in) :: with_stiffness
       type(response_t), intent(inout) :: response
-      real(wp) :: push(12), d_load(12), load, nu(2), d_nu(12)
+      real(wp) :: push(12), d_load(12), load
       integer :: i, j, c
 
-      nu = [p%t(2), -p%t(1)]
       load = p%area*pressure
       do i = 1, 3
          push(2*i - 1:2*i) = p%ns(i)*nu
@@ -83,13 +86,11 @@ contains
          response%stiffness(:, j) = response%stiffness(:, j) + d_load(j)*push
       end do
       do c = 1, 2
-         d_nu = p%d_t(2, :)
-         if (c == 2) d_nu = -p%d_t(1, :)
          do i = 1, 3
             response%stiffness(2*i - 2 + c, :) = response%stiffness(2*i - 2 + c, :) &
-                                                 + load*(p%ns(i)*d_nu + nu(c)*p%dns(i)*p%d_s)
+                                                 + load*(p%ns(i)*d_nu(c, :) + nu(c)*p%dns(i)*p%d_s)
             response%stiffness(2*i + 4 + c, :) = response%stiffness(2*i + 4 + c, :) &
-                                                 - load*(p%nm(i)*d_nu + nu(c)*p%dnm(i)*p%d_m)
+                                                 - load*(p%nm(i)*d_nu(c, :) + nu(c)*p%dnm(i)*p%d_m)
          end do
       end do
    end subroutine add_work

@@ -33,6 +33,9 @@ module contact_types
       real(wp) :: search_radius = 0.0_wp      !< Edges farther apart do not meet [m]; 0: length of each slave edge
       logical :: axisymmetric = .true.        !< 2 pi r, otherwise plane strain of unit thickness
       integer :: gap = COMBINED_GAP           !< NODAL_GAP, POINTWISE_GAP or COMBINED_GAP
+      real(wp) :: friction = 0.0_wp           !< Coefficient mu [-], >= 0
+      real(wp) :: cohesion = 0.0_wp           !< Shear stress of a contact without pressure [kPa], >= 0
+      real(wp) :: tangential_penalty = 0.0_wp !< eps_T [kN/m3]; 0: as the penalty
    end type contact_options_t
 
    type :: contact_status_t
@@ -78,7 +81,8 @@ contains
          text = 'contact: no fault'
       case (CONTACT_BAD_OPTION)
          text = 'contact: an option has the value '//trim(adjustl(value))//': the penalty must be finite and > 0, '// &
-                'the search radius finite and >= 0, gap one of the named kinds'
+                'the search radius, friction, cohesion and tangential penalty finite and >= 0, gap one of '// &
+                'the named kinds'
       case (CONTACT_BAD_EDGE)
          text = 'contact: edge '//trim(number)//' of the '//trim(side)//' surface names node '//trim(adjustl(value))// &
                 ': it must be one of the surface, in at most two edges, and a middle node in one'

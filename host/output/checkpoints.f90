@@ -31,7 +31,7 @@ module checkpoints
    character(*), parameter :: DAMAGED = ' is damaged: an entry is missing, has another extent or a wrong '// &
                                         'checksum; use an older copy, or start anew.'
    character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
-                                        'contact, seepage, damping [kJ], outflow, outflow_air [m3], '// &
+                                        'contact, friction, seepage, damping [kJ], outflow, outflow_air [m3], '// &
                                         'largest_work, open_0, most_created [kJ], overdue [-], tolerated [kJ]'
 contains
    !> Writes the complete state of a run to checkpoint.h5 in the folder of the tables, in place of an older one. Fault
@@ -85,6 +85,8 @@ contains
       call put(file, 'control', numbers_of(run%control), '-', 'control of the time step: see control_state')
       if (allocated(run%constraint%dashpots)) call put(file, 'offset', run%constraint%offset, 'kN, m3/s', &
                                                       'flow that is subtracted, forces that hold the ground')
+      if (size(tractions_of(run)) > 0) call put(file, 'friction', tractions_of(run), 'kPa', &
+                                                'traction of every slave node of the contacts with friction')
       if (pairs_of(run) > 0) call put(file, 'pairs', reshape(run%system%contacts%extra, [2*pairs_of(run)]), '-', &
                                       'pairs of unknowns that contacts brought into the matrix')
       call write_file(file, good)
@@ -142,6 +144,7 @@ contains
          if (allocated(run%damping_stress)) call get(file, 'damping_stress', run%damping_stress)
          if (allocated(run%constraint%dashpots)) call get(file, 'offset', run%constraint%offset)
          if (file%good .and. allocated(model%effects)) call take_monitor(file, run)
+         if (file%good) call take_tractions(file, run)
          if (file%good) call take_control(file, model, run)
          if (file%good .and. counters(N_COUNTERS) > 0.5_wp) &
             call take_pairs(file, nint(counters(N_COUNTERS)), model%dofs, run)
@@ -316,6 +319,40 @@ contains
       text = ''
       if (mud_version(raw, len(raw)) >= 0) text = from_c(raw)
    end function library
+
+   !> Tractions of all contacts with friction, one behind the other [kPa].
+   pure function tractions_of(run) result(tractions)
+      type(run_t), intent(in) :: run
+      real(wp), allocatable :: tractions(:)
+      integer :: i
+
+      allocate (tractions(0))
+      if (.not. allocated(run%system%contacts%interfaces)) return
+      do i = 1, size(run%system%contacts%interfaces)
+         associate (t => run%system%contacts%interfaces(i))
+            if (t%rubs) tractions = [tractions, t%friction%traction]
+         end associate
+      end do
+   end function tractions_of
+
+   subroutine take_tractions(file, run)
+      type(h5_t), intent(inout) :: file
+      type(run_t), intent(inout) :: run
+      real(wp) :: tractions(size(tractions_of(run)))
+      integer :: i, at
+
+      if (size(tractions) == 0) return
+      call get(file, 'friction', tractions)
+      if (.not. file%good) return
+      at = 0
+      do i = 1, size(run%system%contacts%interfaces)
+         associate (t => run%system%contacts%interfaces(i))
+            if (.not. t%rubs) cycle
+            t%friction%traction = tractions(at + 1:at + size(t%friction%traction))
+            at = at + size(t%friction%traction)
+         end associate
+      end do
+   end subroutine take_tractions
 
    pure integer function pairs_of(run) result(pairs)
       type(run_t), intent(in) :: run

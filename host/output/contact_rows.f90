@@ -24,7 +24,7 @@ contains
       do i = 1, size(model%contacts)
          name = ','//model%contacts(i)%name
          head = head//trim(name)//'.thrust'//trim(name)//'.energy'//trim(name)//'.area'//trim(name)//'.active'// &
-                trim(name)//'.sealed'
+                trim(name)//'.sealed'//trim(name)//'.drag'//trim(name)//'.sliding'
       end do
       do i = 1, size(model%plates)
          name = ','//model%plates(i)%name
@@ -50,26 +50,28 @@ contains
    contains
       pure function values(t) result(list)
          type(contact_interface_t), intent(in) :: t
-         real(wp) :: list(5)
+         real(wp) :: list(7)
 
-         list = [t%thrust, t%energy, t%area, real(t%active, wp), real(t%sealed, wp)]
+         list = [t%thrust, t%energy, t%area, real(t%active, wp), real(t%sealed, wp), t%drag, &
+                 real(t%sliding, wp)]
       end function values
    end function contact_row
 
    !> Slave nodes of the contacts that act, at the displacements of a state: number of the contact, coordinates at the
-   !> start, weight, share of it that is covered, gap, pressure. A state that a kernel refuses has none.
+   !> start, weight, share of it that is covered, gap, pressure, shear stress of
+   !> friction. A state that a kernel refuses has none.
    subroutine contact_nodes(model, contacts, state, table)
       type(model_t), intent(in) :: model
       type(contacts_t), intent(in) :: contacts
       type(state_t), intent(in) :: state
-      real(wp), allocatable, intent(out) :: table(:, :)   !< (7, nodes) [-, m, m, m2, -, m, kPa]
+      real(wp), allocatable, intent(out) :: table(:, :)   !< (8, nodes) [-, m, m, m2, -, m, kPa, kPa]
       type(contact_workspace_t) :: work
       type(contact_result_t) :: found
       type(contact_status_t) :: status
       real(wp), allocatable :: rows(:, :)
       integer :: c, i
 
-      allocate (rows(7, 0), table(7, 0))
+      allocate (rows(8, 0), table(8, 0))
       do c = 1, size(model%contacts)
          associate (t => contacts%interfaces(c))
             if (.not. t%acts) cycle
@@ -79,10 +81,18 @@ contains
                                  status)
             if (status%code /= CONTACT_OK) return
             rows = reshape([rows, (real(c, wp), t%slave%x0(:, i), found%weight(i), found%weight(i)/found%whole(i), &
-                                   found%gap(i), found%pressure(i), i=1, size(t%slave%node))], &
-                           [7, size(rows, 2) + size(t%slave%node)])
+                                   found%gap(i), found%pressure(i), shear(t, i), i=1, size(t%slave%node))], &
+                           [8, size(rows, 2) + size(t%slave%node)])
          end associate
       end do
       call move_alloc(rows, table)
+   contains
+      pure real(wp) function shear(t, i)
+         type(contact_interface_t), intent(in) :: t
+         integer, intent(in) :: i
+
+         shear = 0.0_wp
+         if (t%rubs) shear = t%friction%traction(i)
+      end function shear
    end subroutine contact_nodes
 end module contact_rows

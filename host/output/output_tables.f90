@@ -29,7 +29,8 @@ module output_tables
    integer, parameter :: COLUMNS_OF_A_POINT = size(COLUMNS)   !< In histories.csv; the unknowns come first.
    character(*), parameter :: LEDGER_COLUMNS = 'time,dt,stage,iterations,'// &
       'error_u_r,error_u_z,error_p_w,error_p_c,first_u_r,first_u_z,first_p_w,first_p_c,reduction,correction,'// &
-      'rates,kinetic,skeleton,pores,gravity,loads,supports,seepage,damping,imbalance,outflow,outflow_air,step_error'
+      'rates,kinetic,skeleton,pores,gravity,loads,supports,seepage,damping,friction,imbalance,'// &
+      'outflow,outflow_air,step_error'
 
    type :: tables_t
       character(:), allocatable :: folder
@@ -204,8 +205,8 @@ contains
          write (tables%ledger%row, '(2(es24.16e3,","),i0,",",i0,",",*(es14.6e3,:,","))') time, report%dt, &
             report%stage, log%iterations, log%error, log%first_error, log%reduction, log%correction, &
             real(log%rate_evaluations, wp), ledger%kinetic, ledger%skeleton, ledger%pores, ledger%gravity, &
-            ledger%loads, ledger%supports, ledger%seepage, ledger%damping, imbalance(ledger), ledger%outflow, &
-            ledger%outflow_air, report%error
+            ledger%loads, ledger%supports, ledger%seepage, ledger%damping, ledger%friction, imbalance(ledger), &
+            ledger%outflow, ledger%outflow_air, report%error
       end associate
       call write_row(tables%ledger, fault)
    end subroutine write_ledger
@@ -296,7 +297,7 @@ contains
 
       if (.not. allocated(contacts%interfaces)) return
       call contact_nodes(model, contacts, state, values)
-      call new_csv(folder//'/contact_'//stage//'.csv', 'contact,r,z,weight,coverage,gap,pressure', table, &
+      call new_csv(folder//'/contact_'//stage//'.csv', 'contact,r,z,weight,coverage,gap,pressure,shear', table, &
                      fault)
       do i = 1, size(values, 2)
          if (fault%code /= 0) exit

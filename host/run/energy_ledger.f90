@@ -27,7 +27,8 @@ module energy_ledger
       real(wp) :: pores = 0.0_wp      !< Work of pore pressures against the change of volume [kJ].
       real(wp) :: gravity = 0.0_wp    !< Work of weight [kJ].
       real(wp) :: loads = 0.0_wp, supports = 0.0_wp      !< Work of loads and of prescribed displacements [kJ].
-      real(wp) :: contact = 0.0_wp    !< Work done on the penalty of contacts [kJ].
+      real(wp) :: contact = 0.0_wp    !< Work done on contacts: on their penalty, and by friction [kJ].
+      real(wp) :: friction = 0.0_wp   !< Of it, dissipated by sliding [kJ].
       real(wp) :: seepage = 0.0_wp    !< Dissipated by seepage [kJ].
       real(wp) :: damping = 0.0_wp    !< Dissipated by the damping of regions [kJ].
       real(wp) :: outflow = 0.0_wp, outflow_air = 0.0_wp !< Through prescribed pressures, less rain: both, air [m3].

@@ -3,10 +3,13 @@
 !> docs/theory/host.md section 4.4.
 module step_attempt
    use kinds, only: wp
-   use faults, only: fault_t
+   use exit_codes, only: EXIT_CONVERGENCE
+   use faults, only: fault_t, raise
    use boundary_conditions, only: constrain_step, follow_accelerations, starting_accelerations
    use boundary_loads, only: load_at, rain_at
    use contact_drainage, only: freeze_drainage
+   use contact_interfaces, only: begin_friction
+   use contact_types, only: contact_message
    use convergence, only: control_t, log_t
    use energy_ledger, only: kinetic_energy
    use generalised_alpha, only: scheme_t, make_scheme, DYNAMIC
@@ -134,9 +137,15 @@ contains
       real(wp), intent(in) :: time
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
+      character(400) :: text
 
       call freeze_drainage(model, run%drainage, run%system%contacts, run%state%x, fault)
       if (fault%code /= 0) return
+      if (.not. begin_friction(run%system%contacts, run%state%x)) then
+         call contact_message(run%system%contacts%status, text)
+         call raise(fault, EXIT_CONVERGENCE, 'Friction at the start of a step: '//trim(text)//'.')
+         return
+      end if
       call constrain_step(model, stage, model%dofs, run%drainage, time, run%at%x_start, run%state%x, &
                           run%constraint)
    end subroutine prescribe

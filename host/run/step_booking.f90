@@ -4,7 +4,7 @@
 module step_booking
    use kinds, only: wp
    use wall_clock, only: clock, lap
-   use contact_interfaces, only: mean_contact_forces
+   use contact_interfaces, only: mean_contact_forces, accept_friction
    use effect_monitor, only: monitor_step, warning_of
    use exit_codes, only: EXIT_EFFECT
    use faults, only: fault_t, raise
@@ -24,7 +24,7 @@ contains
       type(scheme_t), intent(in) :: scheme
       type(run_t), intent(inout) :: run
       real(wp), allocatable :: contact_force(:)
-      real(wp) :: t0
+      real(wp) :: t0, dissipated
 
       ! the velocities of a stage without inertia are no motion: each stage begins its own account
       if (run%at%step == 1 .and. run%steps > 1) run%ledger%open_0 = imbalance(run%ledger)
@@ -36,6 +36,8 @@ contains
       end if
       call book_step(model%domain, model%dofs, scheme, run%constraint, run%system%reaction, contact_force, run%state, &
                      run%next, run%damping_stress, run%ledger)
+      call accept_friction(run%system%contacts, run%next%x, dissipated)
+      run%ledger%friction = run%ledger%friction + dissipated
       call book_creation(scheme, model%stages(run%at%stage)%tolerance, model%dofs, run%assembly%scale, &
                          run%next%x - run%state%x, run%ledger)
       if (scheme%kind == DYNAMIC) call count_creation(model%stages(run%at%stage)%created_energy, run%ledger)

@@ -57,7 +57,7 @@ wet = dict(times="0, 1000", laws=WATER.format(k="1e-10") + "\n" + CURVE, region=
 slow = dict(stage="analysis = 'dynamic' duration = 1 dt = 0.05", times="0, 1")
 
 # Every effect is one key, and its word in `without` is that key: the same bytes, and another answer than with it.
-TOUCH = "&contact name = 'c' slave = 'top' master = 'plate' drainage = 'state' penalty = 1e6 /"
+TOUCH = "&contact name = 'c' slave = 'top' master = 'plate' drainage = 'state' penalty = 1e6 friction = 0.4 /"
 WHOLE = """&scene name = 'whole' fields = 'u-p_w-p_c' gravity = 9.81 seepage_inertia = 'yes' /
 &mesh r = 0, 0.2 r_cells = 2 z = -0.2, 0 z_cells = 2 /
 &mud name = 'sand' file = '{materials}/toyoura.nml' hysteresis = 1 fabric = 1 bonding = 1 isotropic = 1 lode = 1
@@ -89,6 +89,7 @@ KEYS = {
     "damping": (("damping = 5", "damping = 0"),),
     "absorbing": (("&absorbing group = 'right' /", ""),),
     "contact_drainage": (("'state'", "'fixed'"),),
+    "friction": (("friction = 0.4", "friction = 0"),),
     "void_ratio_in_retention": (("lode = 1", f"lode = 1 Omega = 0 P_a = {5.0 * 0.7**-2.0:.16e}"),),
     "hysteresis": (("hysteresis = 1", "hysteresis = 0"),),
     "bonding": (("bonding = 1", "bonding = 0"),),

@@ -7,7 +7,7 @@ import subprocess
 
 import numpy as np
 
-from checking import build, check, work
+from checking import build, check, root, work
 import tables  # noqa: E402 (checking knows its folder)
 
 host = build / "host/mud_host"
@@ -182,6 +182,23 @@ def test_the_storm_wets_and_dries():
         done, _ = start(storm, "storm", "--restart", folder / "checkpoint.h5")
         check("storm: taken up", done.returncode == 0, done.stderr)
         check("storm: the same bytes", all((folder / name).read_bytes() == content for name, content in kept.items()))
+
+
+def test_friction_is_taken_up_while_a_block_is_stopped():
+    incline = (root / "verification/host/friction/incline.nml").read_text() \
+        .replace("'incline.msh'", f"'{root}/verification/host/friction/incline.msh'") \
+        .replace("gravity = 10", "gravity = 10 checkpoint_steps = 28").replace("duration = 0.1 ", "duration = 0.01 ") \
+        .replace("duration = 0.2 ", "duration = 0.01 ")
+    folder = run(incline, "incline")
+    check("it slides at the end", last(folder, "contact.csv")["b.sliding"] == 9)
+    if (folder / "checkpoint.h5").exists():   # there is HDF5
+        kept = {path.name: path.read_bytes() for path in folder.glob("*.csv")}
+        done, _ = start(incline, "incline", "--restart", folder / "checkpoint.h5")
+        check("incline: taken up", done.returncode == 0, done.stderr)
+        check("incline: the same bytes", all((folder / name).read_bytes() == content for name, content in kept.items()))
+    for key in ("friction = -1", "cohesion = -1", "tangential_penalty = -1"):
+        done, _ = start(incline.replace("friction = 0.2", key), "refused")
+        check(f"{key}: refused", done.returncode == 2 and key.split()[0] in done.stderr, done.stderr)
 
 
 def test_refused():

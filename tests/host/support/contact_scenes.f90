@@ -3,6 +3,7 @@
 module contact_scenes
    use, intrinsic :: iso_fortran_env, only: int64
    use contact_geometry, only: contact_geometry_t, contact_prepare
+   use contact_friction, only: friction_t
    use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate
    use contact_types, only: TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, contact_options_t, contact_status_t
    use kinds, only: wp
@@ -32,6 +33,8 @@ module contact_scenes
       type(contact_geometry_t) :: geometry
       type(contact_workspace_t) :: work
       type(contact_result_t) :: result
+      type(friction_t), allocatable :: friction           !< Where it has friction.
+      real(wp), allocatable :: slave_0(:, :), master_0(:, :)   !< Coordinates at the start of its step.
    end type kernel_t
 
    !> Two surfaces with a contact between them.
@@ -105,7 +108,13 @@ contains
       logical, intent(in) :: with_tangent
       type(contact_status_t), intent(out) :: status
 
-      call contact_evaluate(contact%geometry, slave_x, master_x, with_tangent, contact%work, contact%result, status)
+      if (allocated(contact%friction)) then
+         contact%friction%slave_dx = slave_x - contact%slave_0
+         contact%friction%master_dx = master_x - contact%master_0
+      end if
+      ! An argument that is not allocated is absent.
+      call contact_evaluate(contact%geometry, slave_x, master_x, with_tangent, contact%work, contact%result, status, &
+                            contact%friction)
    end subroutine evaluate_at
 
    !> Evaluates at the scene's own coordinates, or at those given.

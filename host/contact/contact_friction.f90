@@ -1,0 +1,142 @@
+! SPDX-License-Identifier: MIT
+!> Coulomb friction of a pair of edges: the slip of the slave nodes since the start of a step, with derivatives, the
+!> forces that tangential tractions exert, and the law of a node: stick on a penalty, slip at the limit.
+!> docs/theory/contact.md section 9.
+module contact_friction
+   use contact_mortar, only: overlap_t, point_t, integration_point, hats, hat_slopes, POINTS, POSITION, SHARE
+   use contact_response, only: response_t, add_work
+   use contact_types, only: contact_options_t
+   use kinds, only: wp
+   implicit none (type, external)
+   private
+   public :: friction_t, traction_t, has_friction, pair_slips, drag_response, traction_at
+   public :: tangential_stiffness, touching_share
+
+   !> What a step starts from.
+   type :: friction_t
+      real(wp), allocatable :: slave_dx(:, :), master_dx(:, :)   !< (2, nodes) Way since the start of the step [m].
+      real(wp), allocatable :: traction(:)   !< (slave nodes) At the start, along the slave's tangent [kPa].
+      real(wp), allocatable :: gap(:)        !< (slave nodes) At the start, open > 0 [m].
+   end type friction_t
+
+   !> Traction of a node and its slopes.
+   type :: traction_t
+      real(wp) :: value = 0.0_wp     !< [kPa]
+      real(wp) :: by_slip = 0.0_wp   !< d value/d slip [kN/m3]
+      real(wp) :: by_gap = 0.0_wp    !< d value/d gap [kN/m3]
+      logical :: slides = .false.
+   end type traction_t
+contains
+   !> Whether a contact has friction.
+   pure logical function has_friction(options)
+      type(contact_options_t), intent(in) :: options
+
+      has_friction = options%friction > 0.0_wp .or. options%cohesion > 0.0_wp
+   end function has_friction
+
+   !> eps_T, by default the penalty of the pressure [kN/m3].
+   pure real(wp) function tangential_stiffness(options) result(stiffness)
+      type(contact_options_t), intent(in) :: options
+
+      stiffness = options%tangential_penalty
+      if (.not. stiffness > 0.0_wp) stiffness = options%penalty
+   end function tangential_stiffness
+
+   !> Share of a step that a node touches: all of it, or from where a gap closes that was open. [-]
+   pure real(wp) function touching_share(gap_before, gap) result(share)
+      real(wp), intent(in) :: gap_before, gap   !< Mean gaps, open > 0; the second is closed [m].
+
+      share = 1.0_wp
+      if (gap_before > 0.0_wp) share = -gap/(gap_before - gap)
+   end function touching_share
+
+   !> Return mapping at a node: t = t_n + e_T slip, at most mu p + c in magnitude. A node that was open at the start of
+   !> the step slips from where it touches. docs/theory/contact.md section 9.
+   pure function traction_at(options, before, gap_before, gap, slip) result(t)
+      type(contact_options_t), intent(in) :: options
+      real(wp), intent(in) :: before            !< Traction at the start of the step [kPa].
+      real(wp), intent(in) :: gap_before, gap   !< Mean gaps, open > 0 [m].
+      real(wp), intent(in) :: slip              !< Since the start of the step [m].
+      type(traction_t) :: t
+      real(wp) :: limit, share, share_slope, stiffness
+
+      if (gap >= 0.0_wp) return
+      share = touching_share(gap_before, gap)
+      share_slope = 0.0_wp
+      if (gap_before > 0.0_wp) share_slope = -gap_before/(gap_before - gap)**2
+      stiffness = tangential_stiffness(options)
+      limit = options%cohesion - options%friction*options%penalty*gap
+      t%value = stiffness*share*slip
+      if (.not. gap_before > 0.0_wp) t%value = t%value + before
+      t%by_slip = stiffness*share
+      t%by_gap = stiffness*share_slope*slip
+      t%slides = abs(t%value) > limit
+      if (.not. t%slides) return
+      t%by_slip = 0.0_wp
+      t%by_gap = -sign(options%friction*options%penalty, t%value)
+      t%value = sign(limit, t%value)
+   end function traction_at
+
+   !> What a pair adds to weight times slip of the three slave nodes, its derivatives, and drag(:, A) = int M_A (t N_s,
+   !> -t N_m) 2 pi r ds, the nodal forces of a unit traction at node A; weight times slip is drag times the way of the
+   !> nodes. The pair must be one whose normals hit, see pair_gaps. docs/theory/contact.md section 9.
+   pure subroutine pair_slips(x, dx, overlap, axisymmetric, weighted_slip, d_weighted_slip, drag)
+      real(wp), intent(in) :: x(2, 6), dx(2, 6)   !< Local coordinates and way since the start of the step [m].
+      type(overlap_t), intent(in) :: overlap
+      logical, intent(in) :: axisymmetric
+      real(wp), intent(out) :: weighted_slip(3), d_weighted_slip(12, 3), drag(12, 3)
+      type(point_t) :: p
+      real(wp) :: m(3), dm(3), of_point(12), d_way(12), way(2), bend(2, 2), along, missed
+      integer :: segment, k, a, i
+
+      weighted_slip = 0.0_wp
+      d_weighted_slip = 0.0_wp
+      drag = 0.0_wp
+      do segment = 1, overlap%segments
+         do k = 1, POINTS
+            call integration_point(x, overlap, segment, POSITION(k), SHARE(k), axisymmetric, p, missed)
+            if (missed > 0.0_wp) return
+            m = hats(p%s)
+            dm = hat_slopes(p%s)
+            way = matmul(dx(:, 1:3), p%ns) - matmul(dx(:, 4:6), p%nm)
+            bend(:, 1) = matmul(dx(:, 1:3), p%dns)
+            bend(:, 2) = -matmul(dx(:, 4:6), p%dnm)
+            along = dot_product(p%t, way)
+            d_way = matmul(way, p%d_t) + dot_product(p%t, bend(:, 1))*p%d_s + dot_product(p%t, bend(:, 2))*p%d_m
+            do i = 1, 3
+               of_point(2*i - 1:2*i) = p%ns(i)*p%t
+               of_point(2*i + 5:2*i + 6) = -p%nm(i)*p%t
+            end do
+            do a = 1, 3
+               if (m(a) <= 0.0_wp) cycle
+               weighted_slip(a) = weighted_slip(a) + p%area*m(a)*along
+               drag(:, a) = drag(:, a) + p%area*m(a)*of_point
+               d_weighted_slip(:, a) = d_weighted_slip(:, a) + p%area*m(a)*(of_point + d_way) &
+                                       + (m(a)*p%d_area + p%area*dm(a)*p%d_s)*along
+            end do
+         end do
+      end do
+   end subroutine pair_slips
+
+   !> Forces of a pair and, if wanted, their stiffness, the tractions of its slave nodes held.
+   !> docs/theory/contact.md section 9.
+   pure subroutine drag_response(x, overlap, axisymmetric, traction, with_stiffness, response)
+      real(wp), intent(in) :: x(2, 6)   !< Local coordinates [m].
+      type(overlap_t), intent(in) :: overlap
+      logical, intent(in) :: axisymmetric, with_stiffness
+      real(wp), intent(in) :: traction(3)   !< [kPa]
+      type(response_t), intent(out) :: response
+      type(point_t) :: p
+      real(wp) :: missed
+      integer :: segment, k
+
+      do segment = 1, overlap%segments
+         do k = 1, POINTS
+            call integration_point(x, overlap, segment, POSITION(k), SHARE(k), axisymmetric, p, missed)
+            if (missed > 0.0_wp) return
+            call add_work(p, p%t, p%d_t, dot_product(hats(p%s), traction), &
+                          dot_product(hat_slopes(p%s), traction)*p%d_s, with_stiffness, response)
+         end do
+      end do
+   end subroutine drag_response
+end module contact_friction
