@@ -188,7 +188,7 @@ def test_friction_is_taken_up_while_a_block_is_stopped():
     incline = (root / "verification/host/friction/incline.nml").read_text() \
         .replace("'incline.msh'", f"'{root}/verification/host/friction/incline.msh'") \
         .replace("gravity = 10", "gravity = 10 checkpoint_steps = 28").replace("duration = 0.1 ", "duration = 0.01 ") \
-        .replace("duration = 0.2 ", "duration = 0.01 ")
+        .replace("duration = 0.2 ", "duration = 0.006 ")
     folder = run(incline, "incline")
     check("it slides at the end", last(folder, "contact.csv")["b.sliding"] == 9)
     if (folder / "checkpoint.h5").exists():   # there is HDF5
