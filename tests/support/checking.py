@@ -58,6 +58,12 @@ def needs_plain_library():
         pytest.skip(NO_LIBRARY, allow_module_level=True)
 
 
+def needs_nightly(reason):
+    """Skips a module that ./check --tier nightly runs, in the release."""
+    if light or not nightly:
+        pytest.skip(reason, allow_module_level=True)
+
+
 def needs_release(reason):
     """Skips a module whose checks do not depend on how the library is compiled."""
     if light:
