@@ -13,6 +13,7 @@ module scene_accuracy
 
    real(wp), parameter :: DEFAULT_ACCURACY = 1.0e-2_wp   !< Of stages without dt in scenes that ask for none.
    real(wp), parameter :: NEWTON_SHARE = 0.1_wp          !< Newton's tolerance as a share of the accuracy.
+   real(wp), parameter :: NEWTON_LARGEST = 1.0e-4_wp     !< Its bound: the residuals of all steps add up.
    real(wp), parameter :: STRESS_SHARE = 0.1_wp          !< Tolerance of MUD's stress integration, likewise.
    real(wp), parameter :: STRESS_LEAST = 1.0e-10_wp, STRESS_LARGEST = 1.0e-3_wp   !< Its bounds.
    real(wp), parameter :: TIGHT = 1.0e-3_wp              !< Below it the scheme of order 3 costs less.
@@ -44,7 +45,7 @@ contains
       if (.not. (given(group, 'dt') .or. stage%controlled)) call raise(fault, EXIT_INPUT, at_line(group%file, &
          group%line)//'&stage with steps = ''given'' needs dt [s].')
       if (stage%controlled .and. .not. given(group, 'tolerance')) &
-         stage%tolerance = min(stage%tolerance, NEWTON_SHARE*stage%accuracy)
+         stage%tolerance = min(NEWTON_LARGEST, NEWTON_SHARE*stage%accuracy)
    end subroutine ask_steps
 
    !> Shortens the given steps of stages to a share of their length; growing ones grow as much in the same time.

@@ -16,7 +16,7 @@ module convergence
    implicit none (type, external)
    private
    public :: control_t, log_t, measure, good_enough, field_scales, body_scale, is_body, rounding_in
-   public :: look_for_stagnation
+   public :: look_for_stagnation, residual_norms
    public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_STAGE, measure_in, linear_tolerance
 
    integer, parameter :: BY_FORCES = 1       !< The errors of the fields, see above.
@@ -181,6 +181,22 @@ contains
       body_scale = max(body_scale, max(HISTORY_SHARE, assembly%rounding_share)*largest(AT_U_Z), ABSOLUTE_FLOOR)
    end function body_scale
 
+   !> Norms of a residual over the unknowns that are free, displacements together. [kN, m3/s]
+   pure function residual_norms(dofs, constraint, rhs) result(norms)
+      type(dofs_t), intent(in) :: dofs
+      type(constraint_t), intent(in) :: constraint
+      real(wp), intent(in) :: rhs(:)   !< (unknowns)
+      real(wp) :: norms(FIELDS)
+      integer :: i
+
+      norms = 0.0_wp
+      do i = 1, dofs%n
+         if (counts(dofs, constraint, i)) norms(dofs%field(i)) = norms(dofs%field(i)) + rhs(i)**2
+      end do
+      norms(:DISPLACEMENTS) = sum(norms(:DISPLACEMENTS))
+      norms = sqrt(norms)
+   end function residual_norms
+
    pure logical function counts(dofs, constraint, i)
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint
@@ -200,18 +216,13 @@ contains
       real(wp), intent(in) :: rounding(FIELDS)   !< Scales of which the tolerance asks for no more than rounding.
       real(wp), intent(inout) :: largest(FIELDS)
       type(log_t), intent(inout) :: log
-      real(wp) :: r(FIELDS), s(FIELDS), floor(FIELDS), worst
+      real(wp) :: s(FIELDS), floor(FIELDS), worst
       integer :: i
 
-      r = 0.0_wp
-      do i = 1, dofs%n
-         if (counts(dofs, constraint, i)) r(dofs%field(i)) = r(dofs%field(i)) + rhs(i)**2
-      end do
-      r(:DISPLACEMENTS) = sum(r(:DISPLACEMENTS))
       ! Always the forces themselves: their rounding is the floor of what changes.
       call add_scales(dofs, constraint, assembly, .false., s, floor)
       largest = max(largest, sqrt(s))
-      log%error = sqrt(r)/max(field_scales(dofs, constraint, assembly, largest), rounding)
+      log%error = residual_norms(dofs, constraint, rhs)/max(field_scales(dofs, constraint, assembly, largest), rounding)
       do i = 1, dofs%n
          if (is_body(constraint, i)) &
             log%error(AT_U_Z) = max(log%error(AT_U_Z), abs(rhs(i))/body_scale(assembly, largest, i))

@@ -36,6 +36,7 @@ module linear_system
       real(wp) :: largest(FIELDS) = 0.0_wp    !< Largest scale of every field so far.
       real(wp) :: rounding(FIELDS) = 0.0_wp   !< Least scale of the present step, see convergence.
       real(wp), allocatable :: reaction(:)    !< Residual with the constrained rows kept.
+      real(wp), allocatable :: left(:)        !< (unknowns) What Newton's method left of the last step [m, kPa].
       real(wp) :: seconds(TIMERS) = 0.0_wp    !< Wall time, by T_...
       integer :: n_pass = 0
    end type system_t

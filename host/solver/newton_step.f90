@@ -7,6 +7,7 @@ module newton_step
    use conjugate_residuals, only: solve_by_factors, INACCURATE
    use contact_interfaces, only: add_contacts, contact_forces
    use convergence, only: control_t, log_t, measure, good_enough, look_for_stagnation, linear_tolerance, rounding_in, &
+                          residual_norms, &
                           BY_FORCES, BY_CHANGE
    use dashpots, only: add_dashpots
    use degrees_of_freedom, only: dofs_t
@@ -51,6 +52,7 @@ contains
       real(wp), allocatable :: rhs(:), dx(:)
       real(wp), allocatable :: touched(:)   !< Forces of contacts before, where steps are measured by what they change.
       real(wp) :: norm, norm_0, t0
+      real(wp) :: before(FIELDS)            !< Norms of the residual that the last correction answered.
       integer :: status
       logical :: with_tangent, guessed, turned
 
@@ -112,6 +114,7 @@ contains
          call constrain(dofs, pattern, constraint, new%x, assembly%values, rhs)
          ! A prescribed motion that strains nothing leaves the rounding of the forces that it asked for, and no other.
          if (log%iterations == 0) system%rounding = rounding_in(scheme%kind)/control%tolerance*asked_for(dofs, rhs)
+         before = residual_norms(dofs, constraint, rhs)
          ! Other measures may ask for more than a linear solution that is exact to a share of the forces.
          if (all(control%measure /= [BY_FORCES, BY_CHANGE])) system%factored = .false.
          call solve_step(dofs, pattern, constraint, assembly, linear_tolerance(control), rhs, system, dx, status)
@@ -130,10 +133,19 @@ contains
          call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
          with_tangent = system%reassemble_tangent .and. .not. control%carries_slopes
       end do
+      call keep_what_is_left()
       system%reassemble_tangent = log%iterations > 1
       assembly%slopes%known = control%carries_slopes
       call lap(system%seconds(T_REST), t0)
    contains
+      !> What a further iteration would correct: the last correction, as much smaller as its residual has become.
+      subroutine keep_what_is_left()
+         real(wp) :: share(FIELDS)
+
+         share = min(1.0_wp, residual_norms(dofs, constraint, rhs)/max(before, tiny(1.0_wp)))
+         system%left = dx*share(dofs%field)
+      end subroutine keep_what_is_left
+
       !> Residual, with minus sign in rhs, and slopes; false if the material refuses.
       logical function pass(slopes)
          logical, intent(in) :: slopes
