@@ -59,11 +59,7 @@ contains
       mesh = [0.5_wp, 1.0_wp, 2.0_wp]
       if (cells_allow(base%mesh)) mesh = 0.5_wp*mesh
       if (base%mesh%mesh_file /= '') mesh = 2*mesh
-      call pilot(1, 1.0_wp, 1.0_wp, coarse)
-      call pilot(2, 1.0_wp, 1.0_wp, middle)
-      if (fault%code == 0 .and. .not. refinement(scenes(1)%mesh, scenes(2)%mesh) > 1.0_wp) call raise(fault, &
-         EXIT_INPUT, file//': --price compares meshes, and no piece between two breaks of &mesh has more than one '// &
-         'cell; give it more cells.')
+      call first_pair()
       call pilot(2, QUARTER, 1.0_wp, shorter)
       call pilot(2, 1.0_wp, TIGHT_NEWTON, tighter)
       if (fault%code /= 0) return
@@ -95,6 +91,20 @@ contains
          end do
       end do
    contains
+      !> The two coarsest meshes that differ and on which the scene runs, none coarser than that of the scene.
+      subroutine first_pair()
+         do
+            call pilot(1, 1.0_wp, 1.0_wp, coarse)
+            call pilot(2, 1.0_wp, 1.0_wp, middle)
+            if (fault%code == 0 .and. .not. refinement(scenes(1)%mesh, scenes(2)%mesh) > 1.0_wp) call raise(fault, &
+               EXIT_INPUT, file//': two meshes of --price have the same cells.')
+            if (fault%code == 0 .or. mesh(1) >= 1.0_wp) exit
+            if (.not. quiet) write (output_unit, '(a)') '   '//trim(fault%text)//' Finer meshes are taken.'
+            fault = fault_t()
+            mesh = 2*mesh
+         end do
+      end subroutine first_pair
+
       !> What a run would cost, by the finest that was made.
       type(quote_t) function quote_of(wanted, fineness)
          real(wp), intent(in) :: wanted, fineness   !< Of the mesh; of the steps.
