@@ -12,7 +12,7 @@ module answer_errors
    use error_norms, only: PATH
    use generalised_alpha, only: DYNAMIC
    use model_types, only: model_t
-   use scene_types, only: acts_in
+   use named_answers, only: is_prescribed
    use texts, only: short, whole
    use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
    implicit none (type, external)
@@ -50,27 +50,6 @@ contains
       estimate = change > NO_CHANGE*scale .and. change > 0.0_wp
       if (estimate) error = control%point_largest(field, point)/change
    end function estimate
-
-   !> Whether every stage prescribes an unknown throughout: then it is no answer.
-   pure logical function is_prescribed(model, node, field) result(prescribed)
-      type(model_t), intent(in) :: model
-      integer, intent(in) :: node, field
-      logical :: held
-      integer :: i, k
-
-      prescribed = .true.
-      do i = 1, size(model%stages)
-         held = .false.
-         do k = 1, size(model%fixes)
-            associate (fix => model%fixes(k))
-               if (fix%field /= field .or. fix%limits .or. .not. acts_in(fix%stages, model%stages(i)%name)) cycle
-               if (fix%from > -huge(1.0_wp) .or. fix%until < huge(1.0_wp)) cycle
-               held = held .or. any(model%domain%mesh%groups(fix%group)%nodes == node)
-            end associate
-         end do
-         prescribed = prescribed .and. held
-      end do
-   end function is_prescribed
 
    !> Largest estimate of an unknown that is judged, as a share of its change: of the named points, or where none is
    !> named of all nodes together.
@@ -162,6 +141,28 @@ contains
       end subroutine compare
    end subroutine judge_answers
 
+   !> The worst errors of the named points, by their sources.
+   function parts_of(model, control) result(text)
+      type(model_t), intent(in) :: model
+      type(control_state_t), intent(in) :: control
+      character(:), allocatable :: text
+      real(wp) :: change, error, steps, newton
+      integer :: i, f
+
+      steps = 0.0_wp
+      newton = 0.0_wp
+      do f = 1, FIELDS
+         do i = 1, size(model%points)
+            if (.not. estimate(model, control, i, f, change, error)) cycle
+            if (.not. is_answer(model, control, f, change)) cycle
+            steps = max(steps, error)
+            newton = max(newton, control%newton(f, i)/change)
+         end do
+      end do
+      text = 'steps'
+      if (size(model%points) > 0) text = 'steps '//short(100*steps)//' %, Newton''s method '//short(100*newton)//' %'
+   end function parts_of
+
    !> What kept most steps short, in words.
    function what_limited(control) result(text)
       type(control_state_t), intent(in) :: control
@@ -190,7 +191,8 @@ contains
       text = text//short(asked*asked/found)//'; --verify measures the error.'
    end function remedy
 
-   !> answers.csv: largest change [m, kPa] and estimated error [-] of every answer: docs/theory/host.md section 4.5.
+   !> answers.csv: largest change [m, kPa], estimated error of the steps and of Newton's method [-] of every answer, the
+   !> latter empty for forces: docs/theory/host.md section 4.5.
    !> Fault EXIT_OUTPUT: it cannot be written.
    subroutine write_answers(folder, model, control, forces, fault)
       character(*), intent(in) :: folder
@@ -202,19 +204,19 @@ contains
       real(wp) :: change, error
       integer :: i, f
 
-      call new_csv(folder//'/answers.csv', 'answer,largest_change,estimated_error', table, fault)
+      call new_csv(folder//'/answers.csv', 'answer,largest_change,estimated_error,newton_error', table, fault)
       do i = 1, size(model%points)
          do f = 1, FIELDS
             if (fault%code /= 0) exit
             if (.not. estimate(model, control, i, f, change, error)) cycle
-            write (table%row, '(a,2(",",es14.6e3))') trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f)), change, &
-               error
+            write (table%row, '(a,3(",",es14.6e3))') trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f)), change, &
+               error, control%newton(f, i)/change
             call write_row(table, fault)
          end do
       end do
       do i = 1, size(forces)
          if (fault%code /= 0) exit
-         write (table%row, '(a,2(",",es14.6e3))') trim(forces(i)%name), forces(i)%change, forces(i)%error
+         write (table%row, '(a,2(",",es14.6e3),",")') trim(forces(i)%name), forces(i)%change, forces(i)%error
          call write_row(table, fault)
       end do
       call close_csv(table, fault)
@@ -231,13 +233,13 @@ contains
       integer :: i, f
 
       if (verified) write (unit, '(a)') 'Verified: errors are differences to the run at a quarter of the accuracy.'
-      write (unit, '(a)') 'Answers: largest change, and estimated error of the history as a share of it (steps in '// &
-         'time alone; the mesh is not in it):'
+      write (unit, '(a)') 'Answers: largest change, and estimated error of the history as a share of it, by steps '// &
+         'in time and by Newton''s method:'
       do i = 1, size(model%points)
          do f = 1, FIELDS
             if (estimate(model, control, i, f, change, error)) write (unit, '(a)') '   '//trim(model%points(i)%name)// &
                '.'//trim(FIELD_NAMES(f))//': '//short(change)//trim(merge(' m  ', ' kPa', f <= DISPLACEMENTS))// &
-               ', '//short(100*error)//' %'
+               ', '//short(100*error)//' %, '//short(100*control%newton(f, i)/change)//' %'
          end do
       end do
       do i = 1, size(forces)
@@ -256,7 +258,7 @@ contains
          write (unit, '(a)') '   Not estimated: '//short(100*min(share, 1.0_wp))//' % of '//trim(OF_ALL(f))// &
             ' came in single steps'//trim(UNSEEN(f))
       end do
-      if (.not. any(model%stages%controlled)) return
-      write (unit, '(a)') '   '//what_limited(control)
+      if (any(model%stages%controlled)) write (unit, '(a)') '   '//what_limited(control)
+      write (unit, '(a)') 'In these errors: '//parts_of(model, control)//'; mesh not estimated: --price.'
    end subroutine print_answers
 end module answer_errors

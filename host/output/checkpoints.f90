@@ -25,7 +25,7 @@ module checkpoints
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
    character(*), parameter :: KIND_OF_FILE = 'checkpoint of mud_host'
-   character(*), parameter :: FORMAT = '10'     !< Grows with every change of what is stored.
+   character(*), parameter :: FORMAT = '11'     !< Grows with every change of what is stored.
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
    integer, parameter :: N_COUNTERS = 14
    character(*), parameter :: DAMAGED = ' is damaged: an entry is missing, has another extent or a wrong '// &

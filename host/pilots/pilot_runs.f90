@@ -11,6 +11,7 @@ module pilot_runs
    use linear_system, only: T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST
    use model_builder, only: build_model
    use model_types, only: model_t
+   use named_answers, only: is_prescribed
    use moving_supports, only: find_moving, forces_of_moving
    use porous_domain, only: state_t, copy_state
    use run_observer, only: run_observer_t, step_report_t
@@ -45,6 +46,7 @@ module pilot_runs
       real(wp) :: work = 0.0_wp                       !< By the passes over its elements [s].
       real(wp) :: stress = 0.0_wp                     !< Largest change of an effective stress [kPa].
       logical :: has(FIELDS) = .false.
+      logical, allocatable :: prescribed(:, :)        !< (FIELDS, points) Throughout: no answers.
       character(72), allocatable :: names(:)          !< Of the points.
       real(wp), allocatable :: time(:), x(:, :, :)    !< [s], (FIELDS, points, times) [m, kPa]
       character(72), allocatable :: supports(:)       !< Those that move, with the direction.
@@ -118,7 +120,7 @@ contains
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
-      integer :: i, n
+      integer :: i, k, n
 
       if (fault%code /= 0) return
       n = size(model%domain%mesh%x, 2)
@@ -143,6 +145,10 @@ contains
       allocate (self%seen%ends(size(model%stages)))
       do i = 1, size(model%stages)
          allocate (self%seen%ends(i)%times(0))
+      end do
+      allocate (self%seen%prescribed(FIELDS, size(self%nodes)))
+      do i = 1, size(self%nodes)
+         self%seen%prescribed(:, i) = [(is_prescribed(model, self%nodes(i), k), k=1, FIELDS)]
       end do
       call find_moving(model, self%moving, self%seen%supports)
       n = size(self%moving)

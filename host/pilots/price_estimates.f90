@@ -64,7 +64,7 @@ contains
          do f = 1, FIELDS
             largest = maxval(range(DISPLACEMENTS + 1:, :))
             if (f <= DISPLACEMENTS) largest = maxval(range(:DISPLACEMENTS, :))
-            if (range(f, i) <= NO_ANSWER*largest) cycle
+            if (pilot%prescribed(f, i) .or. range(f, i) <= NO_ANSWER*largest) cycle
             answers = [answers, answer_t(trim(pilot%names(i))//'.'//trim(FIELD_NAMES(f)), i, f, 0, range(f, i))]
          end do
       end do

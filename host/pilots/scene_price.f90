@@ -111,7 +111,7 @@ contains
          type(scene_t) :: other
 
          call read_changed(file, asked, 1.0_wp, wanted, effects, other, fault)
-         quote_of = quote(goals(price%answers), middle, wanted, middle%elements*elements_at(wanted, base%mesh)/ &
+         quote_of = quote(price%answers, middle, wanted, middle%elements*elements_at(wanted, base%mesh)/ &
                           elements_at(mesh(finest), base%mesh), refinement(scenes(finest)%mesh, other%mesh), fineness, &
                           of_steps, of_meshes)
       end function quote_of
@@ -152,13 +152,4 @@ contains
 
       exponent_of = max(0.0_wp, min(most, log(real(dear%iterations, wp)/max(1, cheap%iterations))/log(times)))
    end function exponent_of
-
-   !> The answers that are to reach an accuracy: displacements and pressures; forces where there are none.
-   pure function goals(answers) result(some)
-      type(answer_t), intent(in) :: answers(:)
-      type(answer_t), allocatable :: some(:)
-
-      some = pack(answers, answers%force == 0)
-      if (size(some) == 0) some = answers
-   end function goals
 end module scene_price

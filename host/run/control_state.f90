@@ -41,6 +41,7 @@ module control_state
       logical :: located = .false.               !< The attempt before was repeated to end where a contact closes.
       ! Of the fields at the named points, (FIELDS, points).
       real(wp), allocatable :: low(:, :), high(:, :), point_gathered(:, :), point_largest(:, :)
+      real(wp), allocatable :: newton(:, :)      !< What Newton's method has left at them [m, kPa].
       real(wp), allocatable :: x_first(:, :)     !< Unknowns at the start of the stage.
    end type control_state_t
 contains
@@ -56,6 +57,7 @@ contains
       allocate (state%low(FIELDS, named), source=huge(1.0_wp))
       allocate (state%high(FIELDS, named), source=-huge(1.0_wp))
       allocate (state%point_gathered(FIELDS, named), state%point_largest(FIELDS, named), source=0.0_wp)
+      allocate (state%newton(FIELDS, named), source=0.0_wp)
    end function new_control_state
 
    !> Length of the list of a checkpoint.
@@ -63,7 +65,7 @@ contains
       type(control_state_t), intent(in) :: state   !< After new_control_state.
 
       n = SCALARS + 4*FIELDS + LIMITS + size(state%x_first) + size(state%memory%rate) &
-          + size(state%memory%s_rate) + 4*size(state%low) + size(state%touching) + FORCE_NUMBERS*size(state%thrust)
+          + size(state%memory%s_rate) + 5*size(state%low) + size(state%touching) + FORCE_NUMBERS*size(state%thrust)
    end function count_of_numbers
 
    !> Everything as one list, for a checkpoint. Each number in its own unit, in the order that take_numbers reads.
@@ -77,7 +79,7 @@ contains
                  state%start_up, real(state%rejected, wp), merge(1.0_wp, 0.0_wp, m%known), m%dt, &
                  m%span, state%dissipated_0, state%motion, state%unseen, state%scale, state%gathered, &
                  state%largest, state%limits, state%touching, state%x_first, m%rate, m%s_rate, state%low, &
-                 state%high, state%point_gathered, state%point_largest, &
+                 state%high, state%point_gathered, state%point_largest, state%newton, &
                  (numbers_of_force(state%thrust(i)), i=1, size(state%thrust))]
       end associate
    end function numbers_of
@@ -115,6 +117,7 @@ contains
          call take(state%high)
          call take(state%point_gathered)
          call take(state%point_largest)
+         call take(state%newton)
          do i = 1, size(state%thrust)
             call take_force(list(at + 1:at + FORCE_NUMBERS), state%thrust(i))
             at = at + FORCE_NUMBERS

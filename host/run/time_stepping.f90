@@ -9,6 +9,7 @@ module time_stepping
    use generalised_alpha, only: scheme_t, make_scheme, step_error
    use model_types, only: model_t
    use porous_domain, only: copy_state, take_over
+   use newton_errors, only: gather_newton
    use run_observer, only: run_observer_t, step_report_t
    use run_state, only: run_t
    use sparse_factors, only: release
@@ -132,6 +133,7 @@ contains
                                 at%t_start + stage%duration - run%next%time <= LAST_STEP*dt, log)
          if (allocated(run%monitor%table)) call watch_effects(model, report, run, fault, observer)
          call keep_step(model, stage, dt, run)
+         call gather_newton(model, stage%kind, run%system%left, run%control)
          call take_over(run%next, run%state)
          if (.not. stage%controlled) at%nominal = min(at%nominal*stage%dt_growth, max(stage%dt_max, stage%dt))
          at%good = at%good + 1
