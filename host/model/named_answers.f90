@@ -9,7 +9,6 @@ module named_answers
    public :: is_prescribed
 contains
    !> Whether every stage prescribes an unknown throughout: then it is no answer.
-   !> Whether every stage prescribes an unknown throughout: then it is no answer.
    pure logical function is_prescribed(model, node, field) result(prescribed)
       type(model_t), intent(in) :: model
       integer, intent(in) :: node, field
