@@ -133,12 +133,11 @@ contains
    end subroutine start
 
    !> One point along a path, timed from its first update to its last.
-   subroutine walk(path, strain, scheme, tolerance, tangent, tally, prepared, domain, zero)
+   subroutine walk(path, strain, scheme, tolerance, tangent, tally, domain, zero)
       type(path_t), intent(in) :: path
       real(wp), intent(in) :: strain, tolerance
       integer, intent(in) :: scheme, tangent
       type(tally_t), intent(out) :: tally
-      logical, intent(in) :: prepared   !< PROPS are read once, not in every update.
       logical, intent(in) :: domain     !< With the elastic domain of the default material; otherwise without any.
       character(*), intent(in), optional :: zero   !< Name of a parameter that is 0.
       real(wp) :: props(WORDS), stress(6), statev(WORDS), suction, d_suction, d_strain(6)
@@ -146,7 +145,6 @@ contains
       real(wp), allocatable :: steps(:, :)
       type(mud_blocks) :: blocks
       type(mud_report) :: report
-      character :: text(1)
       integer(c_int) :: n_props, n_statev, code
       integer(int64) :: before, after
       integer :: i
@@ -162,11 +160,9 @@ contains
       before = now(OF_THIS_THREAD)
       do i = 1, tally%updates
          d_strain = steps(:, i)
-         code = 0
-         if (.not. prepared) code = mud_prepare(props, n_props, material, size(material, kind=c_int), text, 0_c_int)
          suction = suction + d_suction
-         if (code == 0) code = mud_update(material, stress, statev, n_statev, d_strain, suction, int(tangent, c_int), &
-                                          stress, statev, blocks, report)
+         code = mud_update(material, stress, statev, n_statev, d_strain, suction, int(tangent, c_int), stress, statev, &
+                           blocks, report)
          if (code /= 0) error stop 'benchmark: an update failed'
          tally%rates = tally%rates + report%n_rate
       end do

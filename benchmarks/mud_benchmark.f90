@@ -3,9 +3,8 @@
 !>
 !> mud_benchmark [ROUNDS]                                    everything; medians of so many rounds
 !> mud_benchmark PATH STRAIN SCHEME TOLERANCE TANGENT WALKS  one variant, for a profiler; nothing is timed; a further
-!>                                                           argument, prepared, reads PROPS once; one more, plain,
-!>                                                           takes the elastic domain away (- or prepared before it);
-!>                                                           one more names a parameter that is 0 (- or plain before it)
+!>                                                           argument, plain, takes the elastic domain away; one
+!>                                                           more names a parameter that is 0 (- or plain before it)
 !>
 !> A round walks every variant once, one after the other, so that a disturbance of the machine falls on all alike; a
 !> ratio is the median of the rounds' own ratios. A batch is timed by the clock on the wall, which other programs on the
@@ -17,7 +16,7 @@ program mud_benchmark
 
    !> One row of the table and what its rounds took.
    type :: variant_t
-      character(8) :: door              !< update, prepared, batch, or rate
+      character(8) :: door              !< update, batch, or rate
       type(path_t) :: path
       real(wp) :: strain = 0.0_wp, tolerance = 0.0_wp
       integer :: scheme = 0, tangent = 0, threads = 1
@@ -26,7 +25,7 @@ program mud_benchmark
       real(wp), allocatable :: ns(:)    !< per update
    end type variant_t
 
-   character(*), parameter :: SCHEME_NAMES(0:3) = ['-   ', 'ME21', 'BS32', 'DP54']
+   character(*), parameter :: SCHEME_NAMES(0:3) = ['auto', 'ME21', 'BS32', 'DP54']
    character(*), parameter :: TANGENT_NAMES(0:3) = ['none      ', 'elastic   ', 'continuum ', 'consistent']
    !> Rates that random walks meet, by what their arc of directions crosses.
    character(24), parameter :: MET_KINDS(2) = ['walk_one_root           ', 'walk_floor_or_cap       ']
@@ -47,16 +46,15 @@ program mud_benchmark
 contains
    subroutine walk_one()
       type(tally_t) :: tally
-      character(24) :: name, reading, domain, zero
+      character(24) :: name, domain, zero
       integer :: i
 
       call get_command_argument(1, name)
-      call get_command_argument(7, reading)
-      call get_command_argument(8, domain)
-      call get_command_argument(9, zero)
+      call get_command_argument(7, domain)
+      call get_command_argument(8, zero)
       do i = 1, nint(number(6))
          call walk(path_named(name), number(2), nint(number(3)), number(4), nint(number(5)), tally, &
-                   reading == 'prepared', domain /= 'plain', trim(zero))
+                   domain /= 'plain', trim(zero))
       end do
       print '(i0, a, i0, a)', tally%updates, ' updates and ', tally%rates, ' rates a walk'
    end subroutine walk_one
@@ -73,7 +71,8 @@ contains
 
    !> The variant without tangent (batch: with one thread) stands before those that are compared with it.
    subroutine list_variants()
-      real(wp), parameter :: TOLERANCES(3) = [1.0e-3_wp, 1.0e-5_wp, 1.0e-7_wp], STRAINS(2) = [1.0e-5_wp, 1.0e-3_wp]
+      real(wp), parameter :: TOLERANCES(3) = [1.0e-3_wp, 1.0e-5_wp, 1.0e-7_wp], &
+                             STRAINS(3) = [1.0e-5_wp, 1.0e-4_wp, 1.0e-3_wp]
       integer :: i, j, k, scheme, tangent, threads, first
 
       allocate (variants(0))
@@ -86,7 +85,7 @@ contains
       end do
       do j = 1, size(STRAINS)
          do i = 1, size(PATHS)
-            do scheme = 1, 3
+            do scheme = 0, 3
                do k = 1, size(TOLERANCES)
                   first = size(variants) + 1
                   do tangent = 0, 3
@@ -99,33 +98,13 @@ contains
       end do
       do i = 1, size(PATHS)
          do tangent = 0, 3
-            variants = [variants, variant_t('prepared', PATHS(i), STRAINS(1), TOLERANCES(2), 1, tangent, &
-                                            reference=size(variants) + 1)]
-            variants(size(variants))%reference = update_like(variants(size(variants)))
-         end do
-      end do
-      do i = 1, size(PATHS)
-         do tangent = 0, 3
             first = size(variants) + 1
             do threads = 1, 2
-               variants = [variants, variant_t('batch', PATHS(i), 1.0e-5_wp, 1.0e-5_wp, 1, tangent, threads, first)]
+               variants = [variants, variant_t('batch', PATHS(i), 1.0e-5_wp, 1.0e-5_wp, 0, tangent, threads, first)]
             end do
          end do
       end do
    end subroutine list_variants
-
-   !> The row of the update that a prepared one is compared with.
-   integer function update_like(variant) result(row)
-      type(variant_t), intent(in) :: variant
-
-      do row = 1, size(variants)
-         if (variants(row)%door == 'update' .and. variants(row)%path%name == variant%path%name .and. &
-             abs(variants(row)%strain - variant%strain) <= 0.0_wp .and. variants(row)%scheme == variant%scheme .and. &
-             abs(variants(row)%tolerance - variant%tolerance) <= 0.0_wp .and. &
-             variants(row)%tangent == variant%tangent) return
-      end do
-      row = size(variants)
-   end function update_like
 
    subroutine run()
       integer :: i, round
@@ -147,8 +126,7 @@ contains
                case ('batch')
                   call walk_batch(v%path, v%strain, v%scheme, v%tolerance, v%tangent, v%threads, POINTS, v%tally)
                case default
-                  call walk(v%path, v%strain, v%scheme, v%tolerance, v%tangent, v%tally, v%door == 'prepared', &
-                            .true.)
+                  call walk(v%path, v%strain, v%scheme, v%tolerance, v%tangent, v%tally, .true.)
                end select
                if (round > 0) v%ns(round) = real(v%tally%nanoseconds, wp)/v%tally%updates
             end associate

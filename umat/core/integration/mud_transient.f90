@@ -41,6 +41,8 @@ module mud_transient
    !> The second part, of the second power of the angle, is left out where the stress that the centre lags behind moves
    !> by less than this share of the tolerance [-].
    real(wp), parameter :: ONE_TERM = 0.1_wp
+   !> Beyond this k t what is left is below rounding [-].
+   real(wp), parameter :: GONE = 40.0_wp
    !> 1 minus the cosine of the angle, 60 degrees, beyond which two parts do not describe the turn [-].
    real(wp), parameter :: LARGEST = 0.5_wp
 contains
@@ -162,6 +164,12 @@ contains
       real(wp) :: left, d_left(LANES)
       integer :: i
 
+      if (transient%speed*(time - transient%since) > GONE) return
+      if (transient%terms == 0) then
+         left = exp(-transient%speed*(time - transient%since))
+         rate = rate - left*fading%parts(:, :, 1)
+         return
+      end if
       call change_of_left(transient, fading, time, dt, left, d_left)
       do i = 1, NY
          rate(:, i) = rate(:, i) - left*(fading%parts(:, i, 1) + left*fading%parts(:, i, 2)) &
@@ -180,6 +188,13 @@ contains
       real(wp), dimension(LANES) :: d_before, d_after, d_first, d_second
       integer :: i
 
+      if (transient%speed*(from - transient%since) > GONE) return
+      if (transient%terms == 0) then
+         before = exp(-transient%speed*(from - transient%since))
+         after = exp(-transient%speed*(to - transient%since))
+         y = y + ((before - after)/transient%speed)*fading%parts(:, :, 1)
+         return
+      end if
       call change_of_left(transient, fading, from, d_from, before, d_before)
       call change_of_left(transient, fading, to, d_to, after, d_after)
       first = (before - after)/transient%speed
