@@ -9,15 +9,16 @@ module mud_branches
    use mud_integration, only: integration_t
    use mud_params, only: params_t
    use mud_registry, only: MAX_TURNS
-   use mud_retention, only: saturation_t, change_with_turn, log_suction
+   use mud_retention, only: saturation_t, change_with_turn, log_suction, curve_at
    use mud_scanning, only: path_t, go_on, pass, branch_of, begin_at_turn, saturation_after, keep_turns, find_least
    use mud_state, only: state_t, counters_t
    implicit none (type, external)
    private
-   public :: course_t, begin_course, list_passed, take_branch, turn_around, end_course, MAX_PASSED
+   public :: course_t, begin_course, list_kinks, take_branch, turn_around, end_course, MAX_KINKS
 
    integer, parameter :: HALVINGS = 60            !< Of an increment: more than a double can tell apart.
-   integer, parameter :: MAX_PASSED = MAX_TURNS   !< Turning points on the ways to a turn and from it.
+   integer, parameter :: MAX_KINKS = 3*MAX_TURNS  !< Turning points to a turn and from it, and contacts.
+   real(wp), parameter :: INSIDE = 1.0e-6_wp      !< A contact this close to an end of a way is that end [-].
 
    !> How S_w changes through an increment.
    type :: course_t
@@ -96,31 +97,99 @@ contains
       end do
    end function turn_of_suction
 
-   !> Pseudo-times at which x passes turning points, n of them in their order. Only x of the turning points matters, so
-   !> they are known beforehand, behind a turn too. docs/theory/material.md section 2.1.1.
-   pure subroutine list_passed(inc, course, times, n)
+   !> Pseudo-times at which S_w has a kink, n of them: x passes a turning point, or the branch meets a main curve or the
+   !> branch that it left. All of them depend on x alone, so they are known beforehand, behind a turn too.
+   !> docs/theory/material.md section 2.1.1.
+   pure subroutine list_kinks(inc, course, times, n)
       type(increment_t), intent(in) :: inc
       type(course_t), intent(in) :: course
-      real(wp), intent(out) :: times(MAX_PASSED)   !< Beyond n without meaning [-].
+      real(wp), intent(out) :: times(MAX_KINKS)   !< Beyond n without meaning [-].
       integer, intent(out) :: n
+      type(params_t) :: branch
       type(path_t) :: path
-      real(wp) :: passed(MAX_TURNS/2)
+      type(saturation_t) :: sat
+
+      n = 0
+      times = 0.0_wp
+      path = course%path
+      call list_on_way(inc, course%material, path, 0.0_wp, course%turn, course%log_turn, times, n)
+      if (course%turn >= 1.0_wp) return
+      call saturation_after(course%material, suction_at(inc, course%turn), void_ratio_at(inc, course%turn), path, sat, &
+                            branch)
+      call list_on_way(inc, course%material, path, course%turn, 1.0_wp, course%log_end, times, n)
+   end subroutine list_kinks
+
+   !> Those of a way of x in one direction.
+   pure subroutine list_on_way(inc, par, start, from, to, log_to, times, n)
+      type(increment_t), intent(in) :: inc
+      type(params_t), intent(in) :: par
+      type(path_t), intent(in) :: start
+      real(wp), intent(in) :: from, to, log_to   !< Pseudo-times of the way; ln x at its end [-].
+      real(wp), intent(inout) :: times(MAX_KINKS)
+      integer, intent(inout) :: n
+      type(path_t) :: path
+      real(wp) :: passed(MAX_TURNS/2), before, behind
       integer :: i, k
 
-      path = course%path
-      times = 0.0_wp
-      call pass(course%log_turn, path, passed, n)
-      do i = 1, n
-         times(i) = time_of_passing(course%material, inc, 0.0_wp, course%turn, passed(i))
+      path = start
+      call pass(log_to, path, passed, k)
+      before = from
+      do i = 1, k + 1
+         behind = to
+         if (i <= k) behind = time_of_passing(par, inc, from, to, passed(i))
+         call list_contacts(inc, par, start, before, behind, times, n)
+         if (i <= k) call add_time(behind, times, n)
+         before = behind
       end do
-      if (course%turn >= 1.0_wp) return
-      path%log_x = course%log_turn
-      call pass(course%log_end, path, passed, k)
-      do i = 1, k
-         times(n + i) = time_of_passing(course%material, inc, course%turn, 1.0_wp, passed(i))
+   end subroutine list_on_way
+
+   !> Those between two turning points that are passed: places where another curve is followed.
+   pure subroutine list_contacts(inc, par, start, from, to, times, n)
+      type(increment_t), intent(in) :: inc
+      type(params_t), intent(in) :: par
+      type(path_t), intent(in) :: start
+      real(wp), intent(in) :: from, to
+      real(wp), intent(inout) :: times(MAX_KINKS)
+      integer, intent(inout) :: n
+      type(params_t) :: branch
+      type(path_t) :: path
+      real(wp) :: before, behind, last, middle
+      integer :: curve, at_last, i, k
+
+      path = start
+      call go_on(par, log_at(par, inc, 0.5_wp*(from + to)), path)
+      branch = branch_of(par, path)
+      before = from + INSIDE*(to - from)
+      last = to - INSIDE*(to - from)
+      if (min(suction_at(inc, before), suction_at(inc, last)) <= 0.0_wp) return
+      curve = curve_at(branch, log_at(par, inc, before))
+      at_last = curve_at(branch, log_at(par, inc, last))
+      do k = 1, MAX_TURNS
+         if (curve == at_last) return
+         behind = last
+         do i = 1, HALVINGS
+            middle = 0.5_wp*(before + behind)
+            if (curve_at(branch, log_at(par, inc, middle)) == curve) then
+               before = middle
+            else
+               behind = middle
+            end if
+         end do
+         call add_time(behind, times, n)
+         before = behind
+         curve = curve_at(branch, log_at(par, inc, before))
       end do
-      n = n + k
-   end subroutine list_passed
+   end subroutine list_contacts
+
+   pure subroutine add_time(time, times, n)
+      real(wp), intent(in) :: time
+      real(wp), intent(inout) :: times(MAX_KINKS)
+      integer, intent(inout) :: n
+
+      if (n == MAX_KINKS) return
+      n = n + 1
+      times(n) = time
+   end subroutine add_time
 
    !> Pseudo-time in a range at which ln(x/P_a), which goes one way there, has a value [-].
    pure real(wp) function time_of_passing(par, inc, from, to, log_x) result(time)

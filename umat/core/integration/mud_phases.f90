@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> An increment as a list of phases. Where suction turns, passes zero or a turning point, and where the strain leaves
-!> the elastic domain, follows from strain, void ratio and suction alone: the list is made beforehand.
+!> An increment as a list of phases. Where suction turns, passes zero or a kink of S_w, and where the strain leaves the
+!> elastic domain, follows from strain, void ratio and suction alone: the list is made beforehand.
 module mud_phases
-   use mud_branches, only: course_t, list_passed, take_branch, turn_around, MAX_PASSED
+   use mud_branches, only: course_t, list_kinks, take_branch, turn_around, MAX_KINKS
    use mud_consistent, only: begin_stretch
    use mud_driving, only: change_of_zero_suction, change_of_turn, change_of_passing, DIRECTIONS
    use mud_increment, only: increment_t, take_phase, suction_at, end_in_domain, SHORTEST_PHASE
@@ -15,8 +15,8 @@ module mud_phases
    private
    public :: integrate_phases
 
-   integer, parameter :: CUT_END = 0, CUT_TURN = 1, CUT_NO_SUCTION = 2, CUT_EXIT = 3, CUT_PASSED = 4
-   integer, parameter :: MAX_CUTS = 4 + MAX_PASSED
+   integer, parameter :: CUT_END = 0, CUT_TURN = 1, CUT_NO_SUCTION = 2, CUT_EXIT = 3, CUT_KINK = 4
+   integer, parameter :: MAX_CUTS = 4 + MAX_KINKS
 
    !> Where a phase ends.
    type :: cut_t
@@ -63,16 +63,16 @@ contains
       type(course_t), intent(in) :: course
       type(cut_t), intent(out) :: cuts(MAX_CUTS)
       integer, intent(out) :: n
-      real(wp) :: times(MAX_PASSED)
+      real(wp) :: times(MAX_KINKS)
       integer :: i, k
 
       n = 1
       cuts(1) = cut_t(CUT_END, 1.0_wp)
       if (par%hysteresis) then
          call insert(cut_t(CUT_TURN, course%turn), cuts, n)
-         call list_passed(inc, course, times, k)
+         call list_kinks(inc, course, times, k)
          do i = 1, k
-            call insert(cut_t(CUT_PASSED, times(i)), cuts, n)
+            call insert(cut_t(CUT_KINK, times(i)), cuts, n)
          end do
       end if
       if (passes_zero(par, inc)) call insert(cut_t(CUT_NO_SUCTION, -inc%p_c0/inc%d_pc), cuts, n)
@@ -114,7 +114,7 @@ contains
       select case (cut%kind)
       case (CUT_TURN)
          change = change_of_turn(it%inc, cut%time, par%omega, it%sens%driving)
-      case (CUT_PASSED)
+      case (CUT_KINK)
          change = change_of_passing(it%inc, cut%time, par%omega, it%sens%driving)
       case (CUT_NO_SUCTION)
          change = change_of_zero_suction(it%inc, cut%time, it%sens%driving)

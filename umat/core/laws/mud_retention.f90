@@ -8,7 +8,7 @@ module mud_retention
    private
    public :: saturation_t, saturation, saturation_curvature, change_with_turn, log_suction, NO_SUCTION
    public :: main_curve_t, main_curve, on_main_curve_t, on_main_curve, bend_of, suction_on_curve, power_of, &
-             along_t, along_raw_branch, follow_branches, ON_CURVE
+             along_t, along_raw_branch, follow_branches, curve_at, ON_CURVE
 
    real(wp), parameter :: EULER = 2.7182818284590452_wp      !< exp(1)
    !> Beyond it exp(1) is lost in exp(1) + a, and a might overflow.
@@ -46,7 +46,9 @@ module mud_retention
    !> A point of a branch: S_w with its first two derivatives by ln x, and those of S_w and slope by q ln offset [-].
    type :: along_t
       real(wp) :: s_w, slope, bend, with_offset, slope_with_offset
+      integer :: curve   !< Which curve is followed: a number that changes where S_w has a kink.
    end type along_t
+   integer, parameter :: FREE = 0, BESIDE_MAIN = 1, SLID = 2, NEXT_BRANCH = 3   !< Of curve, and their period.
 contains
    !> Degree of saturation at a suction [kPa] and a void ratio [-], paper eqs (23), (24). No suction: S_max, zero
    !> slopes. On a scanning branch that of docs/theory/material.md section 2.1.1. e > 0 is not checked.
@@ -170,16 +172,15 @@ contains
       type(on_main_curve_t) :: at
       real(wp) :: log_offset, q, t, log_weight, weight, rest, bend
       integer :: i, way
-      logical :: slid
 
       way = merge(2, 1, branch%dries)
       log_offset = branch%log_offset
-      slid = .false.
+      along%curve = FREE
       do i = 1, par%least%n(way)
          if ((par%least%log_x(way, i) - branch%log_x)*(par%least%log_x(way, i) - log_x) >= 0.0_wp) cycle
          if (par%least%log_offset(way, i) >= log_offset) cycle
          log_offset = par%least%log_offset(way, i)
-         slid = .true.
+         along%curve = SLID
       end do
       q = power_of(par, branch%dries)
       log_weight = 0.0_wp
@@ -203,30 +204,36 @@ contains
       along%bend = bend*weight**2 + at%slope*q*weight*rest
       along%with_offset = 0.0_wp
       along%slope_with_offset = 0.0_wp
-      if (.not. slid) then
+      if (along%curve == FREE) then
          along%with_offset = at%slope*rest/q
          along%slope_with_offset = weight*rest*(bend/q - at%slope)
       end if
       opposite = main_curve(par, .not. branch%dries)
       at = on_main_curve(par, opposite, log_x)
-      call limit(par, branch%dries, along_t(at%s_w, at%slope, bend_of(opposite, at), 0.0_wp, 0.0_wp), along)
+      call limit(par, branch%dries, .true., along_t(at%s_w, at%slope, bend_of(opposite, at), 0.0_wp, 0.0_wp, &
+                                                    BESIDE_MAIN), along)
    end function along_raw_branch
 
    !> A branch does not cross another one: drying stays above it, wetting below. Where it leaves it both are equal but
    !> for rounding; it is followed there with its own slope, unless that is steeper.
-   pure subroutine limit(par, dries, other, along, limited)
+   pure subroutine limit(par, dries, begins, other, along, limited)
       type(params_t), intent(in) :: par
       logical, intent(in) :: dries
+      logical, intent(in) :: begins   !< Where both are equal it leaves the other one; not where it arrives there.
       type(along_t), intent(in) :: other
       type(along_t), intent(inout) :: along
       logical, intent(out), optional :: limited   !< The other one is followed.
-      real(wp) :: beyond
+      real(wp) :: beyond, rounding, s_w
       logical :: acts
 
       beyond = merge(other%s_w - along%s_w, along%s_w - other%s_w, dries)
-      acts = beyond > BESIDE*par%s_max .or. (beyond > 0.0_wp .and. abs(along%slope) > abs(other%slope))
+      rounding = ON_CURVE*par%s_max*(1.0_wp + 1.0_wp/abs(power_of(par, .false.)))
+      acts = beyond > BESIDE*par%s_max .or. &
+             (begins .and. beyond > -rounding .and. abs(along%slope) > abs(other%slope))
+      s_w = along%s_w
+      if (beyond > 0.0_wp) s_w = other%s_w
       if (acts) along = other
-      if (beyond > 0.0_wp) along%s_w = other%s_w
+      along%s_w = s_w
       if (present(limited)) limited = acts
    end subroutine limit
 
@@ -246,17 +253,31 @@ contains
          left = along
          associate (branch => par%scanning%branches(k))
             if (branch%straight) then
-               along = along_t(branch%s_w + branch%share*(log_x - branch%log_x), branch%share, 0.0_wp, 0.0_wp, 0.0_wp)
+               along = along_t(branch%s_w + branch%share*(log_x - branch%log_x), branch%share, 0.0_wp, 0.0_wp, &
+                               0.0_wp, FREE)
             else
                along = along_raw_branch(par, branch, log_x)
                along%s_w = branch%s_w + branch%share*(along%s_w - branch%s_w)
                along%slope = branch%share*along%slope
                along%bend = branch%share*along%bend
             end if
-            call limit(par, branch%dries, left, along, limited)
+            along%curve = along%curve + NEXT_BRANCH*(k - 1)
+            call limit(par, branch%dries, abs(log_x - branch%log_x) < abs(log_x - par%scanning%branches(k - 1)%log_x), &
+                       left, along, limited)
          end associate
       end do
    end subroutine follow_branches
+
+   !> Number of the curve that is followed at ln(x/P_a) [-]: another one where S_w has had a kink on the way.
+   pure integer function curve_at(par, log_x)
+      type(params_t), intent(in) :: par   !< Of a branch.
+      real(wp), intent(in) :: log_x
+      type(along_t) :: along
+      logical :: limited
+
+      call follow_branches(par, log_x, along, limited)
+      curve_at = along%curve
+   end function curve_at
 
    !> Second derivatives [d2S/dp_c2 (1/kPa2), d2S/dp_c de (1/kPa), d2S/de2 (-)] at the suction and void ratio of sat.
    !> sat is that of p_c [kPa] and e [-]; zeros without suction. Derivatives of paper eqs (23), (24) and of
