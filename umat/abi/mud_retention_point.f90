@@ -5,7 +5,7 @@ module mud_retention_point
    use mud_kinds, only: wp
    use mud_prepared, only: prepared_t, find_prepared
    use mud_params, only: params_t
-   use mud_registry, only: STATE_LAYOUT, S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION
+   use mud_registry, only: STATE_LAYOUT, S_LAYOUT, S_VOID_RATIO, S_GAP, S_SATURATION, S_SUCTION
    use mud_retention, only: saturation_t, saturation, log_suction
    use mud_scanning, only: path_t, keep_turns, saturation_after, check_saturation
    use mud_state, only: state_t, unpack_state, E_LOWER, E_UPPER
@@ -52,7 +52,7 @@ contains
       real(wp), intent(in) :: suction
       type(saturation_t), intent(inout) :: sat   !< Untouched where it is refused.
       type(mud_status_t), intent(out) :: status
-      integer, parameter :: READ(4) = [S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION]
+      integer, parameter :: READ(5) = [S_LAYOUT, S_VOID_RATIO, S_GAP, S_SATURATION, S_SUCTION]
       integer :: i
 
       if (.not. is_finite(suction)) then
@@ -65,8 +65,9 @@ contains
       else if (abs(statev(S_LAYOUT) - STATE_LAYOUT) > 0.0_wp) then
          status = fail(MUD_BAD_STATE, ON_STATEV, S_LAYOUT, statev(S_LAYOUT), real(STATE_LAYOUT, wp), &
                        real(STATE_LAYOUT, wp))
-      else if (statev(S_VOID_RATIO) <= E_LOWER .or. statev(S_VOID_RATIO) >= E_UPPER) then
-         status = fail(MUD_BAD_STATE, ON_STATEV, S_VOID_RATIO, statev(S_VOID_RATIO), E_LOWER, E_UPPER)
+      else if (statev(S_VOID_RATIO) <= E_LOWER .or. statev(S_VOID_RATIO) >= E_UPPER + statev(S_GAP)) then
+         status = fail(MUD_BAD_STATE, ON_STATEV, S_VOID_RATIO, statev(S_VOID_RATIO), E_LOWER, &
+                       E_UPPER + statev(S_GAP))
       else if (par%hysteresis) then
          call scanned_saturation(par, statev, suction, sat, status)
       else

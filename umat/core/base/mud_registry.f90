@@ -21,9 +21,9 @@ module mud_registry
              S_X_BEFORE, S_X_RUNNING, S_TARGET, S_INTERRUPTED, S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, &
              S_MEMORY_BEFORE, S_DIRECTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, S_N_RATE, &
              S_N_SUBSTEP, S_N_REJECT, S_N_RESET, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, &
-             S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED, S_TURNS, S_N_CLEARED, S_TURN, MAX_TURNS
+             S_ELASTIC_DOMAIN, S_GAP, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED, S_TURNS, S_N_CLEARED, S_TURN, MAX_TURNS
 
-   integer, parameter :: STATE_LAYOUT = 2   !< Layout number that an initialised STATEV carries.
+   integer, parameter :: STATE_LAYOUT = 3   !< Layout number that an initialised STATEV carries.
    integer, parameter :: KIND_REAL = 0, KIND_SWITCH = 1, KIND_OPTION = 2, KIND_COUNT = 3
    integer, parameter :: RULE_CLASSIC = 0, RULE_THRESHOLD = 1, RULE_REPOSITIONING = 2, RULE_RETURN_POINT = 3
    !> The order follows the error; other values are pairs of mud_substep, modified Euler first.
@@ -132,7 +132,8 @@ module mud_registry
    integer, parameter :: S_ELASTIC_DOMAIN = S_N_TENSILE + 1
    !> Interrupted processes of the rule return_point, the oldest first: memory, direction and target of each.
    integer, parameter :: MAX_INTERRUPTED = 4, ENTRY_SIZE = 13
-   integer, parameter :: S_STACK = S_ELASTIC_DOMAIN + 6
+   integer, parameter :: S_GAP = S_ELASTIC_DOMAIN + 6
+   integer, parameter :: S_STACK = S_GAP + 1
    !> STATEV may end here without hysteresis.
    integer, parameter :: NSTATV_WITHOUT_HYSTERESIS = S_STACK - 1 + ENTRY_SIZE*MAX_INTERRUPTED
    !> Turning points of suction, the oldest first: ln(x/P_a) and S_w of each. Four leave a finite effect of vanishing
@@ -318,6 +319,9 @@ module mud_registry
       variable_t(S_ELASTIC_DOMAIN, 6, 'elastic_domain', 'd', '1', .true., 'ours', &
          'strain from the centre of the elastic domain (rho_e > 0), compression positive', '0', &
          'follows the strain, |d| <= rho_e'), &
+      variable_t(S_GAP, 1, 'gap', 'e_g', '1', .false., 'numerical', &
+         'part of the void ratio: the gap between grains that have parted at p_min', '0', &
+         'grows and shrinks with e while a held point is at its loosest'), &
       variable_t(S_STACK + 0, 6, 'memory_1', 'r_in,1', '1', .true., 'ours', &
          'memory of the interrupted process 1; the first is the oldest (rule return_point)', '0', &
          'set where the process is interrupted'), &

@@ -5,16 +5,17 @@ module mud_state
    use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, STATE_LAYOUT, S_LAYOUT, S_VOID_RATIO, S_SATURATION, &
       S_SUCTION, S_STATE_PARAMETER, S_EPS_Q_P, S_EPS_Q_P_TOTAL, S_X_BEFORE, S_X_RUNNING, S_TARGET, S_INTERRUPTED, &
       S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, S_MEMORY_BEFORE, S_DIRECTION, S_N_RATE, S_N_SUBSTEP, S_N_REJECT, &
-      S_N_RESET, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, &
-      MAX_INTERRUPTED, S_TURNS, S_N_CLEARED, S_TURN, MAX_TURNS
+      S_N_RESET, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, S_ELASTIC_DOMAIN, S_GAP, S_STACK, &
+      ENTRY_SIZE, MAX_INTERRUPTED, S_TURNS, S_N_CLEARED, S_TURN, MAX_TURNS
    use mud_status, only: mud_status_t, fail, MUD_BAD_STATE, MUD_BAD_NSTATV, ON_STATEV
    use mud_tensor, only: is_finite, all_finite
    implicit none (type, external)
    private
    public :: memory_t, interrupted_t, turns_t, state_t, counters_t, guard_count, pack_state, unpack_state, &
-             statev_size, E_LOWER, E_UPPER, NO_TURNS
+             statev_size, E_LOWER, E_UPPER, E_OPEN, NO_TURNS
 
-   real(wp), parameter :: E_LOWER = 0.01_wp, E_UPPER = 5.0_wp   !< Range of the void ratio [-].
+   real(wp), parameter :: E_LOWER = 0.01_wp, E_UPPER = 5.0_wp   !< Range of the void ratio without a gap [-].
+   real(wp), parameter :: E_OPEN = 1.0e4_wp   !< Largest void ratio with a gap [-].
 
    real(wp), parameter :: LARGEST_RATIO = 1.0e11_wp       !< A stress ratio beyond it is no state [-].
    real(wp), parameter :: LARGEST_FABRIC = 1.0e6_wp       !< Likewise; z_max is at most 1e3 [-].
@@ -54,7 +55,8 @@ module mud_state
    type :: state_t
       real(wp) :: sigma(6)     !< sigma' [kPa], compression positive
       real(wp) :: z(6)         !< fabric [-]
-      real(wp) :: e            !< void ratio [-]
+      real(wp) :: e            !< void ratio, with the gap [-]
+      real(wp) :: gap          !< part of it that is gap between grains that have parted [-]
       real(wp) :: p_c          !< suction [kPa]
       real(wp) :: s_w          !< degree of saturation [-]
       real(wp) :: psi          !< state parameter [-]
@@ -100,7 +102,8 @@ contains
          return
       end if
       call require(statev, S_LAYOUT, real(STATE_LAYOUT, wp), real(STATE_LAYOUT, wp), status)
-      call require(statev, S_VOID_RATIO, E_LOWER, E_UPPER, status)
+      call require(statev, S_GAP, 0.0_wp, E_OPEN - E_LOWER, status)
+      call require(statev, S_VOID_RATIO, E_LOWER, E_UPPER + statev(S_GAP), status)
       call require(statev, S_SATURATION, 0.0_wp, 1.0_wp, status)
       call require(statev, S_INTERRUPTED, 0.0_wp, real(MAX_INTERRUPTED, wp), status)
       call require(statev, S_OPEN, 0.0_wp, 1.0_wp, status)
@@ -122,6 +125,7 @@ contains
       if (status%code /= 0) return
 
       state%e = statev(S_VOID_RATIO)
+      state%gap = statev(S_GAP)
       state%s_w = statev(S_SATURATION)
       state%p_c = statev(S_SUCTION)
       state%psi = statev(S_STATE_PARAMETER)
@@ -238,6 +242,7 @@ contains
 
       statev(S_LAYOUT) = real(STATE_LAYOUT, wp)
       statev(S_VOID_RATIO) = state%e
+      statev(S_GAP) = state%gap
       statev(S_SATURATION) = state%s_w
       statev(S_SUCTION) = state%p_c
       statev(S_STATE_PARAMETER) = state%psi

@@ -2,7 +2,7 @@
 !> Tangent blocks of an update that are not carried through its substeps: elastic, and continuum by the last rate.
 module mud_blocks
    use mud_kinds, only: wp
-   use mud_cutoff, only: held_tangent, MODE_HELD
+   use mud_cutoff, only: held_tangent, soil_void_ratio, MODE_HELD
    use mud_elastic, only: bulk_modulus, shear_modulus, elastic_tangent
    use mud_increment, only: increment_t, has_aside, direction_at
    use mud_params, only: params_t
@@ -34,7 +34,8 @@ contains
       real(wp) :: p, r(6)
 
       call stress_ratio(par, state%sigma, p, r)
-      blocks%dsig_deps = elastic_tangent(bulk_modulus(par, state%e, p), shear_modulus(par, state%e, p))
+      blocks%dsig_deps = elastic_tangent(bulk_modulus(par, soil_void_ratio(state), p), &
+                                         shear_modulus(par, soil_void_ratio(state), p))
       blocks%dsig_dpc = 0.0_wp
    end subroutine elastic_blocks
 
@@ -48,7 +49,7 @@ contains
       type(blocks_t), intent(inout) :: blocks
 
       if (trial%mode == MODE_HELD) then
-         call held_tangent(par, inc, state%sigma, state%e, state%p_c, blocks%dsig_deps, blocks%dsig_dpc)
+         call held_tangent(par, inc, state, blocks%dsig_deps, blocks%dsig_dpc)
          return
       end if
       call continuum_tangent(par, trial%w(inc%scheme%stages), blocks%dsig_deps, blocks%dsig_dpc)

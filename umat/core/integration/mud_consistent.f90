@@ -28,8 +28,9 @@ module mud_consistent
    use mud_linearise, only: linearised_t, linearise
    implicit none (type, external)
    private
-   public :: sensitivity_t, no_sensitivity, begin_stretch, propagate, jump_of_memory, change_with_size, changes_along, &
-             changes_of_ratio, linearise_stage, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
+   public :: sensitivity_t, no_sensitivity, begin_stretch, propagate, jump_of_memory, changes_of_parting, &
+             change_with_size, changes_along, changes_of_ratio, linearise_stage, JUMP_NONE, JUMP_REVERSAL, &
+             JUMP_RETURN, JUMP_NEW
 
    integer, parameter :: JUMP_NONE = 0
    integer, parameter :: JUMP_REVERSAL = 1   !< A new process begins.
@@ -49,6 +50,7 @@ module mud_consistent
       !> Of the memories of interrupted processes; those up to number `settled` were there when the increment began.
       real(wp) :: interrupted(DIRECTIONS, 6, MAX_INTERRUPTED)
       integer :: settled
+      real(wp) :: parts(DIRECTIONS)          !< of the void ratio at which the grains of a held point part
       type(driving_t) :: driving
       type(fading_t) :: fading               !< of what fades of the rates, where that is known
    end type sensitivity_t
@@ -65,6 +67,7 @@ contains
       sens%r_in%kind = ZERO_TENSORS
       sens%r_before = 0.0_wp
       sens%shift = 0.0_wp
+      sens%parts = 0.0_wp
       sens%settled = depth
       call whole_increment(inc, sens%driving)
    end subroutine no_sensitivity
@@ -93,7 +96,8 @@ contains
       dh = h*sens%stretch
       if (last) dh = end_shift - sens%shift
       if (trial%mode == MODE_HELD) then
-         call changes_through_hold(par, inc, trial%y0(1:6), trial%time, h, sens%shift, dh, sens%driving, sens%y)
+         call changes_through_hold(par, inc, trial%parts, sens%parts, trial%y0(1:6), trial%time, h, sens%shift, dh, &
+                                   sens%driving, sens%y)
       else
          call change_of_stage(par, inc, trial%mode, trial%w(1), trial%y0, trial%time, sens%at_rest, .false., &
                               sens%shift, sens%r_in, sens%driving, sens%y, first)
@@ -122,7 +126,7 @@ contains
       first = 0.0_wp
       y = 0.0_wp
       if (trial%mode == MODE_HELD) then
-         call changes_through_hold(par, inc, trial%y0(1:6), trial%time, h, none, one, AT_REST, y)
+         call changes_through_hold(par, inc, trial%parts, none, trial%y0(1:6), trial%time, h, none, one, AT_REST, y)
       else
          call through_stages(par, inc, trial, h, .false., none, one, AT_REST%d_strain, AT_REST, NO_FADING, first, y)
       end if
@@ -306,6 +310,20 @@ contains
       call changes_of_loading_strain(inc, mode, turning, driving%d_strain, driving%from_centre, dt - driving%exit, &
                                      changes%loading)
    end subroutine changes_along
+
+   !> Changes of the void ratio at which the grains of a point part that has no gap: where that is its void ratio e, it
+   !> changes with it. docs/theory/material.md section 6.4.
+   pure subroutine changes_of_parting(inc, trial, e, sens)
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial     !< begins to be held
+      real(wp), intent(in) :: e              !< [-]
+      type(sensitivity_t), intent(inout) :: sens
+      real(wp) :: dp_c(DIRECTIONS)
+
+      sens%parts = 0.0_wp
+      if (e < trial%parts) return
+      call change_of_place(inc, trial%time, e, sens%shift, sens%driving, sens%parts, dp_c)
+   end subroutine changes_of_parting
 
    !> Changes of the stress ratio with the stress. sigma and y(:, 1:6) [kPa], dr [-]. Where p' is held at p_min its
    !> change is left out. Derivative of docs/theory/material.md section 1.2.

@@ -10,17 +10,18 @@ module mud_event_table
    private
    public :: event_t, EVENTS, NO_RATE, RATE_THERE, RATE_IF_CLOSED, BEFORE, AT, BEYOND
    public :: EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_MECHANISM, EVENT_REVERSAL, EVENT_RETURN, &
-             EVENT_TURN
+             EVENT_TURN, EVENT_PARTS
 
    ! in the order in which they are looked for
    integer, parameter :: EVENT_NONE = 0
    integer, parameter :: EVENT_OPENS = 1      !< p' falls to p_min.
-   integer, parameter :: EVENT_CLOSES = 2     !< p' would rise from p_min.
-   integer, parameter :: EVENT_BOUNDS = 3     !< r exceeds the bounding surface inside the elastic domain.
-   integer, parameter :: EVENT_MECHANISM = 4  !< The isotropic mechanism begins or ends to act while suction changes.
-   integer, parameter :: EVENT_REVERSAL = 5   !< (r - r_in):n falls to -x_rev.
-   integer, parameter :: EVENT_RETURN = 6     !< r reaches the target of an interrupted process.
-   integer, parameter :: EVENT_TURN = 7       !< A process ceases to go forwards; its substep goes on.
+   integer, parameter :: EVENT_PARTS = 2      !< The gap of a held point begins or ends: in closed form.
+   integer, parameter :: EVENT_CLOSES = 3     !< p' would rise from p_min.
+   integer, parameter :: EVENT_BOUNDS = 4     !< r exceeds the bounding surface inside the elastic domain.
+   integer, parameter :: EVENT_MECHANISM = 5  !< The isotropic mechanism begins or ends to act while suction changes.
+   integer, parameter :: EVENT_REVERSAL = 6   !< (r - r_in):n falls to -x_rev.
+   integer, parameter :: EVENT_RETURN = 7     !< r reaches the target of an interrupted process.
+   integer, parameter :: EVENT_TURN = 8       !< A process ceases to go forwards; its substep goes on.
 
    integer, parameter :: NO_RATE = 0          !< The function looks at the state alone.
    integer, parameter :: RATE_THERE = 1       !< It looks at the rate there.
@@ -53,6 +54,7 @@ module mud_event_table
    type(event_t), parameter :: EVENTS(EVENT_NONE:EVENT_TURN) = [ &
       event_t(NOBODY, NO_RATE, AT, .false., EXACT, EXACT_TRIALS), &
       event_t(ORDINARY .or. ELASTIC, NO_RATE, AT, .true., EXACT, EXACT_TRIALS), &   ! opens
+      event_t(HELD, NO_RATE, AT, .true., EXACT, EXACT_TRIALS), &                    ! parts, or the gap shuts
       event_t(HELD, RATE_IF_CLOSED, BEYOND, .true., EXACT, EXACT_TRIALS), &      ! closes
       event_t(ELASTIC, NO_RATE, AT, .true., EXACT, EXACT_TRIALS), &                 ! exceeds the bounding surface
       event_t(ORDINARY, RATE_THERE, BEFORE, .false., EXACT, EXACT_TRIALS), &        ! the isotropic mechanism switches

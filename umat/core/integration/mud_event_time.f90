@@ -10,8 +10,8 @@ module mud_event_time
    use mud_driving, only: driving_t, DIRECTIONS
    use mud_error_control, only: changes_root
    use mud_event_functions, only: psi_at
-   use mud_event_table, only: EVENTS, EVENT_OPENS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, NO_RATE, RATE_THERE, &
-      RATE_IF_CLOSED
+   use mud_event_table, only: EVENTS, EVENT_OPENS, EVENT_PARTS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, NO_RATE, &
+      RATE_THERE, RATE_IF_CLOSED
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, turning_of, NY
    use mud_params, only: params_t
    use mud_rate, only: rate_t
@@ -106,6 +106,8 @@ contains
       select case (event)
       case (EVENT_OPENS)
          slopes = changes_of_height(y)
+      case (EVENT_PARTS)
+         slopes = changes%e
       case (EVENT_REVERSAL)
          if (jumps(par, trial, w)) then
             slopes = changes_of_drive(par, w, lin, y, driving%d_strain, driving%from_centre, changes)

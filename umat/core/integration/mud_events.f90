@@ -1,10 +1,11 @@
 ! SPDX-License-Identifier: MIT
 !> Events inside a substep: where one happens, the substep is shortened to end just beyond it.
 module mud_events
-   use mud_cutoff, only: is_below, MODE_HELD
+   use mud_cutoff, only: is_below, end_at_parting, is_parted
    use mud_error_control, only: changes_root
    use mud_event_functions, only: rate_at_end, place_of
-   use mud_event_table, only: EVENTS, EVENT_NONE, EVENT_OPENS, EVENT_MECHANISM, EVENT_REVERSAL, EVENT_RETURN, EVENT_TURN
+   use mud_event_table, only: EVENTS, EVENT_NONE, EVENT_OPENS, EVENT_PARTS, EVENT_CLOSES, EVENT_MECHANISM, &
+      EVENT_REVERSAL, EVENT_RETURN, EVENT_TURN
    use mud_increment, only: increment_t, rate_of, store_rate, NY
    use mud_kinds, only: wp
    use mud_landing, only: land_on, EVENT_TOLERANCE
@@ -43,7 +44,13 @@ contains
       do i = 1, ubound(EVENTS, 1)
          if (.not. EVENTS(i)%concerns(trial%mode)) cycle
          call look_ahead(par, inc, i, error, h, trial, counters, possible)
-         if (possible) call land_on(par, inc, i, error, h, trial, counters, event)
+         if (.not. possible) cycle
+         if (i == EVENT_PARTS) then
+            event = i
+            call take_step(par, inc, h, trial, counters)
+         else
+            call land_on(par, inc, i, error, h, trial, counters, event)
+         end if
       end do
    end subroutine stop_at_event
 
@@ -63,6 +70,10 @@ contains
       select case (event)
       case (EVENT_OPENS)
          possible = is_below(par, trial%y(1:6))
+      case (EVENT_PARTS)
+         call end_at_parting(inc, trial%parts, trial%time, h, possible)
+      case (EVENT_CLOSES)
+         possible = .not. (is_parted(inc, trial%parts, trial%time) .or. is_parted(inc, trial%parts, trial%time + h))
       case (EVENT_MECHANISM)
          if (error > SHARP_KINK*par%tolerance) then
             possible = mechanism_switches(inc, trial)

@@ -2,6 +2,7 @@
 !> How large an increment is beside the stiffness of a point.
 module mud_extent
    use mud_kinds, only: wp
+   use mud_cutoff, only: soil_void_ratio
    use mud_elastic, only: bulk_modulus
    use mud_increment, only: increment_t
    use mud_params, only: params_t
@@ -23,6 +24,6 @@ contains
       size = norm(inc%d_strain)
       if (abs(inc%d_pc) <= 0.0_wp) return
       call stress_ratio(par, state%sigma, p, r)
-      size = size + abs(inc%d_pc)/bulk_modulus(par, state%e, p)
+      size = size + abs(inc%d_pc)/bulk_modulus(par, soil_void_ratio(state), p)
    end function extent_of
 end module mud_extent

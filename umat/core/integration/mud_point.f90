@@ -14,7 +14,7 @@ module mud_point
    use mud_params, only: params_t
    use mud_phases, only: integrate_phases
    use mud_start, only: finish_state, has_tension
-   use mud_state, only: state_t, counters_t, E_LOWER, E_UPPER
+   use mud_state, only: state_t, counters_t, E_LOWER, E_UPPER, E_OPEN
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO
    use mud_trace, only: trace_t
    implicit none (type, external)
@@ -42,14 +42,16 @@ contains
       type(trace_t), intent(inout), optional :: record
       type(integration_t) :: it
       type(course_t) :: course
-      real(wp) :: with_turn(2)
+      real(wp) :: with_turn(2), e, largest
 
       reached = 0.0_wp
       call check_increment(par, state0, d_strain, d_pc, status)
       if (status%code /= MUD_OK) return
       call new_increment(par, state0%e, state0%p_c, state0%from_centre, d_strain, d_pc, it%inc)
-      if (void_ratio_at(it%inc, 1.0_wp) <= E_LOWER .or. void_ratio_at(it%inc, 1.0_wp) >= E_UPPER) then
-         status = fail(MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO, 0, void_ratio_at(it%inc, 1.0_wp), E_LOWER, E_UPPER)
+      largest = merge(E_OPEN, E_UPPER, state0%gap > 0.0_wp)
+      e = void_ratio_at(it%inc, 1.0_wp)
+      if (e <= E_LOWER .or. e >= largest) then
+         status = fail(MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO, 0, e, E_LOWER, largest)
          return
       end if
 
@@ -72,7 +74,7 @@ contains
       if (present(record)) record = it%trace
       if (status%code /= MUD_OK) return
       reached = 1.0_wp
-      it%state%e = void_ratio_at(it%inc, 1.0_wp)
+      it%state%e = e
       it%state%p_c = state0%p_c + d_pc
       if (par%hysteresis) then
          call end_course(it%inc, course, it%state, with_turn)

@@ -6,7 +6,7 @@ module mud_start
    use mud_bonding, only: bonding_t, is_bonded, bonding, UNBONDED
    use mud_checks, only: check_stress
    use mud_critical_state, only: state_parameter
-   use mud_cutoff, only: lifted
+   use mud_cutoff, only: lifted, soil_void_ratio
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio
    use mud_retention, only: saturation_t, saturation, log_suction
@@ -45,6 +45,7 @@ contains
          return
       end if
       state%e = e
+      state%gap = 0.0_wp
       state%p_c = p_c
       state%z = 0.0_wp
       state%from_centre = 0.0_wp
@@ -87,14 +88,15 @@ contains
          sat = saturation(par, state%p_c, state%e)
       end if
       if (.not. par%hysteresis) state%s_w = sat%s_w
-      state%psi = state_parameter(par, bond%f, state%e, max(trace(state%sigma)/3.0_wp, par%p_min))
+      if (state%gap > 0.0_wp .and. is_bonded(par, state%p_c)) bond = bonding(par, state%p_c, soil_void_ratio(state))
+      state%psi = state_parameter(par, bond%f, soil_void_ratio(state), max(trace(state%sigma)/3.0_wp, par%p_min))
       if (.not. present(blocks)) return
       blocks%dsw_dpc = sat%ds_dpc
       blocks%dsw_dev = -(1.0_wp + state%e)*sat%ds_de
    end subroutine finish_state
 
    !> True if a principal stress is negative (tensile): Sylvester's criterion fails. s is an effective stress,
-   !> compression positive, in any unit. docs/theory/material.md section 6.4.
+   !> compression positive, in any unit. docs/theory/material.md section 6.5.
    pure logical function has_tension(s)
       real(wp), intent(in) :: s(6)
       real(wp) :: minor

@@ -4,8 +4,8 @@
 module mud_transitions
    use mud_kinds, only: wp
    use mud_bounding, only: excess
-   use mud_consistent, only: jump_of_memory, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
-   use mud_cutoff, only: landed, may_open, closing_mode, closes, MODE_HELD
+   use mud_consistent, only: jump_of_memory, changes_of_parting, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
+   use mud_cutoff, only: landed, may_open, closing_mode, closes, parting, gap_at, MODE_HELD
    use mud_event_functions, only: elastic_rate, psi_at, LARGEST_EXCESS
    use mud_event_table, only: EVENT_NONE, EVENT_OPENS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN
    use mud_events, only: note_turning_point
@@ -53,8 +53,6 @@ contains
       it%trial%mode = MODE_ORDINARY
       it%trial%r_in = it%state%memory%r_in
       if (it%state%open) then
-         it%trial%mode = MODE_HELD
-         if (it%known) return
          call try_to_close(par, r, it)
          return
       end if
@@ -188,8 +186,8 @@ contains
       end do
    end subroutine try_to_return
 
-   !> A point at p_min stays open while p' would not rise from there; it closes without memory of the gap. The trial
-   !> holds the ordinary rate of a point without a past.
+   !> A point at p_min stays open while its grains are parted or p' would not rise from there; it closes without memory
+   !> of the gap. The trial holds the ordinary rate of a point without a past.
    pure subroutine try_to_close(par, r, it)
       type(params_t), intent(in) :: par
       type(integration_t), intent(inout) :: it
@@ -197,13 +195,19 @@ contains
       type(memory_t) :: before
       type(rate_t) :: trigger
 
-      it%trial%r_in = r
-      it%trial%mode = closing_mode(it%inc)
-      call first_rate(par, it)
-      it%state%open = .not. closes(it%inc, it%trial%openings, it%trial%w(1))
       it%trial%watched = 0
+      if (it%state%open .and. (it%known .or. it%state%gap > 0.0_wp)) then
+         it%trial%w(1)%no_root = .false.
+      else
+         it%trial%r_in = r
+         it%trial%mode = closing_mode(it%inc)
+         call first_rate(par, it)
+         it%state%open = .not. closes(it%inc, it%trial%openings, it%trial%w(1))
+      end if
       if (it%state%open) then
          it%trial%mode = MODE_HELD
+         it%trial%parts = parting(par, it%state)
+         if (it%consistent .and. it%state%gap <= 0.0_wp) call changes_of_parting(it%inc, it%trial, it%state%e, it%sens)
          return
       end if
       it%jump = JUMP_NEW
@@ -224,6 +228,7 @@ contains
       it%state%sigma = it%trial%y(1:6)
       if (it%trial%mode == MODE_HELD) then
          it%counters%open = it%counters%open + 1
+         it%state%gap = gap_at(it%state%e, it%trial%parts)
          return
       end if
       it%state%z = it%trial%y(7:12)

@@ -33,6 +33,7 @@ module mud_trial
       integer :: openings           !< How often p' has fallen to p_min in this increment or phase.
       type(relaxation_t) :: relaxation   !< Its stiff direction, of speed 0 where the substep is explicit.
       type(transient_t) :: transient     !< What fades of its rates; not of those in w.
+      real(wp) :: parts             !< Void ratio at which the grains of a held point part [-].
       real(wp) :: held_error        !< Error of a held substep's stress ratio [-].
       integer :: watched            !< The interrupted process whose target is looked for, 0: none.
       type(interrupted_t) :: process   !< That process.
@@ -52,7 +53,7 @@ contains
 
       if (trial%mode == MODE_HELD) then
          trial%y = trial%y0
-         call hold(par, inc, trial%time, h, trial%y(1:6), trial%held_error)
+         call hold(par, inc, trial%parts, trial%time, h, trial%y(1:6), trial%held_error)
          return
       end if
       call store_rate(trial%w(1), trial%rates(:, 1))

@@ -6,7 +6,7 @@ module mud_elastic
    implicit none (type, external)
    private
    public :: bulk_modulus, bulk_slope, shear_modulus, shear_slope, swelling_slope, elastic_tangent, BULK_EXPONENT, &
-             SHEAR_EXPONENT
+             SHEAR_EXPONENT, STIFF_ABOVE
 
    real(wp), parameter :: BULK_EXPONENT = 2.0_wp/3.0_wp, SHEAR_EXPONENT = 0.5_wp   !< Of p' in K and in G [-].
    real(wp), parameter :: STIFF_ABOVE = 2.97_wp   !< Void ratio of eq. (3) at which G vanishes [-].
