@@ -109,7 +109,7 @@ MUTATIONS = [
      (SCANNING, "if (abs(s_w) <= 0.0_wp) s_w = bounds(2)",
       "if (abs(s_w) <= 0.0_wp) s_w = bounds(1)")),
     # rates and guards
-    ("isotropic mechanism never rejected", (RATES, "w%b_rate < 0.0_wp) then", "w%b_rate < -huge(1.0_wp)) then")),
+    ("isotropic mechanism never rejected", (RATES, "w%b_rate < 0.0_wp\n", "w%b_rate < -huge(1.0_wp)\n")),
     ("isotropic mechanism acts in extension too",
      (RATES, "if (w%iso_drive > 0.0_wp) then", "if (abs(w%iso_drive) > 0.0_wp) then")),
     ("no floor", (EQUATION, "h_b = larger(x, eq%x_floor)*eq%per_b_0\n      limit", "h_b = larger(x, 1.0e-15_wp)*eq%per_b_0\n      limit")),
