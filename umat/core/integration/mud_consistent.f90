@@ -101,8 +101,9 @@ contains
       else
          call change_of_stage(par, inc, trial%mode, trial%w(1), trial%y0, trial%time, sens%at_rest, .false., &
                               sens%shift, sens%r_in, sens%driving, sens%y, first)
-         if (trial%transient%known .and. trial%transient%since >= trial%time) &
-            call change_of_transient(par, inc, trial, first, sens)
+         if (trial%transient%known) then
+            if (trial%transient%since >= trial%time) call change_of_transient(par, inc, trial, first, sens)
+         end if
          ! at the end of the whole increment only the stress is asked for
          call through_stages(par, inc, trial, h, last .and. inc%to >= 1.0_wp, sens%shift, dh, sens%r_in, &
                              sens%driving, sens%fading, first, sens%y)
