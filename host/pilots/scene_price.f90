@@ -45,8 +45,8 @@ contains
       type(pilot_t) :: coarse, middle, shorter, tighter, fine
       type(scene_t) :: base, scenes(3)
       real(wp) :: mesh(3), of_steps, of_meshes
-      integer :: i, k, finest
-      type(quote_t) :: next
+      integer :: i, finest
+      type(quote_t) :: next(1)
 
       price%asked = asked
       call read_changed(file, asked, 1.0_wp, 1.0_wp, effects, base, fault)
@@ -72,8 +72,8 @@ contains
       of_meshes = exponent_of(middle, coarse, real(middle%elements, wp)/coarse%elements, MOST_OF_MESHES)
       ! A third mesh where it doubles the time at most: it shows the order of convergence.
       finest = 2
-      next = quote_of(mesh(3), 1.0_wp)
-      if (next%seconds <= price%seconds) then
+      next = quotes_of(mesh(3), [1.0_wp])
+      if (next(1)%seconds <= price%seconds) then
          call pilot(3, 1.0_wp, 1.0_wp, fine)
          if (fault%code /= 0) return
          price%mesh = mesh(3)
@@ -86,9 +86,7 @@ contains
       allocate (price%quotes(0))
       do i = 1, size(MESHES)
          if (MESHES(i) < mesh(1)) cycle
-         do k = 1, size(STEPS)
-            price%quotes = [price%quotes, quote_of(MESHES(i), STEPS(k))]
-         end do
+         price%quotes = [price%quotes, quotes_of(MESHES(i), STEPS)]
       end do
    contains
       !> The two coarsest meshes that differ and on which the scene runs, none coarser than that of the scene.
@@ -105,16 +103,21 @@ contains
          end do
       end subroutine first_pair
 
-      !> What a run would cost, by the finest that was made.
-      type(quote_t) function quote_of(wanted, fineness)
-         real(wp), intent(in) :: wanted, fineness   !< Of the mesh; of the steps.
+      !> What runs on a mesh would cost, by the finest that was made.
+      function quotes_of(wanted, fineness) result(quotes)
+         real(wp), intent(in) :: wanted, fineness(:)   !< Of the mesh; of the steps of each run.
+         type(quote_t) :: quotes(size(fineness))
          type(scene_t) :: other
+         real(wp) :: elements, finer
+         integer :: k
 
          call read_changed(file, asked, 1.0_wp, wanted, effects, other, fault)
-         quote_of = quote(price%answers, middle, wanted, middle%elements*elements_at(wanted, base%mesh)/ &
-                          elements_at(mesh(finest), base%mesh), refinement(scenes(finest)%mesh, other%mesh), fineness, &
-                          of_steps, of_meshes)
-      end function quote_of
+         elements = middle%elements*elements_at(wanted, base%mesh)/elements_at(mesh(finest), base%mesh)
+         finer = refinement(scenes(finest)%mesh, other%mesh)
+         do k = 1, size(fineness)
+            quotes(k) = quote(price%answers, middle, wanted, elements, finer, fineness(k), of_steps, of_meshes)
+         end do
+      end function quotes_of
 
       !> One run, and a line about it.
       subroutine pilot(number, fineness, newton, run)
