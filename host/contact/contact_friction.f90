@@ -17,6 +17,7 @@ module contact_friction
       real(wp), allocatable :: slave_dx(:, :), master_dx(:, :)   !< (2, nodes) Way since the start of the step [m].
       real(wp), allocatable :: traction(:)   !< (slave nodes) At the start, along the slave's tangent [kPa].
       real(wp), allocatable :: gap(:)        !< (slave nodes) At the start, open > 0 [m].
+      integer, allocatable :: side(:)        !< (slave nodes) Way of sliding at the iterate before: -1, 1; 0: none.
    end type friction_t
 
    !> Traction of a node and its slopes.
@@ -24,7 +25,8 @@ module contact_friction
       real(wp) :: value = 0.0_wp     !< [kPa]
       real(wp) :: by_slip = 0.0_wp   !< d value/d slip [kN/m3]
       real(wp) :: by_gap = 0.0_wp    !< d value/d gap [kN/m3]
-      logical :: slides = .false.
+      integer :: side = 0            !< Way of sliding: -1, 1; 0: it sticks.
+      logical :: turns = .false.     !< Held from turning at once from one way to the other.
    end type traction_t
 contains
    !> Whether a contact has friction.
@@ -52,11 +54,13 @@ contains
 
    !> Return mapping at a node: t = t_n + e_T slip, at most mu p + c in magnitude. A node that was open at the start of
    !> the step slips from where it touches. docs/theory/contact.md section 9.
-   pure function traction_at(options, before, gap_before, gap, slip) result(t)
+   !> A node that slid one way at the iterate before sticks before it slides the other way.
+   pure function traction_at(options, before, gap_before, gap, slip, side) result(t)
       type(contact_options_t), intent(in) :: options
       real(wp), intent(in) :: before            !< Traction at the start of the step [kPa].
       real(wp), intent(in) :: gap_before, gap   !< Mean gaps, open > 0 [m].
       real(wp), intent(in) :: slip              !< Since the start of the step [m].
+      integer, intent(in) :: side               !< Way of sliding at the iterate before: -1, 1; 0: none.
       type(traction_t) :: t
       real(wp) :: limit, share, share_slope, stiffness
 
@@ -70,8 +74,10 @@ contains
       if (.not. gap_before > 0.0_wp) t%value = t%value + before
       t%by_slip = stiffness*share
       t%by_gap = stiffness*share_slope*slip
-      t%slides = abs(t%value) > limit
-      if (.not. t%slides) return
+      if (.not. abs(t%value) > limit) return
+      t%turns = side*t%value < 0.0_wp
+      if (t%turns) return
+      t%side = nint(sign(1.0_wp, t%value))
       t%by_slip = 0.0_wp
       t%by_gap = -sign(options%friction*options%penalty, t%value)
       t%value = sign(limit, t%value)

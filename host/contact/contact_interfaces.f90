@@ -15,7 +15,7 @@ module contact_interfaces
    implicit none (type, external)
    private
    public :: contacts_t, contact_interface_t, surface_t, surface_of, new_interface, plate_surface
-   public :: begin_friction, accept_friction
+   public :: begin_friction, follow_friction, friction_turns, accept_friction
    public :: evaluate_contacts, probe_contacts, start_points, probe_interface, fit_pattern, add_contacts, &
              contact_forces, mean_contact_forces
 
@@ -113,7 +113,8 @@ contains
       one%unknown = reshape(dofs%of(:DISPLACEMENTS, nodes), [DISPLACEMENTS*size(nodes)])
       one%rubs = has_friction(options)
       if (one%rubs) then
-         one%friction = friction_t(0*slave%x0, 0*master%x0, 0*one%result%gap, 0*one%result%gap)
+         one%friction = friction_t(0*slave%x0, 0*master%x0, 0*one%result%gap, 0*one%result%gap, &
+                                   0*one%result%side)
          one%slave_u = 0*slave%x0
          one%master_u = 0*master%x0
       end if
@@ -148,7 +149,7 @@ contains
             t%thrust = sum(t%result%force(2:2*t%geometry%slave_nodes:2))
             t%energy = t%result%energy
             t%area = sum(t%result%weight, mask=t%result%active)
-            t%sliding = count(t%result%slides)
+            t%sliding = count(t%result%side /= 0)
             t%drag = dot_product(t%result%weight, t%result%traction)
          end associate
       end do
@@ -228,6 +229,32 @@ contains
          end associate
       end do
    end function begin_friction
+
+   !> Before a correction: which way the nodes slide now, so that none turns with it from one way to the other. At the
+   !> start and the end of a step (`fresh`) no node has a way. docs/theory/contact.md section 9.
+   subroutine follow_friction(contacts, fresh)
+      type(contacts_t), intent(inout) :: contacts
+      logical, intent(in) :: fresh
+      integer :: i
+
+      if (.not. allocated(contacts%interfaces)) return
+      do i = 1, size(contacts%interfaces)
+         associate (t => contacts%interfaces(i))
+            if (t%rubs) t%friction%side = merge(0, t%result%side, fresh)
+         end associate
+      end do
+   end subroutine follow_friction
+
+   !> Whether a node was held at the last evaluation, because it turned from sliding one way to sliding the other.
+   pure logical function friction_turns(contacts) result(turns)
+      type(contacts_t), intent(in) :: contacts
+      integer :: i
+
+      turns = .false.
+      if (.not. allocated(contacts%interfaces)) return
+      turns = any([(contacts%interfaces(i)%acts .and. contacts%interfaces(i)%result%turns, &
+                    i=1, size(contacts%interfaces))])
+   end function friction_turns
 
    !> Takes the tractions at the end of an accepted step; what sliding has dissipated in it [kJ].
    !> docs/theory/contact.md section 9.

@@ -55,7 +55,8 @@ module contact_penalty
       logical, allocatable :: active(:)         !< p_A > 0
       real(wp), allocatable :: slip(:)          !< Since the start of the step, with friction [m]
       real(wp), allocatable :: traction(:)      !< t_A, of the friction on the master along the slave's tangent [kPa]
-      logical, allocatable :: slides(:)         !< The traction is at its limit.
+      integer, allocatable :: side(:)           !< Way of sliding where the traction is at its limit: -1, 1; else 0.
+      logical :: turns = .false.                !< A node slides the other way than at the iterate before: it is held.
       real(wp) :: unpressed = 0.0_wp            !< Deepest penetration without pressure, over its edge [-].
       real(wp) :: unpressed_at(2) = 0.0_wp      !< Middle of the edge with this penetration [m].
       integer :: pairs = 0                      !< Pairs of edges opposite each other.
@@ -101,7 +102,8 @@ contains
       allocate (result%force(2*(geometry%slave_nodes + geometry%master_nodes)), source=0.0_wp)
       allocate (result%weight(geometry%slave_nodes), result%whole(geometry%slave_nodes), &
                 result%gap(geometry%slave_nodes), result%pressure(geometry%slave_nodes), source=0.0_wp)
-      allocate (result%active(geometry%slave_nodes), result%slides(geometry%slave_nodes), source=.false.)
+      allocate (result%active(geometry%slave_nodes), source=.false.)
+      allocate (result%side(geometry%slave_nodes), source=0)
       allocate (result%slip(geometry%slave_nodes), result%traction(geometry%slave_nodes), source=0.0_wp)
       allocate (result%row(FIRST_ROOM), result%column(FIRST_ROOM), source=0)
       allocate (result%value(FIRST_ROOM), source=0.0_wp)
@@ -285,10 +287,12 @@ contains
       end do
       where (result%weight > 0.0_wp) result%slip = result%slip/result%weight
       do i = 1, geometry%slave_nodes
-         t(i) = traction_at(geometry%options, friction%traction(i), friction%gap(i), result%gap(i), result%slip(i))
+         t(i) = traction_at(geometry%options, friction%traction(i), friction%gap(i), result%gap(i), result%slip(i), &
+                            friction%side(i))
       end do
       result%traction = t%value
-      result%slides = t%slides
+      result%side = t%side
+      result%turns = any(t%turns)
       do i = 1, result%pairs
          associate (pair => work%pair(i))
             if (.not. any(abs(result%traction(geometry%slave_edges(:, pair%slave))) > 0.0_wp)) cycle
@@ -359,7 +363,7 @@ contains
       stiffness = tangential_stiffness(options)
       total = 0.0_wp
       do i = 1, size(result%traction)
-         if (.not. result%slides(i)) cycle
+         if (result%side(i) == 0) cycle
          before = merge(0.0_wp, friction%traction(i), friction%gap(i) > 0.0_wp)
          slip = touching_share(friction%gap(i), result%gap(i))*result%slip(i)
          total = total + result%weight(i)*result%traction(i)*(slip - (result%traction(i) - before)/stiffness)

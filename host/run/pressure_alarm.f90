@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Warnings of a run whose pore water pressures oscillate from node to node (docs/theory/host.md section 3.1), or in
-!> which a material made for compression has lost its mean effective stress and has no guard that would have kept it.
+!> Warnings of a run whose pore water pressures oscillate from node to node (docs/theory/host.md section 3.1), in which a
+!> node of a seepage face lets water in (section 7.7), or in which a material made for compression has lost its mean
+!> effective stress and has no guard that would have kept it.
 module pressure_alarm
    use, intrinsic :: iso_fortran_env, only: error_unit
    use kinds, only: wp
@@ -13,7 +14,7 @@ module pressure_alarm
    use scene_types, only: stage_t
    implicit none (type, external)
    private
-   public :: warn_of_oscillation, warn_lost_pressure, outlier
+   public :: warn_of_oscillation, warn_lost_pressure, warn_of_inflow, outlier
 
    !> By how much a corner may differ from all sides around it, share of the range of all pressures: linear and
    !> parabolic fields leave nothing, a field that the mesh follows little [-].
@@ -77,6 +78,25 @@ contains
          end associate
       end do
    end subroutine warn_lost_pressure
+
+   !> After an accepted step; once a run, on standard error, also where the run is quiet. docs/theory/host.md section 7.7.
+   !> Raises no fault.
+   subroutine warn_of_inflow(model, stage, time, drinks, told)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: time      !< [s]
+      integer, intent(in) :: drinks     !< Unknown that keeps its limit although water enters there, 0: none.
+      logical, intent(inout) :: told
+
+      if (told .or. drinks == 0) return
+      told = .true.
+      associate (x => model%domain%mesh%x(:, model%dofs%node(drinks)))
+         write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//', time '//short(time)// &
+            ' s: the node at ('//short(x(1))//', '//short(x(2))//') m of a seepage face, or under rain, left its '// &
+            'limit three times within the step, and keeps it although water enters there. Shorten the steps or '// &
+            'refine the mesh there.'
+      end associate
+   end subroutine warn_of_inflow
 
    !> The corner of the mesh that stands out most, and by which share of the range of all pressures; 0 where no corner
    !> does or the range is too small to matter. A corner stands out by what it is above, or below, the middles of all

@@ -20,7 +20,7 @@ module time_stepping
    use step_booking, only: book_accepted_step, watch_effects
    use energy_alarm, only: check_creation, warn_of_created_energy
    use contact_alarm, only: warn_of_penetration
-   use pressure_alarm, only: warn_of_oscillation, warn_lost_pressure
+   use pressure_alarm, only: warn_of_oscillation, warn_lost_pressure, warn_of_inflow
    use unknown_fields, only: DISPLACEMENTS
    use texts, only: short, whole
    implicit none (type, external)
@@ -128,6 +128,7 @@ contains
          if (warns(observer)) call warn_of_penetration(model, run%next%time, run%system%contacts)
          if (warns(observer)) call warn_of_oscillation(model, stage, run%next%time, run%next%x, run%told_oscillation)
          if (warns(observer)) call warn_lost_pressure(model, run%next%time, run%next%stress, run%told_pressure)
+         if (warns(observer)) call warn_of_inflow(model, stage, run%next%time, run%constraint%drinks, run%told_inflow)
          call book_accepted_step(model, scheme, run)
          report = step_report_t(number, dt, step_error(scheme, run%state%x, run%state%a, run%next%x, run%next%a), &
                                 at%t_start + stage%duration - run%next%time <= LAST_STEP*dt, log)

@@ -33,7 +33,8 @@ contains
    end subroutine begin_sides
 
    !> The sides after an iteration. A node is held where r + c (p - limit) > 0, r the run-off [m3/s] and c the slope of
-   !> its balance, and free elsewhere; what is smaller than the flows are known to leaves it as it is.
+   !> its balance, and free elsewhere; what is smaller than the flows are known to leaves it as it is. A node that was
+   !> released too often keeps its limit and is noted in constraint%drinks.
    pure subroutine choose_sides(dofs, pattern, values, x, run_off, flows, tolerance, constraint, changed)
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(in) :: pattern
@@ -48,12 +49,17 @@ contains
       integer :: i
 
       changed = .false.
+      constraint%drinks = 0
       do i = 1, dofs%n
          if (.not. constraint%limited(i)) cycle
          side = run_off(i) &
                 + abs(values(place_of(pattern, i, i)))*(x(dofs%field(i), dofs%node(i)) - constraint%target(i))
          least = FLOW_SHARE*tolerance*flows(i)
-         if (constraint%fixed(i) .and. side < -least .and. constraint%releases(i) < MOST_RELEASES) then
+         if (constraint%fixed(i) .and. side < -least) then
+            if (constraint%releases(i) >= MOST_RELEASES) then
+               constraint%drinks = i
+               cycle
+            end if
             constraint%fixed(i) = .false.
             constraint%releases(i) = constraint%releases(i) + 1
             changed = .true.

@@ -5,7 +5,7 @@ module newton_step
    use kinds, only: wp
    use wall_clock, only: clock, lap
    use conjugate_residuals, only: solve_by_factors, INACCURATE
-   use contact_interfaces, only: add_contacts, contact_forces
+   use contact_interfaces, only: add_contacts, contact_forces, follow_friction, friction_turns
    use convergence, only: control_t, log_t, measure, good_enough, look_for_stagnation, linear_tolerance, rounding_in, &
                           residual_norms, &
                           BY_FORCES, BY_CHANGE
@@ -60,6 +60,7 @@ contains
       allocate (rhs(dofs%n), dx(dofs%n))
       new%time = old%time + scheme%dt
       call begin_passes(domain, scheme, constraint, control, assembly)
+      call follow_friction(system%contacts, fresh=.true.)
       if (assembly%with_change .and. allocated(system%contacts%interfaces)) then
          log%outcome = merge(CONVERGED, CONTACT_FAILED, contact_forces(system%contacts, dofs, old%x, touched))
          if (log%outcome /= CONVERGED) return
@@ -83,6 +84,7 @@ contains
          if (log%iterations > 0) then
             call choose_sides(dofs, pattern, assembly%values, new%x, rhs, assembly%scale, control%tolerance, &
                               constraint, turned)
+            turned = turned .or. friction_turns(system%contacts)
             call measure(dofs, constraint, assembly, rhs, system%rounding, system%largest, log)
             if (log%iterations == 1) log%first_error = log%error
             norm = norm2(pack(rhs, .not. constraint%fixed))
@@ -92,7 +94,7 @@ contains
                norm_0 = max(norm_0, norm, ROUNDING*norm2(assembly%scale))
             end if
             log%reduction = norm/max(norm_0, tiny(1.0_wp))
-            ! A pressure that turned to the other side of its limit has not been solved for yet.
+            ! What turned to the other side of its limit, a pressure or a sliding node, has not been solved for yet.
             if (.not. turned) then
                if (good_enough(control, log)) exit
                call look_for_stagnation(control, log)
@@ -129,11 +131,13 @@ contains
          end if
          t0 = clock()
          log%iterations = log%iterations + 1
+         call follow_friction(system%contacts, fresh=.false.)
          call add_correction(dofs, dx, new%x, log%correction)
          call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
          with_tangent = system%reassemble_tangent .and. .not. control%carries_slopes
       end do
       call keep_what_is_left()
+      call follow_friction(system%contacts, fresh=.true.)
       system%reassemble_tangent = log%iterations > 1
       assembly%slopes%known = control%carries_slopes
       call lap(system%seconds(T_REST), t0)

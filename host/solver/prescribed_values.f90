@@ -20,6 +20,7 @@ module prescribed_values
       logical, allocatable :: limited(:)      !< Unknowns with a limit: water pressures.
       integer, allocatable :: limited_by(:)   !< The group of the mesh that their run-off belongs to.
       integer, allocatable :: releases(:)     !< How often they left their limit in this step.
+      integer :: drinks = 0                   !< One that keeps its limit although water enters there, 0: none.
       real(wp), allocatable :: rain_0(:), rain_1(:)   !< Rain in the loads below, before and after [m3/s].
       real(wp), allocatable :: load_0(:), load_1(:)   !< Loads before and after.
       real(wp), allocatable :: offset(:)      !< Flow of the initial state that is subtracted, forces that hold ground.

@@ -129,7 +129,7 @@ CASES = (
              lambda s: {str(dt): falling(s, penalty=1e8, dt=dt, duration=0.003) for dt in (3e-6, 1e-5, 3e-5)}, created, settlements, BOTH),
     HostCase("lift-off and re-impact", CONTACT, "unsaturated soil rebounds; the plate lifts off and falls on it again several times", CREATED, 1,
              lambda s: {"": impact(s, duration=0.06, pulse=0.01, force=3)}, created, last_settlement),
-    HostCase("re-impact with friction", CONTACT, "as before, with friction of 0.5 and a tangential penalty of 1e6 kN/m3: nodes stick, slide, open and touch again within steps; tractions that outlive a contact create energy",
+    HostCase("re-impact with friction", CONTACT, "as before, with friction of 0.5: nodes stick, slide, open and touch again within steps; tractions that outlive a contact create energy",
              CREATED, 1, lambda s: {"": impact(s, duration=0.06, pulse=0.01, force=3, friction=0.5)}, created, last_settlement, DEFAULT),
     undrained("quadratic", "saturated, sealed, no volume may change: every element is a constraint",
               limit="as for the column: pore pressures oscillate from node to node, and the run warns of it; `pressures = 'linear'` is the remedy"),

@@ -19,7 +19,7 @@ def impact(setting, suction=30, dt=3e-4, duration=0.04, pulse=0.028, penalty=Non
             "&initial stress='geostatic' k_0=0.4 " + ("p_w_slope=-9.78057 surcharge=0.2" if wet else f"p_w=-{suction} p_c={suction}") + " /\n",
             f"&history name='pulse' times=2,{2 + pulse / 2},{2 + pulse} values=0,1,0 /\n",
             f"&plate name='plate' r=0,0.15 mass=0.0111 weight='yes' force={load(setting, -force)} history='pulse' /\n",
-            f"&contact name='c' slave='top' master='plate' stages='seat','impact' {f'penalty={penalty}' if penalty else ''} {f'friction={friction} tangential_penalty=1e6' if friction else ''} /\n",
+            f"&contact name='c' slave='top' master='plate' stages='seat','impact' {f'penalty={penalty}' if penalty else ''} {f'friction={friction}' if friction else ''} /\n",
             "&stage name='rest' analysis='static' duration=1 dt=1 tolerance=1e-10 zero_displacements='yes' /\n",
             "&stage name='seat' analysis='static' duration=1 dt=1 tolerance=1e-8 max_iterations=100 /\n",
             f"&stage name='impact' analysis='dynamic' duration={duration} dt={dt} {rho(setting)} /\n",
