@@ -27,6 +27,7 @@ NEVER = Tolerance("sliding has the sign of its traction", absolute=0.0)
 CREATED = Tolerance("Newton's tolerance of 1e-6 in every step; of the work of the weight", absolute=1e-4)
 RIM = Tolerance("nodal pressures scatter over the last two edges before the rim, of seven; sums of friction from one rim on, of Q",
                 absolute=0.04)
+MEANS = Tolerance("seven edges to the rim: the pressure falls from one to zero along them; of p_0", absolute=0.02)
 SUM = Tolerance("friction adds up to the force; Newton's tolerance, weight at the end of the step", relative=2e-3)
 EDGE = 0.01513   # cell beside the edge of the footing, of 0.5 m
 LIMIT = {"strip": 2 + np.pi, "smooth circle": 5.69, "rough circle": 6.05}
@@ -104,6 +105,13 @@ def check_cylinder(bench):
         bench.near(f"cylinder, {stage}: friction up to every node", np.cumsum(t * w)[:-1] / first, np.interp(middles, x, sums) / first, RIM)
         bench.near(f"cylinder, {stage}: all of it", np.sum(t * w), force, SUM, "kN")
         bench.note(f"cylinder, {stage}: Q/(mu P) {force / mu / press:.3f}")
+        if stage == "shift":
+            press_of = node["pressure"][order] / (2 * press / (np.pi * a))
+            means = np.convolve(press_of, [0.25, 0.5, 0.25], mode="same")
+            inside = abs(r) < 0.9 * a
+            bench.near("cylinder: means of the pressures of three nodes, within 0.9 of the half width", means[inside],
+                       np.sqrt(1 - (r[inside] / a) ** 2), MEANS)
+            bench.note(f"cylinder: single pressures are off by up to {np.max(abs(press_of[inside] - np.sqrt(1 - (r[inside] / a) ** 2))):.2g} of p_0")
         shown[stage] = x / a, wanted, r / a, t / peak
     return shown
 
