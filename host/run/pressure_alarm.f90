@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Warnings of a run whose pore water pressures oscillate from node to node (docs/theory/host.md section 3.1), in which a
-!> node of a seepage face lets water in (section 7.7), or in which a material made for compression has lost its mean
+!> Warnings of a run whose pore water pressures oscillate from node to node (docs/theory/host.md section 3.1), in which
+!> a node of a seepage face lets water in (section 7.7), or in which a material made for compression has lost its mean
 !> effective stress and has no guard that would have kept it.
 module pressure_alarm
    use, intrinsic :: iso_fortran_env, only: error_unit
@@ -79,8 +79,8 @@ contains
       end do
    end subroutine warn_lost_pressure
 
-   !> After an accepted step; once a run, on standard error, also where the run is quiet. docs/theory/host.md section 7.7.
-   !> Raises no fault.
+   !> After an accepted step; once a run, on standard error, also where the run is quiet. docs/theory/host.md
+   !> section 7.7. Raises no fault.
    subroutine warn_of_inflow(model, stage, time, drinks, told)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage

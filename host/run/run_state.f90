@@ -44,7 +44,8 @@ module run_state
       type(monitor_t) :: monitor               !< Of effects that are off; with effects = 'auto' alone.
       integer :: steps = 0, iterations = 0, cuts = 0
       integer(int64) :: rate_evaluations = 0   !< Of the material.
-      logical :: told_oscillation = .false., told_pressure = .false., told_inflow = .false.   !< Warnings that are said once.
+      ! Warnings that are said once.
+      logical :: told_oscillation = .false., told_pressure = .false., told_inflow = .false.
       real(wp) :: seconds_output = 0.0_wp      !< Wall time.
    end type run_t
 end module run_state
