@@ -23,8 +23,9 @@ module material_mud
 
    integer, parameter :: BUFFER = 1000
    real(wp), parameter :: ROUNDING = 1.0e-6_wp   !< A default said in another unit is rounded.
-   character(*), parameter :: GUARDS(9) = [character(NAME_LENGTH) :: 'floor', 'contraction cap', 'softening cap', &
-      'hysteresis', 'isotropic kept off', 'no direction', 'minimum step', 'cut-off', 'tensile']
+   character(*), parameter :: GUARDS(10) = [character(NAME_LENGTH) :: 'floor', 'contraction cap', 'softening cap', &
+      'hysteresis', 'isotropic kept off', 'no direction', 'minimum step', 'cut-off', 'tensile', &
+      'turning points forgotten']
 
    !> Beside every parameter of the library.
    type(key_t), parameter :: MUD_KEYS(*) = [ &
@@ -222,7 +223,8 @@ contains
       sums%n_substep = sums%n_substep + report%n_substep
       sums%n_reject = sums%n_reject + report%n_reject
       sums%guards(:size(GUARDS)) = sums%guards(:size(GUARDS)) + [report%n_floor, report%n_cap_d, report%n_cap_h, &
-         report%n_hysteresis, report%n_iso_kept, report%n_no_root, report%n_min_step, report%n_open, report%n_tensile]
+         report%n_hysteresis, report%n_iso_kept, report%n_no_root, report%n_min_step, report%n_open, report%n_tensile, &
+         report%n_turns_cleared]
       sums%factor = report%pnewdt
       sums%subject = report%subject
       sums%entry = report%index
@@ -244,8 +246,8 @@ contains
       of_library = mud_report(status=report%code, subject=report%subject, index=report%entry, n_rate=report%n_rate, &
                               n_substep=report%n_substep, n_reject=report%n_reject, n_reset=0, n_floor=0, n_cap_d=0, &
                               n_cap_h=0, n_hysteresis=0, n_iso_kept=0, n_no_root=0, n_min_step=0, n_open=0, &
-                              n_tensile=0, value=report%value, lower=report%lower, upper=report%upper, &
-                              reached=report%reached, pnewdt=report%factor)
+                              n_tensile=0, n_turns_cleared=0, value=report%value, lower=report%lower, &
+                              upper=report%upper, reached=report%reached, pnewdt=report%factor)
       raw = c_null_char
       if (mud_message(of_library, raw, BUFFER) < 0) raw = 'Status '//whole(report%code)//'.'//c_null_char
       text = from_c(raw)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Soil with hydraulic hysteresis starts from a given degree of saturation, in the driver and in the host; a run of
-regions with different drainage, taken up again, gives the same bytes; a drainage that does not exist is refused."""
+regions with different drainage, taken up again, gives the same bytes, turning points of suction included; a drainage
+that does not exist is refused."""
 import subprocess
 
 from checking import build, check, root, work
@@ -102,3 +103,22 @@ def test_host_four_drainages_in_one_scene_run():
     done = start(HOST, SCENE.format(preset="").replace("'undrained'", "'sealed'"), "sealed")
     check("host: an unknown drainage is refused, with the known ones", done.returncode == 2
           and all(word in done.stderr for word in ("sealed", "drainage", "coupled|drained|undrained|dry")), done.stderr)
+
+
+def test_host_a_run_is_taken_up_again_between_turning_points():
+    # The water level rises and falls with a smaller swing each time: at the checkpoint of step 21 suction has
+    # turned three times and none of the loops is closed; steps 22 to 30 close them from the inside.
+    swings = "times = 0, 0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 1 values = 1, 1.5, 0.8, 1.3, 0.95, 1.2, 0.7, 1.6"
+    text = SCENE.format(preset="").replace("times = 0, 1 values = 1, 1.2", swings).replace("dt = 0.2", "dt = 0.03333")
+    text = text.replace("checkpoint_steps = 3", "checkpoint_steps = 21")
+    done = start(HOST, text, "turns")
+    check("host: a scene whose suction turns six times runs", done.returncode == 0, done.stderr)
+    s_w = tables.columns(work / "turns/histories.csv")["top.S_w"]
+    turns = sum((b - a) * (c - b) < 0 for a, b, c in zip(s_w, s_w[1:], s_w[2:]))
+    check("host: its saturation turns as often", turns >= 6, s_w)
+    before = files(work / "turns")
+    done = start(HOST, text, "turns", "--restart", work / "turns/checkpoint.h5")
+    check("host: it is taken up again between turning points", done.returncode == 0, done.stderr)
+    after = files(work / "turns")
+    for name, content in before.items():
+        check(f"host: restart between turning points, {name}, byte for byte", after.get(name) == content)

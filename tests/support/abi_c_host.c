@@ -8,7 +8,7 @@
 #include "mud.h"
 
 _Static_assert(MUD_OK == 0, "success is zero");
-_Static_assert(offsetof(mud_report, value) == 16 * sizeof(int), "16 counts before the numbers, no gap");
+_Static_assert(offsetof(mud_report, value) == 18 * sizeof(int), "17 counts and a gap before the numbers");
 _Static_assert(sizeof(mud_substep) == 8 * sizeof(int) + 12 * sizeof(double), "8 counts and 12 numbers, no gap");
 _Static_assert(offsetof(mud_substep, landed) == 3 * sizeof(int) && offsetof(mud_substep, n_guard) == 6 * sizeof(int),
                "counts in the order of mud_interface.f90");
@@ -34,7 +34,8 @@ void abi_fill_report(mud_report *r)
    *r = (mud_report){
       .status = 1, .subject = 2, .index = 3, .n_rate = 4, .n_substep = 5, .n_reject = 6, .n_reset = 7, .n_floor = 8,
       .n_cap_d = 9, .n_cap_h = 10, .n_hysteresis = 11, .n_iso_kept = 12, .n_no_root = 13, .n_min_step = 14,
-      .n_open = 15, .n_tensile = 16, .value = 17.0, .lower = 18.0, .upper = 19.0, .reached = 20.0, .pnewdt = 21.0};
+      .n_open = 15, .n_tensile = 16, .n_turns_cleared = 17, .value = 18.0, .lower = 19.0, .upper = 20.0,
+      .reached = 21.0, .pnewdt = 22.0};
 }
 
 /* Constants of mud.h in the order in which it lists them. */

@@ -41,7 +41,7 @@ module mud_kernel
    !> struct mud_report of mud.h.
    type, bind(c) :: report_t
       integer(c_int) :: status, subject, index, n_rate, n_substep, n_reject, n_reset, n_floor, n_cap_d, n_cap_h, &
-                        n_hysteresis, n_iso_kept, n_no_root, n_min_step, n_open, n_tensile
+                        n_hysteresis, n_iso_kept, n_no_root, n_min_step, n_open, n_tensile, n_turns_cleared
       real(c_double) :: value, lower, upper, reached, pnewdt
    end type report_t
 
@@ -412,6 +412,7 @@ contains
       report%n_min_step = counters%min_step
       report%n_open = counters%open
       report%n_tensile = counters%tensile
+      report%n_turns_cleared = counters%cleared
       report%reached = reached
       report%pnewdt = 1.0_wp
       if (status%code /= MUD_OK) report%pnewdt = min(max(reached, SMALLEST_CUT), LARGEST_CUT)

@@ -66,6 +66,7 @@ typedef struct mud_report {
    int n_min_step;          /* substeps accepted at the minimum size (without any guard)              */
    int n_open;              /* substeps held by the tension cut-off                                    */
    int n_tensile;           /* 1 if the increment ended with a tensile principal effective stress      */
+   int n_turns_cleared;     /* 1 if S_w was off its branch: its turning points were forgotten          */
    double value;            /* offending value                                                         */
    double lower, upper;     /* its allowed range                                                       */
    double reached;          /* share of the increment that was integrated, 1 on success                */

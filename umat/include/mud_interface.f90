@@ -31,7 +31,7 @@ module mud_interface
    !> struct mud_report of mud.h.
    type, bind(c) :: mud_report
       integer(c_int) :: status, subject, index, n_rate, n_substep, n_reject, n_reset, n_floor, n_cap_d, n_cap_h, &
-                        n_hysteresis, n_iso_kept, n_no_root, n_min_step, n_open, n_tensile
+                        n_hysteresis, n_iso_kept, n_no_root, n_min_step, n_open, n_tensile, n_turns_cleared
       real(c_double) :: value, lower, upper, reached, pnewdt
    end type mud_report
 

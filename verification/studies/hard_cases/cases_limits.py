@@ -3,7 +3,7 @@
 import random
 
 from bounds import BOUND, TRAIL, beyond, bounded
-from catalogue import Case, last
+from catalogue import Case, last, off_the_clean
 from closed_forms import line_pressure, steady_pressure
 from point_steps import ACROSS, AXIAL, DENSE, LOOSE, MIDDLE, straight, times
 
@@ -220,6 +220,18 @@ def other_sands(setting):
     return found
 
 
+def ripple_in_a_loop(setting):
+    """A point inside a hysteresis loop, with a thousand ripples of suction and without, then sheared. Without the isotropic mechanism,
+    which every ripple would load again: what is left of them is what retention remembers."""
+    found, still = {}, times(0.0, AXIAL)
+    for name, n in (("clean", 0), ("rippled", 1000)):
+        path = setting.start(MIDDLE, suction=8.0, hysteresis=1, isotropic=0).go(1, still, 4.0).go(1, still, -3.0)
+        for _ in range(n):
+            path.go(1, still, 0.1).go(1, still, -0.1)
+        found[name] = straight(path, 0.02, step=2e-4).row()
+    return found
+
+
 CASES = (
     Case("tension and back", "little stress", "p' would become negative; the material is held at p_min and released", BOUND, TRAIL, tension, bounded),
     Case("30 cycles through the cut-off", "little stress", "reaching and leaving p_min are events inside increments", BOUND, TRAIL, tension_cycles, bounded),
@@ -242,6 +254,8 @@ CASES = (
                "(docs/theory/material.md 4.4 to 4.7): B = 0, so t = 0, so L = 0, and the stress stays while the surface goes on shrinking",
          proof=("change of the stress while the surface shrinks below it [%]", unmoved, 1e-12)),
     Case("pulses of suction", "suction", "suction changes without strain between increments of strain", BOUND, TRAIL, suction_pulses, bounded),
+    Case("1000 ripples of suction with hysteresis", "suction", "every ripple turns twice: memory of a branch that does not close pumps water",
+         "stress against the path without them [%]", 1e-6, ripple_in_a_loop, off_the_clean),
     Case("along the compression line", "compression line", "the isotropic mechanism becomes singular stiff or soft there", "p' above the line [%]", 0.5,
          on_the_line, off_the_line),
     Case("beyond the compression line", "compression line", "K0 compression runs beyond the line, where the closed form has none", BOUND, TRAIL, beyond_the_line, bounded),

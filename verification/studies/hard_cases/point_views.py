@@ -190,6 +190,7 @@ VIEWS = {
     "the air-entry value 200 times": View("200 times through the air-entry value", P, Q, along(pressure, shear)),
     "wetting at rest": View("wetting at rest: the surface shrinks below", "suction [kPa]", "beyond the bounding surface [%]", along(suction, beyond), TRAIL),
     "pulses of suction": View("pulses of suction while sheared", AXIAL, "beyond the bounding surface [%]", along(strain(0), beyond), TRAIL),
+    "1000 ripples of suction with hysteresis": View("sheared after 1000 ripples of suction, and without", AXIAL, Q, along(strain(0), shear)),
     "along the compression line": View("along the line (dotted) to 60 MPa", P, "void ratio [-]", along(pressure, void_ratio), scale_across="log", lines=compression_line),
     "beyond the compression line": View("K0 compression across the line (dotted)", P, "void ratio [-]", along(pressure, void_ratio), scale_across="log",
                                         lines=compression_line),
