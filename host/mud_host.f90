@@ -14,7 +14,7 @@ program mud_host
    use effect_types, only: effect_t
    use effects_table, only: print_effects, print_pilots, write_effects, write_influences
    use model_builder, only: build_model
-   use model_types, only: model_t
+   use model_types, only: accuracy_of, model_t
    use linear_system, only: T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST
    use output_tables, only: check_tables, COLUMNS_OF_A_POINT
    use pilot_budget, only: pilots_account_t
@@ -153,18 +153,12 @@ contains
    subroutine find_price()
       type(price_t) :: price
 
-      call price_scene(trim(file), accuracy_asked(), effects, quiet, price, fault)
+      call price_scene(trim(file), accuracy_of(model), effects, quiet, price, fault)
       if (fault%code /= 0) return
       call print_price(output_unit, price)
       call make_folder(folder)
       call write_price(folder, price, fault)
    end subroutine find_price
-
-   !> Accuracy of the controlled stages, the largest [-]; 0: all steps are given.
-   real(wp) function accuracy_asked() result(asked)
-      asked = 0.0_wp
-      if (any(model%stages%controlled)) asked = maxval(model%stages%accuracy, mask=model%stages%controlled)
-   end function accuracy_asked
 
    subroutine print_help()
       character(*), parameter :: LINES(20) = [character(104) :: &
@@ -237,7 +231,7 @@ contains
       type(run_output_t) :: fine_output
       type(history_t) :: one, two
 
-      call read_changed(trim(file), accuracy_asked(), QUARTER_SHARE, scene%mesh%fineness, effects, fine_scene, fault)
+      call read_changed(trim(file), accuracy_of(model), QUARTER_SHARE, scene%mesh%fineness, effects, fine_scene, fault)
       if (fault%code == 0) call build_model(fine_scene, fine_model, fault)
       if (fault%code == 0) call prepare_run(fine_model, fine_run, fault)
       if (fault%code /= 0) return

@@ -3,7 +3,7 @@
 !> forces that tangential tractions exert, and the law of a node: stick on a penalty, slip at the limit.
 !> docs/theory/contact.md section 9.
 module contact_friction
-   use contact_mortar, only: overlap_t, point_t, integration_point, hats, hat_slopes, POINTS, POSITION, SHARE
+   use contact_mortar, only: overlap_t, point_t, pair_points, hats, hat_slopes, LARGEST_POINTS
    use contact_response, only: response_t, add_work
    use contact_types, only: contact_options_t
    use kinds, only: wp
@@ -91,17 +91,17 @@ contains
       type(overlap_t), intent(in) :: overlap
       logical, intent(in) :: axisymmetric
       real(wp), intent(out) :: weighted_slip(3), d_weighted_slip(12, 3), drag(12, 3)
-      type(point_t) :: p
+      type(point_t) :: points(LARGEST_POINTS)
       real(wp) :: m(3), dm(3), of_point(12), d_way(12), way(2), bend(2, 2), along, missed
-      integer :: segment, k, a, i
+      integer :: n, k, a, i
 
       weighted_slip = 0.0_wp
       d_weighted_slip = 0.0_wp
       drag = 0.0_wp
-      do segment = 1, overlap%segments
-         do k = 1, POINTS
-            call integration_point(x, overlap, segment, POSITION(k), SHARE(k), axisymmetric, p, missed)
-            if (missed > 0.0_wp) return
+      call pair_points(x, overlap, .false., axisymmetric, points, n, missed)
+      if (missed > 0.0_wp) return
+      do k = 1, n
+         associate (p => points(k))
             m = hats(p%s)
             dm = hat_slopes(p%s)
             way = matmul(dx(:, 1:3), p%ns) - matmul(dx(:, 4:6), p%nm)
@@ -120,7 +120,7 @@ contains
                d_weighted_slip(:, a) = d_weighted_slip(:, a) + p%area*m(a)*(of_point + d_way) &
                                        + (m(a)*p%d_area + p%area*dm(a)*p%d_s)*along
             end do
-         end do
+         end associate
       end do
    end subroutine pair_slips
 
@@ -132,17 +132,15 @@ contains
       logical, intent(in) :: axisymmetric, with_stiffness
       real(wp), intent(in) :: traction(3)   !< [kPa]
       type(response_t), intent(out) :: response
-      type(point_t) :: p
+      type(point_t) :: p(LARGEST_POINTS)
       real(wp) :: missed
-      integer :: segment, k
+      integer :: n, k
 
-      do segment = 1, overlap%segments
-         do k = 1, POINTS
-            call integration_point(x, overlap, segment, POSITION(k), SHARE(k), axisymmetric, p, missed)
-            if (missed > 0.0_wp) return
-            call add_work(p, p%t, p%d_t, dot_product(hats(p%s), traction), &
-                          dot_product(hat_slopes(p%s), traction)*p%d_s, with_stiffness, response)
-         end do
+      call pair_points(x, overlap, .false., axisymmetric, p, n, missed)
+      if (missed > 0.0_wp) return
+      do k = 1, n
+         call add_work(p(k), p(k)%t, p(k)%d_t, dot_product(hats(p(k)%s), traction), &
+                       dot_product(hat_slopes(p(k)%s), traction)*p(k)%d_s, with_stiffness, response)
       end do
    end subroutine drag_response
 end module contact_friction

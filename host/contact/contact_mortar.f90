@@ -15,9 +15,9 @@ module contact_mortar
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: overlap_t, point_t, find_overlap, end_slope, integration_point, unit_push, pair_gaps, penetration, &
-             hats, hat_slopes
-   public :: POINTS, POSITION, SHARE, END_POSITION, END_SHARE, LARGEST_SEGMENTS
+   public :: overlap_t, point_t, find_overlap, end_slope, integration_point, pair_points, unit_push, pair_gaps, &
+             penetration, hats, hat_slopes
+   public :: POINTS, POSITION, SHARE, LARGEST_SEGMENTS, LARGEST_POINTS
 
    integer, parameter :: POINTS = 4   !< Gauss points of a segment.
    real(wp), parameter :: POSITION(POINTS) = [-0.861136311594052575224_wp, -0.339981043584856264803_wp, &
@@ -29,6 +29,7 @@ module contact_mortar
                                                   0.447213595499957939282_wp, 1.0_wp]
    real(wp), parameter :: END_SHARE(POINTS) = [1.0_wp, 5.0_wp, 5.0_wp, 1.0_wp]/6.0_wp
    integer, parameter :: LARGEST_SEGMENTS = 3   !< Two ends, and the two middle nodes between them.
+   integer, parameter :: LARGEST_POINTS = LARGEST_SEGMENTS*POINTS   !< Of a pair.
    !> Cosine of the steepest master edge that a slave edge sees: beyond 78 degrees nothing is pressed any more.
    real(wp), parameter :: LEAST_FACING = 0.2_wp
    !> A ray may miss the edge it must hit by so much of its length: rounding of an end next to a short segment.
@@ -237,6 +238,29 @@ contains
       p%d_area = 0.5_wp*share*(p%ring*p%d_span + p%span*p%d_ring)
    end subroutine integration_point
 
+   !> The integration points of a pair of edges. `missed` as of integration_point: the first n - 1 points hit, and all
+   !> of them where it is 0. docs/theory/contact.md section 2.2.
+   pure subroutine pair_points(x, overlap, at_ends, axisymmetric, p, n, missed)
+      real(wp), intent(in) :: x(2, 6)   !< Local coordinates [m].
+      type(overlap_t), intent(in) :: overlap
+      logical, intent(in) :: at_ends, axisymmetric   !< at_ends: points at the ends of segments too.
+      type(point_t), intent(inout) :: p(LARGEST_POINTS)
+      integer, intent(out) :: n   !< Points that are filled.
+      real(wp), intent(out) :: missed   !< [-]
+      integer :: segment, k
+
+      n = 0
+      missed = 0.0_wp
+      do segment = 1, overlap%segments
+         do k = 1, POINTS
+            n = n + 1
+            call integration_point(x, overlap, segment, merge(END_POSITION(k), POSITION(k), at_ends), &
+                                   merge(END_SHARE(k), SHARE(k), at_ends), axisymmetric, p(n), missed)
+            if (missed > 0.0_wp) return
+         end do
+      end do
+   end subroutine pair_points
+
    !> What a pair of edges adds to the three slave nodes: weight int M 2 pi r dGamma and weight times gap, their
    !> derivatives, and push(:, A) = int M (nu N_s, -nu N_m) 2 pi r ds, the nodal forces of a unit pressure at node A.
    !> docs/theory/contact.md section 2.3. `missed` as of integration_point; where it is > 0 the rest is of no use.
@@ -247,19 +271,19 @@ contains
       real(wp), intent(out) :: weight(3), weighted_gap(3)                             !< [m2], [m3] (plane: m, m2)
       real(wp), intent(out) :: d_weight(12, 3), d_weighted_gap(12, 3), push(12, 3)
       real(wp), intent(out) :: missed
-      type(point_t) :: p
+      type(point_t) :: points(LARGEST_POINTS)
       real(wp) :: m(3), dm(3), of_point(12)
-      integer :: segment, k, a
+      integer :: n, k, a
 
       weight = 0.0_wp
       weighted_gap = 0.0_wp
       d_weight = 0.0_wp
       d_weighted_gap = 0.0_wp
       push = 0.0_wp
-      do segment = 1, overlap%segments
-         do k = 1, POINTS
-            call integration_point(x, overlap, segment, POSITION(k), SHARE(k), axisymmetric, p, missed)
-            if (missed > 0.0_wp) return
+      call pair_points(x, overlap, .false., axisymmetric, points, n, missed)
+      if (missed > 0.0_wp) return
+      do k = 1, n
+         associate (p => points(k))
             m = hats(p%s)
             dm = hat_slopes(p%s)
             of_point = unit_push(p)
@@ -272,9 +296,8 @@ contains
                                       + p%area*m(a)*p%d_phi
                push(:, a) = push(:, a) + p%area*m(a)*of_point
             end do
-         end do
+         end associate
       end do
-      missed = 0.0_wp
    end subroutine pair_gaps
 
    !> Forces on the nodes of a pair [-], slave first, of a unit force that pushes the surfaces apart at a point.

@@ -254,7 +254,7 @@ contains
       end do
       if (with_tangent) then
          do i = 1, geometry%slave_nodes
-            if (result%pressure(i) > 0.0_wp) call add_node(geometry, nodal%penalty, i, work, result)
+            if (result%pressure(i) > 0.0_wp) call add_node(geometry, i, work, result, -nodal%penalty)
          end do
       end if
       if (pointwise%penalty > 0.0_wp) then
@@ -310,7 +310,7 @@ contains
       end do
       if (.not. with_tangent) return
       do i = 1, geometry%slave_nodes
-         if (result%gap(i) < 0.0_wp) call add_traction(geometry, t(i), i, work, result)
+         if (result%gap(i) < 0.0_wp) call add_node(geometry, i, work, result, t(i)%by_gap, t(i)%by_slip)
       end do
    contains
       !> What the nodes of pair i have, slave first.
@@ -322,34 +322,6 @@ contains
          of_pair(:, 4:6) = master(:, geometry%master_edges(:, work%pair(i)%master))
       end function gathered
    end subroutine rub
-
-   !> The change of a nodal traction: dt_A by slip and gap, times what a unit of t_A drags.
-   pure subroutine add_traction(geometry, t, node, work, result)
-      type(contact_geometry_t), intent(in) :: geometry
-      type(traction_t), intent(in) :: t
-      integer, intent(in) :: node
-      type(contact_workspace_t), intent(inout) :: work
-      type(contact_result_t), intent(inout) :: result
-      integer :: side, edge, i, a, n
-
-      call gather_unknowns(geometry, node, work, n)
-      do side = 1, 2
-         edge = geometry%edges_of(side, node)
-         if (edge == 0) cycle
-         do i = work%first_pair(edge), work%first_pair(edge + 1) - 1
-            a = findloc(geometry%slave_edges(:, work%pair(i)%slave), node, dim=1)
-            associate (pair => work%pair(i), at => work%position(unknowns_of(geometry, work%pair(i)%slave, &
-                                                                             work%pair(i)%master)))
-               work%right(at) = work%right(at) &
-                                + t%by_slip*(pair%d_weighted_slip(:, a) - result%slip(node)*pair%d_weight(:, a)) &
-                                + t%by_gap*(pair%d_weighted_gap(:, a) - result%gap(node)*pair%d_weight(:, a))
-               work%left(at) = work%left(at) + pair%drag(:, a)
-            end associate
-         end do
-      end do
-      work%right(:n) = work%right(:n)/result%weight(node)
-      call add_product(n, work, result)
-   end subroutine add_traction
 
    !> What sliding has dissipated from the start of a step to an evaluation [kN m]: traction times the slip that is not
    !> the penalty's. Never negative: sliding has the sign of its traction. docs/theory/contact.md section 9.
@@ -442,49 +414,25 @@ contains
       end select
    end subroutine share_penalty
 
-   !> The change of a nodal pressure: dp_A = -eps dg_A times what a unit of p_A pushes, over all unknowns that g_A
-   !> depends on.
-   pure subroutine add_node(geometry, penalty, node, work, result)
+   !> What the change of a nodal pressure adds to the tangent, dp_A = by_gap dg_A times what a unit of p_A pushes; with
+   !> by_slip that of a nodal traction, dt_A = by_gap dg_A + by_slip ds_A times what a unit of t_A drags. Over all
+   !> unknowns that the gap depends on.
+   pure subroutine add_node(geometry, node, work, result, by_gap, by_slip)
       type(contact_geometry_t), intent(in) :: geometry
-      real(wp), intent(in) :: penalty   !< Of nodal gaps [kN/m3].
       integer, intent(in) :: node
       type(contact_workspace_t), intent(inout) :: work
       type(contact_result_t), intent(inout) :: result
-      real(wp) :: slope(12)
-      integer :: side, edge, i, a, n
-
-      call gather_unknowns(geometry, node, work, n)
-      do side = 1, 2
-         edge = geometry%edges_of(side, node)
-         if (edge == 0) cycle
-         do i = work%first_pair(edge), work%first_pair(edge + 1) - 1
-            a = findloc(geometry%slave_edges(:, work%pair(i)%slave), node, dim=1)
-            associate (pair => work%pair(i), at => work%position(unknowns_of(geometry, work%pair(i)%slave, &
-                                                                             work%pair(i)%master)))
-               slope = pair%d_weighted_gap(:, a) - result%gap(node)*pair%d_weight(:, a)
-               work%right(at) = work%right(at) + slope
-               work%left(at) = work%left(at) - pair%push(:, a)
-            end associate
-         end do
-      end do
-      work%right(:n) = penalty/result%weight(node)*work%right(:n)
-      call add_product(n, work, result)
-   end subroutine add_node
-
-   !> Places of the unknowns that the gap of a node depends on; left and right are empty.
-   pure subroutine gather_unknowns(geometry, node, work, n)
-      type(contact_geometry_t), intent(in) :: geometry
-      integer, intent(in) :: node
-      type(contact_workspace_t), intent(inout) :: work
-      integer, intent(out) :: n   !< How many.
-      integer :: unknown(12), side, edge, i, j
+      real(wp), intent(in) :: by_gap   !< [kN/m3]
+      real(wp), intent(in), optional :: by_slip   !< [kN/m3]
+      integer :: unknown(12), side, edge, i, j, a, n
 
       n = 0
       do side = 1, 2
          edge = geometry%edges_of(side, node)
          if (edge == 0) cycle
+         a = findloc(geometry%slave_edges(:, edge), node, dim=1)
          do i = work%first_pair(edge), work%first_pair(edge + 1) - 1
-            unknown = unknowns_of(geometry, work%pair(i)%slave, work%pair(i)%master)
+            unknown = unknowns_of(geometry, edge, work%pair(i)%master)
             do j = 1, 12
                if (work%position(unknown(j)) > 0) cycle
                n = n + 1
@@ -493,23 +441,25 @@ contains
                work%left(n) = 0.0_wp
                work%right(n) = 0.0_wp
             end do
+            associate (pair => work%pair(i), at => work%position(unknown))
+               work%right(at) = work%right(at) &
+                                + by_gap*(pair%d_weighted_gap(:, a) - result%gap(node)*pair%d_weight(:, a))
+               if (present(by_slip)) then
+                  work%right(at) = work%right(at) &
+                                   + by_slip*(pair%d_weighted_slip(:, a) - result%slip(node)*pair%d_weight(:, a))
+                  work%left(at) = work%left(at) + pair%drag(:, a)
+               else
+                  work%left(at) = work%left(at) + pair%push(:, a)
+               end if
+            end associate
          end do
       end do
-   end subroutine gather_unknowns
-
-   !> Adds left times right to the tangent and forgets the places.
-   pure subroutine add_product(n, work, result)
-      integer, intent(in) :: n
-      type(contact_workspace_t), intent(inout) :: work
-      type(contact_result_t), intent(inout) :: result
-      integer :: j
-
       call make_room(result, n*n)
       do j = 1, n
          work%position(work%touched(j)) = 0
-         call add_column(result, work%touched(:n), work%touched(j), work%right(j)*work%left(:n))
+         call add_column(result, work%touched(:n), work%touched(j), work%right(j)/result%weight(node)*work%left(:n))
       end do
-   end subroutine add_product
+   end subroutine add_node
 
    !> Numbers of the displacements of a pair of edges: first those of the slave's nodes, then those of the master's.
    pure function unknowns_of(geometry, slave, master) result(unknown)

@@ -5,8 +5,7 @@
 !>   pointwise gaps  p = eps <-g>.
 !> docs/theory/contact.md section 3.
 module contact_response
-   use contact_mortar, only: overlap_t, point_t, integration_point, hats, hat_slopes, POINTS, POSITION, SHARE, &
-                             END_POSITION, END_SHARE
+   use contact_mortar, only: overlap_t, point_t, pair_points, hats, hat_slopes, LARGEST_POINTS
    use contact_types, only: contact_options_t, NODAL_GAP
    use kinds, only: wp
    implicit none (type, external)
@@ -33,17 +32,14 @@ contains
       logical, intent(in) :: with_stiffness
       type(response_t), intent(out) :: response
       real(wp), intent(out) :: missed   !< [-]
-      type(point_t) :: p
-      real(wp) :: position_of(POINTS), share_of(POINTS), at_point, d_at_point(12), gap, d_nu(2, 12)
-      integer :: segment, k
+      type(point_t) :: points(LARGEST_POINTS)
+      real(wp) :: at_point, d_at_point(12), gap, d_nu(2, 12)
+      integer :: n, k
 
-      missed = 0.0_wp
-      position_of = merge(END_POSITION, POSITION, at_ends)
-      share_of = merge(END_SHARE, SHARE, at_ends)
-      do segment = 1, overlap%segments
-         do k = 1, POINTS
-            call integration_point(x, overlap, segment, position_of(k), share_of(k), options%axisymmetric, p, missed)
-            if (missed > 0.0_wp) return
+      call pair_points(x, overlap, at_ends, options%axisymmetric, points, n, missed)
+      if (missed > 0.0_wp) return
+      do k = 1, n
+         associate (p => points(k))
             if (options%gap == NODAL_GAP) then
                at_point = dot_product(hats(p%s), pressure)
                d_at_point = dot_product(hat_slopes(p%s), pressure)*p%d_s
@@ -58,7 +54,7 @@ contains
             d_nu(1, :) = p%d_t(2, :)
             d_nu(2, :) = -p%d_t(1, :)
             call add_work(p, [p%t(2), -p%t(1)], d_nu, at_point, d_at_point, with_stiffness, response)
-         end do
+         end associate
       end do
    end subroutine pair_response
 

@@ -4,17 +4,17 @@
 !> force of a wave that comes in. Without keys of their own the impedances are those of the elements at the boundary in
 !> the initial state, undrained. docs/theory/host.md section 7.4.
 module absorbing_boundaries
-   use kinds, only: wp, PI
    use dashpots, only: dashpots_t
+   use edge_points, only: edge_point_t, points_of_edge, PER_EDGE
    use exit_codes, only: EXIT_MATERIAL
    use faults, only: fault_t, raise
    use generalised_alpha, only: DYNAMIC
+   use kinds, only: wp
    use material_point, only: response_t, report_t
    use model_types, only: model_t, factor_at
    use permeability_laws, only: relative_t, relative_permeability
    use porous_domain, only: state_t, mixture_density, pressures_at, COUPLED, UNDRAINED
    use scene_types, only: place_of, acts_in, stage_t, absorber_t
-   use shape_functions, only: edge_quadratic, edge_rule
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)
@@ -191,34 +191,28 @@ contains
       integer, intent(in) :: edge(3)
       type(ground_t), intent(in) :: ground
       type(dashpots_t), intent(inout) :: one
-      real(wp) :: points(3), weights(3), n(3), dn(3), m(3), x(2, 3), at(2), normal(2), weight, block(2, 2)
-      real(wp) :: c(2, 2, 3, 3), h(3, 3)
+      type(edge_point_t) :: points(PER_EDGE)
+      real(wp) :: normal(2), block(2, 2), c(2, 2, 3, 3), h(3, 3)
       integer :: g, i, j, a, b
 
-      x = model%domain%mesh%x(:, edge)
       c = 0.0_wp
       h = 0.0_wp
-      call edge_rule(points, weights)
-      do g = 1, 3
-         call edge_quadratic(points(g), n, dn)
-         m = n
-         if (model%domain%n_p == 3) m = [0.5_wp*(1 - points(g)), 0.5_wp*(1 + points(g)), 0.0_wp]
-         at = matmul(x, n)
-         normal = matmul(x, dn)
-         weight = weights(g)*norm2(normal)
-         normal = [normal(2), -normal(1)]/norm2(normal)
-         if (model%domain%axisymmetric) weight = weight*2*PI*at(1)
-         do b = 1, 2
-            do a = 1, 2
-               block(a, b) = (ground%normal - ground%shear)*normal(a)*normal(b) + merge(ground%shear, 0.0_wp, a == b)
+      points = points_of_edge(model%domain, edge)
+      do g = 1, PER_EDGE
+         associate (n => points(g)%n, m => points(g)%m, tangent => points(g)%tangent, area => points(g)%area)
+            normal = [tangent(2), -tangent(1)]/norm2(tangent)
+            do b = 1, 2
+               do a = 1, 2
+                  block(a, b) = (ground%normal - ground%shear)*normal(a)*normal(b) + merge(ground%shear, 0.0_wp, a == b)
+               end do
             end do
-         end do
-         do j = 1, 3
-            do i = 1, 3
-               c(:, :, i, j) = c(:, :, i, j) + weight*n(i)*n(j)*block
-               h(i, j) = h(i, j) + weight*m(i)*m(j)
+            do j = 1, 3
+               do i = 1, 3
+                  c(:, :, i, j) = c(:, :, i, j) + area*n(i)*n(j)*block
+                  h(i, j) = h(i, j) + area*m(i)*m(j)
+               end do
             end do
-         end do
+         end associate
       end do
       associate (of => model%dofs%of)
          do j = 1, 3

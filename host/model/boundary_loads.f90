@@ -1,14 +1,14 @@
 ! SPDX-License-Identifier: MIT
 !> Load vectors: of a unit of every load once, of all loads at a moment.
 module boundary_loads
-   use kinds, only: wp, PI
+   use edge_points, only: edge_point_t, points_of_edge, PER_EDGE
+   use kinds, only: wp
    use given_pressures, only: edges_with_flow
    use model_types, only: model_t, factor_at, gravity_at
    use scene_types, only: acts_in, LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, &
                           LOAD_FORCE_R, stage_t, load_t, plate_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    use degrees_of_freedom, only: dofs_t, tie, tie_pairs
-   use shape_functions, only: edge_quadratic, edge_rule
    implicit none (type, external)
    private
    public :: shape_loads, ties_of, load_at, rain_at, plate_load
@@ -87,38 +87,35 @@ contains
       integer, intent(in) :: edge(3), kind
       real(wp), intent(in) :: base, slope
       real(wp), intent(inout) :: shape(:)
-      real(wp) :: points(3), weights(3), n(3), dn(3), m(3), x(2, 3), at(2), tangent(2), weight
+      type(edge_point_t) :: points(PER_EDGE)
+      real(wp) :: load
       integer :: g, i
 
-      x = model%domain%mesh%x(:, edge)
-      call edge_rule(points, weights)
-      do g = 1, 3
-         call edge_quadratic(points(g), n, dn)
-         m = n
-         if (model%domain%n_p == 3) m = [0.5_wp*(1 - points(g)), 0.5_wp*(1 + points(g)), 0.0_wp]
-         at = matmul(x, n)
-         tangent = matmul(x, dn)
-         weight = weights(g)*(base + slope*at(2))
-         if (model%domain%axisymmetric) weight = weight*2*PI*at(1)
-         do i = 1, 3
-            select case (kind)
-            case (LOAD_PRESSURE)
-               call add(AT_U_R, i, -n(i)*tangent(2)*weight)
-               call add(AT_U_Z, i, n(i)*tangent(1)*weight)
-            case (LOAD_SHEAR_R)
-               call add(AT_U_R, i, n(i)*norm2(tangent)*weight)
-            case (LOAD_SHEAR_Z)
-               call add(AT_U_Z, i, n(i)*norm2(tangent)*weight)
-            case (LOAD_WATER)
-               call add(AT_P_W, i, m(i)*norm2(tangent)*weight)
-            case (LOAD_RAIN)
-               ! It falls vertically, on what looks upwards.
-               call add(AT_P_W, i, m(i)*max(0.0_wp, -tangent(1))*weight)
-            case (LOAD_AIR)
-               call add(AT_P_W, i, m(i)*norm2(tangent)*weight)
-               call add(AT_P_C, i, m(i)*norm2(tangent)*weight)
-            end select
-         end do
+      points = points_of_edge(model%domain, edge)
+      do g = 1, PER_EDGE
+         associate (n => points(g)%n, m => points(g)%m, tangent => points(g)%tangent, area => points(g)%area, &
+                    ring => points(g)%ring)
+            load = base + slope*points(g)%x(2)
+            do i = 1, 3
+               select case (kind)
+               case (LOAD_PRESSURE)
+                  call add(AT_U_R, i, -n(i)*tangent(2)*ring*load)
+                  call add(AT_U_Z, i, n(i)*tangent(1)*ring*load)
+               case (LOAD_SHEAR_R)
+                  call add(AT_U_R, i, n(i)*area*load)
+               case (LOAD_SHEAR_Z)
+                  call add(AT_U_Z, i, n(i)*area*load)
+               case (LOAD_WATER)
+                  call add(AT_P_W, i, m(i)*area*load)
+               case (LOAD_RAIN)
+                  ! It falls vertically, on what looks upwards.
+                  call add(AT_P_W, i, m(i)*max(0.0_wp, -tangent(1))*ring*load)
+               case (LOAD_AIR)
+                  call add(AT_P_W, i, m(i)*area*load)
+                  call add(AT_P_C, i, m(i)*area*load)
+               end select
+            end do
+         end associate
       end do
    contains
       subroutine add(field, i, value)

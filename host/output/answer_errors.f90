@@ -11,7 +11,7 @@ module answer_errors
    use force_answers, only: force_answer_t
    use error_norms, only: PATH
    use generalised_alpha, only: DYNAMIC
-   use model_types, only: model_t
+   use model_types, only: accuracy_of, model_t
    use named_answers, only: is_prescribed
    use texts, only: short, whole
    use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
@@ -98,8 +98,7 @@ contains
       real(wp) :: change, error, largest, asked
       integer :: i, f
 
-      asked = 0.0_wp
-      if (any(model%stages%controlled)) asked = maxval(model%stages%accuracy, mask=model%stages%controlled)
+      asked = accuracy_of(model)
       largest = ALARMING_ERROR
       if (any(model%stages%kind == DYNAMIC) .and. .not. verified) largest = ALARMING_IN_MOTION
       if (asked > 0.0_wp) largest = BEYOND*asked

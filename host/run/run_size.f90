@@ -12,8 +12,8 @@ module run_size
 
    real(wp), parameter :: MEGABYTE = 1.0e6_wp, OF_A_NUMBER = 8.0_wp   !< [bytes]
 contains
-   !> One sentence; factors as large as the last ones made, 0 before a run. A run holds the state of the points twice,
-   !> before and after the step. Memory in MB of 1e6 bytes.
+   !> One sentence; factors as large as the last ones made, 0 before a run. Memory in MB of
+   !> 1e6 bytes.
    function size_of_run(model, run) result(text)
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
@@ -26,11 +26,9 @@ contains
             if (any(field == f)) text = text//', '//whole(count(field == f))//trim(merge(' p_w', ' p_c', f == AT_P_W))
          end do
       end associate
-      text = text//'); state of the points '//megabytes(2*(size(run%state%state) + size(run%state%stress) &
-             + size(run%state%e) + size(run%state%s) + size(run%state%s_rate)))//', matrices of the elements '// &
-             megabytes(size(run%assembly%k))//', matrix '//megabytes(size(run%pattern%col))
-      if (run%system%sparse%entries > 0.0_wp) text = text//', its factors '// &
-         short(run%system%sparse%entries*OF_A_NUMBER/MEGABYTE)//' MB'
+      text = text//'); state of the points '//megabytes(of_points(run))//', matrices of the elements '// &
+             megabytes(1.0_wp*size(run%assembly%k))//', matrix '//megabytes(1.0_wp*size(run%pattern%col))
+      if (run%system%sparse%entries > 0.0_wp) text = text//', its factors '//megabytes(run%system%sparse%entries)
       text = text//'.'
    end function size_of_run
 
@@ -39,14 +37,21 @@ contains
       type(run_t), intent(in) :: run
       real(wp) :: megabytes(2)
 
-      megabytes(1) = OF_A_NUMBER/MEGABYTE*(2.0_wp*(size(run%state%state) + size(run%state%stress) + size(run%state%e) &
-                     + size(run%state%s) + size(run%state%s_rate)) + size(run%assembly%k) + size(run%pattern%col))
+      megabytes(1) = OF_A_NUMBER/MEGABYTE*(of_points(run) + size(run%assembly%k) + size(run%pattern%col))
       megabytes(2) = OF_A_NUMBER/MEGABYTE*run%system%sparse%entries
    end function memory_of
 
+   !> Numbers of the state of all points, before and after the step.
+   pure real(wp) function of_points(run)
+      type(run_t), intent(in) :: run
+
+      of_points = 2.0_wp*(size(run%state%state) + size(run%state%stress) + size(run%state%e) + size(run%state%s) &
+                          + size(run%state%s_rate))
+   end function of_points
+
    !> So many numbers.
    function megabytes(numbers) result(text)
-      integer, intent(in) :: numbers
+      real(wp), intent(in) :: numbers
       character(:), allocatable :: text
 
       text = short(numbers*OF_A_NUMBER/MEGABYTE)//' MB'

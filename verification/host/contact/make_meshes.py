@@ -1,62 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Meshes of this page in Gmsh 4.1: blocks of 6-node triangles. As a program it writes blocks.msh, split.msh, hertz.msh and
 plate.msh; page.py makes finer ones with the same functions."""
-import pathlib
-
 import numpy as np
+from tools.gmsh import Mesh
 
 OVERLAP = 1e-6    # Bodies that nothing else holds begin so deep in each other: the contact is closed from the first iteration.
-
-
-class Mesh:
-    """Bodies of cells, each of two triangles, and their boundaries NAME_bottom, NAME_top, NAME_side; all left sides are `axis`."""
-
-    def __init__(self):
-        self.points, self.cells, self.edges = [], {}, {}
-
-    def block(self, name, r, z, shape=lambda r, z: (r, z)):
-        """Adds a body; shape moves its nodes, those in the middle of sides too."""
-        first = len(self.points)
-        wide, high = 2 * len(r) - 2, 2 * len(z) - 2
-        grid_r = np.interp(range(wide + 1), range(0, wide + 1, 2), r)
-        grid_z = np.interp(range(high + 1), range(0, high + 1, 2), z)
-        self.points += [shape(r, z) for z in grid_z for r in grid_r]
-
-        def nodes(*places):
-            return [first + 1 + (wide + 1) * j + i for i, j in places]
-
-        self.cells[name] = []
-        for j in range(0, high, 2):
-            for i in range(0, wide, 2):
-                self.cells[name].append(nodes((i, j), (i + 2, j), (i + 2, j + 2), (i + 1, j), (i + 2, j + 1), (i + 1, j + 1)))
-                self.cells[name].append(nodes((i, j), (i + 2, j + 2), (i, j + 2), (i + 1, j + 1), (i + 1, j + 2), (i, j + 1)))
-        for side, j in (("bottom", 0), ("top", high)):
-            self.edges[f"{name}_{side}"] = [nodes((i, j), (i + 2, j), (i + 1, j)) for i in range(0, wide, 2)]
-        for side, i in (("axis", 0), (f"{name}_side", wide)):
-            self.edges.setdefault(side, []).extend(nodes((i, j), (i, j + 2), (i, j + 1)) for j in range(0, high, 2))
-
-    def write(self, path):
-        n, names, used = len(self.points), list(self.edges), set(sum(sum(self.cells.values(), []), []))
-        assert len(used) == n
-        lines = ["$MeshFormat", "4.1 0 8", "$EndMeshFormat", "$PhysicalNames", str(len(names) + len(self.cells))]
-        lines += [f'1 {i} "{name}"' for i, name in enumerate(names, 1)]
-        lines += [f'2 {len(names) + i} "{name}"' for i, name in enumerate(self.cells, 1)]
-        lines += ["$EndPhysicalNames", "$Entities", f"0 {len(names)} {len(self.cells)} 0"]
-        lines += [f"{i} 0 0 0 1 2 0 1 {i} 0" for i in range(1, len(names) + 1)]
-        lines += [f"{i} 0 0 0 1 2 0 1 {len(names) + i} 0" for i in range(1, len(self.cells) + 1)]
-        lines += ["$EndEntities", "$Nodes", f"1 {n} 1 {n}", f"2 1 0 {n}"] + [str(i + 1) for i in range(n)]
-        lines += [f"{r:.12g} {z:.12g} 0" for r, z in self.points] + ["$EndNodes", "$Elements"]
-        total = sum(map(len, self.cells.values())) + sum(map(len, self.edges.values()))
-        lines.append(f"{len(names) + len(self.cells)} {total} 1 {total}")
-        tag = 0
-        for dimension, kind, lists in ((1, 8, self.edges), (2, 9, self.cells)):
-            for i, members in enumerate(lists.values(), 1):
-                lines.append(f"{dimension} {i} {kind} {len(members)}")
-                for member in members:
-                    tag += 1
-                    lines.append(" ".join(map(str, (tag, *member))))
-        lines.append("$EndElements")
-        pathlib.Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def graded(fine, cell, end, ratio):

@@ -1,15 +1,12 @@
 # SPDX-License-Identifier: MIT
 """A tilted block that falls on its corner: when contact acts, how deep the corner gets, and what a run says of it."""
 import math
-import pathlib
-import sys
 
 import numpy as np
 from tools import tables
+from tools.gmsh import Mesh
 from tools.page import Page, Tolerance
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "contact"))
-import make_meshes  # noqa: E402
 
 PAGE = Page(
     claim="a corner meets the contact in the step in which it arrives; mean gaps alone let it penetrate, with a warning",
@@ -32,7 +29,7 @@ def first_touch(folder):
 
 
 def check(bench):
-    mesh = make_meshes.Mesh()
+    mesh = Mesh()
     mesh.block("block", [0, 0.05, 0.1], [0, 0.05],
                lambda r, z: (1 + r * math.cos(TILT) - z * math.sin(TILT),
                              HEIGHT + r * math.sin(TILT) + z * math.cos(TILT)))

@@ -1,14 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Writes incline.msh, a block of 0.2 m by 0.04 m on a base, both turned by 20 degrees, and cylinder.msh, a half space of
 1 m and a cylinder of radius 10 m above it, cells of 5 mm where they touch."""
-import pathlib
-import sys
-
 import numpy as np
+from tools.gmsh import Mesh
 from tools.results import folder
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "contact"))
-from make_meshes import Mesh  # noqa: E402
 
 SLOPE, RADIUS, CELL = np.radians(20), 10.0, 0.005
 

@@ -3,6 +3,7 @@
 4.1."""
 import matplotlib.tri
 import numpy as np
+from tools import gmsh
 from tools.results import folder
 
 corners = [(0, 0), (1, 0), (1, 1), (0, 1)]
@@ -32,23 +33,4 @@ for pair, m in middles.items():
     for name, (axis, value) in zip(walls, ((1, 0), (0, 1), (1, 1), (0, 0))):
         if points[a][axis] == points[b][axis] == value:
             edges[name].append((a, b, m))
-lines = ["$MeshFormat", "4.1 0 8", "$EndMeshFormat", "$PhysicalNames", "5"]
-lines += [f'1 {i} "{name}"' for i, name in enumerate(edges, 1)] + ['2 9 "soil"', "$EndPhysicalNames"]
-lines += ["$Entities", "0 4 1 0"] + [f"{i} 0 0 0 1 1 0 1 {i} 0" for i in range(1, 5)] + ["1 0 0 0 1 1 0 1 9 0"]
-n = len(points)
-lines += ["$EndEntities", "$Nodes", f"1 {n} 1 {n}", f"2 1 0 {n}"] + [str(i + 1) for i in range(n)]
-lines += [f"{px:.16g} {py:.16g} 0" for px, py in points] + ["$EndNodes", "$Elements"]
-total = len(t6) + sum(map(len, edges.values()))
-lines.append(f"5 {total} 1 {total}")
-tag = 0
-for i, members in enumerate(edges.values(), 1):
-    lines.append(f"1 {i} 8 {len(members)}")
-    for member in members:
-        tag += 1
-        lines.append(" ".join(str(v) for v in (tag, *(m + 1 for m in member))))
-lines.append(f"2 1 9 {len(t6)}")
-for member in t6:
-    tag += 1
-    lines.append(" ".join(str(v) for v in (tag, *(int(m) + 1 for m in member))))
-lines.append("$EndElements")
-(folder(__file__) / "patch.msh").write_text("\n".join(lines) + "\n", encoding="utf-8")
+(folder(__file__) / "patch.msh").write_text(gmsh.text(points, {"soil": t6}, edges), encoding="utf-8")

@@ -3,6 +3,7 @@
 import random
 
 from host_runs import load, rho, sand
+from tools import gmsh
 
 STRESSES = "p_w=-{s} p_c={s} stress='geostatic' k_0=0.4"
 # The plate of the paper: radius 0.15 m, 11.1 kg, 6.5 kN. 32 elements.
@@ -120,19 +121,7 @@ def rectangle(xs, ys, move=lambda i, j, x, y: (x, y), bulge=0.0):
     if bulge:
         x, y = points[triangles[0][5]]
         points[triangles[0][5]] = (x + bulge * (xs[1] - xs[0]), y - bulge * (ys[1] - ys[0]))
-    lines = ["$MeshFormat", "4.1 0 8", "$EndMeshFormat", "$PhysicalNames", "5", *(f'1 {n} "{name}"' for n, name in enumerate(edges, 1)), '2 9 "soil"',
-             "$EndPhysicalNames", "$Entities", "0 4 1 0", *(f"{n} 0 0 0 1 1 0 1 {n} 0" for n in range(1, 5)), "1 0 0 0 1 1 0 1 9 0", "$EndEntities",
-             "$Nodes", f"1 {len(points)} 1 {len(points)}", f"2 1 0 {len(points)}", *(str(n + 1) for n in range(len(points))),
-             *(f"{x!r} {y!r} 0" for x, y in points), "$EndNodes", "$Elements"]
-    total = len(triangles) + sum(map(len, edges.values()))
-    lines.append(f"5 {total} 1 {total}")
-    tag = 0
-    for entity, members in enumerate([*edges.values(), triangles], 1):
-        lines.append(f"1 {entity} 8 {len(members)}" if entity < 5 else f"2 1 9 {len(members)}")
-        for member in members:
-            tag += 1
-            lines.append(" ".join(str(n) for n in (tag, *(m + 1 for m in member))))
-    return "\n".join(lines + ["$EndElements"]) + "\n"
+    return gmsh.text(points, {"soil": triangles}, edges, digits=17)
 
 
 def even(n):

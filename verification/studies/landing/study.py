@@ -19,9 +19,9 @@ import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
-sys.path[:0] = [str(ROOT / "verification"), str(ROOT / "common"), str(ROOT / "verification/host/contact")]
+sys.path[:0] = [str(ROOT / "verification"), str(ROOT / "common")]
 import tables  # noqa: E402
-from make_meshes import Mesh  # noqa: E402
+from tools.gmsh import Mesh  # noqa: E402
 
 COLUMNS = ("scene", "accuracy", "exit", "steps", "repeated", "seconds", "answer", "value", "reference", "reference_off",
            "error", "estimated")

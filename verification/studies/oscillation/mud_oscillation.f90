@@ -4,7 +4,7 @@ program mud_oscillation
    use, intrinsic :: iso_fortran_env, only: input_unit, output_unit, iostat_end, int64
    use oscillation_path, only: strain_at, direction_at, random_t, uniform, noise_steps, MAX_STEPS
    use kinds, only: wp
-   use oscillation_soil, only: soil_t, new_soil, step_soil, total, void_ratio
+   use walk_point, only: point_t, prepare, set_property, start, lead_components, go, state_of
    implicit none (type, external)
    character(40) :: id
    character(10) :: path, noise
@@ -58,17 +58,24 @@ contains
    !> Along the path to `last`, with events between `from` and `to`: equally spaced and sized, or at random places with
    !> exponentially distributed sizes of the same mean.
    subroutine run_case()
-      type(soil_t) :: soil
+      type(point_t) :: soil
       type(random_t) :: random
       real(wp) :: place(max(events, 1)), steps(6, MAX_STEPS), s, event_size
       logical :: failed
-      integer :: i, j, n, n_off
+      integer :: i, j, n
 
       random%seed = 7919_int64*seed
-      n_off = count(off /= '')
-      call new_soil([character(12) :: 'memory_rule', 'scheme', 'tolerance', 'rho_e', 'eps_hat', off(:n_off)], &
-                    [real(rule, wp), real(scheme, wp), tolerance, rho_e, eps_hat, (0.0_wp, i=1, n_off)], p, e, suction, &
-                    [.false., drained, drained, .false., drained .and. noise /= 'shear', drained], soil)
+      call prepare(soil)
+      call set_property(soil, 'memory_rule', real(rule, wp))
+      call set_property(soil, 'scheme', real(scheme, wp))
+      call set_property(soil, 'tolerance', tolerance)
+      call set_property(soil, 'rho_e', rho_e)
+      call set_property(soil, 'eps_hat', eps_hat)
+      do i = 1, count(off /= '')
+         call set_property(soil, off(i), 0.0_wp)
+      end do
+      call start(soil, [p, p, p, 0.0_wp, 0.0_wp, 0.0_wp], suction, e)
+      call lead_components(soil, [.false., drained, drained, .false., drained .and. noise /= 'shear', drained])
       do i = 1, events
          place(i) = from + (to - from)*real(i - 1, wp)/events
          if (random_events) place(i) = from + (to - from)*uniform(random)
@@ -90,14 +97,14 @@ contains
          if (failed) exit
       end do
       if (.not. failed) call go_on(soil, s, last, failed)
-      write (output_unit, '(a, ",", i0, 7(",", es14.7), 5(",", i0))') trim(id), merge(1, 0, failed), -soil%stress, &
-         void_ratio(soil), nint(total(soil, 'n_substep')), nint(total(soil, 'n_reject')), &
-         nint(total(soil, 'n_rate')), nint(total(soil, 'n_reset')), soil%halvings
+      write (output_unit, '(a, ",", i0, 7(",", es14.7), 5(",", i0))') trim(id), merge(1, 0, failed), soil%stress, &
+         state_of(soil, 'void_ratio'), nint(state_of(soil, 'n_substep')), nint(state_of(soil, 'n_reject')), &
+         nint(state_of(soil, 'n_rate')), nint(state_of(soil, 'n_reset')), soil%halvings
    end subroutine run_case
 
    !> Along the path to s = goal, in increments that end on multiples of the increment.
    subroutine go_on(soil, s, goal, failed)
-      type(soil_t), intent(inout) :: soil
+      type(point_t), intent(inout) :: soil
       real(wp), intent(inout) :: s
       real(wp), intent(in) :: goal
       logical, intent(inout) :: failed
@@ -107,24 +114,33 @@ contains
          next = min(goal, increment*(anint(s/increment) + 1.0_wp))
          if (anint(s/increment)*increment > s*(1.0_wp + 1.0e-9_wp)) next = min(goal, increment*anint(s/increment))
          if (path == 'unloading' .and. s < top .and. next > top) next = top
-         call step_soil(soil, strain_at(path, next, top) - strain_at(path, s, top), failed)
+         call step(soil, strain_at(path, next, top) - strain_at(path, s, top), failed)
          s = next
       end do
    end subroutine go_on
 
    !> A straight strain step in increments of the increment's length.
-   subroutine advance(soil, step, failed)
-      type(soil_t), intent(inout) :: soil
-      real(wp), intent(in) :: step(6)
+   subroutine advance(soil, way, failed)
+      type(point_t), intent(inout) :: soil
+      real(wp), intent(in) :: way(6)
       logical, intent(out) :: failed
       integer :: i, n
 
-      n = max(1, ceiling(maxval(abs(step))/increment - 1.0e-9_wp))
+      n = max(1, ceiling(maxval(abs(way))/increment - 1.0e-9_wp))
       do i = 1, n
-         call step_soil(soil, step/n, failed)
+         call step(soil, way/n, failed)
          if (failed) return
       end do
    end subroutine advance
+
+   !> An increment of strain with tensor shear; components that are led by their stress keep it.
+   subroutine step(soil, strain, failed)
+      type(point_t), intent(inout) :: soil
+      real(wp), intent(in) :: strain(6)
+      logical, intent(out) :: failed
+
+      call go(soil, 1, merge(0.0_wp, strain*[1, 1, 1, 2, 2, 2], soil%control%by_stress), 0.0_wp, failed)
+   end subroutine step
 
    pure subroutine sort(values)
       real(wp), intent(inout) :: values(:)
