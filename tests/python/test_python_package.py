@@ -604,7 +604,7 @@ def test_material_takes_a_set_by_its_name_and_replaces_that_of_the_case():
     )
     check(
         "the library has what its page lists",
-        {"toyoura", "toyoura_fitted", "karlsruhe", "hostun_retention", "hostun_hysteresis"} <= set(mud.materials()),
+        {"toyoura", "toyoura_fitted", "karlsruhe", "hostun_hysteresis"} <= set(mud.materials()),
     )
     for name in mud.materials():
         material = mud.Material(name)

@@ -15,7 +15,7 @@ from .misfit import scaled
 from .simulation import SETTINGS, Answer
 from .soundness import disagreeing, unloading
 from .task import Task
-from .variables import PINNED, Variable, meaning_of, poisson_ratio, start_of
+from .variables import PINNED, PINNED_WITH, Variable, meaning_of, poisson_ratio, start_of
 
 CONFIDENT = 1.96  # standard deviations of a 95 % interval
 UNDETERMINED = 2.0  # a 95 % interval that reaches from half to twice the value (of a share of the bounds: half of them)
@@ -256,7 +256,8 @@ def origin_of(name: str, diagnosis: Diagnosis, task: Task) -> str:
         return task.origins[name]
     pinned = PINNED.get(name, name)
     found = next((f for f in diagnosis.findings if f.variable.name == pinned and f.fitted), None)
-    follows = next((f for f in diagnosis.findings if f.variable.name in ("lambda", "alpha_csl") and f.fitted), None)
+    with_it = PINNED_WITH.get(name, ())
+    follows = next((f.variable.name for f in diagnosis.findings if f.variable.name in with_it and f.fitted), None)
     if found is not None:
         text = "fitted" if pinned == name else f"fitted as {pinned} = {found.value:.4g} ({meaning_of(pinned)})"
         text += f", 95 % {found.low:.3g} to {found.high:.3g}"
@@ -265,6 +266,6 @@ def origin_of(name: str, diagnosis: Diagnosis, task: Task) -> str:
             + ("" if found.determined else ", not determined by these tests")
             + (f", at its {found.at_bound} bound" if found.at_bound else "")
         )
-    if name in PINNED and follows is not None:
-        return f"{pinned} of the start kept while lambda was fitted"
+    if follows is not None:
+        return f"{pinned} of the start kept while {follows} was fitted"
     return f"of material {task.start}" if task.start else "default of the library"

@@ -17,9 +17,11 @@ from .diagnosis import origin_of
 from .ensemble import LEVEL
 from .fit import PRIOR
 from .misfit import ROBUST, Misfit
+from .simulation import turns
 from .task import Item, Task
 
 PAGE = 6  # tests a picture
+NUMERICS = ("scheme", "tolerance", "eps_hat", "j_exp", "max_substeps")
 
 
 def write_material(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
@@ -37,15 +39,10 @@ def write_material(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
     ]
     for name, entry in parameters.items():
         value = result.material[name]
-        # Switches and numerical settings are left to the library, as a material file does not contain them.
-        if (
-            entry.origin in ("paper", "mended")
-            and not entry.options
-            and name not in ("scheme", "tolerance", "eps_hat", "j_exp")
-            and not (
-                entry.lower == 0 and entry.upper == 1 and entry.default in (0.0, 1.0) and name not in ("S_min", "S_max")
-            )
-        ):
+        # Numerical settings and switches are left to the library; a switch that the start or the tests have moved is kept.
+        switch = entry.lower == 0 and entry.upper == 1 and entry.default in (0.0, 1.0) and name not in ("S_min", "S_max")
+        usual = entry.origin in ("paper", "mended") and not switch
+        if (usual or value != entry.default) and not entry.options and name not in NUMERICS:
             lines.append(f"   {name} = {value:.6g}".ljust(26) + f"! {origin_of(name, result.diagnosis, task)}")
     path.write_text("\n".join([*lines, "/", ""]), encoding="utf-8")
     return path
@@ -255,7 +252,8 @@ def _fitted_sections(result: Calibration) -> list[str]:
         "",
         "The last column but one is the sensitivity: rms over the curves, in standard deviations of what was measured. "
         "`e_c100` is the critical void ratio at 100 kPa and stands for N_c; `e_l10` the void ratio of the compression line at "
-        "10 MPa and stands for N_l. "
+        "10 MPa and stands for N_l; `P_aw_ratio`, `n_w_share` and `m_w_ratio` are where the main wetting curve lies beside the "
+        "drying curve. "
         + (
             f"Intervals are those of an ensemble of {len(ensemble.members)} sets drawn about the minima and weighted by their "
             f"misfit ({ensemble.effective:.0f} of them count"
@@ -460,18 +458,21 @@ def _draw(axis, result: Calibration, item: Item, x: str, y: str, colour: str) ->
         return False
     model_x = answer.columns["p"] if x == "p" and y == "q" else test[x][rows]
     axis.plot(across * test[x][rows], up * test[y][rows], "o", ms=3, color=colour, mfc="white", mew=0.8)
-    hysteresis = test.kind == "retention" and result.material["hysteresis"] != 0
+    hysteresis = item.use.turning and result.material["hysteresis"] != 0
     sorts = test.kind in ("retention", "stiffness", "modulus") and not hysteresis
     order = np.argsort(model_x, kind="stable") if sorts else slice(None)
     axis.plot(across * model_x[order], up * answer.columns[y][order], color=colour)
     band = result.ensemble.bands[test.name].get(y) if result.ensemble and x != "p" else None
     if band is None:
         return False
-    turn = int(np.argmax(test[x][rows])) + 1 if test.kind in ("oedometer", "isotropic") else len(rows)
-    along = np.argsort(test[x][rows][:turn], kind="stable")  # of a loop the first loading
-    axis.fill_between(
-        across * test[x][rows][:turn][along], up * band.low[:turn][along], up * band.high[:turn][along], color=colour, alpha=0.15, lw=0
-    )
+    if hysteresis:
+        branches = [slice(a, b + 1) for a, b in zip(*turns(test[x][rows]))]
+    else:  # of a loop the first loading
+        branches = [slice(0, int(np.argmax(test[x][rows])) + 1 if test.kind in ("oedometer", "isotropic") else len(rows))]
+    for branch in branches:
+        along = np.argsort(test[x][rows][branch], kind="stable")
+        low, high = up * band.low[branch][along], up * band.high[branch][along]
+        axis.fill_between(across * test[x][rows][branch][along], low, high, color=colour, alpha=0.15, lw=0)
     return True
 
 

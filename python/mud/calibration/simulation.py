@@ -46,6 +46,7 @@ class Use:
     start: int  #: row at which the model starts
     scatter: dict[str, tuple[float, float]]  #: quantity -> (absolute, share of the value): standard deviation
     note: str = ""  #: what was left out without being asked for
+    turning: bool = False  #: of retention: the suction turns among these rows, so that they tell the scanning curves
 
 
 # Standard deviation of what a laboratory measures: (absolute, as a share of the value). Stresses in kPa. Void ratio in
@@ -106,7 +107,8 @@ def use_of(
     if used.sum() < 1:
         raise InputError(f"{test.source}, test {test.name}: no row between {first} and {last}")
     quantities = {q: s for q, s in {**SCATTER[test.kind], **(scatter or {})}.items() if q in test}
-    return Use(np.flatnonzero(used), start, quantities, note)
+    turning = test.kind == "retention" and {-1.0, 1.0} <= set(np.sign(np.diff(lead[used])).tolist())
+    return Use(np.flatnonzero(used), start, quantities, note, turning)
 
 
 def simulate(material: Material, test: LaboratoryTest, use: Use) -> Answer:
@@ -248,7 +250,7 @@ def _course(material: Material, test: LaboratoryTest, use: Use) -> tuple[list[St
                 increment=abs(b - a) / STRESS_INCREMENTS,
                 output_interval=abs(b - a) / STRESS_INCREMENTS,
             )
-            for turn, end in zip(*_turns(stresses))
+            for turn, end in zip(*turns(stresses))
             for a, b in _pieces(float(stresses[turn]), float(stresses[end]))
         ]
         first = float(stresses[0])
@@ -269,13 +271,13 @@ def _course(material: Material, test: LaboratoryTest, use: Use) -> tuple[list[St
     return stages, {"p_eff": start, "void_ratio": test.e_0, "suction": test.suction}
 
 
-def _turns(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def turns(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Rows at which the branches of a path begin and end."""
     way = np.sign(np.diff(values))
     for i in range(1, len(way)):  # a value that is there twice goes on as before
         way[i] = way[i] or way[i - 1]
-    turns = np.flatnonzero(way[1:] * way[:-1] < 0) + 1
-    return np.concatenate([[0], turns]), np.concatenate([turns, [len(values) - 1]])
+    inside = np.flatnonzero(way[1:] * way[:-1] < 0) + 1
+    return np.concatenate([[0], inside]), np.concatenate([inside, [len(values) - 1]])
 
 
 def _pieces(a: float, b: float) -> list[tuple[float, float]]:
@@ -306,7 +308,7 @@ def _at_rows(test: LaboratoryTest, use: Use, result: TestResult) -> dict[str, np
     stress = np.log(np.maximum(result["sigma_a" if test.kind == "oedometer" else "p_eff"], 1e-9))
     at = np.log(test["sigma_a" if test.kind == "oedometer" else "p"][np.concatenate([[use.start], use.rows])])
     answer = {n: np.full(len(at), np.nan) for n in names}
-    for mine, theirs in zip(zip(*_turns(at)), zip(*_turns(stress))):  # branch by branch
+    for mine, theirs in zip(zip(*turns(at)), zip(*turns(stress))):  # branch by branch
         rows, path = slice(mine[0], mine[1] + 1), slice(theirs[0], theirs[1] + 1)
         way = np.sign(at[mine[1]] - at[mine[0]])
         for n in names:

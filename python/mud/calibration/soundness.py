@@ -13,7 +13,7 @@ from ..errors import MudError
 from ..material import Material
 from .fit import PRIOR, Fit
 from .misfit import scaled
-from .simulation import Answer, _turns, earth_pressure
+from .simulation import Answer, turns, earth_pressure
 from .task import Item
 
 LOADED, UNLOADED = 400.0, 50.0  # [kPa] axial stress of the compression that is looked at: overconsolidation 8
@@ -35,7 +35,7 @@ def unloading(material: Material, items: Sequence[Item], answers: Mapping[str, A
             continue
         rows = item.use.rows
         stress = test["sigma_a" if test.kind == "oedometer" else "p"][rows]
-        begin, end = _turns(stress)
+        begin, end = turns(stress)
         for a, b in zip(begin, end):
             if stress[b] < stress[a]:
                 measured, computed = test["e"][rows][b] - test["e"][rows][a], answer.columns["e"][b] - answer.columns["e"][a]

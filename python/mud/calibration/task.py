@@ -57,6 +57,10 @@ class Task:
         self.base = dict(Material(self.start).items())
         values, self.origins = known_parameters(self.known, self.base)
         self.base.update({k: v for k, v in values.items() if k in self.base})
+        turning = [item.test.name for item in self.fitted() if item.test.kind == "retention" and item.use.turning]
+        if turning and "hysteresis" not in values:
+            self.base["hysteresis"] = 1.0
+            self.origins["hysteresis"] = f"the suction of {', '.join(turning)} turns"
         self.base.update({UNKNOWN + i.test.name: i.test.e_0 for i in self.items if i.test.unknown_e_0})
         self.fixed_variables = {k: v for k, v in values.items() if k not in self.base}
         for name in self.bounds:
@@ -86,7 +90,7 @@ class Task:
         ]
         return [
             dataclasses.replace(v, lower=bounds[v.name][0], upper=bounds[v.name][1]) if v.name in bounds else v
-            for v in [*chosen(kinds, unsaturated, [*self.origins], self.groups), *unknown]
+            for v in [*chosen(kinds, unsaturated, self.base["hysteresis"] != 0, [*self.origins], self.groups), *unknown]
         ]
 
 

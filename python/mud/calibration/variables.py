@@ -112,6 +112,12 @@ VARIABLES = {
         Variable("n_x", GROUPS[5], 1.0, 20.0, True),
         Variable("m_x", GROUPS[5], 0.05, 10.0, True),
         Variable("S_min", GROUPS[5], 0.0, 0.4, False),
+        Variable("S_max", GROUPS[5], 0.7, 1.0, False),
+        Variable("P_aw_ratio", GROUPS[5], 0.05, 1.0, True, "1", "P_aw/P_a of the main wetting and drying curves"),
+        Variable("n_w_share", GROUPS[5], 0.02, 1.0, True, "1", "(n_w - 1)/(n_x - 1) of the two main curves"),
+        Variable("m_w_ratio", GROUPS[5], 1.0, 10.0, True, "1", "m_w/m_x of the two main curves"),
+        Variable("b_d", GROUPS[5], 0.05, 50.0, True),
+        Variable("b_w", GROUPS[5], 1.001, 50.0, True),
         Variable("b_1", GROUPS[6], 0.0, 3.0, False),
         Variable("b_2", GROUPS[6], 0.0, 3.0, False),
     )
@@ -119,7 +125,11 @@ VARIABLES = {
 #: What the name of an unknown void ratio begins with; behind it comes the name of the test.
 UNKNOWN = "e_0 of "
 #: Parameters of the library that are pinned by a variable of another name.
-PINNED = {"N_c": "e_c100", "N_l": "e_l10"}
+PINNED = {"N_c": "e_c100", "N_l": "e_l10", "P_aw": "P_aw_ratio", "n_w": "n_w_share", "m_w": "m_w_ratio"}
+#: With these a pinned parameter is known, so that its variable is.
+PINNED_WITH = {"N_c": ("lambda", "alpha_csl"), "N_l": ("lambda",), "P_aw": ("P_a",), "n_w": ("n_x",), "m_w": ("m_x",)}
+#: Variables that act with hydraulic hysteresis alone.
+WETTING = ("P_aw_ratio", "n_w_share", "m_w_ratio", "b_d", "b_w")
 
 
 def meaning_of(name: str) -> str:
@@ -130,19 +140,28 @@ def meaning_of(name: str) -> str:
 
 
 def parameters_of(values: Mapping[str, float], base: Mapping[str, float]) -> dict[str, float]:
-    """Parameters of the library: ``base`` with the values of variables; N_c and N_l of their pins, which hold if lambda moves."""
+    """Parameters of the library: ``base`` with the values of variables; N_c and N_l of their pins, which hold if lambda moves,
+    and with hysteresis the main wetting curve, which stays where it lies beside the drying curve."""
     answer = {**base, **{k: v for k, v in values.items() if k not in PINNED.values()}}
     pins = {**pins_of(base), **{k: v for k, v in values.items() if k in PINNED.values()}}
     answer["N_c"] = pins["e_c100"] * (P_CRITICAL + answer["alpha_csl"]) ** answer["lambda"]
     answer["N_l"] = pins["e_l10"] * P_COMPRESSION ** answer["lambda"]
+    if answer["hysteresis"]:
+        answer["P_aw"] = pins["P_aw_ratio"] * answer["P_a"]
+        answer["n_w"] = 1 + pins["n_w_share"] * (answer["n_x"] - 1)
+        answer["m_w"] = pins["m_w_ratio"] * answer["m_x"]
     return {k: v for k, v in answer.items() if not k.startswith(UNKNOWN)}
 
 
 def pins_of(base: Mapping[str, float]) -> dict[str, float]:
-    """Void ratios that the two lines have at their pins."""
+    """Void ratios that the two lines have at their pins, and where the main wetting curve lies beside the drying curve (0 of
+    P_aw, n_w and m_w: half of P_a, n_x, m_x)."""
     return {
         "e_c100": base["N_c"] * (P_CRITICAL + base["alpha_csl"]) ** -base["lambda"],
         "e_l10": base["N_l"] * P_COMPRESSION ** -base["lambda"],
+        "P_aw_ratio": base["P_aw"] / base["P_a"] or 0.5,
+        "n_w_share": (base["n_w"] - 1) / (base["n_x"] - 1) if base["n_w"] and base["n_x"] > 1 else 1.0,
+        "m_w_ratio": base["m_w"] / base["m_x"] or 1.0,
     }
 
 
@@ -193,11 +212,10 @@ def known_parameters(known: Mapping[str, float], base: Mapping[str, float]) -> t
     for position, pin in PINNED.items():
         if position not in values:
             continue
-        with_it = ("lambda", "alpha_csl") if position == "N_c" else ("lambda",)
-        for name in with_it:
+        for name in PINNED_WITH[position]:
             if name not in values:
                 raise InputError(
-                    f"known: {position} is the position of a line: give {' and '.join(with_it)} with it, or {pin} "
+                    f"known: {position} acts together with {' and '.join(PINNED_WITH[position])}: give that too, or {pin} "
                     f"({meaning_of(pin)}) in its place"
                 )
         values[pin], origins[pin] = pins_of({**base, **values})[pin], "known"
@@ -205,7 +223,7 @@ def known_parameters(known: Mapping[str, float], base: Mapping[str, float]) -> t
 
 
 def chosen(
-    kinds: set[str], unsaturated: bool, known: Sequence[str], groups: Sequence[str] | None = None
+    kinds: set[str], unsaturated: bool, hysteresis: bool, known: Sequence[str], groups: Sequence[str] | None = None
 ) -> list[Variable]:
     """Variables that are fitted: of groups that the tests depend on, without what is known."""
     if groups is not None:
@@ -217,5 +235,6 @@ def chosen(
         for v in VARIABLES.values()
         if v.name not in known
         and (groups is None or v.group in groups)
+        and (hysteresis or v.name not in WETTING)
         and (SPEAKS[v.group] & kinds or v.group == "bonding" and unsaturated)
     ]
