@@ -14,7 +14,9 @@ os.environ["MUD_LIBRARY_DIR"] = str(build)
 os.environ["MPLBACKEND"] = "Agg"
 sys.path[:0] = [str(root / "python")]
 import mud  # noqa: E402
-from mud.calibration import Effort, answers_of, calibrate, evaluate, make_task, misfits_of, write_material, write_report  # noqa: E402
+from mud.calibration import (  # noqa: E402
+    Effort, answers_of, calibrate, evaluate, make_task, misfits_of, write_material, write_report,
+)
 from mud.calibration.simulation import SETTINGS  # noqa: E402
 
 sand = mud.Material("toyoura")
@@ -39,7 +41,8 @@ loops = {"file": root / "calibration/data/hostun_sand_retention_loops.csv", "kin
 def test_loops_of_retention_are_fitted_with_hysteresis():
     # The main wetting curve and the scanning slopes come back from a path that the model made.
     truth = mud.Material("hostun_hysteresis")
-    path = np.concatenate([np.geomspace(0.1, 3, 20), np.geomspace(3, 1, 10), np.geomspace(1, 50, 15), np.geomspace(50, 0.1, 25)])
+    branches = ((0.1, 3, 20), (3, 1, 10), (1, 50, 15), (50, 0.1, 25))
+    path = np.concatenate([np.geomspace(*branch) for branch in branches])
     table = written("retention_loops.csv", "suction_kPa,S_w\n" + "".join(f"{s:.10f},0.5\n" for s in path))
     _, answer = missed(table, truth)
     lines = "".join(f"{s:.10f},{sw:.10f}\n" for s, sw in zip(path, answer.columns["S_w"]))
@@ -53,8 +56,8 @@ def test_loops_of_retention_are_fitted_with_hysteresis():
         check(f"{name} comes back", abs(off) < 0.03, (name, result.material[name], truth[name]))
     page = write_report(result, work / "h")
     file = mud.Material(write_material(result, work / "h"))
-    check("the material file has the wetting curve", file["hysteresis"] == 1 and abs(file["P_aw"] / result.material["P_aw"]
-          - 1) < 1e-5, (page, dict(file.items())))
+    off = abs(file["P_aw"] / result.material["P_aw"] - 1)
+    check("the material file has the wetting curve", file["hysteresis"] == 1 and off < 1e-5, (page, dict(file.items())))
 
     # One curve on request; a known wetting curve needs the drying curve beside which it lies.
     one = make_task("h", [table], known={"Omega": 0.0, "hysteresis": 0.0})
