@@ -52,9 +52,10 @@ def props(**changes):
 
 
 def statev(**presets):
-    """Zeros, which the first update initialises, but for the presets (void_ratio, suction)."""
+    """Zeros, which the first update initialises, but for the presets (void_ratio, suction); as many as a point without
+    hysteresis needs."""
     library = mud()
-    values = [0.0]*library.mud_count(MUD_STATEV)
+    values = [0.0]*library.mud_prepared_statev(prepare(props()))
     for name, value in presets.items():
         index = library.mud_index(MUD_STATEV, name.encode())
         if index < 0:
@@ -74,12 +75,19 @@ def describe(host):
     return subprocess.run(command, check=True, capture_output=True, text=True, timeout=60).stdout
 
 
-def saturation(suction, void_ratio):
-    """Degree of saturation of the default material."""
-    library, values = mud(), props()
+def prepare(values):
+    """A prepared material of PROPS."""
+    library = mud()
     prepared = (ctypes.c_double*library.mud_prepared_size())()
     array = (ctypes.c_double*len(values))(*values)
-    library.mud_prepare(array, len(array), prepared, len(prepared), None, 0)
+    if library.mud_prepare(array, len(array), prepared, len(prepared), None, 0) != 0:
+        sys.exit("mud_prepare failed")
+    return prepared
+
+
+def saturation(suction, void_ratio):
+    """Degree of saturation of the default material."""
+    library, prepared = mud(), prepare(props())
     library.mud_saturation.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_double] + [ctypes.c_void_p]*3
     answer = ctypes.c_double()
     if library.mud_saturation(prepared, suction, void_ratio, ctypes.byref(answer), None, None) != 0:

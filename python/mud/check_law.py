@@ -119,6 +119,20 @@ def _numbers(text: str) -> list[float]:
     return [float(word) for word in text.replace(",", " ").split()]
 
 
+def _room_for_state(law: Law) -> None:
+    """A model of PLAXIS says how many state variables it has: as many are taken, fewer are refused."""
+    try:
+        told = apart(law.told, seconds=20.0)
+    except (OSError, AttributeError, Ended) as problem:
+        raise ValueError(f"{law.library} cannot be called as a {law.kind}: {problem}") from problem
+    if told is None:
+        return
+    if law.n_state == 0:
+        law.n_state = told.n_state
+    elif law.n_state < told.n_state:
+        raise ValueError(f"--nstatv is {law.n_state}; the law says that it has {told.n_state} (IDTASK 4): name these")
+
+
 def main(words: Sequence[str] | None = None) -> int:
     """The command. Exit codes: 0 no fault, 1 faults, 2 it could not be asked."""
     parser = argparse.ArgumentParser(prog="mud_check_law", description=__doc__.split("\n\n")[0].replace("``", ""))
@@ -126,7 +140,7 @@ def main(words: Sequence[str] | None = None) -> int:
     parser.add_argument("--kind", choices=sorted(SYMBOLS), default="umat")
     parser.add_argument("--symbol", default="", help="default: " + ", ".join(f"{k}: {v}" for k, v in SYMBOLS.items()))
     parser.add_argument("--props", type=_numbers, default=[], help="PROPS in their order, separated by commas")
-    parser.add_argument("--nstatv", type=int, default=0, help="number of state variables")
+    parser.add_argument("--nstatv", type=int, default=0, help="number of state variables; UDSM: the law's own")
     parser.add_argument("--statev", type=_numbers, default=None, help="state variables at the start; default zeros")
     parser.add_argument("--stress", type=_numbers, default=[-100.0] * 3, help="at the start, tension positive: 3 or 6")
     parser.add_argument("--suction", type=float, default=0.0, help="PREDEF(1)")
@@ -156,6 +170,7 @@ def main(words: Sequence[str] | None = None) -> int:
             start_state=given.statev,
         )
         at = Setting(np.array(list(given.stress) + [0.0] * (6 - len(given.stress))), given.reach, given.increments)
+        _room_for_state(law)
         findings = check_law(law, at, given.only, lambda line: print(line, flush=True))
     except ValueError as problem:
         print(f"mud_check_law: {problem}", file=sys.stderr)

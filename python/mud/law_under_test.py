@@ -24,7 +24,7 @@ SYMBOLS = {"umat": "umat_", "udsm": "user_mod_"}
 NAME = b"LAW".ljust(80)
 _GUARD = 64  # doubles before and behind every array
 _MARK = -7.077e273
-_INITIALISE, _STRESSES, _STIFFNESS = 1, 2, 3
+_INITIALISE, _STRESSES, _STIFFNESS, _HOW_MANY, _ATTRIBUTES = 1, 2, 3, 4, 5
 
 
 @dataclass
@@ -48,6 +48,15 @@ class Answer:
     @property
     def refused(self) -> bool:
         return self.cut or not self.finite
+
+
+@dataclass(frozen=True)
+class Told:
+    """What a model of PLAXIS says of itself (IDTASK 4 and 5): 1 or 0, but for the number of state variables."""
+
+    n_state: int
+    non_symmetric: int
+    tangent: int
 
 
 class Guarded:
@@ -222,50 +231,77 @@ class Law:
         sig0[:6] = self._to_law(stress, False)
         d_eps = np.zeros(12)
         d_eps[:6], d_eps[6:] = self._to_law(d_strain, True), self._to_law(strain, True)
-        kept = {
-            "Props": Guarded(np.resize(np.asarray(self.props, dtype=float), 50) * (np.arange(50) < len(self.props))),
+        door = _PlaxisDoor(self, sig0, state, d_eps, dt, time)
+        if not np.any(np.asarray(state) != 0.0):
+            door.ask(_INITIALISE)
+        door.ask(_STRESSES)
+        door.ask(_STIFFNESS)
+        return Answer(
+            self._from_law(door.free["Sig"].values, stress),
+            door.free["StVar"].values[: self.n_state].copy(),
+            self._tangent(door.free["D"].values),
+            0.5 if door.aborted else 1.0,
+            door.broken,
+        )
+
+    def told(self) -> Told | None:
+        """What a model of PLAXIS says of itself; None of a UMAT."""
+        if self.kind != "udsm":
+            return None
+        door = _PlaxisDoor(self, np.zeros(20), np.zeros(max(self.n_state, 1)), np.zeros(12), 0.0, 0.0)
+        door.ask(_HOW_MANY)
+        n_state = door.numbers[1].value
+        door.ask(_ATTRIBUTES)
+        return Told(n_state, door.numbers[2].value, door.numbers[5].value)
+
+
+class _PlaxisDoor:
+    """The arguments of User_Mod for one point."""
+
+    def __init__(self, law: Law, sig0: np.ndarray, state: np.ndarray, d_eps: np.ndarray, dt: float, time: float):
+        n = len(law.props)
+        self.law = law
+        self.kept = {
+            "Props": Guarded(np.resize(np.asarray(law.props, dtype=float), 50) * (np.arange(50) < n)),
             "Sig0": Guarded(sig0),
             "dEps": Guarded(d_eps),
         }
-        free = {
+        self.free = {
             "StVar0": Guarded(state if len(state) else [0.0]),
             "D": Guarded(np.zeros(36)),
             "Sig": Guarded(np.zeros(6)),
-            "StVar": Guarded(np.zeros(max(self.n_state, 1))),
+            "StVar": Guarded(np.zeros(max(law.n_state, 1))),
         }
-        scalars = [Guarded([x]) for x in (0.0, 0.0, 0.0, time, dt)]
-        swp0, bulk, swp = Guarded([0.0]), Guarded([0.0]), Guarded([0.0])
-        abort = 0
-        for task in (_INITIALISE, _STRESSES, _STIFFNESS):
-            if task == _INITIALISE and np.any(np.asarray(state) != 0.0):
-                continue
-            i = [ctypes.c_int(x) for x in (task, 1, 0, 1, 1, 1, 1)]
-            o = [ctypes.c_int(x) for x in (0, self.n_state, 0, 0, 0, 0, 0, 0, 0)]
-            self.load()(
-                *[ctypes.byref(x) for x in i],
-                *[x.pointer for x in scalars],
-                kept["Props"].pointer,
-                kept["Sig0"].pointer,
-                swp0.pointer,
-                free["StVar0"].pointer,
-                kept["dEps"].pointer,
-                free["D"].pointer,
-                bulk.pointer,
-                free["Sig"].pointer,
-                swp.pointer,
-                free["StVar"].pointer,
-                *[ctypes.byref(x) for x in o],
-            )
-            abort = abort or o[-1].value
-        broken = [f"{name} beyond its end" for name, x in {**kept, **free}.items() if not x.intact]
-        broken += [name for name, x in kept.items() if x.changed]
-        return Answer(
-            self._from_law(free["Sig"].values, stress),
-            free["StVar"].values[: self.n_state].copy(),
-            self._tangent(free["D"].values),
-            0.5 if abort else 1.0,
-            tuple(broken),
+        self._scalars = [Guarded([x]) for x in (0.0, 0.0, 0.0, time, dt)]
+        self._water = [Guarded([0.0]) for _ in range(3)]  # pressure before, bulk modulus, pressure after
+        # ipl, nStat, NonSym, iStrsDep, iTimeDep, iTang, iPrjDir, iPrjLen, iAbort
+        self.numbers = [ctypes.c_int(x) for x in (0, law.n_state, 0, 0, 0, 0, 0, 0, 0)]
+        self.aborted = False
+
+    def ask(self, task: int) -> None:
+        before = [ctypes.c_int(x) for x in (task, 1, 0, 1, 1, 1, 1)]
+        kept, free, (swp0, bulk, swp) = self.kept, self.free, self._water
+        self.law.load()(
+            *[ctypes.byref(x) for x in before],
+            *[x.pointer for x in self._scalars],
+            kept["Props"].pointer,
+            kept["Sig0"].pointer,
+            swp0.pointer,
+            free["StVar0"].pointer,
+            kept["dEps"].pointer,
+            free["D"].pointer,
+            bulk.pointer,
+            free["Sig"].pointer,
+            swp.pointer,
+            free["StVar"].pointer,
+            *[ctypes.byref(x) for x in self.numbers],
         )
+        self.aborted = self.aborted or self.numbers[-1].value != 0
+
+    @property
+    def broken(self) -> tuple[str, ...]:
+        beyond = [f"{name} beyond its end" for name, x in {**self.kept, **self.free}.items() if not x.intact]
+        return (*beyond, *[name for name, x in self.kept.items() if x.changed])
 
 
 class Ended(Exception):

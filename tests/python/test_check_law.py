@@ -5,13 +5,14 @@ import os
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from checking import build, check, needs_release, root, work
 
 needs_release("the program is Python and the law is planted: one build runs them")
 environment = {**os.environ, "MUD_LIBRARY_DIR": str(build), "PYTHONPATH": str(root / "python"), "MPLBACKEND": "Agg",
                "MUD_MESSAGES": "off"}
-# Mistake of planted_law.c, its check, and words of the sentence.
+# Mistake of planted_law.c, its check, and words of the sentence. Two are notes: they are right in some hosts.
 PLANTED = (
     (1, "increments", "off those of"),
     (2, "tangent", "neither the derivative"),
@@ -30,7 +31,10 @@ PLANTED = (
     (14, "oscillation", "forgets its process of loading"),
     (15, "arrays", "DSTRAN"),
     (16, "first call", "zero, singular or not finite"),
+    (17, "large increments", "the strain is lost without a word"),
+    (18, "tangent", "one stiffness for loading and unloading"),
 )
+NOTES = (10, 18)
 
 
 def run(library, *words):
@@ -46,7 +50,7 @@ sys.path[:0] = [str(root / "python")]
 os.environ["MUD_LIBRARY_DIR"] = str(build)
 os.environ["MPLBACKEND"] = "Agg"
 import mud  # noqa: E402
-from mud import check_law  # noqa: E402
+from mud import check_law, law_checks  # noqa: E402
 
 
 def test_a_law_without_mistakes_has_no_fault():
@@ -62,6 +66,8 @@ def test_a_law_without_mistakes_has_no_fault():
     links = [word.split(")")[0] for word in report.read_text().split("](")[1:]] if report.exists() else []
     check("the report has pictures and cases, and they exist", len(links) >= 4
           and all((work / "clean" / link).stat().st_size for link in links), links)
+    cases = sorted(case.name for case in (work / "clean").glob("*.nml"))
+    check("every finding that a path of strain shows has its case", len(cases) >= 8, cases)
     for case in (work / "clean").glob("*.nml"):
         done = subprocess.run([build / "drivers/mud_triax", case, "--output", work / "case.csv", "--quiet"],
                               capture_output=True, text=True)
@@ -74,8 +80,9 @@ def test_a_planted_mistake_is_found(mistake, name, words, capsys):
     code = check_law.main([str(build / "tests/umats/planted_law.so"), f"--props={mistake},4000,8000,20,2000",
                            "--nstatv=13", f"--only={name}", f"--output={work / f'planted_{mistake}_{name}'}"])
     told = capsys.readouterr().out
-    lines = [line for line in told.splitlines() if line.startswith("fault")]
-    check(f"planted mistake {mistake} is found by '{name}'", code == 1
+    verdict = "note" if mistake in NOTES else "fault"
+    lines = [line for line in told.splitlines() if line.startswith(verdict)]
+    check(f"planted mistake {mistake} is found by '{name}'", code == (verdict == "fault")
           and any(f" {name}: " in line and words in line for line in lines), told)
 
 
@@ -90,6 +97,14 @@ def test_mud_as_plaxis_calls_it_has_no_fault():
     done = run(build / "umat/libmud.so", "--kind=udsm", f"--props={sand}", f"--nstatv={len(mud.states)}",
                *(f"--only={name}" for name in ("first call", "arrays", "conventions", "increments", "restart")))
     check("MUD as PLAXIS calls it has no fault", done.returncode == 0, done.stdout + done.stderr)
+    done = run(build / "umat/libmud.so", "--kind=udsm", f"--props={sand}", "--only=speed")
+    took = float(done.stdout.split("speed: ")[1].split()[0]) if "speed: " in done.stdout else 0.0
+    # An update of PLAXIS is two calls, stresses and stiffness; the quicker one alone took no time.
+    check("without --nstatv as many state variables as the law says; its time is that of all its calls", took > 0.5,
+          done.stdout + done.stderr)
+    done = run(build / "umat/libmud.so", "--kind=udsm", f"--props={sand}", "--nstatv=5")
+    check("too few state variables are refused", done.returncode == 2 and "the law says that it has" in done.stderr,
+          done.stdout + done.stderr)
     for words, told in ((("--stress=1,2",), "--stress has 2"), (("--only=nothing",), "there is no check"),
                         (("--nstatv=2", "--statev=1"), "--statev has 1")):
         done = planted(0, *words)
@@ -97,3 +112,19 @@ def test_mud_as_plaxis_calls_it_has_no_fault():
     done = run(work / "missing.so")
     check("a library that is missing", done.returncode == 2 and "cannot be called as a umat" in done.stderr,
           done.stderr)
+
+
+def test_a_case_of_a_finding_gives_its_numbers():
+    # The strains of the finding, run by mud_triax, end at the stress that the law itself gives for them.
+    law = check_law.Law(str(build / "tests/umats/planted_law.so"), props=[0, 4000.0, 8000.0, 20.0, 2000.0], n_state=13)
+    at = law_checks.Setting(-100.0*np.array([1.0, 1, 1, 0, 0, 0]))
+    start = law_checks.go(law, law_checks.begin(law, at), law_checks.straight(at, 30))
+    path = law_checks.straight(at, 5) + law_checks.straight(at, 3, -0.01) + law_checks.straight(at, 2)
+    wanted = law_checks.go(law, start, path).stress
+    case = work / "finding.nml"
+    case.write_text(law_checks.case_of(law, start, path))
+    subprocess.run([build / "drivers/mud_triax", case, "--output", work / "finding.csv", "--quiet"], check=True)
+    lines = [line.split(",") for line in (work / "finding.csv").read_text().splitlines() if line[0] != "#"]
+    got = [-float(lines[-1][lines[0].index(f"sig_{a}")]) for a in ("11", "22", "33", "12", "13", "23")]
+    check("stress at the end of the case", np.allclose(got, wanted, rtol=1e-12, atol=1e-9), f"{got}, {wanted}")
+    check("a row for every increment and the start", len(lines) == 12, len(lines))

@@ -8,7 +8,8 @@
 
 enum {
    NONE, SIZE_OF_INCREMENTS, TANGENT, SHEAR_COLUMNS, TENSOR_SHEAR, NO_DROT, KEPT_PROPS, KEPT_STATE, SHARED_WORK,
-   BEYOND_STATEV, CHANGES_WHAT_IT_REFUSES, SILENT_NAN, STOPS, ENERGY, FORGETS_ITS_LOADING, WRITES_DSTRAN, SINGULAR_START
+   BEYOND_STATEV, CHANGES_WHAT_IT_REFUSES, SILENT_NAN, STOPS, ENERGY, FORGETS_ITS_LOADING, WRITES_DSTRAN, SINGULAR_START,
+   LOSES_A_STRAIN, ONE_STIFFNESS
 };
 
 static double kept_props[5];
@@ -60,6 +61,7 @@ void umat_(double *stress, double *statev, double *ddsdde, double *sse, double *
    }
    if (fault == STOPS && size > 0.05) exit(3);
    if (!finite || size > 0.05) {
+      if (fault == LOSES_A_STRAIN && finite) return;
       if (fault == CHANGES_WHAT_IT_REFUSES) statev[0] += 1;
       if (fault == SILENT_NAN) stress[0] = NAN;
       else *pnewdt = 0.25;
@@ -105,6 +107,12 @@ void umat_(double *stress, double *statev, double *ddsdde, double *sse, double *
          double unit = i == j ? (i < 3 ? 1 : 0.5) : 0, d = i < 3 && j < 3 ? bulk - 2*shear*(1 - beta)/3 : 0;
          ddsdde[i + n*j] = d + 2*shear*((1 - beta)*unit - gamma*flow[i]*flow[j]);
       }
+   if (fault == ONE_STIFFNESS)
+      for (int j = 0; j < n; j++)
+         for (int i = 0; i < n; i++) {
+            double unit = i == j ? (i < 3 ? 1 : 0.5) : 0;
+            ddsdde[i + n*j] = (2 - mean/1000)*((i < 3 && j < 3 ? bulk - 2*shear/3 : 0) + 2*shear*unit);
+         }
    if (fault == TANGENT) ddsdde[1] *= 1.3;
    if (fault == SHEAR_COLUMNS)
       for (int j = 3; j < n; j++)
