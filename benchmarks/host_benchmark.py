@@ -213,7 +213,8 @@ if growth:
     text += ["Exponents over the last three sizes: " + "; ".join(
         f"{name} " + ", ".join(f"{exponent(column, o):.2f} ({o})" for o in ("amd", "metis"))
         for name, column in named.items()) + ".\n"]
-(args.results / "host.md").write_text("# The host\n" + origin.partition("; ")[2] + "\n\n" + "\n".join(text), encoding="utf-8")
+(args.results / "host.md").write_text(tables.wrapped("# The host\n" + origin.partition("; ")[2] + "\n\n" + "\n".join(text)),
+                                     encoding="utf-8")
 print("\n".join(text))
 if not all(row["completed"] for row in rows):
     sys.exit("Some runs failed: their rows of host.csv have completed = False.")

@@ -5,6 +5,8 @@
 """
 import csv
 import pathlib
+import re
+import textwrap
 
 
 class TableError(ValueError):
@@ -61,6 +63,19 @@ def markdown(head, lines):
     """A table of a README."""
     return "\n".join(["| " + " | ".join(head) + " |", "|" + "---|" * len(head),
                       *("| " + " | ".join(map(str, line)) + " |" for line in lines)]) + "\n"
+
+
+def wrapped(text, width=120):
+    """Markdown with its sentences and lists in lines of a width; tables, headings, code and formulae stay as they are."""
+    lines, code = [], False
+    for line in text.splitlines():
+        code = code != line.lstrip().startswith(("```", "~~~"))
+        if code or len(line) <= width or line.lstrip().startswith(("|", "#", "<", "![")):
+            lines.append(line)
+        else:
+            indent = " " * len(re.match(r"\s*([-*] |\d+\. )?", line)[0])
+            lines += textwrap.wrap(line, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
+    return "\n".join(lines) + "\n"
 
 
 def _text(path):

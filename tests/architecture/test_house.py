@@ -63,14 +63,13 @@ def gone(text, folder, exists):
 
 
 def wide(lines):
-    """Lines of a page beyond 120 columns, outside of code, formulas, tables, pictures and what a program made."""
-    found, inside, made = [], False, False
+    """Lines of a page beyond 120 columns, outside of code, formulas, tables and pictures."""
+    found, inside = [], False
     for number, line in enumerate(lines, 1):
         text = line.strip()
         inside ^= text.startswith(("```", "~~~")) or text == "$$"
-        made = made and not text.startswith("<!-- end") or text.startswith("<!-- made:")
-        if len(line) > COLUMNS and not (inside or made or line.startswith("    ")
-                                        or text.startswith(("|", "#", "![", "$", "<", "`", "[")) or " " not in text):
+        if len(line) > COLUMNS and not (inside or line.startswith("    ")
+                                        or text.startswith(("|", "#", "![", "$", "<")) or " " not in text):
             found.append(f"{number}: {len(line)} columns")
     return found
 

@@ -25,6 +25,9 @@ import time
 
 from mutations import CONTACT, MUTATIONS, REGIONS
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "common"))
+import tables  # noqa: E402
+
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 LEFT_OUT = {"test_random", "test_random_long"}  # minutes each
@@ -186,7 +189,7 @@ def write_readme(table, rows):
              f"Measured: {len(rows)} mutations, {len(rows) - survived} noticed, {survived} survived."
              + (f" Left out: {', '.join(sorted(LEFT_OUT))}." if subject is Library else ""), "",
              "| mutation | tests | noticed by |", "|---|---|---|", *rows]
-    (HERE / subject.table).write_text("\n".join(lines) + "\n", encoding="utf-8")
+    (HERE / subject.table).write_text(tables.wrapped("\n".join(lines)), encoding="utf-8")
 
 
 def main():

@@ -17,7 +17,12 @@ def replaced(text, mark, content):
     if block(text, mark) is None:
         raise ValueError(f"there is no mark <!-- made: {mark} -->")
     return re.sub(rf"(<!-- made: {re.escape(mark)} -->\n).*?(<!-- end -->)",
-                  lambda m: m[1] + content.rstrip("\n") + "\n" + m[2], text, flags=re.DOTALL)
+                  lambda m: m[1] + made(content) + m[2], text, flags=re.DOTALL)
+
+
+def made(content):
+    """What stands between the marks."""
+    return tables.wrapped(content.rstrip("\n"))
 
 
 def cell(text):

@@ -105,8 +105,7 @@ def run_page(name, build, output, quick=False):
             text = (bench.here / file).read_text(encoding="utf-8")
             for mark, content in blocks.items():
                 bench.near(f"{file}, {mark}: texts that are not what the committed files say",
-                           (readme.block(text, mark) or "").strip()
-                           != content.strip(), 0, SAME)
+                           readme.block(text, mark) != readme.made(content), 0, SAME)
         if not quick and hasattr(module, "draw"):
             plt = pictures.pyplot()
             module.draw(bench, results, plt)
@@ -192,11 +191,16 @@ def make(name, build, output, update, only, arguments):
             continue
         print(f"{name}: {script.name}, about {script.seconds:g} s" + (f", needs {script.needs}" if script.needs
                                                                       else ""), flush=True)
+        if absent := missing(script):
+            print(f"   FAILED {script.name}: needs {', '.join(absent)}, which {sys.executable} has not")
+            good = False
+            continue
         results = output / name / "made"
         results.mkdir(parents=True, exist_ok=True)
         code = subprocess.run([sys.executable, HERE / name / script.name, *arguments], cwd=results,
                               env={**os.environ, "MUD_BUILD_DIR": str(build), "MUD_VERIFICATION_OUTPUT": str(results),
-                                   "PYTHONPATH": str(HERE)}).returncode
+                                   "PYTHONPATH": os.pathsep.join(filter(None, (str(HERE), os.environ.get("PYTHONPATH"))))
+                                   }).returncode
         good = good and code == 0
         if code:
             print(f"   FAILED {script.name}: exit code {code}")
@@ -213,6 +217,12 @@ def make(name, build, output, update, only, arguments):
                     kept.parent.mkdir(parents=True, exist_ok=True)
                     shutil.copyfile(made, kept)
     return good
+
+
+def missing(script):
+    """Packages and programs that a script needs and that are not there."""
+    return [need for need in script.needs.split(", ") if need and not importlib.util.find_spec(need)
+            and not shutil.which(need)]
 
 
 def core():

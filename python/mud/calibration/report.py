@@ -6,6 +6,7 @@ from __future__ import annotations
 import csv
 import datetime
 import pathlib
+import textwrap
 
 import numpy as np
 
@@ -30,9 +31,9 @@ def write_material(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
     task, path = result.task, folder / f"{result.task.name}.nml"
     lines = [
         f"! {task.title or task.name}, fitted by mud_calibrate on {datetime.date.today().isoformat()}, MUD {_version()}.",
-        *_wrapped(f"Tests: {_origin(task)}"),
-        *_wrapped(_range_text(result)),
-        *_wrapped(_misfit_text(result)),
+        *_wrapped(f"Tests: {_origin(task)}", "! "),
+        *_wrapped(_range_text(result), "! "),
+        *_wrapped(_misfit_text(result), "! "),
         "&material",
         f"   name = '{task.title or task.name}{'' if '(' in task.title else ' (fitted)'}'",
         f"   reference = '{task.reference.replace(chr(39), ' ')[:200]}'",
@@ -46,16 +47,6 @@ def write_material(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
             lines.append(f"   {name} = {value:.6g}".ljust(26) + f"! {origin_of(name, result.diagnosis, task)}")
     path.write_text("\n".join([*lines, "/", ""]), encoding="utf-8")
     return path
-
-
-def _wrapped(text: str) -> list[str]:
-    lines, line = [], "!"
-    for word in text.split():
-        if len(line) + len(word) > 118:
-            lines.append(line)
-            line = "!"
-        line += " " + word
-    return [*lines, line]
 
 
 def _origin(task: Task) -> str:
@@ -149,7 +140,7 @@ def write_report(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
     if result.diagnosis:
         text += ["", *_fitted_sections(result)]
     path = folder / "README.md"
-    path.write_text("\n".join([*text, ""]).rstrip("\n") + "\n", encoding="utf-8")
+    path.write_text("\n".join(_lines(text)).rstrip("\n") + "\n", encoding="utf-8")
     with open(folder / "misfit.csv", "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(("test", "kind", "set", *(column for _, column in _RECORDED), "stopped"))
@@ -157,6 +148,22 @@ def write_report(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
             numbers = ("" if np.isnan(v) else f"{v:.4g}" for v in (getattr(m, key) for key, _ in _RECORDED))
             writer.writerow((m.name, m.kind, "held out" if m.held_out else "fitted", *numbers, m.stopped))
     return path
+
+
+def _lines(text: list[str]) -> list[str]:
+    """Sentences and lists in lines of 120 columns; tables as they are."""
+    lines: list[str] = []
+    for line in "\n".join(text).split("\n"):
+        keep = not line or line.startswith(("|", "#", "!["))
+        lines += [line] if keep else _wrapped(line, "- " if line.startswith("- ") else "")
+    return lines
+
+
+def _wrapped(text: str, mark: str) -> list[str]:
+    """Lines of 120 columns; a comment has its mark in each of them, an item of a list in the first."""
+    later = mark if mark == "! " else " " * len(mark)
+    return textwrap.wrap(text if text.startswith(mark) else mark + text, 120, subsequent_indent=later,
+                         break_long_words=False, break_on_hyphens=False)
 
 
 # Attributes of a misfit and their columns in misfit.csv.
