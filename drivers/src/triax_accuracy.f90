@@ -159,7 +159,8 @@ contains
       answer%by_increments = 0.0_wp
       answer%by_tolerance = 0.0_wp
       counts = .false.
-      counts(columns_shown(test%soil, any(general_control(test%stages%control)))) = .true.
+      counts(columns_shown(test%soil, any(general_control(test%stages%control)), &
+                                  any(test%stages%keeps_air))) = .true.
       counts = counts .and. .not. COLUMNS%whole .and. COLUMNS%name /= 'control_error'
       if (moments%n == 0) then
          answer%by_increments = UNKNOWN

@@ -30,6 +30,7 @@ module triax_case
       integer :: max_updates = huge(0)   !< The test stops after so many updates of the material.
    end type case_t
 
+   real(wp), parameter :: ATMOSPHERE = 101.325_wp   !< [kPa]
    real(wp), parameter :: LIFTED = 1.0e-12_wp   !< Far above rounding: the library has raised the stress to p_min.
    real(wp), parameter :: ROUNDED = 1.0e-9_wp   !< Share of a stress by which a net stress may fall below zero.
 
@@ -146,6 +147,7 @@ contains
       end if
 
       call read_initial(groups(of_initial), test%soil, test%start, fault)
+      if (fault%code == 0) call read_air(groups(of_initial), test%soil, test%start%p_a, fault)
       if (fault%code /= 0) return
       allocate (test%stages(n_stages))
       n_stages = 0
@@ -268,6 +270,24 @@ contains
          call refuse_tension(group, soil, start, fault)
       end if
    end subroutine read_initial
+
+   !> What air and water of the sample are like, and the air pressure of the start. Fault EXIT_INPUT: below vacuum.
+   subroutine read_air(group, soil, p_a, fault)
+      type(group_t), intent(in) :: group
+      type(soil_t), intent(inout) :: soil
+      real(wp), intent(inout) :: p_a   !< [unit of stress of the law]
+      type(fault_t), intent(inout) :: fault
+      logical :: found
+
+      soil%air%atmosphere = ATMOSPHERE*soil%law%unit%factor
+      call get_number(group, 'henry', soil%air%henry, found)
+      call get_number(group, 'k_w', soil%air%stiffness, found)
+      call get_number(group, 'air_pressure', p_a, found)
+      if (soil%air%atmosphere + p_a > 0.0_wp) return
+      call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, 'air_pressure'))//'air_pressure = '// &
+                 short(p_a)//' is below vacuum: it counts from the atmosphere, and must exceed '// &
+                 short(-soil%air%atmosphere)//' '//trim(soil%law%unit%name)//'.')
+   end subroutine read_air
 
    !> Stress with a pressure added to its normal components. [unit of stress]
    pure function suction_stress(stress, pressure) result(total)

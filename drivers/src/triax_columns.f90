@@ -17,7 +17,7 @@ module triax_columns
       logical :: whole = .false.   !< Counts.
    end type column_t
 
-   integer, parameter :: PLAIN = 21   !< Columns of every table; the others are components of tensors.
+   integer, parameter :: PLAIN = 22   !< Columns of every table; the others are components of tensors.
    type(column_t), parameter :: COLUMNS(*) = [ &
       column_t('eps_a', '1', 'axial strain, natural'), &
       column_t('eps_v', '1', 'volumetric strain, natural'), &
@@ -32,7 +32,7 @@ module triax_columns
       column_t('eps_r', '1', 'radial strain, natural'), &
       column_t('suction', 'kPa', 'p_a - p_w'), &
       column_t('u', 'kPa', &
-               'excess pore pressure, saturated sample of constant volume, total radial stress held (shear: axial)'), &
+               'excess pore pressure: constant volume and saturated, total radial stress held, or air = constant'), &
       column_t('psi', '1', 'state parameter'), &
       column_t('n_rate', '1', 'rate evaluations since the start', .true.), &
       column_t('n_reject', '1', 'rejected substeps since the start', .true.), &
@@ -41,6 +41,7 @@ module triax_columns
       column_t('stage', '1', 'stage, 0 is the start', .true.), &
       column_t('cycle', '1', 'cycle of the stage, 0: none', .true.), &
       column_t('r_u', '1', 'pore pressure of the stage over the effective confining stress at its start'), &
+      column_t('p_a', 'kPa', 'air pressure above the atmosphere'), &
       column_t('sig_11', 'kPa', 'effective stress'), column_t('sig_22', 'kPa', 'effective stress'), &
       column_t('sig_33', 'kPa', 'effective stress'), column_t('sig_12', 'kPa', 'effective stress'), &
       column_t('sig_13', 'kPa', 'effective stress'), column_t('sig_23', 'kPa', 'effective stress'), &
@@ -50,9 +51,10 @@ module triax_columns
 contains
    !> Numbers of the columns of a test: those of components only where they are wanted, those of state variables only
    !> where the law has them.
-   function columns_shown(soil, components) result(shown)
+   function columns_shown(soil, components, air) result(shown)
       type(soil_t), intent(in) :: soil
       logical, intent(in) :: components   !< Those of tensors are wanted.
+      logical, intent(in) :: air          !< That of the air pressure is wanted.
       integer, allocatable :: shown(:)
       integer :: i
 
@@ -69,6 +71,8 @@ contains
             if (soil%i_n_reject == 0) cycle
          case ('n_guard')
             if (soil%i_n_guard == 0) cycle
+         case ('p_a')
+            if (.not. air) cycle
          case ('psi')
             if (soil%i_state_parameter == 0) cycle
          end select
@@ -91,6 +95,6 @@ contains
                 radial_stress(point), radial_strain(point), point%suction, run%pressure, &
                 state_value(point, soil%i_state_parameter), state_value(point, soil%i_n_rate), &
                 state_value(point, soil%i_n_reject), state_value(point, soil%i_n_guard), error, real(stage, wp), &
-                real(run%cycle, wp), run%r_u, point%stress, point%strain]
+                real(run%cycle, wp), run%r_u, point%p_a, point%stress, point%strain]
    end function values_of
 end module triax_columns

@@ -6,6 +6,7 @@ module triax_control
    use faults, only: fault_t, raise, EXIT_RUN, EXIT_OUTPUT
    use texts, only: short, whole
    use dense, only: solve, outer
+   use triax_air, only: closed_air_t, closing, air_of
    use triax_stage, only: stage_t, quantity_rows, CONTROL_NAMES, ROWS, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
    use material_point, only: MOST_GUARDS, report_t
    use triax_point, only: soil_t, point_t, tangent_t, update_point, save_update, update_sentence, void_ratio, &
@@ -36,7 +37,8 @@ module triax_control
       real(wp) :: lead_start = 0.0_wp, lead_change = 0.0_wp
       real(wp) :: interval = 0.0_wp               !< Of the rows, in the unit of what leads.
       real(wp) :: strain_rows(6, ROWS) = 0.0_wp, stress_rows(6, ROWS) = 0.0_wp, changes(ROWS) = 0.0_wp
-      logical :: effective = .false., keeps_water = .false.
+      logical :: effective = .false., keeps_water = .false., keeps_air = .false.
+      type(closed_air_t) :: closed                !< Where the air is kept.
       real(wp) :: strain_start(6) = 0.0_wp, stress_start(6) = 0.0_wp, suction_start = 0.0_wp, water_start = 0.0_wp
       logical :: given(7) = .false.               !< Strains, and suction, that the constraints give directly.
       real(wp) :: given_change(7) = 0.0_wp
@@ -79,6 +81,9 @@ contains
       plan%changes = stage%changes
       plan%effective = stage%effective
       plan%keeps_water = stage%keeps_water
+      plan%keeps_air = stage%keeps_air
+      if (plan%keeps_air) plan%closed = closing(soil%air, void_ratio(soil, point), saturation(soil, point), point%p_a, &
+                                               point%suction)
       plan%strain_start = point%strain
       plan%suction_start = point%suction
       plan%stress_start = controlled_stress(soil, plan, point)
@@ -153,6 +158,7 @@ contains
       real(wp) :: strain_row(6), stress_row(6)
 
       plan%effective = stage%effective
+      plan%keeps_air = stage%keeps_air
       call quantity_rows(which, strain_row, stress_row)
       quantity = dot_product(strain_row, point%strain) + dot_product(stress_row, controlled_stress(soil, plan, point))
    end function quantity
@@ -249,6 +255,11 @@ contains
             plan%rate = 0.0_wp
             return
          end if
+         if (plan%keeps_air) call close_air(soil, plan, after, fault)
+         if (fault%code /= 0) then
+            plan%rate = 0.0_wp
+            return
+         end if
          if (all(plan%given)) exit
          call find_residual(soil, plan, progress, x, point, after, residual, error)
          if (tally%residuals) write (output_unit, '(i0, a, i0, a, es10.3)') k, ',', iteration, ',', error
@@ -319,7 +330,7 @@ contains
          error = max(error, abs(residual(i))/max(scale, tiny(scale)))
       end do
       if (plan%keeps_water) then
-         residual(SUCTION) = water(soil, after) - plan%water_start
+         residual(SUCTION) = water(soil, after) - water_kept(soil, plan, after)
          error = max(error, abs(residual(SUCTION))/plan%water_start)
       else
          residual(SUCTION) = 0.0_wp
@@ -333,7 +344,7 @@ contains
       type(tangent_t), intent(in) :: tangent
       type(point_t), intent(in) :: point
       real(wp) :: slope(7, 7)
-      real(wp) :: by_strain(6, 6), by_suction(6), e, s_w
+      real(wp) :: by_strain(6, 6), by_suction(6), e, s_w, p_a, by_e, by_c, w, w_by_e, w_by_suction
 
       e = void_ratio(soil, point)
       s_w = saturation(soil, point)
@@ -343,17 +354,55 @@ contains
          by_strain = by_strain - point%suction*outer(IDENTITY, tangent%dsw_deps)
          by_suction = by_suction - (s_w + point%suction*tangent%dsw_dpc)*IDENTITY
       end if
+      w_by_e = 0.0_wp
+      w_by_suction = 0.0_wp
+      if (plan%keeps_air) then
+         call air_of(plan%closed, e, point%suction, p_a, by_e, by_c, w, w_by_e, w_by_suction)
+         if (.not. plan%effective) then
+            by_strain = by_strain - by_e*(1.0_wp + e)*outer(IDENTITY, IDENTITY)
+            by_suction = by_suction + by_c*IDENTITY
+         end if
+      end if
       slope(:6, :6) = transpose(plan%strain_rows) + matmul(transpose(plan%stress_rows), by_strain)
       slope(:6, SUCTION) = matmul(transpose(plan%stress_rows), by_suction)
       slope(SUCTION, :) = 0.0_wp
       slope(SUCTION, SUCTION) = 1.0_wp
       if (plan%keeps_water) then
-         slope(SUCTION, :6) = e*tangent%dsw_deps - s_w*(1.0_wp + e)*IDENTITY   ! de = -(1+e) d eps_v
-         slope(SUCTION, SUCTION) = e*tangent%dsw_dpc
+         ! de = -(1+e) d eps_v
+         slope(SUCTION, :6) = e*tangent%dsw_deps - (s_w - w_by_e)*(1.0_wp + e)*IDENTITY
+         slope(SUCTION, SUCTION) = e*tangent%dsw_dpc - w_by_suction
       end if
    end function slope_of
 
-   !> The stress that a plan prescribes: net, sigma' - S_w p_c on the normal components, or effective [unit of stress].
+   !> The pressure of the air of a sample that keeps it. Fault EXIT_RUN: all of it is dissolved, or there is no room.
+   subroutine close_air(soil, plan, point, fault)
+      type(soil_t), intent(in) :: soil
+      type(plan_t), intent(in) :: plan
+      type(point_t), intent(inout) :: point
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: e, by_e, by_c, w, w_by_e, w_by_suction
+
+      e = void_ratio(soil, point)
+      call air_of(plan%closed, e, point%suction, point%p_a, by_e, by_c, w, w_by_e, w_by_suction)
+      if (point%p_a > -soil%air%atmosphere .and. e > w) return
+      call raise(fault, EXIT_RUN, 'At a void ratio of '//short(e)//' the water, '//short(w)//' times the solids, fills '// &
+                 'the pores: no air is left as bubbles. Go on with a saturated sample (suction 0, control undrained).')
+   end subroutine close_air
+
+   !> The water that a sample keeps, per volume of solids: less under pressure, where it is compressible [-].
+   pure real(wp) function water_kept(soil, plan, point) result(w)
+      type(soil_t), intent(in) :: soil
+      type(plan_t), intent(in) :: plan
+      type(point_t), intent(in) :: point
+      real(wp) :: p_a, by_e, by_c, w_by_e, w_by_suction
+
+      w = plan%water_start
+      if (plan%keeps_air) call air_of(plan%closed, void_ratio(soil, point), point%suction, p_a, by_e, by_c, w, w_by_e, &
+                                      w_by_suction)
+   end function water_kept
+
+   !> The stress that a plan prescribes: net, sigma' - S_w p_c on the normal components, total where the air is kept, or
+   !> effective [unit of stress].
    pure function controlled_stress(soil, plan, point) result(stress)
       type(soil_t), intent(in) :: soil
       type(plan_t), intent(in) :: plan
@@ -361,7 +410,9 @@ contains
       real(wp) :: stress(6)
 
       stress = point%stress
-      if (.not. plan%effective) stress = stress - saturation(soil, point)*point%suction*IDENTITY
+      if (plan%effective) return
+      stress = stress - saturation(soil, point)*point%suction*IDENTITY
+      if (plan%keeps_air) stress = stress + point%p_a*IDENTITY
    end function controlled_stress
 
    !> Volume of water per volume of solids, S_w e [-].

@@ -40,11 +40,18 @@ module triax_keys
       key_t('initial', 'suction', 'n', NONE, 0.0_wp, 1.0e6_wp, 'p_a - p_w; default 0, saturated', unit='kPa'), &
       key_t('initial', 'saturation', 'n', NONE, 1.0e-6_wp, 1.0_wp, &
             'degree of saturation between the main curves, with hysteresis = 1; default: on the main drying curve'), &
+      key_t('initial', 'air_pressure', 'n', NONE, -100.0_wp, 1.0e5_wp, &
+            'air pressure above the atmosphere: back pressure; default 0', unit='kPa'), &
+      key_t('initial', 'henry', 'n', NONE, 0.0_wp, 0.5_wp, &
+            'volume of air that a volume of water dissolves, with air = ''constant''; 0.02 at 20 C; default 0'), &
+      key_t('initial', 'k_w', 'n', NONE, 0.0_wp, 1.0e9_wp, &
+            'bulk modulus of the water, with air = ''constant''; 2.2e6 kPa; default 0: incompressible', unit='kPa'), &
       key_t('initial', 'state_variables', 'N', NONE, -UNBOUNDED, UNBOUNDED, &
             'all state variables of the law in their order, with stress, instead of void_ratio'), &
       key_t('stage', 'control', 't', NONE, 0, 0, 'see the list of controls'), &
       key_t('stage', 'stress', 'w', 'net', 0, 0, &
-            'stress that is prescribed, default net; both are the same without suction', 'net|effective'), &
+            'stress that is prescribed, default net (total with air = ''constant''); the same without suction', &
+            'net|effective'), &
       key_t('stage', 'eps_a_end', 'n', NONE, -1.0_wp, 1.0_wp, 'axial strain at the end, from the start of the test'), &
       key_t('stage', 'eps_v_end', 'n', NONE, -1.0_wp, 1.0_wp, &
             'volumetric strain at the end, from the start of the test'), &
@@ -70,6 +77,9 @@ module triax_keys
             'change of the suction over the stage, instead of suction_end', unit='kPa'), &
       key_t('stage', 'water', 'w', 'free', 0, 0, &
             'constant: the water content S_w e is constant and suction changes; default free', 'free|constant'), &
+      key_t('stage', 'air', 'w', 'free', 0, 0, &
+            'constant: the air keeps its mass and its pressure changes, with water = ''constant''; default free', &
+            'free|constant'), &
       key_t('stage', 'cycle_by', 't', NONE, 0, 0, &
             'eps_a or gamma (strain is reversed), q or tau (strain is driven until the stress is reached)'), &
       key_t('stage', 'amplitude', 'n', NONE, -1.0e7_wp, 1.0e7_wp, &

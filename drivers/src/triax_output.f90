@@ -45,7 +45,8 @@ contains
       type(fault_t), intent(inout) :: fault
 
       table%path = path
-      table%shown = columns_shown(test%soil, any(general_control(test%stages%control)))
+      table%shown = columns_shown(test%soil, any(general_control(test%stages%control)), &
+                                  any(test%stages%keeps_air))
       table%to_screen = path == '-'
       table%hdf5 = ends_in(path, '.h5') .or. ends_in(path, '.hdf5')
       if (table%hdf5 .and. .not. HAS_HDF5) then
@@ -74,7 +75,8 @@ contains
       type(fault_t), intent(inout) :: fault
 
       table%path = ''
-      table%shown = columns_shown(test%soil, any(general_control(test%stages%control)))
+      table%shown = columns_shown(test%soil, any(general_control(test%stages%control)), &
+                                  any(test%stages%keeps_air))
       table%remarks = ''
       call keep_rows(table)
       table%closed = .false.

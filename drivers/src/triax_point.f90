@@ -7,6 +7,7 @@ module triax_point
    use kinds, only: wp
    use material_point, only: material_t, response_t, report_t, state_index, WITH_TANGENT
    use texts, only: whole
+   use triax_air, only: air_t
    implicit none (type, external)
    private
    public :: soil_t, point_t, tangent_t
@@ -23,6 +24,7 @@ module triax_point
    type :: soil_t
       class(material_t), allocatable :: law
       integer :: i_state_parameter = 0
+      type(air_t) :: air
       integer :: i_n_substep = 0, i_n_reset = 0, i_n_rate = 0, i_n_reject = 0, i_n_guard = 0
    end type soil_t
 
@@ -31,6 +33,7 @@ module triax_point
       real(wp) :: stress(6) = 0.0_wp   !< Effective stress [unit of stress of the law].
       real(wp) :: strain(6) = 0.0_wp   !< Strain since the start [-].
       real(wp) :: suction = 0.0_wp     !< [unit of stress of the law]
+      real(wp) :: p_a = 0.0_wp         !< Air pressure, above the atmosphere [unit of stress of the law].
       real(wp), allocatable :: state(:, :)   !< One column.
    end type point_t
 
@@ -129,6 +132,7 @@ contains
       after%stress = -response%stress(:, 1)
       after%strain = before%strain + strain
       after%suction = before%suction + suction
+      after%p_a = before%p_a
    end subroutine update_point
 
    !> Writes an update to a case file. Fault EXIT_OUTPUT: there is such a file, it cannot be written, or

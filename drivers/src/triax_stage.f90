@@ -3,7 +3,8 @@
 !> constraints that each named control stands for.
 !>
 !> A constraint reads strain_row . (change of strain) + stress_row . (change of stress) = its share of a change; stress
-!> is net (sigma' - S_w p_c on the normal components) or effective. The last one belongs to what leads.
+!> is net (sigma' - S_w p_c on the normal components), total (net stress and air pressure) where no air leaves, or
+!> effective. The last one belongs to what leads.
 module triax_stage
    use, intrinsic :: iso_fortran_env, only: wp => real64
    implicit none (type, external)
@@ -55,6 +56,7 @@ module triax_stage
       logical :: moves_suction = .false.
       logical :: by_change = .false.         !< The suction moves by suction_change, not to suction_end.
       logical :: keeps_water = .false.       !< Water content S_w e is held, suction follows.
+      logical :: keeps_air = .false.         !< Nor does air leave; total stress is prescribed in place of net stress.
       real(wp) :: suction_end = 0.0_wp, suction_change = 0.0_wp   !< [unit of stress]
       real(wp) :: increment = 0.0_wp         !< In the unit of what leads.
       logical :: given_increment = .false.   !< By hand: an accuracy does not change it.

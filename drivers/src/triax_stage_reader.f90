@@ -56,7 +56,7 @@ contains
       call get_number(group, 'output_interval', stage%interval, found)
       if (found .and. QUANTITIES(stage%lead)%unit == PER_PRESSURE) stage%suction_interval = stage%interval
       call get_number(group, 'stop_r_u', stage%stop_r_u, found)
-      if (found .and. .not. sealed_control(stage%control)) then
+      if (found .and. .not. (sealed_control(stage%control) .or. stage%keeps_air)) then
          call refuse(group, 'stop_r_u', 'has no effect with control '//name_of(stage%control)// &
                      ', in which no pore pressure builds up; remove it.', fault)
       else if (2.0_wp/stage%increment > MAX_INCREMENTS .and. QUANTITIES(stage%lead)%unit /= PER_PRESSURE) then
@@ -244,6 +244,12 @@ contains
       character(:), allocatable :: key
 
       stage%keeps_water = word_is(CASE_KEYS, group, 'water', 'constant')
+      stage%keeps_air = word_is(CASE_KEYS, group, 'air', 'constant')
+      if (stage%keeps_air .and. .not. stage%keeps_water) then
+         call refuse(group, 'air', '= constant needs water = ''constant'': water that leaves would take dissolved air '// &
+                     'with it, and what closes the sample to air closes it to water.', fault)
+         return
+      end if
       call get_number(group, 'suction_end', stage%suction_end, stage%moves_suction)
       call get_number(group, 'd_suction', stage%suction_change, stage%by_change)
       if (stage%moves_suction .and. stage%by_change) then

@@ -34,6 +34,7 @@ module triax_stage_run
       real(wp) :: confining = 0.0_wp       !< Effective stress where the total one is constant, at the start [stress].
       real(wp) :: pressure = 0.0_wp        !< Excess pore pressure [unit of stress].
       real(wp) :: pressure_start = 0.0_wp
+      real(wp) :: p_w_start = 0.0_wp       !< Water pressure where the stage begins [unit of stress].
       real(wp) :: r_u = 0.0_wp             !< Pore pressure that has built up in this stage over `confining` [-].
       character(200) :: note = ''          !< How it ended, where that is not plain.
    end type stage_run_t
@@ -54,7 +55,8 @@ contains
       run%confining = confining_stress(stage, point)
       run%sealed = sealed_control(stage%control) .and. point%suction <= 0.0_wp .and. &
                       .not. (stage%moves_suction .and. max(stage%suction_end, stage%suction_change) > 0.0_wp)
-      if (stage%stop_r_u > 0.0_wp .and. .not. run%sealed) then
+      run%p_w_start = point%p_a - point%suction
+      if (stage%stop_r_u > 0.0_wp .and. .not. (run%sealed .or. stage%keeps_air)) then
          call raise(fault, EXIT_RUN, 'stop_r_u needs a saturated sample; the suction is '//short(point%suction)// &
                     ' '//trim(soil%law%unit%name)//'.')
       else if (stage%keeps_water .and. point%suction <= 0.0_wp) then
@@ -109,8 +111,12 @@ contains
          run%pressure = run%pressure_start + run%confining - confining_stress(stage, point)
          run%r_u = (run%pressure - run%pressure_start)/run%confining
       end if
+      if (stage%keeps_air) then
+         run%pressure = run%pressure_start + point%p_a - point%suction - run%p_w_start
+         run%r_u = (run%pressure - run%pressure_start)/run%confining
+      end if
       if (arrived) call next_way(soil, stage, point, run)
-      if (run%sealed .and. stage%stop_r_u > 0.0_wp .and. run%r_u >= stage%stop_r_u) then
+      if ((run%sealed .or. stage%keeps_air) .and. stage%stop_r_u > 0.0_wp .and. run%r_u >= stage%stop_r_u) then
          call stop_early('pore pressure ratio '//short(stage%stop_r_u))
       else if (stage%stop_double_amplitude > 0.0_wp .and. .not. arrived .and. &
                abs(quantity(soil, stage, stage%lead, point) - run%plan%lead_start) >= &

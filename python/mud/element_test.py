@@ -127,6 +127,9 @@ def element_test(
     sigma_r_net: float | None = None,
     suction: float = 0.0,
     saturation: float | None = None,
+    air_pressure: float | None = None,
+    henry: float | None = None,
+    k_w: float | None = None,
     name: str = "test",
     accuracy: float | None = None,
     control_tolerance: float | None = None,
@@ -140,6 +143,7 @@ def element_test(
     void_ratio : at the start [-].
     p_eff, or sigma_a and sigma_r : effective stress at the start [kPa]; p_net, or sigma_a_net and sigma_r_net: net stress.
     suction : at the start [kPa]. saturation : at the start, with hysteresis; None: on the main drying curve.
+    air_pressure : at the start, above the atmosphere [kPa]. henry, k_w : of air and water that cannot leave (air="constant").
     accuracy : relative error wanted in the histories, as 1e-2: increments and tolerance that are not given are chosen for it,
         and ``remarks`` tell the estimate of every column; None: the increments of the stages.
     control_tolerance : relative error allowed in the prescribed stresses; None: the driver's 1e-10.
@@ -165,6 +169,9 @@ def element_test(
         "sigma_r_net": sigma_r_net,
         "suction": suction,
         "saturation": saturation,
+        "air_pressure": air_pressure,
+        "henry": henry,
+        "k_w": k_w,
     }
     text = "".join(
         [

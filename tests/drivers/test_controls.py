@@ -72,6 +72,7 @@ MISTAKES = {
     "control = 'drained', stress = 'total', eps_a_end = 0.1": ["total", "effective"],
     "control = 'drained', water = 'constant', suction_end = 5, eps_a_end = 0.1": ["suction_end"],
     "control = 'linear', strain_1 = 1,0,0,0,0,0": ["constraint 2"],
+    "control = 'drained', air = 'constant', eps_a_end = 0.1": ["air", "water = 'constant'", "dissolved"],
     "control = 'stress_path', d_sigma = 0,0,0,0,0,0": ["d_sigma"],
 }
 
@@ -103,6 +104,33 @@ def test_net_radial_stress_is_held():
     check("water content is held", spread(rows, lambda r: r["s_w"]*r["e"]) <= HELD, "")
     check("suction follows", spread(rows, lambda r: r["suction"]) > 1e-3, "")
     check("net radial stress is held beside it", spread(rows, lambda r: net(r, "sigma_r")) <= HELD*100, "")
+
+
+def test_shut_valves_keep_water_and_air():
+    # Boyle's law with what water dissolves (Henry): (p_at + p_a) (e - (1 - h) S_w e) and S_w e stay; the total radial
+    # stress, sigma' - S_w p_c + p_a, is held; u is the rise of the water pressure.
+    start = "p_eff = 100.0, void_ratio = 0.833, suction = 4.0, air_pressure = 200.0, henry = 0.02"
+    rows, _ = run("control = 'drained', water = 'constant', air = 'constant', eps_a_end = 0.02", initial=start)
+    mass = [(101.325 + r["p_a"])*r["e"]*(1 - 0.98*r["s_w"]) for r in rows]
+    check("mass of air is held", max(mass) - min(mass) <= 1e-9*mass[0], mass)
+    check("water content is held", spread(rows, lambda r: r["s_w"]*r["e"]) <= HELD, "")
+    check("total radial stress is held", spread(rows, lambda r: net(r, "sigma_r") + r["p_a"]) <= HELD*100, "")
+    check("the pressure of the air moves", spread(rows, lambda r: r["p_a"]) > 1, "")
+    rise = [r["p_a"] - r["suction"] - 196 for r in rows]
+    check("u is the rise of the water pressure", all(abs(r["u"] - x) <= 1e-9 for r, x in zip(rows, rise)), rise)
+    other, _ = run("control = 'drained', water = 'constant', air = 'constant', stress = 'effective', eps_a_end = 0.02",
+                   initial=start)
+    check("effective radial stress is held where it is asked for", spread(other, lambda r: r["sigma_r"]) <= HELD*100, "")
+
+
+def test_air_that_is_dissolved_or_below_vacuum_is_explained():
+    # S_w near 1 with much pressure to come: what is left of the bubbles goes into solution, 2 % of the water's volume.
+    done = call("control = 'isotropic', water = 'constant', air = 'constant', p_end = 1000.0",
+                initial="p_eff = 100.0, void_ratio = 0.833, suction = 0.5, henry = 0.02")
+    check("dissolved air is explained", done.returncode == 3 and "no air is left" in done.stderr, done.stderr)
+    done = call("control = 'isotropic', water = 'constant', air = 'constant', p_end = 200.0",
+                initial="p_eff = 100.0, void_ratio = 0.833, suction = 0.5, air_pressure = -101.4")
+    check("below vacuum is refused", done.returncode == 2 and "air_pressure" in done.stderr, done.stderr)
 
 
 def test_linear_constraints_give_a_named_control():
