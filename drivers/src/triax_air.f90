@@ -18,8 +18,8 @@ module triax_air
    type :: closed_air_t
       type(air_t) :: air
       real(wp) :: content = 0.0_wp      !< Absolute pressure times volume of all air [unit of stress].
-      real(wp) :: water = 0.0_wp        !< Volume of the water [-] at its pressure p_w,
-      real(wp) :: p_w = 0.0_wp          !< [unit of stress].
+      real(wp) :: water = 0.0_wp        !< Volume of the water where its pressure is p_w [-].
+      real(wp) :: p_w = 0.0_wp          !< [unit of stress]
    end type closed_air_t
 
    integer, parameter :: MOST = 60                      !< Newton's method doubles the digits within ten iterations.

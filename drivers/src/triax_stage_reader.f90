@@ -246,8 +246,8 @@ contains
       stage%keeps_water = word_is(CASE_KEYS, group, 'water', 'constant')
       stage%keeps_air = word_is(CASE_KEYS, group, 'air', 'constant')
       if (stage%keeps_air .and. .not. stage%keeps_water) then
-         call refuse(group, 'air', '= constant needs water = ''constant'': water that leaves would take dissolved air '// &
-                     'with it, and what closes the sample to air closes it to water.', fault)
+         call refuse(group, 'air', '= constant needs water = ''constant'': water that leaves would take dissolved '// &
+                     'air with it, and what closes the sample to air closes it to water.', fault)
          return
       end if
       call get_number(group, 'suction_end', stage%suction_end, stage%moves_suction)

@@ -120,7 +120,7 @@ def test_shut_valves_keep_water_and_air():
     check("u is the rise of the water pressure", all(abs(r["u"] - x) <= 1e-9 for r, x in zip(rows, rise)), rise)
     other, _ = run("control = 'drained', water = 'constant', air = 'constant', stress = 'effective', eps_a_end = 0.02",
                    initial=start)
-    check("effective radial stress is held where it is asked for", spread(other, lambda r: r["sigma_r"]) <= HELD*100, "")
+    check("effective radial stress where asked for", spread(other, lambda r: r["sigma_r"]) <= HELD*100, "")
 
 
 def test_air_that_is_dissolved_or_below_vacuum_is_explained():

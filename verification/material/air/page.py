@@ -29,7 +29,7 @@ POROSITY = RATIO / (1 + RATIO)
 SATURATIONS, BACK = (0.5, 0.8, 0.9, 0.95, 0.99, 0.999), (0.0, 100.0, 400.0)
 SAND = (1.0, 0.999, 0.99, 0.97, 0.95, 0.9, 0.8)
 
-SECANT = Tolerance("a central difference of 0.05 kPa leaves its square over the pressure's, prescribed stresses 1e-10 of 50 kPa over 0.1 kPa",
+SECANT = Tolerance("the square of 0.05 kPa over that of the pressures; stresses are met to 1e-10 of 50 kPa, over 0.1 kPa",
                    absolute=1e-6)
 FINITE = Tolerance("the driver meets stresses to 1e-10", relative=1e-6)
 HOST = Tolerance("the host integrates rates in 100 steps by the trapezoidal rule; of the change", relative=1e-6)
