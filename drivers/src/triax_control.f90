@@ -386,7 +386,8 @@ contains
       call air_of(plan%closed, e, point%suction, point%p_a, by_e, by_c, w, w_by_e, w_by_suction)
       if (point%p_a > -soil%air%atmosphere .and. e > w) return
       call raise(fault, EXIT_RUN, 'At a void ratio of '//short(e)//' the water, '//short(w)// &
-                 ' times the solids, fills the pores: no air is left as bubbles. Go on with a saturated sample (suction 0, control undrained).')
+                 ' times the solids, fills the pores: no air is left as bubbles. Go on with a '// &
+                 'saturated sample (suction 0, control undrained).')
    end subroutine close_air
 
    !> The water that a sample keeps, per volume of solids: less under pressure, where it is compressible [-].
