@@ -20,7 +20,8 @@ folder = clients.work_folder("fenicsx")
 environment = {**os.environ, **clients.python_package, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
                "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
                "OMPI_MCA_mpi_yield_when_idle": "1"}  # a waiting rank leaves its core to others
-SMALL = ["--cells", "3", "--steps", "4"]
+BACK = ["--back-pressure", "2000"]  # dense sand dilates: without it the water would be in tension
+SMALL = ["--cells", "3", "--steps", "4", *BACK]
 
 
 def program(name, script, *arguments, ranks=1):
@@ -78,10 +79,10 @@ close("multigrid with rigid-body modes gives the loads of MUMPS", multigrid, one
 FIRST = [*SMALL, "--stop-after", "1"]
 both = footing("multigrid_two", *FIRST, "--linear", "amg", ranks=2)
 close("the same on two ranks, first step", both, one and {"pressure": one["pressure"][:1]}, RANKS)
-MIDDLE = ["--cells", "6", "--steps", "3", "--stop-after", "1", "--scheme", "2"]
+MIDDLE = ["--cells", "6", "--steps", "3", "--stop-after", "1", "--scheme", "2", *BACK]
 direct, multigrid = footing("direct_6", *MIDDLE), footing("multigrid_6", *MIDDLE, "--linear", "amg")
 close("the same with 6934 unknowns, first step", multigrid, direct, RANKS)
-DEEP = ["--cells", "3", "--scale", "4", "--steps", "1", "--scheme", "2"]
+DEEP = ["--cells", "3", "--scale", "4", "--steps", "1", "--scheme", "2", *BACK]
 for name, settlement, cut in (("metre", 1.0, False), ("metre_and_a_half", 1.5, True)):
     deep = footing(name, *DEEP, "--settlement", str(settlement))
     told = json.dumps(deep and {k: deep[k] for k in ("pressure", "steps", "cuts", "searches", "iterations")})
@@ -93,6 +94,13 @@ for name, settlement, cut in (("metre", 1.0, False), ("metre_and_a_half", 1.5, T
         clients.verdict(bool(both and deep) and both["cuts"] == deep["cuts"], "two ranks cut the same steps",
                         f"{both and both['cuts']}, {deep and deep['cuts']} cuts")
         close("and give the loads of one", both, deep, RANKS)
+
+# Water in tension is refused, on two ranks as on one: no result, and a sentence that says where.
+for ranks in (1, 2):
+    tense = footing(f"tension_{ranks}", *DEEP, "--settlement", "1", "--back-pressure", "0", ranks=ranks)
+    said = (folder / f"tension_{ranks}.log").read_text()
+    clients.verdict(tense is None and "the pressure of the water falls to" in said and "mud_host" in said,
+                    f"water in tension ends the run on {ranks} ranks", said[said.find("Unsaturated: "):][:150].replace("\n", " "))
 
 # The start: ground with weight under K_0 stress.
 path = folder / "given.json"

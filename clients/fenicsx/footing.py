@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """A footing on saturated MUD sand: a quarter of a square one in three dimensions, or half a strip in plane strain.
 
-The sand begins at an even effective stress, held by a surcharge; p_w is 0 at the top, the other sides are closed and on
-rollers. The square footing is smooth, rigid and pushed; the strip is a pressure beside the axis. Example:
+The sand begins at an even effective stress, held by a surcharge; p_w, counted from the back pressure, is 0 at the top,
+the other sides are closed and on rollers. The square footing is smooth, rigid and pushed; the strip is a pressure beside the axis. Example:
    mpirun -n 2 python3 footing.py --cells 6 --settlement 0.02 --steps 10 --result footing.json
 """
 import argparse
@@ -33,6 +33,7 @@ def arguments():
     parser.add_argument("--scale", type=float, default=1.0, help="of footing and ground")
     parser.add_argument("--settlement", type=float, default=0.02, help="of the square footing [m]")
     parser.add_argument("--pressure", type=float, default=150.0, help="of the strip [kPa]")
+    parser.add_argument("--back-pressure", type=float, default=0.0, help="of the water at the start [kPa]")
     parser.add_argument("--steps", type=int, default=10)
     parser.add_argument("--duration", type=float, default=100.0, help="[s]")
     parser.add_argument("--void-ratio", type=float, default=0.75)
@@ -81,7 +82,8 @@ def model(given):
     domain = ground(dimension, given.cells, given.scale)
     material = mud.Material(scheme=given.scheme)
     control = porous.Control(linear=given.linear, tolerance=given.tolerance)
-    problem = porous.Problem(domain, material, [-SURCHARGE]*3 + [0.0]*3, given.void_ratio, control=control)
+    problem = porous.Problem(domain, material, [-SURCHARGE]*3 + [0.0]*3, given.void_ratio,
+                             water=porous.Water(at_rest=given.back_pressure), control=control)
     up, facet = dimension - 1, dimension - 1
     domain.topology.create_connectivity(facet, dimension)
 

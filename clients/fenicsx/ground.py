@@ -30,7 +30,8 @@ def at_rest(x):
 
 
 domain = mesh.create_rectangle(MPI.COMM_WORLD, [(0.0, -height), (1.0, 0.0)], [1, 4])
-problem = porous.Problem(domain, mud.Material("toyoura"), at_rest, 0.8, control=porous.Control(told=False))
+water = porous.Water(at_rest=lambda x: -9.81*x[:, 1])
+problem = porous.Problem(domain, mud.Material("toyoura"), at_rest, 0.8, water, porous.Control(told=False))
 sides = [(problem.V.sub(0), lambda x: np.isclose(x[0], 0.0) | np.isclose(x[0], 1.0)),
          (problem.V.sub(1), lambda x: np.isclose(x[1], -height)), (problem.Q, lambda x: np.isclose(x[1], 0.0))]
 for space, where in sides:

@@ -19,10 +19,14 @@ from petsc4py import PETSc
 import mud
 
 
+SUCTION = 1.0e-3  # [kPa], what rounding and the tolerance of Newton's method leave where p_w is held at 0
+
+
 @dataclasses.dataclass
 class Water:
     storage: float = 0.8/1.8/2.2e6     #: porosity over the bulk modulus of the water [1/kPa]
     conductivity: float = 1.0e-5/9.81  #: permeability over the unit weight of the water [m2/(kPa s)]
+    at_rest: object = 0.0   #: pressure that p_w is counted from [kPa]: a number, or a function of places (points, 3)
 
 
 @dataclasses.dataclass
@@ -53,12 +57,16 @@ def voigt_strain(v):
     return ufl.as_vector([g[0, 0], g[1, 1], g[2, 2], g[0, 1] + g[1, 0], g[0, 2] + g[2, 0], g[1, 2] + g[2, 1]])
 
 
+class Unsaturated(Exception):
+    """The water of an accepted step is in tension: the equations here fill every pore with water."""
+
+
 class Problem:
     """Fields, points and equations; boundary values and loads come from the caller, see `step`."""
 
     def __init__(self, mesh, material, stress, void_ratio, water=Water(), control=Control()):
         """stress: at the start of every point, one for all or a function of places (points, 3)."""
-        self.mesh, self.material, self.control = mesh, material, control
+        self.mesh, self.material, self.water, self.control = mesh, material, water, control
         self.comm, self.time = mesh.comm, 0.0
         cell, self.dimension = mesh.ufl_cell(), mesh.geometry.dim
         self.V = fem.FunctionSpace(mesh, ufl.VectorElement("Lagrange", cell, 2))
@@ -293,12 +301,28 @@ class Problem:
                 self._restore()
                 size *= 0.5
                 continue
+            self._refuse_suction(self.time + size)
             self.accept()
             self.time += size
             self.counts["steps"] += 1
             self._tell(f"t {self.time:.6g}: {iterations} iterations")
             size *= 2.0
         self.time = end
+
+    def _refuse_suction(self, time):
+        """Ends the run, on every rank, where the water would be in tension."""
+        n = self.Q.dofmap.index_map.size_local
+        places = self.Q.tabulate_dof_coordinates()[:n]
+        rest = self.water.at_rest
+        total = self.p.x.array[:n] + (rest(places) if callable(rest) else rest)
+        low = (float(total.min()), *places[total.argmin()]) if n else (np.inf, 0.0, 0.0, 0.0)
+        value, *place = min(self.comm.allgather(low))
+        if value < -SUCTION:
+            raise Unsaturated(
+                f"t {time:.6g} s: the pressure of the water falls to {value:.4g} kPa at "
+                f"({', '.join(f'{x:.4g}' for x in place[:self.dimension])}); this program knows saturated soil only, from "
+                "0 kPa up. Begin at a pressure of the water that leaves none (Water.at_rest; footing.py "
+                "--back-pressure), or use mud_host with the fields u-p_w-p_c")
 
     def accept(self):
         self.last_strain = self.strain.eval(self.owned).reshape(-1, 6)
