@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Runs the reference cases with mud_host and compares: verification/references/run [CASE...]
+"""usage: run.py [CASE...]   runs reference cases with mud_host and compares
 
 A case is a folder with case.toml (properties, problem, quantities with their tolerances), reference.csv and mesh.msh.
 Exit code 0: every quantity of every case is within its tolerance. MUD_BUILD_DIR: the build, build/release by default.
