@@ -29,7 +29,7 @@ module describe_hosts
       'incrementaldriver-start', 'initialconditions.inp at an isotropic stress of -100', &
       'udsm', 'number, name, unit and value of each PLAXIS parameter', &
       'plain', 'PROPS, a number a line'], [2, 10])
-   !> Of the hosts, those that take PROPS without hysteresis alone.
+   !> Of the hosts, those that take PROPS without hysteresis and preloading alone.
    character(*), parameter :: WITHOUT_HYSTERESIS(4) = [character(len(HOSTS)) :: 'ogs', 'ogs-unsaturated', 'udsm', &
       'kratos-udsm']
    integer, parameter :: A_LINE = 8          !< Numbers of a card.
@@ -83,20 +83,27 @@ contains
       end if
    end subroutine read_material
 
-   !> Leaves out what stands behind hysteresis where that is off: every host takes PROPS without it, and hosts that
-   !> name PROPS one by one (MFront) or have room for 50 (PLAXIS) take no others. Fault EXIT_INPUT: hysteresis is on,
-   !> and the host takes none.
+   !> Leaves out what stands behind hysteresis or c_chi where that is off: every host takes PROPS without it, and hosts
+   !> that name PROPS one by one (MFront) or have room for 50 (PLAXIS) take no others. Fault EXIT_INPUT: one is on, and
+   !> the host takes none.
    subroutine shorten(host, material, fault)
       character(*), intent(in) :: host
       type(named_material_t), intent(inout) :: material
       type(fault_t), intent(inout) :: fault
-      integer :: place
+      integer :: of_hysteresis, of_preloading
+      logical :: hysteresis, preloading
 
-      place = property_index('hysteresis')
-      if (nint(material%props(place)) == 0) then
-         material%props = material%props(:place - 1)
-      else if (any(WITHOUT_HYSTERESIS == host)) then
-         call raise(fault, EXIT_INPUT, 'hysteresis is 1, and '//trim(host)//' takes PROPS without it; set it to 0.')
+      of_hysteresis = property_index('hysteresis')
+      of_preloading = property_index('c_chi')
+      hysteresis = nint(material%props(of_hysteresis)) /= 0
+      preloading = material%props(of_preloading) > 0.0_wp
+      if ((hysteresis .or. preloading) .and. any(WITHOUT_HYSTERESIS == host)) then
+         call raise(fault, EXIT_INPUT, trim(merge('hysteresis is 1', 'c_chi is on    ', hysteresis))//', and '// &
+                    trim(host)//' takes PROPS without it; set it to 0.')
+      else if (.not. (hysteresis .or. preloading)) then
+         material%props = material%props(:of_hysteresis - 1)
+      else if (.not. preloading) then
+         material%props = material%props(:of_preloading - 1)
       end if
    end subroutine shorten
 

@@ -228,7 +228,7 @@ contains
       n = min(size(arrays%statev1, 1), NSTATV)
       call kernel_begin(par, begun, suction, e, statev(:n), report, preset)
       if (report%status /= MUD_OK) return
-      n = min(n, statev_size(par%hysteresis))
+      n = min(n, statev_size(par%options_t))
       raised = any(abs(begun - stress) > 0.0_wp)
       if (total) begun = total_stress(begun, 0.0_wp, statev(S_SATURATION), suction)
       arrays%stress1(:, j) = begun

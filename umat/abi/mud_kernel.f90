@@ -5,7 +5,7 @@ module mud_kernel
    use, intrinsic :: iso_c_binding, only: c_int, c_double
    use mud_bounding, only: limited
    use mud_kinds, only: wp
-   use mud_params, only: params_t, read_params
+   use mud_params, only: params_t, options_t, read_params
    use mud_point, only: update_point, LAST_RATE => TANGENT_CONTINUUM
    use mud_blocks, only: blocks_t
    use mud_start, only: initial_state
@@ -88,13 +88,13 @@ contains
 
       preset = 0.0_wp
       if (present(saturation)) preset = saturation
-      if (size(statev) < statev_size(par%hysteresis)) status = wrong_nstatv(size(statev), par%hysteresis)
+      if (size(statev) < statev_size(par%options_t)) status = wrong_nstatv(size(statev), par%options_t)
       if (status%code == MUD_OK .and. .not. par%hysteresis) call refuse_preset(preset, status)
       if (status%code == MUD_OK) call initialise(par, stress, suction, void_ratio, preset, state, packed, status)
       report = failed_report(status)
       if (status%code /= MUD_OK) return
       stress = to_umat_stress(state%sigma)
-      statev(1:statev_size(par%hysteresis)) = packed(1:statev_size(par%hysteresis))
+      statev(1:statev_size(par%options_t)) = packed(1:statev_size(par%options_t))
    end subroutine kernel_begin
 
    !> Without hysteresis S_w is a function of suction and void ratio: another one of a start would be lost in silence.
@@ -161,7 +161,7 @@ contains
          call update_point(par, state0, from_umat_strain(d_strain), d_suction, kind, state1, blocks, counters, &
                            reached, status, trace)
       end if
-      if (status%code == MUD_OK) call write_output(par%hysteresis, state1, blocks, counters, kind > 0, output, status)
+      if (status%code == MUD_OK) call write_output(par%options_t, state1, blocks, counters, kind > 0, output, status)
       report = report_of(status, counters, reached)
    end subroutine kernel_point
 
@@ -237,8 +237,8 @@ contains
       real(wp), intent(inout) :: packed(NSTATV)   !< Totals so far.
       type(mud_status_t), intent(out) :: status
 
-      if (size(statev) < statev_size(par%hysteresis)) then
-         status = wrong_nstatv(size(statev), par%hysteresis)
+      if (size(statev) < statev_size(par%options_t)) then
+         status = wrong_nstatv(size(statev), par%options_t)
          return
       end if
       if (.not. is_finite(statev(S_LAYOUT))) then
@@ -248,25 +248,25 @@ contains
       if (abs(statev(S_LAYOUT)) <= 0.0_wp) then
          call initialise(par, stress, suction, statev(S_VOID_RATIO), statev(S_SATURATION), state, packed, status)
       else
-         call unpack_state(statev, par%hysteresis, state, status)
+         call unpack_state(statev, par%options_t, state, status)
          if (par%hysteresis .and. status%code == MUD_OK) then
             call check_saturation(par, state%p_c, state%e, state%s_w, status)
          end if
-         call copy_statev(par%hysteresis, statev, packed)
+         call copy_statev(statev_size(par%options_t), statev, packed)
          state%sigma = -stress
          state%p_c = suction
       end if
    end subroutine read_state
 
-   !> The numbers of a point at once: their count is known. Units as in mud_registry; from and to have the numbers of
-   !> statev_size, and what is behind them stays.
-   pure subroutine copy_statev(hysteresis, from, to)
-      logical, intent(in) :: hysteresis
+   !> The numbers of a point, most at once: their count is known. Units as in mud_registry; from and to have the n
+   !> numbers of statev_size, and what is behind them stays.
+   pure subroutine copy_statev(n, from, to)
+      integer, intent(in) :: n
       real(wp), intent(in), contiguous :: from(:)
       real(wp), intent(inout), contiguous :: to(:)
 
       to(1:NSTATV_WITHOUT_HYSTERESIS) = from(1:NSTATV_WITHOUT_HYSTERESIS)
-      if (hysteresis) to(S_TURNS:NSTATV) = from(S_TURNS:NSTATV)
+      if (n > NSTATV_WITHOUT_HYSTERESIS) to(S_TURNS:n) = from(S_TURNS:n)
    end subroutine copy_statev
 
    !> A state without a past; a void ratio of zero means that of the parameters, stress zero means p_min. Codes of
@@ -289,7 +289,7 @@ contains
       if (status%code /= MUD_OK) return
       call initial_state(par, -stress, e, suction, state, status, s_w)
       if (status%code == MUD_OK) call check_strength(par, state, status)
-      if (status%code == MUD_OK) call pack_state(state, par%hysteresis, counters_t(), packed)
+      if (status%code == MUD_OK) call pack_state(state, par%options_t, counters_t(), packed)
    end subroutine initialise
 
    !> A start far beyond the bounding surface, which no loading reaches: MUD_BAD_INPUT with q/p' and the largest that is
@@ -307,8 +307,8 @@ contains
    end subroutine check_strength
 
    !> From the core's results to UMAT conventions; a result that is not finite is a failure.
-   pure subroutine write_output(hysteresis, state, blocks, counters, has_tangent, output, status)
-      logical, intent(in) :: hysteresis
+   pure subroutine write_output(options, state, blocks, counters, has_tangent, output, status)
+      type(options_t), intent(in) :: options
       type(state_t), intent(in) :: state
       type(blocks_t), intent(in) :: blocks
       type(counters_t), intent(in) :: counters
@@ -321,8 +321,8 @@ contains
       used = S_STACK - 1 + ENTRY_SIZE*state%memory%depth
       output%has_tangent = has_tangent
       output%stress = to_umat_stress(state%sigma)
-      call pack_state(state, hysteresis, counters, output%statev)
-      output%n_statev = statev_size(hysteresis)
+      call pack_state(state, options, counters, output%statev)
+      output%n_statev = statev_size(options)
       output%dsw_deps = 0.0_wp
       output%dsw_deps(1:3) = -blocks%dsw_dev
       output%dsw_dpc = blocks%dsw_dpc
@@ -379,12 +379,12 @@ contains
       host_factor = merge(2.0_wp, 1.0_wp, status%subject == ON_STRAIN .and. status%index > 3)
    end function host_factor
 
-   pure function wrong_nstatv(n, hysteresis) result(status)
+   pure function wrong_nstatv(n, options) result(status)
       integer, intent(in) :: n
-      logical, intent(in) :: hysteresis
+      type(options_t), intent(in) :: options
       type(mud_status_t) :: status
 
-      status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n, wp), real(statev_size(hysteresis), wp), huge(1.0_wp))
+      status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n, wp), real(statev_size(options), wp), huge(1.0_wp))
    end function wrong_nstatv
 
    pure function report_of(status, counters, reached) result(report)

@@ -139,7 +139,7 @@ contains
       if (status%code == MUD_OK .and. kind_of(tangent) < 0) &
          status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(tangent, wp))
       if (status%code /= MUD_OK) return
-      n = statev_size(start%material%par%hysteresis)
+      n = statev_size(start%material%par%options_t)
       if (n_statev < n) status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n_statev, wp), real(n, wp), huge(1.0_wp))
       if (status%code /= MUD_OK) return
       call c_f_pointer(stress0, start%stress, [6])
@@ -157,7 +157,7 @@ contains
       call c_f_pointer(stress1, array, [6])
       array = output%stress
       call c_f_pointer(statev1, array, [output%n_statev])
-      call copy_statev(output%n_statev > NSTATV_WITHOUT_HYSTERESIS, output%statev, array)
+      call copy_statev(output%n_statev, output%statev, array)
    end subroutine give_state
 
    !> The slopes against strain and suction of stress only where a tangent was asked for.

@@ -44,7 +44,7 @@ contains
 
       call find_prepared(storage, material, status)
       mud_prepared_statev = status%code
-      if (status%code == MUD_OK) mud_prepared_statev = statev_size(material%par%hysteresis)
+      if (status%code == MUD_OK) mud_prepared_statev = statev_size(material%par%options_t)
    end function mud_prepared_statev
 
    !> Checks PROPS and writes the material; on an error the storage is no prepared material. MUD_NULL_ARGUMENT,

@@ -87,7 +87,7 @@ contains
       type(params_t) :: branch
       logical :: cleared
 
-      call unpack_state(statev, par%hysteresis, state, status)
+      call unpack_state(statev, par%options_t, state, status)
       if (status%code == MUD_OK) call check_saturation(par, state%p_c, state%e, state%s_w, status)
       if (status%code /= MUD_OK) return
       path = path_t(log_suction(par, state%p_c, state%e), state%s_w, state%turns)

@@ -9,7 +9,7 @@ module mud_save
    use mud_kernel, only: report_t, output_t, kernel_begin
    use mud_kinds, only: wp
    use mud_messages, only: status_text, report_text
-   use mud_params, only: has_hysteresis, params_t, read_params
+   use mud_params, only: options_of, params_t, read_params
    use mud_prepared, only: prepared_t, find_prepared
    use mud_registry, only: NPROPS, NSTATV, P_TANGENT, PROPERTIES, S_LAYOUT, S_VOID_RATIO, S_SATURATION, &
       S_SUCTION, statev_name
@@ -70,7 +70,7 @@ contains
       call find_prepared(storage, material, status)
       mud_save_increment = status%code
       if (status%code == MUD_OK) then
-         if (n_statev < statev_size(material%par%hysteresis)) mud_save_increment = MUD_BAD_NSTATV
+         if (n_statev < statev_size(material%par%options_t)) mud_save_increment = MUD_BAD_NSTATV
       end if
       if (tangent < 0 .or. tangent > LAST_TANGENT) mud_save_increment = MUD_BAD_OPTION
       if (.not. (c_associated(path) .and. c_associated(stress0) .and. c_associated(statev0) .and. &
@@ -79,7 +79,7 @@ contains
       if (mud_save_increment /= MUD_OK) return
 
       call c_f_pointer(stress0, stress_in, [6])
-      call c_f_pointer(statev0, statev_in, [statev_size(material%par%hysteresis)])
+      call c_f_pointer(statev0, statev_in, [statev_size(material%par%options_t)])
       call c_f_pointer(dstrain, dstrain_in, [6])
       call get(origin, whence, whole)
       call get(path, name, whole)
@@ -122,7 +122,7 @@ contains
       end if
       problem = ''
       start = stress
-      n = min(size(statev), statev_size(has_hysteresis(props)))
+      n = min(size(statev), statev_size(options_of(props)))
       state(:n) = statev(:n)
       call begin_as_umat(props, suction, start, state(:n))
       call line('! An increment of MUD, for mud_triax: compression positive, engineering shear, stresses in the '// &

@@ -8,7 +8,7 @@ module mud_umat
    use mud_kinds, only: wp
    use mud_refusals, only: place_t, refuse, remark_on_suction, remark_on_props, remark_on_pressure, &
       remark_on_late_start, remark_on_rotation, remark_on_green_strain, save_if_asked
-   use mud_params, only: has_hysteresis, completed, is_length
+   use mud_params, only: options_of, completed, is_length
    use mud_registry, only: NPROPS, NSTATV, NSTATV_WITHOUT_HYSTERESIS, P_TANGENT, S_SUCTION
    use mud_state, only: statev_size
    use mud_status, only: mud_status_t, MUD_OK
@@ -92,7 +92,7 @@ contains
       order = component_order(props_in)
       stress6 = stress6(order)
       dstran6 = dstran6(order)
-      n = min(n_statev, statev_size(has_hysteresis(props_in)))
+      n = min(n_statev, statev_size(options_of(props_in)))
       statev0(1:n) = statev_in(1:n)
       call read_rotation(drot, has_past(statev0(:n)), pnewdt, rotation, status)
       if (status%code /= MUD_OK) then

@@ -142,7 +142,7 @@ contains
       type(report_t) :: report
       integer :: i, k, m
 
-      m = min(size(points%state0, 2), statev_size(par%hysteresis))
+      m = min(size(points%state0, 2), statev_size(par%options_t))
       do i = 1, n
          k = first + i - 1
          old%stress(:, i) = read_six(points%stress0(k, :))

@@ -2,18 +2,19 @@
 !> Material parameters: from PROPS to named values, checked against the registry.
 module mud_params
    use mud_kinds, only: wp, SQRT_6
-   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, PROPERTIES, KIND_REAL, MAX_TURNS, &
+   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NPROPS_WITHOUT_PRELOADING, PROPERTIES, KIND_REAL, &
+      MAX_TURNS, &
             P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, P_H_0, P_C_H, &
       P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, P_P_ATM, P_P_MIN, &
       P_BONDING, P_FABRIC, P_ISOTROPIC, P_LODE, P_MEMORY_RULE, P_EPS_HAT, P_J_EXP, P_X_0, P_X_REV, P_CAP_D, P_CAP_H, &
       P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, P_TANGENT, P_RHO_E, P_SHEAR_ORDER, &
-      P_HYSTERESIS, P_P_AW, P_N_W, P_M_W, P_B_D, P_B_W
+      P_HYSTERESIS, P_P_AW, P_N_W, P_M_W, P_B_D, P_B_W, P_C_CHI, P_ZETA_CHI, P_S_CHI
    use mud_status, only: mud_status_t, fail, MUD_BAD_NPROPS, MUD_BAD_PROPS, ON_PROPS
    use mud_tensor, only: is_finite, all_finite
    use mud_units, only: stress_unit, bounds_for, minimum_stress, LARGEST_STRESS, LARGEST_SUCTION_STEP, SMALLEST_MINIMUM
    implicit none (type, external)
    private
-   public :: params_t, scanning_t, branch_t, least_t, read_params, completed, is_length, has_hysteresis, &
+   public :: params_t, scanning_t, branch_t, least_t, read_params, completed, is_length, options_t, options_of, &
              check_bounds, default_props
    public :: NO_FLOOR, NOT_SCANNING, STRICTNESS, NO_BRANCH, NO_OFFSET, MAX_LEAST
 
@@ -62,9 +63,15 @@ module mud_params
    type(scanning_t), parameter :: NOT_SCANNING = scanning_t(.false., 1, NO_BRANCH, .false., 0.0_wp, 0.0_wp, 0.0_wp)
    real(wp), parameter :: WETTING_SHARE = 0.5_wp   !< P_aw of P_a where it is not given [-].
 
+   !> What a point has more numbers of STATEV with.
+   type :: options_t
+      logical :: hysteresis   !< Hydraulic hysteresis.
+      logical :: preloading   !< Cyclic preloading.
+   end type options_t
+
    !> Parameters of one material; names and units as in mud_registry. With hysteresis a phase of an increment has a copy
    !> that scans.
-   type :: params_t
+   type, extends(options_t) :: params_t
       real(wp) :: k_0, g_0, n_c, lambda, alpha_csl, n_l, theta, m_c, c, n_b, n_d, a_0, h_0, c_h, c_z, z_max
       real(wp) :: b_1, b_2, s_max, s_min, p_a, omega, n_x, m_x, e_0, p_atm, p_min
       logical :: bonding, fabric, isotropic, lode, cutoff
@@ -85,11 +92,11 @@ module mud_params
       !> rates change by their own size within the same strain; docs/theory/integration.md section 2 [-].
       real(wp) :: second_share
       real(wp) :: rho_e     !< Radius of the elastic domain, 0: none [-].
-      logical :: hysteresis
       real(wp) :: p_aw, n_w, m_w, b_d, b_w   !< Those left to others have their values.
       real(wp) :: log_wetting                !< ln(P_aw/P_a) [-].
       type(least_t) :: least
       type(scanning_t) :: scanning           !< Of a phase.
+      real(wp) :: c_chi, zeta_chi, s_chi     !< Read with preloading.
       real(wp) :: c4        !< c**4, for the Lode function [-].
       real(wp) :: lode_bend !< sqrt(6) (1 - c**4)/(8 c**4), for its slope [-].
       real(wp) :: largest_stress, largest_suction_step   !< Limits of input in the unit of p_atm.
@@ -102,21 +109,23 @@ contains
       props = PROPERTIES%default
    end function default_props
 
-   !> True of a number of PROPS that is taken: all of them, or those without hysteresis.
+   !> True of a number of PROPS that is taken: all of them, or those without preloading, or without hysteresis too.
    pure logical function is_length(n)
       integer, intent(in) :: n
 
-      is_length = n == NPROPS .or. n == NPROPS_WITHOUT_HYSTERESIS
+      is_length = n == NPROPS .or. n == NPROPS_WITHOUT_PRELOADING .or. n == NPROPS_WITHOUT_HYSTERESIS
    end function is_length
 
-   !> True if PROPS, of any length and not yet checked, switch hysteresis on.
-   pure logical function has_hysteresis(props)
+   !> What PROPS, of any length and not yet checked, switch on.
+   pure type(options_t) function options_of(props) result(options)
       real(wp), intent(in) :: props(:)
 
-      has_hysteresis = .false.
+      options = options_t(.false., .false.)
+      if (size(props) < NPROPS_WITHOUT_PRELOADING) return
+      if (is_finite(props(P_HYSTERESIS))) options%hysteresis = props(P_HYSTERESIS) > 0.5_wp
       if (size(props) < NPROPS) return
-      if (is_finite(props(P_HYSTERESIS))) has_hysteresis = props(P_HYSTERESIS) > 0.5_wp
-   end function has_hysteresis
+      if (is_finite(props(P_C_CHI))) options%preloading = props(P_C_CHI) > 0.0_wp
+   end function options_of
 
    !> PROPS of an allowed length in full. The size of given(:) is one that is_length takes, which is not checked; what
    !> is left out is the default of the registry.
@@ -129,7 +138,7 @@ contains
    end function completed
 
    !> Checks PROPS and names its values. On an error params is undefined and status names the first bad entry. props(:)
-   !> has NPROPS or NPROPS_WITHOUT_HYSTERESIS entries in the unit of p_atm, else MUD_BAD_NPROPS; a value that is not
+   !> has a number of entries that is_length takes, in the unit of p_atm, else MUD_BAD_NPROPS; a value that is not
    !> allowed is MUD_BAD_PROPS.
    pure subroutine read_params(props, params, status)
       real(wp), intent(in), contiguous :: props(:)
@@ -202,6 +211,12 @@ contains
       params%scanning%acts = .false.
       params%scanning%moves = .false.
       if (params%hysteresis) call read_wetting(props, params)
+      params%preloading = props(P_C_CHI) > 0.0_wp
+      if (params%preloading) then
+         params%c_chi = props(P_C_CHI)
+         params%zeta_chi = props(P_ZETA_CHI)
+         params%s_chi = props(P_S_CHI)
+      end if
       params%c4 = params%c**4
       params%lode_bend = SQRT_6*(1.0_wp - params%c4)/(8.0_wp*params%c4)
 
@@ -233,19 +248,23 @@ contains
    end subroutine read_wetting
 
    !> Names the first entry that is not finite, out of its bounds or not the integer it should be. What stands behind
-   !> hysteresis is read, and looked at, where it is on.
+   !> hysteresis or c_chi is read, and looked at, where it is on.
    pure subroutine check_props(props, status)
       real(wp), intent(in) :: props(NPROPS)
       type(mud_status_t), intent(out) :: status
       real(wp) :: unit
 
       unit = stress_unit(props)
-      if (all_finite(props(:P_HYSTERESIS)) .and. abs(unit - 1.0_wp) <= 0.0_wp) then
-         if (no_fault(props(:P_HYSTERESIS)) .and. props(P_HYSTERESIS) < 0.5_wp) return
+      if (all_finite(props(:P_HYSTERESIS)) .and. is_finite(props(P_C_CHI)) .and. abs(unit - 1.0_wp) <= 0.0_wp) then
+         if (no_fault(props(:P_HYSTERESIS)) .and. props(P_HYSTERESIS) < 0.5_wp .and. &
+             abs(props(P_C_CHI)) <= 0.0_wp) return
       end if
-      call check_bounds(props, P_HYSTERESIS, status)
+      call check_bounds(props, 1, P_HYSTERESIS, status)
       if (status%code /= 0) return
-      if (whole(props(P_HYSTERESIS)) == 1) call check_bounds(props, NPROPS, status)
+      if (whole(props(P_HYSTERESIS)) == 1) call check_bounds(props, P_HYSTERESIS + 1, P_C_CHI - 1, status)
+      call check_bounds(props, P_C_CHI, P_C_CHI, status)
+      if (status%code /= 0) return
+      if (props(P_C_CHI) > 0.0_wp) call check_bounds(props, P_C_CHI + 1, NPROPS, status)
       if (status%code /= 0) return
       if (props(P_P_MIN) > 0.0_wp .and. props(P_P_MIN) < SMALLEST_MINIMUM*unit) then
          status = fail(MUD_BAD_PROPS, ON_PROPS, P_P_MIN, props(P_P_MIN), SMALLEST_MINIMUM*unit, UPPER(P_P_MIN)*unit)
@@ -256,18 +275,19 @@ contains
       end if
    end subroutine check_props
 
-   !> Names the first entry up to a last one that is not finite, out of its bounds or not the integer it should be.
+   !> Names the first of some entries that is not finite, out of its bounds or not the integer it should be.
    !> Stresses in the unit of p_atm. status becomes MUD_BAD_PROPS with entry, value and range, and stays as it is where
-   !> all are good.
-   pure subroutine check_bounds(props, last, status)
+   !> all are good, or where it is bad.
+   pure subroutine check_bounds(props, first, last, status)
       real(wp), intent(in) :: props(NPROPS)
-      integer, intent(in) :: last
+      integer, intent(in) :: first, last
       type(mud_status_t), intent(inout) :: status
       real(wp) :: low(NPROPS), high(NPROPS)
       integer :: i
 
+      if (status%code /= 0) return
       call bounds_for(props, low, high)
-      do i = 1, last
+      do i = first, last
          if (acceptable(i, props(i), low(i), high(i))) cycle
          status = fail(MUD_BAD_PROPS, ON_PROPS, i, props(i), low(i), high(i))
          return

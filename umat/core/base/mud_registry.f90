@@ -6,7 +6,8 @@ module mud_registry
    implicit none (type, external)
    private
    public :: property_t, variable_t, PROPERTIES, VARIABLES, NPROPS, NSTATV, NVARIABLES, STATE_LAYOUT
-   public :: UNIT_STRESS, UNIT_STRESS_TO_LAMBDA, NPROPS_WITHOUT_HYSTERESIS, NSTATV_WITHOUT_HYSTERESIS
+   public :: UNIT_STRESS, UNIT_STRESS_TO_LAMBDA, NPROPS_WITHOUT_HYSTERESIS, NSTATV_WITHOUT_HYSTERESIS, &
+             NPROPS_WITHOUT_PRELOADING, NSTATV_WITHOUT_PRELOADING
    public :: KIND_REAL, KIND_SWITCH, KIND_OPTION, KIND_COUNT
    public :: option_t, OPTIONS, property_meaning, property_index, statev_index, statev_name, statev_variable, COMPONENTS
    public :: RULE_CLASSIC, RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, SCHEME_AUTOMATIC, &
@@ -16,12 +17,14 @@ module mud_registry
              P_H_0, P_C_H, P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, &
              P_P_ATM, P_P_MIN, P_BONDING, P_FABRIC, P_ISOTROPIC, P_LODE, P_MEMORY_RULE, P_EPS_HAT, P_J_EXP, &
              P_X_0, P_X_REV, P_CAP_D, P_CAP_H, P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, &
-             P_TANGENT, P_RHO_E, P_SHEAR_ORDER, P_HYSTERESIS, P_P_AW, P_N_W, P_M_W, P_B_D, P_B_W
+             P_TANGENT, P_RHO_E, P_SHEAR_ORDER, P_HYSTERESIS, P_P_AW, P_N_W, P_M_W, P_B_D, P_B_W, P_C_CHI, &
+             P_ZETA_CHI, P_S_CHI
    public :: S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION, S_STATE_PARAMETER, S_EPS_Q_P, S_EPS_Q_P_TOTAL, &
              S_X_BEFORE, S_X_RUNNING, S_TARGET, S_INTERRUPTED, S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, &
              S_MEMORY_BEFORE, S_DIRECTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, S_N_RATE, &
              S_N_SUBSTEP, S_N_REJECT, S_N_RESET, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, &
-             S_ELASTIC_DOMAIN, S_GAP, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED, S_TURNS, S_N_CLEARED, S_TURN, MAX_TURNS
+             S_ELASTIC_DOMAIN, S_GAP, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED, S_TURNS, S_N_CLEARED, S_TURN, MAX_TURNS, &
+             S_CHI, S_CHI_OWN, S_CHI_STACK
 
    integer, parameter :: STATE_LAYOUT = 3   !< Layout number that an initialised STATEV carries.
    integer, parameter :: KIND_REAL = 0, KIND_SWITCH = 1, KIND_OPTION = 2, KIND_COUNT = 3
@@ -113,10 +116,13 @@ module mud_registry
    integer, parameter :: P_TANGENT = 44
    integer, parameter :: P_RHO_E = 45
    integer, parameter :: P_SHEAR_ORDER = 46
-   integer, parameter :: P_HYSTERESIS = 47, P_P_AW = 48, P_N_W = 49, P_M_W = 50, P_B_D = 51, P_B_W = 52, NPROPS = 52
+   integer, parameter :: P_HYSTERESIS = 47, P_P_AW = 48, P_N_W = 49, P_M_W = 50, P_B_D = 51, P_B_W = 52
+   integer, parameter :: P_C_CHI = 53, P_ZETA_CHI = 54, P_S_CHI = 55, NPROPS = 55
    !> PROPS may end before hysteresis: it is off, and what follows has its default. Hosts with PROPS of that length, or
    !> with no room for more (PLAXIS: 50), go on as they are.
    integer, parameter :: NPROPS_WITHOUT_HYSTERESIS = P_HYSTERESIS - 1
+   !> Likewise before cyclic preloading.
+   integer, parameter :: NPROPS_WITHOUT_PRELOADING = P_C_CHI - 1
 
    ! Places in STATEV, each behind the one before; a tensor takes six.
    integer, parameter :: S_LAYOUT = 1, S_VOID_RATIO = S_LAYOUT + 1, S_SATURATION = S_VOID_RATIO + 1, &
@@ -140,7 +146,10 @@ module mud_registry
    !> noise, six are the least, eight bear noise on five nested loops.
    integer, parameter :: MAX_TURNS = 8
    integer, parameter :: S_TURNS = NSTATV_WITHOUT_HYSTERESIS + 1, S_N_CLEARED = S_TURNS + 1, S_TURN = S_N_CLEARED + 1
-   integer, parameter :: NSTATV = S_TURN - 1 + 2*MAX_TURNS
+   !> STATEV may end here without cyclic preloading.
+   integer, parameter :: NSTATV_WITHOUT_PRELOADING = S_TURN - 1 + 2*MAX_TURNS
+   integer, parameter :: S_CHI = NSTATV_WITHOUT_PRELOADING + 1, S_CHI_OWN = S_CHI + 1, S_CHI_STACK = S_CHI_OWN + 1
+   integer, parameter :: NSTATV = S_CHI_STACK - 1 + MAX_INTERRUPTED
 
    type(property_t), parameter :: PROPERTIES(NPROPS) = [ &
       property_t(P_K_0, 'K_0', 'K_0', '1', KIND_REAL, 0.001_wp, 1.0e5_wp, 150.0_wp, 'paper', &
@@ -246,7 +255,13 @@ module mud_registry
       property_t(P_B_D, 'b_d', 'b_d', '1', KIND_REAL, 0.0_wp, 100.0_wp, 3.7_wp, 'ours', &
          'how flat drying scanning curves begin (Zhou et al. 2012); with hysteresis'), &
       property_t(P_B_W, 'b_w', 'b_w', '1', KIND_REAL, 1.001_wp, 100.0_wp, 2.9_wp, 'ours', &
-         'how flat wetting scanning curves begin; below 1 they would leave the main curves; with hysteresis')]
+         'how flat wetting scanning curves begin; below 1 they would leave the main curves; with hysteresis'), &
+      property_t(P_C_CHI, 'c_chi', 'c_chi', '1', KIND_REAL, 0.0_wp, 100.0_wp, 0.0_wp, 'ours', &
+         'cyclic preloading: how much earlier contraction a process of virgin size forgets; 0: off'), &
+      property_t(P_ZETA_CHI, 'zeta_chi', 'zeta_chi', '1', KIND_REAL, 0.0_wp, 1.0e6_wp, 3000.0_wp, 'ours', &
+         'how fast dilation takes the contraction back that preloads; with c_chi'), &
+      property_t(P_S_CHI, 's_chi', 's_chi', '1', KIND_REAL, 0.0_wp, 1.0_wp, 0.25_wp, 'ours', &
+         'how much preloading stiffens, beside how much it keeps from contracting; with c_chi')]
 
    type(variable_t), parameter :: VARIABLES(*) = [ &
       variable_t(S_LAYOUT, 1, 'layout', '-', '1', .false., 'ours', &
@@ -395,7 +410,21 @@ module mud_registry
          'modified suction of turning point 8; the first is the oldest; with hysteresis', '0', &
          'set where suction turns'), &
       variable_t(S_TURN + 15, 1, 'turn_s_w_8', 'S_8', '1', .false., 'ours', &
-         'degree of saturation of turning point 8; with hysteresis', '0', 'set where suction turns')]
+         'degree of saturation of turning point 8; with hysteresis', '0', 'set where suction turns'), &
+      variable_t(S_CHI, 1, 'contraction', 'chi', '1', .false., 'ours', &
+         'plastic contraction of all processes that preloads; with c_chi', '0', &
+         'grows in contraction, falls in dilation'), &
+      variable_t(S_CHI_OWN, 1, 'contraction_own', 'chi_o', '1', .false., 'ours', &
+         'the share of the present process in it; with c_chi', '0', &
+         'likewise; 0 at a reset, restored at a return'), &
+      variable_t(S_CHI_STACK + 0, 1, 'contraction_1', 'chi_1', '1', .false., 'ours', &
+         'the share of the interrupted process 1 in it; with c_chi', '0', 'set where the process is interrupted'), &
+      variable_t(S_CHI_STACK + 1, 1, 'contraction_2', 'chi_2', '1', .false., 'ours', &
+         'the share of the interrupted process 2 in it; with c_chi', '0', 'set where the process is interrupted'), &
+      variable_t(S_CHI_STACK + 2, 1, 'contraction_3', 'chi_3', '1', .false., 'ours', &
+         'the share of the interrupted process 3 in it; with c_chi', '0', 'set where the process is interrupted'), &
+      variable_t(S_CHI_STACK + 3, 1, 'contraction_4', 'chi_4', '1', .false., 'ours', &
+         'the share of the interrupted process 4 in it; with c_chi', '0', 'set where the process is interrupted')]
    integer, parameter :: NVARIABLES = size(VARIABLES)
 
    type(option_t), parameter :: OPTIONS(*) = [ &

@@ -2,11 +2,13 @@
 !> State of an integration point, and its place in STATEV.
 module mud_state
    use mud_kinds, only: wp
-   use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, STATE_LAYOUT, S_LAYOUT, S_VOID_RATIO, S_SATURATION, &
-      S_SUCTION, S_STATE_PARAMETER, S_EPS_Q_P, S_EPS_Q_P_TOTAL, S_X_BEFORE, S_X_RUNNING, S_TARGET, S_INTERRUPTED, &
-      S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, S_MEMORY_BEFORE, S_DIRECTION, S_N_RATE, S_N_SUBSTEP, S_N_REJECT, &
-      S_N_RESET, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, S_ELASTIC_DOMAIN, S_GAP, S_STACK, &
-      ENTRY_SIZE, MAX_INTERRUPTED, S_TURNS, S_N_CLEARED, S_TURN, MAX_TURNS
+   use mud_params, only: options_t
+   use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, NSTATV_WITHOUT_PRELOADING, STATE_LAYOUT, S_LAYOUT, &
+      S_VOID_RATIO, S_SATURATION, S_SUCTION, S_STATE_PARAMETER, S_EPS_Q_P, S_EPS_Q_P_TOTAL, S_X_BEFORE, S_X_RUNNING, &
+      S_TARGET, S_INTERRUPTED, S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, S_MEMORY_BEFORE, S_DIRECTION, S_N_RATE, &
+      S_N_SUBSTEP, S_N_REJECT, S_N_RESET, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, &
+      S_ELASTIC_DOMAIN, S_GAP, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED, S_TURNS, S_N_CLEARED, S_TURN, MAX_TURNS, S_CHI, &
+      S_CHI_OWN, S_CHI_STACK
    use mud_status, only: mud_status_t, fail, MUD_BAD_STATE, MUD_BAD_NSTATV, ON_STATEV
    use mud_tensor, only: is_finite, all_finite
    implicit none (type, external)
@@ -21,6 +23,7 @@ module mud_state
    real(wp), parameter :: LARGEST_FABRIC = 1.0e6_wp       !< Likewise; z_max is at most 1e3 [-].
    real(wp), parameter :: LARGEST_FROM_CENTRE = 1.0_wp    !< Strain from the elastic domain's centre; rho_e <= 0.01 [-].
    real(wp), parameter :: LARGEST_LOG_SUCTION = 1.0e3_wp  !< ln of a double [-].
+   real(wp), parameter :: LARGEST_CONTRACTION = 1.0e6_wp  !< Of all processes: strains of 1e9 increments of 1e-3 [-].
    real(wp), parameter :: LARGEST_DIRECTION = 1.01_wp     !< Components of a unit tensor [-].
 
    !> A loading process that was interrupted (rule return_point).
@@ -28,6 +31,7 @@ module mud_state
       real(wp) :: r_in(6)      !< its memory [-]
       real(wp) :: direction(6) !< in which it moved r [-]
       real(wp) :: target       !< r:direction where it was left [-]
+      real(wp) :: chi          !< its contraction (cyclic preloading) [-]
    end type interrupted_t
 
    !> What the point remembers of its loading processes.
@@ -39,6 +43,8 @@ module mud_state
       real(wp) :: eps_q_p      !< plastic shear of the present process
       real(wp) :: x_before     !< J
       real(wp) :: x_running    !< (r - r_in):n of the last accepted rate with x >= 0
+      real(wp) :: chi          !< contraction of all processes that preloads, 0 without cyclic preloading
+      real(wp) :: chi_own      !< the share of the present process in it
       integer :: depth         !< Number of interrupted processes.
       type(interrupted_t) :: interrupted(MAX_INTERRUPTED)   !< The oldest first; beyond depth without meaning.
    end type memory_t
@@ -75,24 +81,25 @@ module mud_state
    end type counters_t
 contains
    !> Numbers of a point in STATEV.
-   pure integer function statev_size(hysteresis) result(n)
-      logical, intent(in) :: hysteresis
+   pure integer function statev_size(options) result(n)
+      type(options_t), intent(in) :: options
 
-      n = merge(NSTATV, NSTATV_WITHOUT_HYSTERESIS, hysteresis)
+      n = merge(NSTATV_WITHOUT_PRELOADING, NSTATV_WITHOUT_HYSTERESIS, options%hysteresis)
+      if (options%preloading) n = NSTATV
    end function statev_size
 
    !> Reads a state from an initialised STATEV; the stress is set by the caller. statev(:) has at least the numbers of
    !> statev_size, else MUD_BAD_NSTATV; units as in mud_registry, tensors with the sign of the core. MUD_BAD_STATE names
    !> the first entry that is not finite or out of its range; the state is then of no use.
-   pure subroutine unpack_state(statev, hysteresis, state, status)
+   pure subroutine unpack_state(statev, options, state, status)
       real(wp), intent(in), contiguous :: statev(:)
-      logical, intent(in) :: hysteresis
+      type(options_t), intent(in) :: options
       type(state_t), intent(inout) :: state
       type(mud_status_t), intent(out) :: status
       integer :: i
 
-      if (size(statev) < statev_size(hysteresis)) then
-         status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(size(statev), wp), real(statev_size(hysteresis), wp), &
+      if (size(statev) < statev_size(options)) then
+         status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(size(statev), wp), real(statev_size(options), wp), &
                        huge(1.0_wp))
          return
       end if
@@ -121,7 +128,8 @@ contains
       end do
       if (status%code /= 0) return
       call unpack_stack(statev, state%memory, status)
-      if (hysteresis) call unpack_turns(statev, state%turns, status)
+      if (options%hysteresis) call unpack_turns(statev, state%turns, status)
+      call unpack_contraction(statev, options%preloading, state%memory, status)
       if (status%code /= 0) return
 
       state%e = statev(S_VOID_RATIO)
@@ -164,6 +172,38 @@ contains
       end do
    end subroutine unpack_stack
 
+   !> Reads the contraction of the processes of cyclic preloading; of a stack that is read. Nothing is 0 without it.
+   pure subroutine unpack_contraction(statev, preloading, memory, status)
+      real(wp), intent(in) :: statev(:)
+      logical, intent(in) :: preloading
+      type(memory_t), intent(inout) :: memory
+      type(mud_status_t), intent(inout) :: status
+      integer :: k
+
+      memory%chi = 0.0_wp
+      memory%chi_own = 0.0_wp
+      memory%interrupted%chi = 0.0_wp
+      if (.not. preloading .or. status%code /= 0) return
+      do k = S_CHI, S_CHI_STACK - 1 + memory%depth
+         call require(statev, k, 0.0_wp, LARGEST_CONTRACTION, status)
+      end do
+      if (status%code /= 0) return
+      memory%chi = statev(S_CHI)
+      memory%chi_own = statev(S_CHI_OWN)
+      memory%interrupted(:memory%depth)%chi = statev(S_CHI_STACK:S_CHI_STACK - 1 + memory%depth)
+   end subroutine unpack_contraction
+
+   !> Writes the contraction of the processes; unused places become zero.
+   pure subroutine pack_contraction(memory, statev)
+      type(memory_t), intent(in) :: memory
+      real(wp), intent(inout) :: statev(:)
+
+      statev(S_CHI) = memory%chi
+      statev(S_CHI_OWN) = memory%chi_own
+      statev(S_CHI_STACK:NSTATV) = 0.0_wp
+      statev(S_CHI_STACK:S_CHI_STACK - 1 + memory%depth) = memory%interrupted(:memory%depth)%chi
+   end subroutine pack_contraction
+
    !> Reads the turning points of suction; places beyond their number are not looked at. No number, of a state that had
    !> no hysteresis: none.
    pure subroutine unpack_turns(statev, turns, status)
@@ -172,7 +212,7 @@ contains
       type(mud_status_t), intent(inout) :: status
       integer :: k, i
 
-      i = findloc(is_finite(statev(S_TURNS:NSTATV)), .false., dim=1)
+      i = findloc(is_finite(statev(S_TURNS:NSTATV_WITHOUT_PRELOADING)), .false., dim=1)
       if (i > 0 .and. status%code == 0) &
          status = fail(MUD_BAD_STATE, ON_STATEV, S_TURNS - 1 + i, statev(S_TURNS - 1 + i), -huge(1.0_wp), huge(1.0_wp))
       if (status%code /= 0) return
@@ -196,7 +236,7 @@ contains
       integer :: k
 
       statev(S_TURNS) = real(merge(1, -1, turns%dries)*(1 + turns%depth), wp)
-      statev(S_TURN:NSTATV) = 0.0_wp
+      statev(S_TURN:NSTATV_WITHOUT_PRELOADING) = 0.0_wp
       do k = 1, turns%depth
          statev(S_TURN + 2*k - 2) = turns%log_x(k)
          statev(S_TURN + 2*k - 1) = turns%s_w(k)
@@ -227,16 +267,16 @@ contains
       type(mud_status_t), intent(inout) :: status
 
       if (status%code /= 0) return
-      if (statev(entry) >= lower .and. statev(entry) <= upper) return
+      if (statev(entry) >= lower .and. statev(entry) <= upper) return   ! and never where it is not a number
       status = fail(MUD_BAD_STATE, ON_STATEV, entry, statev(entry), lower, upper)
    end subroutine require
 
    !> Writes a state and the sums of the counters to STATEV; the tangent outputs are the caller's. statev(:) has at
    !> least the numbers of statev_size, which is not checked; units as in mud_registry, tensors with the sign of the
    !> core.
-   pure subroutine pack_state(state, hysteresis, counters, statev)
+   pure subroutine pack_state(state, options, counters, statev)
       type(state_t), intent(in) :: state
-      logical, intent(in) :: hysteresis
+      type(options_t), intent(in) :: options
       type(counters_t), intent(in) :: counters
       real(wp), intent(inout) :: statev(:)   !< Holds the totals so far.
 
@@ -269,7 +309,8 @@ contains
       statev(S_N_MIN_STEP) = statev(S_N_MIN_STEP) + counters%min_step
       statev(S_N_OPEN) = statev(S_N_OPEN) + counters%open
       statev(S_N_TENSILE) = statev(S_N_TENSILE) + counters%tensile
-      if (.not. hysteresis) return
+      if (options%preloading) call pack_contraction(state%memory, statev)
+      if (.not. options%hysteresis) return
       call pack_turns(state%turns, statev)
       statev(S_N_CLEARED) = statev(S_N_CLEARED) + counters%cleared
    end subroutine pack_state

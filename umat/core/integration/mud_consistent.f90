@@ -11,6 +11,7 @@ module mud_consistent
    use mud_driving, only: driving_t, whole_increment, change_of_place, DIRECTIONS, AT_REST
    use mud_increment, only: increment_t, void_ratio_at, suction_at, changes_of_loading_strain, turning_of, NY
    use mud_params, only: params_t
+   use mud_preloading, only: NO_CONTRACTION
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, p_follows, MODE_ORDINARY
    use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, MAX_INTERRUPTED
@@ -28,7 +29,8 @@ module mud_consistent
    use mud_linearise, only: linearised_t, linearise
    implicit none (type, external)
    private
-   public :: sensitivity_t, no_sensitivity, begin_stretch, propagate, jump_of_memory, changes_of_parting, &
+   public :: sensitivity_t, no_sensitivity, begin_stretch, propagate, changes_of_contraction, jump_of_memory, &
+             changes_of_parting, &
              change_with_size, changes_along, changes_of_ratio, linearise_stage, JUMP_NONE, JUMP_REVERSAL, &
              JUMP_RETURN, JUMP_NEW
 
@@ -42,7 +44,8 @@ module mud_consistent
    !> Derivatives along the directions of driving_t.
    type :: sensitivity_t
       logical :: at_rest                     !< the state does not depend on the increment yet: y, r_in, shift are zero
-      real(wp) :: y(DIRECTIONS, NY)          !< of sigma', z and the plastic shear of the present process
+      !> Of sigma', z, the plastic shear of the present process, ln chi' and, within a substep, contraction.
+      real(wp) :: y(DIRECTIONS, NY)
       type(tensors_t) :: r_in                !< of the memory
       real(wp) :: r_before(DIRECTIONS, 6)    !< of the memory of the process before
       real(wp) :: shift(DIRECTIONS)          !< of the pseudo-time where the next substep begins
@@ -50,6 +53,9 @@ module mud_consistent
       !> Of the memories of interrupted processes; those up to number `settled` were there when the increment began.
       real(wp) :: interrupted(DIRECTIONS, 6, MAX_INTERRUPTED)
       integer :: settled
+      !> With cyclic preloading, of the contraction of the present process and of interrupted ones, and of ln chi' where
+      !> the substep began.
+      real(wp) :: chi_own(DIRECTIONS), chi_stack(DIRECTIONS, MAX_INTERRUPTED), log_chi0(DIRECTIONS)
       real(wp) :: parts(DIRECTIONS)          !< of the void ratio at which the grains of a held point part
       type(driving_t) :: driving
       type(fading_t) :: fading               !< of what fades of the rates, where that is known
@@ -66,6 +72,7 @@ contains
       sens%r_in%of = 0.0_wp
       sens%r_in%kind = ZERO_TENSORS
       sens%r_before = 0.0_wp
+      sens%chi_own = 0.0_wp
       sens%shift = 0.0_wp
       sens%parts = 0.0_wp
       sens%settled = depth
@@ -93,6 +100,8 @@ contains
       type(sensitivity_t), intent(inout) :: sens
       real(wp) :: dh(DIRECTIONS), first(DIRECTIONS, NY)
 
+      sens%log_chi0 = sens%y(:, 14)
+      sens%y(:, 15) = 0.0_wp
       dh = h*sens%stretch
       if (last) dh = end_shift - sens%shift
       if (trial%mode == MODE_HELD) then
@@ -111,6 +120,44 @@ contains
       sens%at_rest = .false.
       sens%shift = sens%shift + dh
    end subroutine propagate
+
+   !> Derivatives of what an accepted substep leaves of the contraction of the present process, whose share was chi_own.
+   !> Derivative of note_contraction of mud_reversal.
+   pure subroutine changes_of_contraction(trial, chi_own, sens)
+      type(trial_t), intent(in) :: trial
+      real(wp), intent(in) :: chi_own   !< before it [-]
+      type(sensitivity_t), intent(inout) :: sens
+
+      if (trial%mode == MODE_HELD) return
+      sens%chi_own = exp(min(trial%y(14) - trial%y0(14), 0.0_wp)) &
+                     *(sens%chi_own + chi_own*(sens%y(:, 14) - sens%log_chi0)) + sens%y(:, 15)
+   end subroutine changes_of_contraction
+
+   !> Derivatives of the contraction across a jump of the memory from `before` to `after`.
+   pure subroutine jump_of_contraction(jump, before, after, sens)
+      integer, intent(in) :: jump
+      type(memory_t), intent(in) :: before, after
+      type(sensitivity_t), intent(inout) :: sens   !< settled is that ahead of the jump
+      real(wp) :: all(DIRECTIONS), others
+
+      others = before%chi - before%chi_own
+      all = sens%chi_own + others*sens%y(:, 14)
+      select case (jump)
+      case (JUMP_REVERSAL)
+         if (after%depth /= before%depth) sens%chi_stack(:, after%depth) = sens%chi_own
+         sens%chi_own = 0.0_wp
+      case (JUMP_RETURN)
+         sens%chi_own = 0.0_wp
+         if (after%depth >= sens%settled) sens%chi_own = sens%chi_stack(:, after%depth + 1)
+         if (before%interrupted(after%depth + 1)%chi >= before%chi) sens%chi_own = all
+      case default
+         sens%chi_own = 0.0_wp
+         all = 0.0_wp
+      end select
+      sens%y(:, 14) = 0.0_wp
+      others = after%chi - after%chi_own
+      if (others > exp(NO_CONTRACTION)) sens%y(:, 14) = (all - sens%chi_own)/others
+   end subroutine jump_of_contraction
 
    !> Derivative of the end of a substep with respect to its size. Per unit of h, a share of inc; [kPa, -, -] for
    !> sigma', z and plastic shear. docs/theory/integration.md section 4.3.
@@ -358,6 +405,7 @@ contains
 
       sens%at_rest = .false.
       sens%r_in%kind = ANY_TENSORS
+      if (par%preloading) call jump_of_contraction(jump, before, after, sens)
       if (jump == JUMP_RETURN) then
          ! of the two memories the softer one was taken
          if (any(abs(after%r_in - before%r_in) > 0.0_wp)) then

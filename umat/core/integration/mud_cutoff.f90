@@ -14,6 +14,7 @@ module mud_cutoff
    use mud_elastic, only: bulk_slope, shear_modulus, shear_slope, STIFF_ABOVE
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, NY
    use mud_params, only: params_t
+   use mud_preloading, only: NO_CONTRACTION
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, MODE_ORDINARY, MODE_ELASTIC
    use mud_state, only: state_t, counters_t
@@ -251,10 +252,12 @@ contains
       real(wp), intent(in) :: time, y(NY)
       type(rate_t), intent(inout) :: w
       type(counters_t), intent(inout) :: counters
-      real(wp) :: p, r(6)
+      real(wp) :: p, r(6), virgin(NY)
 
       call stress_ratio(par, y(1:6), p, r)
-      call rate_of(par, inc, time, y, r, closing_mode(inc), w, counters)
+      virgin = y
+      virgin(14) = NO_CONTRACTION
+      call rate_of(par, inc, time, virgin, r, closing_mode(inc), w, counters)
    end subroutine rate_without_past
 
    !> True where p' would rise from p_min by enough to close. docs/theory/material.md sections 6.1, 6.3.

@@ -17,7 +17,9 @@ module mud_increment
    public :: increment_t, new_increment, take_phase, end_in_domain, direction_at, void_ratio_at, suction_at, rate_of, &
              store_rate, loading_strain, changes_of_loading_strain, turning_of, has_aside, NY, SHORTEST_PHASE
 
-   integer, parameter :: NY = 13         !< Length of the integrated vector: sigma'(6), z(6), plastic shear.
+   !> Length of the integrated vector: sigma'(6), z(6), plastic shear, and of the cyclic preloading ln chi' and, since
+   !> the substep began, contraction.
+   integer, parameter :: NY = 15
    !> A strain across the elastic domain, whose part along nu is rounding of either sign, does not load: it would look
    !> like a reversal [-].
    real(wp), parameter :: ACROSS = 1.0e-12_wp
@@ -40,7 +42,7 @@ module mud_increment
    end type increment_t
 contains
    !> Rate at a vector of the integration and a pseudo-time; void ratio and suction follow from the latter exactly. time
-   !> and r_in [-], y [kPa, -, -] for sigma', z and plastic shear; units of w as in rate_t. Guards that act are counted,
+   !> and r_in [-], y [kPa, -, ...] for sigma', z and the rest; units of w as in rate_t. Guards that act are counted,
    !> nothing is refused. docs/theory/integration.md section 1.
    pure subroutine rate_of(par, inc, time, y, r_in, mode, w, counters, near)
       type(params_t), intent(in) :: par
@@ -55,12 +57,12 @@ contains
       if (has_aside(inc, mode)) then
          call loading_strain(inc, mode, time, loading, aside)
          call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), suction_at(inc, time), y(7:12), r_in, &
-                      loading, inc%d_pc, mode, w, near)
+                      loading, inc%d_pc, mode, w, near, y(14))
          w%d_p = w%d_p + w%k*trace(aside)
          w%d_sigma = w%d_sigma + 2.0_wp*w%g*deviator(aside) + (w%k*trace(aside))*IDENTITY
       else
          call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), suction_at(inc, time), y(7:12), r_in, &
-                      inc%d_strain, inc%d_pc, mode, w, near)
+                      inc%d_strain, inc%d_pc, mode, w, near, y(14))
       end if
       counters%rate = counters%rate + 1
       if (w%floored .and. par%floored) counters%floor = counters%floor + 1
@@ -70,7 +72,7 @@ contains
       if (w%no_root) counters%no_root = counters%no_root + 1
    end subroutine rate_of
 
-   !> A rate as one of the integrated vector. sigma' [kPa], z and plastic shear [-], per unit of pseudo-time.
+   !> A rate as one of the integrated vector. sigma' [kPa], the others [-], per unit of pseudo-time.
    pure subroutine store_rate(w, dy)
       type(rate_t), intent(in) :: w
       real(wp), intent(out) :: dy(NY)
@@ -78,6 +80,8 @@ contains
       dy(1:6) = w%d_sigma
       dy(7:12) = w%d_z
       dy(13) = w%d_eps_q
+      dy(14) = w%d_log_chi
+      dy(15) = w%d_chi_own
    end subroutine store_rate
 
    !> True if a part of the strain is elastic: all of it inside the elastic domain, some where that is pulled.

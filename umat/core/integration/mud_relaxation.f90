@@ -44,6 +44,8 @@ contains
       relaxation%flow(1:6) = -2.0_wp*w%g*w%n - (w%k_e*w%d)*IDENTITY
       relaxation%flow(7:12) = w%d_z/w%l
       relaxation%flow(13) = SQRT_2_3
+      relaxation%flow(14) = w%d_log_chi/w%l
+      relaxation%flow(15) = w%d_chi_own/w%l
       relaxation%speed = max(-dot_product(slope, relaxation%flow(1:6)), 0.0_wp)
    end function new_relaxation
 

@@ -92,7 +92,8 @@ contains
 
       if (memory%depth == MAX_INTERRUPTED) memory%depth = MAX_INTERRUPTED - 2
       memory%depth = memory%depth + 1
-      memory%interrupted(memory%depth) = interrupted_t(memory%r_in, memory%direction, memory%target)
+      memory%interrupted(memory%depth) = &
+         interrupted_t(memory%r_in, memory%direction, memory%target, memory%chi_own)
       memory%direction = 0.0_wp
       memory%target = 0.0_wp
    end subroutine interrupt
@@ -153,6 +154,7 @@ contains
          if (ddot(r - process%r_in, t) >= ddot(r - memory%r_in, t)) memory%r_in = process%r_in
          memory%direction = process%direction
          memory%target = process%target
+         memory%chi_own = min(process%chi, memory%chi)
       end associate
       memory%depth = k - 1
       memory%eps_q_p = 0.0_wp

@@ -10,7 +10,7 @@ module mud_reversal
    use mud_tensor, only: ddot
    implicit none (type, external)
    private
-   public :: new_memory, begin_process, accept_process, interrupted_share
+   public :: new_memory, begin_process, accept_process, note_contraction, interrupted_share
 contains
    !> Memory of a point that starts at, or comes back without a past to, the stress ratio r. r and all of the memory
    !> [-]. docs/theory/material.md section 1.4.
@@ -25,6 +25,8 @@ contains
       memory%eps_q_p = 0.0_wp
       memory%x_before = 0.0_wp
       memory%x_running = 0.0_wp
+      memory%chi = 0.0_wp
+      memory%chi_own = 0.0_wp
       memory%depth = 0
    end function new_memory
 
@@ -58,9 +60,23 @@ contains
          memory%r_before = memory%r_in
       end select
       memory%r_in = r_in
+      memory%chi_own = 0.0_wp
       memory%eps_q_p = 0.0_wp
       memory%x_running = 0.0_wp
    end subroutine begin_process
+
+   !> After an accepted substep with a plastic contraction of `grown` by which ln chi' has changed by `lost`. What is
+   !> contraction of the present process comes before what dilation takes from all, or after: where D changes its sign
+   !> both are small. All [-]; docs/theory/material.md section 4.9.
+   pure subroutine note_contraction(lost, grown, memory)
+      real(wp), intent(in) :: lost, grown
+      type(memory_t), intent(inout) :: memory
+      real(wp) :: kept
+
+      kept = exp(min(lost, 0.0_wp))
+      memory%chi = memory%chi*kept + grown
+      memory%chi_own = min(memory%chi_own*kept + grown, memory%chi)
+   end subroutine note_contraction
 
    !> m of paper eq. (16): 1 for a process that has hardly begun, 0 for a genuine one. eps_q_p and m [-];
    !> docs/theory/memory-rules.md section 2.2.

@@ -2,7 +2,7 @@
 !> The substeps of a phase.
 module mud_substepping
    use mud_kinds, only: wp
-   use mud_consistent, only: propagate
+   use mud_consistent, only: propagate, changes_of_contraction
    use mud_driving, only: DIRECTIONS
    use mud_error_control, only: control_t, judge_attempt, proposal
    use mud_event_table, only: EVENTS, EVENT_NONE
@@ -64,7 +64,7 @@ contains
          it%trial%time = time
          it%trial%y0(1:6) = it%state%sigma
          it%trial%y0(7:12) = it%state%z
-         it%trial%y0(13) = 0.0_wp
+         it%trial%y0(13:15) = 0.0_wp
          call begin_substep(par, it)
          call choose_stepping(par, it%inc%to - time, max(step%h, par%h_min), it%inc, it%trial)
          call try_substep(par, step, h, it)
@@ -154,6 +154,7 @@ contains
          call propagate(par, it%inc, it%trial, h, time >= it%inc%to, end_shift, it%sens)
          if (EVENTS(it%event)%moves .and. time < it%inc%to) &
             call move_event(par, it%inc, it%event, it%trial, h, it%sens)
+         if (par%preloading) call changes_of_contraction(it%trial, it%state%memory%chi_own, it%sens)
       end if
       call accept_substep(par, h, it)
       call record(par, h, error, it%state%sigma, SUBSTEP_ACCEPTED, it)

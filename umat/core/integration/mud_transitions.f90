@@ -12,11 +12,12 @@ module mud_transitions
    use mud_increment, only: rate_of
    use mud_integration, only: integration_t
    use mud_params, only: params_t
+   use mud_preloading, only: log_contraction, NO_CONTRACTION
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, MODE_ORDINARY, MODE_ELASTIC
    use mud_registry, only: RULE_RETURN_POINT
    use mud_return_point, only: watched_process, beyond_target, resume_process
-   use mud_reversal, only: new_memory, begin_process, accept_process
+   use mud_reversal, only: new_memory, begin_process, accept_process, note_contraction
    use mud_state, only: memory_t
    use mud_tensor, only: ddot
    implicit none (type, external)
@@ -51,7 +52,7 @@ contains
       it%trial%advanced = .false.
       call stress_ratio(par, it%state%sigma, p, r)
       it%trial%mode = MODE_ORDINARY
-      it%trial%r_in = it%state%memory%r_in
+      call take_memory(par, it)
       if (it%state%open) then
          call try_to_close(par, r, it)
          return
@@ -83,6 +84,15 @@ contains
          it%trial%transient%known = .false.
       end if
    end subroutine begin_substep
+
+   !> The trial begins with the memory that the point has.
+   pure subroutine take_memory(par, it)
+      type(params_t), intent(in) :: par
+      type(integration_t), intent(inout) :: it
+
+      it%trial%r_in = it%state%memory%r_in
+      if (par%preloading) it%trial%y0(14) = log_contraction(it%state%memory%chi, it%state%memory%chi_own)
+   end subroutine take_memory
 
    !> The rate where the coming substep begins, of its mode and memory.
    pure subroutine first_rate(par, it)
@@ -137,8 +147,8 @@ contains
       before = it%state%memory
       call begin_process(par, r, trigger%n, t, it%state%memory)
       call follow_jump(par, before, trigger, it)
-      it%trial%r_in = it%state%memory%r_in
-      if (stays_floored(trigger, it%trial%r_in)) then
+      call take_memory(par, it)
+      if (stays_floored(trigger, it%trial%r_in) .and. .not. par%preloading) then
          it%trial%w(1)%r_moved = 0.0_wp
          it%trial%w(1)%x = 0.0_wp
       else
@@ -180,7 +190,7 @@ contains
          call resume_process(it%trial%watched, r, t, it%state%memory)
          trigger = it%trial%w(1)
          call follow_jump(par, before, trigger, it)
-         it%trial%r_in = it%state%memory%r_in
+         call take_memory(par, it)
          call first_rate(par, it)
          reached = .false.
       end do
@@ -200,6 +210,7 @@ contains
          it%trial%w(1)%no_root = .false.
       else
          it%trial%r_in = r
+         if (par%preloading) it%trial%y0(14) = NO_CONTRACTION
          it%trial%mode = closing_mode(it%inc)
          call first_rate(par, it)
          it%state%open = .not. closes(it%inc, it%trial%openings, it%trial%w(1))
@@ -233,6 +244,8 @@ contains
       end if
       it%state%z = it%trial%y(7:12)
       it%state%eps_q_total = it%state%eps_q_total + it%trial%y(13)
+      if (par%preloading) &
+         call note_contraction(it%trial%y(14) - it%trial%y0(14), it%trial%y(15), it%state%memory)
       it%state%sigma = landed(par, it%state%sigma)
       if (it%event == EVENT_OPENS) it%trial%openings = it%trial%openings + 1
       ! beyond the surface by a landing, whichever way the strain leads: suction may move the surface

@@ -16,6 +16,7 @@ module mud_trial
    public :: trial_t, take_step, stage_of_trial, error_norm
 
    real(wp), parameter :: PLASTIC_SHEAR_SCALE = 0.01_wp   !< Of the error norm [-].
+   real(wp), parameter :: CONTRACTION_SCALE = 0.01_wp     !< Likewise [-].
    !> Errors of stresses below this share of p_atm count as if the stress were that large: 1e-5 of 0.1 kPa is nothing
    !> that a host could see, and costs thousands of rates an update [-].
    real(wp), parameter :: SMALL_STRESS = 0.01_wp
@@ -103,5 +104,7 @@ contains
       call error_vector(scheme, trial%rates, h, delta)
       error = max(norm(delta(1:6))/max(norm(trial%y(1:6)), smallest), norm(delta(7:12))/par%z_max, &
                   abs(delta(13))/PLASTIC_SHEAR_SCALE)
+      ! in first loading nothing follows them
+      if (trial%w(1)%preloaded) error = max(error, abs(delta(14)), abs(delta(15))/CONTRACTION_SCALE)
    end function error_norm
 end module mud_trial

@@ -8,6 +8,7 @@ module mud_direction_equation
    use mud_flow, only: dilatancy
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
+   use mud_preloading, only: preloading_t, preloading_of, preload
    use mud_rate, only: rate_t
    use mud_tensor, only: ddot, deviator, square
    implicit none (type, external)
@@ -25,6 +26,8 @@ module mud_direction_equation
       real(wp) :: x_floor         !< x_0 [-]
       real(wp) :: most_d          !< D r:n of the contraction cap [-]
       real(wp) :: least_h         !< 2/3 p'/(1 - kappa_c) of the softening cap, 0: off [kPa]
+      logical :: preloaded        !< Other processes have left contraction; `preloading` is set then.
+      type(preloading_t) :: preloading
    end type equation_t
 
    !> Slopes of D by r:n, z:n, its surface, G and K_e, and of 1/h by these (with what D does to the softening cap), by
@@ -32,6 +35,8 @@ module mud_direction_equation
    type :: slopes_t
       real(wp) :: d_r, d_z, d_r_d, d_g, d_k
       real(wp) :: h_r, h_z, h_r_d, h_g, h_k, h_x, h_r_b, h_p, h_b_0
+      !> D by x, and D and 1/h by ln(w/chi') of the preloading; 0 without it.
+      real(wp) :: d_x, d_q, h_q
    end type slopes_t
 contains
    !> Of a rate whose state, moduli and choice of the isotropic mechanism are known; units as in rate_t.
@@ -47,6 +52,9 @@ contains
       eq%x_floor = par%x_floor
       eq%most_d = merge(par%cap_d*eq%two_g/eq%k_e, NO_LIMIT, par%cap_d > 0.0_wp)
       eq%least_h = merge(eq%two_thirds_p/(1.0_wp - par%cap_h), 0.0_wp, par%cap_h > 0.0_wp)
+      eq%preloaded = w%preloaded
+      if (.not. w%preloaded) return
+      eq%preloading = preloading_of(par, w%chi, w%m_d/w%m_b, w%b_0)
    end function equation_of
 
    !> D, 1/h, beta and gamma in a direction, docs/theory/material.md sections 4.2, 4.6, 5.2 to 5.4. Without branches: of
@@ -59,9 +67,11 @@ contains
       real(wp), intent(out) :: beta, gamma     !< [kPa]
       real(wp) :: stiffness, limit
 
-      d = smaller(dilatancy(a_d, r_d, r_n), eq%most_d/larger(r_n, NEGLIGIBLE))
-      stiffness = eq%two_g - eq%k_e*d*r_n
+      d = dilatancy(a_d, r_d, r_n)
       h_b = larger(x, eq%x_floor)*eq%per_b_0
+      if (eq%preloaded) call preload(eq%preloading, larger(x, eq%x_floor), d, h_b)
+      d = smaller(d, eq%most_d/larger(r_n, NEGLIGIBLE))
+      stiffness = eq%two_g - eq%k_e*d*r_n
       limit = eq%least_h*positive(r_n - r_b)/larger(stiffness, NEGLIGIBLE*eq%two_g)
       h_b = larger(limit*(0.5_wp + sign(0.5_wp, stiffness)), h_b)   ! exactly h_b where the cap does not act
       beta = eq%two_thirds_p + h_b*eq%k_e*d
@@ -72,11 +82,15 @@ contains
    pure subroutine note_moduli(eq, w)
       type(equation_t), intent(in) :: eq
       type(rate_t), intent(inout) :: w
+      real(wp) :: d, h_b
 
       call moduli_at(eq, w%r_n, w%x, w%a_d, w%r_b, w%r_d, w%d, w%h_b, w%beta, w%gamma)
+      d = dilatancy(w%a_d, w%r_d, w%r_n)
+      h_b = larger(w%x, eq%x_floor)*eq%per_b_0
+      if (eq%preloaded) call preload(eq%preloading, larger(w%x, eq%x_floor), d, h_b, w%f_chi, w%f_slope)
       w%floored = w%x < eq%x_floor
-      w%capped_d = w%d < dilatancy(w%a_d, w%r_d, w%r_n)
-      w%capped_h = w%h_b > larger(w%x, eq%x_floor)*eq%per_b_0
+      w%capped_d = w%d < d
+      w%capped_h = w%h_b > h_b
    end subroutine note_moduli
 
    !> Slopes of D and 1/h where w has them. Derivatives of moduli_at; A_d changes with z:n by docs/theory/material.md
@@ -85,9 +99,13 @@ contains
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
       type(slopes_t), intent(out) :: s
-      real(wp) :: stiffness, by_stiffness
+      real(wp) :: stiffness, by_stiffness, f, per_x
 
       s%d_z = 0.0_wp
+      s%d_x = 0.0_wp
+      s%d_q = 0.0_wp
+      s%h_q = 0.0_wp
+      per_x = merge(0.0_wp, 1.0_wp/larger(w%x, NEGLIGIBLE), w%floored)
       s%d_r_d = 0.0_wp
       s%d_g = 0.0_wp
       s%d_k = 0.0_wp
@@ -99,6 +117,14 @@ contains
          s%d_r = -w%a_d
          s%d_r_d = w%a_d
          if (par%fabric .and. w%z_n > 0.0_wp) s%d_z = par%a_0*(w%r_d - w%r_n)
+         if (w%preloaded .and. w%d > 0.0_wp) then
+            f = w%f_chi
+            s%d_r = f*s%d_r
+            s%d_r_d = f*s%d_r_d
+            s%d_z = f*s%d_z
+            s%d_q = w%f_slope*w%d
+            s%d_x = 2.0_wp*s%d_q*per_x
+         end if
       end if
       if (w%capped_h) then
          stiffness = 2.0_wp*w%g - w%k_e*w%d*w%r_n
@@ -110,7 +136,8 @@ contains
          s%h_g = -by_stiffness*(2.0_wp - w%k_e*w%r_n*s%d_g)
          s%h_k = by_stiffness*w%r_n*(w%d + w%k_e*s%d_k)
          s%h_p = w%h_b/w%p
-         s%h_x = 0.0_wp
+         s%h_x = by_stiffness*w%k_e*w%r_n*s%d_x
+         s%h_q = by_stiffness*w%k_e*w%r_n*s%d_q
          s%h_b_0 = 0.0_wp
       else
          s%h_r_b = 0.0_wp
@@ -122,6 +149,10 @@ contains
          s%h_p = 0.0_wp
          s%h_x = merge(0.0_wp, 1.0_wp/w%b_0, w%floored)
          s%h_b_0 = -w%h_b/w%b_0
+         if (w%preloaded) then
+            s%h_q = par%s_chi*w%f_slope*w%h_b
+            s%h_x = (w%h_b + 2.0_wp*s%h_q)*per_x
+         end if
       end if
    end subroutine slopes_at
 
@@ -135,6 +166,7 @@ contains
       real(wp) :: g_n(6)
 
       d_n = s%d_r*w%r
+      if (w%preloaded) d_n = d_n + s%d_x*w%r_moved
       h_n = s%h_r*w%r + s%h_x*w%r_moved
       if (par%fabric) then
          d_n = d_n + s%d_z*w%z

@@ -13,7 +13,7 @@ module mud_point_changes
    private
    public :: changes_t, lanes_t, rest, change_point, along_ratio, NRATES
 
-   integer, parameter :: NRATES = 13   !< sigma'(6), z(6), plastic shear.
+   integer, parameter :: NRATES = 15   !< sigma'(6), z(6), plastic shear, ln chi', contraction.
 
    !> How the arguments of a rate change beside stress, fabric and memory.
    type :: changes_t

@@ -20,6 +20,8 @@ module mud_rate
       real(wp) :: psi              !< state parameter [-]
       real(wp) :: m_b, m_d         !< M^b, M^d in triaxial compression [-]
       real(wp) :: b_0              !< h x [-]
+      logical :: preloaded         !< other processes have left contraction (cyclic preloading)
+      real(wp) :: chi              !< chi', that contraction; not set otherwise [-]
       type(isotropic_t) :: iso     !< isotropic mechanism
       ! the direction
       logical :: loading           !< L >= 0 was solved for; false: elastic
@@ -37,6 +39,7 @@ module mud_rate
       real(wp) :: r_b, r_d         !< |r| on the bounding and dilatancy surfaces in the direction of n [-]
       real(wp) :: a_d, d           !< A_d, D [-]
       real(wp) :: h_b              !< 1/h [-]
+      real(wp) :: f_chi, f_slope   !< f of the preloading, d ln f/d ln q; not set without it [-]
       real(wp) :: beta, gamma      !< coefficients [kPa]
       ! guards
       logical :: floored, capped_d, capped_h, iso_kept, no_root, several   !< several: the arc was scanned for roots
@@ -45,5 +48,6 @@ module mud_rate
       real(wp) :: d_sigma(6)       !< [kPa]
       real(wp) :: d_z(6)           !< [-]
       real(wp) :: d_eps_q          !< plastic shear, sqrt(2/3) L [-]
+      real(wp) :: d_log_chi, d_chi_own   !< of ln chi', and of chi_o in contraction; 0 without preloading [-]
    end type rate_t
 end module mud_rate

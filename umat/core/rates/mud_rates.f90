@@ -13,6 +13,7 @@ module mud_rates
    use mud_direction, only: find_direction
    use mud_flow, only: fabric_rate
    use mud_hardening, only: kinematic_modulus, isotropic_hardening, NO_HARDENING
+   use mud_preloading, only: NO_CONTRACTION
    use mud_rate, only: rate_t
    implicit none (type, external)
    private
@@ -49,7 +50,7 @@ contains
    !> Rates of stress, fabric and plastic shear for a strain rate and a suction rate. Compression positive, tensor
    !> shear. docs/theory/material.md sections 4 and 5; nothing is refused, w%no_root tells that no direction was found
    !> and the rate is elastic.
-   pure subroutine rate_at(par, bonded, sigma, e, p_c, z, r_in, d_strain, d_pc, mode, w, near)
+   pure subroutine rate_at(par, bonded, sigma, e, p_c, z, r_in, d_strain, d_pc, mode, w, near, log_chi)
       type(params_t), intent(in) :: par
       logical, intent(in) :: bonded             !< Suction bonding acts in this update.
       real(wp), intent(in) :: sigma(6)          !< sigma' [kPa]
@@ -61,12 +62,19 @@ contains
       integer, intent(in) :: mode               !< MODE_*
       type(rate_t), intent(inout) :: w          !< All of it is set.
       type(rate_t), intent(in), optional :: near   !< A rate of nearly the same state: its direction is where to begin.
+      !> ln of the contraction that other processes have left, read with cyclic preloading; none: no contraction [-].
+      real(wp), intent(in), optional :: log_chi
       real(wp) :: d_v, d_e(6), d_norm
 
       d_v = trace(d_strain)
       d_e = deviator(d_strain)
       d_norm = norm(d_strain)
       call evaluate_point(par, bonded, sigma, e, p_c, z, r_in, w)
+      w%preloaded = .false.
+      if (par%preloading .and. present(log_chi)) then
+         w%preloaded = log_chi > NO_CONTRACTION
+         if (w%preloaded) w%chi = exp(log_chi)
+      end if
 
       call start_direction(near, w)
       w%iso_kept = .false.
@@ -92,6 +100,14 @@ contains
       w%d_sigma = 2.0_wp*w%g*(d_e - w%l*w%n) + w%d_p*IDENTITY
       w%d_z = fabric_rate(par, w%l, w%d, w%n, z)
       w%d_eps_q = SQRT_2_3*w%l
+      w%d_log_chi = 0.0_wp
+      w%d_chi_own = 0.0_wp
+      if (.not. par%preloading) return
+      if (w%d < 0.0_wp) then
+         w%d_log_chi = par%zeta_chi*w%l*w%d
+      else
+         w%d_chi_own = w%l*w%d
+      end if
    end subroutine rate_at
 
    !> The direction of a rate of nearly the same state is where to begin.

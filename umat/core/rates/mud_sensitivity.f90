@@ -29,12 +29,13 @@ contains
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
       logical, intent(in) :: at_rest                  !< y, r_in and the changes of e and p_c are zero
-      real(wp), intent(in) :: y(LANES, NRATES)        !< of sigma', z and, without effect, plastic shear [kPa, -, -]
+      !> Of sigma', z, ln chi' and, without effect, plastic shear and contraction [kPa, -, -].
+      real(wp), intent(in) :: y(LANES, NRATES)
       type(tensors_t), intent(in) :: r_in             !< of the memory [-]
       type(tensors_t), intent(in) :: strain, centre   !< of strain rate and elastic domain [-]
       type(changes_t), intent(in) :: changes
       logical, intent(in) :: stress_only              !< rates of fabric and plastic shear are not asked for: zeros
-      real(wp), intent(out) :: rates(LANES, NRATES)   !< of sigma', z and plastic shear
+      real(wp), intent(out) :: rates(LANES, NRATES)   !< as y
       real(wp), intent(out), optional :: dn(LANES, 6)
       type(lanes_t) :: x
 
@@ -56,9 +57,16 @@ contains
          x%flow = 0.0_wp
       end if
       call fill_stress(w, lin, y, strain, centre, changes, x, rates(:, 1:6))
-      rates(:, 7:13) = 0.0_wp
+      rates(:, 7:) = 0.0_wp
       if (w%loading .and. .not. stress_only) then
          rates(:, 13) = SQRT_2_3*x%dl
+         if (par%preloading) then
+            if (w%d < 0.0_wp) then
+               rates(:, 14) = par%zeta_chi*x%flow
+            else
+               rates(:, 15) = x%flow
+            end if
+         end if
          if (par%fabric .and. w%d < 0.0_wp) call fill_fabric(par, w, lin, y, strain, centre, changes, x, rates(:, 7:12))
       end if
       if (.not. present(dn)) return
@@ -98,7 +106,7 @@ contains
       type(tensors_t), intent(in) :: r_in
       type(changes_t), intent(in) :: changes
       type(lanes_t), intent(inout) :: x
-      real(wp) :: n_dz(LANES), r_b, r_d_psi, r_b_m, per_p
+      real(wp) :: n_dz(LANES), q(LANES), r_b, r_d_psi, r_b_m, per_p
       integer :: j
 
       r_b_m = SQRT_2_3*w%lode
@@ -118,6 +126,14 @@ contains
             x%dh = x%dh + s%h_z*n_dz
          end if
          if (s%h_x > 0.0_wp .and. r_in%kind /= ZERO_TENSORS) x%dh = x%dh - s%h_x*contracted(r_in, w%n)
+         if (w%preloaded) then
+            ! of ln(w/chi') with M^d/M^b, b_0 and chi'
+            q = (dilatancy_slope(par, w%m_d)/w%m_d)*x%psi - x%m_b/w%m_b - KINEMATIC_EXPONENT*x%share &
+                - lin%b_slope*changes%e - y(:, 14)
+            x%dd = x%dd + s%d_q*q + s%d_x*x%n_dr
+            x%dh = x%dh + s%h_q*q
+            if (r_in%kind /= ZERO_TENSORS) x%dd = x%dd - s%d_x*contracted(r_in, w%n)
+         end if
       end associate
       do j = 1, LANES
          r_b = r_b_m*x%m_b(j)
