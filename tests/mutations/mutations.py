@@ -10,6 +10,7 @@ TRANSITIONS, PHASES = "core/integration/mud_transitions.f90", "core/integration/
 BOUNDING, EVENT_TIME = "core/rates/mud_bounding.f90", "core/integration/mud_event_time.f90"
 CUTOFF, LANDING = "core/integration/mud_cutoff.f90", "core/integration/mud_landing.f90"
 EVENT_FUNCTIONS = "core/integration/mud_event_functions.f90"
+PRELOADING = "core/laws/mud_preloading.f90"
 FLOW, HARDENING, CRITICAL = "core/laws/mud_flow.f90", "core/laws/mud_hardening.f90", "core/laws/mud_critical_state.f90"
 RETENTION, BONDING, ELASTIC = "core/laws/mud_retention.f90", "core/laws/mud_bonding.f90", "core/laws/mud_elastic.f90"
 PARAMS, REGISTRY, STATE = "core/base/mud_params.f90", "core/base/mud_registry.f90", "core/base/mud_state.f90"
@@ -112,7 +113,7 @@ MUTATIONS = [
     ("isotropic mechanism never rejected", (RATES, "w%b_rate < 0.0_wp\n", "w%b_rate < -huge(1.0_wp)\n")),
     ("isotropic mechanism acts in extension too",
      (RATES, "if (w%iso_drive > 0.0_wp) then", "if (abs(w%iso_drive) > 0.0_wp) then")),
-    ("no floor", (EQUATION, "h_b = larger(x, eq%x_floor)*eq%per_b_0\n      limit", "h_b = larger(x, 1.0e-15_wp)*eq%per_b_0\n      limit")),
+    ("no floor", (EQUATION, "h_b = larger(x, eq%x_floor)*eq%per_b_0", "h_b = larger(x, 1.0e-15_wp)*eq%per_b_0")),
     ("no contraction cap", (EQUATION, "par%cap_d*eq%two_g/eq%k_e", "1.0e9_wp*eq%two_g/eq%k_e")),
     ("softening cap twice as large", (EQUATION, "limit = eq%least_h*positive", "limit = 2.0_wp*eq%least_h*positive")),
     ("first root found taken",
@@ -123,8 +124,19 @@ MUTATIONS = [
     # memory
     ("forget to store the memory", (REVERSAL, "      memory%r_in = r_in\n", "      memory%r_in = memory%r_in\n")),
     ("forget to zero the plastic shear at a reversal",
-     (REVERSAL, "memory%r_in = r_in\n      memory%eps_q_p = 0.0_wp",
-      "memory%r_in = r_in\n      memory%eps_q_p = memory%eps_q_p")),
+     (REVERSAL, "memory%chi_own = 0.0_wp\n      memory%eps_q_p = 0.0_wp",
+      "memory%chi_own = 0.0_wp\n      memory%eps_q_p = memory%eps_q_p")),
+    # cyclic preloading
+    ("preloading by all contraction", (PRELOADING, "log(chi - chi_own)", "log(chi)")),
+    ("preloading to the first power", (PRELOADING, "d = g*g*positive(d)", "d = g*positive(d)")),
+    ("preloading dilates less too", (PRELOADING, "d = g*g*positive(d) - positive(-d)", "d = g*g*d + 0.0_wp*positive(d)")),
+    ("preloading does not stiffen", (PRELOADING, "h_b = g**(2.0_wp*preloading%s)*h_b", "h_b = h_b + 0.0_wp*g")),
+    ("a process keeps the contraction of the one before",
+     (REVERSAL, "memory%chi_own = 0.0_wp\n      memory%eps_q_p", "memory%eps_q_p")),
+    ("a return does not give back contraction",
+     (RETURN_POINT, "memory%chi_own = min(process%chi, memory%chi)", "memory%chi_own = 0.0_wp*process%chi")),
+    ("contraction of interrupted processes has no derivative",
+     (CONSISTENT, "sens%chi_stack(:, after%depth) = sens%chi_own", "sens%chi_stack(:, after%depth) = 0.0_wp")),
     ("threshold weight on the wrong memory", (REVERSAL, "*(memory%r_before - r)", "*(memory%r_in - r)")),
     ("no fall-back of the threshold rule", (REVERSAL, "if (ddot(r - r_in, n) < 0.0_wp) r_in = r", "continue")),
     ("repositioning with the process that ends",
