@@ -13,19 +13,24 @@ program mud_host
    use effect_pilots, only: ask_effects, settle_scene, apply_effects
    use effect_types, only: effect_t
    use effects_table, only: print_effects, print_pilots, write_effects, write_influences
+   use level_output, only: level_output_t, folder_of_mesh
+   use level_runs, only: level_run_t
+   use level_store, only: read_levels
+   use mesh_levels, only: refine_until
    use model_builder, only: build_model
    use model_types, only: accuracy_of, model_t
    use linear_system, only: T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST
    use output_tables, only: check_tables, COLUMNS_OF_A_POINT
    use pilot_budget, only: pilots_account_t
-   use price_table, only: print_price, write_price
+   use price_estimates, only: answer_t
+   use price_table, only: print_price, print_errors, write_price
    use process_settings, only: settle_process
    use run_output, only: run_output_t
    use run_setup, only: prepare_run
    use run_size, only: size_of_run
    use run_state, only: run_t
    use scene_keys, only: print_template
-   use scene_price, only: price_t, price_scene
+   use scene_price, only: family_t, price_t, price_scene, find_family
    use scene_reader, only: read_scene
    use scene_types, only: scene_t
    use scene_warnings, only: list_warnings
@@ -89,6 +94,8 @@ program mud_host
    t0 = clock()
    if (fault%code == 0) call read_scene(trim(file), scene, fault, option_value(options, '--accuracy'), &
                                          option_value(options, '--fineness'))
+   if (fault%code == 0 .and. scene%refined .and. option_given(options, '--verify')) call raise(fault, EXIT_INPUT, &
+      '--verify measures the error of the steps of one mesh; mesh = ''auto'' measures it itself: leave --verify out.')
    if (fault%code == 0) call find_effects()
    if (only_effects) call leave()
    if (fault%code == 0) call build_model(scene, model, fault)
@@ -96,6 +103,10 @@ program mud_host
    if (fault%code == 0 .and. .not. quiet) call announce()
    if (option_given(options, '--price') .and. .not. only_check) then
       if (fault%code == 0) call find_price()
+      call leave()
+   end if
+   if (scene%refined .and. .not. only_check) then
+      if (fault%code == 0) call refine()
       call leave()
    end if
    if (fault%code == 0 .and. only_check .and. restart /= '') then
@@ -110,7 +121,8 @@ program mud_host
          call list_forces(folder, model, run%control, worst_unknown(model, run%control), &
                           maxval(run%assembly%scale, mask=model%dofs%field <= DISPLACEMENTS), forces, fault)
          if (fault%code == 0 .and. option_given(options, '--verify')) call verify()
-         if (fault%code == 0) call write_answers(folder, model, run%control, forces, fault)
+         if (fault%code == 0) call write_answers(folder, model, run%control, forces, &
+                                                  [answer_t ::], fault)
          if (fault%code == 0 .and. .not. quiet) call print_answers(output_unit, model, run%control, &
                                                                    option_given(options, '--verify'), forces)
          if (fault%code == 0) call judge_answers(model, run%control, option_given(options, '--verify'), forces, fault)
@@ -160,6 +172,29 @@ contains
       call write_price(folder, price, fault)
    end subroutine find_price
 
+   !> Finer and finer meshes until the total error is what the scene asks for.
+   subroutine refine()
+      type(family_t) :: family
+      type(level_output_t) :: runner
+      type(price_t) :: price
+      integer :: n
+
+      if (restart /= '') call read_levels(restart, scene%fingerprint, price%made, fault)
+      if (fault%code == 0) call find_family(trim(file), accuracy_of(model), effects, quiet, family, fault)
+      if (fault%code /= 0) return
+      runner%folder = folder
+      runner%quiet = quiet
+      runner%fingerprint = scene%fingerprint
+      call refine_until(family, scene%accuracy, scene%budget, runner, price, fault)
+      n = 0
+      if (allocated(price%levels)) n = size(price%levels)
+      if (quiet .or. n == 0 .or. .not. allocated(price%answers)) return
+      call print_errors(output_unit, price)
+      write (output_unit, '(a)') 'In these errors: mesh, steps, Newton''s method; not the stress integration. Results: '// &
+         folder_of_mesh(folder, n)//'; the meshes: '//folder//'/levels.csv. '//whole(price%runs)//' runs, '// &
+         short(clock() - t0)//' s.'
+   end subroutine refine
+
    subroutine print_help()
       character(*), parameter :: LINES(20) = [character(104) :: &
          'Solves the boundary-value problem of a scene. Units m, s, kPa, Mg; tension positive.', &
@@ -191,6 +226,14 @@ contains
 
    !> Whether the run could go on from the checkpoint, in its folder.
    subroutine check_restart()
+      type(level_run_t), allocatable :: runs(:)
+
+      if (scene%refined) then
+         call read_levels(restart, scene%fingerprint, runs, fault)
+         if (fault%code == 0 .and. .not. quiet) write (output_unit, '(a)') restart//' fits: '//whole(size(runs))// &
+            ' runs; those that are missing would be made in '//folder//'.'
+         return
+      end if
       call read_checkpoint(restart, model, run, output%tables, fault)
       if (fault%code == 0) call check_tables(folder, model, output%tables, fault)
       if (fault%code /= 0 .or. quiet) return
@@ -214,6 +257,8 @@ contains
          if (model%stages(i)%controlled) write (output_unit, '(a)') 'Stage '//trim(model%stages(i)%name)// &
             ': steps are controlled by their error, accuracy '//short(100*model%stages(i)%accuracy)//' %.'
       end do
+      if (scene%refined) write (output_unit, '(a)') 'mesh = ''auto'': finer meshes are run until the total error is '// &
+         short(100*scene%accuracy)//' %; the numbers above are of the mesh as it stands.'
       if (scene%derive_effects .and. only_check) write (output_unit, '(a)') 'effects = ''auto'': pilots find out '// &
          'what the keys leave open when the run begins; --effects shows it without a run.'
       call list_warnings(scene, model, run%tension, warnings)

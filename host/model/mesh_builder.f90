@@ -7,6 +7,7 @@ module mesh_builder
    use exit_codes, only: EXIT_MESH
    use gmsh_reader, only: read_gmsh
    use graded_rectangle, only: graded_mesh
+   use scene_refinement, only: MOST_ELEMENTS
    use scene_types, only: scene_mesh_t, place_of
    use split_triangles, only: split_mesh
    use triangle_mesh, only: mesh_t
@@ -14,7 +15,6 @@ module mesh_builder
    private
    public :: build_mesh
 
-   real(wp), parameter :: MOST_ELEMENTS = 5.0e6_wp   !< Of a built-in mesh: entries of the matrix stay countable.
 contains
    !> Reads or makes the mesh; a fault names what is wrong with the file or the breaks. Fault EXIT_MESH: as of
    !> read_gmsh; breaks that do not ascend or do not fit cells and ratios; more than MOST_ELEMENTS.

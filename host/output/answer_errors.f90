@@ -13,6 +13,8 @@ module answer_errors
    use generalised_alpha, only: DYNAMIC
    use model_types, only: accuracy_of, model_t
    use named_answers, only: is_prescribed
+   use price_estimates, only: answer_t, STATE_WORDS
+   use scene_goals, only: is_goal
    use texts, only: short, whole
    use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
    implicit none (type, external)
@@ -83,9 +85,10 @@ contains
       is_answer = change > LEAST_SHARE*control%scale(field) .and. (field <= DISPLACEMENTS .or. change > LEAST_PRESSURE)
    end function is_answer
 
-   !> Judges every answer by its own change, of the fields where no point is named; what changes by less than
-   !> LEAST_SHARE of its field is no answer. Given steps: a warning on standard error, also where the run is quiet, of
-   !> the worst one beyond 10 % (30 % with dynamic stages). Controlled steps: fault EXIT_ACCURACY where the
+   !> Judges every answer, or the goals where the scene names them, by its own change, of the fields where no point is
+   !> named; what changes by less than LEAST_SHARE of its field is no answer. Given steps: a warning on standard error,
+   !> also where the run is quiet, of the worst one beyond 10 % (30 % with dynamic stages). Controlled steps: fault
+   !> EXIT_ACCURACY where the
    !> worst one is beyond three times what was asked for. docs/theory/host.md section 4.5.
    subroutine judge_answers(model, control, verified, forces, fault)
       type(model_t), intent(in) :: model
@@ -136,6 +139,9 @@ contains
          real(wp), intent(in) :: error
 
          if (error <= largest) return
+         if (size(model%goals) > 0) then
+            if (.not. is_goal(model%goals, name, .true.)) return
+         end if
          worst = name
          largest = error
       end subroutine compare
@@ -192,34 +198,53 @@ contains
    end function remedy
 
    !> answers.csv: largest change [m, kPa], estimated error of the steps and of Newton's method [-] of every answer, the
-   !> latter empty for forces: docs/theory/host.md section 4.5.
-   !> Fault EXIT_OUTPUT: it cannot be written.
-   subroutine write_answers(folder, model, control, forces, fault)
+   !> latter empty for forces: docs/theory/host.md section 4.5; error of the mesh [-] of those that meshes were compared
+   !> by, and how far it is known: section 12. Fault EXIT_OUTPUT: it cannot be written.
+   subroutine write_answers(folder, model, control, forces, by_meshes, fault)
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model
       type(control_state_t), intent(in) :: control
       type(force_answer_t), intent(in) :: forces(:)   !< As list_forces gives them.
+      type(answer_t), intent(in) :: by_meshes(:)      !< Empty: meshes were not compared.
       type(fault_t), intent(inout) :: fault
       type(csv_t) :: table
       real(wp) :: change, error
       integer :: i, f
 
-      call new_csv(folder//'/answers.csv', 'answer,largest_change,estimated_error,newton_error', table, fault)
+      call new_csv(folder//'/answers.csv', 'answer,largest_change,estimated_error,newton_error,mesh_error,'// &
+                   'mesh_state', table, fault)
       do i = 1, size(model%points)
          do f = 1, FIELDS
             if (fault%code /= 0) exit
             if (.not. estimate(model, control, i, f, change, error)) cycle
-            write (table%row, '(a,3(",",es14.6e3))') trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f)), change, &
-               error, control%newton(f, i)/change
+            write (table%row, '(a,3(",",es14.6e3),a)') trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f)), &
+               change, error, control%newton(f, i)/change, &
+               of_mesh(trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f)))
             call write_row(table, fault)
          end do
       end do
       do i = 1, size(forces)
          if (fault%code /= 0) exit
-         write (table%row, '(a,2(",",es14.6e3),",")') trim(forces(i)%name), forces(i)%change, forces(i)%error
+         write (table%row, '(a,2(",",es14.6e3),",",a)') trim(forces(i)%name), forces(i)%change, forces(i)%error, &
+            of_mesh(trim(forces(i)%name))
          call write_row(table, fault)
       end do
       call close_csv(table, fault)
+   contains
+      !> The two last cells of a row.
+      function of_mesh(name) result(cells)
+         character(*), intent(in) :: name
+         character(:), allocatable :: cells
+         character(14) :: number
+         integer :: k
+
+         cells = ',,not estimated'
+         do k = 1, size(by_meshes)
+            if (by_meshes(k)%name /= name) cycle
+            write (number, '(es14.6e3)') by_meshes(k)%mesh
+            cells = ','//number//','//trim(STATE_WORDS(by_meshes(k)%state))
+         end do
+      end function of_mesh
    end subroutine write_answers
 
    !> The same in words, and what limited the steps.

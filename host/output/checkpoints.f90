@@ -3,10 +3,9 @@
 !> flow that is subtracted follow from the scene; the ordering of the equations from their pattern. The rest is here.
 module checkpoints
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use, intrinsic :: iso_c_binding, only: c_char, c_null_char
    use, intrinsic :: iso_fortran_env, only: int64
-   use mud_interface, only: mud_version
    use kinds, only: wp
+   use library_version, only: library
    use run_state, only: run_t
    use control_state, only: new_control_state, numbers_of, take_numbers, count_of_numbers
    use degrees_of_freedom, only: dofs_t
@@ -18,7 +17,7 @@ module checkpoints
                       get_text, extent_of
    use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
    use scene_past, only: past_of_scene, first_difference
-   use texts, only: from_c, short, whole
+   use texts, only: short, whole
    implicit none (type, external)
    private
    public :: write_checkpoint, read_checkpoint, CHECKPOINT
@@ -310,15 +309,6 @@ contains
 
       codes = [(iachar(text(i:i)), i=1, len(text))]
    end function codes_of
-
-   function library() result(text)
-      character(64) :: text
-      character(kind=c_char, len=64) :: raw
-
-      raw = c_null_char
-      text = ''
-      if (mud_version(raw, len(raw)) >= 0) text = from_c(raw)
-   end function library
 
    !> Tractions of all contacts with friction, one behind the other [kPa].
    pure function tractions_of(run) result(tractions)

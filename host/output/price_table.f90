@@ -4,33 +4,44 @@ module price_table
    use csv, only: csv_t, new_csv, write_row, close_csv
    use faults, only: fault_t
    use kinds, only: wp
+   use error_words, only: percent, rounded
    use price_estimates, only: quote_t, STATE_WORDS, MASKED
    use scene_price, only: price_t
    use texts, only: short, whole
    implicit none (type, external)
    private
-   public :: print_price, write_price
+   public :: print_price, print_errors, write_price
 
    real(wp), parameter :: TARGETS(3) = [0.1_wp, 0.03_wp, 0.01_wp]
    !> Range of a quote, one mesh ahead: time and error.
    real(wp), parameter :: TIME_LOW = 0.5_wp, TIME_HIGH = 3.0_wp, ERROR_RANGE = 3.0_wp
 contains
+   !> Errors of the answers on the finest mesh, by their sources.
+   subroutine print_errors(unit, price)
+      integer, intent(in) :: unit   !< Number of a Fortran unit.
+      type(price_t), intent(in) :: price
+      integer :: i
+
+      write (unit, '(a)') 'Errors of the histories as shares of their largest change, on '// &
+         short(price%levels(size(price%levels))%mesh)//' times the cells of the scene:'
+      write (unit, '(3x,a,t26,4a12,4x,a)') 'answer', 'mesh', 'steps', 'Newton', 'order', 'mesh error is'
+      do i = 1, size(price%answers)
+         associate (a => price%answers(i))
+            write (unit, '(3x,a,t26,3a12,f12.2,4x,a)') trim(a%name), percent(a%mesh), percent(a%steps), &
+               percent(a%newton), a%order, trim(STATE_WORDS(a%state))// &
+               trim(merge(' by the error of the steps', repeat(' ', 26), a%state == MASKED))// &
+               trim(merge(repeat(' ', 9), ', no goal', a%goal))
+         end associate
+      end do
+   end subroutine print_errors
+
    !> Errors of the answers, the table mesh by accuracy, the cheapest way to 10, 3 and 1 %.
    subroutine print_price(unit, price)
       integer, intent(in) :: unit   !< Number of a Fortran unit.
       type(price_t), intent(in) :: price
       integer :: i, k, best
 
-      write (unit, '(a)') 'Errors of the histories as shares of their largest change, on '//short(price%mesh)// &
-         ' times the cells of the scene:'
-      write (unit, '(3x,a,t26,4a12,4x,a)') 'answer', 'mesh', 'steps', 'Newton', 'order', 'mesh error is'
-      do i = 1, size(price%answers)
-         associate (a => price%answers(i))
-            write (unit, '(3x,a,t26,3a12,f12.2,4x,a)') trim(a%name), percent(a%mesh), percent(a%steps), &
-               percent(a%newton), a%order, trim(STATE_WORDS(a%state))// &
-               trim(merge(' by the error of the steps', repeat(' ', 26), a%state == MASKED))
-         end associate
-      end do
+      call print_errors(unit, price)
       write (unit, '(a)') 'Total error of the worst answer, and time of the run [s] (error within a factor of '// &
          'three, time from half to three times):'
       write (unit, '(3x,a)') head()
@@ -47,7 +58,7 @@ contains
             write (unit, '(3x,a)') percent(TARGETS(i))//': '//in_words(price%quotes(best))
          end if
       end do
-      if (price%meshes_run == 2) write (unit, '(3x,a)') 'The order of convergence is assumed: a third mesh costs '// &
+      if (size(price%levels) == 2) write (unit, '(3x,a)') 'The order of convergence is assumed: a third mesh costs '// &
          'more than all pilots.'
       if (price%troubled) write (unit, '(3x,a)') 'Pilots cut more than a tenth of their steps: finer meshes may '// &
          'cost many times their quote.'
@@ -128,26 +139,6 @@ contains
       end do
    end function cheapest
 
-   !> A share in per cent, two digits.
-   function percent(share) result(text)
-      real(wp), intent(in) :: share
-      character(:), allocatable :: text
-
-      text = rounded(100*share)//' %'
-   end function percent
-
-   !> Two significant digits.
-   function rounded(value) result(text)
-      real(wp), intent(in) :: value
-      character(:), allocatable :: text
-      real(wp) :: unit
-
-      text = '0'
-      if (.not. value > 0.0_wp) return
-      unit = 10.0_wp**(floor(log10(value)) - 1)
-      text = short(anint(value/unit)*unit)
-   end function rounded
-
    !> price.csv: a row a run that could be made; price_answers.csv: the errors of each answer on the finest mesh that
    !> was run. docs/theory/host.md section 12. Fault EXIT_OUTPUT: they cannot be written.
    subroutine write_price(folder, price, fault)
@@ -176,7 +167,8 @@ contains
       do k = 1, size(price%answers)
          if (fault%code /= 0) exit
          associate (a => price%answers(k))
-            write (table%row, '(a,",",6(es14.6e3,","),a)') trim(a%name), price%mesh, a%range, a%mesh, a%steps, &
+            write (table%row, '(a,",",6(es14.6e3,","),a)') trim(a%name), &
+               price%levels(size(price%levels))%mesh, a%range, a%mesh, a%steps, &
                a%newton, a%order, trim(STATE_WORDS(a%state))
          end associate
          call write_row(table, fault)

@@ -19,12 +19,13 @@ module pilot_runs
    use run_size, only: memory_of
    use run_state, only: run_t
    use scene_types, only: scene_t
+   use texts, only: short
    use time_stepping, only: run_stages
    use unknown_fields, only: FIELDS
    use wall_clock, only: clock
    implicit none (type, external)
    private
-   public :: pilot_t, stage_ends_t, run_pilot, PHASES
+   public :: pilot_t, stage_ends_t, run_pilot, watch_run, PHASES
 
    integer, parameter :: NODES_WITHOUT_POINTS = 50    !< Answers of a scene that names no points.
    ! A pass over an element with its share of the solution, on a usual processor: measured, rounded [s].
@@ -39,8 +40,9 @@ module pilot_runs
    !> What a pilot has shown.
    type :: pilot_t
       logical :: done = .false.
-      logical :: cut_off = .false.                    !< It took all work that it may.
-      character(200) :: why = ''                      !< Where it is not done.
+      logical :: cut_off = .false.                    !< It took all work, or all time, that it may.
+      integer :: code = 0                             !< Of the fault where it is not done, and why.
+      character(200) :: why = ''
       integer :: elements = 0, unknowns = 0, steps = 0
       real(wp) :: seconds = 0.0_wp, processor = 0.0_wp   !< By the clock; of the processor, all threads.
       real(wp) :: work = 0.0_wp                       !< By the passes over its elements [s].
@@ -67,7 +69,8 @@ module pilot_runs
       integer, allocatable :: nodes(:)
       integer, allocatable :: moving(:)               !< Supports of which the force is kept, places in model%fixes.
       integer :: rows = 0
-      real(wp) :: of_pass = 0.0_wp, most_work = huge(1.0_wp)   !< [s]
+      real(wp) :: of_pass = 0.0_wp, most_work = huge(1.0_wp), most_seconds = huge(1.0_wp), began = 0.0_wp   !< [s]
+      class(run_observer_t), pointer :: also => null()   !< It sees what the watcher sees.
    contains
       procedure :: run_begins
       procedure :: step_done
@@ -77,29 +80,55 @@ module pilot_runs
    end type watcher_t
 contains
    !> Runs a scene whose keys are settled. A failure is told in the pilot. docs/theory/host.md section 11.
-   subroutine run_pilot(scene, most_work, pilot)
+   subroutine run_pilot(scene, most_work, pilot, most_seconds)
       type(scene_t), intent(in) :: scene
       real(wp), intent(in) :: most_work   !< That the pilot may take [s].
       type(pilot_t), intent(out) :: pilot
+      real(wp), intent(in), optional :: most_seconds   !< Wall time that it may take [s].
       type(model_t) :: model
       type(run_t) :: run
-      type(watcher_t) :: watcher
       type(fault_t) :: fault
+      real(wp) :: t0
+
+      t0 = clock()
+      call build_model(scene, model, fault)
+      if (fault%code == 0) call prepare_run(model, run, fault)
+      call watch_run(model, run, most_work, pilot, fault, most_seconds)
+      pilot%seconds = clock() - t0
+      pilot%phases(PHASES) = pilot%seconds - sum(run%system%seconds)
+   end subroutine run_pilot
+
+   !> Runs a prepared model and keeps what its answers do, while another observer sees the run. A failure is told in the
+   !> pilot, too.
+   subroutine watch_run(model, run, most_work, pilot, fault, most_seconds, also)
+      type(model_t), intent(inout) :: model
+      type(run_t), intent(inout) :: run
+      real(wp), intent(in) :: most_work   !< That it may take [s].
+      type(pilot_t), intent(out) :: pilot
+      type(fault_t), intent(inout) :: fault
+      real(wp), intent(in), optional :: most_seconds   !< Wall time that it may take [s].
+      class(run_observer_t), intent(inout), target, optional :: also
+      type(watcher_t) :: watcher
       real(wp) :: t0, p0, p1
 
       t0 = clock()
       call cpu_time(p0)
       watcher%silent = .true.
       watcher%most_work = most_work
-      call build_model(scene, model, fault)
-      if (fault%code == 0) call prepare_run(model, run, fault)
+      watcher%began = t0
+      if (present(most_seconds)) watcher%most_seconds = most_seconds
+      if (present(also)) then
+         watcher%silent = also%silent
+         watcher%also => also
+      end if
       if (fault%code == 0) call run_stages(model, run, fault, watcher)
       pilot = watcher%seen
       pilot%done = fault%code == 0
+      pilot%code = fault%code
       pilot%work = watcher%of_pass*(run%iterations + run%steps)
-      pilot%cut_off = .not. pilot%done .and. pilot%work > most_work
       pilot%why = fault%text(:len(pilot%why))
       pilot%seconds = clock() - t0
+      pilot%cut_off = .not. pilot%done .and. (pilot%work > most_work .or. pilot%seconds > watcher%most_seconds)
       call cpu_time(p1)
       pilot%processor = p1 - p0
       if (allocated(model%stages)) pilot%rho_inf = model%stages%rho_inf
@@ -112,7 +141,7 @@ contains
       pilot%iterations = run%iterations
       pilot%cuts = run%cuts
       pilot%megabytes = memory_of(run)
-   end subroutine run_pilot
+   end subroutine watch_run
 
    !> Chooses the nodes whose answers are kept, and keeps their values at the start. Raises no fault.
    subroutine run_begins(self, model, run, fault)
@@ -151,6 +180,7 @@ contains
          self%seen%prescribed(:, i) = [(is_prescribed(model, self%nodes(i), k), k=1, FIELDS)]
       end do
       call find_moving(model, self%moving, self%seen%supports)
+      if (associated(self%also)) call self%also%run_begins(model, run, fault)
       n = size(self%moving)
       allocate (self%seen%time(1), self%seen%x(FIELDS, size(self%nodes), 1), self%seen%force(n, 1))
       self%seen%force = 0.0_wp
@@ -189,7 +219,8 @@ contains
       if (self%rows == 2) self%seen%force(:, 1) = self%seen%force(:, 2)
    end subroutine keep
 
-   !> Keeps answers, indicators and the end of the step. Fault EXIT_INPUT: more than most_work.
+   !> Keeps answers, indicators and the end of the step. Fault EXIT_INPUT: more than most_work or
+   !> most_seconds; those of the observer beside it.
    subroutine step_done(self, model, run, report, checkpoint, fault)
       class(watcher_t), intent(inout) :: self
       type(model_t), intent(in) :: model
@@ -212,8 +243,11 @@ contains
          self%seen%ends(s)%times = [self%seen%ends(s)%times, run%state%time - run%at%t_start]
       end associate
       call copy_state(run%state, self%before)
+      if (associated(self%also)) call self%also%step_done(model, run, report, checkpoint, fault)
       if (self%of_pass*(run%iterations + run%steps) > self%most_work) call raise(fault, EXIT_INPUT, &
          'its pilot takes many times as many steps')
+      if (clock() - self%began > self%most_seconds) call raise(fault, EXIT_INPUT, 'it takes more than '// &
+                                                              short(self%most_seconds)//' s')
    end subroutine step_done
 
    !> Takes over displacements that the end of the stage has set to zero. Raises no fault.
@@ -225,6 +259,7 @@ contains
       logical, intent(in) :: complete
       type(fault_t), intent(inout) :: fault
 
+      if (associated(self%also)) call self%also%stage_done(model, run, stage, complete, fault)
       if (fault%code /= 0 .or. .not. complete) return
       ! Displacements may have been set to zero, and accelerations with them.
       if (model%stages(stage)%zero_displacements) call copy_state(run%state, self%before)
@@ -237,6 +272,7 @@ contains
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
+      if (associated(self%also)) call self%also%run_ends(model, run, fault)
       if (fault%code /= 0 .or. size(model%stages) == 0) return
       self%seen%steps = run%steps
       self%seen%time = self%seen%time(:self%rows)
@@ -251,6 +287,10 @@ contains
       character(*), intent(in) :: text
       logical, intent(in), optional :: passing
 
+      if (associated(self%also)) then
+         call self%also%warn(text, passing)
+         return
+      end if
       if (present(passing)) return
       ! The run itself warns where it is needed.
       if (.not. self%silent) write (output_unit, '(a)') text

@@ -6,11 +6,12 @@ module price_estimates
    use history_distance, only: farthest
    use linear_system, only: T_CONTACT, T_FACTORISATION, T_SOLUTION
    use pilot_runs, only: pilot_t, PHASES
+   use scene_goals, only: is_goal
    use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
    implicit none (type, external)
    private
    public :: answer_t, quote_t, list_answers, distances, mesh_error, judge_meshes, observed_order, likeness, &
-             quote, total_error
+             quote, total_error, bound_of, is_certain, worst_answer
    public :: ASSUMED, CERTAIN, UNCERTAIN, NOT_CONVERGING, MASKED, STATE_WORDS
 
    real(wp), parameter :: NO_ANSWER = 0.02_wp        !< A smaller range, as a share of its kind's largest, is no answer.
@@ -34,6 +35,8 @@ module price_estimates
       real(wp) :: range = 0.0_wp                   !< Largest change on the finest mesh [m, kPa, kN].
       real(wp) :: mesh = 0.0_wp, steps = 0.0_wp, newton = 0.0_wp   !< [-]
       real(wp) :: order = USUAL_ORDER              !< Of convergence [-].
+      real(wp) :: apart = 0.0_wp                   !< Largest distance of two of the meshes that were compared [-].
+      logical :: goal = .true.                     !< It must reach the accuracy.
       integer :: state = ASSUMED
    end type answer_t
 
@@ -48,10 +51,12 @@ module price_estimates
    end type quote_t
 contains
    !> The answers of a run: displacements and pressures of its points, forces of moving supports, without what is
-   !> prescribed or hardly changes beside others of its kind.
-   pure subroutine list_answers(pilot, answers)
+   !> prescribed or hardly changes beside others of its kind. Goals are those that are named, hardly changing ones with
+   !> them; where none is named displacements and pressures.
+   subroutine list_answers(pilot, answers, goals)
       type(pilot_t), intent(in) :: pilot
       type(answer_t), allocatable, intent(out) :: answers(:)
+      character(*), intent(in) :: goals(:)   !< Names; none: the usual ones.
       real(wp) :: range(FIELDS, size(pilot%names)), force_range(size(pilot%supports)), largest
       integer :: i, f
 
@@ -64,15 +69,27 @@ contains
          do f = 1, FIELDS
             largest = maxval(range(DISPLACEMENTS + 1:, :))
             if (f <= DISPLACEMENTS) largest = maxval(range(:DISPLACEMENTS, :))
-            if (pilot%prescribed(f, i) .or. range(f, i) <= NO_ANSWER*largest) cycle
-            answers = [answers, answer_t(trim(pilot%names(i))//'.'//trim(FIELD_NAMES(f)), i, f, 0, range(f, i))]
+            call add(answer_t(trim(pilot%names(i))//'.'//trim(FIELD_NAMES(f)), i, f, 0, range(f, i)), &
+                     pilot%prescribed(f, i), largest)
          end do
       end do
       force_range = maxval(pilot%force, dim=2) - minval(pilot%force, dim=2)
       do i = 1, size(pilot%supports)
-         if (force_range(i) > NO_ANSWER*maxval(force_range)) answers = [answers, &
-            answer_t(pilot%supports(i), 0, 0, i, force_range(i))]
+         call add(answer_t(pilot%supports(i), 0, 0, i, force_range(i)), .false., maxval(force_range))
       end do
+   contains
+      subroutine add(answer, prescribed, largest)
+         type(answer_t), intent(in) :: answer
+         logical, intent(in) :: prescribed
+         real(wp), intent(in) :: largest   !< Change of its kind.
+         type(answer_t) :: one
+
+         if (prescribed .or. .not. answer%range > 0.0_wp) return
+         one = answer
+         one%goal = is_goal(goals, answer%name, answer%force > 0)
+         if (answer%range <= NO_ANSWER*largest .and. .not. (one%goal .and. size(goals) > 0)) return
+         answers = [answers, one]
+      end subroutine add
    end subroutine list_answers
 
    !> History of an answer: forces less their first value, so that weight hides no error.
@@ -192,6 +209,7 @@ contains
                if (order < NO_ORDER .and. last(i) > LARGE) a%state = NOT_CONVERGING
             end if
             a%mesh = mesh_error(last(i), r, a%order)
+            a%apart = max(last(i), before(i))
             if (last(i) < HIDDEN*(a%steps + a%newton)) a%state = MASKED
          end associate
       end do
@@ -224,7 +242,7 @@ contains
       q%error = -1.0_wp
       do i = 1, size(answers)
          total = total_error(answers(i), finer, fineness)
-         if (total <= q%error) cycle
+         if (total <= q%error .or. .not. answers(i)%goal) cycle
          q%error = total
          q%error_of_mesh = answers(i)%mesh/finer**answers(i)%order
          q%error_of_steps = answers(i)%steps*fineness
@@ -233,8 +251,41 @@ contains
       end do
    end function quote
 
+   !> What the total error on the finest mesh is held to be: where the order of convergence is not seen, with the largest
+   !> distance of the meshes in place of the estimate. [-]
+   elemental real(wp) function bound_of(answer)
+      type(answer_t), intent(in) :: answer
+
+      bound_of = total_error(answer, 1.0_wp, 1.0_wp)
+      if (answer%state == UNCERTAIN) bound_of = max(answer%mesh, answer%apart) + answer%steps + answer%newton
+   end function bound_of
+
+   !> Whether three meshes have shown the error, or a bound of it.
+   elemental logical function is_certain(answer)
+      type(answer_t), intent(in) :: answer
+
+      is_certain = answer%state == CERTAIN .or. answer%state == UNCERTAIN .or. answer%state == MASKED
+   end function is_certain
+
+   !> Place of the goal with the largest bound, first of those that no three meshes show; 0: there is no goal.
+   pure integer function worst_answer(answers) result(worst)
+      type(answer_t), intent(in) :: answers(:)
+      integer :: i
+
+      worst = 0
+      do i = 1, size(answers)
+         if (.not. answers(i)%goal) cycle
+         if (worst > 0) then
+            if (is_certain(answers(i)) .and. .not. is_certain(answers(worst))) cycle
+            if ((is_certain(answers(i)) .eqv. is_certain(answers(worst))) .and. &
+                bound_of(answers(i)) <= bound_of(answers(worst))) cycle
+         end if
+         worst = i
+      end do
+   end function worst_answer
+
    !> Sum of the errors of an answer on a mesh `finer` times as fine as that of its estimate. [-]
-   pure real(wp) function total_error(answer, finer, fineness)
+   elemental real(wp) function total_error(answer, finer, fineness)
       type(answer_t), intent(in) :: answer
       real(wp), intent(in) :: finer, fineness
 

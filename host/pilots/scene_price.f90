@@ -1,20 +1,21 @@
 ! SPDX-License-Identifier: MIT
-!> The price of accuracy of a scene: a few cheap runs, from which error, time and memory of others follow.
-!> docs/theory/host.md section 12.
+!> The price of accuracy of a scene: a few cheap runs, from which error, time and memory of others follow; and meshes of
+!> one family, each added to those before. docs/theory/host.md section 12.
 module scene_price
    use, intrinsic :: iso_fortran_env, only: output_unit
    use changed_scenes, only: read_changed
    use effect_types, only: effect_t
    use faults, only: fault_t, raise, EXIT_INPUT
    use kinds, only: wp
-   use pilot_runs, only: pilot_t, run_pilot
+   use level_runs, only: level_key_t, level_run_t, level_runner_t, silent_runner_t
+   use pilot_runs, only: pilot_t
    use price_estimates, only: answer_t, quote_t, list_answers, distances, judge_meshes, quote
    use scene_refinement, only: refinement, cells_allow, elements_at
-   use scene_types, only: scene_t
+   use scene_types, only: scene_t, scene_mesh_t
    use texts, only: short, whole
    implicit none (type, external)
    private
-   public :: price_t, price_scene
+   public :: family_t, price_t, price_scene, find_family, begin_price, begin_again, add_level, quotes_of
 
    !> Fineness of meshes and steps in the table, times those of the scene.
    real(wp), parameter :: MESHES(5) = [0.25_wp, 0.5_wp, 1.0_wp, 2.0_wp, 4.0_wp]
@@ -23,18 +24,33 @@ module scene_price
    real(wp), parameter :: TIGHT_NEWTON = 0.01_wp
    real(wp), parameter :: MANY_CUTS = 0.1_wp       !< Of the steps: a mesh on which more are cut is in trouble.
    real(wp), parameter :: MOST_OF_STEPS = 2.0_wp, MOST_OF_MESHES = 0.5_wp   !< Exponents of iterations.
+   real(wp), parameter :: UNTIL_DONE = huge(1.0_wp)
+
+   !> A scene of which meshes are made.
+   type :: family_t
+      character(:), allocatable :: file
+      real(wp) :: asked = 0.0_wp                    !< Accuracy of the controlled stages [-]; 0: all steps are given.
+      type(effect_t), allocatable :: effects(:)     !< Not allocated: no pilots chose them.
+      logical :: quiet = .false.
+      type(scene_t) :: base
+      real(wp) :: coarsest = 0.25_wp                !< Fineness of the first mesh; each is twice as fine as the last.
+   end type family_t
 
    type :: price_t
       type(answer_t), allocatable :: answers(:)
       type(quote_t), allocatable :: quotes(:)       !< Meshes slowest, accuracy fastest.
-      real(wp) :: mesh = 0.0_wp                     !< The finest that was run, times the cells of the scene.
-      integer :: meshes_run = 2, runs = 0
+      type(level_run_t), allocatable :: levels(:)   !< The meshes that were run, the finest last.
+      type(scene_mesh_t), allocatable :: meshes(:)
+      type(level_run_t), allocatable :: made(:)     !< All runs, pilots with them, in their order.
+      integer :: runs = 0
       real(wp) :: asked = 0.0_wp                    !< Accuracy of the controlled stages [-]; 0: all steps are given.
-      real(wp) :: seconds = 0.0_wp                  !< Of the pilots.
+      real(wp) :: fineness = 1.0_wp, newton = 1.0_wp   !< Times steps and Newton's tolerance of the scene: of all levels.
+      real(wp) :: of_steps = 0.0_wp, of_meshes = 0.0_wp   !< Exponents of iterations.
+      real(wp) :: seconds = 0.0_wp                  !< Of all runs.
       logical :: troubled = .false.                 !< Many steps were cut.
    end type price_t
 contains
-   !> The price of a scene. Faults: those of read_changed; EXIT_INPUT where nothing can be compared, or a pilot fails.
+   !> The price of a scene. Faults: those of find_family and begin_price.
    subroutine price_scene(file, asked, effects, quiet, price, fault)
       character(*), intent(in) :: file
       real(wp), intent(in) :: asked   !< Accuracy of the controlled stages [-]; 0: all steps are given.
@@ -42,111 +58,249 @@ contains
       logical, intent(in) :: quiet
       type(price_t), intent(out) :: price
       type(fault_t), intent(inout) :: fault
-      type(pilot_t) :: coarse, middle, shorter, tighter, fine
-      type(scene_t) :: base, scenes(3)
-      real(wp) :: mesh(3), of_steps, of_meshes
-      integer :: i, finest
+      type(silent_runner_t) :: runner
+      type(family_t) :: family
       type(quote_t) :: next(1)
+      real(wp) :: third
+      integer :: i
 
-      price%asked = asked
-      call read_changed(file, asked, 1.0_wp, 1.0_wp, effects, base, fault)
+      call find_family(file, asked, effects, quiet, family, fault)
+      if (fault%code == 0) call begin_price(family, runner, price, fault)
       if (fault%code /= 0) return
-      if (size(base%points) == 0) then
-         call raise(fault, EXIT_INPUT, file//': --price compares the histories of points on several meshes; give '// &
+      ! A third mesh where it doubles the time at most: it shows the order of convergence.
+      third = 2*price%levels(2)%mesh
+      next = quotes_of(family, price, third, [1.0_wp], fault)
+      if (fault%code == 0 .and. next(1)%seconds <= price%seconds) call add_level(family, third, UNTIL_DONE, runner, &
+                                                                                 price, fault)
+      if (fault%code /= 0) return
+      allocate (price%quotes(0))
+      do i = 1, size(MESHES)
+         if (MESHES(i) < price%levels(1)%mesh) cycle
+         price%quotes = [price%quotes, quotes_of(family, price, MESHES(i), STEPS, fault)]
+      end do
+   end subroutine price_scene
+
+   !> Reads a scene whose meshes are to be compared. Faults: those of read_changed; EXIT_INPUT where nothing can be
+   !> compared.
+   subroutine find_family(file, asked, effects, quiet, family, fault)
+      character(*), intent(in) :: file
+      real(wp), intent(in) :: asked   !< Accuracy of the controlled stages [-]; 0: all steps are given.
+      type(effect_t), allocatable, intent(in) :: effects(:)
+      logical, intent(in) :: quiet
+      type(family_t), intent(out) :: family
+      type(fault_t), intent(inout) :: fault
+
+      family%file = file
+      family%asked = asked
+      if (allocated(effects)) family%effects = effects
+      family%quiet = quiet
+      call read_changed(file, asked, 1.0_wp, 1.0_wp, family%effects, family%base, fault)
+      if (fault%code /= 0) return
+      if (size(family%base%points) == 0) then
+         call raise(fault, EXIT_INPUT, file//': the histories of points are compared on several meshes; give '// &
                     'the scene a &point.')
          return
       end if
-      mesh = [0.5_wp, 1.0_wp, 2.0_wp]
-      if (cells_allow(base%mesh)) mesh = 0.5_wp*mesh
-      if (base%mesh%mesh_file /= '') mesh = 2*mesh
+      family%coarsest = 0.5_wp
+      if (cells_allow(family%base%mesh)) family%coarsest = 0.25_wp
+      if (family%base%mesh%mesh_file /= '') family%coarsest = 1.0_wp
+   end subroutine find_family
+
+   !> Two meshes, and on the second shorter steps and a tighter Newton's method: the errors of all answers. Faults: those
+   !> of read_changed and of the runs; EXIT_INPUT where meshes have the same cells, or a goal is no answer.
+   subroutine begin_price(family, runner, price, fault)
+      type(family_t), intent(inout) :: family
+      class(level_runner_t), intent(inout) :: runner
+      type(price_t), intent(inout) :: price   !< New, or with runs that were made.
+      type(fault_t), intent(inout) :: fault
+      type(pilot_t) :: shorter, tighter
+
+      price%asked = family%asked
+      if (.not. allocated(price%made)) allocate (price%made(0))
       call first_pair()
-      call pilot(2, QUARTER, 1.0_wp, shorter)
-      call pilot(2, 1.0_wp, TIGHT_NEWTON, tighter)
       if (fault%code /= 0) return
-      price%mesh = mesh(2)
-      call list_answers(middle, price%answers)
-      price%answers%steps = OF_A_QUARTER*distances(price%answers, middle, shorter)
-      price%answers%newton = distances(price%answers, middle, tighter)
-      call judge_meshes(price%answers, coarse, middle, refinement(scenes(1)%mesh, scenes(2)%mesh))
-      of_steps = exponent_of(shorter, middle, 1/QUARTER, MOST_OF_STEPS)
-      of_meshes = exponent_of(middle, coarse, real(middle%elements, wp)/coarse%elements, MOST_OF_MESHES)
-      ! A third mesh where it doubles the time at most: it shows the order of convergence.
-      finest = 2
-      next = quotes_of(mesh(3), [1.0_wp])
-      if (next(1)%seconds <= price%seconds) then
-         call pilot(3, 1.0_wp, 1.0_wp, fine)
+      associate (mesh => price%levels(2)%mesh, middle => price%levels(2)%pilot)
+         call one_run(family, level_key_t(mesh, QUARTER, 1.0_wp), UNTIL_DONE, runner, price, shorter, fault)
+         if (fault%code == 0) call one_run(family, level_key_t(mesh, 1.0_wp, TIGHT_NEWTON), UNTIL_DONE, runner, &
+                                           price, tighter, fault)
          if (fault%code /= 0) return
-         price%mesh = mesh(3)
-         price%meshes_run = 3
-         call judge_meshes(price%answers, middle, fine, refinement(scenes(2)%mesh, scenes(3)%mesh), coarse)
-         of_meshes = exponent_of(fine, middle, real(fine%elements, wp)/middle%elements, MOST_OF_MESHES)
-         middle = fine
-         finest = 3
-      end if
-      allocate (price%quotes(0))
-      do i = 1, size(MESHES)
-         if (MESHES(i) < mesh(1)) cycle
-         price%quotes = [price%quotes, quotes_of(MESHES(i), STEPS)]
-      end do
+         call list_answers(middle, price%answers, family%base%goals)
+         price%answers%steps = OF_A_QUARTER*distances(price%answers, middle, shorter)
+         price%answers%newton = distances(price%answers, middle, tighter)
+         price%of_steps = exponent_of(shorter, middle, 1/QUARTER, MOST_OF_STEPS)
+      end associate
+      call check_goals_are_answers(family, price, fault)
+      if (fault%code == 0) call judge_last(price)
    contains
       !> The two coarsest meshes that differ and on which the scene runs, none coarser than that of the scene.
       subroutine first_pair()
          do
-            call pilot(1, 1.0_wp, 1.0_wp, coarse)
-            call pilot(2, 1.0_wp, 1.0_wp, middle)
-            if (fault%code == 0 .and. .not. refinement(scenes(1)%mesh, scenes(2)%mesh) > 1.0_wp) call raise(fault, &
-               EXIT_INPUT, file//': two meshes of --price have the same cells.')
-            if (fault%code == 0 .or. mesh(1) >= 1.0_wp) exit
-            if (.not. quiet) write (output_unit, '(a)') '   '//trim(fault%text)//' Finer meshes are taken.'
+            call begin_again(family, runner, price, fault)
+            if (fault%code == 0 .or. family%coarsest >= 1.0_wp) exit
+            if (.not. family%quiet) write (output_unit, '(a)') '   '//trim(fault%text)//' Finer meshes are taken.'
             fault = fault_t()
-            mesh = 2*mesh
+            family%coarsest = 2*family%coarsest
          end do
       end subroutine first_pair
+   end subroutine begin_price
 
-      !> What runs on a mesh would cost, by the finest that was made.
-      function quotes_of(wanted, fineness) result(quotes)
-         real(wp), intent(in) :: wanted, fineness(:)   !< Of the mesh; of the steps of each run.
-         type(quote_t) :: quotes(size(fineness))
-         type(scene_t) :: other
-         real(wp) :: elements, finer
-         integer :: k
+   !> The first two meshes anew, with the steps and Newton's tolerance that the price names. Faults: those of add_level.
+   subroutine begin_again(family, runner, price, fault)
+      type(family_t), intent(in) :: family
+      class(level_runner_t), intent(inout) :: runner
+      type(price_t), intent(inout) :: price
+      type(fault_t), intent(inout) :: fault
 
-         call read_changed(file, asked, 1.0_wp, wanted, effects, other, fault)
-         elements = middle%elements*elements_at(wanted, base%mesh)/elements_at(mesh(finest), base%mesh)
-         finer = refinement(scenes(finest)%mesh, other%mesh)
-         do k = 1, size(fineness)
-            quotes(k) = quote(price%answers, middle, wanted, elements, finer, fineness(k), of_steps, of_meshes)
-         end do
-      end function quotes_of
+      if (allocated(price%levels)) deallocate (price%levels, price%meshes)
+      allocate (price%levels(0), price%meshes(0))
+      call add_level(family, family%coarsest, UNTIL_DONE, runner, price, fault)
+      if (fault%code == 0) call add_level(family, 2*family%coarsest, UNTIL_DONE, runner, price, fault)
+   end subroutine begin_again
 
-      !> One run, and a line about it.
-      subroutine pilot(number, fineness, newton, run)
-         integer, intent(in) :: number             !< Of the mesh.
-         real(wp), intent(in) :: fineness, newton  !< Times steps and Newton's tolerance of the scene.
-         type(pilot_t), intent(out) :: run
+   !> A run on the next mesh, and the errors of the answers, where they are listed, by all meshes. Faults: those of
+   !> read_changed and of the run, which then is none of the levels; EXIT_INPUT: it has the same cells.
+   subroutine add_level(family, mesh, most_seconds, runner, price, fault)
+      type(family_t), intent(in) :: family
+      real(wp), intent(in) :: mesh           !< Fineness.
+      real(wp), intent(in) :: most_seconds   !< Wall time that it may take [s].
+      class(level_runner_t), intent(inout) :: runner
+      type(price_t), intent(inout) :: price
+      type(fault_t), intent(inout) :: fault
+      type(level_run_t) :: level
+      type(scene_t) :: scene
+      integer :: n
 
-         if (fault%code /= 0) return
-         associate (scene => scenes(number))
-            call read_changed(file, asked, fineness, mesh(number), effects, scene, fault)
-            if (fault%code /= 0) return
-            scene%stages%tolerance = newton*scene%stages%tolerance
-            call run_pilot(scene, huge(1.0_wp), run)
-         end associate
-         price%runs = price%runs + 1
-         price%seconds = price%seconds + run%seconds
-         price%troubled = price%troubled .or. run%cuts > MANY_CUTS*run%steps
-         if (.not. run%done) then
-            call raise(fault, EXIT_INPUT, file//': --price: the run on '//short(mesh(number))//' times the cells, '// &
-                       short(fineness)//' times the steps and '//short(newton)//' times Newton''s tolerance fails: '// &
-                       trim(run%why))
-         else if (.not. quiet) then
-            write (output_unit, '(a)') '   pilot '//whole(price%runs)//': '//whole(run%elements)// &
-               ' elements, steps times '//short(fineness)//', Newton''s tolerance times '//short(newton)//': '// &
-               whole(run%steps)//' steps, '//whole(run%iterations)//' iterations, '//whole(run%cuts)//' cuts, '// &
-               short(run%seconds)//' s'
+      n = size(price%levels)
+      call read_changed(family%file, family%asked, price%fineness, mesh, family%effects, scene, fault)
+      if (fault%code /= 0) return
+      if (n > 0) then
+         if (.not. refinement(price%meshes(n), scene%mesh) > 1.0_wp) call raise(fault, EXIT_INPUT, family%file// &
+            ': two meshes have the same cells.')
+      end if
+      level%level_key_t = level_key_t(mesh, price%fineness, price%newton, n + 1)
+      call one_run(family, level%level_key_t, most_seconds, runner, price, level%pilot, fault)
+      if (fault%code /= 0) return
+      price%levels = [price%levels, level]
+      price%meshes = [price%meshes, scene%mesh]
+      if (n == 0) return
+      price%of_meshes = exponent_of(level%pilot, price%levels(n)%pilot, &
+         real(level%pilot%elements, wp)/price%levels(n)%pilot%elements, MOST_OF_MESHES)
+      if (allocated(price%answers)) call judge_last(price)
+   end subroutine add_level
+
+   !> Errors of the meshes by the last two of them, or three.
+   subroutine judge_last(price)
+      type(price_t), intent(inout) :: price
+      integer :: n
+      real(wp) :: r
+
+      n = size(price%levels)
+      r = refinement(price%meshes(n - 1), price%meshes(n))
+      associate (levels => price%levels)
+         if (n == 2) then
+            call judge_meshes(price%answers, levels(1)%pilot, levels(2)%pilot, r)
+         else
+            call judge_meshes(price%answers, levels(n - 1)%pilot, levels(n)%pilot, r, levels(n - 2)%pilot)
          end if
-      end subroutine pilot
-   end subroutine price_scene
+      end associate
+   end subroutine judge_last
+
+   !> Fault EXIT_INPUT: a goal is none of the answers that meshes are compared by, or there is no goal.
+   subroutine check_goals_are_answers(family, price, fault)
+      type(family_t), intent(in) :: family
+      type(price_t), intent(in) :: price
+      type(fault_t), intent(inout) :: fault
+      character(:), allocatable :: there
+      integer :: i
+
+      there = ''
+      do i = 1, size(price%answers)
+         there = there//' '//trim(price%answers(i)%name)
+      end do
+      do i = 1, size(family%base%goals)
+         if (.not. any(price%answers%name == family%base%goals(i))) call raise(fault, EXIT_INPUT, family%file// &
+            ': goals: '''//trim(family%base%goals(i))//''' is prescribed, does not change, or is no answer that '// &
+            'meshes are compared by; those are:'//there//'.')
+      end do
+      if (.not. any(price%answers%goal)) call raise(fault, EXIT_INPUT, family%file//': no displacement and no '// &
+         'pressure of a point changes; name answers by the key goals of &scene. There are:'//there//'.')
+   end subroutine check_goals_are_answers
+
+   !> What runs on a mesh would cost, by the finest that was made, with steps that are so many times as fine.
+   function quotes_of(family, price, wanted, fineness, fault) result(quotes)
+      type(family_t), intent(in) :: family
+      type(price_t), intent(in) :: price
+      real(wp), intent(in) :: wanted, fineness(:)   !< Of the mesh; of the steps of each run.
+      type(fault_t), intent(inout) :: fault
+      type(quote_t) :: quotes(size(fineness))
+      type(scene_t) :: other
+      real(wp) :: elements, finer
+      integer :: k, n
+
+      n = size(price%levels)
+      call read_changed(family%file, family%asked, 1.0_wp, wanted, family%effects, other, fault)
+      if (fault%code /= 0) return
+      associate (finest => price%levels(n)%pilot, mesh => family%base%mesh)
+         elements = finest%elements*elements_at(wanted, mesh)/elements_at(price%levels(n)%mesh, mesh)
+         finer = refinement(price%meshes(n), other%mesh)
+         do k = 1, size(fineness)
+            quotes(k) = quote(price%answers, finest, wanted, elements, finer, fineness(k), price%of_steps, &
+                              price%of_meshes)
+         end do
+      end associate
+   end function quotes_of
+
+   !> One run, unless it was made, and a line about it. Fault of the run.
+   subroutine one_run(family, wanted, most_seconds, runner, price, pilot, fault)
+      type(family_t), intent(in) :: family
+      type(level_key_t), intent(in) :: wanted
+      real(wp), intent(in) :: most_seconds      !< [s]
+      class(level_runner_t), intent(inout) :: runner
+      type(price_t), intent(inout) :: price
+      type(pilot_t), intent(out) :: pilot
+      type(fault_t), intent(inout) :: fault
+      type(level_run_t) :: run
+      type(scene_t) :: scene
+      integer :: i
+
+      if (fault%code /= 0) return
+      do i = 1, size(price%made)
+         if (is_same(price%made(i)%level_key_t, wanted)) exit
+      end do
+      if (i <= size(price%made)) then
+         pilot = price%made(i)%pilot
+      else
+         call read_changed(family%file, family%asked, wanted%fineness, wanted%mesh, family%effects, scene, fault)
+         if (fault%code /= 0) return
+         scene%stages%tolerance = wanted%newton*scene%stages%tolerance
+         call runner%run(scene, wanted%level, most_seconds, pilot)
+         price%seconds = price%seconds + pilot%seconds
+      end if
+      price%runs = price%runs + 1
+      price%troubled = price%troubled .or. pilot%cuts > MANY_CUTS*pilot%steps
+      if (.not. pilot%done) then
+         call raise(fault, pilot%code, family%file//': the run on '//short(wanted%mesh)//' times the cells, '// &
+                    short(wanted%fineness)//' times the steps and '//short(wanted%newton)// &
+                    ' times Newton''s tolerance fails: '//trim(pilot%why))
+         return
+      end if
+      if (.not. family%quiet) write (output_unit, '(a)') '   run '//whole(price%runs)//': '//whole(pilot%elements)// &
+         ' elements, steps times '//short(wanted%fineness)//', Newton''s tolerance times '//short(wanted%newton)// &
+         ': '//whole(pilot%steps)//' steps, '//whole(pilot%iterations)//' iterations, '//whole(pilot%cuts)// &
+         ' cuts, '//short(pilot%seconds)//' s'
+      if (i <= size(price%made)) return
+      run%level_key_t = wanted
+      run%pilot = pilot
+      price%made = [price%made, run]
+   end subroutine one_run
+
+   !> Whether two runs change the same.
+   pure logical function is_same(one, two)
+      type(level_key_t), intent(in) :: one, two
+
+      is_same = one%level == two%level .and. &
+                maxval(abs([one%mesh - two%mesh, one%fineness - two%fineness, one%newton - two%newton])) <= 0.0_wp
+   end function is_same
 
    !> How the iterations of two runs grow with something that grew so many times; 0 to `most`. [-]
    pure real(wp) function exponent_of(dear, cheap, times, most)

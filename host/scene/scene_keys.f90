@@ -138,6 +138,11 @@ contains
                   'subtract: the initial flow is maintained', ':p_w')
       call k%number('accuracy', scene%accuracy, 1.0e-8_wp, 0.5_wp, &
                     'relative error wanted in the histories of the points [-], see host/README.md')
+      call k%texts('goals', scene%goals, 'answers that accuracy is for, as ''top.u_z''; default: all')
+      call k%flag('mesh', scene%refined, 'given|auto', 'auto', &
+                  'auto: refined until accuracy holds for mesh, steps and Newton''s method together')
+      call k%number('budget', scene%budget, TINY_, BIG, &
+                    'no mesh is begun that would end after this wall time [s]; default: none', 'mesh=auto')
       call k%whole('threads', scene%threads, 0, 1024, 'threads over elements; 0: by size, at most OMP_NUM_THREADS')
       call k%flag('factors', scene%reuse_factors, 'reuse|fresh', 'reuse', &
                   'factors of the matrix: reused while they serve, or new in every iteration')

@@ -7,6 +7,7 @@ module scene_reader
    use exit_codes, only: EXIT_GROUP
    use scene_fingerprint, only: fingerprint_of, sealed
    use scene_accuracy, only: ask_key
+   use scene_goals, only: check_goals
    use scene_keys, only: check_keys, make_lists, take_group
    use kinds, only: wp
    use scene_names, only: check_names
@@ -49,8 +50,26 @@ contains
          call take_group(table, scene, fault)
       end do
       if (fault%code == 0) call check_stages(scene, fault)
+      if (fault%code == 0) call check_goals(scene, fault)
+      ! A fineness from outside asks for one mesh.
+      if (present(fineness)) scene%refined = scene%refined .and. fineness == ''
+      if (fault%code == 0) call check_refined(scene, fault)
       if (fault%code == 0 .and. scene%mesh%fineness > 0.0_wp) call refine_scene(scene, fault)
    end subroutine read_scene
+
+   !> Fault EXIT_INPUT: a mesh is to be refined, and the scene does not say until when, or says which mesh to take.
+   subroutine check_refined(scene, fault)
+      type(scene_t), intent(in) :: scene
+      type(fault_t), intent(inout) :: fault
+
+      if (.not. scene%refined) return
+      if (.not. scene%accuracy > 0.0_wp) call raise(fault, EXIT_INPUT, trim(scene%file)//': mesh = ''auto'' of '// &
+         '&scene needs accuracy, the total error at which refinement ends, as 0.03.')
+      if (scene%mesh%fineness > 0.0_wp) call raise(fault, EXIT_INPUT, place_of(scene%mesh)//'fineness of &mesh '// &
+         'and mesh = ''auto'' of &scene contradict each other; leave one out.')
+      if (size(scene%points) == 0) call raise(fault, EXIT_INPUT, trim(scene%file)//': mesh = ''auto'' of &scene '// &
+         'compares the histories of points on several meshes; give the scene a &point.')
+   end subroutine check_refined
 
    !> Groups that occur once, and those without which there is nothing to do.
    subroutine check_counts(file, groups, fault)

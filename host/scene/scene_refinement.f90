@@ -8,9 +8,11 @@ module scene_refinement
    use texts, only: short
    implicit none (type, external)
    private
-   public :: refine_scene, refinement, cells_allow, elements_at
+   public :: refine_scene, refinement, cells_allow, elements_at, finest_of, MOST_ELEMENTS
 
    integer, parameter :: MOST_SPLITS = 3
+   real(wp), parameter :: MOST_FINENESS = 64.0_wp    !< Bound of the key.
+   real(wp), parameter :: MOST_ELEMENTS = 5.0e6_wp   !< Of a built-in mesh: entries of the matrix stay countable.
    integer, parameter :: LEAST_CELLS = 4   !< Of a piece that keeps its grading with a quarter of them.
 contains
    !> A scene on the mesh that its key fineness asks for. Fault EXIT_INPUT: a mesh of a file cannot be had so.
@@ -42,6 +44,15 @@ contains
       if (mesh%mesh_file == '') times = real(sum(cells_at(fineness, mesh%r_cells)), wp)*sum(cells_at(fineness, &
          mesh%z_cells))/(real(sum(mesh%r_cells), wp)*sum(mesh%z_cells))
    end function elements_at
+
+   !> Largest fineness that a mesh of the scene can have.
+   pure real(wp) function finest_of(mesh)
+      type(scene_mesh_t), intent(in) :: mesh
+
+      finest_of = 2.0_wp**MOST_SPLITS
+      if (mesh%mesh_file == '') finest_of = min(MOST_FINENESS, &
+         sqrt(MOST_ELEMENTS/(2.0_wp*sum(mesh%r_cells)*sum(mesh%z_cells))))
+   end function finest_of
 
    !> Breaks at the points of a scene, so that every mesh has nodes there; pieces keep their numbers. Meshes of files
    !> have the same nodes after splitting. Points outside the mesh, or where a piece has one cell, stay as they are.

@@ -174,6 +174,9 @@ module scene_types
       logical :: reuse_factors = .true.
       integer :: ordering = 1                        !< See sparse_factors.
       real(wp) :: accuracy = 0.0_wp                  !< 0: not asked for.
+      character(LENGTH), allocatable :: goals(:)     !< Answers that it is for; none: all, of meshes without forces.
+      logical :: refined = .false.                   !< The mesh is refined until the accuracy holds.
+      real(wp) :: budget = NEVER                     !< Wall time that this may take [s].
       integer :: checkpoint_steps = 0
       real(wp) :: checkpoint_seconds = 0.0_wp
       logical :: checkpoint_end = .false.

@@ -16,7 +16,7 @@ module convergence
    implicit none (type, external)
    private
    public :: control_t, log_t, measure, good_enough, field_scales, body_scale, is_body, rounding_in
-   public :: look_for_stagnation, residual_norms
+   public :: look_for_stagnation, residual_norms, forces_of_fields
    public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_STAGE, measure_in, linear_tolerance
 
    integer, parameter :: BY_FORCES = 1       !< The errors of the fields, see above.
@@ -180,6 +180,17 @@ contains
       if (assembly%with_change) body_scale = assembly%change(i)
       body_scale = max(body_scale, max(HISTORY_SHARE, assembly%rounding_share)*largest(AT_U_Z), ABSOLUTE_FLOOR)
    end function body_scale
+
+   !> Norms of the forces in each field, never zero. [kN, m3/s]
+   pure function forces_of_fields(dofs, constraint, assembly) result(forces)
+      type(dofs_t), intent(in) :: dofs
+      type(constraint_t), intent(in) :: constraint
+      type(assembly_t), intent(in) :: assembly
+      real(wp) :: forces(FIELDS), s(FIELDS), floor(FIELDS)
+
+      call add_scales(dofs, constraint, assembly, .false., s, floor)
+      forces = max(sqrt(s), sqrt(floor), ABSOLUTE_FLOOR)
+   end function forces_of_fields
 
    !> Norms of a residual over the unknowns that are free, displacements together. [kN, m3/s]
    pure function residual_norms(dofs, constraint, rhs) result(norms)

@@ -7,7 +7,7 @@ module newton_step
    use conjugate_residuals, only: solve_by_factors, INACCURATE
    use contact_interfaces, only: add_contacts, contact_forces, follow_friction, friction_turns
    use convergence, only: control_t, log_t, measure, good_enough, look_for_stagnation, linear_tolerance, rounding_in, &
-                          residual_norms, &
+                          residual_norms, forces_of_fields, &
                           BY_FORCES, BY_CHANGE
    use dashpots, only: add_dashpots
    use degrees_of_freedom, only: dofs_t
@@ -142,12 +142,15 @@ contains
       assembly%slopes%known = control%carries_slopes
       call lap(system%seconds(T_REST), t0)
    contains
-      !> What a further iteration would correct: the last correction, as much smaller as its residual has become.
+      !> What a further iteration would correct: the last correction, as much smaller as its residual has become. One
+      !> share for all fields: a load that acts at once leaves the flow a residual of rounding before the correction.
       subroutine keep_what_is_left()
-         real(wp) :: share(FIELDS)
+         real(wp) :: forces(FIELDS), answered
 
-         share = min(1.0_wp, residual_norms(dofs, constraint, rhs)/max(before, tiny(1.0_wp)))
-         system%left = dx*share(dofs%field)
+         forces = forces_of_fields(dofs, constraint, assembly)
+         answered = maxval(before/forces)
+         if (answered > 0.0_wp) system%left = dx*min(1.0_wp, maxval(residual_norms(dofs, constraint, rhs)/forces)/ &
+                                                             answered)
       end subroutine keep_what_is_left
 
       !> Residual, with minus sign in rhs, and slopes; false if the material refuses.
