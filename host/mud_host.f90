@@ -190,21 +190,23 @@ contains
       if (allocated(price%levels)) n = size(price%levels)
       if (quiet .or. n == 0 .or. .not. allocated(price%answers)) return
       call print_errors(output_unit, price)
-      write (output_unit, '(a)') 'In these errors: mesh, steps, Newton''s method; not the stress integration. Results: '// &
-         folder_of_mesh(folder, n)//'; the meshes: '//folder//'/levels.csv. '//whole(price%runs)//' runs, '// &
-         short(clock() - t0)//' s.'
+      write (output_unit, '(a)') 'In these errors: mesh, steps, Newton''s method; not the stress integration. '// &
+         'Results: '//folder_of_mesh(folder, n)//'; the meshes: '//folder//'/levels.csv. '// &
+         whole(price%runs)//' runs, '//short(clock() - t0)//' s.'
    end subroutine refine
 
    subroutine print_help()
-      character(*), parameter :: LINES(20) = [character(104) :: &
+      character(*), parameter :: LINES(22) = [character(104) :: &
          'Solves the boundary-value problem of a scene. Units m, s, kPa, Mg; tension positive.', &
          '  --output FOLDER       folder of the results, made if missing; default: output, with --restart that of', &
          '                        the checkpoint', &
-         '  --restart FILE        continues from a checkpoint of the same scene', &
+         '  --restart FILE        continues from a checkpoint of the same scene; with mesh = ''auto'' from its', &
+         '                        levels.h5', &
          '  --accuracy A          relative error wanted in the histories of the points; in place of the key', &
          '                        accuracy of &scene', &
          '  --fineness F          F times the cells of the mesh along each axis, in place of the key fineness of', &
-         '                        &mesh', &
+         '                        &mesh; one mesh, also where the scene says mesh = ''auto'' (which refines until', &
+         '                        accuracy holds for the total error)', &
          '  --verify              repeats the run at a quarter of the accuracy, given steps a quarter as long, and', &
          '                        reports the difference as the error of points and forces; not with --restart', &
          '  --effects             runs coarse pilots of the scene, with every effect and without each; prints', &
@@ -220,8 +222,8 @@ contains
       integer :: k
 
       write (output_unit, '(a)') USAGE, (trim(LINES(k)), k=1, size(LINES))
-      write (output_unit, '(a)') 'Exit code 20: an answer misses the accuracy asked for more than three times; '// &
-         'results are written.', 'Exit codes: host/README.md, "Exit codes".'
+      write (output_unit, '(a)') 'Exit code 20: an answer misses the accuracy asked for more than three times, or '// &
+         'with mesh = ''auto'' at all; results are written.', 'Exit codes: host/README.md, "Exit codes".'
    end subroutine print_help
 
    !> Whether the run could go on from the checkpoint, in its folder.
@@ -257,8 +259,8 @@ contains
          if (model%stages(i)%controlled) write (output_unit, '(a)') 'Stage '//trim(model%stages(i)%name)// &
             ': steps are controlled by their error, accuracy '//short(100*model%stages(i)%accuracy)//' %.'
       end do
-      if (scene%refined) write (output_unit, '(a)') 'mesh = ''auto'': finer meshes are run until the total error is '// &
-         short(100*scene%accuracy)//' %; the numbers above are of the mesh as it stands.'
+      if (scene%refined) write (output_unit, '(a)') 'mesh = ''auto'': finer meshes are run until the total error '// &
+         'is '//short(100*scene%accuracy)//' %; the numbers above are of the mesh as it stands.'
       if (scene%derive_effects .and. only_check) write (output_unit, '(a)') 'effects = ''auto'': pilots find out '// &
          'what the keys leave open when the run begins; --effects shows it without a run.'
       call list_warnings(scene, model, run%tension, warnings)

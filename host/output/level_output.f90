@@ -44,6 +44,7 @@ module level_output
       procedure :: judged => write_level
    end type level_output_t
 contains
+   !> Where the files of a mesh are.
    pure function folder_of_mesh(folder, level) result(path)
       character(*), intent(in) :: folder
       integer, intent(in) :: level

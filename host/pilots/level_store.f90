@@ -113,7 +113,8 @@ contains
       integer :: i
 
       associate (p => run%pilot)
-         list = [run%mesh, run%fineness, run%newton, real([run%level, p%elements, p%unknowns, p%steps, p%iterations, p%cuts], wp), &
+         list = [run%mesh, run%fineness, run%newton, &
+                 real([run%level, p%elements, p%unknowns, p%steps, p%iterations, p%cuts], wp), &
                  p%seconds, p%processor, p%work, p%stress, p%phases, p%megabytes, merge(1.0_wp, 0.0_wp, p%has)]
          list = [list, real([size(p%names), size(p%supports), size(p%time), size(p%ends)], wp), &
                  merge(1.0_wp, 0.0_wp, [p%prescribed]), p%time, [p%x], p%force_time, [p%force]]

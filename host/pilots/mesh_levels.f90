@@ -115,9 +115,9 @@ contains
          end do
          if (newton > OF_NEWTON*wanted) price%newton = TIGHTER
          if (.not. (price%fineness < 1.0_wp .or. price%newton < 1.0_wp)) return
-         if (.not. family%quiet) write (output_unit, '(a)') '   Steps err by '//percent(steps)//', Newton''s method by '// &
-            percent(newton)//': meshes are run with '//short(price%fineness)//' times the steps and '// &
-            short(price%newton)//' times the tolerance.'
+         if (.not. family%quiet) write (output_unit, '(a)') '   Steps err by '//percent(steps)// &
+            ', Newton''s method by '//percent(newton)//': meshes are run with '// &
+            short(price%fineness)//' times the steps and '//short(price%newton)//' times the tolerance.'
          price%answers%steps = price%fineness*price%answers%steps
          price%answers%newton = price%newton*price%answers%newton
          call begin_again(family, runner, price, fault)
@@ -146,7 +146,8 @@ contains
       integer :: k
 
       text = 'Mesh '//whole(size(price%levels) + 1)//': '//whole(nint(next%elements))//' elements, about '// &
-             rounded(next%seconds)//' s, '//rounded(next%megabytes)//' MB, error '//percent(next%error)//' expected'
+             rounded(next%seconds)//' s, '//rounded(next%megabytes)//' MB, error '// &
+             percent(next%error)//' expected'
       if (next%error <= wanted) then
          text = text//'.'
          return

@@ -251,8 +251,8 @@ contains
       end do
    end function quote
 
-   !> What the total error on the finest mesh is held to be: where the order of convergence is not seen, with the largest
-   !> distance of the meshes in place of the estimate. [-]
+   !> What the total error on the finest mesh is held to be: where the order of convergence is not seen, with the
+   !> largest distance of the meshes in place of the estimate. [-]
    elemental real(wp) function bound_of(answer)
       type(answer_t), intent(in) :: answer
 

@@ -44,7 +44,7 @@ module scene_price
       type(level_run_t), allocatable :: made(:)     !< All runs, pilots with them, in their order.
       integer :: runs = 0
       real(wp) :: asked = 0.0_wp                    !< Accuracy of the controlled stages [-]; 0: all steps are given.
-      real(wp) :: fineness = 1.0_wp, newton = 1.0_wp   !< Times steps and Newton's tolerance of the scene: of all levels.
+      real(wp) :: fineness = 1.0_wp, newton = 1.0_wp   !< Times steps and Newton's tolerance of the scene, all levels.
       real(wp) :: of_steps = 0.0_wp, of_meshes = 0.0_wp   !< Exponents of iterations.
       real(wp) :: seconds = 0.0_wp                  !< Of all runs.
       logical :: troubled = .false.                 !< Many steps were cut.
@@ -106,8 +106,8 @@ contains
       if (family%base%mesh%mesh_file /= '') family%coarsest = 1.0_wp
    end subroutine find_family
 
-   !> Two meshes, and on the second shorter steps and a tighter Newton's method: the errors of all answers. Faults: those
-   !> of read_changed and of the runs; EXIT_INPUT where meshes have the same cells, or a goal is no answer.
+   !> Two meshes, and on the second shorter steps and a tighter Newton's method: the errors of all answers. Faults:
+   !> those of read_changed and of the runs; EXIT_INPUT where meshes have the same cells, or a goal is no answer.
    subroutine begin_price(family, runner, price, fault)
       type(family_t), intent(inout) :: family
       class(level_runner_t), intent(inout) :: runner
@@ -222,8 +222,9 @@ contains
             ': goals: '''//trim(family%base%goals(i))//''' is prescribed, does not change, or is no answer that '// &
             'meshes are compared by; those are:'//there//'.')
       end do
-      if (.not. any(price%answers%goal)) call raise(fault, EXIT_INPUT, family%file//': no displacement and no '// &
-         'pressure of a point changes; name answers by the key goals of &scene. There are:'//there//'.')
+      if (fault%code == 0 .and. .not. any(price%answers%goal)) call raise(fault, EXIT_INPUT, family%file// &
+         ': no displacement and no pressure of a point changes; name answers by the key goals of '// &
+         '&scene. There are:'//there//'.')
    end subroutine check_goals_are_answers
 
    !> What runs on a mesh would cost, by the finest that was made, with steps that are so many times as fine.

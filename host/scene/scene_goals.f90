@@ -35,19 +35,24 @@ contains
       type(scene_t), intent(in) :: scene
       type(fault_t), intent(inout) :: fault
       character(*), parameter :: FORCES(3) = [character(8) :: '.force_r', '.force_z', '.thrust']
+      character(:), allocatable :: goal
       integer :: g, i, f
       logical :: known
 
       do g = 1, size(scene%goals)
-         associate (goal => trim(scene%goals(g)))
-            known = any([(index(goal, trim(FORCES(i)), back=.true.) > 1, i=1, size(FORCES))])
-            do i = 1, size(scene%points)
-               known = known .or. any([(goal == trim(scene%points(i)%name)//'.'//trim(FIELD_NAMES(f)), f=1, FIELDS)])
+         goal = trim(scene%goals(g))
+         known = .false.
+         do i = 1, size(FORCES)
+            known = known .or. index(goal, trim(FORCES(i)), back=.true.) > 1
+         end do
+         do i = 1, size(scene%points)
+            do f = 1, FIELDS
+               known = known .or. goal == trim(scene%points(i)%name)//'.'//trim(FIELD_NAMES(f))
             end do
-            if (.not. known) call raise(fault, EXIT_INPUT, trim(scene%file)//': goals: there is no answer '''//goal// &
-               '''; answers are POINT.FIELD of a named &point with u_r, u_z, p_w or p_c, as ''top.u_z'', forces '// &
-               'GROUP.force_r and GROUP.force_z of supports, and CONTACT.thrust.')
-         end associate
+         end do
+         if (.not. known) call raise(fault, EXIT_INPUT, trim(scene%file)//': goals: there is no answer '''//goal// &
+            '''; answers are POINT.FIELD of a named &point with u_r, u_z, p_w or p_c, as ''top.u_z'', forces '// &
+            'GROUP.force_r and GROUP.force_z of supports, and CONTACT.thrust.')
       end do
    end subroutine check_goals
 end module scene_goals

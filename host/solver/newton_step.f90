@@ -145,12 +145,14 @@ contains
       !> What a further iteration would correct: the last correction, as much smaller as its residual has become. One
       !> share for all fields: a load that acts at once leaves the flow a residual of rounding before the correction.
       subroutine keep_what_is_left()
-         real(wp) :: forces(FIELDS), answered
+         real(wp) :: forces(FIELDS), answered, share
 
          forces = forces_of_fields(dofs, constraint, assembly)
          answered = maxval(before/forces)
-         if (answered > 0.0_wp) system%left = dx*min(1.0_wp, maxval(residual_norms(dofs, constraint, rhs)/forces)/ &
-                                                             answered)
+         ! Where every unknown is prescribed nothing was to be answered.
+         share = 0.0_wp
+         if (answered > 0.0_wp) share = maxval(residual_norms(dofs, constraint, rhs)/forces)/answered
+         system%left = dx*min(1.0_wp, share)
       end subroutine keep_what_is_left
 
       !> Residual, with minus sign in rhs, and slopes; false if the material refuses.

@@ -81,3 +81,104 @@ def test_a_scene_without_points():
     if check("a finer run leaves checkpoints", done.returncode == 0 and kept, done.stderr):
         done = run(RESTART, work / "again", "--restart", kept[0])
         check("and is not taken up on another mesh", done.returncode != 0 and "fineness" in done.stderr, done.stderr)
+
+
+STRIP = root / "verification/studies/price/strip.nml"
+
+
+def changed(name, **keys):
+    """The strip with other values of &scene; None: without the key."""
+    text = STRIP.read_text()
+    for key, value in keys.items():
+        lines = [line for line in text.splitlines() if not line.startswith(f"   {key} =")]
+        if value is not None:
+            lines.insert(lines.index("&scene") + 1, f"   {key} = {value}")
+        text = "\n".join(lines) + "\n"
+    scene = work / f"{name}.nml"
+    scene.write_text(text)
+    return scene
+
+
+def mixed(path):
+    """Rows with numbers where there are numbers."""
+    def cell(text):
+        try:
+            return float(text)
+        except ValueError:
+            return text
+    return [{name: cell(value) for name, value in row.items()} for row in tables.rows(path)]
+
+
+def test_meshes_are_refined_until_the_accuracy_holds():
+    # The strip: what is reached is the distance to a mesh twice as fine as the finest.
+    done = run(STRIP, work / "auto", "--accuracy", "0.02")
+    check("the accuracy is reached", done.returncode == 0 and "The accuracy is reached" in done.stdout, done.stderr)
+    levels = mixed(work / "auto/levels.csv")
+    check("each mesh is twice as fine", [row["mesh"] for row in levels] == [0.25*2**k for k in range(len(levels))],
+          levels)
+    last = levels[-1]
+    check("it ends with the first mesh that reaches it", last["error"] <= 0.02 and all(
+        row["error"] > 0.02 or row["mesh_state"] == "assumed" for row in levels[1:-1]), levels)
+    folder = work / f"auto/mesh_{len(levels)}"
+    answers = {row["answer"]: row for row in mixed(folder / "answers.csv")}
+    check("its error stands in answers.csv", answers[last["answer"]]["mesh_error"] == last["mesh_error"]
+          and answers[last["answer"]]["mesh_state"] == last["mesh_state"], (answers, last))
+    run(STRIP, work / "finer", "--fineness", f"{2*last['mesh']:g}")
+    one, other = (tables.columns(path / "histories.csv") for path in (folder, work / "finer"))
+    for goal in ("centre.u_z", "edge.u_z"):
+        far = abs(one[goal][-1]/other[goal][-1] - 1)
+        check(f"{goal} is within what was asked", far < 0.02, far)
+        check(f"the estimate of {goal} is not too small", answers[goal]["mesh_error"] > BAND[0]*far,
+              (answers[goal], far))
+    plain = mixed(work / "finer/answers.csv")
+    check("a single mesh says that its error is not estimated", all(
+        row["mesh_state"] == "not estimated" and row["mesh_error"] == "" for row in plain), plain)
+
+
+def test_a_budget_stops_before_a_mesh_and_a_restart_goes_on():
+    # No mesh of this strip ends within a microsecond; two are needed to tell any error.
+    short = changed("short", budget="1e-6")
+    done = run(short, work / "short")
+    check("the budget ends it", done.returncode == 20 and "The accuracy is not reached" in done.stderr
+          and "the budget leaves" in done.stderr, done.stderr)
+    levels = mixed(work / "short/levels.csv")
+    check("two meshes are there", len(levels) == 2 and (work / "short/mesh_2/histories.csv").exists()
+          and not (work / "short/mesh_3").exists(), levels)
+    # With another budget the same scene goes on, and makes none of the runs again.
+    before = (work / "short/mesh_2/histories.csv").stat().st_mtime_ns
+    long = changed("long", budget="100")
+    done = run(long, work / "short", "--restart", work / "short/levels.h5")
+    check("it goes on", done.returncode == 0 and "The accuracy is reached" in done.stdout, done.stderr)
+    check("what was made is left", (work / "short/mesh_2/histories.csv").stat().st_mtime_ns == before)
+    whole = run(long, work / "whole")
+    check("as without the interruption", whole.returncode == 0, whole.stderr)
+    one, other = (mixed(work / f"{name}/levels.csv") for name in ("short", "whole"))
+    check("the same meshes and errors", [{k: v for k, v in row.items() if k != "seconds"} for row in one]
+          == [{k: v for k, v in row.items() if k != "seconds"} for row in other], (one, other))
+    done = run(changed("other", accuracy="0.03"), work / "short", "--restart", work / "short/levels.h5")
+    check("another accuracy is another scene", done.returncode == 17 and "another scene" in done.stderr, done.stderr)
+    done = run(long, work / "short", "--restart", work / "short/levels.h5", "--check")
+    check("--check says that it fits", done.returncode == 0 and "fits" in done.stdout, done)
+
+
+def test_contradictions_of_a_refinement_are_refused():
+    for what, words, *options in (
+            (changed("none", accuracy=None), "needs accuracy"),
+            (changed("goal", goals="'centre.u_x'"), "there is no answer 'centre.u_x'"),
+            (changed("held", goals="'centre.u_r'"), "'centre.u_r' is prescribed"),
+            (changed("thrust", goals="'strip.thrust'"), "'strip.thrust' is prescribed, does not change, or is no"),
+            (STRIP, "leave --verify out", "--verify")):
+        done = run(what, work / "refused", *options)
+        check(f"refused: {words}", done.returncode == 2 and words in done.stderr, done.stderr)
+    text = STRIP.read_text().replace("z_ratio = 0.8", "z_ratio = 0.8\n   fineness = 2")
+    (work / "both.nml").write_text(text)
+    done = run(work / "both.nml", work / "refused")
+    check("a fineness beside it", done.returncode == 2 and "contradict" in done.stderr, done.stderr)
+    done = run(STRIP, work / "refused", "--restart", work / "both.nml")
+    check("a text is no levels.h5", done.returncode == 17 and "levels.h5" in done.stderr, done.stderr)
+
+
+def test_fineness_asks_for_one_mesh():
+    done = run(STRIP, work / "one", "--fineness", "1")
+    check("one mesh by --fineness", done.returncode == 0 and (work / "one/histories.csv").exists()
+          and "mesh not estimated: --price" in done.stdout, done.stdout)
