@@ -88,8 +88,7 @@ contains
    !> Judges every answer, or the goals where the scene names them, by its own change, of the fields where no point is
    !> named; what changes by less than LEAST_SHARE of its field is no answer. Given steps: a warning on standard error,
    !> also where the run is quiet, of the worst one beyond 10 % (30 % with dynamic stages). Controlled steps: fault
-   !> EXIT_ACCURACY where the
-   !> worst one is beyond three times what was asked for. docs/theory/host.md section 4.5.
+   !> EXIT_ACCURACY where the worst one is beyond three times what was asked for. docs/theory/host.md section 4.5.
    subroutine judge_answers(model, control, verified, forces, fault)
       type(model_t), intent(in) :: model
       type(control_state_t), intent(in) :: control
