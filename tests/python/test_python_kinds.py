@@ -18,6 +18,7 @@ from mud.calibration import (  # noqa: E402
     Effort, answers_of, calibrate, evaluate, make_task, misfits_of, write_material, write_report,
 )
 from mud.calibration.simulation import SETTINGS  # noqa: E402
+from mud.calibration.simulation import loops as paths_of_cycles  # noqa: E402
 
 sand = mud.Material("toyoura")
 
@@ -140,14 +141,25 @@ def test_small_strain_moduli_are_those_of_eq_3():
     told, _ = missed(oedometer, M_c=1.0)
     check("and missed by another strength", told.sigma_r > 1.0, told)
 
+    # The loops of a cyclic test pass through the reversals that are compared.
+    names = "test,control,cycle_by,amplitude_kPa,cycle,p_0_kPa,e_0,r_u\n"
+    cyclic = written("cyclic.csv", names + "".join(f"C,undrained,q,30,{cycle},200,0.85,0.1\n" for cycle in (1, 2, 3)))
+    item = make_task("c", [cyclic]).items[0]
+    path = paths_of_cycles(sand.changed(**SETTINGS), item.test, item.use)
+    ends = path["r_u"][np.isclose(path["q"], -30, atol=0.01)]
+    off = np.max(np.abs(missed(cyclic)[1].columns["r_u"] - ends)) if len(ends) == 3 else 1.0
+    check("loops reach both amplitudes", abs(max(path["q"]) - 30) < 0.01 and abs(min(path["q"]) + 30) < 0.01, path)
+    check("and pass through the reversals that are compared", off < 1e-9 and len(path["q"]) > 40, (off, ends))
+
     # The page has a picture and a line for each kind.
-    tables = [stiffness, oedometer, loops, *({"file": work / f"{k}.csv", "kind": k}
-                                             for k in ("modulus", "liquefaction"))]
+    tables = [stiffness, oedometer, loops, cyclic, *({"file": work / f"{k}.csv", "kind": k}
+                                                     for k in ("modulus", "liquefaction"))]
     page = write_report(evaluate(make_task("kinds", tables), sand), work / "page")
     text = page.read_text()
     check(
         "every kind has its part of the page",
-        all((page.parent / f"fitted_{table['kind']}.png").stat().st_size >5000 for table in tables)
+        all((page.parent / f"fitted_{name}.png").stat().st_size > 5000
+            for name in [*(table["kind"] for table in tables), "loops"])
         and
         all(word in text for word in ("shear modulus", "damping", "cycles to liquefaction", "radial stress", "S_w")),
         text[: 1500],)

@@ -11,6 +11,7 @@ import textwrap
 import numpy as np
 
 from .. import _native
+from ..errors import MudError
 from ..plots import COLOURS, pyplot
 from ..registry import parameters
 from .calibrate import Calibration
@@ -18,7 +19,7 @@ from .diagnosis import origin_of
 from .ensemble import LEVEL
 from .fit import PRIOR
 from .misfit import ROBUST, Misfit
-from .simulation import turns
+from .simulation import SETTINGS, loops, turns
 from .task import Item, Task
 
 PAGE = 6  # tests a picture
@@ -389,7 +390,32 @@ def _pictures(result: Calibration, folder: pathlib.Path) -> list[pathlib.Path]:
                 made.append(folder / f"{word}_{kind}{f'_{n + 1}' if parts > 1 else ''}.png")
                 figure.savefig(made[-1], dpi=100)
                 plt.close(figure)
+                if kind == "cyclic":
+                    figure = _loops(result, items[n::parts], f"{title}: loops of the model", plt)
+                    made.append(made[-1].with_stem(made[-1].stem.replace("cyclic", "loops")))
+                    figure.savefig(made[-1], dpi=100)
+                    plt.close(figure)
     return made
+
+
+def _loops(result: Calibration, items: list[Item], title: str, plt):
+    """Stress over strain, and over mean stress, of the model in cyclic tests; the tables have reversals alone."""
+    figure, axes = plt.subplots(1, 2, figsize=(10, 4.9), layout="constrained")
+    for colour, item in zip(COLOURS, items):
+        try:
+            run = loops(result.material.changed(**SETTINGS), item.test, item.use)
+        except MudError:  # its line of the table says that it could not begin
+            continue
+        strain, stress = ("gamma_13", "sig_13") if item.test.control.startswith("simple_shear") else ("eps_a", "q")
+        axes[0].plot(100 * run[strain], run[stress], color=colour, lw=0.8, label=f"{item.test.name}: {_start_text(item)}")
+        axes[1].plot(run["p_eff"], run[stress], color=colour, lw=0.8)
+    axes[0].set(xlabel="axial or shear strain [%]", ylabel="q, in simple shear tau [kPa]")
+    axes[1].set(xlabel=_AXES["p"])
+    for axis in axes:
+        axis.grid(color="#dddddd", lw=0.6)
+    figure.legend(loc="outside lower center", ncols=3, fontsize=7)
+    figure.suptitle(title, fontsize=10)
+    return figure
 
 
 # What is drawn of a kind of test: (x, y) of each panel.

@@ -132,6 +132,17 @@ def simulate(material: Material, test: LaboratoryTest, use: Use) -> Answer:
     return Answer(_at_rows(test, use, result), stopped)
 
 
+def loops(material: Material, test: LaboratoryTest, use: Use) -> TestResult:
+    """The whole path of a cyclic test, also of one that stops. Raises ``MudError`` where it cannot begin."""
+    (stage,), start = _course(material, test, use)
+    stage = Stage(stage.control, **{**stage.keys, "output_interval": stage.keys["increment"]})
+    most = int(CYCLE_UPDATES * test["cycle"].max())
+    try:
+        return element_test(material, stage, control_tolerance=CONTROL_TOLERANCE, max_updates=most, **start)
+    except TestStopped as problem:
+        return problem.result
+
+
 def _retention(material: Material, test: LaboratoryTest, rows: np.ndarray) -> Answer:
     """S_w at the rows; with hysteresis along the whole path of suction from the first row on, at constant volume."""
     e = test["e"] if "e" in test else test["e_0"] if "e_0" in test else np.full(len(test.lines), material["e_0"])
@@ -298,9 +309,9 @@ def _at_rows(test: LaboratoryTest, use: Use, result: TestResult) -> dict[str, np
         "sigma_r": result["sigma_r"],
     }
     names = list(dict.fromkeys([*use.scatter, "e", "p", "q"]))
-    if test.kind == "cyclic":  # the last reversal of each cycle
-        rows = [np.flatnonzero(result["cycle"] == c) for c in test["cycle"][use.rows]]
-        return {n: np.array([values[n][r[-1]] if len(r) else np.nan for r in rows]) for n in names}
+    if test.kind == "cyclic":  # rows: the start, two reversals a cycle, the end; wanted: the last reversal of each cycle
+        rows = (2 * test["cycle"][use.rows]).astype(int)
+        return {n: np.array([values[n][r] if r < len(values[n]) - 1 else np.nan for r in rows]) for n in names}
     if test.kind in ("drained", "undrained"):
         way = np.sign(test["eps_a"][use.rows[-1]])
         at, path = way * natural(test["eps_a"][use.rows]), way * result["eps_a"]
