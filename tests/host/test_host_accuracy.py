@@ -230,7 +230,7 @@ def test_given_steps_stay():
         check(f"--accuracy {word}: refused", done.returncode == 2 and said in done.stderr, done.stderr)
     forces = {}
     for name, words in (("1e-1", ("--accuracy", "1e-1")), ("1e-2", ("--accuracy", "1e-2")), ("fine", ())):
-        text = RAMP if words else RAMP.replace("duration = 1 ", "duration = 1 dt = 0.005 tolerance = 1e-6 ")
+        text = RAMP if words else RAMP.replace("duration = 1 ", "duration = 1 dt = 0.01 tolerance = 1e-6 ")
         done = run(written(f"push{name}", text), work / f"push{name}", *words)
         check(f"prescribed displacement, {name}: runs", done.returncode == 0, done.stderr)
         forces[name] = tables.columns(work / f"push{name}/reactions_push.csv")["top_1.force_z"]
@@ -252,7 +252,7 @@ def test_given_steps_stay():
     # An estimate far above the error is one that cancels: below a hundredth of what was asked nothing is to be told.
     check("--verify: the estimate of a force is not far above its error", true < 1e-4
           or BAND[0] < true/estimated(work / "pushed").get("push: top_1.force_z", 1), true)
-    run(written("beside_fine", BESIDE.replace("duration = 1 ", "duration = 1 dt = 0.005 tolerance = 1e-7 ")),
+    run(written("beside_fine", BESIDE.replace("duration = 1 ", "duration = 1 dt = 0.01 tolerance = 1e-7 ")),
         work / "beside_fine")
     done = run(written("beside", BESIDE), work / "beside", "--accuracy", "1e-1")
     exact = np.interp(history(work / "beside", "time"), history(work / "beside_fine", "time"),

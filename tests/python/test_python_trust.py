@@ -154,7 +154,7 @@ def test_nine_tests_that_cannot_run_are_no_fit():
         and {v.group for v in fit.parts[0].variables} == {"retention"},
     )
     if not light:  # the checking builds have seen a fit
-        joint = calibrate(both, Effort(samples=8, starts=2, trial=4, joint=20, members=0), 1, None)
+        joint = calibrate(both, Effort(samples=4, starts=1, trial=4, joint=12, members=0), 1, None)
         missed = {m.name: m for m in joint.misfits}
         check("a joint fit meets the retention curve", missed["r"].S_w < 0.01, missed["r"])
 
@@ -199,7 +199,7 @@ def test_nine_tests_that_cannot_run_are_no_fit():
         page[:300],
     )
     if not light:
-        words += ["--samples", "4", "--starts", "2", "--evaluations", "6", "--members", "8"]
+        words += ["--samples", "2", "--starts", "1", "--evaluations", "4", "--members", "4"]
         words += ["--output", str(work / "going")]
         environment = {**os.environ, "PYTHONPATH": str(root / "python")}
         command = [sys.executable, "-m", "mud.calibration.command", *words]
