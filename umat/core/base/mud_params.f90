@@ -3,12 +3,11 @@
 module mud_params
    use mud_kinds, only: wp, SQRT_6
    use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NPROPS_WITHOUT_PRELOADING, PROPERTIES, KIND_REAL, &
-      MAX_TURNS, &
-            P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, P_H_0, P_C_H, &
-      P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, P_P_ATM, P_P_MIN, &
+      MAX_TURNS, P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, P_H_0, &
+      P_C_H, P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, P_P_ATM, P_P_MIN, &
       P_BONDING, P_FABRIC, P_ISOTROPIC, P_LODE, P_MEMORY_RULE, P_EPS_HAT, P_J_EXP, P_X_0, P_X_REV, P_CAP_D, P_CAP_H, &
-      P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, P_TANGENT, P_RHO_E, P_SHEAR_ORDER, &
-      P_HYSTERESIS, P_P_AW, P_N_W, P_M_W, P_B_D, P_B_W, P_C_CHI, P_ZETA_CHI, P_S_CHI
+      P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, P_TANGENT, P_RHO_E, P_SHEAR_ORDER, P_HYSTERESIS, &
+      P_P_AW, P_N_W, P_M_W, P_B_D, P_B_W, P_C_CHI, P_ZETA_CHI, P_S_CHI, ISOTROPIC_NONE, ISOTROPIC_REMEMBERS
    use mud_status, only: mud_status_t, fail, MUD_BAD_NPROPS, MUD_BAD_PROPS, ON_PROPS
    use mud_tensor, only: is_finite, all_finite
    use mud_units, only: stress_unit, bounds_for, minimum_stress, LARGEST_STRESS, LARGEST_SUCTION_STEP, SMALLEST_MINIMUM
@@ -75,6 +74,7 @@ module mud_params
       real(wp) :: k_0, g_0, n_c, lambda, alpha_csl, n_l, theta, m_c, c, n_b, n_d, a_0, h_0, c_h, c_z, z_max
       real(wp) :: b_1, b_2, s_max, s_min, p_a, omega, n_x, m_x, e_0, p_atm, p_min
       logical :: bonding, fabric, isotropic, lode, cutoff
+      logical :: remembers  !< The isotropic mechanism has a memory.
       integer :: memory_rule
       real(wp) :: eps_hat, j_exp
       real(wp) :: x_floor   !< Floor of (r - r_in):n, NO_FLOOR with the guard off [-].
@@ -194,7 +194,8 @@ contains
       params%largest_suction_step = LARGEST_SUCTION_STEP*stress_unit(props)
       params%bonding = whole(props(P_BONDING)) == 1
       params%fabric = whole(props(P_FABRIC)) == 1
-      params%isotropic = whole(props(P_ISOTROPIC)) == 1
+      params%isotropic = whole(props(P_ISOTROPIC)) /= ISOTROPIC_NONE
+      params%remembers = whole(props(P_ISOTROPIC)) == ISOTROPIC_REMEMBERS
       params%lode = whole(props(P_LODE)) == 1
       params%memory_rule = whole(props(P_MEMORY_RULE))
       params%eps_hat = props(P_EPS_HAT)

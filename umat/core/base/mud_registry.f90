@@ -10,6 +10,7 @@ module mud_registry
              NPROPS_WITHOUT_PRELOADING, NSTATV_WITHOUT_PRELOADING
    public :: KIND_REAL, KIND_SWITCH, KIND_OPTION, KIND_COUNT
    public :: option_t, OPTIONS, property_meaning, property_index, statev_index, statev_name, statev_variable, COMPONENTS
+   public :: ISOTROPIC_NONE, ISOTROPIC_FORGETS, ISOTROPIC_REMEMBERS
    public :: RULE_CLASSIC, RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, SCHEME_AUTOMATIC, &
              SCHEME_OF_PAPER
 
@@ -23,11 +24,12 @@ module mud_registry
              S_X_BEFORE, S_X_RUNNING, S_TARGET, S_INTERRUPTED, S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, &
              S_MEMORY_BEFORE, S_DIRECTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, S_N_RATE, &
              S_N_SUBSTEP, S_N_REJECT, S_N_RESET, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, &
-             S_ELASTIC_DOMAIN, S_GAP, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED, S_TURNS, S_N_CLEARED, S_TURN, MAX_TURNS, &
-             S_CHI, S_CHI_OWN, S_CHI_STACK
+             S_ELASTIC_DOMAIN, S_GAP, S_MARGIN, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED, S_TURNS, S_N_CLEARED, S_TURN, &
+             MAX_TURNS, S_CHI, S_CHI_OWN, S_CHI_STACK
 
-   integer, parameter :: STATE_LAYOUT = 3   !< Layout number that an initialised STATEV carries.
+   integer, parameter :: STATE_LAYOUT = 4   !< Layout number that an initialised STATEV carries.
    integer, parameter :: KIND_REAL = 0, KIND_SWITCH = 1, KIND_OPTION = 2, KIND_COUNT = 3
+   integer, parameter :: ISOTROPIC_NONE = 0, ISOTROPIC_FORGETS = 1, ISOTROPIC_REMEMBERS = 2
    integer, parameter :: RULE_CLASSIC = 0, RULE_THRESHOLD = 1, RULE_REPOSITIONING = 2, RULE_RETURN_POINT = 3
    !> The order follows the error; other values are pairs of mud_substep, modified Euler first.
    integer, parameter :: SCHEME_AUTOMATIC = 0, SCHEME_OF_PAPER = 1
@@ -139,7 +141,7 @@ module mud_registry
    !> Interrupted processes of the rule return_point, the oldest first: memory, direction and target of each.
    integer, parameter :: MAX_INTERRUPTED = 4, ENTRY_SIZE = 13
    integer, parameter :: S_GAP = S_ELASTIC_DOMAIN + 6
-   integer, parameter :: S_STACK = S_GAP + 1
+   integer, parameter :: S_MARGIN = S_GAP + 1, S_STACK = S_MARGIN + 1
    !> STATEV may end here without hysteresis.
    integer, parameter :: NSTATV_WITHOUT_HYSTERESIS = S_STACK - 1 + ENTRY_SIZE*MAX_INTERRUPTED
    !> Turning points of suction, the oldest first: ln(x/P_a) and S_w of each. Four leave a finite effect of vanishing
@@ -210,8 +212,8 @@ module mud_registry
          '1: suction bonding zeta acts on the lines of eqs (7), (8); 0: f = 1'), &
       property_t(P_FABRIC, 'fabric', 'fabric', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 1.0_wp, 'rebuilt', &
          '1: fabric z evolves and acts on dilatancy; 0: A_d = A_0'), &
-      property_t(P_ISOTROPIC, 'isotropic', 'isotropic', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 1.0_wp, 'mended', &
-         '1: isotropic mechanism, eq. (4); 0: none'), &
+      property_t(P_ISOTROPIC, 'isotropic', 'isotropic', '1', KIND_OPTION, 0.0_wp, 2.0_wp, 1.0_wp, 'mended', &
+         'isotropic mechanism, eq. (4)'), &
       property_t(P_LODE, 'lode', 'lode', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 1.0_wp, 'rebuilt', &
          '1: strength depends on the Lode angle; 0: circle of M_c'), &
       property_t(P_MEMORY_RULE, 'memory_rule', 'rule', '1', KIND_OPTION, 0.0_wp, 3.0_wp, 3.0_wp, 'ours', &
@@ -337,6 +339,9 @@ module mud_registry
       variable_t(S_GAP, 1, 'gap', 'e_g', '1', .false., 'numerical', &
          'part of the void ratio: the gap between grains that have parted at p_min', '0', &
          'grows and shrinks with e while a held point is at its loosest'), &
+      variable_t(S_MARGIN, 1, 'isotropic_margin', 'u', '1', .false., 'ours', &
+         'how far compression is from where it was before, as ln p''; 0: there; with isotropic = 2', '0', &
+         'falls where compression ceases, rises with it to 0'), &
       variable_t(S_STACK + 0, 6, 'memory_1', 'r_in,1', '1', .true., 'ours', &
          'memory of the interrupted process 1; the first is the oldest (rule return_point)', '0', &
          'set where the process is interrupted'), &
@@ -428,6 +433,9 @@ module mud_registry
    integer, parameter :: NVARIABLES = size(VARIABLES)
 
    type(option_t), parameter :: OPTIONS(*) = [ &
+      option_t(P_ISOTROPIC, ISOTROPIC_NONE, 'none'), &
+      option_t(P_ISOTROPIC, ISOTROPIC_FORGETS, 'of every rise of p'''), &
+      option_t(P_ISOTROPIC, ISOTROPIC_REMEMBERS, 'with memory'), &
       option_t(P_MEMORY_RULE, RULE_CLASSIC, 'classic'), &
       option_t(P_MEMORY_RULE, RULE_THRESHOLD, 'threshold'), &
       option_t(P_MEMORY_RULE, RULE_REPOSITIONING, 'repositioning'), &

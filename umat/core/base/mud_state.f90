@@ -8,7 +8,7 @@ module mud_state
       S_TARGET, S_INTERRUPTED, S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, S_MEMORY_BEFORE, S_DIRECTION, S_N_RATE, &
       S_N_SUBSTEP, S_N_REJECT, S_N_RESET, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, &
       S_ELASTIC_DOMAIN, S_GAP, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED, S_TURNS, S_N_CLEARED, S_TURN, MAX_TURNS, S_CHI, &
-      S_CHI_OWN, S_CHI_STACK
+      S_CHI_OWN, S_CHI_STACK, S_MARGIN
    use mud_status, only: mud_status_t, fail, MUD_BAD_STATE, MUD_BAD_NSTATV, ON_STATEV
    use mud_tensor, only: is_finite, all_finite
    implicit none (type, external)
@@ -24,6 +24,7 @@ module mud_state
    real(wp), parameter :: LARGEST_FROM_CENTRE = 1.0_wp    !< Strain from the elastic domain's centre; rho_e <= 0.01 [-].
    real(wp), parameter :: LARGEST_LOG_SUCTION = 1.0e3_wp  !< ln of a double [-].
    real(wp), parameter :: LARGEST_CONTRACTION = 1.0e6_wp  !< Of all processes: strains of 1e9 increments of 1e-3 [-].
+   real(wp), parameter :: LARGEST_MARGIN = 1.0e3_wp       !< ln of a double [-].
    real(wp), parameter :: LARGEST_DIRECTION = 1.01_wp     !< Components of a unit tensor [-].
 
    !> A loading process that was interrupted (rule return_point).
@@ -63,6 +64,7 @@ module mud_state
       real(wp) :: z(6)         !< fabric [-]
       real(wp) :: e            !< void ratio, with the gap [-]
       real(wp) :: gap          !< part of it that is gap between grains that have parted [-]
+      real(wp) :: margin       !< of the isotropic memory, u <= 0 [-]
       real(wp) :: p_c          !< suction [kPa]
       real(wp) :: s_w          !< degree of saturation [-]
       real(wp) :: psi          !< state parameter [-]
@@ -110,6 +112,7 @@ contains
       end if
       call require(statev, S_LAYOUT, real(STATE_LAYOUT, wp), real(STATE_LAYOUT, wp), status)
       call require(statev, S_GAP, 0.0_wp, E_OPEN - E_LOWER, status)
+      call require(statev, S_MARGIN, -LARGEST_MARGIN, 0.0_wp, status)
       call require(statev, S_VOID_RATIO, E_LOWER, E_UPPER + statev(S_GAP), status)
       call require(statev, S_SATURATION, 0.0_wp, 1.0_wp, status)
       call require(statev, S_INTERRUPTED, 0.0_wp, real(MAX_INTERRUPTED, wp), status)
@@ -134,6 +137,7 @@ contains
 
       state%e = statev(S_VOID_RATIO)
       state%gap = statev(S_GAP)
+      state%margin = statev(S_MARGIN)
       state%s_w = statev(S_SATURATION)
       state%p_c = statev(S_SUCTION)
       state%psi = statev(S_STATE_PARAMETER)
@@ -283,6 +287,7 @@ contains
       statev(S_LAYOUT) = real(STATE_LAYOUT, wp)
       statev(S_VOID_RATIO) = state%e
       statev(S_GAP) = state%gap
+      statev(S_MARGIN) = state%margin
       statev(S_SATURATION) = state%s_w
       statev(S_SUCTION) = state%p_c
       statev(S_STATE_PARAMETER) = state%psi

@@ -9,6 +9,7 @@ module mud_consistent
    use mud_loading, only: loading_t
    use mud_cutoff, only: changes_through_hold, MODE_HELD
    use mud_driving, only: driving_t, whole_increment, change_of_place, DIRECTIONS, AT_REST
+   use mud_isotropic_memory, only: margins_at_stages, changes_of_measure, changes_by_shear
    use mud_increment, only: increment_t, void_ratio_at, suction_at, changes_of_loading_strain, turning_of, NY
    use mud_params, only: params_t
    use mud_preloading, only: NO_CONTRACTION
@@ -30,9 +31,8 @@ module mud_consistent
    implicit none (type, external)
    private
    public :: sensitivity_t, no_sensitivity, begin_stretch, propagate, changes_of_contraction, jump_of_memory, &
-             changes_of_parting, &
-             change_with_size, changes_along, changes_of_ratio, linearise_stage, JUMP_NONE, JUMP_REVERSAL, &
-             JUMP_RETURN, JUMP_NEW
+             changes_of_parting, change_with_size, changes_at_memory, changes_along, changes_of_ratio, &
+             linearise_stage, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
 
    integer, parameter :: JUMP_NONE = 0
    integer, parameter :: JUMP_REVERSAL = 1   !< A new process begins.
@@ -56,6 +56,8 @@ module mud_consistent
       !> With cyclic preloading, of the contraction of the present process and of interrupted ones, and of ln chi' where
       !> the substep began.
       real(wp) :: chi_own(DIRECTIONS), chi_stack(DIRECTIONS, MAX_INTERRUPTED), log_chi0(DIRECTIONS)
+      !> of the isotropic memory's margin less its measure; not read where the isotropic mechanism acts
+      real(wp) :: margin(DIRECTIONS)
       real(wp) :: parts(DIRECTIONS)          !< of the void ratio at which the grains of a held point part
       type(driving_t) :: driving
       type(fading_t) :: fading               !< of what fades of the rates, where that is known
@@ -75,6 +77,7 @@ contains
       sens%chi_own = 0.0_wp
       sens%shift = 0.0_wp
       sens%parts = 0.0_wp
+      sens%margin = 0.0_wp
       sens%settled = depth
       call whole_increment(inc, sens%driving)
    end subroutine no_sensitivity
@@ -115,7 +118,7 @@ contains
          end if
          ! at the end of the whole increment only the stress is asked for
          call through_stages(par, inc, trial, h, last .and. inc%to >= 1.0_wp, sens%shift, dh, sens%r_in, &
-                             sens%driving, sens%fading, first, sens%y)
+                             sens%driving, sens%fading, first, sens%y, sens%margin)
       end if
       sens%at_rest = .false.
       sens%shift = sens%shift + dh
@@ -161,29 +164,34 @@ contains
 
    !> Derivative of the end of a substep with respect to its size. Per unit of h, a share of inc; [kPa, -, -] for
    !> sigma', z and plastic shear. docs/theory/integration.md section 4.3.
-   pure subroutine change_with_size(par, inc, trial, h, change)
+   pure subroutine change_with_size(par, inc, trial, h, change, of_margin)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h
       real(wp), intent(out) :: change(NY)
-      real(wp) :: none(DIRECTIONS), one(DIRECTIONS), first(DIRECTIONS, NY), y(DIRECTIONS, NY)
+      real(wp), intent(out) :: of_margin   !< Of the isotropic memory's margin less its measure [-].
+      real(wp), dimension(DIRECTIONS) :: none, one, margin
+      real(wp) :: first(DIRECTIONS, NY), y(DIRECTIONS, NY)
 
       none = 0.0_wp
       one = 1.0_wp
+      margin = 0.0_wp
       first = 0.0_wp
       y = 0.0_wp
       if (trial%mode == MODE_HELD) then
          call changes_through_hold(par, inc, trial%parts, none, trial%y0(1:6), trial%time, h, none, one, AT_REST, y)
       else
-         call through_stages(par, inc, trial, h, .false., none, one, AT_REST%d_strain, AT_REST, NO_FADING, first, y)
+         call through_stages(par, inc, trial, h, .false., none, one, AT_REST%d_strain, AT_REST, NO_FADING, first, y, &
+                             margin)
       end if
       change = y(1, :)
+      of_margin = margin(1)
    end subroutine change_with_size
 
    !> The scheme applied to all directions as one long vector, from the changes of its first rate: its start moves by
    !> `shift` in pseudo-time, its size changes by dh.
-   pure subroutine through_stages(par, inc, trial, h, ends, shift, dh, r_in, driving, fading, first, y1)
+   pure subroutine through_stages(par, inc, trial, h, ends, shift, dh, r_in, driving, fading, first, y1, margin)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
@@ -194,15 +202,21 @@ contains
       type(fading_t), intent(in) :: fading
       real(wp), intent(in) :: first(DIRECTIONS*NY)
       real(wp), intent(inout) :: y1(DIRECTIONS*NY)
+      real(wp), intent(inout) :: margin(DIRECTIONS)   !< Of the isotropic memory's margin less its measure.
       real(wp) :: rates(DIRECTIONS*NY, MAX_STAGES), y0(DIRECTIONS*NY), y(DIRECTIONS*NY), point(NY), time, &
-         dt(DIRECTIONS)
-      integer :: i, last
-      logical :: moves
+         dt(DIRECTIONS), of_margin(DIRECTIONS, MAX_STAGES), of_stages(MAX_STAGES), at_stages(MAX_STAGES)
+      integer :: i, last, row
+      logical :: moves, follows
 
       ! the last stage of such a pair serves the error estimate and the next substep, not the solution
       last = inc%scheme%stages
       if (inc%scheme%first_same_as_last) last = last - 1
       moves = any(abs(dh) > 0.0_wp)
+      follows = inc%rests .and. .not. ends
+      if (follows) then
+         call margins_at_stages(par, inc, trial, h, at_stages, of_stages)
+         of_margin(:, 1) = stage_of_margin(1, trial%y0, trial%time, shift, margin, y1, first)
+      end if
       rates(:, 1) = first
       if (trial%transient%known) call take_changes_of_fading(trial%transient, fading, trial%time, shift, rates(:, 1))
       call finish_stage(trial, h, 1, moves, dh, rates)
@@ -215,6 +229,11 @@ contains
             call add_changes_of_faded(trial%transient, fading, trial%time, time, shift, dt, y)
          call change_of_stage(par, inc, trial%mode, trial%w(i), point, time, .false., ends .and. i == last, dt, r_in, &
                               driving, y, rates(:, i))
+         if (follows) then
+            row = (i - 1)*(i - 2)/2
+            of_margin(:, i) = stage_of_margin(i, point, time, dt, margin + matmul(of_margin(:, 1:i - 1), &
+               inc%scheme%a(row + 1:row + i - 1)), y, rates(:, i))
+         end if
          if (trial%transient%known) call take_changes_of_fading(trial%transient, fading, time, dt, rates(:, i))
          call finish_stage(trial, h, i, moves, dh, rates)
       end do
@@ -227,7 +246,34 @@ contains
       end if
       if (trial%transient%known) call add_changes_of_faded(trial%transient, fading, trial%time, trial%time + h, shift, &
                                                            shift + dh, y1)
+      if (follows) margin = margin + matmul(of_margin(:, 1:last), inc%scheme%b(1:last))
+   contains
+      !> What the rate of stage i gives over the whole substep to the margin of the isotropic memory less its measure.
+      pure function stage_of_margin(i, point, time, dt, before, y, rate) result(change)
+         integer, intent(in) :: i
+         real(wp), intent(in) :: point(NY), time, dt(DIRECTIONS), before(DIRECTIONS), y(DIRECTIONS, NY), &
+            rate(DIRECTIONS, NY)
+         real(wp), dimension(DIRECTIONS) :: change, de, dp_c, du
+
+         call change_of_place(inc, time, void_ratio_at(inc, time), dt, driving, de, dp_c)
+         du = before + changes_of_measure(par, inc, time, point(1:6), y(:, 1:3), de, dp_c, driving%scans, driving%turn)
+         change = h*changes_by_shear(par, inc, time, trial%w(i), at_stages(i), du, y(:, 1:3), de, dp_c, &
+                                   rate(:, 1:3), driving%d_v) + of_stages(i)*dh
+      end function stage_of_margin
    end subroutine through_stages
+
+   !> At what it remembers the isotropic mechanism has no margin: its derivatives are those of the measure.
+   pure subroutine changes_at_memory(par, inc, time, sigma, sens)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time, sigma(6)   !< Where the next substep begins.
+      type(sensitivity_t), intent(inout) :: sens
+      real(wp), dimension(DIRECTIONS) :: de, dp_c
+
+      call change_of_place(inc, time, void_ratio_at(inc, time), sens%shift, sens%driving, de, dp_c)
+      sens%margin = -changes_of_measure(par, inc, time, sigma, sens%y(:, 1:3), de, dp_c, sens%driving%scans, &
+                                        sens%driving%turn)
+   end subroutine changes_at_memory
 
    !> Derivatives of what fades of the rates from the start of this substep on, whose first rate changes by now. Where
    !> the strain does not turn yet, what a turn would add fades too: by the first power of its angle as exp(-k t).

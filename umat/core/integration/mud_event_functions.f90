@@ -6,8 +6,9 @@ module mud_event_functions
    use mud_critical_state, only: bounding_ratio
    use mud_cutoff, only: rate_without_past, height, closing_function
    use mud_event_table, only: EVENTS, EVENT_OPENS, EVENT_BOUNDS, EVENT_MECHANISM, EVENT_REVERSAL, EVENT_RETURN, &
-      EVENT_TURN, RATE_THERE, RATE_IF_CLOSED
+      EVENT_TURN, EVENT_YIELD, EVENT_UNLOAD, RATE_THERE, RATE_IF_CLOSED
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, NY
+   use mud_isotropic_memory, only: drive_of_margin, margin_after
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio
@@ -83,6 +84,11 @@ contains
          f = allowed_excess(par, inc, trial) - excess(par, psi_at(par, inc, time, p), r)
       case (EVENT_REVERSAL)
          f = w%x + par%x_rev
+      case (EVENT_YIELD)
+         f = -trial%margin
+         if (time > trial%time) f = -margin_after(par, inc, trial, time - trial%time)
+      case (EVENT_UNLOAD)
+         f = drive_of_margin(par, inc, time, w)
       case (EVENT_MECHANISM)
          f = w%iso_drive/trial%w(1)%iso_drive
       case (EVENT_TURN)

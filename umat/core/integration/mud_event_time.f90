@@ -2,6 +2,7 @@
 !> Derivative of the time of an event inside an increment, from the event's function: with it the substep that ends
 !> there changes its size.
 module mud_event_time
+   use mud_isotropic_memory, only: changes_of_measure
    use mud_kinds, only: wp
    use mud_bounding, only: change_of_psi, change_of_excess
    use mud_consistent, only: sensitivity_t, change_with_size, changes_along, changes_of_ratio, linearise_stage
@@ -10,8 +11,8 @@ module mud_event_time
    use mud_driving, only: driving_t, DIRECTIONS
    use mud_error_control, only: changes_root
    use mud_event_functions, only: psi_at
-   use mud_event_table, only: EVENTS, EVENT_OPENS, EVENT_PARTS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, NO_RATE, &
-      RATE_THERE, RATE_IF_CLOSED
+   use mud_event_table, only: EVENTS, EVENT_OPENS, EVENT_PARTS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, &
+      EVENT_YIELD, NO_RATE, RATE_THERE, RATE_IF_CLOSED
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, turning_of, NY
    use mud_params, only: params_t
    use mud_rate, only: rate_t
@@ -51,7 +52,8 @@ contains
       type(counters_t) :: uncounted
       type(turning_t) :: turning
       type(tensors_t) :: r_in
-      real(wp) :: with_size(NY), y(DIRECTIONS, NY), dt(DIRECTIONS), slopes(DIRECTIONS), e, time, dh
+      real(wp) :: with_size(NY), y(DIRECTIONS, NY), dt(DIRECTIONS), slopes(DIRECTIONS), e, time, dh, &
+         margin(DIRECTIONS), margin_with_size
       integer :: j, mode
 
       time = trial%time + h
@@ -65,7 +67,9 @@ contains
       case (RATE_IF_CLOSED)
          call rate_without_past(par, inc, time, trial%y, w, uncounted)
       end select
-      call change_with_size(par, inc, trial, h, with_size)
+      call change_with_size(par, inc, trial, h, with_size, margin_with_size)
+      margin = sens%margin
+      margin(BY_SIZE) = margin_with_size
       y = sens%y
       y(BY_SIZE, :) = with_size
       r_in = sens%r_in
@@ -75,7 +79,7 @@ contains
       call changes_along(inc, mode, time, e, turning, dt, sens%driving, changes)
       if (EVENTS(event)%looks_at /= NO_RATE) &
          call linearise_stage(par, inc, w, trial%y, time, e, changes%loading, lin)
-      slopes = slopes_of_event(par, inc, event, trial, time, w, lin, y, r_in, sens%driving, changes)
+      slopes = slopes_of_event(par, inc, event, trial, time, w, lin, y, r_in, margin, sens%driving, changes)
       do j = 1, DIRECTIONS - 1
          if (abs(slopes(BY_SIZE)) <= GRAZING*abs(slopes(j))) cycle
          dh = -slopes(j)/slopes(BY_SIZE)
@@ -85,7 +89,8 @@ contains
    end subroutine move_event
 
    !> Changes of the event's function, where it is zero; its scale does not matter.
-   pure function slopes_of_event(par, inc, event, trial, time, w, lin, y, r_in, driving, changes) result(slopes)
+   pure function slopes_of_event(par, inc, event, trial, time, w, lin, y, r_in, margin, driving, changes) &
+      result(slopes)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: event
@@ -95,6 +100,7 @@ contains
       type(linearised_t), intent(in) :: lin
       real(wp), intent(in) :: y(DIRECTIONS, NY)   !< changes of state
       type(tensors_t), intent(in) :: r_in         !< and memory
+      real(wp), intent(in) :: margin(DIRECTIONS)  !< and of the isotropic memory's margin less its measure
       type(driving_t), intent(in) :: driving
       type(changes_t), intent(in) :: changes
       real(wp) :: slopes(DIRECTIONS), rates(DIRECTIONS, NY), dn(DIRECTIONS, 6), dr(DIRECTIONS, 6), p, r(6)
@@ -116,6 +122,9 @@ contains
                                  .false., rates, dn)
             slopes = contractions(dr - r_in%of, w%n) + contractions(dn, r - trial%r_in)
          end if
+      case (EVENT_YIELD)
+         slopes = margin + changes_of_measure(par, inc, time, trial%y(1:6), y(:, 1:3), changes%e, changes%p_c, &
+                                              changes%scans, changes%turn)
       case (EVENT_BOUNDS, EVENT_RETURN)
          turn = 0.0_wp
          if (changes%scans) turn = changes%turn

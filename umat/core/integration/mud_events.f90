@@ -5,8 +5,9 @@ module mud_events
    use mud_error_control, only: changes_root
    use mud_event_functions, only: rate_at_end, place_of
    use mud_event_table, only: EVENTS, EVENT_NONE, EVENT_OPENS, EVENT_PARTS, EVENT_CLOSES, EVENT_MECHANISM, &
-      EVENT_REVERSAL, EVENT_RETURN, EVENT_TURN
+      EVENT_YIELD, EVENT_UNLOAD, EVENT_REVERSAL, EVENT_RETURN, EVENT_TURN
    use mud_increment, only: increment_t, rate_of, store_rate, NY
+   use mud_isotropic_memory, only: drive_of_margin, margin_after
    use mud_kinds, only: wp
    use mud_landing, only: land_on, EVENT_TOLERANCE
    use mud_params, only: params_t
@@ -23,6 +24,9 @@ module mud_events
    real(wp), parameter :: PROBE_BELOW = 0.5_wp   !< A minimum below this share of x_rev above -x_rev is looked at [-].
    !> A kink is looked for where the error of a substep is above this share of the tolerance [-].
    real(wp), parameter :: SHARP_KINK = 0.01_wp
+   !> A margin of the isotropic memory that a substep exceeds by less than this share of the tolerance, or a drive that
+   !> leads as far below it, is not looked at [-].
+   real(wp), parameter :: SMALL_MARGIN = 0.01_wp
    !> A drive of the isotropic mechanism this much smaller than at the end of a substep is where it switched before [-].
    real(wp), parameter :: AT_SWITCH = 1.0e-6_wp
 contains
@@ -80,6 +84,15 @@ contains
          else
             possible = .false.
          end if
+      case (EVENT_YIELD)
+         possible = inc%rests
+         if (possible) possible = margin_after(par, inc, trial, h) > SMALL_MARGIN*par%tolerance
+      case (EVENT_UNLOAD)
+         possible = par%remembers .and. .not. inc%rests
+         if (.not. possible) return
+         associate (w => trial%w(inc%scheme%stages))
+            possible = h*drive_of_margin(par, inc, trial%time + h, w) < -SMALL_MARGIN*par%tolerance
+         end associate
       case (EVENT_REVERSAL)
          possible = may_reverse(par, inc, trial)
          if (.not. possible) return

@@ -39,6 +39,7 @@ module mud_increment
       logical :: bonded             !< Bonding is on and there is suction.
       logical :: inside             !< It is inside the elastic domain.
       type(scheme_t) :: scheme      !< Of the substep.
+      logical :: rests              !< Of the substep: the isotropic mechanism is below its memory.
    end type increment_t
 contains
    !> Rate at a vector of the integration and a pseudo-time; void ratio and suction follow from the latter exactly. time
@@ -57,12 +58,12 @@ contains
       if (has_aside(inc, mode)) then
          call loading_strain(inc, mode, time, loading, aside)
          call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), suction_at(inc, time), y(7:12), r_in, &
-                      loading, inc%d_pc, mode, w, near, y(14))
+                      loading, inc%d_pc, mode, w, near, y(14), inc%rests)
          w%d_p = w%d_p + w%k*trace(aside)
          w%d_sigma = w%d_sigma + 2.0_wp*w%g*deviator(aside) + (w%k*trace(aside))*IDENTITY
       else
          call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), suction_at(inc, time), y(7:12), r_in, &
-                      inc%d_strain, inc%d_pc, mode, w, near, y(14))
+                      inc%d_strain, inc%d_pc, mode, w, near, y(14), inc%rests)
       end if
       counters%rate = counters%rate + 1
       if (w%floored .and. par%floored) counters%floor = counters%floor + 1
@@ -198,6 +199,7 @@ contains
       inc%e0 = e
       inc%d_v = trace(d_strain)
       inc%scheme = SCHEMES(max(par%scheme, 1))   ! automatic: chosen for every attempt
+      inc%rests = .false.
       inc%rho = par%rho_e
       inc%exit = 1.0_wp
       inc%from_centre = 0.0_wp

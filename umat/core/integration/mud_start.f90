@@ -46,6 +46,7 @@ contains
       end if
       state%e = e
       state%gap = 0.0_wp
+      state%margin = 0.0_wp
       state%p_c = p_c
       state%z = 0.0_wp
       state%from_centre = 0.0_wp

@@ -2,7 +2,7 @@
 !> The substeps of a phase.
 module mud_substepping
    use mud_kinds, only: wp
-   use mud_consistent, only: propagate, changes_of_contraction
+   use mud_consistent, only: propagate, changes_of_contraction, changes_at_memory
    use mud_driving, only: DIRECTIONS
    use mud_error_control, only: control_t, judge_attempt, proposal
    use mud_event_table, only: EVENTS, EVENT_NONE
@@ -157,6 +157,9 @@ contains
          if (par%preloading) call changes_of_contraction(it%trial, it%state%memory%chi_own, it%sens)
       end if
       call accept_substep(par, h, it)
+      if (par%remembers .and. it%consistent) then
+         if (it%state%margin >= 0.0_wp) call changes_at_memory(par, it%inc, time, it%state%sigma, it%sens)
+      end if
       call record(par, h, error, it%state%sigma, SUBSTEP_ACCEPTED, it)
       it%known = rate_is_known(it)
    end subroutine leave_substep

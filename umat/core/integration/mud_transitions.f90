@@ -2,12 +2,13 @@
 !> What happens between substeps: the mode of the coming one, reversals and returns of the memory, opening and closing
 !> at p_min, and what an accepted substep leaves behind.
 module mud_transitions
+   use mud_isotropic_memory, only: drive_of_margin, margin_after
    use mud_kinds, only: wp
    use mud_bounding, only: excess
    use mud_consistent, only: jump_of_memory, changes_of_parting, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
    use mud_cutoff, only: landed, may_open, closing_mode, closes, parting, gap_at, MODE_HELD
    use mud_event_functions, only: elastic_rate, psi_at, LARGEST_EXCESS
-   use mud_event_table, only: EVENT_NONE, EVENT_OPENS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN
+   use mud_event_table, only: EVENT_NONE, EVENT_OPENS, EVENT_BOUNDS, EVENT_YIELD, EVENT_REVERSAL, EVENT_RETURN
    use mud_events, only: note_turning_point
    use mud_increment, only: rate_of
    use mud_integration, only: integration_t
@@ -47,6 +48,7 @@ contains
       type(integration_t), intent(inout) :: it
       real(wp) :: p, r(6), outwards
 
+      if (par%remembers) call begin_below_memory(it)
       it%jump = JUMP_NONE
       it%trial%watched = 0
       it%trial%advanced = .false.
@@ -78,6 +80,7 @@ contains
          it%trial%advanced = it%state%memory%x_running > 0.0_wp .or. it%trial%w(1)%x > 0.0_wp
       end if
 
+      if (par%remembers) call try_to_unload(par, it)
       if (may_open(par, it%state%sigma, it%trial%w(1)%d_p)) call try_to_close(par, r, it)
       if (it%jump /= JUMP_NONE .or. it%trial%mode /= MODE_ORDINARY) then
          it%trial%transient%sought = .false.
@@ -93,6 +96,27 @@ contains
       it%trial%r_in = it%state%memory%r_in
       if (par%preloading) it%trial%y0(14) = log_contraction(it%state%memory%chi, it%state%memory%chi_own)
    end subroutine take_memory
+   !> Below what it remembers the isotropic mechanism rests. A rate that is known is that of what it did before.
+   pure subroutine begin_below_memory(it)
+      type(integration_t), intent(inout) :: it
+      logical :: rests
+
+      rests = it%state%margin < 0.0_wp
+      if (rests .neqv. it%inc%rests) it%known = .false.
+      it%inc%rests = rests
+      it%trial%margin = it%state%margin
+   end subroutine begin_below_memory
+
+   !> At what it remembers the isotropic mechanism rests as well where compression ceases.
+   !> docs/theory/material.md section 4.10.
+   pure subroutine try_to_unload(par, it)
+      type(params_t), intent(in) :: par
+      type(integration_t), intent(inout) :: it
+
+      if (it%inc%rests) return
+      it%inc%rests = drive_of_margin(par, it%inc, it%trial%time, it%trial%w(1)) < 0.0_wp
+      if (it%inc%rests) call first_rate(par, it)
+   end subroutine try_to_unload
 
    !> The rate where the coming substep begins, of its mode and memory.
    pure subroutine first_rate(par, it)
@@ -206,6 +230,8 @@ contains
       type(rate_t) :: trigger
 
       it%trial%watched = 0
+      it%inc%rests = .false.
+      it%state%margin = 0.0_wp
       if (it%state%open .and. (it%known .or. it%state%gap > 0.0_wp)) then
          it%trial%w(1)%no_root = .false.
       else
@@ -246,6 +272,10 @@ contains
       it%state%eps_q_total = it%state%eps_q_total + it%trial%y(13)
       if (par%preloading) &
          call note_contraction(it%trial%y(14) - it%trial%y0(14), it%trial%y(15), it%state%memory)
+      if (it%inc%rests) then
+         it%state%margin = min(margin_after(par, it%inc, it%trial, h), 0.0_wp)
+         if (it%event == EVENT_YIELD) it%state%margin = 0.0_wp
+      end if
       it%state%sigma = landed(par, it%state%sigma)
       if (it%event == EVENT_OPENS) it%trial%openings = it%trial%openings + 1
       ! beyond the surface by a landing, whichever way the strain leads: suction may move the surface

@@ -36,6 +36,7 @@ module mud_trial
       type(transient_t) :: transient     !< What fades of its rates; not of those in w.
       real(wp) :: parts             !< Void ratio at which the grains of a held point part [-].
       real(wp) :: held_error        !< Error of a held substep's stress ratio [-].
+      real(wp) :: margin            !< Of the isotropic memory at y0; read where the mechanism rests [-].
       integer :: watched            !< The interrupted process whose target is looked for, 0: none.
       type(interrupted_t) :: process   !< That process.
    end type trial_t

@@ -26,6 +26,7 @@ module mud_rate
       ! the direction
       logical :: loading           !< L >= 0 was solved for; false: elastic
       real(wp) :: iso_drive        !< A dp'/p' + B of a rate without the isotropic mechanism: above 0 it acts [-]
+      real(wp) :: swell            !< L <-D> without the mechanism; set where it has a memory [-]
       logical :: iso_active        !< the isotropic mechanism acts
       real(wp) :: k_e              !< K, or K/(1 + K A/p') [kPa]
       real(wp) :: b_rate           !< B [-]

@@ -50,7 +50,7 @@ contains
    !> Rates of stress, fabric and plastic shear for a strain rate and a suction rate. Compression positive, tensor
    !> shear. docs/theory/material.md sections 4 and 5; nothing is refused, w%no_root tells that no direction was found
    !> and the rate is elastic.
-   pure subroutine rate_at(par, bonded, sigma, e, p_c, z, r_in, d_strain, d_pc, mode, w, near, log_chi)
+   pure subroutine rate_at(par, bonded, sigma, e, p_c, z, r_in, d_strain, d_pc, mode, w, near, log_chi, rests)
       type(params_t), intent(in) :: par
       logical, intent(in) :: bonded             !< Suction bonding acts in this update.
       real(wp), intent(in) :: sigma(6)          !< sigma' [kPa]
@@ -64,6 +64,7 @@ contains
       type(rate_t), intent(in), optional :: near   !< A rate of nearly the same state: its direction is where to begin.
       !> ln of the contraction that other processes have left, read with cyclic preloading; none: no contraction [-].
       real(wp), intent(in), optional :: log_chi
+      logical, intent(in), optional :: rests       !< The isotropic mechanism is below its memory.
       real(wp) :: d_v, d_e(6), d_norm
 
       d_v = trace(d_strain)
@@ -75,13 +76,16 @@ contains
          w%preloaded = log_chi > NO_CONTRACTION
          if (w%preloaded) w%chi = exp(log_chi)
       end if
+      if (present(rests)) then
+         if (rests) w%iso = NO_HARDENING
+      end if
 
       call start_direction(near, w)
       w%iso_kept = .false.
       w%iso_drive = -1.0_wp
       if (present(near)) then
          ! where nothing but dp' drives the mechanism
-         if (near%iso_active .and. abs(w%iso%b*d_pc) <= 0.0_wp) then
+         if (near%iso_active .and. .not. par%remembers .and. abs(w%iso%b*d_pc) <= 0.0_wp) then
             call load(par, d_v, d_e, d_norm, d_pc, mode, .true., w)
             if (is_certain(par, d_v, d_e, w)) w%iso_drive = w%iso%a*w%d_p/w%p
             if (w%iso_drive <= 0.0_wp) call start_direction(near, w)
@@ -89,6 +93,7 @@ contains
       end if
       if (w%iso_drive <= 0.0_wp) then
          call load(par, d_v, d_e, d_norm, d_pc, mode, .false., w)
+         if (par%remembers) w%swell = max(-w%l*w%d, 0.0_wp)
          w%iso_drive = w%iso%a*w%d_p/w%p + w%iso%b*d_pc
          if (w%iso_drive > 0.0_wp) then
             call load(par, d_v, d_e, d_norm, d_pc, mode, .true., w)

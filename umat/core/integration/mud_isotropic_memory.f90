@@ -1,0 +1,164 @@
+! SPDX-License-Identifier: MIT
+!> Isotropic memory along a substep: the margin u to where compression was before, and whether it would rise;
+!> docs/theory/material.md section 4.10.
+module mud_isotropic_memory
+   use mud_bonding, only: bonding_t, bonding, bonding_curvature, bonding_with_turn, UNBONDED
+   use mud_elastic, only: bulk_modulus, bulk_slope, BULK_EXPONENT
+   use mud_increment, only: increment_t, void_ratio_at, suction_at
+   use mud_kinds, only: wp
+   use mud_margin, only: measure_t, measure, change_of_stiffness, shear_share, DEPTH
+   use mud_params, only: params_t
+   use mud_rate, only: rate_t
+   use mud_rates, only: p_follows
+   use mud_substep, only: MAX_STAGES
+   use mud_tensor, only: LANES, norm, trace
+   use mud_trial, only: trial_t
+   implicit none (type, external)
+   private
+   public :: drive_of_margin, margin_after, margins_at_stages, changes_of_measure, changes_by_shear
+
+   !> A drive this much smaller than that of the strain's length is none, and counts as loading: rounding, as in shear
+   !> without a change of volume. An unloading is located where it is this far below zero [-].
+   real(wp), parameter :: ROUNDING = 1.0e-10_wp
+contains
+   !> How fast the margin would rise from 0 at a pseudo-time, by the rate w there, per unit of pseudo-time [-]; from 0
+   !> on the isotropic mechanism may act. Contraction by shear counts as if it did not lower p', and all of it is told
+   !> by the rate without the mechanism: it does not depend on whether the mechanism acts.
+   !> docs/theory/material.md section 4.10.
+   pure real(wp) function drive_of_margin(par, inc, time, w) result(drive)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time
+      type(rate_t), intent(in) :: w
+      type(measure_t) :: m
+      real(wp) :: e
+
+      e = void_ratio_at(inc, time)
+      m = measure(par, w%bond, e, w%p, w%k)
+      drive = (m%by_p*w%k - m%by_e*(1.0_wp + e))*(inc%d_v + w%swell) + m%by_pc*inc%d_pc &
+              + ROUNDING*abs(m%by_p)*w%k*norm(inc%d_strain)
+   end function drive_of_margin
+
+   !> Rate at which contraction by shear, or dilation, changes the margin at the virgin state, beside the measure [-].
+   pure real(wp) function contraction(m, w, e) result(rate)
+      type(measure_t), intent(in) :: m
+      type(rate_t), intent(in) :: w
+      real(wp), intent(in) :: e
+
+      rate = m%by_p*w%k*max(w%l*w%d, 0.0_wp) - m%by_e*(1.0_wp + e)*max(-w%l*w%d, 0.0_wp)
+   end function contraction
+
+   !> The measure at a pseudo-time and a stress [kPa].
+   pure function measure_at(par, inc, time, sigma) result(m)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time, sigma(6)
+      type(measure_t) :: m
+      type(bonding_t) :: bond
+      real(wp) :: e, p
+
+      e = void_ratio_at(inc, time)
+      p = max(trace(sigma)/3.0_wp, par%p_min)
+      bond = UNBONDED
+      if (inc%bonded) bond = bonding(par, suction_at(inc, time), e)
+      m = measure(par, bond, e, p, bulk_modulus(par, e, p))
+   end function measure_at
+
+   !> Margins at the stages of a substep h below the memory [-], and at what rates contraction adds to them. What it
+   !> adds is integrated with the scheme, the measure is a function of the state.
+   pure subroutine margins_at_stages(par, inc, trial, h, margin, rates)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      real(wp), intent(in) :: h
+      real(wp), intent(out) :: margin(MAX_STAGES), rates(MAX_STAGES)   !< Beyond the stages without meaning.
+      type(measure_t) :: m
+      real(wp) :: e, first
+      integer :: i, row
+
+      margin = 0.0_wp
+      rates = 0.0_wp
+      first = 0.0_wp
+      do i = 1, inc%scheme%stages
+         e = void_ratio_at(inc, trial%time + inc%scheme%node(i)*h)
+         m = measure(par, trial%w(i)%bond, e, trial%w(i)%p, trial%w(i)%k)
+         if (i == 1) first = m%value
+         row = (i - 1)*(i - 2)/2
+         margin(i) = trial%margin + m%value - first &
+                     + h*dot_product(inc%scheme%a(row + 1:row + i - 1), rates(1:i - 1))
+         rates(i) = shear_share(margin(i))*contraction(m, trial%w(i), e)
+      end do
+   end subroutine margins_at_stages
+
+   !> The margin after a substep h below the memory, above 0 where it has been reached [-].
+   !> docs/theory/material.md section 4.10.
+   pure real(wp) function margin_after(par, inc, trial, h) result(margin)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      real(wp), intent(in) :: h
+      type(measure_t) :: first, last
+      real(wp), dimension(MAX_STAGES) :: margins, rates
+
+      call margins_at_stages(par, inc, trial, h, margins, rates)
+      first = measure(par, trial%w(1)%bond, void_ratio_at(inc, trial%time), trial%w(1)%p, trial%w(1)%k)
+      last = measure_at(par, inc, trial%time + h, trial%y(1:6))
+      margin = trial%margin + last%value - first%value + h*dot_product(inc%scheme%b, rates)
+   end function margin_after
+
+   !> Changes of the measure where stress, void ratio and suction change by y(:, 1:3) [kPa], de [-] and dp_c [kPa], and
+   !> a branch of S_w by its turn.
+   pure function changes_of_measure(par, inc, time, sigma, y, de, dp_c, scans, turn) result(change)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time, sigma(6), y(LANES, 3), de(LANES), dp_c(LANES)
+      logical, intent(in) :: scans
+      real(wp), intent(in) :: turn(LANES)   !< Read where it scans.
+      real(wp) :: change(LANES), with_turn(3), e, p_c
+      type(measure_t) :: m
+      type(bonding_t) :: bond
+
+      m = measure_at(par, inc, time, sigma)
+      change = m%by_e*de + m%by_pc*dp_c
+      if (p_follows(par, sigma)) change = change + (m%by_p/3.0_wp)*(y(:, 1) + y(:, 2) + y(:, 3))
+      if (.not. (inc%bonded .and. scans)) return
+      e = void_ratio_at(inc, time)
+      p_c = suction_at(inc, time)
+      bond = bonding(par, p_c, e)
+      with_turn = bonding_with_turn(par, bond, p_c, e)
+      change = change - (with_turn(1)/(par%lambda*bond%f))*turn
+   end function changes_of_measure
+
+   !> Changes of the rate at which contraction adds to the margin, at a stage with rate w and a margin that changes by
+   !> du, from the changes of stress, of void ratio and suction, of the rate of stress and of the volume.
+   pure function changes_by_shear(par, inc, time, w, margin, du, y, de, dp_c, rates, d_v) result(change)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time, margin
+      type(rate_t), intent(in) :: w
+      real(wp), intent(in) :: du(LANES), y(LANES, 3), de(LANES), dp_c(LANES), rates(LANES, 3), d_v(LANES)
+      real(wp), dimension(LANES) :: change, dp, dk, flow, df, df_e
+      type(measure_t) :: m
+      real(wp) :: e, curvature(3), on_flow
+
+      e = void_ratio_at(inc, time)
+      m = measure(par, w%bond, e, w%p, w%k)
+      dp = (y(:, 1) + y(:, 2) + y(:, 3))/3.0_wp
+      if (w%p <= par%p_min) dp = 0.0_wp
+      dk = w%k*(BULK_EXPONENT/w%p*dp + bulk_slope(e)*de)
+      flow = inc%d_v*dk + w%k*d_v - (rates(:, 1) + rates(:, 2) + rates(:, 3))/3.0_wp   ! of K L D
+      on_flow = w%l*w%d
+      if (on_flow > 0.0_wp) then
+         change = m%by_p*flow + (change_of_stiffness(par, m, w%p)*w%k*on_flow)*dp
+      else
+         change = m%by_e*(1.0_wp + e)/w%k*(flow - on_flow*dk) + (m%by_e*on_flow)*de
+         if (inc%bonded) then
+            curvature = bonding_curvature(par, w%bond, suction_at(inc, time), e)
+            df = w%bond%df_de*de + w%bond%df_dpc*dp_c
+            df_e = curvature(3)*de + curvature(2)*dp_c
+            change = change - ((1.0_wp + e)*on_flow/(par%lambda*w%bond%f))*(df_e - (w%bond%df_de/w%bond%f)*df)
+         end if
+      end if
+      change = shear_share(margin)*(change + (contraction(m, w, e)/DEPTH)*du)
+   end function changes_by_shear
+end module mud_isotropic_memory
