@@ -17,6 +17,7 @@ PARAMS, REGISTRY, STATE = "core/base/mud_params.f90", "core/base/mud_registry.f9
 CONSISTENT = "core/integration/mud_consistent.f90"
 ORDER, ERROR_CONTROL = "core/integration/mud_order.f90", "core/integration/mud_error_control.f90"
 DRIVING = "core/integration/mud_driving.f90"
+MARGIN, ISOTROPIC_MEMORY = "core/laws/mud_margin.f90", "core/integration/mud_isotropic_memory.f90"
 SCANNING, BRANCHES = "core/laws/mud_scanning.f90", "core/integration/mud_branches.f90"
 
 MUTATIONS = [
@@ -121,6 +122,20 @@ MUTATIONS = [
     ("no look at the floor before a rising (r - r_in):n",
      (DIRECTION, "single_root = side*there%residual < 0.0_wp", "single_root = there%scale > 0.0_wp")),
     ("plastic shear without sqrt(2/3)", (RATES, "w%d_eps_q = SQRT_2_3*w%l", "w%d_eps_q = w%l")),
+    # isotropic memory
+    ("contraction by shear unloads virgin soil", (MARGIN, "shear_share = exp(min(u, 0.0_wp)/DEPTH)", "shear_share = 0.0_wp*u")),
+    ("contraction by shear counts at any margin", (MARGIN, "shear_share = exp(min(u, 0.0_wp)/DEPTH)", "shear_share = 1.0_wp + 0.0_wp*u")),
+    ("the isotropic mechanism never begins to rest",
+     (TRANSITIONS, "it%trial%w(1)) < 0.0_wp\n", "it%trial%w(1)) < -huge(1.0_wp)\n")),
+    ("the margin is half of what it is", (TRANSITIONS, "min(margin_after(par, it%inc, it%trial, h), 0.0_wp)",
+                                          "min(0.5_wp*margin_after(par, it%inc, it%trial, h), 0.0_wp)")),
+    ("a gap keeps the isotropic memory",
+     (TRANSITIONS, "it%state%margin = 0.0_wp\n      if (it%state%open", "it%state%margin = it%state%margin\n      if (it%state%open")),
+    ("the measure without the swelling", (MARGIN, "- 3.0_wp*m%kappa/par%lambda", "- 0.0_wp*m%kappa/par%lambda")),
+    ("the derivative of a margin that is set in the same increment left out",
+     (CONSISTENT, "sens%margin = -changes_of_measure(", "sens%margin = -0.0_wp*changes_of_measure(")),
+    ("the derivative of what contraction adds to the margin left out",
+     (CONSISTENT, "if (follows) margin = margin + matmul", "if (follows) margin = margin + 0.0_wp*matmul")),
     # memory
     ("forget to store the memory", (REVERSAL, "      memory%r_in = r_in\n", "      memory%r_in = memory%r_in\n")),
     ("forget to zero the plastic shear at a reversal",

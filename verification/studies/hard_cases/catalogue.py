@@ -56,6 +56,7 @@ SETTINGS = (
     Setting("paper's remedy", rule="threshold", rho_e=0.0),
     Setting("repositioning", rule="repositioning", rho_e=0.0),
     Setting("return point, no elastic domain", rule="return_point", rho_e=0.0),
+    Setting("isotropic memory", keys=(("isotropic", 2),)),
     Setting("scheme 2", scheme=2),
     Setting("scheme 3", scheme=3),
     Setting("loose", tolerance=1e-3),
