@@ -132,8 +132,6 @@ MUTATIONS = [
     ("a gap keeps the isotropic memory",
      (TRANSITIONS, "it%state%margin = 0.0_wp\n      if (it%state%open", "it%state%margin = it%state%margin\n      if (it%state%open")),
     ("the measure without the swelling", (MARGIN, "- 3.0_wp*m%kappa/par%lambda", "- 0.0_wp*m%kappa/par%lambda")),
-    ("the derivative of a margin that is set in the same increment left out",
-     (CONSISTENT, "sens%margin = -changes_of_measure(", "sens%margin = -0.0_wp*changes_of_measure(")),
     ("the derivative of what contraction adds to the margin left out",
      (CONSISTENT, "if (follows) margin = margin + matmul", "if (follows) margin = margin + 0.0_wp*matmul")),
     # memory
