@@ -51,13 +51,16 @@ def close(what, got, wanted, relative):
 
 
 # Points by the batch call, as the finite elements use it: the strains and suctions of mud_triax.
-for case in ("shear", "shear_suction", "wetting"):
+for case, parameters in (("shear", {}), ("shear_suction", {}), ("wetting", {}), ("hysteresis", {"hysteresis": 1})):
     table = clients.expected(case)
     path = folder / f"{case}.json"
     path.write_text(json.dumps({"strains": clients.strains(table), "suction": table["suction"],
-                                "void_ratio": table["e"][0], "stress": -table["p_eff"][0]}))
+                                "void_ratio": table["e"][0], "stress": -table["p_eff"][0], "parameters": parameters}))
     answer = program(f"points_{case}", "points.py", path)
     clients.compare(f"batch call, {case}", answer["stress"] if answer else [], clients.stresses(table)[1:])
+    if parameters:
+        clients.compare(f"its degree of saturation, {answer and answer['state_variables']} state variables",
+                        [answer["saturation"] if answer else []], [table["s_w"][1:]])
 
 one = footing("one", *SMALL, "--record", "one")
 two = footing("two", *SMALL, "--record", "two", ranks=2)

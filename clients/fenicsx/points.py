@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Points of the batch call alone. A JSON file with strains, suction, void_ratio, stress: four equal points follow it.
+"""Points of the batch call alone. A JSON file with strains, suction, void_ratio, stress, parameters: four equal points follow
+it.
 An .npz that footing.py --record wrote: the last increment of every point again, compared bit by bit.
 """
 import json
@@ -12,7 +13,8 @@ import mud
 
 def follow(given):
     strains, suction = np.array(given["strains"]), np.array(given["suction"])
-    sand, n, rows = mud.Material(), 4, []
+    sand, n, rows, water = mud.Material(**given.get("parameters", {})), 4, [], []
+    place = list(mud.states).index("saturation")
     points = sand.init_batch(np.tile([given["stress"]]*3 + [0.0]*3, (n, 1)), np.full(n, suction[0]),
                              np.full(n, given["void_ratio"]))
     for i in range(1, len(strains)):
@@ -23,7 +25,8 @@ def follow(given):
         if np.ptp(points.stress, axis=0).any():
             sys.exit("equal points have different answers")
         rows.append(points.stress[0].tolist())
-    return {"stress": rows}
+        water.append(float(points.statev[0, place]))
+    return {"stress": rows, "saturation": water, "state_variables": points.statev.shape[1]}
 
 
 def again(file):
