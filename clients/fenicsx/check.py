@@ -103,7 +103,8 @@ for ranks in (1, 2):
     tense = footing(f"tension_{ranks}", *DEEP, "--settlement", "1", "--back-pressure", "0", ranks=ranks)
     said = (folder / f"tension_{ranks}.log").read_text()
     clients.verdict(tense is None and "the pressure of the water falls to" in said and "mud_host" in said,
-                    f"water in tension ends the run on {ranks} ranks", said[said.find("Unsaturated: "):][:150].replace("\n", " "))
+                    f"water in tension ends the run on {ranks} ranks",
+                    said[said.find("Unsaturated: "):][:150].replace("\n", " "))
 
 # The start: ground with weight under K_0 stress.
 path = folder / "given.json"

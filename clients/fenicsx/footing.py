@@ -2,7 +2,8 @@
 """A footing on saturated MUD sand: a quarter of a square one in three dimensions, or half a strip in plane strain.
 
 The sand begins at an even effective stress, held by a surcharge; p_w, counted from the back pressure, is 0 at the top,
-the other sides are closed and on rollers. The square footing is smooth, rigid and pushed; the strip is a pressure beside the axis. Example:
+the other sides are closed and on rollers. The square footing is smooth, rigid and pushed; the strip is a pressure
+beside the axis. Example:
    mpirun -n 2 python3 footing.py --cells 6 --settlement 0.02 --steps 10 --result footing.json
 """
 import argparse

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Points of the batch call alone. A JSON file with strains, suction, void_ratio, stress, parameters: four equal points follow
-it.
+"""Points of the batch call alone. A JSON file with strains, suction, void_ratio, stress, parameters: four equal points
+follow it.
 An .npz that footing.py --record wrote: the last increment of every point again, compared bit by bit.
 """
 import json

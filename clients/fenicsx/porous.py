@@ -320,8 +320,8 @@ class Problem:
         if value < -SUCTION:
             raise Unsaturated(
                 f"t {time:.6g} s: the pressure of the water falls to {value:.4g} kPa at "
-                f"({', '.join(f'{x:.4g}' for x in place[:self.dimension])}); this program knows saturated soil only, from "
-                "0 kPa up. Begin at a pressure of the water that leaves none (Water.at_rest; footing.py "
+                f"({', '.join(f'{x:.4g}' for x in place[:self.dimension])}); this program knows saturated soil only, "
+                "from 0 kPa up. Begin at a pressure of the water that leaves none (Water.at_rest; footing.py "
                 "--back-pressure), or use mud_host with the fields u-p_w-p_c")
 
     def accept(self):

@@ -29,7 +29,8 @@ def linear(path, halved):
     for dimension, entity, _, members in (map(int, line) for line in lines):
         found = [[int(n) - 1 for n in next(lines)[1:]] for _ in range(members)]
         if dimension == 1:
-            edges[names[entity - 1]] = [pair for a, b, m in found for pair in (((a, m), (m, b)) if halved else ((a, b),))]
+            edges[names[entity - 1]] = [pair for a, b, m in found
+                                        for pair in (((a, m), (m, b)) if halved else ((a, b),))]
         else:
             triangles += [three for a, b, c, ab, bc, ca in found for three in (
                 ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)) if halved else ((a, b, c),))]
@@ -63,8 +64,8 @@ def flow(properties, pressures, axisymmetric):
              + project.properties(density=1.0, viscosity=properties["viscosity_kPa_s"]) + "</phase></phases>"
              + project.properties(permeability=properties["permeability_m2"], porosity=0.5, storage=0.0,
                                   reference_temperature=293.15))
-    text = project.whole(["soil", *pressures], FLOW, media, "<abstols>1e-9</abstols>", 1.0, 1, ("pressure",), parameters,
-                         "", variables)
+    text = project.whole(["soil", *pressures], FLOW, media, "<abstols>1e-9</abstols>", 1.0, 1, ("pressure",),
+                         parameters, "", variables)
     text = text.replace("<type>Newton</type>", "<type>Picard</type>")   # this process has no Jacobian
     if not axisymmetric:
         return text
