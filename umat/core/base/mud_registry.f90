@@ -434,8 +434,8 @@ module mud_registry
 
    type(option_t), parameter :: OPTIONS(*) = [ &
       option_t(P_ISOTROPIC, ISOTROPIC_NONE, 'none'), &
-      option_t(P_ISOTROPIC, ISOTROPIC_FORGETS, 'of every rise of p'''), &
-      option_t(P_ISOTROPIC, ISOTROPIC_REMEMBERS, 'with memory'), &
+      option_t(P_ISOTROPIC, ISOTROPIC_FORGETS, 'without_memory'), &
+      option_t(P_ISOTROPIC, ISOTROPIC_REMEMBERS, 'with_memory'), &
       option_t(P_MEMORY_RULE, RULE_CLASSIC, 'classic'), &
       option_t(P_MEMORY_RULE, RULE_THRESHOLD, 'threshold'), &
       option_t(P_MEMORY_RULE, RULE_REPOSITIONING, 'repositioning'), &
