@@ -114,6 +114,11 @@ def test_small_strain_moduli_are_those_of_eq_3():
     told, answer = missed(written("liquefaction.csv", head + f"L,0.15,{count:.0f},100,0.907\n"))
     check("cycles to liquefaction are those of a test by hand", 1 < count < 60 and abs(told.N - 1) < 1e-9,
           (count, told))
+    cycles = written("liquefaction.csv", head + f"L,0.15,{count:.0f},100,0.907\n")
+    plain = {v.name for v in make_task("l", [cycles]).variables()}
+    asked = {v.name for v in make_task("l", [cycles], groups=["hardening", "preloading"]).variables()}
+    check("cyclic preloading is fitted where its group is asked for, and there alone",
+          {"c_chi", "zeta_chi", "s_chi"} <= asked and not {"c_chi", "zeta_chi", "s_chi"} & plain, (plain, asked))
     _, answer = missed(written("liquefaction_stands.csv", head + "L,0.01,2,100,0.7\n"))
     check("a sample that stands counts as standing so long", abs(10 ** answer.columns["log_N"][0] - 9) < 1e-9, answer)
     told, _ = missed(loops, mud.Material("hostun_hysteresis"))

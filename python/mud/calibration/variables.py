@@ -61,6 +61,7 @@ GROUPS = (
     "cycles",
     "retention",
     "bonding",
+    "preloading",
 )
 # Group -> kinds of tests that depend on it.
 SPEAKS = {
@@ -71,6 +72,7 @@ SPEAKS = {
     "cycles": {"cyclic", "liquefaction"},
     "retention": {"retention"},
     "bonding": set(),
+    "preloading": {"cyclic", "liquefaction"},
 }
 # Bounds: what is known of sands, narrower than what the library can compute with. G_0 and K_0: Hardin's formula gives sands
 # about 60 to 250 in these units; a factor of two beyond is allowed.
@@ -120,6 +122,9 @@ VARIABLES = {
         Variable("b_w", GROUPS[5], 1.001, 50.0, True),
         Variable("b_1", GROUPS[6], 0.0, 3.0, False),
         Variable("b_2", GROUPS[6], 0.0, 3.0, False),
+        Variable("c_chi", GROUPS[7], 0.03, 1.0, True),
+        Variable("zeta_chi", GROUPS[7], 1000.0, 3.0e4, True),
+        Variable("s_chi", GROUPS[7], 0.0, 0.5, False),
     )
 }
 #: What the name of an unknown void ratio begins with; behind it comes the name of the test.
@@ -225,7 +230,8 @@ def known_parameters(known: Mapping[str, float], base: Mapping[str, float]) -> t
 def chosen(
     kinds: set[str], unsaturated: bool, hysteresis: bool, known: Sequence[str], groups: Sequence[str] | None = None
 ) -> list[Variable]:
-    """Variables that are fitted: of groups that the tests depend on, without what is known."""
+    """Variables that are fitted: of groups that the tests depend on, without what is known; cyclic preloading, an option, where
+    it is asked for by name."""
     if groups is not None:
         for group in groups:
             if group not in GROUPS:
@@ -234,7 +240,7 @@ def chosen(
         v
         for v in VARIABLES.values()
         if v.name not in known
-        and (groups is None or v.group in groups)
+        and (v.group != "preloading" if groups is None else v.group in groups)
         and (hysteresis or v.name not in WETTING)
         and (SPEAKS[v.group] & kinds or v.group == "bonding" and unsaturated)
     ]

@@ -71,11 +71,12 @@ contains
    pure subroutine note_contraction(lost, grown, memory)
       real(wp), intent(in) :: lost, grown
       type(memory_t), intent(inout) :: memory
-      real(wp) :: kept
+      real(wp) :: kept, more
 
       kept = exp(min(lost, 0.0_wp))
-      memory%chi = memory%chi*kept + grown
-      memory%chi_own = min(memory%chi_own*kept + grown, memory%chi)
+      more = max(grown, 0.0_wp)   ! where nothing contracts the weights of a scheme may leave rounding of either sign
+      memory%chi = memory%chi*kept + more
+      memory%chi_own = min(memory%chi_own*kept + more, memory%chi)
    end subroutine note_contraction
 
    !> m of paper eq. (16): 1 for a process that has hardly begun, 0 for a genuine one. eps_q_p and m [-];
