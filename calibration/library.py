@@ -33,7 +33,7 @@ def table():
         "| `toyoura` (published) | the paper's Tables 2 and 3; laboratory: Verdugo & Ishihara (1996) | 1996 | "
         f"{published()} | p' 100 to 3000 kPa, e 0.73 to 1.00 |",
     ]
-    for name in ("toyoura_fitted", "karlsruhe", "hostun_hysteresis"):
+    for name in ("toyoura_fitted", "karlsruhe", "karlsruhe_cyclic", "hostun_hysteresis"):
         path = ROOT / f"drivers/materials/{name}.nml"
         date = re.search(r"on (\d{4}-\d\d-\d\d)", path.read_text(encoding="utf-8"))[1]
         rows.append(
