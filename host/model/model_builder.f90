@@ -107,9 +107,16 @@ contains
 
       ! Where pressures are linear only vertices have them.
       vertex = .false.
-      do e = 1, size(m%mesh%t6, 2)
-         vertex(m%mesh%t6(1:m%n_p, e)) = .true.
-      end do
+      if (allocated(m%mesh%first)) then
+         ! On every mesh the same one.
+         do e = 1, size(m%mesh%first, 2)
+            vertex(m%mesh%first(1:m%n_p, e)) = .true.
+         end do
+      else
+         do e = 1, size(m%mesh%t6, 2)
+            vertex(m%mesh%t6(1:m%n_p, e)) = .true.
+         end do
+      end if
       point%node = minloc([(norm2(m%mesh%x(:, i) - point%x), i=1, size(m%mesh%x, 2))], 1, mask=vertex)
       point%gauss = minloc([((norm2(m%gauss(g, e)%x - point%x), g=1, m%rule), e=1, size(m%mesh%t6, 2))], 1)
    end subroutine find_point

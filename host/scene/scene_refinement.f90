@@ -55,7 +55,7 @@ contains
    end function finest_of
 
    !> Breaks at the points of a scene, so that every mesh has nodes there; pieces keep their numbers. Meshes of files
-   !> have the same nodes after splitting. Points outside the mesh, or where a piece has one cell, stay as they are.
+   !> have the same nodes after splitting. Points outside the mesh stay as they are.
    subroutine put_breaks_at_points(scene)
       type(scene_t), intent(inout) :: scene
       integer :: i
@@ -80,7 +80,6 @@ contains
       if (any(abs(breaks - x) <= SAME*(maxval(breaks) - minval(breaks)))) return
       p = count(breaks < x)
       if (p == 0 .or. p == size(breaks)) return
-      if (cells(p) == 1) return
       share = (x - breaks(p))/(breaks(p + 1) - breaks(p))
       ! Ends of cells: share = (ratio**k - 1)/(ratio**cells - 1).
       if (abs(ratio(p) - 1) > SAME) then
@@ -90,7 +89,8 @@ contains
       end if
       first = max(1, min(cells(p) - 1, first))
       breaks = [breaks(:p), x, breaks(p + 1:)]
-      cells = [cells(:p - 1), first, cells(p) - first, cells(p + 1:)]
+      ! A single cell becomes two: on finer meshes another node would be the nearest one.
+      cells = [cells(:p - 1), first, max(1, cells(p) - first), cells(p + 1:)]
       ratio = [ratio(:p), ratio(p:)]
       number = [number(:p), number(p:)]
    end subroutine put_break

@@ -182,3 +182,14 @@ def test_fineness_asks_for_one_mesh():
     done = run(STRIP, work / "one", "--fineness", "1")
     check("one mesh by --fineness", done.returncode == 0 and (work / "one/histories.csv").exists()
           and "mesh not estimated: --price" in done.stdout, done.stdout)
+
+
+def test_a_point_keeps_its_node_on_every_mesh():
+    # (1.229, 0.5) is no node of the file: the one that is nearest there is taken on split meshes, which have nearer ones.
+    ring = root / "verification/studies/price/ring.nml"
+    places = []
+    for fineness in ("1", "4"):
+        done = run(ring, work / f"ring{fineness}", "--fineness", fineness, "--accuracy", "0.3", "--check")
+        said = next(line for line in done.stdout.splitlines() if "point inside" in line)
+        places.append(said.split("node at ")[1].split(" m and")[0])
+    check("one node", places[0] == places[1], places)
