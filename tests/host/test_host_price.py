@@ -185,7 +185,7 @@ def test_fineness_asks_for_one_mesh():
 
 
 def test_a_point_keeps_its_node_on_every_mesh():
-    # (1.229, 0.5) is no node of the file: the one that is nearest there is taken on split meshes, which have nearer ones.
+    # (1.229, 0.5) is no node of the file: the one that is nearest there is taken on split meshes, too.
     ring = root / "verification/studies/price/ring.nml"
     places = []
     for fineness in ("1", "4"):

@@ -12,8 +12,8 @@ from tools import tables
 from tools.page import Page, Script, Tolerance
 
 PAGE = Page(
-    claim="errors of the mesh that `--price` estimates are within a factor of three of those against a mesh four times as "
-          "fine, quoted times within a factor of two, with the exceptions that are listed; the paper's benchmark at "
+    claim="errors of the mesh that `--price` estimates are within a factor of three of those against a mesh four times "
+          "as fine, quoted times within a factor of two, with the exceptions that are listed; the paper's benchmark at "
           "converged meshes",
     kind=("study",),
     input="`study.py`: nine scenes on which the method was tried and eight on which nothing was chosen; `table_1.py`: "

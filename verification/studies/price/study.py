@@ -85,7 +85,8 @@ def compare(host, scene, folder):
         # Neither the start nor the first step, where a load may act at once.
         apart = np.abs(own[name] - np.interp(own["time"], fine["time"], fine[name]))[2:]
         true, estimate = np.max(apart)/float(answer["range"]), float(answer["mesh_error"])
-        rows.append((scene, name, f"{finest:g}", answer["state"], f"{estimate:.3g}", f"{true:.3g}", f"{estimate/true:.3g}"))
+        rows.append((scene, name, f"{finest:g}", answer["state"], f"{estimate:.3g}", f"{true:.3g}",
+                     f"{estimate/true:.3g}"))
     return rows, times
 
 

@@ -63,8 +63,8 @@ def run(host, suction, fineness, setting, folder):
     (folder / "scene.nml").write_text(text(suction, setting), encoding="utf-8")
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     try:
-        done = subprocess.run([host, folder / "scene.nml", "--fineness", f"{fineness:g}", "--output", folder], text=True,
-                              capture_output=True, timeout=LIMIT, env={**os.environ, "OMP_NUM_THREADS": "1"})
+        done = subprocess.run([host, folder / "scene.nml", "--fineness", f"{fineness:g}", "--output", folder],
+                              text=True, capture_output=True, timeout=LIMIT, env={**os.environ, "OMP_NUM_THREADS": "1"})
         outcome, said = str(done.returncode), done.stdout
     except subprocess.TimeoutExpired:
         return (suction, fineness, setting, f"more than {LIMIT} s", *[""]*6)
