@@ -223,7 +223,8 @@ contains
 
       write (output_unit, '(a)') USAGE, (trim(LINES(k)), k=1, size(LINES))
       write (output_unit, '(a)') 'Exit code 20: an answer misses the accuracy asked for more than three times, or'
-      write (output_unit, '(a)') 'with mesh = ''auto'' at all; results are written.'
+      write (output_unit, '(a)') 'with mesh = ''auto'' at all; results are written.', &
+         'Exit codes: host/README.md, "Exit codes".'
    end subroutine print_help
 
    !> Whether the run could go on from the checkpoint, in its folder.
