@@ -260,7 +260,6 @@ contains
       type(price_t), intent(inout) :: price
       type(pilot_t), intent(out) :: pilot
       type(fault_t), intent(inout) :: fault
-      type(level_run_t) :: run
       type(scene_t) :: scene
       integer :: i
 
@@ -290,9 +289,7 @@ contains
          ': '//whole(pilot%steps)//' steps, '//whole(pilot%iterations)//' iterations, '//whole(pilot%cuts)// &
          ' cuts, '//short(pilot%seconds)//' s'
       if (i <= size(price%made)) return
-      run%level_key_t = wanted
-      run%pilot = pilot
-      price%made = [price%made, run]
+      price%made = [price%made, level_run_t(level_key_t=wanted, pilot=pilot)]
    end subroutine one_run
 
    !> Whether two runs change the same.
