@@ -289,8 +289,24 @@ contains
          ': '//whole(pilot%steps)//' steps, '//whole(pilot%iterations)//' iterations, '//whole(pilot%cuts)// &
          ' cuts, '//short(pilot%seconds)//' s'
       if (i <= size(price%made)) return
-      price%made = [price%made, level_run_t(level_key_t=wanted, pilot=pilot)]
+      call keep_run(wanted, pilot, price%made)
    end subroutine one_run
+
+   !> Adds a run to the list of those that were made.
+   pure subroutine keep_run(key, pilot, made)
+      type(level_key_t), intent(in) :: key
+      type(pilot_t), intent(in) :: pilot
+      type(level_run_t), allocatable, intent(inout) :: made(:)
+      type(level_run_t), allocatable :: longer(:)
+      integer :: n
+
+      n = size(made)
+      allocate (longer(n + 1))
+      longer(:n) = made
+      longer(n + 1)%level_key_t = key
+      longer(n + 1)%pilot = pilot
+      call move_alloc(longer, made)
+   end subroutine keep_run
 
    !> Whether two runs change the same.
    pure logical function is_same(one, two)
