@@ -105,19 +105,25 @@ contains
       logical :: vertex(size(m%mesh%x, 2))
       integer :: e, g, i
 
-      ! Where pressures are linear only vertices have them.
-      vertex = .false.
+      ! On every mesh that was split the same node.
       if (allocated(m%mesh%first)) then
-         ! On every mesh the same one.
-         do e = 1, size(m%mesh%first, 2)
-            vertex(m%mesh%first(1:m%n_p, e)) = .true.
-         end do
+         vertex = has_pressures(m%mesh%first)
       else
-         do e = 1, size(m%mesh%t6, 2)
-            vertex(m%mesh%t6(1:m%n_p, e)) = .true.
-         end do
+         vertex = has_pressures(m%mesh%t6)
       end if
       point%node = minloc([(norm2(m%mesh%x(:, i) - point%x), i=1, size(m%mesh%x, 2))], 1, mask=vertex)
       point%gauss = minloc([((norm2(m%gauss(g, e)%x - point%x), g=1, m%rule), e=1, size(m%mesh%t6, 2))], 1)
+   contains
+      !> Where pressures are linear only vertices have them.
+      pure function has_pressures(triangles) result(has)
+         integer, intent(in) :: triangles(:, :)
+         logical :: has(size(m%mesh%x, 2))
+         integer :: k
+
+         has = .false.
+         do k = 1, size(triangles, 2)
+            has(triangles(1:m%n_p, k)) = .true.
+         end do
+      end function has_pressures
    end subroutine find_point
 end module model_builder

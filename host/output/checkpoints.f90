@@ -5,7 +5,6 @@ module checkpoints
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use library_version, only: library
    use run_state, only: run_t
    use control_state, only: new_control_state, numbers_of, take_numbers, count_of_numbers
    use degrees_of_freedom, only: dofs_t
@@ -13,8 +12,8 @@ module checkpoints
    use model_types, only: model_t, gravity_at
    use porous_domain, only: copy_state
    use sparsity_pattern, only: make_pattern
-   use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, &
-                      get_text, extent_of
+   use hdf5_file, only: h5_t, new_file, write_file, close_file, put, put_text, get, get_text, extent_of
+   use restart_files, only: restart_kind_t, put_origin, open_restart, codes_of
    use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
    use scene_past, only: past_of_scene, first_difference
    use texts, only: short, whole
@@ -23,8 +22,10 @@ module checkpoints
    public :: write_checkpoint, read_checkpoint, CHECKPOINT
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
-   character(*), parameter :: KIND_OF_FILE = 'checkpoint of mud_host'
-   character(*), parameter :: FORMAT = '11'     !< Grows with every change of what is stored.
+   type(restart_kind_t), parameter :: KIND_OF_FILE = restart_kind_t('checkpoint of mud_host', '11', &
+      CHECKPOINT//' of a run', &
+      ' is an HDF5 file, but no checkpoint of mud_host; name the '//CHECKPOINT//' of a run.', &
+      'Finish the run with the program that began it.')
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
    integer, parameter :: N_COUNTERS = 14
    character(*), parameter :: DAMAGED = ' is damaged: an entry is missing, has another extent or a wrong '// &
@@ -47,9 +48,7 @@ contains
       call settle_tables(tables, fault)
       if (fault%code /= 0) return
       call new_file(file, tables%folder//'/'//CHECKPOINT, guarded=.true.)
-      call put_text(file, 'kind', KIND_OF_FILE)
-      call put_text(file, 'format', FORMAT)
-      call put_text(file, 'library', library())
+      call put_origin(file, KIND_OF_FILE)
       call put_text(file, 'scene', trim(model%name))
       call put_text(file, 'fingerprint', model%fingerprint)
       call put(file, 'past', codes_of(past_of_scene(model%groups, model%amplitudes, run%at%stage, run%state%time)), &
@@ -107,16 +106,8 @@ contains
       character(64) :: origin
       real(wp) :: stage(4), ledger(storage_size(run%ledger)/storage_size(0.0_wp))
 
-      if (.not. HAS_HDF5) then
-         call raise(fault, EXIT_RESTART, 'This mud_host was built without HDF5: it cannot restart from '//path//'.')
-         return
-      end if
-      call open_file(path, file)
-      if (.not. file%good) then
-         call raise(fault, EXIT_RESTART, path//' is missing, no HDF5 file, or truncated; name the '//CHECKPOINT// &
-                    ' of a run.')
-         return
-      end if
+      call open_restart(path, KIND_OF_FILE, file, fault)
+      if (fault%code /= 0) return
       call check_origin(path, model, file, fault)
       if (fault%code == 0) then
          counters = 0.0_wp
@@ -221,31 +212,18 @@ contains
       allocate (run%assembly%values(size(run%pattern%col)), source=0.0_wp)
    end subroutine take_pairs
 
-   !> Refuses files of others, of another program and of another scene.
+   !> Refuses files of another scene.
    subroutine check_origin(path, model, file, fault)
       character(*), intent(in) :: path
       type(model_t), intent(in) :: model
       type(h5_t), intent(inout) :: file
       type(fault_t), intent(inout) :: fault
-      character(64) :: kind, format_of, library_of, here, theirs
+      character(64) :: theirs
       character(:), allocatable :: difference
       real(wp) :: counters(N_COUNTERS), stage(4)
       integer :: number
       logical :: differs
 
-      kind = get_text(file, 'kind')
-      format_of = get_text(file, 'format')
-      library_of = get_text(file, 'library')
-      here = library()
-      if (kind /= KIND_OF_FILE) then
-         call raise(fault, EXIT_RESTART, path//' is an HDF5 file, but no checkpoint of mud_host; name the '// &
-                    CHECKPOINT//' of a run.')
-      else if (format_of /= FORMAT .or. library_of /= here) then
-         call raise(fault, EXIT_RESTART, path//' was written by another version: format '//trim(format_of)// &
-                    ', library '//trim(library_of)//'; this one has format '//FORMAT//', library '//trim(here)// &
-                    '. Finish the run with the program that began it.')
-      end if
-      if (fault%code /= 0) return
       theirs = get_text(file, 'fingerprint')
       if (theirs == model%fingerprint) return
       ! Another scene may go on from here if it says the same about the past.
@@ -301,14 +279,6 @@ contains
          text(i:i) = achar(iand(codes(i), 255))
       end do
    end function past_in
-
-   pure function codes_of(text) result(codes)
-      character(*), intent(in) :: text
-      integer :: codes(len(text))
-      integer :: i
-
-      codes = [(iachar(text(i:i)), i=1, len(text))]
-   end function codes_of
 
    !> Tractions of all contacts with friction, one behind the other [kPa].
    pure function tractions_of(run) result(tractions)

@@ -11,18 +11,15 @@ module level_output
    use kinds, only: wp
    use level_store, only: write_levels
    use mesh_levels, only: level_reporter_t, words_of_error
-   use model_builder, only: build_model
    use model_types, only: model_t
-   use pilot_runs, only: pilot_t, run_pilot, watch_run
+   use pilot_runs, only: pilot_t, watch_run
    use price_estimates, only: answer_t, bound_of, worst_answer, STATE_WORDS
    use run_output, only: run_output_t
-   use run_setup, only: prepare_run
    use run_state, only: run_t
    use scene_price, only: price_t
    use scene_types, only: scene_t, FINGERPRINT_LENGTH
    use texts, only: whole
    use unknown_fields, only: DISPLACEMENTS
-   use wall_clock, only: clock
    implicit none (type, external)
    private
    public :: level_output_t, folder_of_mesh
@@ -60,21 +57,11 @@ contains
       real(wp), intent(in) :: most_seconds
       type(pilot_t), intent(out) :: pilot
       type(run_output_t) :: output
-      type(fault_t) :: fault
-      real(wp) :: t0
 
-      if (level == 0) then
-         call run_pilot(scene, huge(1.0_wp), pilot)
-         return
-      end if
-      t0 = clock()
       self%at = level
       output%folder = folder_of_mesh(self%folder, level)
       output%quiet = self%quiet
-      call build_model(scene, self%model, fault)
-      if (fault%code == 0) call prepare_run(self%model, self%run_of_level, fault)
-      call watch_run(self%model, self%run_of_level, huge(1.0_wp), pilot, fault, most_seconds, output)
-      pilot%seconds = clock() - t0
+      call watch_run(scene, huge(1.0_wp), self%model, self%run_of_level, pilot, most_seconds, output)
    end subroutine run_with_files
 
    !> answers.csv of the last mesh, the table of meshes, and what a restart needs. Fault EXIT_OUTPUT: one cannot be

@@ -3,11 +3,11 @@
 !> docs/theory/host.md section 12.
 module level_runs
    use kinds, only: wp
-   use pilot_runs, only: pilot_t, run_pilot
+   use pilot_runs, only: pilot_t
    use scene_types, only: scene_t
    implicit none (type, external)
    private
-   public :: level_key_t, level_run_t, level_runner_t, silent_runner_t
+   public :: level_key_t, level_run_t, level_runner_t
 
    !> A run by what was changed of the scene.
    type :: level_key_t
@@ -27,32 +27,14 @@ module level_runs
    end type level_runner_t
 
    abstract interface
-      !> One run of a scene. `level`: number of its mesh; 0: a pilot of steps or of Newton's method.
+      !> One run of a scene on a mesh.
       subroutine run_i(self, scene, level, most_seconds, pilot)
          import :: level_runner_t, scene_t, pilot_t, wp
          class(level_runner_t), intent(inout) :: self
          type(scene_t), intent(in) :: scene
-         integer, intent(in) :: level
+         integer, intent(in) :: level           !< Number of its mesh.
          real(wp), intent(in) :: most_seconds   !< Wall time that it may take [s].
          type(pilot_t), intent(out) :: pilot
       end subroutine run_i
    end interface
-
-   !> Makes runs without files and words.
-   type, extends(level_runner_t) :: silent_runner_t
-      integer :: finest = 0   !< Number of the finest mesh so far.
-   contains
-      procedure :: run => run_silently
-   end type silent_runner_t
-contains
-   subroutine run_silently(self, scene, level, most_seconds, pilot)
-      class(silent_runner_t), intent(inout) :: self
-      type(scene_t), intent(in) :: scene
-      integer, intent(in) :: level
-      real(wp), intent(in) :: most_seconds
-      type(pilot_t), intent(out) :: pilot
-
-      self%finest = max(self%finest, level)
-      call run_pilot(scene, huge(1.0_wp), pilot, most_seconds)
-   end subroutine run_silently
 end module level_runs

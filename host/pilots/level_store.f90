@@ -3,11 +3,10 @@
 module level_store
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
-   use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, get_text, &
-                        extent_of
+   use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, close_file, put, put_text, get, get_text, extent_of
    use kinds, only: wp
-   use library_version, only: library
    use level_runs, only: level_run_t
+   use restart_files, only: restart_kind_t, put_origin, open_restart, codes_of
    use texts, only: whole
    use unknown_fields, only: FIELDS
    implicit none (type, external)
@@ -15,8 +14,10 @@ module level_store
    public :: write_levels, read_levels, LEVELS_FILE
 
    character(*), parameter :: LEVELS_FILE = 'levels.h5'
-   character(*), parameter :: KIND_OF_FILE = 'meshes of mud_host'
-   character(*), parameter :: FORMAT = '1'       !< Grows with every change of what is stored.
+   type(restart_kind_t), parameter :: KIND_OF_FILE = restart_kind_t('meshes of mud_host', '1', &
+      LEVELS_FILE//' of a run with mesh = ''auto''', &
+      ' does not hold the meshes of a run with mesh = ''auto''; name its '//LEVELS_FILE// &
+      '. A checkpoint of a single run belongs to a scene without mesh = ''auto''.', 'Start anew.')
    integer, parameter :: MOST_RUNS = 100
 
    !> Numbers that are read one after the other; good is false once they end too early or are impossible.
@@ -37,9 +38,7 @@ contains
 
       if (.not. HAS_HDF5) return
       call new_file(file, folder//'/'//LEVELS_FILE, guarded=.true.)
-      call put_text(file, 'kind', KIND_OF_FILE)
-      call put_text(file, 'format', FORMAT)
-      call put_text(file, 'library', library())
+      call put_origin(file, KIND_OF_FILE)
       call put_text(file, 'fingerprint', fingerprint)
       call put(file, 'runs', [real(size(runs), wp)], '-', 'number of runs')
       do i = 1, size(runs)
@@ -57,32 +56,13 @@ contains
       type(h5_t) :: file
       type(reader_t) :: reader
       type(level_run_t) :: one
-      character(64) :: format_of, theirs, here
       real(wp) :: n(1)
       integer :: i
 
       allocate (runs(0))
-      if (.not. HAS_HDF5) then
-         call raise(fault, EXIT_RESTART, 'This mud_host was built without HDF5: it cannot restart from '//path//'.')
-         return
-      end if
-      call open_file(path, file)
-      if (.not. file%good) then
-         call raise(fault, EXIT_RESTART, path//' is missing, no HDF5 file, or truncated; name the '//LEVELS_FILE// &
-                    ' of a run with mesh = ''auto''.')
-         return
-      end if
-      format_of = get_text(file, 'format')
-      theirs = get_text(file, 'library')
-      here = library()
-      if (get_text(file, 'kind') /= KIND_OF_FILE) then
-         call raise(fault, EXIT_RESTART, path//' does not hold the meshes of a run with mesh = ''auto''; name its '// &
-                    LEVELS_FILE//'. A checkpoint of a single run belongs to a scene without mesh = ''auto''.')
-      else if (format_of /= FORMAT .or. theirs /= here) then
-         call raise(fault, EXIT_RESTART, path//' was written by another version: format '//trim(format_of)// &
-                    ', library '//trim(theirs)//'; this one has format '//FORMAT//', library '//trim(here)// &
-                    '. Start anew.')
-      else if (get_text(file, 'fingerprint') /= fingerprint) then
+      call open_restart(path, KIND_OF_FILE, file, fault)
+      if (fault%code /= 0) return
+      if (get_text(file, 'fingerprint') /= fingerprint) then
          call raise(fault, EXIT_RESTART, path//' belongs to another scene: groups, keys, values and files must be '// &
                     'those of the run, but for threads, checkpoint_* and budget.')
       end if
@@ -122,21 +102,13 @@ contains
             list = [list, real(size(p%ends(i)%times), wp), p%ends(i)%times]
          end do
          do i = 1, size(p%names)
-            list = [list, codes_of(p%names(i))]
+            list = [list, real(codes_of(p%names(i)), wp)]
          end do
          do i = 1, size(p%supports)
-            list = [list, codes_of(p%supports(i))]
+            list = [list, real(codes_of(p%supports(i)), wp)]
          end do
       end associate
    end function numbers_of
-
-   pure function codes_of(text) result(codes)
-      character(*), intent(in) :: text
-      real(wp) :: codes(len(text))
-      integer :: i
-
-      codes = [(real(iachar(text(i:i)), wp), i=1, len(text))]
-   end function codes_of
 
    !> The same back.
    subroutine take_run(reader, run)

@@ -56,7 +56,7 @@ contains
       integer :: stuck, before
 
       began = clock()
-      call begin_price(family, runner, price, fault)
+      call begin_price(family, price, fault, runner)
       if (fault%code == 0) call share_out()
       if (fault%code == 0) call runner%judged(price, fault)
       stuck = 0
@@ -87,7 +87,7 @@ contains
          end if
          if (.not. family%quiet) write (output_unit, '(a)') forecast(family, price, next(1), wanted)
          failed = fault_t()
-         call add_level(family, finer, most, runner, price, failed)
+         call add_level(family, finer, most, price, failed, runner)
          if (failed%code /= 0) then
             obstacle = trim(failed%text)
             exit
@@ -120,7 +120,7 @@ contains
             short(price%fineness)//' times the steps and '//short(price%newton)//' times the tolerance.'
          price%answers%steps = price%fineness*price%answers%steps
          price%answers%newton = price%newton*price%answers%newton
-         call begin_again(family, runner, price, fault)
+         call begin_again(family, price, fault, runner)
       end subroutine share_out
    end subroutine refine_until
 

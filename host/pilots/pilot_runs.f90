@@ -87,47 +87,41 @@ contains
       real(wp), intent(in), optional :: most_seconds   !< Wall time that it may take [s].
       type(model_t) :: model
       type(run_t) :: run
-      type(fault_t) :: fault
-      real(wp) :: t0
 
-      t0 = clock()
-      call build_model(scene, model, fault)
-      if (fault%code == 0) call prepare_run(model, run, fault)
-      call watch_run(model, run, most_work, pilot, fault, most_seconds)
-      pilot%seconds = clock() - t0
-      pilot%phases(PHASES) = pilot%seconds - sum(run%system%seconds)
+      call watch_run(scene, most_work, model, run, pilot, most_seconds)
    end subroutine run_pilot
 
-   !> Runs a prepared model and keeps what its answers do, while another observer sees the run. A failure is told in the
-   !> pilot, too.
-   subroutine watch_run(model, run, most_work, pilot, fault, most_seconds, also)
-      type(model_t), intent(inout) :: model
-      type(run_t), intent(inout) :: run
+   !> The same, and keeps the model and the run, which another observer may see.
+   subroutine watch_run(scene, most_work, model, run, pilot, most_seconds, also)
+      type(scene_t), intent(in) :: scene
       real(wp), intent(in) :: most_work   !< That it may take [s].
+      type(model_t), intent(out) :: model
+      type(run_t), intent(out) :: run
       type(pilot_t), intent(out) :: pilot
-      type(fault_t), intent(inout) :: fault
       real(wp), intent(in), optional :: most_seconds   !< Wall time that it may take [s].
       class(run_observer_t), intent(inout), target, optional :: also
       type(watcher_t) :: watcher
-      real(wp) :: t0, p0, p1
+      type(fault_t) :: fault
+      real(wp) :: p0, p1
 
-      t0 = clock()
       call cpu_time(p0)
+      watcher%began = clock()
       watcher%silent = .true.
       watcher%most_work = most_work
-      watcher%began = t0
       if (present(most_seconds)) watcher%most_seconds = most_seconds
       if (present(also)) then
          watcher%silent = also%silent
          watcher%also => also
       end if
+      call build_model(scene, model, fault)
+      if (fault%code == 0) call prepare_run(model, run, fault)
       if (fault%code == 0) call run_stages(model, run, fault, watcher)
       pilot = watcher%seen
       pilot%done = fault%code == 0
       pilot%code = fault%code
       pilot%work = watcher%of_pass*(run%iterations + run%steps)
       pilot%why = fault%text(:len(pilot%why))
-      pilot%seconds = clock() - t0
+      pilot%seconds = clock() - watcher%began
       pilot%cut_off = .not. pilot%done .and. (pilot%work > most_work .or. pilot%seconds > watcher%most_seconds)
       call cpu_time(p1)
       pilot%processor = p1 - p0

@@ -7,8 +7,8 @@ module scene_price
    use effect_types, only: effect_t
    use faults, only: fault_t, raise, EXIT_INPUT
    use kinds, only: wp
-   use level_runs, only: level_key_t, level_run_t, level_runner_t, silent_runner_t
-   use pilot_runs, only: pilot_t
+   use level_runs, only: level_key_t, level_run_t, level_runner_t
+   use pilot_runs, only: pilot_t, run_pilot
    use price_estimates, only: answer_t, quote_t, list_answers, distances, judge_meshes, quote
    use scene_refinement, only: refinement, cells_allow, elements_at
    use scene_types, only: scene_t, scene_mesh_t
@@ -58,20 +58,19 @@ contains
       logical, intent(in) :: quiet
       type(price_t), intent(out) :: price
       type(fault_t), intent(inout) :: fault
-      type(silent_runner_t) :: runner
       type(family_t) :: family
       type(quote_t) :: next(1)
       real(wp) :: third
       integer :: i
 
       call find_family(file, asked, effects, quiet, family, fault)
-      if (fault%code == 0) call begin_price(family, runner, price, fault)
+      if (fault%code == 0) call begin_price(family, price, fault)
       if (fault%code /= 0) return
       ! A third mesh where it doubles the time at most: it shows the order of convergence.
       third = 2*price%levels(2)%mesh
       next = quotes_of(family, price, third, [1.0_wp], fault)
-      if (fault%code == 0 .and. next(1)%seconds <= price%seconds) call add_level(family, third, UNTIL_DONE, runner, &
-                                                                                 price, fault)
+      if (fault%code == 0 .and. next(1)%seconds <= price%seconds) call add_level(family, third, UNTIL_DONE, price, &
+                                                                                 fault)
       if (fault%code /= 0) return
       allocate (price%quotes(0))
       do i = 1, size(MESHES)
@@ -108,11 +107,11 @@ contains
 
    !> Two meshes, and on the second shorter steps and a tighter Newton's method: the errors of all answers. Faults:
    !> those of read_changed and of the runs; EXIT_INPUT where meshes have the same cells, or a goal is no answer.
-   subroutine begin_price(family, runner, price, fault)
+   subroutine begin_price(family, price, fault, runner)
       type(family_t), intent(inout) :: family
-      class(level_runner_t), intent(inout) :: runner
       type(price_t), intent(inout) :: price   !< New, or with runs that were made.
       type(fault_t), intent(inout) :: fault
+      class(level_runner_t), intent(inout), optional :: runner   !< On meshes; none: without files and words.
       type(pilot_t) :: shorter, tighter
 
       price%asked = family%asked
@@ -120,9 +119,8 @@ contains
       call first_pair()
       if (fault%code /= 0) return
       associate (mesh => price%levels(2)%mesh, middle => price%levels(2)%pilot)
-         call one_run(family, level_key_t(mesh, QUARTER, 1.0_wp), UNTIL_DONE, runner, price, shorter, fault)
-         if (fault%code == 0) call one_run(family, level_key_t(mesh, 1.0_wp, TIGHT_NEWTON), UNTIL_DONE, runner, &
-                                           price, tighter, fault)
+         call run_pilot_of(level_key_t(mesh, QUARTER, 1.0_wp), shorter)
+         if (fault%code == 0) call run_pilot_of(level_key_t(mesh, 1.0_wp, TIGHT_NEWTON), tighter)
          if (fault%code /= 0) return
          call list_answers(middle, price%answers, family%base%goals)
          price%answers%steps = OF_A_QUARTER*distances(price%answers, middle, shorter)
@@ -135,56 +133,66 @@ contains
       !> The two coarsest meshes that differ and on which the scene runs, none coarser than that of the scene.
       subroutine first_pair()
          do
-            call begin_again(family, runner, price, fault)
+            call begin_again(family, price, fault, runner)
             if (fault%code == 0 .or. family%coarsest >= 1.0_wp) exit
             if (.not. family%quiet) write (output_unit, '(a)') '   '//trim(fault%text)//' Finer meshes are taken.'
             fault = fault_t()
             family%coarsest = 2*family%coarsest
          end do
       end subroutine first_pair
+
+      subroutine run_pilot_of(key, pilot)
+         type(level_key_t), intent(in) :: key
+         type(pilot_t), intent(out) :: pilot
+         type(scene_t) :: scene
+
+         call read_level(family, key, scene, fault)
+         if (fault%code == 0) call one_run(family, key, scene, UNTIL_DONE, price, pilot, fault)
+      end subroutine run_pilot_of
    end subroutine begin_price
 
    !> The first two meshes anew, with the steps and Newton's tolerance that the price names. Faults: those of add_level.
-   subroutine begin_again(family, runner, price, fault)
+   subroutine begin_again(family, price, fault, runner)
       type(family_t), intent(in) :: family
-      class(level_runner_t), intent(inout) :: runner
       type(price_t), intent(inout) :: price
       type(fault_t), intent(inout) :: fault
+      class(level_runner_t), intent(inout), optional :: runner
 
       if (allocated(price%levels)) deallocate (price%levels, price%meshes)
       allocate (price%levels(0), price%meshes(0))
-      call add_level(family, family%coarsest, UNTIL_DONE, runner, price, fault)
-      if (fault%code == 0) call add_level(family, 2*family%coarsest, UNTIL_DONE, runner, price, fault)
+      call add_level(family, family%coarsest, UNTIL_DONE, price, fault, runner)
+      if (fault%code == 0) call add_level(family, 2*family%coarsest, UNTIL_DONE, price, fault, runner)
    end subroutine begin_again
 
    !> A run on the next mesh, and the errors of the answers, where they are listed, by all meshes. Faults: those of
    !> read_changed and of the run, which then is none of the levels; EXIT_INPUT: it has the same cells.
-   subroutine add_level(family, mesh, most_seconds, runner, price, fault)
+   subroutine add_level(family, mesh, most_seconds, price, fault, runner)
       type(family_t), intent(in) :: family
       real(wp), intent(in) :: mesh           !< Fineness.
       real(wp), intent(in) :: most_seconds   !< Wall time that it may take [s].
-      class(level_runner_t), intent(inout) :: runner
       type(price_t), intent(inout) :: price
       type(fault_t), intent(inout) :: fault
-      type(level_run_t) :: level
+      class(level_runner_t), intent(inout), optional :: runner
+      type(level_key_t) :: key
+      type(pilot_t) :: pilot
       type(scene_t) :: scene
       integer :: n
 
       n = size(price%levels)
-      call read_changed(family%file, family%asked, price%fineness, mesh, family%effects, scene, fault)
+      key = level_key_t(mesh, price%fineness, price%newton, n + 1)
+      call read_level(family, key, scene, fault)
       if (fault%code /= 0) return
       if (n > 0) then
          if (.not. refinement(price%meshes(n), scene%mesh) > 1.0_wp) call raise(fault, EXIT_INPUT, family%file// &
             ': two meshes have the same cells.')
       end if
-      level%level_key_t = level_key_t(mesh, price%fineness, price%newton, n + 1)
-      call one_run(family, level%level_key_t, most_seconds, runner, price, level%pilot, fault)
+      call one_run(family, key, scene, most_seconds, price, pilot, fault, runner)
       if (fault%code /= 0) return
-      price%levels = [price%levels, level]
+      call keep_run(key, pilot, price%levels)
       price%meshes = [price%meshes, scene%mesh]
       if (n == 0) return
-      price%of_meshes = exponent_of(level%pilot, price%levels(n)%pilot, &
-         real(level%pilot%elements, wp)/price%levels(n)%pilot%elements, MOST_OF_MESHES)
+      price%of_meshes = exponent_of(pilot, price%levels(n)%pilot, &
+         real(pilot%elements, wp)/price%levels(n)%pilot%elements, MOST_OF_MESHES)
       if (allocated(price%answers)) call judge_last(price)
    end subroutine add_level
 
@@ -251,16 +259,27 @@ contains
       end associate
    end function quotes_of
 
+   !> The scene of a run. Faults: those of read_changed.
+   subroutine read_level(family, key, scene, fault)
+      type(family_t), intent(in) :: family
+      type(level_key_t), intent(in) :: key
+      type(scene_t), intent(out) :: scene
+      type(fault_t), intent(inout) :: fault
+
+      call read_changed(family%file, family%asked, key%fineness, key%mesh, family%effects, scene, fault)
+      if (fault%code == 0) scene%stages%tolerance = key%newton*scene%stages%tolerance
+   end subroutine read_level
+
    !> One run, unless it was made, and a line about it. Fault of the run.
-   subroutine one_run(family, wanted, most_seconds, runner, price, pilot, fault)
+   subroutine one_run(family, wanted, scene, most_seconds, price, pilot, fault, runner)
       type(family_t), intent(in) :: family
       type(level_key_t), intent(in) :: wanted
+      type(scene_t), intent(in) :: scene        !< Of this run.
       real(wp), intent(in) :: most_seconds      !< [s]
-      class(level_runner_t), intent(inout) :: runner
       type(price_t), intent(inout) :: price
       type(pilot_t), intent(out) :: pilot
       type(fault_t), intent(inout) :: fault
-      type(scene_t) :: scene
+      class(level_runner_t), intent(inout), optional :: runner
       integer :: i
 
       if (fault%code /= 0) return
@@ -270,10 +289,11 @@ contains
       if (i <= size(price%made)) then
          pilot = price%made(i)%pilot
       else
-         call read_changed(family%file, family%asked, wanted%fineness, wanted%mesh, family%effects, scene, fault)
-         if (fault%code /= 0) return
-         scene%stages%tolerance = wanted%newton*scene%stages%tolerance
-         call runner%run(scene, wanted%level, most_seconds, pilot)
+         if (present(runner)) then
+            call runner%run(scene, wanted%level, most_seconds, pilot)
+         else
+            call run_pilot(scene, UNTIL_DONE, pilot, most_seconds)
+         end if
          price%seconds = price%seconds + pilot%seconds
       end if
       price%runs = price%runs + 1
