@@ -18,7 +18,6 @@ module triax_accuracy
    use triax_point, only: point_t
    use triax_progress, only: timer_t
    use triax_run, only: run_test
-   use triax_stage, only: general_control
    implicit none (type, external)
    private
    public :: accuracy_t, reach_accuracy, verify_accuracy, note_accuracy, accuracy_lines, is_met, LINE_LENGTH
@@ -159,8 +158,7 @@ contains
       answer%by_increments = 0.0_wp
       answer%by_tolerance = 0.0_wp
       counts = .false.
-      counts(columns_shown(test%soil, any(general_control(test%stages%control)), &
-                                  any(test%stages%keeps_air))) = .true.
+      counts(columns_shown(test%soil, test%stages)) = .true.
       counts = counts .and. .not. COLUMNS%whole .and. COLUMNS%name /= 'control_error'
       if (moments%n == 0) then
          answer%by_increments = UNKNOWN

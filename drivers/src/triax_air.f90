@@ -5,7 +5,7 @@ module triax_air
    use, intrinsic :: iso_fortran_env, only: wp => real64
    implicit none (type, external)
    private
-   public :: air_t, closed_air_t, closing, air_of
+   public :: air_t, closed_air_t, air_now_t, closing, air_of
 
    !> What a sample holds beside its solids.
    type :: air_t
@@ -21,6 +21,12 @@ module triax_air
       real(wp) :: water = 0.0_wp        !< Volume of the water where its pressure is p_w [-].
       real(wp) :: p_w = 0.0_wp          !< [unit of stress]
    end type closed_air_t
+
+   !> Pressure of the air and volume of the water, with their slopes by void ratio and suction.
+   type :: air_now_t
+      real(wp) :: p_a, by_e, by_suction                    !< [unit of stress], the same, [-]
+      real(wp) :: water, water_by_e, water_by_suction      !< [-], [-], [1/unit of stress]
+   end type air_now_t
 
    integer, parameter :: MOST = 60                      !< Newton's method doubles the digits within ten iterations.
    real(wp), parameter :: SHARE = 4.0_wp*epsilon(1.0_wp)
@@ -40,15 +46,14 @@ contains
 
    !> Pressure of the air and volume of the water at a void ratio and a suction, with their slopes. No air is left as
    !> bubbles where e <= w: the caller looks. NaN: such a void ratio would need water that does not compress.
-   pure subroutine air_of(closed, e, suction, p_a, by_e, by_suction, water, water_by_e, water_by_suction)
+   pure function air_of(closed, e, suction) result(now)
       type(closed_air_t), intent(in) :: closed
       real(wp), intent(in) :: e, suction           !< [-], [unit of stress]
-      real(wp), intent(out) :: p_a, by_e, by_suction   !< [unit of stress], the same, [-]
-      real(wp), intent(out) :: water, water_by_e, water_by_suction   !< [-], [-], [1/unit of stress]
+      type(air_now_t) :: now
       real(wp) :: free, room, slope, step, compliance
       integer :: i
 
-      associate (top => closed%air%atmosphere)
+      associate (top => closed%air%atmosphere, p_a => now%p_a, water => now%water)
          free = 1 - closed%air%henry
          compliance = 0.0_wp
          if (closed%air%stiffness > 0.0_wp) compliance = 1/closed%air%stiffness
@@ -67,10 +72,10 @@ contains
          end do
          water = closed%water*exp(-(p_a - suction - closed%p_w)*compliance)
          slope = e - free*water + (top + p_a)*free*water*compliance
-         by_e = -(top + p_a)/slope
-         by_suction = (top + p_a)*free*water*compliance/slope
-         water_by_e = -water*compliance*by_e
-         water_by_suction = -water*compliance*(by_suction - 1)
+         now%by_e = -(top + p_a)/slope
+         now%by_suction = (top + p_a)*free*water*compliance/slope
+         now%water_by_e = -water*compliance*now%by_e
+         now%water_by_suction = -water*compliance*(now%by_suction - 1)
       end associate
-   end subroutine air_of
+   end function air_of
 end module triax_air

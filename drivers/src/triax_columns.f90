@@ -2,6 +2,7 @@
 !> Columns of the results: what they are called, what they mean, and their values at a point.
 module triax_columns
    use kinds, only: wp
+   use triax_stage, only: stage_t, general_control
    use triax_stage_run, only: stage_run_t
    use triax_point, only: soil_t, point_t, void_ratio, saturation, state_value, mean_stress, deviator_stress, &
                           radial_stress, axial_strain, radial_strain, volumetric_strain, AXIAL
@@ -51,15 +52,14 @@ module triax_columns
 contains
    !> Numbers of the columns of a test: those of components only where they are wanted, those of state variables only
    !> where the law has them.
-   function columns_shown(soil, components, air) result(shown)
+   function columns_shown(soil, stages) result(shown)
       type(soil_t), intent(in) :: soil
-      logical, intent(in) :: components   !< Those of tensors are wanted.
-      logical, intent(in) :: air          !< That of the air pressure is wanted.
+      type(stage_t), intent(in) :: stages(:)   !< General controls want the components of tensors.
       integer, allocatable :: shown(:)
       integer :: i
 
       allocate (shown(0))
-      do i = 1, merge(size(COLUMNS), PLAIN, components)
+      do i = 1, merge(size(COLUMNS), PLAIN, any(general_control(stages%control)))
          select case (COLUMNS(i)%name)
          case ('n_substep')
             if (soil%i_n_substep == 0) cycle
@@ -72,7 +72,7 @@ contains
          case ('n_guard')
             if (soil%i_n_guard == 0) cycle
          case ('p_a')
-            if (.not. air) cycle
+            if (.not. any(stages%keeps_air)) cycle
          case ('psi')
             if (soil%i_state_parameter == 0) cycle
          end select

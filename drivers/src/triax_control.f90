@@ -6,7 +6,7 @@ module triax_control
    use faults, only: fault_t, raise, EXIT_RUN, EXIT_OUTPUT
    use texts, only: short, whole
    use dense, only: solve, outer
-   use triax_air, only: closed_air_t, closing, air_of
+   use triax_air, only: closed_air_t, air_now_t, closing, air_of
    use triax_stage, only: stage_t, quantity_rows, CONTROL_NAMES, ROWS, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
    use material_point, only: MOST_GUARDS, report_t
    use triax_point, only: soil_t, point_t, tangent_t, update_point, save_update, update_sentence, void_ratio, &
@@ -344,7 +344,8 @@ contains
       type(tangent_t), intent(in) :: tangent
       type(point_t), intent(in) :: point
       real(wp) :: slope(7, 7)
-      real(wp) :: by_strain(6, 6), by_suction(6), e, s_w, p_a, by_e, by_c, w, w_by_e, w_by_suction
+      real(wp) :: by_strain(6, 6), by_suction(6), e, s_w
+      type(air_now_t) :: air
 
       e = void_ratio(soil, point)
       s_w = saturation(soil, point)
@@ -354,14 +355,11 @@ contains
          by_strain = by_strain - point%suction*outer(IDENTITY, tangent%dsw_deps)
          by_suction = by_suction - (s_w + point%suction*tangent%dsw_dpc)*IDENTITY
       end if
-      w_by_e = 0.0_wp
-      w_by_suction = 0.0_wp
-      if (plan%keeps_air) then
-         call air_of(plan%closed, e, point%suction, p_a, by_e, by_c, w, w_by_e, w_by_suction)
-         if (.not. plan%effective) then
-            by_strain = by_strain - by_e*(1.0_wp + e)*outer(IDENTITY, IDENTITY)
-            by_suction = by_suction + by_c*IDENTITY
-         end if
+      air = air_now_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
+      if (plan%keeps_air) air = air_of(plan%closed, e, point%suction)
+      if (plan%keeps_air .and. .not. plan%effective) then
+         by_strain = by_strain - air%by_e*(1.0_wp + e)*outer(IDENTITY, IDENTITY)
+         by_suction = by_suction + air%by_suction*IDENTITY
       end if
       slope(:6, :6) = transpose(plan%strain_rows) + matmul(transpose(plan%stress_rows), by_strain)
       slope(:6, SUCTION) = matmul(transpose(plan%stress_rows), by_suction)
@@ -369,8 +367,8 @@ contains
       slope(SUCTION, SUCTION) = 1.0_wp
       if (plan%keeps_water) then
          ! de = -(1+e) d eps_v
-         slope(SUCTION, :6) = e*tangent%dsw_deps - (s_w - w_by_e)*(1.0_wp + e)*IDENTITY
-         slope(SUCTION, SUCTION) = e*tangent%dsw_dpc - w_by_suction
+         slope(SUCTION, :6) = e*tangent%dsw_deps - (s_w - air%water_by_e)*(1.0_wp + e)*IDENTITY
+         slope(SUCTION, SUCTION) = e*tangent%dsw_dpc - air%water_by_suction
       end if
    end function slope_of
 
@@ -380,12 +378,14 @@ contains
       type(plan_t), intent(in) :: plan
       type(point_t), intent(inout) :: point
       type(fault_t), intent(inout) :: fault
-      real(wp) :: e, by_e, by_c, w, w_by_e, w_by_suction
+      type(air_now_t) :: air
+      real(wp) :: e
 
       e = void_ratio(soil, point)
-      call air_of(plan%closed, e, point%suction, point%p_a, by_e, by_c, w, w_by_e, w_by_suction)
-      if (point%p_a > -soil%air%atmosphere .and. e > w) return
-      call raise(fault, EXIT_RUN, 'At a void ratio of '//short(e)//' the water, '//short(w)// &
+      air = air_of(plan%closed, e, point%suction)
+      point%p_a = air%p_a
+      if (point%p_a > -soil%air%atmosphere .and. e > air%water) return
+      call raise(fault, EXIT_RUN, 'At a void ratio of '//short(e)//' the water, '//short(air%water)// &
                  ' times the solids, fills the pores: no air is left as bubbles. Go on with a '// &
                  'saturated sample (suction 0, control undrained).')
    end subroutine close_air
@@ -395,11 +395,12 @@ contains
       type(soil_t), intent(in) :: soil
       type(plan_t), intent(in) :: plan
       type(point_t), intent(in) :: point
-      real(wp) :: p_a, by_e, by_c, w_by_e, w_by_suction
+      type(air_now_t) :: air
 
       w = plan%water_start
-      if (plan%keeps_air) call air_of(plan%closed, void_ratio(soil, point), point%suction, p_a, by_e, by_c, w, w_by_e, &
-                                      w_by_suction)
+      if (.not. plan%keeps_air) return
+      air = air_of(plan%closed, void_ratio(soil, point), point%suction)
+      w = air%water
    end function water_kept
 
    !> The stress that a plan prescribes: net, sigma' - S_w p_c on the normal components, total where the air is kept, or

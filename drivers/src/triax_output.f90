@@ -8,7 +8,6 @@ module triax_output
    use faults, only: fault_t, raise, EXIT_OUTPUT
    use texts, only: short, lower_case
    use triax_case, only: case_t
-   use triax_stage, only: general_control
    use triax_columns, only: column_t, COLUMNS, columns_shown, values_of
    use triax_stage_run, only: stage_run_t
    use stress_units, only: stress_unit_t, in_unit
@@ -45,8 +44,7 @@ contains
       type(fault_t), intent(inout) :: fault
 
       table%path = path
-      table%shown = columns_shown(test%soil, any(general_control(test%stages%control)), &
-                                  any(test%stages%keeps_air))
+      table%shown = columns_shown(test%soil, test%stages)
       table%to_screen = path == '-'
       table%hdf5 = ends_in(path, '.h5') .or. ends_in(path, '.hdf5')
       if (table%hdf5 .and. .not. HAS_HDF5) then
@@ -75,8 +73,7 @@ contains
       type(fault_t), intent(inout) :: fault
 
       table%path = ''
-      table%shown = columns_shown(test%soil, any(general_control(test%stages%control)), &
-                                  any(test%stages%keeps_air))
+      table%shown = columns_shown(test%soil, test%stages)
       table%remarks = ''
       call keep_rows(table)
       table%closed = .false.
