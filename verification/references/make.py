@@ -3,7 +3,6 @@
 
 `make.py` writes into this folder, `make.py FOLDER` into another one.
 """
-import importlib.util
 import pathlib
 import sys
 
@@ -12,19 +11,13 @@ import numpy as np
 HERE = pathlib.Path(__file__).resolve().parent
 VERIFICATION = HERE.parent
 sys.path[:0] = [str(VERIFICATION), str(VERIFICATION.parent / "common")]
-from tools import tables  # noqa: E402
+from tools import runner, tables  # noqa: E402
 from tools.gmsh import Mesh, text  # noqa: E402
 
 
 def page(name):
     """The module of a page of verification/host, with its closed forms."""
-    folder = VERIFICATION / "host" / name
-    sys.path.insert(0, str(folder))
-    spec = importlib.util.spec_from_file_location(f"page_{name}", folder / "page.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    sys.path.remove(str(folder))
-    return module
+    return runner.load(f"host/{name}")
 
 
 def rows(quantity, t, values, x="", y=""):
@@ -191,7 +184,7 @@ def unsaturated_wave():
 
 def indentation():
     half, far = [(0, 0.15, 10, 0.75), (0.15, 0.3, 10, 4 / 3)], (0.3, 24, 18, 1.3)
-    down = line(*half[:0], (-24, -0.3, 18, 1 / 1.3), (-0.3, -0.15, 4, 0.75), (-0.15, 0, 10, 0.75))
+    down = line((-24, -0.3, 18, 1 / 1.3), (-0.3, -0.15, 4, 0.75), (-0.15, 0, 10, 0.75))
     mesh = rectangle(line(*half, far), down, [("plate", "top", lambda x, y: x < 0.15)])
     return mesh, rows("force", 1.0, 2 * 1e4 * 0.15 * 1e-3 / (1 - 0.3**2))
 
