@@ -22,6 +22,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 sys.path[:0] = [str(ROOT / "verification")]
 from tools import tables  # noqa: E402
+from tools.results import folder as made_in  # noqa: E402
 
 COLUMNS = ("scene", "elements", "decided", "right", "differs by", "steps", "pilots", "auto [s]", "of these pilots [s]",
            "by hand [s]", "bound [s]")
@@ -190,8 +191,7 @@ def compare(host, scene):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
-    parser.add_argument("--results", default=HERE, type=pathlib.Path)
-    parser.add_argument("--commit", default="", help="of the program, not used")
+    parser.add_argument("--results", default=made_in(__file__), type=pathlib.Path)
     parser.add_argument("names", nargs="*", help="scenes; default: all, and results.csv is written")
     args = parser.parse_args()
     rows = []

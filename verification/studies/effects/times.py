@@ -22,6 +22,7 @@ ROOT = HERE.parents[2]
 sys.path[:0] = [str(HERE), str(ROOT / "verification")]
 import scenes  # noqa: E402
 from tools import tables  # noqa: E402
+from tools.results import folder as made_in  # noqa: E402
 
 COLUMNS = ("scene", "elements", "steps", "off", "unknowns", "unknowns with everything", "seconds", "of these pilots",
            "seconds with everything", "changes", "share allowed", "commit")
@@ -98,7 +99,7 @@ def compare(host, scene, commit):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
-    parser.add_argument("--results", default=HERE, type=pathlib.Path)
+    parser.add_argument("--results", default=made_in(__file__), type=pathlib.Path)
     parser.add_argument("--commit", default="", help="of the program")
     args = parser.parse_args()
     rows = []

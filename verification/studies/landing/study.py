@@ -22,6 +22,7 @@ ROOT = HERE.parents[2]
 sys.path[:0] = [str(ROOT / "verification"), str(ROOT / "common")]
 import tables  # noqa: E402
 from tools.gmsh import Mesh  # noqa: E402
+from tools.results import folder as made_in  # noqa: E402
 
 COLUMNS = ("scene", "accuracy", "exit", "steps", "repeated", "seconds", "answer", "value", "reference", "reference_off",
            "error", "estimated")
@@ -194,8 +195,7 @@ def picture_rows(scratch):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
-    parser.add_argument("--results", default=HERE, type=pathlib.Path)
-    parser.add_argument("--commit", default="", help="of the program, not used")
+    parser.add_argument("--results", default=made_in(__file__), type=pathlib.Path)
     parser.add_argument("names", nargs="*", help="scenes; default: all")
     args = parser.parse_args()
     table, scratch = args.results / "results.csv", args.build.resolve().parent / "landing"

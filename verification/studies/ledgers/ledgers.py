@@ -23,6 +23,7 @@ ROOT = HERE.parents[2]
 sys.path[:0] = [str(ROOT / "verification"), str(HERE.parent / "indentation")]
 import analysis  # noqa: E402
 from tools import tables  # noqa: E402
+from tools.results import folder as made_in  # noqa: E402
 
 RUNS = ("scene", "elements", "unknowns", "steps", "seconds", "commit")
 METHODS = ("change", "answer", "range", "difference", "influence", "elements", "unknowns", "seconds")
@@ -173,7 +174,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
     parser.add_argument("--only", nargs="+", choices=list(made), default=list(made))
-    parser.add_argument("--results", default=HERE / "results", type=pathlib.Path)
+    parser.add_argument("--results", default=made_in(__file__) / "results", type=pathlib.Path)
     parser.add_argument("--commit", default=analysis.program()[1], help="of the program, if it is not that of the tree")
     args = parser.parse_args()
     args.results.mkdir(exist_ok=True, parents=True)

@@ -22,6 +22,7 @@ ROOT = HERE.parents[2]
 sys.path[:0] = [str(HERE), str(ROOT / "common"), str(ROOT / "verification"), str(HERE.parent / "indentation")]
 import table_1  # noqa: E402
 import tables  # noqa: E402
+from tools.results import folder as made_in  # noqa: E402
 
 SCENES = {name: f"verification/host/{name}.nml" for name in (
     "contact/bar", "contact/drain", "dynamic_consolidation/scene", "layered_site/scene", "liakopoulos/scene",
@@ -93,8 +94,7 @@ def compare(host, scene, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
-    parser.add_argument("--results", default=HERE, type=pathlib.Path)
-    parser.add_argument("--commit", default="", help="of the program, not used")
+    parser.add_argument("--results", default=made_in(__file__), type=pathlib.Path)
     args = parser.parse_args()
     indentation()
     host = pathlib.Path(os.environ.get("MUD_HOST") or args.build / "host/mud_host")

@@ -21,6 +21,7 @@ ROOT = HERE.parents[2]
 sys.path[:0] = [str(ROOT / "common"), str(ROOT / "verification"), str(HERE.parent / "indentation")]
 import tables  # noqa: E402
 from analysis import SUCTIONS, change, render, scene  # noqa: E402
+from tools.results import folder as made_in  # noqa: E402
 
 # The accuracy by its setting; "newton": with a hundredth of Newton's tolerance; "paper": given steps, its tolerances.
 ACCURACY = {"4e-2": "4e-2", "1e-2": "1e-2", "2.5e-3": "2.5e-3", "newton": "1e-2"}
@@ -82,8 +83,7 @@ def run(host, suction, fineness, setting, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
-    parser.add_argument("--results", default=HERE, type=pathlib.Path)
-    parser.add_argument("--commit", default="", help="of the program, not used")
+    parser.add_argument("--results", default=made_in(__file__), type=pathlib.Path)
     args = parser.parse_args()
     table = args.results / "table_1.csv"
     have = [tuple(r[n] for n in NAMES) for r in tables.rows(table)] if table.exists() else []

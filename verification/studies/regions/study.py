@@ -17,6 +17,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 sys.path.insert(0, str(ROOT / "verification"))
 from tools import tables  # noqa: E402
+from tools.results import folder as made_in  # noqa: E402
 
 GROUPS = ("block_1_1", "block_2_1", "block_3_1", "block_3_2")
 # G of 24 MPa, which the sand has at a mean effective stress of 53 kPa, and the sand's curve at its initial void ratio.
@@ -69,7 +70,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--build", default=ROOT / "build/release")
     build = parser.parse_args().build
-    with open(HERE / "results.csv", "w", encoding="utf-8", newline="") as file:
+    with open(made_in(__file__) / "results.csv", "w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(COLUMNS)
         for case in CASES:
