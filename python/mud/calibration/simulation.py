@@ -119,14 +119,7 @@ def simulate(material: Material, test: LaboratoryTest, use: Use) -> Answer:
         except MudError as problem:
             return Answer({q: np.full(len(use.rows), np.nan) for q in use.scatter}, str(problem))
     try:
-        stages, start = _course(material, test, use)
-        most = int(CYCLE_UPDATES * test["cycle"].max()) if test.kind == "cyclic" else MAX_UPDATES
-        result, stopped = (
-            element_test(material, *stages, control_tolerance=CONTROL_TOLERANCE, max_updates=most, **start),
-            "",
-        )
-    except TestStopped as problem:
-        result, stopped = problem.result, str(problem)
+        result, stopped = _run(material, test, *_course(material, test, use))
     except MudError as problem:
         return Answer({q: np.full(len(use.rows), np.nan) for q in use.scatter}, str(problem))
     return Answer(_at_rows(test, use, result), stopped)
@@ -136,11 +129,16 @@ def loops(material: Material, test: LaboratoryTest, use: Use) -> TestResult:
     """The whole path of a cyclic test, also of one that stops. Raises ``MudError`` where it cannot begin."""
     (stage,), start = _course(material, test, use)
     stage = Stage(stage.control, **{**stage.keys, "output_interval": stage.keys["increment"]})
-    most = int(CYCLE_UPDATES * test["cycle"].max())
+    return _run(material, test, [stage], start)[0]
+
+
+def _run(material: Material, test: LaboratoryTest, stages: list[Stage], start: dict) -> tuple[TestResult, str]:
+    """The result of stages, as far as they come, and the driver's sentence where they stop."""
+    most = int(CYCLE_UPDATES * test["cycle"].max()) if test.kind == "cyclic" else MAX_UPDATES
     try:
-        return element_test(material, stage, control_tolerance=CONTROL_TOLERANCE, max_updates=most, **start)
+        return element_test(material, *stages, control_tolerance=CONTROL_TOLERANCE, max_updates=most, **start), ""
     except TestStopped as problem:
-        return problem.result
+        return problem.result, str(problem)
 
 
 def _retention(material: Material, test: LaboratoryTest, rows: np.ndarray) -> Answer:
