@@ -96,6 +96,7 @@ contains
       it%trial%r_in = it%state%memory%r_in
       if (par%preloading) it%trial%y0(14) = log_contraction(it%state%memory%chi, it%state%memory%chi_own)
    end subroutine take_memory
+
    !> Below what it remembers the isotropic mechanism rests. A rate that is known is that of what it did before.
    pure subroutine begin_below_memory(it)
       type(integration_t), intent(inout) :: it
