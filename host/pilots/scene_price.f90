@@ -173,26 +173,25 @@ contains
       type(price_t), intent(inout) :: price
       type(fault_t), intent(inout) :: fault
       class(level_runner_t), intent(inout), optional :: runner
-      type(level_key_t) :: key
-      type(pilot_t) :: pilot
+      type(level_run_t) :: level
       type(scene_t) :: scene
       integer :: n
 
       n = size(price%levels)
-      key = level_key_t(mesh, price%fineness, price%newton, n + 1)
-      call read_level(family, key, scene, fault)
+      level%level_key_t = level_key_t(mesh, price%fineness, price%newton, n + 1)
+      call read_level(family, level%level_key_t, scene, fault)
       if (fault%code /= 0) return
       if (n > 0) then
          if (.not. refinement(price%meshes(n), scene%mesh) > 1.0_wp) call raise(fault, EXIT_INPUT, family%file// &
             ': two meshes have the same cells.')
       end if
-      call one_run(family, key, scene, most_seconds, price, pilot, fault, runner)
+      call one_run(family, level%level_key_t, scene, most_seconds, price, level%pilot, fault, runner)
       if (fault%code /= 0) return
-      call keep_run(key, pilot, price%levels)
+      price%levels = [price%levels, level]
       price%meshes = [price%meshes, scene%mesh]
       if (n == 0) return
-      price%of_meshes = exponent_of(pilot, price%levels(n)%pilot, &
-         real(pilot%elements, wp)/price%levels(n)%pilot%elements, MOST_OF_MESHES)
+      price%of_meshes = exponent_of(level%pilot, price%levels(n)%pilot, &
+         real(level%pilot%elements, wp)/price%levels(n)%pilot%elements, MOST_OF_MESHES)
       if (allocated(price%answers)) call judge_last(price)
    end subroutine add_level
 
