@@ -139,8 +139,8 @@ def draw(bench, found, plt):
         run = bench.driver_text(case(name, TESTS["TCUI1"], increment=2e-5, every=2e-5))
         axis.plot(run["p_eff"], run["q"], color=COLOURS[0], lw=0.5, label=name)
         axis.plot(reversals["p_kPa"], reversals["q_kPa"], "o", ms=2.5, color=COLOURS[1], label="laboratory, at reversals")
-        axis.set(xlabel="p' [kPa]", ylabel="q [kPa]", title=f"TCUI1, {title}", xlim=(0, 210))
-        axis.legend()
+        axis.set(xlabel="p' [kPa]", ylabel="q [kPa]", title=f"TCUI1, {title}", xlim=(0, 210), ylim=(-35, 50))
+        axis.legend(loc="upper center", ncols=2)
     for name, mark in ((WITHOUT, "s"), (WITH, "^")):
         points = [(found[f"{t}: cycles to r_u 0.95", name], float(r["csr"])) for t, r in TESTS.items()]
         axes[1, 0].semilogx(*zip(*points), mark, label=name)
@@ -149,7 +149,7 @@ def draw(bench, found, plt):
     for test, row in TESTS.items():
         axes[1, 0].annotate(f"{test}, e {row['e_0']}", (float(row["N"]), float(row["csr"])), fontsize=7, xytext=(4, 4),
                             textcoords="offset points")
-    axes[1, 0].set(xlabel="cycles to r_u 0.95, logarithmic", ylabel="q/(2 p')", title="cyclic resistance")
+    axes[1, 0].set(xlabel="cycles to r_u 0.95, logarithmic", ylabel="q/(2 p')", title="cyclic resistance", xlim=(0.8, 1500))
     axes[1, 0].legend()
     run = bench.driver_text(case(WITH, TESTS["TCUI1"], increment=2e-5, every=2e-5))
     ends = [np.flatnonzero(run["cycle"] == i)[-1] for i in range(1, int(run["cycle"].max()) + 1)]

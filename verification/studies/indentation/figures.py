@@ -5,8 +5,8 @@ from tools.pictures import pyplot
 plt = pyplot()
 
 COLOURS = {"remedy": "#c8553d", "as_published": "#0b3c6f", "classic": "#3a8f6a"}
-WORDS = {"remedy": "with the remedy (threshold)", "as_published": "without (as published)",
-         "classic": "classic, with guards"}
+WORDS = {"remedy": "with the remedy", "as_published": "as published, without it",
+         "classic": "without it, with guards"}
 STYLE = {"font.size": 9, "axes.grid": True, "grid.color": "#dddddd", "grid.linewidth": 0.6, "axes.axisbelow": True,
          "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False, "lines.linewidth": 1.2,
          "axes.titlesize": 9, "figure.constrained_layout.use": True}
