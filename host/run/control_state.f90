@@ -34,7 +34,7 @@ module control_state
                                                  !< displacements where the material has a memory, of pressures
                                                  !< in a stage of one step.
       real(wp) :: limits(LIMITS) = 0.0_wp        !< Steps by what kept them short.
-      real(wp) :: dissipated_0 = 0.0_wp          !< By damping and seepage where the stage began [kJ].
+      real(wp) :: damped_0 = 0.0_wp              !< Dissipated by damping where the stage began [kJ].
       real(wp) :: motion = 0.0_wp                !< Kinetic energy over the time of the stage [kJ s].
       real(wp), allocatable :: touching(:)       !< 1: the contact was closed at the start of the step, else 0.
       type(force_memory_t), allocatable :: thrust(:)   !< Of the contacts.
@@ -77,7 +77,7 @@ contains
       associate (c => state%controller, m => state%memory)
          list = [c%dt, c%last_ratio, merge(1.0_wp, 0.0_wp, c%held), state%t_sudden, real(state%fresh, wp), &
                  state%start_up, real(state%rejected, wp), merge(1.0_wp, 0.0_wp, m%known), m%dt, &
-                 m%span, state%dissipated_0, state%motion, state%unseen, state%scale, state%gathered, &
+                 m%span, state%damped_0, state%motion, state%unseen, state%scale, state%gathered, &
                  state%largest, state%limits, state%touching, state%x_first, m%rate, m%s_rate, state%low, &
                  state%high, state%point_gathered, state%point_largest, state%newton, &
                  (numbers_of_force(state%thrust(i)), i=1, size(state%thrust))]
@@ -101,7 +101,7 @@ contains
          m%known = list(8) > 0.5_wp
          m%dt = list(9)
          m%span = list(10)
-         state%dissipated_0 = list(11)
+         state%damped_0 = list(11)
          state%motion = list(12)
          at = SCALARS
          call take_row(state%unseen)

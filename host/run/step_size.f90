@@ -60,7 +60,7 @@ contains
             c%rejected = rejected
          end if
          c%x_first = run%state%x
-         c%dissipated_0 = dissipated(model, run)
+         c%damped_0 = run%ledger%damping
          c%motion = 0.0_wp
          c%touching = closed_contacts(run, run%state%x)
          call sudden(run%state%time, run)
@@ -573,7 +573,7 @@ contains
          if (stage%kind == DYNAMIC) then
             c%motion = c%motion + (after - before)*run%ledger%kinetic
             if (c%motion > 0.0_wp) kept(:DISPLACEMENTS) = exp(-(after - before)/4 &
-               *max(0.0_wp, dissipated(model, run) - c%dissipated_0)/c%motion)
+               *max(0.0_wp, run%ledger%damping - c%damped_0)/c%motion)
             kept(DISPLACEMENTS + 1:) = min(kept(AT_U_R), before/after)
          end if
          do i = 1, size(c%thrust)
@@ -608,16 +608,6 @@ contains
          end do
       end associate
    end subroutine gather
-
-   !> What motion has lost so far, and with it its errors: to damping and boundaries, and where no material has a memory
-   !> to seepage [kJ].
-   pure real(wp) function dissipated(model, run)
-      type(model_t), intent(in) :: model
-      type(run_t), intent(in) :: run
-
-      dissipated = run%ledger%damping
-      if (.not. depends_on_path(model)) dissipated = dissipated + run%ledger%seepage
-   end function dissipated
 
    !> After an attempt that failed: the share of it that is tried next becomes the step. docs/theory/host.md section
    !> 4.4; nothing where steps are given.
