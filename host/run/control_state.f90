@@ -29,6 +29,7 @@ module control_state
       integer :: rejected = 0                    !< Steps repeated because of their error, in the whole run.
       real(wp) :: scale(FIELDS) = 0.0_wp         !< Largest change of the fields in the run [m, kPa].
       real(wp) :: gathered(FIELDS) = 0.0_wp      !< Error of the fields that the steps have left [m, kPa].
+      real(wp) :: ripple(FIELDS) = 0.0_wp        !< Of the largest that alternates, as far as it has not faded.
       real(wp) :: largest(FIELDS) = 0.0_wp       !< The largest so far.
       real(wp) :: unseen(FIELDS) = 0.0_wp        !< Change in steps whose error nothing estimates [m, kPa]: of
                                                  !< displacements where the material has a memory, of pressures
@@ -41,6 +42,8 @@ module control_state
       logical :: located = .false.               !< The attempt before was repeated to end where a contact closes.
       ! Of the fields at the named points, (FIELDS, points).
       real(wp), allocatable :: low(:, :), high(:, :), point_gathered(:, :), point_largest(:, :)
+      real(wp), allocatable :: point_ripple(:, :)   !< The same of what alternates.
+      real(wp), allocatable :: error_before(:, :)   !< (FIELDS, nodes) of the last step of a motion [m, kPa].
       real(wp), allocatable :: newton(:, :)      !< What Newton's method has left at them [m, kPa].
       real(wp), allocatable :: x_first(:, :)     !< Unknowns at the start of the stage.
    end type control_state_t
@@ -57,6 +60,7 @@ contains
       allocate (state%low(FIELDS, named), source=huge(1.0_wp))
       allocate (state%high(FIELDS, named), source=-huge(1.0_wp))
       allocate (state%point_gathered(FIELDS, named), state%point_largest(FIELDS, named), source=0.0_wp)
+      allocate (state%point_ripple(FIELDS, named), state%error_before(FIELDS, nodes), source=0.0_wp)
       allocate (state%newton(FIELDS, named), source=0.0_wp)
    end function new_control_state
 
@@ -64,8 +68,9 @@ contains
    pure integer function count_of_numbers(state) result(n)
       type(control_state_t), intent(in) :: state   !< After new_control_state.
 
-      n = SCALARS + 4*FIELDS + LIMITS + size(state%x_first) + size(state%memory%rate) &
-          + size(state%memory%s_rate) + 5*size(state%low) + size(state%touching) + FORCE_NUMBERS*size(state%thrust)
+      n = SCALARS + 5*FIELDS + LIMITS + size(state%x_first) + size(state%memory%rate) &
+          + size(state%error_before) + size(state%memory%s_rate) + 6*size(state%low) + size(state%touching) &
+          + FORCE_NUMBERS*size(state%thrust)
    end function count_of_numbers
 
    !> Everything as one list, for a checkpoint. Each number in its own unit, in the order that take_numbers reads.
@@ -78,8 +83,9 @@ contains
          list = [c%dt, c%last_ratio, merge(1.0_wp, 0.0_wp, c%held), state%t_sudden, real(state%fresh, wp), &
                  state%start_up, real(state%rejected, wp), merge(1.0_wp, 0.0_wp, m%known), m%dt, &
                  m%span, state%damped_0, state%motion, state%unseen, state%scale, state%gathered, &
-                 state%largest, state%limits, state%touching, state%x_first, m%rate, m%s_rate, state%low, &
-                 state%high, state%point_gathered, state%point_largest, state%newton, &
+                 state%ripple, state%largest, state%limits, state%touching, state%x_first, m%rate, m%s_rate, &
+                 state%low, state%high, state%point_gathered, state%point_ripple, state%point_largest, state%newton, &
+                 state%error_before, &
                  (numbers_of_force(state%thrust(i)), i=1, size(state%thrust))]
       end associate
    end function numbers_of
@@ -107,6 +113,7 @@ contains
          call take_row(state%unseen)
          call take_row(state%scale)
          call take_row(state%gathered)
+         call take_row(state%ripple)
          call take_row(state%largest)
          call take_row(state%limits)
          call take_row(state%touching)
@@ -116,8 +123,10 @@ contains
          call take(state%low)
          call take(state%high)
          call take(state%point_gathered)
+         call take(state%point_ripple)
          call take(state%point_largest)
          call take(state%newton)
+         call take(state%error_before)
          do i = 1, size(state%thrust)
             call take_force(list(at + 1:at + FORCE_NUMBERS), state%thrust(i))
             at = at + FORCE_NUMBERS

@@ -31,6 +31,7 @@ module step_size
    real(wp), parameter :: PRESSURE_BUDGET = 2.0_wp   !< Times the accuracy that impacts may leave at a point in all.
    real(wp), parameter :: PRESSURE_RESERVE = 0.2_wp  !< Share that a step is allowed when they have left that.
    real(wp), parameter :: PRESSURE_END = 2.95_wp     !< Times the accuracy at which that share ends, below 3.
+   real(wp), parameter :: LEAST_RESERVE = 0.1_wp  !< Part of that share that stays.
    real(wp), parameter :: PEAK = 1.57_wp          !< Of a sine over the mean of its magnitude.
    real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Share of its change by which the second step after a sudden load
                                                   !< is in error, since flow begins with the root of time.
@@ -202,22 +203,26 @@ contains
       real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
       logical, intent(out) :: accepted
-      real(wp) :: error(FIELDS, size(run%state%x, 2)), norm(FIELDS), elapsed
+      real(wp), dimension(FIELDS, size(run%state%x, 2)) :: error, all, ripple
+      real(wp) :: norm(FIELDS), elapsed
       real(wp), allocatable :: touching(:)
       logical :: known(FIELDS), changes
       integer :: bodies
 
       call estimate_error(model, stage, dt, run, error, known)
       bodies = size(run%state%x, 2) - size(model%domain%bodies)
-      norm = field_norms(error(:, :bodies))
       elapsed = run%next%time - run%control%t_sudden
       allocate (touching, source=run%control%touching)
       if (stage%kind == DYNAMIC) touching = closed_contacts(run, run%next%x)
       changes = any(abs(touching - run%control%touching) > 0.5_wp)
+      all = error
+      call take_ripple_out(stage, dt, changes, run, error, ripple)
+      norm = field_norms(error(:, :bodies))
       accepted = .true.
       if (stage%controlled .and. any(touching > run%control%touching)) accepted = ends_at_closing(stage, dt, run)
       if (.not. accepted) return
-      if (stage%controlled) call weigh_error(model, stage, dt, elapsed, error, norm, known, changes, run, accepted)
+      if (stage%controlled) call weigh_error(model, stage, dt, elapsed, error, ripple, norm, known, changes, &
+                                              run, accepted)
       if (.not. accepted) then
          if (any(touching > run%control%touching)) call end_where_it_closes(dt, run)
          return
@@ -231,8 +236,41 @@ contains
          if (stage%kind == QUASI_STATIC .and. c%fresh == 0 .and. is_over_at(stage, run, run%next%time)) &
             c%unseen(DISPLACEMENTS + 1:) = c%unseen(DISPLACEMENTS + 1:) + change(DISPLACEMENTS + 1:)
       end associate
-      call gather(model, stage, error, norm, elapsed - dt, elapsed, run)
+      call gather(model, stage, error, ripple, norm, elapsed - dt, elapsed, run)
+      run%control%error_before = all
    end subroutine judge_step
+
+   !> Parts the errors of a step of a motion: what they have in common with those of the step before, and what
+   !> alternates with them. That are waves too fast for the steps: they are wrong by two amplitudes at most, however
+   !> long they last. docs/theory/host.md section 4.5.
+   pure subroutine take_ripple_out(stage, dt, changes, run, error, ripple)
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: dt   !< [s]
+      logical, intent(in) :: changes   !< A contact closes or opens in the step: an event, and no wave.
+      type(run_t), intent(in) :: run
+      real(wp), intent(inout) :: error(:, :)   !< (FIELDS, nodes) of the step; what lasts of it [m, kPa].
+      real(wp), intent(out) :: ripple(:, :)    !< (FIELDS, nodes) what alternates [m, kPa].
+      real(wp) :: longer
+
+      ripple = 0.0_wp
+      associate (c => run%control)
+         if (stage%kind /= DYNAMIC .or. changes .or. c%fresh == 0 .or. .not. c%memory%dt > 0.0_wp) return
+         ! The same jump of accelerations errs by the square of the step, one of rates by the step.
+         longer = dt/c%memory%dt
+         ripple(:DISPLACEMENTS, :) = opposite(error(:DISPLACEMENTS, :), longer**2*c%error_before(:DISPLACEMENTS, :))
+         if (c%memory%known) ripple(DISPLACEMENTS + 1:, :) = opposite(error(DISPLACEMENTS + 1:, :), &
+                                                                longer*c%error_before(DISPLACEMENTS + 1:, :))
+      end associate
+      error = error - ripple
+   end subroutine take_ripple_out
+
+   !> Part of an error that the one before takes back: where their signs differ, what both have; with the sign of `now`.
+   elemental real(wp) function opposite(now, before) result(part)
+      real(wp), intent(in) :: now, before
+
+      part = 0.0_wp
+      if (now*before < 0.0_wp) part = sign(min(abs(now), abs(before)), now)
+   end function opposite
 
    !> 1 for every contact that is closed at given displacements, else 0; 0 too where a kernel refuses them.
    function closed_contacts(run, x) result(closed)
@@ -340,11 +378,12 @@ contains
    end function kind_of_error
 
    !> Whether the error of a controlled step lets it stand, the length of the next attempt, and what limits it.
-   subroutine weigh_error(model, stage, dt, elapsed, error, norm, known, changes, run, accepted)
+   subroutine weigh_error(model, stage, dt, elapsed, error, ripple, norm, known, changes, run, accepted)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       real(wp), intent(in) :: dt, elapsed    !< Step, and the time since the last sudden change at its end [s].
       real(wp), intent(in) :: error(:, :)    !< (FIELDS, nodes) [m, kPa]
+      real(wp), intent(in) :: ripple(:, :)   !< (FIELDS, nodes) what alternates [m, kPa]
       real(wp), intent(in) :: norm(FIELDS)   !< Of the errors [m, kPa].
       logical, intent(in) :: known(FIELDS)
       logical, intent(in) :: changes         !< A contact closes or opens in the step.
@@ -368,6 +407,13 @@ contains
                                                                   GROWTH*added_share(run, bodies))
          ratios = norm/(allowed*scales(run, bodies))
          ratios = max(ratios, ratios_of_points(model, stage, run, error, share, dt/elapsed, bodies))
+         if (stage%kind == DYNAMIC) then
+            ! Ripples last, but do not add up: the whole accuracy is theirs.
+            share = 1.0_wp
+            share(:DISPLACEMENTS) = left
+            ratios = max(ratios, field_norms(ripple(:, :bodies))/(share*scales(run, bodies)))
+            ratios = max(ratios, ratios_of_points(model, stage, run, ripple, share, 1.0_wp, bodies))
+         end if
          if (stage%kind == DYNAMIC) ratios(AT_U_Z) = max(ratios(AT_U_Z), ratio_of_plates(model, stage, dt, run, error, &
             changes)/allowed(AT_U_Z))
          ratios = ratios/(stage%accuracy*max(1.0_wp, c%start_up/elapsed)**2)
@@ -424,8 +470,8 @@ contains
                   allowed = share(f)
                   if (stage%kind == DYNAMIC) then
                      if (f > DISPLACEMENTS) then
-                        allowed = max(fading, allowed*pressure_left(abs(c%point_gathered(f, i)) &
-                                                                    /(stage%accuracy*now(f))))
+                        allowed = max(fading, allowed*pressure_left((abs(c%point_gathered(f, i)) &
+                                                     + c%point_ripple(f, i))/(stage%accuracy*now(f))))
                      else
                         allowed = max(allowed, GROWTH*(1 - before(f)/now(f)))
                      end if
@@ -451,11 +497,12 @@ contains
    end function error_of_thrust
 
    !> What impacts that have left errors of a pressure, `used` times the accuracy, leave to a step: less as they use the
-   !> budget up, then a reserve, and nothing where the promise of the accuracy would be broken.
+   !> budget up, then a reserve, and a tenth of it where the promise of the accuracy is broken: what has been left is
+   !> not taken back by steps however short, and the run tells of it at its end.
    pure real(wp) function pressure_left(used) result(left)
       real(wp), intent(in) :: used   !< [-]
 
-      left = max(1 - used/PRESSURE_BUDGET, PRESSURE_RESERVE*min(1.0_wp, 10*(PRESSURE_END - used)), 0.0_wp)
+      left = max(1 - used/PRESSURE_BUDGET, PRESSURE_RESERVE*min(1.0_wp, max(LEAST_RESERVE, 10*(PRESSURE_END - used))))
    end function pressure_left
 
    !> Changes of the fields at a point; of a displacement the larger one of its components. 0 before the first step.
@@ -559,10 +606,11 @@ contains
 
    !> Adds the errors of an accepted step up: those of a flow fade as its memory does, in proportion to the time since
    !> the last sudden change; those of a vibration or of a path stay.
-   subroutine gather(model, stage, error, norm, before, after, run)
+   subroutine gather(model, stage, error, ripple, norm, before, after, run)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: error(:, :), norm(:), before, after   !< Times since the last sudden change [s].
+      real(wp), intent(in) :: error(:, :), ripple(:, :)   !< (FIELDS, nodes) what lasts, what alternates [m, kPa].
+      real(wp), intent(in) :: norm(:), before, after   !< Of what lasts; times since the last sudden change [s].
       type(run_t), intent(inout) :: run
       real(wp) :: kept(FIELDS)
       integer :: i, node
@@ -591,7 +639,8 @@ contains
          end do
          c%scale = scales(run, size(run%state%x, 2) - size(model%domain%bodies))
          c%gathered = kept*c%gathered + norm
-         c%largest = max(c%largest, c%gathered)
+         c%ripple = max(kept*c%ripple, field_norms(ripple(:, :size(ripple, 2) - size(model%domain%bodies))))
+         c%largest = max(c%largest, c%gathered + c%ripple)
          do i = 1, size(model%points)
             node = model%points(i)%node
             c%point_gathered(:, i) = kept*c%point_gathered(:, i)
@@ -602,7 +651,8 @@ contains
             else
                c%point_gathered(:, i) = abs(c%point_gathered(:, i)) + abs(error(:, node))
             end if
-            c%point_largest(:, i) = max(c%point_largest(:, i), abs(c%point_gathered(:, i)))
+            c%point_ripple(:, i) = max(kept*c%point_ripple(:, i), abs(ripple(:, node)))
+            c%point_largest(:, i) = max(c%point_largest(:, i), abs(c%point_gathered(:, i)) + c%point_ripple(:, i))
             c%low(:, i) = min(c%low(:, i), run%state%x(:, node), run%next%x(:, node))
             c%high(:, i) = max(c%high(:, i), run%state%x(:, node), run%next%x(:, node))
          end do

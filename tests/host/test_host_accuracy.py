@@ -127,6 +127,28 @@ def test_a_displacement_that_the_mesh_alone_makes_is_not_judged():
     check("a disc: forces err as what moves does", float(rows["push: bottom.force_z"]["estimated_error"]) < 0.03, rows)
 
 
+# A wave that is too fast for the steps alternates from step to step and is undamped (rho_inf 0.9, seepage inertia,
+# water that is hardly pressed together): added up, its errors stood for many times the true one and cut the steps
+# without end.
+PULSE = (root / "verification/host/dynamic_consolidation/scene.nml").read_text().replace("80, 120", "16, 24")
+
+
+def test_a_ripple_counts_once():
+    fine = work / "pulse_fine"
+    run(written("pulse_fine", PULSE.replace("dt = 1.0e-4", "dt = 1.0e-5")), fine)
+    for accuracy in ("1e-1", "1e-2"):
+        out = work / f"pulse_{accuracy}"
+        done = run(written(f"pulse_{accuracy}", PULSE), out, "--accuracy", accuracy)
+        check(done.returncode == 0, f"pulse on saturated soil, {accuracy}: to its end, exit code {done.returncode}")
+        if done.returncode:
+            continue
+        t, exact = history(fine, "time"), history(fine, "surface.u_z")
+        error = np.abs(np.interp(history(out, "time"), t, exact) - history(out, "surface.u_z")).max()/np.ptp(exact)
+        estimate = estimated(out)["surface.u_z"]
+        check(error < estimate < 3*float(accuracy),
+              f"pulse, {accuracy}: the surface errs by {error:.2g}, not above the estimate {estimate:.2g}")
+
+
 def test_vibration_runs():
     # Free vibration of period 1 s: the true error of the history over the estimated one lies within the band.
     scene = written("swing", VIBRATION.read_text().replace("rho_inf = 0.8", ""))
