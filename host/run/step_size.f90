@@ -395,6 +395,7 @@ contains
       associate (c => run%control)
          bodies = size(run%state%x, 2) - size(model%domain%bodies)
          share = max(dt/elapsed, EVENT)
+         left = 1.0_wp
          if (stage%kind == DYNAMIC) then
             left = what_is_left(model, stage, run)
             share(:DISPLACEMENTS) = max(left*dt/(run%at%t_start + stage%duration - run%state%time), EVENT*left**2)
