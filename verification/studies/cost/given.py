@@ -38,7 +38,7 @@ SCENES = {
 def scene_rows(name, folder=None):
     """Every answer with every length of steps."""
     path, both, _, _, _ = honest.SCENES[name]
-    folder = pathlib.Path(folder or honest.build.parent / "cost/honest") / re.sub(r"\W+", "_", name)
+    folder = pathlib.Path(folder or honest.references()) / re.sub(r"\W+", "_", name)
     off = honest.reference(name, folder)
     rows = []
     for number, (said, changes) in enumerate(SCENES[name]):

@@ -33,6 +33,11 @@ STEPS_OF_LIAKOPOULOS = [(r"dt = 0.1\n", "dt = 0.01\n"), (r"dt = 1\n", "dt = 0.1\
                         (r"dt_max = 10\n", "dt_max = 1\n"), (r"dt_max = 30\n", "dt_max = 6\n")]
 
 
+def references():
+    """Where runs with fine steps serve again, to the same programs."""
+    return results.current(build.parent / "cost/honest", build)
+
+
 def swing(time):
     """Free vibration of verification/host/vibration: released at t = 1 s from 12 kN on a spring of 12000 kN/m, 3 Mg."""
     return {"top.u_z": np.where(time < 1, -time, -np.cos(np.sqrt(4000.0)*(time - 1)))*1e-3}
@@ -192,7 +197,7 @@ def reference(name, folder):
 def scene_rows(name, accuracies=None, folder=None):
     """Every answer at every accuracy."""
     path, both, _, free, asked = SCENES[name]
-    folder = pathlib.Path(folder or build.parent / "cost/honest") / re.sub(r"\W+", "_", name)
+    folder = pathlib.Path(folder or references()) / re.sub(r"\W+", "_", name)
     try:
         off = reference(name, folder)
     except RuntimeError as said:
@@ -217,7 +222,7 @@ def path_rows(name, accuracies=("3e-2", "1e-3")):
     """The history of a path of the driver against increments of 2e-6, tolerance 1e-10, another scheme: at the rows that
     both write, which are the ends of the ways where stress turns."""
     start, stage = PATHS[name]
-    folder = build.parent / "cost/honest/driver"
+    folder = references() / "driver"
     folder.mkdir(parents=True, exist_ok=True)
     case, out = folder / "case.nml", folder / "out.csv"
     cycles = "cycle_by" in stage

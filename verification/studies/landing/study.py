@@ -5,7 +5,7 @@ fine steps on the same mesh. Writes results.csv and picture.csv; resumable, a sc
 
     study.py [--build build/release] [--results FOLDER] [SCENE...]
 
-Fine runs go to build/landing and serve again. Some 15 minutes of one core.
+Fine runs go to build/landing and serve again, to the same programs. Some 15 minutes of one core.
 """
 import argparse
 import os
@@ -22,7 +22,7 @@ ROOT = HERE.parents[2]
 sys.path[:0] = [str(ROOT / "verification"), str(ROOT / "common")]
 import tables  # noqa: E402
 from tools.gmsh import Mesh  # noqa: E402
-from tools.results import folder as made_in  # noqa: E402
+from tools.results import current, folder as made_in  # noqa: E402
 
 COLUMNS = ("scene", "accuracy", "exit", "steps", "repeated", "seconds", "answer", "value", "reference", "reference_off",
            "error", "estimated")
@@ -198,7 +198,8 @@ def main():
     parser.add_argument("--results", default=made_in(__file__), type=pathlib.Path)
     parser.add_argument("names", nargs="*", help="scenes; default: all")
     args = parser.parse_args()
-    table, scratch = args.results / "results.csv", args.build.resolve().parent / "landing"
+    build = args.build.resolve()
+    table, scratch = args.results / "results.csv", current(build.parent / "landing", build)
     have = [tuple(row[n] for n in COLUMNS) for row in tables.rows(table)] if table.exists() else []
     order = [scene.name for scene in scenes()]
     for scene in scenes():
