@@ -5,7 +5,8 @@ module step_size
    use kinds, only: wp
    use contact_interfaces, only: probe_contacts
    use control_state, only: new_control_state, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
-   use error_norms, only: keep_rates, shift_rates, local_errors, remember, forget, constant_of_accelerations, rms
+   use error_norms, only: keep_rates, shift_rates, local_errors, remember, forget, constant_of_accelerations, &
+      ripple_in, rms
    use force_errors, only: force_error, remember_force
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, QUASI_STATIC, DYNAMIC
    use model_types, only: model_t
@@ -257,20 +258,12 @@ contains
          if (stage%kind /= DYNAMIC .or. changes .or. c%fresh == 0 .or. .not. c%memory%dt > 0.0_wp) return
          ! The same jump of accelerations errs by the square of the step, one of rates by the step.
          longer = dt/c%memory%dt
-         ripple(:DISPLACEMENTS, :) = opposite(error(:DISPLACEMENTS, :), longer**2*c%error_before(:DISPLACEMENTS, :))
-         if (c%memory%known) ripple(DISPLACEMENTS + 1:, :) = opposite(error(DISPLACEMENTS + 1:, :), &
-                                                                longer*c%error_before(DISPLACEMENTS + 1:, :))
+         ripple(:DISPLACEMENTS, :) = ripple_in(error(:DISPLACEMENTS, :), longer**2*c%error_before(:DISPLACEMENTS, :))
+         if (c%memory%known) ripple(DISPLACEMENTS + 1:, :) = ripple_in(error(DISPLACEMENTS + 1:, :), &
+                                                                 longer*c%error_before(DISPLACEMENTS + 1:, :))
       end associate
       error = error - ripple
    end subroutine take_ripple_out
-
-   !> Part of an error that the one before takes back: where their signs differ, what both have; with the sign of `now`.
-   elemental real(wp) function opposite(now, before) result(part)
-      real(wp), intent(in) :: now, before
-
-      part = 0.0_wp
-      if (now*before < 0.0_wp) part = sign(min(abs(now), abs(before)), now)
-   end function opposite
 
    !> 1 for every contact that is closed at given displacements, else 0; 0 too where a kernel refuses them.
    function closed_contacts(run, x) result(closed)
