@@ -6,7 +6,7 @@ module element_equations
    use kinds, only: wp
    use material_point, only: response_t, report_t, MOST_POINTS
    use element_sums, only: sums_t, clear_sums, add_response, add_tangent, residual_of, matrix_of
-   use porous_domain, only: domain_t, region_t, state_t, gauss_t, mixture_density, given_pressures_at, COUPLED
+   use porous_domain, only: domain_t, region_t, state_t, gauss_t, mixture_density, given_pressures_at, gravity_on, COUPLED
    use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, solid_response, PLACES, RR, TT, RZ, &
                              U
    use generalised_alpha, only: scheme_t, DYNAMIC
@@ -161,7 +161,7 @@ contains
       integer :: g, n_p
 
       n_p = domain%n_carriers(element)
-      gravity = old%gravity + scheme%l_f*(new%gravity - old%gravity)
+      gravity = gravity_on(old, element) + scheme%l_f*(gravity_on(new, element) - gravity_on(old, element))
       call gather(domain, element, scheme, old, new, nodes)
       do g = 1, domain%rule
          associate (gp => domain%gauss(g, element), region => domain%regions(domain%region_of(element)))
@@ -264,7 +264,7 @@ contains
             new%e(p) = skeleton%e
             call add_response(gp, n_fields, response, sums%r)
             if (out%with_change) call add_response(gp, DISPLACEMENTS, &
-               change_of(domain, region, k(g), old%gravity, old%stress(:, p), old%e(p), old%s(p), response), &
+               change_of(domain, region, k(g), gravity_on(old, element), old%stress(:, p), old%e(p), old%s(p), response), &
                change)
             if (scheme%kind == DYNAMIC) call add_flight(domain, region, k(g), scheme, skeleton, gp, out%stretch)
             if (with_tangent) call add_tangent(gp, n_fields, tangent, sums%k)

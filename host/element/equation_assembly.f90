@@ -9,7 +9,7 @@ module equation_assembly
    use element_equations, only: element_t, compute_element, element_size
    use tangent_fallback, only: NO_FALLBACK
    use material_point, only: report_t
-   use porous_domain, only: domain_t, state_t, COUPLED
+   use porous_domain, only: domain_t, state_t, is_present, stand_still, COUPLED
    use sparsity_pattern, only: pattern_t
    use generalised_alpha, only: scheme_t
    use unknown_fields, only: DISPLACEMENTS
@@ -103,6 +103,11 @@ contains
       !$omp parallel do num_threads(threads) schedule(dynamic, 8) default(shared) private(e, i, n) firstprivate(out) &
       !$omp reduction(+:seconds)
       do e = 1, ne
+         if (.not. is_present(old, e)) then
+            call stand_still(domain, e, old, new)
+            call leave_out(e)
+            cycle
+         end if
          out%with_change = assembly%with_change
          out%fallback = assembly%fallback
          out%source = source
@@ -138,6 +143,17 @@ contains
       if (assembly%with_change) call add_up_change(dofs, pattern, assembly)
       ! The threads share the loop evenly.
       assembly%material = min(1.0_wp, seconds/threads/max(clock() - t0, tiny(1.0_wp)))
+   contains
+      !> An element that is not part of the ground has no share in the sums.
+      subroutine leave_out(element)
+         integer, intent(in) :: element
+
+         assembly%r(:, element) = 0.0_wp
+         assembly%stretch(:, element) = 0.0_wp
+         if (assembly%fallback /= NO_FALLBACK) assembly%soft(element) = 0
+         if (assembly%with_change) assembly%d_r(:, element) = 0.0_wp
+         if (with_tangent) assembly%k(pattern%before(element) + 1:pattern%before(element + 1)) = 0.0_wp
+      end subroutine leave_out
    end subroutine assemble
 
    !> Where the air pressure is prescribed the flow of air is unknown, so that the sum of the balances is replaced by

@@ -13,7 +13,7 @@ module porous_domain
    implicit none (type, external)
    private
    public :: domain_t, region_t, fluids_t, gauss_t, state_t, source_i, prepare_domain, new_state_of, copy_state, &
-             take_over, mixture_density, given_pressures_at, pressures_at
+             take_over, mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, stand_still
    public :: COUPLED, DRAINED, UNDRAINED, DRY
 
    ! What the fluids in the pores of a region do, in the order of the words of &region drainage.
@@ -102,6 +102,10 @@ module porous_domain
       real(wp), allocatable :: e(:)           !< void ratio
       real(wp), allocatable :: s(:)           !< degree of saturation
       real(wp), allocatable :: s_rate(:)      !< rate of the degree of saturation [1/s]
+      ! Where parts of the ground join or leave, else not allocated. docs/theory/host.md section 14.
+      logical, allocatable :: present(:)      !< (elements) Part of the ground in this stage,
+      logical, allocatable :: joins(:)        !< and since this stage.
+      real(wp) :: growth = 1.0_wp             !< Share of their weight that acts on those that join, at this time [-].
    end type state_t
 contains
    !> Geometry of every quadrature point; the regions must be known. docs/theory/host.md section 3.1. Fault
@@ -255,6 +259,44 @@ contains
       if (region%with_c) mixture_density = mixture_density + n*(1 - s)*domain%fluids%rho_a
    end function mixture_density
 
+   !> Whether an element is part of the ground.
+   pure logical function is_present(state, element)
+      type(state_t), intent(in) :: state
+      integer, intent(in) :: element
+
+      is_present = .true.
+      if (allocated(state%present)) is_present = state%present(element)
+   end function is_present
+
+   !> Gravity on an element, towards -z: that of new ground grows over its first stage [m/s2].
+   pure real(wp) function gravity_on(state, element) result(gravity)
+      type(state_t), intent(in) :: state
+      integer, intent(in) :: element
+
+      gravity = state%gravity
+      if (.not. allocated(state%joins)) return
+      if (state%joins(element)) gravity = state%growth*state%gravity
+   end function gravity_on
+
+   !> The points of an element that is not part of the ground are as before.
+   subroutine stand_still(domain, element, old, new)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: element
+      type(state_t), intent(in) :: old
+      type(state_t), intent(inout) :: new
+      integer :: first, last
+
+      first = (element - 1)*domain%rule + 1
+      last = element*domain%rule
+      new%stress(:, first:last) = old%stress(:, first:last)
+      new%e(first:last) = old%e(first:last)
+      new%s(first:last) = old%s(first:last)
+      new%s_rate(first:last) = 0.0_wp
+      associate (from => domain%before_state(element) + 1, to => domain%before_state(element + 1))
+         new%state(from:to) = old%state(from:to)
+      end associate
+   end subroutine stand_still
+
    !> A state that is accepted takes the place of the one before. What is large changes hands: `new` is left with
    !> stresses and state variables of the step before, all of which a pass by the material writes.
    subroutine take_over(new, state)
@@ -287,6 +329,11 @@ contains
 
       to%time = from%time
       to%gravity = from%gravity
+      to%growth = from%growth
+      if (allocated(from%present)) then
+         to%present = from%present
+         to%joins = from%joins
+      end if
       to%x(:, :) = from%x
       to%v(:, :) = from%v
       to%a(:, :) = from%a

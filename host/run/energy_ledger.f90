@@ -8,7 +8,7 @@ module energy_ledger
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use dashpots, only: work_of_dashpots
    use degrees_of_freedom, only: dofs_t
-   use porous_domain, only: domain_t, region_t, state_t, mixture_density, pressures_at, COUPLED
+   use porous_domain, only: domain_t, region_t, state_t, mixture_density, pressures_at, is_present, gravity_on, COUPLED
    use permeability_laws, only: relative_t, relative_permeability
    use prescribed_values, only: constraint_t
    use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
@@ -68,6 +68,7 @@ contains
       allocate (change, source=new%x(:DISPLACEMENTS, :) - old%x(:DISPLACEMENTS, :))
       allocate (held, source=moved_by_supports(dofs, constraint, change))
       do e = 1, size(domain%mesh%t6, 2)
+         if (.not. is_present(new, e)) cycle
          associate (node => domain%mesh%t6(:, e))
             call add_work_of_element(domain, e, scheme, old, new, damping_stress, change(:, node), work)
             ledger%supports = ledger%supports + work_to_move_element(domain, e, scheme, old, new, damping_stress, &
@@ -221,7 +222,7 @@ contains
       real(wp) :: dv(DISPLACEMENTS, 6)
       integer :: g, at, node(6)
 
-      gravity = 0.5_wp*(old%gravity + new%gravity)
+      gravity = 0.5_wp*(gravity_on(old, e) + gravity_on(new, e))
       node = domain%mesh%t6(:, e)
       dv = new%v(:DISPLACEMENTS, node) - old%v(:DISPLACEMENTS, node)
       associate (carriers => domain%carriers(:domain%n_carriers(e), e))
@@ -265,7 +266,7 @@ contains
       real(wp) :: middle(AT_P_W:AT_P_C, 6), drive(2), kappa, gravity
       integer :: g, p, n_p
 
-      gravity = 0.5_wp*(old%gravity + new%gravity)
+      gravity = 0.5_wp*(gravity_on(old, e) + gravity_on(new, e))
       n_p = domain%n_p
       associate (node => domain%mesh%t6(:, e))
          middle = 0.5_wp*(old%x(AT_P_W:AT_P_C, node) + new%x(AT_P_W:AT_P_C, node))
@@ -298,6 +299,7 @@ contains
 
       energy = 0.0_wp
       do e = 1, size(domain%mesh%t6, 2)
+         if (.not. is_present(state, e)) cycle
          nodal = state%v(:DISPLACEMENTS, domain%mesh%t6(:, e))
          do g = 1, domain%rule
             p = (e - 1)*domain%rule + g

@@ -5,7 +5,7 @@
 module held_ground
    use kinds, only: wp
    use absorbing_boundaries, only: absorber_acts, switch_absorbers, add_incoming
-   use boundary_loads, only: load_at
+   use ground_stages, only: acting_load
    use equation_assembly, only: assemble
    use exit_codes, only: EXIT_MATERIAL
    use faults, only: fault_t, raise
@@ -49,7 +49,7 @@ contains
                     whole(run%assembly%bad_element)//' refuses its own state at rest.')
          return
       end if
-      missing = load_at(model, model%stages(number), model%dofs, run%state%time) - run%assembly%residual
+      missing = acting_load(model, model%stages(number), run, run%state%time) - run%assembly%residual
       do i = 1, size(now)
          if (now(i) .and. .not. before(i)) where (run%constraint%dashpots(i)%held) run%constraint%offset = missing
       end do

@@ -6,7 +6,7 @@ module step_attempt
    use exit_codes, only: EXIT_CONVERGENCE
    use faults, only: fault_t, raise
    use boundary_conditions, only: constrain_step, follow_accelerations, starting_accelerations
-   use boundary_loads, only: load_at, rain_at
+   use boundary_loads, only: rain_at
    use contact_drainage, only: freeze_drainage
    use contact_interfaces, only: begin_friction
    use contact_types, only: contact_message
@@ -14,6 +14,7 @@ module step_attempt
    use energy_ledger, only: kinetic_energy
    use generalised_alpha, only: scheme_t, make_scheme, DYNAMIC
    use given_pressures, only: follow_undrained
+   use ground_stages, only: acting_load, change_ground, growth_at, hold_absent
    use held_ground, only: hold_ground, set_incoming_waves
    use model_types, only: model_t, gravity_at
    use newton_step, only: take_step, start_accelerations, CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
@@ -38,6 +39,8 @@ contains
 
       associate (stage => model%stages(number))
          run%at = stage_state_t(stage=number, t_start=run%state%time, nominal=stage%dt, x_start=run%state%x)
+         call change_ground(model, number, .true., run, fault)
+         if (fault%code /= 0) return
          call prescribe(model, stage, run%state%time, run, fault)
          if (fault%code /= 0) return
          run%system%factored = .false.
@@ -73,12 +76,13 @@ contains
          call explain_short_step(stage, run, dt, fault)
          return
       end if
-      run%constraint%load_0 = load_at(model, stage, model%dofs, run%state%time)
-      run%constraint%load_1 = load_at(model, stage, model%dofs, run%state%time + dt)
+      run%constraint%load_0 = acting_load(model, stage, run, run%state%time)
+      run%constraint%load_1 = acting_load(model, stage, run, run%state%time + dt)
       run%constraint%rain_0 = rain_at(model, stage, model%dofs, run%state%time)
       run%constraint%rain_1 = rain_at(model, stage, model%dofs, run%state%time + dt)
       if (allocated(run%constraint%dashpots)) call set_incoming_waves(model, stage, dt, run)
       run%next%gravity = gravity_at(model, run%state%time + dt)
+      run%next%growth = growth_at(stage, run, run%state%time + dt)
       call prescribe(model, stage, run%state%time + dt, run, fault)
       if (fault%code /= 0) return
       call prepare_rates(stage, dt, run)
@@ -148,6 +152,7 @@ contains
       end if
       call constrain_step(model, stage, model%dofs, run%drainage, time, run%at%x_start, run%state%x, &
                           run%constraint)
+      call hold_absent(model%dofs, run, run%constraint)
    end subroutine prescribe
 
    subroutine first_accelerations(model, stage, run, fault)
@@ -157,7 +162,7 @@ contains
       type(fault_t), intent(inout) :: fault
       type(log_t) :: log
 
-      run%constraint%load_0 = load_at(model, stage, model%dofs, run%state%time)
+      run%constraint%load_0 = acting_load(model, stage, run, run%state%time)
       if (allocated(run%constraint%dashpots)) call set_incoming_waves(model, stage, 0.0_wp, run)
       if (any(model%fixes%acceleration)) then
          if (.not. allocated(run%constraint%acceleration)) allocate (run%constraint%acceleration(model%dofs%n))

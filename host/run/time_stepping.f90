@@ -19,6 +19,7 @@ module time_stepping
    use step_landings, only: LAST_STEP
    use step_booking, only: book_accepted_step, watch_effects
    use energy_alarm, only: check_creation, warn_of_created_energy
+   use ground_stages, only: change_ground
    use contact_alarm, only: warn_of_penetration
    use pressure_alarm, only: warn_of_oscillation, warn_lost_pressure, warn_of_inflow
    use unknown_fields, only: DISPLACEMENTS
@@ -80,7 +81,11 @@ contains
          warned = .false.
          ! A run that is taken up again is in the middle of its stage.
          call contacts_act(model, stage, run%system%contacts)
-         if (at%stage /= number) call begin_stage(model, number, run, fault)
+         if (at%stage == number) then
+            call change_ground(model, number, .false., run, fault)
+         else
+            call begin_stage(model, number, run, fault)
+         end if
          if (fault%code /= 0) return
          do
             if (is_over(stage, run)) exit

@@ -267,6 +267,7 @@ contains
       call k%number('damping', region%damping, ZERO, BIG, 'force against the velocity over mass, dynamic stages [1/s]')
       call k%number('stiffness_damping', region%stiffness_damping, ZERO, BIG, &
                     'stress of the skeleton from its rate, dynamic stages [s]')
+      call k%texts('stages', region%stages, 'stages in which it is part of the ground; default: all')
       region%rest = .not. k%given('group')
       scene%regions = [scene%regions, region]
    end subroutine take_region

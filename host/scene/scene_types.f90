@@ -63,6 +63,7 @@ module scene_types
       real(wp) :: rho_s = 2.65_wp, void_ratio = -1.0_wp, damping = 0.0_wp, stiffness_damping = 0.0_wp
       integer :: drainage = COUPLED
       logical :: rest = .false.         !< Without a group: the elements that no other region has.
+      character(LENGTH), allocatable :: stages(:)   !< In which it is part of the ground.
    end type scene_region_t
 
    type, extends(scene_item_t) :: initial_t

@@ -1,0 +1,103 @@
+! SPDX-License-Identifier: MIT
+!> What a scene may ask where parts of its ground join or leave between stages. docs/theory/host.md section 14.
+module staged_ground
+   use exit_codes, only: EXIT_GROUP
+   use faults, only: fault_t, raise, EXIT_INPUT
+   use model_types, only: model_t
+   use scene_types, only: acts_in, place_of, scene_item_t
+   implicit none (type, external)
+   private
+   public :: check_staged_ground
+contains
+   !> Fault EXIT_INPUT: ground that is not there from the start with a stress of its own, or the flow of a start that
+   !> lacks it; a stage without ground; EXIT_GROUP: a load, contact or absorbing boundary that acts in a stage on nodes
+   !> that no present element has.
+   subroutine check_staged_ground(model, fault)
+      type(model_t), intent(in) :: model
+      type(fault_t), intent(inout) :: fault
+      logical :: there(size(model%domain%mesh%x, 2))
+      integer :: s, i
+
+      if (fault%code /= 0) return
+      if (.not. any([(size(model%regions(i)%stages) > 0, i=1, size(model%regions))])) return
+      if (model%subtract_flow) then
+         call raise(fault, EXIT_INPUT, trim(model%file)//': initial_flow = ''subtract'' of &scene keeps the flow of '// &
+                    'the ground at the start, but regions join or leave (stages of &region); leave one of them out.')
+         return
+      end if
+      call check_start(model, fault)
+      do s = 1, size(model%stages)
+         if (fault%code /= 0) return
+         call mark_nodes(model, s, there)
+         if (.not. any(there)) call raise(fault, EXIT_INPUT, trim(model%file)//': no &region is part of the ground '// &
+                                          'in stage '''//trim(model%stages(s)%name)//'''.')
+         do i = 1, size(model%loads)
+            associate (load => model%loads(i))
+               call look(load%scene_item_t, '&load', load%stages, load%group)
+            end associate
+         end do
+         do i = 1, size(model%absorbers)
+            associate (absorber => model%absorbers(i))
+               call look(absorber%scene_item_t, '&absorbing', absorber%stages, absorber%group)
+            end associate
+         end do
+         do i = 1, size(model%contacts)
+            associate (contact => model%contacts(i))
+               call look(contact%scene_item_t, '&contact', contact%stages, contact%slave)
+               call look(contact%scene_item_t, '&contact', contact%stages, contact%master)
+            end associate
+         end do
+      end do
+   contains
+      !> Whether all nodes of a group are there where something acts on it.
+      subroutine look(item, what, stages, group)
+         class(scene_item_t), intent(in) :: item
+         character(*), intent(in) :: what, stages(:)
+         integer, intent(in) :: group   !< 0: a plate with a face of its own.
+
+         if (fault%code /= 0 .or. group == 0) return
+         if (.not. acts_in(stages, model%stages(s)%name)) return
+         if (all(there(model%domain%mesh%groups(group)%nodes))) return
+         call raise(fault, EXIT_GROUP, place_of(item)//'this '//what//' acts in stage '''// &
+                    trim(model%stages(s)%name)//''' on group '''//trim(model%domain%mesh%groups(group)%name)// &
+                    ''', part of which is no ground then (stages of &region); name the stages in which it acts.')
+      end subroutine look
+   end subroutine check_staged_ground
+
+   !> New ground comes without stress.
+   subroutine check_start(model, fault)
+      type(model_t), intent(in) :: model
+      type(fault_t), intent(inout) :: fault
+      integer :: i, k, region
+
+      do i = 1, size(model%initials)
+         associate (initial => model%initials(i))
+            if (.not. (initial%geostatic .or. initial%uniform)) cycle
+            do k = 1, size(model%domain%region_of)
+               region = model%domain%region_of(k)
+               if (acts_in(model%regions(region)%stages, model%stages(1)%name)) cycle
+               if (.not. any(model%domain%mesh%groups(initial%group)%elements == k)) cycle
+               call raise(fault, EXIT_INPUT, place_of(initial)//'this stress covers the &region with group '''// &
+                          trim(model%regions(region)%group_name)//''', which joins in a later stage and comes without '// &
+                          'stress; name the group of the ground that is there from the start.')
+               return
+            end do
+         end associate
+      end do
+   end subroutine check_start
+
+   !> Nodes of elements that a stage has, and of plates.
+   subroutine mark_nodes(model, number, there)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: number   !< Of the stage.
+      logical, intent(out) :: there(:)
+      integer :: e
+
+      there = .false.
+      do e = 1, size(model%domain%region_of)
+         if (acts_in(model%regions(model%domain%region_of(e))%stages, model%stages(number)%name)) &
+            there(model%domain%mesh%t6(:, e)) = .true.
+      end do
+      if (any(there)) there(model%domain%bodies) = .true.
+   end subroutine mark_nodes
+end module staged_ground
