@@ -54,6 +54,7 @@ class Run:
                 self.times.append(float(file["time"][0]))
         with h5py.File(self.files[-1]) as file:
             names = [*file["nodes"], *file["cells"]]
+        self.staged = "ground" in names   # Parts of the ground join or leave.
         self.names = [n for n in names if n not in ("displacement", "velocity", "acceleration")] + list(COMPONENTS)
 
     def field(self, frame, name):
@@ -67,6 +68,10 @@ class Run:
             item = file[place][name]
             values = item[...][self.kept] if place == "nodes" else item[...]
             return values, item.attrs["unit"].decode(), item.attrs["description"].decode(), place == "nodes"
+
+    def ground(self, frame):
+        """Whether every element is part of the ground."""
+        return self.field(frame, "ground")[0] > 0 if self.staged else np.ones(len(self.elements), bool)
 
 
 def moves(values):
@@ -128,7 +133,8 @@ def draw_fields(run, frames, names, factor, output):
         for row, (frame, (values, unit, meaning, of_nodes)) in enumerate(zip(frames, shown)):
             axis = grid[row, column]
             moved = run.nodes + factor*np.stack([run.field(frame, "u_r")[0], run.field(frame, "u_z")[0]], axis=1)
-            mesh = matplotlib.tri.Triangulation(*moved.T, triangles)
+            there = run.ground(frame)
+            mesh = matplotlib.tri.Triangulation(*moved.T, triangles, mask=np.tile(~there, len(SPLIT)))
             if of_nodes:
                 picture = axis.tricontourf(mesh, values, levels=levels, cmap="viridis")
             else:
@@ -138,7 +144,7 @@ def draw_fields(run, frames, names, factor, output):
             bar.outline.set_visible(False)
             # The mesh itself, unless its lines would cover it.
             if len(run.elements) < 3000:
-                axis.triplot(*moved.T, run.elements[:, :3], color="white", lw=0.25, alpha=0.6)
+                axis.triplot(*moved.T, run.elements[there, :3], color="white", lw=0.25, alpha=0.6)
             axis.set_title(f"{name} [{unit}]")
             axis.margins(0)
             axis.set_aspect(stretch)
@@ -220,7 +226,7 @@ def draw_price(folder, output):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=pathlib.Path, help="output folder of a run")
-    parser.add_argument("--fields", nargs="+", help="u_r u_z v_r v_z a_r a_z p_w p_c p_a s_rr s_zz s_tt s_rz p q e S_w")
+    parser.add_argument("--fields", nargs="+", help="u_r u_z v_r v_z a_r a_z p_w p_c p_a s_rr s_zz s_tt s_rz p q e S_w ground")
     parser.add_argument("--times", nargs="+", type=float, help="[s]; the nearest moments that were written are taken")
     parser.add_argument("--histories", nargs="+", help="columns of histories.csv without the name of the point")
     parser.add_argument("--window", nargs=2, type=float, metavar=("FROM", "TO"),

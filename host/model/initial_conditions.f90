@@ -6,7 +6,7 @@ module initial_conditions
    use kinds, only: wp
    use model_types, only: model_t, gravity_at
    use given_pressures, only: pressures_at_start, water, suction
-   use porous_domain, only: state_t, new_state_of, pressures_at, COUPLED, DRY
+   use porous_domain, only: state_t, new_state_of, pressures_at, COUPLED, DRY, is_present
    use material_mud, only: mud_t
    use material_point, only: material_t
    use retention_curves, only: saturation_t
@@ -14,6 +14,7 @@ module initial_conditions
    use texts, only: short, whole
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C
    use scene_types, only: initial_t
+   use staged_ground, only: is_staged, ground_of
    implicit none (type, external)
    private
    public :: initial_state, tension_t
@@ -44,6 +45,10 @@ contains
 
       state = new_state_of(model%domain)
       state%gravity = gravity_at(model, state%time)
+      if (is_staged(model)) then
+         state%present = ground_of(model, 1)
+         state%joins = spread(.false., 1, size(state%present))
+      end if
       allocate (of_point(size(state%s)))
       do i = 1, size(model%initials)
          associate (one => model%initials(i), group => model%domain%mesh%groups(model%initials(i)%group))
@@ -72,6 +77,8 @@ contains
                   pressures = pressures_at(model%domain, e, g, state%x(AT_P_W:, &
                      model%domain%carriers(:model%domain%n_carriers(e), e)))
                   p_c = pressures(2)
+                  ! New ground brings the water of its own suction, whatever its first nodes have.
+                  if (.not. is_present(state, e)) p_c = suction(of_point(p), gp%x(2))
                   if (region%with_c) then
                      sat = region%law%retention(p_c, state%e(p))
                      state%s(p) = sat%s

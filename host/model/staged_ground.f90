@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> What a scene may ask where parts of its ground join or leave between stages. docs/theory/host.md section 14.
+!> Which ground a stage has, and what a scene may ask where parts of it join or leave between stages.
+!> docs/theory/host.md section 14.
 module staged_ground
    use exit_codes, only: EXIT_GROUP
    use faults, only: fault_t, raise, EXIT_INPUT
@@ -7,11 +8,33 @@ module staged_ground
    use scene_types, only: acts_in, place_of, scene_item_t
    implicit none (type, external)
    private
-   public :: check_staged_ground
+   public :: is_staged, ground_of, check_staged_ground
 contains
-   !> Fault EXIT_INPUT: ground that is not there from the start with a stress of its own, or the flow of a start that
-   !> lacks it; a stage without ground; EXIT_GROUP: a load, contact or absorbing boundary that acts in a stage on nodes
-   !> that no present element has.
+   !> Whether parts of the ground join or leave.
+   pure logical function is_staged(model)
+      type(model_t), intent(in) :: model
+      integer :: i
+
+      is_staged = .false.
+      do i = 1, size(model%regions)
+         is_staged = is_staged .or. size(model%regions(i)%stages) > 0
+      end do
+   end function is_staged
+
+   !> Elements that are part of the ground in a stage. (elements)
+   pure function ground_of(model, number) result(present)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: number   !< Of the stage.
+      logical :: present(size(model%domain%region_of)), there(size(model%regions))
+      integer :: i
+
+      there = [(acts_in(model%regions(i)%stages, model%stages(number)%name), i=1, size(there))]
+      present = there(model%domain%region_of)
+   end function ground_of
+
+   !> Fault EXIT_INPUT: a stage that does not exist; ground that is not there from the start with a stress of its own,
+   !> or the flow of a start that lacks it; a stage without ground; EXIT_GROUP: a load, contact, absorbing boundary or
+   !> rigid body that acts in a stage on nodes that no present element has.
    subroutine check_staged_ground(model, fault)
       type(model_t), intent(in) :: model
       type(fault_t), intent(inout) :: fault
@@ -19,13 +42,13 @@ contains
       integer :: s, i
 
       if (fault%code /= 0) return
-      if (.not. any([(size(model%regions(i)%stages) > 0, i=1, size(model%regions))])) return
+      if (.not. is_staged(model)) return
       if (model%subtract_flow) then
          call raise(fault, EXIT_INPUT, trim(model%file)//': initial_flow = ''subtract'' of &scene keeps the flow of '// &
                     'the ground at the start, but regions join or leave (stages of &region); leave one of them out.')
          return
       end if
-      call check_start(model, fault)
+      call check_names(model, fault)
       do s = 1, size(model%stages)
          if (fault%code /= 0) return
          call mark_nodes(model, s, there)
@@ -41,6 +64,11 @@ contains
                call look(absorber%scene_item_t, '&absorbing', absorber%stages, absorber%group)
             end associate
          end do
+         do i = 1, size(model%plates)
+            associate (plate => model%plates(i))
+               call look(plate%scene_item_t, '&plate', [character(1) ::], plate%group)
+            end associate
+         end do
          do i = 1, size(model%contacts)
             associate (contact => model%contacts(i))
                call look(contact%scene_item_t, '&contact', contact%stages, contact%slave)
@@ -48,6 +76,7 @@ contains
             end associate
          end do
       end do
+      if (fault%code == 0) call check_start(model, fault)
    contains
       !> Whether all nodes of a group are there where something acts on it.
       subroutine look(item, what, stages, group)
@@ -63,6 +92,21 @@ contains
                     ''', part of which is no ground then (stages of &region); name the stages in which it acts.')
       end subroutine look
    end subroutine check_staged_ground
+
+   !> Stages of regions exist.
+   subroutine check_names(model, fault)
+      type(model_t), intent(in) :: model
+      type(fault_t), intent(inout) :: fault
+      integer :: i, k
+
+      do i = 1, size(model%regions)
+         do k = 1, size(model%regions(i)%stages)
+            if (any(model%stages%name == model%regions(i)%stages(k)) .or. fault%code /= 0) cycle
+            call raise(fault, EXIT_INPUT, place_of(model%regions(i)%scene_item_t)//'there is no stage '''// &
+                       trim(model%regions(i)%stages(k))//'''.')
+         end do
+      end do
+   end subroutine check_names
 
    !> New ground comes without stress.
    subroutine check_start(model, fault)
@@ -91,12 +135,13 @@ contains
       type(model_t), intent(in) :: model
       integer, intent(in) :: number   !< Of the stage.
       logical, intent(out) :: there(:)
+      logical :: present(size(model%domain%region_of))
       integer :: e
 
       there = .false.
-      do e = 1, size(model%domain%region_of)
-         if (acts_in(model%regions(model%domain%region_of(e))%stages, model%stages(number)%name)) &
-            there(model%domain%mesh%t6(:, e)) = .true.
+      present = ground_of(model, number)
+      do e = 1, size(present)
+         if (present(e)) there(model%domain%mesh%t6(:, e)) = .true.
       end do
       if (any(there)) there(model%domain%bodies) = .true.
    end subroutine mark_nodes

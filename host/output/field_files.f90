@@ -27,8 +27,8 @@ module field_files
    end type field_t
 
    integer, parameter :: N_DISPLACEMENT = 1, N_VELOCITY = 2, N_ACCELERATION = 3, N_P_W = 4, N_P_C = 5, N_P_A = 6, &
-                         N_FIRST_CELL = 7, N_S_W = 14
-   type(field_t), parameter :: LIST(14) = [ &
+                         N_FIRST_CELL = 7, N_S_W = 14, N_GROUND = 15
+   type(field_t), parameter :: LIST(15) = [ &
       field_t('displacement', 'm', 'u_r, u_z, 0', .true., 3), &
       field_t('velocity', 'm/s', 'v_r, v_z, 0', .true., 3), &
       field_t('acceleration', 'm/s2', 'a_r, a_z, 0', .true., 3), &
@@ -42,7 +42,8 @@ module field_files
       field_t('p', 'kPa', 'mean effective stress, compression positive', .false., 1), &
       field_t('q', 'kPa', 'deviator stress: square root of 3 J_2', .false., 1), &
       field_t('e', '-', 'void ratio', .false., 1), &
-      field_t('S_w', '-', 'degree of saturation', .false., 1)]
+      field_t('S_w', '-', 'degree of saturation', .false., 1), &
+      field_t('ground', '-', '1: part of the ground at this time, 0: not', .false., 1)]
 contains
    !> mesh.h5: nodes, elements, quadrature points, region of every element. Nothing without HDF5. Fault EXIT_OUTPUT: it
    !> cannot be written.
@@ -117,7 +118,7 @@ contains
       call put_text(file, 'kind', 'fields of mud_host')
       call put(file, 'time', [state%time], 's', 'time')
       do i = 1, size(LIST)
-         if (.not. has(domain, i)) cycle
+         if (.not. has(domain, state, i)) cycle
          select case (i)
          case (N_DISPLACEMENT)
             call put_vector(state%x(:DISPLACEMENTS, :))
@@ -131,6 +132,8 @@ contains
             call put_list(x(AT_P_C, :))
          case (N_P_A)
             call put_list(x(AT_P_W, :) + x(AT_P_C, :))
+         case (N_GROUND)
+            call put_list(merge(1.0_wp, 0.0_wp, state%present))
          case default
             if (i == N_FIRST_CELL) call means(domain, state, cells)
             call put_list(cells(i - N_FIRST_CELL + 1, :))
@@ -142,7 +145,7 @@ contains
       call put(file, 'points/S_w', state%s, '-', 'degree of saturation of every quadrature point')
       call write_file(file, good)
       if (.not. good) call complain(path, fault)
-      if (good) call write_xdmf(folder, domain, frames, fault)
+      if (good) call write_xdmf(folder, domain, state, frames, fault)
    contains
       subroutine put_list(values)
          real(wp), intent(in) :: values(:)
@@ -161,8 +164,9 @@ contains
    end subroutine write_frame
 
    !> Whether the scene has the field.
-   pure logical function has(domain, i)
+   pure logical function has(domain, state, i)
       type(domain_t), intent(in) :: domain
+      type(state_t), intent(in) :: state
       integer, intent(in) :: i
 
       select case (i)
@@ -170,6 +174,8 @@ contains
          has = domain%with_w
       case (N_P_C, N_P_A, N_S_W)
          has = domain%with_c
+      case (N_GROUND)
+         has = allocated(state%present)
       case default
          has = .true.
       end select
@@ -230,9 +236,10 @@ contains
       end do
    end subroutine means
 
-   subroutine write_xdmf(folder, domain, frames, fault)
+   subroutine write_xdmf(folder, domain, state, frames, fault)
       character(*), intent(in) :: folder
       type(domain_t), intent(in) :: domain
+      type(state_t), intent(in) :: state
       type(frames_t), intent(in) :: frames
       type(fault_t), intent(inout) :: fault
       character(*), parameter :: LF = new_line('a')
@@ -252,7 +259,7 @@ contains
       do k = 1, size(frames%times)
          attributes = ''
          do i = 1, size(LIST)
-            if (.not. has(domain, i)) cycle
+            if (.not. has(domain, state, i)) cycle
             attributes = attributes//'    <Attribute Name="'//trim(LIST(i)%name)//' ['//trim(LIST(i)%unit)// &
                          ']" AttributeType="'//merge('Vector', 'Scalar', LIST(i)%components == 3)// &
                          '" Center="'//merge('Node', 'Cell', LIST(i)%of_nodes)//'">'// &

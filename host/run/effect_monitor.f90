@@ -7,7 +7,7 @@ module effect_monitor
    use effect_types, only: effect_t, OF_P_W, OF_P_C, OF_INERTIA, OF_SEEPAGE, OF_GRAVITY, OF_FLOW, NEVER
    use model_types, only: model_t
    use unknown_fields, only: DISPLACEMENTS, AT_P_W
-   use porous_domain, only: state_t, mixture_density
+   use porous_domain, only: state_t, mixture_density, is_present
    use generalised_alpha, only: DYNAMIC
    use texts, only: short
    implicit none (type, external)
@@ -121,7 +121,7 @@ contains
          least = huge(1.0_wp)
          associate (m => model%domain)
             do e = 1, size(m%mesh%t6, 2)
-               if (m%regions(m%region_of(e))%law%has_energy) cycle
+               if (m%regions(m%region_of(e))%law%has_energy .or. .not. is_present(new, e)) cycle
                least = min(least, minval(-sum(new%stress(1:3, (e - 1)*m%rule + 1:e*m%rule), dim=1)/3))
             end do
          end associate

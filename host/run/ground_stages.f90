@@ -14,7 +14,8 @@ module ground_stages
    use porous_domain, only: state_t, copy_state
    use prescribed_values, only: constraint_t
    use run_state, only: run_t
-   use scene_types, only: acts_in, stage_t
+   use scene_types, only: stage_t
+   use staged_ground, only: is_staged, ground_of
    use texts, only: whole
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
@@ -30,21 +31,16 @@ contains
       logical, intent(in) :: begins        !< Else the run is in the middle of it.
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
-      logical :: now(size(model%regions)), before(size(model%regions))
+      logical :: before(size(model%domain%region_of))
       integer :: i, f
 
-      run%at%staged = .false.
-      do i = 1, size(model%regions)
-         run%at%staged = run%at%staged .or. size(model%regions(i)%stages) > 0
-      end do
+      run%at%staged = is_staged(model)
       if (.not. run%at%staged) return
-      now = [(acts_in(model%regions(i)%stages, model%stages(number)%name), i=1, size(now))]
-      before = now
-      if (number > 1) before = [(acts_in(model%regions(i)%stages, model%stages(number - 1)%name), i=1, size(now))]
-      associate (region => model%domain%region_of, state => run%state)
-         state%present = now(region)
-         state%joins = now(region) .and. .not. before(region)
-         call find_held_up(model, now(region) .or. .not. before(region), run, fault)
+      before = ground_of(model, max(1, number - 1))
+      associate (state => run%state)
+         state%present = ground_of(model, number)
+         state%joins = state%present .and. .not. before
+         call find_held_up(model, state%present .or. .not. before, run, fault)
          if (fault%code /= 0) return
          call mark_absent(model%dofs, state%present, run%at%absent)
       end associate

@@ -8,7 +8,7 @@ module pressure_alarm
    use generalised_alpha, only: STATIC
    use material_point, only: lost_pressure, PRESSURE_LOST
    use model_types, only: model_t
-   use porous_domain, only: COUPLED
+   use porous_domain, only: state_t, is_present, COUPLED
    use texts, only: short
    use unknown_fields, only: AT_P_W
    use scene_types, only: stage_t
@@ -23,29 +23,31 @@ module pressure_alarm
 contains
    !> After an accepted step; once a run, on standard error, also where the run is quiet. Not in static stages, nor of
    !> linear pressures. docs/theory/host.md section 3.1. Raises no fault.
-   subroutine warn_of_oscillation(model, stage, time, x, told)
+   subroutine warn_of_oscillation(model, stage, state, told)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: time     !< [s]
-      real(wp), intent(in) :: x(:, :)  !< Unknowns of the nodes. (FIELDS, nodes) [m, kPa]
+      type(state_t), intent(in) :: state
       logical, intent(inout) :: told
       real(wp) :: share, p(size(model%domain%mesh%x, 2))
+      logical :: counts(size(p))
       integer :: node, e
 
       ! Linear pressures are those of the corners alone.
       if (told .or. stage%kind == STATIC .or. model%domain%n_p < 6) return
-      p = x(AT_P_W, :size(p))
+      p = state%x(AT_P_W, :size(p))
       associate (mesh => model%domain%mesh, flows => [(model%domain%regions(model%domain%region_of(e))%drainage == &
-                 COUPLED, e=1, size(model%domain%region_of))])
+                 COUPLED .and. is_present(state, e), e=1, size(model%domain%region_of))])
          if (.not. any(flows)) return
-         ! Pressures that are no unknowns do not count.
-         do e = 1, size(p) - size(model%domain%bodies)
-            if (model%dofs%of(AT_P_W, e) == 0) p(e) = p(mesh%t6(1, findloc(flows, .true., dim=1)))
+         ! Pressures that are no unknowns of the ground do not count.
+         counts = .false.
+         do e = 1, size(flows)
+            if (flows(e)) counts(mesh%t6(:, e)) = .true.
          end do
+         where (.not. counts) p = p(mesh%t6(1, findloc(flows, .true., dim=1)))
          call outlier(mesh%t6(:, pack([(e, e=1, size(flows))], flows)), p, share, node)
          if (share <= ALARMING_SHARE) return
          told = .true.
-         write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//', time '//short(time)// &
+         write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//', time '//short(state%time)// &
             ' s: the pore water pressure at ('//short(mesh%x(1, node))//', '//short(mesh%x(2, node))//') m, '// &
             short(p(node))//' kPa, differs from those around it by '//short(100*share)// &
             ' % of the range of all pressures. Pressures that oscillate from node to node are wrong: refine '// &
@@ -55,22 +57,21 @@ contains
 
    !> After an accepted step; once a run, on standard error, also where the run is quiet. docs/theory/memory-rules.md
    !> section 2.2. Raises no fault.
-   subroutine warn_lost_pressure(model, time, stress, told)
+   subroutine warn_lost_pressure(model, state, told)
       type(model_t), intent(in) :: model
-      real(wp), intent(in) :: time           !< [s]
-      real(wp), intent(in) :: stress(:, :)   !< Effective, of the Gauss points, tension positive. (6, points) [kPa]
+      type(state_t), intent(in) :: state
       logical, intent(inout) :: told
       integer :: e, g, p
 
       if (told) return
       do e = 1, size(model%domain%region_of)
-         associate (law => model%domain%regions(model%domain%region_of(e))%law)
-            if (.not. law%unguarded) cycle
+         associate (law => model%domain%regions(model%domain%region_of(e))%law, stress => state%stress)
+            if (.not. law%unguarded .or. .not. is_present(state, e)) cycle
             do g = 1, model%domain%rule
                p = (e - 1)*model%domain%rule + g
                if (.not. lost_pressure(law, stress(:, p))) cycle
                told = .true.
-               write (error_unit, '(a)') 'mud_host: warning: time '//short(time)// &
+               write (error_unit, '(a)') 'mud_host: warning: time '//short(state%time)// &
                   ' s: the mean effective stress p'' at ('//short(model%domain%gauss(g, e)%x(1))//', '// &
                   short(model%domain%gauss(g, e)%x(2))//') m is '//short(-sum(stress(:3, p))/3)//' kPa: '//PRESSURE_LOST
                return

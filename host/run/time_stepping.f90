@@ -131,8 +131,8 @@ contains
          at%step = at%step + 1
          run%steps = run%steps + 1
          if (warns(observer)) call warn_of_penetration(model, run%next%time, run%system%contacts)
-         if (warns(observer)) call warn_of_oscillation(model, stage, run%next%time, run%next%x, run%told_oscillation)
-         if (warns(observer)) call warn_lost_pressure(model, run%next%time, run%next%stress, run%told_pressure)
+         if (warns(observer)) call warn_of_oscillation(model, stage, run%next, run%told_oscillation)
+         if (warns(observer)) call warn_lost_pressure(model, run%next, run%told_pressure)
          if (warns(observer)) call warn_of_inflow(model, stage, run%next%time, run%constraint%drinks, run%told_inflow)
          call book_accepted_step(model, scheme, run)
          report = step_report_t(number, dt, step_error(scheme, run%state%x, run%state%a, run%next%x, run%next%a), &

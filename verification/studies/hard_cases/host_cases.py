@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from host_runs import BOTH, SETTINGS, HostCase
-from host_scenes import column, falling, footing, impact, meshes, rectangle, showers, square, tolerant
+from host_scenes import bank, column, falling, footing, impact, meshes, rectangle, showers, square, tolerant
 
 DEFAULT = SETTINGS[:1]
 CONTACT, WATER, FAILURE, MESH = "contact", "pore water", "failure", "mesh"
@@ -73,6 +73,17 @@ def above_limit(runs):
         fallen = np.sum(row["top.inflow_w"])
         worst = max(worst, 100 * float(np.max(pressure)) / (9.81 * 0.02) - 100, 100 * float(np.sum(np.maximum(0, -row["top.outflow_w"])) / fallen),
                     100 * float(np.sum(np.maximum(0, row["top.outflow_w"] - row["top.inflow_w"])) / fallen))
+    return worst
+
+
+def off_the_weight(runs):
+    """Force of the base against the weight of the ground that is there at the end of every stage of the bank [%]. Mass and volume at the start of
+    each layer; small strains: the weight of an element follows its void ratio by less than what is asked."""
+    worst = 0.0
+    for run in runs.values():
+        for name, height in (("rest", 2), ("one", 2.5), ("two", 3), ("three", 3.5), ("cut", 2.5)):
+            weight = 2 * height * 2.7 / 1.85 * 9.81
+            worst = max(worst, 100 * abs(float(run.table("reactions_" + name)["bottom.force_z"][-1]) / weight - 1))
     return worst
 
 
@@ -155,6 +166,9 @@ CASES = (
     HostCase("showers", WATER, "rain of three times the conductivity, five times on and off: the surface of unsaturated sand ponds and dries",
              "pressure above the pond's, water drawn in at the limit, and run-off beyond the rain, of pond and rain [%]", 0.1,
              lambda s: {"": showers(s)}, above_limit, surface_pressures, DEFAULT),
+    HostCase("a bank in layers, cut again", FAILURE, "new ground without stress, where sand has no stiffness; two layers leave at once",
+             "force of the base against the weight of the ground at the end of each stage [%]", 1.0,
+             lambda s: {"": bank(s)}, off_the_weight, last_settlement, DEFAULT),
     footing_case("footing on loose sand", "the tangent of a softening or perfectly plastic soil is nearly singular", void_ratio=0.907),
     footing_case("footing on dense sand", "softening and dilation under the edge", void_ratio=0.75),
     footing_case("footing on undrained sand", "no volume change, and loose sand loses its strength", void_ratio=0.907, undrained=True,

@@ -70,6 +70,26 @@ def showers(setting, dt=30):
             f"&load group='top' kind='rain' value={load(setting, 3e-4)} history='clouds' ponding=0.02 /\n&point name='centre' r=0 z=0 /\n")
 
 
+LIFT = 0.5   # [m]
+BANK = (-2, 0, LIFT, 2 * LIFT, 3 * LIFT)
+
+
+def bank(setting):
+    """Three layers of loose sand, without stress when they come, on two metres of it; then the uppermost two leave again."""
+    stages = ["rest", "one", "two", "three", "cut"]
+    present = ("'one','two','three','cut'", "'two','three'", "'three'")
+    text = ("&scene name='bank' geometry='plane_strain' gravity=" + load(setting, 9.81) + " /\n"
+            f"&mesh r=0,1,2 r_cells=1,1 z={','.join(map(str, BANK))} z_cells=2,1,1,1 /\n{sand(setting)}"
+            "&region material='sand' drainage='dry' void_ratio=0.85 rho_s=2.7 /\n&initial group='block_1_1' stress='geostatic' k_0=0.5 surface=0 /\n"
+            "&initial group='block_2_1' stress='geostatic' k_0=0.5 surface=0 /\n")
+    for row, names in enumerate(present, 2):
+        text += f"&region group='block_1_{row}' material='sand' drainage='dry' void_ratio=0.85 rho_s=2.7 stages={names} /\n"
+        text += f"&region group='block_2_{row}' material='sand' drainage='dry' void_ratio=0.85 rho_s=2.7 stages={names} /\n"
+    for name in stages:
+        text += f"&stage name='{name}' analysis='static' duration=1 dt=0.25 max_iterations=20 " + ("zero_displacements='yes' /\n" if name == "rest" else "/\n")
+    return text + SIDES + "&point name='centre' r=0 z=0 /\n"
+
+
 FOOTING_MESH = "&mesh r=0,0.5,4 r_cells=2,3 r_ratio=0.7,1.9 z=-4,-0.6,0 z_cells=2,2 z_ratio=0.4,0.7 /\n"
 
 

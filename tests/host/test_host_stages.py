@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: MIT
+"""Ground that joins and leaves between stages: what is refused and why, runs that are taken up again, water that new
+ground brings, gravity that grows, the ground of every moment in the files of fields."""
+import math
+import os
+import subprocess
+
+from checking import build, check, root, work
+import tables  # noqa: E402 (checking knows its folder)
+
+HOST = build / "host/mud_host"
+SCENES = root / "verification/host/stages"
+ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1"}
+
+
+def start(name, text, *more):
+    (work / f"{name}.nml").write_text(text)
+    return subprocess.run([HOST, work / f"{name}.nml", "--output", work / name, "--quiet", *more], capture_output=True,
+                          text=True, env=ENVIRONMENT)
+
+
+def run(name, text, *more):
+    done = start(name, text, *more)
+    check(f"{name} runs", done.returncode == 0, done.stderr)
+    return tables.columns(work / name / "histories.csv") if done.returncode == 0 else None
+
+
+def scene(name, *pairs):
+    """A scene of the page, with other words; each of them stands in it."""
+    text = (SCENES / f"{name}.nml").read_text(encoding="utf-8")
+    for old, new in pairs:
+        check(f"{name}.nml has {old!r}", old in text)
+        text = text.replace(old, new)
+    return text
+
+
+def test_what_is_refused():
+    layers, cut = scene("embankment"), scene("water")
+    for what, text, code, words in (
+            ("a stage that does not exist", scene("water", ("stages = 'rest' /\n&initial", "stages = 'rust' /\n&initial")),
+             2, ("there is no stage 'rust'",)),
+            ("a stage without ground", scene("embankment", ("&initial group = 'block_1_1'  stress = 'geostatic'  k_0 = 0.4285714286  surface = 2 /\n", ""), ("&region  material = 'soil'  void_ratio = 0.8  rho_s = 2.7 /",
+                                                            "&region group = 'block_1_1' material = 'soil'  void_ratio = 0.8  rho_s = 2.7  stages = 'one', 'two', 'three' /")),
+             2, ("no &region is part of the ground in stage 'rest'",)),
+            ("a load on ground that is not there yet", layers + "&load group = 'top' kind = 'pressure' value = 1 /\n",
+             None, ("&load acts in stage 'rest' on group 'top'", "name the stages in which it acts")),
+            ("an absorbing boundary that leaves", cut + "&absorbing group = 'top' /\n",
+             None, ("&absorbing acts in stage 'cut' on group 'top'",)),
+            ("a contact with ground that leaves", cut + "&plate name = 'p' r = 0, 1 z = 5.1 mass = 1 /\n"
+             "&contact name = 'c' slave = 'top' master = 'p' stages = 'cut', 'drain' /\n",
+             None, ("&contact acts in stage 'cut' on group 'top'",)),
+            ("a rigid body on ground that leaves", cut + "&plate name = 'p' group = 'top' mass = 1 /\n",
+             None, ("&plate acts in stage 'cut' on group 'top'",)),
+            ("a stress in ground that joins", scene("embankment", ("&initial group = 'block_1_1'  stress", "&initial stress")),
+             2, ("&region with group 'block_1_2', which joins in a later stage and comes without stress",)),
+            ("the flow of a start that lacks ground", scene("water", ("fields = 'u-p_w'", "fields = 'u-p_w' initial_flow = 'subtract'")),
+             2, ("initial_flow = 'subtract'", "leave one of them out"))):
+        done = start("refused", text, "--check")
+        check(f"{what} is refused", done.returncode == code if code else done.returncode not in (0, 1), (done.returncode, done.stderr))
+        for word in words:
+            check(f"{what}: {word}", word in done.stderr, done.stderr)
+    check("a load that names the stages of its ground is taken",
+          start("taken", layers + "&load group = 'top' kind = 'pressure' value = 1 stages = 'three' /\n", "--check").returncode == 0)
+
+
+def test_a_run_is_taken_up_within_a_stage_and_at_its_end():
+    # After the second step of the cut of four, where what left still holds up a half of its force, and after the last.
+    begin = scene("water", ("duration = 1e7  dt = 10  dt_growth = 1.3", "duration = 100  dt = 25"))
+    until_cut = begin.replace("&fix     group = 'block_1_2'  field = 'p_w'  stages = 'drain' /\n", "")
+    until_cut = until_cut[:until_cut.index("&stage   name = 'drain'")] + until_cut[until_cut.index("&point"):]
+    for steps, of_scene in ((3, until_cut), (5, begin)):
+        text = of_scene.replace("gravity = 10", f"gravity = 10 checkpoint_steps = {steps}")
+        name, folder = f"taken_up_{steps}", work / f"taken_up_{steps}"
+        run(name, text)
+        before = {path.name: path.read_bytes() for path in folder.glob("*.csv")}
+        check("there is something to compare", "ledger.csv" in before, sorted(before))
+        done = start(name, text, "--restart", folder / "checkpoint.h5")
+        check(f"taken up after step {steps}", done.returncode == 0, done.stderr)
+        for file in ("histories.csv", "ledger.csv", "reactions_cut.csv"):
+            check(f"taken up after step {steps}: same bytes of {file}", (folder / file).read_bytes() == before[file])
+
+
+SUCTIONS = """&scene name = 'wet' geometry = 'plane_strain' fields = 'u-p_w-p_c' /
+&mesh r = 0, 1 r_cells = 1 z = 0, 1, 2 z_cells = 2, 2 /
+&elastic name = 's' young = 1e8 poisson = 0 /
+&retention name = 'r' law = 'van_genuchten' alpha = 0.1 n = 2 /
+&permeability name = 'k' intrinsic = 1e-11 law = 'constant' /
+&fluids k_w = 2e6 /
+&region group = 'block_1_1' material = 's' permeability = 'k' retention = 'r' void_ratio = 0.8 /
+&region group = 'block_1_2' material = 's' permeability = 'k' retention = 'r' void_ratio = 0.8 stages = 'two' /
+&initial group = 'block_1_2' p_w = -20 p_c = 20 /
+&initial group = 'block_1_1' p_w = -5 p_c = 5 stress = 'uniform' sigma = 0, 0, 0 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'all' field = 'p_a' /
+&stage name = 'one' analysis = 'static' duration = 1 dt = 1 /
+&stage name = 'two' analysis = 'quasi_static' duration = 1e8 dt = 10 dt_growth = 1.5 tolerance = 1e-8 /
+&point name = 'low' r = 0 z = 0 /
+&point name = 'high' r = 0 z = 2 /
+"""
+
+
+def test_new_ground_brings_its_water():
+    # Without gravity the suction becomes the same everywhere, and the water of both blocks is there: the mean of
+    # the saturations of 5 and 20 kPa, S = (1 + (0.1 s)**2)**-0.5. Water is lighter in tension by 1e-5.
+    rows = run("wet", SUCTIONS)
+    if rows is None:
+        return
+    curve = lambda s: (1 + (0.1*s)**2)**-0.5  # noqa: E731
+    wanted = (curve(5) + curve(20))/2
+    suction = 10*math.sqrt(wanted**-2 - 1)
+    for name in ("low", "high"):
+        check(f"{name}: the suction of the water of both", abs(rows[f"{name}.p_c"][-1]/suction - 1) < 1e-3,
+              (rows[f"{name}.p_c"][-1], suction))
+    check("nothing happens before", abs(rows["low.p_c"][1] - 5) < 1e-9, rows["low.p_c"][1])
+
+
+def test_gravity_that_grows_after_the_cut():
+    # Elastic: the end does not depend on the order of the lifts' weights and of the growth of gravity.
+    grows = (("gravity = 10", "gravity = 10 gravity_history = 'g'"), ("&fix     group = 'left'", "&history name = 'g' times = 0, {0}, {1} values = 1, 1, 2 /\n&fix     group = 'left'"))
+    more = "&stage name = 'spin' analysis = 'static' duration = 1 dt = 0.5 tolerance = 1e-10 /\n&point   name = 'base'"
+    lifts = run("spin_4", scene("excavation", grows[0], (grows[1][0], grows[1][1].format(5, 6)), ("&point   name = 'base'", more)))
+    one = [(f"&stage   name = 'lift{i}'  analysis = 'static'  duration = 1  dt = 0.5  tolerance = 1e-10 /\n", "") for i in (1, 2, 3)]
+    names = [("stages = 'rest', 'lift1', 'lift2', 'lift3' /", "stages = 'rest' /"), ("stages = 'rest', 'lift1', 'lift2' /", "stages = 'rest' /"),
+             ("stages = 'rest', 'lift1' /", "stages = 'rest' /")]
+    once = run("spin_1", scene("excavation", grows[0], (grows[1][0], grows[1][1].format(2, 3)), ("&point   name = 'base'", more), *names, *one))
+    if lifts is None or once is None:
+        return
+    for name in ("base.u_z", "edge.u_r", "edge.u_z", "toe.u_z"):
+        check(f"{name}: four lifts as one", abs(lifts[name][-1]/once[name][-1] - 1) < 1e-7, (lifts[name][-1], once[name][-1]))
+    # Before the growth the heave of the cut, with it the settlement of what is left: gravity has its part.
+    check("gravity grew", lifts["base.u_z"][-1] < lifts["base.u_z"][-3] - 1e-5, lifts["base.u_z"][-3:])
+
+
+def test_fields_say_what_is_ground():
+    h5py = __import__("pytest").importorskip("h5py")
+    folder = work / "layers"
+    if run("layers", scene("embankment")) is None:
+        return
+    found = []
+    for path in sorted(folder.glob("fields_*.h5")):
+        with h5py.File(path) as file:
+            found.append(int(file["cells/ground"][...].sum()))
+    # Two triangles a cell: two cells, then one more with every layer; a picture at the start and at every end.
+    check("ground of every moment", sorted(set(found)) == [4, 6, 8, 10], found)
+    check("it grows", found == sorted(found), found)
+    check("results.xdmf has it", "ground [-]" in (folder / "results.xdmf").read_text())
+    done = subprocess.run([HOST, root / "tests/host/scenes/restart.nml", "--output", work / "plain", "--quiet"], capture_output=True, env=ENVIRONMENT)
+    check("no such field where nothing joins or leaves", done.returncode == 0
+          and "ground" not in (work / "plain/results.xdmf").read_text())
