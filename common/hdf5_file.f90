@@ -7,7 +7,7 @@ module hdf5_file
    use, intrinsic :: iso_c_binding, only: c_ptr, c_loc
    use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5eset_auto_f, h5fcreate_f, h5fopen_f, h5fclose_f, &
                    h5pcreate_f, h5pclose_f, h5pset_fapl_core_f, h5pset_chunk_f, &
-                   h5pset_libver_bounds_f, H5F_LIBVER_V18_F, &
+                   h5pset_libver_bounds_f, H5F_LIBVER_V110_F, &
                    h5pset_fletcher32_f, h5pset_obj_track_times_f, h5pset_create_inter_group_f, h5screate_f, &
                    h5screate_simple_f, h5sclose_f, h5dcreate_f, h5dopen_f, h5dwrite_f, h5dread_f, h5dclose_f, &
                    h5dget_space_f, h5sget_simple_extent_ndims_f, h5sget_simple_extent_dims_f, h5tcopy_f, &
@@ -43,8 +43,8 @@ module hdf5_file
       module procedure get_real, get_real_2, get_integer
    end interface get
 contains
-   !> An empty file, in memory until write_file. `guarded`: in the format of HDF5 1.8, which has checksums over its
-   !> structure too; what reads it must not be older. file%good is false after a failure, of this call or any later one.
+   !> An empty file, in memory until write_file. `guarded`: in the format of HDF5 1.10, which has checksums over its
+   !> structure too, the place of every dataset included; what reads it must not be older. file%good is false after a failure, of this call or any later one.
    subroutine new_file(file, path, guarded)
       type(h5_t), intent(out) :: file
       character(*), intent(in) :: path
@@ -63,7 +63,7 @@ contains
       call h5pset_fapl_core_f(access, GROWTH, .true., status)
       call note(file, status)
       if (present(guarded)) then
-         if (guarded) call h5pset_libver_bounds_f(access, H5F_LIBVER_V18_F, H5F_LIBVER_V18_F, status)
+         if (guarded) call h5pset_libver_bounds_f(access, H5F_LIBVER_V110_F, H5F_LIBVER_V110_F, status)
          call note(file, status)
       end if
       call h5fcreate_f(path//PART, H5F_ACC_TRUNC_F, file%id, status, creation, access)

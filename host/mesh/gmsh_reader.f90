@@ -316,6 +316,9 @@ contains
          blocks = [blocks, one]
       end do
       if (used /= head(2)) call wrong(reader, 'fewer elements than announced', fault)
+      call next(reader, fault)
+      if (fault%code == 0 .and. reader%text /= '$EndElements') &
+         call wrong(reader, 'expected $EndElements after the last element', fault)
    end subroutine read_elements
 
    !> Collects triangles, turns clockwise ones, and makes a group of every physical name.

@@ -22,12 +22,12 @@ module checkpoints
    public :: write_checkpoint, read_checkpoint, CHECKPOINT
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
-   type(restart_kind_t), parameter :: KIND_OF_FILE = restart_kind_t('checkpoint of mud_host', '11', &
+   type(restart_kind_t), parameter :: KIND_OF_FILE = restart_kind_t('checkpoint of mud_host', '12', &
       CHECKPOINT//' of a run', &
       ' is an HDF5 file, but no checkpoint of mud_host; name the '//CHECKPOINT//' of a run.', &
       'Finish the run with the program that began it.')
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
-   integer, parameter :: N_COUNTERS = 14
+   integer, parameter :: N_COUNTERS = 15, AT_FRAMES = 14, AT_PAIRS = 15   !< Of the list of counters.
    character(*), parameter :: DAMAGED = ' is damaged: an entry is missing, has another extent or a wrong '// &
                                         'checksum; use an older copy, or start anew.'
    character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
@@ -58,7 +58,7 @@ contains
          call put(file, 'counters', counters_of(run, tables), '-', 'stage, step of it, cuts in force, good steps, '// &
                   'steps, iterations, cuts, rate evaluations, tangent in every iteration, bytes of '// &
                   'histories.csv, bytes of ledger.csv, bytes of contact.csv, of the table of '// &
-                  'reactions, pairs of unknowns brought '// &
+                  'reactions, fields written, pairs of unknowns brought '// &
                   'together by contacts')
          call put(file, 'stage', [s%time, c%t_start, c%nominal, c%factor], 's', &
                   'time, start of the stage, step without cuts, share of it [-]')
@@ -112,13 +112,16 @@ contains
       if (fault%code == 0) then
          counters = 0.0_wp
          call get(file, 'counters', counters)
-         if (.not. possible(counters, size(model%stages))) file%good = .false.
+         if (.not. possible(counters, size(model%stages))) then
+            file%good = .false.
+            counters = 0.0_wp
+         end if
          call get(file, 'stage', stage)
          call get(file, 'ledger', ledger)
          call get(file, 'largest', run%system%largest)
          allocate (run%at%x_start, mold=run%state%x)
          if (allocated(tables%frames%times)) deallocate (tables%frames%times)
-         allocate (tables%frames%times(extent_of(file, 'frames')))
+         allocate (tables%frames%times(nint(counters(AT_FRAMES))))
          call get(file, 'frames', tables%frames%times)
          call get(file, 'x_start', run%at%x_start)
          call get(file, 'x', run%state%x)
@@ -136,8 +139,8 @@ contains
          if (file%good .and. allocated(model%effects)) call take_monitor(file, run)
          if (file%good) call take_tractions(file, run)
          if (file%good) call take_control(file, model, run)
-         if (file%good .and. counters(N_COUNTERS) > 0.5_wp) &
-            call take_pairs(file, nint(counters(N_COUNTERS)), model%dofs, run)
+         if (file%good .and. counters(AT_PAIRS) > 0.5_wp) &
+            call take_pairs(file, nint(counters(AT_PAIRS)), model%dofs, run)
          if (file%good) then
             run%state%time = stage(1)
             run%state%gravity = gravity_at(model, stage(1))
@@ -331,7 +334,7 @@ contains
          counters = real([integer(int64) :: c%stage, c%step, c%cuts, c%good, run%steps, run%iterations, run%cuts, &
                           run%rate_evaluations, merge(1, 0, run%system%reassemble_tangent), tables%history%bytes, &
                           tables%ledger%bytes, &
-                          tables%contact%bytes, tables%reactions%bytes, pairs_of(run)], wp)
+                          tables%contact%bytes, tables%reactions%bytes, size(tables%frames%times), pairs_of(run)], wp)
       end associate
    end function counters_of
 
@@ -340,7 +343,7 @@ contains
       real(wp), intent(in) :: counters(N_COUNTERS)
       integer, intent(in) :: stages
       real(wp), parameter :: LARGEST(N_COUNTERS) = [spread(real(huge(0), wp), 1, 7), 2.0_wp**53, 1.0_wp, &
-                                                    spread(2.0_wp**53, 1, 4), real(huge(0), wp)/2]
+                                                    spread(2.0_wp**53, 1, 4), spread(real(huge(0), wp)/2, 1, 2)]
 
       ! A comparison with what is no number may end the program.
       possible = all(ieee_is_finite(counters))

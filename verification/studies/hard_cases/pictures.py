@@ -97,6 +97,9 @@ def draw_run(axis, case, label, run):
         at = np.flatnonzero(np.abs(nodes["r"]) < 1e-9)
         at = at[np.argsort(nodes["z"][at])]
         axis.plot(nodes["p_w"][at], nodes["z"][at], lw=0.7, label=f"k {label}")
+    elif case.name in ("showers", "a bank in layers, cut again"):
+        up = run.histories["centre.p_w"] if case.name == "showers" else 1e3 * run.histories["centre.u_z"]
+        axis.plot(run.histories["time"], up, lw=0.7)
     elif case.group == "failure":
         push, history = run.table("reactions_push"), run.histories
         settled = np.interp(push["time"], history["time"], -100 * history["edge.u_z"])
@@ -122,6 +125,7 @@ TIME, U_Z, P_W, Z, SETTLED, FORCE = "t [ms]", "u_z of the plate's centre [mm]", 
 HOST_VIEWS = {   # claim, across, up
     "chatter": ("chatter creates no energy at any step size", TIME, U_Z),
     "lift-off and re-impact": ("lift-off and re-impact create no energy", TIME, U_Z),
+    "re-impact with friction": ("friction of 0.5: neither does it create energy", TIME, U_Z),
     "impact on undrained soil, quadratic pressures": ("quadratic pressures: they depend on k", TIME, P_W),
     "impact on undrained soil, linear pressures": ("linear pressures: they do not depend on k", TIME, P_W),
     "impact at suction 100 kPa": ("suction 100 kPa without the paper's remedy", TIME, U_Z),
@@ -131,6 +135,8 @@ HOST_VIEWS = {   # claim, across, up
     "penalty 1e5 to 1e10 kN/m3": ("from 1e8 kN/m3 on the penalty hardly matters", TIME, U_Z),
     "permeability 1e-8 to 1e-14 m2, quadratic pressures": ("quadratic pressures oscillate from node to node", "p_w [kPa]", Z),
     "permeability 1e-8 to 1e-14 m2, linear pressures": ("linear pressures: uniform below the thin layer", "p_w [kPa]", Z),
+    "showers": ("the surface ponds, runs off and dries", "t [s]", "p_w of the surface [kPa]"),
+    "a bank in layers, cut again": ("three layers come, two leave at once", "stage", "u_z below the bank [mm]"),
     "footing on loose sand": ("loose sand: the load levels out", SETTLED, FORCE),
     "footing on dense sand": ("dense sand: the load passes its peak", SETTLED, FORCE),
     "footing on undrained sand": ("undrained sand: it dilates, the force grows", SETTLED, FORCE),
