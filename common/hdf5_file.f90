@@ -44,7 +44,8 @@ module hdf5_file
    end interface get
 contains
    !> An empty file, in memory until write_file. `guarded`: in the format of HDF5 1.10, which has checksums over its
-   !> structure too, the place of every dataset included; what reads it must not be older. file%good is false after a failure, of this call or any later one.
+   !> structure too, the place of every dataset included; what reads it must not be older.
+   !> file%good is false after a failure, of this call or any later one.
    subroutine new_file(file, path, guarded)
       type(h5_t), intent(out) :: file
       character(*), intent(in) :: path

@@ -6,7 +6,8 @@ module element_equations
    use kinds, only: wp
    use material_point, only: response_t, report_t, MOST_POINTS
    use element_sums, only: sums_t, clear_sums, add_response, add_tangent, residual_of, matrix_of
-   use porous_domain, only: domain_t, region_t, state_t, gauss_t, mixture_density, given_pressures_at, gravity_on, COUPLED
+   use porous_domain, only: domain_t, region_t, state_t, gauss_t, mixture_density, given_pressures_at, gravity_on, &
+                            COUPLED
    use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, solid_response, PLACES, RR, TT, RZ, &
                              U
    use generalised_alpha, only: scheme_t, DYNAMIC
@@ -264,7 +265,8 @@ contains
             new%e(p) = skeleton%e
             call add_response(gp, n_fields, response, sums%r)
             if (out%with_change) call add_response(gp, DISPLACEMENTS, &
-               change_of(domain, region, k(g), gravity_on(old, element), old%stress(:, p), old%e(p), old%s(p), response), &
+               change_of(domain, region, k(g), gravity_on(old, element), old%stress(:, p), old%e(p), old%s(p), &
+                         response), &
                change)
             if (scheme%kind == DYNAMIC) call add_flight(domain, region, k(g), scheme, skeleton, gp, out%stretch)
             if (with_tangent) call add_tangent(gp, n_fields, tangent, sums%k)

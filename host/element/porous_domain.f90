@@ -103,8 +103,8 @@ module porous_domain
       real(wp), allocatable :: s(:)           !< degree of saturation
       real(wp), allocatable :: s_rate(:)      !< rate of the degree of saturation [1/s]
       ! Where parts of the ground join or leave, else not allocated. docs/theory/host.md section 14.
-      logical, allocatable :: present(:)      !< (elements) Part of the ground in this stage,
-      logical, allocatable :: joins(:)        !< and since this stage.
+      logical, allocatable :: present(:)      !< Parts of the ground in this stage. (elements)
+      logical, allocatable :: joins(:)        !< Those that join with it. (elements)
       real(wp) :: growth = 1.0_wp             !< Share of their weight that acts on those that join, at this time [-].
    end type state_t
 contains

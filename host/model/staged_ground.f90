@@ -32,8 +32,8 @@ contains
       present = there(model%domain%region_of)
    end function ground_of
 
-   !> Fault EXIT_INPUT: a stage that does not exist; ground that is not there from the start with a stress of its own,
-   !> or the flow of a start that lacks it; a stage without ground; EXIT_GROUP: a load, contact, absorbing boundary or
+   !> Fault EXIT_INPUT: ground that is not there from the start with a stress of its own, or the flow of a start that
+   !> lacks it; a stage without ground; EXIT_GROUP: a stage that does not exist; a load, contact, absorbing boundary or
    !> rigid body that acts in a stage on nodes that no present element has.
    subroutine check_staged_ground(model, fault)
       type(model_t), intent(in) :: model
@@ -44,8 +44,8 @@ contains
       if (fault%code /= 0) return
       if (.not. is_staged(model)) return
       if (model%subtract_flow) then
-         call raise(fault, EXIT_INPUT, trim(model%file)//': initial_flow = ''subtract'' of &scene keeps the flow of '// &
-                    'the ground at the start, but regions join or leave (stages of &region); leave one of them out.')
+         call raise(fault, EXIT_INPUT, trim(model%file)//': initial_flow = ''subtract'' of &scene keeps the flow '// &
+                    'of the ground at the start, but regions join or leave (stages of &region); leave one of them out.')
          return
       end if
       call check_names(model, fault)
@@ -102,7 +102,7 @@ contains
       do i = 1, size(model%regions)
          do k = 1, size(model%regions(i)%stages)
             if (any(model%stages%name == model%regions(i)%stages(k)) .or. fault%code /= 0) cycle
-            call raise(fault, EXIT_INPUT, place_of(model%regions(i)%scene_item_t)//'there is no stage '''// &
+            call raise(fault, EXIT_GROUP, place_of(model%regions(i)%scene_item_t)//'there is no stage '''// &
                        trim(model%regions(i)%stages(k))//'''.')
          end do
       end do
@@ -122,8 +122,8 @@ contains
                if (acts_in(model%regions(region)%stages, model%stages(1)%name)) cycle
                if (.not. any(model%domain%mesh%groups(initial%group)%elements == k)) cycle
                call raise(fault, EXIT_INPUT, place_of(initial)//'this stress covers the &region with group '''// &
-                          trim(model%regions(region)%group_name)//''', which joins in a later stage and comes without '// &
-                          'stress; name the group of the ground that is there from the start.')
+                          trim(model%regions(region)%group_name)//''', which joins in a later stage and comes '// &
+                          'without stress; name the group of the ground that is there from the start.')
                return
             end do
          end associate

@@ -79,10 +79,11 @@ contains
       same = at_start
       do e = 1, size(stays)
          if (stays(e)) cycle
-         call compute_element(model%domain, e, make_scheme(STATIC, 1.0_wp, 1.0_wp), at_start, same, .false., slopes, out)
+         call compute_element(model%domain, e, make_scheme(STATIC, 1.0_wp, 1.0_wp), at_start, same, .false., slopes, &
+                              out)
          if (out%bad_point > 0) then
-            call raise(fault, EXIT_MATERIAL, 'The material of element '//whole(e)//', which leaves, refuses its own '// &
-                       'state at rest.')
+            call raise(fault, EXIT_MATERIAL, 'The material of element '//whole(e)//', which leaves, refuses its '// &
+                       'own state at rest.')
             return
          end if
          do i = 1, element_size(model%domain, e)
