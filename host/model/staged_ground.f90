@@ -33,8 +33,8 @@ contains
    end function ground_of
 
    !> Fault EXIT_INPUT: ground that is not there from the start with a stress of its own, or the flow of a start that
-   !> lacks it; a stage without ground; EXIT_GROUP: a stage that does not exist; a load, contact, absorbing boundary or
-   !> rigid body that acts in a stage on nodes that no present element has.
+   !> lacks it; a stage without ground; EXIT_GROUP: a load, contact, absorbing boundary or rigid body that acts in a
+   !> stage on nodes that no present element has.
    subroutine check_staged_ground(model, fault)
       type(model_t), intent(in) :: model
       type(fault_t), intent(inout) :: fault
@@ -48,7 +48,6 @@ contains
                     'of the ground at the start, but regions join or leave (stages of &region); leave one of them out.')
          return
       end if
-      call check_names(model, fault)
       do s = 1, size(model%stages)
          if (fault%code /= 0) return
          call mark_nodes(model, s, there)
@@ -92,21 +91,6 @@ contains
                     ''', part of which is no ground then (stages of &region); name the stages in which it acts.')
       end subroutine look
    end subroutine check_staged_ground
-
-   !> Stages of regions exist.
-   subroutine check_names(model, fault)
-      type(model_t), intent(in) :: model
-      type(fault_t), intent(inout) :: fault
-      integer :: i, k
-
-      do i = 1, size(model%regions)
-         do k = 1, size(model%regions(i)%stages)
-            if (any(model%stages%name == model%regions(i)%stages(k)) .or. fault%code /= 0) cycle
-            call raise(fault, EXIT_GROUP, place_of(model%regions(i)%scene_item_t)//'there is no stage '''// &
-                       trim(model%regions(i)%stages(k))//'''.')
-         end do
-      end do
-   end subroutine check_names
 
    !> New ground comes without stress.
    subroutine check_start(model, fault)

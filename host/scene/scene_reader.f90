@@ -108,6 +108,9 @@ contains
       do i = 1, size(scene%contacts)
          call check(scene%contacts(i)%scene_item_t, scene%contacts(i)%stages)
       end do
+      do i = 1, size(scene%regions)
+         call check(scene%regions(i)%scene_item_t, scene%regions(i)%stages)
+      end do
    contains
       subroutine check(item, names)
          type(scene_item_t), intent(in) :: item
