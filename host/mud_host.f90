@@ -118,7 +118,7 @@ program mud_host
       if (output%resume) call read_checkpoint(restart, model, run, output%tables, fault)
       if (fault%code == 0) call run_stages(model, run, fault, output)
       if (fault%code == 0 .and. allocated(run%control%x_first)) then
-         call list_forces(folder, model, run%control, worst_unknown(model, run%control), &
+         call list_forces(folder, model, worst_unknown(model, run%control), &
                           maxval(run%assembly%scale, mask=model%dofs%field <= DISPLACEMENTS), forces, fault)
          if (fault%code == 0 .and. option_given(options, '--verify')) call verify()
          if (fault%code == 0) call write_answers(folder, model, run%control, forces, &

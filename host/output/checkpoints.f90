@@ -22,7 +22,7 @@ module checkpoints
    public :: write_checkpoint, read_checkpoint, CHECKPOINT
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
-   type(restart_kind_t), parameter :: KIND_OF_FILE = restart_kind_t('checkpoint of mud_host', '12', &
+   type(restart_kind_t), parameter :: KIND_OF_FILE = restart_kind_t('checkpoint of mud_host', '13', &
       CHECKPOINT//' of a run', &
       ' is an HDF5 file, but no checkpoint of mud_host; name the '//CHECKPOINT//' of a run.', &
       'Finish the run with the program that began it.')

@@ -4,8 +4,10 @@
 module force_answers
    use kinds, only: wp
    use answer_verification, only: read_numbers, NAME_LENGTH
-   use control_state, only: control_state_t
+   use error_norms, only: constant_of_accelerations, constant_of_rates, PEAK
    use faults, only: fault_t
+   use force_errors, only: error_of_support, error_of_peaks
+   use generalised_alpha, only: make_scheme, scheme_t, QUASI_STATIC, DYNAMIC
    use history_distance, only: farthest, peaks_apart
    use model_types, only: model_t
    use output_tables, only: reactions_of
@@ -27,26 +29,37 @@ module force_answers
       integer :: stage = 0                       !< Number of the stage; 0: a contact, in the whole run.
       character(NAME_LENGTH) :: column = ''      !< In its table.
    end type force_answer_t
+
+   !> The steps of a run, as its ledger has them. (steps)
+   type :: steps_t
+      integer, allocatable :: stage(:)                     !< Its number.
+      real(wp), allocatable :: time(:), dt(:)              !< At their ends, their lengths [s].
+      real(wp), allocatable :: early(:)                    !< By how much forces hold before the end [s].
+      real(wp), allocatable :: constant(:)                 !< C of the error of a step, 0: nothing estimates it [-].
+      real(wp), allocatable :: kept(:)                     !< Share of earlier errors that a step leaves [-].
+   end type steps_t
 contains
-   !> Forces of the supports of every stage and thrusts of the contacts, with their estimated errors. A support is taken
-   !> to be as wrong as the worst of the unknowns, `worst`; a thrust, where its own estimate is larger, as that.
-   !> docs/theory/host.md section 4.5. What changes by no more than the rounding of the largest force of a node, or by a
+   !> Forces of the supports of every stage and thrusts of the contacts, with the errors that their histories tell. Where
+   !> these tell nothing, in stages without inertia or flow and where not every step is written, a force is taken to be
+   !> as wrong as the worst of the unknowns, `worst`. docs/theory/host.md section 4.5. What changes by no more than the rounding of the largest force of a node, or by a
    !> thousandth of the largest force of its stage, is none; nor is that of an axis of symmetry. Fault EXIT_OUTPUT: a
    !> table cannot be read.
-   subroutine list_forces(folder, model, control, worst, force_of_node, forces, fault)
+   subroutine list_forces(folder, model, worst, force_of_node, forces, fault)
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model
-      type(control_state_t), intent(in) :: control
       real(wp), intent(in) :: worst   !< Error as a share of the change [-].
       real(wp), intent(in) :: force_of_node   !< Sum of the magnitudes of its elements, the largest [kN].
       type(force_answer_t), allocatable, intent(out) :: forces(:)
       type(fault_t), intent(inout) :: fault
       character(NAME_LENGTH), allocatable :: names(:)
       real(wp), allocatable :: numbers(:, :), change(:)
+      type(steps_t) :: steps
       logical :: there
       integer :: i, k
 
       allocate (forces(0))
+      call read_steps(folder, model, steps, fault)
+      if (fault%code /= 0) return
       do i = 1, size(model%stages)
          inquire (file=reactions_of(folder, model%stages(i)%name), exist=there)
          if (.not. there) cycle
@@ -58,18 +71,104 @@ contains
          do k = 1, size(names)
             if (.not. change(k) > max(ROUNDING*force_of_node, NO_FORCE*maxval(change))) cycle
             if (is_of_axis(model, trim(names(k)))) cycle
-            forces = [forces, force_answer_t(trim(model%stages(i)%name)//': '//names(k), change(k), worst, i, names(k))]
+            forces = [forces, force_answer_t(trim(model%stages(i)%name)//': '//names(k), change(k), &
+                                             support(i, numbers(TIME_OF_FORCES, :), numbers(k, :), change(k)), i, &
+                                             names(k))]
          end do
       end do
-      do k = 1, size(control%thrust)
-         associate (memory => control%thrust(k))
-            if (.not. memory%high - memory%low > ROUNDING*force_of_node) cycle
-            forces = [forces, force_answer_t(trim(model%contacts(k)%name)//THRUST, memory%high - memory%low, &
-                                             max(worst, memory%largest/(memory%high - memory%low)), 0, &
-                                             trim(model%contacts(k)%name)//THRUST)]
+      if (size(model%contacts) == 0) return
+      call read_numbers(folder//'/contact.csv', names, numbers, fault)
+      if (fault%code /= 0) return
+      do k = 1, size(model%contacts)
+         associate (name => trim(model%contacts(k)%name)//THRUST)
+            i = findloc(names, name, dim=1)
+            if (i == 0 .or. size(numbers, 2) == 0) cycle
+            associate (thrust => numbers(i, :))
+               if (.not. maxval(thrust) - minval(thrust) > ROUNDING*force_of_node) cycle
+               forces = [forces, force_answer_t(name, maxval(thrust) - minval(thrust), peaks(thrust), 0, name)]
+            end associate
          end associate
       end do
+   contains
+      !> Error of the force of a support in a stage, as a share of its change.
+      pure real(wp) function support(stage, times, force, change) result(error)
+         integer, intent(in) :: stage
+         real(wp), intent(in) :: times(:), force(:), change   !< [s], [kN] (rows); [kN]
+         logical :: here(size(steps%stage))
+
+         here = steps%stage == stage
+         error = worst
+         if (count(here) /= size(times) .or. any(here .and. .not. steps%constant > 0.0_wp)) return
+         error = error_of_support(times, pack(steps%dt, here), pack(steps%constant, here), pack(steps%kept, here), force, &
+                                  model%stages(stage)%kind == QUASI_STATIC)/change
+         if (model%stages(stage)%kind == DYNAMIC) error = PEAK*error
+      end function support
+
+      !> Error of the peaks of a thrust in stages with inertia, as a share of its change.
+      pure real(wp) function peaks(thrust) result(error)
+         real(wp), intent(in) :: thrust(:)   !< [kN] (rows)
+         logical :: moves(size(steps%stage))
+
+         error = worst
+         moves = model%stages(steps%stage)%kind == DYNAMIC
+         if (size(moves) /= size(thrust) .or. .not. any(moves)) return
+         error = error_of_peaks(steps%time - steps%early, steps%dt, steps%constant, steps%kept, &
+                                merge(thrust, 0.0_wp, moves), worst)/(maxval(thrust) - minval(thrust))
+      end function peaks
    end subroutine list_forces
+
+   !> The steps of a run by its ledger, with what fades of errors in each: as docs/theory/host.md section 4.5 says of
+   !> the unknowns. Fault EXIT_OUTPUT: the ledger cannot be read.
+   subroutine read_steps(folder, model, steps, fault)
+      character(*), intent(in) :: folder
+      type(model_t), intent(in) :: model
+      type(steps_t), intent(out) :: steps
+      type(fault_t), intent(inout) :: fault
+      character(NAME_LENGTH), allocatable :: names(:)
+      real(wp), allocatable :: numbers(:, :), kinetic(:), damping(:)
+      type(scheme_t) :: scheme
+      real(wp) :: since, motion, damped
+      integer :: i
+
+      call read_numbers(folder//'/ledger.csv', names, numbers, fault)
+      if (fault%code /= 0) return
+      steps%stage = nint(column('stage'))
+      steps%time = column('time')
+      steps%dt = column('dt')
+      kinetic = column('kinetic')
+      damping = column('damping')
+      allocate (steps%early, steps%constant, steps%kept, mold=steps%dt)
+      damped = 0.0_wp
+      do i = 1, size(steps%stage)
+         associate (stage => model%stages(steps%stage(i)), dt => steps%dt(i))
+            if (i == 1 .or. steps%stage(max(1, i - 1)) /= steps%stage(i)) then
+               since = 0.0_wp
+               motion = 0.0_wp
+               if (i > 1) damped = damping(i - 1)
+            end if
+            since = since + dt
+            scheme = make_scheme(stage%kind, stage%rho_inf, dt)
+            steps%early(i) = (1 - scheme%l_f)*dt
+            steps%constant(i) = 0.0_wp
+            steps%kept(i) = 1.0_wp
+            if (stage%kind == DYNAMIC) then
+               steps%constant(i) = constant_of_accelerations(scheme)
+               motion = motion + dt*kinetic(i)
+               if (motion > 0.0_wp) steps%kept(i) = exp(-dt/4*max(0.0_wp, damping(i) - damped)/motion)
+            else if (stage%kind == QUASI_STATIC .and. (model%domain%with_w .or. model%domain%with_c)) then
+               steps%constant(i) = constant_of_rates(scheme)
+               steps%kept(i) = (since - dt)/since
+            end if
+         end associate
+      end do
+   contains
+      function column(name) result(values)
+         character(*), intent(in) :: name
+         real(wp), allocatable :: values(:)
+
+         values = numbers(findloc(names, name, dim=1), :)
+      end function column
+   end subroutine read_steps
 
    !> Whether a column is the radial force of an axis of symmetry: no support, but the form of the equations there.
    pure logical function is_of_axis(model, column)

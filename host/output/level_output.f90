@@ -78,7 +78,7 @@ contains
       self%worst(n) = price%answers(worst_answer(price%answers))
       if (self%at == n) then
          associate (control => self%run_of_level%control, model => self%model)
-            call list_forces(folder_of_mesh(self%folder, n), model, control, worst_unknown(model, control), &
+            call list_forces(folder_of_mesh(self%folder, n), model, worst_unknown(model, control), &
                              maxval(self%run_of_level%assembly%scale, mask=model%dofs%field <= DISPLACEMENTS), forces, &
                              fault)
             if (fault%code == 0) call write_answers(folder_of_mesh(self%folder, n), model, control, forces, &

@@ -3,7 +3,6 @@
 module control_state
    use kinds, only: wp
    use error_norms, only: rate_memory_t, new_memory
-   use force_errors, only: force_memory_t, FORCE_NUMBERS, numbers_of_force, take_force
    use step_control, only: controller_t
    use unknown_fields, only: FIELDS
    implicit none (type, external)
@@ -38,7 +37,6 @@ module control_state
       real(wp) :: damped_0 = 0.0_wp              !< Dissipated by damping where the stage began [kJ].
       real(wp) :: motion = 0.0_wp                !< Kinetic energy over the time of the stage [kJ s].
       real(wp), allocatable :: touching(:)       !< 1: the contact was closed at the start of the step, else 0.
-      type(force_memory_t), allocatable :: thrust(:)   !< Of the contacts.
       logical :: located = .false.               !< The attempt before was repeated to end where a contact closes.
       ! Of the fields at the named points, (FIELDS, points).
       real(wp), allocatable :: low(:, :), high(:, :), point_gathered(:, :), point_largest(:, :)
@@ -56,7 +54,6 @@ contains
       state%memory = new_memory(FIELDS, nodes, points)
       allocate (state%x_first(FIELDS, nodes), source=0.0_wp)
       allocate (state%touching(contacts), source=0.0_wp)
-      allocate (state%thrust(contacts))
       allocate (state%low(FIELDS, named), source=huge(1.0_wp))
       allocate (state%high(FIELDS, named), source=-huge(1.0_wp))
       allocate (state%point_gathered(FIELDS, named), state%point_largest(FIELDS, named), source=0.0_wp)
@@ -69,15 +66,13 @@ contains
       type(control_state_t), intent(in) :: state   !< After new_control_state.
 
       n = SCALARS + 5*FIELDS + LIMITS + size(state%x_first) + size(state%memory%rate) &
-          + size(state%error_before) + size(state%memory%s_rate) + 6*size(state%low) + size(state%touching) &
-          + FORCE_NUMBERS*size(state%thrust)
+          + size(state%error_before) + size(state%memory%s_rate) + 6*size(state%low) + size(state%touching)
    end function count_of_numbers
 
    !> Everything as one list, for a checkpoint. Each number in its own unit, in the order that take_numbers reads.
    pure function numbers_of(state) result(list)
       type(control_state_t), intent(in) :: state
       real(wp) :: list(count_of_numbers(state))
-      integer :: i
 
       associate (c => state%controller, m => state%memory)
          list = [c%dt, c%last_ratio, merge(1.0_wp, 0.0_wp, c%held), state%t_sudden, real(state%fresh, wp), &
@@ -85,8 +80,7 @@ contains
                  m%span, state%damped_0, state%motion, state%unseen, state%scale, state%gathered, &
                  state%ripple, state%largest, state%limits, state%touching, state%x_first, m%rate, m%s_rate, &
                  state%low, state%high, state%point_gathered, state%point_ripple, state%point_largest, state%newton, &
-                 state%error_before, &
-                 (numbers_of_force(state%thrust(i)), i=1, size(state%thrust))]
+                 state%error_before]
       end associate
    end function numbers_of
 
@@ -94,7 +88,7 @@ contains
    subroutine take_numbers(list, state)
       real(wp), intent(in) :: list(:)   !< (count_of_numbers)
       type(control_state_t), intent(inout) :: state
-      integer :: at, i
+      integer :: at
 
       associate (c => state%controller, m => state%memory)
          c%dt = list(1)
@@ -127,10 +121,6 @@ contains
          call take(state%point_largest)
          call take(state%newton)
          call take(state%error_before)
-         do i = 1, size(state%thrust)
-            call take_force(list(at + 1:at + FORCE_NUMBERS), state%thrust(i))
-            at = at + FORCE_NUMBERS
-         end do
       end associate
    contains
       subroutine take_row(values)

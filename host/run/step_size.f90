@@ -5,9 +5,7 @@ module step_size
    use kinds, only: wp
    use contact_interfaces, only: probe_contacts
    use control_state, only: new_control_state, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
-   use error_norms, only: keep_rates, shift_rates, local_errors, remember, forget, constant_of_accelerations, &
-      ripple_in, rms
-   use force_errors, only: force_error, remember_force
+   use error_norms, only: keep_rates, shift_rates, local_errors, remember, forget, ripple_in, rms, PEAK
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, QUASI_STATIC, DYNAMIC
    use model_types, only: model_t
    use run_state, only: run_t
@@ -33,7 +31,6 @@ module step_size
    real(wp), parameter :: PRESSURE_RESERVE = 0.2_wp  !< Share that a step is allowed when they have left that.
    real(wp), parameter :: PRESSURE_END = 2.95_wp     !< Times the accuracy at which that share ends, below 3.
    real(wp), parameter :: LEAST_RESERVE = 0.1_wp  !< Part of that share that stays.
-   real(wp), parameter :: PEAK = 1.57_wp          !< Of a sine over the mean of its magnitude.
    real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Share of its change by which the second step after a sudden load
                                                   !< is in error, since flow begins with the root of time.
    real(wp), parameter :: FIRST_TWO = 0.5_wp      !< The same of given steps, for the first two together.
@@ -477,19 +474,6 @@ contains
       end associate
    end function ratios_of_points
 
-   !> Error of the thrust of a contact in the dynamic step under way [kN].
-   pure real(wp) function error_of_thrust(stage, dt, run, contact) result(error)
-      type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: dt         !< [s]
-      type(run_t), intent(in) :: run
-      integer, intent(in) :: contact     !< Its number.
-
-      associate (scheme => make_scheme(stage%kind, stage%rho_inf, dt))
-         error = force_error(run%control%thrust(contact), PEAK*constant_of_accelerations(scheme), dt, &
-                             run%next%time - (1 - scheme%l_f)*dt, run%system%contacts%interfaces(contact)%thrust)
-      end associate
-   end function error_of_thrust
-
    !> What impacts that have left errors of a pressure, `used` times the accuracy, leave to a step: less as they use the
    !> budget up, then a reserve, and a tenth of it where the promise of the accuracy is broken: what has been left is
    !> not taken back by steps however short, and the run tells of it at its end.
@@ -618,19 +602,6 @@ contains
                *max(0.0_wp, run%ledger%damping - c%damped_0)/c%motion)
             kept(DISPLACEMENTS + 1:) = min(kept(AT_U_R), before/after)
          end if
-         do i = 1, size(c%thrust)
-            associate (scheme => make_scheme(stage%kind, stage%rho_inf, after - before), &
-                       thrust => run%system%contacts%interfaces(i)%thrust)
-               if (stage%kind == DYNAMIC) then
-                  call remember_force(c%thrust(i), error_of_thrust(stage, after - before, run, i), kept(AT_U_R), &
-                                      run%next%time - (1 - scheme%l_f)*(after - before), thrust)
-               else
-                  ! Nothing of it counts in a motion to come.
-                  call remember_force(c%thrust(i), 0.0_wp, 0.0_wp, run%next%time, thrust)
-                  c%thrust(i)%known = 0
-               end if
-            end associate
-         end do
          c%scale = scales(run, size(run%state%x, 2) - size(model%domain%bodies))
          c%gathered = kept*c%gathered + norm
          c%ripple = max(kept*c%ripple, field_norms(ripple(:, :size(ripple, 2) - size(model%domain%bodies))))
