@@ -4,7 +4,7 @@
 module force_answers
    use kinds, only: wp
    use answer_verification, only: read_numbers, NAME_LENGTH
-   use error_norms, only: constant_of_accelerations, constant_of_rates, PEAK
+   use error_norms, only: constant_of_accelerations, constant_of_rates
    use faults, only: fault_t
    use force_errors, only: error_of_support, error_of_peaks
    use generalised_alpha, only: make_scheme, scheme_t, QUASI_STATIC, DYNAMIC
@@ -101,7 +101,6 @@ contains
          if (count(here) /= size(times) .or. any(here .and. .not. steps%constant > 0.0_wp)) return
          error = error_of_support(times, pack(steps%dt, here), pack(steps%constant, here), pack(steps%kept, here), force, &
                                   model%stages(stage)%kind == QUASI_STATIC)/change
-         if (model%stages(stage)%kind == DYNAMIC) error = PEAK*error
       end function support
 
       !> Error of the peaks of a thrust in stages with inertia, as a share of its change.

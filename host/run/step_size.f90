@@ -5,7 +5,7 @@ module step_size
    use kinds, only: wp
    use contact_interfaces, only: probe_contacts
    use control_state, only: new_control_state, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
-   use error_norms, only: keep_rates, shift_rates, local_errors, remember, forget, ripple_in, rms, PEAK
+   use error_norms, only: keep_rates, shift_rates, local_errors, remember, forget, ripple_in, rms
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, QUASI_STATIC, DYNAMIC
    use model_types, only: model_t
    use run_state, only: run_t
@@ -31,6 +31,7 @@ module step_size
    real(wp), parameter :: PRESSURE_RESERVE = 0.2_wp  !< Share that a step is allowed when they have left that.
    real(wp), parameter :: PRESSURE_END = 2.95_wp     !< Times the accuracy at which that share ends, below 3.
    real(wp), parameter :: LEAST_RESERVE = 0.1_wp  !< Part of that share that stays.
+   real(wp), parameter :: PEAK = 1.57_wp          !< Of a sine over the mean of its magnitude.
    real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Share of its change by which the second step after a sudden load
                                                   !< is in error, since flow begins with the root of time.
    real(wp), parameter :: FIRST_TWO = 0.5_wp      !< The same of given steps, for the first two together.

@@ -17,12 +17,11 @@ module error_norms
    implicit none (type, external)
    private
    public :: rate_memory_t, new_memory, keep_rates, shift_rates, local_errors, remember, forget, &
-             constant_of_accelerations, constant_of_rates, ripple_in, rms, PATH, PEAK
+             constant_of_accelerations, constant_of_rates, ripple_in, rms, PATH
 
    real(wp), parameter :: LONGEST = 2.0_wp   !< Times the last step: no rate is carried over a longer one.
    !> Share of the curvature of a path that a straight step leaves out (deviation in the middle of the step).
    real(wp), parameter :: PATH = 0.125_wp
-   real(wp), parameter :: PEAK = 1.57_wp          !< Of a sine over the mean of its magnitude.
    real(wp), parameter :: BENT = 1.0_wp/12   !< Mean deviation of a bent path from the straight step, of dt**2 x''.
 
    !> Rates one step back.

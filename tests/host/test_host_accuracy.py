@@ -210,7 +210,8 @@ def test_a_record_of_401_breaks_a_step_ends_at_the_one_that_matters():
         .replace("analysis = 'static'\n   duration = 1\n", "analysis = 'static'\n   duration = 1e-9\n") \
         + f"&history name = 'record' file = '{work / 'record.txt'}' /\n"
     done = run(written("record", text), work / "record", "--accuracy", "1e-1")
-    times = tables.columns(work / "record/ledger.csv")["time"] if done.returncode == 0 else np.array([9.0])
+    # The force of the support follows the break in 33 steps and misses the accuracy, which the exit code says.
+    times = tables.columns(work / "record/ledger.csv")["time"] if done.returncode == MISSED else np.array([9.0])
     check("a record of 401 breaks: a step ends at the one that matters", np.min(np.abs(times - wiggle[123])) < 1e-9,
           (done.stderr, times))
     check("a record of 401 breaks: not at every one", len(times) < 300, len(times))
@@ -287,7 +288,7 @@ def test_fall_speed_of_the_reference():
               (miss, done.stderr))
         # Forces and thrusts are answers; that of the axis is none, since no support is there but the symmetry.
         found = estimated(work / "drop")
-        check(f"fall, {accuracy}: forces and thrusts are answers", found["face.thrust"] >= found["centre.u_z"] > 0 and
+        check(f"fall, {accuracy}: forces and thrusts are answers", min(found.values()) > 0 and
               "fall: bottom.force_z" in found and "fall: left.force_r" not in found, found)
         # Where the contact closes follows from free fall: a step ends there.
         times = tables.columns(work / "drop/ledger.csv")["time"]

@@ -20,6 +20,7 @@ import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
+MISSED = 20   # Exit code of mud_host: the accuracy is not met, the results are complete.
 sys.path[:0] = [str(ROOT / "verification")]
 from tools import tables  # noqa: E402
 from tools.results import folder as made_in  # noqa: E402
@@ -151,7 +152,7 @@ def run(host, text, folder):
     done = subprocess.run([str(host), str(path), "--output", str(folder)], capture_output=True, text=True,
                           env={**os.environ, "OMP_NUM_THREADS": "1"})
     ended = resource.getrusage(resource.RUSAGE_CHILDREN)
-    if done.returncode:
+    if done.returncode not in (0, MISSED):
         raise RuntimeError(done.stderr.strip())
     seconds = ended.ru_utime + ended.ru_stime - began.ru_utime - began.ru_stime
     table = folder / "effects.csv"
