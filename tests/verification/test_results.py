@@ -24,3 +24,10 @@ def test_results_of_other_programs_are_removed():
     (place / results.MARK).unlink()
     results.current(place, build)
     check("nothing tells of the program: it begins anew", not row.exists())
+
+
+def test_no_data_of_a_page_is_empty():
+    # A page that the check run leaves out would fail unseen.
+    empty = [str(path.relative_to(root)) for path in (root / "verification").rglob("*.csv")
+             if "/build/" not in str(path) and len(path.read_bytes().splitlines()) < 2]
+    check("every committed table has a row", not empty, empty)

@@ -14,6 +14,7 @@ from tools.page import Page, Script, Tolerance
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import scenes  # noqa: E402
 
+MISSED = 20   # Exit code of mud_host: the accuracy is not met, the results are complete.
 PAGE = Page(
     claim="`effects = 'auto'` keeps the effects that matter in eleven scenes where a careless choice gives wrong results, and removes effects that do not matter in six others and in four of the eleven",
     kind=("robustness", "study"),
@@ -25,9 +26,14 @@ PAGE = Page(
 MAKES = (Script("times.py", ("times.csv",), 240),)
 
 COUNT = Tolerance("a count")
-CHANGED = Tolerance("removed effects may change an answer by the tolerance of the scene (1 %, 4 % where the scene "
-                    "sets it), by the pilots' factor of 2 at most twice as much; steps are chosen anew, to 1 %", absolute=0.03)
 CARELESS = 0.05    # what a trap must err by, so that it is one
+
+
+def changed(scene):
+    """What removed effects may change."""
+    return Tolerance("removed effects may change an answer by the tolerance of the scene (1 %, 4 % where the scene "
+                     "sets it), by the pilots' factor of 2 at most twice as much; steps are chosen anew, to 1 %",
+                     absolute=2*(0.04 if "effects_tolerance = 0.04" in scene.text else 0.01) + 0.01)
 
 
 def run(bench, scene, name, *edits):
@@ -42,7 +48,7 @@ def run(bench, scene, name, *edits):
     done = subprocess.run([str(bench.build / "host/mud_host"), str(path), "--output", str(folder / name)],
                           capture_output=True, text=True)
     seconds = time.monotonic() - began
-    if done.returncode:
+    if done.returncode not in (0, MISSED):
         return None, done.stderr.strip(), seconds, 0
     table = folder / name / "effects.csv"
     rows = {row["effect"]: row for row in tables.rows(table)} if table.exists() else {}
@@ -74,7 +80,7 @@ def check(bench):
             bench.near(f"{scene.name}: keeps {name}", float(table[name]["on"] == "on"), 1.0, COUNT)
         for name in scene.drops:
             bench.near(f"{scene.name}: lets {name} go", float(table[name]["on"] == "off"), 1.0, COUNT)
-        bench.below(f"{scene.name}: what auto changes", row["auto"], CHANGED)
+        bench.below(f"{scene.name}: what auto changes", row["auto"], changed(scene))
         if scene.careless:
             words = ", ".join(f"'{word}'" for word in scene.careless)
             careless, refused, _, _ = run(bench, scene, "careless", ("effects = 'auto'", f"effects = 'auto' without = {words}"))

@@ -17,6 +17,7 @@ import tempfile
 
 import numpy as np
 
+MISSED = 20   # Exit code of mud_host: the accuracy is not met, the results are complete.
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 sys.path[:0] = [str(HERE), str(ROOT / "verification")]
@@ -65,7 +66,7 @@ def run(host, text, folder):
     began = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     done = subprocess.run([str(host), str(path), "--output", str(folder)], capture_output=True, text=True,
                           env={**os.environ, "OMP_NUM_THREADS": "1"})
-    if done.returncode:
+    if done.returncode not in (0, MISSED):
         raise RuntimeError(done.stderr.strip())
     seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - began
     return seconds, done.stdout, tables.columns(folder / "histories.csv"), tables.rows(folder / "effects.csv")
