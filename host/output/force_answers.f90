@@ -39,11 +39,11 @@ module force_answers
       real(wp), allocatable :: kept(:)                     !< Share of earlier errors that a step leaves [-].
    end type steps_t
 contains
-   !> Forces of the supports of every stage and thrusts of the contacts, with the errors that their histories tell. Where
-   !> these tell nothing, in stages without inertia or flow and where not every step is written, a force is taken to be
-   !> as wrong as the worst of the unknowns, `worst`. docs/theory/host.md section 4.5. What changes by no more than the rounding of the largest force of a node, or by a
-   !> thousandth of the largest force of its stage, is none; nor is that of an axis of symmetry. Fault EXIT_OUTPUT: a
-   !> table cannot be read.
+   !> Forces of the supports of every stage and thrusts of the contacts, with the errors that their histories tell.
+   !> Where these tell nothing, in stages without inertia or flow and where not every step is written, a force is taken
+   !> to be as wrong as the worst of the unknowns, `worst`. docs/theory/host.md section 4.5. What changes by no more
+   !> than the rounding of the largest force of a node, or by a thousandth of the largest force of its stage, is none;
+   !> nor is that of an axis of symmetry. Fault EXIT_OUTPUT: a table cannot be read.
    subroutine list_forces(folder, model, worst, force_of_node, forces, fault)
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model
@@ -99,8 +99,8 @@ contains
          here = steps%stage == stage
          error = worst
          if (count(here) /= size(times) .or. any(here .and. .not. steps%constant > 0.0_wp)) return
-         error = error_of_support(times, pack(steps%dt, here), pack(steps%constant, here), pack(steps%kept, here), force, &
-                                  model%stages(stage)%kind == QUASI_STATIC)/change
+         error = error_of_support(times, pack(steps%dt, here), pack(steps%constant, here), pack(steps%kept, here), &
+                                  force, model%stages(stage)%kind == QUASI_STATIC)/change
       end function support
 
       !> Error of the peaks of a thrust in stages with inertia, as a share of its change.

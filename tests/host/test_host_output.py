@@ -533,7 +533,8 @@ def test_fields_of_controlled_steps():
         done = run(film, work / "film", "--quiet")
         # The force of the base rings more than the corner: --verify measures 3.5 % of it, and the exit code says so.
         times = (work / "film/results.xdmf").read_text().count("<Time ") if done.returncode == 20 else done.stderr
-        check(f"fields of controlled steps, {more or 'no key'}", done.returncode == 20 and least <= times <= most, times)
+        check(f"fields of controlled steps, {more or 'no key'}",
+              done.returncode == 20 and least <= times <= most, times)
     film.write_text(swing.format(more=""))
     run(film, work / "film", "--quiet")
     place = tables.rows(work / "film/points.csv")[0]
