@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Errors of forces from their histories. What errs in the motion by C dt**3 times the third derivative (error_norms)
-!> errs by the same in whatever depends on it linearly: the reaction of a support, the thrust of a contact; the derivative is
-!> that of the force itself. docs/theory/host.md section 4.5.
+!> errs by the same in whatever depends on it linearly: the reaction of a support, the thrust of a contact; the
+!> derivative is that of the force itself. docs/theory/host.md section 4.5.
 module force_errors
    use kinds, only: wp
    implicit none (type, external)
@@ -37,9 +37,9 @@ contains
    end function error_of_support
 
    !> Largest error of the peaks of a thrust [kN], a peak for each time that the contact is closed. A shift of phase is
-   !> no error of a peak: errors count with their signs, from the time that the contact closes to its peak. What vibrates
-   !> behind the peak, the body on its contact, is no answer. A peak among the first three values has no estimate of its
-   !> own. docs/theory/host.md section 4.5.
+   !> no error of a peak: errors count with their signs, from the time that the contact closes to its peak. What
+   !> vibrates behind the peak, the body on its contact, is no answer. A peak among the first three values has no
+   !> estimate of its own. docs/theory/host.md section 4.5.
    pure real(wp) function error_of_peaks(time, dt, constant, kept, force, unknown) result(largest)
       real(wp), intent(in) :: time(:), dt(:), constant(:), kept(:)   !< As of error_of_support. (steps)
       real(wp), intent(in) :: force(:)   !< 0 where the contact is open [kN]. (steps)
