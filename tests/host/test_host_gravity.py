@@ -91,6 +91,15 @@ def test_the_column_settles_with_its_weight_at_s():
               and "&scene 1 (g): gravity_history is" in done.stderr, done.stderr)
 
 
+def test_without_gravity_its_history_goes_too():
+    # What is left is the load alone: u_z = -p H/E.
+    load = "&load group = 'top' kind = 'pressure' value = 100 history = 'n' /\n"
+    rows = run("weightless", scene(f"gravity = {G} gravity_history = 'n' without = 'gravity'", 1e4, (0, 1, 2),
+                                   (0, 1, 1), DRY + FOOT + load + "&stage name = 'spin' analysis = 'static' "
+                                   "duration = 2 dt = 0.25 tolerance = 1e-9 /\n"))
+    check("without gravity the load alone acts", abs(rows[-1]["top.u_z"]/(-100*HEIGHT/1e4) - 1) < 1e-8, rows[-1])
+
+
 def test_spin_up_stresses_grow_by_the_factor():
     # A quadrature point near the base bears the weight above it: 50 times that at 1 g there.
     points = [tables.numbers(work / f"spin/points_{stage}.csv") for stage in ("rest", "spin")]
