@@ -20,8 +20,8 @@ module boundary_builder
       'seepage face or rain has to see; start from water at rest, or let a stage find the flow (''drain'').'
 contains
    !> Plates come first: those with a face of their own become nodes of the mesh, and all become groups of it.
-   !> docs/theory/host.md section 7.3. Fault EXIT_GROUP: the name is that of a group of the mesh, or the boundary or
-   !> history of a plate does not exist.
+   !> docs/theory/host.md section 7.3. Fault EXIT_GROUP: the name is that of a group of the mesh, the boundary or
+   !> history of a plate does not exist, or two boundaries share a node.
    subroutine build_plates(model, fault)
       type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
@@ -30,9 +30,36 @@ contains
       allocate (model%domain%bodies(0))
       do i = 1, size(model%plates)
          call build_plate(model, model%plates(i), fault)
+         if (fault%code == 0) call check_apart(model, i, fault)
          if (fault%code /= 0) return
       end do
    end subroutine build_plates
+
+   !> Joined plates that share a node would be one body, which has one mass. Fault EXIT_GROUP: a plate shares a node
+   !> with one before it.
+   subroutine check_apart(model, last, fault)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: last   !< Of the plates, the first ones are built.
+      type(fault_t), intent(inout) :: fault
+      integer :: i, k
+
+      if (model%plates(last)%group == 0) return
+      associate (groups => model%domain%mesh%groups, plate => model%plates(last))
+         do i = 1, last - 1
+            if (model%plates(i)%group == 0) cycle
+            associate (other => groups(model%plates(i)%group), own => groups(plate%group))
+               do k = 1, size(own%nodes)
+                  if (.not. any(other%nodes == own%nodes(k))) cycle
+                  call raise(fault, EXIT_GROUP, place_of(plate)//'its boundary '''//trim(own%name)// &
+                             ''' shares node '//whole(own%nodes(k))//' with that of the plate '''// &
+                             trim(model%plates(i)%name)//''': they would be one body; give one plate, on a group that '// &
+                             'has both.')
+                  return
+               end do
+            end associate
+         end do
+      end associate
+   end subroutine check_apart
 
    subroutine build_plate(model, plate, fault)
       type(model_t), intent(inout) :: model

@@ -201,6 +201,12 @@ def test_the_regions_are_there():
         "u_z", "u_r"), 13, "against moving along z (y)")
     refused("a plate without a contact", FREE + LEFT + BOTTOM + "&plate name = 'p' r = 0, 1 z = 2 mass = 1 /\n", 13,
             "nothing holds the plate 'p'")
+    # Two plates on one boundary would be one body with one mass: that of one of them would be lost.
+    lid = "&plate name = 'lid' group = 'top' mass = 1 /\n"
+    for group in ("top", "right"):
+        refused(f"a plate on '{group}' beside one on 'top'",
+                FREE + LEFT + BOTTOM + lid + f"&plate name = 'p' group = '{group}' mass = 1 /\n", 11,
+                f"its boundary '{group}' shares node", "with that of the plate 'lid'")
     for what, text in (("held", FREE + LEFT + BOTTOM), ("in axial symmetry", FREE.replace("'plane_strain'",
                                                                                          "'axisymmetric'") + BOTTOM),
                        ("dynamic", FREE.replace("'static'", "'dynamic'")),
