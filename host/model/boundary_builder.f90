@@ -52,8 +52,8 @@ contains
                   if (.not. any(other%nodes == own%nodes(k))) cycle
                   call raise(fault, EXIT_GROUP, place_of(plate)//'its boundary '''//trim(own%name)// &
                              ''' shares node '//whole(own%nodes(k))//' with that of the plate '''// &
-                             trim(model%plates(i)%name)//''': they would be one body; give one plate, on a group that '// &
-                             'has both.')
+                             trim(model%plates(i)%name)//''': they would be one body; give one plate, on a group '// &
+                             'that has both.')
                   return
                end do
             end associate

@@ -34,7 +34,10 @@ contains
                 constraint%mass(dofs%n), source=0.0_wp)
       allocate (constraint%air_target(nodes), source=0.0_wp)
       do i = 1, size(model%plates)
-         constraint%mass(dofs%of(AT_U_Z, model%plates(i)%node)) = model%plates(i)%mass
+         ! Plates whose boundaries a &tie joins have one unknown.
+         associate (at => dofs%of(AT_U_Z, model%plates(i)%node))
+            constraint%mass(at) = constraint%mass(at) + model%plates(i)%mass
+         end associate
       end do
    end function new_constraint
 

@@ -61,6 +61,15 @@ def test_shear_on_an_edge_over_the_shear_modulus():
     near("the name of a joined plate is a group", rows[-1]["corner.u_z"], -1e-3)
 
 
+def test_tied_plates_have_the_mass_of_both():
+    # A tie of their boundaries makes one body of two plates: 10 and 10 Mg move as 20 Mg do, by the same equations.
+    tied = BLOCK.format(0.01, 0.001).replace("'static'", "'dynamic'") + "&tie first = 'left' second = 'right' /\n"
+    left = "&plate name = 'left_plate' group = 'left' mass = {} force = -3 /\n"
+    whole, _ = run(tied + left.format(20), "whole")
+    halves, _ = run(tied + left.format(10) + "&plate name = 'other' group = 'right' mass = 10 /\n", "halves")
+    near("two tied plates move as one of their mass", halves[-1]["corner.u_z"], float(whole[-1]["corner.u_z"]))
+
+
 def test_a_support_holds_until_it_is_released():
     # A support that goes after 1 s leaves an elastic block to its load of 12 kPa, over M.
     rows, _ = run(BLOCK.format(2, 0.5) + held + "&fix group = 'top' field = 'u_z' value = -2e-3 until = 1 /\n"
