@@ -8,7 +8,7 @@ module mesh_levels
    use faults, only: fault_t, raise
    use kinds, only: wp
    use level_runs, only: level_runner_t
-   use price_estimates, only: answer_t, quote_t, is_certain, bound_of, worst_answer, STATE_WORDS, ASSUMED, &
+   use price_estimates, only: quote_t, is_certain, bound_of, worst_answer, STATE_WORDS, &
                               NOT_CONVERGING
    use scene_price, only: family_t, price_t, begin_price, begin_again, add_level, quotes_of
    use scene_refinement, only: finest_of
@@ -63,7 +63,7 @@ contains
       before = 0
       obstacle = ''
       do while (fault%code == 0)
-         if (is_reached(price%answers, wanted)) exit
+         if (is_reached(price, wanted)) exit
          associate (worst => worst_answer(price%answers))
             if (price%answers(worst)%state == NOT_CONVERGING .and. worst == before) stuck = stuck + 1
             before = worst
@@ -124,13 +124,15 @@ contains
       end subroutine share_out
    end subroutine refine_until
 
-   !> Whether every goal is within the accuracy, by at least three meshes.
-   pure logical function is_reached(answers, wanted)
-      type(answer_t), intent(in) :: answers(:)
+   !> Whether every goal is within the accuracy, by at least three meshes: two that agree may do so by chance.
+   pure logical function is_reached(price, wanted)
+      type(price_t), intent(in) :: price
       real(wp), intent(in) :: wanted
 
-      is_reached = all(.not. answers%goal .or. (is_certain(answers) .and. bound_of(answers) <= wanted .and. &
-                                                answers%state /= ASSUMED))
+      associate (answers => price%answers)
+         is_reached = size(price%levels) > 2 .and. all(.not. answers%goal .or. (is_certain(answers) .and. &
+                                                                                bound_of(answers) <= wanted))
+      end associate
    end function is_reached
 
    !> The next mesh, and what is left after it.

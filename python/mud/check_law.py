@@ -29,6 +29,13 @@ def check_law(law: Law, at: Setting | None = None, only: Sequence[str] = (), pro
     unknown = [name for name in only if name not in CHECKS]
     if unknown:
         raise ValueError(f"there is no check {unknown[0]!r}; there are: {', '.join(CHECKS)}")
+    _room_for_state(law)
+    if law.start_state is not None and len(law.start_state) != law.n_state:
+        raise ValueError(
+            f"start_state (--statev) has {len(law.start_state)} values, n_state (--nstatv) is {law.n_state}"
+        )
+    if not 0.0 < at.reach < 0.5 or at.increments < 10:
+        raise ValueError("reach (--reach) is between 0 and 0.5, increments (--increments) at least 10")
     findings: list[Finding] = []
     for name, check in CHECKS.items():
         if only and name not in only:
@@ -130,7 +137,9 @@ def _room_for_state(law: Law) -> None:
     if law.n_state == 0:
         law.n_state = told.n_state
     elif law.n_state < told.n_state:
-        raise ValueError(f"--nstatv is {law.n_state}; the law says that it has {told.n_state} (IDTASK 4): name these")
+        raise ValueError(
+            f"n_state (--nstatv) is {law.n_state}; the law says that it has {told.n_state} (IDTASK 4): name these"
+        )
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -154,10 +163,6 @@ def main(words: Sequence[str] | None = None) -> int:
     try:
         if len(given.stress) not in (3, 6):
             raise ValueError(f"--stress has {len(given.stress)} components; allowed are 3 (normal) and 6")
-        if given.statev is not None and len(given.statev) != given.nstatv:
-            raise ValueError(f"--statev has {len(given.statev)} values, --nstatv says {given.nstatv}")
-        if not 0.0 < given.reach < 0.5 or given.increments < 10:
-            raise ValueError("--reach is between 0 and 0.5, --increments at least 10")
         law = Law(
             given.library,
             given.kind,
@@ -170,7 +175,6 @@ def main(words: Sequence[str] | None = None) -> int:
             start_state=given.statev,
         )
         at = Setting(np.array(list(given.stress) + [0.0] * (6 - len(given.stress))), given.reach, given.increments)
-        _room_for_state(law)
         findings = check_law(law, at, given.only, lambda line: print(line, flush=True))
     except ValueError as problem:
         print(f"mud_check_law: {problem}", file=sys.stderr)

@@ -82,6 +82,9 @@ class Guarded:
         return not np.array_equal(self.values, self.before, equal_nan=True)
 
 
+MOST_PROPS = 50  # Of User_Mod.
+
+
 @dataclass
 class Law:
     """A law: where it is and how it is called. It is loaded by the first call, in the process that makes it."""
@@ -102,6 +105,8 @@ class Law:
         if self.kind not in SYMBOLS:
             raise ValueError(f"kind is {self.kind!r}; allowed are umat and udsm")
         if self.kind == "udsm":
+            if len(self.props) > MOST_PROPS:
+                raise ValueError(f"props has {len(self.props)} values; User_Mod passes at most {MOST_PROPS}")
             self.shear_order = "kratos"
         self.symbol = self.symbol or SYMBOLS[self.kind]
         if "/" in self.library or pathlib.Path(self.library).exists():
@@ -262,7 +267,7 @@ class _PlaxisDoor:
         n = len(law.props)
         self.law = law
         self.kept = {
-            "Props": Guarded(np.resize(np.asarray(law.props, dtype=float), 50) * (np.arange(50) < n)),
+            "Props": Guarded(np.pad(np.asarray(law.props, dtype=float), (0, MOST_PROPS - n))),
             "Sig0": Guarded(sig0),
             "dEps": Guarded(d_eps),
         }

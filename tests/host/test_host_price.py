@@ -109,6 +109,20 @@ def mixed(path):
     return [{name: cell(value) for name, value in row.items()} for row in tables.rows(path)]
 
 
+def test_two_meshes_are_never_enough():
+    # The error of the mesh hides behind that of the steps from the second mesh on.
+    text = (root / "verification/host/waves/column.nml").read_text()
+    for old, new in (("name = 'column'", "name = 'column'\n   accuracy = 0.03\n   mesh = 'auto'"),
+                     ("   dt = 0.5e-3\n", ""), ("   tolerance = 1.0e-5\n", ""),
+                     ("file = '", f"file = '{root / 'verification/host/waves'}/")):
+        check(f"the column has {old!r}", old in text)
+        text = text.replace(old, new)
+    (work / "column.nml").write_text(text)
+    done = run(work / "column.nml", work / "column")
+    check("the column has three meshes", done.returncode in (0, 20) and len(mixed(work / "column/levels.csv")) >= 3,
+          done.stdout[-600:] + done.stderr)
+
+
 def test_meshes_are_refined_until_the_accuracy_holds():
     # The strip: what is reached is the distance to a mesh twice as fine as the finest.
     done = run(STRIP, work / "auto", "--accuracy", "0.02")

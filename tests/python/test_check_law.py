@@ -51,7 +51,7 @@ os.environ["MUD_LIBRARY_DIR"] = str(build)
 os.environ["MPLBACKEND"] = "Agg"
 import mud  # noqa: E402
 import tables  # noqa: E402
-from mud import check_law, law_checks  # noqa: E402
+from mud import check_law, law_checks, law_under_test  # noqa: E402
 
 
 def test_a_law_without_mistakes_has_no_fault():
@@ -103,11 +103,17 @@ def test_mud_as_plaxis_calls_it_has_no_fault():
     # An update of PLAXIS is two calls, stresses and stiffness; the quicker one alone took no time.
     check("without --nstatv as many state variables as the law says; its time is that of all its calls", took > 0.5,
           done.stdout + done.stderr)
+    law = law_under_test.Law(str(build / "umat/libmud.so"), kind="udsm", props=mud.Material("toyoura").props[:46])
+    found = check_law.check_law(law, only=["first call"])
+    check("from Python it asks the model too", law.n_state >= 114 and found[0].verdict == law_checks.PASS,
+          (law.n_state, found))
+    with pytest.raises(ValueError, match="at most 50"):
+        law.like(props=[1.0]*51)
     done = run(build / "umat/libmud.so", "--kind=udsm", f"--props={sand}", "--nstatv=5")
     check("too few state variables are refused", done.returncode == 2 and "the law says that it has" in done.stderr,
           done.stdout + done.stderr)
     for words, told in ((("--stress=1,2",), "--stress has 2"), (("--only=nothing",), "there is no check"),
-                        (("--nstatv=2", "--statev=1"), "--statev has 1")):
+                        (("--nstatv=2", "--statev=1"), "(--statev) has 1")):
         done = planted(0, *words)
         check(f"refused: {words[-1]}", done.returncode == 2 and told in done.stderr, done.stdout + done.stderr)
     done = run(work / "missing.so")
