@@ -162,20 +162,28 @@ contains
       character(*), intent(in) :: path
       character(:), allocatable, intent(out) :: text
       logical, intent(out) :: good
-      integer(c_size_t), parameter :: ROOM = 65536
-      character(len=ROOM), target :: piece
-      integer(c_size_t) :: got
+      integer(c_size_t), parameter :: FIRST_ROOM = 65536
+      character(:), allocatable, target :: room
+      character(:), allocatable :: larger
+      integer(c_size_t) :: filled, got
       type(c_ptr) :: file
 
       text = ''
       file = fopen(trim(path)//c_null_char, 'rb'//c_null_char)
       good = c_associated(file)
       if (.not. good) return
+      allocate (character(FIRST_ROOM) :: room)
+      filled = 0
       do
-         got = fread(c_loc(piece), 1_c_size_t, ROOM, file)
-         text = text//piece(:got)
-         if (got < ROOM) exit
+         got = fread(c_loc(room(filled + 1:filled + 1)), 1_c_size_t, len(room, c_size_t) - filled, file)
+         filled = filled + got
+         if (filled < len(room, c_size_t)) exit
+         ! The room doubles: a long file is not copied for each of its pieces.
+         allocate (character(2*filled) :: larger)
+         larger(:filled) = room
+         call move_alloc(larger, room)
       end do
+      text = room(:filled)
       good = ferror(file) == 0
       if (fclose(file) /= 0) good = .false.
    end subroutine read_whole
