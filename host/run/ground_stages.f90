@@ -15,7 +15,7 @@ module ground_stages
    use prescribed_values, only: constraint_t
    use run_state, only: run_t
    use scene_types, only: stage_t
-   use staged_ground, only: is_staged, ground_of
+   use staged_ground, only: ground_of
    use texts, only: whole
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
@@ -34,8 +34,7 @@ contains
       logical :: before(size(model%domain%region_of))
       integer :: i, f
 
-      run%at%staged = is_staged(model)
-      if (.not. run%at%staged) return
+      if (.not. allocated(run%state%present)) return
       before = ground_of(model, max(1, number - 1))
       associate (state => run%state)
          state%present = ground_of(model, number)
@@ -130,7 +129,7 @@ contains
       real(wp), allocatable :: load(:)
 
       load = load_at(model, stage, model%dofs, time)
-      if (run%at%staged) load = load - (1 - growth_at(stage, run, time))*run%at%held_up
+      if (allocated(run%at%held_up)) load = load - (1 - growth_at(stage, run, time))*run%at%held_up
    end function acting_load
 
    !> Unknowns that no present element has stay as they are.
@@ -140,7 +139,7 @@ contains
       type(constraint_t), intent(inout) :: constraint
       integer :: i
 
-      if (.not. run%at%staged) return
+      if (.not. allocated(run%at%absent)) return
       do i = 1, dofs%n
          if (.not. run%at%absent(i)) cycle
          constraint%fixed(i) = .true.

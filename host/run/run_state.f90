@@ -26,7 +26,7 @@ module run_state
       real(wp) :: nominal = 0.0_wp             !< Step without cuts [s].
       real(wp) :: factor = 1.0_wp              !< Share of it after cuts.
       real(wp), allocatable :: x_start(:, :)   !< Unknowns at its start, which some boundaries hold.
-      logical :: staged = .false.              !< Parts of the ground join or leave in this scene.
+      ! Where parts of the ground join or leave, else not allocated.
       real(wp), allocatable :: held_up(:)      !< (unknowns) Forces at the start of what leaves with this stage [kN].
       logical, allocatable :: absent(:)        !< (unknowns) No present element has them.
    end type stage_state_t
