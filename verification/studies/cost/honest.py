@@ -23,7 +23,6 @@ import tables  # noqa: E402
 from tools import results  # noqa: E402
 
 build = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or root / "build/release")
-MISSED = 20   # Exit code of mud_host: the accuracy is not met, the results are complete.
 NAMES = ("scene", "accuracy", "steps", "answer", "change", "true_error", "estimated_error", "ratio")
 HOST, HERE = "verification/host/", "verification/studies/cost/scenes/"
 FINE_FLOW = [("dt = 1.0e-3", "dt = 1e-5"), ("dt_growth = 1.03", "dt_growth = 1.005")]
@@ -122,7 +121,7 @@ def run(text, beside, folder, *words):
     scene.write_text(re.sub(r"file = '(?!/)([^']+)'", lambda m: f"file = '{beside / m[1]}'", text), encoding="utf-8")
     done = subprocess.run([build / "host/mud_host", scene, "--output", folder, "--quiet", *words], text=True,
                           capture_output=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
-    return done.stderr.strip() if done.returncode not in (0, MISSED) else ""
+    return done.stderr.strip() if done.returncode not in (0, results.MISSED) else ""
 
 
 def row(name, accuracy, steps, answer, change, true, estimate):

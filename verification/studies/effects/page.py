@@ -10,11 +10,11 @@ import numpy as np
 from tools import tables
 from tools.bench import ROOT
 from tools.page import Page, Script, Tolerance
+from tools.results import MISSED
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import scenes  # noqa: E402
 
-MISSED = 20   # Exit code of mud_host: the accuracy is not met, the results are complete.
 PAGE = Page(
     claim="`effects = 'auto'` keeps the effects that matter in eleven scenes where a careless choice gives wrong results, and removes effects that do not matter in six others and in four of the eleven",
     kind=("robustness", "study"),

@@ -22,12 +22,11 @@ ROOT = HERE.parents[2]
 sys.path[:0] = [str(ROOT / "verification"), str(ROOT / "common")]
 import tables  # noqa: E402
 from tools.gmsh import Mesh  # noqa: E402
-from tools.results import current, folder as made_in  # noqa: E402
+from tools.results import MISSED, current, folder as made_in  # noqa: E402
 
 COLUMNS = ("scene", "accuracy", "exit", "steps", "repeated", "seconds", "answer", "value", "reference", "reference_off",
            "error", "estimated")
 ACCURACIES = ("1e-1", "1e-2", "1e-3")
-MISSED = 20        # Exit code of mud_host: the accuracy is not met, the results are complete.
 GRAVITY = 9.81
 FLIGHT = 0.15      # A contact that has been open for this share of the first flight lands anew.
 LANDINGS = 3
