@@ -226,7 +226,8 @@ def draw_price(folder, output):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=pathlib.Path, help="output folder of a run")
-    parser.add_argument("--fields", nargs="+", help="u_r u_z v_r v_z a_r a_z p_w p_c p_a s_rr s_zz s_tt s_rz p q e S_w ground")
+    parser.add_argument("--fields", nargs="+", help="u_r u_z v_r v_z a_r a_z p_w p_c p_a s_rr s_zz s_tt s_rz p q e S_w "
+                        "ground")
     parser.add_argument("--times", nargs="+", type=float, help="[s]; the nearest moments that were written are taken")
     parser.add_argument("--histories", nargs="+", help="columns of histories.csv without the name of the point")
     parser.add_argument("--window", nargs=2, type=float, metavar=("FROM", "TO"),

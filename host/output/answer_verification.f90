@@ -40,14 +40,16 @@ contains
    end subroutine read_history
 
    !> Names and numbers of a table that a run has written. Fault EXIT_OUTPUT: it cannot be read.
-   subroutine read_numbers(path, names, numbers, fault)
+   subroutine read_numbers(path, names, numbers, fault, only)
       character(*), intent(in) :: path
       character(NAME_LENGTH), allocatable, intent(out) :: names(:)   !< (columns)
-      real(wp), allocatable, intent(out) :: numbers(:, :)            !< (columns, rows)
+      real(wp), allocatable, intent(out) :: numbers(:, :)            !< (columns, rows) 0 where a field is empty.
       type(fault_t), intent(inout) :: fault
+      character(*), intent(in), optional :: only(:)   !< The columns that are read, as far as they are there; else all.
       character(:), allocatable :: text
+      integer, allocatable :: column(:)
       logical :: good
-      integer :: first, last, row, rows, status, i
+      integer :: first, last, row, rows, status, i, k
 
       call read_whole(path, text, good)
       if (good) good = index(text, new_line('a')) > 0
@@ -55,16 +57,29 @@ contains
          last = index(text, new_line('a'))
          allocate (names(columns_of(text(:last))))
          read (text(:last - 1), *, iostat=status) names
+         column = [(i, i=1, size(names))]
+         if (present(only)) column = pack(column, [(any(only == names(i)), i=1, size(names))])
+         names = names(column)
          rows = 0
          do i = last + 1, len(text)
             if (text(i:i) == new_line('a')) rows = rows + 1
          end do
-         allocate (numbers(size(names), rows))
+         allocate (numbers(size(column), rows), source=0.0_wp)
          do row = 1, rows
-            if (status /= 0) exit
             first = last + 1
-            last = last + index(text(first:), new_line('a'))
-            read (text(first:last - 1), *, iostat=status) numbers(:, row)
+            k = 0
+            do i = 1, size(column)
+               ! To the field of the column: behind the comma, or the end of the row before.
+               do while (k < column(i))
+                  first = last + 1
+                  last = last + scan(text(first:), ','//new_line('a'))
+                  k = k + 1
+               end do
+               if (len_trim(text(first:last - 1)) > 0) read (text(first:last - 1), *, iostat=status) numbers(i, row)
+               if (status /= 0) exit
+            end do
+            if (status /= 0) exit
+            if (text(last:last) /= new_line('a')) last = last + index(text(last + 1:), new_line('a'))
          end do
          good = status == 0
       end if

@@ -4,7 +4,7 @@
 module force_answers
    use kinds, only: wp
    use answer_verification, only: read_numbers, NAME_LENGTH
-   use error_norms, only: constant_of_accelerations, constant_of_rates
+   use error_norms, only: constant_of_accelerations, constant_of_rates, kept_of_motion
    use faults, only: fault_t
    use force_errors, only: error_of_support, error_of_peaks
    use generalised_alpha, only: make_scheme, scheme_t, QUASI_STATIC, DYNAMIC
@@ -54,6 +54,7 @@ contains
       character(NAME_LENGTH), allocatable :: names(:)
       real(wp), allocatable :: numbers(:, :), change(:)
       type(steps_t) :: steps
+      character(NAME_LENGTH) :: thrusts(size(model%contacts))
       logical :: there
       integer :: i, k
 
@@ -77,16 +78,17 @@ contains
          end do
       end do
       if (size(model%contacts) == 0) return
-      call read_numbers(folder//'/contact.csv', names, numbers, fault)
+      do k = 1, size(thrusts)
+         thrusts(k) = trim(model%contacts(k)%name)//THRUST
+      end do
+      call read_numbers(folder//'/contact.csv', names, numbers, fault, thrusts)
       if (fault%code /= 0) return
-      do k = 1, size(model%contacts)
-         associate (name => trim(model%contacts(k)%name)//THRUST)
-            i = findloc(names, name, dim=1)
-            if (i == 0 .or. size(numbers, 2) == 0) cycle
-            associate (thrust => numbers(i, :))
-               if (.not. maxval(thrust) - minval(thrust) > ROUNDING*force_of_node) cycle
-               forces = [forces, force_answer_t(name, maxval(thrust) - minval(thrust), peaks(thrust), 0, name)]
-            end associate
+      do k = 1, size(thrusts)
+         i = findloc(names, thrusts(k), dim=1)
+         if (i == 0 .or. size(numbers, 2) == 0) cycle
+         associate (thrust => numbers(i, :), range => maxval(numbers(i, :)) - minval(numbers(i, :)))
+            if (.not. range > ROUNDING*force_of_node) cycle
+            forces = [forces, force_answer_t(thrusts(k), range, peaks(thrust, range), 0, thrusts(k))]
          end associate
       end do
    contains
@@ -104,15 +106,15 @@ contains
       end function support
 
       !> Error of the peaks of a thrust in stages with inertia, as a share of its change.
-      pure real(wp) function peaks(thrust) result(error)
-         real(wp), intent(in) :: thrust(:)   !< [kN] (rows)
+      pure real(wp) function peaks(thrust, change) result(error)
+         real(wp), intent(in) :: thrust(:), change   !< [kN] (rows); [kN]
          logical :: moves(size(steps%stage))
 
          error = worst
          moves = model%stages(steps%stage)%kind == DYNAMIC
          if (size(moves) /= size(thrust) .or. .not. any(moves)) return
          error = error_of_peaks(steps%time - steps%early, steps%dt, steps%constant, steps%kept, &
-                                merge(thrust, 0.0_wp, moves), worst)/(maxval(thrust) - minval(thrust))
+                                merge(thrust, 0.0_wp, moves), worst)/change
       end function peaks
    end subroutine list_forces
 
@@ -129,7 +131,8 @@ contains
       real(wp) :: since, motion, damped
       integer :: i
 
-      call read_numbers(folder//'/ledger.csv', names, numbers, fault)
+      call read_numbers(folder//'/ledger.csv', names, numbers, fault, &
+                        [character(NAME_LENGTH) :: 'stage', 'time', 'dt', 'kinetic', 'damping'])
       if (fault%code /= 0) return
       steps%stage = nint(column('stage'))
       steps%time = column('time')
@@ -153,7 +156,7 @@ contains
             if (stage%kind == DYNAMIC) then
                steps%constant(i) = constant_of_accelerations(scheme)
                motion = motion + dt*kinetic(i)
-               if (motion > 0.0_wp) steps%kept(i) = exp(-dt/4*max(0.0_wp, damping(i) - damped)/motion)
+               steps%kept(i) = kept_of_motion(dt, damping(i) - damped, motion)
             else if (stage%kind == QUASI_STATIC .and. (model%domain%with_w .or. model%domain%with_c)) then
                steps%constant(i) = constant_of_rates(scheme)
                steps%kept(i) = (since - dt)/since

@@ -5,7 +5,8 @@ module step_size
    use kinds, only: wp
    use contact_interfaces, only: probe_contacts
    use control_state, only: new_control_state, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
-   use error_norms, only: keep_rates, shift_rates, local_errors, remember, forget, ripple_in, rms
+   use error_norms, only: keep_rates, shift_rates, local_errors, remember, forget, kept_of_motion, ripple_in, &
+                          rms
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, QUASI_STATIC, DYNAMIC
    use model_types, only: model_t
    use run_state, only: run_t
@@ -599,8 +600,7 @@ contains
       associate (c => run%control)
          if (stage%kind == DYNAMIC) then
             c%motion = c%motion + (after - before)*run%ledger%kinetic
-            if (c%motion > 0.0_wp) kept(:DISPLACEMENTS) = exp(-(after - before)/4 &
-               *max(0.0_wp, run%ledger%damping - c%damped_0)/c%motion)
+            kept(:DISPLACEMENTS) = kept_of_motion(after - before, run%ledger%damping - c%damped_0, c%motion)
             kept(DISPLACEMENTS + 1:) = min(kept(AT_U_R), before/after)
          end if
          c%scale = scales(run, size(run%state%x, 2) - size(model%domain%bodies))

@@ -17,7 +17,7 @@ module error_norms
    implicit none (type, external)
    private
    public :: rate_memory_t, new_memory, keep_rates, shift_rates, local_errors, remember, forget, &
-             constant_of_accelerations, constant_of_rates, ripple_in, rms, PATH
+             constant_of_accelerations, constant_of_rates, kept_of_motion, ripple_in, rms, PATH
 
    real(wp), parameter :: LONGEST = 2.0_wp   !< Times the last step: no rate is carried over a longer one.
    !> Share of the curvature of a path that a straight step leaves out (deviation in the middle of the step).
@@ -61,6 +61,17 @@ contains
 
       c = 1.0_wp/12 + (scheme%l_p - scheme%l_f)**2
    end function constant_of_rates
+
+   !> Share of earlier errors that a step leaves in a motion that loses energy, exp(-dt/4 D/int K dt): of a mode with
+   !> the damping ratio xi exp(-xi omega dt). [-] docs/theory/host.md section 4.5.
+   pure real(wp) function kept_of_motion(dt, damped, motion) result(kept)
+      real(wp), intent(in) :: dt       !< [s]
+      real(wp), intent(in) :: damped   !< Dissipated by damping in the stage so far [kJ].
+      real(wp), intent(in) :: motion   !< Kinetic energy over the time of the stage so far [kJ s].
+
+      kept = 1.0_wp
+      if (motion > 0.0_wp) kept = exp(-dt/4*max(0.0_wp, damped)/motion)
+   end function kept_of_motion
 
    !> Keeps the rates of the present state as the last step left them. v: (fields, nodes); s_rate: (points).
    pure subroutine keep_rates(memory, v, s_rate)
