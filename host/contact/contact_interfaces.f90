@@ -7,14 +7,17 @@ module contact_interfaces
    use contact_geometry, only: contact_geometry_t, contact_prepare
    use contact_penalty, only: contact_workspace_t, contact_result_t, contact_point_t, new_workspace, new_result, &
                               contact_evaluate, points_of, slid_work
-   use contact_plate, only: plate_response_t, new_plate_response, plate_positions, gather_on_plate, force_on_plate
+   use contact_plate, only: plate_motion_t, plate_response_t, new_plate_response, plate_positions, plate_slopes, &
+                            gather_on_plate, force_on_plate
+   use plate_springs, only: spring_geometry, new_spring_result, pull_springs, lengths_of_nodes
    use contact_types, only: contact_options_t, contact_status_t, CONTACT_OK
    use degrees_of_freedom, only: dofs_t
    use unknown_fields, only: AT_U_Z, DISPLACEMENTS
    use sparsity_pattern, only: pattern_t, make_pattern, place_of
    implicit none (type, external)
    private
-   public :: contacts_t, contact_interface_t, surface_t, surface_of, new_interface, plate_surface
+   public :: contacts_t, contact_interface_t, surface_t, surface_of, plate_link_t, new_interface, tie_to_plate, &
+             plate_surface
    public :: begin_friction, follow_friction, friction_turns, accept_friction
    public :: evaluate_contacts, probe_contacts, start_points, probe_interface, fit_pattern, add_contacts, &
              contact_forces, mean_contact_forces
@@ -26,7 +29,14 @@ module contact_interfaces
       real(wp), allocatable :: x0(:, :)     !< (2, nodes) at the start [m]
    end type surface_t
 
-   !> The interface of two surfaces that may come into contact.
+   !> A plate in the unknowns.
+   type :: plate_link_t
+      integer :: node = 0   !< It carries the displacements; 0: there is no plate.
+      integer :: turn = 0   !< Its u_z is the lever times the angle, of a plate that turns.
+      type(plate_motion_t) :: motion
+   end type plate_link_t
+
+   !> The interface of two surfaces that may come into contact, or of a boundary with the plate that it is tied to.
    type :: contact_interface_t
       type(contact_geometry_t) :: geometry
       type(contact_workspace_t) :: work
@@ -37,7 +47,8 @@ module contact_interfaces
       type(friction_t) :: friction          !< What the step starts from.
       real(wp), allocatable :: slave_u(:, :), master_u(:, :)   !< (2, nodes) Displacements there [m].
       type(plate_response_t) :: on_plate    !< Forces where the master is a plate.
-      integer :: plate = 0                  !< Node of this plate, 0: the master is no plate.
+      type(plate_link_t) :: plate           !< Its face is the master.
+      real(wp), allocatable :: spring(:)    !< (slave nodes) Stiffness where they are tied to the plate [kN/m].
       type(surface_t) :: slave, master
       integer, allocatable :: unknown(:)    !< Of every unknown of the kernel, or of slave and plate; 0: none.
       logical :: acts = .true.              !< In this stage.
@@ -76,16 +87,19 @@ contains
       surface%x0 = x(:, surface%node)
    end function surface_of
 
-   !> A flat face of one edge, body on the left.
-   pure function plate_surface(r, z, up) result(surface)
-      real(wp), intent(in) :: r(2), z   !< Where it begins and ends, its height [m].
-      logical, intent(in) :: up   !< It looks upwards.
+   !> The straight edges between corners, body on the left.
+   pure function plate_surface(corners) result(surface)
+      real(wp), intent(in) :: corners(:, :)   !< (2, corners) [m]
       type(surface_t) :: surface
+      integer :: i, n
 
-      allocate (surface%node(0))
-      surface%edges = reshape([1, 2, 3], [3, 1])
-      surface%x0 = reshape([r(1), z, r(2), z, 0.5_wp*sum(r), z], [2, 3])
-      if (up) surface%x0 = surface%x0(:, [2, 1, 3])
+      n = size(corners, 2)
+      allocate (surface%node(0), surface%edges(3, n - 1), surface%x0(2, 2*n - 1))
+      surface%x0(:, :n) = corners
+      do i = 1, n - 1
+         surface%x0(:, n + i) = 0.5_wp*(corners(:, i) + corners(:, i + 1))
+         surface%edges(:, i) = [i, i + 1, n + i]
+      end do
    end function plate_surface
 
    !> Prepares the interface of a slave and a master surface; the status says what is wrong with surfaces or options.
@@ -93,7 +107,7 @@ contains
    subroutine new_interface(dofs, slave, master, plate, options, one, status)
       type(dofs_t), intent(in) :: dofs
       type(surface_t), intent(in) :: slave, master
-      integer, intent(in) :: plate   !< Node of the plate that the master is the face of, or 0.
+      type(plate_link_t), intent(in) :: plate   !< That the master is the face of, if it is one.
       type(contact_options_t), intent(in) :: options
       type(contact_interface_t), intent(out) :: one
       type(contact_status_t), intent(out) :: status
@@ -118,10 +132,54 @@ contains
          one%slave_u = 0*slave%x0
          one%master_u = 0*master%x0
       end if
-      if (plate == 0) return
-      one%on_plate = new_plate_response(one%geometry)
-      one%unknown = [one%unknown, dofs%of(AT_U_Z, plate)]
+      if (plate%node > 0) call link(dofs, one)
    end subroutine new_interface
+
+   !> Ties a boundary to a plate that turns: docs/theory/contact.md section 4.
+   subroutine tie_to_plate(dofs, boundary, plate, penalty, one)
+      type(dofs_t), intent(in) :: dofs
+      type(surface_t), intent(in) :: boundary
+      type(plate_link_t), intent(in) :: plate
+      real(wp), intent(in) :: penalty   !< Traction of a unit of distance [kN/m3].
+      type(contact_interface_t), intent(out) :: one
+
+      one%slave = boundary
+      one%master = boundary
+      one%plate = plate
+      one%geometry = spring_geometry(size(boundary%node))
+      one%spring = penalty*lengths_of_nodes(boundary%edges, boundary%x0)
+      one%result = new_spring_result(one%geometry, one%spring)
+      one%probe = one%result
+      one%point = points_of(one%probe)
+      one%unknown = reshape(dofs%of(:DISPLACEMENTS, boundary%node), [DISPLACEMENTS*size(boundary%node)])
+      call link(dofs, one)
+   end subroutine tie_to_plate
+
+   !> The unknowns of the plate beside those of the slave.
+   subroutine link(dofs, one)
+      type(dofs_t), intent(in) :: dofs
+      type(contact_interface_t), intent(inout) :: one
+
+      one%on_plate = new_plate_response(one%geometry, one%plate%motion)
+      if (one%plate%motion%turns) then
+         one%unknown = [one%unknown, dofs%of(:DISPLACEMENTS, one%plate%node), dofs%of(AT_U_Z, one%plate%turn)]
+      else
+         one%unknown = [one%unknown, dofs%of(AT_U_Z, one%plate%node)]
+      end if
+   end subroutine link
+
+   !> Unknowns of a plate at given displacements, as of plate_positions [m].
+   pure function motion_of(plate, x) result(q)
+      type(plate_link_t), intent(in) :: plate
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
+      real(wp), allocatable :: q(:)
+
+      if (plate%motion%turns) then
+         q = [x(:DISPLACEMENTS, plate%node), x(AT_U_Z, plate%turn)]
+      else
+         q = [x(AT_U_Z, plate%node)]
+      end if
+   end function motion_of
 
    !> Everything at given displacements; false if a kernel refuses them. contacts%status then says why.
    !> docs/theory/contact.md sections 2 to 4.
@@ -144,7 +202,8 @@ contains
             call probe_one(t, x, with_tangent, t%result, contacts%status)
             good = contacts%status%code == CONTACT_OK
             if (.not. good) return
-            if (t%plate > 0) call gather_on_plate(t%geometry, t%result, t%on_plate)
+            if (t%plate%node > 0) call gather_on_plate(t%geometry, t%result, t%plate%motion, t%master%x0, &
+                                                       motion_of(t%plate, x), t%on_plate)
             t%active = count(t%result%active)
             t%thrust = sum(t%result%force(2:2*t%geometry%slave_nodes:2))
             t%energy = t%result%energy
@@ -181,7 +240,11 @@ contains
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
 
-      if (t%rubs) then
+      if (allocated(t%spring)) then
+         call pull_springs(t%spring, t%slave%x0 + x(:DISPLACEMENTS, t%slave%node), &
+                           plate_positions(t%plate%motion, t%master%x0, motion_of(t%plate, x)), result)
+         status = contact_status_t()
+      else if (t%rubs) then
          t%friction%slave_dx = x(:DISPLACEMENTS, t%slave%node) - t%slave_u
          t%friction%master_dx = displacements_of_master(t, x) - t%master_u
          call probe_interface(t%geometry, t%slave, t%master, t%plate, x, with_tangent, t%work, result, status, &
@@ -197,8 +260,8 @@ contains
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
       real(wp) :: u(DISPLACEMENTS, size(t%master%x0, 2))
 
-      if (t%plate > 0) then
-         u = plate_positions(t%master%x0, x(AT_U_Z, t%plate)) - t%master%x0
+      if (t%plate%node > 0) then
+         u = plate_positions(t%plate%motion, t%master%x0, motion_of(t%plate, x)) - t%master%x0
       else
          u = x(:DISPLACEMENTS, t%master%node)
       end if
@@ -298,7 +361,7 @@ contains
    subroutine probe_interface(geometry, slave, master, plate, x, with_tangent, work, result, status, friction)
       type(contact_geometry_t), intent(in) :: geometry
       type(surface_t), intent(in) :: slave, master
-      integer, intent(in) :: plate   !< Node of the plate that is the master, or 0.
+      type(plate_link_t), intent(in) :: plate   !< Its face is the master, if it is one.
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
       logical, intent(in) :: with_tangent
       type(contact_workspace_t), intent(inout) :: work
@@ -307,8 +370,8 @@ contains
       type(friction_t), intent(in), optional :: friction
       real(wp) :: at(2, size(master%x0, 2))
 
-      if (plate > 0) then
-         at = plate_positions(master%x0, x(AT_U_Z, plate))
+      if (plate%node > 0) then
+         at = plate_positions(plate%motion, master%x0, motion_of(plate, x))
       else
          at = master%x0 + x(:DISPLACEMENTS, master%node)
       end if
@@ -330,7 +393,7 @@ contains
       do i = 1, size(contacts%interfaces)
          associate (t => contacts%interfaces(i))
             if (.not. t%acts) cycle
-            if (t%plate > 0) then
+            if (t%plate%node > 0) then
                call list(t%on_plate%row(:t%on_plate%triplets), t%on_plate%column(:t%on_plate%triplets))
             else
                call list(t%result%row(:t%result%triplets), t%result%column(:t%result%triplets))
@@ -378,25 +441,25 @@ contains
       do i = 1, size(contacts%interfaces)
          associate (t => contacts%interfaces(i))
             if (.not. t%acts) cycle
-            if (t%plate > 0) then
-               call add(t%unknown, t%on_plate%force, t%on_plate%row(:t%on_plate%triplets), t%on_plate%column, &
+            if (t%plate%node > 0) then
+               call add(t%unknown, t%on_plate%force, t%on_plate%size, t%on_plate%row(:t%on_plate%triplets), t%on_plate%column, &
                         t%on_plate%value)
             else
-               call add(t%unknown, t%result%force, t%result%row(:t%result%triplets), t%result%column, &
-                        t%result%value)
+               call add(t%unknown, t%result%force, abs(t%result%force), t%result%row(:t%result%triplets), &
+                        t%result%column, t%result%value)
             end if
          end associate
       end do
    contains
-      subroutine add(u, force, row, column, value)
+      subroutine add(u, force, sizes, row, column, value)
          integer, intent(in) :: u(:), row(:), column(:)
-         real(wp), intent(in) :: force(:), value(:)
+         real(wp), intent(in) :: force(:), sizes(:), value(:)
          integer :: k, place
 
          do k = 1, size(u)
             if (u(k) == 0) cycle
             residual(u(k)) = residual(u(k)) + force(k)
-            scale(u(k)) = scale(u(k)) + abs(force(k))
+            scale(u(k)) = scale(u(k)) + sizes(k)
          end do
          if (.not. with_tangent) return
          do k = 1, size(row)
@@ -440,10 +503,11 @@ contains
          do c = 1, size(contacts%interfaces)
             associate (t => contacts%interfaces(c))
                if (.not. t%acts) cycle
-               if (t%plate > 0) then
+               if (t%plate%node > 0) then
                   n = 2*t%geometry%slave_nodes
                   call gather(t%unknown(:n), t%probe%force(:n))
-                  call gather(t%unknown(n + 1:), [force_on_plate(t%geometry, t%probe)])
+                  call gather(t%unknown(n + 1:), force_on_plate(t%geometry, t%probe, &
+                     plate_slopes(t%plate%motion, t%master%x0, motion_of(t%plate, x))))
                else
                   call gather(t%unknown, t%probe%force)
                end if

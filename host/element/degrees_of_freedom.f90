@@ -2,7 +2,7 @@
 !> Numbers of the unknowns: one per node and field that the scene has, shared where nodes move as one rigid body, and
 !> room for unknowns that belong to no node.
 module degrees_of_freedom
-   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_Z, AT_P_W, AT_P_C
+   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    use element_equations, only: element_size
    use porous_domain, only: domain_t
    implicit none (type, external)
@@ -35,6 +35,7 @@ contains
          end associate
       end do
       if (allocated(domain%bodies)) has(AT_U_Z, domain%bodies) = .true.
+      if (allocated(domain%bodies_along_r)) has(AT_U_R, domain%bodies_along_r) = .true.
       ! Tied nodes of two regions: where one has a pressure their common unknown is there.
       do i = 1, size(has, 2)
          do f = DISPLACEMENTS + 1, FIELDS

@@ -86,7 +86,8 @@ module porous_domain
       integer, allocatable :: before_state(:)         !< (elements + 1) State variables before those of an element.
       type(gauss_t), allocatable :: gauss(:, :)       !< (rule, elements)
       integer :: threads = 1
-      integer, allocatable :: bodies(:)               !< Nodes of rigid plates: the last ones, in no element, u_z alone.
+      integer, allocatable :: bodies(:)               !< Nodes of rigid plates: the last ones, in no element, with u_z.
+      integer, allocatable :: bodies_along_r(:)       !< Those of them that have u_r as well.
       procedure(source_i), pointer, nopass :: source => null()
    end type domain_t
 

@@ -10,7 +10,7 @@ module boundary_conditions
    use porous_domain, only: state_t
    use prescribed_values, only: constraint_t
    use scene_types, only: acts_in, stage_t, fix_t, LOAD_RAIN, PRESCRIBED_P_A
-   use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C, DISPLACEMENTS
+   use unknown_fields, only: AT_U_R, AT_U_Z, AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
    public :: new_constraint, constrain_step, follow_accelerations, starting_accelerations, &
@@ -37,6 +37,11 @@ contains
          ! Plates whose boundaries a &tie joins have one unknown.
          associate (at => dofs%of(AT_U_Z, model%plates(i)%node))
             constraint%mass(at) = constraint%mass(at) + model%plates(i)%mass
+         end associate
+         if (.not. model%plates(i)%turns) cycle
+         associate (plate => model%plates(i))
+            constraint%mass(dofs%of(AT_U_R, plate%node)) = plate%mass
+            constraint%mass(dofs%of(AT_U_Z, plate%turn_node)) = plate%inertia/plate%lever**2
          end associate
       end do
    end function new_constraint

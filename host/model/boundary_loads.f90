@@ -11,7 +11,7 @@ module boundary_loads
    use degrees_of_freedom, only: dofs_t, tie, tie_pairs
    implicit none (type, external)
    private
-   public :: shape_loads, ties_of, load_at, rain_at, plate_load
+   public :: shape_loads, ties_of, load_at, rain_at, plate_load, plate_load_r, plate_moment
 contains
    !> Nodes that plates make move together: those of the boundaries that they are joined to. And those of &tie. (FIELDS,
    !> nodes), as number_unknowns takes them: docs/theory/host.md sections 7.3 and 7.6.
@@ -22,7 +22,7 @@ contains
 
       allocate (ties(FIELDS, size(model%domain%mesh%x, 2)), source=0)
       do i = 1, size(model%plates)
-         if (model%plates(i)%group > 0) &
+         if (model%plates(i)%group > 0 .and. .not. model%plates(i)%turns) &
             call tie(model%domain%mesh%groups(model%plates(i)%group)%nodes, AT_U_Z, ties)
       end do
       do i = 1, size(model%ties)
@@ -152,6 +152,11 @@ contains
             associate (at => dofs%of(AT_U_Z, one%node))
                load(at) = load(at) + plate_load(model, one, time)
             end associate
+            if (.not. one%turns) cycle
+            associate (along => dofs%of(AT_U_R, one%node), turn => dofs%of(AT_U_Z, one%turn_node))
+               load(along) = load(along) + plate_load_r(model, one, time)
+               load(turn) = load(turn) + plate_moment(model, one, time)/one%lever
+            end associate
          end associate
       end do
    end function load_at
@@ -183,4 +188,22 @@ contains
       plate_load = factor_at(model, plate%amplitude, time)*plate%force
       if (plate%heavy) plate_load = plate_load - plate%mass*gravity_at(model, time)
    end function plate_load
+
+   !> Force on a plate along r [kN]. docs/theory/host.md section 7.3.
+   pure real(wp) function plate_load_r(model, plate, time)
+      type(model_t), intent(in) :: model
+      type(plate_t), intent(in) :: plate
+      real(wp), intent(in) :: time   !< [s]
+
+      plate_load_r = factor_at(model, plate%amplitude, time)*plate%force_r
+   end function plate_load_r
+
+   !> Moment on a plate, from r to z [kN m]. docs/theory/host.md section 7.3.
+   pure real(wp) function plate_moment(model, plate, time)
+      type(model_t), intent(in) :: model
+      type(plate_t), intent(in) :: plate
+      real(wp), intent(in) :: time   !< [s]
+
+      plate_moment = factor_at(model, plate%amplitude, time)*plate%moment
+   end function plate_moment
 end module boundary_loads

@@ -4,10 +4,12 @@ module contact_setup
    use kinds, only: wp
    use boundary_loads, only: plate_load
    use model_types, only: model_t
-   use scene_types, only: acts_in, stage_t
+   use scene_types, only: acts_in, plate_t, stage_t
    use unknown_fields, only: AT_U_Z
    use contact_types, only: contact_status_t, contact_message, CONTACT_OK, TWO_PI
-   use contact_interfaces, only: contacts_t, surface_t, surface_of, new_interface, plate_surface
+   use contact_interfaces, only: contacts_t, surface_t, plate_link_t, surface_of, new_interface, tie_to_plate, &
+                                 plate_surface
+   use contact_plate, only: plate_motion_t
    use porous_domain, only: state_t
    use faults, only: fault_t, raise, EXIT_INPUT
    implicit none (type, external)
@@ -23,32 +25,55 @@ contains
       type(contact_status_t) :: status
       type(surface_t) :: master
       character(400) :: text
-      integer :: i, node
+      type(plate_link_t) :: link
+      integer :: i, at
 
-      if (size(model%contacts) == 0) return
-      allocate (contacts%interfaces(size(model%contacts)))
+      at = size(model%contacts)
+      if (at + count(is_tied(model%plates)) == 0) return
+      allocate (contacts%interfaces(at + count(is_tied(model%plates))))
       associate (mesh => model%domain%mesh)
          do i = 1, size(model%contacts)
             associate (one => model%contacts(i))
-               node = 0
+               link = plate_link_t()
                if (one%plate > 0) then
-                  associate (plate => model%plates(one%plate))
-                     master = plate_surface(plate%r, plate%z, plate%up)
-                     node = plate%node
-                  end associate
+                  master = plate_surface(model%plates(one%plate)%corners)
+                  link = link_of(model%plates(one%plate))
                else
                   master = surface_of(mesh%groups(one%master)%edges, mesh%x)
                end if
-               call new_interface(model%dofs, surface_of(mesh%groups(one%slave)%edges, mesh%x), master, node, &
-                                  one%options,  contacts%interfaces(i), status)
+               call new_interface(model%dofs, surface_of(mesh%groups(one%slave)%edges, mesh%x), master, link, &
+                                  one%options, contacts%interfaces(i), status)
                if (status%code == CONTACT_OK) cycle
                call contact_message(status, text)
                call raise(fault, EXIT_INPUT, 'Contact '//trim(one%name)//': '//trim(text)//'.')
                return
             end associate
          end do
+         ! Behind the contacts, what is tied to a plate that turns.
+         do i = 1, size(model%plates)
+            associate (plate => model%plates(i))
+               if (.not. is_tied(plate)) cycle
+               at = at + 1
+               call tie_to_plate(model%dofs, surface_of(mesh%groups(plate%group)%edges, mesh%x), link_of(plate), &
+                                 plate%penalty, contacts%interfaces(at))
+            end associate
+         end do
       end associate
    end subroutine prepare_contacts
+
+   !> Whether a boundary is tied to a plate by springs: where the plate turns.
+   elemental logical function is_tied(plate)
+      type(plate_t), intent(in) :: plate
+
+      is_tied = plate%turns .and. plate%group > 0
+   end function is_tied
+
+   !> A plate as contacts know it.
+   pure type(plate_link_t) function link_of(plate) result(link)
+      type(plate_t), intent(in) :: plate
+
+      link = plate_link_t(plate%node, plate%turn_node, plate_motion_t(plate%turns, plate%center, plate%lever))
+   end function link_of
 
    !> A heavy plate starts where the penalty alone carries what acts on it downwards: so it is held from the first
    !> iteration on. docs/theory/contact.md section 4. Sets u_z of plates with a face of their own that looks down.
@@ -64,12 +89,22 @@ contains
          if (model%contacts(i)%plate == 0) cycle
          associate (plate => model%plates(model%contacts(i)%plate))
             load = -plate_load(model, plate, state%time)
-            if (.not. plate%heavy .or. load <= 0.0_wp .or. plate%up) cycle
-            area = plate%r(2) - plate%r(1)
-            if (model%domain%axisymmetric) area = area*0.5_wp*TWO_PI*sum(plate%r)
+            if (.not. plate%heavy .or. load <= 0.0_wp) cycle
+            ! Of what looks down.
+            area = area_of(plate%corners(1, :))
+            if (area <= 0.0_wp) cycle
             state%x(AT_U_Z, plate%node) = -load/(model%contacts(i)%options%penalty*area)
          end associate
       end do
+   contains
+      pure real(wp) function area_of(r) result(area)
+         real(wp), intent(in) :: r(:)   !< Of the corners of a face [m].
+         integer :: n
+
+         n = size(r)
+         area = r(n) - r(1)
+         if (model%domain%axisymmetric) area = area*0.5_wp*TWO_PI*(r(1) + r(n))
+      end function area_of
    end subroutine seat_plates
 
    !> Which contacts take part in a stage.

@@ -3,6 +3,7 @@
 !> rigid motions that its supports leave. docs/theory/host.md section 7.1.
 module free_bodies
    use kinds, only: wp
+   use contact_friction, only: has_friction
    use exit_codes, only: EXIT_FREE_BODY
    use faults, only: fault_t, raise
    use generalised_alpha, only: DYNAMIC
@@ -45,7 +46,14 @@ contains
                return
             end do
             do i = 1, size(model%plates)
-               if (model%plates(i)%group > 0 .or. touched(model%plates(i)%node)) cycle
+               if (model%plates(i)%group > 0) cycle
+               if (model%plates(i)%turns .and. .not. holds_along_r(model, stage, i)) then
+                  call raise(fault, EXIT_FREE_BODY, 'Stage '//trim(stage%name)//': nothing holds the plate '''// &
+                             trim(model%plates(i)%name)//''' against moving along r (x): no &contact of it that acts '// &
+                             'has friction; give one friction, or a &fix of u_r with the plate as its group.')
+                  return
+               end if
+               if (touched(model%plates(i)%node)) cycle
                if (is_fixed(model, stage, AT_U_Z, model%plates(i)%node)) cycle
                call raise(fault, EXIT_FREE_BODY, 'Stage '//trim(stage%name)//': nothing holds the plate '''// &
                           trim(model%plates(i)%name)//''': no &contact of it acts; add one, or a &fix of u_z with '// &
@@ -69,6 +77,21 @@ contains
          end select
       end function named
    end subroutine check_bodies
+
+   !> Whether a &fix or the friction of a contact may hold a plate in its plane along r.
+   pure logical function holds_along_r(model, stage, plate) result(holds)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      integer, intent(in) :: plate   !< Its number.
+      integer :: i
+
+      holds = is_fixed(model, stage, AT_U_R, model%plates(plate)%node)
+      do i = 1, size(model%contacts)
+         associate (one => model%contacts(i))
+            holds = holds .or. one%plate == plate .and. has_friction(one%options) .and. acts_in(one%stages, stage%name)
+         end associate
+      end do
+   end function holds_along_r
 
    !> Bodies that contacts alone hold in a stage, as the end of a sentence; empty if there are none.
    function bodies_on_contact(model, stage) result(text)
@@ -118,10 +141,14 @@ contains
          end do
          do i = 1, size(model%plates)
             if (model%plates(i)%group == 0) cycle
-            associate (nodes => mesh%groups(model%plates(i)%group)%nodes)
+            associate (nodes => mesh%groups(model%plates(i)%group)%nodes, plate => model%plates(i))
                do k = 2, size(nodes)
                   call join(nodes(1), nodes(k))
                end do
+               if (.not. plate%turns) cycle
+               body([plate%node, plate%turn_node]) = [plate%node, plate%turn_node]
+               call join(nodes(1), plate%node)
+               call join(nodes(1), plate%turn_node)
             end associate
          end do
       end associate
@@ -208,7 +235,12 @@ contains
             if (model%fixes(i)%field > DISPLACEMENTS .or. .not. acts_in(model%fixes(i)%stages, stage%name)) cycle
             associate (nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
                do k = 1, size(nodes)
-                  if (mine(nodes(k))) call hold(row_of(model%fixes(i)%field, nodes(k)))
+                  if (.not. mine(nodes(k))) cycle
+                  if (model%fixes(i)%turns) then
+                     call hold([0.0_wp, 0.0_wp, 1.0_wp])
+                  else
+                     call hold(row_of(model%fixes(i)%field, nodes(k)))
+                  end if
                end do
             end associate
          end do
@@ -222,7 +254,8 @@ contains
             end do
          end do
          do i = 1, size(model%plates)
-            if (model%plates(i)%group == 0) cycle
+            ! What is tied to a plate in the plane moves as any rigid body does.
+            if (model%plates(i)%group == 0 .or. model%plates(i)%turns) cycle
             associate (nodes => model%domain%mesh%groups(model%plates(i)%group)%nodes)
                if (.not. mine(nodes(1))) cycle
                do k = 2, size(nodes)

@@ -2,13 +2,14 @@
 !> Contacts and plates as rows of tables.
 module contact_rows
    use kinds, only: wp
-   use boundary_loads, only: plate_load
+   use boundary_loads, only: plate_load, plate_load_r, plate_moment
    use contact_interfaces, only: contacts_t, contact_interface_t, probe_interface
    use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result
    use contact_types, only: contact_status_t, CONTACT_OK
    use model_types, only: model_t
    use porous_domain, only: state_t
-   use unknown_fields, only: AT_U_Z
+   use scene_types, only: plate_t
+   use unknown_fields, only: AT_U_R, AT_U_Z
    implicit none (type, external)
    private
    public :: contact_columns, contact_row, contact_nodes
@@ -29,12 +30,15 @@ contains
       do i = 1, size(model%plates)
          name = ','//model%plates(i)%name
          head = head//trim(name)//'.u_z'//trim(name)//'.v_z'//trim(name)//'.a_z'//trim(name)//'.load'
+         if (model%plates(i)%turns) head = head//trim(name)//'.u_r'//trim(name)//'.v_r'//trim(name)//'.a_r'// &
+            trim(name)//'.load_r'//trim(name)//'.turn'//trim(name)//'.v_turn'//trim(name)//'.a_turn'//trim(name)//'.moment'
       end do
    end function contact_columns
 
    !> Its row after a step: contacts at the level of values within the step, plates at its end. time, dt [s], work [kJ];
    !> of every contact thrust [kN], energy [kJ], area [m2], active nodes, sealed nodes; of every plate u_z [m], v_z
-   !> [m/s], a_z [m/s2], load [kN].
+   !> [m/s], a_z [m/s2], load [kN], and of one that moves in the plane the same along r and of its rotation, from r to z:
+   !> angle [-], [1/s], [1/s2], moment [kN m].
    function contact_row(model, contacts, dt, state, work) result(row)
       type(model_t), intent(in) :: model
       type(contacts_t), intent(in) :: contacts
@@ -44,10 +48,26 @@ contains
       integer :: i
 
       row = [state%time, dt, work, (values(contacts%interfaces(i)), i=1, size(model%contacts)), &
-             (state%x(AT_U_Z, model%plates(i)%node), state%v(AT_U_Z, model%plates(i)%node), &
-              state%a(AT_U_Z, model%plates(i)%node), plate_load(model, model%plates(i), state%time), &
-              i=1, size(model%plates))]
+             (of_plate(model%plates(i)), i=1, size(model%plates))]
    contains
+      pure function of_plate(plate) result(list)
+         type(plate_t), intent(in) :: plate
+         real(wp) :: list(merge(12, 4, plate%turns))
+
+         list(:4) = [moves(AT_U_Z, plate%node), plate_load(model, plate, state%time)]
+         if (.not. plate%turns) return
+         list(5:8) = [moves(AT_U_R, plate%node), plate_load_r(model, plate, state%time)]
+         list(9:) = [moves(AT_U_Z, plate%turn_node)/plate%lever, plate_moment(model, plate, state%time)]
+      end function of_plate
+
+      !> Displacement, velocity and acceleration of an unknown.
+      pure function moves(field, node) result(list)
+         integer, intent(in) :: field, node
+         real(wp) :: list(3)
+
+         list = [state%x(field, node), state%v(field, node), state%a(field, node)]
+      end function moves
+
       pure function values(t) result(list)
          type(contact_interface_t), intent(in) :: t
          real(wp) :: list(7)

@@ -15,10 +15,12 @@ module reaction_rows
    private
    public :: reaction_columns, reaction_row
 
-   integer, parameter :: SUFFIXES = 9
+   integer, parameter :: SUFFIXES = 11
    character(10), parameter :: SUFFIX(SUFFIXES) = [character(10) :: 'force_r', 'force_z', 'outflow_w', 'outflow_a', &
-                                                   'load_r', 'load_z', 'inflow_w', 'inflow_a', 'at_limit']
+                                                   'load_r', 'load_z', 'inflow_w', 'inflow_a', 'at_limit', &
+                                                   'moment', 'load_turn']
    integer, parameter :: OUT_W = 3, OUT_A = 4, LOAD_R = 5, LOAD_Z = 6, IN_W = 7, IN_A = 8, LIMIT = 9
+   integer, parameter :: MOMENT = 10, LOAD_TURN = 11   !< On plates that turn [kN m].
 contains
    !> Columns of a stage's table; empty where the stage prescribes and loads nothing. docs/theory/host.md section 9.1.
    function reaction_columns(model, stage) result(head)
@@ -32,8 +34,18 @@ contains
       head = ''
       if (size(list, 2) > 0) head = 'time,time_of_forces'
       do i = 1, size(list, 2)
-         head = head//','//trim(model%domain%mesh%groups(list(1, i))%name)//'.'//trim(SUFFIX(list(2, i)))
+         head = head//','//trim(name_of(list(1, i)))//'.'//trim(SUFFIX(list(2, i)))
       end do
+   contains
+      !> Of a group, or of the plate that it turns.
+      function name_of(group) result(name)
+         integer, intent(in) :: group
+         character(:), allocatable :: name
+
+         name = model%domain%mesh%groups(group)%name
+         if (any(model%plates%turn_group == group)) &
+            name = model%plates(findloc(model%plates%turn_group, group, dim=1))%name
+      end function name_of
    end function reaction_columns
 
    !> (2, columns) group and suffix, in the order in which the scene names them.
@@ -47,7 +59,9 @@ contains
       do i = 1, size(model%fixes)
          associate (fix => model%fixes(i))
             if (.not. acts_in(fix%stages, stage%name)) cycle
-            if (fix%field <= DISPLACEMENTS) then
+            if (fix%turns) then
+               call add(fix%group, MOMENT)
+            else if (fix%field <= DISPLACEMENTS) then
                call add(fix%group, fix%field)
             else
                call add(fix%group, OUT_W)
@@ -59,6 +73,10 @@ contains
       do i = 1, size(model%loads)
          associate (load => model%loads(i))
             if (.not. acts_in(load%stages, stage%name)) cycle
+            if (load%turns) then
+               call add(load%group, LOAD_TURN)
+               cycle
+            end if
             select case (load%kind)
             case (LOAD_WATER)
                call add(load%group, IN_W)
@@ -97,12 +115,18 @@ contains
       type(scheme_t) :: scheme
       integer, allocatable :: list(:, :)
       real(wp), allocatable :: sums(:, :)
+      integer :: i
 
       scheme = make_scheme(stage%kind, stage%rho_inf, dt)
       call list_columns(model, stage, list)
       allocate (sums(SUFFIXES, size(model%domain%mesh%groups)), source=0.0_wp)
       call add_reactions()
       call add_loads()
+      do i = 1, size(model%plates)
+         if (.not. model%plates(i)%turns) cycle
+         sums([MOMENT, LOAD_TURN], model%plates(i)%turn_group) = model%plates(i)%lever &
+            *sums([AT_U_Z, LOAD_Z], model%plates(i)%turn_group)
+      end do
       row = [time, time - (1 - scheme%l_f)*dt, picked()]
    contains
       function picked() result(values)

@@ -22,7 +22,7 @@ contains
       allocate (moving(0))
       do i = 1, size(model%fixes)
          associate (fix => model%fixes(i))
-            if (fix%field > DISPLACEMENTS .or. fix%acceleration) cycle
+            if (fix%field > DISPLACEMENTS .or. fix%acceleration .or. fix%turns) cycle
             if (abs(fix%value) + abs(fix%value_slope) <= 0.0_wp) cycle
             ! One answer, though several stages move it.
             if (any(model%fixes(moving)%group == fix%group .and. model%fixes(moving)%field == fix%field)) cycle

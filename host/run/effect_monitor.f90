@@ -50,6 +50,7 @@ contains
       end associate
       do i = 1, size(model%plates)
          mass(model%plates(i)%node) = mass(model%plates(i)%node) + model%plates(i)%mass
+         if (model%plates(i)%turns) mass(model%plates(i)%turn_node) = model%plates(i)%inertia/model%plates(i)%lever**2
       end do
    end function mass_of_nodes
 

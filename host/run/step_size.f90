@@ -506,8 +506,8 @@ contains
       real(wp), intent(in) :: error(:, :)   !< (FIELDS, nodes) [m, kPa]
       logical, intent(in) :: changes
       type(scheme_t) :: scheme
-      real(wp) :: own, scale(FIELDS), way
-      integer :: i, k, bodies
+      real(wp) :: scale(FIELDS), way
+      integer :: i, bodies
 
       ratio = 0.0_wp
       bodies = size(run%state%x, 2) - size(model%domain%bodies)
@@ -516,17 +516,30 @@ contains
       way = max(scale(AT_U_Z), maxval(abs(run%next%x(AT_U_Z, :bodies) - run%control%x_first(AT_U_Z, :bodies))))
       do i = 1, size(model%plates)
          if (model%plates(i)%node <= bodies) cycle
-         own = abs(error(AT_U_Z, model%plates(i)%node))
-         if (.not. changes .and. model%plates(i)%mass > 0.0_wp .and. allocated(run%system%contacts%interfaces)) then
-            do k = 1, size(model%contacts)
-               associate (t => run%system%contacts%interfaces(k))
-                  if (t%acts .and. t%plate == model%plates(i)%node) own = own/(1 + scheme%l_f/scheme%c_a &
-                     *model%contacts(k)%options%penalty*t%area/model%plates(i)%mass)
-               end associate
-            end do
-         end if
-         ratio = max(ratio, own/way)
+         associate (plate => model%plates(i))
+            ratio = max(ratio, abs(error(AT_U_Z, plate%node))/(way*softened(plate%node, plate%mass)))
+            if (.not. plate%turns) cycle
+            ! A face that turns about its middle presses as a third of its area at its ends does.
+            ratio = max(ratio, abs(error(AT_U_R, plate%node))/way, abs(error(AT_U_Z, plate%turn_node)) &
+                        /(way*softened(plate%node, 3*plate%inertia/plate%lever**2)))
+         end associate
       end do
+   contains
+      !> What the penalty divides the error of a step by.
+      pure real(wp) function softened(node, mass)
+         integer, intent(in) :: node      !< Of the plate.
+         real(wp), intent(in) :: mass     !< [Mg]
+         integer :: k
+
+         softened = 1.0_wp
+         if (changes .or. .not. mass > 0.0_wp .or. .not. allocated(run%system%contacts%interfaces)) return
+         do k = 1, size(model%contacts)
+            associate (t => run%system%contacts%interfaces(k))
+               if (t%acts .and. t%plate%node == node) softened = softened*(1 + scheme%l_f/scheme%c_a &
+                  *model%contacts(k)%options%penalty*t%area/mass)
+            end associate
+         end do
+      end function softened
    end function ratio_of_plates
 
    !> Errors of displacements without a flow stay and add up. So what the steps so far have left of the accuracy is
@@ -580,7 +593,7 @@ contains
                  FLOOR*field_norms(run%next%x(:, :bodies)), tiny(1.0_wp)**0.25_wp)
          ! What a falling plate has yet to do to the soil is of the size of its own way.
          if (size(run%next%x, 2) > bodies) s(:DISPLACEMENTS) = max(s(:DISPLACEMENTS), &
-            PLATE_SHARE*maxval(abs(run%next%x(AT_U_Z, bodies + 1:) - c%x_first(AT_U_Z, bodies + 1:))))
+            PLATE_SHARE*maxval(abs(run%next%x(:DISPLACEMENTS, bodies + 1:) - c%x_first(:DISPLACEMENTS, bodies + 1:))))
       end associate
    end function scales
 

@@ -72,6 +72,7 @@ contains
       type(control_t) :: control
       type(log_t) :: log
       real(wp) :: dt
+      integer :: i
       logical :: accepted, warned
 
       associate (stage => model%stages(number), at => run%at)
@@ -103,6 +104,10 @@ contains
          if (stage%zero_displacements) then
             ! Plates with a face of their own, which come last, stay where they are.
             run%state%x(:DISPLACEMENTS, :size(run%state%x, 2) - size(model%domain%bodies)) = 0.0_wp
+            do i = 1, size(model%plates)
+               if (model%plates(i)%turns .and. model%plates(i)%group > 0) &
+                  run%state%x(:DISPLACEMENTS, [model%plates(i)%node, model%plates(i)%turn_node]) = 0.0_wp
+            end do
             run%state%v = 0.0_wp
             run%state%a = 0.0_wp
             run%state%s_rate = 0.0_wp

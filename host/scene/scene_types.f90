@@ -17,8 +17,9 @@ module scene_types
    public :: scene_t, scene_item_t, scene_mesh_t, scene_law_t, scene_region_t
    public :: initial_t, amplitude_t, stage_t, fix_t, load_t, plate_t, contact_pair_t, absorber_t, tie_t, point_t
    public :: NAME_LENGTH, FINGERPRINT_LENGTH, acts_in, place_of, amplitude_at
-   public :: WITH_U, WITH_P_W, WITH_P_C, PRESCRIBED_P_A
-   public :: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z
+   public :: WITH_U, WITH_P_W, WITH_P_C, PRESCRIBED_P_A, PRESCRIBED_TURN
+   public :: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z, &
+             LOAD_MOMENT
 
    integer, parameter :: NAME_LENGTH = 64         !< Longest name that a scene gives.
    integer, parameter :: FINGERPRINT_LENGTH = 16
@@ -27,11 +28,13 @@ module scene_types
    ! drainage, analysis, measure, gap, relative permeability and fields stand where they act.
    integer, parameter :: WITH_U = 1, WITH_P_W = 2, WITH_P_C = 3                         !< &scene fields
    integer, parameter :: PRESCRIBED_P_A = FIELDS + 1   !< &fix field, after those of unknown_fields: air pressure.
+   integer, parameter :: PRESCRIBED_TURN = FIELDS + 2  !< &fix field: rotation of a plate; read as u_z.
    integer, parameter :: LOAD_PRESSURE = 1    !< &load kind: against the outward normal [kPa].
    integer, parameter :: LOAD_SHEAR_R = 2, LOAD_SHEAR_Z = 3   !< &load kind: along the axes [kPa].
    integer, parameter :: LOAD_WATER = 4, LOAD_AIR = 6         !< &load kind: inflow [m/s].
    integer, parameter :: LOAD_RAIN = 5        !< &load kind: inflow until the surface ponds [m/s].
    integer, parameter :: LOAD_FORCE_R = 7, LOAD_FORCE_Z = 8   !< &load kind: on every node of a group [kN].
+   integer, parameter :: LOAD_MOMENT = 9      !< &load kind: on a plate that turns; read as LOAD_FORCE_Z [kN m].
    real(wp), parameter :: NEVER = huge(1.0_wp)
 
    !> Where a group of the scene begins, for sentences about it.
@@ -105,6 +108,7 @@ module scene_types
       real(wp) :: value = 0.0_wp, value_slope = 0.0_wp, datum = 0.0_wp, from = -NEVER, until = NEVER
       logical :: hold = .false., acceleration = .false.
       logical :: limits = .false.                    !< The value is the largest p_w: water leaves, none enters.
+      logical :: turns = .false.                     !< Of a plate its rotation, the value an angle.
       character(LENGTH), allocatable :: stages(:)
    end type fix_t
 
@@ -114,20 +118,28 @@ module scene_types
       integer :: kind = 0                            !< LOAD_...
       real(wp) :: value = 0.0_wp, value_slope = 0.0_wp, datum = 0.0_wp
       real(wp) :: ponding = 0.0_wp                   !< Depth of water that stays on the surface, of rain [m].
+      logical :: turns = .false.                     !< A moment on a plate.
       character(LENGTH), allocatable :: stages(:)
       real(wp), allocatable :: shape(:)              !< Load vector of a unit value.
       real(wp), allocatable :: rise(:)               !< Load vector of the value z - datum, where it changes with z.
    end type load_t
 
-   !> A rigid plate that moves vertically: one with a face of its own that presses through a contact, or one that is
-   !> joined to a boundary of the mesh.
+   !> A rigid plate: one with a face of its own that presses through a contact, or one that is joined to a boundary of
+   !> the mesh. It moves vertically, or in its plane: along r and z, and turning.
    type, extends(scene_item_t) :: plate_t
       character(NAME_LENGTH) :: name = ''
       character(LENGTH) :: amplitude_name = '', joined_name = ''   !< Boundary that moves with it; empty: own face.
       integer :: group = 0, amplitude = 0
       integer :: node = 0                            !< It carries the plate's motion: its own, or of the boundary.
-      real(wp) :: r(2) = 0.0_wp, z = 0.0_wp, mass = 0.0_wp, force = 0.0_wp
-      logical :: up = .false., heavy = .false.
+      integer :: turn_node = 0, turn_group = 0       !< Its u_z is the lever times the angle, of a plate that turns.
+      real(wp), allocatable :: corners(:, :)         !< (2, corners) of its own face, body on the left [m].
+      real(wp) :: mass = 0.0_wp, force = 0.0_wp
+      logical :: heavy = .false.
+      ! In the plane:
+      logical :: turns = .false.
+      real(wp) :: center(2) = 0.0_wp, inertia = 0.0_wp, force_r = 0.0_wp, moment = 0.0_wp
+      real(wp) :: penalty = 1.0e10_wp                !< Traction of a unit of distance of what is joined to it [kN/m3].
+      real(wp) :: lever = 1.0_wp                     !< Largest distance of what it touches from its centre [m].
    end type plate_t
 
    !> Two boundaries, or a boundary and a plate, that may come into contact.
