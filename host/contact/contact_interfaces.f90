@@ -7,8 +7,8 @@ module contact_interfaces
    use contact_geometry, only: contact_geometry_t, contact_prepare
    use contact_penalty, only: contact_workspace_t, contact_result_t, contact_point_t, new_workspace, new_result, &
                               contact_evaluate, points_of, slid_work
-   use contact_plate, only: plate_motion_t, plate_response_t, new_plate_response, plate_positions, plate_slopes, &
-                            gather_on_plate, force_on_plate
+   use contact_plate, only: plate_motion_t, plate_response_t, new_plate_response, plate_displacements, &
+                            plate_positions, plate_slopes, gather_on_plate, force_on_plate
    use plate_springs, only: spring_geometry, new_spring_result, pull_springs, lengths_of_nodes
    use contact_types, only: contact_options_t, contact_status_t, CONTACT_OK
    use degrees_of_freedom, only: dofs_t
@@ -20,7 +20,9 @@ module contact_interfaces
              plate_surface
    public :: begin_friction, follow_friction, friction_turns, accept_friction
    public :: evaluate_contacts, probe_contacts, start_points, probe_interface, fit_pattern, add_contacts, &
-             contact_forces, mean_contact_forces
+             contact_forces, mean_contact_forces, rounding_of_ties
+
+   real(wp), parameter :: ROUNDINGS = 4.0_wp   !< Of a displacement: of the node, and of its place by three unknowns.
 
    !> A boundary with numbers of its own.
    type :: surface_t
@@ -60,6 +62,7 @@ module contact_interfaces
       integer :: active = 0
       integer :: sliding = 0                !< Nodes whose friction is at its limit.
       real(wp) :: drag = 0.0_wp             !< Friction on the master along the slave's tangent, summed up [kN].
+      real(wp) :: rounding = 0.0_wp         !< Of the forces of its springs [kN].
       integer :: sealed = 0                 !< Slave nodes that are impervious in the step under way.
    end type contact_interface_t
 
@@ -207,6 +210,8 @@ contains
             t%active = count(t%result%active)
             t%thrust = sum(t%result%force(2:2*t%geometry%slave_nodes:2))
             t%energy = t%result%energy
+            if (allocated(t%spring)) t%rounding = ROUNDINGS*epsilon(1.0_wp)*norm2(spread(t%spring, 1, DISPLACEMENTS) &
+                                                                              *x(:DISPLACEMENTS, t%slave%node))
             t%area = sum(t%result%weight, mask=t%result%active)
             t%sliding = count(t%result%side /= 0)
             t%drag = dot_product(t%result%weight, t%result%traction)
@@ -241,8 +246,7 @@ contains
       type(contact_status_t), intent(out) :: status
 
       if (allocated(t%spring)) then
-         call pull_springs(t%spring, t%slave%x0 + x(:DISPLACEMENTS, t%slave%node), &
-                           plate_positions(t%plate%motion, t%master%x0, motion_of(t%plate, x)), result)
+         call pull_springs(t%spring, x(:DISPLACEMENTS, t%slave%node), displacements_of_master(t, x), result)
          status = contact_status_t()
       else if (t%rubs) then
          t%friction%slave_dx = x(:DISPLACEMENTS, t%slave%node) - t%slave_u
@@ -261,7 +265,7 @@ contains
       real(wp) :: u(DISPLACEMENTS, size(t%master%x0, 2))
 
       if (t%plate%node > 0) then
-         u = plate_positions(t%plate%motion, t%master%x0, motion_of(t%plate, x)) - t%master%x0
+         u = plate_displacements(t%plate%motion, t%master%x0, motion_of(t%plate, x))
       else
          u = x(:DISPLACEMENTS, t%master%node)
       end if
@@ -442,8 +446,8 @@ contains
          associate (t => contacts%interfaces(i))
             if (.not. t%acts) cycle
             if (t%plate%node > 0) then
-               call add(t%unknown, t%on_plate%force, t%on_plate%size, t%on_plate%row(:t%on_plate%triplets), t%on_plate%column, &
-                        t%on_plate%value)
+               call add(t%unknown, t%on_plate%force, t%on_plate%size, t%on_plate%row(:t%on_plate%triplets), &
+                        t%on_plate%column, t%on_plate%value)
             else
                call add(t%unknown, t%result%force, abs(t%result%force), t%result%row(:t%result%triplets), &
                         t%result%column, t%result%value)
@@ -469,6 +473,15 @@ contains
          end do
       end subroutine add
    end subroutine add_contacts
+
+   !> What rounding leaves of the forces between boundaries and the plates that they are tied to: small differences of
+   !> large displacements, times stiff springs [kN].
+   pure real(wp) function rounding_of_ties(contacts) result(rounding)
+      type(contacts_t), intent(in) :: contacts
+      integer :: i
+
+      rounding = norm2([(contacts%interfaces(i)%rounding, i=1, size(contacts%interfaces))])
+   end function rounding_of_ties
 
    !> Mean of the forces of the contacts at two sets of displacements, to be added to the internal ones; zero if a
    !> kernel refuses them. The outcome of the last evaluation within the step stays.

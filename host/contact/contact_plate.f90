@@ -7,13 +7,13 @@ module contact_plate
    use contact_penalty, only: contact_result_t
    implicit none (type, external)
    private
-   public :: plate_motion_t, plate_response_t, new_plate_response, unknowns_of, plate_positions, plate_slopes, &
-             gather_on_plate, force_on_plate
+   public :: plate_motion_t, plate_response_t, new_plate_response, unknowns_of, plate_displacements, &
+             plate_positions, plate_slopes, gather_on_plate, force_on_plate
 
    integer, parameter :: FIRST_ROOM = 1024   !< Triplets to begin with.
    integer, parameter :: TURN = 3            !< Of the unknowns of a motion in the plane.
 
-   !> How a plate moves: vertically, or in its plane: along both axes and turning, from r to z, about its centre of mass.
+   !> How a plate moves: vertically, or in its plane: along both axes and turning, from r to z, about its centre.
    type :: plate_motion_t
       logical :: turns = .false.
       real(wp) :: center(2) = 0.0_wp   !< At the start [m].
@@ -58,21 +58,32 @@ contains
       type(plate_motion_t), intent(in) :: motion
       real(wp), intent(in) :: x0(:, :)   !< (2, nodes) undisplaced [m]
       real(wp), intent(in) :: q(:)       !< (unknowns_of) [m]
-      real(wp) :: x(2, size(x0, 2)), arm(2), c, s
+      real(wp) :: x(2, size(x0, 2))
+
+      x = x0 + plate_displacements(motion, x0, q)
+   end function plate_positions
+
+   !> Displacements of the nodes of the face; rotations are exact, and small ones do not vanish beside coordinates.
+   !> docs/theory/contact.md section 4.
+   pure function plate_displacements(motion, x0, q) result(u)
+      type(plate_motion_t), intent(in) :: motion
+      real(wp), intent(in) :: x0(:, :)   !< (2, nodes) undisplaced [m]
+      real(wp), intent(in) :: q(:)       !< (unknowns_of) [m]
+      real(wp) :: u(2, size(x0, 2)), arm(2), less, s
       integer :: i
 
       if (.not. motion%turns) then
-         x(1, :) = x0(1, :)
-         x(2, :) = x0(2, :) + q(1)
+         u(1, :) = 0.0_wp
+         u(2, :) = q(1)
          return
       end if
-      c = cos(q(TURN)/motion%lever)
       s = sin(q(TURN)/motion%lever)
+      less = 2*sin(0.5_wp*q(TURN)/motion%lever)**2   ! 1 - cos
       do i = 1, size(x0, 2)
          arm = x0(:, i) - motion%center
-         x(:, i) = motion%center + q(:2) + [c*arm(1) - s*arm(2), s*arm(1) + c*arm(2)]
+         u(:, i) = q(:2) + [-less*arm(1) - s*arm(2), s*arm(1) - less*arm(2)]
       end do
-   end function plate_positions
+   end function plate_displacements
 
    !> Slopes of the coordinates 2 (node - 1) + direction of the face against the unknowns of the plate [-].
    !> docs/theory/contact.md section 4.

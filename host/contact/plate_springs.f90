@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Nodes that are tied to a rigid plate which moves in its plane: stiff springs in both directions between every node and
-!> its place on the plate, gathered on the plate as contact is. docs/theory/contact.md section 4.
+!> Nodes that are tied to a rigid plate which moves in its plane: stiff springs in both directions between every node
+!> and its place on the plate, gathered on the plate as contact is. docs/theory/contact.md section 4.
 module plate_springs
    use kinds, only: wp
    use contact_geometry, only: contact_geometry_t
@@ -38,17 +38,17 @@ contains
       end do
    end function new_spring_result
 
-   !> Forces and energy at current coordinates. docs/theory/contact.md section 4.
-   pure subroutine pull_springs(stiffness, x, place, result)
+   !> Forces and energy at displacements. docs/theory/contact.md section 4.
+   pure subroutine pull_springs(stiffness, u, of_plate, result)
       real(wp), intent(in) :: stiffness(:)            !< (nodes) [kN/m]
-      real(wp), intent(in) :: x(:, :), place(:, :)    !< (2, nodes) of the nodes, and where the plate has them [m]
+      real(wp), intent(in) :: u(:, :), of_plate(:, :)   !< (2, nodes) of the nodes, and of their places on the plate [m]
       type(contact_result_t), intent(inout) :: result
-      real(wp) :: pull(2*size(x, 2))
+      real(wp) :: pull(2*size(u, 2))
 
-      pull = reshape(spread(stiffness, 1, 2)*(x - place), [size(pull)])
+      pull = reshape(spread(stiffness, 1, 2)*(u - of_plate), [size(pull)])
       result%force(:size(pull)) = pull
       result%force(size(pull) + 1:) = -pull
-      result%energy = 0.5_wp*dot_product(pull, reshape(x - place, [size(pull)]))
+      result%energy = 0.5_wp*dot_product(pull, reshape(u - of_plate, [size(pull)]))
    end subroutine pull_springs
 
    !> Share of every node in the length of a boundary, as its shape functions give it [m]. (nodes)

@@ -33,6 +33,7 @@ contains
                 constraint%rain_0(dofs%n), constraint%rain_1(dofs%n), constraint%offset(dofs%n), &
                 constraint%mass(dofs%n), source=0.0_wp)
       allocate (constraint%air_target(nodes), source=0.0_wp)
+      allocate (constraint%bodies(3, 0))
       do i = 1, size(model%plates)
          ! Plates whose boundaries a &tie joins have one unknown.
          associate (at => dofs%of(AT_U_Z, model%plates(i)%node))
@@ -42,6 +43,8 @@ contains
          associate (plate => model%plates(i))
             constraint%mass(dofs%of(AT_U_R, plate%node)) = plate%mass
             constraint%mass(dofs%of(AT_U_Z, plate%turn_node)) = plate%inertia/plate%lever**2
+            constraint%bodies = reshape([constraint%bodies, dofs%of(AT_U_R, plate%node), dofs%of(AT_U_Z, plate%node), &
+                                         dofs%of(AT_U_Z, plate%turn_node)], [3, size(constraint%bodies, 2) + 1])
          end associate
       end do
    end function new_constraint

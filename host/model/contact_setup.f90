@@ -90,21 +90,26 @@ contains
          associate (plate => model%plates(model%contacts(i)%plate))
             load = -plate_load(model, plate, state%time)
             if (.not. plate%heavy .or. load <= 0.0_wp) cycle
-            ! Of what looks down.
-            area = area_of(plate%corners(1, :))
+            area = area_below(plate%corners)
             if (area <= 0.0_wp) cycle
             state%x(AT_U_Z, plate%node) = -load/(model%contacts(i)%options%penalty*area)
          end associate
       end do
    contains
-      pure real(wp) function area_of(r) result(area)
-         real(wp), intent(in) :: r(:)   !< Of the corners of a face [m].
-         integer :: n
+      !> Of the lowest edges of a face that look down [m2].
+      pure real(wp) function area_below(corners) result(area)
+         real(wp), intent(in) :: corners(:, :)   !< (2, corners) [m]
+         real(wp) :: part
+         integer :: i
 
-         n = size(r)
-         area = r(n) - r(1)
-         if (model%domain%axisymmetric) area = area*0.5_wp*TWO_PI*(r(1) + r(n))
-      end function area_of
+         area = 0.0_wp
+         do i = 2, size(corners, 2)
+            if (maxval(corners(2, i - 1:i)) > minval(corners(2, :))) cycle
+            part = corners(1, i) - corners(1, i - 1)
+            if (model%domain%axisymmetric) part = part*0.5_wp*TWO_PI*sum(corners(1, i - 1:i))
+            area = area + max(0.0_wp, part)
+         end do
+      end function area_below
    end subroutine seat_plates
 
    !> Which contacts take part in a stage.

@@ -49,8 +49,8 @@ contains
                if (model%plates(i)%group > 0) cycle
                if (model%plates(i)%turns .and. .not. holds_along_r(model, stage, i)) then
                   call raise(fault, EXIT_FREE_BODY, 'Stage '//trim(stage%name)//': nothing holds the plate '''// &
-                             trim(model%plates(i)%name)//''' against moving along r (x): no &contact of it that acts '// &
-                             'has friction; give one friction, or a &fix of u_r with the plate as its group.')
+                             trim(model%plates(i)%name)//''' against moving along r (x): no &contact of it that '// &
+                             'acts has friction; give one friction, or a &fix of u_r with the plate as its group.')
                   return
                end if
                if (touched(model%plates(i)%node)) cycle
@@ -111,7 +111,8 @@ contains
          text = text//'; contact alone holds '//described(model, body_of == b)
       end do
       do i = 1, size(model%plates)
-         if (model%plates(i)%group > 0 .or. is_fixed(model, stage, AT_U_Z, model%plates(i)%node)) cycle
+         if (model%plates(i)%group > 0 .or. (is_fixed(model, stage, AT_U_Z, model%plates(i)%node) .and. .not. &
+                                             model%plates(i)%turns)) cycle
          text = text//'; contact alone holds the plate '''//trim(model%plates(i)%name)//''''
       end do
    end function bodies_on_contact

@@ -31,14 +31,15 @@ contains
          name = ','//model%plates(i)%name
          head = head//trim(name)//'.u_z'//trim(name)//'.v_z'//trim(name)//'.a_z'//trim(name)//'.load'
          if (model%plates(i)%turns) head = head//trim(name)//'.u_r'//trim(name)//'.v_r'//trim(name)//'.a_r'// &
-            trim(name)//'.load_r'//trim(name)//'.turn'//trim(name)//'.v_turn'//trim(name)//'.a_turn'//trim(name)//'.moment'
+            trim(name)//'.load_r'//trim(name)//'.turn'//trim(name)//'.v_turn'//trim(name)//'.a_turn'//trim(name)// &
+            '.moment'
       end do
    end function contact_columns
 
    !> Its row after a step: contacts at the level of values within the step, plates at its end. time, dt [s], work [kJ];
    !> of every contact thrust [kN], energy [kJ], area [m2], active nodes, sealed nodes; of every plate u_z [m], v_z
-   !> [m/s], a_z [m/s2], load [kN], and of one that moves in the plane the same along r and of its rotation, from r to z:
-   !> angle [-], [1/s], [1/s2], moment [kN m].
+   !> [m/s], a_z [m/s2], load [kN], and of one that moves in the plane the same along r and of its rotation, from r to
+   !> z: angle [-], [1/s], [1/s2], moment [kN m].
    function contact_row(model, contacts, dt, state, work) result(row)
       type(model_t), intent(in) :: model
       type(contacts_t), intent(in) :: contacts

@@ -12,6 +12,7 @@ module step_attempt
    use contact_types, only: contact_message
    use convergence, only: control_t, log_t
    use energy_ledger, only: kinetic_energy
+   use free_bodies, only: bodies_on_contact
    use generalised_alpha, only: scheme_t, make_scheme, DYNAMIC
    use given_pressures, only: follow_undrained
    use ground_stages, only: acting_load, change_ground, growth_at, hold_absent
@@ -68,6 +69,7 @@ contains
       logical, intent(out) :: accepted   !< False also where its error is too large.
       type(fault_t), intent(inout) :: fault
       type(scheme_t) :: scheme
+      character(:), allocatable :: on_contact
       real(wp), allocatable :: a0(:, :)
       real(wp) :: share
 
@@ -113,10 +115,13 @@ contains
          at%cuts = at%cuts + 1
          at%good = 0
          run%system%factored = .false.
-         ! A shorter step helps a singular matrix only where it is points of the material that resist with nothing.
+         ! A shorter step helps a singular matrix only where it is points of the material that resist with nothing, or a
+         ! contact that an iterate has opened.
+         on_contact = bodies_on_contact(model, stage)
          share = merge(min(run%assembly%bad%factor, 0.5_wp), 0.5_wp, log%outcome == MATERIAL_FAILED)
          if (at%cuts > stage%cuts .or. log%outcome == SOLVER_FAILED .or. share*dt < shortest_step(stage, run) .or. &
-             (log%outcome == BODY_FREE .and. run%assembly%replaced == 0)) then
+             (log%outcome == BODY_FREE .and. run%assembly%replaced == 0 .and. &
+              (at%step == 0 .or. on_contact == ''))) then
             call explain_failure(model, stage, run, log, run%state%time + dt, dt, fault)
             return
          end if

@@ -15,8 +15,8 @@ module scene_keys
    use retention_groups, only: RETENTION_KEYS
    use scene_accuracy, only: ask_steps, ask_stress
    use scene_types, only: scene_t, scene_law_t, scene_region_t, scene_item_t, initial_t, amplitude_t, stage_t, fix_t, &
-                          load_t, plate_t, contact_pair_t, absorber_t, tie_t, point_t, place_of, LOAD_FORCE_Z, LOAD_MOMENT, &
-                          PRESCRIBED_TURN
+                          load_t, plate_t, contact_pair_t, absorber_t, tie_t, point_t, place_of, LOAD_FORCE_Z, &
+                          LOAD_MOMENT, PRESCRIBED_TURN
    use spelling, only: nearest_name
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
@@ -479,7 +479,7 @@ contains
       call k%text('name', plate%name, 'rigid plate or foundation; also a group for &fix and &load', REQUIRED)
       call k%flag('motion', plate%turns, 'vertical|plane', 'plane', &
                   'plane: along r and z, and turning (plane strain)')
-      call k%numbers('r', r, -BIG, BIG, 'begin and end of the plate''s own flat face [m]; or outline, or group')
+      call k%numbers('r', r, -BIG, BIG, 'begin and end of its own flat face [m]; or outline, or group')
       call k%text('group', plate%joined_name, 'boundary of the mesh that moves with the plate; or r, or outline')
       call k%number('z', z, -BIG, BIG, 'height of the plate''s own face at the start [m]', '+r')
       call k%flag('face', up, 'down|up', 'up', 'direction of the plate''s own face', '+r')
@@ -491,15 +491,16 @@ contains
       call k%flag('weight', plate%heavy, 'no|yes', 'yes', &
                   'the weight acts, and the plate starts in balance on its contact')
       call k%number('force', plate%force, -BIG, BIG, 'force on the plate, upwards [kN]')
-      call k%number('force_r', plate%force_r, -BIG, BIG, 'force along r, at the centre of mass [kN]', 'motion=plane')
+      call k%number('force_r', plate%force_r, -BIG, BIG, 'force along r, at the centre of mass [kN]', &
+                    'motion=plane')
       call k%number('moment', plate%moment, -BIG, BIG, 'moment, from r to z [kN m]', 'motion=plane')
       call k%number('penalty', plate%penalty, TINY_, BIG, &
                     'traction of a unit of distance between a group and its place on the plate [kN/m3]', &
                     'motion=plane')
       call k%text('history', plate%amplitude_name, 'factor on force, force_r and moment')
       if (count([k%given('group'), k%given('r'), k%given('outline')]) /= 1) then
-         call raise(fault, EXIT_INPUT, place_of(plate)//'a plate has a face of its own, r = begin, end (or, in '// &
-                    'the plane, outline), or it is joined to a boundary, group = name: give one of them.')
+         call raise(fault, EXIT_INPUT, place_of(plate)//'a plate has a face of its own, r = begin, end (in the '// &
+                    'plane also outline), or it is joined to a boundary, group = name: give one of the two.')
       else if (plate%turns .and. scene%axisymmetric) then
          call raise(fault, EXIT_INPUT, place_of(plate)//'motion = ''plane'' turns the plate, which axial symmetry '// &
                     'has no place for; set geometry = ''plane_strain'' in &scene, or motion = ''vertical''.')

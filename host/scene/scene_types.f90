@@ -138,7 +138,7 @@ module scene_types
       ! In the plane:
       logical :: turns = .false.
       real(wp) :: center(2) = 0.0_wp, inertia = 0.0_wp, force_r = 0.0_wp, moment = 0.0_wp
-      real(wp) :: penalty = 1.0e10_wp                !< Traction of a unit of distance of what is joined to it [kN/m3].
+      real(wp) :: penalty = 1.0e9_wp                !< Traction of a unit of distance of what is joined to it [kN/m3].
       real(wp) :: lever = 1.0_wp                     !< Largest distance of what it touches from its centre [m].
    end type plate_t
 

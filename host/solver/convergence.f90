@@ -135,6 +135,7 @@ contains
 
       call add_scales(dofs, constraint, assembly, assembly%with_change, s, floor)
       scales = max(sqrt(s), max(HISTORY_SHARE, assembly%rounding_share)*largest, sqrt(floor), ABSOLUTE_FLOOR)
+      scales(:DISPLACEMENTS) = max(scales(:DISPLACEMENTS), assembly%unresolved)
    end function field_scales
 
    pure subroutine add_scales(dofs, constraint, assembly, by_change, s, floor)
@@ -171,14 +172,31 @@ contains
    end function is_body
 
    !> Force [kN] that the residual of rigid body i is small against. docs/theory/host.md section 5.1.
-   pure real(wp) function body_scale(assembly, largest, i)
+   !> The three unknowns of a body that turns are measured by the largest force of them: their units are one, and what
+   !> does not load one of them is in balance with what loads the others.
+   pure real(wp) function body_scale(constraint, assembly, largest, i)
+      type(constraint_t), intent(in) :: constraint
       type(assembly_t), intent(in) :: assembly
       real(wp), intent(in) :: largest(FIELDS)   !< As of field_scales.
       integer, intent(in) :: i
+      integer :: j, k
 
-      body_scale = assembly%scale(i)
-      if (assembly%with_change) body_scale = assembly%change(i)
-      body_scale = max(body_scale, max(HISTORY_SHARE, assembly%rounding_share)*largest(AT_U_Z), ABSOLUTE_FLOOR)
+      body_scale = own(i)
+      do k = 1, size(constraint%bodies, 2)
+         if (.not. any(constraint%bodies(:, k) == i)) cycle
+         do j = 1, size(constraint%bodies, 1)
+            body_scale = max(body_scale, own(constraint%bodies(j, k)))
+         end do
+      end do
+      body_scale = max(body_scale, max(HISTORY_SHARE, assembly%rounding_share)*largest(AT_U_Z), &
+                       ABSOLUTE_FLOOR, assembly%unresolved)
+   contains
+      pure real(wp) function own(unknown)
+         integer, intent(in) :: unknown
+
+         own = assembly%scale(unknown)
+         if (assembly%with_change) own = assembly%change(unknown)
+      end function own
    end function body_scale
 
    !> Norms of the forces in each field, never zero. [kN, m3/s]
@@ -236,7 +254,7 @@ contains
       log%error = residual_norms(dofs, constraint, rhs)/max(field_scales(dofs, constraint, assembly, largest), rounding)
       do i = 1, dofs%n
          if (is_body(constraint, i)) &
-            log%error(AT_U_Z) = max(log%error(AT_U_Z), abs(rhs(i))/body_scale(assembly, largest, i))
+            log%error(AT_U_Z) = max(log%error(AT_U_Z), abs(rhs(i))/body_scale(constraint, assembly, largest, i))
       end do
       log%worst_field = maxloc(log%error, 1)
       log%worst_unknown = 0

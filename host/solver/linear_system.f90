@@ -64,7 +64,7 @@ contains
       if (assembly%with_change) scales = max(scales, asked_for(dofs, rhs))
       weight = 1/scales(dofs%field)
       do i = 1, dofs%n
-         if (is_body(constraint, i)) weight(i) = 1/body_scale(assembly, system%largest, i)
+         if (is_body(constraint, i)) weight(i) = 1/body_scale(constraint, assembly, system%largest, i)
       end do
       active = 0
       system%indefinite = .false.

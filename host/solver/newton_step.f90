@@ -5,7 +5,8 @@ module newton_step
    use kinds, only: wp
    use wall_clock, only: clock, lap
    use conjugate_residuals, only: solve_by_factors, INACCURATE
-   use contact_interfaces, only: add_contacts, contact_forces, follow_friction, friction_turns
+   use contact_interfaces, only: add_contacts, contact_forces, follow_friction, friction_turns, &
+                                 rounding_of_ties
    use convergence, only: control_t, log_t, measure, good_enough, look_for_stagnation, linear_tolerance, rounding_in, &
                           residual_norms, forces_of_fields, &
                           BY_FORCES, BY_CHANGE
@@ -204,6 +205,8 @@ contains
 
       assembly%air = constraint%air
       assembly%with_change = control%measure == BY_CHANGE
+      assembly%tolerance = control%tolerance
+      assembly%unresolved = 0.0_wp
       assembly%rounding_share = merge(rounding_in(scheme%kind)/control%tolerance, 0.0_wp, assembly%with_change)
       assembly%fallback = NO_FALLBACK
       call follow_slopes_first(domain, control%carries_slopes, assembly)
@@ -233,6 +236,7 @@ contains
          call lap(system%seconds(T_REST), t0)
          call add_contacts(system%contacts, pattern, scheme%l_f, slopes, assembly%residual, assembly%scale, &
                            assembly%values)
+         assembly%unresolved = rounding_of_ties(system%contacts)/assembly%tolerance
          call lap(system%seconds(T_CONTACT), t0)
       end if
       rhs = constraint%load_0 + scheme%l_f*(constraint%load_1 - constraint%load_0) - constraint%offset

@@ -27,6 +27,7 @@ module prescribed_values
       type(dashpots_t), allocatable :: dashpots(:)   !< Of absorbing boundaries.
       real(wp), allocatable :: acceleration(:)   !< Prescribed ones where a stage begins, if there are any.
       real(wp), allocatable :: mass(:)        !< Of rigid bodies [Mg].
+      integer, allocatable :: bodies(:, :)    !< (3, bodies that turn) Their unknowns.
    end type constraint_t
 contains
    !> Rows of prescribed unknowns say what is missing of their value; the diagonal keeps its size. docs/theory/host.md
