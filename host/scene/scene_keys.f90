@@ -505,8 +505,8 @@ contains
          call raise(fault, EXIT_INPUT, place_of(plate)//'motion = ''plane'' turns the plate, which axial symmetry '// &
                     'has no place for; set geometry = ''plane_strain'' in &scene, or motion = ''vertical''.')
       else if (plate%turns .and. .not. (k%given('center') .and. k%given('inertia'))) then
-         call raise(fault, EXIT_INPUT, place_of(plate)//'a plate that moves in the plane needs center = r, z of its '// &
-                    'centre of mass [m] and inertia, its moment of inertia about it [Mg m2].')
+         call raise(fault, EXIT_INPUT, place_of(plate)//'a plate that moves in the plane needs center = r, z of '// &
+                    'its centre of mass [m] and inertia, its moment of inertia about it [Mg m2].')
       else if (k%given('center') .and. size(center) /= 2) then
          call raise(fault, EXIT_INPUT, place_of(plate)//'center = r, z are two numbers.')
       else if (k%given('outline') .and. (size(outline) < 4 .or. mod(size(outline), 2) == 1)) then

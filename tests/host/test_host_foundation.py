@@ -38,7 +38,8 @@ def run(name, text, *more):
 
 def test_a_body_flies_as_newton_says():
     # Under constant forces: parabolas of its centre and of its angle, through more than half a turn.
-    text = GROUND.replace(" gravity=10", "") + FREE.format(more=" force=10 force_r=4 moment=12").replace("z=0", "z=10").replace("0,0.5", "0,10.5")
+    text = GROUND.replace(" gravity=10", "") + FREE.format(more=" force=10 force_r=4 moment=12")
+    text = text.replace("r=-1,1 z=0 center=0,0.5", "r=-1,1 z=10 center=0,10.5")
     text += "&stage name='fly' analysis='dynamic' duration=0.6 dt=0.01 rho_inf=1 /\n"
     end = run("flight", text)
     for name, acceleration in (("turn", 12 / 0.6), ("u_r", 4 / 2), ("u_z", 10 / 2)):
@@ -54,10 +55,12 @@ def test_what_is_refused():
     for what, text, code, words in (
             ("axial symmetry", wanted.replace("geometry='plane_strain' ", ""), 2,
              ("motion = 'plane' turns the plate, which axial symmetry has no place for", "geometry = 'plane_strain'")),
-            ("no inertia", wanted.replace(" inertia=0.6", ""), 2, ("needs center = r, z", "inertia, its moment of inertia")),
+            ("no inertia", wanted.replace(" inertia=0.6", ""), 2,
+             ("needs center = r, z", "inertia, its moment of inertia")),
             ("no center", wanted.replace(" center=0,0.5", ""), 2, ("needs center = r, z",)),
             ("a center of three numbers", wanted.replace("center=0,0.5", "center=0,0.5,1"), 2, ("are two numbers",)),
-            ("an outline of one corner", wanted.replace("group='top_2'", "outline=0,1"), 2, ("are two corners or more",)),
+            ("an outline of one corner", wanted.replace("group='top_2'", "outline=0,1"), 2,
+             ("are two corners or more",)),
             ("two places", wanted.replace("group='top_2'", "group='top_2' r=0,1"), 2, ("give one of the two",)),
             ("nothing to tie", wanted.replace("group='top_2'", "group='all'"), 11, ("has no edges that could move",)),
             ("a rotation of a boundary", wanted + "&fix group='top' field='rotation' /\n", 2,
@@ -65,9 +68,10 @@ def test_what_is_refused():
             ("a moment on a plate that does not turn", wanted + "&plate name='p' r=2,3 z=1 mass=1 /\n"
              "&load group='p' kind='moment' value=1 /\n", 2, ("'p' is none",)),
             ("a plate that nothing holds along r", GROUND + FREE.format(more="") + PUSH
-             + "&contact name='c' slave='top' master='raft' /\n", 13, ("against moving along r (x)", "give one friction")),
-            ("a body that nothing holds against turning", GROUND.replace("'bottom'", "'raft'") + TIED.format(more="") + PUSH, 13,
-             ("against turning",))):
+             + "&contact name='c' slave='top' master='raft' /\n", 13,
+             ("against moving along r (x)", "give one friction")),
+            ("a body that nothing holds against turning", GROUND.replace("'bottom'", "'raft'")
+             + TIED.format(more="") + PUSH, 13, ("against turning",))):
         done = start("refused", text, "--check")
         check(f"{what} is refused", done.returncode == code, (done.returncode, done.stderr))
         for word in words:
@@ -83,7 +87,8 @@ def test_a_tie_and_a_contact_agree():
     for name in ("u_z", "u_r", "turn"):
         check(f"{name} of tie and contact", math.isclose(tied[f"raft.{name}"], pressed[f"raft.{name}"], rel_tol=2e-2),
               (tied, pressed))
-    check("the moment and the force are told", tied["raft.moment"] == 3 and tied["raft.load_r"] == 2 and tied["raft.load"] == -20)
+    for name, value in (("moment", 3), ("load_r", 2), ("load", -20)):
+        check(f"{name} is told", tied[f"raft.{name}"] == value, tied)
 
 
 def test_moments_and_rotations_in_the_tables():
@@ -93,8 +98,8 @@ def test_moments_and_rotations_in_the_tables():
     free = run("free_raft", GROUND + TIED.format(more="") + PUSH + loads)
     told = tables.columns(work / "free_raft" / "reactions_push.csv")
     check("the moment of the load", math.isclose(told["raft.load_turn"][-1], 3, rel_tol=1e-12), told)
-    supports = "".join(f"&fix group='raft' field='{field}' value={float(free['raft.' + name])!r} history='up' /\n" for field, name in
-                       (("rotation", "turn"), ("u_r", "u_r"), ("u_z", "u_z")))
+    supports = "".join(f"&fix group='raft' field='{field}' value={float(free['raft.' + name])!r} history='up' /\n"
+                       for field, name in (("rotation", "turn"), ("u_r", "u_r"), ("u_z", "u_z")))
     held = run("held_raft", GROUND + TIED.format(more="") + PUSH + supports
                + "&history name='up' times=0,1 values=0,1 /\n")
     told = tables.columns(work / "held_raft" / "reactions_push.csv")
@@ -109,11 +114,11 @@ def test_a_rotated_frame_of_loads():
     # From (0.5, -0.3) the arm to (0, 0.5) is (-0.5, 0.8). It turns with the raft: by the angle, beside one.
     arm_r, arm_z = -0.5, 0.8
     moment = 3 + arm_r * (-4) - arm_z * 2
-    two = run("centre_moved", GROUND + TIED.format(more=f" force=-4 force_r=2 moment={moment}").replace("0,0.5", "0.5,-0.3") + PUSH)
+    moved = TIED.format(more=f" force=-4 force_r=2 moment={moment}").replace("0,0.5", "0.5,-0.3")
+    two = run("centre_moved", GROUND + moved + PUSH)
     turn = one["raft.turn"]
-    check("the rotation is the same", math.isclose(turn, two["raft.turn"], rel_tol=1e-3), (one, two))
-    check("u_r differs by the arm", math.isclose(two["raft.u_r"], one["raft.u_r"] + arm_z * turn, rel_tol=1e-3), (one, two))
-    check("u_z differs by the arm", math.isclose(two["raft.u_z"], one["raft.u_z"] - arm_r * turn, rel_tol=1e-3), (one, two))
+    for name, wanted in (("turn", turn), ("u_r", one["raft.u_r"] + arm_z * turn), ("u_z", one["raft.u_z"] - arm_r * turn)):
+        check(f"{name} by the arm", math.isclose(two[f"raft.{name}"], wanted, rel_tol=1e-3), (one, two))
 
 
 def test_a_run_is_taken_up_bitwise():

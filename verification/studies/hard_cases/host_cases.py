@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from host_runs import BOTH, SETTINGS, HostCase
-from host_scenes import bank, column, falling, footing, impact, meshes, rectangle, showers, square, tolerant
+from host_scenes import bank, column, drawdown, falling, footing, impact, meshes, raft, rectangle, showers, spin, square, tolerant
 
 DEFAULT = SETTINGS[:1]
 CONTACT, WATER, FAILURE, MESH = "contact", "pore water", "failure", "mesh"
@@ -84,6 +84,23 @@ def off_the_weight(runs):
         for name, height in (("rest", 2), ("one", 2.5), ("two", 3), ("three", 3.5), ("cut", 2.5)):
             weight = 2 * height * 2.7 / 1.85 * 9.81
             worst = max(worst, 100 * abs(float(run.table("reactions_" + name)["bottom.force_z"][-1]) / weight - 1))
+    return worst
+
+
+def off_the_spin(runs):
+    """Force of the base against the weight at 50 g [%]."""
+    weight = 0.2 * 0.3 * 2.7 / 1.9 * 490.5
+    return max(100 * abs(float(run.table("reactions_spin")["bottom.force_z"][-1]) / weight - 1) for run in runs.values())
+
+
+def drawn_in(runs):
+    """Water that enters through a face that lets water out alone, of what leaves, and pressure of the face above that of the water outside [%]."""
+    worst = 0.0
+    for run in runs.values():
+        out, pressure = run.table("reactions_rain")["right.outflow_w"], run.histories
+        outside = 19.62 * np.maximum(0, 1 - pressure["time"] / 60) - 9.81 * 2 / 3 * np.maximum(0, 1 - pressure["time"] / 60)
+        worst = max(worst, 100 * float(np.sum(np.maximum(0, -out)) / np.sum(np.maximum(0, out))),
+                    100 * float(np.max(pressure["centre.p_w"] - outside)) / 19.62)
     return worst
 
 
@@ -169,6 +186,13 @@ CASES = (
     HostCase("a bank in layers, cut again", FAILURE, "new ground without stress, where sand has no stiffness; two layers leave at once",
              "force of the base against the weight of the ground at the end of each stage [%]", 1.0,
              lambda s: {"": bank(s)}, off_the_weight, last_settlement, DEFAULT),
+    HostCase("a raft that rocks on sand", CONTACT, "a rigid body lifts off on one side, comes back and slides, on soil that yields under its edges", CREATED, 1,
+             lambda s: {str(dt): raft(s, dt) for dt in (1e-3, 4e-3)}, created, last_settlement, DEFAULT),
+    HostCase("drawdown at a seepage face", WATER, "the water outside falls in a minute: node by node a face of saturated loose sand goes from held to free",
+             "water drawn in of what leaves, and pressure of the face above that outside, of the first [%]", 0.1,
+             lambda s: {"": drawdown(s)}, drawn_in, surface_pressures, DEFAULT),
+    HostCase("spin-up of loose sand", FAILURE, "gravity grows fiftyfold; at its surface sand has no stress", "force of the base against the weight at 50 g [%]", 1.0,
+             lambda s: {"": spin(s)}, off_the_spin, last_settlement, DEFAULT),
     footing_case("footing on loose sand", "the tangent of a softening or perfectly plastic soil is nearly singular", void_ratio=0.907),
     footing_case("footing on dense sand", "softening and dilation under the edge", void_ratio=0.75),
     footing_case("footing on undrained sand", "no volume change, and loose sand loses its strength", void_ratio=0.907, undrained=True,

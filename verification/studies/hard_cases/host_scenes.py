@@ -90,6 +90,42 @@ def bank(setting):
     return text + SIDES + "&point name='centre' r=0 z=0 /\n"
 
 
+def raft(setting, dt=2e-3):
+    """A raft of 1.2 m that carries a slender mass, on dry sand, pushed at the height of its mass: it lifts off on one side, comes back and rocks."""
+    return ("&scene name='raft' geometry='plane_strain' gravity=9.81 /\n"
+            f"&mesh r=-2.4,-0.6,0.6,2.4 r_cells=3,4,3 r_ratio=0.7,1,1.4 z=-2,0 z_cells=4 z_ratio=0.7 /\n{sand(setting)}"
+            "&region material='sand' drainage='dry' void_ratio=0.75 rho_s=2.7 /\n&initial stress='geostatic' k_0=0.5 surcharge=5 /\n"
+            "&plate name='raft' motion='plane' r=-0.6,0.6 z=0 center=0,1.5 mass=3 inertia=2.4 weight='yes' "
+            f"force_r={load(setting, 14.0)} history='push' /\n&history name='push' times=2,2.1,2.3,2.4 values=0,1,-1,0 /\n"
+            "&contact name='c' slave='top' master='raft' friction=0.6 tangential_penalty=1e6 stages='seat','rock' /\n&load group='top' kind='pressure' value=5 /\n"
+            "&stage name='rest' analysis='static' duration=1 dt=1 tolerance=1e-8 zero_displacements='yes' /\n"
+            "&stage name='seat' analysis='static' duration=1 dt=0.25 max_iterations=50 /\n"
+            f"&stage name='rock' analysis='dynamic' duration=1 dt={dt} {rho(setting)} max_iterations=30 /\n"
+            "&fix group='raft' field='u_z' hold='yes' stages='rest' /\n&fix group='raft' field='u_r' hold='yes' stages='rest' /\n"
+            f"&fix group='raft' field='rotation' hold='yes' stages='rest' /\n{SIDES}&fix group='bottom' field='u_r' /\n&point name='centre' r=0 z=0 /\n")
+
+
+def drawdown(setting):
+    """A bank of saturated loose sand whose water stood to its top; the water in front of it falls in a minute, and its face lets out what is left."""
+    return ("&scene name='drawdown' geometry='plane_strain' fields='u-p_w-p_c' pressures='linear' gravity=9.81 /\n"
+            f"&mesh r=0,3 r_cells=6 z=0,2 z_cells=6 /\n{sand(setting)}"
+            "&permeability name='k' intrinsic=1e-11 /\n&region material='sand' retention='material' permeability='k' void_ratio=0.85 rho_s=2.7 /\n"
+            "&initial stress='geostatic' k_0=0.5 surcharge=5 surface=2 p_w_slope=-9.81 datum=2 /\n&load group='top' kind='pressure' value=5 /\n"
+            f"&history name='fall' times=0,60 values=1,0 /\n&fix group='right' field='p_w' kind='seepage' value={load(setting, 19.62)} value_slope=-9.81 history='fall' /\n"
+            f"&stage name='rain' analysis='quasi_static' duration=3600 dt=6 dt_growth=1.2 dt_max=300 rho_inf=0 max_iterations=30 /\n{SIDES}"
+            "&point name='centre' r=3 z=0.667 /\n")
+
+
+def spin(setting):
+    """Loose sand is spun up from 1 g to 50 g."""
+    return ("&scene name='spin' geometry='plane_strain' gravity=" + load(setting, 490.5) + " gravity_history='spin' /\n"
+            f"&mesh r=0,0.2 r_cells=2 z=0,0.3 z_cells=6 /\n{sand(setting)}"
+            "&region material='sand' drainage='dry' void_ratio=0.9 rho_s=2.7 /\n&initial stress='geostatic' k_0=0.5 surface=0.3 /\n"
+            "&history name='spin' times=0,1,2 values=0.02,0.02,1 /\n"
+            "&stage name='rest' analysis='static' duration=1 dt=1 tolerance=1e-8 zero_displacements='yes' /\n"
+            f"&stage name='spin' analysis='static' duration=1 dt=0.02 max_iterations=20 /\n{SIDES}&point name='centre' r=0 z=0.3 /\n")
+
+
 FOOTING_MESH = "&mesh r=0,0.5,4 r_cells=2,3 r_ratio=0.7,1.9 z=-4,-0.6,0 z_cells=2,2 z_ratio=0.4,0.7 /\n"
 
 

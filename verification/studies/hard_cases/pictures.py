@@ -97,8 +97,8 @@ def draw_run(axis, case, label, run):
         at = np.flatnonzero(np.abs(nodes["r"]) < 1e-9)
         at = at[np.argsort(nodes["z"][at])]
         axis.plot(nodes["p_w"][at], nodes["z"][at], lw=0.7, label=f"k {label}")
-    elif case.name in ("showers", "a bank in layers, cut again"):
-        up = run.histories["centre.p_w"] if case.name == "showers" else 1e3 * run.histories["centre.u_z"]
+    elif case.name in PLAIN:
+        up = run.histories["centre.p_w"] if case.group == "pore water" else 1e3 * run.histories["centre.u_z"]
         axis.plot(run.histories["time"], up, lw=0.7)
     elif case.group == "failure":
         push, history = run.table("reactions_push"), run.histories
@@ -110,6 +110,9 @@ def draw_run(axis, case, label, run):
         late = history["time"] >= start - 1e-9
         up = history["centre.p_w"] if case.name.startswith("impact on undrained") else 1e3 * history["centre.u_z"]
         axis.plot(1e3 * (history["time"][late] - start), up[late], lw=0.7, label=told(case, label))
+
+
+PLAIN = ("showers", "a bank in layers, cut again", "drawdown at a seepage face", "spin-up of loose sand")
 
 
 def told(case, label):
@@ -137,6 +140,9 @@ HOST_VIEWS = {   # claim, across, up
     "permeability 1e-8 to 1e-14 m2, linear pressures": ("linear pressures: uniform below the thin layer", "p_w [kPa]", Z),
     "showers": ("the surface ponds, runs off and dries", "t [s]", "p_w of the surface [kPa]"),
     "a bank in layers, cut again": ("three layers come, two leave at once", "stage", "u_z below the bank [mm]"),
+    "a raft that rocks on sand": ("a raft lifts off and comes back: no energy is created", TIME, U_Z),
+    "drawdown at a seepage face": ("the face lets water out alone", "t [s]", "p_w at a third of the height [kPa]"),
+    "spin-up of loose sand": ("from 1 g to 50 g", "stage", "u_z of the surface [mm]"),
     "footing on loose sand": ("loose sand: the load levels out", SETTLED, FORCE),
     "footing on dense sand": ("dense sand: the load passes its peak", SETTLED, FORCE),
     "footing on undrained sand": ("undrained sand: it dilates, the force grows", SETTLED, FORCE),
