@@ -117,7 +117,8 @@ def test_a_rotated_frame_of_loads():
     moved = TIED.format(more=f" force=-4 force_r=2 moment={moment}").replace("0,0.5", "0.5,-0.3")
     two = run("centre_moved", GROUND + moved + PUSH)
     turn = one["raft.turn"]
-    for name, wanted in (("turn", turn), ("u_r", one["raft.u_r"] + arm_z * turn), ("u_z", one["raft.u_z"] - arm_r * turn)):
+    for name, wanted in (("turn", turn), ("u_r", one["raft.u_r"] + arm_z * turn),
+                         ("u_z", one["raft.u_z"] - arm_r * turn)):
         check(f"{name} by the arm", math.isclose(two[f"raft.{name}"], wanted, rel_tol=1e-3), (one, two))
 
 
@@ -138,5 +139,5 @@ def test_displacements_begin_anew_with_those_of_the_plate():
     check("anew runs", done.returncode == 0, done.stderr)
     table = tables.columns(work / "anew" / "contact.csv")
     check("the weight has settled it", table["raft.u_z"][1] < -1e-4, table["raft.u_z"])
-    check("then it stays but for the stretch of its springs", abs(table["raft.u_z"][-1]) < 2e-3 * abs(table["raft.u_z"][1]),
-          table["raft.u_z"])
+    check("then it stays but for the stretch of its springs",
+          abs(table["raft.u_z"][-1]) < 2e-3 * abs(table["raft.u_z"][1]), table["raft.u_z"])
