@@ -20,7 +20,7 @@ module contact_interfaces
              plate_surface
    public :: begin_friction, follow_friction, friction_turns, accept_friction
    public :: evaluate_contacts, probe_contacts, start_points, probe_interface, fit_pattern, add_contacts, &
-             contact_forces, mean_contact_forces, rounding_of_ties
+             contact_forces, mean_contact_forces, rounding_of_ties, stretch_ties
 
    real(wp), parameter :: ROUNDINGS = 4.0_wp   !< Of a displacement: of the node, and of its place by three unknowns.
 
@@ -473,6 +473,23 @@ contains
          end do
       end subroutine add
    end subroutine add_contacts
+
+   !> Distances of tied nodes from their places on plates, which pull; 0 elsewhere [m]. (DISPLACEMENTS, nodes)
+   pure subroutine stretch_ties(contacts, x, stretched)
+      type(contacts_t), intent(in) :: contacts
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
+      real(wp), intent(out) :: stretched(:, :)
+      integer :: i
+
+      stretched = 0.0_wp
+      if (.not. allocated(contacts%interfaces)) return
+      do i = 1, size(contacts%interfaces)
+         associate (t => contacts%interfaces(i))
+            if (allocated(t%spring)) stretched(:, t%slave%node) = x(:DISPLACEMENTS, t%slave%node) &
+                                                                  - displacements_of_master(t, x)
+         end associate
+      end do
+   end subroutine stretch_ties
 
    !> What rounding leaves of the forces between boundaries and the plates that they are tied to: small differences of
    !> large displacements, times stiff springs [kN].

@@ -4,6 +4,7 @@ module time_stepping
    use kinds, only: wp
    use wall_clock, only: clock, lap
    use faults, only: fault_t
+   use contact_interfaces, only: stretch_ties
    use contact_setup, only: contacts_act
    use convergence, only: control_t, log_t
    use generalised_alpha, only: scheme_t, make_scheme, step_error
@@ -72,6 +73,7 @@ contains
       type(control_t) :: control
       type(log_t) :: log
       real(wp) :: dt
+      real(wp) :: stretched(DISPLACEMENTS, size(run%state%x, 2))
       integer :: i
       logical :: accepted, warned
 
@@ -102,8 +104,11 @@ contains
             if (fault%code /= 0) return
          end do
          if (stage%zero_displacements) then
-            ! Plates with a face of their own, which come last, stay where they are.
+            ! Plates with a face of their own, which come last, stay where they are. Ties keep the stretch of their
+            ! springs.
+            call stretch_ties(run%system%contacts, run%state%x, stretched)
             run%state%x(:DISPLACEMENTS, :size(run%state%x, 2) - size(model%domain%bodies)) = 0.0_wp
+            run%state%x(:DISPLACEMENTS, :) = run%state%x(:DISPLACEMENTS, :) + stretched
             do i = 1, size(model%plates)
                if (model%plates(i)%turns .and. model%plates(i)%group > 0) &
                   run%state%x(:DISPLACEMENTS, [model%plates(i)%node, model%plates(i)%turn_node]) = 0.0_wp
