@@ -88,6 +88,7 @@ contains
       logical, intent(in) :: quiet
       type(family_t), intent(out) :: family
       type(fault_t), intent(inout) :: fault
+      integer :: thrust
 
       family%file = file
       family%asked = asked
@@ -98,6 +99,13 @@ contains
       if (size(family%base%points) == 0) then
          call raise(fault, EXIT_INPUT, file//': the histories of points are compared on several meshes; give '// &
                     'the scene a &point.')
+         return
+      end if
+      thrust = findloc(index(family%base%goals, '.thrust') > 0, .true., dim=1)
+      if (thrust > 0) then
+         call raise(fault, EXIT_INPUT, file//': goals: '''//trim(family%base%goals(thrust))//''': meshes are not '// &
+                    'compared by the peaks of a thrust; name displacements or pressures of points, or forces of '// &
+                    'supports, as ''top.u_z'' or ''bottom.force_z''.')
          return
       end if
       family%coarsest = 0.5_wp

@@ -36,6 +36,7 @@ module convergence
    real(wp), parameter :: LINEAR_SHARE = 1.0e-5_wp
    integer, parameter :: PATIENCE = 6          !< Iterations without progress after which the error stagnates.
    real(wp), parameter :: PROGRESS = 0.5_wp    !< Of the smallest error so far: more is no progress.
+   real(wp), parameter :: MOST_ROUGH = 1.0e-3_wp   !< Error above which no roughness is blamed for it.
    real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Of strain rates and parts of fluxes, see above.
    real(wp), parameter :: ABSOLUTE_FLOOR = 1.0e-12_wp   !< [kN] or [m3/s]: nothing smaller is a force.
 
@@ -61,6 +62,7 @@ module convergence
       logical :: refused_guess = .false.      !< The first guess was refused, the step began at the unchanged state.
       real(wp) :: best_error = huge(1.0_wp)             !< Smallest error so far that was progress [-].
       integer :: since_best = 0                         !< Iterations since then.
+      real(wp) :: forces_over_scale = 1.0_wp   !< Of the worst field: all forces over what its error is measured by.
       logical :: stagnated = .false.                    !< Accepted at what the stress integration lets Newton reach.
    end type log_t
 contains
@@ -106,7 +108,8 @@ contains
    end function good_enough
 
    !> Whether the error has ceased to fall above the tolerance and below the roughness of the stress integration: the
-   !> substeps of a point change with its strain, so that its stress is known to that tolerance and no better.
+   !> substeps of a point change with its strain, so that its stress is known to that tolerance and no better. Where a
+   !> step changes little of the forces, that is much of the change.
    !> Updates the log. docs/theory/host.md section 5.1.
    pure subroutine look_for_stagnation(control, log)
       type(control_t), intent(in) :: control
@@ -120,7 +123,8 @@ contains
          log%best_error = error
          log%since_best = 0
       end if
-      log%stagnated = log%since_best >= PATIENCE .and. error <= control%roughness
+      log%stagnated = log%since_best >= PATIENCE .and. &
+                      error <= min(MOST_ROUGH, control%roughness*max(1.0_wp, log%forces_over_scale))
    end subroutine look_for_stagnation
 
    !> What a residual of a field is small against; rows of prescribed unknowns do not count. docs/theory/host.md section
@@ -245,18 +249,20 @@ contains
       real(wp), intent(in) :: rounding(FIELDS)   !< Scales of which the tolerance asks for no more than rounding.
       real(wp), intent(inout) :: largest(FIELDS)
       type(log_t), intent(inout) :: log
-      real(wp) :: s(FIELDS), floor(FIELDS), worst
+      real(wp) :: s(FIELDS), floor(FIELDS), scales(FIELDS), worst
       integer :: i
 
       ! Always the forces themselves: their rounding is the floor of what changes.
       call add_scales(dofs, constraint, assembly, .false., s, floor)
       largest = max(largest, sqrt(s))
-      log%error = residual_norms(dofs, constraint, rhs)/max(field_scales(dofs, constraint, assembly, largest), rounding)
+      scales = max(field_scales(dofs, constraint, assembly, largest), rounding)
+      log%error = residual_norms(dofs, constraint, rhs)/scales
       do i = 1, dofs%n
          if (is_body(constraint, i)) &
             log%error(AT_U_Z) = max(log%error(AT_U_Z), abs(rhs(i))/body_scale(constraint, assembly, largest, i))
       end do
       log%worst_field = maxloc(log%error, 1)
+      log%forces_over_scale = sqrt(s(log%worst_field))/scales(log%worst_field)
       log%worst_unknown = 0
       worst = -1.0_wp
       do i = 1, dofs%n
