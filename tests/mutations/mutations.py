@@ -220,6 +220,7 @@ MUTATIONS = [
 ]
 
 MORTAR, RESPONSE, PENALTY = "contact/contact_mortar.f90", "contact/contact_response.f90", "contact/contact_penalty.f90"
+SPRINGS = "contact/plate_springs.f90"
 SEARCH, PLATE, JOINED = "contact/contact_search.f90", "contact/contact_plate.f90", "contact/contact_interfaces.f90"
 DRAINAGE = "model/contact_drainage.f90"
 
@@ -252,6 +253,10 @@ CONTACT = [
                                "force = force + 0.0_wp*slopes(:, i)*result%force(n + i)")),
     ("a plate turns without bending", (PLATE, "corner(TURN, TURN) + bending()", "corner(TURN, TURN)")),
     ("a plate turns the other way", (PLATE, "[-arms(2, i), arms(1, i)]/motion%lever", "[arms(2, i), -arms(1, i)]/motion%lever")),
+    ("springs of a plate pull its nodes alone", (SPRINGS, "result%force(size(pull) + 1:) = -pull",
+                                                 "result%force(size(pull) + 1:) = -0.0_wp*pull")),
+    ("zeroed displacements relax the springs of a plate", (JOINED, "if (allocated(t%spring)) stretched(:, t%slave%node) =",
+                                                          "if (.false.) stretched(:, t%slave%node) =")),
     ("slopes against the values within the step", (JOINED, "values(place) + share*value(k)", "values(place) + value(k)")),
     ("a contact acts in every stage", (JOINED, "if (.not. t%acts) cycle\n            call probe_one(t, x, with_tangent",
                                           "call probe_one(t, x, with_tangent")),
