@@ -37,7 +37,7 @@ NEW = {"slope": "verification/studies/price/slope.nml", "rain on layers": "verif
 WORDS = {name: ("--accuracy", "1e-2") for name in ("dropped plate", "Mandel", "footing on sand")}
 FINE = (2, 4)                     # Fineness of the runs to compare with; errors against the last one.
 ANSWERS = ("scene", "answer", "fineness", "state", "estimated", "true", "ratio")
-TIMES = ("scene", "fineness", "quoted", "seconds", "ratio")
+TIMES = ("scene", "fineness", "quoted", "seconds", "ratio", "code")
 LIMIT = 600        # s of a run
 environment = {**os.environ, "OMP_NUM_THREADS": "1"}
 
@@ -47,14 +47,14 @@ class Failed(Exception):
 
 
 def run(host, scene, folder, *words):
-    """Wall time of a run [s]."""
+    """Wall time of a run [s] and its exit code."""
     start = time.perf_counter()
     done = subprocess.run([host, ROOT / {**SCENES, **NEW}[scene], "--quiet", "--output", folder, *WORDS.get(scene, ()),
                            *words], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
                           timeout=LIMIT)
     if done.returncode not in (0, MISSED):
         raise Failed(f"{' '.join(map(str, words)) or 'the run'}: exit code {done.returncode}")
-    return time.perf_counter() - start
+    return time.perf_counter() - start, done.returncode
 
 
 def indentation():
@@ -74,8 +74,9 @@ def compare(host, scene, folder):
     run(host, scene, folder / "own", "--fineness", f"{finest:g}")
     times = []
     for fineness in FINE:
-        seconds = run(host, scene, folder / f"fine{fineness}", "--fineness", str(fineness))
-        times.append((scene, fineness, f"{quoted[fineness]:.3g}", f"{seconds:.3g}", f"{quoted[fineness]/seconds:.3g}"))
+        seconds, code = run(host, scene, folder / f"fine{fineness}", "--fineness", str(fineness))
+        times.append((scene, fineness, f"{quoted[fineness]:.3g}", f"{seconds:.3g}", f"{quoted[fineness]/seconds:.3g}",
+                      code))
     own, fine = (tables.columns(folder / name / "histories.csv") for name in ("own", f"fine{FINE[-1]}"))
     rows = []
     for answer in answers:
