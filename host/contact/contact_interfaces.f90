@@ -11,7 +11,7 @@ module contact_interfaces
                             plate_positions, plate_slopes, gather_on_plate, force_on_plate
    use plate_springs, only: spring_geometry, new_spring_result, pull_springs, lengths_of_nodes
    use contact_types, only: contact_options_t, contact_status_t, CONTACT_OK
-   use degrees_of_freedom, only: dofs_t
+   use degrees_of_freedom, only: dofs_t, unknowns_of_body
    use unknown_fields, only: AT_U_Z, DISPLACEMENTS
    use sparsity_pattern, only: pattern_t, make_pattern, place_of
    implicit none (type, external)
@@ -165,7 +165,7 @@ contains
 
       one%on_plate = new_plate_response(one%geometry, one%plate%motion)
       if (one%plate%motion%turns) then
-         one%unknown = [one%unknown, dofs%of(:DISPLACEMENTS, one%plate%node), dofs%of(AT_U_Z, one%plate%turn)]
+         one%unknown = [one%unknown, unknowns_of_body(dofs, one%plate%node, one%plate%turn)]
       else
          one%unknown = [one%unknown, dofs%of(AT_U_Z, one%plate%node)]
       end if
@@ -497,7 +497,9 @@ contains
       type(contacts_t), intent(in) :: contacts
       integer :: i
 
-      rounding = norm2([(contacts%interfaces(i)%rounding, i=1, size(contacts%interfaces))])
+      rounding = 0.0_wp
+      if (allocated(contacts%interfaces)) &
+         rounding = norm2([(contacts%interfaces(i)%rounding, i=1, size(contacts%interfaces))])
    end function rounding_of_ties
 
    !> Mean of the forces of the contacts at two sets of displacements, to be added to the internal ones; zero if a

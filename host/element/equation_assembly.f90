@@ -23,7 +23,6 @@ module equation_assembly
       real(wp), allocatable :: k(:)                  !< Its matrices, one behind the other, see pattern_t.
       real(wp), allocatable :: stretch(:, :)         !< See element_t.
       real(wp), allocatable :: floor(:)              !< Its sum: what a volume balance is small against.
-      real(wp) :: tolerance = 1.0_wp                 !< Newton's [-].
       real(wp) :: unresolved = 0.0_wp                !< Of which the tolerance is what rounding leaves of ties [kN].
       logical :: with_change = .false.               !< Whether a step is measured against what it changes.
       real(wp) :: rounding_share = 0.0_wp            !< Then what changes counts as at least this share of all forces.

@@ -3,14 +3,14 @@
 module boundary_conditions
    use kinds, only: wp
    use contact_drainage, only: drainage_t, is_released
-   use degrees_of_freedom, only: dofs_t
+   use degrees_of_freedom, only: dofs_t, unknowns_of_body
    use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
    use limited_pressures, only: begin_sides
    use model_types, only: model_t, factor_at, gravity_at
    use porous_domain, only: state_t
    use prescribed_values, only: constraint_t
    use scene_types, only: acts_in, stage_t, fix_t, LOAD_RAIN, PRESCRIBED_P_A
-   use unknown_fields, only: AT_U_R, AT_U_Z, AT_P_W, AT_P_C, DISPLACEMENTS
+   use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
    public :: new_constraint, constrain_step, follow_accelerations, starting_accelerations, &
@@ -35,16 +35,18 @@ contains
       allocate (constraint%air_target(nodes), source=0.0_wp)
       allocate (constraint%bodies(3, 0))
       do i = 1, size(model%plates)
-         ! Plates whose boundaries a &tie joins have one unknown.
-         associate (at => dofs%of(AT_U_Z, model%plates(i)%node))
-            constraint%mass(at) = constraint%mass(at) + model%plates(i)%mass
-         end associate
-         if (.not. model%plates(i)%turns) cycle
          associate (plate => model%plates(i))
-            constraint%mass(dofs%of(AT_U_R, plate%node)) = plate%mass
-            constraint%mass(dofs%of(AT_U_Z, plate%turn_node)) = plate%inertia/plate%lever**2
-            constraint%bodies = reshape([constraint%bodies, dofs%of(AT_U_R, plate%node), dofs%of(AT_U_Z, plate%node), &
-                                         dofs%of(AT_U_Z, plate%turn_node)], [3, size(constraint%bodies, 2) + 1])
+            if (plate%turns) then
+               associate (at => unknowns_of_body(dofs, plate%node, plate%turn_node))
+                  constraint%mass(at) = [plate%mass, plate%mass, plate%inertia/plate%lever**2]
+                  constraint%bodies = reshape([constraint%bodies, at], [size(at), size(constraint%bodies, 2) + 1])
+               end associate
+            else
+               ! Plates whose boundaries a &tie joins have one unknown.
+               associate (at => dofs%of(AT_U_Z, plate%node))
+                  constraint%mass(at) = constraint%mass(at) + plate%mass
+               end associate
+            end if
          end associate
       end do
    end function new_constraint

@@ -8,10 +8,10 @@ module boundary_loads
    use scene_types, only: acts_in, LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, &
                           LOAD_FORCE_R, stage_t, load_t, plate_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
-   use degrees_of_freedom, only: dofs_t, tie, tie_pairs
+   use degrees_of_freedom, only: dofs_t, unknowns_of_body, tie, tie_pairs
    implicit none (type, external)
    private
-   public :: shape_loads, ties_of, load_at, rain_at, plate_load, plate_load_r, plate_moment
+   public :: shape_loads, ties_of, load_at, rain_at, plate_loads
 contains
    !> Nodes that plates make move together: those of the boundaries that they are joined to. And those of &tie. (FIELDS,
    !> nodes), as number_unknowns takes them: docs/theory/host.md sections 7.3 and 7.6.
@@ -136,6 +136,7 @@ contains
       type(dofs_t), intent(in) :: dofs
       real(wp), intent(in) :: time   !< [s]
       real(wp), allocatable :: load(:)
+      real(wp) :: loads(3)
       integer :: i
 
       allocate (load(dofs%n), source=0.0_wp)
@@ -149,14 +150,16 @@ contains
       end do
       do i = 1, size(model%plates)
          associate (one => model%plates(i))
-            associate (at => dofs%of(AT_U_Z, one%node))
-               load(at) = load(at) + plate_load(model, one, time)
-            end associate
-            if (.not. one%turns) cycle
-            associate (along => dofs%of(AT_U_R, one%node), turn => dofs%of(AT_U_Z, one%turn_node))
-               load(along) = load(along) + plate_load_r(model, one, time)
-               load(turn) = load(turn) + plate_moment(model, one, time)/one%lever
-            end associate
+            loads = plate_loads(model, one, time)
+            if (one%turns) then
+               associate (at => unknowns_of_body(dofs, one%node, one%turn_node))
+                  load(at) = load(at) + [loads(:2), loads(3)/one%lever]
+               end associate
+            else
+               associate (at => dofs%of(AT_U_Z, one%node))
+                  load(at) = load(at) + loads(2)
+               end associate
+            end if
          end associate
       end do
    end function load_at
@@ -179,31 +182,15 @@ contains
       end do
    end function rain_at
 
-   !> Force on a plate and its weight, upwards [kN]. docs/theory/host.md section 7.3.
-   pure real(wp) function plate_load(model, plate, time)
+   !> Forces on a plate along r and upwards, its weight among them [kN], and the moment from r to z [kN m].
+   !> docs/theory/host.md section 7.3.
+   pure function plate_loads(model, plate, time) result(loads)
       type(model_t), intent(in) :: model
       type(plate_t), intent(in) :: plate
       real(wp), intent(in) :: time   !< [s]
+      real(wp) :: loads(3)
 
-      plate_load = factor_at(model, plate%amplitude, time)*plate%force
-      if (plate%heavy) plate_load = plate_load - plate%mass*gravity_at(model, time)
-   end function plate_load
-
-   !> Force on a plate along r [kN]. docs/theory/host.md section 7.3.
-   pure real(wp) function plate_load_r(model, plate, time)
-      type(model_t), intent(in) :: model
-      type(plate_t), intent(in) :: plate
-      real(wp), intent(in) :: time   !< [s]
-
-      plate_load_r = factor_at(model, plate%amplitude, time)*plate%force_r
-   end function plate_load_r
-
-   !> Moment on a plate, from r to z [kN m]. docs/theory/host.md section 7.3.
-   pure real(wp) function plate_moment(model, plate, time)
-      type(model_t), intent(in) :: model
-      type(plate_t), intent(in) :: plate
-      real(wp), intent(in) :: time   !< [s]
-
-      plate_moment = factor_at(model, plate%amplitude, time)*plate%moment
-   end function plate_moment
+      loads = factor_at(model, plate%amplitude, time)*[plate%force_r, plate%force, plate%moment]
+      if (plate%heavy) loads(2) = loads(2) - plate%mass*gravity_at(model, time)
+   end function plate_loads
 end module boundary_loads

@@ -2,7 +2,7 @@
 !> Contacts of a model at the start of a run and of a stage: set up, seated, switched.
 module contact_setup
    use kinds, only: wp
-   use boundary_loads, only: plate_load
+   use boundary_loads, only: plate_loads
    use model_types, only: model_t
    use scene_types, only: acts_in, plate_t, stage_t
    use unknown_fields, only: AT_U_Z
@@ -81,14 +81,15 @@ contains
       type(model_t), intent(in) :: model
       type(contacts_t), intent(in) :: contacts
       type(state_t), intent(inout) :: state
-      real(wp) :: area, load
+      real(wp) :: area, load, loads(3)
       integer :: i
 
       if (.not. allocated(contacts%interfaces)) return
       do i = 1, size(model%contacts)
          if (model%contacts(i)%plate == 0) cycle
          associate (plate => model%plates(model%contacts(i)%plate))
-            load = -plate_load(model, plate, state%time)
+            loads = plate_loads(model, plate, state%time)
+            load = -loads(2)
             if (.not. plate%heavy .or. load <= 0.0_wp) cycle
             area = area_below(plate%corners)
             if (area <= 0.0_wp) cycle

@@ -2,7 +2,7 @@
 !> Contacts and plates as rows of tables.
 module contact_rows
    use kinds, only: wp
-   use boundary_loads, only: plate_load, plate_load_r, plate_moment
+   use boundary_loads, only: plate_loads
    use contact_interfaces, only: contacts_t, contact_interface_t, probe_interface
    use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result
    use contact_types, only: contact_status_t, CONTACT_OK
@@ -53,12 +53,13 @@ contains
    contains
       pure function of_plate(plate) result(list)
          type(plate_t), intent(in) :: plate
-         real(wp) :: list(merge(12, 4, plate%turns))
+         real(wp) :: list(merge(12, 4, plate%turns)), loads(3)
 
-         list(:4) = [moves(AT_U_Z, plate%node), plate_load(model, plate, state%time)]
+         loads = plate_loads(model, plate, state%time)
+         list(:4) = [moves(AT_U_Z, plate%node), loads(2)]
          if (.not. plate%turns) return
-         list(5:8) = [moves(AT_U_R, plate%node), plate_load_r(model, plate, state%time)]
-         list(9:) = [moves(AT_U_Z, plate%turn_node)/plate%lever, plate_moment(model, plate, state%time)]
+         list(5:8) = [moves(AT_U_R, plate%node), loads(1)]
+         list(9:) = [moves(AT_U_Z, plate%turn_node)/plate%lever, loads(3)]
       end function of_plate
 
       !> Displacement, velocity and acceleration of an unknown.

@@ -41,10 +41,11 @@ contains
       function name_of(group) result(name)
          integer, intent(in) :: group
          character(:), allocatable :: name
+         integer :: plate
 
          name = model%domain%mesh%groups(group)%name
-         if (any(model%plates%turn_group == group)) &
-            name = model%plates(findloc(model%plates%turn_group, group, dim=1))%name
+         plate = findloc(model%plates%turn_group, group, dim=1)
+         if (plate > 0) name = model%plates(plate)%name
       end function name_of
    end function reaction_columns
 

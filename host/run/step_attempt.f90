@@ -69,9 +69,9 @@ contains
       logical, intent(out) :: accepted   !< False also where its error is too large.
       type(fault_t), intent(inout) :: fault
       type(scheme_t) :: scheme
-      character(:), allocatable :: on_contact
       real(wp), allocatable :: a0(:, :)
       real(wp) :: share
+      logical :: lost
 
       accepted = .false.
       if (dt < shortest_step(stage, run)) then
@@ -117,11 +117,11 @@ contains
          run%system%factored = .false.
          ! A shorter step helps a singular matrix only where it is points of the material that resist with nothing, or a
          ! contact that an iterate has opened.
-         on_contact = bodies_on_contact(model, stage)
+         lost = log%outcome == BODY_FREE .and. run%assembly%replaced == 0
+         if (lost .and. at%step > 0) lost = bodies_on_contact(model, stage) == ''
          share = merge(min(run%assembly%bad%factor, 0.5_wp), 0.5_wp, log%outcome == MATERIAL_FAILED)
          if (at%cuts > stage%cuts .or. log%outcome == SOLVER_FAILED .or. share*dt < shortest_step(stage, run) .or. &
-             (log%outcome == BODY_FREE .and. run%assembly%replaced == 0 .and. &
-              (at%step == 0 .or. on_contact == ''))) then
+             lost) then
             call explain_failure(model, stage, run, log, run%state%time + dt, dt, fault)
             return
          end if

@@ -517,34 +517,32 @@ contains
       do i = 1, size(model%plates)
          if (model%plates(i)%node <= bodies) cycle
          associate (plate => model%plates(i))
-            ratio = max(ratio, abs(error(AT_U_Z, plate%node))/(way*softened(plate%node, plate%mass)))
+            ratio = max(ratio, abs(error(AT_U_Z, plate%node))/(way*softened(plate%node, plate%mass, .not. changes)))
             if (.not. plate%turns) cycle
             ! A face that turns about its middle presses as a third of its area at its ends does.
-            ratio = max(ratio, abs(error(AT_U_R, plate%node))/(way*softened(plate%node, plate%mass, plate%group > 0)), &
-                        abs(error(AT_U_Z, plate%turn_node))/(way*softened(plate%node, 3*plate%inertia/plate%lever**2)))
+            ratio = max(ratio, abs(error(AT_U_R, plate%node))/(way*softened(plate%node, plate%mass, .false.)), &
+                        abs(error(AT_U_Z, plate%turn_node))/(way*softened(plate%node, 3*plate%inertia/plate%lever**2, &
+                                                                                  .not. changes)))
          end associate
       end do
    contains
-      !> What the penalty of a contact, or the springs of a tie, divide the error of a step by.
-      pure real(wp) function softened(node, mass, along_r)
+      !> What the springs of a tie, and if they count the penalties of contacts, divide the error of a step by.
+      pure real(wp) function softened(node, mass, with_penalties)
          integer, intent(in) :: node      !< Of the plate.
          real(wp), intent(in) :: mass     !< [Mg]
-         logical, intent(in), optional :: along_r   !< A displacement along r: whether springs hold it; no penalty does.
+         logical, intent(in) :: with_penalties
          real(wp) :: stiffness
-         logical :: slides
          integer :: k
 
          softened = 1.0_wp
          if (.not. mass > 0.0_wp .or. .not. allocated(run%system%contacts%interfaces)) return
-         slides = .false.
-         if (present(along_r)) slides = .not. along_r
          do k = 1, size(run%system%contacts%interfaces)
             associate (t => run%system%contacts%interfaces(k))
                if (.not. t%acts .or. t%plate%node /= node) cycle
                if (allocated(t%spring)) then
                   stiffness = sum(t%spring)
                else
-                  if (changes .or. slides) cycle
+                  if (.not. with_penalties) cycle
                   stiffness = model%contacts(k)%options%penalty*t%area
                end if
                softened = softened*(1 + scheme%l_f/scheme%c_a*stiffness/mass)

@@ -177,6 +177,7 @@ contains
          if (.not. pass) log%outcome = MATERIAL_FAILED
          if (.not. pass) return
          call add_what_acts(dofs, pattern, scheme, constraint, old, new, slopes, touched, assembly, system, rhs, t0)
+         assembly%unresolved = rounding_of_ties(system%contacts)/control%tolerance
       end function pass
    end subroutine take_step
 
@@ -205,8 +206,6 @@ contains
 
       assembly%air = constraint%air
       assembly%with_change = control%measure == BY_CHANGE
-      assembly%tolerance = control%tolerance
-      assembly%unresolved = 0.0_wp
       assembly%rounding_share = merge(rounding_in(scheme%kind)/control%tolerance, 0.0_wp, assembly%with_change)
       assembly%fallback = NO_FALLBACK
       call follow_slopes_first(domain, control%carries_slopes, assembly)
@@ -236,7 +235,6 @@ contains
          call lap(system%seconds(T_REST), t0)
          call add_contacts(system%contacts, pattern, scheme%l_f, slopes, assembly%residual, assembly%scale, &
                            assembly%values)
-         assembly%unresolved = rounding_of_ties(system%contacts)/assembly%tolerance
          call lap(system%seconds(T_CONTACT), t0)
       end if
       rhs = constraint%load_0 + scheme%l_f*(constraint%load_1 - constraint%load_0) - constraint%offset

@@ -1,19 +1,16 @@
 # SPDX-License-Identifier: MIT
 """Boundaries of dynamic stages in mud_host: base motion by acceleration, Rayleigh damping, tied sides, ground that
 stays at rest behind an absorbing boundary. Waves and transfer functions: verification/host/waves."""
-import os
-import subprocess
 import sys
 
 import numpy as np
 
-from checking import build, check, root, work
+from checking import check, root, work
+from host_program import ran, start
 
 sys.path.insert(0, str(root / "common"))
 import tables  # noqa: E402
 
-host = build / "host/mud_host"
-environment = {**os.environ, "OMP_NUM_THREADS": "1"}
 ROUNDING = 1e-10   # of a linear problem with hundreds of unknowns
 COLUMN = """&scene name = 'c' geometry = 'plane_strain' fields = '{fields}' gravity = {gravity} {more} /
 &mesh r = 0, 1 r_cells = 1 z = -4, 0 z_cells = {cells} /
@@ -30,17 +27,9 @@ def column(fields="u", gravity=0, more="", cells=4, void=0, damping=""):
     return COLUMN.format(**locals())
 
 
-def start(text, name, *words):
-    scene, folder = work / f"{name}.nml", work / name
-    scene.write_text(text)
-    return subprocess.run([host, scene, "--output", folder, "--quiet", *words], capture_output=True, text=True,
-                          env=environment), folder
-
-
 def run(text, name, *words):
-    done, folder = start(text, name, *words)
-    check(f"{name} runs", done.returncode == 0, done.stderr)
-    return tables.columns(folder / "histories.csv"), folder
+    ran(name, text, *words)
+    return tables.columns(work / name / "histories.csv"), work / name
 
 
 def stage(name, duration, dt, rho_inf=1.0, more=""):
@@ -96,7 +85,7 @@ def test_the_base_moves_by_the_double_integral_rho_inf():
             ("no edges", "&tie", "&absorbing group = 'all' /\n&tie", "no edges")):
         text = shaken.replace(old, new) + stage("a", 0.3, 0.02)
         check(f"{name}: changed", text != shaken + stage("a", 0.3, 0.02))
-        done, _ = start(text, "refused")
+        done = start("refused", text)
         check(f"refused: {name}", done.returncode in (2, 11) and words in done.stderr, done.stderr)
 
 

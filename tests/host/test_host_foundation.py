@@ -2,15 +2,13 @@
 """Plates that move in the plane: free flight, what holds them, what is refused and why, moments and rotations in the
 tables, a tie and a contact that agree, runs that are taken up again."""
 import math
-import os
 import subprocess
 
-from checking import build, check, root, work
+from checking import check, root, work
+from host_program import ENVIRONMENT, HOST, ran, start
 import tables  # noqa: E402 (checking knows its folder)
 
-HOST = build / "host/mud_host"
 SCENES = root / "verification/host/foundation"
-ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1"}
 GROUND = """&scene name='s' geometry='plane_strain' gravity=10 /
 &mesh r=-3,-1,1,3 r_cells=4,4,4 z=-3,0 z_cells=4 /
 &elastic name='soil' young=1e4 poisson=0.3 /
@@ -23,16 +21,9 @@ FREE = "&plate name='raft' motion='plane' r=-1,1 z=0 center=0,0.5 mass=2 inertia
 PUSH = "&stage name='push' analysis='static' duration=1 dt=0.5 steps='given' tolerance=1e-8 max_iterations=40 /\n"
 
 
-def start(name, text, *more):
-    (work / f"{name}.nml").write_text(text)
-    return subprocess.run([HOST, work / f"{name}.nml", "--output", work / name, "--quiet", *more], capture_output=True,
-                          text=True, env=ENVIRONMENT)
-
-
 def run(name, text, *more):
     """The last row of contact.csv."""
-    done = start(name, text, *more)
-    check(f"{name} runs", done.returncode == 0, done.stderr)
+    ran(name, text, *more)
     return {key: column[-1] for key, column in tables.columns(work / name / "contact.csv").items()}
 
 

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Gravity that follows a &history: columns, a spin-up, a flight and a plate, each against its closed form."""
-import os
 import subprocess
 
-from checking import build, check, work
+from checking import check, work
+from host_program import ENVIRONMENT, HOST, ran
 import tables  # noqa: E402 (checking knows its folder)
 
-host = build / "host/mud_host"
-environment = {**os.environ, "OMP_NUM_THREADS": "1"}
 G, HEIGHT, RHO = 9.81, 2.0, 2.0
 SOFT, STIFF = 1e4, 1e7   # kPa; a column that strains by 1e-6 keeps its density to 1e-6.
 SCENE = """&scene name = 'g' geometry = 'plane_strain' {scene} /
@@ -24,11 +22,7 @@ DRY = f"&region material = 's' void_ratio = 0 rho_s = {RHO} /\n"
 
 
 def run(name, text, *more):
-    (work / f"{name}.nml").write_text(text)
-    done = subprocess.run([host, work / f"{name}.nml", "--output", work / name, "--quiet", *more], capture_output=True,
-                          text=True, env=environment)
-    check(f"{name} runs", done.returncode == 0, done.stderr)
-    return tables.numbers(work / name / "histories.csv") if done.returncode == 0 else []
+    return tables.numbers(work / name / "histories.csv") if ran(name, text, *more) else []
 
 
 def factor(time, times, values):
@@ -85,8 +79,8 @@ def test_the_column_settles_with_its_weight_at_s():
         run("whole", text, "--restart", kept)
         check("restart: same bytes", (work / "whole/histories.csv").read_bytes() == before)
         (work / "other.nml").write_text(text.replace("11 values = 0.02, 0.02, 1", "11 values = 0.02, 0.02, 0.9"))
-        done = subprocess.run([host, work / "other.nml", "--restart", kept, "--check"], capture_output=True, text=True,
-                              env=environment)
+        done = subprocess.run([HOST, work / "other.nml", "--restart", kept, "--check"], capture_output=True, text=True,
+                              env=ENVIRONMENT)
         check("restart with another weight so far: refused with the key", done.returncode == 17
               and "&scene 1 (g): gravity_history is" in done.stderr, done.stderr)
 

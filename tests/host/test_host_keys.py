@@ -1,13 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Keys of a scene that no page of the verification uses, against answers known in closed form."""
-import os
-import subprocess
-
-from checking import build, check, root, work
+from checking import check, root, work
+from host_program import ran
 import tables  # noqa: E402 (checking knows its folder)
-
-host = build / "host/mud_host"
-environment = {**os.environ, "OMP_NUM_THREADS": "1"}
 
 # E = 1e4 kPa, nu = 0.25: G = 4000 kPa, constrained modulus M = 12000 kPa. A block of 1 m in plane strain.
 SHEAR, CONSTRAINED = 4000.0, 12000.0
@@ -23,12 +18,8 @@ ROUNDING = 1e-12   # of a linear problem with a few unknowns, relative
 
 def run(text, name, *words):
     """The last row of its histories, and its folder."""
-    scene, folder = work / f"{name}.nml", work / name
-    scene.write_text(text)
-    done = subprocess.run([host, scene, "--output", folder, "--quiet", *words], capture_output=True, text=True,
-                          env=environment)
-    check(f"{name} runs", done.returncode == 0, done.stderr)
-    return tables.numbers(folder / "histories.csv"), folder
+    ran(name, text, *words)
+    return tables.numbers(work / name / "histories.csv"), work / name
 
 
 def near(what, value, wanted):

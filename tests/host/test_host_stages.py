@@ -2,27 +2,17 @@
 """Ground that joins and leaves between stages: what is refused and why, runs that are taken up again, water that new
 ground brings, gravity that grows, the ground of every moment in the files of fields."""
 import math
-import os
 import subprocess
 
-from checking import build, check, root, work
+from checking import check, root, work
+from host_program import ENVIRONMENT, HOST, ran, start
 import tables  # noqa: E402 (checking knows its folder)
 
-HOST = build / "host/mud_host"
 SCENES = root / "verification/host/stages"
-ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1"}
-
-
-def start(name, text, *more):
-    (work / f"{name}.nml").write_text(text)
-    return subprocess.run([HOST, work / f"{name}.nml", "--output", work / name, "--quiet", *more], capture_output=True,
-                          text=True, env=ENVIRONMENT)
 
 
 def run(name, text, *more):
-    done = start(name, text, *more)
-    check(f"{name} runs", done.returncode == 0, done.stderr)
-    return tables.columns(work / name / "histories.csv") if done.returncode == 0 else None
+    return tables.columns(work / name / "histories.csv") if ran(name, text, *more) else None
 
 
 def scene(name, *pairs):

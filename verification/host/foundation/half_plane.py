@@ -48,14 +48,3 @@ def compliance(frequency, b, mu, nu, rho, panels=48, bonded=True):
     modes = np.array([np.concatenate([one, zero]), np.concatenate([zero, one]), np.concatenate([zero, x])]).T
     tractions = np.linalg.solve(flexibility, modes.astype(complex))
     return np.linalg.inv(width * modes.T @ tractions)
-
-
-if __name__ == "__main__":
-    G, NU, B = 2e4, 0.25, 1.0
-    for a in (0.02, 0.5, 1.0, 1.5, 2.0):
-        for bonded in (True, False):
-            c = compliance(a * 100.0, B, G, NU, 2.0, 48, bonded)
-            d = compliance(a * 100.0, B, G, NU, 2.0, 96, bonded)
-            print(a, bonded, "rocking G b^2 c", np.round(G * c[2, 2], 4), np.round(G * d[2, 2], 4), "x", np.round(G * d[0, 0], 4),
-                  "z", np.round(G * d[1, 1], 4), "x-rocking", np.round(G * d[0, 2], 4), np.round(G * d[2, 0], 4))
-    print("static, smooth: 2 (1 - nu)/pi =", 2 * (1 - NU) / np.pi)

@@ -16,7 +16,7 @@ PAGE = Page(
           "5 cm on a foot 0.21 m beside its centre; `rocking.nml`: Housner's block on two feet",
     reference="the mixed boundary value problem of Luco and Westmann (1972), solved here by panels (`half_plane.py`); "
               "equations of motion of a rigid body on a spring; Housner (1963)",
-    seconds=75, quick=4, pictures=("foundation.png",))
+    seconds=90, quick=4, pictures=("foundation.png",))
 MAKES = (Script("make_waves.py", ("waves.txt",), 1),)
 
 G, NU, RHO, B, LIGHT = 2e4, 0.25, 2.0, 1.0, 0.01
