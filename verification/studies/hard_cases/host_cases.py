@@ -187,7 +187,7 @@ CASES = (
              "force of the base against the weight of the ground at the end of each stage [%]", 1.0,
              lambda s: {"": bank(s)}, off_the_weight, last_settlement, DEFAULT),
     HostCase("a raft that rocks on sand", CONTACT, "a rigid body lifts off on one side, comes back and slides, on soil that yields under its edges", CREATED, 1,
-             lambda s: {str(dt): raft(s, dt) for dt in (1e-3, 4e-3)}, created, last_settlement, DEFAULT),
+             lambda s: {f"steps of {dt} s": raft(s, dt) for dt in (1e-3, 4e-3)}, created, last_settlement, DEFAULT),
     HostCase("drawdown at a seepage face", WATER, "the water outside falls in a minute: node by node a face of saturated loose sand goes from held to free",
              "water drawn in of what leaves, and pressure of the face above that outside, of the first [%]", 0.1,
              lambda s: {"": drawdown(s)}, drawn_in, surface_pressures, DEFAULT),
