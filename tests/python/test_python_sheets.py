@@ -105,6 +105,70 @@ def test_of_a_plain_table_nothing_had_to_be_understood():
     check("what is no workbook is refused", "no workbook" in told, told)
 
 
+def test_numbers_as_spreadsheets_write_them():
+    large = "A;0;0;0;3000;0.8|A;5;-1;1200;3400;0.818|A;10;-2;1500.5;3500;0.836|A;20;-3;1400;3467;0.854".split("|")
+
+    def stresses(cells, separator=";"):
+        test = read_table(written(PLAIN.replace(",", separator) + "\n".join(cells)), "drained")[0]
+        return test["q"].tolist(), test["p"].tolist(), dict(test.understood)
+
+    plain = stresses(large)[:2]
+    check("1500.5 is read", plain == ([0, 1200, 1500.5, 1400], [3000, 3400, 3500, 3467]), plain)
+    german = [r.replace(".", ",").replace("1200", "1.200").replace("1500,5", "1.500,5").replace("3500", "3.500") for r in large]
+    q, p, told = stresses(german)
+    check("points between thousands beside decimal commas", (q, p) == plain and "between thousands" in told.values(), (q, p, told))
+    english = [r.replace("1200", "1,200").replace("1500.5", "1,500.5").replace("3500", "3,500") for r in large]
+    q, p, told = stresses(english)
+    check("commas between thousands beside decimal points", (q, p) == plain and "between thousands" in told.values(), (q, p, told))
+    quoted = [",".join(f'"{cell}"' for cell in row.replace(".", ",").split(";")) for row in large]
+    q, p, told = stresses(quoted, ",")
+    check("decimal commas within quotes", (q, p) == plain and "decimal marks" in told.values(), (q, p, told))
+    one = [r.replace("1200", "1.200") for r in large]
+    check("1.200 beside 1500.5 is 1.2", stresses(one)[0][1] == 1.2, stresses(one))
+    excel = (PLAIN + body()).replace(",", "\t")
+    test = read_table(written(excel, encoding="utf-16"), "drained")[0]
+    same("Excel's Unicode text is read", test)
+    check("and told", ("letters", "UTF-16") in test.understood, test.understood)
+    psi = written(PLAIN.replace("kPa", "psi") + body(row=lambda r: (*r[:2], r[2] / 6.894757293168361, r[3] / 6.894757293168361, r[4])))
+    same("pounds per square inch are read", read_table(psi, "drained")[0])
+    book = openpyxl.Workbook()
+    book.active.append(PLAIN.strip().split(","))
+    for r in ROWS:
+        book.active.append(["A", *r[:4], str(r[4]).replace(".", ",")])
+    book.save(work / "text.xlsx")
+    test = read_table(work / "text.xlsx", "drained")[0]
+    same("cells of text with decimal commas in a workbook", test)
+    check("which is told", any("decimal commas" in meant for _, meant in test.understood), test.understood)
+
+
+def test_sheets_with_merged_cells_and_columns_that_are_not_read():
+    head = "Probe,eps_a_percent,eps_v_percent,q_kPa,sigma_3_kPa,e_0,operator\n"
+    rows = "".join(
+        f"{name if i == 0 else ''},{a},{v},{q},{100 if i == 0 else ''},{0.8 if i == 0 else ''},me\n"
+        for name in "AB" for i, (a, v, q, _, _) in enumerate(ROWS)
+    )
+    tests = read_table(written(head + rows), "drained")
+    check("a name, a stress and a void ratio in the first row of a test", [t.name for t in tests] == ["A", "B"], tests)
+    for test in tests:
+        same(f"are those of its other rows, {test.name}", test, sigma_r=100.0, e_0=0.8)
+    told = dict(tests[0].understood)
+    check("they are told, and what is not read", told.get("operator") == "not read" and told["Probe"] == "test, no unit"
+          and "the same in its other rows" in told.values(), told)
+    measured = "sigma_a_kPa,sigma_r_kPa,e\n10,5,.8\n50,,.79\n100,,.78\n"
+    told = refusal(lambda: read_table(written(measured), "oedometer"))
+    check("a radial stress that is measured must be there", "sheet.csv:3: sigma_r_kPa = ''" in told, told)
+
+    # Compression as the apparatus tells it.
+    oed = read_table(written("sigma_a_kPa,eps_a_percent,e_0\n10,0,0.8\n100,.5,\n200,1.2,\n50,1.1,\n"), "oedometer")[0]
+    check("void ratios of an oedometer's strain", np.allclose(oed["e"], [0.8, 0.791, 0.7784, 0.7802], atol=1e-12), oed["e"])
+    iso = read_table(written("p_kPa,eps_v,e_0\n10,0,0.8\n100,.01,\n200,.02,\n"), "isotropic")[0]
+    check("void ratios of volumetric strain", np.allclose(iso["e"], [0.8, 0.782, 0.764], atol=1e-12), iso["e"])
+    told = refusal(lambda: read_table(written("sigma_a_kPa,eps_a_percent\n10,0\n100,.5\n200,1.2\n"), "oedometer"))
+    check("a strain without a void ratio is refused", "give e_0 too" in told, told)
+    told = refusal(lambda: read_table(written("sigma_a_kPa,eps_a,e_0\n10,0,.8\n100,.5,\n200,1.2,\n"), "oedometer"))
+    check("per cent without the unit too", "eps_a_percent" in told, told)
+
+
 def test_total_stresses_less_the_pore_pressure_are_effective_e_0_is_the():
     # Undrained: total stresses and a pore pressure; e_0 in place of e.
     head = "test,eps_a_percent,sigma_1_kPa,sigma_3_kPa,u_kPa,e_0\n"

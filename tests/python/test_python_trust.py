@@ -194,6 +194,8 @@ def test_nine_tests_that_cannot_run_are_no_fit():
         code == 0
         and "comparison" in page
         and "| A | **held out**" in page
+        and "| B | compared |" in page
+        and "| fitted" not in page
         and not (work / "seen/materials").exists()
         and evaluate(make_task("x", table("good.csv"), held_out=list("ABCDE")), "toyoura").diagnosis is None,
         page[:300],

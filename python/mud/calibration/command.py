@@ -130,7 +130,7 @@ def main(words: list[str] | None = None) -> int:
             f"\nmud_calibrate: interrupted; the same command goes on from {folder / UNFINISHED}", file=sys.stderr
         )
         return 130
-    for line in summary(result.misfits):
+    for line in summary(result.misfits, bool(result.diagnosis)):
         print(f"{line['set']}: {line['text']}")
     found = (*result.diagnosis.sentences, *result.diagnosis.warnings) if result.diagnosis else ()
     for sentence in (*result.notes, *found):

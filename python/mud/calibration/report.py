@@ -81,10 +81,11 @@ def _misfit_text(result: Calibration) -> str:
     return "Misfit: " + "; ".join(f"{line['set']}: {line['text']}" for line in summary(result.misfits)) + "."
 
 
-def summary(misfits: list[Misfit]) -> list[dict[str, str]]:
-    """A line for the fitted and one for the held-out tests: rms over the tests, and the worst one."""
+def summary(misfits: list[Misfit], fitted: bool = True) -> list[dict[str, str]]:
+    """A line for the fitted and one for the held-out tests: rms over the tests, and the worst one. fitted : False: nothing was,
+    the tests that are not held out are only compared."""
     lines = []
-    for held, word in ((False, "fitted"), (True, "held out")):
+    for held, word in ((False, set_of(fitted)), (True, "held out")):
         mine, told = [m for m in misfits if m.held_out is held], []
         for key, unit, what in (
             ("q", "%", "q"),
@@ -117,6 +118,11 @@ def summary(misfits: list[Misfit]) -> list[dict[str, str]]:
     return lines
 
 
+def set_of(fitted: bool) -> str:
+    """What the tests that are not held out are called."""
+    return "fitted" if fitted else "compared"
+
+
 def write_report(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
     """README.md, pictures and misfit.csv into the folder; returns the page."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -124,9 +130,9 @@ def write_report(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
     task = result.task
     text = [f"# {task.title or task.name}: {'calibration' if result.diagnosis else 'comparison'}", "", _made(result), ""]
     text += [f"Tests: {_origin(task)}", ""]
-    text += [f"- {note}" for note in (*task.notes, *result.notes)] + [""]
+    text += [*(f"- {note}" for note in notes), ""] if (notes := [*task.notes, *result.notes]) else []
     text += _understood(task)
-    text += _misfit_summary("", result.misfits)
+    text += _misfit_summary("", result.misfits, bool(result.diagnosis))
     text += [
         "q: rms of q/q_lab - 1 over the laboratory rows from 1 to 20 % axial strain; volumetric strain: rms difference in "
         "percentage points over the same rows; void ratio: largest difference. The laboratory's linear axial strain is turned "
@@ -134,7 +140,7 @@ def write_report(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
         "",
     ]
     if result.beside is not None:
-        text += _misfit_summary(f"Beside it: material `{result.beside_name}`, the same measure.", result.beside)
+        text += _misfit_summary(f"Beside it: material `{result.beside_name}`, the same measure.", result.beside, bool(result.diagnosis))
     text += _coverage(result)
     text += ["## Curves", "", *(f"![{p.stem}]({p.name})" for p in pictures), "", "## Misfit of each test", ""]
     text += _misfit_table(result)
@@ -147,7 +153,7 @@ def write_report(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
         writer.writerow(("test", "kind", "set", *(column for _, column in _RECORDED), "stopped"))
         for m in result.misfits:
             numbers = ("" if np.isnan(v) else f"{v:.4g}" for v in (getattr(m, key) for key, _ in _RECORDED))
-            writer.writerow((m.name, m.kind, "held out" if m.held_out else "fitted", *numbers, m.stopped))
+            writer.writerow((m.name, m.kind, "held out" if m.held_out else set_of(bool(result.diagnosis)), *numbers, m.stopped))
     return path
 
 
@@ -199,8 +205,8 @@ def _made(result: Calibration) -> str:
     )
 
 
-def _misfit_summary(head: str, misfits: list[Misfit]) -> list[str]:
-    lines = [f"| {line['set']} | {line['text']} |" for line in summary(misfits)]
+def _misfit_summary(head: str, misfits: list[Misfit], fitted: bool) -> list[str]:
+    lines = [f"| {line['set']} | {line['text']} |" for line in summary(misfits, fitted)]
     return [*([head, ""] if head else []), "| set | misfit |", "|---|---|", *lines, ""]
 
 
@@ -347,7 +353,7 @@ def _misfit_table(result: Calibration) -> list[str]:
                         value = getattr(one, key)
                         cells.append("" if np.isnan(value) else format(value, form))
                 lines.append(
-                    f"| {m.name} | {'**held out**' if held else 'fitted'} | {_start_text(result.item(m.name))} | "
+                    f"| {m.name} | {'**held out**' if held else set_of(bool(result.diagnosis))} | {_start_text(result.item(m.name))} | "
                     + " | ".join(cells)
                     + f" |{' ' + m.stopped if m.stopped else ''}"
                 )
@@ -379,11 +385,11 @@ def _matrix(names: list[str], matrix: np.ndarray) -> list[str]:
 def _pictures(result: Calibration, folder: pathlib.Path) -> list[pathlib.Path]:
     """Curves against the laboratory, a few tests a picture, fitted and held out apart."""
     plt, made = pyplot(), []
-    for held, word in ((False, "fitted"), (True, "held_out")):
+    for held, word in ((False, set_of(bool(result.diagnosis))), (True, "held_out")):
         for kind in dict.fromkeys(item.test.kind for item in result.task.items):
             items = [i for i in result.task.items if i.test.kind == kind and i.test.held_out is held]
             parts = -(-len(items) // PAGE)
-            told = {"fitted": "fitted", "held_out": "held out, predicted"}[word] if result.diagnosis else "compared"
+            told = "held out, predicted" if held and result.diagnosis else word.replace("_", " ")
             for n in range(parts):
                 title = f"{result.task.title or result.task.name}: {kind}, {told}"
                 figure = _page(result, items[n::parts], title, plt)

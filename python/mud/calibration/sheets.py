@@ -7,6 +7,7 @@ understood for that is kept as pairs (in the sheet, understood as).
 
 from __future__ import annotations
 
+import codecs
 import dataclasses
 import os
 import pathlib
@@ -33,13 +34,14 @@ UNITS = {
     "N/mm²": 1000.0,
     "kg/cm2": 98.0665,
     "kgf/cm2": 98.0665,
+    "psi": 6.894757293168361,
     "degrees": 1.0,
 }
 _LOWER_UNITS = {unit.lower(): unit for unit in UNITS} | {"mpa": "MPa", "pa": "Pa"}
 NO_UNITS = ("", "-", "1")
 # Heads in words: letters and figures alone, in lower case -> quantity.
 WORDS = {
-    "test": ("sample", "specimen", "testno", "testname", "sampleno"),
+    "test": ("sample", "specimen", "testno", "testname", "sampleno", "probe", "versuch", "ensayo", "muestra", "essai"),
     "eps_a": ("axialstrain", "verticalstrain", "eps1", "epsa", "epsilon1", "epsilona", "ε1", "εa"),
     "eps_v": ("volumetricstrain", "volumestrain", "volstrain", "epsv", "epsvol", "epsilonv", "εv", "εvol"),
     "gamma": ("shearstrain", "γ", "engineeringshearstrain"),
@@ -66,7 +68,9 @@ WORDS = {
 }
 _WORDS = {word: quantity for quantity, words in WORDS.items() for word in words}
 LEAST_KNOWN = 2  # heads that make a line the line of names
-_DECIMAL_COMMA = re.compile(r"^[+-]?\d+,\d+([eE][+-]?\d+)?$")
+_DECIMAL = {mark: re.compile(rf"^[+-]?\d+[{mark}]\d+([eE][+-]?\d+)?$") for mark in ",."}
+# 1.234,5 and 1.234: figures in threes, which a number below one has not.
+_THOUSANDS = {mark: re.compile(rf"^[+-]?[1-9]\d{{0,2}}([{mark}]\d{{3}})+([{other}]\d+)?$") for mark, other in (",.", ".,")}
 
 
 @dataclasses.dataclass
@@ -109,11 +113,15 @@ def _text(path: pathlib.Path, understood: list[tuple[str, str]]) -> list[tuple[i
         raw = path.read_bytes()
     except OSError as problem:
         raise InputError(f"{path} cannot be read: {problem.strerror}") from problem
-    try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = raw.decode("cp1252", errors="replace")
-        understood.append(("letters", "Windows-1252, not UTF-8"))
+    if raw[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):  # what Excel calls Unicode text
+        text = raw.decode("utf-16", errors="replace")
+        understood.append(("letters", "UTF-16"))
+    else:
+        try:
+            text = raw.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            text = raw.decode("cp1252", errors="replace")
+            understood.append(("letters", "Windows-1252, not UTF-8"))
     if "\0" in text:
         raise InputError(f"{path} is no text; save the table as CSV or .xlsx")
     lines = [(n, line) for n, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
@@ -121,13 +129,32 @@ def _text(path: pathlib.Path, understood: list[tuple[str, str]]) -> list[tuple[i
     if mark != ",":
         understood.append(({"\t": "tabs", ";": "semicolons"}[mark] + " between cells", "the separator"))
     rows = [(n, cells_of(line, mark)) for n, line in lines]
-    if mark != "," and any(_DECIMAL_COMMA.match(cell.strip()) for _, cells in rows for cell in cells):
-        understood.append(("commas inside numbers", "decimal marks"))
-        rows = [
-            (n, [cell.strip().replace(",", ".") if _DECIMAL_COMMA.match(cell.strip()) else cell for cell in cells])
-            for n, cells in rows
-        ]
+    rows = _decimal_points(rows, mark, understood)
     return [(n, cells) for n, cells in rows if not _blank(cells)]
+
+
+def _decimal_points(
+    rows: list[tuple[int, list[str]]], separator: str, understood: list[tuple[str, str]]
+) -> list[tuple[int, list[str]]]:
+    """Numbers with a point as decimal mark and without marks between thousands."""
+    cells = {cell.strip() for _, row in rows for cell in row}
+    grouped = {mark: {c for c in cells if _THOUSANDS[mark].match(c)} for mark in ",."}
+    decimal = {mark: {c for c in cells if _DECIMAL[mark].match(c)} for mark in ",."}
+    # 1,234 can be either; 0,5 and 1.234,5 have a decimal comma.
+    sure = {mark: bool(decimal[mark] - grouped[mark] or grouped[other] - decimal[other]) for mark, other in (",.", ".,")}
+    commas = sure[","] or (not sure["."] and separator != "," and bool(grouped[","]))
+    other = "." if commas else ","
+    thousands = set() if sure[other] else grouped[other]
+    if commas:
+        understood.append(("commas inside numbers", "decimal marks"))
+    if thousands:
+        understood.append((f"{'points' if commas else 'commas'} inside numbers, as in {min(thousands)}", "between thousands"))
+
+    def point(cell: str) -> str:
+        word = cell.strip().replace(other, "") if cell.strip() in thousands else cell.strip()
+        return word.replace(",", ".") if _DECIMAL[","].match(word) else word if cell.strip() in thousands else cell
+
+    return [(n, [point(cell) for cell in row]) for n, row in rows]
 
 
 def _workbook(path: pathlib.Path, understood: list[tuple[str, str]]) -> list[tuple[int, list[str]]]:
@@ -141,20 +168,30 @@ def _workbook(path: pathlib.Path, understood: list[tuple[str, str]]) -> list[tup
         raise InputError(f"{path} cannot be read: {problem.strerror}") from problem
     except Exception as problem:  # openpyxl raises what its parts raise
         raise InputError(f"{path} is no workbook that openpyxl reads: {problem}") from problem
-    sheets = []
+    sheets, commas = [], set()
     for sheet in book.worksheets:
         rows = [
-            (n, ["" if v is None else repr(v) if isinstance(v, float) else str(v) for v in values])
+            (n, [_cell(v, commas) for v in values])
             for n, values in enumerate(sheet.iter_rows(values_only=True), 1)
         ]
         rows = [(n, cells) for n, cells in rows if not _blank(cells) and not cells[0].startswith("#")]
         if rows:
             sheets.append((sheet.title, rows))
     book.close()
+    if commas:
+        understood.append((f"cells of text as {min(commas)}", "numbers with decimal commas"))
     if len(sheets) > 1:
         others = ", ".join(title for title, _ in sheets[1:])
         understood.append((f"the sheet {sheets[0][0]}", f"the table; not read: {others}"))
     return sheets[0][1] if sheets else []
+
+
+def _cell(value: object, commas: set[str]) -> str:
+    """A cell of a workbook as text; text that is a number with a decimal comma is taken as one, and kept in ``commas``."""
+    if isinstance(value, str) and _DECIMAL[","].match(value.strip()):
+        commas.add(value.strip())
+        return value.strip().replace(",", ".")
+    return "" if value is None else repr(value) if isinstance(value, float) else str(value)
 
 
 def _line_of_names(rows: list[tuple[int, list[str]]], known: frozenset[str]) -> int:

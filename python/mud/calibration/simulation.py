@@ -27,6 +27,7 @@ LOOP_STEPS = 40  # of an amplitude whose loop is measured
 LIQUEFIED, MORE_CYCLES = 0.95, 4.0  # pore pressure ratio; cycles that are tried, times those of the laboratory
 SETTLED = 10.0  # [kPa] compression counts from here on where a table begins below: before, a sample settles into its ring
 _SATURATION = states["saturation"].index
+ROUNDING = 1e-9  # of a strain, relative
 FAR = 1e6  # output interval that leaves rows at reversals and ends of stages alone
 
 
@@ -313,6 +314,7 @@ def _at_rows(test: LaboratoryTest, use: Use, result: TestResult) -> dict[str, np
     if test.kind in ("drained", "undrained"):
         way = np.sign(test["eps_a"][use.rows[-1]])
         at, path = way * natural(test["eps_a"][use.rows]), way * result["eps_a"]
+        at = np.where(at < path[-1] * (1 + ROUNDING), np.minimum(at, path[-1]), at)  # the end is met but for a rounding
         return {n: np.interp(at, path, values[n], right=np.nan) for n in names}
     stress = np.log(np.maximum(result["sigma_a" if test.kind == "oedometer" else "p_eff"], 1e-9))
     at = np.log(test["sigma_a" if test.kind == "oedometer" else "p"][np.concatenate([[use.start], use.rows])])

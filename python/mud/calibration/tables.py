@@ -40,8 +40,8 @@ ALIASES = {
 NEEDS = {
     "drained": ("eps_a", ("q", "stress_ratio"), ("eps_v", "e"), ("e", "e_0")),
     "undrained": ("eps_a", "q", "p", ("e", "e_0")),
-    "oedometer": ("sigma_a", "e"),
-    "isotropic": ("p", "e"),
+    "oedometer": ("sigma_a", ("e", "eps_a")),
+    "isotropic": ("p", ("e", "eps_v")),
     "cyclic": ("control", "cycle_by", "amplitude", "cycle", "p_0", "e_0", ("eps_v", "r_u")),
     "retention": ("suction", "S_w"),
     "stiffness": ("p", "e", "G_max"),
@@ -164,16 +164,17 @@ def read_table(path: str | os.PathLike, kind: str) -> list[LaboratoryTest]:
     names = [name for name, _ in head]
     both = {"sigma_a", "sigma_r"} <= set(names) and kind in ("drained", "undrained")
     _need_columns(path, rows[0], kind, [*names, *(("q", "p") if both else ())])
+    unread = [name for name in names if name and name not in (*STRAINS, *STRESSES, *NUMBERS, *TEXTS)]
     groups: dict[str, list[tuple[int, list[str]]]] = {}
+    name = ""
     for number, cells in rows[1:]:
         if len(cells) != len(head):
             raise InputError(f"{path}:{number}: {len(cells)} cells, the line of names has {len(head)}")
-        groups.setdefault(cells[names.index("test")].strip() if "test" in names else path.stem, []).append(
-            (number, cells)
-        )
+        name = (cells[names.index("test")].strip() or name) if "test" in names else path.stem
+        groups.setdefault(name, []).append((number, cells))
     tests = [_test(path, kind, name, head, rows[0][1], mine) for name, mine in groups.items()]
     for test in tests:
-        test.understood = [*sheet.understood, *test.understood]
+        test.understood = [*sheet.understood, *((word, "not read") for word in unread), *test.understood]
     _guess_void_ratios(path, tests)
     return tests
 
@@ -219,6 +220,7 @@ def _test(
 ) -> LaboratoryTest:
     columns: dict[str, np.ndarray] = {}
     words = {"control": "", "cycle_by": ""}
+    understood: list[tuple[str, str]] = []
     numbers = np.array([number for number, _ in rows])
     for place, (quantity, factor) in enumerate(head):
         cells = [cells[place].strip() for _, cells in rows]
@@ -228,7 +230,8 @@ def _test(
             continue
         if quantity in ("e", "e_0") and not any(cells) and kind in ("drained", "undrained"):
             continue
-        if quantity == "e_0" and cells[0] and not any(cells[1:]):
+        if quantity in _stays(kind) and cells[0] and cells[1:] and not any(cells[1:]):
+            understood.append((f"{titles[place]} in the first row of a test alone", "the same in its other rows"))
             cells = cells[:1] * len(cells)
         values = _values(path, titles[place], cells, numbers)
         if quantity in STRAINS:
@@ -242,7 +245,7 @@ def _test(
         if quantity == "amplitude" and words["cycle_by"] in ("eps_a", "gamma") and factor not in (None, 0.01):
             raise InputError(f"{path}, test {name}: an amplitude of {words['cycle_by']} is a strain, not a stress")
         columns[quantity] = values * (1.0 if factor is None else factor)
-    test = LaboratoryTest(name, kind, columns, path.name, numbers, **words)
+    test = LaboratoryTest(name, kind, columns, path.name, numbers, understood=understood, **words)
     if kind in ("drained", "undrained"):
         _stresses(test)
         test.unknown_e_0 = "e" not in test and "e_0" not in test and "eps_v" in test or (
@@ -250,6 +253,7 @@ def _test(
         )
         if kind == "drained" and "e" not in test and "e_0" not in test and "eps_v" not in test:
             raise InputError(f"{path}, test {name}: neither a void ratio nor a volumetric strain is given")
+    _void_ratio_of_compression(f"{path}, test {name}", test)
     if len(rows) < FEWEST_ROWS[kind]:
         raise InputError(f"{path}, test {name}: {len(rows)} rows; a {kind} test needs at least {FEWEST_ROWS[kind]}")
     _check_values(path, test)
@@ -260,6 +264,11 @@ def _test(
     elif kind == "undrained" and "e" not in test and "e_0" in test:
         test.columns["e"] = test["e_0"].copy()  # the volume is held
     return test
+
+
+def _stays(kind: str) -> tuple[str, ...]:
+    """Quantities that belong to a whole test: sheets with merged cells give them in its first row."""
+    return ("e_0", "p_0", "amplitude", *(("sigma_r",) if kind == "drained" else ()))
 
 
 def _values(path: pathlib.Path, title: str, cells: list[str], numbers: np.ndarray) -> np.ndarray:
@@ -287,7 +296,8 @@ def _check_percent(
     """A strain whose size contradicts its unit."""
     at = int(np.argmax(np.abs(values)))
     largest = abs(values[at])
-    if factor is None and largest > LARGEST_FRACTION[quantity]:
+    limit = LARGEST_FRACTION["eps_v" if kind == "oedometer" else quantity]
+    if factor is None and largest > limit:
         raise InputError(
             f"{path}:{numbers[at]}: test {name}: {title} reaches {values[at]:g}, too much for a strain as a "
             f"fraction; if it is in per cent call the column {quantity}_percent"
@@ -426,6 +436,17 @@ def _stresses(test: LaboratoryTest) -> None:
         told.append("p' = (sigma_1 + 2 sigma_3)/3")
     if told:
         test.understood.append(("sigma_1, sigma_3", ", ".join(told) + ", effective stresses"))
+
+
+def _void_ratio_of_compression(where: str, test: LaboratoryTest) -> None:
+    """The void ratio of a compression test whose strain is given."""
+    strain = {"oedometer": "eps_a", "isotropic": "eps_v"}.get(test.kind, "e")
+    if "e" in test or strain not in test:
+        return
+    if "e_0" not in test:
+        raise InputError(f"{where}: {strain} alone says nothing of the void ratio; give e_0 too")
+    test.columns["e"] = test["e_0"] - (1 + test["e_0"]) * test[strain]
+    test.understood.append((f"{strain} and e_0", f"e = e_0 - (1 + e_0) {strain}"))
 
 
 def _complete_drained(test: LaboratoryTest) -> None:
