@@ -71,20 +71,24 @@ def panels(runs: Sequence[Mapping[str, np.ndarray]]) -> list[tuple[str, str, str
     """(title, x column, y column, logarithmic x) for what happens in results of mud_triax: paths of stress and strain
     always, pore pressure where it builds up, suction and saturation where suction moves, cycles where there are any."""
 
-    def moves(name: str, scale: float | None = None) -> bool:
+    def moves(name: str, scale: float | str = "") -> bool:
+        """Whether a column moves, measured by a number, by another column or by its own size."""
         return any(
-            name in run and np.ptp(run[name]) > _SMALL * (scale or max(1e-30, np.max(np.abs(run[name])))) for run in runs
+            name in run
+            and np.ptp(run[name])
+            > _SMALL * (max(1e-30, np.max(np.abs(run[scale or name]))) if isinstance(scale, str) else scale)
+            for run in runs
         )
 
     shear = moves("gamma_13", 1.0)
     strain, stress = ("gamma_13", "sig_13") if shear else ("eps_a", "q")
     strain = strain if moves(strain, 1.0) else "eps_v"
     pages = []
-    if moves(stress):
+    if moves(stress, "p_eff"):
         pages += [("stress and strain", strain, stress, False), ("stress path", "p_eff", stress, False)]
     if moves("eps_v", 1.0) and strain != "eps_v":
         pages.append(("volume", strain, "eps_v", False))
-    if moves("u"):
+    if moves("u", "p_eff"):
         pages.append(("pore pressure", strain, "u", False))
     if moves("e"):
         pages.append(("state", "p_eff", "e", True))
@@ -93,19 +97,31 @@ def panels(runs: Sequence[Mapping[str, np.ndarray]]) -> list[tuple[str, str, str
     if moves("suction"):
         pages += [("retention", "suction", "s_w", False), ("wetting and drying", "suction", "e", False)]
     if moves("r_u") and moves("cycle"):
-        pages += [("cycles", "cycle", "r_u", False), ("cycles", "cycle", strain, False)]
+        pages += [("pore pressure by cycles", "cycle", "r_u", False), ("strain by cycles", "cycle", strain, False)]
     pages += [("state parameter", strain, "psi", False), ("cost", strain, "n_substep", False)]
     return [page for page in pages if any(page[1] in run and page[2] in run for run in runs)]
 
 
 def values_of(run: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """A column as it is drawn: strains in per cent, axial and volumetric ones linear as a laboratory reports them."""
+    """A column as it is drawn: strains in per cent, axial and volumetric ones linear as a laboratory reports them; cycles
+    counted on from row to row."""
     values = run[name]
+    if name == "cycle":
+        return _counted(values)
     if name == "eps_a":
         values = -np.expm1(-values)
     elif name == "eps_v":
         values = (run["e"][0] - run["e"]) / (1 + run["e"][0])
     return _LABELS[name][1] * values
+
+
+def _counted(cycle: np.ndarray) -> np.ndarray:
+    """The number of the cycle as a count that grows over its rows and is whole at its end."""
+    counted = cycle.astype(float)
+    for number in np.unique(cycle[cycle > 0]):
+        rows = np.flatnonzero(cycle == number)
+        counted[rows] = number - 1 + np.arange(1, len(rows) + 1) / len(rows)
+    return counted
 
 
 def draw(plt, runs: Mapping[str, Mapping[str, np.ndarray]], pages: Sequence[tuple[str, str, str, bool]]) -> Figure:

@@ -22,6 +22,7 @@ import mud  # noqa: E402
 import mud.calibration  # noqa: E402
 import tables  # noqa: E402
 from mud import _native  # noqa: E402
+from mud.plots import panels  # noqa: E402
 
 COMPRESSION = np.array([-100.0, -100.0, -100.0, 0.0, 0.0, 0.0])
 SHEAR = np.array([5e-5, 5e-5, -1e-4, 2e-5, 0.0, 0.0])
@@ -480,8 +481,16 @@ def test_is_the_programs_digit_by_digit():
     check("simple shear is drawn over shear strain", labels[0] == "shear strain [%]", labels)
     titles = [axis.get_title() for axis in mud.plot_test(collapse).axes]
     check("wetting is drawn over suction", "retention" in titles and "wetting and drying" in titles, titles)
+    round_off = {**collapse, "q": collapse["q"][0] + 1e-11 * np.arange(len(collapse["q"]))}
+    titles = [title for title, *_ in panels([round_off])]
+    check("a deviator that is rounding is not drawn", "stress and strain" not in titles and "retention" in titles, titles)
     titles = [axis.get_title() for axis in mud.plot_test(cyclic).axes]
-    check("cycles are drawn", titles.count("cycles") == 2 and "pore pressure" in titles, titles)
+    drawn = {"pore pressure by cycles", "strain by cycles", "pore pressure"} <= set(titles)
+    check("cycles are drawn", drawn, titles)
+    axis = mud.plot_test(cyclic).axes[titles.index("strain by cycles")]
+    count = axis.lines[0].get_xdata()
+    check("cycles are counted on within each of them", np.all(np.diff(count) > 0)
+          and count[0] == 0 and count[-1] == cyclic["cycle"][-1], count)
     told = refused(mud.InputError, lambda: mud.plot_test(tight, laboratory={"epsa": [0.0], "q": [0.0]}))
     check("a wrong name of a laboratory's column is told", "epsa" in told and "eps_a" in told, told)
     told = refused(mud.InputError, lambda: mud.plot_test(tight, laboratory={"q": [0.0]}))

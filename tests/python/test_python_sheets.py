@@ -106,33 +106,39 @@ def test_of_a_plain_table_nothing_had_to_be_understood():
 
 
 def test_numbers_as_spreadsheets_write_them():
-    large = "A;0;0;0;3000;0.8|A;5;-1;1200;3400;0.818|A;10;-2;1500.5;3500;0.836|A;20;-3;1400;3467;0.854".split("|")
+    large = [(0, 0, 0, 3000, "0.8"), (5, -1, 1200, 3400, "0.818"), (10, -2, "1500.5", 3500, "0.836"),
+             (20, -3, 1400, 3467, "0.854")]
+    wanted = ([0, 1200, 1500.5, 1400], [3000, 3400, 3500, 3467])
 
-    def stresses(cells, separator=";"):
-        test = read_table(written(PLAIN.replace(",", separator) + "\n".join(cells)), "drained")[0]
-        return test["q"].tolist(), test["p"].tolist(), dict(test.understood)
+    def read(changes, separator=";", quote=""):
+        text = PLAIN.replace(",", separator)
+        for row in large:
+            line = separator.join(f"{quote}{cell}{quote}" for cell in ("A", *row))
+            for old, new in changes:
+                line = line.replace(old, new)
+            text += line + "\n"
+        test = read_table(written(text), "drained")[0]
+        return (test["q"].tolist(), test["p"].tolist()), [meant for _, meant in test.understood]
 
-    plain = stresses(large)[:2]
-    check("1500.5 is read", plain == ([0, 1200, 1500.5, 1400], [3000, 3400, 3500, 3467]), plain)
-    german = [r.replace(".", ",").replace("1200", "1.200").replace("1500,5", "1.500,5").replace("3500", "3.500") for r in large]
-    q, p, told = stresses(german)
-    check("points between thousands beside decimal commas", (q, p) == plain and "between thousands" in told.values(), (q, p, told))
-    english = [r.replace("1200", "1,200").replace("1500.5", "1,500.5").replace("3500", "3,500") for r in large]
-    q, p, told = stresses(english)
-    check("commas between thousands beside decimal points", (q, p) == plain and "between thousands" in told.values(), (q, p, told))
-    quoted = [",".join(f'"{cell}"' for cell in row.replace(".", ",").split(";")) for row in large]
-    q, p, told = stresses(quoted, ",")
-    check("decimal commas within quotes", (q, p) == plain and "decimal marks" in told.values(), (q, p, told))
-    one = [r.replace("1200", "1.200") for r in large]
-    check("1.200 beside 1500.5 is 1.2", stresses(one)[0][1] == 1.2, stresses(one))
-    excel = (PLAIN + body()).replace(",", "\t")
-    test = read_table(written(excel, encoding="utf-16"), "drained")[0]
+    check("1500.5 is read", read([])[0] == wanted, read([]))
+    numbers, told = read([(".", ","), ("1200", "1.200"), ("1500,5", "1.500,5"), ("3500", "3.500")])
+    good = numbers == wanted and "between thousands" in told
+    check("points between thousands, decimal commas", good, (numbers, told))
+    numbers, told = read([("1200", "1,200"), ("1500.5", "1,500.5"), ("3500", "3,500")])
+    good = numbers == wanted and "between thousands" in told
+    check("commas between thousands, decimal points", good, (numbers, told))
+    numbers, told = read([(".", "#"), ("#", ",")], ",", '"')
+    check("decimal commas within quotes", numbers == wanted and "decimal marks" in told, (numbers, told))
+    numbers, told = read([("1200", "1.200")])
+    check("1.200 beside 1500.5 is 1.2", numbers[0][1] == 1.2 and "between thousands" not in told, (numbers, told))
+    test = read_table(written((PLAIN + body()).replace(",", "\t"), encoding="utf-16"), "drained")[0]
     same("Excel's Unicode text is read", test)
     check("and told", ("letters", "UTF-16") in test.understood, test.understood)
-    psi = written(PLAIN.replace("kPa", "psi") + body(row=lambda r: (*r[:2], r[2] / 6.894757293168361, r[3] / 6.894757293168361, r[4])))
-    same("pounds per square inch are read", read_table(psi, "drained")[0])
+    psi = 6.894757293168361
+    pounds = PLAIN.replace("kPa", "psi") + body(row=lambda r: (r[0], r[1], r[2] / psi, r[3] / psi, r[4]))
+    same("pounds per square inch are read", read_table(written(pounds), "drained")[0])
     book = openpyxl.Workbook()
-    book.active.append(PLAIN.strip().split(","))
+    book.active.append(["test", "eps_a_percent", "eps_v_percent", "q_kPa", "p_kPa", "e"])
     for r in ROWS:
         book.active.append(["A", *r[:4], str(r[4]).replace(".", ",")])
     book.save(work / "text.xlsx")
@@ -160,7 +166,8 @@ def test_sheets_with_merged_cells_and_columns_that_are_not_read():
 
     # Compression as the apparatus tells it.
     oed = read_table(written("sigma_a_kPa,eps_a_percent,e_0\n10,0,0.8\n100,.5,\n200,1.2,\n50,1.1,\n"), "oedometer")[0]
-    check("void ratios of an oedometer's strain", np.allclose(oed["e"], [0.8, 0.791, 0.7784, 0.7802], atol=1e-12), oed["e"])
+    off = np.abs(oed["e"] - [0.8, 0.791, 0.7784, 0.7802])
+    check("void ratios of an oedometer's strain", off.max() < 1e-12, oed["e"])
     iso = read_table(written("p_kPa,eps_v,e_0\n10,0,0.8\n100,.01,\n200,.02,\n"), "isotropic")[0]
     check("void ratios of volumetric strain", np.allclose(iso["e"], [0.8, 0.782, 0.764], atol=1e-12), iso["e"])
     told = refusal(lambda: read_table(written("sigma_a_kPa,eps_a_percent\n10,0\n100,.5\n200,1.2\n"), "oedometer"))
