@@ -30,12 +30,14 @@ ALIASES = {
     "e0": "e_0",
     "sr": "stress_ratio",
     "s_w": "S_w",
+    "s_r": "S_w",
     "p_eff": "p",
     "epsv": "eps_v",
     "epsa": "eps_a",
     "p0": "p_0",
     "p_c": "suction",
 }
+SATURATION = {"sr": "S_w"}  # of a retention table: there it is no stress ratio
 # What a kind of test needs; a tuple: one of these.
 NEEDS = {
     "drained": ("eps_a", ("q", "stress_ratio"), ("eps_v", "e"), ("e", "e_0")),
@@ -113,7 +115,7 @@ class LaboratoryTest:
         return float(np.median(self["p"] - self["q"] / 3))
 
 
-def _head(cells: list[str], path: pathlib.Path, line: int) -> list[tuple[str, float | None]]:
+def _head(cells: list[str], path: pathlib.Path, line: int, kind: str) -> list[tuple[str, float | None]]:
     """(quantity, factor) of every column; the factor is None where no unit stands behind the name."""
     known = {*STRAINS, *STRESSES, *NUMBERS, *TEXTS}
     shares = ("S_w", "r_u", "damping")  # numbers that may be given in per cent
@@ -123,7 +125,7 @@ def _head(cells: list[str], path: pathlib.Path, line: int) -> list[tuple[str, fl
         stem, _, last = name.rpartition("_")
         if stem and last in UNITS:
             name, factor = stem, UNITS[last]
-        name = ALIASES.get(name, name)
+        name = (SATURATION if kind == "retention" else {}).get(name, ALIASES.get(name, name))
         if (
             name in STRESSES
             and name != "amplitude"
@@ -160,7 +162,7 @@ def read_table(path: str | os.PathLike, kind: str) -> list[LaboratoryTest]:
     rows = sheet.rows
     if len(rows) < 2:
         raise InputError(f"{path} has no rows of numbers below its line of names")
-    head = _head(rows[0][1], path, rows[0][0])
+    head = _head(rows[0][1], path, rows[0][0], kind)
     names = [name for name, _ in head]
     both = {"sigma_a", "sigma_r"} <= set(names) and kind in ("drained", "undrained")
     _need_columns(path, rows[0], kind, [*names, *(("q", "p") if both else ())])
