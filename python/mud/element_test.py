@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import ctypes
 import difflib
+import functools
 import os
 import pathlib
 from collections.abc import Iterator, Mapping, Sequence
@@ -58,21 +59,28 @@ class TestResult(Mapping):
     def __init__(
         self, columns: dict[str, np.ndarray], units: dict[str, str], meanings: dict[str, str], remarks: list[str]
     ):
-        self._columns = {**columns, **_of_principal_stresses(columns)}
+        self._given = columns  # by the driver
         #: unit of each column
         self.units = {**units, **{name: unit.replace("kPa", units["q"]) for name, (unit, _) in _DERIVED.items()}}
         self.meanings = {**meanings, **{name: text for name, (_, text) in _DERIVED.items()}}  #: what each column is
         self.remarks = remarks  #: facts of the run, "name: text"
 
+    @functools.cached_property
+    def _derived(self) -> dict[str, np.ndarray]:
+        return _of_principal_stresses(self._given)
+
     def __getitem__(self, name: str) -> np.ndarray:
-        if name not in self._columns:
-            raise UnknownName(f"there is no column {name}{_nearest(name, self._columns)}")
-        return self._columns[name]
+        if name in self._given:
+            return self._given[name]
+        if name not in _DERIVED:
+            raise UnknownName(f"there is no column {name}{_nearest(name, self)}")
+        return self._derived[name]
 
     def __getattr__(self, name: str) -> np.ndarray:
-        if name in self.__dict__.get("_columns", ()):
+        names = [*self.__dict__.get("_given", ()), *_DERIVED]
+        if name in names:
             raise AttributeError(f"columns are read by their name in brackets: result['{name}']")
-        raise AttributeError(f"a TestResult has no {name}{_nearest(name, self.__dict__.get('_columns', ()))}")
+        raise AttributeError(f"a TestResult has no {name}{_nearest(name, names)}")
 
     def __repr__(self) -> str:
         end = ", ".join(f"{name} {self[name][-1]:.6g}" for name in ("eps_a", "eps_v", "p_eff", "q", "e", "s_w"))
@@ -88,15 +96,15 @@ class TestResult(Mapping):
             import pandas
         except ImportError as problem:
             raise ImportError("to_frame needs pandas: pip install 'mud-soil[frames]'") from problem
-        frame = pandas.DataFrame(self._columns)
+        frame = pandas.DataFrame(dict(self))
         frame.attrs.update(units=self.units, meanings=self.meanings, remarks=self.remarks)
         return frame
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._columns)
+        return iter((*self._given, *_DERIVED))
 
     def __len__(self) -> int:
-        return len(self._columns)
+        return len(self._given) + len(_DERIVED)
 
     @property
     def volumetric_strain(self) -> np.ndarray:
