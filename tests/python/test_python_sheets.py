@@ -194,7 +194,8 @@ def test_total_stresses_less_the_pore_pressure_are_effective_e_0_is_the():
     for head in ("Sr [%]", "S_r (%)", "sr_percent"):
         wet = read_table(written(f"Suction [kPa],{head}\n1,98\n5,60\n10,20\n"), "retention")[0]
         check(f"{head} of a retention table is S_w", wet["S_w"].tolist() == [0.98, 0.6, 0.2], wet.columns)
-    ratio = "test,eps_a_percent,eps_v_percent,sr,sigma_r_kPa,e\n" + body(row=lambda r: (*r[:2], 1 + r[2] / 100, 100, r[4]))
+    ratio = "test,eps_a_percent,eps_v_percent,sr,sigma_r_kPa,e\n"
+    ratio += body(row=lambda r: (*r[:2], 1 + r[2] / 100, 100, r[4]))
     same("sr of a shear test is the stress ratio", read_table(written(ratio), "drained")[0])
     told = refusal(lambda: read_table(written("suction_kPa,e_percent,S_w\n1,80,1\n2,80,.9\n3,80,.8\n"), "retention"))
     check("a unit that a void ratio cannot have is still refused", "e_percent" in told, told)
