@@ -20,10 +20,10 @@ contains
          '|---|---|---|---|---|---|---|---|'
       do i = 0, mud_count(MUD_PROPS) - 1
          if (mud_bounds(MUD_PROPS, i, lower, upper, preset) /= 0) cycle
-         print '(a, i0, *(a))', '| ', i + 1, ' | `', text(MUD_PROPS, i, MUD_NAME), '` | ', text(MUD_PROPS, i, &
+         print '(a, i0, *(a))', '| ', i + 1, ' | `', text(MUD_PROPS, i, MUD_NAME), '` | ', cell(MUD_PROPS, i, &
             MUD_SYMBOL), ' | ', &
-            text(MUD_PROPS, i, MUD_UNIT), ' | ', number(lower), ' to ', number(upper), ' | ', number(preset), ' | ', &
-            text(MUD_PROPS, i, MUD_ORIGIN), ' | ', text(MUD_PROPS, i, MUD_MEANING), ' |'
+            cell(MUD_PROPS, i, MUD_UNIT), ' | ', number(lower), ' to ', number(upper), ' | ', number(preset), ' | ', &
+            cell(MUD_PROPS, i, MUD_ORIGIN), ' | ', cell(MUD_PROPS, i, MUD_MEANING), ' |'
       end do
    end subroutine print_props
 
@@ -34,10 +34,10 @@ contains
       print '(a)', '| STATEV | name | symbol | unit | initially | rotates | evolves | origin | meaning |', &
          '|---|---|---|---|---|---|---|---|---|'
       do i = 0, mud_count(MUD_STATEV) - 1
-         print '(a, i0, *(a))', '| ', i + 1, ' | `', text(MUD_STATEV, i, MUD_NAME), '` | ', text(MUD_STATEV, i, &
-            MUD_SYMBOL), ' | ', text(MUD_STATEV, i, MUD_UNIT), ' | ', text(MUD_STATEV, i, MUD_INITIAL), ' | ', &
-            text(MUD_STATEV, i, MUD_ROTATION), ' | ', text(MUD_STATEV, i, MUD_EVOLUTION), ' | ', &
-            text(MUD_STATEV, i, MUD_ORIGIN), ' | ', text(MUD_STATEV, i, MUD_MEANING), ' |'
+         print '(a, i0, *(a))', '| ', i + 1, ' | `', text(MUD_STATEV, i, MUD_NAME), '` | ', cell(MUD_STATEV, i, &
+            MUD_SYMBOL), ' | ', cell(MUD_STATEV, i, MUD_UNIT), ' | ', cell(MUD_STATEV, i, MUD_INITIAL), ' | ', &
+            cell(MUD_STATEV, i, MUD_ROTATION), ' | ', cell(MUD_STATEV, i, MUD_EVOLUTION), ' | ', &
+            cell(MUD_STATEV, i, MUD_ORIGIN), ' | ', cell(MUD_STATEV, i, MUD_MEANING), ' |'
       end do
    end subroutine print_statev
 
@@ -67,6 +67,20 @@ contains
       if (mud_text(list, index, field, raw, BUFFER) < 0) raw = c_null_char
       string = from_c(raw)
    end function text
+
+   !> The same within a table, whose cells end at a bar.
+   function cell(list, index, field) result(string)
+      integer(c_int), intent(in) :: list, index, field
+      character(:), allocatable :: string, plain
+      integer :: i
+
+      plain = text(list, index, field)
+      string = ''
+      do i = 1, len(plain)
+         if (plain(i:i) == '|') string = string//'\'
+         string = string//plain(i:i)
+      end do
+   end function cell
 
    !> Version of the library.
    function version() result(string)

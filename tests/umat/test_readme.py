@@ -16,8 +16,21 @@ PROMISED = {"mud_describe props", "mud_describe statev"}
 
 
 def content(block):
-    return subprocess.run([build / "drivers/mud_describe", block.split()[1]], check=True, capture_output=True,
-                          text=True).stdout
+    return folded(subprocess.run([build / "drivers/mud_describe", block.split()[1]], check=True, capture_output=True,
+                                 text=True).stdout)
+
+
+def folded(table):
+    """The table with one row for the components of a tensor: rows that differ in place and name alone."""
+    rows = []
+    for line in table.splitlines():
+        place, name, rest = re.fullmatch(r"\| ?(.*?) ?\| ?(.*?) ?\|(.*)", line).groups()
+        if rows and rows[-1][2] == rest and name.startswith("`"):
+            rows[-1] = (rows[-1][0].split(" ")[0] + f" to {place}", rows[-1][1].split(" ")[0] + f" to {name}", rest)
+        else:
+            rows.append((place, name, rest))
+    return "".join(f"| {place} | {name} |{rest}\n" if name.strip("-") else f"|{place}|{name}|{rest}\n"
+                   for place, name, rest in rows)
 
 
 text = readme.read_text(encoding="utf-8")
