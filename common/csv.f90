@@ -97,7 +97,7 @@ contains
       good = truncate(path//c_null_char, int(table%bytes, c_long)) == 0
       if (good) table%file = fopen(path//c_null_char, 'ab'//c_null_char)
       if (good) good = is_open(table)
-      if (.not. good) call complain(table, fault)
+      if (.not. good) call raise_unwritten(table, fault)
    end subroutine resume_csv
 
    integer(int64) function size_of(path) result(bytes)
@@ -133,7 +133,7 @@ contains
       if (fwrite(c_loc(text), 1_c_size_t, len(text, kind=c_size_t), table%file) == len(text, kind=c_size_t)) then
          table%bytes = table%bytes + len(text)
       else
-         call complain(table, fault)
+         call raise_unwritten(table, fault)
       end if
    end subroutine put_text
 
@@ -143,10 +143,10 @@ contains
       type(fault_t), intent(inout) :: fault
 
       if (fflush(table%file) /= 0) then
-         call complain(table, fault)
+         call raise_unwritten(table, fault)
       else if (fsync(fileno(table%file)) /= 0) then
          ! What is no regular file, as a pipe, has no size and no place on a disk.
-         if (size_of(table%path) >= table%bytes) call complain(table, fault)
+         if (size_of(table%path) >= table%bytes) call raise_unwritten(table, fault)
       end if
    end subroutine settle_csv
 
@@ -157,14 +157,14 @@ contains
       type(fault_t), intent(inout) :: fault
 
       if (.not. is_open(table)) return
-      if (fclose(table%file) /= 0 .and. fault%code == 0) call complain(table, fault)
+      if (fclose(table%file) /= 0 .and. fault%code == 0) call raise_unwritten(table, fault)
       table%file = c_null_ptr
    end subroutine close_csv
 
-   subroutine complain(table, fault)
+   subroutine raise_unwritten(table, fault)
       type(csv_t), intent(in) :: table
       type(fault_t), intent(inout) :: fault
 
       call raise(fault, EXIT_OUTPUT, table%path//' cannot be written; is the disk full?')
-   end subroutine complain
+   end subroutine raise_unwritten
 end module csv

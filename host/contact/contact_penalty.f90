@@ -138,7 +138,7 @@ contains
       if (status%code /= CONTACT_OK) return
       call respond(geometry, slave_x, master_x, with_tangent, work, result, status)
       if (status%code /= CONTACT_OK) return
-      if (present(friction)) call rub(geometry, slave_x, master_x, with_tangent, friction, work, result)
+      if (present(friction)) call add_friction(geometry, slave_x, master_x, with_tangent, friction, work, result)
       result%active = result%pressure > 0.0_wp
    end subroutine contact_evaluate
 
@@ -187,8 +187,7 @@ contains
          do c = work%search%first(e), work%search%first(e + 1) - 1
             if (n == size(work%pair)) call grow_pairs(work%pair)
             associate (pair => work%pair(n + 1), master => work%search%candidate(c))
-               x(:, 1:3) = slave_x(:, geometry%slave_edges(:, e))
-               x(:, 4:6) = master_x(:, geometry%master_edges(:, master))
+               x = of_edges(geometry, e, master, slave_x, master_x)
                call find_overlap(x, geometry%free(geometry%master_edges(1:2, master)), pair%overlap)
                if (pair%overlap%segments == 0) cycle
                n = n + 1
@@ -239,8 +238,7 @@ contains
       end if
       do i = 1, result%pairs
          associate (pair => work%pair(i), nodes => geometry%slave_edges(:, work%pair(i)%slave))
-            x(:, 1:3) = slave_x(:, nodes)
-            x(:, 4:6) = master_x(:, geometry%master_edges(:, pair%master))
+            x = of_edges(geometry, pair%slave, pair%master, slave_x, master_x)
             energy = result%energy
             pressed = any(result%pressure(nodes) > 0.0_wp)
             if (pressed) call add_pair(geometry, nodal, pair, x, with_tangent, work%load, result, status)
@@ -263,7 +261,7 @@ contains
    end subroutine respond
 
    !> Friction: slips and tractions of the slave nodes, their forces and tangent. docs/theory/contact.md section 9.
-   pure subroutine rub(geometry, slave_x, master_x, with_tangent, friction, work, result)
+   pure subroutine add_friction(geometry, slave_x, master_x, with_tangent, friction, work, result)
       type(contact_geometry_t), intent(in) :: geometry
       real(wp), intent(in) :: slave_x(:, :), master_x(:, :)
       logical, intent(in) :: with_tangent
@@ -273,13 +271,13 @@ contains
       type(traction_t) :: t(geometry%slave_nodes)
       type(response_t) :: response
       real(wp) :: x(2, 6), dx(2, 6), weighted_slip(3)
-      integer :: unknown(12), i, j
+      integer :: i
 
       result%slip = 0.0_wp
       do i = 1, result%pairs
          associate (pair => work%pair(i), nodes => geometry%slave_edges(:, work%pair(i)%slave))
-            x = gathered(slave_x, master_x)
-            dx = gathered(friction%slave_dx, friction%master_dx)
+            x = of_edges(geometry, pair%slave, pair%master, slave_x, master_x)
+            dx = of_edges(geometry, pair%slave, pair%master, friction%slave_dx, friction%master_dx)
             call pair_slips(x, dx, pair%overlap, geometry%options%axisymmetric, weighted_slip, pair%d_weighted_slip, &
                             pair%drag)
             result%slip(nodes) = result%slip(nodes) + weighted_slip
@@ -296,32 +294,17 @@ contains
       do i = 1, result%pairs
          associate (pair => work%pair(i))
             if (.not. any(abs(result%traction(geometry%slave_edges(:, pair%slave))) > 0.0_wp)) cycle
-            x = gathered(slave_x, master_x)
+            x = of_edges(geometry, pair%slave, pair%master, slave_x, master_x)
             call drag_response(x, pair%overlap, geometry%options%axisymmetric, &
                                result%traction(geometry%slave_edges(:, pair%slave)), with_tangent, response)
-            unknown = unknowns_of(geometry, pair%slave, pair%master)
-            result%force(unknown) = result%force(unknown) + response%force
-            if (.not. with_tangent) cycle
-            call make_room(result, 144)
-            do j = 1, 12
-               call add_column(result, unknown, unknown(j), response%stiffness(:, j))
-            end do
+            call add_response(unknowns_of(geometry, pair%slave, pair%master), response, with_tangent, result)
          end associate
       end do
       if (.not. with_tangent) return
       do i = 1, geometry%slave_nodes
          if (result%gap(i) < 0.0_wp) call add_node(geometry, i, work, result, t(i)%by_gap, t(i)%by_slip)
       end do
-   contains
-      !> What the nodes of pair i have, slave first.
-      pure function gathered(slave, master) result(of_pair)
-         real(wp), intent(in) :: slave(:, :), master(:, :)
-         real(wp) :: of_pair(2, 6)
-
-         of_pair(:, 1:3) = slave(:, geometry%slave_edges(:, work%pair(i)%slave))
-         of_pair(:, 4:6) = master(:, geometry%master_edges(:, work%pair(i)%master))
-      end function gathered
-   end subroutine rub
+   end subroutine add_friction
 
    !> What sliding has dissipated from the start of a step to an evaluation [kN m]: traction times the slip that is not
    !> the penalty's. Never negative: sliding has the sign of its traction. docs/theory/contact.md section 9.
@@ -354,8 +337,7 @@ contains
       type(contact_status_t), intent(inout) :: status
       type(response_t) :: response
       real(wp) :: missed
-      logical :: at_ends
-      integer :: unknown(12), j
+      logical :: at_ends, acts
 
       if (status%code /= CONTACT_OK) return
       associate (nodes => geometry%slave_edges(:, pair%slave))
@@ -366,20 +348,31 @@ contains
             status = contact_fail(CONTACT_NO_PROJECTION, pair%slave, .false., missed)
             return
          end if
-         unknown = unknowns_of(geometry, pair%slave, pair%master)
-         result%force(unknown) = result%force(unknown) + response%force
+         acts = .true.
          if (options%gap == POINTWISE_GAP) then
             result%energy = result%energy + response%energy
             work(nodes) = work(nodes) + response%load
-            if (response%energy <= 0.0_wp) return
+            acts = .not. response%energy <= 0.0_wp
          end if
+         call add_response(unknowns_of(geometry, pair%slave, pair%master), response, with_tangent .and. acts, result)
       end associate
+   end subroutine add_pair
+
+   !> Forces of a pair, and its stiffness where the tangent is wanted.
+   pure subroutine add_response(unknown, response, with_tangent, result)
+      integer, intent(in) :: unknown(12)   !< As unknowns_of numbers them.
+      type(response_t), intent(in) :: response
+      logical, intent(in) :: with_tangent
+      type(contact_result_t), intent(inout) :: result
+      integer :: j
+
+      result%force(unknown) = result%force(unknown) + response%force
       if (.not. with_tangent) return
-      call make_room(result, 144)
+      call make_room(result, size(response%stiffness))
       do j = 1, 12
          call add_column(result, unknown, unknown(j), response%stiffness(:, j))
       end do
-   end subroutine add_pair
+   end subroutine add_response
 
    !> A penetration that no pressure answers.
    pure subroutine note_unpressed(depth, x, result)
@@ -471,6 +464,17 @@ contains
       unknown(7:11:2) = 2*(geometry%slave_nodes + geometry%master_edges(:, master)) - 1
       unknown(2:12:2) = unknown(1:11:2) + 1
    end function unknowns_of
+
+   !> What the nodes of a pair of edges have, slave first.
+   pure function of_edges(geometry, slave, master, of_slave, of_master) result(of_pair)
+      type(contact_geometry_t), intent(in) :: geometry
+      integer, intent(in) :: slave, master                     !< Numbers of the edges.
+      real(wp), intent(in) :: of_slave(:, :), of_master(:, :)  !< (2, nodes)
+      real(wp) :: of_pair(2, 6)
+
+      of_pair(:, 1:3) = of_slave(:, geometry%slave_edges(:, slave))
+      of_pair(:, 4:6) = of_master(:, geometry%master_edges(:, master))
+   end function of_edges
 
    !> Entries of one column of the tangent; exact zeros are left out. There must be room for them.
    pure subroutine add_column(result, rows, column, values)

@@ -268,7 +268,7 @@ contains
                change_of(domain, region, k(g), gravity_on(old, element), old%stress(:, p), old%e(p), old%s(p), &
                          response), &
                change)
-            if (scheme%kind == DYNAMIC) call add_flight(domain, region, k(g), scheme, skeleton, gp, out%stretch)
+            if (scheme%kind == DYNAMIC) call add_flight_scale(domain, region, k(g), scheme, skeleton, gp, out%stretch)
             if (with_tangent) call add_tangent(gp, n_fields, tangent, sums%k)
          end associate
       end do
@@ -282,7 +282,7 @@ contains
    end subroutine add_points
 
    !> A body in flight: its inertia is its weight and nothing is left that a residual could be small against.
-   pure subroutine add_flight(domain, region, k, scheme, skeleton, gp, stretch)
+   pure subroutine add_flight_scale(domain, region, k, scheme, skeleton, gp, stretch)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
       type(kinematics_t), intent(in) :: k
@@ -300,7 +300,7 @@ contains
          stretch(2*i - 1) = stretch(2*i - 1) + part
          stretch(2*i) = stretch(2*i) + part
       end do
-   end subroutine add_flight
+   end subroutine add_flight_scale
 
    !> What a step changes of the total stress and of the weight at a point; inertia, sources and damping count whole.
    pure function change_of(domain, region, k, gravity0, stress0, e0, s0, response) result(change)

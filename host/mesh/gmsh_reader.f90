@@ -82,7 +82,7 @@ contains
       close (reader%unit)
       if (fault%code == 0 .and. .not. allocated(mesh%x)) call wrong(reader, 'there is no section $Nodes', fault)
       if (fault%code == 0) call name_others(entities, names)
-      if (fault%code == 0) call sort_out(reader, names, entities, blocks, mesh, fault)
+      if (fault%code == 0) call collect_elements(reader, names, entities, blocks, mesh, fault)
    end subroutine read_gmsh
 
    !> Physical groups that the file gives no name are named by their dimension and number.
@@ -322,7 +322,7 @@ contains
    end subroutine read_elements
 
    !> Collects triangles, turns clockwise ones, and makes a group of every physical name.
-   subroutine sort_out(reader, names, entities, blocks, mesh, fault)
+   subroutine collect_elements(reader, names, entities, blocks, mesh, fault)
       type(reader_t), intent(in) :: reader
       type(physical_t), intent(in) :: names(:)
       type(entity_t), intent(in) :: entities(:)
@@ -383,7 +383,7 @@ contains
                has_tag = any(abs(entities(e)%physical) == name%tag)
          end do
       end function has_tag
-   end subroutine sort_out
+   end subroutine collect_elements
 
    pure function counter_clockwise(mesh, nodes) result(turned)
       type(mesh_t), intent(in) :: mesh

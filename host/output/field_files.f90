@@ -72,7 +72,7 @@ contains
       call put(file, 'points/weight', [((domain%gauss(g, e)%weight, g=1, domain%rule), e=1, size(domain%mesh%t6, 2))], &
                'm3', 'volume of every quadrature point (per m of thickness in plane strain)')
       call write_file(file, good)
-      if (.not. good) call complain(folder//'/mesh.h5', fault)
+      if (.not. good) call raise_unwritten(folder//'/mesh.h5', fault)
    end subroutine write_mesh
 
    !> Refuses a folder whose mesh is not that of the scene's run. Fault EXIT_RESTART: mesh.h5 is missing, truncated, or
@@ -144,7 +144,7 @@ contains
       call put(file, 'points/e', state%e, '-', 'void ratio of every quadrature point')
       call put(file, 'points/S_w', state%s, '-', 'degree of saturation of every quadrature point')
       call write_file(file, good)
-      if (.not. good) call complain(path, fault)
+      if (.not. good) call raise_unwritten(path, fault)
       if (good) call write_xdmf(folder, domain, state, frames, fault)
    contains
       subroutine put_list(values)
@@ -272,7 +272,7 @@ contains
       end do
       text = text//'</Grid>'//LF//'</Domain></Xdmf>'//LF
       call write_whole(folder//'/results.xdmf', bytes_of(text), good)
-      if (.not. good) call complain(folder//'/results.xdmf', fault)
+      if (.not. good) call raise_unwritten(folder//'/results.xdmf', fault)
    end subroutine write_xdmf
 
    pure function item(dimensions, number, file, place) result(text)
@@ -283,10 +283,10 @@ contains
              merge('8', '4', number == 'Float')//'" Format="HDF">'//file//':/'//place//'</DataItem>'
    end function item
 
-   subroutine complain(path, fault)
+   subroutine raise_unwritten(path, fault)
       character(*), intent(in) :: path
       type(fault_t), intent(inout) :: fault
 
       call raise(fault, EXIT_OUTPUT, path//' cannot be written; is the disk full?')
-   end subroutine complain
+   end subroutine raise_unwritten
 end module field_files

@@ -10,7 +10,7 @@ module price_estimates
    use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: answer_t, quote_t, list_answers, distances, mesh_error, judge_meshes, observed_order, likeness, &
+   public :: answer_t, quote_t, list_answers, distances, mesh_error, judge_meshes, observed_order, correlation, &
              quote, total_error, bound_of, is_certain, worst_answer
    public :: ASSUMED, CERTAIN, UNCERTAIN, NOT_CONVERGING, MASKED, STATE_WORDS
 
@@ -165,7 +165,7 @@ contains
    end function observed_order
 
    !> Correlation over time of the differences of three runs: do they have one shape? [-1, 1]
-   pure real(wp) function likeness(answer, coarse, middle, fine)
+   pure real(wp) function correlation(answer, coarse, middle, fine)
       type(answer_t), intent(in) :: answer
       type(pilot_t), intent(in) :: coarse, middle, fine
       real(wp), allocatable :: time(:), values(:), t(:), v(:), one(:), two(:)
@@ -181,8 +181,8 @@ contains
       do i = 1, size(time)
          two(i) = -farthest(time(i:i), values(i:i), t, v)
       end do
-      likeness = dot_product(one, two)/max(norm2(one)*norm2(two), tiny(1.0_wp))
-   end function likeness
+      correlation = dot_product(one, two)/max(norm2(one)*norm2(two), tiny(1.0_wp))
+   end function correlation
 
    !> Mesh error, order and state of each answer from two meshes, or three where the coarsest is given.
    subroutine judge_meshes(answers, middle, fine, r, coarse)
@@ -205,7 +205,7 @@ contains
                a%order = max(LEAST_ORDER, min(MOST_ORDER, order))
                a%state = CERTAIN
                if (order < WEAK_ORDER) a%state = UNCERTAIN
-               if (likeness(a, coarse, middle, fine) < LIKE) a%state = UNCERTAIN
+               if (correlation(a, coarse, middle, fine) < LIKE) a%state = UNCERTAIN
                if (order < NO_ORDER .and. last(i) > LARGE) a%state = NOT_CONVERGING
             end if
             a%mesh = mesh_error(last(i), r, a%order)

@@ -220,11 +220,11 @@ contains
       real(wp), intent(in) :: statev(:), props(:)
       real(wp) :: stored, unit
 
-      suction = suction_t(something_at(predef), something_at(dpred))
+      suction = suction_t(value_if_set(predef), value_if_set(dpred))
       suction%predef = suction%start
       stored = statev(S_SUCTION)
       if (enters_as_calculix(pnewdt)) then
-         if (something(suction%start) .or. something(suction%change)) suction%reading = SUCTION_UNREADABLE
+         if (is_set(suction%start) .or. is_set(suction%change)) suction%reading = SUCTION_UNREADABLE
          suction%start = stored
          suction%change = 0.0_wp
       else if (.not. c_associated(predef)) then
@@ -287,18 +287,18 @@ contains
    end function real_at
 
    !> The same, 0 where it is far below any physical number.
-   real(wp) function something_at(pointer)
+   real(wp) function value_if_set(pointer)
       type(c_ptr), intent(in) :: pointer
 
-      something_at = real_at(pointer)
-      if (.not. something(something_at)) something_at = 0.0_wp
-   end function something_at
+      value_if_set = real_at(pointer)
+      if (.not. is_set(value_if_set)) value_if_set = 0.0_wp
+   end function value_if_set
 
-   pure logical function something(value)
+   pure logical function is_set(value)
       real(wp), intent(in) :: value
 
-      something = .not. within(value, NOTHING)
-   end function something
+      is_set = .not. within(value, NOTHING)
+   end function is_set
 
    !> Finite and of magnitude up to a limit. A NaN is not compared: a comparison would trap.
    pure logical function within(value, limit)
