@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Results of a study that goes on: rows that other programs made are not mixed with those of the present ones; every
-committed table has a row."""
+"""Data that scripts of pages make: rows of other programs are not mixed with those of the present ones, every
+committed table has a row, all scripts fit into a night, and they leave the tree alone."""
+import subprocess
 import sys
 
-from checking import check, root, work
+import pytest
+from checking import build, check, light, nightly, root, work
 
 sys.path.insert(0, str(root / "verification"))
-from tools import results  # noqa: E402
+from tools import results, runner  # noqa: E402
 
 
 def test_results_of_other_programs_are_removed():
@@ -32,3 +34,33 @@ def test_no_data_of_a_page_is_empty():
     empty = [str(path.relative_to(root)) for path in (root / "verification").rglob("*.csv")
              if "/build/" not in str(path) and len(path.read_bytes().splitlines()) < 2]
     check("every committed table has a row", not empty, empty)
+
+
+def test_a_night_has_room_for_every_script(capsys):
+    # What --all --make leaves out needs a program that is not here, and nothing is left out for its time.
+    taken = runner.in_a_night(runner.names())
+    said = capsys.readouterr().out
+    scripts = {(name, script.name): script for name in runner.names()
+               for script in getattr(runner.load(name), "MAKES", ())}
+    left = [key for key in scripts if key[1] not in taken.get(key[0], ())]
+    check("only what cannot run here is left out", all(runner.missing(scripts[key]) for key in left), said)
+    check("and it is told", all(f"{page} --make --only {script}" in said for page, script in left), said)
+
+
+@pytest.mark.skipif(light or not nightly, reason="./check --tier nightly runs the scripts that take seconds")
+def test_scripts_write_where_made_files_belong():
+    def tree():
+        return {str(path): path.stat().st_mtime_ns for path in (root / "verification").rglob("*")
+                if path.is_file() and "__pycache__" not in path.parts}
+
+    before = tree()
+    for name, script in [(name, script) for name in runner.names() for script in getattr(runner.load(name), "MAKES", ())
+                         if script.seconds <= 5 and not runner.missing(script)]:
+        done = subprocess.run([sys.executable, root / "verification/tools/runner.py", name, "--make", "--only",
+                               script.name, "--build", build, "--output", work / "quick"], capture_output=True,
+                              text=True)
+        check(f"{name}/{script.name} makes its files", done.returncode == 0
+              and all(list((work / "quick" / name / "made").glob(pattern)) for pattern in script.files),
+              done.stdout + done.stderr)
+    changed = set(before.items()) ^ set(tree().items())
+    check("without --update nothing in the tree is touched", not changed, changed)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Writes reference.csv and mesh.msh of every case from the closed forms of the pages of verification/host.
 
-`make.py` writes into this folder, `make.py FOLDER` into another one.
+`make.py FOLDER` writes into that folder, `make.py --update` into this one.
 """
 import pathlib
 import sys
@@ -196,7 +196,9 @@ CASES = {"terzaghi": terzaghi, "infiltration": lambda: rain(0.1, 0.9), "drainage
 
 
 def main():
-    target = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else HERE
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    target = HERE if sys.argv[1] == "--update" else pathlib.Path(sys.argv[1])
     for name, make in CASES.items():
         mesh, found = make()
         folder = target / name

@@ -250,12 +250,14 @@ def older(name):
 
 
 def in_a_night(chosen):
-    """{page: scripts} that fit into a night, the cheap ones first; what does not fit is said."""
+    """{page: scripts} that fit into a night, the cheap ones first; what does not fit, or cannot run here, is said."""
     dear = sorted(((script.seconds, name, script) for name in chosen for script in getattr(load(name), "MAKES", ())),
                   key=lambda entry: entry[:2])
     taken, spent = {}, 0.0
     for seconds, name, script in dear:
-        if spent + seconds <= NIGHT:
+        if absent := missing(script):
+            print(f"left out, {', '.join(absent)} is not here: verification/run {name} --make --only {script.name}")
+        elif spent + seconds <= NIGHT:
             taken.setdefault(name, []).append(script.name)
             spent += seconds
         else:

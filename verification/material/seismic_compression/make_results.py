@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: MIT
 """Runs the twelve tests with every variant of the sand and writes results.csv.
 
-    make_results.py [--build build/release] [--only VARIANT ...] [--results FOLDER]
+    make_results.py [--build build/release] [--only VARIANT ...]
 
-Three minutes of one core. Rows of variants that are not run stay.
+Three minutes of one core. Rows of variants that are not run are those of the committed file.
 """
 import argparse
 import csv
+import os
 import pathlib
 import subprocess
 import sys
@@ -16,7 +17,7 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 sys.path.insert(0, str(ROOT / "verification"))
-from tools import tables  # noqa: E402
+from tools import results, tables  # noqa: E402
 
 MEASURED = HERE / "rong_mccartney_2019_unsaturated_css.csv"
 VERTICAL, CYCLES = 50.0, 200
@@ -71,16 +72,14 @@ def tests():
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--build", default=ROOT / "build/release")
+    parser.add_argument("--build", default=os.environ.get("MUD_BUILD_DIR") or ROOT / "build/release")
     parser.add_argument("--only", nargs="+", choices=list(VARIANTS), default=list(VARIANTS))
-    parser.add_argument("--results", default=HERE, type=pathlib.Path)
     args = parser.parse_args()
-    path = args.results / "results.csv"
-    kept = [tuple(row[name] for name in COLUMNS) for row in tables.rows(path)] if path.exists() else []
+    kept = (tuple(row[name] for name in COLUMNS) for row in tables.rows(HERE / "results.csv"))
     rows = [row for row in kept if row[0] not in args.only]
     rows += [run(args.build, variant, test) for variant in args.only for test in tests()]
     rows.sort(key=lambda row: list(VARIANTS).index(row[0]))
-    with open(path, "w", encoding="utf-8", newline="") as file:
+    with open(results.folder(__file__) / "results.csv", "w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(COLUMNS)
         writer.writerows(rows)

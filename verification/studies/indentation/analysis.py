@@ -140,6 +140,14 @@ def results_folder(script, quick):
     return folder
 
 
+def rows_so_far(path, args, parser):
+    """Rows of earlier runs. Where everything is run, those that another program made go; where the arguments choose a
+    part the others stay, and the script ends with exit code 1 if they are of another program."""
+    rows, (digest, _) = read_rows(path), program()
+    whole = all(getattr(args, name, None) == parser.get_default(name) for name in ("suction", "series", "only"))
+    return {name: row for name, row in rows.items() if row["program"] == digest or not whole}
+
+
 # ---- queue
 
 def parser_of(text, suctions, limit):

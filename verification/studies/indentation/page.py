@@ -21,7 +21,7 @@ PAGE = Page(
               "at 30 kPa",
     seconds=45, quick=3, pictures=("fig2_load.png", "fig3_interface.png", "fig4_errors.png", "fig5_displacement.png",
                                    "sensitivity.png"))
-MAKES = (Script("series.py", ("results/*.csv", "results/histories/*.csv"), 1500),
+MAKES = (Script("series.py", ("results/*.csv", "results/histories/*.csv"), 1050),
          Script("sensitivity.py", ("results/sensitivity.csv",), 760),
          Script("settings.py", ("results/settings.csv",), 530),
          Script("cost.py", ("results/cost.csv",), 600, "valgrind"))

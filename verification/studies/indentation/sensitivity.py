@@ -11,18 +11,18 @@ import sys
 
 import figures
 from analysis import (STEPS, Job, balances, label, measure, parser_of, program, read_rows, render, results_folder, root,
-                      run_all, scene, show, write_rows)
+                      rows_so_far, run_all, scene, show, write_rows)
 from series import PUBLISHED, ended, iterations, number, ratios
 from variations import BOTH, CONTROL, EXACT, FIELDS, NIGHTLY, STANDARD, SUCTIONS, TIGHT, VARIATIONS
 
 
-def arguments():
+def parser_of_variations():
     parser = parser_of(__doc__, SUCTIONS, 30)
     parser.set_defaults(suction=NIGHTLY)
     names = [name for name in VARIATIONS if name != TIGHT]
     parser.add_argument("--only", nargs="+", choices=names, default=STANDARD, metavar="NAME",
                         help=f"the standard set by default; {', '.join(names)}")
-    return parser.parse_args()
+    return parser
 
 
 def jobs_of(args, folder, steps):
@@ -49,7 +49,8 @@ def controls(rows, args, folder, steps):
 
 
 def main():
-    args = arguments()
+    parser = parser_of_variations()
+    args = parser.parse_args()
     folder = root / ("build/indentation_quick" if args.quick else "build/indentation")
     results = results_folder(__file__, args.quick)
     scenes, steps = folder / "sensitivity", 50 if args.quick else STEPS
@@ -58,7 +59,7 @@ def main():
         show(jobs)
         return 0
     path = results / "sensitivity.csv"
-    rows = read_rows(path)
+    rows = rows_so_far(path, args, parser)
     digest, commit = program()
 
     def done(job):

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The paper's Table 1: eight suctions with and without the remedy, beside the paper's numbers, with Figs 2 to 5.
 
-`verification/run indentation --make --only series.py [--pass OPTION ...]` runs what is not finished (about ten
-minutes on two cores) and writes
-its results. An interrupted analysis goes on from its checkpoint; a finished one is
-kept until its scene or the program changes. Its folder, in build/indentation, holds everything, also of a failed one.
-Exit code 1 if a balance is violated or the rows come from several versions of the program.
+`verification/run indentation --make --only series.py [--pass OPTION ...]` runs what is not finished (about ten minutes
+on two cores) and writes its results. An interrupted analysis goes on from its checkpoint; a finished one is kept until
+its scene or the program changes. Its folder, in build/indentation, holds everything, also of a failed one. Without
+options the table has rows of the present program alone. Exit code 1 if a balance is violated or the rows come from
+several versions of the program.
 """
 import math
 import sys
@@ -21,22 +21,27 @@ PUBLISHED = {0: (0.68, 0.22, 1353, 1359), 3: (0.78, 0.16, 1729, 1747), 30: (0.97
              50: (0.96, 0.01, 1897, 2016), 100: (None, None, 2060, "36259, terminated"), 200: (0.57, 0.81, 1333, 1801),
              500: (0.78, 0.61, 1333, 1445), 1000: (0.92, 0.09, 1333, 1333)}
 
+BOTH, TIGHT = ("remedy", "as_published"), (0, 30, 1000)   # [kPa]
 CASES = [(0, "u-p_w")] + [(s, "u-p_w-p_c") for s in SUCTIONS]
 
 
-def arguments():
+def parser_of_series():
     parser = analysis.parser_of(__doc__, SUCTIONS, 60)
-    parser.add_argument("--series", nargs="+", choices=[*SERIES, "all"], default=["remedy", "as_published"])
+    parser.add_argument("--series", nargs="+", choices=[*SERIES, "all"], default=["table"],
+                        help=f"by default those of Table 1, with Newton's tolerance 1e-5 at {TIGHT} kPa")
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="analyses by name, for example "
                                                                               "s0030_remedy")
-    return parser.parse_args()
+    return parser
 
 
 def jobs_of(args, folder, steps):
-    names = list(SERIES) if "all" in args.series else args.series
+    names = list(SERIES) if {"all", "table"} & set(args.series) else args.series
+
+    def asked(suction, name):
+        return "table" not in args.series or name in BOTH or name.endswith("_tight") and suction in TIGHT
     jobs = [Job(f"{label(s, f)}_{name}", scene(s, f, name, steps=steps), folder, steps, suction=s, fields=f,
                 series=name)
-            for s, f in CASES if s in args.suction for name in names]
+            for s, f in CASES if s in args.suction for name in names if asked(s, name)]
     if args.only:
         everything = {f"{label(s, f)}_{name}": (s, f, name) for s, f in CASES for name in SERIES}
         unknown = [n for n in args.only if n not in everything]
@@ -48,7 +53,8 @@ def jobs_of(args, folder, steps):
 
 
 def main():
-    args = arguments()
+    parser = parser_of_series()
+    args = parser.parse_args()
     quick = args.quick
     folder = root / ("build/indentation_quick" if quick else "build/indentation")
     results = results_folder(__file__, quick)
@@ -56,7 +62,7 @@ def main():
     if args.list:
         analysis.show(jobs)
         return 0
-    rows = read_rows(results / "series.csv")
+    rows = analysis.rows_so_far(results / "series.csv", args, parser)
     digest, commit = program()
 
     def done(job):
@@ -101,7 +107,7 @@ def verdict(rows):
 # ---- tables
 
 def pair(rows, suction, fields, ending=""):
-    return [rows.get(f"{label(suction, fields)}_{series}{ending}") for series in ("remedy", "as_published")]
+    return [rows.get(f"{label(suction, fields)}_{series}{ending}") for series in BOTH]
 
 
 def ended(row):

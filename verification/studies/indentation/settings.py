@@ -35,11 +35,11 @@ SETTINGS = {"fixed": ("fixed sides and base, the paper's settings", lambda group
             "today": ("fixed; combined gap and rho_inf 0, the defaults of mud_host", today)}
 
 
-def arguments():
+def parser_of_settings():
     parser = analysis.parser_of(__doc__, SUCTIONS, 30)
     parser.set_defaults(suction=(30, 1000))
     parser.add_argument("--only", nargs="+", choices=list(SETTINGS), default=list(SETTINGS), metavar="NAME")
-    return parser.parse_args()
+    return parser
 
 
 def jobs_of(args, folder, steps):
@@ -49,14 +49,15 @@ def jobs_of(args, folder, steps):
 
 
 def main():
-    args = arguments()
+    parser = parser_of_settings()
+    args = parser.parse_args()
     folder = root / ("build/indentation_quick" if args.quick else "build/indentation") / "settings"
     results = results_folder(__file__, args.quick)
     jobs = jobs_of(args, folder, 50 if args.quick else STEPS)
     if args.list:
         show(jobs)
         return 0
-    rows = read_rows(results / "settings.csv")
+    rows = analysis.rows_so_far(results / "settings.csv", args, parser)
     digest, commit = program()
 
     def done(job):
