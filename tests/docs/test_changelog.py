@@ -70,17 +70,20 @@ def short_props():
 
 
 def short_state():
-    """mud_init with hysteresis and the 114 numbers that are enough without it."""
+    """mud_init with hysteresis and the numbers that are enough without it."""
     sand = mud.Material("hostun_hysteresis")
     library, text = ctypes.CDLL(str(build / "umat/libmud.so")), ctypes.create_string_buffer(600)
     stress, statev = (ctypes.c_double * 6)(*START), (ctypes.c_double * 200)()
     pointer, number, count = ctypes.c_void_p, ctypes.c_double, ctypes.c_int
     library.mud_init.argtypes = [pointer, pointer, number, number, number, pointer, count, pointer, count]
-    code = library.mud_init(sand._address, stress, 1.0, 0.8, 0.0, statev, 114, text, len(text))
+    code = library.mud_init(sand._address, stress, 1.0, 0.8, 0.0, statev, PLAIN, text, len(text))
     return f"{code}: {text.value.decode()}"
 
 
 LAYOUT = re.search(r"STATE_LAYOUT = (\d+)", (root / "umat/core/base/mud_registry.f90").read_text(encoding="utf-8"))[1]
+# Numbers of STATEV without hysteresis and with it; entries of PROPS without it.
+PLAIN, WITH_HYSTERESIS = mud.states["turns"].index, mud.states["contraction"].index
+FEWEST = mud.parameters["hysteresis"].index
 # Tried where checkpoints are made.
 ELSEWHERE = {"checkpoints of format 4": "tests/host/test_host_output.py"}
 
@@ -94,8 +97,8 @@ def test_changelog_md_has_rows_that_promise_a_refusal():
     CASES = {
         "STATEV layout 1": (old_layout, ["layout", LAYOUT]),
         "`memory_rule` 4 `as_published`": (lambda: case("memory_rule = 4"), ["memory_rule", "from 0 to 3"]),
-        "with `hysteresis` = 1 S_w forgot where suction had turned": (short_state, ["-2", "114", "132"]),
-        "PROPS 45 entries": (short_props, ["-1", "45", "46"]),
+        "with `hysteresis` = 1 S_w forgot where suction had turned": (short_state, ["-2", str(PLAIN), str(WITH_HYSTERESIS)]),
+        "PROPS 45 entries": (short_props, ["-1", "45", str(FEWEST)]),
         "a `&retention` of its own": (lambda: scene(MUD.format("", "retention = 'r'") + RETENTION),
                                       ["retention = 'material'"]),
     }

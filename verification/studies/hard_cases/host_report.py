@@ -101,4 +101,4 @@ def nonsense():
     total = {key: sum(int(row[key]) for row in rows) for key in ("scenes", "failed", "refused", "read", "ran", "ended early", "still running")}
     return (f"{total['scenes']:,} scenes of nonsense: {total['refused']:,} refused with a message, {total['read']:,} read and not run, "
             f"{total['ran']:,} ran to their end, {total['ended early']:,} ended early with a message, {total['still running']:,} still ran "
-            f"after one second, {total['failed']:,} crashed, hung or ended without a message.\n")
+            f"when they were stopped, {total['failed']:,} crashed, hung or ended without a message.\n")
