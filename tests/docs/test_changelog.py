@@ -97,7 +97,8 @@ def test_changelog_md_has_rows_that_promise_a_refusal():
     CASES = {
         "STATEV layout 1": (old_layout, ["layout", LAYOUT]),
         "`memory_rule` 4 `as_published`": (lambda: case("memory_rule = 4"), ["memory_rule", "from 0 to 3"]),
-        "with `hysteresis` = 1 S_w forgot where suction had turned": (short_state, ["-2", str(PLAIN), str(WITH_HYSTERESIS)]),
+        "with `hysteresis` = 1 S_w forgot where suction had turned":
+            (short_state, ["-2", str(PLAIN), str(WITH_HYSTERESIS)]),
         "PROPS 45 entries": (short_props, ["-1", "45", str(FEWEST)]),
         "a `&retention` of its own": (lambda: scene(MUD.format("", "retention = 'r'") + RETENTION),
                                       ["retention = 'material'"]),

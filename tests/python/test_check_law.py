@@ -107,8 +107,8 @@ def test_mud_as_plaxis_calls_it_has_no_fault():
           done.stdout + done.stderr)
     law = law_under_test.Law(str(build / "umat/libmud.so"), kind="udsm", props=mud.Material("toyoura").props[:FEWEST])
     found = check_law.check_law(law, only=["first call"])
-    check("from Python it asks the model too", law.n_state >= mud.states["turns"].index and found[0].verdict == law_checks.PASS,
-          (law.n_state, found))
+    check("from Python it asks the model too", law.n_state >= mud.states["turns"].index
+          and found[0].verdict == law_checks.PASS, (law.n_state, found))
     with pytest.raises(ValueError, match="at most 50"):
         law.like(props=[1.0]*51)
     done = run(build / "umat/libmud.so", "--kind=udsm", f"--props={sand}", "--nstatv=5")

@@ -38,10 +38,10 @@ def test_no_data_of_a_page_is_empty():
 
 def test_a_night_has_room_for_every_script(capsys):
     # What --all --make leaves out needs a program that is not here, and nothing is left out for its time.
-    taken = runner.in_a_night(runner.names())
+    names = runner.names()
+    taken = runner.in_a_night(names)
     said = capsys.readouterr().out
-    scripts = {(name, script.name): script for name in runner.names()
-               for script in getattr(runner.load(name), "MAKES", ())}
+    scripts = {(name, script.name): script for name in names for script in getattr(runner.load(name), "MAKES", ())}
     left = [key for key in scripts if key[1] not in taken.get(key[0], ())]
     check("only what cannot run here is left out", all(runner.missing(scripts[key]) for key in left), said)
     check("and it is told", all(f"{page} --make --only {script}" in said for page, script in left), said)
