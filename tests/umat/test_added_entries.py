@@ -23,7 +23,7 @@ STATE = [
     (CORE + "base/mud_registry.f90", "      variable_t(S_STACK + 0, 6, 'memory_1'",
      "      variable_t(S_TRIAL, 1, 'trial', 'T', '1', .false., 'ours', 'steps of the trial', '0', 'adds up'), &\n"
      "      variable_t(S_STACK + 0, 6, 'memory_1'"),
-    (CORE + "base/mud_state.f90", "S_CHI_STACK, S_MARGIN\n", "S_CHI_STACK, S_MARGIN, S_TRIAL\n"),
+    (CORE + "base/mud_state.f90", "use mud_registry, only: NSTATV,", "use mud_registry, only: S_TRIAL, NSTATV,"),
     (CORE + "base/mud_state.f90", "      real(wp) :: p_c          !<",
      "      real(wp) :: trial\n      real(wp) :: p_c          !<"),
     (CORE + "base/mud_state.f90", "      call require(statev, S_VOID_RATIO,",
