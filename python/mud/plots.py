@@ -124,10 +124,20 @@ def _counted(cycle: np.ndarray) -> np.ndarray:
     return counted
 
 
-def draw(plt, runs: Mapping[str, Mapping[str, np.ndarray]], pages: Sequence[tuple[str, str, str, bool]]) -> Figure:
-    """A figure with a panel for each of ``pages``, a line for each run; the key stands below the panels."""
+def logarithmic(axis) -> None:
+    """A logarithmic x axis of what was drawn, with numbers between the powers of ten where it spans less than two of them."""
     from matplotlib.ticker import LogFormatter
 
+    axis.set_xscale("log")
+    low, high = axis.get_xlim()
+    if high > 100 * low:
+        return
+    for which in (axis.xaxis.set_major_formatter, axis.xaxis.set_minor_formatter):
+        which(LogFormatter(labelOnlyBase=False, minor_thresholds=(2, 0.6)))
+
+
+def draw(plt, runs: Mapping[str, Mapping[str, np.ndarray]], pages: Sequence[tuple[str, str, str, bool]]) -> Figure:
+    """A figure with a panel for each of ``pages``, a line for each run; the key stands below the panels."""
     wide = 3 if len(pages) > 4 else 2
     high = -(-len(pages) // wide)
     figure, axes = plt.subplots(high, wide, figsize=(4.3 * wide, 3.3 * high + 0.3), squeeze=False, layout="constrained")
@@ -142,9 +152,7 @@ def draw(plt, runs: Mapping[str, Mapping[str, np.ndarray]], pages: Sequence[tupl
         axis.set_ylabel(_LABELS[y][0])
         axis.grid(color="#dddddd", lw=0.6)
         if log:
-            axis.set_xscale("log")
-            for which in (axis.xaxis.set_major_formatter, axis.xaxis.set_minor_formatter):
-                which(LogFormatter(labelOnlyBase=False, minor_thresholds=(2, 0.6)))
+            logarithmic(axis)
     for axis in axes.flat[len(pages) :]:
         axis.axis("off")
     return figure

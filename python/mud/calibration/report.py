@@ -12,7 +12,7 @@ import numpy as np
 
 from .. import _native
 from ..errors import MudError
-from ..plots import COLOURS, pyplot
+from ..plots import COLOURS, logarithmic, pyplot
 from ..registry import parameters
 from .calibrate import Calibration
 from .diagnosis import origin_of
@@ -363,7 +363,10 @@ def _misfit_table(result: Calibration) -> list[str]:
 def _start_text(item: Item) -> str:
     test = item.test
     if test.kind in ("retention", "stiffness", "modulus", "liquefaction"):
-        return f"{len(item.use.rows)} points"
+        starts = {(float(p), float(e)) for p, e in zip(test["p_0"], test["e_0"])} if "p_0" in test and "e_0" in test else ()
+        if len(starts) == 1:
+            return "{:.0f} kPa, e {:.3f}".format(*starts.pop())
+        return f"{len(item.use.rows)} point{'s' * (len(item.use.rows) > 1)}"
     if test.kind == "drained":
         return f"{test.sigma_r:.0f} kPa, e {test.e_0:.3f}"
     if test.kind in ("oedometer", "isotropic"):
@@ -434,7 +437,7 @@ _PANELS = {
     "cyclic": (("cycle", "eps_v"), ("cycle", "r_u")),
     "stiffness": (("p", "G_max"),),
     "modulus": (("gamma", "G_ratio"), ("gamma", "damping")),
-    "liquefaction": (("log_N", "csr"),),
+    "liquefaction": (("N", "csr"),),
 }
 _AXES = {
     "eps_a": "axial strain [%]",
@@ -452,7 +455,7 @@ _AXES = {
     "gamma": "shear strain [-]",
     "G_ratio": "G/G_max",
     "damping": "damping ratio",
-    "log_N": "log10 of the cycles to liquefaction",
+    "N": "cycles to liquefaction",
     "csr": "cyclic stress ratio q/(2 p_0)",
 }
 
@@ -470,16 +473,17 @@ def _page(result: Calibration, items: list[Item], title: str, plt):
             if x in item.test and y in item.test:
                 banded |= _draw(axis, result, item, x, y, colour)
         handles.append(
-            Line2D([], [], color=colour, marker="o", ms=4, mfc="white", label=f"{item.test.name}: {_start_text(item)}")
+            Line2D([], [], color=colour, ls="" if kind == "liquefaction" else "-", marker="o", ms=4, mfc="white",
+                   label=f"{item.test.name}: {_start_text(item)}")
         )
     for axis, (x, y) in zip(axes[0], panels):
         axis.set_xlabel(_AXES[x])
         axis.set_ylabel(_AXES[y])
-        if x in ("sigma_a", "p") and y == "e" or x in ("suction", "gamma"):
-            axis.set_xscale("log")
+        if x in ("sigma_a", "p") and y == "e" or x in ("suction", "gamma", "N"):
+            logarithmic(axis)
         axis.grid(color="#dddddd", lw=0.6)
     handles.append(Line2D([], [], color="#555555", ls="", marker="o", ms=4, mfc="white", label="laboratory"))
-    handles.append(Line2D([], [], color="#555555", label="model"))
+    handles.append(Line2D([], [], color="#555555", label="model", **({"ls": "", "marker": "x"} if kind == "liquefaction" else {})))
     if banded:
         handles.append(Patch(color="#555555", alpha=0.15, lw=0, label=f"{100 * LEVEL:.0f} % band"))
     figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=7)
@@ -493,7 +497,7 @@ def _draw(axis, result: Calibration, item: Item, x: str, y: str, colour: str) ->
     across, up = (100 if name.startswith("eps") else 1 for name in (x, y))
     if y == "csr":  # the cycles are the answer
         axis.plot(test[x][rows], test[y][rows], "o", ms=3, color=colour, mfc="white", mew=0.8)
-        axis.plot(answer.columns[x], test[y][rows], "x", ms=4, color=colour)
+        axis.plot(10 ** answer.columns["log_N"], test[y][rows], "x", ms=4, color=colour)
         return False
     model_x = answer.columns["p"] if x == "p" and y == "q" else test[x][rows]
     axis.plot(across * test[x][rows], up * test[y][rows], "o", ms=3, color=colour, mfc="white", mew=0.8)

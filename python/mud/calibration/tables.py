@@ -149,9 +149,9 @@ def _head(cells: list[str], path: pathlib.Path, line: int, kind: str) -> list[tu
 def read_table(path: str | os.PathLike, kind: str) -> list[LaboratoryTest]:
     """The tests of a sheet, checked: a file with commas, semicolons or tabs between cells, or the first sheet of a workbook.
 
-    kind : drained, undrained, oedometer, isotropic, cyclic, retention, stiffness, modulus or liquefaction; ``NEEDS`` lists the columns each one needs. A table
-        without a column ``test`` holds one test, called as the file. Where no cell of a test has a void ratio it is unknown:
-        ``unknown_e_0``.
+    kind : drained, undrained, oedometer, isotropic, cyclic, retention, stiffness, modulus or liquefaction; ``NEEDS`` lists the
+        columns each one needs. A table without a column ``test`` holds one test, called as the file. Where no cell of a test has
+        a void ratio it is unknown: ``unknown_e_0``.
 
     Raises ``InputError``: file, line, what is wrong, and what to do.
     """
