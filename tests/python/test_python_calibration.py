@@ -427,7 +427,13 @@ def test_m_c_of_the_friction_angle():
         "G_0 of a modulus, eq. (3)",
         abs(task.base["G_0"] * 101.325 * 2.17**2 / 1.8 * math.sqrt(100 / 101.325) / 1e5 - 1) < 1e-12,
     )
-    for given, word in (({"phy_c": 33.0}, "phy_c"), ({"G_max": 1e5}, "G_max_p")):
+    for given, word in (
+        ({"phy_c": 33.0}, "phy_c"),
+        ({"G_max": 1e5}, "G_max_p"),
+        ({"phi_c": 0.5777}, "33.1 if it is in radians"),
+        ({"phi_c": 331.0}, "soils have 15 to 50"),
+        ({"G_max": 100.0, "G_max_p": 100.0, "G_max_e": 0.8}, "Is it in kPa?"),
+    ):
         told = refusal(lambda: make_task("k", make_tables("true.csv"), known=given))
         check(f"known {given} is refused", word in told, told)
     for others, word in (({"held_out": ["X"]}, "there is no test X"),

@@ -188,6 +188,10 @@ def start_of(name: str, base: Mapping[str, float]) -> float:
     return pins_of(base)[name] if name in PINNED.values() else base[name]
 
 
+ANGLES = (15.0, 50.0)  # [degrees] critical friction angles of soils
+STIFFNESS = (5.0, 2000.0)  # G_0 of soils, widely
+
+
 def known_parameters(known: Mapping[str, float], base: Mapping[str, float]) -> tuple[dict[str, float], dict[str, str]]:
     """(values, origins) of what is known: parameters and variables by name, and
 
@@ -197,7 +201,11 @@ def known_parameters(known: Mapping[str, float], base: Mapping[str, float]) -> t
     values, origins = {}, {}
     rest = dict(known)
     if "phi_c" in rest:
-        sine = np.sin(np.radians(rest.pop("phi_c")))
+        angle = float(rest.pop("phi_c"))
+        if not ANGLES[0] <= angle <= ANGLES[1]:
+            hint = f"; {np.degrees(angle):.1f} if it is in radians" if 0 < angle < np.pi / 2 else ""
+            raise InputError(f"known: phi_c = {angle:g} degrees; soils have {ANGLES[0]:g} to {ANGLES[1]:g}{hint}")
+        sine = np.sin(np.radians(angle))
         values["M_c"] = float(6 * sine / (3 - sine))
         origins["M_c"] = f"known: critical friction angle {known['phi_c']:g} degrees"
     measured = [rest.pop(name, None) for name in ("G_max", "G_max_p", "G_max_e")]
@@ -206,6 +214,11 @@ def known_parameters(known: Mapping[str, float], base: Mapping[str, float]) -> t
             raise InputError("G_max [kPa] is known at a state: give G_max_p [kPa] and G_max_e with it")
         modulus, p, e = measured
         values["G_0"] = float(modulus / (base["p_atm"] * (2.97 - e) ** 2 / (1 + e) * np.sqrt(p / base["p_atm"])))
+        if not STIFFNESS[0] <= values["G_0"] <= STIFFNESS[1]:
+            raise InputError(
+                f"known: G_max = {modulus:g} kPa at {p:g} kPa and e = {e:g} means G_0 = {values['G_0']:.3g}; soils have "
+                f"{STIFFNESS[0]:g} to {STIFFNESS[1]:g}. Is it in kPa?"
+            )
         origins["G_0"] = f"known: G = {modulus:g} kPa at p' = {p:g} kPa, e = {e:g}"
     for name, value in rest.items():
         if name not in VARIABLES and name not in parameters:
