@@ -450,6 +450,8 @@ def test_the_page_lists_the_library_of_materials_as_its_files_say():
     check("the page lists the library of materials as its files say", listed.returncode == 0, listed.stderr)
     code = main(["--name", "x", "--drained", str(work / "none.csv"), "--quiet"])
     check("the command refuses with exit code 2", code == 2)
+    code = main(["--name", "x", "--drained", str(work / "true.csv"), "--known", "phi_c", "--quiet"])
+    check("a known value without a number too", code == 2)
     for name in ("karlsruhe", "karlsruhe_cyclic", "toyoura_fitted", "hostun_hysteresis"):
         task = read_task(root / f"calibration/{name}.toml")
         page = (root / f"calibration/{name}/README.md").read_text()

@@ -20,6 +20,8 @@ from .soundness import unloading
 from .store import Store
 from .task import Item, Task
 
+UNDERSTOOD = "understood in"  # so begins the note of a name that had to be understood
+
 
 @dataclasses.dataclass
 class Calibration:
@@ -147,7 +149,7 @@ def _notes(task: Task) -> list[str]:
     told: dict[str, list[str]] = {}
     sources = dict.fromkeys((item.test.source, pair) for item in task.items for pair in item.test.understood)
     for source, (given, meant) in sources:
-        told.setdefault(f"understood in {source}: '{given}' is {meant}", [])
+        told.setdefault(f"{UNDERSTOOD} {source}: '{given}' is {meant}", [])
     for item in task.items:
         if item.use.note:
             told.setdefault(item.use.note, []).append(item.test.name)

@@ -86,7 +86,7 @@ def _known(words: list[str]) -> dict[str, float]:
         except ValueError:
             equals = ""
         if not equals:
-            sys.exit(f"mud_calibrate: --known {word}: write NAME=NUMBER, as in --known phi_c=33.1")
+            raise InputError(f"--known {word}: write NAME=NUMBER, as in --known phi_c=33.1")
     return known
 
 

@@ -14,7 +14,7 @@ from .. import _native
 from ..errors import MudError
 from ..plots import COLOURS, logarithmic, pyplot
 from ..registry import parameters
-from .calibrate import Calibration
+from .calibrate import UNDERSTOOD, Calibration
 from .diagnosis import origin_of
 from .ensemble import LEVEL
 from .fit import PRIOR
@@ -130,7 +130,9 @@ def write_report(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
     task = result.task
     text = [f"# {task.title or task.name}: {'calibration' if result.diagnosis else 'comparison'}", "", _made(result), ""]
     text += [f"Tests: {_origin(task)}", ""]
-    text += [*(f"- {note}" for note in notes), ""] if (notes := [*task.notes, *result.notes]) else []
+    # What was understood has a table of its own.
+    notes = [note for note in (*task.notes, *result.notes) if not note.startswith(UNDERSTOOD)]
+    text += [*(f"- {note}" for note in notes), ""] if notes else []
     text += _understood(task)
     text += _misfit_summary("", result.misfits, bool(result.diagnosis))
     text += [
@@ -195,7 +197,7 @@ def _made(result: Calibration) -> str:
     if not result.diagnosis:
         return (
             f"Made by `mud_calibrate --evaluate`: MUD {_version()}, material {result.material.title}, "
-            f"{len(task.items)} tests, nothing fitted."
+            f"{len(task.items)} test{'s' * (len(task.items) > 1)}, nothing fitted."
         )
     return (
         f"Made by `mud_calibrate`: MUD {_version()}, seed {task.seed}, {len(task.fitted())} tests fitted and "

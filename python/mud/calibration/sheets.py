@@ -93,7 +93,8 @@ def read_sheet(path: str | os.PathLike, known: frozenset[str]) -> Sheet:
         rows = _text(path, understood)
     first = _line_of_names(rows, known)
     if first:
-        understood.append((f"lines {rows[0][0]} to {rows[first - 1][0]}", "above the line of names, not read"))
+        lines = f"lines {rows[0][0]} to {rows[first - 1][0]}" if first > 1 else f"line {rows[0][0]}"
+        understood.append((lines, "above the line of names, not read"))
         rows = rows[first:]
     if not rows:
         return Sheet([], understood)
