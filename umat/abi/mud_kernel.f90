@@ -21,7 +21,7 @@ module mud_kernel
    use mud_trace, only: trace_t
    implicit none (type, external)
    private
-   public :: report_t, output_t, kernel_init, kernel_begin, kernel_update, kernel_point, kernel_tangent, &
+   public :: report_t, output_t, kernel_init, kernel_begin, kernel_point, kernel_tangent, &
       rotate_statev, failed_report, copy_statev, TANGENT_FROM_PROPS, ON_STRESS_RATIO
 
    integer, parameter :: TANGENT_FROM_PROPS = -1   !< Take the tangent kind from PROPS.
@@ -108,29 +108,7 @@ contains
       if (given) status = fail(MUD_BAD_STATE, ON_STATEV, S_SATURATION, preset, 0.0_wp, 0.0_wp)
    end subroutine refuse_preset
 
-   !> One increment of a material as PROPS give it. On failure output is undefined. Arguments as in kernel_point. Codes
-   !> of read_params, else those of kernel_point. props(:) as read_params takes them.
-   pure subroutine kernel_update(props, stress, statev, d_strain, suction, d_suction, tangent, output, report, trace)
-      real(wp), intent(in), contiguous :: props(:)
-      real(wp), intent(in) :: stress(6), d_strain(6), suction, d_suction
-      real(wp), intent(in), contiguous :: statev(:)
-      integer, intent(in) :: tangent
-      type(output_t), intent(inout) :: output
-      type(report_t), intent(out) :: report
-      type(trace_t), intent(inout), optional :: trace
-      type(params_t) :: par
-      type(mud_status_t) :: status
-
-      call read_params(props, par, status)
-      if (status%code == MUD_OK) then
-         call kernel_point(par, stress, statev, d_strain, suction, d_suction, tangent, output, report, &
-                           trace)
-      else
-         report = failed_report(status)
-      end if
-   end subroutine kernel_update
-
-   !> The same for checked parameters. Tension positive; statev(:) has the numbers of statev_size, else MUD_BAD_NSTATV.
+   !> One increment. Tension positive; statev(:) has the numbers of statev_size, else MUD_BAD_NSTATV.
    !> MUD_BAD_OPTION for an unknown tangent, codes of unpack_state or initial_state and of update_point. On failure
    !> output is undefined.
    pure subroutine kernel_point(par, stress, statev, d_strain, suction, d_suction, tangent, output, report, trace)

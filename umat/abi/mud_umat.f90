@@ -4,12 +4,12 @@ module mud_umat
    use, intrinsic :: iso_c_binding, only: c_ptr, c_double, c_associated, c_f_pointer
    use mud_arguments, only: check_arguments, has_past, rotates, read_rotation, turns_unread, begins_late, &
       is_green_strain, suction_t, read_suction, component_order, integer_at, SUCTION_AS_GIVEN
-   use mud_kernel, only: report_t, output_t, kernel_update, rotate_statev, failed_report, TANGENT_FROM_PROPS
+   use mud_kernel, only: report_t, output_t, kernel_point, rotate_statev, failed_report, TANGENT_FROM_PROPS
    use mud_kinds, only: wp
    use mud_refusals, only: place_t, refuse, remark_on_suction, remark_on_props, remark_on_pressure, &
       remark_on_late_start, remark_on_rotation, remark_on_green_strain, save_if_asked
-   use mud_params, only: options_of, completed, is_length
-   use mud_registry, only: NPROPS, NSTATV, NSTATV_WITHOUT_HYSTERESIS, P_TANGENT, S_SUCTION
+   use mud_params, only: params_t, read_params, options_of, completed, is_length
+   use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, S_SUCTION
    use mud_state, only: statev_size
    use mud_status, only: mud_status_t, MUD_OK
    implicit none (type, external)
@@ -22,7 +22,7 @@ contains
    !> factor below 1), SCD (the status code) and an elastic DDSDDE are written; where PNEWDT is NULL, STRESS becomes NaN
    !> instead, so that no host goes on with the old one. See umat/README.md for PROPS, STATEV and the pitfalls. Tension
    !> positive, engineering shear, STRESS, DDSDDE and suction in the unit of p_atm. Codes of check_arguments,
-   !> read_rotation and kernel_update.
+   !> read_rotation, read_params and kernel_point.
    subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, time, dtime, &
                    temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv_, props, nprops, coords, drot, &
                    pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, kstep, kinc) bind(c, name='umat_')
@@ -77,6 +77,7 @@ contains
       type(output_t) :: output
       real(c_double), pointer, contiguous :: stress_in(:), statev_in(:), dstran_in(:), props_in(:), tangent_out(:, :)
       real(wp) :: stress6(6), dstran6(6), statev0(NSTATV), rotation(3, 3)
+      type(params_t) :: par
       type(mud_status_t) :: status
       type(suction_t) :: suction
       integer :: order(6), n
@@ -105,8 +106,13 @@ contains
       suction = read_suction(predef, dpred, pnewdt, statev0(:n), props_in)
       if (suction%reading /= SUCTION_AS_GIVEN) call remark_on_suction(suction, place)
 
-      call kernel_update(props_in, stress6, statev0(:n), dstran6, suction%start, suction%change, &
-                         TANGENT_FROM_PROPS, output, report)
+      call read_params(props_in, par, status)
+      if (status%code == MUD_OK) then
+         call kernel_point(par, stress6, statev0(:n), dstran6, suction%start, suction%change, TANGENT_FROM_PROPS, &
+                           output, report)
+      else
+         report = failed_report(status)
+      end if
       if (report%status /= MUD_OK) then
          if (is_length(n_props)) then
             call save_if_asked(completed(props_in), stress6, statev0(:n), dstran6, suction%start, suction%change, &
@@ -138,14 +144,16 @@ contains
       type(output_t) :: output
       type(report_t) :: report
       real(c_double), pointer, contiguous :: tangent_out(:, :)
-      real(wp) :: parameters(NPROPS), still(6)
+      type(params_t) :: par
+      type(mud_status_t) :: status
+      real(wp) :: still(6)
 
-      if (.not. (c_associated(pnewdt) .and. c_associated(ddsdde) .and. is_length(size(props)))) return
+      if (.not. (c_associated(pnewdt) .and. c_associated(ddsdde))) return
+      call read_params(props, par, status)
+      if (status%code /= MUD_OK .or. par%tangent < ELASTIC) return
       still = 0.0_wp
-      call kernel_update(props, stress, statev, still, statev(S_SUCTION), 0.0_wp, ELASTIC, output, report)
+      call kernel_point(par, stress, statev, still, statev(S_SUCTION), 0.0_wp, ELASTIC, output, report)
       if (report%status /= MUD_OK) return
-      parameters = completed(props)
-      if (nint(parameters(P_TANGENT)) < ELASTIC) return
       call c_f_pointer(ddsdde, tangent_out, [size(order), size(order)])
       tangent_out = output%dsig_deps(order, order)
    end subroutine give_elastic

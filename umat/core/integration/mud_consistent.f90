@@ -26,8 +26,7 @@ module mud_consistent
       add_changes_of_faded
    use mud_trial, only: trial_t, stage_of_trial
    use mud_elastic_domain, only: turning_t
-   use mud_point_changes, only: changes_t
-   use mud_linearise, only: linearised_t, linearise
+   use mud_linearise, only: linearised_t, linearise, changes_t
    implicit none (type, external)
    private
    public :: sensitivity_t, no_sensitivity, begin_stretch, propagate, changes_of_contraction, jump_of_memory, &
@@ -204,7 +203,7 @@ contains
       real(wp), intent(inout) :: y1(DIRECTIONS*NY)
       real(wp), intent(inout) :: margin(DIRECTIONS)   !< Of the isotropic memory's margin less its measure.
       real(wp) :: rates(DIRECTIONS*NY, MAX_STAGES), y0(DIRECTIONS*NY), y(DIRECTIONS*NY), point(NY), time, &
-         dt(DIRECTIONS), of_margin(DIRECTIONS, MAX_STAGES), of_stages(MAX_STAGES), at_stages(MAX_STAGES)
+         dt(DIRECTIONS), of_margin(DIRECTIONS, MAX_STAGES), of_stages(MAX_STAGES), at_stages(MAX_STAGES), start
       integer :: i, last, row
       logical :: moves, follows
 
@@ -214,7 +213,7 @@ contains
       moves = any(abs(dh) > 0.0_wp)
       follows = inc%rests .and. .not. ends
       if (follows) then
-         call margins_at_stages(par, inc, trial, h, at_stages, of_stages)
+         call margins_at_stages(par, inc, trial, h, at_stages, of_stages, start)
          of_margin(:, 1) = stage_of_margin(1, trial%y0, trial%time, shift, margin, y1, first)
       end if
       rates(:, 1) = first

@@ -23,8 +23,7 @@ module mud_event_time
    use mud_tensor, only: ddot, trace, contractions, tensors_t, ANY_TENSORS
    use mud_trial, only: trial_t
    use mud_elastic_domain, only: turning_t
-   use mud_point_changes, only: changes_t
-   use mud_linearise, only: linearised_t
+   use mud_linearise, only: linearised_t, changes_t
    implicit none (type, external)
    private
    public :: move_event
@@ -116,7 +115,7 @@ contains
          slopes = changes%e
       case (EVENT_REVERSAL)
          if (jumps(par, trial, w)) then
-            slopes = changes_of_drive(par, w, lin, y, driving%d_strain, driving%from_centre, changes)
+            slopes = changes_of_drive(w, lin, y, driving%d_strain, driving%from_centre, changes)
          else
             call changes_of_rate(par, w, lin, .false., y, r_in, driving%d_strain, driving%from_centre, changes, &
                                  .false., rates, dn)
@@ -140,7 +139,7 @@ contains
                               driving%from_centre, changes, .false., rates)
          do j = 1, DIRECTIONS
             strain_j = driving%d_strain%of(j, :)
-            slopes(j) = change_of_closing_rate(inc, trial%openings, w, lin%e, &
+            slopes(j) = change_of_closing_rate(inc, trial%openings, w, void_ratio_at(inc, time), &
                                                (rates(j, 1) + rates(j, 2) + rates(j, 3))/3.0_wp, &
                                                changes%e(j), strain_j, changes%d_pc(j))
          end do

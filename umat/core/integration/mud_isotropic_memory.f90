@@ -66,14 +66,15 @@ contains
 
    !> Margins at the stages of a substep h below the memory [-], and at what rates contraction adds to them. What it
    !> adds is integrated with the scheme, the measure is a function of the state.
-   pure subroutine margins_at_stages(par, inc, trial, h, margin, rates)
+   pure subroutine margins_at_stages(par, inc, trial, h, margin, rates, first)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h
       real(wp), intent(out) :: margin(MAX_STAGES), rates(MAX_STAGES)   !< Beyond the stages without meaning.
+      real(wp), intent(out) :: first   !< The measure where the substep begins [-].
       type(measure_t) :: m
-      real(wp) :: e, first
+      real(wp) :: e
       integer :: i, row
 
       margin = 0.0_wp
@@ -97,13 +98,13 @@ contains
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h
-      type(measure_t) :: first, last
+      type(measure_t) :: last
       real(wp), dimension(MAX_STAGES) :: margins, rates
+      real(wp) :: first
 
-      call margins_at_stages(par, inc, trial, h, margins, rates)
-      first = measure(par, trial%w(1)%bond, void_ratio_at(inc, trial%time), trial%w(1)%p, trial%w(1)%k)
+      call margins_at_stages(par, inc, trial, h, margins, rates, first)
       last = measure_at(par, inc, trial%time + h, trial%y(1:6))
-      margin = trial%margin + last%value - first%value + h*dot_product(inc%scheme%b, rates)
+      margin = trial%margin + last%value - first + h*dot_product(inc%scheme%b, rates)
    end function margin_after
 
    !> Changes of the measure where stress, void ratio and suction change by y(:, 1:3) [kPa], de [-] and dp_c [kPa], and

@@ -15,8 +15,7 @@ module mud_order
    use mud_tensor, only: LANES, tensors_t, ZERO_TENSORS
    use mud_trial, only: trial_t, error_norm
    use mud_elastic_domain, only: turning_t
-   use mud_point_changes, only: changes_t, NRATES
-   use mud_linearise, only: linearised_t
+   use mud_linearise, only: linearised_t, changes_t, NRATES
    implicit none (type, external)
    private
    public :: choose_stepping, choose_order, next_size, LAST_SLIVER

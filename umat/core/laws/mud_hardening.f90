@@ -8,7 +8,8 @@ module mud_hardening
    use mud_critical_state, only: compression_image
    implicit none (type, external)
    private
-   public :: kinematic_modulus, kinematic_slope, KINEMATIC_EXPONENT, isotropic_t, isotropic_hardening, NO_HARDENING
+   public :: kinematic_modulus, kinematic_slope, KINEMATIC_EXPONENT, isotropic_t, isotropic_hardening, NO_HARDENING, &
+             shear_weight, isotropic_slopes_t, isotropic_slopes, BY_P, BY_E, BY_F, BY_F_E, BY_R, BY_R_B
 
    real(wp), parameter :: SMALLEST_VOID_TERM = 0.01_wp   !< Guard: 1 - c_h e >= it [-].
    !> Below it |delta|^theta, whose slope at zero is infinite, is an odd polynomial of the same value, slope and bend
@@ -35,6 +36,15 @@ module mud_hardening
    !> The mechanism off.
    type(isotropic_t), parameter :: NO_HARDENING = isotropic_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
       0.0_wp, 0.0_wp, .false.)
+
+   !> What the mechanism depends on: ln p', e, ln f, df/de, half of |r|^2, and ln |r| on the bounding surface.
+   integer, parameter :: BY_P = 1, BY_E = 2, BY_F = 3, BY_F_E = 4, BY_R = 5, BY_R_B = 6
+   !> Slopes of the compliance.
+   type :: isotropic_slopes_t
+      real(wp) :: a(BY_P:BY_R_B)   !< of a [-]
+      real(wp) :: b(BY_P:BY_R_B)   !< of b [1/kPa] ...
+      real(wp) :: b_f_pc           !< ... and by df/dp_c [-]
+   end type isotropic_slopes_t
 contains
    !> b_0 = h x [-], the numerator of the hardening modulus h, paper eq. (13). e [-], p' > 0 [kPa], not checked; 1 - c_h
    !> e is at least 0.01. docs/theory/material.md section 4.2.
@@ -81,6 +91,48 @@ contains
       iso%a = iso%share*((par%lambda - kappa)*iso%f - kappa*iso%c)
       iso%b = -iso%share*iso%f*bond%df_dpc/bond%f
    end function isotropic_hardening
+
+   !> Its slopes, where it acts. Arguments as in isotropic_hardening, r_b as in shear_weight; kappa rises as the cubic
+   !> root of p'.
+   pure function isotropic_slopes(par, bond, e, kappa, r_b, iso) result(slopes)
+      type(params_t), intent(in) :: par
+      type(bonding_t), intent(in) :: bond
+      real(wp), intent(in) :: e, kappa, r_b
+      type(isotropic_t), intent(in) :: iso
+      type(isotropic_slopes_t) :: slopes
+      real(wp), dimension(BY_P:BY_R_B) :: f, c, share
+      real(wp) :: bonded_e, bonded_pc
+
+      bonded_e = bond%df_de/bond%f
+      bonded_pc = bond%df_dpc/bond%f
+      f = 0.0_wp
+      f(BY_P) = -iso%f_slope*iso%crowding
+      f(BY_E) = f(BY_P)/(par%lambda*e)
+      f(BY_F) = -f(BY_P)/par%lambda
+      f(BY_R) = -iso%f_slope*iso%approach*6.0_wp/par%m_c**2
+      c = -e*bonded_e*f
+      c(BY_E) = c(BY_E) - bonded_e*iso%f
+      c(BY_F) = c(BY_F) + e*bonded_e*iso%f
+      c(BY_F_E) = -e*iso%f/bond%f
+      share = 0.0_wp
+      if (.not. iso%floored) share = -(iso%share/(1.0_wp + iso%c))*c
+      share(BY_E) = share(BY_E) + iso%share*(1.0_wp/e - 1.0_wp/(1.0_wp + e))
+      share(BY_R) = share(BY_R) - iso%share/iso%weight*2.0_wp/r_b**2
+      share(BY_R_B) = iso%share/iso%weight*2.0_wp*(1.0_wp - iso%weight)
+      slopes%a = (iso%a/iso%share)*share + iso%share*((par%lambda - kappa)*f - kappa*c)
+      slopes%a(BY_P) = slopes%a(BY_P) - iso%share*kappa*(iso%f + iso%c)/3.0_wp
+      slopes%b = -bonded_pc*(iso%f*share + iso%share*f)
+      slopes%b(BY_F) = slopes%b(BY_F) + bonded_pc*iso%share*iso%f
+      slopes%b_f_pc = -iso%share*iso%f/bond%f
+   end function isotropic_slopes
+
+   !> w, the share of the isotropic mechanism that shear leaves (rebuilt), of |r| and of that on the bounding surface in
+   !> the direction of r. All [-]; docs/theory/material.md section 4.4.
+   pure real(wp) function shear_weight(r_norm, r_b) result(weight)
+      real(wp), intent(in) :: r_norm, r_b
+
+      weight = max(1.0_wp - (r_norm/r_b)**2, 0.0_wp)
+   end function shear_weight
 
    !> sgn(delta) |delta|^theta and its slope, smooth through zero.
    pure subroutine signed_power(theta, delta, power, slope)

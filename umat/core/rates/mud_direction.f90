@@ -8,11 +8,11 @@ module mud_direction
    use mud_arc, only: arc_t, arc_through, add_fabric, add_cube, trace_cube, trace_cube_slope
    use mud_branchless, only: positive, smaller
    use mud_critical_state, only: lode_factor, lode_slope
-   use mud_direction_equation, only: equation_t, equation_of, moduli_at, note_moduli, slopes_t, slopes_at
+   use mud_direction_equation, only: equation_t, equation_of, moduli_at, slopes_t, slopes_at
    use mud_flow, only: dilatancy_factor
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
-   use mud_rate, only: rate_t
+   use mud_rate, only: moduli_t, rate_t
    use mud_tensor, only: ddot
    implicit none (type, external)
    private
@@ -28,7 +28,7 @@ module mud_direction
    real(wp), parameter :: NEARLY_ALONG = 1.0e-6_wp
 
    !> The direction equation at one angle.
-   type :: trial_t
+   type, extends(moduli_t) :: trial_t
       real(wp) :: cosine, sine      !< of the angle w
       real(wp) :: residual          !< gamma sin(w) - beta r:q [kPa]
       real(wp) :: scale             !< gamma + |beta| r:q [kPa]
@@ -52,11 +52,6 @@ contains
       call arc_through(w%r, w%r_moved, n_t, PARALLEL*max(w%r_norm, 1.0e-3_wp), arc, q)
       if (par%fabric) call add_fabric(w%z, n_t, q, arc)
       if (par%lode) call add_cube(n_t, q, arc)
-      w%z_n = 0.0_wp
-      w%a_d = par%a_0
-      w%lode = 1.0_wp
-      w%r_b = SQRT_2_3*w%m_b
-      w%r_d = SQRT_2_3*w%m_d
       eq = equation_of(par, w)
       if (arc%r_q <= 0.0_wp) then
          w%n = n_t
@@ -71,6 +66,7 @@ contains
          call find_angle(par, eq, arc, start, w, tau, at, found)
          w%n = at%cosine*n_t + at%sine*q
       end if
+      w%moduli_t = at%moduli_t
       w%loading = found
       w%no_root = .not. found
       if (.not. found) return
@@ -97,7 +93,7 @@ contains
       logical :: guarded, crossed
 
       call evaluate_direction(par, eq, arc, 0.0_wp, w, at)
-      side = sign(1.0_wp, w%beta)
+      side = sign(1.0_wp, at%beta)
       first = side*at%residual
       guarded = par%floored .and. par%cap_d > 0.0_wp .and. par%cap_h > 0.0_wp
       w%several = .not. guarded
@@ -106,7 +102,7 @@ contains
       if (guarded) then
          start = side*guess
          if (start <= 0.0_wp .or. start >= 1.0_wp) then
-            start = min(abs(w%beta)*arc%r_q/w%gamma, 1.0_wp)   ! sine of the angle if gamma and beta did not change
+            start = min(abs(at%beta)*arc%r_q/at%gamma, 1.0_wp)   ! sine of the angle if gamma and beta did not change
             start = start/(1.0_wp + sqrt(1.0_wp - start*start))
          end if
          call newton(par, eq, arc, side, 0.0_wp, 1.0_wp, start, w, tau, at)
@@ -128,13 +124,13 @@ contains
    end subroutine find_angle
 
    !> Newton's method kept inside a bracket (tau without sign, `side` gives it) whose low end has a negative residual
-   !> and whose high end a positive one. Leaves w and at evaluated at the angle it returns.
+   !> and whose high end a positive one. Leaves at evaluated at the angle it returns.
    pure subroutine newton(par, eq, arc, side, from, to, first, w, tau, at)
       type(params_t), intent(in) :: par
       type(equation_t), intent(in) :: eq
       type(arc_t), intent(in) :: arc
       real(wp), intent(in) :: side, from, to, first
-      type(rate_t), intent(inout) :: w
+      type(rate_t), intent(in) :: w
       real(wp), intent(out) :: tau
       type(trial_t), intent(out) :: at
       real(wp) :: lower, upper, u, slope, step, previous
@@ -167,7 +163,7 @@ contains
       end do
    end subroutine newton
 
-   !> False where a root before that of w and at is possible: a cap, or a change between the floor and a small x, bends
+   !> False where a root before that of at is possible: a cap, or a change between the floor and a small x, bends
    !> the residual back. Where x rises up to the root only the floor's equation can have one, before x passes the floor:
    !> the residual there tells (the roots of 2,400,000 random states of six kinds are those of scans of all such arcs).
    pure logical function single_root(par, eq, arc, side, at, w)
@@ -177,26 +173,24 @@ contains
       real(wp), intent(in) :: side
       type(trial_t), intent(in) :: at
       type(rate_t), intent(in) :: w
-      type(rate_t) :: passing
-      type(trial_t) :: there
+      type(trial_t) :: passing
       real(wp) :: x_q
 
       single_root = max(arc%r_q, abs(at%sine))*hypot(arc%x_t, arc%x_q) <= NEARLY_ALONG*par%x_floor
-      if (single_root .or. w%capped_h .or. w%capped_d) return
+      if (single_root .or. at%capped_h .or. at%capped_d) return
       ! Always floored (on less than a right angle x cannot become positive between two negative ends), or never near.
-      single_root = arc%x_t**2 + arc%x_q**2 < par%x_floor**2 .or. max(arc%x_t, w%x) < 0.0_wp .or. &
-                    min(arc%x_t, w%x) > 2.0_wp*par%x_floor
+      single_root = arc%x_t**2 + arc%x_q**2 < par%x_floor**2 .or. max(arc%x_t, at%x) < 0.0_wp .or. &
+                    min(arc%x_t, at%x) > 2.0_wp*par%x_floor
       ! the preloading bends the residual wherever x changes
-      if (w%preloaded) single_root = max(arc%x_t, w%x) < 0.0_wp .or. arc%x_t**2 + arc%x_q**2 < par%x_floor**2
+      if (w%preloaded) single_root = max(arc%x_t, at%x) < 0.0_wp .or. arc%x_t**2 + arc%x_q**2 < par%x_floor**2
       if (w%preloaded) return
       x_q = side*arc%x_q
       if (single_root .or. at%cosine < NOT_FAR .or. at%cosine*x_q < abs(at%sine)*arc%x_t) return
-      single_root = w%floored .or. arc%x_t >= par%x_floor
+      single_root = at%floored .or. arc%x_t >= par%x_floor
       if (single_root) return
-      passing = w
       call evaluate_direction(par, eq, arc, side*(par%x_floor - arc%x_t) &
-                              /(x_q + sqrt(max(arc%x_t**2 + x_q**2 - par%x_floor**2, 0.0_wp))), passing, there)
-      single_root = side*there%residual < 0.0_wp .and. .not. (passing%capped_h .or. passing%capped_d)
+                              /(x_q + sqrt(max(arc%x_t**2 + x_q**2 - par%x_floor**2, 0.0_wp))), w, passing)
+      single_root = side*passing%residual < 0.0_wp .and. .not. (passing%capped_h .or. passing%capped_d)
    end function single_root
 
    !> The first interval of the arc up to tau = `last` (a root already known, or an end) in which the residual becomes
@@ -259,7 +253,7 @@ contains
       real(wp), intent(in) :: side, from, step
       real(wp), intent(out) :: f(POINTS), above(POINTS)
       real(wp), dimension(POINTS) :: c, s, lode, a_d
-      real(wp) :: tau, d, h_b, beta, gamma
+      real(wp) :: tau, d, h_b, beta, gamma, free_d, free_h_b
       integer :: i
 
       do i = 1, POINTS
@@ -281,7 +275,7 @@ contains
       end if
       do i = 1, POINTS
          call moduli_at(eq, c(i)*arc%r_t + s(i)*arc%r_q, c(i)*arc%x_t + s(i)*arc%x_q, a_d(i), &
-                        (SQRT_2_3*w%m_b)*lode(i), (SQRT_2_3*w%m_d)*lode(i), d, h_b, beta, gamma)
+                        (SQRT_2_3*w%m_b)*lode(i), (SQRT_2_3*w%m_d)*lode(i), d, h_b, beta, gamma, free_d, free_h_b)
          f(i) = side*(gamma*s(i) - beta*arc%r_q)
          above(i) = smaller(f(i) + ROOT_TOLERANCE*(gamma + abs(beta)*arc%r_q), gamma*c(i) - beta*arc%r_t)
       end do
@@ -293,26 +287,29 @@ contains
       type(equation_t), intent(in) :: eq
       type(arc_t), intent(in) :: arc
       real(wp), intent(in) :: tau
-      type(rate_t), intent(inout) :: w
+      type(rate_t), intent(in) :: w
       type(trial_t), intent(out) :: at
+      real(wp) :: free_d, free_h_b
 
       at%cosine = 2.0_wp/(1.0_wp + tau*tau) - 1.0_wp
       at%sine = tau*(1.0_wp + at%cosine)
-      w%r_n = at%cosine*arc%r_t + at%sine*arc%r_q
-      w%x = at%cosine*arc%x_t + at%sine*arc%x_q
-      if (par%fabric) then
-         w%z_n = at%cosine*arc%z_t + at%sine*arc%z_q
-         w%a_d = dilatancy_factor(par, w%z_n)
-      end if
-      if (par%lode) then
-         w%lode = lode_factor(par, trace_cube(arc, at%cosine, at%sine))
-         w%r_b = (SQRT_2_3*w%m_b)*w%lode
-         w%r_d = (SQRT_2_3*w%m_d)*w%lode
-      end if
-      call note_moduli(eq, w)
-      at%residual = w%gamma*at%sine - w%beta*arc%r_q
-      at%scale = w%gamma + abs(w%beta)*arc%r_q
-      at%admissible = w%gamma*at%cosine - w%beta*arc%r_t
+      at%r_n = at%cosine*arc%r_t + at%sine*arc%r_q
+      at%x = at%cosine*arc%x_t + at%sine*arc%x_q
+      at%z_n = 0.0_wp
+      if (par%fabric) at%z_n = at%cosine*arc%z_t + at%sine*arc%z_q
+      at%a_d = dilatancy_factor(par, at%z_n)
+      at%lode = 1.0_wp
+      if (par%lode) at%lode = lode_factor(par, trace_cube(arc, at%cosine, at%sine))
+      at%r_b = (SQRT_2_3*w%m_b)*at%lode
+      at%r_d = (SQRT_2_3*w%m_d)*at%lode
+      call moduli_at(eq, at%r_n, at%x, at%a_d, at%r_b, at%r_d, at%d, at%h_b, at%beta, at%gamma, free_d, free_h_b, &
+                     at%f_chi, at%f_slope)
+      at%floored = at%x < eq%x_floor
+      at%capped_d = at%d < free_d
+      at%capped_h = at%h_b > free_h_b
+      at%residual = at%gamma*at%sine - at%beta*arc%r_q
+      at%scale = at%gamma + abs(at%beta)*arc%r_q
+      at%admissible = at%gamma*at%cosine - at%beta*arc%r_t
    end subroutine evaluate_direction
 
    !> Derivative of the residual with respect to the angle, where it was evaluated [kPa].
@@ -324,18 +321,18 @@ contains
       type(slopes_t) :: s
       real(wp) :: dr, dx, dz, d_lode, dd, dh, d_beta, d_gamma
 
-      call slopes_at(par, w, s)
+      call slopes_at(par, w, at%moduli_t, s)
       dr = at%cosine*arc%r_q - at%sine*arc%r_t
       dx = at%cosine*arc%x_q - at%sine*arc%x_t
       dz = 0.0_wp
       if (par%fabric) dz = at%cosine*arc%z_q - at%sine*arc%z_t
       d_lode = 0.0_wp
-      if (par%lode) d_lode = SQRT_2_3*lode_slope(par, w%lode)*trace_cube_slope(arc, at%cosine, at%sine)
+      if (par%lode) d_lode = SQRT_2_3*lode_slope(par, at%lode)*trace_cube_slope(arc, at%cosine, at%sine)
       dd = s%d_r*dr + s%d_z*dz + s%d_r_d*w%m_d*d_lode
       if (w%preloaded) dd = dd + s%d_x*dx
       dh = s%h_r*dr + s%h_z*dz + s%h_x*dx + (s%h_r_d*w%m_d + s%h_r_b*w%m_b)*d_lode
-      d_beta = w%k_e*(dh*w%d + w%h_b*dd)
+      d_beta = w%k_e*(dh*at%d + at%h_b*dd)
       d_gamma = 2.0_wp/3.0_wp*w%p*w%m_b*d_lode + 2.0_wp*w%g*dh
-      slope = d_gamma*at%sine + w%gamma*at%cosine - d_beta*arc%r_q
+      slope = d_gamma*at%sine + at%gamma*at%cosine - d_beta*arc%r_q
    end function slope_of_residual
 end module mud_direction

@@ -9,11 +9,11 @@ module mud_direction_equation
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
    use mud_preloading, only: preloading_t, preloading_of, preload
-   use mud_rate, only: rate_t
+   use mud_rate, only: moduli_t, rate_t
    use mud_tensor, only: ddot, deviator, square
    implicit none (type, external)
    private
-   public :: equation_t, equation_of, moduli_at, note_moduli, slopes_t, slopes_at, gradients
+   public :: equation_t, equation_of, moduli_at, slopes_t, slopes_at, turn_t, find_turn
 
    real(wp), parameter :: NEGLIGIBLE = 1.0e-12_wp   !< Smaller divisors would only make a cap that never acts [-].
    real(wp), parameter :: NO_LIMIT = 1.0e100_wp     !< A cap that is off.
@@ -38,6 +38,14 @@ module mud_direction_equation
       !> D by x, and D and 1/h by ln(w/chi') of the preloading; 0 without it.
       real(wp) :: d_x, d_q, h_q
    end type slopes_t
+
+   !> How the direction n of a rate turns: the equation's slopes there, and what a change of its terms is divided by.
+   type :: turn_t
+      type(slopes_t) :: slopes
+      real(wp), dimension(6) :: h_n, d_n, gamma_n   !< Derivatives of 1/h, D, gamma by n, [-, -, kPa].
+      real(wp), dimension(4) :: on_t, on_r          !< n, h_n, d_n, gamma_n on t and r.
+      real(wp) :: inverse(3, 3)
+   end type turn_t
 contains
    !> Of a rate whose state, moduli and choice of the isotropic mechanism are known; units as in rate_t.
    pure function equation_of(par, w) result(eq)
@@ -59,45 +67,33 @@ contains
 
    !> D, 1/h, beta and gamma in a direction, docs/theory/material.md sections 4.2, 4.6, 5.2 to 5.4. Without branches: of
    !> several directions the compiler works on two at a time.
-   pure subroutine moduli_at(eq, r_n, x, a_d, r_b, r_d, d, h_b, beta, gamma)
+   pure subroutine moduli_at(eq, r_n, x, a_d, r_b, r_d, d, h_b, beta, gamma, free_d, free_h_b, f_chi, f_slope)
       type(equation_t), intent(in) :: eq
       real(wp), intent(in) :: r_n, x           !< r:n and (r - r_in):n [-]
       real(wp), intent(in) :: a_d, r_b, r_d    !< A_d and |r| on both surfaces in the direction [-]
       real(wp), intent(out) :: d, h_b          !< [-]
       real(wp), intent(out) :: beta, gamma     !< [kPa]
+      real(wp), intent(out) :: free_d, free_h_b             !< D and 1/h without the caps [-]
+      real(wp), intent(out), optional :: f_chi, f_slope     !< of preload; set with preloading
       real(wp) :: stiffness, limit
 
-      d = dilatancy(a_d, r_d, r_n)
-      h_b = larger(x, eq%x_floor)*eq%per_b_0
-      if (eq%preloaded) call preload(eq%preloading, larger(x, eq%x_floor), d, h_b)
-      d = smaller(d, eq%most_d/larger(r_n, NEGLIGIBLE))
+      free_d = dilatancy(a_d, r_d, r_n)
+      free_h_b = larger(x, eq%x_floor)*eq%per_b_0
+      if (eq%preloaded) call preload(eq%preloading, larger(x, eq%x_floor), free_d, free_h_b, f_chi, f_slope)
+      d = smaller(free_d, eq%most_d/larger(r_n, NEGLIGIBLE))
       stiffness = eq%two_g - eq%k_e*d*r_n
       limit = eq%least_h*positive(r_n - r_b)/larger(stiffness, NEGLIGIBLE*eq%two_g)
-      h_b = larger(limit*(0.5_wp + sign(0.5_wp, stiffness)), h_b)   ! exactly h_b where the cap does not act
+      h_b = larger(limit*(0.5_wp + sign(0.5_wp, stiffness)), free_h_b)   ! exactly that where the cap does not act
       beta = eq%two_thirds_p + h_b*eq%k_e*d
       gamma = eq%two_thirds_p*r_b + eq%two_g*h_b
    end subroutine moduli_at
 
-   !> The same for the direction that w has, with the guards that act there.
-   pure subroutine note_moduli(eq, w)
-      type(equation_t), intent(in) :: eq
-      type(rate_t), intent(inout) :: w
-      real(wp) :: d, h_b
-
-      call moduli_at(eq, w%r_n, w%x, w%a_d, w%r_b, w%r_d, w%d, w%h_b, w%beta, w%gamma)
-      d = dilatancy(w%a_d, w%r_d, w%r_n)
-      h_b = larger(w%x, eq%x_floor)*eq%per_b_0
-      if (eq%preloaded) call preload(eq%preloading, larger(w%x, eq%x_floor), d, h_b, w%f_chi, w%f_slope)
-      w%floored = w%x < eq%x_floor
-      w%capped_d = w%d < d
-      w%capped_h = w%h_b > h_b
-   end subroutine note_moduli
-
-   !> Slopes of D and 1/h where w has them. Derivatives of moduli_at; A_d changes with z:n by docs/theory/material.md
-   !> section 4.2.
-   pure subroutine slopes_at(par, w, s)
+   !> Slopes of D and 1/h in a direction of the equation of w. Derivatives of moduli_at; A_d changes with z:n by
+   !> docs/theory/material.md section 4.2.
+   pure subroutine slopes_at(par, w, at, s)
       type(params_t), intent(in) :: par
-      type(rate_t), intent(in) :: w
+      type(rate_t), intent(in) :: w       !< Its state, moduli and choice of the isotropic mechanism are read.
+      type(moduli_t), intent(in) :: at
       type(slopes_t), intent(out) :: s
       real(wp) :: stiffness, by_stiffness, f, per_x
 
@@ -105,39 +101,39 @@ contains
       s%d_x = 0.0_wp
       s%d_q = 0.0_wp
       s%h_q = 0.0_wp
-      per_x = merge(0.0_wp, 1.0_wp/larger(w%x, NEGLIGIBLE), w%floored)
+      per_x = merge(0.0_wp, 1.0_wp/larger(at%x, NEGLIGIBLE), at%floored)
       s%d_r_d = 0.0_wp
       s%d_g = 0.0_wp
       s%d_k = 0.0_wp
-      if (w%capped_d) then
-         s%d_r = -w%d/w%r_n
-         s%d_g = w%d/w%g
-         s%d_k = -w%d/w%k_e
+      if (at%capped_d) then
+         s%d_r = -at%d/at%r_n
+         s%d_g = at%d/w%g
+         s%d_k = -at%d/w%k_e
       else
-         s%d_r = -w%a_d
-         s%d_r_d = w%a_d
-         if (par%fabric .and. w%z_n > 0.0_wp) s%d_z = par%a_0*(w%r_d - w%r_n)
-         if (w%preloaded .and. w%d > 0.0_wp) then
-            f = w%f_chi
+         s%d_r = -at%a_d
+         s%d_r_d = at%a_d
+         if (par%fabric .and. at%z_n > 0.0_wp) s%d_z = par%a_0*(at%r_d - at%r_n)
+         if (w%preloaded .and. at%d > 0.0_wp) then
+            f = at%f_chi
             s%d_r = f*s%d_r
             s%d_r_d = f*s%d_r_d
             s%d_z = f*s%d_z
-            s%d_q = w%f_slope*w%d
+            s%d_q = at%f_slope*at%d
             s%d_x = 2.0_wp*s%d_q*per_x
          end if
       end if
-      if (w%capped_h) then
-         stiffness = 2.0_wp*w%g - w%k_e*w%d*w%r_n
-         by_stiffness = w%h_b/stiffness
+      if (at%capped_h) then
+         stiffness = 2.0_wp*w%g - w%k_e*at%d*at%r_n
+         by_stiffness = at%h_b/stiffness
          s%h_r_b = -2.0_wp/3.0_wp*w%p/((1.0_wp - par%cap_h)*stiffness)
-         s%h_r = -s%h_r_b + by_stiffness*w%k_e*(w%d + w%r_n*s%d_r)
-         s%h_z = by_stiffness*w%k_e*w%r_n*s%d_z
-         s%h_r_d = by_stiffness*w%k_e*w%r_n*s%d_r_d
-         s%h_g = -by_stiffness*(2.0_wp - w%k_e*w%r_n*s%d_g)
-         s%h_k = by_stiffness*w%r_n*(w%d + w%k_e*s%d_k)
-         s%h_p = w%h_b/w%p
-         s%h_x = by_stiffness*w%k_e*w%r_n*s%d_x
-         s%h_q = by_stiffness*w%k_e*w%r_n*s%d_q
+         s%h_r = -s%h_r_b + by_stiffness*w%k_e*(at%d + at%r_n*s%d_r)
+         s%h_z = by_stiffness*w%k_e*at%r_n*s%d_z
+         s%h_r_d = by_stiffness*w%k_e*at%r_n*s%d_r_d
+         s%h_g = -by_stiffness*(2.0_wp - w%k_e*at%r_n*s%d_g)
+         s%h_k = by_stiffness*at%r_n*(at%d + w%k_e*s%d_k)
+         s%h_p = at%h_b/w%p
+         s%h_x = by_stiffness*w%k_e*at%r_n*s%d_x
+         s%h_q = by_stiffness*w%k_e*at%r_n*s%d_q
          s%h_b_0 = 0.0_wp
       else
          s%h_r_b = 0.0_wp
@@ -147,39 +143,77 @@ contains
          s%h_g = 0.0_wp
          s%h_k = 0.0_wp
          s%h_p = 0.0_wp
-         s%h_x = merge(0.0_wp, 1.0_wp/w%b_0, w%floored)
-         s%h_b_0 = -w%h_b/w%b_0
+         s%h_x = merge(0.0_wp, 1.0_wp/w%b_0, at%floored)
+         s%h_b_0 = -at%h_b/w%b_0
          if (w%preloaded) then
-            s%h_q = par%s_chi*w%f_slope*w%h_b
-            s%h_x = (w%h_b + 2.0_wp*s%h_q)*per_x
+            s%h_q = par%s_chi*at%f_slope*at%h_b
+            s%h_x = (at%h_b + 2.0_wp*s%h_q)*per_x
          end if
       end if
    end subroutine slopes_at
 
-   !> Derivatives of 1/h, D and gamma with respect to n, their parts along n removed since n:dn = 0; that of beta is K_e
-   !> (D h_n + d_n/h). Units [-, -, kPa]; s is that of w, a rate that loads.
-   pure subroutine gradients(par, w, s, h_n, d_n, gamma_n)
+   !> The turn of the direction of a rate that loads, by the implicit function theorem: gamma n = t y + beta r gives
+   !> gamma dn = y dt + beta dr + t dy - n (dgamma + a) + r (dbeta + b), a = gamma_n:dn, b = beta_n:dn and n:dn = 0,
+   !> three scalar equations for dy, a, b. beta_n = K_e (D h_n + d_n/h). docs/theory/integration.md section 5.2.
+   pure subroutine find_turn(par, w, turn)
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
-      type(slopes_t), intent(in) :: s
-      real(wp), dimension(6), intent(out) :: h_n, d_n, gamma_n
-      real(wp) :: g_n(6)
+      type(turn_t), intent(inout) :: turn
+      real(wp) :: m(3, 3)
 
-      d_n = s%d_r*w%r
-      if (w%preloaded) d_n = d_n + s%d_x*w%r_moved
-      h_n = s%h_r*w%r + s%h_x*w%r_moved
-      if (par%fabric) then
-         d_n = d_n + s%d_z*w%z
-         h_n = h_n + s%h_z*w%z
-      end if
-      g_n = 0.0_wp
-      if (par%lode) then
-         g_n = (3.0_wp*lode_slope(par, w%lode)*SQRT_2_3)*deviator(square(w%n))
-         d_n = d_n + (s%d_r_d*w%m_d)*g_n
-         h_n = h_n + (s%h_r_d*w%m_d + s%h_r_b*w%m_b)*g_n
-      end if
-      d_n = d_n - ddot(d_n, w%n)*w%n
-      h_n = h_n - ddot(h_n, w%n)*w%n
-      gamma_n = (2.0_wp/3.0_wp*w%p*w%m_b)*(g_n - ddot(g_n, w%n)*w%n) + (2.0_wp*w%g)*h_n
-   end subroutine gradients
+      call slopes_at(par, w, w%moduli_t, turn%slopes)
+      call find_gradients(par, w, turn)
+      associate (on_t => turn%on_t, on_r => turn%on_r)
+         on_t = [ddot(w%n, w%t), ddot(turn%h_n, w%t), ddot(turn%d_n, w%t), ddot(turn%gamma_n, w%t)]
+         on_r = [w%r_n, ddot(turn%h_n, w%r), ddot(turn%d_n, w%r), ddot(turn%gamma_n, w%r)]
+         m(1, :) = [on_t(1), -1.0_wp, on_r(1)]
+         m(2, :) = [on_t(4), -w%gamma, on_r(4)]
+         m(3, :) = [w%k_e*(w%d*on_t(2) + w%h_b*on_t(3)), 0.0_wp, w%k_e*(w%d*on_r(2) + w%h_b*on_r(3)) - w%gamma]
+      end associate
+      turn%inverse = inverse_of(m)
+   end subroutine find_turn
+
+   !> Derivatives of 1/h, D and gamma with respect to n, their parts along n removed since n:dn = 0.
+   pure subroutine find_gradients(par, w, turn)
+      type(params_t), intent(in) :: par
+      type(rate_t), intent(in) :: w
+      type(turn_t), intent(inout) :: turn   !< with its slopes
+      real(wp) :: h_n(6), d_n(6), g_n(6)
+
+      associate (s => turn%slopes)
+         d_n = s%d_r*w%r
+         if (w%preloaded) d_n = d_n + s%d_x*w%r_moved
+         h_n = s%h_r*w%r + s%h_x*w%r_moved
+         if (par%fabric) then
+            d_n = d_n + s%d_z*w%z
+            h_n = h_n + s%h_z*w%z
+         end if
+         g_n = 0.0_wp
+         if (par%lode) then
+            g_n = (3.0_wp*lode_slope(par, w%lode)*SQRT_2_3)*deviator(square(w%n))
+            d_n = d_n + (s%d_r_d*w%m_d)*g_n
+            h_n = h_n + (s%h_r_d*w%m_d + s%h_r_b*w%m_b)*g_n
+         end if
+      end associate
+      turn%d_n = d_n - ddot(d_n, w%n)*w%n
+      turn%h_n = h_n - ddot(h_n, w%n)*w%n
+      turn%gamma_n = (2.0_wp/3.0_wp*w%p*w%m_b)*(g_n - ddot(g_n, w%n)*w%n) + (2.0_wp*w%g)*turn%h_n
+   end subroutine find_gradients
+
+   !> Inverse of a 3 x 3 matrix by cofactors. That m is regular is not checked.
+   pure function inverse_of(m) result(inverse)
+      real(wp), intent(in) :: m(3, 3)
+      real(wp) :: inverse(3, 3)
+
+      inverse(1, 1) = m(2, 2)*m(3, 3) - m(2, 3)*m(3, 2)
+      inverse(1, 2) = m(1, 3)*m(3, 2) - m(1, 2)*m(3, 3)
+      inverse(1, 3) = m(1, 2)*m(2, 3) - m(1, 3)*m(2, 2)
+      inverse(2, 1) = m(2, 3)*m(3, 1) - m(2, 1)*m(3, 3)
+      inverse(2, 2) = m(1, 1)*m(3, 3) - m(1, 3)*m(3, 1)
+      inverse(2, 3) = m(1, 3)*m(2, 1) - m(1, 1)*m(2, 3)
+      inverse(3, 1) = m(2, 1)*m(3, 2) - m(2, 2)*m(3, 1)
+      inverse(3, 2) = m(1, 2)*m(3, 1) - m(1, 1)*m(3, 2)
+      inverse(3, 3) = m(1, 1)*m(2, 2) - m(1, 2)*m(2, 1)
+      inverse = inverse/(m(1, 1)*inverse(1, 1) + m(1, 2)*inverse(2, 1) + m(1, 3)*inverse(3, 1))
+   end function inverse_of
 end module mud_direction_equation

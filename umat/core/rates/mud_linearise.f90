@@ -1,38 +1,61 @@
 ! SPDX-License-Identifier: MIT
-!> What the derivatives of one rate share, whatever the direction in which its arguments change.
+!> What the derivatives of one rate share, whatever the direction in which its arguments change, and how what it takes
+!> from the point alone changes - moduli, state parameter, bounding ratio, isotropic mechanism - along directions that
+!> stand side by side; docs/theory/integration.md section 5.3.
 module mud_linearise
-   use mud_kinds, only: wp
+   use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
    use mud_bonding, only: bonding_curvature, bonding_with_turn
    use mud_critical_state, only: state_parameter_slopes, bounding_slope, lode_gradient
-   use mud_direction_equation, only: slopes_t, slopes_at, gradients
-   use mud_elastic, only: bulk_slope, shear_slope, swelling_slope
+   use mud_direction_equation, only: turn_t, find_turn
+   use mud_elastic, only: bulk_slope, shear_slope, swelling_slope, BULK_EXPONENT, SHEAR_EXPONENT
    use mud_loading, only: loading_t
-   use mud_hardening, only: kinematic_slope
+   use mud_hardening, only: kinematic_slope, isotropic_slopes_t, isotropic_slopes, BY_P, BY_E, BY_F, BY_F_E, BY_R, &
+      BY_R_B
    use mud_rate, only: rate_t
    use mud_rates, only: p_follows
-   use mud_tensor, only: ddot, trace
+   use mud_tensor, only: LANES, contractions, trace
    implicit none (type, external)
    private
-   public :: linearised_t, linearise, inverse_of
+   public :: linearised_t, linearise, changes_t, lanes_t, rest, change_point, along_ratio, NRATES
 
    !> What all directions share.
-   type :: linearised_t
+   type, extends(turn_t) :: linearised_t
       logical :: held_p                     !< p' is at its lower bound: it does not follow the stress.
-      real(wp) :: e, d_v, d_pc
+      real(wp) :: d_v, d_pc
       real(wp) :: aside_v                   !< Trace of the elastic strain rate beside (elastic domain pulled along).
       real(wp) :: curvature(3)              !< of f [1/kPa2, 1/kPa, -]
       real(wp) :: with_turn(3)              !< of f, df/dp_c, df/de with ln x of the branch's turn [-, 1/kPa, -]
       real(wp) :: psi_f, psi_p, m_b_psi     !< slopes of psi by f and p', of M^b by psi [-, 1/kPa, -]
-      real(wp) :: kappa
       real(wp) :: k_slope, g_slope, b_slope !< d ln K/de, d ln G/de, d ln b_0/de [-]
       real(wp) :: per_p, per_f, per_gamma, per_y   !< Reciprocals of p', f, gamma, y.
-      real(wp) :: lode_r, lode_r_slope(6)   !< Lode factor in the direction of r and its gradient, a deviator
-      type(slopes_t) :: slopes
-      real(wp), dimension(6) :: h_n, d_n, gamma_n
-      real(wp), dimension(4) :: on_t, on_r, on_e   !< n, h_n, d_n, gamma_n on t, r and the deviatoric strain rate
-      real(wp) :: inverse(3, 3)
+      real(wp) :: lode_r, lode_r_slope(6)   !< Lode factor in the direction of r and its gradient, a deviator ...
+      type(isotropic_slopes_t) :: mechanism   !< ... and slopes of the isotropic mechanism, where it acts.
+      real(wp) :: on_e(4)                   !< n, h_n, d_n, gamma_n on the deviatoric strain rate
    end type linearised_t
+
+   integer, parameter :: NRATES = 15   !< sigma'(6), z(6), plastic shear, ln chi', contraction.
+
+   !> How the arguments of a rate change beside stress, fabric and memory.
+   type :: changes_t
+      real(wp), dimension(LANES) :: e, p_c, d_pc   !< of void ratio, suction and its rate [-, kPa, kPa]
+      type(loading_t) :: loading                   !< of the strain rate that loads
+      logical :: scans                             !< Its branch changes with its turn; otherwise turn is not set.
+      real(wp) :: turn(LANES)                      !< of ln x of that turn [-]
+   end type changes_t
+
+   !> What lies between the changes of a rate's arguments and those of its results.
+   type :: lanes_t
+      real(wp), dimension(LANES) :: mean, v          !< a third of the trace of stress; trace of the strain rate
+      real(wp), dimension(LANES) :: p, share         !< of p', and over p'
+      real(wp), dimension(LANES) :: f, f_pc, f_e     !< of f, df/dp_c, df/de
+      real(wp), dimension(LANES) :: k, g, psi, m_b, k_e, b, volumetric, dd, dh, beta, gamma
+      real(wp), dimension(LANES) :: n_dr, h_dr, d_dr, gamma_dr   !< n:dr, and of the gradients along n
+      real(wp), dimension(LANES) :: dl, flow         !< of L and of L D
+      !> The turn dn by tensors: strain rate and stress by factors; e, n, r and the unit tensor.
+      real(wp) :: turn_strain, turn_stress
+      real(wp), dimension(LANES) :: turn_e, turn_n, turn_r, turn_p
+   end type lanes_t
 contains
    !> Prepares the derivative of a rate w that was evaluated at (sigma, e, p_c) for the strain rate of loading and d_pc.
    !> sigma' and p_c [kPa], compression positive; e [-]; d_pc [kPa]. Of a rate that does not load the gradients and the
@@ -44,10 +67,9 @@ contains
       real(wp), intent(in) :: sigma(6), e, p_c, d_pc
       type(loading_t), intent(in) :: loading
       type(linearised_t), intent(inout) :: lin
-      real(wp) :: m(3, 3), traces(2)
+      real(wp) :: traces(2)
 
       lin%held_p = .not. p_follows(par, sigma)
-      lin%e = e
       traces = [trace(loading%basis(:, 1)), trace(loading%basis(:, 2))]
       lin%d_v = loading%part(1)*traces(1) + loading%part(2)*traces(2)
       lin%aside_v = loading%whole(1)*traces(1) + loading%whole(2)*traces(2) - lin%d_v
@@ -66,41 +88,118 @@ contains
       lin%per_p = 1.0_wp/w%p
       lin%per_f = 1.0_wp/w%bond%f
       if (w%iso_active) then
-         lin%kappa = swelling_slope(w%k, e, w%p)
          lin%lode_r = 1.0_wp
          lin%lode_r_slope = 0.0_wp
          if (w%r_norm > 0.0_wp) call lode_gradient(par, w%r, w%r_norm, lin%lode_r, lin%lode_r_slope)
+         lin%mechanism = isotropic_slopes(par, w%bond, e, swelling_slope(w%k, e, w%p), SQRT_2_3*lin%lode_r*w%m_b, w%iso)
       end if
       if (.not. w%loading) return
-      call slopes_at(par, w, lin%slopes)
-      call gradients(par, w, lin%slopes, lin%h_n, lin%d_n, lin%gamma_n)
-      lin%on_t = [ddot(w%n, w%t), ddot(lin%h_n, w%t), ddot(lin%d_n, w%t), ddot(lin%gamma_n, w%t)]
-      lin%on_r = [w%r_n, ddot(lin%h_n, w%r), ddot(lin%d_n, w%r), ddot(lin%gamma_n, w%r)]
+      call find_turn(par, w, lin%turn_t)
       lin%on_e = (lin%on_t + (w%k_e*(lin%d_v - w%b_rate))*lin%on_r)/(2.0_wp*w%g)   ! t = 2 G e - V r
-      ! beta_n = K_e (D h_n + d_n/h)
-      m(1, :) = [lin%on_t(1), -1.0_wp, w%r_n]
-      m(2, :) = [lin%on_t(4), -w%gamma, lin%on_r(4)]
-      m(3, :) = [w%k_e*(w%d*lin%on_t(2) + w%h_b*lin%on_t(3)), 0.0_wp, &
-                 w%k_e*(w%d*lin%on_r(2) + w%h_b*lin%on_r(3)) - w%gamma]
-      lin%inverse = inverse_of(m)
       lin%per_gamma = 1.0_wp/w%gamma
       lin%per_y = 1.0_wp/w%y
    end subroutine linearise
 
-   !> Inverse of a 3 x 3 matrix by cofactors. That m is regular is not checked.
-   pure function inverse_of(m) result(inverse)
-      real(wp), intent(in) :: m(3, 3)
-      real(wp) :: inverse(3, 3)
+   !> What change_point leaves where only the strain rate and the suction rate change. Units as in change_point.
+   pure subroutine rest(w, changes, x)
+      type(rate_t), intent(in) :: w
+      type(changes_t), intent(in) :: changes
+      type(lanes_t), intent(inout) :: x
+      real(wp) :: b
 
-      inverse(1, 1) = m(2, 2)*m(3, 3) - m(2, 3)*m(3, 2)
-      inverse(1, 2) = m(1, 3)*m(3, 2) - m(1, 2)*m(3, 3)
-      inverse(1, 3) = m(1, 2)*m(2, 3) - m(1, 3)*m(2, 2)
-      inverse(2, 1) = m(2, 3)*m(3, 1) - m(2, 1)*m(3, 3)
-      inverse(2, 2) = m(1, 1)*m(3, 3) - m(1, 3)*m(3, 1)
-      inverse(2, 3) = m(1, 3)*m(2, 1) - m(1, 1)*m(2, 3)
-      inverse(3, 1) = m(2, 1)*m(3, 2) - m(2, 2)*m(3, 1)
-      inverse(3, 2) = m(1, 2)*m(3, 1) - m(1, 1)*m(3, 2)
-      inverse(3, 3) = m(1, 1)*m(2, 2) - m(1, 2)*m(2, 1)
-      inverse = inverse/(m(1, 1)*inverse(1, 1) + m(1, 2)*inverse(2, 1) + m(1, 3)*inverse(3, 1))
-   end function inverse_of
+      b = 0.0_wp
+      if (w%iso_active) b = w%iso%b
+      x%mean = 0.0_wp
+      x%p = 0.0_wp
+      x%k = 0.0_wp
+      x%g = 0.0_wp
+      x%k_e = 0.0_wp
+      x%beta = 0.0_wp
+      x%gamma = 0.0_wp
+      x%dd = 0.0_wp
+      x%dh = 0.0_wp
+      x%n_dr = 0.0_wp
+      x%h_dr = 0.0_wp
+      x%d_dr = 0.0_wp
+      x%gamma_dr = 0.0_wp
+      x%volumetric = w%k_e*(x%v - b*changes%d_pc)
+   end subroutine rest
+
+   !> Changes of the point's scalars and of both moduli, for changes of sigma' in y [kPa] and those in changes. w is the
+   !> rate at the point, lin that of w; units of x as those of w.
+   pure subroutine change_point(w, lin, y, changes, x)
+      type(rate_t), intent(in) :: w
+      type(linearised_t), intent(in) :: lin
+      real(wp), intent(in) :: y(LANES, NRATES)
+      type(changes_t), intent(in) :: changes
+      type(lanes_t), intent(inout) :: x
+      real(wp) :: follows
+      integer :: j
+
+      follows = merge(0.0_wp, 1.0_wp, lin%held_p)
+      x%mean = (y(:, 1) + y(:, 2) + y(:, 3))/3.0_wp
+      x%f = w%bond%df_de*changes%e + w%bond%df_dpc*changes%p_c
+      x%f_e = lin%curvature(3)*changes%e + lin%curvature(2)*changes%p_c
+      x%f_pc = lin%curvature(2)*changes%e + lin%curvature(1)*changes%p_c
+      if (changes%scans) then   ! a branch that moves changes S_w, and f with it
+         x%f = x%f + lin%with_turn(1)*changes%turn
+         x%f_pc = x%f_pc + lin%with_turn(2)*changes%turn
+         x%f_e = x%f_e + lin%with_turn(3)*changes%turn
+      end if
+      do j = 1, LANES
+         x%p(j) = follows*x%mean(j)
+         x%share(j) = x%p(j)*lin%per_p
+         x%k(j) = w%k*(BULK_EXPONENT*x%share(j) + changes%e(j)*lin%k_slope)
+         x%g(j) = w%g*(SHEAR_EXPONENT*x%share(j) + changes%e(j)*lin%g_slope)
+         x%psi(j) = changes%e(j) + lin%psi_f*x%f(j) + lin%psi_p*x%p(j)
+         x%m_b(j) = lin%m_b_psi*x%psi(j)
+      end do
+      if (w%iso_active) then
+         call change_of_mechanism(w, lin, y, changes, x)
+      else
+         x%k_e = x%k
+         x%b = 0.0_wp
+      end if
+      x%volumetric = (lin%d_v - w%b_rate)*x%k_e + w%k_e*(x%v - x%b)
+   end subroutine change_point
+
+   !> a:dr of the change of the stress ratio, for a deviator a, in the unit of a. y and p, the change of p', [kPa];
+   !> a_on_r is a:r.
+   pure function along_ratio(lin, y, p, a, a_on_r) result(c)
+      type(linearised_t), intent(in) :: lin
+      real(wp), intent(in) :: y(LANES, NRATES), p(LANES), a(6), a_on_r
+      real(wp) :: c(LANES)
+
+      c = lin%per_p*(contractions(y(:, 1:6), a) - a_on_r*p)
+   end function along_ratio
+
+   !> Change of K_e and of B while the isotropic mechanism acts.
+   pure subroutine change_of_mechanism(w, lin, y, changes, x)
+      type(rate_t), intent(in) :: w
+      type(linearised_t), intent(in) :: lin
+      real(wp), intent(in) :: y(LANES, NRATES)
+      type(changes_t), intent(in) :: changes
+      type(lanes_t), intent(inout) :: x
+      real(wp), dimension(LANES) :: r_dr, r_b
+      real(wp) :: k_a, softening, per_softening, f, a, b, dk
+      integer :: j
+
+      k_a = w%k*lin%per_p
+      softening = k_a*w%iso%a
+      per_softening = 1.0_wp/(1.0_wp + softening)
+      r_dr = along_ratio(lin, y, x%p, w%r, w%r_norm**2)
+      r_b = (lin%per_p/lin%lode_r)*contractions(y(:, 1:6), lin%lode_r_slope) + x%m_b/w%m_b   ! no part along r
+      associate (of => lin%mechanism)
+         do j = 1, LANES
+            f = lin%per_f*x%f(j)
+            a = of%a(BY_P)*x%share(j) + of%a(BY_E)*changes%e(j) + of%a(BY_F)*f + of%a(BY_F_E)*x%f_e(j) &
+                + of%a(BY_R)*r_dr(j) + of%a(BY_R_B)*r_b(j)
+            b = of%b(BY_P)*x%share(j) + of%b(BY_E)*changes%e(j) + of%b(BY_F)*f + of%b(BY_F_E)*x%f_e(j) &
+                + of%b(BY_R)*r_dr(j) + of%b(BY_R_B)*r_b(j) + of%b_f_pc*x%f_pc(j)
+            dk = x%k(j)/w%k
+            x%k_e(j) = w%k_e*(dk - (k_a*a + softening*(dk - x%share(j)))*per_softening)
+            x%b(j) = w%iso%b*changes%d_pc(j) + lin%d_pc*b
+         end do
+      end associate
+   end subroutine change_of_mechanism
 end module mud_linearise

@@ -6,10 +6,22 @@ module mud_rate
    use mud_kinds, only: wp
    implicit none (type, external)
    private
-   public :: rate_t
+   public :: moduli_t, rate_t
+
+   !> The direction equation in one direction: what a search for its root tries, and a rate keeps of the root.
+   type :: moduli_t
+      real(wp) :: r_n, x, z_n      !< r:n, (r - r_in):n without its floor, z:n [-]
+      real(wp) :: lode             !< g [-]
+      real(wp) :: r_b, r_d         !< |r| on the bounding and dilatancy surfaces in the direction of n [-]
+      real(wp) :: a_d, d           !< A_d, D [-]
+      real(wp) :: h_b              !< 1/h [-]
+      real(wp) :: f_chi, f_slope   !< f of the preloading, d ln f/d ln q; not set without it [-]
+      real(wp) :: beta, gamma      !< coefficients [kPa]
+      logical :: floored, capped_d, capped_h   !< guards that act
+   end type moduli_t
 
    !> One rate and what its derivatives need. Per unit of the pseudo-time of d_strain, d_pc.
-   type :: rate_t
+   type, extends(moduli_t) :: rate_t
       ! the point
       real(wp) :: p                !< p' >= p_min [kPa]
       real(wp) :: r(6), r_norm     !< stress ratio and its norm [-]
@@ -34,16 +46,7 @@ module mud_rate
       real(wp) :: n(6)             !< loading direction [-]
       real(wp) :: y                !< 1/(L h) [-]
       real(wp) :: l                !< loading index L [-]
-      ! the direction equation there
-      real(wp) :: r_n, x, z_n      !< r:n, (r - r_in):n without its floor, z:n [-]
-      real(wp) :: lode             !< g [-]
-      real(wp) :: r_b, r_d         !< |r| on the bounding and dilatancy surfaces in the direction of n [-]
-      real(wp) :: a_d, d           !< A_d, D [-]
-      real(wp) :: h_b              !< 1/h [-]
-      real(wp) :: f_chi, f_slope   !< f of the preloading, d ln f/d ln q; not set without it [-]
-      real(wp) :: beta, gamma      !< coefficients [kPa]
-      ! guards
-      logical :: floored, capped_d, capped_h, iso_kept, no_root, several   !< several: the arc was scanned for roots
+      logical :: iso_kept, no_root, several   !< several: the arc was scanned for roots
       ! the result
       real(wp) :: d_p              !< rate of p' [kPa]
       real(wp) :: d_sigma(6)       !< [kPa]

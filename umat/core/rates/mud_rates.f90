@@ -12,7 +12,7 @@ module mud_rates
    use mud_critical_state, only: state_parameter, bounding_ratio, dilatancy_ratio, bounding_norm
    use mud_direction, only: find_direction
    use mud_flow, only: fabric_rate
-   use mud_hardening, only: kinematic_modulus, isotropic_hardening, NO_HARDENING
+   use mud_hardening, only: kinematic_modulus, isotropic_hardening, shear_weight, NO_HARDENING
    use mud_preloading, only: NO_CONTRACTION
    use mud_rate, only: rate_t
    implicit none (type, external)
@@ -165,7 +165,7 @@ contains
       w%b_0 = kinematic_modulus(par, e, w%p)
       w%iso = NO_HARDENING
       if (par%isotropic) then
-         weight = max(1.0_wp - (w%r_norm/bounding_norm(par, w%r, w%r_norm, w%m_b))**2, 0.0_wp)
+         weight = shear_weight(w%r_norm, bounding_norm(par, w%r, w%r_norm, w%m_b))
          if (weight > 0.0_wp) then
             w%iso = isotropic_hardening(par, w%bond, e, w%p, swelling_slope(w%k, e, w%p), 1.5_wp*w%r_norm**2, weight)
          end if

@@ -10,13 +10,12 @@
 module mud_sensitivity
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
-   use mud_linearise, only: linearised_t, linearise
+   use mud_linearise, only: linearised_t, changes_t, lanes_t, rest, change_point, along_ratio, NRATES
    use mud_rate, only: rate_t
    use mud_tensor, only: LANES, tensors_t, ddot, contractions, contracted, traces, ZERO_TENSORS
    use mud_loading, only: free_contracted, loading_traces, add_loading
    use mud_critical_state, only: dilatancy_slope
    use mud_hardening, only: KINEMATIC_EXPONENT
-   use mud_point_changes, only: changes_t, lanes_t, rest, change_point, along_ratio, NRATES
    implicit none (type, external)
    private
    public :: changes_of_rate, changes_of_drive
@@ -43,7 +42,7 @@ contains
       if (at_rest) then
          call rest(w, changes, x)
       else
-         call change_point(par, w, lin, y, changes, x)
+         call change_point(w, lin, y, changes, x)
       end if
       if (w%loading) then
          if (.not. at_rest) call change_moduli(par, w, lin, y, r_in, changes, x)
@@ -76,8 +75,7 @@ contains
 
    !> Changes of n:t, t = 2 G e - V r the elastic rate of the stress ratio times p', for a rate that loads [kPa]. Part
    !> of docs/theory/integration.md section 4.3.
-   pure function changes_of_drive(par, w, lin, y, strain, centre, changes) result(c)
-      type(params_t), intent(in) :: par
+   pure function changes_of_drive(w, lin, y, strain, centre, changes) result(c)
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
       real(wp), intent(in) :: y(LANES, NRATES)        !< of sigma', z and, without effect, plastic shear [kPa, -, -]
@@ -87,7 +85,7 @@ contains
       type(lanes_t) :: x
 
       x%v = loading_traces(changes%loading, strain, centre)
-      call change_point(par, w, lin, y, changes, x)
+      call change_point(w, lin, y, changes, x)
       associate (loading => changes%loading)
          c = (2.0_wp*w%g)*(free_contracted(loading, strain, centre, w%n) &
                            + ddot(loading%basis(:, 1), w%n)*loading%along(:, 1) &

@@ -3,10 +3,9 @@
 !> docs/theory/integration.md section 5.2. The state rests: as a sum of dyads it costs half of what the derivative of
 !> mud_sensitivity would.
 module mud_tangent
-   use mud_direction_equation, only: slopes_t, slopes_at, gradients
+   use mud_direction_equation, only: turn_t, find_turn
    use mud_elastic, only: elastic_tangent
    use mud_kinds, only: wp
-   use mud_linearise, only: inverse_of
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_tensor, only: IDENTITY, ddot, outer_add
@@ -16,16 +15,15 @@ module mud_tangent
 contains
    !> d sigma'/d eps [kPa] (engineering strain) and d sigma'/d p_c [-] of one rate.
    !>
-   !> From gamma n = t y + beta r: gamma dn = y dt + t dy - n a + r b with a = gamma_n:dn, b = beta_n:dn, n:dn = 0,
-   !> three scalar equations for dy, a, b. Everything is then n (x) something + r (x) something + a multiple of dt.
+   !> gamma dn = y dt + t dy - n a + r b of find_turn: all is n (x) something + r (x) something + a multiple of dt.
    !> Compression positive; w is a rate of rate_at. docs/theory/integration.md section 5.2.
    pure subroutine continuum_tangent(par, w, c, c_pc)
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
       real(wp), intent(out) :: c(6, 6), c_pc(6)
-      real(wp), dimension(6) :: h_n, d_n, beta_n, gamma_n, f_y, f_a, f_b, f_l, f_d, along_n, along_r, on_p
-      real(wp) :: m(3, 3), inverse(3, 3), drag, on_p_pc, b_pc
-      type(slopes_t) :: slopes
+      real(wp), dimension(6) :: beta_n, f_y, f_a, f_b, f_l, f_d, along_n, along_r, on_p
+      real(wp) :: m(3, 3), drag, on_p_pc, b_pc
+      type(turn_t) :: turn
 
       b_pc = 0.0_wp
       if (w%iso_active) b_pc = w%iso%b
@@ -35,18 +33,14 @@ contains
       on_p_pc = -w%k_e*b_pc
       drag = 0.0_wp
       if (w%loading) then
-         call slopes_at(par, w, slopes)
-         call gradients(par, w, slopes, h_n, d_n, gamma_n)
-         beta_n = w%k_e*(w%d*h_n + w%h_b*d_n)
-         m(1, :) = [ddot(w%t, w%n), -1.0_wp, w%r_n]
-         m(2, :) = [ddot(gamma_n, w%t), -w%gamma, ddot(gamma_n, w%r)]
-         m(3, :) = [ddot(beta_n, w%t), 0.0_wp, ddot(beta_n, w%r) - w%gamma]
-         inverse = -w%y*inverse_of(m)
-         f_y = inverse(1, 1)*w%n + inverse(1, 2)*gamma_n + inverse(1, 3)*beta_n
-         f_a = inverse(2, 1)*w%n + inverse(2, 2)*gamma_n + inverse(2, 3)*beta_n
-         f_b = inverse(3, 1)*w%n + inverse(3, 2)*gamma_n + inverse(3, 3)*beta_n
-         f_l = along_direction(h_n)/w%y - (w%l/w%y)*f_y
-         f_d = along_direction(d_n)
+         call find_turn(par, w, turn)
+         beta_n = w%k_e*(w%d*turn%h_n + w%h_b*turn%d_n)
+         m = -w%y*turn%inverse
+         f_y = m(1, 1)*w%n + m(1, 2)*turn%gamma_n + m(1, 3)*beta_n
+         f_a = m(2, 1)*w%n + m(2, 2)*turn%gamma_n + m(2, 3)*beta_n
+         f_b = m(3, 1)*w%n + m(3, 2)*turn%gamma_n + m(3, 3)*beta_n
+         f_l = along_direction(turn%h_n, 2)/w%y - (w%l/w%y)*f_y
+         f_d = along_direction(turn%d_n, 3)
          drag = w%h_b/w%gamma
          along_n = -2.0_wp*w%g*(f_l + (w%l/w%y)*f_y - (w%l/w%gamma)*f_a)
          along_r = -2.0_wp*w%g*(w%l/w%gamma)*(f_b - (w%beta/w%y)*f_y)
@@ -62,12 +56,13 @@ contains
       call outer_add(IDENTITY, on_p, c)
       c_pc = c_pc + IDENTITY*on_p_pc
    contains
-      !> gradient:dn as a functional of dt.
-      pure function along_direction(gradient) result(f)
+      !> gradient:dn as a functional of dt; its place among the contractions of turn.
+      pure function along_direction(gradient, place) result(f)
          real(wp), intent(in) :: gradient(6)
+         integer, intent(in) :: place
          real(wp) :: f(6)
 
-         f = (w%y*gradient + ddot(gradient, w%t)*f_y + ddot(gradient, w%r)*f_b)/w%gamma
+         f = (w%y*gradient + turn%on_t(place)*f_y + turn%on_r(place)*f_b)/w%gamma
       end function along_direction
 
       !> A functional of dt as one of the strain.
