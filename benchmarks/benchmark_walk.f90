@@ -10,6 +10,7 @@ module benchmark_walk
    use mud_params, only: params_t, read_params
    use mud_rates, only: rate_at, MODE_ORDINARY
    use mud_rate, only: rate_t
+   use mud_registry, only: NPROPS, NSTATV
    use mud_status, only: mud_status_t
    use mud_tensor, only: ddot, norm
    implicit none (type, external)
@@ -17,7 +18,7 @@ module benchmark_walk
    public :: wp, path_t, PATHS, path_named, tally_t, walk, walk_batch, evaluate_rates, met_rates_t, &
              meet_rates, evaluate_met_rates, number_of_updates
 
-   integer, parameter :: wp = c_double, WORDS = 128   !< Room for PROPS and STATEV.
+   integer, parameter :: wp = c_double, WORDS = max(NPROPS, NSTATV)   !< Room for PROPS and STATEV.
    real(wp), parameter :: RIGHT_ANGLE = acos(0.0_wp)
    real(wp), parameter :: LONGEST = 0.05_wp           !< A walk ends here [-] ...
    integer, parameter :: MOST_UPDATES = 500           !< ... or after so many updates.
@@ -114,7 +115,6 @@ contains
 
       n_props = mud_count(MUD_PROPS)
       n_statev = mud_count(MUD_STATEV)
-      if (max(n_props, n_statev) > WORDS) error stop 'benchmark: WORDS is too small'
       code = mud_default_props(props, n_props)
       props(mud_index(MUD_PROPS, 'scheme'//c_null_char) + 1) = real(scheme, wp)
       props(mud_index(MUD_PROPS, 'tolerance'//c_null_char) + 1) = tolerance

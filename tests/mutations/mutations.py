@@ -41,7 +41,7 @@ MUTATIONS = [
      (RATES, "p = max(trace(sigma)/3.0_wp, par%p_min)", "p = trace(sigma)/3.0_wp + 0.0_wp*par%p_min")),
     # critical state and flow
     ("sign of the dilatancy", (FLOW, "d = a_d*(r_d - r_n)", "d = -a_d*(r_d - r_n)")),
-    ("dilatancy without the Lode factor", (DIRECTION, "at%r_d = (SQRT_2_3*w%m_d)*at%lode", "at%r_d = SQRT_2_3*w%m_d")),
+    ("dilatancy without the Lode factor", (DIRECTION, "m%r_d = eq%r_d_1*m%lode", "m%r_d = eq%r_d_1")),
     ("fabric also grows in contraction", (FLOW, ".and. d < 0.0_wp) dz", ") dz")),
     ("fabric acts in every direction", (FLOW, "1.0_wp + positive(z_n)", "1.0_wp + z_n + 0.0_wp*positive(z_n)")),
     ("drop the Lode slope", (CRITICAL, "slope = par%lode_bend*g**5", "slope = 0.0_wp*par%lode_bend*g**5")),
@@ -120,7 +120,7 @@ MUTATIONS = [
     ("first root found taken",
      (DIRECTION, "if (.not. w%several) return", "if (.not. w%several .or. last > 0.0_wp) return")),
     ("no look at the floor before a rising (r - r_in):n",
-     (DIRECTION, "single_root = side*passing%residual < 0.0_wp", "single_root = passing%scale > 0.0_wp")),
+     (DIRECTION, "single_root = side*there%residual < 0.0_wp", "single_root = there%scale > 0.0_wp")),
     ("plastic shear without sqrt(2/3)", (RATES, "w%d_eps_q = SQRT_2_3*w%l", "w%d_eps_q = w%l")),
     # isotropic memory
     ("contraction by shear unloads virgin soil", (MARGIN, "shear_share = exp(min(u, 0.0_wp)/DEPTH)", "shear_share = 0.0_wp*u")),

@@ -7,6 +7,7 @@ module mud_events
    use mud_event_table, only: EVENTS, EVENT_NONE, EVENT_OPENS, EVENT_PARTS, EVENT_CLOSES, EVENT_MECHANISM, &
       EVENT_YIELD, EVENT_UNLOAD, EVENT_REVERSAL, EVENT_RETURN, EVENT_TURN
    use mud_increment, only: increment_t, rate_of, store_rate, NY
+   use mud_integration, only: integration_t
    use mud_isotropic_memory, only: drive_of_margin, margin_after
    use mud_kinds, only: wp
    use mud_landing, only: land_on, EVENT_TOLERANCE
@@ -14,7 +15,7 @@ module mud_events
    use mud_rate, only: rate_t
    use mud_rates, only: MODE_ELASTIC
    use mud_return_point, only: place_t, forwardness, note_progress, note_farthest
-   use mud_state, only: memory_t, counters_t
+   use mud_state, only: counters_t
    use mud_substep, only: LARGEST_FACTOR, cubic_point
    use mud_trial, only: trial_t, take_step
    implicit none (type, external)
@@ -33,77 +34,74 @@ contains
    !> Shortens an accepted substep so that it lands where the first event happens that concerns it: each is looked for
    !> in what those before it have left. h is a share of inc [-]; it stays where there is no event.
    !> docs/theory/integration.md sections 4.1, 4.2.
-   pure subroutine stop_at_event(par, inc, error, h, trial, counters, event)
+   pure subroutine stop_at_event(par, error, h, it)
       type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
       real(wp), intent(in) :: error        !< of the substep [-]
       real(wp), intent(inout) :: h
-      type(trial_t), intent(inout) :: trial
-      type(counters_t), intent(inout) :: counters
-      integer, intent(out) :: event        !< EVENT_* at the end of the substep
+      type(integration_t), intent(inout) :: it
       integer :: i
       logical :: possible
 
-      event = EVENT_NONE
+      it%event = EVENT_NONE
       do i = 1, ubound(EVENTS, 1)
-         if (.not. EVENTS(i)%concerns(trial%mode)) cycle
-         call look_ahead(par, inc, i, error, h, trial, counters, possible)
+         if (.not. EVENTS(i)%concerns(it%trial%mode)) cycle
+         call look_ahead(par, i, error, h, it, possible)
          if (.not. possible) cycle
          if (i == EVENT_PARTS) then
-            event = i
-            call take_step(par, inc, h, trial, counters)
+            it%event = i
+            call take_step(par, it%inc, h, it%trial, it%counters)
          else
-            call land_on(par, inc, i, error, h, trial, counters, event)
+            call land_on(par, it%inc, i, error, h, it%trial, it%counters, it%event)
          end if
       end do
    end subroutine stop_at_event
 
    !> Whether an event is possible in a substep, for what its function costs. Arguments as in stop_at_event.
-   pure subroutine look_ahead(par, inc, event, error, h, trial, counters, possible)
+   pure subroutine look_ahead(par, event, error, h, it, possible)
       type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
       integer, intent(in) :: event
       real(wp), intent(in) :: error
       real(wp), intent(inout) :: h
-      type(trial_t), intent(inout) :: trial
-      type(counters_t), intent(inout) :: counters
+      type(integration_t), intent(inout) :: it
       logical, intent(out) :: possible
       real(wp) :: reversal
 
       possible = .true.
-      select case (event)
-      case (EVENT_OPENS)
-         possible = is_below(par, trial%y(1:6))
-      case (EVENT_PARTS)
-         call end_at_parting(inc, trial%parts, trial%time, h, possible)
-      case (EVENT_CLOSES)
-         possible = .not. (is_parted(inc, trial%parts, trial%time) .or. is_parted(inc, trial%parts, trial%time + h))
-      case (EVENT_MECHANISM)
-         if (error > SHARP_KINK*par%tolerance) then
-            possible = mechanism_switches(inc, trial)
-         else
-            possible = .false.
-         end if
-      case (EVENT_YIELD)
-         possible = inc%rests
-         if (possible) possible = margin_after(par, inc, trial, h) > SMALL_MARGIN*par%tolerance
-      case (EVENT_UNLOAD)
-         possible = par%remembers .and. .not. inc%rests
-         if (.not. possible) return
-         associate (w => trial%w(inc%scheme%stages))
-            possible = h*drive_of_margin(par, inc, trial%time + h, w) < -SMALL_MARGIN*par%tolerance
-         end associate
-      case (EVENT_REVERSAL)
-         possible = may_reverse(par, inc, trial)
-         if (.not. possible) return
-         reversal = h
-         call find_reversal(par, inc, trial, counters, reversal, possible)
-         if (.not. possible .or. reversal >= h) return
-         h = reversal
-         call take_step(par, inc, h, trial, counters)
-      case (EVENT_RETURN)
-         possible = trial%watched > 0
-      end select
+      associate (inc => it%inc, trial => it%trial)
+         select case (event)
+         case (EVENT_OPENS)
+            possible = is_below(par, trial%y(1:6))
+         case (EVENT_PARTS)
+            call end_at_parting(inc, trial%parts, trial%time, h, possible)
+         case (EVENT_CLOSES)
+            possible = .not. (is_parted(inc, trial%parts, trial%time) .or. is_parted(inc, trial%parts, trial%time + h))
+         case (EVENT_MECHANISM)
+            if (error > SHARP_KINK*par%tolerance) then
+               possible = mechanism_switches(inc, trial)
+            else
+               possible = .false.
+            end if
+         case (EVENT_YIELD)
+            possible = inc%rests
+            if (possible) possible = margin_after(par, inc, trial, h) > SMALL_MARGIN*par%tolerance
+         case (EVENT_UNLOAD)
+            possible = par%remembers .and. .not. inc%rests
+            if (.not. possible) return
+            associate (w => trial%w(inc%scheme%stages))
+               possible = h*drive_of_margin(par, inc, trial%time + h, w) < -SMALL_MARGIN*par%tolerance
+            end associate
+         case (EVENT_REVERSAL)
+            possible = may_reverse(par, inc, trial)
+            if (.not. possible) return
+            reversal = h
+            call find_reversal(par, inc, trial, it%counters, reversal, possible)
+            if (.not. possible .or. reversal >= h) return
+            h = reversal
+            call take_step(par, inc, h, trial, it%counters)
+         case (EVENT_RETURN)
+            possible = trial%watched > 0
+         end select
+      end associate
    end subroutine look_ahead
 
    !> True where the isotropic mechanism begins or ends to act inside the substep. Its rates have a kink there, which is
@@ -191,31 +189,30 @@ contains
    !> depend on the sizes of substeps. A process that begins where the substep does, and drifts backwards, has not gone
    !> forwards. h is a share of inc [-]. docs/theory/memory-rules.md section 3.2, docs/theory/integration.md section
    !> 4.2.
-   pure subroutine note_turning_point(par, inc, h, trial, memory, counters)
+   pure subroutine note_turning_point(par, h, it)
       type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
       real(wp), intent(in) :: h
-      type(trial_t), intent(in) :: trial
-      type(memory_t), intent(inout) :: memory
-      type(counters_t), intent(inout) :: counters
+      type(integration_t), intent(inout) :: it
       type(place_t) :: place
       type(trial_t) :: probe
       type(rate_t) :: w
       real(wp) :: size
       integer :: landed
 
-      place = place_of(par, inc, trial, trial%w(inc%scheme%stages), trial%y)
-      if (forwardness(par, place) >= 0.0_wp) then
-         call note_progress(place, memory)
-         return
-      end if
-      if (forwardness(par, place_of(par, inc, trial, trial%w(1), trial%y0)) > 0.0_wp) then
-         probe = trial
-         size = h
-         call land_on(par, inc, EVENT_TURN, par%tolerance, size, probe, counters, landed)
-         call rate_of(par, inc, trial%time + size, probe%y, trial%r_in, trial%mode, w, counters)
-         call note_progress(place_of(par, inc, trial, w, probe%y), memory)
-      end if
-      call note_farthest(place%r, memory)
+      associate (inc => it%inc, trial => it%trial, memory => it%state%memory)
+         place = place_of(par, inc, trial, trial%w(inc%scheme%stages), trial%y)
+         if (forwardness(par, place) >= 0.0_wp) then
+            call note_progress(place, memory)
+            return
+         end if
+         if (forwardness(par, place_of(par, inc, trial, trial%w(1), trial%y0)) > 0.0_wp) then
+            probe = trial
+            size = h
+            call land_on(par, inc, EVENT_TURN, par%tolerance, size, probe, it%counters, landed)
+            call rate_of(par, inc, trial%time + size, probe%y, trial%r_in, trial%mode, w, it%counters)
+            call note_progress(place_of(par, inc, trial, w, probe%y), memory)
+         end if
+         call note_farthest(place%r, memory)
+      end associate
    end subroutine note_turning_point
 end module mud_events

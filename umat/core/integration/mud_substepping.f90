@@ -71,7 +71,7 @@ contains
          if (it%status%code /= MUD_OK) return
 
          step%h = next_size(par, it%inc, it%trial, h, step%factor, h >= it%inc%to - it%inc%from)
-         call stop_at_event(par, it%inc, step%error, h, it%trial, it%counters, it%event)
+         call stop_at_event(par, step%error, h, it)
          if (it%trial%w(1)%no_root) step%elastic = step%elastic + 1
          if (step%elastic > 1 .and. par%guarded) then
             it%status = fail(MUD_NO_DIRECTION)

@@ -286,7 +286,7 @@ contains
             call accept_process(w%loading, w%x, it%trial%y(13), it%state%memory)
          end associate
          if (par%memory_rule == RULE_RETURN_POINT) then
-            call note_turning_point(par, it%inc, h, it%trial, it%state%memory, it%counters)
+            call note_turning_point(par, h, it)
          end if
       end if
    end subroutine accept_substep

@@ -40,15 +40,15 @@ contains
       type(preloading_t), intent(in) :: preloading
       real(wp), intent(in) :: x
       real(wp), intent(inout) :: d, h_b
-      real(wp), intent(out), optional :: f, slope
+      real(wp), intent(out) :: f, slope
       real(wp) :: q_chi, g
 
       q_chi = preloading%virgin*x*x   ! q chi'
       g = q_chi/(q_chi + preloading%chi)
       d = g*g*positive(d) - positive(-d)
       h_b = g**(2.0_wp*preloading%s)*h_b
-      if (present(f)) f = g*g
-      if (present(slope)) slope = 2.0_wp*preloading%chi/(q_chi + preloading%chi)
+      f = g*g
+      slope = 2.0_wp*preloading%chi/(q_chi + preloading%chi)
    end subroutine preload
 
    !> ln of the contraction that other processes have left, of what all of them and the present one have [-].

@@ -8,7 +8,7 @@ module mud_direction
    use mud_arc, only: arc_t, arc_through, add_fabric, add_cube, trace_cube, trace_cube_slope
    use mud_branchless, only: positive, smaller
    use mud_critical_state, only: lode_factor, lode_slope
-   use mud_direction_equation, only: equation_t, equation_of, moduli_at, slopes_t, slopes_at
+   use mud_direction_equation, only: equation_t, equation_of, find_moduli, slopes_t, slopes_at
    use mud_flow, only: dilatancy_factor
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
@@ -28,7 +28,7 @@ module mud_direction
    real(wp), parameter :: NEARLY_ALONG = 1.0e-6_wp
 
    !> The direction equation at one angle.
-   type, extends(moduli_t) :: trial_t
+   type :: trial_t
       real(wp) :: cosine, sine      !< of the angle w
       real(wp) :: residual          !< gamma sin(w) - beta r:q [kPa]
       real(wp) :: scale             !< gamma + |beta| r:q [kPa]
@@ -52,10 +52,15 @@ contains
       call arc_through(w%r, w%r_moved, n_t, PARALLEL*max(w%r_norm, 1.0e-3_wp), arc, q)
       if (par%fabric) call add_fabric(w%z, n_t, q, arc)
       if (par%lode) call add_cube(n_t, q, arc)
+      w%z_n = 0.0_wp
+      w%a_d = par%a_0
+      w%lode = 1.0_wp
       eq = equation_of(par, w)
+      w%r_b = eq%r_b_1
+      w%r_d = eq%r_d_1
       if (arc%r_q <= 0.0_wp) then
          w%n = n_t
-         call evaluate_direction(par, eq, arc, 0.0_wp, w, at)
+         call evaluate_direction(par, eq, arc, 0.0_wp, w%moduli_t, at)
          found = at%admissible > 0.0_wp
       else
          start = -1.0_wp
@@ -66,7 +71,6 @@ contains
          call find_angle(par, eq, arc, start, w, tau, at, found)
          w%n = at%cosine*n_t + at%sine*q
       end if
-      w%moduli_t = at%moduli_t
       w%loading = found
       w%no_root = .not. found
       if (.not. found) return
@@ -92,8 +96,8 @@ contains
       real(wp) :: side, low, high, first, last, start
       logical :: guarded, crossed
 
-      call evaluate_direction(par, eq, arc, 0.0_wp, w, at)
-      side = sign(1.0_wp, at%beta)
+      call evaluate_direction(par, eq, arc, 0.0_wp, w%moduli_t, at)
+      side = sign(1.0_wp, w%beta)
       first = side*at%residual
       guarded = par%floored .and. par%cap_d > 0.0_wp .and. par%cap_h > 0.0_wp
       w%several = .not. guarded
@@ -102,7 +106,7 @@ contains
       if (guarded) then
          start = side*guess
          if (start <= 0.0_wp .or. start >= 1.0_wp) then
-            start = min(abs(at%beta)*arc%r_q/at%gamma, 1.0_wp)   ! sine of the angle if gamma and beta did not change
+            start = min(abs(w%beta)*arc%r_q/w%gamma, 1.0_wp)   ! sine of the angle if gamma and beta did not change
             start = start/(1.0_wp + sqrt(1.0_wp - start*start))
          end if
          call newton(par, eq, arc, side, 0.0_wp, 1.0_wp, start, w, tau, at)
@@ -111,12 +115,12 @@ contains
          if (found) then
             w%several = .not. single_root(par, eq, arc, side, at, w)
             if (.not. w%several) return
-            call scan_arc(par, eq, arc, w, side, first, last, .true., low, high, crossed)
+            call scan_arc(par, eq, arc, side, first, last, .true., low, high, crossed)
             if (.not. crossed) return
          end if
       end if
       if (.not. found) then
-         call scan_arc(par, eq, arc, w, side, first, last, .false., low, high, found)
+         call scan_arc(par, eq, arc, side, first, last, .false., low, high, found)
          if (.not. found) return
       end if
       call newton(par, eq, arc, side, low, high, 0.5_wp*(low + high), w, tau, at)
@@ -124,13 +128,13 @@ contains
    end subroutine find_angle
 
    !> Newton's method kept inside a bracket (tau without sign, `side` gives it) whose low end has a negative residual
-   !> and whose high end a positive one. Leaves at evaluated at the angle it returns.
+   !> and whose high end a positive one. Leaves w and at evaluated at the angle it returns.
    pure subroutine newton(par, eq, arc, side, from, to, first, w, tau, at)
       type(params_t), intent(in) :: par
       type(equation_t), intent(in) :: eq
       type(arc_t), intent(in) :: arc
       real(wp), intent(in) :: side, from, to, first
-      type(rate_t), intent(in) :: w
+      type(rate_t), intent(inout) :: w
       real(wp), intent(out) :: tau
       type(trial_t), intent(out) :: at
       real(wp) :: lower, upper, u, slope, step, previous
@@ -142,7 +146,7 @@ contains
       previous = to - from
       do iteration = 1, MAX_ITERATIONS
          tau = side*u
-         call evaluate_direction(par, eq, arc, tau, w, at)
+         call evaluate_direction(par, eq, arc, tau, w%moduli_t, at)
          if (abs(at%residual) <= ROOT_TOLERANCE*at%scale) return
          if (side*at%residual < 0.0_wp) then
             lower = u
@@ -163,7 +167,7 @@ contains
       end do
    end subroutine newton
 
-   !> False where a root before that of at is possible: a cap, or a change between the floor and a small x, bends
+   !> False where a root before that of w and at is possible: a cap, or a change between the floor and a small x, bends
    !> the residual back. Where x rises up to the root only the floor's equation can have one, before x passes the floor:
    !> the residual there tells (the roots of 2,400,000 random states of six kinds are those of scans of all such arcs).
    pure logical function single_root(par, eq, arc, side, at, w)
@@ -173,24 +177,26 @@ contains
       real(wp), intent(in) :: side
       type(trial_t), intent(in) :: at
       type(rate_t), intent(in) :: w
-      type(trial_t) :: passing
+      type(moduli_t) :: passing
+      type(trial_t) :: there
       real(wp) :: x_q
 
       single_root = max(arc%r_q, abs(at%sine))*hypot(arc%x_t, arc%x_q) <= NEARLY_ALONG*par%x_floor
-      if (single_root .or. at%capped_h .or. at%capped_d) return
+      if (single_root .or. w%capped_h .or. w%capped_d) return
       ! Always floored (on less than a right angle x cannot become positive between two negative ends), or never near.
-      single_root = arc%x_t**2 + arc%x_q**2 < par%x_floor**2 .or. max(arc%x_t, at%x) < 0.0_wp .or. &
-                    min(arc%x_t, at%x) > 2.0_wp*par%x_floor
+      single_root = arc%x_t**2 + arc%x_q**2 < par%x_floor**2 .or. max(arc%x_t, w%x) < 0.0_wp .or. &
+                    min(arc%x_t, w%x) > 2.0_wp*par%x_floor
       ! the preloading bends the residual wherever x changes
-      if (w%preloaded) single_root = max(arc%x_t, at%x) < 0.0_wp .or. arc%x_t**2 + arc%x_q**2 < par%x_floor**2
+      if (w%preloaded) single_root = max(arc%x_t, w%x) < 0.0_wp .or. arc%x_t**2 + arc%x_q**2 < par%x_floor**2
       if (w%preloaded) return
       x_q = side*arc%x_q
       if (single_root .or. at%cosine < NOT_FAR .or. at%cosine*x_q < abs(at%sine)*arc%x_t) return
-      single_root = at%floored .or. arc%x_t >= par%x_floor
+      single_root = w%floored .or. arc%x_t >= par%x_floor
       if (single_root) return
+      passing = w%moduli_t
       call evaluate_direction(par, eq, arc, side*(par%x_floor - arc%x_t) &
-                              /(x_q + sqrt(max(arc%x_t**2 + x_q**2 - par%x_floor**2, 0.0_wp))), w, passing)
-      single_root = side*passing%residual < 0.0_wp .and. .not. (passing%capped_h .or. passing%capped_d)
+                              /(x_q + sqrt(max(arc%x_t**2 + x_q**2 - par%x_floor**2, 0.0_wp))), passing, there)
+      single_root = side*there%residual < 0.0_wp .and. .not. (passing%capped_h .or. passing%capped_d)
    end function single_root
 
    !> The first interval of the arc up to tau = `last` (a root already known, or an end) in which the residual becomes
@@ -198,11 +204,10 @@ contains
    !> again, more closely, where the chords beside it, prolonged, meet zero in it: a residual that bends once between
    !> two points cannot rise above both of them. (240,000 random states: the same roots as with a scan of 64 points, all
    !> but one of them those of a scan of 2048.)
-   pure subroutine scan_arc(par, eq, arc, w, side, first, last, is_root, lower, upper, crossed)
+   pure subroutine scan_arc(par, eq, arc, side, first, last, is_root, lower, upper, crossed)
       type(params_t), intent(in) :: par
       type(equation_t), intent(in) :: eq
       type(arc_t), intent(in) :: arc
-      type(rate_t), intent(in) :: w
       real(wp), intent(in) :: side, first, last   !< first: the residual at tau = 0, in units of its side [kPa]
       logical, intent(in) :: is_root
       real(wp), intent(out) :: lower, upper       !< tau of the interval's ends, without sign
@@ -214,7 +219,7 @@ contains
       intervals = POINTS
       if (is_root) intervals = POINTS + 1   ! the known root itself is no crossing
       step = last/intervals
-      call residuals(par, eq, arc, w, side, 0.0_wp, step, f(1:POINTS), above)
+      call residuals(par, eq, arc, side, 0.0_wp, step, f(1:POINTS), above)
       f(-1:0) = first
       f(POINTS + 1:) = merge(0.0_wp, f(POINTS), is_root)
       do i = 0, intervals - 1
@@ -226,7 +231,7 @@ contains
             reach = max(reach, above(i + 1))
          end if
          if (reach < 0.0_wp) cycle
-         call residuals(par, eq, arc, w, side, from, step/(POINTS + 1), fine, above_fine)
+         call residuals(par, eq, arc, side, from, step/(POINTS + 1), fine, above_fine)
          do j = 1, POINTS
             if (above_fine(j) < 0.0_wp) cycle
             crossed = .true.
@@ -245,15 +250,15 @@ contains
 
    !> The residual in units of its side, and a number that is not negative where it is positive at an admissible angle,
    !> at equal steps of tau from `from` on: the same equation as in evaluate_direction, of all points together.
-   pure subroutine residuals(par, eq, arc, w, side, from, step, f, above)
+   pure subroutine residuals(par, eq, arc, side, from, step, f, above)
       type(params_t), intent(in) :: par
       type(equation_t), intent(in) :: eq
       type(arc_t), intent(in) :: arc
-      type(rate_t), intent(in) :: w
       real(wp), intent(in) :: side, from, step
       real(wp), intent(out) :: f(POINTS), above(POINTS)
       real(wp), dimension(POINTS) :: c, s, lode, a_d
-      real(wp) :: tau, d, h_b, beta, gamma, free_d, free_h_b
+      type(moduli_t) :: m
+      real(wp) :: tau
       integer :: i
 
       do i = 1, POINTS
@@ -274,42 +279,43 @@ contains
          end do
       end if
       do i = 1, POINTS
-         call moduli_at(eq, c(i)*arc%r_t + s(i)*arc%r_q, c(i)*arc%x_t + s(i)*arc%x_q, a_d(i), &
-                        (SQRT_2_3*w%m_b)*lode(i), (SQRT_2_3*w%m_d)*lode(i), d, h_b, beta, gamma, free_d, free_h_b)
-         f(i) = side*(gamma*s(i) - beta*arc%r_q)
-         above(i) = smaller(f(i) + ROOT_TOLERANCE*(gamma + abs(beta)*arc%r_q), gamma*c(i) - beta*arc%r_t)
+         m%r_n = c(i)*arc%r_t + s(i)*arc%r_q
+         m%x = c(i)*arc%x_t + s(i)*arc%x_q
+         m%a_d = a_d(i)
+         m%r_b = eq%r_b_1*lode(i)
+         m%r_d = eq%r_d_1*lode(i)
+         call find_moduli(eq, m)
+         f(i) = side*(m%gamma*s(i) - m%beta*arc%r_q)
+         above(i) = smaller(f(i) + ROOT_TOLERANCE*(m%gamma + abs(m%beta)*arc%r_q), m%gamma*c(i) - m%beta*arc%r_t)
       end do
    end subroutine residuals
 
-   !> The direction equation at the angle whose half has the tangent tau.
-   pure subroutine evaluate_direction(par, eq, arc, tau, w, at)
+   !> The direction equation at the angle whose half has the tangent tau. What belongs to a switch that is off stays.
+   pure subroutine evaluate_direction(par, eq, arc, tau, m, at)
       type(params_t), intent(in) :: par
       type(equation_t), intent(in) :: eq
       type(arc_t), intent(in) :: arc
       real(wp), intent(in) :: tau
-      type(rate_t), intent(in) :: w
+      type(moduli_t), intent(inout) :: m
       type(trial_t), intent(out) :: at
-      real(wp) :: free_d, free_h_b
 
       at%cosine = 2.0_wp/(1.0_wp + tau*tau) - 1.0_wp
       at%sine = tau*(1.0_wp + at%cosine)
-      at%r_n = at%cosine*arc%r_t + at%sine*arc%r_q
-      at%x = at%cosine*arc%x_t + at%sine*arc%x_q
-      at%z_n = 0.0_wp
-      if (par%fabric) at%z_n = at%cosine*arc%z_t + at%sine*arc%z_q
-      at%a_d = dilatancy_factor(par, at%z_n)
-      at%lode = 1.0_wp
-      if (par%lode) at%lode = lode_factor(par, trace_cube(arc, at%cosine, at%sine))
-      at%r_b = (SQRT_2_3*w%m_b)*at%lode
-      at%r_d = (SQRT_2_3*w%m_d)*at%lode
-      call moduli_at(eq, at%r_n, at%x, at%a_d, at%r_b, at%r_d, at%d, at%h_b, at%beta, at%gamma, free_d, free_h_b, &
-                     at%f_chi, at%f_slope)
-      at%floored = at%x < eq%x_floor
-      at%capped_d = at%d < free_d
-      at%capped_h = at%h_b > free_h_b
-      at%residual = at%gamma*at%sine - at%beta*arc%r_q
-      at%scale = at%gamma + abs(at%beta)*arc%r_q
-      at%admissible = at%gamma*at%cosine - at%beta*arc%r_t
+      m%r_n = at%cosine*arc%r_t + at%sine*arc%r_q
+      m%x = at%cosine*arc%x_t + at%sine*arc%x_q
+      if (par%fabric) then
+         m%z_n = at%cosine*arc%z_t + at%sine*arc%z_q
+         m%a_d = dilatancy_factor(par, m%z_n)
+      end if
+      if (par%lode) then
+         m%lode = lode_factor(par, trace_cube(arc, at%cosine, at%sine))
+         m%r_b = eq%r_b_1*m%lode
+         m%r_d = eq%r_d_1*m%lode
+      end if
+      call find_moduli(eq, m)
+      at%residual = m%gamma*at%sine - m%beta*arc%r_q
+      at%scale = m%gamma + abs(m%beta)*arc%r_q
+      at%admissible = m%gamma*at%cosine - m%beta*arc%r_t
    end subroutine evaluate_direction
 
    !> Derivative of the residual with respect to the angle, where it was evaluated [kPa].
@@ -321,18 +327,18 @@ contains
       type(slopes_t) :: s
       real(wp) :: dr, dx, dz, d_lode, dd, dh, d_beta, d_gamma
 
-      call slopes_at(par, w, at%moduli_t, s)
+      call slopes_at(par, w, w%moduli_t, s)
       dr = at%cosine*arc%r_q - at%sine*arc%r_t
       dx = at%cosine*arc%x_q - at%sine*arc%x_t
       dz = 0.0_wp
       if (par%fabric) dz = at%cosine*arc%z_q - at%sine*arc%z_t
       d_lode = 0.0_wp
-      if (par%lode) d_lode = SQRT_2_3*lode_slope(par, at%lode)*trace_cube_slope(arc, at%cosine, at%sine)
+      if (par%lode) d_lode = SQRT_2_3*lode_slope(par, w%lode)*trace_cube_slope(arc, at%cosine, at%sine)
       dd = s%d_r*dr + s%d_z*dz + s%d_r_d*w%m_d*d_lode
       if (w%preloaded) dd = dd + s%d_x*dx
       dh = s%h_r*dr + s%h_z*dz + s%h_x*dx + (s%h_r_d*w%m_d + s%h_r_b*w%m_b)*d_lode
-      d_beta = w%k_e*(dh*at%d + at%h_b*dd)
+      d_beta = w%k_e*(dh*w%d + w%h_b*dd)
       d_gamma = 2.0_wp/3.0_wp*w%p*w%m_b*d_lode + 2.0_wp*w%g*dh
-      slope = d_gamma*at%sine + at%gamma*at%cosine - d_beta*arc%r_q
+      slope = d_gamma*at%sine + w%gamma*at%cosine - d_beta*arc%r_q
    end function slope_of_residual
 end module mud_direction

@@ -13,7 +13,7 @@ module mud_direction_equation
    use mud_tensor, only: ddot, deviator, square
    implicit none (type, external)
    private
-   public :: equation_t, equation_of, moduli_at, slopes_t, slopes_at, turn_t, find_turn
+   public :: equation_t, equation_of, find_moduli, slopes_t, slopes_at, turn_t, find_turn
 
    real(wp), parameter :: NEGLIGIBLE = 1.0e-12_wp   !< Smaller divisors would only make a cap that never acts [-].
    real(wp), parameter :: NO_LIMIT = 1.0e100_wp     !< A cap that is off.
@@ -23,6 +23,7 @@ module mud_direction_equation
       real(wp) :: two_g, k_e      !< 2 G, K_e [kPa]
       real(wp) :: two_thirds_p    !< [kPa]
       real(wp) :: per_b_0         !< 1/b_0 [-]
+      real(wp) :: r_b_1, r_d_1    !< |r| on both surfaces in triaxial compression [-]
       real(wp) :: x_floor         !< x_0 [-]
       real(wp) :: most_d          !< D r:n of the contraction cap [-]
       real(wp) :: least_h         !< 2/3 p'/(1 - kappa_c) of the softening cap, 0: off [kPa]
@@ -57,6 +58,8 @@ contains
       eq%k_e = w%k_e
       eq%two_thirds_p = 2.0_wp/3.0_wp*w%p
       eq%per_b_0 = 1.0_wp/w%b_0
+      eq%r_b_1 = SQRT_2_3*w%m_b
+      eq%r_d_1 = SQRT_2_3*w%m_d
       eq%x_floor = par%x_floor
       eq%most_d = merge(par%cap_d*eq%two_g/eq%k_e, NO_LIMIT, par%cap_d > 0.0_wp)
       eq%least_h = merge(eq%two_thirds_p/(1.0_wp - par%cap_h), 0.0_wp, par%cap_h > 0.0_wp)
@@ -65,30 +68,29 @@ contains
       eq%preloading = preloading_of(par, w%chi, w%m_d/w%m_b, w%b_0)
    end function equation_of
 
-   !> D, 1/h, beta and gamma in a direction, docs/theory/material.md sections 4.2, 4.6, 5.2 to 5.4. Without branches: of
-   !> several directions the compiler works on two at a time.
-   pure subroutine moduli_at(eq, r_n, x, a_d, r_b, r_d, d, h_b, beta, gamma, free_d, free_h_b, f_chi, f_slope)
+   !> D, 1/h, beta and gamma in a direction, and the guards that act there, from r:n, (r - r_in):n, A_d and |r| on both
+   !> surfaces in m; docs/theory/material.md sections 4.2, 4.6, 5.2 to 5.4. Without branches: of several directions the
+   !> compiler works on two at a time.
+   pure subroutine find_moduli(eq, m)
       type(equation_t), intent(in) :: eq
-      real(wp), intent(in) :: r_n, x           !< r:n and (r - r_in):n [-]
-      real(wp), intent(in) :: a_d, r_b, r_d    !< A_d and |r| on both surfaces in the direction [-]
-      real(wp), intent(out) :: d, h_b          !< [-]
-      real(wp), intent(out) :: beta, gamma     !< [kPa]
-      real(wp), intent(out) :: free_d, free_h_b             !< D and 1/h without the caps [-]
-      real(wp), intent(out), optional :: f_chi, f_slope     !< of preload; set with preloading
-      real(wp) :: stiffness, limit
+      type(moduli_t), intent(inout) :: m
+      real(wp) :: d, h_b, stiffness, limit   ! D and 1/h without the caps
 
-      free_d = dilatancy(a_d, r_d, r_n)
-      free_h_b = larger(x, eq%x_floor)*eq%per_b_0
-      if (eq%preloaded) call preload(eq%preloading, larger(x, eq%x_floor), free_d, free_h_b, f_chi, f_slope)
-      d = smaller(free_d, eq%most_d/larger(r_n, NEGLIGIBLE))
-      stiffness = eq%two_g - eq%k_e*d*r_n
-      limit = eq%least_h*positive(r_n - r_b)/larger(stiffness, NEGLIGIBLE*eq%two_g)
-      h_b = larger(limit*(0.5_wp + sign(0.5_wp, stiffness)), free_h_b)   ! exactly that where the cap does not act
-      beta = eq%two_thirds_p + h_b*eq%k_e*d
-      gamma = eq%two_thirds_p*r_b + eq%two_g*h_b
-   end subroutine moduli_at
+      d = dilatancy(m%a_d, m%r_d, m%r_n)
+      h_b = larger(m%x, eq%x_floor)*eq%per_b_0
+      if (eq%preloaded) call preload(eq%preloading, larger(m%x, eq%x_floor), d, h_b, m%f_chi, m%f_slope)
+      m%d = smaller(d, eq%most_d/larger(m%r_n, NEGLIGIBLE))
+      stiffness = eq%two_g - eq%k_e*m%d*m%r_n
+      limit = eq%least_h*positive(m%r_n - m%r_b)/larger(stiffness, NEGLIGIBLE*eq%two_g)
+      m%h_b = larger(limit*(0.5_wp + sign(0.5_wp, stiffness)), h_b)   ! exactly h_b where the cap does not act
+      m%beta = eq%two_thirds_p + m%h_b*eq%k_e*m%d
+      m%gamma = eq%two_thirds_p*m%r_b + eq%two_g*m%h_b
+      m%floored = m%x < eq%x_floor
+      m%capped_d = m%d < d
+      m%capped_h = m%h_b > h_b
+   end subroutine find_moduli
 
-   !> Slopes of D and 1/h in a direction of the equation of w. Derivatives of moduli_at; A_d changes with z:n by
+   !> Slopes of D and 1/h in a direction of the equation of w. Derivatives of find_moduli; A_d changes with z:n by
    !> docs/theory/material.md section 4.2.
    pure subroutine slopes_at(par, w, at, s)
       type(params_t), intent(in) :: par
