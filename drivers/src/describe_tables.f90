@@ -10,6 +10,7 @@ module describe_tables
    public :: print_props, print_statev, print_namelist, text, version, number
 
    integer, parameter :: BUFFER = 256
+   character, parameter :: BACKSLASH = achar(92)
 contains
    !> Prints the parameters of the library as a table in Markdown.
    subroutine print_props()
@@ -77,7 +78,7 @@ contains
       plain = text(list, index, field)
       string = ''
       do i = 1, len(plain)
-         if (plain(i:i) == '|') string = string//'\'
+         if (plain(i:i) == '|') string = string//BACKSLASH
          string = string//plain(i:i)
       end do
    end function cell
