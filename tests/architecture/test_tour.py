@@ -10,7 +10,8 @@ def bodies(folder):
     found = {}
     for file in folder.rglob("*.f90"):
         text = file.read_text(encoding="utf-8")
-        for match in re.finditer(r"^ *(?:pure )?subroutine (\w+)\(.*?^ *end subroutine \1$", text, re.MULTILINE | re.DOTALL):
+        for match in re.finditer(r"^ *(?:pure )?subroutine (\w+)\(.*?^ *end subroutine \1$", text,
+                                 re.MULTILINE | re.DOTALL):
             found.setdefault(match[1], []).append(match[0])
     return found
 
