@@ -12,7 +12,7 @@ program work_precision
       mud_count, mud_report, MUD_PROPS, MUD_STATEV, MUD_TANGENT_NONE
    implicit none (type, external)
 
-   integer, parameter :: wp = c_double, WORDS = 128, PARTS = 3, ROUNDS = 7, DECADES = 9
+   integer, parameter :: wp = c_double, PARTS = 3, ROUNDS = 7, DECADES = 9
    character(*), parameter :: SCHEMES(0:3) = ['auto', 'ME21', 'BS32', 'DP54']
 
    !> Straight parts of strain, tension positive with engineering shear; a part of zero strain and suction is left out.
@@ -65,7 +65,8 @@ contains
       integer, intent(in) :: scheme, increments, timed
       real(wp), intent(in) :: tolerance
       type(result_t), intent(out) :: result
-      real(wp) :: props(WORDS), statev(WORDS), material(mud_prepared_size()), suction, d_suction
+      real(wp), allocatable :: props(:), statev(:)
+      real(wp) :: material(mud_prepared_size()), suction, d_suction
       type(mud_report) :: report
       character :: text(1)
       integer(c_int) :: n_props, n_statev, code
@@ -74,7 +75,7 @@ contains
 
       n_props = mud_count(MUD_PROPS)
       n_statev = mud_count(MUD_STATEV)
-      if (max(n_props, n_statev) > WORDS) error stop 'work_precision: WORDS is too small'
+      allocate (props(n_props), statev(n_statev))
       call set_material_of_reference(props, n_props)
       statev = 0.0_wp
       result%stress = path%p*EQUAL
