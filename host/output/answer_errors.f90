@@ -25,6 +25,7 @@ module answer_errors
    !> Of an answer: the warning is given from here on. In dynamic stages the magnitudes of errors add up, to ten times
    !> the true one in long shaking.
    real(wp), parameter :: ALARMING_ERROR = 0.1_wp, ALARMING_IN_MOTION = 0.3_wp
+   real(wp), parameter :: NEWTON_SHARE = 0.1_wp      !< Of the accuracy: more should Newton's method not leave.
    real(wp), parameter :: BEYOND = 3.0_wp            !< Or from this multiple of the accuracy that was asked for.
    !> Share of the root mean square change of its field below which a change is no answer: triangles that are not
    !> symmetric make as much of a displacement across where there is none.
@@ -86,9 +87,11 @@ contains
    end function is_answer
 
    !> Judges every answer, or the goals where the scene names them, by its own change, of the fields where no point is
-   !> named; what changes by less than LEAST_SHARE of its field is no answer. Given steps: a warning on standard error,
-   !> also where the run is quiet, of the worst one beyond 10 % (30 % with dynamic stages). Controlled steps: fault
-   !> EXIT_ACCURACY where the worst one is beyond three times what was asked for. docs/theory/host.md section 4.5.
+   !> named: what steps and Newton's method leave of it. What changes by less than LEAST_SHARE of its field is no
+   !> answer. A warning where Newton's method leaves more than a tenth of the accuracy. Given steps: a warning on
+   !> standard error, also where the run is quiet, of the worst one beyond 10 % (30 % with dynamic stages). Controlled
+   !> steps: fault EXIT_ACCURACY where the worst one is beyond three times what was asked for. docs/theory/host.md
+   !> section 4.5.
    subroutine judge_answers(model, control, verified, forces, fault)
       type(model_t), intent(in) :: model
       type(control_state_t), intent(in) :: control
@@ -98,10 +101,12 @@ contains
       character(*), parameter :: SHORTER = &
          'Leave dt out (steps are then controlled by their error) or shorten it; --verify measures the error.'
       character(:), allocatable :: worst, measured
-      real(wp) :: change, error, largest, asked
+      real(wp) :: change, error, largest, asked, newton, of_worst
       integer :: i, f
 
       asked = accuracy_of(model)
+      newton = 0.0_wp
+      of_worst = 0.0_wp
       largest = ALARMING_ERROR
       if (any(model%stages%kind == DYNAMIC) .and. .not. verified) largest = ALARMING_IN_MOTION
       if (asked > 0.0_wp) largest = BEYOND*asked
@@ -109,40 +114,46 @@ contains
       do f = 1, FIELDS
          do i = 1, size(model%points)
             if (.not. estimate(model, control, i, f, change, error)) cycle
-            if (is_answer(control, f, change)) &
-               call compare(trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f)), error)
+            if (.not. is_answer(control, f, change)) cycle
+            call compare(trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f)), error, control%newton(f, i)/change)
          end do
          ! A second run measures named answers alone.
          if (size(model%points) > 0 .or. verified .and. size(forces) > 0) cycle
          if (f < DISPLACEMENTS .or. .not. control%scale(f) > 0.0_wp) cycle
          if (f > DISPLACEMENTS .and. .not. control%scale(f) > LEAST_PRESSURE) cycle
          call compare('the '//trim(OF_ALL(max(f, DISPLACEMENTS)))//' (root mean square of all nodes)', &
-                      control%largest(f)/control%scale(f))
+                      control%largest(f)/control%scale(f), 0.0_wp)
       end do
       do i = 1, size(forces)
-         call compare(trim(forces(i)%name), forces(i)%error)
+         call compare(trim(forces(i)%name), forces(i)%error, 0.0_wp)
       end do
+      if (asked > 0.0_wp .and. newton > NEWTON_SHARE*asked) write (error_unit, '(a)') 'mud_host: warning: '// &
+         'Newton''s method leaves '//short(100*newton)//' % of an answer, more than a tenth of the accuracy of '// &
+         short(100*asked)//' %: leave tolerance of &stage out, or give a smaller one.'
       if (worst == '') return
       measured = trim(merge('measured ', 'estimated', verified))//' error of '//worst//' is '//short(100*largest)// &
                  ' % of its largest change'
       if (asked > 0.0_wp) then
          call raise(fault, EXIT_ACCURACY, 'The accuracy is not met: the '//measured//', '//short(100*asked)// &
                     ' % was asked for. '//what_limited(control)//' The results are written. '//remedy(control, asked, &
-                    largest))
+                    largest, of_worst))
          return
       end if
       write (error_unit, '(a)') 'mud_host: warning: the steps in time are too long: the '//measured//'. '//SHORTER
    contains
-      subroutine compare(name, error)
+      subroutine compare(name, error, by_newton)
          character(*), intent(in) :: name
-         real(wp), intent(in) :: error
+         real(wp), intent(in) :: error, by_newton   !< Shares of its change that steps and Newton's method leave [-].
 
-         if (error <= largest) return
          if (size(model%goals) > 0) then
             if (.not. is_goal(model%goals, name, .true.)) return
          end if
+         newton = max(newton, by_newton)
+         ! Where no accuracy is asked for, the steps alone are judged.
+         if (error + merge(by_newton, 0.0_wp, asked > 0.0_wp) <= largest) return
          worst = name
-         largest = error
+         of_worst = by_newton
+         largest = error + merge(by_newton, 0.0_wp, asked > 0.0_wp)
       end subroutine compare
    end subroutine judge_answers
 
@@ -179,12 +190,17 @@ contains
              whole(nint(sum(control%limits)))//'); '//whole(control%rejected)//' steps were repeated.'
    end function what_limited
 
-   !> What to change in the scene, by what kept most steps short.
-   function remedy(control, asked, found) result(text)
+   !> What to change in the scene: by what kept most steps short, or where Newton's method leaves most.
+   function remedy(control, asked, found, by_newton) result(text)
       type(control_state_t), intent(in) :: control
       real(wp), intent(in) :: asked, found   !< Accuracy, and the error of the worst answer [-].
+      real(wp), intent(in) :: by_newton      !< What Newton's method leaves of that answer [-].
       character(:), allocatable :: text
 
+      if (by_newton > 0.5_wp*found) then
+         text = 'Newton''s method leaves '//short(100*by_newton)//' %: leave tolerance of &stage out.'
+         return
+      end if
       select case (maxloc(control%limits, 1))
       case (BY_LARGEST)
          text = 'Shorten dt_max, or ask for an accuracy of '

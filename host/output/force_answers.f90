@@ -6,11 +6,13 @@ module force_answers
    use answer_verification, only: read_numbers, NAME_LENGTH
    use error_norms, only: constant_of_accelerations, constant_of_rates, kept_of_motion
    use faults, only: fault_t
-   use force_errors, only: error_of_support, error_of_peaks
-   use generalised_alpha, only: make_scheme, scheme_t, QUASI_STATIC, DYNAMIC
+   use force_errors, only: error_of_support, error_on_path, error_of_peaks, VALUES
+   use generalised_alpha, only: make_scheme, scheme_t, STATIC, QUASI_STATIC, DYNAMIC
    use history_distance, only: farthest, peaks_apart
    use model_types, only: model_t
    use output_tables, only: reactions_of
+   use scene_types, only: stage_t
+   use step_landings, only: is_break
    use unknown_fields, only: AT_U_R
    implicit none (type, external)
    private
@@ -37,12 +39,14 @@ module force_answers
       real(wp), allocatable :: early(:)                    !< By how much forces hold before the end [s].
       real(wp), allocatable :: constant(:)                 !< C of the error of a step, 0: nothing estimates it [-].
       real(wp), allocatable :: kept(:)                     !< Share of earlier errors that a step leaves [-].
+      real(wp), allocatable :: bend(:)                     !< By which the stiffness changes in it, static stages [-].
    end type steps_t
 contains
    !> Forces of the supports of every stage and thrusts of the contacts, with the errors that their histories tell.
-   !> Where these tell nothing, in stages without inertia or flow and where not every step is written, a force is taken
-   !> to be as wrong as the worst of the unknowns, `worst`. docs/theory/host.md section 4.5. What changes by no more
-   !> than the rounding of the largest force of a node, or by a thousandth of the largest force of its stage, is none;
+   !> Where these tell nothing, in static stages of a few steps and where not every step is written, a force is taken to
+   !> be as wrong as the worst of the unknowns, `worst`. docs/theory/host.md section 4.5. What changes by no more
+   !> than the rounding of the largest force of a node, in static stages by no more than Newton's method leaves of it,
+   !> or by a thousandth of the largest force of its stage, is none;
    !> nor is that of an axis of symmetry. Fault EXIT_OUTPUT: a table cannot be read.
    subroutine list_forces(folder, model, worst, force_of_node, forces, fault)
       character(*), intent(in) :: folder
@@ -70,7 +74,7 @@ contains
          change = maxval(numbers, dim=2) - minval(numbers, dim=2)
          where (.not. (index(names, FORCES_R) > 0 .or. index(names, FORCES_Z) > 0)) change = 0.0_wp
          do k = 1, size(names)
-            if (.not. change(k) > max(ROUNDING*force_of_node, NO_FORCE*maxval(change))) cycle
+            if (.not. change(k) > max(least(model%stages(i))*force_of_node, NO_FORCE*maxval(change))) cycle
             if (is_of_axis(model, trim(names(k)))) cycle
             forces = [forces, force_answer_t(trim(model%stages(i)%name)//': '//names(k), change(k), &
                                              support(i, numbers(TIME_OF_FORCES, :), numbers(k, :), change(k)), i, &
@@ -92,6 +96,14 @@ contains
          end associate
       end do
    contains
+      !> Share of the largest force of a node that is none: rounding, in static stages what Newton's method leaves.
+      pure real(wp) function least(stage)
+         type(stage_t), intent(in) :: stage
+
+         least = ROUNDING
+         if (stage%kind == STATIC) least = max(least, stage%tolerance)
+      end function least
+
       !> Error of the force of a support in a stage, as a share of its change.
       pure real(wp) function support(stage, times, force, change) result(error)
          integer, intent(in) :: stage
@@ -100,7 +112,13 @@ contains
 
          here = steps%stage == stage
          error = worst
-         if (count(here) /= size(times) .or. any(here .and. .not. steps%constant > 0.0_wp)) return
+         if (count(here) /= size(times)) return
+         if (model%stages(stage)%kind == STATIC) then
+            if (any(here .and. steps%bend > 0.0_wp)) &
+               error = error_on_path(times, pack(steps%dt, here), pack(steps%bend, here), force)/change
+            return
+         end if
+         if (.not. any(here .and. steps%constant > 0.0_wp)) return
          error = error_of_support(times, pack(steps%dt, here), pack(steps%constant, here), pack(steps%kept, here), &
                                   force, model%stages(stage)%kind == QUASI_STATIC)/change
       end function support
@@ -129,14 +147,16 @@ contains
       real(wp), allocatable :: numbers(:, :), kinetic(:), damping(:)
       type(scheme_t) :: scheme
       real(wp) :: since, motion, damped
-      integer :: i
+      logical :: breaks
+      integer :: i, fresh
 
       call read_numbers(folder//'/ledger.csv', names, numbers, fault, &
-                        [character(NAME_LENGTH) :: 'stage', 'time', 'dt', 'kinetic', 'damping'])
+                        [character(NAME_LENGTH) :: 'stage', 'time', 'dt', 'kinetic', 'damping', 'bend'])
       if (fault%code /= 0) return
       steps%stage = nint(column('stage'))
       steps%time = column('time')
       steps%dt = column('dt')
+      steps%bend = column('bend')
       kinetic = column('kinetic')
       damping = column('damping')
       allocate (steps%early, steps%constant, steps%kept, mold=steps%dt)
@@ -146,9 +166,11 @@ contains
             if (i == 1 .or. steps%stage(max(1, i - 1)) /= steps%stage(i)) then
                since = 0.0_wp
                motion = 0.0_wp
+               fresh = 0
                if (i > 1) damped = damping(i - 1)
             end if
             since = since + dt
+            fresh = fresh + 1
             scheme = make_scheme(stage%kind, stage%rho_inf, dt)
             steps%early(i) = (1 - scheme%l_f)*dt
             steps%constant(i) = 0.0_wp
@@ -158,8 +180,12 @@ contains
                motion = motion + dt*kinetic(i)
                steps%kept(i) = kept_of_motion(dt, damping(i) - damped, motion)
             else if (stage%kind == QUASI_STATIC .and. (model%domain%with_w .or. model%domain%with_c)) then
-               steps%constant(i) = constant_of_rates(scheme)
+               if (fresh >= VALUES) steps%constant(i) = constant_of_rates(scheme)
                steps%kept(i) = (since - dt)/since
+               ! What is sudden begins a flow anew: forces before it tell nothing of those after it.
+               breaks = is_break(model, stage, steps%time(i), dt)
+               if (breaks) since = 0.0_wp
+               if (breaks) fresh = 0
             end if
          end associate
       end do

@@ -30,7 +30,7 @@ module output_tables
    character(*), parameter :: LEDGER_COLUMNS = 'time,dt,stage,iterations,'// &
       'error_u_r,error_u_z,error_p_w,error_p_c,first_u_r,first_u_z,first_p_w,first_p_c,reduction,correction,'// &
       'rates,kinetic,skeleton,pores,gravity,loads,supports,seepage,damping,friction,imbalance,'// &
-      'outflow,outflow_air,step_error'
+      'outflow,outflow_air,step_error,bend'
 
    type :: tables_t
       character(:), allocatable :: folder
@@ -206,7 +206,7 @@ contains
             report%stage, log%iterations, log%error, log%first_error, log%reduction, log%correction, &
             real(log%rate_evaluations, wp), ledger%kinetic, ledger%skeleton, ledger%pores, ledger%gravity, &
             ledger%loads, ledger%supports, ledger%seepage, ledger%damping, ledger%friction, imbalance(ledger), &
-            ledger%outflow, ledger%outflow_air, report%error
+            ledger%outflow, ledger%outflow_air, report%error, report%bend
       end associate
       call write_row(tables%ledger, fault)
    end subroutine write_ledger

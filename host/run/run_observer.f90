@@ -15,6 +15,7 @@ module run_observer
       integer :: stage = 0                 !< Number of the stage.
       real(wp) :: dt = 0.0_wp              !< [s]
       real(wp) :: error = 0.0_wp           !< Estimate of the step's own error, share of its change [-].
+      real(wp) :: bend = 0.0_wp            !< Share by which the rate of the unknowns changes in a static step [-].
       logical :: last = .false.            !< The stage ends with it.
       type(log_t) :: log
    end type step_report_t

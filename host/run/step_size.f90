@@ -5,8 +5,8 @@ module step_size
    use kinds, only: wp
    use contact_interfaces, only: probe_contacts
    use control_state, only: new_control_state, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
-   use error_norms, only: keep_rates, shift_rates, local_errors, remember, forget, kept_of_motion, ripple_in, &
-                          rms
+   use error_norms, only: bent_share, keep_rates, shift_rates, local_errors, remember, forget, kept_of_motion, &
+                          ripple_in, rms
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, QUASI_STATIC, DYNAMIC
    use model_types, only: model_t
    use run_state, only: run_t
@@ -16,7 +16,7 @@ module step_size
    use scene_types, only: stage_t
    implicit none (type, external)
    private
-   public :: begin_control, next_step, prepare_rates, judge_step, shorten_step, keep_step, is_over
+   public :: begin_control, next_step, prepare_rates, judge_step, bend_of_step, shorten_step, keep_step, is_over
 
    integer, parameter :: SETTLED = 3              !< Steps after a sudden change until rates tell of the error again.
    real(wp), parameter :: START_UP_STEPS = 10.0_wp !< First steps in which changes are expected to grow yet.
@@ -348,15 +348,52 @@ contains
          call local_errors(make_scheme(kind, stage%rho_inf, dt), c%memory, run%state%x, run%state%v, run%state%a, &
                            run%next%x, run%next%v, run%next%a, error, known)
          if (kind == DYNAMIC) error = PEAK*error
-         ! Given steps need not be short here: what the first one left is told by the second.
-         if (kind == QUASI_STATIC .and. c%fresh == 1) &
-            error = merge(ROOT_SHARE, FIRST_TWO, stage%controlled)*(run%next%x - run%state%x)
+         if (kind == QUASI_STATIC .and. c%fresh == 1) then
+            if (stage%controlled) then
+               error = ROOT_SHARE*begun_with_root(dt, run)
+            else
+               ! Given steps need not be short here: what the first one left is told by the second.
+               error = FIRST_TWO*(run%next%x - run%state%x)
+            end if
+         end if
          if (stage%controlled .or. kind /= STATIC .or. depends_on_path(model)) return
          ! Without a memory and without a flow the answer does not depend on the steps.
          error = 0.0_wp
          known = .true.
       end associate
    end subroutine estimate_error
+
+   !> Of the changes in the second of two equal steps since a sudden change: those of a flow that begins with the root
+   !> of time. Of such a flow the steps change by D and (sqrt(2) - 1) D, so that the rate falls in the second by sqrt(2)
+   !> times what it adds. What goes on as in the first step, as under a load that begins to grow, is none.
+   !> docs/theory/host.md section 4.5.
+   pure function begun_with_root(dt, run) result(change)
+      real(wp), intent(in) :: dt   !< Of the second step [s].
+      type(run_t), intent(in) :: run
+      real(wp) :: change(FIELDS, size(run%state%x, 2))   !< [m, kPa]
+      real(wp) :: norms(FIELDS), turns(FIELDS)
+      integer :: f
+
+      change = run%next%x - run%state%x
+      norms = field_norms(change)
+      turns = field_norms(dt*(run%next%v - run%state%v))/sqrt(2.0_wp)
+      do f = 1, FIELDS
+         if (turns(f) < norms(f)) change(f, :) = change(f, :)*turns(f)/norms(f)
+      end do
+   end function begun_with_root
+
+   !> Share by which the rate of the unknowns changes in a static step that is accepted and not yet kept; 0 where it is
+   !> not known, and where the answer does not depend on the steps [-].
+   pure real(wp) function bend_of_step(model, stage, dt, run) result(bend)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: dt   !< [s]
+      type(run_t), intent(in) :: run
+
+      bend = 0.0_wp
+      if (stage%kind == STATIC .and. depends_on_path(model)) &
+         bend = bent_share(run%control%memory, dt, run%state%x, run%next%x)
+   end function bend_of_step
 
    !> Whose errors the steps of a stage make: a quasi-static stage without pressures is static. Controlled steps of it
    !> are chosen as those of a flow all the same.

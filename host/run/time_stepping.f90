@@ -16,7 +16,7 @@ module time_stepping
    use sparse_factors, only: release
    use stress_tolerance, only: follow_newton, roughness, warn_stagnation
    use step_attempt, only: begin_stage, try_step
-   use step_size, only: next_step, keep_step, is_over
+   use step_size, only: next_step, bend_of_step, keep_step, is_over
    use step_landings, only: LAST_STEP
    use step_booking, only: book_accepted_step, watch_effects
    use energy_alarm, only: check_creation, warn_of_created_energy
@@ -146,6 +146,7 @@ contains
          if (warns(observer)) call warn_of_inflow(model, stage, run%next%time, run%constraint%drinks, run%told_inflow)
          call book_accepted_step(model, scheme, run)
          report = step_report_t(number, dt, step_error(scheme, run%state%x, run%state%a, run%next%x, run%next%a), &
+                                bend_of_step(model, stage, dt, run), &
                                 at%t_start + stage%duration - run%next%time <= LAST_STEP*dt, log)
          if (allocated(run%monitor%table)) call watch_effects(model, report, run, fault, observer)
          call keep_step(model, stage, dt, run)

@@ -17,7 +17,7 @@ module error_norms
    implicit none (type, external)
    private
    public :: rate_memory_t, new_memory, keep_rates, shift_rates, local_errors, remember, forget, &
-             constant_of_accelerations, constant_of_rates, kept_of_motion, ripple_in, rms, PATH
+             constant_of_accelerations, constant_of_rates, kept_of_motion, ripple_in, rms, bent_share, bent_error, PATH
 
    real(wp), parameter :: LONGEST = 2.0_wp   !< Times the last step: no rate is carried over a longer one.
    !> Share of the curvature of a path that a straight step leaves out (deviation in the middle of the step).
@@ -145,20 +145,42 @@ contains
    end subroutine local_errors
 
    !> Error of a static step [unit of the rate times s]: its ends are in equilibrium, and within it the material follows
-   !> a straight path instead of a bent one. The bend, dt**2/12 of the second derivative in the mean, matters as far as
-   !> the stiffness changes along it, and that is the share by which the rate changes.
-   !> docs/theory/host.md section 4.5.
+   !> a straight path instead of a bent one. docs/theory/host.md section 4.5.
    pure function static_error(rate, rate_before, dt, dt_before) result(error)
       real(wp), intent(in) :: rate(:, :), rate_before(:, :)   !< (fields, nodes) of this step and of the last one.
       real(wp), intent(in) :: dt, dt_before                   !< Their lengths [s].
       real(wp) :: error(size(rate, 1), size(rate, 2))
-      real(wp) :: share
 
-      associate (bend => (rate - rate_before)/(0.5_wp*(dt + dt_before)))
-         share = min(1.0_wp, dt*norm2(bend)/max(norm2(rate), norm2(rate_before), tiny(1.0_wp)))
-         error = BENT*share*dt**2*bend
-      end associate
+      error = bent_error(share_of_bend(rate, rate_before, dt, dt_before), rate, rate_before, dt, dt_before)
    end function static_error
+
+   !> What a static step leaves out of a quantity that follows the path: the bend, dt**2/12 of its second derivative in
+   !> the mean, as far as the stiffness changes along it. docs/theory/host.md section 4.5.
+   elemental real(wp) function bent_error(share, rate, rate_before, dt, dt_before) result(error)
+      real(wp), intent(in) :: share               !< By which the stiffness changes in the step [-].
+      real(wp), intent(in) :: rate, rate_before   !< Of the quantity, in this step and in the last one.
+      real(wp), intent(in) :: dt, dt_before       !< Their lengths [s].
+
+      error = BENT*share*dt**2*(rate - rate_before)/(0.5_wp*(dt + dt_before))
+   end function bent_error
+
+   !> The share by which the stiffness changes in a static step is that by which the rate of the unknowns does [-].
+   pure real(wp) function share_of_bend(rate, rate_before, dt, dt_before) result(share)
+      real(wp), intent(in) :: rate(:, :), rate_before(:, :), dt, dt_before   !< As of static_error.
+
+      share = min(1.0_wp, dt*norm2((rate - rate_before)/(0.5_wp*(dt + dt_before))) &
+                          /max(norm2(rate), norm2(rate_before), tiny(1.0_wp)))
+   end function share_of_bend
+
+   !> The same of a step from x0 to x1; 0 where no rate is known from before.
+   pure real(wp) function bent_share(memory, dt, x0, x1) result(share)
+      type(rate_memory_t), intent(in) :: memory
+      real(wp), intent(in) :: dt                   !< [s]
+      real(wp), intent(in) :: x0(:, :), x1(:, :)   !< (FIELDS, nodes) [m, kPa]
+
+      share = 0.0_wp
+      if (memory%known) share = share_of_bend((x1 - x0)/dt, memory%rate, dt, memory%dt)
+   end function bent_share
 
    !> Keeps the rates of the start of an accepted step. x: (fields, nodes) values at both ends of the step [m, kPa]; v0:
    !> their rates at its start [1/s of it]; s_rate: (points) rate of S_w there [1/s]. In static steps the rates are

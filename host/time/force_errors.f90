@@ -4,19 +4,21 @@
 !> derivative is that of the force itself. docs/theory/host.md section 4.5.
 module force_errors
    use kinds, only: wp
+   use error_norms, only: bent_error
    implicit none (type, external)
    private
-   public :: error_of_support, error_of_peaks
+   public :: error_of_support, error_on_path, error_of_peaks, VALUES
 
    integer, parameter :: VALUES = 4   !< That a third derivative needs.
 contains
    !> Largest error of a force in its history [kN]: in a motion magnitudes add up, in a flow errors with their signs;
    !> both fade. What alternates from step to step are waves too fast for the steps: the derivative is the mean of two
-   !> steps. The first three steps have no estimate. docs/theory/host.md section 4.5.
+   !> steps. The first three steps of a stage, and of a flow behind what is sudden, have no estimate.
+   !> docs/theory/host.md section 4.5.
    pure real(wp) function error_of_support(time, dt, constant, kept, force, flows) result(largest)
       real(wp), intent(in) :: time(:)       !< That the forces hold for, ascending [s]. (steps)
       real(wp), intent(in) :: dt(:)         !< Lengths of the steps [s]. (steps)
-      real(wp), intent(in) :: constant(:)   !< C of the error of a step [-]. (steps)
+      real(wp), intent(in) :: constant(:)   !< C of the error of a step, 0: nothing estimates it [-]. (steps)
       real(wp), intent(in) :: kept(:)       !< Share of earlier errors that a step leaves [-]. (steps)
       real(wp), intent(in) :: force(:)      !< [kN] (steps)
       logical, intent(in) :: flows          !< A flow, else a motion.
@@ -27,7 +29,8 @@ contains
       sum = 0.0_wp
       before = 0.0_wp
       do i = VALUES, size(time)
-         third = third_derivative(time(i - VALUES + 1:i), force(i - VALUES + 1:i))
+         third = 0.0_wp
+         if (constant(i) > 0.0_wp) third = third_derivative(time(i - VALUES + 1:i), force(i - VALUES + 1:i))
          error = constant(i)*dt(i)**3*0.5_wp*(third + before)
          if (.not. flows) error = abs(error)
          sum = kept(i)*sum + error
@@ -35,6 +38,22 @@ contains
          before = third
       end do
    end function error_of_support
+
+   !> Largest error of a force in a static stage [kN]: what its steps leave out of the bend of its own history, as far
+   !> as the stiffness changes in them; magnitudes add up. A force that follows from what acts by equilibrium has no
+   !> bend of its own, and no error. docs/theory/host.md section 4.5.
+   pure real(wp) function error_on_path(time, dt, bend, force) result(sum)
+      real(wp), intent(in) :: time(:), dt(:)   !< Ends of the steps and their lengths [s]. (steps)
+      real(wp), intent(in) :: bend(:)          !< Share by which the stiffness changes in a step, 0: not known. (steps)
+      real(wp), intent(in) :: force(:)         !< [kN] (steps)
+      integer :: i
+
+      sum = 0.0_wp
+      do i = 3, size(time)
+         sum = sum + abs(bent_error(bend(i), (force(i) - force(i - 1))/(time(i) - time(i - 1)), &
+                                    (force(i - 1) - force(i - 2))/(time(i - 1) - time(i - 2)), dt(i), dt(i - 1)))
+      end do
+   end function error_on_path
 
    !> Largest error of the peaks of a thrust [kN], a peak for each time that the contact is closed. A shift of phase is
    !> no error of a peak: errors count with their signs, from the time that the contact closes to its peak. What

@@ -134,6 +134,64 @@ def test_a_displacement_that_the_mesh_alone_makes_is_not_judged():
 PULSE = root / "verification/host/dynamic_consolidation/scene.nml"
 
 
+# Nothing happens for 9.5 s, then a load grows for 0.1 s on soil that drains in seconds: the flow begins with the load
+# and not with the root of time. A quarter of the second step, a third of the pressure, was taken for its error (8 %).
+LATE = """&scene name = 'late' geometry = 'plane_strain' fields = 'u-p_w' accuracy = 1e-2 /
+&mesh r = 0, 0.1 r_cells = 1 z = 0, 1 z_cells = 8 /
+&elastic name = 'soil' young = 1.0e4 poisson = 0.25 /
+&permeability name = 'k' intrinsic = 1e-11 law = 'constant' /
+&region material = 'soil' void_ratio = 0.8 permeability = 'k' /
+&stage name = 'load' analysis = 'quasi_static' duration = 10 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'top' field = 'p_w' /
+&history name = 'h' times = 0, 9.5, 9.6 values = 0, 0, 1 /
+&load group = 'top' kind = 'pressure' value = 10 history = 'h' /
+&point name = 'middle' r = 0 z = 0.5 /
+"""
+
+
+def test_a_load_that_begins_to_grow_is_not_sudden():
+    done = run(written("late", LATE), work / "late")
+    check("late load: the accuracy is met", done.returncode == 0, done.stderr)
+    error = estimated(work / "late")["middle.p_w"]
+    # Measured against fifty times finer steps: 0.08 %.
+    check("late load: estimated error of the pressure", 8e-4/BAND[1] < error < 8e-4/0.1, error)
+    # The same load at once: forces before it tell nothing of those after it. What they jump by was taken for their bend
+    # (133 %).
+    sudden = LATE.replace("9.5, 9.6", "9.5, 9.5000001").replace("z_cells = 8", "z_cells = 8 z_ratio = 0.5")
+    done = run(written("sudden", sudden), work / "sudden")
+    errors = {name: error for name, error in estimated(work / "sudden").items() if ".force_" in name}
+    check("sudden load: the accuracy is met", done.returncode == 0, done.stderr)
+    check("sudden load: estimated errors of forces", len(errors) == 3 and max(errors.values()) < 0.03, errors)
+
+
+# A footing on sand, static: what the bottom bears is given by the loads, how much the side bears by the sand.
+FOOTING_ON_SAND = root / "verification/studies/cost/scenes/footing.nml"
+
+
+def test_forces_of_static_stages_err_by_their_own_bend():
+    text = FOOTING_ON_SAND.read_text()
+    done = run(written("given", text.replace("dt = 0.004", "dt = 0.02")), work / "given")
+    check("footing: reference", done.returncode == 0, done.stderr)
+    done = run(written("free", text.replace("   dt = 0.004\n", "")), work / "free", "--accuracy", "1e-1")
+    check("footing: the accuracy is met", done.returncode == 0, done.stderr)
+    fine, coarse = (tables.columns(work / name / "reactions_push.csv") for name in ("given", "free"))
+    for row in tables.rows(work / "free/answers.csv"):
+        if not row["answer"].startswith("push: "):
+            continue
+        force = row["answer"].removeprefix("push: ")
+        there = coarse["time_of_forces"] >= fine["time_of_forces"][0]
+        apart = np.max(np.abs(coarse[force] - np.interp(coarse["time_of_forces"], fine["time_of_forces"],
+                                                        fine[force]))[there])/float(row["largest_change"])
+        ratio = apart/float(row["estimated_error"])
+        check(f"footing: true over estimated error of {force}", BAND[0] <= ratio <= BAND[1], (apart, row))
+    bend = tables.columns(work / "free/ledger.csv")["bend"]
+    check("footing: no bend is known of the first steps, and of those after the turn", bend[0] == bend[1] == 0
+          and np.sum(bend == 0) <= 4 and 0 < np.max(bend) <= 1, bend)
+
+
 def test_a_ripple_counts_once():
     done = run(PULSE, work / "pulse", "--accuracy", "1e-2")
     check("pulse on saturated soil: runs to its end", done.returncode == 0, done.stderr)
@@ -318,6 +376,22 @@ def test_a_missed_accuracy_its_code_the_last_line_names_answer_cause():
           and estimated(work / "force")["swing: bottom.force_z"] > 3e-3, done.stderr)
     done = run(written("met", SWING), work / "met", "--accuracy", "1e-2")
     check("an accuracy that is met ends with 0", done.returncode == 0, done.stderr)
+
+
+def test_what_newton_s_method_leaves_is_judged():
+    # A tolerance of the scene in place of that which follows from the accuracy: what its steps leave is below 1 %.
+    text = FOOTING_ON_SAND.read_text()
+    for tolerance, code in (("0.05", MISSED), ("0.01", 0)):
+        name = f"loose_{tolerance}"
+        done = run(written(name, text.replace("dt = 0.004", f"tolerance = {tolerance}")), work / name, "--accuracy",
+                   "1e-2")
+        newton = max(float(row["newton_error"] or 0) for row in tables.rows(work / name / "answers.csv"))
+        check(f"Newton's tolerance {tolerance}: what it leaves is judged", done.returncode == code
+              and newton > 1e-3 and (newton > 3e-2) == (code == MISSED), (done.returncode, newton, done.stderr))
+        check(f"Newton's tolerance {tolerance}: the remedy",
+              "leave tolerance of &stage out" in done.stderr.splitlines()[-1], done.stderr)
+        check(f"Newton's tolerance {tolerance}: the steps are not the cause",
+              max(estimated(work / name).values()) < 1e-2)
 
 
 def test_a_step_below_1e_12_of_the_stage():
