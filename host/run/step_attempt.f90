@@ -105,7 +105,7 @@ contains
       run%rate_evaluations = run%rate_evaluations + log%rate_evaluations
       accepted = log%outcome == CONVERGED
       if (accepted) then
-         call judge_step(model, stage, dt, run, accepted)
+         call judge_step(model, stage, dt, log%balanced, run, accepted)
          if (.not. accepted) run%assembly%slopes%known = .false.
          call follow_undrained(model%domain, model%dofs%of, run%next%x)
          return

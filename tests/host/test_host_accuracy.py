@@ -167,6 +167,39 @@ def test_a_load_that_begins_to_grow_is_not_sudden():
     check("sudden load: estimated errors of forces", len(errors) == 3 and max(errors.values()) < 0.03, errors)
 
 
+# Sand under stress at rest until 1.2 s: what it moves by is the rounding of its forces, 1e-19 m. Steps were as short as
+# may be, 1e-8 of the stage.
+REST = """&scene name = 'rest' geometry = 'plane_strain' fields = 'FIELDS' /
+&mesh r = 0, 0.5, 2 r_cells = 1, 2 z = -1.7, 0 z_cells = 3 /
+&mud name = 's' e_0 = 0.709 /
+&permeability name = 'k' intrinsic = 3e-11 law = 'constant' /
+&region material = 's' WATER /
+&initial stress = 'uniform' sigma = -57.62, -57.62, -57.62 /
+&history name = 'h' times = 0, 1.2, 1.5 values = 0, 0, 1 /
+&stage name = 'a' analysis = 'KIND' duration = 1.5 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'bottom' field = 'u_r' /
+&load group = 'top' kind = 'pressure' value = 57.62 /
+&load group = 'top_1' kind = 'pressure' value = 5 history = 'h' /
+&point name = 'c' r = 0 z = 0 /
+"""
+
+
+def test_rest_takes_few_steps():
+    for kind in ("quasi_static", "dynamic"):
+        for fields, water in (("u-p_w", "permeability = 'k'"), ("u", "drainage = 'dry'")):
+            text = REST.replace("KIND", kind).replace("FIELDS", fields).replace("WATER", water)
+            if fields == "u-p_w":
+                text += "&fix group = 'top' field = 'p_w' /\n"
+            name = f"rest_{kind}_{fields}"
+            done = run(written(name, text), work / name, "--accuracy", "3e-2")
+            check(f"sand at rest, {kind}, {fields}: runs", done.returncode == 0, done.stderr)
+            times = history(work / name, "time")
+            check(f"sand at rest, {kind}, {fields}: few steps", np.sum(times < 1.2) < 100, np.sum(times < 1.2))
+
+
 # A footing on sand, static: what the bottom bears is given by the loads, how much the side bears by the sand.
 FOOTING_ON_SAND = root / "verification/studies/cost/scenes/footing.nml"
 

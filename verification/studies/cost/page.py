@@ -4,7 +4,6 @@ import pathlib
 
 import honest
 import study
-import table_1
 
 from tools import tables
 from tools.page import Page, Script, Tolerance
@@ -13,12 +12,12 @@ PAGE = Page(
     claim="a run with controlled steps estimates its true error within a factor of five and meets the accuracy that "
           "was set within a factor of two, with the exceptions that are listed; what an error costs in the indentation",
     kind=("study", "exact"),
-    input="twenty-four scenes and four paths of the driver (`honest.py`); the indentation at suctions of 0, 30 and 1000 "
-          "kPa, one contributor at a time on a coarse mesh (`study.py`); the analyses of Table 1 (`table_1.py`)",
+    input="twenty-five scenes and four paths of the driver (`honest.py`); the indentation at a suction of 30 "
+          "kPa, one contributor at a time on a coarse mesh (`study.py`)",
     reference="a closed form (vibration), else given fine steps on the same mesh",
-    seconds=10, quick=6, pictures=("asked.png", "price.png"))
+    seconds=10, quick=6, pictures=("price.png",))
 MAKES = (Script("honest.py", ("honest.csv",), 420), Script("given.py", ("given.csv",), 60),
-         Script("study.py", ("price.csv",), 420), Script("table_1.py", ("table_1.csv",), 300))
+         Script("study.py", ("price.csv",), 150))
 
 LEAST, MOST = 0.2, 5.0
 BAND = Tolerance("true over estimated error: what the manual promises", absolute=MOST)
@@ -139,23 +138,6 @@ def fine_row(suction, mesh):
                 and (r["contributor"], r["setting"]) == study.OF_ALL)
 
 
-def mesh_text():
-    """The mesh beside the step: what elements of half the size change, and the error of the paper's step."""
-    rows = {(r["name"], r["setting"]): r for r in of_table("table_1.csv") if r["outcome"] == "0"}
-    lines = []
-    for suction, mesh in parts_of_price():
-        coarse, full = fine_row(suction, mesh), rows.get((f"s{suction:04d}_remedy", "paper"))
-        step = next(r for r in price_rows(suction, mesh) if r["contributor"] == "paper")
-        if full:
-            lines.append((suction, *(word for name in ("peak", "p_w") for word in (
-                f"{float(coarse[name]):.4g}", f"{float(full[name]):.4g}",
-                f"{100*abs(float(coarse[name])/float(full[name]) - 1):.1f}", f"{100*float(step[name]):.2f}"))))
-    return tables.markdown(
-        ("suction [kPa]", "peak [mm]: coarse mesh", "mesh of the benchmark", "difference [%]",
-         "error of the paper's step [%]", "p_w [kPa]: coarse mesh", "mesh of the benchmark", "difference [%]",
-         "error of the paper's step [%]"), lines)
-
-
 def on_front(row):
     """Whether nothing in its part of the table that is settings alone has less of both error and time."""
     beside = [r for r in price_rows(row["suction"], row["mesh"]) if r["contributor"] != "reference"]
@@ -188,16 +170,6 @@ def price_text():
     return "\n".join(parts)
 
 
-def full_mesh():
-    """At 30 kPa on the mesh of the benchmark: accuracy, row, errors of peak, p_w and history, share of the time of the
-    paper's settings."""
-    rows = {r["setting"]: r for r in of_table("table_1.csv") if r["name"] == "s0030_remedy"}
-    exact = rows[table_1.REFERENCE]
-    return [(s, rows[s], (*(abs(float(rows[s][a])/float(exact[a]) - 1) for a in ("peak", "p_w")),
-                          float(rows[s]["history"])), float(rows[s]["user_s"])/float(rows["paper"]["user_s"]))
-            for s in (*table_1.ACCURACIES, table_1.FINEST)]
-
-
 def presets_text():
     lines = []
     for suction, mesh in parts_of_price():
@@ -206,117 +178,17 @@ def presets_text():
                 key = r["setting"].replace("accuracy ", "`accuracy = ") + "`"
                 lines.append((PRESETS[r["setting"]], key, suction, mesh, r["steps"], r["peak"], r["p_w"], r["history"],
                               r["seconds"], share(r)))
-    lines += [(PRESETS[f"accuracy {s}"], f"`accuracy = {s}`", 30, "the benchmark's, 40 ms", r["steps"],
-               *(f"{x:.2g}" for x in errors), r["user_s"], f"{part:.2f}") for s, r, errors, part in full_mesh()
-              if PRESETS.get(f"accuracy {s}")]
     return tables.markdown(("preset", "key", "suction [kPa]", "mesh", "steps", "error of the peak", "of p_w",
                             "of the history", "CPU [s]", "of the paper's settings"), lines)
 
 
-def table_1_text():
-    """Times of the accuracies over those of the paper's settings, and what they change of the largest displacement."""
-    rows = {(r["name"], r["setting"]): r for r in of_table("table_1.csv") if r["outcome"] == "0"}
-    committed = {r["name"]: r for r in tables.rows(study.here.parent / "indentation/results/series.csv")}
-    paper = {name: float(r["largest_mm"]) for name, r in committed.items()}
-    settings = table_1.ACCURACIES
-    pairs = [n for n, _, _ in table_1.ANALYSES if all((n, s) in rows for s in ("paper", settings[-1]))]
-
-    def both(setting):
-        return [n for n in pairs if (n, setting) in rows]
-
-    def off(name, setting):
-        return 100*abs(float(rows[name, setting]["largest_mm"])/paper[name] - 1)
-
-    def spent(setting, names):
-        return sum(float(rows[n, setting]["user_s"]) for n in names)
-
-    lines = []
-    for name, suction, series in table_1.ANALYSES:
-        there = [s for s in settings if (name, s) in rows]
-        if not there:
-            continue
-        fine = rows[name, there[-1]]
-        lines.append((suction, series.replace("_", " "), fine["steps"], fine["iterations"],
-                      f"{float(fine['rates'])/1e6:.2f}", fine["user_s"],
-                      rows[name, "paper"]["user_s"] if name in pairs else "",
-                      *(f"{spent(s, [name])/spent('paper', [name]):.3f}" if name in pairs and s in there else ""
-                        for s in settings),
-                      *(f"{off(name, s):.2f}" if s in there else "" for s in settings)))
-    lines.append((f"the {len(pairs)} with both", "", "", "", "", f"{spent(settings[-1], pairs):.1f}",
-                  f"{spent('paper', pairs):.1f}",
-                  *(f"**{spent(s, both(s))/spent('paper', both(s)):.3f}**" for s in settings), *[""]*len(settings)))
-    exact = rows["s0030_remedy", table_1.REFERENCE]
-    known = [("the paper's" if s == "paper" else s, rows["s0030_remedy", s])
-             for s in (*table_1.SETTINGS, table_1.FINEST)]
-    true = tables.markdown(
-        ("settings", "steps", "rates [1e6]", "time over the paper's", "error of the peak [%]", "of its time [%]",
-         "of p_w [%]", "of the history [%]"),
-        [(s, r["steps"], f"{float(r['rates'])/1e6:.2f}", f"{float(r['user_s'])/float(known[0][1]['user_s']):.3f}",
-          *(f"{100*abs(float(r[a])/float(exact[a]) - 1):.2f}" for a in ("peak", "peak_time", "p_w")),
-          f"{100*float(r['history']):.2f}") for s, r in known])
-    worst_of = [max(off(n, s) for n, x in rows if x == s) for s in settings]
-    seconds = [float(r["user_s"]) for (_, s), r in rows.items() if s == settings[-1]]
-    same = max(abs(float(rows[n, "paper"]["largest_mm"])/paper[n] - 1) for n, s in rows if s == "paper")
-    return tables.markdown(
-        ("suction [kPa]", "rule", "steps at 1e-2", "iterations", "rates [1e6]", "CPU [s]", "paper's settings: CPU [s]",
-         *(f"{s}: time over that" for s in settings), *(f"{s}: displacement differs by [%]" for s in settings)),
-        lines) + (
-        f"\n{len(pairs)} of the {len(table_1.ANALYSES)} analyses were run with the paper's settings and at 1e-2, in "
-        f"turn: all together take {spent(settings[-1], pairs)/spent('paper', pairs):.3f} of the time. At 1e-2 they "
-        f"take {min(seconds):.1f} to {max(seconds):.1f} s. Largest difference of displacement: "
-        + ", ".join(f"{w:.2f} % at {s}" for w, s in zip(worst_of, settings))
-        + f". The paper's settings give the committed displacements within {same:.0e}.\n\n"
-        f"At 30 kPa with the remedy, against given fine steps (peak {exact['peak']} mm, p_w {exact['p_w']} kPa):"
-        f"\n\n{true}")
-
-
 def texts(bench):
     return {"README.md": {"scenes": scenes_text(), "honest": honest_text(), "given": given_text(),
-                          "price": price_text(), "mesh": mesh_text(), "presets": presets_text(),
-                          "table_1": table_1_text()}}
+                          "price": price_text(), "presets": presets_text()}}
 
 
 def draw(bench, results, plt):
-    from tools.pictures import COLOURS
-    draw_asked(bench, plt, COLOURS)
-    draw_price(bench, plt, COLOURS)
-
-
-def draw_asked(bench, plt, colours):
-    """For the README of the top: what 10, 1 and 0.1 % cost."""
-    figure, axis = plt.subplots(figsize=(5.6, 3.6))
-    axis.axvline(1/6, color="0.4", linewidth=0.8, linestyle=":")
-    axis.text(1/6, 0.013, " a sixth", color="0.4", fontsize=8, va="bottom")
-    for (suction, mesh), colour, style in zip(sorted(parts_of_price()), (0, 1, 2, 3), ("o-", "s-", "^--", "D-")):
-        chosen = [r for r in price_rows(suction, mesh) if PRESETS.get(r["setting"]) and share(r)]
-        if not chosen:
-            continue
-        at = [(float(share(r)), 100*worst(r)) for r in chosen]
-        axis.loglog(*zip(*at), style, color=colours[colour], markersize=5,
-                    label=f"{suction} kPa")
-        if (suction, mesh) == (0, "coarse"):
-            for (x, y), r in zip(at, chosen):
-                asked = 100*float(r["setting"].split()[1])
-                axis.annotate(f"{asked:g} % asked", (x, y), textcoords="offset points", xytext=(6, 4), fontsize=8,
-                              color=colours[colour])
-    at = [(part, 100*max(errors)) for s, _, errors, part in full_mesh() if PRESETS.get(f"accuracy {s}")]
-    axis.loglog(*zip(*at), "D-.", color=colours[3], markersize=5, label="30 kPa, mesh of the benchmark")
-    paper = [worst(r) for part in parts_of_price() for r in price_rows(*part) if r["contributor"] == "paper"]
-    axis.loglog([1]*len(paper), [100*e for e in paper], "*", color=colours[4], markersize=9,
-                label="settings of the paper")
-    axis.set_xticks([0.1, 0.2, 0.5, 1], ["0.1", "0.2", "0.5", "1"])
-    axis.set_xticks([], minor=True)
-    axis.set_yticks([0.01, 0.1, 1, 10], ["0.01", "0.1", "1", "10"])
-    axis.set_ylim(0.012, 10)
-    axis.set_xlim(0.07, 1.3)
-    axis.set_xlabel("time over that with the paper's settings [-]")
-    axis.set_ylabel("largest true error of the answers [%]")
-    axis.set_title("An indentation with 10, 1 and 0.1 % asked for", fontsize=10)
-    axis.legend(fontsize=7.5, loc="upper right")
-    bench.save(figure, "asked.png")
-
-
-def draw_price(bench, plt, colours):
+    from tools.pictures import COLOURS as colours
     shown = {"step": ("o-", 0, "step alone"), "together": ("s-", 1, "step and stress tolerance"),
              "accuracy": ("D-", 2, "accuracy asked for"), "paper": ("*", 3, "the paper's settings"),
              "stress": ("v", 4, "stress tolerance alone"), "newton": ("x", 0, "Newton's tolerance alone"),
