@@ -1,72 +1,63 @@
 # SPDX-License-Identifier: MIT
-"""Processor time of the parts of a footing's first steps, the largest of all ranks. Options are those of footing.py.
+"""One matrix, one solution, every point once: the first iteration of a step of 2 mm of footing.py's footing, and the
+processor seconds of its parts, the largest of all ranks.
 
-Processor time, not time on the clock: it can be told on a machine that others use too. A rank that waits for another in
-MPI burns processor time as well, so that the parts hold what is lost by waiting. `--result` appends a line of JSON;
-`--first` ends after the first iteration: one matrix, one solution, every point once.
+scaling.py CELLS even|graded SECONDS RESULT: appends a line of JSON. SECONDS: of the step; a short one lets no water leave.
+Processor time can be told on a machine that others use too; a rank that waits in MPI burns it as well.
 """
 import json
+import pathlib
 import sys
+import tempfile
 import time
 
-from dolfinx.fem import petsc as fem_petsc
+import petsc4py
+
+petsc4py.init(sys.argv)
+from mpi4py import MPI
 
 import footing
-import porous
+from mud3d import engine, linear
+from mud3d.scene import Scene
 
-spent = dict.fromkeys(("material", "assembly", "solver"), 0.0)
+spent = dict.fromkeys(("points", "assembly", "solver"), 0.0)
 
 
-def timed(part, action):
+def timed(part, owner, name):
+    action = getattr(owner, name)
+
     def call(*arguments, **more):
         began = time.process_time()
         try:
             return action(*arguments, **more)
         finally:
             spent[part] += time.process_time() - began
-    return call
+    setattr(owner, name, call)
 
 
-def main():
-    sys.excepthook = footing.abort_all
-    given = footing.arguments()
-    problem, set_boundary, *_ = footing.model(given)
-    problem.material.update_batch = timed("material", problem.material.update_batch)
-    problem.material.tangent_batch = timed("material", problem.material.tangent_batch)
-    fem_petsc.assemble_matrix_block = timed("assembly", fem_petsc.assemble_matrix_block)
-    fem_petsc.assemble_vector_block = timed("assembly", fem_petsc.assemble_vector_block)
-    problem._start()
-    porous_solve = problem.ksp.solve
-
-    class Timed:
-        """The linear solver, with its time taken."""
-
-        def __getattr__(self, name):
-            return getattr(ksp, name)
-
-        solve = staticmethod(timed("solver", porous_solve))
-
-    ksp, problem.ksp = problem.ksp, Timed()
-    steps = given.stop_after or given.steps
-    first = "--first" in sys.argv
-    if first:
-        problem.control.iterations, problem.control.cuts, steps = 1, 0, 1
-    for step in range(1, steps + 1):
-        try:
-            problem.step(given.duration*step/given.steps, set_boundary)
-        except porous.NotConverged:
-            if not first or problem.counts["iterations"] != 1:
-                raise
-    largest = {part: max(problem.comm.allgather(seconds)) for part, seconds in spent.items()}
-    row = {"ranks": problem.comm.size, "linear": given.linear, "cells": given.cells,
-           "unknowns": problem.A.getSize()[0], "points": problem.comm.allreduce(len(problem.stress0)),
-           **{k: problem.counts[k] for k in ("iterations", "linear_iterations")},
-           **{part: round(seconds, 3) for part, seconds in largest.items()}}
-    if problem.comm.rank == 0:
+def main(cells, mesh, seconds, result, kind="amg"):
+    comm = MPI.COMM_WORLD
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder)/"scene.nml"
+        path.write_text(footing.scene(int(cells), mesh == "graded", float(seconds), 0.002, 1, tolerance=1e-12,
+                                      stage="cuts = 0").replace("max_iterations = 30", "max_iterations = 1"))
+        run = engine.Run(comm, Scene(path), engine.Options(linear=kind, told=False))
+    timed("points", engine.Points, "update")
+    timed("assembly", linear.Solver, "set")
+    timed("solver", linear.Solver, "solve")
+    try:
+        run.run()
+    except engine.Stopped:
+        pass
+    largest = {part: round(max(comm.allgather(value)), 2) for part, value in spent.items()}
+    row = {"ranks": comm.size, "mesh": mesh, "seconds": float(seconds), "linear": kind,
+           "unknowns": comm.allreduce(run.space.owned), "points_number": comm.allreduce(run.points.n),
+           "iterations": run.solver.iterations, **largest}
+    if comm.rank == 0:
         print(json.dumps(row))
-        with open(given.result or "scaling.json", "a") as file:
+        with open(result, "a") as file:
             file.write(json.dumps(row) + "\n")
 
 
 if __name__ == "__main__":
-    main()
+    main(*[a for a in sys.argv[1:6] if not a.startswith("-")])

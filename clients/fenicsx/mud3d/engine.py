@@ -231,7 +231,7 @@ class Run:
         if space.pressure_degree:
             J[:, PRESSURE, PRESSURE] = 1.0  # of no consequence: the pressures have no equation here
         plates = [(master, mass) for master, _, _, mass in self.plates_now(scheme, self.a, self.time, self.time)]
-        self.solver.set(J.reshape(space.cells, space.per_cell, NUMBERS, NUMBERS), [], plates)
+        self.solver.set(J.reshape(space.cells, space.per_cell, NUMBERS, NUMBERS), [], plates, points.tangent)
         residual = self.constraints.reduced(residual)
         residual[~space.is_u] = 0.0
         self.a = self.solver.solve(-residual)
@@ -410,7 +410,8 @@ class Run:
         for iteration in range(1, int(self.stage.max_iterations) + 1):
             more = [(dofs, scheme.l_v*scheme.velocity_slope*blocks) for dofs, blocks in self.dashpots]
             self.solver.set(J.reshape(space.cells, space.per_cell, NUMBERS, NUMBERS), more,
-                            [(master, inertia) for master, _, inertia, _ in plates if inertia])
+                            [(master, inertia) for master, _, inertia, _ in plates if inertia],
+                            points.tangent)
             lift = np.where(held.fixed, target - x, 0.0)
             right = -r - held.reduced(self.solver.lifted(lift))
             step = self.solver.solve(right) + lift

@@ -150,6 +150,11 @@ def _built_in(scene, thickness, layers, sector, cells):
         for i, (low, high) in enumerate(zip(breaks, breaks[1:]), 1):
             inside = (values[groups[name]] >= low - tolerance) & (values[groups[name]] <= high + tolerance)
             groups[f"{name}_{i}"] = groups[name][inside.all(axis=1)]
+    if geometry == "box":  # parts of the top by r and y, as top_1_2
+        for name, depth in [(n, i) for n in [n for n in groups if n.startswith("top_")] for i in range(1, len(given.y))]:
+            across = points[:, 1][groups[name]]
+            inside = (across >= given.y[depth - 1] - tolerance) & (across <= given.y[depth] + tolerance)
+            groups[f"{name}_{depth}"] = groups[name][inside.all(axis=1)]
     if geometry == "axisymmetric" and given.r[0] == 0.0:
         groups["left"] = np.zeros((0, skin.shape[1]), int)  # an axis is no facet: its nodes are held by front and back
     return Plan(cell, points, found, cell_groups, groups)

@@ -16,9 +16,10 @@ class Solver:
         self.tolerance = tolerance
         self.ksp, self.iterations = None, 0
 
-    def set(self, J, more, plates):
-        """The matrix of these slopes; plates: (global number, mass term)."""
+    def set(self, J, more, plates, tangent):
+        """The matrix of these slopes; plates: (global number, mass term); tangent: of the skeleton at every point."""
         space, held = self.space, self.constraints
+        self.J, self.tangent = J, tangent
         space.fill(self.A, J, more)
         if plates:
             for row, value in plates:

@@ -66,7 +66,7 @@ class Histories:
             row += run.comm.bcast(mine if run.comm.rank == who_u else None, who_u)
             if run.scene.has_water:
                 value = run.comm.bcast(float(run.x[space.of_p[p]]) if run.comm.rank == who_p else None, who_p)
-                row += [value] + [max(-value, 0.0)]*run.scene.air_at_rest
+                row += [value] + [-value]*run.scene.air_at_rest
             if run.comm.rank == who:
                 s = p_of.stress0[point]
                 two = space.dimension == 2
