@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""FEniCSx, PETSc and MPI: points against mud_triax, ranks, restart, multigrid, a metre, ground under K_0 stress, a strip
-against mud_host.
+"""mud3d, FEniCSx, PETSc and MPI: points against mud_triax, derivatives, closed forms, scenes against mud_host, ranks,
+restart, steps, multigrid, refusals. check.py WORD... runs the parts whose names begin with a word.
 
 Writes the numbers of the runs to results.json in its work folder."""
 import csv
@@ -8,153 +8,301 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
+import sys
 
 import clients
 
+import closed
+import footing
+
 here = pathlib.Path(__file__).parent
 PYTHON = "/usr/bin/python3"  # Debian's packages belong to Debian's Python
-RANKS = 1e-8  # loads of a push, relative: ten times the tolerance of Newton's method for the residual
+RANKS = 1e-7   # of histories, relative to their largest value: Newton's tolerance of these runs is 1e-8
+HOST = 0.01    # of the range of a history, against mud_host
 clients.debian(["python3-dolfinx", "openmpi-bin"])
 folder = clients.work_folder("fenicsx")
-environment = {**os.environ, **clients.python_package, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
-               "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
+package = clients.python_package
+environment = {**os.environ, **package, "PYTHONPATH": f"{package['PYTHONPATH']}:{here}", "OMP_NUM_THREADS": "1",
+               "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+               "OMPI_MCA_rmaps_base_oversubscribe": "1",
                "OMPI_MCA_mpi_yield_when_idle": "1"}  # a waiting rank leaves its core to others
-BACK = ["--back-pressure", "2000"]  # dense sand dilates: without it the water would be in tension
-SMALL = ["--cells", "3", "--steps", "4", *BACK]
+numbers = {}
 
 
-def program(name, script, *arguments, ranks=1):
+def launch(name, command, ranks=1):
+    before = ["mpirun", "-n", str(ranks), "--bind-to", "none"] if ranks > 1 else []
+    return clients.run([*before, PYTHON, *command], folder/f"{name}.log", cwd=folder, env=environment, timeout=3000)
+
+
+def program(name, script, *arguments):
     """What a program wrote to its result file, or None."""
-    result = folder / f"{name}.json"
+    result = folder/f"{name}.json"
     result.unlink(missing_ok=True)
-    launch = ["mpirun", "-n", str(ranks), "--bind-to", "none"] if ranks > 1 else []
-    command = [*launch, PYTHON, here / script, *arguments, "--result", result]
-    if clients.run(command, folder / f"{name}.log", cwd=folder, env=environment, timeout=3000) != 0:
+    code = launch(name, [here/script, *arguments, "--result", result])
+    return json.loads(result.read_text()) if code == 0 else None
+
+
+def table(path):
+    with open(path) as file:
+        rows = list(csv.reader(file))
+    return {name.strip(): [float(row[i]) for row in rows[1:]] for i, name in enumerate(rows[0])}
+
+
+def solid(name, scene, *arguments, ranks=1):
+    """Histories of a run of mud3d, or None. scene: a path, or its text."""
+    path = _scene(name, scene)
+    shutil.rmtree(folder/name, ignore_errors=True)
+    code = launch(name, ["-m", "mud3d", path, "--output", name, *arguments], ranks)
+    if code != 0:
         return None
-    return json.loads(result.read_text())
+    numbers[name] = json.loads((folder/name/"run.json").read_text())
+    return table(folder/name/"histories.csv")
 
 
-runs_made = {}
+def host(name, scene):
+    path = _scene(name, scene)
+    shutil.rmtree(folder/name, ignore_errors=True)
+    command = [clients.build/"host/mud_host", path, "--output", name, "--quiet"]
+    code = clients.run(command, folder/f"{name}.log", cwd=folder, timeout=900)
+    return table(folder/name/"histories.csv") if code in (0, 20) else None
 
 
-def footing(name, *arguments, ranks=1):
-    runs_made[name] = program(name, "footing.py", *arguments, ranks=ranks)
-    return runs_made[name]
+def _scene(name, scene):
+    if isinstance(scene, pathlib.Path):
+        return scene
+    (folder/f"{name}.nml").write_text(scene)
+    return folder/f"{name}.nml"
 
 
-def close(what, got, wanted, relative):
+def text(path, *changes):
+    """A scene with other words, and its files by their full names."""
+    scene = re.sub(r"file = '([^']*)'", lambda m: f"file = '{(path.parent/m[1]).resolve()}'", path.read_text())
+    for old, new in changes:
+        if old not in scene:
+            sys.exit(f"{path}: {old} is not there")
+        scene = scene.replace(old, new)
+    return scene
+
+
+def at(times, values, time):
+    """Linear between two rows."""
+    for i in range(1, len(times)):
+        if times[i] >= time:
+            share = (time - times[i - 1])/(times[i] - times[i - 1])
+            return values[i - 1] + share*(values[i] - values[i - 1])
+    return values[-1]
+
+
+def near(what, got, wanted, columns, allowed, from_time=0.0):
+    """Largest difference of histories over the range of the wanted one."""
     if got is None or wanted is None:
-        clients.verdict(False, what, "a run did not come to its end")
-    else:
-        clients.compare(what, [[x] for x in got["pressure"]], [[x] for x in wanted["pressure"]], relative)
+        return clients.verdict(False, what, "a run did not come to its end")
+    for column in columns:
+        size = max(wanted[column]) - min(wanted[column])
+        times = [t for t in got["time"] if from_time <= t <= wanted["time"][-1]]
+        apart = max(abs(at(got["time"], got[column], t) - at(wanted["time"], wanted[column], t)) for t in times)
+        numbers[f"{what}: {column}"] = apart/size
+        clients.verdict(apart <= allowed*size and size > 0.0, f"{what}: {column}",
+                        f"apart {apart/size:.1e} of its range {size:.4g}, allowed {allowed:.0e}")
 
 
-# Points by the batch call, as the finite elements use it: the strains and suctions of mud_triax.
-for case, parameters in (("shear", {}), ("shear_suction", {}), ("wetting", {}), ("hysteresis", {"hysteresis": 1})):
-    table = clients.expected(case)
-    path = folder / f"{case}.json"
-    path.write_text(json.dumps({"strains": clients.strains(table), "suction": table["suction"],
-                                "void_ratio": table["e"][0], "stress": -table["p_eff"][0], "parameters": parameters}))
-    answer = program(f"points_{case}", "points.py", path)
-    clients.compare(f"batch call, {case}", answer["stress"] if answer else [], clients.stresses(table)[1:])
-    if parameters:
-        clients.compare(f"its degree of saturation, {answer and answer['state_variables']} state variables",
-                        [answer["saturation"] if answer else []], [table["s_w"][1:]])
-
-one = footing("one", *SMALL, "--record", "one")
-two = footing("two", *SMALL, "--record", "two", ranks=2)
-close("footing, u-p_w in three dimensions: two ranks give the loads of one", two, one, RANKS)
-replay = program("replay", "points.py", folder / "two.npz")
-clients.verdict(bool(replay) and replay["same"] and replay["points"] > 0,
-                "stress and state of the points of two ranks are those of one process, bit by bit",
-                f"{replay and replay['points']} points")
-footing("half", *SMALL, "--stop-after", "2", "--save", "checkpoint")
-again = footing("again", *SMALL, "--load", "checkpoint")
-clients.verdict(bool(again and one) and again["digest"] == one["digest"], "a restart gives the bits of the whole run",
-                f"digests {again and again['digest']}, {one and one['digest']}")
-other = footing("other", *SMALL, "--load", "checkpoint", ranks=2)
-if one:
-    one_later = {"pressure": one["pressure"][2:]}
-    close("a restart with another number of ranks gives the loads", other, one_later, RANKS)
-multigrid = footing("multigrid", *SMALL, "--linear", "amg")
-close("multigrid with rigid-body modes gives the loads of MUMPS", multigrid, one, RANKS)
-FIRST = [*SMALL, "--stop-after", "1"]
-both = footing("multigrid_two", *FIRST, "--linear", "amg", ranks=2)
-close("the same on two ranks, first step", both, one and {"pressure": one["pressure"][:1]}, RANKS)
-MIDDLE = ["--cells", "6", "--steps", "3", "--stop-after", "1", "--scheme", "2", *BACK]
-direct, multigrid = footing("direct_6", *MIDDLE), footing("multigrid_6", *MIDDLE, "--linear", "amg")
-close("the same with 6934 unknowns, first step", multigrid, direct, RANKS)
-DEEP = ["--cells", "3", "--scale", "4", "--steps", "1", "--scheme", "2", *BACK]
-for name, settlement, cut in (("metre", 1.0, False), ("metre_and_a_half", 1.5, True)):
-    deep = footing(name, *DEEP, "--settlement", str(settlement))
-    told = json.dumps(deep and {k: deep[k] for k in ("pressure", "steps", "cuts", "searches", "iterations")})
-    clients.verdict(bool(deep) and abs(deep["settlement"] - settlement) < 1e-12 and deep["searches"] > 0,
-                    f"{settlement} m in one step get through", told)
-    if cut:
-        clients.verdict(bool(deep) and deep["cuts"] > 0, "by cuts", told)
-        both = footing(f"{name}_two", *DEEP, "--settlement", str(settlement), ranks=2)
-        clients.verdict(bool(both and deep) and both["cuts"] == deep["cuts"], "two ranks cut the same steps",
-                        f"{both and both['cuts']}, {deep and deep['cuts']} cuts")
-        close("and give the loads of one", both, deep, RANKS)
-
-# Water in tension is refused, on two ranks as on one: no result, and a sentence that says where.
-for ranks in (1, 2):
-    tense = footing(f"tension_{ranks}", *DEEP, "--settlement", "1", "--back-pressure", "0", ranks=ranks)
-    said = (folder / f"tension_{ranks}.log").read_text()
-    clients.verdict(tense is None and "the pressure of the water falls to" in said and "mud_host" in said,
-                    f"water in tension ends the run on {ranks} ranks",
-                    said[said.find("Unsaturated: "):][:150].replace("\n", " "))
-
-# The start: ground with weight under K_0 stress.
-path = folder / "given.json"
-path.write_text(json.dumps(clients.GROUND))
-clients.ground(program("ground", "ground.py", path))
+def same(what, got, wanted, allowed=RANKS):
+    if got is None or wanted is None or len(got["time"]) != len(wanted["time"]):
+        return clients.verdict(False, what, "a run did not come to its end, or took other steps")
+    columns = [c for c in wanted if c != "time" and c.split(".")[-1][:2] in ("u_", "p_", "s_")]
+    worst = 0.0
+    for column in columns:
+        kind = [c for c in columns if c.split(".")[-1][:2] == column.split(".")[-1][:2]]
+        size = max(abs(x) for c in kind for x in wanted[c])
+        worst = max(worst, max(abs(a - b) for a, b in zip(got[column], wanted[column]))/size if size else 0.0)
+    numbers[what] = worst
+    clients.verdict(worst <= allowed, what, f"{len(columns)} histories, largest difference {worst:.1e}, allowed {allowed:.0e}")
 
 
-def graded(x):
-    """As in footing.py."""
-    beyond = max(0.0, (x - 1/3)*1.5)
-    return 1.5*x if x <= 1/3 + 1e-12 else 0.5 + beyond + 2.5*beyond**2
+def points():
+    """The batch call as the finite elements use it, on the strains and suctions of mud_triax."""
+    for case, parameters in (("shear", {}), ("shear_suction", {}), ("wetting", {}), ("hysteresis", {"hysteresis": 1})):
+        rows = clients.expected(case)
+        path = folder/f"{case}.json"
+        path.write_text(json.dumps({"strains": clients.strains(rows), "suction": rows["suction"],
+                                    "void_ratio": rows["e"][0], "stress": -rows["p_eff"][0], "parameters": parameters}))
+        answer = program(f"points_{case}", "points.py", path)
+        clients.compare(f"batch call, {case}", answer["stress"] if answer else [], clients.stresses(rows)[1:])
+        if parameters:
+            clients.compare(f"its degree of saturation, {answer and answer['state_variables']} state variables",
+                            [answer["saturation"] if answer else []], [rows["s_w"][1:]])
 
 
-def host(cells, steps):
-    """Settlement and pressure of the water at the axis, by mud_host on a mesh with the same breaks."""
-    name = f"host_{cells}_{steps}"
-    lines = [graded(i/cells) for i in range(cells + 1)]
-    scene = (here / "strip.nml").read_text()
-    load = "".join(f"&load\n   group = 'top_{i}'\n   kind = 'pressure'\n   value = 150\n   history = 'ramp'\n/\n"
-                   for i in range(1, cells//3 + 1))
-    for word, text in (("R", ", ".join(map(repr, lines))), ("Z", ", ".join(repr(-x) for x in reversed(lines))),
-                       ("ONES", ", ".join(["1"]*cells)), ("STEP", repr(100.0/steps)), ("LOAD", load)):
-        scene = re.sub(f"@{word}@", text, scene)
-    (folder / f"{name}.nml").write_text(scene)
-    command = [clients.build / "host/mud_host", f"{name}.nml", "--output", name, "--quiet"]
-    subprocess.run(["rm", "-rf", folder / name], check=True)
-    if clients.run(command, folder / f"{name}.log", cwd=folder, timeout=900) != 0:
-        return None
-    with open(folder / name / "histories.csv") as file:
-        last = list(csv.DictReader(file))[-1]
-    return {"settlement": -float(last["centre.u_z"]), "p_w": float(last["below.p_w"])}
+def blocks():
+    """Stresses are integrated to 1e-6 or so: that is what differences can show."""
+    told = program("blocks", "blocks.py", folder)
+    worst = max((value, f"{state}: {block}") for state, found in told.items() for block, value in found.items()) \
+        if told else (1.0, "")
+    numbers["blocks"] = worst
+    clients.verdict(worst[0] <= 1e-4, "every block of the derivatives of a point against differences",
+                    f"{worst[0]:.1e} in {worst[1]}, allowed 1e-4")
 
 
-def strip(cells, steps):
-    return footing(f"strip_{cells}_{steps}", "--strip", "--cells", str(cells), "--steps", str(steps))
+def consolidation():
+    """Terzaghi and Mandel: the scenes of mud_host in hexahedra; not in the first steps, when the load acts at once."""
+    scene = clients.root/"verification/host/terzaghi/scene.nml"
+    got = solid("terzaghi", text(scene, ("duration = 100", "duration = 40")), "--thickness", "0.1", "--no-fields")
+    wanted = got and {"time": got["time"], "base.p_w": [closed.terzaghi(0.0, t) for t in got["time"]],
+                      "middle.p_w": [closed.terzaghi(0.5, t) for t in got["time"]]}
+    near("Terzaghi in three dimensions", got, wanted, ("base.p_w", "middle.p_w"), 3e-3, 0.1)
+    scene = clients.root/"verification/studies/cost/scenes/mandel.nml"
+    got = solid("mandel", text(scene, ("duration = 200", "duration = 60")), "--thickness", "0.2", "--no-fields")
+    wanted = got and {"time": got["time"], "middle.p_w": [closed.mandel(0.0, t) for t in got["time"]]}
+    near("Mandel in three dimensions, under a tied plate", got, wanted, ("middle.p_w",), HOST, 0.5)
 
 
-# The strip. The finite elements here are of first order in time: two runs are extrapolated to steps of no length.
-# Allowed is what halving the elements moves either program, and halving the step mud_host.
-runs = {(n, s): strip(n, s) for n in (6, 12) for s in (10, 20)}
-own = {(n, s): host(n, s) for n, s in ((6, 20), (12, 20), (12, 10))}
-for name in ("settlement", "p_w"):
-    if not all(runs.values()) or not all(own.values()):
-        clients.verdict(False, f"strip against mud_host, {name}", "a run did not come to its end")
-        continue
-    coarse, fine = (2.0*runs[n, 20][name] - runs[n, 10][name] for n in (6, 12))
-    ours = own[12, 20][name]
-    apart, theirs = abs(fine - ours)/ours, abs(fine - coarse)/ours
-    mine = (abs(ours - own[6, 20][name]) + abs(ours - own[12, 10][name]))/ours
-    clients.verdict(apart <= theirs + mine, f"strip against mud_host, {name}",
-                    f"apart {apart:.1e} of {ours:.6g}, allowed {theirs:.1e} (FEniCSx) + {mine:.1e} (mud_host)")
-(folder / "results.json").write_text(json.dumps({"library": clients.commit(), "runs": runs_made}, indent=1) + "\n")
+def liakopoulos():
+    scene = here/"scenes/liakopoulos.nml"
+    got, wanted = solid("liakopoulos", scene, "--thickness", "0.1", "--no-fields"), host("liakopoulos_host", scene)
+    near("Liakopoulos' column", got, wanted, ("top.u_z", "middle.u_z", "top.p_w", "middle.p_w"), HOST)
+
+
+def layers():
+    """MUD and an elastic region, each with its own water."""
+    scene = here/"scenes/layers.nml"
+    got, wanted = solid("layers", scene, "--thickness", "0.25", "--no-fields"), host("layers_host", scene)
+    near("two materials under rain", got, wanted, ("top.u_z", "middle.u_z", "top.p_w", "middle.p_w"), HOST)
+
+
+def waves():
+    """A pulse that leaves through an absorbing base, and a column of MUD shaken between tied sides."""
+    scene = text(clients.root/"verification/host/waves/column.nml", ("duration = 0.4", "duration = 0.2"))
+    got, wanted = solid("wave", scene, "--thickness", "0.25", "--no-fields"), host("wave_host", scene)
+    near("wave column", got, wanted, ("middle.u_r",), HOST)
+    scene = text(clients.root/"verification/host/site/scene.nml", ("duration = 5.5", "duration = 2"))
+    got, wanted = solid("shaken", scene, "--thickness", "0.1", "--no-fields"), host("shaken_host", scene)
+    columns = [f"z{z:03d}.{c}" for z in range(0, 100, 10) for c in ("u_r", "p_w") if c == "u_r" or z]
+    near("shaken column", got, wanted, columns, HOST)
+
+
+def strip():
+    scene = here/"scenes/strip.nml"
+    got = solid("strip", scene, "--thickness", "0.25", "--cells", "tetrahedra", "--no-fields")
+    near("strip", got, host("strip_host", scene), ("centre.u_z", "below.u_z", "below.p_w"), HOST)
+
+
+def indentation():
+    scene = here/"scenes/indentation.nml"
+    one = solid("indentation", scene, "--no-fields")
+    near("indentation, sector of 5 degrees", one, host("indentation_host", scene), ("centre.u_z", "rim.u_z", "below.u_z"),
+         HOST)
+    same("indentation: two ranks give the histories of one", solid("indentation_two", scene, "--no-fields", ranks=2), one,
+         1e-4)  # Newton's tolerance of the scene
+
+
+def ground():
+    """The start: ground with weight under K_0 stress, then a surcharge."""
+    g = clients.GROUND
+    density = g["weight"]/9.81
+    scene = f"""&scene name = 'ground' geometry = 'plane_strain' fields = 'u' gravity = 9.81 /
+&mesh r = 0, 1 r_cells = 1 z = {-g["height"]!r}, 0 z_cells = 8 /
+&mud name = 'sand' file = 'toyoura.nml' /
+&region material = 'sand' void_ratio = 0.8 rho_s = {density*1.8!r} /
+&initial stress = 'geostatic' k_0 = {g["k_0"]!r} surcharge = {g["surcharge"]!r} /
+&history name = 'ramp' times = 1, 2 values = 0, 1 /
+&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 tolerance = 1e-8 /
+&stage name = 'load' analysis = 'static' duration = 1 dt = {1.0/g["steps"]!r} tolerance = 1e-6 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&load group = 'top' kind = 'pressure' value = {g["surcharge"]!r} /
+&load group = 'top' kind = 'pressure' value = {g["added"]!r} history = 'ramp' /
+&point name = 'low' z = {-g["height"]!r} /
+&point name = 'top' /
+""".replace("file = 'toyoura.nml'", f"file = '{clients.root/'drivers/materials/toyoura.nml'}'")
+    got = solid("ground", scene, "--thickness", "1", "--cells", "tetrahedra", "--no-fields")
+    log = (folder/"ground.log").read_text()
+    first = re.search(r"rest: time 1 s.* (\d+) iterations", log)
+    clients.ground(got and {
+        "first": {"iterations": int(first[1]), "moved": max(abs(got[c][0]) for c in got if ".u_" in c),
+                  "stress": [got["low.s_rr"][0], got["low.s_zz"][0]]},
+        "last": {"stress": [got["low.s_rr"][-1], got["low.s_zz"][-1]]}})
+
+
+def ranks():
+    small = footing.scene(3, steps=4, settlement=0.02)
+    one = solid("one", small, "--no-fields")
+    same("footing: two ranks give the histories of one", solid("two", small, ranks=2), one)
+    fields = (folder/"two/results.xdmf").exists() and (folder/"two/results.h5").stat().st_size > 10000
+    clients.verdict(fields, "fields for ParaView from two ranks", "results.xdmf, results.h5")
+    solid("half", small, "--no-fields", "--stop-after", "2", "--checkpoint", "half.state")
+    again = solid("again", small, "--no-fields", "--restart", "half.state")
+    bits = again and one and (folder/"again/histories.csv").read_text().splitlines()[1:] == \
+        (folder/"one/histories.csv").read_text().splitlines()[3:]
+    clients.verdict(bool(bits), "a restart gives the bits of the whole run", "rows of histories.csv")
+    later = one and {name: values[2:] for name, values in one.items()}
+    same("a restart on two ranks gives its histories", solid("other", small, "--no-fields", "--restart", "half.state",
+                                                             ranks=2), later)
+    same("multigrid gives the histories of MUMPS", solid("multigrid", small, "--no-fields", "--linear", "amg"), one)
+    same("the same on two ranks", solid("multigrid_two", small, "--no-fields", "--linear", "amg", ranks=2), one)
+    deep = footing.scene(3, steps=1, settlement=1.5, scale=4.0, tolerance=1e-6)
+    one, two = solid("deep", deep, "--no-fields"), solid("deep_two", deep, "--no-fields", ranks=2)
+    cuts = [numbers.get(name, {}).get("cuts") for name in ("deep", "deep_two")]
+    clients.verdict(one is not None and abs(one["centre.u_z"][-1] + 1.5) < 1e-9 and cuts[0],
+                    "1.5 m in one step get through by cuts", f"{cuts[0]} cuts")
+    clients.verdict(cuts[0] == cuts[1], "two ranks cut the same steps", f"{cuts} cuts")
+
+
+def steps():
+    """Steps by their error: within the accuracy of the closed form, and the same ones on two ranks."""
+    scene = text(clients.root/"verification/host/terzaghi/scene.nml", ("duration = 100", "duration = 40"),
+                 ("dt = 1.0e-3", ""), ("dt_growth = 1.03", ""), ("dt_max = 1", ""), ("tolerance = 1.0e-8", ""),
+                 ("name = 'terzaghi'", "name = 'terzaghi' accuracy = 1e-2"))
+    one = solid("controlled", scene, "--thickness", "0.1", "--no-fields")
+    wanted = one and {"time": one["time"], "base.p_w": [closed.terzaghi(0.0, t) for t in one["time"]]}
+    near(f"Terzaghi by {one and len(one['time'])} steps of accuracy 1e-2", one, wanted, ("base.p_w",), 1e-2, 0.1)
+    two = solid("controlled_two", scene, "--thickness", "0.1", "--no-fields", ranks=2)
+    clients.verdict(bool(one and two) and len(one["time"]) == len(two["time"]) and
+                    all(abs(a - b) <= 1e-6*b for a, b in zip(two["time"], one["time"])),
+                    "two ranks choose the same steps", f"{one and len(one['time'])}, {two and len(two['time'])} steps")
+
+
+def refusals():
+    """What the physics cannot carry is refused with a sentence, on two ranks as on one."""
+    small = footing.scene(3, steps=1)
+    wet = small.replace("'u-p_w'", "'u-p_w-p_c'")
+    for name, scene, words in (
+            ("tension", footing.scene(3, steps=1, settlement=1.0, back=0.0, scale=4.0, tolerance=1e-6),
+             "the pressure of the water falls to"),
+            ("air", wet, "air that flows is not carried"),
+            ("contact", small + "&contact name = 'c' slave = 'top' master = 'plate' /\n", "&contact is not carried"),
+            ("key", small.replace("settlement", "").replace("&scene ", "&scene seepage_inertia = 'yes' "), "seepage_inertia"),
+            ("field", small.replace("field = 'u_y'", "field = 'rotation'"), "rotation")):
+        for ranks in (1, 2):
+            code = solid(f"refused_{name}", scene, "--no-fields", ranks=ranks)
+            log = (folder/f"refused_{name}.log").read_text()
+            said = [line for line in log.splitlines() if line.startswith("mud3d: ")]
+            clients.verdict(code is None and any(words in line for line in said), f"refused on {ranks} ranks: {name}",
+                            said[0][:140] if said else "no sentence")
+
+
+def scaling():
+    """Iterations of the multigrid: at most 40 at these sizes, for fast and slow loading."""
+    result = folder/"scaling.json"
+    result.unlink(missing_ok=True)
+    for cells in (3, 6, 9):
+        for mesh in ("even", "graded"):
+            for seconds in ("0.001", "1", "100"):
+                launch(f"scaling_{cells}_{mesh}_{seconds}", [here/"scaling.py", str(cells), mesh, seconds, result])
+    rows = [json.loads(line) for line in result.read_text().splitlines()]
+    numbers["scaling"] = rows
+    worst = max(row["iterations"] for row in rows)
+    clients.verdict(len(rows) == 18 and 0 < min(row["iterations"] for row in rows) and worst <= 40,
+                    "GMRES iterations at 1093 to 21577 unknowns, three speeds", f"at most {worst}, allowed 40")
+
+
+parts = [points, blocks, consolidation, liakopoulos, layers, waves, strip, indentation, ground, ranks, steps, refusals,
+         scaling]
+words = sys.argv[1:]
+for part in parts:
+    if not words or any(part.__name__.startswith(word) for word in words):
+        part()
+(folder/"results.json").write_text(json.dumps({"library": clients.commit(), "runs": numbers}, indent=1) + "\n")
 clients.finish()

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Points of the batch call alone. A JSON file with strains, suction, void_ratio, stress, parameters: four equal points
-follow it.
-An .npz that footing.py --record wrote: the last increment of every point again, compared bit by bit.
+"""Points of the batch call alone: four equal points follow a JSON file with strains, suction, void_ratio, stress,
+parameters. points.py GIVEN.json --result RESULT.json
 """
 import json
 import sys
@@ -29,20 +28,8 @@ def follow(given):
     return {"stress": rows, "saturation": water, "state_variables": points.statev.shape[1]}
 
 
-def again(file):
-    sand = mud.Material(**dict(zip(mud.parameters, file["props"])))
-    stress, strain = (file[name].reshape(-1, 6) for name in ("stress", "strain"))
-    state = file["state"].reshape(len(stress), -1)
-    new = sand.update_batch(stress, state, strain, tangent="consistent")
-    same = new.stress.tobytes() == file["new_stress"].tobytes() and new.statev.tobytes() == file["new_state"].tobytes()
-    return {"same": same, "points": len(stress)}
-
-
-path, _, result = sys.argv[1:4]  # FILE --result RESULT
-if path.endswith(".npz"):
-    answer = again(np.load(path))
-else:
-    with open(path) as source:
-        answer = follow(json.load(source))
+path, _, result = sys.argv[1:4]
+with open(path) as source:
+    answer = follow(json.load(source))
 with open(result, "w") as target:
     json.dump(answer, target)

@@ -36,19 +36,21 @@ def _line(breaks, cells, ratios, name):
 
 
 def _plane(given):
-    """Quadrilaterals in r, z of the built-in mesh: points, cells (bottom left, bottom right, top left, top right)."""
+    """Quadrilaterals in r, z of the built-in mesh: points; cells (bottom left, bottom right, top left, top right), their
+    pieces along r and z, and which have an even sum of column and row."""
     r, r_piece = _line(given.r, given.r_cells, given.r_ratio, "r")
     z, z_piece = _line(given.z, given.z_cells, given.z_ratio, "z")
     points = np.stack(np.meshgrid(r, z, indexing="ij"), -1).reshape(-1, 2)
     i, j = np.meshgrid(np.arange(len(r) - 1), np.arange(len(z) - 1), indexing="ij")
     first = (i*len(z) + j).ravel()
     cells = np.stack([first, first + len(z), first + 1, first + len(z) + 1], 1)
-    return points, cells, np.stack([r_piece[i.ravel()], z_piece[j.ravel()]], 1)
+    return points, cells, np.stack([r_piece[i.ravel()], z_piece[j.ravel()]], 1), (i + j).ravel() % 2 == 0
 
 
-def _halved(cells):
-    """Two triangles of every quadrilateral."""
-    return np.concatenate([cells[:, [0, 1, 3]], cells[:, [0, 3, 2]]], 1).reshape(-1, 3)
+def _halved(cells, even):
+    """Two triangles of every quadrilateral; the diagonals alternate as in mud_host, `even` rise to the right."""
+    rising, falling = cells[:, [0, 1, 3, 0, 3, 2]], cells[:, [0, 1, 2, 1, 3, 2]]
+    return np.where(even[:, None], rising, falling).reshape(-1, 3)
 
 
 def _raised(points, cells, layers, place):
@@ -88,7 +90,7 @@ def boundary(cell, cells):
 
 def _built_in(scene, thickness, layers, sector, cells):
     given, geometry = scene.mesh, scene.scene.geometry
-    plane, squares, pieces = _plane(given)
+    plane, squares, pieces, even = _plane(given)
     cells = cells or given.cells
     y = None
     if geometry == "box":
@@ -106,7 +108,7 @@ def _built_in(scene, thickness, layers, sector, cells):
         raise SceneError(f"cells = '{cells}': not in this geometry; the others are {', '.join(allowed)}"
                          " (about an axis tetrahedra alone)")
     simplices = cells in ("triangles", "tetrahedra")
-    flat = _halved(squares) if simplices else squares
+    flat = _halved(squares, even) if simplices else squares
     parents = np.repeat(np.arange(len(squares)), 2) if simplices else np.arange(len(squares))
     if not solid:
         points, found = plane, flat

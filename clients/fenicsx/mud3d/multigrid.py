@@ -5,7 +5,7 @@ One application is block lower-triangular: a cycle for the displacements, then, 
 their Schur complement.
 
 * Displacements: two levels by order. Quadratic ones are smoothed (SOR, forwards and backwards), linear ones on the same
-  cells are the coarse level, where smoothed aggregation with the rigid-body modes (GAMG) takes over.
+  cells are the coarse level, where a cycle of BoomerAMG takes over, which keeps the components apart.
 * Pressures: storage + flow + b_u b_p/kappa, the response of the skeleton to a pressure. 1/kappa is that to a plane wave of
   pressure, n.Q^-1.n with the acoustic tensor Q(n) of the present tangent, the mean over directions: 1/(K + 4 G/3) where
   the skeleton is isotropic. With it fast and slow loading are the same to the solver. Its inverse is a cycle of BoomerAMG.
@@ -67,7 +67,6 @@ class Blocks:
                                        nnz=(each.shape[1], each.shape[1]), comm=comm)
         self.I.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
         done = np.zeros(own_fine, bool)
-        used = np.zeros(len(places)*d)
         for cell in range(space.cells):
             for k, node in enumerate(space.nodes_u[cell]):
                 if node >= own_fine or done[node]:
@@ -82,23 +81,6 @@ class Blocks:
                         self.I.setValues([offset + d*node + c], (d*number[cell, keep] + c).astype(PETSc.IntType),
                                          weights[k, keep])
         self.I.assemble()
-        modes = []
-        points = places[:own, :d]
-        rotations = [(0, 1)] if d == 2 else [(0, 1), (1, 2), (0, 2)]
-        for i in range(d + len(rotations)):
-            mode = np.zeros((own, d))
-            if i < d:
-                mode[:, i] = 1.0
-            else:
-                a, b = rotations[i - d]
-                mode[:, a], mode[:, b] = -points[:, b], points[:, a]
-            vector = PETSc.Vec().createMPI((d*own, PETSc.DETERMINE), bsize=d, comm=comm)
-            vector.setArray(mode.ravel())
-            for other in modes:
-                vector.axpy(-vector.dot(other), other)
-            vector.normalize()
-            modes.append(vector)
-        self.modes = PETSc.NullSpace().create(vectors=modes, comm=comm)
         self.A_c = None
         self.ksp_u = self.ksp_p = None
 
@@ -112,7 +94,6 @@ class Blocks:
         self.A_c.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
         big = float(np.abs(diagonal).max(initial=1.0))
         self.A_c.zeroRowsColumns(empty.astype(PETSc.IntType), big)
-        self.A_c.setNearNullSpace(self.modes)
         if self.ksp_u is None:
             self._displacements()
         else:
@@ -158,10 +139,7 @@ class Blocks:
         coarse = pc.getMGCoarseSolve()
         coarse.setOperators(self.A_c)
         coarse.setType("preonly")
-        coarse.getPC().setType("gamg")
-        _defaults({"u_mg_levels_1_pc_sor_symmetric": None, "u_mg_coarse_pc_gamg_threshold": 0.01,
-                   "u_mg_coarse_mg_levels_ksp_type": "richardson", "u_mg_coarse_mg_levels_pc_type": "sor",
-                   "u_mg_coarse_mg_levels_ksp_max_it": 2, "u_mg_coarse_pc_gamg_agg_nsmooths": 1})
+        coarse.getPC().setType("hypre")
         self.ksp_u.setFromOptions()
 
     def _pressures(self):
@@ -192,14 +170,6 @@ class Blocks:
         self.r_p.setArray(r.array_r[space.own_u:] - self.t_p.array_r)
         self.ksp_p.solve(self.r_p, self.z_p)
         z.setArray(np.concatenate([self.z_u.array_r, self.z_p.array_r]))
-
-
-def _defaults(values):
-    """Options of PETSc that the command line has not."""
-    options = PETSc.Options()
-    for name, value in values.items():
-        if not options.hasName(name):
-            options[name] = value
 
 
 def setup(solver, pc, options):

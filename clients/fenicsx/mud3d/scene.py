@@ -20,7 +20,7 @@ KEYS = {
     "retention": {"name": NEEDED, "law": "", "alpha": 0.0, "n": 2.0, "m": None, "s_max": 1.0, "s_min": 0.0, "a": 0.0,
                   "b": 1.0},
     "permeability": {"name": NEEDED, "intrinsic": None, "law": "corey", "s_min": 0.0, "s_max": 1.0, "a": 0.0, "b": 3.0,
-                     "c": 2.0, "m": 0.5, "k_rw": 1.0, "floor": 1.0e-4},
+                     "m": 0.5, "k_rw": 1.0, "floor": 1.0e-4},
     "region": {"group": "", "material": NEEDED, "retention": "", "permeability": "", "rho_s": 2.65, "void_ratio": None,
                "damping": 0.0, "stiffness_damping": 0.0},
     "initial": {"group": "all", "p_w": 0.0, "p_w_slope": 0.0, "p_c": 0.0, "p_c_slope": 0.0, "datum": 0.0,
@@ -61,8 +61,9 @@ WORDS = {
     **{(group, key): ("no", "yes") for group, key in (("stage", "zero_displacements"), ("fix", "hold"),
                                                       ("tie", "pressures"), ("plate", "weight"))},
 }
-#: Keys of mud_host about its own way to compute, which change no answer.
-IGNORED = {("scene", "threads"), ("scene", "factors"), ("scene", "ordering"), ("mud", "tangent"), ("stage", "predictor"),
+#: Keys of mud_host about its own way to compute, and of air, which rests here: they change no answer.
+IGNORED = {("fluids", "k_a"), ("fluids", "eta_a"), ("fluids", "gas"), ("fluids", "p_ref"), ("permeability", "c"),
+           ("permeability", "k_ra"), ("scene", "threads"), ("scene", "factors"), ("scene", "ordering"), ("mud", "tangent"), ("stage", "predictor"),
            ("stage", "output_dt"), ("stage", "created_energy")}
 
 

@@ -14,7 +14,7 @@ STRAIN, MOTION, PRESSURE, GRADIENT = slice(0, 6), slice(6, 9), 9, slice(10, 13)
 NUMBERS = 13
 CHUNK = 512  # cells whose matrices stand in memory at once
 DEGREE = {3: 2, 6: 4, 7: 5, 12: 6}  # of quadrature, for mud_host's number of points in a triangle
-WHOLE = (0, 1, 2, 3, 4, 5)  # 11 22 33 12 13 23
+LEAST = {"quadrilateral": 4, "hexahedron": 4}  # with two points along an edge some motions would meet no stiffness
 
 
 class Space:
@@ -66,7 +66,7 @@ class Space:
         self._vector = PETSc.Vec().createGhost(self.ghosts, (self.owned, PETSc.DETERMINE), comm=comm)
 
     def _tables(self, quadrature):
-        points, weights = calls.quadrature(self.cell, DEGREE[quadrature])
+        points, weights = calls.quadrature(self.cell, max(DEGREE[quadrature], LEAST.get(self.cell, 0)))
         self.reference = (points, weights)
         _, slopes = calls.shapes(self.cell, 1, points)
         corners = self.mesh.corners
