@@ -18,7 +18,7 @@ from mud3d.space import NUMBERS, PRESSURE, STRAIN
 SCENE = """
 &scene geometry = 'plane_strain' fields = 'u-p_w-p_c' pressures = 'linear' gravity = 9.81 quadrature = 3 /
 &mesh r = 0, 1 r_cells = 1 z = 0, 1 z_cells = 1 /
-&mud name = 'sand' /
+&mud name = 'sand' tolerance = 1e-9 /
 &elastic name = 'rock' young = 1e4 poisson = 0.3 /
 &retention name = 'curve' law = 'van_genuchten' alpha = 0.1 n = 2 /
 &permeability name = 'k' intrinsic = 1e-10 law = 'mualem' m = 0.5 /

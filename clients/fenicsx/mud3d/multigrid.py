@@ -74,12 +74,12 @@ class Blocks:
                 done[node] = True
                 some = np.nonzero(weights[k] > 1e-12)[0]
                 for c in range(d):
-                    if node_held[node, c]:
+                    keep = some if node_held[node, c] else some[~corner_held[cell, some, c]]
+                    if node_held[node, c] and len(some) > 1:
                         continue
-                    keep = some[~corner_held[cell, some, c]]
-                    if len(keep):
+                    if len(keep):  # zeros of held corners keep a place on the diagonal of the coarse matrix
                         self.I.setValues([offset + d*node + c], (d*number[cell, keep] + c).astype(PETSc.IntType),
-                                         weights[k, keep])
+                                         weights[k, keep]*(not node_held[node, c]))
         self.I.assemble()
         self.A_c = None
         self.ksp_u = self.ksp_p = None
