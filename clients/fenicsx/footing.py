@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Scenes of a quarter of a smooth, rigid, square footing on saturated MUD sand, for checks and for scaling.py.
 
-footing.py CELLS > SCENE.nml, or footing.scene(...). The sand begins at an even effective stress of 50 kPa; the water at a
-back pressure, for dense sand dilates.
+footing.py CELLS > SCENE.nml, or footing.scene(...). The sand begins at an even effective stress of 50 kPa; the water at
+a back pressure, for dense sand dilates.
 """
 import sys
 
@@ -11,7 +11,7 @@ BACK = 2000.0  # [kPa]
 
 def scene(cells, graded=True, seconds=100.0, settlement=0.02, steps=10, back=BACK, scale=1.0, tolerance=1e-8,
           accuracy="", stage="", elements="tetrahedra"):
-    """cells: along an edge, divisible by 3; graded: ground of 8 half widths, else of 3; accuracy, stage: further keys."""
+    """cells: along an edge, divisible by 3; graded: ground of 8 half widths, else of 3; accuracy, stage: more keys."""
     inner, outer = cells//3, cells - cells//3
     far, ratio = (8.0, 1.35**(6.0/cells)) if graded else (3.0, 1.0)
     half = 0.5*scale

@@ -2,7 +2,8 @@
 """One matrix, one solution, every point once: the first iteration of a step of 2 mm of footing.py's footing, and the
 processor seconds of its parts, the largest of all ranks.
 
-scaling.py CELLS even|graded SECONDS RESULT: appends a line of JSON. SECONDS: of the step; a short one lets no water leave.
+scaling.py CELLS even|graded SECONDS RESULT: appends a line of JSON. SECONDS: of the step; in a short one no water
+leaves.
 Processor time can be told on a machine that others use too; a rank that waits in MPI burns it as well.
 """
 import json

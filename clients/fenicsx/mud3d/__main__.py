@@ -79,8 +79,8 @@ def main():
         told = {"ranks": comm.size, "unknowns": unknowns, "points": points, "seconds": time.monotonic() - began,
                 **run.counts}
         (folder/"run.json").write_text(json.dumps(told, indent=1) + "\n")
-    run.tell(f"{unknowns} unknowns, {points} points, {run.counts['steps']} steps, {run.counts['iterations']} iterations, "
-             f"{run.counts['cuts']} cuts, {time.monotonic() - began:.1f} s")
+    run.tell(f"{unknowns} unknowns, {points} points, {run.counts['steps']} steps, "
+             f"{run.counts['iterations']} iterations, {run.counts['cuts']} cuts, {time.monotonic() - began:.1f} s")
     return 0
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What holds unknowns in a stage: prescribed values, ties, plates, planes of symmetry.
 
-All unknowns follow from those that are free, x = P y + g. A tied unknown is a share of its master; what fixes one member
-of a tie fixes all.
+All unknowns follow from those that are free, x = P y + g. A tied unknown is a share of its master; what fixes one
+member of a tie fixes all.
 """
 import numpy as np
 from petsc4py import PETSc

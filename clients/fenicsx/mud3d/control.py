@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Steps: given ones with cuts and growth, or by their error, docs/theory/host.md sections 4.4 and 4.5.
 
-Of the control of mud_host it has the errors of a step, the allowance and the controller; of the allowance of motions the
-share of the time that is left. All ranks see the same norms and decide alike.
+Of the control of mud_host it has the errors of a step, the allowance and the controller; of the allowance of motions
+the share of the time that is left. All ranks see the same norms and decide alike.
 """
 import numpy as np
 

@@ -7,14 +7,15 @@ them decide alike.
 import dataclasses
 
 import numpy as np
+from mpi4py import MPI
 
 from . import balances, boundaries, control, grid
-from .balances import DYNAMIC, QUASI_STATIC, STATIC, Scheme, between
+from .balances import DYNAMIC, STATIC, Scheme, between
 from .constraints import Constraints
-from .laws import M, Points, Refused
+from .laws import M, Points, Refused, retention
 from .linear import NotSolved, Solver
 from .scene import SceneError
-from .space import GRADIENT, MOTION, NUMBERS, PRESSURE, STRAIN, Space
+from .space import GRADIENT, NUMBERS, PRESSURE, STRAIN, Space
 
 TENSION = 1.0e-3   # [kPa], what rounding and Newton's tolerance leave where saturated water is held at 0
 LEAST_STEP = 1.0e-12
@@ -95,10 +96,7 @@ class Run:
         z, n = place[:, self.up], points.n
         stress, void = np.zeros((n, 6)), np.zeros(n)
         for number, region in enumerate(scene.regions):
-            own = region.void_ratio if region.void_ratio is not None else points.own_void_ratio[number]
-            if own is None:
-                raise SceneError(f"&region of '{region.material}': the key void_ratio is missing")
-            void[points.region == number] = own
+            void[points.region == number] = self._void_of(number)
         for initial in scene.initials:
             if scene.has_water:
                 nodes = space.nodes_of(initial.group, 1) if initial.group != "all" else slice(None)
@@ -106,7 +104,7 @@ class Run:
                 self.x[space.of_p[nodes]] = initial.p_w + initial.p_w_slope*(height - initial.datum)
         p = space.numbers(self.x)[0].reshape(n, NUMBERS)[:, PRESSURE]
         suction = self.ground.suction(p)[0]
-        self.retention_at_start(void, suction)
+        self._retention_at_start(void, suction)
         for initial in scene.initials:
             if initial.group not in space.cell_groups:
                 if initial.stress != "none":
@@ -134,16 +132,14 @@ class Run:
                                                                * scene.factor(scene.scene.gravity_history, 0.0))
             self.flow0 = space.gathered(space.forces(flow)[0])
 
-    def retention_at_start(self, void, suction):
+    def _retention_at_start(self, void, suction):
         """S_w of the initial void ratios and suctions into points.s0."""
         points = self.points
         points.s0[:] = 1.0
         if points.saturated or not self.scene.has_water:
             return
         if len(points.elastic):
-            points._retention(suction, points.s0)
-        for i in points.mud:
-            pass
+            points.retain(suction, points.s0)
         for number, law in enumerate(points.laws):
             here = points.mud[points.region[points.mud] == number]
             if len(here):
@@ -157,17 +153,16 @@ class Run:
         gravity = scene.scene.gravity*scene.factor(scene.scene.gravity_history, 0.0)
         for number, region in enumerate(scene.regions):
             here = points.region[own] == number
-            lowest = self.comm.allreduce(float(z[own][here].min(initial=np.inf)), op=_least())
+            lowest = self.comm.allreduce(float(z[own][here].min(initial=np.inf)), op=MPI.MIN)
             if not np.isfinite(lowest):
                 continue
             levels = np.linspace(initial.surface, min(lowest, initial.surface - 1e-9), 801)
-            e = np.full_like(levels, points.e0[0] if False else self._void_of(number))
+            e = np.full_like(levels, self._void_of(number))
             p = initial.p_w + initial.p_w_slope*(levels - initial.datum) if scene.has_water else 0.0*levels
             suction = self.ground.suction(p)[0]
             s = np.ones_like(levels)
             if scene.air_at_rest:
                 law, curve = points.laws[number], points.curves[number]
-                from .laws import retention
                 s = retention(curve, suction)[0] if curve else law.saturation(suction, e)
             n = e/(1.0 + e)
             fluids = scene.fluids
@@ -181,7 +176,10 @@ class Run:
 
     def _void_of(self, number):
         region = self.scene.regions[number]
-        return region.void_ratio if region.void_ratio is not None else self.points.own_void_ratio[number]
+        own = region.void_ratio if region.void_ratio is not None else self.points.own_void_ratio[number]
+        if own is None:
+            raise SceneError(f"&region of '{region.material}': the key void_ratio is missing")
+        return own
 
     # What acts.
     def gravity_at(self, time):
@@ -322,9 +320,9 @@ class Run:
         if value < -TENSION:
             raise Stopped(
                 f"t {time:.6g} s: the pressure of the water falls to {value:.4g} kPa at "
-                f"({', '.join(f'{c:.4g}' for c in place[:space.dimension])}); the fields 'u-p_w' know saturated soil only. "
-                "Begin at a pressure of the water that leaves none, or take the fields 'u-p_w-p_c' with air at rest "
-                "(&fix group = 'all' field = 'p_a')")
+                f"({', '.join(f'{c:.4g}' for c in place[:space.dimension])}); the fields 'u-p_w' know saturated soil "
+                "only. Begin at a pressure of the water that leaves none, or take the fields 'u-p_w-p_c' with air at "
+                "rest (&fix group = 'all' field = 'p_a')")
 
     def _newton(self, scheme):
         space, points, ground, held = self.space, self.points, self.ground, self.constraints
@@ -421,7 +419,8 @@ class Run:
                 try:
                     r, size, J, v1, a1 = assess(x + share*step)
                     new = errors(r, size)
-                    if np.isfinite(new) and (iteration == 1 or new <= (1.0 - 1e-4*share)*error or new <= self.tolerance):
+                    better = new <= max((1.0 - 1e-4*share)*error, self.tolerance)
+                    if np.isfinite(new) and (iteration == 1 or better):
                         break
                 except Refused:
                     if iteration == 1:
@@ -439,8 +438,3 @@ class Run:
     def tell(self, text):
         if self.options.told and self.comm.rank == 0:
             print(text, flush=True)
-
-
-def _least():
-    from mpi4py import MPI
-    return MPI.MIN

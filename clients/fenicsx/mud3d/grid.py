@@ -36,8 +36,8 @@ def _line(breaks, cells, ratios, name):
 
 
 def _plane(given):
-    """Quadrilaterals in r, z of the built-in mesh: points; cells (bottom left, bottom right, top left, top right), their
-    pieces along r and z, and which have an even sum of column and row."""
+    """Quadrilaterals in r, z of the built-in mesh: points; cells (bottom left, bottom right, top left, top right),
+    their pieces along r and z, and which have an even sum of column and row."""
     r, r_piece = _line(given.r, given.r_cells, given.r_ratio, "r")
     z, z_piece = _line(given.z, given.z_cells, given.z_ratio, "z")
     points = np.stack(np.meshgrid(r, z, indexing="ij"), -1).reshape(-1, 2)
@@ -54,8 +54,8 @@ def _halved(cells, even):
 
 
 def _raised(points, cells, layers, place):
-    """Prisms (or hexahedra) over every triangle (quadrilateral) as (bottom vertices, top vertices) of every layer; place(k)
-    gives the points of level k. Points that lie at the same place are one (on an axis)."""
+    """Prisms (or hexahedra) over every triangle (quadrilateral) as (bottom vertices, top vertices) of every layer;
+    place(k) gives the points of level k. Points that lie at the same place are one (on an axis)."""
     levels = np.stack([place(k) for k in range(layers + 1)])  # (levels, n, 3)
     n = len(points)
     number = np.arange((layers + 1)*n).reshape(layers + 1, n)
@@ -68,8 +68,8 @@ def _raised(points, cells, layers, place):
 
 
 def _tetrahedra(triangles, prisms):
-    """Three of every prism, by the order of the vertices of its triangle, so that neighbours fit; fewer at an axis. Also
-    the prism of every one."""
+    """Three of every prism, by the order of the vertices of its triangle, so that neighbours fit; fewer at an axis.
+    Also the prism of every one."""
     order = np.argsort(np.tile(triangles, (len(prisms)//len(triangles), 1)), axis=1)
     low, high = (np.take_along_axis(prisms[:, k], order, 1) for k in (0, 1))
     parts = np.stack([np.stack([low[:, 0], low[:, 1], low[:, 2], high[:, 2]], 1),
@@ -153,7 +153,8 @@ def _built_in(scene, thickness, layers, sector, cells):
             inside = (values[groups[name]] >= low - tolerance) & (values[groups[name]] <= high + tolerance)
             groups[f"{name}_{i}"] = groups[name][inside.all(axis=1)]
     if geometry == "box":  # parts of the top by r and y, as top_1_2
-        for name, depth in [(n, i) for n in [n for n in groups if n.startswith("top_")] for i in range(1, len(given.y))]:
+        strips = [name for name in groups if name.startswith("top_")]
+        for name, depth in ((name, i) for name in strips for i in range(1, len(given.y))):
             across = points[:, 1][groups[name]]
             inside = (across >= given.y[depth - 1] - tolerance) & (across <= given.y[depth] + tolerance)
             groups[f"{name}_{depth}"] = groups[name][inside.all(axis=1)]

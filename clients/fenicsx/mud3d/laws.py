@@ -21,8 +21,6 @@ class Refused(Exception):
 class Points:
     """n points. Ends of a step: 0 is its start, 1 the present guess of its end."""
 
-    BLOCKS = ("stress1", "tangent", "dsig_dpc", "s1", "ds_de", "ds_dpc", "e1")
-
     def __init__(self, comm, scene, region_of_point, saturated):
         self.comm, self.n, self.saturated = comm, len(region_of_point), saturated
         self.region = region_of_point
@@ -60,8 +58,8 @@ class Points:
             self.place_e = list(mud.states).index("void_ratio")
             self.place_s = list(mud.states).index("saturation")
             columns = np.zeros((n, 6, 6))
-            self.answer = mud.BatchResponse(self.stress1, self.state1, columns, self.dsig_dpc, self._slopes, self.ds_dpc,
-                                            self.s1)
+            self.answer = mud.BatchResponse(self.stress1, self.state1, columns, self.dsig_dpc, self._slopes,
+                                            self.ds_dpc, self.s1)
 
     def begin(self, stress, suction, void_ratio):
         """Initial state of all points."""
@@ -73,7 +71,7 @@ class Points:
             self._refuse(begun)
             self.s0[self.mud] = 1.0 if self.saturated else self.state0[self.mud, self.place_s]
         if len(self.elastic):
-            self._retention(suction, self.s0)
+            self.retain(suction, self.s0)
         self.stress1[:], self.state1[:], self.e1[:], self.s1[:] = self.stress0, self.state0, self.e0, self.s0
 
     def _refuse(self, answer):
@@ -106,14 +104,15 @@ class Points:
             self.tangent[i] = self.stiffness[region]
             self.stress1[i] = self.stress0[i] + np.einsum("nij,nj->ni", self.tangent[i], strain[i])
             self.e1[i] = (1.0 + self.e0[i])*np.exp(strain[i, :3].sum(1)) - 1.0
-            self._retention(suction, self.s1)
+            self.retain(suction, self.s1)
         if present:
             self.s1[:] = self.s0
         if self.saturated:
             self.s1[:], self.ds_de[:], self.ds_dpc[:] = 1.0, 0.0, 0.0
             self.dsig_dpc[:] = 0.0
 
-    def _retention(self, suction, into):
+    def retain(self, suction, into):
+        """S_w of elastic points into an array of all."""
         for number, law in enumerate(self.curves):
             i = self.elastic[self.region[self.elastic] == number]
             if law is None:
@@ -150,8 +149,8 @@ def retention(law, suction):
     p = np.maximum(suction, 0.0)
     span = law.s_max - law.s_min
     if law.law == "power":
-        full = 1.0 - law.a*p**law.b
-        return np.maximum(full, law.s_min), np.where(full > law.s_min, -law.a*law.b*np.maximum(p, 1e-30)**(law.b - 1.0), 0.0)
+        full, slope = 1.0 - law.a*p**law.b, -law.a*law.b*np.maximum(p, 1e-30)**(law.b - 1.0)
+        return np.maximum(full, law.s_min), np.where(full > law.s_min, slope, 0.0)
     m = 1.0 - 1.0/law.n if law.m is None else law.m
     x = (law.alpha*p)**law.n
     return (law.s_min + span*(1.0 + x)**-m,

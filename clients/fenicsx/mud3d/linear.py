@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The linear equations of a step, P^T A P y = r: factors of MUMPS, or GMRES with one multigrid for every field."""
 import numpy as np
+from mpi4py import MPI
 from petsc4py import PETSc
+
+from . import multigrid
 
 
 class NotSolved(Exception):
@@ -32,7 +35,7 @@ class Solver:
             self.C = self.A.ptap(held.P, result=self.C)
             self.C.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
         diagonal = np.abs(self.C.getDiagonal().array)
-        big = space.comm.allreduce(float(diagonal[:space.own_u].max(initial=0.0)), op=_max())
+        big = space.comm.allreduce(float(diagonal[:space.own_u].max(initial=0.0)), op=MPI.MAX)
         self.C.zeroRowsColumns(held.rows, big or 1.0)
 
     def lifted(self, local):
@@ -70,15 +73,8 @@ class Solver:
             options["mat_mumps_icntl_14"] = 80  # room for pivoting
             self.ksp.setFromOptions()
         else:
-            from . import multigrid
-            multigrid.setup(self, pc, options)
+            self.blocks = multigrid.setup(self, pc)
 
     def _prepare(self):
         if self.kind != "mumps":
-            from . import multigrid
-            multigrid.refresh(self)
-
-
-def _max():
-    from mpi4py import MPI
-    return MPI.MAX
+            self.blocks.refresh(self.C, self.J)

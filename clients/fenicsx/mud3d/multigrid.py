@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Preconditioner of the linear equations whose number of iterations does not follow the size of the mesh.
 
-One application is block lower-triangular: a cycle for the displacements, then, for what the pressures still lack, one for
-their Schur complement.
+One application is block lower-triangular: a cycle for the displacements, then, for what the pressures still lack, one
+for their Schur complement.
 
 * Displacements: two levels by order. Quadratic ones are smoothed (SOR, forwards and backwards), linear ones on the same
   cells are the coarse level, where a cycle of BoomerAMG takes over, which keeps the components apart.
-* Pressures: storage + flow + b_u b_p/kappa, the response of the skeleton to a pressure. 1/kappa is that to a plane wave of
-  pressure, n.Q^-1.n with the acoustic tensor Q(n) of the present tangent, the mean over directions: 1/(K + 4 G/3) where
-  the skeleton is isotropic. With it fast and slow loading are the same to the solver. Its inverse is a cycle of BoomerAMG.
+* Pressures: storage + flow + b_u b_p/kappa, the response of the skeleton to a pressure. 1/kappa is that to a plane wave
+  of pressure, n.Q^-1.n with the acoustic tensor Q(n) of the present tangent, the mean over directions: 1/(K + 4 G/3)
+  where the skeleton is isotropic. It is what makes fast loading as easy as slow. Its inverse is a cycle of BoomerAMG.
 """
 import numpy as np
 from petsc4py import PETSc
@@ -49,10 +49,9 @@ class Blocks:
         self.A_uu = self.A_pu = self.S = None
         self.Schur = space.new_matrix() if space.own_p or comm.allreduce(space.own_p) else None
         self._coarse()
-        self.work = 0
 
     def _coarse(self):
-        """Interpolation from the vertices to the nodes of the displacements; nothing comes from or goes to what is held."""
+        """Interpolation from the vertices to the nodes of the displacements; what is held gives and takes nothing."""
         space, d, comm = self.space, self.space.dimension, self.space.comm
         each, own, ghosts, first, places = space.mesh.nodes(1)
         number = np.concatenate([first + np.arange(own), ghosts])[each]
@@ -155,7 +154,6 @@ class Blocks:
         pass
 
     def apply(self, pc, r, z):
-        self.work += 1
         space = self.space
         if not hasattr(self, "r_u"):
             self.r_u, self.z_u = self.A_uu.createVecRight(), self.A_uu.createVecRight()
@@ -172,15 +170,13 @@ class Blocks:
         z.setArray(np.concatenate([self.z_u.array_r, self.z_p.array_r]))
 
 
-def setup(solver, pc, options):
+def setup(solver, pc):
+    """GMRES with the blocks, as the solver's method."""
+    blocks = Blocks(solver)
     pc.setType("python")
-    solver.blocks = Blocks(solver)
-    pc.setPythonContext(solver.blocks)
+    pc.setPythonContext(blocks)
     solver.ksp.setType("fgmres")
     solver.ksp.setTolerances(rtol=solver.tolerance, max_it=300)
     solver.ksp.setGMRESRestart(100)
     solver.ksp.setFromOptions()
-
-
-def refresh(solver):
-    solver.blocks.refresh(solver.C, solver.J)
+    return blocks

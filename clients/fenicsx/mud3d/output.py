@@ -70,7 +70,8 @@ class Histories:
             if run.comm.rank == who:
                 s = p_of.stress0[point]
                 two = space.dimension == 2
-                mine = [s[0], s[1 if two else 2], s[2 if two else 1], s[3 if two else 4], p_of.e0[point], p_of.s0[point]]
+                mine = [s[0], s[1 if two else 2], s[2 if two else 1], s[3 if two else 4]]
+                mine += [p_of.e0[point], p_of.s0[point]]
             row += run.comm.bcast(mine if run.comm.rank == who else None, who)
         forces = self._reactions(run)
         if self.file:
@@ -194,18 +195,9 @@ def load(run, path):
 
 
 def _agreed(space, field):
-    """Owned values, where a rank may own what none of its cells has."""
+    """The value of the owner; that of a rank with a cell where the owner has none."""
     seen = np.zeros(space.size)
     seen[space.dofs.ravel()] = 1.0
-    total, count = space.summed(np.where(seen > 0, field, 0.0)), space.summed(seen)
-    return np.where(count > 1, total/np.maximum(count, 1.0), field) if False else _first(space, field, seen)
-
-
-def _first(space, field, seen):
-    """The value of the owner; that of a rank with a cell where the owner has none."""
     own = seen[:space.owned] > 0
-    if not space.comm.allreduce(int((~own).sum())):
-        return space.spread(field[:space.owned])
-    count = space.summed(seen)
-    total = space.summed(field*seen)
-    return space.spread(np.where(own, field[:space.owned], total[:space.owned]/np.maximum(count[:space.owned], 1.0)))
+    mean = space.summed(field*seen)/np.maximum(space.summed(seen), 1.0)
+    return space.spread(np.where(own, field[:space.owned], mean[:space.owned]))

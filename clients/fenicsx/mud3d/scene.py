@@ -13,7 +13,8 @@ NEEDED = object()
 #: Groups and their keys with defaults. A list is written as []; None: a number that may be left out.
 KEYS = {
     "scene": {"name": "scene", "geometry": "axisymmetric", "fields": "u", "pressures": "quadratic", "quadrature": 6.0,
-              "gravity": 0.0, "gravity_history": "", "initial_flow": "drain", "accuracy": None, "checkpoint_steps": 0.0},
+              "gravity": 0.0, "gravity_history": "", "initial_flow": "drain", "accuracy": None,
+              "checkpoint_steps": 0.0},
     "mesh": {"file": "", "scale": 1.0, "r": [], "r_cells": [], "r_ratio": [], "y": [], "y_cells": [], "y_ratio": [],
              "z": [], "z_cells": [], "z_ratio": [], "cells": ""},
     "fluids": {"k_w": 2.2e6, "rho_w": 1.0, "eta_w": 1.0e-6, "rho_a": 0.0012},
@@ -29,8 +30,8 @@ KEYS = {
     "stage": {"name": NEEDED, "analysis": "", "duration": NEEDED, "dt": None, "dt_growth": 1.0, "dt_max": None,
               "steps": "", "cuts": 10.0, "rho_inf": None, "tolerance": None, "measure": "auto", "max_iterations": 12.0,
               "start": "solve", "zero_displacements": "no", "every": 1.0, "fields": None},
-    "fix": {"group": NEEDED, "field": NEEDED, "value": 0.0, "value_slope": 0.0, "datum": 0.0, "history": "", "hold": "no",
-            "motion": "value", "stages": []},
+    "fix": {"group": NEEDED, "field": NEEDED, "value": 0.0, "value_slope": 0.0, "datum": 0.0, "history": "",
+            "hold": "no", "motion": "value", "stages": []},
     "load": {"group": NEEDED, "kind": NEEDED, "value": NEEDED, "value_slope": 0.0, "datum": 0.0, "history": "",
              "stages": []},
     "absorbing": {"group": NEEDED, "rho": None, "c_p": None, "c_s": None, "v_r": 0.0, "v_z": 0.0, "history": "",
@@ -63,8 +64,8 @@ WORDS = {
 }
 #: Keys of mud_host about its own way to compute, and of air, which rests here: they change no answer.
 IGNORED = {("fluids", "k_a"), ("fluids", "eta_a"), ("fluids", "gas"), ("fluids", "p_ref"), ("permeability", "c"),
-           ("permeability", "k_ra"), ("scene", "threads"), ("scene", "factors"), ("scene", "ordering"), ("mud", "tangent"), ("stage", "predictor"),
-           ("stage", "output_dt"), ("stage", "created_energy")}
+           ("permeability", "k_ra"), ("scene", "threads"), ("scene", "factors"), ("scene", "ordering"),
+           ("mud", "tangent"), ("stage", "predictor"), ("stage", "output_dt"), ("stage", "created_energy")}
 
 
 class SceneError(Exception):
@@ -205,7 +206,7 @@ class Scene:
                 raise SceneError("&fix field = 'p_a': here air is at rest, group = 'all' with the value 0")
         if fields == "u-p_w-p_c" and not air:
             raise SceneError("fields = 'u-p_w-p_c': air that flows is not carried by this program; with &fix group = "
-                             "'all' field = 'p_a' it is at rest at the pressure of the atmosphere, and mud_host has both")
+                             "'all' field = 'p_a' it is at rest at the pressure of the atmosphere; mud_host has both")
         if air and fields != "u-p_w-p_c":
             raise SceneError(f"&fix field = 'p_a' in a scene with the fields '{fields}'")
         self.air_at_rest = bool(air)

@@ -150,8 +150,8 @@ class Space:
         return self.summed(np.bincount(dofs.ravel(), of_cells.ravel(), self.size))
 
     def norm(self, local, which=None):
-        square = local[:self.owned]**2
-        return np.sqrt(self.comm.allreduce(float(square[which[:self.owned]].sum() if which is not None else square.sum())))
+        own = local[:self.owned] if which is None else local[:self.owned][which[:self.owned]]
+        return np.sqrt(self.comm.allreduce(float((own**2).sum())))
 
     def new_matrix(self):
         """A matrix of all unknowns with room for every pair of a cell."""
@@ -227,10 +227,11 @@ class Space:
             outward = np.einsum("cqi,cqi->cq", n, place - corners.mean(1)[:, None])
             n = n*np.sign(outward)[..., None]*weights[:, None]
             cells.append(own)
-            shape_u.append(np.broadcast_to(calls.shapes(self.cell, 2, points)[0], (len(own), len(points), self.shape_u.shape[1])))
+            u = calls.shapes(self.cell, 2, points)[0]
+            shape_u.append(np.broadcast_to(u, (len(own), *u.shape)))
             if self.pressure_degree:
                 p = calls.shapes(self.cell, self.pressure_degree, points)[0]
-                shape_p.append(np.broadcast_to(p, (len(own), len(points), p.shape[1])))
+                shape_p.append(np.broadcast_to(p, (len(own), *p.shape)))
             normal.append(n)
             places.append(place)
         if not cells:
