@@ -55,8 +55,6 @@ class Constraints:
     def _fix(self, fix, marked):
         space, scene = self.space, self.scene
         group = next((p.group for p in scene.plates if p.name == fix.group), fix.group)
-        if not space.has(group) and not space.comm.allreduce(int(space.has(group))):
-            raise SceneError(f"&fix group = '{fix.group}': there is no such group")
         pressure = fix.field == "p_w"
         nodes = space.nodes_of(group, 1 if pressure else 2)
         height = (space.places_p if pressure else space.places_u)[nodes][:, space.dimension - 1]

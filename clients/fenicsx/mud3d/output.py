@@ -185,6 +185,10 @@ def load(run, path):
     run.stage_number, run.time = told["stage"], told["begun"]
     run.x, run.v, run.a = x_stage.copy(), v, a
     stage = run.scene.stages[run.stage_number]
+    absorbs = any(run.scene.acts(entry, stage) for entry in run.scene.absorbings)
+    if stage.analysis == "dynamic" and absorbs and run.time < told["time"]:
+        raise SceneError(f"{path}: it lies within a stage with &absorbing, whose ground is that of the start of the "
+                         "stage: such a stage is not taken up again")
     run.begin_stage(stage)
     run.controller = Controller(run, stage)
     run.x, run.v, run.a, run.time, run.counts = x, v, a, told["time"], told["counts"]

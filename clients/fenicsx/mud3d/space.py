@@ -9,6 +9,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from . import calls
+from .scene import SceneError
 
 STRAIN, MOTION, PRESSURE, GRADIENT = slice(0, 6), slice(6, 9), 9, slice(10, 13)
 NUMBERS = 13
@@ -244,6 +245,8 @@ class Space:
 
     def nodes_of(self, name, degree):
         """Local nodes (of u where degree = 2, else of p) of a group of facets or cells, as marks over all."""
+        if not self.has(name):
+            raise SceneError(f"there is no group '{name}'")
         each, places = (self.nodes_u, self.places_u) if degree == 2 else (self.nodes_p, self.places_p)
         numbers = self.of_u[:, 0] if degree == 2 else self.of_p
         marks = np.zeros(self.size)
