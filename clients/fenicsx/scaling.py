@@ -8,6 +8,7 @@ Processor time can be told on a machine that others use too; a rank that waits i
 """
 import json
 import pathlib
+import resource
 import sys
 import tempfile
 import time
@@ -53,7 +54,8 @@ def main(cells, mesh, seconds, result, kind="amg"):
     largest = {part: round(max(comm.allgather(value)), 2) for part, value in spent.items()}
     row = {"ranks": comm.size, "mesh": mesh, "seconds": float(seconds), "linear": kind,
            "unknowns": comm.allreduce(run.space.owned), "points_number": comm.allreduce(run.points.n),
-           "iterations": run.solver.iterations, **largest}
+           "iterations": run.solver.iterations, **largest,
+           "megabytes": max(comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss//1024))}
     if comm.rank == 0:
         print(json.dumps(row))
         with open(result, "a") as file:
