@@ -40,7 +40,8 @@ def iterations(runs):
 def scaling(runs):
     rows = [r for r in runs["scaling"] if r["mesh"] == "graded" and r["seconds"] == 1.0 and r["unknowns"] > 40000]
     parts = ("points", "assembly", "solver")
-    head = ["unknowns", "points", "ranks", "GMRES iterations", *(f"{part} [s]" for part in parts), "together [s]", "MB a rank"]
+    head = ["unknowns", "points", "ranks", "GMRES iterations", *(f"{part} [s]" for part in parts), "together [s]",
+            "MB a rank"]
     return table(head,
                  [[r["unknowns"], r["points_number"], r["ranks"], r["iterations"], *(r[part] for part in parts),
                    round(sum(r[part] for part in parts), 1), r["megabytes"]]
