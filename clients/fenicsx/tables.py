@@ -42,10 +42,15 @@ def scaling(runs):
     parts = ("points", "assembly", "solver")
     head = ["unknowns", "points", "ranks", "GMRES iterations", *(f"{part} [s]" for part in parts), "together [s]",
             "MB a rank"]
+    seconds = {(r["unknowns"], r["ranks"]): sum(r[part] for part in parts) for r in rows}
+    small, large = min(seconds)[0], max(seconds)[0]
+    told = (f"\n\nTwo ranks are {seconds[small, 1]/seconds[small, 2]:.1f} ({small}) and "
+            f"{seconds[large, 1]/seconds[large, 2]:.1f} times ({large}) faster than one; {large/small:.1f} times the "
+            f"unknowns on two ranks\ntake {seconds[large, 2]/seconds[small, 1]:.2f} times the seconds of one.")
     return table(head,
                  [[r["unknowns"], r["points_number"], r["ranks"], r["iterations"], *(r[part] for part in parts),
                    round(sum(r[part] for part in parts), 1), r["megabytes"]]
-                  for r in sorted(rows, key=lambda r: (r["unknowns"], r["ranks"]))])
+                  for r in sorted(rows, key=lambda r: (r["unknowns"], r["ranks"]))]) + told
 
 
 runs = json.loads(pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else here/"results.json").read_text())["runs"]
