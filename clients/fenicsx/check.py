@@ -313,8 +313,8 @@ def scaling():
                     f"at most {worst}, allowed 40")
 
 
-parts = [points, blocks, consolidation, liakopoulos, layers, gmsh, waves, strip, indentation, ground, ranks, steps, refusals,
-         scaling]
+parts = [points, blocks, consolidation, liakopoulos, layers, gmsh, waves, strip, indentation, ground, ranks, steps,
+         refusals, scaling]
 words = sys.argv[1:]
 for part in parts:
     if not words or any(part.__name__.startswith(word) for word in words):

@@ -19,7 +19,9 @@ def agreement(runs):
     for name, value in runs.items():
         if isinstance(value, float):
             what, _, column = name.rpartition(": ")
-            worst[what or name] = max(worst.get(what or name, (0.0, "")), (value, column if what else "all"))
+            if " " in column or not what:  # of all histories
+                what, column = name, "all"
+            worst[what] = max(worst.get(what, (0.0, "")), (value, column))
     return table(["comparison", "largest difference", "of"],
                  [[what, f"{value:.1e}", f"`{column}`" if "." in column else "the largest value"]
                   for what, (value, column) in worst.items()])
