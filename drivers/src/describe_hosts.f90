@@ -29,7 +29,7 @@ module describe_hosts
       'incrementaldriver-start', 'initialconditions.inp at an isotropic stress of -100', &
       'udsm', 'number, name, unit and value of each PLAXIS parameter', &
       'plain', 'PROPS, a number a line'], [2, 10])
-   !> Of the hosts, those that take PROPS without hysteresis and preloading alone.
+   !> Of the hosts, those that take PROPS without hysteresis, preloading and fluidity alone.
    character(*), parameter :: WITHOUT_HYSTERESIS(4) = [character(len(HOSTS)) :: 'ogs', 'ogs-unsaturated', 'udsm', &
       'kratos-udsm']
    integer, parameter :: A_LINE = 8          !< Numbers of a card.
@@ -83,28 +83,31 @@ contains
       end if
    end subroutine read_material
 
-   !> Leaves out what stands behind hysteresis or c_chi where that is off: every host takes PROPS without it, and hosts
-   !> that name PROPS one by one (MFront) or have room for 50 (PLAXIS) take no others. Fault EXIT_INPUT: one is on, and
-   !> the host takes none.
+   !> Leaves out what stands behind hysteresis, c_chi or c_ell where these are off: every host takes PROPS without it,
+   !> and hosts that name PROPS one by one (MFront) or have room for 50 (PLAXIS) take no others. Fault EXIT_INPUT: one
+   !> is on, and the host takes none.
    subroutine shorten(host, material, fault)
       character(*), intent(in) :: host
       type(named_material_t), intent(inout) :: material
       type(fault_t), intent(inout) :: fault
-      integer :: of_hysteresis, of_preloading
-      logical :: hysteresis, preloading
+      character(*), parameter :: SWITCHES(3) = [character(10) :: 'hysteresis', 'c_chi', 'c_ell']
+      character(*), parameter :: WORDS(3) = [character(15) :: 'hysteresis is 1', 'c_chi is on', 'c_ell is on']
+      integer :: i, kept
+      logical :: on
 
-      of_hysteresis = property_index('hysteresis')
-      of_preloading = property_index('c_chi')
-      hysteresis = nint(material%props(of_hysteresis)) /= 0
-      preloading = material%props(of_preloading) > 0.0_wp
-      if ((hysteresis .or. preloading) .and. any(WITHOUT_HYSTERESIS == host)) then
-         call raise(fault, EXIT_INPUT, trim(merge('hysteresis is 1', 'c_chi is on    ', hysteresis))//', and '// &
-                    trim(host)//' takes PROPS without it; set it to 0.')
-      else if (.not. (hysteresis .or. preloading)) then
-         material%props = material%props(:of_hysteresis - 1)
-      else if (.not. preloading) then
-         material%props = material%props(:of_preloading - 1)
-      end if
+      kept = 0
+      do i = size(SWITCHES), 1, -1
+         on = material%props(property_index(trim(SWITCHES(i)))) > 0.0_wp
+         if (on .and. any(WITHOUT_HYSTERESIS == host)) then
+            call raise(fault, EXIT_INPUT, trim(WORDS(i))//', and '//trim(host)// &
+                       ' takes PROPS without it; set it to 0.')
+            return
+         end if
+         if (on .and. kept == 0) kept = size(material%props)
+         if (.not. on .and. kept == 0) then
+            material%props = material%props(:property_index(trim(SWITCHES(i))) - 1)
+         end if
+      end do
    end subroutine shorten
 
    !> "kPa, Pa, MPa ..."

@@ -62,12 +62,22 @@ def test_plain_has_every_parameter_once():
     preloaded = work / "preloading.nml"
     preloaded.write_text("&material\n   c_chi = 0.26\n/\n", encoding="utf-8")
     longest = dict(zip(every, (float(line) for line in said("plain", preloaded).split())))
-    check("with cyclic preloading a host gets all", len(longest) == len(every) and longest["c_chi"] == 0.26, longest)
+    check("with cyclic preloading a host gets its parameters too", len(longest) == every.index("c_ell")
+          and longest["c_chi"] == 0.26, longest)
     depvar = said("abaqus", preloaded)
-    check("and every state variable", card(depvar, "*DEPVAR").splitlines()[-1].split(", ")[1] == "contraction_4",
+    check("and its state variables", card(depvar, "*DEPVAR").splitlines()[-1].split(", ")[1] == "contraction_4",
           depvar)
     done = subprocess.run([program, "ogs", preloaded], capture_output=True, text=True)
     check("ogs refuses cyclic preloading by a sentence", done.returncode == 2 and "c_chi is on, and " in done.stderr,
+          done.stderr)
+    fluid = work / "fluidity.nml"
+    fluid.write_text("&material\n   c_ell = 200.0\n/\n", encoding="utf-8")
+    all_of_it = dict(zip(every, (float(line) for line in said("plain", fluid).split())))
+    check("with fluidity a host gets all", len(all_of_it) == len(every) and all_of_it["c_ell"] == 200.0, all_of_it)
+    last = card(said("abaqus", fluid), "*DEPVAR").splitlines()[-1]
+    check("and every state variable", last.split(", ")[1] == "fluidity", last)
+    done = subprocess.run([program, "ogs", fluid], capture_output=True, text=True)
+    check("ogs refuses fluidity by a sentence", done.returncode == 2 and "c_ell is on, and " in done.stderr,
           done.stderr)
     for host in ("ogs", "ogs-unsaturated", "udsm", "kratos-udsm"):
         done = subprocess.run([program, host, hysteretic], capture_output=True, text=True)
@@ -139,6 +149,7 @@ def test_plain_has_every_parameter_once():
     for material in sorted((root / "drivers/materials").glob("*.nml")):
         words = material.read_text(encoding="utf-8")
         listed = every[:every.index("c_chi")] if "hysteresis = 1" in words else names
-        listed = every if "c_chi = " in words else listed
+        listed = every[:every.index("c_ell")] if "c_chi = " in words else listed
+        listed = every if "c_ell = " in words else listed
         check(f"{material.name} is read, hysteresis with it where it is on",
               len(said("plain", material).split()) == len(listed))

@@ -134,6 +134,26 @@ def on_a_terminal(*command):
     return shown
 
 
+def same_after_a_kill(what, case, rows=10):
+    """A scene runs at once, and once killed behind some rows and restarted: the same bytes. The folder of the first."""
+    one, two = work / f"{what}_one", work / f"{what}_two"
+    done = run(case, one, "--quiet")
+    check(f"{what}: uninterrupted run", done.returncode == 0, done.stderr)
+    child = subprocess.Popen([host, case, "--output", two, "--quiet"], env=environment)
+    while child.poll() is None and not ((two / "ledger.csv").exists() and (two / "checkpoint.h5").exists()
+                                        and len((two / "ledger.csv").read_bytes().splitlines()) > rows):
+        time.sleep(0.002)
+    check(f"{what}: killed on the way", child.poll() is None)
+    child.send_signal(signal.SIGKILL)
+    child.wait()
+    done = run(case, two, "--quiet", "--restart", two / "checkpoint.h5")
+    for left_over in two.glob("*.part"):
+        left_over.unlink()
+    check(f"{what}: same bytes", done.returncode == 0 and not differences(one, two),
+          done.stderr + str(differences(one, two)))
+    return one
+
+
 def test_uninterrupted_run():
     text = (root / "tests/host/scenes/restart.nml").read_text().replace("../../..", str(root))
     if light:
@@ -209,22 +229,17 @@ def test_uninterrupted_run():
     plate = (root / "verification/studies/indentation/indent_s030.nml").read_text().replace("../../..", str(root))
     touch.write_text(plate.replace("duration = 0.03999", f"duration = {6.0e-4 if light else 1.5e-3}")
                      .replace("gravity = 9.81", "gravity = 9.81\n   checkpoint_steps = 4"))
-    one, two = work / "touch_one", work / "touch_two"
-    done = run(touch, one, "--quiet")
-    check("contact: uninterrupted run", done.returncode == 0, done.stderr)
-    child = subprocess.Popen([host, touch, "--output", two, "--quiet"], env=environment)
-    while child.poll() is None and not ((two / "ledger.csv").exists() and (two / "checkpoint.h5").exists()
-                                        and len((two / "ledger.csv").read_bytes().splitlines()) > 10):
-        time.sleep(0.002)
-    check("contact: killed on the way", child.poll() is None)
-    child.send_signal(signal.SIGKILL)
-    child.wait()
-    done = run(touch, two, "--quiet", "--restart", two / "checkpoint.h5")
-    for left_over in two.glob("*.part"):
-        left_over.unlink()
-    check("contact: same bytes", done.returncode == 0 and not differences(one, two),
-          done.stderr + str(differences(one, two)))
+    one = same_after_a_kill("contact", touch)
     check("contact: rows", len((one / "contact.csv").read_text().splitlines()) > (20 if light else 50))
+
+    # Everything that soil can remember: turning points of suction, contraction, margin, fluidity.
+    soil = "hysteresis = 1\n   isotropic = 2\n   c_chi = 0.26\n   c_ell = 200\n   p_ell = 200"
+    memories = work / "memories.nml"
+    memories.write_text(text.replace("tangent = 3", f"tangent = 3\n   {soil}"))
+    same_after_a_kill("memories", memories)
+    with h5py.File(work / "memories_one/checkpoint.h5") as file:
+        shapes = {name: getattr(data, "shape", ()) for name, data in file.items()}
+    check("memories: every number of STATEV is kept", any(139 in shape for shape in shapes.values()), shapes)
 
     # Comments and threads belong to nobody's fingerprint; a value does.
     scene.write_text(

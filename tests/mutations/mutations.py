@@ -11,6 +11,7 @@ BOUNDING, EVENT_TIME = "core/rates/mud_bounding.f90", "core/integration/mud_even
 CUTOFF, LANDING = "core/integration/mud_cutoff.f90", "core/integration/mud_landing.f90"
 EVENT_FUNCTIONS = "core/integration/mud_event_functions.f90"
 PRELOADING = "core/laws/mud_preloading.f90"
+FLUIDITY = "core/laws/mud_fluidity.f90"
 FLOW, HARDENING, CRITICAL = "core/laws/mud_flow.f90", "core/laws/mud_hardening.f90", "core/laws/mud_critical_state.f90"
 RETENTION, BONDING, ELASTIC = "core/laws/mud_retention.f90", "core/laws/mud_bonding.f90", "core/laws/mud_elastic.f90"
 PARAMS, REGISTRY, STATE = "core/base/mud_params.f90", "core/base/mud_registry.f90", "core/base/mud_state.f90"
@@ -150,6 +151,15 @@ MUTATIONS = [
      (RETURN_POINT, "memory%chi_own = min(process%chi, memory%chi)", "memory%chi_own = 0.0_wp*process%chi")),
     ("contraction of interrupted processes has no derivative",
      (CONSISTENT, "sens%chi_stack(:, after%depth) = sens%chi_own", "sens%chi_stack(:, after%depth) = 0.0_wp")),
+    # fluidity
+    ("fluidity has no threshold", (FLUIDITY, "below = max(1.0_wp - p/par%p_ell, 0.0_wp)", "below = 1.0_wp - p/par%p_ell")),
+    ("fluidity falls off as the first power of p'", (FLUIDITY, "fluidity%weight = below*below", "fluidity%weight = below")),
+    ("fluidity without a largest value", (FLUIDITY, "growth = par%c_ell*fluidity%weight*(1.0_wp - fluidity%ell/par%ell_max)", "growth = par%c_ell*fluidity%weight")),
+    ("an increase of volume takes fluidity away", (FLUIDITY, "par%r_ell*max(d_v, 0.0_wp)", "par%r_ell*abs(d_v)")),
+    ("fluidity softens dilatancy alone", (RATES, "w%b_0 = w%fluid%factor*w%b_0", "w%b_0 = w%b_0 + 0.0_wp*w%fluid%factor")),
+    ("the tangent does not know how fluidity changes", (FLUIDITY, "fluidity%by_ell = -fluidity%factor*fluidity%weight", "fluidity%by_ell = 0.0_wp")),
+    ("the tangent does not know the threshold of fluidity", (FLUIDITY, "fluidity%weight_by_p = -2.0_wp*below/par%p_ell", "fluidity%weight_by_p = 0.0_wp")),
+    ("fluidity stays where it was", (TRANSITIONS, "min(max(it%trial%y(16), 0.0_wp), par%ell_max)", "min(max(it%trial%y0(16), 0.0_wp), par%ell_max)")),
     ("threshold weight on the wrong memory", (REVERSAL, "*(memory%r_before - r)", "*(memory%r_in - r)")),
     ("no fall-back of the threshold rule", (REVERSAL, "if (ddot(r - r_in, n) < 0.0_wp) r_in = r", "continue")),
     ("repositioning with the process that ends",

@@ -2,12 +2,14 @@
 !> Material parameters: from PROPS to named values, checked against the registry.
 module mud_params
    use mud_kinds, only: wp, SQRT_6
-   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NPROPS_WITHOUT_PRELOADING, PROPERTIES, KIND_REAL, &
+   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NPROPS_WITHOUT_PRELOADING, &
+      NPROPS_WITHOUT_FLUIDITY, PROPERTIES, KIND_REAL, &
       MAX_TURNS, P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, P_H_0, &
       P_C_H, P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, P_P_ATM, P_P_MIN, &
       P_BONDING, P_FABRIC, P_ISOTROPIC, P_LODE, P_MEMORY_RULE, P_EPS_HAT, P_J_EXP, P_X_0, P_X_REV, P_CAP_D, P_CAP_H, &
       P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, P_TANGENT, P_RHO_E, P_SHEAR_ORDER, P_HYSTERESIS, &
-      P_P_AW, P_N_W, P_M_W, P_B_D, P_B_W, P_C_CHI, P_ZETA_CHI, P_S_CHI, ISOTROPIC_NONE, ISOTROPIC_REMEMBERS
+      P_P_AW, P_N_W, P_M_W, P_B_D, P_B_W, P_C_CHI, P_ZETA_CHI, P_S_CHI, P_C_ELL, P_ELL_MAX, P_P_ELL, P_R_ELL, &
+      ISOTROPIC_NONE, ISOTROPIC_REMEMBERS
    use mud_status, only: mud_status_t, fail, MUD_BAD_NPROPS, MUD_BAD_PROPS, ON_PROPS
    use mud_tensor, only: is_finite, all_finite
    use mud_units, only: stress_unit, bounds_for, minimum_stress, LARGEST_STRESS, LARGEST_SUCTION_STEP, SMALLEST_MINIMUM
@@ -66,6 +68,7 @@ module mud_params
    type :: options_t
       logical :: hysteresis   !< Hydraulic hysteresis.
       logical :: preloading   !< Cyclic preloading.
+      logical :: fluid        !< Fluidity.
    end type options_t
 
    !> Parameters of one material; names and units as in mud_registry. With hysteresis a phase of an increment has a copy
@@ -97,6 +100,7 @@ module mud_params
       type(least_t) :: least
       type(scanning_t) :: scanning           !< Of a phase.
       real(wp) :: c_chi, zeta_chi, s_chi     !< Read with preloading.
+      real(wp) :: c_ell, ell_max, p_ell, r_ell   !< Read with fluidity.
       real(wp) :: c4        !< c**4, for the Lode function [-].
       real(wp) :: lode_bend !< sqrt(6) (1 - c**4)/(8 c**4), for its slope [-].
       real(wp) :: largest_stress, largest_suction_step   !< Limits of input in the unit of p_atm.
@@ -109,22 +113,24 @@ contains
       props = PROPERTIES%default
    end function default_props
 
-   !> True of a number of PROPS that is taken: all of them, or those without preloading, or without hysteresis too.
+   !> True of a number of PROPS that is taken: all of them, or those ahead of fluidity, preloading or hysteresis.
    pure logical function is_length(n)
       integer, intent(in) :: n
 
-      is_length = n == NPROPS .or. n == NPROPS_WITHOUT_PRELOADING .or. n == NPROPS_WITHOUT_HYSTERESIS
+      is_length = any(n == [NPROPS, NPROPS_WITHOUT_FLUIDITY, NPROPS_WITHOUT_PRELOADING, NPROPS_WITHOUT_HYSTERESIS])
    end function is_length
 
    !> What PROPS, of any length and not yet checked, switch on.
    pure type(options_t) function options_of(props) result(options)
       real(wp), intent(in) :: props(:)
 
-      options = options_t(.false., .false.)
+      options = options_t(.false., .false., .false.)
       if (size(props) < NPROPS_WITHOUT_PRELOADING) return
       if (is_finite(props(P_HYSTERESIS))) options%hysteresis = props(P_HYSTERESIS) > 0.5_wp
-      if (size(props) < NPROPS) return
+      if (size(props) < NPROPS_WITHOUT_FLUIDITY) return
       if (is_finite(props(P_C_CHI))) options%preloading = props(P_C_CHI) > 0.0_wp
+      if (size(props) < NPROPS) return
+      if (is_finite(props(P_C_ELL))) options%fluid = props(P_C_ELL) > 0.0_wp
    end function options_of
 
    !> PROPS of an allowed length in full. The size of given(:) is one that is_length takes, which is not checked; what
@@ -218,6 +224,13 @@ contains
          params%zeta_chi = props(P_ZETA_CHI)
          params%s_chi = props(P_S_CHI)
       end if
+      params%fluid = props(P_C_ELL) > 0.0_wp
+      if (params%fluid) then
+         params%c_ell = props(P_C_ELL)
+         params%ell_max = props(P_ELL_MAX)
+         params%p_ell = props(P_P_ELL)
+         params%r_ell = props(P_R_ELL)
+      end if
       params%c4 = params%c**4
       params%lode_bend = SQRT_6*(1.0_wp - params%c4)/(8.0_wp*params%c4)
 
@@ -249,23 +262,27 @@ contains
    end subroutine read_wetting
 
    !> Names the first entry that is not finite, out of its bounds or not the integer it should be. What stands behind
-   !> hysteresis or c_chi is read, and looked at, where it is on.
+   !> hysteresis, c_chi or c_ell is read, and looked at, where it is on.
    pure subroutine check_props(props, status)
       real(wp), intent(in) :: props(NPROPS)
       type(mud_status_t), intent(out) :: status
       real(wp) :: unit
 
       unit = stress_unit(props)
-      if (all_finite(props(:P_HYSTERESIS)) .and. is_finite(props(P_C_CHI)) .and. abs(unit - 1.0_wp) <= 0.0_wp) then
+      if (all_finite(props(:P_HYSTERESIS)) .and. all_finite(props([P_C_CHI, P_C_ELL])) .and. &
+          abs(unit - 1.0_wp) <= 0.0_wp) then
          if (no_fault(props(:P_HYSTERESIS)) .and. props(P_HYSTERESIS) < 0.5_wp .and. &
-             abs(props(P_C_CHI)) <= 0.0_wp) return
+             all(abs(props([P_C_CHI, P_C_ELL])) <= 0.0_wp)) return
       end if
       call check_bounds(props, 1, P_HYSTERESIS, status)
       if (status%code /= 0) return
       if (whole(props(P_HYSTERESIS)) == 1) call check_bounds(props, P_HYSTERESIS + 1, P_C_CHI - 1, status)
       call check_bounds(props, P_C_CHI, P_C_CHI, status)
       if (status%code /= 0) return
-      if (props(P_C_CHI) > 0.0_wp) call check_bounds(props, P_C_CHI + 1, NPROPS, status)
+      if (props(P_C_CHI) > 0.0_wp) call check_bounds(props, P_C_CHI + 1, P_C_ELL - 1, status)
+      call check_bounds(props, P_C_ELL, P_C_ELL, status)
+      if (status%code /= 0) return
+      if (props(P_C_ELL) > 0.0_wp) call check_bounds(props, P_C_ELL + 1, NPROPS, status)
       if (status%code /= 0) return
       if (props(P_P_MIN) > 0.0_wp .and. props(P_P_MIN) < SMALLEST_MINIMUM*unit) then
          status = fail(MUD_BAD_PROPS, ON_PROPS, P_P_MIN, props(P_P_MIN), SMALLEST_MINIMUM*unit, UPPER(P_P_MIN)*unit)

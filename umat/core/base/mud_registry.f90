@@ -7,7 +7,7 @@ module mud_registry
    private
    public :: property_t, variable_t, PROPERTIES, VARIABLES, NPROPS, NSTATV, NVARIABLES, STATE_LAYOUT
    public :: UNIT_STRESS, UNIT_STRESS_TO_LAMBDA, NPROPS_WITHOUT_HYSTERESIS, NSTATV_WITHOUT_HYSTERESIS, &
-             NPROPS_WITHOUT_PRELOADING, NSTATV_WITHOUT_PRELOADING
+             NPROPS_WITHOUT_PRELOADING, NSTATV_WITHOUT_PRELOADING, NPROPS_WITHOUT_FLUIDITY, NSTATV_WITHOUT_FLUIDITY
    public :: KIND_REAL, KIND_SWITCH, KIND_OPTION, KIND_COUNT
    public :: option_t, OPTIONS, property_meaning, property_index, statev_index, statev_name, statev_variable, COMPONENTS
    public :: ISOTROPIC_NONE, ISOTROPIC_FORGETS, ISOTROPIC_REMEMBERS
@@ -19,13 +19,13 @@ module mud_registry
              P_P_ATM, P_P_MIN, P_BONDING, P_FABRIC, P_ISOTROPIC, P_LODE, P_MEMORY_RULE, P_EPS_HAT, P_J_EXP, &
              P_X_0, P_X_REV, P_CAP_D, P_CAP_H, P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, &
              P_TANGENT, P_RHO_E, P_SHEAR_ORDER, P_HYSTERESIS, P_P_AW, P_N_W, P_M_W, P_B_D, P_B_W, P_C_CHI, &
-             P_ZETA_CHI, P_S_CHI
+             P_ZETA_CHI, P_S_CHI, P_C_ELL, P_ELL_MAX, P_P_ELL, P_R_ELL
    public :: S_LAYOUT, S_VOID_RATIO, S_SATURATION, S_SUCTION, S_STATE_PARAMETER, S_EPS_Q_P, S_EPS_Q_P_TOTAL, &
              S_X_BEFORE, S_X_RUNNING, S_TARGET, S_INTERRUPTED, S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, &
              S_MEMORY_BEFORE, S_DIRECTION, S_DSIGMA_DPC, S_DSW_DPC, S_DSW_DEV, S_N_RATE, &
              S_N_SUBSTEP, S_N_REJECT, S_N_RESET, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, &
              S_ELASTIC_DOMAIN, S_GAP, S_MARGIN, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED, S_TURNS, S_N_CLEARED, S_TURN, &
-             MAX_TURNS, S_CHI, S_CHI_OWN, S_CHI_STACK
+             MAX_TURNS, S_CHI, S_CHI_OWN, S_CHI_STACK, S_FLUIDITY
 
    integer, parameter :: STATE_LAYOUT = 4   !< Layout number that an initialised STATEV carries.
    integer, parameter :: KIND_REAL = 0, KIND_SWITCH = 1, KIND_OPTION = 2, KIND_COUNT = 3
@@ -119,12 +119,15 @@ module mud_registry
    integer, parameter :: P_RHO_E = 45
    integer, parameter :: P_SHEAR_ORDER = 46
    integer, parameter :: P_HYSTERESIS = 47, P_P_AW = 48, P_N_W = 49, P_M_W = 50, P_B_D = 51, P_B_W = 52
-   integer, parameter :: P_C_CHI = 53, P_ZETA_CHI = 54, P_S_CHI = 55, NPROPS = 55
+   integer, parameter :: P_C_CHI = 53, P_ZETA_CHI = 54, P_S_CHI = 55
+   integer, parameter :: P_C_ELL = 56, P_ELL_MAX = 57, P_P_ELL = 58, P_R_ELL = 59, NPROPS = 59
    !> PROPS may end before hysteresis: it is off, and what follows has its default. Hosts with PROPS of that length, or
    !> with no room for more (PLAXIS: 50), go on as they are.
    integer, parameter :: NPROPS_WITHOUT_HYSTERESIS = P_HYSTERESIS - 1
    !> Likewise before cyclic preloading.
    integer, parameter :: NPROPS_WITHOUT_PRELOADING = P_C_CHI - 1
+   !> Likewise before the fluidity.
+   integer, parameter :: NPROPS_WITHOUT_FLUIDITY = P_C_ELL - 1
 
    ! Places in STATEV, each behind the one before; a tensor takes six.
    integer, parameter :: S_LAYOUT = 1, S_VOID_RATIO = S_LAYOUT + 1, S_SATURATION = S_VOID_RATIO + 1, &
@@ -151,7 +154,10 @@ module mud_registry
    !> STATEV may end here without cyclic preloading.
    integer, parameter :: NSTATV_WITHOUT_PRELOADING = S_TURN - 1 + 2*MAX_TURNS
    integer, parameter :: S_CHI = NSTATV_WITHOUT_PRELOADING + 1, S_CHI_OWN = S_CHI + 1, S_CHI_STACK = S_CHI_OWN + 1
-   integer, parameter :: NSTATV = S_CHI_STACK - 1 + MAX_INTERRUPTED
+   !> STATEV may end here without fluidity.
+   integer, parameter :: NSTATV_WITHOUT_FLUIDITY = S_CHI_STACK - 1 + MAX_INTERRUPTED
+   integer, parameter :: S_FLUIDITY = NSTATV_WITHOUT_FLUIDITY + 1
+   integer, parameter :: NSTATV = S_FLUIDITY
 
    type(property_t), parameter :: PROPERTIES(NPROPS) = [ &
       property_t(P_K_0, 'K_0', 'K_0', '1', KIND_REAL, 0.001_wp, 1.0e5_wp, 150.0_wp, 'paper', &
@@ -263,7 +269,15 @@ module mud_registry
       property_t(P_ZETA_CHI, 'zeta_chi', 'zeta_chi', '1', KIND_REAL, 0.0_wp, 1.0e6_wp, 3000.0_wp, 'ours', &
          'how fast dilation takes the contraction back that preloads; with c_chi'), &
       property_t(P_S_CHI, 's_chi', 's_chi', '1', KIND_REAL, 0.0_wp, 1.0_wp, 0.25_wp, 'ours', &
-         'how much preloading stiffens, beside how much it keeps from contracting; with c_chi')]
+         'how much preloading stiffens, beside how much it keeps from contracting; with c_chi'), &
+      property_t(P_C_ELL, 'c_ell', 'c_ell', '1', KIND_REAL, 0.0_wp, 1.0e6_wp, 0.0_wp, 'ours', &
+         'fluidity: how fast shear at a vanishing mean stress makes it grow; 0: off'), &
+      property_t(P_ELL_MAX, 'ell_max', 'ell_max', '1', KIND_REAL, 1.0e-3_wp, 1.0e4_wp, 20.0_wp, 'ours', &
+         'largest fluidity: A_0 and b_0 fall to 1/(1 + ell_max) at p'' = 0; with c_ell'), &
+      property_t(P_P_ELL, 'p_ell', 'p_ell', UNIT_STRESS, KIND_REAL, 1.0e-3_wp, 1.0e4_wp, 30.0_wp, 'ours', &
+         'p'' below which fluidity grows and acts; with c_ell'), &
+      property_t(P_R_ELL, 'r_ell', 'r_ell', '1', KIND_REAL, 0.0_wp, 1.0e6_wp, 300.0_wp, 'ours', &
+         'how fast a decrease of volume takes the fluidity back; with c_ell')]
 
    type(variable_t), parameter :: VARIABLES(*) = [ &
       variable_t(S_LAYOUT, 1, 'layout', '-', '1', .false., 'ours', &
@@ -429,7 +443,10 @@ module mud_registry
       variable_t(S_CHI_STACK + 2, 1, 'contraction_3', 'chi_3', '1', .false., 'ours', &
          'the share of the interrupted process 3 in it; with c_chi', '0', 'set where the process is interrupted'), &
       variable_t(S_CHI_STACK + 3, 1, 'contraction_4', 'chi_4', '1', .false., 'ours', &
-         'the share of the interrupted process 4 in it; with c_chi', '0', 'set where the process is interrupted')]
+         'the share of the interrupted process 4 in it; with c_chi', '0', 'set where the process is interrupted'), &
+      variable_t(S_FLUIDITY, 1, 'fluidity', 'ell', '1', .false., 'ours', &
+         'fluidity that liquefaction has left; with c_ell', '0', &
+         'grows by shear below p_ell, falls with the volume')]
    integer, parameter :: NVARIABLES = size(VARIABLES)
 
    type(option_t), parameter :: OPTIONS(*) = [ &

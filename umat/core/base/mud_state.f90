@@ -3,12 +3,13 @@
 module mud_state
    use mud_kinds, only: wp
    use mud_params, only: options_t
-   use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, NSTATV_WITHOUT_PRELOADING, STATE_LAYOUT, S_LAYOUT, &
+   use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, NSTATV_WITHOUT_PRELOADING, NSTATV_WITHOUT_FLUIDITY, &
+      STATE_LAYOUT, S_LAYOUT, &
       S_VOID_RATIO, S_SATURATION, S_SUCTION, S_STATE_PARAMETER, S_EPS_Q_P, S_EPS_Q_P_TOTAL, S_X_BEFORE, S_X_RUNNING, &
       S_TARGET, S_INTERRUPTED, S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, S_MEMORY_BEFORE, S_DIRECTION, S_N_RATE, &
       S_N_SUBSTEP, S_N_REJECT, S_N_RESET, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, &
       S_ELASTIC_DOMAIN, S_GAP, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED, S_TURNS, S_N_CLEARED, S_TURN, MAX_TURNS, S_CHI, &
-      S_CHI_OWN, S_CHI_STACK, S_MARGIN
+      S_CHI_OWN, S_CHI_STACK, S_MARGIN, S_FLUIDITY
    use mud_status, only: mud_status_t, fail, MUD_BAD_STATE, MUD_BAD_NSTATV, ON_STATEV
    use mud_tensor, only: is_finite, all_finite
    implicit none (type, external)
@@ -24,6 +25,7 @@ module mud_state
    real(wp), parameter :: LARGEST_FROM_CENTRE = 1.0_wp    !< Strain from the elastic domain's centre; rho_e <= 0.01 [-].
    real(wp), parameter :: LARGEST_LOG_SUCTION = 1.0e3_wp  !< ln of a double [-].
    real(wp), parameter :: LARGEST_CONTRACTION = 1.0e6_wp  !< Of all processes: strains of 1e9 increments of 1e-3 [-].
+   real(wp), parameter :: LARGEST_FLUIDITY = 1.0e4_wp     !< ell_max is at most that [-].
    real(wp), parameter :: LARGEST_MARGIN = 1.0e3_wp       !< ln of a double [-].
    real(wp), parameter :: LARGEST_DIRECTION = 1.01_wp     !< Components of a unit tensor [-].
 
@@ -65,6 +67,7 @@ module mud_state
       real(wp) :: e            !< void ratio, with the gap [-]
       real(wp) :: gap          !< part of it that is gap between grains that have parted [-]
       real(wp) :: margin       !< of the isotropic memory, u <= 0 [-]
+      real(wp) :: fluidity     !< 0 without that option [-]
       real(wp) :: p_c          !< suction [kPa]
       real(wp) :: s_w          !< degree of saturation [-]
       real(wp) :: psi          !< state parameter [-]
@@ -87,7 +90,8 @@ contains
       type(options_t), intent(in) :: options
 
       n = merge(NSTATV_WITHOUT_PRELOADING, NSTATV_WITHOUT_HYSTERESIS, options%hysteresis)
-      if (options%preloading) n = NSTATV
+      if (options%preloading) n = NSTATV_WITHOUT_FLUIDITY
+      if (options%fluid) n = NSTATV
    end function statev_size
 
    !> Reads a state from an initialised STATEV; the stress is set by the caller. statev(:) has at least the numbers of
@@ -133,7 +137,10 @@ contains
       call unpack_stack(statev, state%memory, status)
       if (options%hysteresis) call unpack_turns(statev, state%turns, status)
       call unpack_contraction(statev, options%preloading, state%memory, status)
+      state%fluidity = 0.0_wp
+      if (options%fluid) call require(statev, S_FLUIDITY, 0.0_wp, LARGEST_FLUIDITY, status)
       if (status%code /= 0) return
+      if (options%fluid) state%fluidity = statev(S_FLUIDITY)
 
       state%e = statev(S_VOID_RATIO)
       state%gap = statev(S_GAP)
@@ -204,7 +211,7 @@ contains
 
       statev(S_CHI) = memory%chi
       statev(S_CHI_OWN) = memory%chi_own
-      statev(S_CHI_STACK:NSTATV) = 0.0_wp
+      statev(S_CHI_STACK:NSTATV_WITHOUT_FLUIDITY) = 0.0_wp
       statev(S_CHI_STACK:S_CHI_STACK - 1 + memory%depth) = memory%interrupted(:memory%depth)%chi
    end subroutine pack_contraction
 
@@ -315,6 +322,7 @@ contains
       statev(S_N_OPEN) = statev(S_N_OPEN) + counters%open
       statev(S_N_TENSILE) = statev(S_N_TENSILE) + counters%tensile
       if (options%preloading) call pack_contraction(state%memory, statev)
+      if (options%fluid) statev(S_FLUIDITY) = state%fluidity
       if (.not. options%hysteresis) return
       call pack_turns(state%turns, statev)
       statev(S_N_CLEARED) = statev(S_N_CLEARED) + counters%cleared

@@ -10,6 +10,7 @@ module mud_consistent
    use mud_cutoff, only: changes_through_hold, MODE_HELD
    use mud_driving, only: driving_t, whole_increment, change_of_place, DIRECTIONS, AT_REST
    use mud_isotropic_memory, only: margins_at_stages, changes_of_measure, changes_by_shear
+   use mud_fluidity, only: recovery
    use mud_increment, only: increment_t, void_ratio_at, suction_at, changes_of_loading_strain, turning_of, NY
    use mud_params, only: params_t
    use mud_preloading, only: NO_CONTRACTION
@@ -43,7 +44,7 @@ module mud_consistent
    !> Derivatives along the directions of driving_t.
    type :: sensitivity_t
       logical :: at_rest                     !< the state does not depend on the increment yet: y, r_in, shift are zero
-      !> Of sigma', z, the plastic shear of the present process, ln chi' and, within a substep, contraction.
+      !> Of sigma', z, the plastic shear of the present process, ln chi', contraction within a substep, and fluidity.
       real(wp) :: y(DIRECTIONS, NY)
       type(tensors_t) :: r_in                !< of the memory
       real(wp) :: r_before(DIRECTIONS, 6)    !< of the memory of the process before
@@ -363,6 +364,8 @@ contains
       if (at_rest) rests = are_zero(changes)
       call changes_of_rate(par, w, lin, rests, y, r_in, driving%d_strain, driving%from_centre, &
                            changes, stress_only, rates)
+      if (par%fluid .and. inc%d_v > 0.0_wp .and. .not. stress_only) &
+         rates(:, 16) = rates(:, 16) - recovery(par, inc%d_v)*y(:, 16) - (par%r_ell*point(16))*driving%d_v
    end subroutine change_of_stage
 
    !> True where void ratio and suction do not change.

@@ -7,6 +7,7 @@ module mud_increment
    use mud_tensor, only: IDENTITY, LANES, ddot, trace, deviator, norm, tensors_t
    use mud_loading, only: loading_t, no_strain, whole_strain
    use mud_bonding, only: is_bonded
+   use mud_fluidity, only: recovery
    use mud_rate, only: rate_t
    use mud_rates, only: rate_at, MODE_ORDINARY, MODE_ELASTIC
    use mud_elastic_domain, only: turning_t, turning_at, combination_t, combination_of_turning, &
@@ -17,9 +18,9 @@ module mud_increment
    public :: increment_t, new_increment, take_phase, end_in_domain, direction_at, void_ratio_at, suction_at, rate_of, &
              store_rate, loading_strain, changes_of_loading_strain, turning_of, has_aside, NY, SHORTEST_PHASE
 
-   !> Length of the integrated vector: sigma'(6), z(6), plastic shear, and of the cyclic preloading ln chi' and, since
-   !> the substep began, contraction.
-   integer, parameter :: NY = 15
+   !> Length of the integrated vector: sigma'(6), z(6), plastic shear, of the cyclic preloading ln chi' and, since the
+   !> substep began, contraction, and fluidity.
+   integer, parameter :: NY = 16
    !> A strain across the elastic domain, whose part along nu is rounding of either sign, does not load: it would look
    !> like a reversal [-].
    real(wp), parameter :: ACROSS = 1.0e-12_wp
@@ -58,13 +59,14 @@ contains
       if (has_aside(inc, mode)) then
          call loading_strain(inc, mode, time, loading, aside)
          call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), suction_at(inc, time), y(7:12), r_in, &
-                      loading, inc%d_pc, mode, w, near, y(14), inc%rests)
+                      loading, inc%d_pc, mode, w, near, y(14), inc%rests, y(16))
          w%d_p = w%d_p + w%k*trace(aside)
          w%d_sigma = w%d_sigma + 2.0_wp*w%g*deviator(aside) + (w%k*trace(aside))*IDENTITY
       else
          call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), suction_at(inc, time), y(7:12), r_in, &
-                      inc%d_strain, inc%d_pc, mode, w, near, y(14), inc%rests)
+                      inc%d_strain, inc%d_pc, mode, w, near, y(14), inc%rests, y(16))
       end if
+      if (par%fluid) w%d_ell = w%d_ell - recovery(par, inc%d_v)*y(16)
       counters%rate = counters%rate + 1
       if (w%floored .and. par%floored) counters%floor = counters%floor + 1
       if (w%capped_d) counters%cap_d = counters%cap_d + 1
@@ -83,6 +85,7 @@ contains
       dy(13) = w%d_eps_q
       dy(14) = w%d_log_chi
       dy(15) = w%d_chi_own
+      dy(16) = w%d_ell
    end subroutine store_rate
 
    !> True if a part of the strain is elastic: all of it inside the elastic domain, some where that is pulled.

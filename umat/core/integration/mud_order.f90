@@ -9,6 +9,7 @@ module mud_order
    use mud_params, only: params_t
    use mud_rates, only: MODE_ORDINARY
    use mud_registry, only: SCHEME_AUTOMATIC
+   use mud_fluidity, only: growth
    use mud_relaxation, only: relaxation_t, relaxation_speed, new_relaxation
    use mud_sensitivity, only: changes_of_rate
    use mud_substep, only: SECOND_ORDER, THIRD_ORDER, AS_SECOND_ORDER, LINEARLY_IMPLICIT, step_factor
@@ -97,7 +98,7 @@ contains
       type(linearised_t) :: lin
       type(changes_t) :: changes
       type(turning_t) :: turning
-      real(wp) :: y(LANES, NRATES), rates(LANES, NRATES), unmoved(LANES)
+      real(wp) :: y(LANES, NRATES), rates(LANES, NRATES), unmoved(LANES), of_fluidity
       integer :: j
 
       turning = turning_of(inc, trial%mode, trial%time)
@@ -115,6 +116,8 @@ contains
          y(j, j) = 1.0_wp
       end do
       call changes_of_rate(par, trial%w(1), lin, .false., y, REST, REST, REST, changes, .false., rates)
-      trial%relaxation = new_relaxation(trial%w(1), rates(1:6, 13)/SQRT_2_3)
+      of_fluidity = 0.0_wp
+      if (par%fluid) of_fluidity = growth(par, trial%w(1)%fluid)
+      trial%relaxation = new_relaxation(trial%w(1), rates(1:6, 13)/SQRT_2_3, of_fluidity)
    end subroutine find_relaxation
 end module mud_order

@@ -33,11 +33,11 @@ contains
       end if
    end function relaxation_speed
 
-   !> The dyad of a rate that loads, from the slope of its L. slope is dL/d sigma' by components [1/kPa]; L > 0 is not
-   !> checked. docs/theory/integration.md section 2.1.
-   pure function new_relaxation(w, slope) result(relaxation)
+   !> The dyad of a rate that loads, from the slope of its L. slope is dL/d sigma' by components [1/kPa], growth that of
+   !> the fluidity per L [-]; L > 0 is not checked. docs/theory/integration.md section 2.1.
+   pure function new_relaxation(w, slope, growth) result(relaxation)
       type(rate_t), intent(in) :: w
-      real(wp), intent(in) :: slope(6)
+      real(wp), intent(in) :: slope(6), growth
       type(relaxation_t) :: relaxation
 
       relaxation%slope = slope
@@ -46,6 +46,7 @@ contains
       relaxation%flow(13) = SQRT_2_3
       relaxation%flow(14) = w%d_log_chi/w%l
       relaxation%flow(15) = w%d_chi_own/w%l
+      relaxation%flow(16) = growth
       relaxation%speed = max(-dot_product(slope, relaxation%flow(1:6)), 0.0_wp)
    end function new_relaxation
 

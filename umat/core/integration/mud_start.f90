@@ -47,6 +47,7 @@ contains
       state%e = e
       state%gap = 0.0_wp
       state%margin = 0.0_wp
+      state%fluidity = 0.0_wp
       state%p_c = p_c
       state%z = 0.0_wp
       state%from_centre = 0.0_wp

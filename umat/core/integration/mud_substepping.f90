@@ -65,6 +65,7 @@ contains
          it%trial%y0(1:6) = it%state%sigma
          it%trial%y0(7:12) = it%state%z
          it%trial%y0(13:15) = 0.0_wp
+         it%trial%y0(16) = it%state%fluidity
          call begin_substep(par, it)
          call choose_stepping(par, it%inc%to - time, max(step%h, par%h_min), it%inc, it%trial)
          call try_substep(par, step, h, it)

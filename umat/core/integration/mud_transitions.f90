@@ -271,6 +271,8 @@ contains
       end if
       it%state%z = it%trial%y(7:12)
       it%state%eps_q_total = it%state%eps_q_total + it%trial%y(13)
+      ! a scheme's weights may leave rounding of either sign
+      if (par%fluid) it%state%fluidity = min(max(it%trial%y(16), 0.0_wp), par%ell_max)
       if (par%preloading) &
          call note_contraction(it%trial%y(14) - it%trial%y0(14), it%trial%y(15), it%state%memory)
       if (it%inc%rests) then

@@ -105,6 +105,7 @@ contains
       call error_vector(scheme, trial%rates, h, delta)
       error = max(norm(delta(1:6))/max(norm(trial%y(1:6)), smallest), norm(delta(7:12))/par%z_max, &
                   abs(delta(13))/PLASTIC_SHEAR_SCALE)
+      if (par%fluid) error = max(error, abs(delta(16))/(1.0_wp + trial%y(16)))
       ! in first loading nothing follows them
       if (trial%w(1)%preloaded) error = max(error, abs(delta(14)), abs(delta(15))/CONTRACTION_SCALE)
    end function error_norm

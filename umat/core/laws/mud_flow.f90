@@ -8,12 +8,13 @@ module mud_flow
    private
    public :: dilatancy_factor, dilatancy, fabric_rate
 contains
-   !> A_d = A_0 (1 + <z:n>) [-]. Dafalias & Manzari (2004). A_0 without fabric; docs/theory/material.md section 4.2.
-   pure real(wp) function dilatancy_factor(par, z_n) result(a_d)
+   !> A_d = A_0 (1 + <z:n>) [-]. Dafalias & Manzari (2004). a_0 without fabric; docs/theory/material.md section 4.2.
+   pure real(wp) function dilatancy_factor(par, a_0, z_n) result(a_d)
       type(params_t), intent(in) :: par
+      real(wp), intent(in) :: a_0   !< A_0 of the rate [-]
       real(wp), intent(in) :: z_n   !< z:n [-]
 
-      a_d = par%a_0
+      a_d = a_0
       if (par%fabric) a_d = a_d*(1.0_wp + positive(z_n))
    end function dilatancy_factor
 

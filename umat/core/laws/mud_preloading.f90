@@ -22,15 +22,15 @@ module mud_preloading
       real(wp) :: s        !< [-]
    end type preloading_t
 contains
-   !> Of the contraction chi of other processes, of ratio = M^d/M^b and of b_0 = h x > 0. All [-]; nothing is checked.
+   !> Of the contraction chi of other processes, of ratio = M^d/M^b, A_0 and b_0 = h x > 0. All [-]; nothing is checked.
    !> docs/theory/material.md section 4.9.
-   pure function preloading_of(par, chi, ratio, b_0) result(preloading)
+   pure function preloading_of(par, chi, ratio, a_0, b_0) result(preloading)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: chi, ratio, b_0
+      real(wp), intent(in) :: chi, ratio, a_0, b_0
       type(preloading_t) :: preloading
 
       preloading%chi = chi
-      preloading%virgin = 1.5_wp*par%c_chi*par%a_0*ratio/b_0
+      preloading%virgin = 1.5_wp*par%c_chi*a_0*ratio/b_0
       preloading%s = par%s_chi
    end function preloading_of
 

@@ -53,7 +53,7 @@ contains
       if (par%fabric) call add_fabric(w%z, n_t, q, arc)
       if (par%lode) call add_cube(n_t, q, arc)
       w%z_n = 0.0_wp
-      w%a_d = par%a_0
+      w%a_d = w%a_0
       w%lode = 1.0_wp
       eq = equation_of(par, w)
       w%r_b = eq%r_b_1
@@ -272,10 +272,10 @@ contains
             lode(i) = lode_factor(par, trace_cube(arc, c(i), s(i)))
          end do
       end if
-      a_d = par%a_0
+      a_d = eq%a_0
       if (par%fabric) then
          do i = 1, POINTS
-            a_d(i) = dilatancy_factor(par, c(i)*arc%z_t + s(i)*arc%z_q)
+            a_d(i) = dilatancy_factor(par, eq%a_0, c(i)*arc%z_t + s(i)*arc%z_q)
          end do
       end if
       do i = 1, POINTS
@@ -305,7 +305,7 @@ contains
       m%x = at%cosine*arc%x_t + at%sine*arc%x_q
       if (par%fabric) then
          m%z_n = at%cosine*arc%z_t + at%sine*arc%z_q
-         m%a_d = dilatancy_factor(par, m%z_n)
+         m%a_d = dilatancy_factor(par, eq%a_0, m%z_n)
       end if
       if (par%lode) then
          m%lode = lode_factor(par, trace_cube(arc, at%cosine, at%sine))

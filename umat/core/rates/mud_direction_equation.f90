@@ -22,7 +22,7 @@ module mud_direction_equation
    type :: equation_t
       real(wp) :: two_g, k_e      !< 2 G, K_e [kPa]
       real(wp) :: two_thirds_p    !< [kPa]
-      real(wp) :: per_b_0         !< 1/b_0 [-]
+      real(wp) :: a_0, per_b_0    !< A_0, 1/b_0 [-]
       real(wp) :: r_b_1, r_d_1    !< |r| on both surfaces in triaxial compression [-]
       real(wp) :: x_floor         !< x_0 [-]
       real(wp) :: most_d          !< D r:n of the contraction cap [-]
@@ -38,6 +38,7 @@ module mud_direction_equation
       real(wp) :: h_r, h_z, h_r_d, h_g, h_k, h_x, h_r_b, h_p, h_b_0
       !> D by x, and D and 1/h by ln(w/chi') of the preloading; 0 without it.
       real(wp) :: d_x, d_q, h_q
+      real(wp) :: d_ln, h_ln   !< both by ln of the fluidity's factor, which v of the preloading does not feel
    end type slopes_t
 
    !> How the direction n of a rate turns: the equation's slopes there, and what a change of its terms is divided by.
@@ -57,6 +58,7 @@ contains
       eq%two_g = 2.0_wp*w%g
       eq%k_e = w%k_e
       eq%two_thirds_p = 2.0_wp/3.0_wp*w%p
+      eq%a_0 = w%a_0
       eq%per_b_0 = 1.0_wp/w%b_0
       eq%r_b_1 = SQRT_2_3*w%m_b
       eq%r_d_1 = SQRT_2_3*w%m_d
@@ -65,7 +67,7 @@ contains
       eq%least_h = merge(eq%two_thirds_p/(1.0_wp - par%cap_h), 0.0_wp, par%cap_h > 0.0_wp)
       eq%preloaded = w%preloaded
       if (.not. w%preloaded) return
-      eq%preloading = preloading_of(par, w%chi, w%m_d/w%m_b, w%b_0)
+      eq%preloading = preloading_of(par, w%chi, w%m_d/w%m_b, w%a_0, w%b_0)
    end function equation_of
 
    !> D, 1/h, beta and gamma in a direction, and the guards that act there, from r:n, (r - r_in):n, A_d and |r| on both
@@ -103,6 +105,7 @@ contains
       s%d_x = 0.0_wp
       s%d_q = 0.0_wp
       s%h_q = 0.0_wp
+      s%d_ln = merge(0.0_wp, at%d, at%capped_d)
       per_x = merge(0.0_wp, 1.0_wp/larger(at%x, NEGLIGIBLE), at%floored)
       s%d_r_d = 0.0_wp
       s%d_g = 0.0_wp
@@ -114,7 +117,7 @@ contains
       else
          s%d_r = -at%a_d
          s%d_r_d = at%a_d
-         if (par%fabric .and. at%z_n > 0.0_wp) s%d_z = par%a_0*(at%r_d - at%r_n)
+         if (par%fabric .and. at%z_n > 0.0_wp) s%d_z = w%a_0*(at%r_d - at%r_n)
          if (w%preloaded .and. at%d > 0.0_wp) then
             f = at%f_chi
             s%d_r = f*s%d_r
@@ -136,6 +139,7 @@ contains
          s%h_p = at%h_b/w%p
          s%h_x = by_stiffness*w%k_e*at%r_n*s%d_x
          s%h_q = by_stiffness*w%k_e*at%r_n*s%d_q
+         s%h_ln = by_stiffness*w%k_e*at%r_n*s%d_ln
          s%h_b_0 = 0.0_wp
       else
          s%h_r_b = 0.0_wp
@@ -147,6 +151,7 @@ contains
          s%h_p = 0.0_wp
          s%h_x = merge(0.0_wp, 1.0_wp/w%b_0, at%floored)
          s%h_b_0 = -at%h_b/w%b_0
+         s%h_ln = -at%h_b
          if (w%preloaded) then
             s%h_q = par%s_chi*at%f_slope*at%h_b
             s%h_x = (at%h_b + 2.0_wp*s%h_q)*per_x

@@ -34,7 +34,7 @@ module mud_linearise
       real(wp) :: on_e(4)                   !< n, h_n, d_n, gamma_n on the deviatoric strain rate
    end type linearised_t
 
-   integer, parameter :: NRATES = 15   !< sigma'(6), z(6), plastic shear, ln chi', contraction.
+   integer, parameter :: NRATES = 16   !< sigma'(6), z(6), plastic shear, ln chi', contraction, fluidity.
 
    !> How the arguments of a rate change beside stress, fabric and memory.
    type :: changes_t

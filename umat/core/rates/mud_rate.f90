@@ -2,6 +2,7 @@
 !> What one rate gives: the state as it sees it, the direction with the moduli there, and the rates.
 module mud_rate
    use mud_bonding, only: bonding_t
+   use mud_fluidity, only: fluidity_t
    use mud_hardening, only: isotropic_t
    use mud_kinds, only: wp
    implicit none (type, external)
@@ -31,7 +32,8 @@ module mud_rate
       type(bonding_t) :: bond      !< bonding, none where saturated
       real(wp) :: psi              !< state parameter [-]
       real(wp) :: m_b, m_d         !< M^b, M^d in triaxial compression [-]
-      real(wp) :: b_0              !< h x [-]
+      real(wp) :: a_0, b_0         !< A_0 and h x with the fluidity [-]
+      type(fluidity_t) :: fluid    !< fluidity, none with the option off
       logical :: preloaded         !< other processes have left contraction (cyclic preloading)
       real(wp) :: chi              !< chi', that contraction; not set otherwise [-]
       type(isotropic_t) :: iso     !< isotropic mechanism
@@ -53,5 +55,6 @@ module mud_rate
       real(wp) :: d_z(6)           !< [-]
       real(wp) :: d_eps_q          !< plastic shear, sqrt(2/3) L [-]
       real(wp) :: d_log_chi, d_chi_own   !< of ln chi', and of chi_o in contraction; 0 without preloading [-]
+      real(wp) :: d_ell            !< of the fluidity by shear; 0 with the option off [-]
    end type rate_t
 end module mud_rate

@@ -12,6 +12,7 @@ module mud_rates
    use mud_critical_state, only: state_parameter, bounding_ratio, dilatancy_ratio, bounding_norm
    use mud_direction, only: find_direction
    use mud_flow, only: fabric_rate
+   use mud_fluidity, only: NOT_FLUID, fluidity_at, growth
    use mud_hardening, only: kinematic_modulus, isotropic_hardening, shear_weight, NO_HARDENING
    use mud_preloading, only: NO_CONTRACTION
    use mud_rate, only: rate_t
@@ -50,7 +51,8 @@ contains
    !> Rates of stress, fabric and plastic shear for a strain rate and a suction rate. Compression positive, tensor
    !> shear. docs/theory/material.md sections 4 and 5; nothing is refused, w%no_root tells that no direction was found
    !> and the rate is elastic.
-   pure subroutine rate_at(par, bonded, sigma, e, p_c, z, r_in, d_strain, d_pc, mode, w, near, log_chi, rests)
+   pure subroutine rate_at(par, bonded, sigma, e, p_c, z, r_in, d_strain, d_pc, mode, w, near, log_chi, rests, &
+                           ell)
       type(params_t), intent(in) :: par
       logical, intent(in) :: bonded             !< Suction bonding acts in this update.
       real(wp), intent(in) :: sigma(6)          !< sigma' [kPa]
@@ -65,12 +67,14 @@ contains
       !> ln of the contraction that other processes have left, read with cyclic preloading; none: no contraction [-].
       real(wp), intent(in), optional :: log_chi
       logical, intent(in), optional :: rests       !< The isotropic mechanism is below its memory.
+      real(wp), intent(in), optional :: ell        !< Fluidity, read with that option; none: 0 [-].
       real(wp) :: d_v, d_e(6), d_norm
 
       d_v = trace(d_strain)
       d_e = deviator(d_strain)
       d_norm = norm(d_strain)
       call evaluate_point(par, bonded, sigma, e, p_c, z, r_in, w)
+      if (par%fluid .and. present(ell)) call soften(par, ell, w)
       w%preloaded = .false.
       if (par%preloading .and. present(log_chi)) then
          w%preloaded = log_chi > NO_CONTRACTION
@@ -107,6 +111,8 @@ contains
       w%d_eps_q = SQRT_2_3*w%l
       w%d_log_chi = 0.0_wp
       w%d_chi_own = 0.0_wp
+      w%d_ell = 0.0_wp
+      if (par%fluid) w%d_ell = w%l*growth(par, w%fluid)
       if (.not. par%preloading) return
       if (w%d < 0.0_wp) then
          w%d_log_chi = par%zeta_chi*w%l*w%d
@@ -162,7 +168,9 @@ contains
       w%psi = state_parameter(par, w%bond%f, e, w%p)
       w%m_b = bounding_ratio(par, w%psi)
       w%m_d = dilatancy_ratio(par, w%psi)
+      w%a_0 = par%a_0
       w%b_0 = kinematic_modulus(par, e, w%p)
+      w%fluid = NOT_FLUID
       w%iso = NO_HARDENING
       if (par%isotropic) then
          weight = shear_weight(w%r_norm, bounding_norm(par, w%r, w%r_norm, w%m_b))
@@ -171,6 +179,17 @@ contains
          end if
       end if
    end subroutine evaluate_point
+
+   !> Dilatancy and hardening of soil with a fluidity. docs/theory/material.md section 4.11.
+   pure subroutine soften(par, ell, w)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: ell
+      type(rate_t), intent(inout) :: w
+
+      w%fluid = fluidity_at(par, ell, w%p)
+      w%a_0 = w%fluid%factor*w%a_0
+      w%b_0 = w%fluid%factor*w%b_0
+   end subroutine soften
 
    !> Loading index, direction and rate of p' with or without the isotropic mechanism.
    pure subroutine load(par, d_v, d_e, d_norm, d_pc, mode, active, w)

@@ -15,6 +15,7 @@ module mud_sensitivity
    use mud_tensor, only: LANES, tensors_t, ddot, contractions, contracted, traces, ZERO_TENSORS
    use mud_loading, only: free_contracted, loading_traces, add_loading
    use mud_critical_state, only: dilatancy_slope
+   use mud_fluidity, only: growth, growth_slopes
    use mud_hardening, only: KINEMATIC_EXPONENT
    implicit none (type, external)
    private
@@ -28,7 +29,7 @@ contains
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
       logical, intent(in) :: at_rest                  !< y, r_in and the changes of e and p_c are zero
-      !> Of sigma', z, ln chi' and, without effect, plastic shear and contraction [kPa, -, -].
+      !> Of sigma', z, ln chi', fluidity and, without effect, plastic shear and contraction [kPa, -, -].
       real(wp), intent(in) :: y(LANES, NRATES)
       type(tensors_t), intent(in) :: r_in             !< of the memory [-]
       type(tensors_t), intent(in) :: strain, centre   !< of strain rate and elastic domain [-]
@@ -65,6 +66,11 @@ contains
             else
                rates(:, 15) = x%flow
             end if
+         end if
+         if (par%fluid) then
+            associate (slopes => growth_slopes(par, w%fluid))
+               rates(:, 16) = growth(par, w%fluid)*x%dl + w%l*(slopes(1)*x%p + slopes(2)*y(:, 16))
+            end associate
          end if
          if (par%fabric .and. w%d < 0.0_wp) call fill_fabric(par, w, lin, y, strain, centre, changes, x, rates(:, 7:12))
       end if
@@ -124,6 +130,11 @@ contains
             x%dh = x%dh + s%h_z*n_dz
          end if
          if (s%h_x > 0.0_wp .and. r_in%kind /= ZERO_TENSORS) x%dh = x%dh - s%h_x*contracted(r_in, w%n)
+         if (par%fluid) then
+            q = w%fluid%by_p*x%p + w%fluid%by_ell*y(:, 16)
+            x%dd = x%dd + s%d_ln*q
+            x%dh = x%dh + s%h_ln*q
+         end if
          if (w%preloaded) then
             ! of ln(w/chi') with M^d/M^b, b_0 and chi'
             q = (dilatancy_slope(par, w%m_d)/w%m_d)*x%psi - x%m_b/w%m_b - KINEMATIC_EXPONENT*x%share &

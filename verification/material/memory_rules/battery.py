@@ -3,6 +3,7 @@
 
    battery.py                                  all rows for the four standard rules
    battery.py --rules return_point:2e-5 3:0    rules by name or number, each with the radius of the elastic domain
+   battery.py --rules return_point:2e-5:c_chi=0.26:c_ell=200      and further parameters
    battery.py --rows symmetric noise           some rows; --list tells their names and what they ask
    battery.py --quick                          the rows of the published table (seconds)
 """
@@ -21,16 +22,19 @@ import memory_six  # noqa: E402
 from point_walk import ROOT, RULES, Soil, Walker  # noqa: E402
 
 ROWS = {row.__name__: row for rows in (memory_published, memory_six, memory_long) for row in rows.ROWS}
+# The default rule with every option that remembers: isotropic memory, cyclic preloading, fluidity, hysteresis of the retention curve.
+ALL_MEMORIES = "return_point:2e-5:isotropic=2:c_chi=0.26:c_ell=200:hysteresis=1"
 QUICK = [row.__name__ for row in memory_published.ROWS]
 
 
 def parse_rule(text):
-    """The soil of NAME:RHO_E or NUMBER:RHO_E."""
-    name, _, radius = text.partition(":")
+    """The soil of NAME:RHO_E or NUMBER:RHO_E, with :PARAMETER=VALUE behind it as often as wanted."""
+    name, radius, *more = [*text.split(":"), ""][:2] + text.split(":")[2:]
     try:
-        return Soil(RULES[name] if name in RULES else int(name), float(radius or 0.0))
+        further = tuple((key, float(value)) for key, value in (word.split("=") for word in more))
+        return Soil(RULES[name] if name in RULES else int(name), float(radius or 0.0), further)
     except ValueError:
-        raise SystemExit(f"rule {text}: NAME:RHO_E or NUMBER:RHO_E, names are {', '.join(RULES)}") from None
+        raise SystemExit(f"rule {text}: NAME:RHO_E or NUMBER:RHO_E, names are {', '.join(RULES)}, and :PARAMETER=VALUE") from None
 
 
 def question(row):

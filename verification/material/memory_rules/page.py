@@ -5,7 +5,7 @@ import math
 import memory_long
 import memory_published as published
 import memory_six
-from battery import parse_rule, question
+from battery import ALL_MEMORIES, parse_rule, question
 from memory_pictures import draw_biased, draw_loops, draw_noise, draw_symmetric
 from point_walk import Walker
 from tools import tables
@@ -22,7 +22,7 @@ MAKES = (Script("make_results.py", ("results.csv",), 700),)
 
 DEFAULT = "return_point:2e-5"
 RULES = ("classic:0", "threshold:0", "repositioning:0", "return_point:0",
-         "classic:2e-5", "threshold:2e-5", "repositioning:2e-5", "return_point:2e-5")
+         "classic:2e-5", "threshold:2e-5", "repositioning:2e-5", "return_point:2e-5", ALL_MEMORIES)
 
 POINTS = "the acceptance of the rule: 0.3 points of the numbers that a prototype gave (docs/theory/memory-rules.md)"
 SYMMETRY = Tolerance("0.3 % of the range, in points of which the rule was accepted; the prototype's 0.01 of 6.2 kPa are half of it", absolute=0.3)
@@ -63,6 +63,14 @@ def criteria(walker, soil):
     return found
 
 
+def kept(walker, soil):
+    """What the options that remember must leave: symmetry, silence under noise, first loading and its reversal of Fig. 1."""
+    found = [(f"1000 cycles of gamma {size}: asymmetry of tau in the last one over the range", value, 0.0, SYMMETRY, "%")
+             for size, value in memory_long.long_symmetric(walker, soil).items() if size != "cuts"]
+    found += [(f"noise of {key}: q at 5 %", value, 0.0, SILENT, "%") for key, value in published.noise(walker, soil, sizes=(1e-6, 1e-5)).items()]
+    return found + [(f"Fig. 1: q, {key}", value, FIG1[key], NUMBER, "kPa") for key, value in published.fig1(walker, soil).items()]
+
+
 def misses(found):
     """How many of the criteria are not met."""
     return sum(not abs(value - reference) <= tolerance.absolute + tolerance.relative * abs(reference)
@@ -73,6 +81,9 @@ def check(bench):
     walker = Walker(bench.build)
     for name, value, reference, tolerance, unit in criteria(walker, parse_rule(DEFAULT)):
         bench.near(name, value, reference, tolerance, unit)
+    if not bench.quick:
+        for name, value, reference, tolerance, unit in kept(walker, parse_rule(ALL_MEMORIES)):
+            bench.near(f"all memories: {name}", value, reference, tolerance, unit)
     turns = QUICK_TURNS if bench.quick else tuple(memory_six.TURNS)
     for name, value in memory_six.tolerance_on_turns(walker, parse_rule(DEFAULT), turns).items():
         bench.below(f"100 rounds of {name}: difference between the tolerances 1e-5 and 1e-8", value, TURNING, "%")
@@ -106,6 +117,8 @@ def number(text):
 
 
 def rule_text(rule):
+    if rule == ALL_MEMORIES:
+        return "all memories, 2e-5"
     name, radius = rule.split(":")
     return f"{name.replace('_', ' ')}, {radius}"
 

@@ -29,6 +29,7 @@ VARIANTS = {   # void ratio, Omega, further keys
     "published": (MEDIUM, 0.0, ""),
     "without bonding": (MEDIUM, 0.0, "bonding = 0"),
     "with hysteresis": (MEDIUM, 2.0, "hysteresis = 1"),
+    "with preloading": (MEDIUM, 0.0, "c_chi = 0.26"),
 }
 COLUMNS = ("variant", "gamma_amplitude_percent", "suction_kPa", "eps_v_1_percent", "eps_v_20_percent", "eps_v_200_percent",
            "S_w_initial", "S_w_end", "void_ratio_end")
