@@ -23,6 +23,7 @@ module material_mud
 
    integer, parameter :: BUFFER = 1000
    real(wp), parameter :: ROUNDING = 1.0e-6_wp   !< A default said in another unit is rounded.
+   character(*), parameter :: STRENGTH = 'M_c'   !< What may change during a run.
    character(*), parameter :: GUARDS(10) = [character(NAME_LENGTH) :: 'floor', 'contraction cap', 'softening cap', &
       'hysteresis', 'isotropic kept off', 'no direction', 'minimum step', 'cut-off', 'tensile', &
       'turning points forgotten']
@@ -38,6 +39,8 @@ module material_mud
       integer(c_int) :: tangent = MUD_TANGENT_ELASTIC   !< Kind that updates return where one is asked for.
       integer :: place_e = 0, place_s_w = 0   !< In the state.
       real(wp) :: e_0 = 0.0_wp                !< Void ratio of PROPS [-].
+      real(wp) :: fade = 1.0_wp               !< Stress ratios at the start of an update are multiplied by it [-].
+      logical, allocatable :: is_ratio(:)     !< Which state variables are such. (n_state)
    contains
       procedure :: initial_state
       procedure :: update
@@ -51,6 +54,8 @@ module material_mud
       procedure :: elastic_tangent
       procedure :: remarks
       procedure :: integrate_to
+      procedure :: find_varying
+      procedure :: change_over_step
    end type mud_t
 contains
    !> The law of a group: `file`, and parameters of the library by name. title becomes the name of the material;
@@ -101,11 +106,19 @@ contains
          law%state_names(i) = statev_name(i)
          law%state_units(i) = statev_unit(i)
       end do
+      law%is_ratio = [(is_stress_ratio(law%state_names(i)), i=1, law%n_state)]
       law%place_e = statev_index('void_ratio')
       law%place_s_w = statev_index('saturation')
       if (min(law%place_e, law%place_s_w) < 1) call raise(fault, EXIT_INPUT, &
          'The library keeps no void_ratio or no saturation; program and library do not match.')
    end subroutine fill_mud
+
+   !> Whether a state variable, or what follows its name as a number of the component, is a stress ratio.
+   pure logical function is_stress_ratio(name)
+      character(*), intent(in) :: name
+
+      is_stress_ratio = index(name, 'memory') == 1 .or. index(name, 'target') == 1
+   end function is_stress_ratio
 
    !> Whether nothing keeps p' above zero: without the tension cut-off.
    logical function releases_pressure(props)
@@ -142,6 +155,51 @@ contains
       self%prepared = prepared
       self%tolerance = tolerance
    end subroutine integrate_to
+
+   subroutine find_varying(self, name, place, text)
+      class(mud_t), intent(in) :: self
+      character(*), intent(in) :: name
+      integer, intent(out) :: place
+      character(*), intent(out) :: text
+
+      associate (unused => self)
+      end associate
+      text = ''
+      place = 0
+      if (name == STRENGTH) place = property_index(STRENGTH)
+      if (place == 0) text = 'of &mud '//STRENGTH//' may change, which every strength of the model is in proportion to'
+   end subroutine find_varying
+
+   !> Where the strength falls, stress ratios keep their shares of it: the state before an update is faded.
+   !> docs/theory/host.md section 15.
+   subroutine change_over_step(self, places, before, after, text)
+      class(mud_t), intent(inout) :: self
+      integer, intent(in) :: places(:)
+      real(wp), intent(in) :: before(:), after(:)
+      character(*), intent(out) :: text
+      character(BUFFER) :: raw
+
+      text = ''
+      self%props(places) = after*self%props(places)
+      self%fade = min(1.0_wp, product(after/before))
+      raw = c_null_char
+      if (mud_prepare(self%props, size(self%props), self%prepared, size(self%prepared), raw, BUFFER) /= 0) &
+         text = from_c(raw)
+   end subroutine change_over_step
+
+   !> A state at the start of an update, whose stress ratios have become smaller by the factor of the law.
+   pure subroutine faded(self, stress, state, stress_, state_)
+      class(mud_t), intent(in) :: self
+      real(wp), intent(in) :: stress(6), state(:)
+      real(wp), intent(out) :: stress_(6), state_(:)   !< As stress, state.
+      real(wp) :: mean
+
+      mean = sum(stress(1:3))/3
+      stress_(1:3) = mean + self%fade*(stress(1:3) - mean)
+      stress_(4:6) = self%fade*stress(4:6)
+      state_ = state
+      where (self%is_ratio) state_(:self%n_state) = self%fade*state(:self%n_state)
+   end subroutine faded
 
    subroutine preset_saturation(self, s_w, state, text)
       class(mud_t), intent(in) :: self
@@ -188,6 +246,7 @@ contains
       type(report_t), intent(out) :: report
       type(mud_report) :: of_point
       type(mud_blocks) :: blocks
+      real(wp) :: stress_(6), state_(size(state, 1))
       integer(c_int) :: code, kind
       integer :: g
 
@@ -195,8 +254,14 @@ contains
       if (with_tangent) kind = self%tangent
       do g = 1, n
          response%stress(:, g) = stress(:, g)
-         code = mud_update(self%prepared, stress(:, g), state(:, g), self%n_state, strain(:, g), &
-                           suction(g) + d_suction(g), kind, response%stress(:, g), new_state(:, g), blocks, of_point)
+         if (self%fade < 1.0_wp) then
+            call faded(self, stress(:, g), state(:, g), stress_, state_)
+            code = mud_update(self%prepared, stress_, state_, self%n_state, strain(:, g), suction(g) + d_suction(g), &
+                              kind, response%stress(:, g), new_state(:, g), blocks, of_point)
+         else
+            code = mud_update(self%prepared, stress(:, g), state(:, g), self%n_state, strain(:, g), &
+                              suction(g) + d_suction(g), kind, response%stress(:, g), new_state(:, g), blocks, of_point)
+         end if
          if (with_tangent .and. code == 0) then
             response%dsig_deps(:, :, g) = blocks%dsig_deps
             response%dsig_dpc(:, g) = blocks%dsig_dpc
@@ -302,10 +367,12 @@ contains
       real(wp), intent(in) :: stress(6), state(:), strain(6), suction, d_suction
       character(*), intent(out) :: text
       character(BUFFER) :: raw
+      real(wp) :: stress_(6), state_(size(state))
 
       raw = c_null_char
       text = ''
-      if (mud_save_increment(trim(path)//c_null_char, origin//c_null_char, self%prepared, stress, state, &
+      call faded(self, stress, state, stress_, state_)
+      if (mud_save_increment(trim(path)//c_null_char, origin//c_null_char, self%prepared, stress_, state_, &
                              self%n_state, strain, suction + d_suction, self%tangent, raw, BUFFER) /= 0) &
          text = from_c(raw)
    end subroutine save_update

@@ -86,6 +86,8 @@ module material_point
       procedure :: save_update => cannot_save
       procedure :: remarks => no_remarks
       procedure :: integrate_to => no_tolerance
+      procedure :: find_varying => none_varies
+      procedure :: change_over_step => cannot_change
    end type material_t
 
    !> One law of a list of different ones.
@@ -154,6 +156,34 @@ contains
 
       if (self%tolerance > 0.0_wp .and. scheme >= 0) self%tolerance = tolerance
    end subroutine no_tolerance
+
+   !> Place of a parameter that may change during a run, for change_over_step; 0, and a sentence, where the law has none
+   !> of this name. Laws with such parameters override both. docs/theory/host.md section 15.
+   subroutine none_varies(self, name, place, text)
+      class(material_t), intent(in) :: self
+      character(*), intent(in) :: name
+      integer, intent(out) :: place
+      character(*), intent(out) :: text
+
+      associate (u1 => self, u2 => name)
+      end associate
+      place = 0
+      text = 'the law has no strength that could change: it is for &mud (M_c) and &umat (props(1), props(2), ...)'
+   end subroutine none_varies
+
+   !> Makes a law as it was built the law of one step, at whose start and end parameters are `before` and `after` times
+   !> what they are in it; `text` says why not, and the law is then of no use.
+   subroutine cannot_change(self, places, before, after, text)
+      class(material_t), intent(inout) :: self
+      integer, intent(in) :: places(:)                 !< Of find_varying, each once.
+      real(wp), intent(in) :: before(:), after(:)      !< (places) [-]
+      character(*), intent(out) :: text
+
+      associate (u1 => self, u2 => before, u3 => after)
+      end associate
+      text = ''
+      if (size(places) > 0) text = 'the law has no strength that could change'
+   end subroutine cannot_change
 
    !> Degree of saturation, and its slopes, at a suction [kPa] and a void ratio [-]; a law with a retention of its own
    !> overrides it.

@@ -69,6 +69,8 @@ module material_umat
       procedure :: void_ratio
       procedure :: saturation
       procedure :: remarks
+      procedure :: find_varying
+      procedure :: change_over_step
    end type umat_t
 contains
    !> The law of a group that was checked against UMAT_KEYS. title stays as it is; stresses in the unit of the UMAT. A
@@ -366,6 +368,32 @@ contains
 
       saturation = state(self%n_statv + OWN_S_W)
    end function saturation
+
+   !> Any entry of PROPS: what it means is known to the UMAT and the user.
+   subroutine find_varying(self, name, place, text)
+      class(umat_t), intent(in) :: self
+      character(*), intent(in) :: name
+      integer, intent(out) :: place
+      character(*), intent(out) :: text
+      integer :: i
+
+      text = ''
+      place = findloc([('props('//whole(i)//')' == name, i=1, size(self%props))], .true., dim=1)
+      if (place == 0) text = 'of a &umat one of props(1) to props('//whole(size(self%props))//') may change'
+   end subroutine find_varying
+
+   !> The UMAT is called with the PROPS of the end of the step.
+   subroutine change_over_step(self, places, before, after, text)
+      class(umat_t), intent(inout) :: self
+      integer, intent(in) :: places(:)
+      real(wp), intent(in) :: before(:), after(:)
+      character(*), intent(out) :: text
+
+      associate (unused => before)
+      end associate
+      text = ''
+      self%props(places) = after*self%props(places)
+   end subroutine change_over_step
 
    subroutine remarks(self, list)
       class(umat_t), intent(in) :: self

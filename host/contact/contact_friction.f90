@@ -12,6 +12,8 @@ module contact_friction
    public :: friction_t, traction_t, has_friction, pair_slips, drag_response, traction_at
    public :: tangential_stiffness, touching_share
 
+   real(wp), parameter :: TANGENTIAL_SHARE = 0.1_wp   !< Of the penalty, where nothing else is given [-].
+
    !> What a step starts from.
    type :: friction_t
       real(wp), allocatable :: slave_dx(:, :), master_dx(:, :)   !< (2, nodes) Way since the start of the step [m].
@@ -36,12 +38,12 @@ contains
       has_friction = options%friction > 0.0_wp .or. options%cohesion > 0.0_wp
    end function has_friction
 
-   !> eps_T, by default the penalty of the pressure [kN/m3].
+   !> eps_T, by default a tenth of the penalty of the pressure [kN/m3]. docs/theory/contact.md section 9.
    pure real(wp) function tangential_stiffness(options) result(stiffness)
       type(contact_options_t), intent(in) :: options
 
       stiffness = options%tangential_penalty
-      if (.not. stiffness > 0.0_wp) stiffness = options%penalty
+      if (.not. stiffness > 0.0_wp) stiffness = TANGENTIAL_SHARE*options%penalty
    end function tangential_stiffness
 
    !> Share of a step that a node touches: all of it, or from where a gap closes that was open. [-]

@@ -35,7 +35,7 @@ module contact_types
       integer :: gap = COMBINED_GAP           !< NODAL_GAP, POINTWISE_GAP or COMBINED_GAP
       real(wp) :: friction = 0.0_wp           !< Coefficient mu [-], >= 0
       real(wp) :: cohesion = 0.0_wp           !< Shear stress of a contact without pressure [kPa], >= 0
-      real(wp) :: tangential_penalty = 0.0_wp !< eps_T [kN/m3]; 0: as the penalty
+      real(wp) :: tangential_penalty = 0.0_wp !< eps_T [kN/m3]; 0: a tenth of the penalty
    end type contact_options_t
 
    type :: contact_status_t

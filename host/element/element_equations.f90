@@ -4,7 +4,7 @@ module element_equations
    use wall_clock, only: clock, lap
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use kinds, only: wp
-   use material_point, only: response_t, report_t, MOST_POINTS
+   use material_point, only: material_t, response_t, report_t, MOST_POINTS
    use element_sums, only: sums_t, clear_sums, add_response, add_tangent, residual_of, matrix_of
    use porous_domain, only: domain_t, region_t, state_t, gauss_t, mixture_density, given_pressures_at, gravity_on, &
                             COUPLED
@@ -113,10 +113,8 @@ contains
       type(slopes_t), intent(inout) :: slopes
       type(response_t), intent(inout) :: material
       type(element_t), intent(inout) :: out
-      type(report_t) :: report
       real(wp), pointer, contiguous :: before(:, :), after(:, :)   !< (n_state, points) of the law
-      real(wp) :: t0
-      integer :: n, first, last, n_state
+      integer :: n, first, last, n_state, region
 
       n = domain%rule
       first = (element - 1)*n + 1
@@ -129,25 +127,37 @@ contains
          call same_again(n, first, slopes, new%stress(:, first:last), new%e(first:last), new%s(first:last), material)
          return
       end if
-      n_state = domain%regions(domain%region_of(element))%law%n_state
+      region = domain%region_of(element)
+      n_state = domain%regions(region)%law%n_state
       associate (from => domain%before_state(element) + 1, to => domain%before_state(element + 1))
          before(1:n_state, 1:n) => old%state(from:to)
          after(1:n_state, 1:n) => new%state(from:to)
       end associate
-      t0 = clock()
-      call domain%regions(domain%region_of(element))%law%update(n, old%stress(:, first:last), before, strain, suction, &
-         d_suction, with_tangent .or. slopes%kept, material, after, report)
-      call lap(out%seconds, t0)
-      out%rate_evaluations = report%n_rate
-      if (report%code /= 0) then
-         out%bad = report
-         out%bad_point = report%point
-         return
+      if (allocated(new%laws)) then
+         call ask(new%laws(region)%law)
+      else
+         call ask(domain%regions(region)%law)
       end if
-      if (slopes%kept) call keep_slopes(n, first, material, slopes)
-      if (with_tangent .and. out%fallback /= NO_FALLBACK) &
-         call stiffen(domain%regions(domain%region_of(element))%law, out%fallback, n, after, &
-                      suction(:n) + d_suction(:n), material, out%replaced)
+   contains
+      subroutine ask(law)
+         class(material_t), intent(in) :: law
+         type(report_t) :: report
+         real(wp) :: t0
+
+         t0 = clock()
+         call law%update(n, old%stress(:, first:last), before, strain, suction, d_suction, &
+                         with_tangent .or. slopes%kept, material, after, report)
+         call lap(out%seconds, t0)
+         out%rate_evaluations = report%n_rate
+         if (report%code /= 0) then
+            out%bad = report
+            out%bad_point = report%point
+            return
+         end if
+         if (slopes%kept) call keep_slopes(n, first, material, slopes)
+         if (with_tangent .and. out%fallback /= NO_FALLBACK) &
+            call stiffen(law, out%fallback, n, after, suction(:n) + d_suction(:n), material, out%replaced)
+      end subroutine ask
    end subroutine update_points
 
    !> What the nodes say about the points of an element.

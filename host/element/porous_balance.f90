@@ -294,7 +294,7 @@ contains
       tangent(GW + 2, GW + 2) = kappa*l
    end subroutine add_water
 
-   !> Air, in both sums.
+   !> Air, in both sums: free, and dissolved in the water, with which it flows.
    subroutine add_air(domain, region, scheme, k, mix, with_tangent, response, tangent, drift)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
@@ -303,16 +303,19 @@ contains
       type(mixture_t), intent(in) :: mix
       logical, intent(in) :: with_tangent
       real(wp), intent(inout) :: response(PLACES), tangent(PLACES, PLACES), drift(2)
-      real(wp) :: drive(2), body(2), kappa, d_kappa, a_dot, stored, d_stored, l
+      real(wp) :: drive(2), body(2), dissolved(2), kappa, d_kappa, a_dot, room, stored, d_stored, filling(4), l
       integer :: i
 
       l = scheme%l_f
       a_dot = k%w_dot + k%c_dot
       body = body_force(domain, k)
-      associate (n => mix%n, s => mix%s, k_a => mix%k_a)
-         stored = n*(1 - s)/k_a*a_dot
-         response(PW) = response(PW) + stored
-         response(PC) = stored - n*mix%s_dot + (1 - s)*k%div_v - k%source(4)
+      associate (n => mix%n, s => mix%s, k_a => mix%k_a, h => domain%fluids%henry)
+         room = 1 - (1 - h)*s
+         stored = n*room/k_a*a_dot
+         response(PW) = response(PW) + stored + h*(n*mix%s_dot + s*k%div_v)
+         response(PC) = stored - (1 - h)*n*mix%s_dot + room*k%div_v - k%source(4)
+         dissolved = h*response(GW + 1:GW + 2)
+         drift = (1 + h)*drift
          kappa = 0.0_wp
          d_kappa = 0.0_wp
          if (region%drainage == COUPLED) then
@@ -321,24 +324,28 @@ contains
             kappa = kappa*mix%rel%a
          end if
          drive = k%grad_w + k%grad_c + mix%rho_a*body
-         response(GA + 1:GA + 2) = kappa*drive
+         response(GA + 1:GA + 2) = kappa*drive + dissolved
          drift = drift + kappa*(abs(k%grad_w) + abs(k%grad_c) + mix%rho_a*abs(body))
-         response(GW + 1:GW + 2) = response(GW + 1:GW + 2) + kappa*drive
+         response(GW + 1:GW + 2) = response(GW + 1:GW + 2) + response(GA + 1:GA + 2)
          if (.not. with_tangent) return
-         d_stored = n*(1 - s)/k_a*(scheme%c_p - a_dot*mix%d_k_a*l/k_a)
-         tangent(PC, 1:3) = (1 - s)/k_a*a_dot*l*(1 - mix%n1) - n/k_a*a_dot*mix%s_ev
+         d_stored = n*room/k_a*(scheme%c_p - a_dot*mix%d_k_a*l/k_a)
+         tangent(PC, 1:3) = room/k_a*a_dot*l*(1 - mix%n1) - (1 - h)*n/k_a*a_dot*mix%s_ev
          tangent(PC, PW) = d_stored
-         tangent(PC, PC) = d_stored - n/k_a*a_dot*mix%s_pc
+         tangent(PC, PC) = d_stored - (1 - h)*n/k_a*a_dot*mix%s_pc
          tangent(PW, 1:8) = tangent(PW, 1:8) + tangent(PC, 1:8)
-         tangent(PC, 1:3) = tangent(PC, 1:3) - mix%s_dot*l*(1 - mix%n1) - n*scheme%c_p*mix%rate_ev &
-                            - k%div_v*mix%s_ev + (1 - s)*scheme%c_v
-         tangent(PC, PC) = tangent(PC, PC) - n*scheme%c_p*mix%rate_pc - k%div_v*mix%s_pc
+         ! Of the rate of what the water fills: it takes this room from the free air, and dissolves its share h.
+         filling(1:3) = mix%s_dot*l*(1 - mix%n1) + n*scheme%c_p*mix%rate_ev + k%div_v*mix%s_ev + s*scheme%c_v
+         filling(4) = n*scheme%c_p*mix%rate_pc + k%div_v*mix%s_pc
+         tangent(PW, [1, 2, 3, PC]) = tangent(PW, [1, 2, 3, PC]) + h*filling
+         tangent(PC, [1, 2, 3, PC]) = tangent(PC, [1, 2, 3, PC]) - (1 - h)*filling
+         tangent(PC, 1:3) = tangent(PC, 1:3) + scheme%c_v
          call add_flux_slopes(domain, scheme, mix, GA, kappa, d_kappa, mix%rho_a, drive, tangent)
          do i = 1, 2
             tangent(GA + i, [GW + i, GA + i]) = kappa*l
          end do
          tangent(GA + 1:GA + 2, PW) = tangent(GA + 1:GA + 2, PW) + kappa*mix%d_rho_a*l*body
          tangent(GA + 1:GA + 2, PC) = tangent(GA + 1:GA + 2, PC) + kappa*mix%d_rho_a*l*body
+         tangent(GA + 1:GA + 2, :) = tangent(GA + 1:GA + 2, :) + h*tangent(GW + 1:GW + 2, :)
          tangent(GW + 1:GW + 2, :) = tangent(GW + 1:GW + 2, :) + tangent(GA + 1:GA + 2, :)
       end associate
    end subroutine add_air

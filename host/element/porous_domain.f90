@@ -5,7 +5,7 @@ module porous_domain
    use unknown_fields, only: FIELDS
    use kinds, only: wp, PI
    use shape_functions, only: quadratic, linear, triangle_rule
-   use material_point, only: material_t
+   use material_point, only: material_t, material_slot_t
    use permeability_laws, only: permeability_t
    use triangle_mesh, only: mesh_t
    use faults, only: fault_t, raise
@@ -28,6 +28,7 @@ module porous_domain
       real(wp) :: k_a = 101.325_wp, rho_a = 1.2e-3_wp, eta_a = 1.8e-8_wp   !< The same of air.
       logical :: ideal_gas = .false.    !< K_a = absolute pressure, rho_a in proportion to it.
       real(wp) :: p_ref = 101.325_wp    !< Absolute pressure where p_a = 0 [kPa].
+      real(wp) :: henry = 0.0_wp        !< Volume of air that a volume of water dissolves, at its pressure [-].
    end type fluids_t
 
    !> What a region is made of.
@@ -107,6 +108,9 @@ module porous_domain
       logical, allocatable :: present(:)      !< Parts of the ground in this stage. (elements)
       logical, allocatable :: joins(:)        !< Those that join with it. (elements)
       real(wp) :: growth = 1.0_wp             !< Share of their weight that acts on those that join, at this time [-].
+      !> Laws of the regions in the step that ends with this state, where strength changes with time, else not
+      !> allocated: made for every step, docs/theory/host.md section 15. (regions)
+      type(material_slot_t), allocatable :: laws(:)
    end type state_t
 contains
    !> Geometry of every quadrature point; the regions must be known. docs/theory/host.md section 3.1. Fault

@@ -171,17 +171,21 @@ contains
       integer, intent(in) :: e
       type(state_t), intent(in) :: state
       real(wp), intent(in) :: s, slope   !< Saturation, its change with suction [1/kPa].
-      real(wp) :: n, c_ww, c_wc, c_cc
+      real(wp) :: n, c(2, 2), room, det
 
-      associate (m => model%domain, p => (e - 1)*model%domain%rule + 1)
+      associate (m => model%domain, p => (e - 1)*model%domain%rule + 1, h => model%domain%fluids%henry)
          n = state%e(p)/(1 + state%e(p))
-         c_wc = n*(1 - s)/m%fluids%k_a
-         if (.not. m%with_c) c_wc = 0.0_wp
-         c_ww = n*s/m%fluids%k_w + c_wc
-         c_cc = c_wc - n*slope
-         stiffness = 1/c_ww
-         if (m%with_c .and. c_cc > 0.0_wp .and. c_ww*c_cc > c_wc**2) &
-            stiffness = (c_cc - 2*(1 - s)*c_wc + (1 - s)**2*c_ww)/(c_ww*c_cc - c_wc**2)
+         room = 0.0_wp
+         if (m%with_c) room = 1 - (1 - h)*s
+         ! Sum of the balances, and air, against p_w and p_c: docs/theory/host.md sections 2.2 and 2.3.
+         c(2, 1) = n*room/m%fluids%k_a
+         c(1, 1) = n*s/m%fluids%k_w + c(2, 1)
+         c(1, 2) = c(2, 1) + h*n*slope
+         c(2, 2) = c(2, 1) - (1 - h)*n*slope
+         stiffness = 1/c(1, 1)
+         det = c(1, 1)*c(2, 2) - c(1, 2)*c(2, 1)
+         if (m%with_c .and. c(2, 2) > 0.0_wp .and. det > 0.0_wp) &
+            stiffness = ((c(2, 2) - (1 - s)*c(2, 1))*(1 + h*s) + ((1 - s)*c(1, 1) - c(1, 2))*room)/det
       end associate
    end function pore_stiffness
 

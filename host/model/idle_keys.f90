@@ -108,6 +108,7 @@ contains
                   used = used .or. text_of(keys, scene%groups(k), 'gravity_history') == name_of(group)
                if (k == g .or. .not. given(scene%groups(k), trim(key))) cycle
                if (is_law(scene%groups(k)%name)) cycle
+               if (key == 'material' .and. scene%groups(k)%name == 'strength') cycle
                used = used .or. text_of(keys, scene%groups(k), trim(key)) == name_of(group)
             end do
             if (.not. used) call add_warning(at_line(group%file, group%line)//'&'//trim(group%name)//' '''// &

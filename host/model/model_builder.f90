@@ -9,6 +9,7 @@ module model_builder
    use degrees_of_freedom, only: number_unknowns
    use free_bodies, only: check_bodies
    use staged_ground, only: check_staged_ground
+   use strength_builder, only: build_strengths
    use given_pressures, only: add_centers, give_pressures, check_places
    use mesh_builder, only: build_mesh
    use model_types, only: model_t
@@ -44,6 +45,7 @@ contains
       if (fault%code == 0) call build_plates(model, fault)
       if (fault%code == 0) call choose_threads(scene%threads, model%domain)
       if (fault%code == 0) call build_boundaries(model, fault)
+      if (fault%code == 0) call build_strengths(model, fault)
       if (fault%code == 0) call check_places(model, fault)
       if (fault%code == 0) call check_staged_ground(model, fault)
       if (fault%code == 0) call check_bodies(model, fault)

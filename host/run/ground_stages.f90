@@ -16,6 +16,7 @@ module ground_stages
    use run_state, only: run_t
    use scene_types, only: stage_t
    use staged_ground, only: ground_of
+   use strength_builder, only: follow_strengths
    use texts, only: whole
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
@@ -65,6 +66,7 @@ contains
       type(state_t) :: at_start, same
       type(slopes_t) :: slopes
       type(element_t) :: out
+      logical :: changes
       integer :: e, i, at
 
       run%at%held_up = [(0.0_wp, i=1, model%dofs%n)]
@@ -76,6 +78,7 @@ contains
       at_start%joins = .false.
       at_start%gravity = gravity_at(model, run%at%t_start)
       same = at_start
+      call follow_strengths(model, run%at%t_start, run%at%t_start, same, changes)
       do e = 1, size(stays)
          if (stays(e)) cycle
          call compute_element(model%domain, e, make_scheme(STATIC, 1.0_wp, 1.0_wp), at_start, same, .false., slopes, &

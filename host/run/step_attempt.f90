@@ -23,6 +23,7 @@ module step_attempt
    use step_failure, only: explain_failure, explain_short_step, LEAST_OF_STAGE
    use step_size, only: begin_control, prepare_rates, judge_step, shorten_step
    use scene_types, only: stage_t
+   use strength_builder, only: follow_strengths
    implicit none (type, external)
    private
    public :: begin_stage, try_step
@@ -37,8 +38,10 @@ contains
       integer, intent(in) :: number
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
+      logical :: changes
 
       associate (stage => model%stages(number))
+         call follow_strengths(model, run%state%time, run%state%time, run%next, changes)
          run%at = stage_state_t(stage=number, t_start=run%state%time, nominal=stage%dt, x_start=run%state%x)
          call change_ground(model, number, .true., run, fault)
          if (fault%code /= 0) return
@@ -71,7 +74,7 @@ contains
       type(scheme_t) :: scheme
       real(wp), allocatable :: a0(:, :)
       real(wp) :: share
-      logical :: lost
+      logical :: lost, changes
 
       accepted = .false.
       if (dt < shortest_step(stage, run)) then
@@ -85,6 +88,9 @@ contains
       if (allocated(run%constraint%dashpots)) call set_incoming_waves(model, stage, dt, run)
       run%next%gravity = gravity_at(model, run%state%time + dt)
       run%next%growth = growth_at(stage, run, run%state%time + dt)
+      call follow_strengths(model, run%state%time, run%state%time + dt, run%next, changes)
+      ! Slopes know nothing of a strength that changes.
+      if (changes) run%assembly%slopes%known = .false.
       call prescribe(model, stage, run%state%time + dt, run, fault)
       if (fault%code /= 0) return
       call prepare_rates(stage, dt, run)

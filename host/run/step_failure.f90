@@ -8,7 +8,7 @@ module step_failure
    use exit_codes, only: EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
    use element_equations, only: STRAIN_TOO_LARGE
    use free_bodies, only: bodies_on_contact
-   use model_types, only: model_t
+   use model_types, only: model_t, factor_at
    use convergence, only: log_t, BY_RESIDUAL, BY_CORRECTION
    use newton_step, only: MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
    use run_state, only: run_t
@@ -67,10 +67,26 @@ contains
             call raise(fault, EXIT_CONVERGENCE, place//'no convergence after '//whole(log%iterations)// &
                        ' iterations'//soft_points(model, run)//'; '//what_is_left(stage, log)//' (allowed '// &
                        short(stage%tolerance)//'), worst at '//place_of(model, node)// &
-                       unstressed(run)//'; use a smaller dt, more cuts or a better tangent.')
+                       unstressed(run)//weakened(model, time)//'; use a smaller dt, more cuts or a better tangent.')
          end select
       end associate
    end subroutine explain_failure
+
+   !> How much of a strength is left, where one changes with time: a body without equilibrium has no other step.
+   function weakened(model, time) result(text)
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: time   !< [s]
+      character(:), allocatable :: text
+      integer :: i
+
+      text = ''
+      do i = 1, size(model%strengths)
+         associate (s => model%strengths(i))
+            text = text//'. By &strength '//trim(s%parameter_name)//' of '''//trim(s%material_name)//''' is at '// &
+                   short(factor_at(model, s%amplitude, time))//' of its value: it may have failed'
+         end associate
+      end do
+   end function weakened
 
    !> That soil began without stress, where it did: the likely cause of a failure.
    function unstressed(run) result(text)

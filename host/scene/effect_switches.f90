@@ -4,8 +4,8 @@
 module effect_switches
    use kinds, only: wp
    use effect_types, only: effect_t, EFFECT_NAMES, EFFECTS, OF_INERTIA, OF_SEEPAGE, OF_P_W, OF_P_C, OF_GRAVITY, &
-      OF_CONTACT, OF_DAMPING, OF_ABSORBING, OF_DRAINAGE, OF_LIMITS, OF_FRICTION, OF_VOID_RATIO, OF_HYSTERESIS, &
-      OF_BONDING, OF_ELASTIC_DOMAIN, OF_FLOW
+      OF_CONTACT, OF_DAMPING, OF_ABSORBING, OF_DRAINAGE, OF_LIMITS, OF_FRICTION, OF_STRENGTH, OF_VOID_RATIO, &
+      OF_HYSTERESIS, OF_BONDING, OF_ELASTIC_DOMAIN, OF_FLOW
    use faults, only: fault_t
    use key_schema, only: given
    use library_tables, only: property_index, property_range
@@ -142,7 +142,7 @@ contains
          has_meaning = is_present(scene, kind, 1)
       case (OF_ABSORBING)
          has_meaning = size(scene%absorbers) > 0
-      case (OF_LIMITS, OF_FRICTION)
+      case (OF_LIMITS, OF_FRICTION, OF_STRENGTH)
          has_meaning = is_present(scene, kind, 1)
       case (OF_VOID_RATIO)
          has_meaning = is_present(scene, kind, 1)
@@ -187,6 +187,8 @@ contains
          present = scene%fields /= WITH_U .and. (any(scene%fixes%limits) .or. any(scene%loads%kind == LOAD_RAIN))
       case (OF_FRICTION)
          present = any(scene%contacts%options%friction > 0.0_wp .or. scene%contacts%options%cohesion > 0.0_wp)
+      case (OF_STRENGTH)
+         present = size(scene%strengths) > 0
       case (OF_VOID_RATIO)
          if (scene%fields == WITH_P_C) &
             present = any([(parameter_of(scene, i, 'Omega') > 0.0_wp, i=1, size(scene%materials))])
@@ -307,6 +309,8 @@ contains
             scene%contacts%options%friction = 0.0_wp
             scene%contacts%options%cohesion = 0.0_wp
          end if
+      case (OF_STRENGTH)
+         if (.not. on) scene%strengths = scene%strengths(:0)
       case (OF_VOID_RATIO)
          call freeze_retention(scene, why)
       case (OF_FLOW)

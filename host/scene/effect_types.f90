@@ -6,20 +6,20 @@ module effect_types
    private
    public :: effect_t, EFFECT_NAMES, EFFECT_WORDS, EFFECTS, EFFECT_LENGTH, UNKNOWN, NEVER, indicator_place
    public :: OF_INERTIA, OF_SEEPAGE, OF_P_W, OF_P_C, OF_GRAVITY, OF_CONTACT, OF_DAMPING, OF_ABSORBING, OF_DRAINAGE, &
-             OF_LIMITS, OF_FRICTION, OF_VOID_RATIO, OF_HYSTERESIS, OF_BONDING, OF_FABRIC, OF_ISOTROPIC, OF_LODE, &
-             OF_MEMORY, OF_ELASTIC_DOMAIN, OF_FLOW
+             OF_LIMITS, OF_FRICTION, OF_STRENGTH, OF_VOID_RATIO, OF_HYSTERESIS, OF_BONDING, OF_FABRIC, OF_ISOTROPIC, &
+             OF_LODE, OF_MEMORY, OF_ELASTIC_DOMAIN, OF_FLOW
 
-   integer, parameter :: EFFECTS = 19, EFFECT_LENGTH = 26
+   integer, parameter :: EFFECTS = 20, EFFECT_LENGTH = 26
    integer, parameter :: OF_INERTIA = 1, OF_SEEPAGE = 2, OF_P_W = 3, OF_P_C = 4, OF_GRAVITY = 5, OF_CONTACT = 6, &
       OF_DAMPING = 7, OF_ABSORBING = 8, OF_DRAINAGE = 9, OF_LIMITS = 10, OF_FRICTION = 11, &
-      OF_VOID_RATIO = 12, OF_HYSTERESIS = 13, OF_BONDING = 14, OF_FABRIC = 15, OF_ISOTROPIC = 16, OF_LODE = 17, &
-      OF_MEMORY = 18, OF_ELASTIC_DOMAIN = 19
+      OF_STRENGTH = 12, OF_VOID_RATIO = 13, OF_HYSTERESIS = 14, OF_BONDING = 15, OF_FABRIC = 16, OF_ISOTROPIC = 17, &
+      OF_LODE = 18, OF_MEMORY = 19, OF_ELASTIC_DOMAIN = 20
    integer, parameter :: OF_FLOW = EFFECTS + 1   !< Of water and air in one region: `drainage` of &region says it.
    !> The word of every effect: in tables, and in the key `without` of &scene (which takes those of the list below).
    character(EFFECT_LENGTH), parameter :: EFFECT_NAMES(EFFECTS) = [character(EFFECT_LENGTH) :: 'inertia', &
       'relative_acceleration', 'p_w', 'p_c', 'gravity', 'contact', 'damping', 'absorbing', 'contact_drainage', &
-      'seepage_face', 'friction', 'void_ratio_in_retention', 'hysteresis', 'bonding', 'fabric', 'isotropic', 'lode', &
-      'memory_rule', 'elastic_domain']
+      'seepage_face', 'friction', 'strength', 'void_ratio_in_retention', 'hysteresis', 'bonding', 'fabric', &
+      'isotropic', 'lode', 'memory_rule', 'elastic_domain']
    !> The same as one list of words.
    character(*), parameter :: EFFECT_WORDS = &
       trim(EFFECT_NAMES(1))//'|'//trim(EFFECT_NAMES(2))//'|'// &
@@ -31,7 +31,7 @@ module effect_types
       trim(EFFECT_NAMES(13))//'|'//trim(EFFECT_NAMES(14))//'|'// &
       trim(EFFECT_NAMES(15))//'|'//trim(EFFECT_NAMES(16))//'|'// &
       trim(EFFECT_NAMES(17))//'|'//trim(EFFECT_NAMES(18))//'|'// &
-      trim(EFFECT_NAMES(19))
+      trim(EFFECT_NAMES(19))//'|'//trim(EFFECT_NAMES(20))
    real(wp), parameter :: UNKNOWN = -1.0_wp    !< No number: it was not tried, or has no meaning.
    real(wp), parameter :: NEVER = -1.0e30_wp   !< A time.
 

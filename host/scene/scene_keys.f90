@@ -15,8 +15,8 @@ module scene_keys
    use retention_groups, only: RETENTION_KEYS
    use scene_accuracy, only: ask_steps, ask_stress
    use scene_types, only: scene_t, scene_law_t, scene_region_t, scene_item_t, initial_t, amplitude_t, stage_t, fix_t, &
-                          load_t, plate_t, contact_pair_t, absorber_t, tie_t, point_t, place_of, LOAD_FORCE_Z, &
-                          LOAD_MOMENT, PRESCRIBED_TURN
+                          load_t, plate_t, contact_pair_t, absorber_t, tie_t, point_t, strength_t, place_of, &
+                          LOAD_FORCE_Z, LOAD_MOMENT, PRESCRIBED_TURN
    use spelling, only: nearest_name
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
@@ -26,7 +26,8 @@ module scene_keys
    real(wp), parameter :: BIG = UNBOUNDED, TINY_ = 1.0e-30_wp, ZERO = 0.0_wp, ONE = 1.0_wp
    integer, parameter :: MANY = 1000000
    character(12), parameter :: GROUPS(*) = [character(12) :: 'scene', 'mesh', 'fluids', 'retention', 'permeability', &
-      'region', 'initial', 'history', 'stage', 'fix', 'load', 'absorbing', 'tie', 'plate', 'contact', 'point']
+      'region', 'strength', 'initial', 'history', 'stage', 'fix', 'load', 'absorbing', 'tie', 'plate', 'contact', &
+      'point']
    character(*), parameter :: LAW_NAME = 'name, for the key material of &region'
    character(*), parameter :: STAGES = 'names of stages; default: all'
 contains
@@ -54,8 +55,8 @@ contains
       type(scene_t), intent(inout) :: scene
 
       allocate (scene%materials(0), scene%retentions(0), scene%permeabilities(0), scene%regions(0), &
-                scene%initials(0), scene%amplitudes(0), scene%stages(0), scene%fixes(0), scene%loads(0), &
-                scene%plates(0), scene%contacts(0), scene%absorbers(0), scene%ties(0), scene%points(0))
+                scene%strengths(0), scene%initials(0), scene%amplitudes(0), scene%stages(0), scene%fixes(0), &
+                scene%loads(0), scene%plates(0), scene%contacts(0), scene%absorbers(0), scene%ties(0), scene%points(0))
    end subroutine make_lists
 
    !> Reads the group of a table into a scene, &scene before others. Fault EXIT_INPUT: values contradict each other.
@@ -77,6 +78,8 @@ contains
          call take_permeability(k, scene, fault)
       case ('region')
          call take_region(k, scene)
+      case ('strength')
+         call take_strength(k, scene)
       case ('initial')
          call take_initial(k, scene, fault)
       case ('history')
@@ -203,6 +206,8 @@ contains
          call k%number('rho_a', f%rho_a, ZERO, 1000*ONE, 'density of air (ideal: at p_ref) [Mg/m3]', ':p_c')
          call k%number('eta_a', f%eta_a, TINY_, BIG, 'viscosity of air [kPa s]', ':p_c')
          call k%number('p_ref', f%p_ref, TINY_, BIG, 'absolute pressure where p_a = 0 [kPa]', ':p_c')
+         call k%number('henry', f%henry, ZERO, 0.5_wp, &
+                       'volume of air that a volume of water dissolves [-]; 0.02 at 20 C', ':p_c')
       end associate
    end subroutine take_fluids
 
@@ -273,6 +278,19 @@ contains
       region%rest = .not. k%given('group')
       scene%regions = [scene%regions, region]
    end subroutine take_region
+
+   subroutine take_strength(k, scene)
+      type(key_table_t), intent(inout) :: k
+      type(scene_t), intent(inout) :: scene
+      type(strength_t) :: strength
+
+      strength%scene_item_t = item_of(k%group)
+      call k%text('material', strength%material_name, 'name of the material whose strength changes with time', REQUIRED)
+      call k%text('parameter', strength%parameter_name, &
+                  'what changes: M_c of a &mud; of a &umat props(1), props(2), ...', REQUIRED)
+      call k%text('history', strength%amplitude_name, 'factor on the parameter, 1 at the start', REQUIRED)
+      scene%strengths = [scene%strengths, strength]
+   end subroutine take_strength
 
    subroutine take_initial(k, scene, fault)
       type(key_table_t), intent(inout) :: k
@@ -542,7 +560,7 @@ contains
       call k%number('friction', contact%options%friction, ZERO, 100*ONE, 'coefficient of Coulomb friction [-]')
       call k%number('cohesion', contact%options%cohesion, ZERO, BIG, 'shear stress that friction adds to [kPa]')
       call k%number('tangential_penalty', contact%options%tangential_penalty, ZERO, BIG, &
-                    'shear stress of a unit of slip before it slides [kN/m3]; 0: as the penalty')
+                    'shear stress of a unit of slip before it slides [kN/m3]; 0: a tenth of the penalty')
       call k%flag('drainage', contact%drains_by_state, 'fixed|state', 'state', &
                   'state: nodes in contact are released from &fix of pressures')
       call k%texts('stages', contact%stages, STAGES)

@@ -57,6 +57,7 @@ wet = dict(times="0, 1000", laws=WATER.format(k="1e-10") + "\n" + CURVE, region=
 slow = dict(stage="analysis = 'dynamic' duration = 1 dt = 0.05", times="0, 1")
 
 # Every effect is one key, and its word in `without` is that key: the same bytes, and another answer than with it.
+FADE = "&strength material = 'sand' parameter = 'M_c' history = 'fade' /"
 TOUCH = "&contact name = 'c' slave = 'top' master = 'plate' drainage = 'state' penalty = 1e6 friction = 0.4 /"
 WHOLE = """&scene name = 'whole' fields = 'u-p_w-p_c' gravity = 9.81 seepage_inertia = 'yes' /
 &mesh r = 0, 0.2 r_cells = 1 z = -0.2, 0 z_cells = 1 /
@@ -64,6 +65,8 @@ WHOLE = """&scene name = 'whole' fields = 'u-p_w-p_c' gravity = 9.81 seepage_ine
      memory_rule = 'return_point' rho_e = 2e-5 /
 &permeability name = 'k' intrinsic = 1e-10 /
 &region material = 'sand' retention = 'material' permeability = 'k' void_ratio = 0.7 damping = 5 /
+{fade}
+&history name = 'fade' times = 0, 0.006 values = 1, 0.8 /
 &initial p_w = -30 p_c = 30 stress = 'uniform' sigma = -20, -20, -20 /
 &history name = 'cycles' times = 0, 0.002, 0.004, 0.006 values = 0, 1, 0.6, 1 /
 &plate name = 'plate' r = 0, 0.1 z = -1e-6 mass = 0.01 force = -8 history = 'cycles' /
@@ -76,7 +79,7 @@ WHOLE = """&scene name = 'whole' fields = 'u-p_w-p_c' gravity = 9.81 seepage_ine
 &stage name = 'shake' analysis = 'dynamic' duration = 0.006 dt = 1e-3 rho_inf = 0 created_energy = 1e9 /
 &point name = 'centre' r = 0 z = 0 /
 &point name = 'base' r = 0 z = -0.2 /
-""".replace("{contact}", TOUCH)
+""".replace("{contact}", TOUCH).replace("{fade}", FADE)
 WET = (("&fix group = 'top' field = 'p_c' value = 30 /", ""), ("fields = 'u-p_w-p_c'", "fields = 'u-p_w'"))
 KEYS = {
     "inertia": (("'dynamic'", "'quasi_static'"), ("'yes'", "'no'")),
@@ -90,6 +93,7 @@ KEYS = {
     "absorbing": (("&absorbing group = 'right' /", ""),),
     "contact_drainage": (("'state'", "'fixed'"),),
     "friction": (("friction = 0.4", "friction = 0"),),
+    "strength": ((FADE, ""),),
     "void_ratio_in_retention": (("lode = 1", f"lode = 1 Omega = 0 P_a = {5.0 * 0.7**-2.0:.16e}"),),
     "hysteresis": (("hysteresis = 1", "hysteresis = 0"),),
     "bonding": (("bonding = 1", "bonding = 0"),),

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 from host_runs import BOTH, SETTINGS, HostCase
-from host_scenes import bank, column, drawdown, falling, footing, impact, meshes, raft, rectangle, showers, spin, square, tolerant
+from host_scenes import (AIR, HENRY, WATER as BULK, bank, column, drawdown, fading, falling, footing, impact, meshes, raft, rectangle, shaken_air, showers,
+                         spin, square, tolerant)
 
 DEFAULT = SETTINGS[:1]
 CONTACT, WATER, FAILURE, MESH = "contact", "pore water", "failure", "mesh"
@@ -91,6 +92,24 @@ def off_the_spin(runs):
     """Force of the base against the weight at 50 g [%]."""
     weight = 0.2 * 0.3 * 2.7 / 1.9 * 490.5
     return max(100 * abs(float(run.table("reactions_spin")["bottom.force_z"][-1]) / weight - 1) for run in runs.values())
+
+
+def off_the_faded(runs):
+    """Force of the base against weight and loads at the end [%]."""
+    weight = 3 * 2 * 2.7 / 1.8 * 9.81 + 5 * 3 + 30 * 0.5
+    return max(100 * abs(float(run.table("reactions_fade")["bottom.force_z"][-1]) / weight - 1) for run in runs.values())
+
+
+def lost_fluids(runs):
+    """Largest change of the air that is kept, by Boyle's and Henry's laws, and of the water, of what there was [%]."""
+    worst = 0.0
+    for run in runs.values():
+        row = run.histories
+        water, void = row["centre.S_w"] * row["centre.e"], row["centre.e"]
+        air = (AIR + row["centre.p_w"] + row["centre.p_c"]) * (void - (1 - HENRY) * water)
+        water = water * np.exp(row["centre.p_w"] / BULK)
+        worst = max(worst, *(100 * float(np.max(np.abs(kept / kept[0] - 1))) for kept in (air, water)))
+    return worst
 
 
 def drawn_in(runs):
@@ -193,6 +212,10 @@ CASES = (
              lambda s: {"": drawdown(s)}, drawn_in, surface_pressures, DEFAULT),
     HostCase("spin-up of loose sand", FAILURE, "gravity grows fiftyfold; at its surface sand has no stress", "force of the base against the weight at 50 g [%]", 1.0,
              lambda s: {"": spin(s)}, off_the_spin, last_settlement, DEFAULT),
+    HostCase("strength that falls, comes back and falls", FAILURE, "under loads that stay every point loses its share of the stress at once, to 0.7, then to 0.6",
+             "force of the base against weight and loads [%]", 1.0, lambda s: {"": fading(s)}, off_the_faded, last_settlement, DEFAULT),
+    HostCase("air that cannot escape, shaken", WATER, "nearly saturated loose sand in twenty cycles: the stiffness of the pores grows with the pressure",
+             "change of the air and of the water that are kept [%]", 0.1, lambda s: {"": shaken_air(s)}, lost_fluids, surface_pressures, DEFAULT),
     footing_case("footing on loose sand", "the tangent of a softening or perfectly plastic soil is nearly singular", void_ratio=0.907),
     footing_case("footing on dense sand", "softening and dilation under the edge", void_ratio=0.75),
     footing_case("footing on undrained sand", "no volume change, and loose sand loses its strength", void_ratio=0.907, undrained=True,

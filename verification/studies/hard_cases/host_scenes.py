@@ -97,7 +97,7 @@ def raft(setting, dt=2e-3):
             "&region material='sand' drainage='dry' void_ratio=0.75 rho_s=2.7 /\n&initial stress='geostatic' k_0=0.5 surcharge=5 /\n"
             "&plate name='raft' motion='plane' r=-0.6,0.6 z=0 center=0,1.5 mass=3 inertia=2.4 weight='yes' "
             f"force_r={load(setting, 14.0)} history='push' /\n&history name='push' times=2,2.1,2.3,2.4 values=0,1,-1,0 /\n"
-            "&contact name='c' slave='top' master='raft' friction=0.6 tangential_penalty=1e6 stages='seat','rock' /\n&load group='top' kind='pressure' value=5 /\n"
+            "&contact name='c' slave='top' master='raft' friction=0.6 stages='seat','rock' /\n&load group='top' kind='pressure' value=5 /\n"
             "&stage name='rest' analysis='static' duration=1 dt=1 tolerance=1e-8 zero_displacements='yes' /\n"
             "&stage name='seat' analysis='static' duration=1 dt=0.25 max_iterations=50 /\n"
             f"&stage name='rock' analysis='dynamic' duration=1 dt={dt} {rho(setting)} max_iterations=30 /\n"
@@ -124,6 +124,36 @@ def spin(setting):
             "&history name='spin' times=0,1,2 values=0.02,0.02,1 /\n"
             "&stage name='rest' analysis='static' duration=1 dt=1 tolerance=1e-8 zero_displacements='yes' /\n"
             f"&stage name='spin' analysis='static' duration=1 dt=0.02 max_iterations=20 /\n{SIDES}&point name='centre' r=0 z=0.3 /\n")
+
+
+def fading(setting):
+    """Dry sand under a strip load: its strength falls to 0.7, comes back and falls again, below what it was."""
+    return ("&scene name='fading' geometry='plane_strain' gravity=9.81 /\n"
+            f"&mesh r=0,0.5,3 r_cells=3,4 r_ratio=0.8,1.6 z=-2,0 z_cells=5 z_ratio=0.7 /\n{sand(setting)}"
+            "&region material='sand' drainage='dry' void_ratio=0.8 rho_s=2.7 /\n&initial stress='geostatic' k_0=0.5 surcharge=5 /\n"
+            "&strength material='sand' parameter='M_c' history='fade' /\n&history name='fade' times=0,2,2.5,3,4 values=1,1,0.7,1,0.6 /\n"
+            "&history name='ramp' times=1,2 values=0,1 /\n&load group='top' kind='pressure' value=5 /\n"
+            f"&load group='top_1' kind='pressure' value={load(setting, 30.0)} history='ramp' /\n"
+            "&stage name='rest' analysis='static' duration=1 dt=1 tolerance=1e-8 zero_displacements='yes' /\n"
+            "&stage name='load' analysis='static' duration=1 dt=0.1 max_iterations=20 /\n"
+            f"&stage name='fade' analysis='static' duration=2 dt=0.05 max_iterations=20 /\n{SIDES}&point name='centre' r=0 z=0 /\n")
+
+
+AIR, HENRY, WATER = 101.325, 0.02, 2.2e6   # kPa, -, kPa
+
+
+def shaken_air(setting):
+    """Loose sand with a tenth of its pores full of air that cannot leave, in cycles of axial load."""
+    turns = [float(i) for i in range(41)]
+    values = [0.0] + [(1, -1)[i % 2] for i in range(40)]
+    return ("&scene name='shaken_air' fields='u-p_w-p_c' /\n&mesh r=0,0.05 r_cells=1 z=0,0.1 z_cells=1 /\n"
+            f"{sand(setting, P_a=0.02, b_1=0, b_2=0)}&fluids gas='ideal' k_w={WATER} henry={HENRY} /\n"
+            "&region material='sand' retention='material' drainage='undrained' void_ratio=0.833 rho_s=2.7 /\n"
+            "&initial stress='uniform' sigma=-100,-100,-100 p_w=99.989 p_c=0.011 /\n"
+            f"&history name='turns' times={','.join(map(str, turns))} values={','.join(map(str, values))} /\n"
+            f"&stage name='shake' analysis='quasi_static' duration=40 dt=0.05 rho_inf=0 tolerance=1e-5 max_iterations=20 /\n{SIDES.splitlines()[0]}\n{SIDES.splitlines()[2]}\n"
+            "&load group='right' kind='pressure' value=200 /\n&load group='top' kind='pressure' value=200 /\n"
+            f"&load group='top' kind='pressure' value={load(setting, 25.0)} history='turns' /\n&point name='centre' r=0 z=0.1 /\n")
 
 
 FOOTING_MESH = "&mesh r=0,0.5,4 r_cells=2,3 r_ratio=0.7,1.9 z=-4,-0.6,0 z_cells=2,2 z_ratio=0.4,0.7 /\n"

@@ -112,7 +112,8 @@ def draw_run(axis, case, label, run):
         axis.plot(1e3 * (history["time"][late] - start), up[late], lw=0.7, label=told(case, label))
 
 
-PLAIN = ("showers", "a bank in layers, cut again", "drawdown at a seepage face", "spin-up of loose sand")
+PLAIN = ("showers", "a bank in layers, cut again", "drawdown at a seepage face", "spin-up of loose sand",
+         "strength that falls, comes back and falls", "air that cannot escape, shaken")
 
 
 def told(case, label):
@@ -143,6 +144,8 @@ HOST_VIEWS = {   # claim, across, up
     "a raft that rocks on sand": ("a raft lifts off and comes back: no energy is created", TIME, U_Z),
     "drawdown at a seepage face": ("the face lets water out alone", "t [s]", "p_w at a third of the height [kPa]"),
     "spin-up of loose sand": ("from 1 g to 50 g", "stage", "u_z of the surface [mm]"),
+    "strength that falls, comes back and falls": ("M_c to 0.7, 1 and 0.6 of itself", "t [s]", "u_z of the strip's centre [mm]"),
+    "air that cannot escape, shaken": ("pressure grows, air and water are kept", "cycle, times two", "p_w [kPa]"),
     "footing on loose sand": ("loose sand: the load levels out", SETTLED, FORCE),
     "footing on dense sand": ("dense sand: the load passes its peak", SETTLED, FORCE),
     "footing on undrained sand": ("undrained sand: it dilates, the force grows", SETTLED, FORCE),
