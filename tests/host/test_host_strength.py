@@ -158,7 +158,8 @@ def test_what_is_refused():
     hooke = BLOCK.replace(CLAY, "&elastic name = 'clay' young = 1e4 poisson = 0.3 /\n")
     for what, text, code, words in (
             ("a material that is not there",
-             BLOCK.replace("&strength material = 'clay'", "&strength material = 'peat'"), 11, "material = 'peat' is defined nowhere"),
+             BLOCK.replace("&strength material = 'clay'", "&strength material = 'peat'"), 11,
+             "material = 'peat' is defined nowhere"),
             ("a history that is not there", BLOCK.replace("history = 'fade'", "history = 'fate'"), 11,
              "history = 'fate' is defined nowhere"),
             ("an elastic law", hooke, 2, "the law has no strength that could change"),
