@@ -26,7 +26,7 @@ module key_schema
       character(14) :: preset            !< Its default, or REQUIRED or NONE.
       real(wp) :: lower, upper           !< Range of a number.
       character(120) :: meaning
-      character(208) :: words = ''       !< Kinds w, W: the words, divided by |.
+      character(240) :: words = ''       !< Kinds w, W: the words, divided by |.
       character(8) :: unit = ''          !< Shown behind the range, where the meaning does not say it.
       integer :: values = 0              !< How many values a list has, 0: any number.
       !> When it has an effect, conditions between blanks: `key=word|word` another key has one of these words or none,

@@ -15,7 +15,7 @@ module newton_step
    use equation_assembly, only: assembly_t, assemble, follow_slopes_first
    use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
    use carried_slopes, only: AS_BEFORE
-   use generalised_alpha, only: scheme_t, predict, advance_rates, DYNAMIC
+   use generalised_alpha, only: scheme_t, predict, advance_rates, STATIC, DYNAMIC
    use limited_pressures, only: choose_sides
    use linear_system, only: system_t, solve_step, asked_for, look_at_contacts, MOST_STEPS, T_ASSEMBLY, &
                             T_REST, T_MATERIAL, T_CONTACT
@@ -23,7 +23,7 @@ module newton_step
    use prescribed_values, only: constraint_t, constrain, loads_of_water
    use sparse_factors, only: analyse, factorise, SOLVED, SINGULAR
    use sparsity_pattern, only: pattern_t, place_of
-   use unknown_fields, only: FIELDS, DISPLACEMENTS
+   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_C
    implicit none (type, external)
    private
    public :: take_step, start_accelerations
@@ -116,7 +116,11 @@ contains
          end if
          call constrain(dofs, pattern, constraint, new%x, assembly%values, rhs)
          ! A prescribed motion that strains nothing leaves the rounding of the forces that it asked for, and no other.
-         if (log%iterations == 0) system%rounding = rounding_in(scheme%kind)/control%tolerance*asked_for(dofs, rhs)
+         if (log%iterations == 0) then
+            system%rounding = rounding_in(scheme%kind)/control%tolerance*asked_for(dofs, rhs)
+            system%rounding(AT_P_C) = max(system%rounding(AT_P_C), &
+               rounding_of_saturation(domain, dofs, constraint, old, scheme)/control%tolerance)
+         end if
          before = residual_norms(dofs, constraint, rhs)
          ! Other measures may ask for more than a linear solution that is exact to a share of the forces.
          if (all(control%measure /= [BY_FORCES, BY_CHANGE])) system%factored = .false.
@@ -210,6 +214,37 @@ contains
       assembly%fallback = NO_FALLBACK
       call follow_slopes_first(domain, control%carries_slopes, assembly)
    end subroutine begin_passes
+
+   !> What the rounding of the degree of saturation at both ends of a step leaves of its rate, in the norm of the free
+   !> balances of air [m3/s]. docs/theory/host.md section 5.1.
+   pure real(wp) function rounding_of_saturation(domain, dofs, constraint, state, scheme) result(rounding)
+      type(domain_t), intent(in) :: domain
+      type(dofs_t), intent(in) :: dofs
+      type(constraint_t), intent(in) :: constraint
+      type(state_t), intent(in) :: state
+      type(scheme_t), intent(in) :: scheme
+      real(wp) :: pores(dofs%n)
+      integer :: e, g, i, p, at, n_p
+
+      rounding = 0.0_wp
+      if (.not. domain%with_c .or. scheme%kind == STATIC) return
+      pores = 0.0_wp
+      do e = 1, size(domain%mesh%t6, 2)
+         n_p = domain%n_carriers(e)
+         if (n_p == 0 .or. .not. domain%regions(domain%region_of(e))%with_c) cycle
+         do i = 1, n_p
+            at = dofs%element(size(domain%mesh%t6, 1)*DISPLACEMENTS + n_p + i, e)
+            if (at == 0) cycle
+            do g = 1, domain%rule
+               p = (e - 1)*domain%rule + g
+               associate (gp => domain%gauss(g, e))
+                  pores(at) = pores(at) + gp%weight*abs(gp%m(i))*state%e(p)/(1 + state%e(p))
+               end associate
+            end do
+         end do
+      end do
+      rounding = epsilon(1.0_wp)/scheme%dt*norm2(pack(pores, .not. constraint%fixed))
+   end function rounding_of_saturation
 
    !> Rigid bodies, boundaries, contacts and loads beside the elements; the residual, with minus sign, in rhs.
    subroutine add_what_acts(dofs, pattern, scheme, constraint, old, new, slopes, touched, assembly, system, rhs, t0)

@@ -62,3 +62,14 @@ def test_closed_soil_is_an_undrained_element():
         for column in ("top.p_w", "top.p_c", "top.s_zz"):
             one, two = rows["coupled"][column], rows["undrained"][column]
             check(f"closed and undrained: {column}", abs(one/two - 1) < 1e-7, (one, two))
+
+
+def test_a_tight_tolerance_is_met_at_any_step():
+    # What the rounding of saturation leaves of its rate grows as steps shrink; it is no error of Newton's method.
+    for dt in (0.05, 0.002):
+        name = f"tight_{dt}"
+        text = CLOSED.replace("permeability = 'k' void", "drainage = 'undrained' void").replace(
+            "tolerance = 1e-6", "tolerance = 1e-8")
+        if ran(name, text.replace("dt = 0.05", f"dt = {dt}")):
+            rows = tables.numbers(work / name / "ledger.csv")
+            check(f"steps of {dt} s: none is cut, the last may be rounding", len(rows) <= round(1/dt) + 1, len(rows))

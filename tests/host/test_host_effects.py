@@ -58,7 +58,8 @@ slow = dict(stage="analysis = 'dynamic' duration = 1 dt = 0.05", times="0, 1")
 
 # Every effect is one key, and its word in `without` is that key: the same bytes, and another answer than with it.
 FADE = "&strength material = 'sand' parameter = 'M_c' history = 'fade' /"
-TOUCH = "&contact name = 'c' slave = 'top' master = 'plate' drainage = 'state' penalty = 1e6 friction = 0.4 /"
+TOUCH = "&contact name = 'c' slave = 'top' master = 'plate' drainage = 'state' penalty = 1e6 " \
+        "tangential_penalty = 1e6 friction = 0.4 /"
 WHOLE = """&scene name = 'whole' fields = 'u-p_w-p_c' gravity = 9.81 seepage_inertia = 'yes' /
 &mesh r = 0, 0.2 r_cells = 1 z = -0.2, 0 z_cells = 1 /
 &mud name = 'sand' file = '{materials}/toyoura.nml' hysteresis = 1 fabric = 1 bonding = 1 isotropic = 1 lode = 1
@@ -66,7 +67,7 @@ WHOLE = """&scene name = 'whole' fields = 'u-p_w-p_c' gravity = 9.81 seepage_ine
 &permeability name = 'k' intrinsic = 1e-10 /
 &region material = 'sand' retention = 'material' permeability = 'k' void_ratio = 0.7 damping = 5 /
 {fade}
-&history name = 'fade' times = 0, 0.006 values = 1, 0.8 /
+&history name = 'fade' times = 0, 0.006 values = 1, 0.99 /
 &initial p_w = -30 p_c = 30 stress = 'uniform' sigma = -20, -20, -20 /
 &history name = 'cycles' times = 0, 0.002, 0.004, 0.006 values = 0, 1, 0.6, 1 /
 &plate name = 'plate' r = 0, 0.1 z = -1e-6 mass = 0.01 force = -8 history = 'cycles' /

@@ -328,3 +328,34 @@ REGIONS = [
      (ABSORBING, "with_pores = region%with_w .and. (region%drainage == COUPLED .or. region%drainage == UNDRAINED)",
       "with_pores = region%with_w")),
 ]
+
+# What the field does to a boundary: (title, (file below host, text that stands there once, its replacement), ...).
+LIMITS, BALANCE, STAGED = "solver/limited_pressures.f90", "element/porous_balance.f90", "run/ground_stages.f90"
+STRENGTHS, STEP, FRICTION = "model/strength_builder.f90", "run/step_attempt.f90", "contact/contact_friction.f90"
+
+FIELD = [
+    ("a face draws in water", (LIMITS, "if (constraint%fixed(i) .and. side < -least) then", "if (constraint%fixed(i) .and. side < -huge(least)) then")),
+    ("a face lets no water out", (LIMITS, "else if (.not. constraint%fixed(i) .and. side > least) then",
+                                  "else if (.not. constraint%fixed(i) .and. side > huge(least)) then")),
+    ("a side is chosen by the flow alone", (LIMITS, "+ abs(values(place_of(pattern, i, i)))*(x", "+ 0*abs(values(place_of(pattern, i, i)))*(x")),
+    ("friction slides without a limit", (FRICTION, "if (.not. abs(t%value) > limit) return", "if (.not. abs(t%value) > huge(limit)) return")),
+    ("friction of a node that was open from the start of the step", (FRICTION, "t%value = stiffness*share*slip", "t%value = stiffness*slip")),
+    ("sliding forgets that the pressure changes", (FRICTION, "t%by_gap = -sign(options%friction*options%penalty, t%value)", "t%by_gap = 0.0_wp")),
+    ("a node turns from one way of sliding to the other", (FRICTION, "t%turns = side*t%value < 0.0_wp", "t%turns = .false.")),
+    ("dissolved air does not flow with the water", (BALANCE, "dissolved = h*response(GW + 1:GW + 2)", "dissolved = 0.0_wp"),
+     (BALANCE, "tangent(GA + 1:GA + 2, :) + h*tangent(GW + 1:GW + 2, :)", "tangent(GA + 1:GA + 2, :)")),
+    ("air that dissolves takes no room from the free air", (BALANCE, "room = 1 - (1 - h)*s", "room = 1 - s")),
+    ("gravity at the end of a step is that of its start",
+     (STEP, "run%next%gravity = gravity_at(model, run%state%time + dt)", "run%next%gravity = gravity_at(model, run%state%time)")),
+    ("what removed ground held up falls at once",
+     (STAGED, "load = load - (1 - growth_at(stage, run, time))*run%at%held_up", "load = load")),
+    ("the weight of new ground is there at once", (STEP, "run%next%growth = growth_at(stage, run, run%state%time + dt)", "run%next%growth = 1.0_wp")),
+    ("strength falls by the whole factor in every step",
+     (STRENGTHS, "before = [(factor_at(model, model%strengths(i)%amplitude, from), i=1, size(before))]", "before = 1.0_wp")),
+    ("strength of the start of a step",
+     (STRENGTHS, "after = [(factor_at(model, model%strengths(i)%amplitude, until), i=1, size(after))]", "after = before")),
+    ("every material follows every history of strength",
+     (STRENGTHS, "own = model%strengths%material_name == model%regions(i)%material_name", "own = model%strengths%place > 0")),
+    ("a history of strength may begin anywhere", (STRENGTHS, "abs(first - 1) > SAME", "first > 2*SAME/SAME")),
+    ("the largest value of a strength is not tried", (STRENGTHS, "do i = 1, size(factors)", "do i = 2, size(factors)")),
+]

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: MIT
 """Change the library in one place at a time and see which tests notice.
 
-Usage: run_mutations.py [--contact | --regions] [-k WORD] [--most N] [--readme] [--keep] [-j N]. Works on a copy of the
-source tree in a temporary folder; builds release with our own runner. A mutation that no test notices survives: exit
-code 1. One that does not apply or does not compile is an error of mutations.py: exit code 2.
+Usage: run_mutations.py [--contact | --regions | --field] [-k WORD] [--most N] [--readme] [--keep] [-j N]. Works on a
+copy of the source tree in a temporary folder; builds release with our own runner. A mutation that no test notices
+survives: exit code 1. One that does not apply or does not compile is an error of mutations.py: exit code 2.
   --contact  mutations of the host's contact instead: its suites and the page verification/host/contact
   --regions  mutations of what regions of the host do: its suites of models and elements
+  --field    mutations of what the field does to a boundary: limits of pressure, gravity, ground and strength in time
   -k WORD    only mutations whose title contains it
   --most N   only mutations that at most N tests noticed when the table was written: 0, those it does not have
-  --readme   write the table to README.md (CONTACT.md, REGIONS.md) beside this file; what was left out keeps its row
+  --readme   write the table to README.md (CONTACT.md, REGIONS.md, FIELD.md) beside this file; what was left out keeps
+             its row
   --keep     keep the temporary folder
   --apply    only see whether every mutation applies: nothing is built or run
 """
@@ -23,7 +25,7 @@ import sys
 import tempfile
 import time
 
-from mutations import CONTACT, MUTATIONS, REGIONS
+from mutations import CONTACT, FIELD, MUTATIONS, REGIONS
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "common"))
 import tables  # noqa: E402
@@ -66,6 +68,19 @@ class Regions:
     command = "python3 tests/mutations/run_mutations.py --regions --readme"
     judges = "the suites of `tests/host/model` and `tests/host/element`"
     patterns, programs, pages = ("tests/host/model/*.pf", "tests/host/element/*.pf"), [], []
+
+
+class Field:
+    """What the field does to a boundary, with suites of the host that run scenes."""
+    mutations, sources, table, title = FIELD, "host", "FIELD.md", "Mutations of the field"
+    command = "python3 tests/mutations/run_mutations.py --field --readme"
+    judges = ("the suites of limited pressures, elements and friction in `tests/host`, and, where none of them "
+              "notices, `verification/run host/stages --quick` and the suites of scenes on gravity, ground, strength, "
+              "dissolved air and free surfaces")
+    patterns = ("tests/host/solver/test_limited_pressures.pf", "tests/host/element/test_element_equations.pf",
+                "tests/host/contact/test_contact_penalty.pf", "tests/host/contact/test_contact_interfaces.pf")
+    programs, pages = ["mud_host", "umat_tresca"], ["host/stages"]
+    scenes = ["gravity", "stages", "strength", "dissolved_air", "free_surface"]
 
 
 subject = Library
@@ -111,6 +126,26 @@ def failures_of_page(tree, page, seconds):
     return [f"{page} ({missed} claims)" if re.search(r"^\d+ passed", done.stdout, re.MULTILINE) else f"{page} (stops)"]
 
 
+def failures_of_scenes(tree, scenes, seconds):
+    """Names of the tests of suites of Python that fail, each suite in a process of its own."""
+    venv = ROOT / "build/venv/bin/python3"
+    environment = dict(os.environ, MUD_BUILD_DIR=str(tree / "build"))
+    found = []
+    for scene in scenes:
+        file = f"tests/host/test_host_{scene}.py"
+        try:
+            done = run([venv if venv.exists() else sys.executable, "-m", "pytest", "-q", file], tree, env=environment,
+                       timeout=seconds)
+        except subprocess.TimeoutExpired:
+            return [f"{scene} (hangs)"]
+        found += [f"{scene}.{name}" for name in re.findall(r"^FAILED \S+::(\w+)", done.stdout, re.MULTILINE)]
+        if found:
+            return found
+        if done.returncode:
+            return [f"{scene} (stops)"]
+    return found
+
+
 def failures_of_suites(tree, jobs):
     """What the suites notice; ValueError where they do not compile."""
     problem = build(tree, jobs, suites_of(tree))
@@ -128,7 +163,8 @@ def failures_of_pages(tree, jobs, seconds):
     problem = build(tree, jobs, subject.programs)
     if problem:
         raise ValueError("does not compile:\n" + problem[-2000:])
-    return sum((failures_of_page(tree, page, seconds) for page in subject.pages), [])
+    found = sum((failures_of_page(tree, page, seconds) for page in subject.pages), [])
+    return found or failures_of_scenes(tree, getattr(subject, "scenes", []), seconds)
 
 
 def mutate(tree, changes):
@@ -197,6 +233,7 @@ def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--contact", action="store_true")
     arguments.add_argument("--regions", action="store_true")
+    arguments.add_argument("--field", action="store_true")
     arguments.add_argument("-k", default="", metavar="WORD")
     arguments.add_argument("--most", type=int, metavar="N")
     arguments.add_argument("--readme", action="store_true")
@@ -204,7 +241,8 @@ def main():
     arguments.add_argument("--apply", action="store_true")
     arguments.add_argument("-j", type=int, default=os.cpu_count())
     arguments = arguments.parse_args()
-    subject = Contact if arguments.contact else Regions if arguments.regions else Library
+    subject = (Contact if arguments.contact else Regions if arguments.regions else Field if arguments.field
+               else Library)
     folder = pathlib.Path(tempfile.mkdtemp(prefix="mud-mutations-"))
     tree = folder / "mud"
     try:
