@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Data that scripts of pages make: rows of other programs are not mixed with those of the present ones, every
-committed table has a row, all scripts fit into a night, and they leave the tree alone."""
+committed table has a row, all scripts and pages fit into a night, and they leave the tree alone."""
 import subprocess
 import sys
 
@@ -9,6 +9,8 @@ from checking import build, check, light, nightly, root, work
 
 sys.path.insert(0, str(root / "verification"))
 from tools import results, runner  # noqa: E402
+
+PEERS = "peers.py"   # Needs OpenSees, which a night does without.
 
 
 def test_results_of_other_programs_are_removed():
@@ -36,7 +38,7 @@ def test_no_data_of_a_page_is_empty():
     check("every committed table has a row", not empty, empty)
 
 
-def test_a_night_has_room_for_every_script(capsys):
+def test_a_night_has_room_for_every_script_and_page(capsys, monkeypatch):
     # What --all --make leaves out needs a program that is not here, and nothing is left out for its time.
     names = runner.names()
     taken = runner.in_a_night(names)
@@ -45,6 +47,15 @@ def test_a_night_has_room_for_every_script(capsys):
     left = [key for key in scripts if key[1] not in taken.get(key[0], ())]
     check("only what cannot run here is left out", all(runner.missing(scripts[key]) for key in left), said)
     check("and it is told", all(f"{page} --make --only {script}" in said for page, script in left), said)
+    total = sum(script.seconds for (page, name), script in scripts.items() if name != PEERS) + sum(
+        runner.load(name).PAGE.seconds for name in names)
+    check("with every package there is room for all but the other program, and for the pages", total <= runner.NIGHT,
+          total)
+    monkeypatch.setattr(runner, "NIGHT", total/2)
+    taken = runner.in_a_night(names)
+    spent = sum(scripts[name, script].seconds for name, some in taken.items() for script in some) + sum(
+        runner.load(name).PAGE.seconds for name in names)
+    check("a shorter night takes fewer scripts and all pages", spent <= runner.NIGHT and taken, spent)
 
 
 @pytest.mark.skipif(light or not nightly, reason="./check --tier nightly runs the scripts that take seconds")

@@ -4,8 +4,8 @@
     verification/run                          all pages
     verification/run material host/cylinder   a section, a page; the name alone does where there is one of it
     verification/run --list                   what there is, and which data are older than the model (umat/core)
-    verification/run --all --make --update    overnight: makes the data of every page again, the cheap ones first, as
-                                              far as they fit into three hours; then runs and writes the pages
+    verification/run --all --make --update    overnight: makes the data of every page again, the cheap ones first, then
+                                              runs and writes the pages, as far as both fit into three hours
     verification/run --quick                  short versions of what the check run takes, without pictures
 
 Every page prints its checks, each with what it is off by, what is allowed, value and reference; the last line is
@@ -44,7 +44,7 @@ SAME = Tolerance("generated from the committed files")
 
 
 AGES = HERE / "made.csv"   # script,core: with which core a script last made its data
-NIGHT = 3*3600.0           # s, of the scripts that --all --make runs
+NIGHT = 3*3600.0           # s, of the scripts and the pages that --all --make runs
 
 
 @dataclass
@@ -250,10 +250,10 @@ def older(name):
 
 
 def in_a_night(chosen):
-    """{page: scripts} that fit into a night, the cheap ones first; what does not fit, or cannot run here, is said."""
+    """{page: scripts} that fit into a night beside the pages, the cheap ones first; what does not fit, or cannot run here, is said."""
     dear = sorted(((script.seconds, name, script) for name in chosen for script in getattr(load(name), "MAKES", ())),
                   key=lambda entry: entry[:2])
-    taken, spent = {}, 0.0
+    taken, spent = {}, sum(load(name).PAGE.seconds for name in chosen)   # the pages run afterwards
     for seconds, name, script in dear:
         if absent := missing(script):
             print(f"left out, {', '.join(absent)} is not here: verification/run {name} --make --only {script.name}")
@@ -262,7 +262,7 @@ def in_a_night(chosen):
             spent += seconds
         else:
             print(f"left out, {seconds:g} s: verification/run {name} --make --only {script.name}")
-    print(f"scripts of {len(taken)} pages, about {spent:.0f} s of one core", flush=True)
+    print(f"scripts of {len(taken)} pages and {len(chosen)} pages, about {spent:.0f} s of one core", flush=True)
     return taken
 
 

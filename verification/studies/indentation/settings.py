@@ -3,7 +3,8 @@
 today: how much of the table is reflection, and how much a choice of this program.
 
 `verification/run indentation --make --only settings.py [--pass OPTION ...]`. A run that was interrupted goes on from its
-checkpoint. Suctions 30 and 1000 kPa, 0 and 100 by --suction. Every row of the table is of the same program.
+checkpoint. Suction 30 kPa; 0, 100 and 1000 by --suction, which the table keeps until another program renews 30 kPa:
+every row is of the same program.
 """
 import sys
 
@@ -13,6 +14,7 @@ from analysis import (STEPS, Job, change, label, measure, program, read_rows, re
 from series import ended, iterations, number, ratios
 
 SUCTIONS, FIELDS, BOTH = (0, 30, 100, 1000), "u-p_w-p_c", ("remedy", "as_published")
+NIGHTLY = (30,)   # Suctions, unless --suction names others.
 STATIC = "'geostatic', 'seat'"
 
 
@@ -37,7 +39,7 @@ SETTINGS = {"fixed": ("fixed sides and base, the paper's settings", lambda group
 
 def parser_of_settings():
     parser = analysis.parser_of(__doc__, SUCTIONS, 30)
-    parser.set_defaults(suction=(30, 1000))
+    parser.set_defaults(suction=NIGHTLY)
     parser.add_argument("--only", nargs="+", choices=list(SETTINGS), default=list(SETTINGS), metavar="NAME")
     return parser
 

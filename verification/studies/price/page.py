@@ -23,7 +23,6 @@ PAGE = Page(
     seconds=8, quick=8, pictures=("front.png",))
 MAKES = (Script("study.py", ("results.csv", "times.csv"), 290), Script("table_1.py", ("table_1.csv",), 720))
 
-COST = pathlib.Path(__file__).parents[1] / "cost"
 FACTOR = Tolerance("a factor of three", absolute=math.log10(3.0))
 FEW = Tolerance("at most one of twenty", absolute=0.05)
 ORDERS = 1.0, 2.0       # of convergence that an estimate takes, host.md section 12
@@ -95,22 +94,18 @@ def settlement(suction):
 
 
 def table_1_text():
-    """Settlements with their bars, and what the paper's settings leave."""
-    paper = {r["name"]: float(r["peak"]) for r in tables.rows(COST / "table_1.csv") if r["setting"] == "paper"}
-    same = {(int(r["suction"]), r["setting"]): float(r["peak"]) for r in committed("table_1.csv")
-            if float(r["fineness"]) == 1 and r["peak"]}
+    """Settlements with their bars, and what the paper's mesh leaves."""
     lines = []
     for suction in SUCTIONS:
         finest, peak, mesh, steps, newton, order, of_paper = settlement(suction)
-        settings = paper[f"s{suction:04d}_remedy"]/same[suction, "1e-2"] - 1
         bar = mesh + (steps or 0) + newton
         lines.append((suction, f"{finest:g}", f"{peak:.4g}", f"{100*bar:.2g}", f"{100*mesh:.2g}",
                       f"{100*steps:.2g}" if steps is not None else "not known", f"{100*newton:.2g}", f"{order:.2g}",
-                      f"{100*of_paper:+.2g}", f"{100*settings:+.2g}"))
+                      f"{100*of_paper:+.2g}"))
     good = [line[0] for line in lines if float(line[3]) <= 1 and line[5] != "not known"]
     return tables.markdown(
         ("suction [kPa]", "times the cells", "settlement [mm]", "bar [%]", "of it mesh", "steps", "Newton", "order",
-         "the paper's mesh [%]", "its step and tolerance [%]"), lines) + textwrap.fill(
+         "the paper's mesh [%]"), lines) + textwrap.fill(
         f"Settlement to 1 % at {len(good)} of {len(lines)} suctions: {', '.join(map(str, good)) or 'none'} kPa.", 118)
 
 
