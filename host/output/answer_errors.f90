@@ -301,6 +301,8 @@ contains
             ' came in single steps'//trim(UNSEEN(f))
       end do
       if (any(model%stages%controlled)) write (unit, '(a)') '   '//what_limited(control)
+      if (any(model%stages%kind == DYNAMIC) .and. .not. verified) write (unit, '(a)') '   Not seen: vibrations of '// &
+         'fewer than about ten steps a period. The steps damp them; a shorter dt_max shows them.'
       write (unit, '(a)') 'In these errors: '//parts_of(model, control)//'; mesh not estimated: --price.'
    end subroutine print_answers
 end module answer_errors
