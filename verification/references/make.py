@@ -101,7 +101,7 @@ def ponding():
 
 
 def liakopoulos():
-    data = [r for r in tables.rows(VERIFICATION / "host/liakopoulos/liakopoulos.csv", header_in_comment=True)
+    data = [r for r in tables.rows(VERIFICATION / "host/liakopoulos/liakopoulos.csv")
             if r["variant"] == "no_gradient" and float(r["t"]) in (4800, 7200)]
     found = []
     for quantity, column, scale, shift in (("p_c", "p_c", 1e-3, 0), ("p_a", "p_a", 1e-3, -101325), ("u_z", "u", 1, 0)):

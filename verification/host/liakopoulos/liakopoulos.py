@@ -4,7 +4,6 @@
 Unknowns at nodes of a uniform grid, z upwards from the base: p_w, p_c and the weight above. The strain follows from
 equilibrium. BDF2 with variable steps, Newton with a complex-step Jacobian. Pa, m, s, kg.
 """
-import csv
 import sys
 
 import numpy as np
@@ -19,6 +18,7 @@ MODULUS = YOUNG*(1 - POISSON)/((1 + POISSON)*(1 - 2*POISSON))
 RHO_W, RHO_S, BULK_W = 1000.0, 2000.0, 2.2e9
 GAS = 0.028949/(8.31446*300)                       # rho_a = GAS p_a
 FLOOR, S_MIN = 1e-4, 0.2
+STEP = 10.0                                        # largest of the tables [s]
 TIMES = [120.0, 300.0, 600.0, 1200.0, 2400.0, 4800.0, 7200.0]
 
 
@@ -31,7 +31,6 @@ class Options:
         self.balanced = "atmosphere"       # traction of the top: the atmosphere, or "start": what leaves sigma' = 0
         self.gravity = GRAVITY
         self.cells, self.step, self.growth = 800, 2.0, 1.05
-        self.upwind = False
         self.euler = 0.0                   # if positive: implicit Euler with this step [s], for comparison
         for name, value in given.items():
             if not hasattr(self, name):
@@ -96,11 +95,7 @@ class Column:
         rho_a = GAS*p_a
         drive_w = np.diff(p_w)/h + RHO_W*o.gravity
         drive_a = np.diff(p_a)/h + 0.5*(rho_a[1:] + rho_a[:-1])*o.gravity
-        if o.upwind:
-            face_w = np.where(drive_w.real > 0, k_w[1:], k_w[:-1])
-            face_a = np.where(drive_a.real > 0, k_a[1:], k_a[:-1])
-        else:
-            face_w, face_a = 0.5*(k_w[1:] + k_w[:-1]), 0.5*(k_a[1:] + k_a[:-1])
+        face_w, face_a = 0.5*(k_w[1:] + k_w[:-1]), 0.5*(k_a[1:] + k_a[:-1])
         q_w = -PERMEABILITY/ETA_W*face_w*drive_w
         q_a = -PERMEABILITY/ETA_A*face_a*drive_a
         if o.gas == "ideal":
@@ -177,9 +172,6 @@ class Column:
         return np.concatenate([[0], np.cumsum(0.5*self.h*(e[1:] + e[:-1]))])
 
 
-PAGE = (9376.64, 96911.48, 0.913174, 4.64837e-3)
-
-
 HEIGHTS = sorted({round(0.05*i, 10) for i in range(21)} | {i/9 for i in range(10)})
 VARIANTS = {"ideal": {}, "no_gradient": {"gas": "no_gradient"}, "constant": {"gas": "constant"},
             "n_fixed": {"porosity_follows": False, "gravity": 9.80665}}
@@ -214,8 +206,8 @@ def compare(rows, path):
         print(f"  {code} {t:5.0f} s: p_c {d[0]:.1f} Pa, S_w {d[1]:.5f}, p_a {d[2]:.1f} Pa, u {d[3]:.2e} m")
 
 
-def check_saturated():
-    """Until air enters: Terzaghi's series, all the weight on the water at first, k_rw = 1, p_a at the atmosphere."""
+def off_terzaghi():
+    """Until air enters: largest difference of p_w from Terzaghi's series, all the weight on the water at first."""
     m = (2*np.arange(4000) + 1)*np.pi/2
     share = 1/(1 + POROSITY*MODULUS/BULK_W)
     c_v = PERMEABILITY/ETA_W*MODULUS*share
@@ -223,53 +215,54 @@ def check_saturated():
     level = share*(weight*HEIGHT + SUCTION)                # p_w less its final value at the start: level + slope z
     slope = RHO_W*GRAVITY - share*weight
     mode = 2*(level*(1 - np.cos(m))/m + slope*(np.sin(m)/m**2 - np.cos(m)/m))
-    column = Column(Options(cells=360, porosity_follows=False))
+    column, worst = Column(Options(cells=360, porosity_follows=False)), 0.0
     for t in column.run([10.0, 60.0, 120.0]):
         exact = ATMOSPHERE - SUCTION - RHO_W*GRAVITY*column.z + np.sin(np.outer(column.z, m)) @ (
             mode*np.exp(-m*m*c_v*t))
-        print(f"saturated, {t:g} s: p_w off the series by {np.abs(column.y[0] - exact).max():.2f} Pa", flush=True)
+        worst = max(worst, np.abs(column.y[0] - exact).max())
+    return worst
 
 
-def figures(summary):
-    return (f"p_c {summary[0]:.3f} p_a {summary[1]:.3f} S_w {summary[2]:.7f} u {summary[3]:.7e}, off "
-            + " ".join(f"{100*(f/p - 1):+.3f} %" for f, p in zip(summary, PAGE)))
+def number(values):
+    return [f"{v:.9g}" for v in values]
 
 
 def main():
-    base = {}
-    with open(folder(__file__)/"liakopoulos.csv", "w", newline="") as file:
-        file.write("# drainage of a column with mobile air, finite volumes, made by liakopoulos.py; Pa, m, s\n"
-                   "# z and u upwards from the base; pressures compression positive, p_c = p_a - p_w\n"
-                   "# variant,t,z,p_w,p_c,p_a,s_w,u\n")
-        out = csv.writer(file, lineterminator="\n")
-        for name, given in VARIANTS.items():
-            rows, summary, _ = profiles(Options(cells=720, step=5.0, **given))
-            base[name] = np.array(rows)
-            print(f"{name}: {figures(summary)}", flush=True)
-            for row in rows:
-                out.writerow([name, f"{row[0]:g}", f"{row[1]:.12g}"] + [f"{v:.9g}" for v in row[2:]])
-    for name in ("no_gradient", "constant"):
-        for t in TIMES:
-            d = np.abs(base[name] - base["ideal"])[base["ideal"][:, 0] == t].max(axis=0)
-            low = ATMOSPHERE - base["ideal"][base["ideal"][:, 0] == t][:, 4].min()
-            print(f"{name} against ideal, {t:.0f} s: p_c {d[3]:.1f} Pa, p_a {d[4]:.1f} Pa of {low:.1f} Pa below the "
-                  f"atmosphere, S_w {d[5]:.1e}, u {d[6]:.1e} m", flush=True)
-    check_saturated()
-    for given in ({"cells": 180}, {"cells": 360}, {"cells": 360, "step": 2.5, "growth": 1.025},
-                  {"cells": 360, "upwind": True}, {"cells": 360, "balanced": "start"}):
-        rows, summary, _ = profiles(Options(**{"step": 5.0, **given}))
-        d = np.abs(np.array(rows) - base["ideal"]).max(axis=0)
-        print(f"{given}: {figures(summary)}; from 720 cells at most p_c {d[3]:.2f} Pa, p_a {d[4]:.2f} Pa, "
-              f"S_w {d[5]:.1e}, u {d[6]:.1e} m", flush=True)
-    column = Column(Options(cells=360))
-    for t in column.run([1e-3, 1.0, 10.0, 60.0]):
-        print(f"{t:g} s: smallest p_c {column.y[1].min():.1f} Pa", flush=True)
+    results, whole, ends = folder(__file__), {}, []
+    for name, given in VARIANTS.items():
+        rows, summary, _ = profiles(Options(cells=720, step=STEP, **given))
+        whole[name] = np.array(rows)
+        ends.append((f"`{name}`", *number(summary)))
+        print(*ends[-1], flush=True)
+    tables.write(results/"liakopoulos.csv", ("variant", "t", "z", "p_w", "p_c", "p_a", "s_w", "u"),
+                 [(name, f"{row[0]:g}", f"{row[1]:.12g}", *number(row[2:])) for name, rows in whole.items()
+                  for row in rows],
+                 ["drainage of a column with mobile air, finite volumes, made by liakopoulos.py; Pa, m, s",
+                  "z and u upwards from the base; pressures compression positive, p_c = p_a - p_w"])
+    off = [(f"`{name}` against `ideal`", *differences(whole[name], whole["ideal"])) for name in ("no_gradient",
+                                                                                               "constant")]
+    coarse = {}
+    for name, given in (("360 cells", {}), ("360 cells, half the steps", {"step": STEP/2, "growth": 1.025}),
+                        ("360 cells, the top in balance", {"balanced": "start"}),
+                        ("`n_fixed`, 360 cells, implicit Euler, 20 s a step", {**VARIANTS["n_fixed"], "euler": 20.0})):
+        rows, summary, _ = profiles(Options(**{"cells": 360, "step": STEP, **given}))
+        coarse[name] = np.array(rows)
+        ends.append((name, *number(summary)))
+        print(*ends[-1], flush=True)
+    off += [("360 instead of 720 cells", *differences(coarse["360 cells"], whole["ideal"])),
+            ("half the steps", *differences(coarse["360 cells, half the steps"], coarse["360 cells"])),
+            ("Terzaghi's series with the weight, while S_w = 1: p_w", f"{off_terzaghi():.3g}", "", "", "")]
+    tables.write(results/"ends.csv", ("variant", "p_c", "p_a", "s_w", "u"), ends)
+    tables.write(results/"differences.csv", ("what", "p_w", "p_c", "p_a", "u"), off)
     if len(sys.argv) > 1:
-        for given in ({}, {"porosity_follows": False, "gravity": 9.80665}, {"euler": 10.0}, {"euler": 15.0},
-                      {"euler": 30.0}, {"euler": 20.0, "porosity_follows": False, "gravity": 9.80665}):
-            rows, summary, _ = profiles(Options(**{"cells": 360, "step": 5.0, **given}))
-            print(f"{given}: {figures(summary)}")
-            compare(rows, sys.argv[1])
+        for given in ({}, VARIANTS["n_fixed"], {"euler": 10.0}, {"euler": 15.0}, {"euler": 30.0}):
+            print(f"{given}:")
+            compare(profiles(Options(**{"cells": 360, "step": STEP, **given}))[0], sys.argv[1])
+
+
+def differences(rows, others):
+    """Largest ones over all times and heights: p_w, p_c, p_a, u."""
+    return [f"{v:.3g}" for v in np.abs(rows - others).max(axis=0)[[2, 3, 4, 6]]]
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ PAGE = Page(
           "time, trapezoidal; 125, 250 and 500 per metre",
     reference="roots of the determinant of the linearised equations; `growth.csv` by eigenvalues",
     seconds=6, quick=3, pictures=("seepage_inertia.png",))
-MAKES = (Script("growth.py", ("growth.csv", "history.csv"), 15, "scipy, mpmath"),)
+MAKES = (Script("growth.py", ("growth.csv", "history.csv", "agreement.csv"), 15, "scipy, mpmath"),)
 
 E0, RHO_S, RHO_W, RHO_A, K_W, K_A, PERMEABILITY, ETA_W, ETA_A = (0.8, 2.65, 1.0, 1.2e-3, 2.2e6, 101.325, 5e-10, 1e-6,
                                                                  1.8e-8)
@@ -85,6 +85,22 @@ def check(bench):
                "1/s")
     bench.below("sign at 10 and 1000 kPa (-growth)", max(-growth(500, p).real for p in (10.0, 1000.0)), GROWTH, "1/s")
     return measured
+
+
+def texts(bench):
+    """The tables of growth.py."""
+    rows, lines = tables.rows(bench.here / "growth.csv", header_in_comment=True), []
+    for suction in dict.fromkeys(row["suction"] for row in rows):
+        of = [row for row in rows if row["suction"] == suction]
+        waves = ", ".join(f"{float(row['wave_number']):g}" for row in of)
+        lines.append((f"{float(suction):g}", f"{float(of[0]['modulus']):.1f}",
+                      *(", ".join(f"{float(row[name]):+.1f}" for row in of)
+                        for name in ("growth", "growth_without_inertia"))))
+    return {"README.md": {
+        "growth": tables.markdown(("suction [kPa]", "E [kPa]", f"growth per second at {waves} per metre",
+                                   "without seepage inertia"), lines),
+        "agreement": tables.markdown(("check", "suction [kPa]", "off by"), [
+            tuple(row.values()) for row in tables.rows(bench.here / "agreement.csv")])}}
 
 
 def draw(bench, measured, plt):
