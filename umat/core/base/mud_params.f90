@@ -12,7 +12,8 @@ module mud_params
       ISOTROPIC_NONE, ISOTROPIC_REMEMBERS
    use mud_status, only: mud_status_t, fail, MUD_BAD_NPROPS, MUD_BAD_PROPS, ON_PROPS
    use mud_tensor, only: is_finite, all_finite
-   use mud_units, only: stress_unit, bounds_for, minimum_stress, LARGEST_STRESS, LARGEST_SUCTION_STEP, SMALLEST_MINIMUM
+   use mud_units, only: stress_unit, bounds_for, minimum_stress, threshold_of_fluidity, LARGEST_STRESS, &
+      LARGEST_SUCTION_STEP, SMALLEST_MINIMUM
    implicit none (type, external)
    private
    public :: params_t, scanning_t, branch_t, least_t, read_params, completed, is_length, options_t, options_of, &
@@ -228,7 +229,7 @@ contains
       if (params%fluid) then
          params%c_ell = props(P_C_ELL)
          params%ell_max = props(P_ELL_MAX)
-         params%p_ell = props(P_P_ELL)
+         params%p_ell = threshold_of_fluidity(props)
          params%r_ell = props(P_R_ELL)
       end if
       params%c4 = params%c**4
@@ -286,6 +287,8 @@ contains
       if (status%code /= 0) return
       if (props(P_P_MIN) > 0.0_wp .and. props(P_P_MIN) < SMALLEST_MINIMUM*unit) then
          status = fail(MUD_BAD_PROPS, ON_PROPS, P_P_MIN, props(P_P_MIN), SMALLEST_MINIMUM*unit, UPPER(P_P_MIN)*unit)
+      else if (props(P_C_ELL) > 0.0_wp .and. props(P_P_ELL) > 0.0_wp .and. props(P_P_ELL) < SMALLEST_MINIMUM*unit) then
+         status = fail(MUD_BAD_PROPS, ON_PROPS, P_P_ELL, props(P_P_ELL), SMALLEST_MINIMUM*unit, UPPER(P_P_ELL)*unit)
       else if (props(P_S_MIN) >= props(P_S_MAX)) then
          status = fail(MUD_BAD_PROPS, ON_PROPS, P_S_MIN, props(P_S_MIN), 0.0_wp, props(P_S_MAX))
       else if (whole(props(P_HYSTERESIS)) == 1) then

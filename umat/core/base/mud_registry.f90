@@ -274,8 +274,8 @@ module mud_registry
          'fluidity: how fast shear at a vanishing mean stress makes it grow; 0: off'), &
       property_t(P_ELL_MAX, 'ell_max', 'ell_max', '1', KIND_REAL, 1.0e-3_wp, 1.0e4_wp, 20.0_wp, 'ours', &
          'largest fluidity: A_0 and b_0 fall to 1/(1 + ell_max) at p'' = 0; with c_ell'), &
-      property_t(P_P_ELL, 'p_ell', 'p_ell', UNIT_STRESS, KIND_REAL, 1.0e-3_wp, 1.0e4_wp, 30.0_wp, 'ours', &
-         'p'' below which fluidity grows and acts; with c_ell'), &
+      property_t(P_P_ELL, 'p_ell', 'p_ell', UNIT_STRESS, KIND_REAL, 0.0_wp, 1.0e4_wp, 0.0_wp, 'ours', &
+         'p'' below which fluidity grows and acts; 0: 30 kPa where p_atm is 101.325; with c_ell'), &
       property_t(P_R_ELL, 'r_ell', 'r_ell', '1', KIND_REAL, 0.0_wp, 1.0e6_wp, 300.0_wp, 'ours', &
          'how fast a decrease of volume takes the fluidity back; with c_ell')]
 

@@ -4,17 +4,18 @@
 module mud_units
    use mud_kinds, only: wp
    use mud_registry, only: NPROPS, PROPERTIES, UNIT_STRESS, UNIT_STRESS_TO_LAMBDA, P_N_C, P_LAMBDA, P_ALPHA_CSL, &
-      P_N_L, P_P_A, P_P_ATM, P_P_MIN
+      P_N_L, P_P_A, P_P_ATM, P_P_MIN, P_P_ELL
    use mud_tensor, only: is_finite
    implicit none (type, external)
    private
-   public :: stress_unit, bounds_for, convert_props, minimum_stress, doubt_t, NDOUBTS, unit_doubts
+   public :: stress_unit, bounds_for, convert_props, minimum_stress, threshold_of_fluidity, doubt_t, NDOUBTS, unit_doubts
    public :: LARGEST_STRESS, LARGEST_SUCTION_STEP, SMALLEST_MINIMUM
 
    real(wp), parameter :: LARGEST_STRESS = 1.0e9_wp         !< A stress or suction beyond it is an input error [kPa].
    real(wp), parameter :: LARGEST_SUCTION_STEP = 1.0e7_wp   !< Larger steps are asked to be cut [kPa].
-   real(wp), parameter :: SMALLEST_MINIMUM = 1.0e-9_wp      !< Least p_min that may be given [kPa].
+   real(wp), parameter :: SMALLEST_MINIMUM = 1.0e-9_wp      !< Least p_min and p_ell that may be given [kPa].
    real(wp), parameter :: MINIMUM_DIVISOR = 1000.0_wp       !< p_min = 0 means p_atm over this [-].
+   real(wp), parameter :: THRESHOLD_DIVISOR = 3.3775_wp     !< p_ell = 0 means p_atm over this: 30 kPa [-].
 
    !> Usual ranges as shares of p_atm. Each is a factor of 1000 wide (void ratios: of 1000**0.37, the default lambda),
    !> so that a value in Pa, kPa or MPa beside a p_atm in another of them is outside, wherever in the range it belongs.
@@ -97,6 +98,14 @@ contains
       p_min = props(P_P_MIN)
       if (p_min <= 0.0_wp) p_min = props(P_P_ATM)/MINIMUM_DIVISOR
    end function minimum_stress
+
+   !> p_ell [user's unit]: a forgotten one follows p_atm; docs/theory/material.md section 4.11. PROPS are not checked.
+   pure real(wp) function threshold_of_fluidity(props) result(p_ell)
+      real(wp), intent(in) :: props(NPROPS)
+
+      p_ell = props(P_P_ELL)
+      if (p_ell <= 0.0_wp) p_ell = props(P_P_ATM)/THRESHOLD_DIVISOR
+   end function threshold_of_fluidity
 
    !> Entries of allowed PROPS that look as if p_atm had another unit. Zeros (no shift, p_min by default) have no unit.
    !> PROPS must have passed read_params; a doubt that is not raised says nothing.
