@@ -196,7 +196,10 @@ CASES = {"terzaghi": terzaghi, "infiltration": lambda: rain(0.1, 0.9), "drainage
 
 
 def main():
-    if len(sys.argv) != 2:
+    if "-h" in sys.argv or "--help" in sys.argv:
+        print(__doc__)
+        return
+    if len(sys.argv) != 2 or (sys.argv[1].startswith("-") and sys.argv[1] != "--update"):
         sys.exit(__doc__)
     target = HERE if sys.argv[1] == "--update" else pathlib.Path(sys.argv[1])
     for name, make in CASES.items():
