@@ -8,7 +8,8 @@ module mud_units
    use mud_tensor, only: is_finite
    implicit none (type, external)
    private
-   public :: stress_unit, bounds_for, convert_props, minimum_stress, threshold_of_fluidity, doubt_t, NDOUBTS, unit_doubts
+   public :: stress_unit, bounds_for, convert_props, minimum_stress, threshold_of_fluidity, doubt_t, NDOUBTS, &
+      unit_doubts
    public :: LARGEST_STRESS, LARGEST_SUCTION_STEP, SMALLEST_MINIMUM
 
    real(wp), parameter :: LARGEST_STRESS = 1.0e9_wp         !< A stress or suction beyond it is an input error [kPa].
