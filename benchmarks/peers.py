@@ -104,7 +104,7 @@ class OpenSees:
 
 class Hypoplastic:
     def __init__(self, library, entry):
-        self.library, self.name, self.scheme = library, "hypoplastic UMAT", "Euler, mended by the mean of two rates, 1e-2"
+        self.library, self.name, self.scheme = library, "hypoplastic UMAT", "Euler, corrected by the mean of two rates, 1e-2"
         path, symbol = entry.rsplit(":", 1)
         self.umat = ctypes.cast(getattr(ctypes.CDLL(path), symbol), c_void_p)
         self.props = np.array(HYPOPLASTIC)

@@ -12,6 +12,7 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "common")]
 import tables  # noqa: E402
+from library import renew  # noqa: E402
 from mud.calibration.misfit import misfit_of  # noqa: E402
 from mud.calibration.simulation import SETTINGS, simulate  # noqa: E402
 from mud.calibration.task import read_task  # noqa: E402
@@ -79,17 +80,5 @@ def table():
     return "\n".join(f"| {' | '.join(cells)} |" for cells in (HEAD, ["---"] * len(HEAD), *lines))
 
 
-def main():
-    if sys.argv[1:] not in ([], ["--check"]):
-        print(__doc__)
-        sys.exit(0 if sys.argv[1:] in (["-h"], ["--help"]) else 2)
-    page = ROOT / "calibration/README.md"
-    text = page.read_text(encoding="utf-8")
-    new = text.split(BEGIN)[0] + BEGIN + "\n" + table() + "\n" + END + text.split(END)[1]
-    if "--check" in sys.argv:
-        sys.exit("calibration/README.md is out of date: run calibration/conflicts.py" if new != text else 0)
-    page.write_text(new, encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    renew(BEGIN, END, table, __doc__, "conflicts.py")

@@ -43,17 +43,18 @@ def table():
     return "\n".join(rows)
 
 
-def main():
+def renew(begin, end, table, usage, script):
+    """What stands between two marks of the page is written again, or compared with --check."""
     if sys.argv[1:] not in ([], ["--check"]):
-        print(__doc__)
+        print(usage)
         sys.exit(0 if sys.argv[1:] in (["-h"], ["--help"]) else 2)
     page = ROOT / "calibration/README.md"
     text = page.read_text(encoding="utf-8")
-    new = text.split(BEGIN)[0] + BEGIN + "\n" + table() + "\n" + END + text.split(END)[1]
+    new = text.split(begin)[0] + begin + "\n" + table() + "\n" + end + text.split(end)[1]
     if "--check" in sys.argv:
-        sys.exit("calibration/README.md is out of date: run calibration/library.py" if new != text else 0)
+        sys.exit(f"calibration/README.md is out of date: run calibration/{script}" if new != text else 0)
     page.write_text(new, encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    renew(BEGIN, END, table, __doc__, "library.py")
