@@ -15,6 +15,7 @@ module answer_errors
    use named_answers, only: is_prescribed
    use price_estimates, only: answer_t, STATE_WORDS
    use scene_goals, only: is_goal
+   use stress_tolerance, only: roughness
    use texts, only: short, whole
    use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
    implicit none (type, external)
@@ -157,11 +158,22 @@ contains
       end subroutine compare
    end subroutine judge_answers
 
-   !> The worst errors of the named points, by their sources.
-   function parts_of(model, control) result(text)
+   !> Share of a field that came in single steps, of which nothing tells; 0 where it is too small to matter. [-]
+   pure real(wp) function unseen_share(model, control, field) result(share)
       type(model_t), intent(in) :: model
       type(control_state_t), intent(in) :: control
-      character(:), allocatable :: text
+      integer, intent(in) :: field
+
+      share = control%unseen(field)/max(control%scale(field), tiny(1.0_wp))
+      if (PATH*share <= minval(model%stages%accuracy)) share = 0.0_wp
+   end function unseen_share
+
+   !> The worst errors of the named points, by their sources, and what the first of them leaves out.
+   function parts_of(model, control, verified) result(text)
+      type(model_t), intent(in) :: model
+      type(control_state_t), intent(in) :: control
+      logical, intent(in) :: verified   !< The errors of the steps are differences to another run.
+      character(:), allocatable :: text, left_out
       real(wp) :: change, error, steps, newton
       integer :: i, f
 
@@ -176,7 +188,14 @@ contains
          end do
       end do
       text = 'steps'
-      if (size(model%points) > 0) text = 'steps '//short(100*steps)//' %, Newton''s method '//short(100*newton)//' %'
+      if (size(model%points) > 0) text = text//' '//short(100*steps)//' %'
+      if (verified) text = text//' (measured)'
+      left_out = ''
+      do f = DISPLACEMENTS, FIELDS
+         if (unseen_share(model, control, f) > 0.0_wp) left_out = ' without what came in single steps'
+      end do
+      if (.not. verified) text = text//left_out
+      if (size(model%points) > 0) text = text//', Newton''s method '//short(100*newton)//' %'
    end function parts_of
 
    !> What kept most steps short, in words.
@@ -295,14 +314,16 @@ contains
             trim(merge(' m  ', ' kPa', f <= DISPLACEMENTS))//', '//short(100*control%largest(f)/control%scale(f))//' %'
       end do
       do f = DISPLACEMENTS, FIELDS
-         share = control%unseen(f)/max(control%scale(f), tiny(1.0_wp))
-         if (PATH*share <= minval(model%stages%accuracy)) cycle
+         share = unseen_share(model, control, f)
+         if (.not. share > 0.0_wp) cycle
          write (unit, '(a)') '   Not estimated: '//short(100*min(share, 1.0_wp))//' % of '//trim(OF_ALL(f))// &
             ' came in single steps'//trim(UNSEEN(f))
       end do
       if (any(model%stages%controlled)) write (unit, '(a)') '   '//what_limited(control)
       if (any(model%stages%kind == DYNAMIC) .and. .not. verified) write (unit, '(a)') '   Not seen: vibrations of '// &
          'fewer than about ten steps a period. The steps damp them; a shorter dt_max shows them.'
-      write (unit, '(a)') 'In these errors: '//parts_of(model, control)//'; mesh not estimated: --price.'
+      write (unit, '(a)') 'In these errors: '//parts_of(model, control, verified)//'; mesh not estimated: --price'// &
+         trim(merge('; nor is the stress integration.', '.                               ', roughness( &
+                    model%domain%regions) > 0.0_wp))
    end subroutine print_answers
 end module answer_errors

@@ -22,12 +22,12 @@ module checkpoints
    public :: write_checkpoint, read_checkpoint, CHECKPOINT
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
-   type(restart_kind_t), parameter :: KIND_OF_FILE = restart_kind_t('checkpoint of mud_host', '13', &
+   type(restart_kind_t), parameter :: KIND_OF_FILE = restart_kind_t('checkpoint of mud_host', '14', &
       CHECKPOINT//' of a run', &
       ' is an HDF5 file, but no checkpoint of mud_host; name the '//CHECKPOINT//' of a run.', &
       'Finish the run with the program that began it.')
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
-   integer, parameter :: N_COUNTERS = 15, AT_FRAMES = 14, AT_PAIRS = 15   !< Of the list of counters.
+   integer, parameter :: N_COUNTERS = 16, AT_FRAMES = 14, AT_PAIRS = 15, AT_SUDDEN = 16   !< Of the list of counters.
    character(*), parameter :: DAMAGED = ' is damaged: an entry is missing, has another extent or a wrong '// &
                                         'checksum; use an older copy, or start anew.'
    character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
@@ -59,7 +59,7 @@ contains
                   'steps, iterations, cuts, rate evaluations, tangent in every iteration, bytes of '// &
                   'histories.csv, bytes of ledger.csv, bytes of contact.csv, of the table of '// &
                   'reactions, fields written, pairs of unknowns brought '// &
-                  'together by contacts')
+                  'together by contacts, sudden loads applied over the stage')
          call put(file, 'stage', [s%time, c%t_start, c%nominal, c%factor], 's', &
                   'time, start of the stage, step without cuts, share of it [-]')
          call put(file, 'ledger', transfer(run%ledger, [0.0_wp]), 'kJ', BALANCE)
@@ -76,6 +76,8 @@ contains
          call put(file, 's', s%s, '-', 'degree of saturation')
          call put(file, 's_rate', s%s_rate, '1/s', 'its rate')
       end associate
+      if (allocated(run%at%sudden)) call put(file, 'sudden', run%at%sudden, 'kN', &
+         'what acted at once at the start of the stage and is applied evenly over it')
       if (allocated(run%damping_stress)) call put(file, 'damping_stress', run%damping_stress, 'kPa', &
          'stress of the damping in proportion to the stiffness')
       if (allocated(model%effects)) call put(file, 'monitor', [run%monitor%table%largest, run%monitor%table%crossed], &
@@ -134,6 +136,10 @@ contains
          call get(file, 'e', run%state%e)
          call get(file, 's', run%state%s)
          call get(file, 's_rate', run%state%s_rate)
+         if (counters(AT_SUDDEN) > 0.5_wp) then
+            allocate (run%at%sudden(model%dofs%n))
+            call get(file, 'sudden', run%at%sudden)
+         end if
          if (allocated(run%damping_stress)) call get(file, 'damping_stress', run%damping_stress)
          if (allocated(run%constraint%dashpots)) call get(file, 'offset', run%constraint%offset)
          if (file%good .and. allocated(model%effects)) call take_monitor(file, run)
@@ -334,7 +340,8 @@ contains
          counters = real([integer(int64) :: c%stage, c%step, c%cuts, c%good, run%steps, run%iterations, run%cuts, &
                           run%rate_evaluations, merge(1, 0, run%system%reassemble_tangent), tables%history%bytes, &
                           tables%ledger%bytes, &
-                          tables%contact%bytes, tables%reactions%bytes, size(tables%frames%times), pairs_of(run)], wp)
+                          tables%contact%bytes, tables%reactions%bytes, size(tables%frames%times), pairs_of(run), &
+                          merge(1, 0, allocated(c%sudden))], wp)
       end associate
    end function counters_of
 
@@ -343,7 +350,8 @@ contains
       real(wp), intent(in) :: counters(N_COUNTERS)
       integer, intent(in) :: stages
       real(wp), parameter :: LARGEST(N_COUNTERS) = [spread(real(huge(0), wp), 1, 7), 2.0_wp**53, 1.0_wp, &
-                                                    spread(2.0_wp**53, 1, 4), spread(real(huge(0), wp)/2, 1, 2)]
+                                                    spread(2.0_wp**53, 1, 4), spread(real(huge(0), wp)/2, 1, 2), &
+                                                    1.0_wp]
 
       ! A comparison with what is no number may end the program.
       possible = all(ieee_is_finite(counters))

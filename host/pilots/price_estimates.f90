@@ -17,6 +17,8 @@ module price_estimates
    real(wp), parameter :: NO_ANSWER = 0.02_wp        !< A smaller range, as a share of its kind's largest, is no answer.
    real(wp), parameter :: USUAL_ORDER = 1.5_wp       !< Of convergence in the size of cells: of two meshes.
    real(wp), parameter :: LEAST_ORDER = 1.0_wp, MOST_ORDER = 2.0_wp   !< Of three meshes.
+   real(wp), parameter :: MOST_SEEN = 8.0_wp         !< No order is looked for beyond.
+   integer, parameter :: HALVINGS = 50               !< Of the span in which an order is looked for: to rounding.
    real(wp), parameter :: WEAK_ORDER = 0.5_wp, NO_ORDER = 0.2_wp      !< Below: uncertain; does not converge.
    real(wp), parameter :: LIKE = 0.5_wp              !< Least correlation of two differences of one shape.
    real(wp), parameter :: LARGE = 0.02_wp            !< A difference that does not fall counts from here on.
@@ -156,12 +158,35 @@ contains
       mesh_error = distance/(r**order - 1)
    end function mesh_error
 
-   !> Order of convergence from the distances of a coarse and a middle, and of the middle and a fine mesh. [-]
-   elemental real(wp) function observed_order(coarse, fine, r) result(order)
+   !> Order of convergence p from the distances of a coarse and a middle, and of the middle and a fine mesh: errors that
+   !> fall with a power of the size of cells have coarse/fine = r_fine**p (r_coarse**p - 1)/(r_fine**p - 1), which grows
+   !> with p. Within +-MOST_SEEN. [-] docs/theory/host.md section 12.
+   elemental real(wp) function observed_order(coarse, fine, r_coarse, r_fine) result(order)
       real(wp), intent(in) :: coarse, fine   !< Distances [-].
-      real(wp), intent(in) :: r              !< Of the fine mesh to the middle one, > 1.
+      real(wp), intent(in) :: r_coarse       !< Of the middle mesh to the coarse one, > 1.
+      real(wp), intent(in) :: r_fine         !< Of the fine mesh to the middle one, > 1.
+      real(wp) :: low, high
+      integer :: i
 
-      order = log(max(coarse, tiny(1.0_wp))/max(fine, tiny(1.0_wp)))/log(r)
+      low = -MOST_SEEN
+      high = MOST_SEEN
+      do i = 1, HALVINGS
+         order = 0.5_wp*(low + high)
+         if (coarse > fine*ratio_at(order)) then
+            low = order
+         else
+            high = order
+         end if
+      end do
+   contains
+      elemental real(wp) function ratio_at(p)
+         real(wp), intent(in) :: p   !< [-]
+
+         ! By hyperbolic sines, which keep their digits where p vanishes.
+         ratio_at = log(r_coarse)/log(r_fine)
+         if (abs(p) > 0.0_wp) ratio_at = (r_coarse*r_fine)**(0.5_wp*p)*sinh(0.5_wp*p*log(r_coarse))/ &
+                                         sinh(0.5_wp*p*log(r_fine))
+      end function ratio_at
    end function observed_order
 
    !> Correlation over time of the differences of three runs: do they have one shape? [-1, 1]
@@ -185,11 +210,12 @@ contains
    end function correlation
 
    !> Mesh error, order and state of each answer from two meshes, or three where the coarsest is given.
-   subroutine judge_meshes(answers, middle, fine, r, coarse)
+   subroutine judge_meshes(answers, middle, fine, r, coarse, r_coarse)
       type(answer_t), intent(inout) :: answers(:)
       type(pilot_t), intent(in) :: middle, fine
       real(wp), intent(in) :: r                        !< Of the fine mesh to the middle one, > 1.
       type(pilot_t), intent(in), optional :: coarse
+      real(wp), intent(in), optional :: r_coarse       !< Of the middle mesh to the coarse one, > 1; with coarse.
       real(wp) :: last(size(answers)), before(size(answers)), order
       integer :: i
 
@@ -201,7 +227,7 @@ contains
             a%state = ASSUMED
             a%order = USUAL_ORDER
             if (present(coarse)) then
-               order = observed_order(before(i), last(i), r)
+               order = observed_order(before(i), last(i), r_coarse, r)
                a%order = max(LEAST_ORDER, min(MOST_ORDER, order))
                a%state = CERTAIN
                if (order < WEAK_ORDER) a%state = UNCERTAIN

@@ -215,7 +215,8 @@ contains
          if (n == 2) then
             call judge_meshes(price%answers, levels(1)%pilot, levels(2)%pilot, r)
          else
-            call judge_meshes(price%answers, levels(n - 1)%pilot, levels(n)%pilot, r, levels(n - 2)%pilot)
+            call judge_meshes(price%answers, levels(n - 1)%pilot, levels(n)%pilot, r, levels(n - 2)%pilot, &
+                              refinement(price%meshes(n - 2), price%meshes(n - 1)))
          end if
       end associate
    end subroutine judge_last

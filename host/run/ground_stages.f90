@@ -123,7 +123,8 @@ contains
       share = min(1.0_wp, max(0.0_wp, (time - run%at%t_start)/stage%duration))
    end function growth_at
 
-   !> Loads at a time, with what is left of the forces that hold up: they fade over the stage. (unknowns) [kN, m3/s]
+   !> Loads at a time, without what is left of the forces that hold up and of sudden loads that are applied evenly: both
+   !> fade over the stage. (unknowns) [kN, m3/s]
    function acting_load(model, stage, run, time) result(load)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
@@ -133,6 +134,7 @@ contains
 
       load = load_at(model, stage, model%dofs, time)
       if (allocated(run%at%held_up)) load = load - (1 - growth_at(stage, run, time))*run%at%held_up
+      if (allocated(run%at%sudden)) load = load - (1 - growth_at(stage, run, time))*run%at%sudden
    end function acting_load
 
    !> Unknowns that no present element has stay as they are.

@@ -29,6 +29,8 @@ module run_state
       ! Where parts of the ground join or leave, else not allocated.
       real(wp), allocatable :: held_up(:)      !< (unknowns) Forces at the start of what leaves with this stage [kN].
       logical, allocatable :: absent(:)        !< (unknowns) No present element has them.
+      !> (unknowns) What acted at once at the start and is applied evenly over the stage; not allocated: nothing [kN].
+      real(wp), allocatable :: sudden(:)
    end type stage_state_t
 
    type :: run_t

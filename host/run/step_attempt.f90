@@ -13,12 +13,14 @@ module step_attempt
    use convergence, only: control_t, log_t
    use energy_ledger, only: kinetic_energy
    use free_bodies, only: bodies_on_contact
-   use generalised_alpha, only: scheme_t, make_scheme, DYNAMIC
+   use generalised_alpha, only: scheme_t, make_scheme, STATIC, DYNAMIC
    use given_pressures, only: follow_undrained
    use ground_stages, only: acting_load, change_ground, growth_at, hold_absent
    use held_ground, only: hold_ground, set_incoming_waves
    use model_types, only: model_t, gravity_at
-   use newton_step, only: take_step, start_accelerations, CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
+   use newton_step, only: take_step, start_accelerations, unbalanced_forces, &
+                          CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
+   use porous_domain, only: copy_state
    use run_state, only: run_t, stage_state_t
    use step_failure, only: explain_failure, explain_short_step, LEAST_OF_STAGE
    use step_size, only: begin_control, prepare_rates, judge_step, shorten_step
@@ -28,6 +30,7 @@ module step_attempt
    private
    public :: begin_stage, try_step
 
+   integer, parameter :: CUTS_IN_VAIN = 2   !< At the start of a static stage, until what acts at once is spread.
    real(wp), parameter :: LEAST_SPACINGS = 16.0_wp      !< Of the numbers at the present time: its rounding.
 contains
    !> Sets a run at the start of stage `number`: prescribed values, absorbing boundaries, control of the steps, first
@@ -131,11 +134,24 @@ contains
             call explain_failure(model, stage, run, log, run%state%time + dt, dt, fault)
             return
          end if
+         if (stage%kind == STATIC .and. at%step == 0 .and. at%cuts == CUTS_IN_VAIN) call spread_sudden_loads(model, run)
          ! Nothing of the failed step is kept: the next attempt starts from run%state alone.
          at%factor = at%factor*share
          call shorten_step(stage, dt, run)
       end associate
    end subroutine try_step
+
+   !> Loads that act at once are the same in a shorter step: from here on they are applied evenly over the stage.
+   !> docs/theory/host.md section 4.4.
+   subroutine spread_sudden_loads(model, run)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+
+      call copy_state(run%state, run%next)
+      run%next%gravity = gravity_at(model, run%state%time)
+      if (.not. unbalanced_forces(model%domain, model%dofs, run%pattern, run%constraint, run%state, run%next, &
+                                  run%assembly, run%system, run%at%sudden)) deallocate (run%at%sudden)
+   end subroutine spread_sudden_loads
 
    !> Shorter steps do not come to an end, or do not move the time [s].
    pure real(wp) function shortest_step(stage, run) result(dt)

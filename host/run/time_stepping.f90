@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Runs the stages of a model: steps, cuts with exact restoration, ledger; an observer sees every step.
 module time_stepping
+   use, intrinsic :: iso_fortran_env, only: error_unit
    use kinds, only: wp
    use wall_clock, only: clock, lap
    use faults, only: fault_t
@@ -24,6 +25,7 @@ module time_stepping
    use contact_alarm, only: warn_of_penetration
    use pressure_alarm, only: warn_of_oscillation, warn_lost_pressure, warn_of_inflow
    use unknown_fields, only: DISPLACEMENTS
+   use scene_types, only: stage_t
    use texts, only: short, whole
    implicit none (type, external)
    private
@@ -75,7 +77,7 @@ contains
       real(wp) :: dt
       real(wp) :: stretched(DISPLACEMENTS, size(run%state%x, 2))
       integer :: i
-      logical :: accepted, warned
+      logical :: accepted, warned, spread
 
       associate (stage => model%stages(number), at => run%at)
          call follow_newton(stage, model%domain%regions)
@@ -93,7 +95,9 @@ contains
          do
             if (is_over(stage, run)) exit
             dt = next_step(model, stage, run)
+            spread = allocated(at%sudden)
             call try_step(model, stage, control, dt, run, log, accepted, fault)
+            if (warns(observer) .and. allocated(at%sudden) .and. .not. spread) call warn_of_sudden_loads(stage)
             if (fault%code == 0 .and. accepted) then
                if (warns(observer)) call warn_stagnation(stage, run%next%time, log, control%roughness, warned)
                call close_step(model, number, dt, log, run, fault, observer)
@@ -170,6 +174,16 @@ contains
       end if
       call check_creation(model%stages(number), run%state%time, report%last, run%ledger, fault)
    end subroutine close_step
+
+   !> That loads of a stage are applied in another way than the scene says, on standard error, also where the run is
+   !> quiet. docs/theory/host.md section 4.4.
+   subroutine warn_of_sudden_loads(stage)
+      type(stage_t), intent(in) :: stage
+
+      write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//': its loads act at once and the '// &
+         'first step did not converge, however short: they are applied evenly over the stage. A material with a '// &
+         'memory may answer otherwise than at once; give the loads a &history to say how they grow.'
+   end subroutine warn_of_sudden_loads
 
    !> Whether there is an observer that may print warnings.
    logical function warns(observer)

@@ -16,7 +16,7 @@ module convergence
    implicit none (type, external)
    private
    public :: control_t, log_t, measure, good_enough, field_scales, body_scale, is_body, rounding_in
-   public :: look_for_stagnation, residual_norms, forces_of_fields
+   public :: look_for_stagnation, is_in_vain, residual_norms, forces_of_fields
    public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_STAGE, measure_in, linear_tolerance
 
    integer, parameter :: BY_FORCES = 1       !< The errors of the fields, see above.
@@ -35,6 +35,7 @@ module convergence
    !> elastic domain takes noise for reversals and becomes stiffer (docs/theory/host.md section 6).
    real(wp), parameter :: LINEAR_SHARE = 1.0e-5_wp
    integer, parameter :: PATIENCE = 6          !< Iterations without progress after which the error stagnates.
+   integer, parameter :: MOST_IN_VAIN = 20     !< Iterations without progress after which no further one helps.
    real(wp), parameter :: PROGRESS = 0.5_wp    !< Of the smallest error so far: more is no progress.
    real(wp), parameter :: MOST_ROUGH = 1.0e-3_wp   !< Error above which no roughness is blamed for it.
    real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Of strain rates and parts of fluxes, see above.
@@ -126,6 +127,14 @@ contains
       log%stagnated = log%since_best >= PATIENCE .and. &
                       error <= min(MOST_ROUGH, control%roughness*max(1.0_wp, log%forces_over_scale))
    end subroutine look_for_stagnation
+
+   !> Whether the iteration leads nowhere: many iterations have not halved the smallest error. Other measures than those
+   !> of the fields do not tell. docs/theory/host.md section 5.2.
+   pure logical function is_in_vain(log) result(in_vain)
+      type(log_t), intent(in) :: log
+
+      in_vain = log%since_best >= MOST_IN_VAIN
+   end function is_in_vain
 
    !> What a residual of a field is small against; rows of prescribed unknowns do not count. docs/theory/host.md section
    !> 5.1. Of displacements [kN], of pressures [m3/s].

@@ -7,15 +7,15 @@ module newton_step
    use conjugate_residuals, only: solve_by_factors, INACCURATE
    use contact_interfaces, only: add_contacts, contact_forces, follow_friction, friction_turns, &
                                  rounding_of_ties
-   use convergence, only: control_t, log_t, measure, good_enough, look_for_stagnation, linear_tolerance, rounding_in, &
-                          residual_norms, forces_of_fields, &
+   use convergence, only: control_t, log_t, measure, good_enough, look_for_stagnation, is_in_vain, &
+                          linear_tolerance, rounding_in, residual_norms, forces_of_fields, &
                           BY_FORCES, BY_CHANGE
    use dashpots, only: add_dashpots
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t, assemble, follow_slopes_first
    use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
    use carried_slopes, only: AS_BEFORE
-   use generalised_alpha, only: scheme_t, predict, advance_rates, STATIC, DYNAMIC
+   use generalised_alpha, only: scheme_t, make_scheme, predict, advance_rates, STATIC, DYNAMIC
    use limited_pressures, only: choose_sides
    use linear_system, only: system_t, solve_step, asked_for, look_at_contacts, MOST_STEPS, T_ASSEMBLY, &
                             T_REST, T_MATERIAL, T_CONTACT
@@ -26,7 +26,7 @@ module newton_step
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_C
    implicit none (type, external)
    private
-   public :: take_step, start_accelerations
+   public :: take_step, start_accelerations, unbalanced_forces
    public :: CONVERGED, NOT_CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
 
    integer, parameter :: CONVERGED = 0, NOT_CONVERGED = 1, MATERIAL_FAILED = 2, BODY_FREE = 3, SOLVER_FAILED = 4, &
@@ -101,7 +101,8 @@ contains
                call look_for_stagnation(control, log)
                if (log%stagnated) exit
             end if
-            if (log%iterations >= control%max_iterations .or. .not. all(log%error < HOPELESS)) then
+            if (log%iterations >= control%max_iterations .or. is_in_vain(log) .or. &
+                .not. all(log%error < HOPELESS)) then
                log%outcome = NOT_CONVERGED
                system%reassemble_tangent = .true.
                return
@@ -351,6 +352,37 @@ contains
       end do
       work%a = state%a
    end subroutine start_accelerations
+
+   !> Forces on the free displacements that the loads of a state at rest leave without balance: those that act at once.
+   !> docs/theory/host.md section 4.4. False where the material or a contact refuses the state.
+   logical function unbalanced_forces(domain, dofs, pattern, constraint, state, work, assembly, system, forces) &
+      result(good)
+      type(domain_t), intent(in) :: domain
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(inout) :: pattern
+      type(constraint_t), intent(in) :: constraint   !< load_0: the loads.
+      type(state_t), intent(in) :: state
+      type(state_t), intent(inout) :: work           !< Equal to state.
+      type(assembly_t), intent(inout) :: assembly
+      type(system_t), intent(inout) :: system
+      real(wp), allocatable, intent(out) :: forces(:)   !< (unknowns) [kN]
+      type(constraint_t) :: held
+      type(scheme_t) :: scheme
+      real(wp), allocatable :: touched(:)
+      real(wp) :: t0
+
+      allocate (forces(dofs%n), source=0.0_wp)
+      scheme = make_scheme(STATIC, 1.0_wp, 1.0_wp)
+      held = constraint
+      held%load_1 = held%load_0
+      call begin_passes(domain, scheme, held, control_t(), assembly)
+      good = look_at_contacts(system, dofs, pattern, state%x, .false., assembly)
+      if (good) call assemble(domain, dofs, pattern, scheme, state, work, .false., assembly)
+      if (good) good = assembly%bad_element == 0
+      if (.not. good) return
+      call add_what_acts(dofs, pattern, scheme, held, state, work, .false., touched, assembly, system, forces, t0)
+      where (constraint%fixed .or. dofs%field > DISPLACEMENTS) forces = 0.0_wp
+   end function unbalanced_forces
 
    !> Inertia of rigid bodies.
    subroutine add_bodies(dofs, pattern, scheme, constraint, old, new, slopes, assembly)

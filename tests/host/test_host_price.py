@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What accuracy costs: errors of mesh and steps that are those of finer runs, meshes of other fineness, messages."""
 import os
+import re
 import subprocess
 import sys
 
@@ -196,6 +197,54 @@ def test_fineness_asks_for_one_mesh():
     done = run(STRIP, work / "one", "--fineness", "1")
     check("one mesh by --fineness", done.returncode == 0 and (work / "one/histories.csv").exists()
           and "mesh not estimated: --price" in done.stdout, done.stdout)
+
+
+# Errors of a run: what they contain, and what not.
+SAND = """&scene name = 's' fields = 'u' gravity = 9.81 /
+&mesh r = 0, 0.5, 2 r_cells = 1, 2 z = -2, 0 z_cells = 2 /
+&mud name = 'sand' e_0 = 0.75 /
+&region material = 'sand' /
+&initial stress = 'geostatic' k_0 = 0.5 surcharge = 1 /
+&stage name = 's' analysis = 'static' duration = 1 dt = 1 /
+&history name = 'ramp' times = 0, 1 values = 0, 1 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&load group = 'top' kind = 'pressure' value = 1 /
+&load group = 'top_1' kind = 'pressure' value = 20 /
+&point name = 'c' r = 0 z = 0 /
+"""
+ELASTIC = SAND.replace("&mud name = 'sand' e_0 = 0.75 /", "&elastic name = 'sand' young = 1e4 poisson = 0.3 /").replace(
+    "&region material = 'sand' /", "&region material = 'sand' void_ratio = 0.75 rho_s = 2.65 /")
+MOVING = ELASTIC.replace("'static' duration = 1 dt = 1", "'dynamic' duration = 0.05")
+LAST = {"sand at once": (SAND, (), "steps 0 % without what came in single steps, Newton's method ",
+                         "; mesh not estimated: --price; nor is the stress integration."),
+        "sand by a history": (SAND.replace("value = 20", "value = 20 history = 'ramp'").replace("dt = 1 ", ""),
+                              (), "steps ", "; mesh not estimated: --price; nor is the stress integration."),
+        "elastic": (ELASTIC, (), "steps 0 %, Newton's method ", "%; mesh not estimated: --price."),
+        "elastic, dynamic": (MOVING, (), "steps ", "%; mesh not estimated: --price."),
+        "elastic, dynamic, verified": (MOVING, ("--verify",), "steps ", "%; mesh not estimated: --price.")}
+
+
+def test_every_run_says_what_its_errors_contain():
+    for name, (text, words, begins, ends) in LAST.items():
+        path = work / f"last_{name.replace(', ', '_').replace(' ', '_')}.nml"
+        path.write_text(text)
+        done = run(path, path.with_suffix(""), *words)
+        said = next((line for line in done.stdout.splitlines() if line.startswith("In these errors: ")), "")
+        check(f"{name}: runs", done.returncode == 0, done.stderr)
+        check(f"{name}: what is in its errors", said.startswith(f"In these errors: {begins}") and said.endswith(ends),
+              said)
+        check(f"{name}: single steps", ("single steps" in said) == (name == "sand at once"), said)
+        check(f"{name}: measured is said where it is", (" % (measured), " in said) == bool(words), said)
+        check(f"{name}: vibrations", ("Not seen: vibrations" in done.stdout) == (text == MOVING and not words),
+              done.stdout)
+        rows = tables.rows(path.with_suffix("") / "answers.csv")
+        row = next((r for r in rows if r["answer"] == "c.u_z"), {})
+        told = [float(number) for number in re.findall(r"([0-9.e-]+) %", said)]
+        check(f"{name}: answers.csv has the same parts", row and len(told) == 2 and np.allclose(
+            [100*float(row["estimated_error"]), 100*float(row["newton_error"])], told, rtol=1e-3, atol=1e-12)
+              and row["mesh_state"] == "not estimated" and row["mesh_error"] == "", (row, said))
 
 
 def test_a_point_keeps_its_node_on_every_mesh():

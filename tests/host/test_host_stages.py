@@ -136,6 +136,33 @@ def test_gravity_that_grows_after_the_cut():
     check("gravity grew", lifts["base.u_z"][-1] < lifts["base.u_z"][-3] - 1e-5, lifts["base.u_z"][-3:])
 
 
+def test_sudden_loads_that_grow_over_a_stage_are_taken_up():
+    # Six iterations at once, and four are allowed: the load grows over the stage, five steps. After the third of them.
+    text = ("""&scene name = 't' fields = 'u' gravity = 9.81 checkpoint_steps = 3 /
+&mesh r = 0, 0.5, 2 r_cells = 2, 3 z = -2, 0 z_cells = 4 /
+&mud name = 'sand' e_0 = 0.75 /
+&region material = 'sand' /
+&initial stress = 'geostatic' k_0 = 0.5 surcharge = 0.5 /
+&stage name = 's' analysis = 'static' duration = 1 dt = 1 max_iterations = 4 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&load group = 'top' kind = 'pressure' value = 0.5 /
+&load group = 'top_1' kind = 'pressure' value = 160 /
+&point name = 'c' r = 0 z = 0 /
+""")
+    done = start("sudden", text)
+    check("the warning names the stage", done.returncode == 0 and "stage s: its loads act at once" in done.stderr
+          and "evenly over the stage" in done.stderr, done.stderr)
+    folder = work / "sudden"
+    before = (folder / "histories.csv").read_bytes()
+    check("steps before and after the checkpoint", len(before.splitlines()) > 5, before)
+    done = start("sudden", text, "--restart", folder / "checkpoint.h5")
+    check("taken up: same bytes", done.returncode == 0 and (folder / "histories.csv").read_bytes() == before,
+          done.stderr)
+
+
 def test_pilots_take_ground_as_it_joins_and_leaves():
     for name in ("excavation", "embankment", "water"):
         text = scene(name)

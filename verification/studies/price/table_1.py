@@ -55,7 +55,7 @@ def wanted():
     runs = [(s, f, "1e-2") for s in SUCTIONS for f in (0.5, 1, 2, 4) if f <= FINEST.get(s, 4)]
     runs += [(s, 0.5, setting) for s in SUCTIONS for setting in ("2.5e-3", "newton")]
     runs += [(FRONT, f, a) for f in (0.25, 0.5, 1, 2) for a in ("4e-2", "1e-2", "2.5e-3")]
-    runs += [(FRONT, 1, "paper"), (FRONT, 4, "2.5e-3")]
+    runs += [(s, 1, "paper") for s in SUCTIONS] + [(FRONT, 4, "2.5e-3")]
     return sorted(dict.fromkeys(runs), key=lambda r: r[1])
 
 
