@@ -77,7 +77,7 @@ contains
       real(wp) :: dt
       real(wp) :: stretched(DISPLACEMENTS, size(run%state%x, 2))
       integer :: i
-      logical :: accepted, warned, spread
+      logical :: accepted, warned
 
       associate (stage => model%stages(number), at => run%at)
          call follow_newton(stage, model%domain%regions)
@@ -95,10 +95,9 @@ contains
          do
             if (is_over(stage, run)) exit
             dt = next_step(model, stage, run)
-            spread = allocated(at%sudden)
             call try_step(model, stage, control, dt, run, log, accepted, fault)
-            if (warns(observer) .and. allocated(at%sudden) .and. .not. spread) call warn_of_sudden_loads(stage)
             if (fault%code == 0 .and. accepted) then
+               if (warns(observer) .and. at%step == 0 .and. allocated(at%sudden)) call warn_of_sudden_loads(stage)
                if (warns(observer)) call warn_stagnation(stage, run%next%time, log, control%roughness, warned)
                call close_step(model, number, dt, log, run, fault, observer)
             end if
@@ -181,7 +180,7 @@ contains
       type(stage_t), intent(in) :: stage
 
       write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//': its loads act at once and the '// &
-         'first step did not converge, however short: they are applied evenly over the stage. A material with a '// &
+         'first step did not converge: they are applied evenly over the stage. A material with a '// &
          'memory may answer otherwise than at once; give the loads a &history to say how they grow.'
    end subroutine warn_of_sudden_loads
 

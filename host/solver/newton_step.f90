@@ -371,6 +371,7 @@ contains
       real(wp), allocatable :: touched(:)
       real(wp) :: t0
 
+      t0 = clock()
       allocate (forces(dofs%n), source=0.0_wp)
       scheme = make_scheme(STATIC, 1.0_wp, 1.0_wp)
       held = constraint
