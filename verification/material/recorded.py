@@ -68,5 +68,6 @@ def shown(value):
 def table(bench, columns, head=""):
     """The recorded values as a table of a README."""
     values = read(bench)
-    lines = [(quantity, *(shown(values.get((quantity, column))) for column in columns)) for quantity in dict.fromkeys(q for q, _ in values)]
+    lines = [(quantity, *(shown(values.get((quantity, column))) for column in columns))
+             for quantity in dict.fromkeys(q for q, column in values if column in columns)]
     return tables.markdown((head, *columns), lines)

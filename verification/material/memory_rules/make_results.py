@@ -16,8 +16,8 @@ from battery import ALL_MEMORIES, ROWS, parse_rule  # noqa: E402
 from point_walk import ROOT, Walker  # noqa: E402
 from tools import results, tables  # noqa: E402
 
-HEAVY = ("tolerance_on_random_turns", "turning", "random_walks", "random_increments")   # rows of minutes: for two rules only
-HEAVY_RULES = ["classic:2e-5", "return_point:2e-5"]
+HEAVY = ("tolerance_on_random_turns", "turning", "random_walks", "random_increments")   # rows of minutes: for three rules only
+HEAVY_RULES = ["classic:2e-5", "return_point:2e-5", ALL_MEMORIES]
 RULES = [f"{name}:{radius}" for radius in ("0", "2e-5") for name in ("classic", "threshold", "repositioning", "return_point")] + [ALL_MEMORIES]
 
 

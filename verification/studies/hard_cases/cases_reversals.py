@@ -6,6 +6,7 @@ import random
 from bounds import BOUND, TRAIL, bounded
 from catalogue import Case, last, off_the_clean, overshoot
 from point_steps import ACROSS, AXIAL, DENSE, LOOSE, MIDDLE, increments, plus, straight, times
+from tools.bench import parameters
 
 SIDE = times(math.sqrt(3), ACROSS)
 OTHER = (0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
@@ -127,6 +128,43 @@ def asymmetry(runs):
     return max(map(of, runs.values()))
 
 
+def many_cycles(setting):
+    """10,000 drained cycles of two shear components at once, in increments of half the amplitude; all three would have a Lode angle, which
+    tells one side from the other."""
+    both = (0.0, 0.0, 0.0, 1e-4, 0.7e-4, 0.0)
+    path = setting.start(MIDDLE).lead("ssseee").go(2, both).row("first_up").go(4, times(-2, both)).row("first_down")
+    for _ in range(9999):
+        path.go(4, times(2, both)).go(4, times(-2, both))
+    return {"cycles": path.go(4, times(2, both)).row("up").go(4, times(-2, both)).row("down")}
+
+
+def asymmetry_of_all(runs):
+    """The same of both shear components, the larger [%]."""
+    at = {row["label"]: row["stress"][3:5] for row in runs["cycles"]}
+    return max(100 * abs(up + down) / abs(first_up - first_down)
+               for up, down, first_up, first_down in zip(at["up"], at["down"], at["first_up"], at["first_down"]))
+
+
+def in_two_units(setting):
+    """Loops and suction in kPa and in MPa: all parameters that have a unit are converted."""
+    values = parameters()
+    converted = {name: 1e-3 * values[name] for name in ("alpha_csl", "P_a", "p_atm")}
+    converted |= {name: 1e-3 ** values["lambda"] * values[name] for name in ("N_c", "N_l")}
+    found = {}
+    for label, unit, more in (("kPa", 1.0, {}), ("MPa", 1e-3, converted)):
+        path = setting.start(MIDDLE, p=100 * unit, suction=20 * unit, **more)
+        for i in range(40):
+            straight(path, (-1) ** i * (1e-3 + 2e-5 * i), plus(AXIAL, times(0.3, OTHER)), step=1e-4)
+            path.go(2, (0.0,) * 6, suction=(-1) ** (i // 2) * 3 * unit)
+        found[label] = path.row()
+    return found
+
+
+def off_between_units(runs):
+    a, b = (last(runs[label])["stress"] for label in ("kPa", "MPa"))
+    return 100 * math.dist(a, times(1e3, b)) / math.hypot(*a)
+
+
 def biased_paths(setting):
     path = setting.start(MIDDLE).lead("ssseee").go(50, (50, 0, 0, 0, 0, 0)).row("0").go(4, (2, 0, 0, 0, 0, 0))
     for _ in range(1000):
@@ -240,6 +278,8 @@ CASES = (
     Case("nine nested loops", "turns", "the memory holds four", LOSES, NOISE, nested_paths, level_overshoot),
     Case("1000 symmetric cycles", "cycles", "any bias of the rule adds up", "asymmetry of tau over its range [%]", 0.3,
          symmetric_paths((1e-6, 1e-5, 1e-4, 3e-4), 1000), asymmetry),
+    Case("10,000 cycles of two shears", "cycles", "any bias of the rule adds up, and components may differ", "asymmetry of each shear stress over its range [%]", 0.3,
+         many_cycles, asymmetry_of_all),
     Case("1000 biased cycles", "cycles", "every cycle leaves a little strain, a rule that overshoots leaves none or too much",
          "axial strain, q 50 +- 2 kPa [%]", 0.1, biased_paths, gain("biased")),
     Case("circles", "cycles", "the direction turns all the time; the elastic domain is left and entered in one increment",
@@ -251,6 +291,7 @@ CASES = (
     Case("a frame that turns ten times", "cycles", "stress, image points and memory must turn with it", "stress about the axis as in the frame at rest [%]",
          0.1, turning_frame, lambda runs: 100 * max(abs(a / b - 1) for a, b in ((last(runs["turned"]).p, last(runs["clean"]).p),
                                                    (last(runs["turned"])["stress"][2], last(runs["clean"])["stress"][2])))),
+    Case("kPa or MPa", "cycles", "a number inside that has a unit", "stress after 40 loops with suction in kPa against MPa [%]", 0.1, in_two_units, off_between_units),
     Case("random walks", "cycles", "six components, every leg in another direction", BOUND, TRAIL, walks, bounded),
     Case("10,000 increments of 1e-12", "turns", "increments of the size of rounding in strain", "stress that of the path without [%]", 0.1,
          trembling, off_the_clean),

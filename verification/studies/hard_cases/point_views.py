@@ -115,6 +115,11 @@ def asymmetry(runs):
     return curves
 
 
+def against_kilopascals(runs):
+    """p' computed in MPa against that in kPa, state by state [%]."""
+    return [(range(1, len(runs["kPa"]) + 1), [max(FLOOR, 100 * abs(1e3 * b.p / a.p - 1)) for a, b in zip(runs["kPa"], runs["MPa"])])]
+
+
 def gained(runs):
     """Axial strain gained since the first state, at the end of each cycle [%]."""
     rows = runs["biased"]
@@ -167,11 +172,13 @@ VIEWS = {
     "tiny loops in softening": noise("tiny loops change nothing", 1.0),
     "nine nested loops": View("nested loops close one after the other", AXIAL, Q, along(strain(0), shear)),
     "1000 symmetric cycles": View("1000 symmetric cycles stay symmetric", "cycle", "asymmetry of tau [%]", asymmetry, 0.3, "log", "log"),
+    "10,000 cycles of two shears": View("10,000 cycles of two shears stay symmetric", "cycle", "asymmetry of tau [%]", asymmetry, 0.3, "log", "log"),
     "1000 biased cycles": View("1000 biased cycles gain little strain", "cycle", "axial strain gained [%]", gained, 0.1, "symlog"),
     "circles": View("circles of strain: p' never rises", "cycle", P, by_cycle(pressure), 100.0),
     "figure eights": View("figure eights: p' never rises", "cycle", P, by_cycle(pressure), 100.0),
     "100 rotations of the principal axes": View("rotating axes: strain accumulates evenly", "cycle", "volumetric strain [%]", by_cycle(volume)),
     "a frame that turns ten times": View("a rotating frame changes nothing", "turn of 3.6 degrees", "p' against the frame at rest [%]", against_frame, 0.1, "log"),
+    "kPa or MPa": View("the same in MPa", "state", "p' against that in kPa [%]", against_kilopascals, 0.1, "log"),
     "random walks": View("random walks stay inside the surface", P, Q, along(pressure, shear)),
     "10,000 increments of 1e-12": noise("10,000 increments of 1e-12: unchanged", 0.1),
     "tension and back": View("held at p_min, then compressed again", "volumetric strain [%]", P, along(volume, pressure), P_MIN, "log"),
