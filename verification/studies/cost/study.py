@@ -106,7 +106,7 @@ def run(suction, mesh, name):
     done = subprocess.run([host, folder / "scene.nml", "--output", folder], text=True, capture_output=True,
                           env={**os.environ, "OMP_NUM_THREADS": "1"})
     seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-    if done.returncode:
+    if done.returncode not in (0, results.MISSED):
         return folder, None, seconds, done.stderr.strip()
     counts = re.search(r"(\d+) steps, (\d+) iterations.*?, (\d+) rate evaluations.*?, (\d+) factorisations",
                        done.stdout)
