@@ -165,6 +165,7 @@ def draw(bench, results, plt):
     axis.text(axis.get_xlim()[0]*1.1, 0.85*bar, "what the reference leaves", color="0.4", fontsize=8, va="top")
     axis.set_ylim(0.2, 40)
     axis.set_yticks([0.3, 1, 3, 10, 30], ["0.3", "1", "3", "10", "30"])
+    axis.set_xticks([0.03, 0.1, 0.3, 1], ["0.03", "0.1", "0.3", "1"])
     axis.set_xlabel("processor time over that of the paper's settings")
     axis.set_ylabel("error of the settlement [%]")
     axis.set_title("Indentation at 30 kPa: mesh, steps and Newton's method together", fontsize=10)
