@@ -4,7 +4,7 @@
 # TESTS leaves out -Wuse-without-only, because .pf files say `use funit`.
 function(mud_set_warnings target)
    cmake_parse_arguments(PARSE_ARGV 1 arg "TESTS" "" "")
-   set(fortran -std=f2018 -Wall -Wextra)
+   set(fortran -std=f2018 -Wall -Wextra -Wcharacter-truncation)
    set(c -std=c11 -Wall -Wextra)
    if(NOT arg_TESTS)
       list(APPEND fortran -Wuse-without-only)

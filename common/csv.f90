@@ -8,7 +8,7 @@ module csv
    use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
    implicit none (type, external)
    private
-   public :: csv_t, open_csv, new_csv, check_csv, resume_csv, write_row, write_line, settle_csv, close_csv, is_open
+   public :: csv_t, open_csv, new_csv, check_csv, resume_csv, write_row, write_line, flush_csv, close_csv, is_open
    public :: columns_of, NUMBERS
 
    character(*), parameter :: NUMBERS = '(*(es24.16e3,:,","))'   !< Format of a row of numbers.
@@ -138,7 +138,7 @@ contains
    end subroutine put_text
 
    !> Flushes what was written to the disk. A fault (EXIT_OUTPUT) where that fails; not of a pipe.
-   subroutine settle_csv(table, fault)
+   subroutine flush_csv(table, fault)
       type(csv_t), intent(inout) :: table
       type(fault_t), intent(inout) :: fault
 
@@ -148,7 +148,7 @@ contains
          ! What is no regular file, as a pipe, has no size and no place on a disk.
          if (size_of(table%path) >= table%bytes) call raise_unwritten(table, fault)
       end if
-   end subroutine settle_csv
+   end subroutine flush_csv
 
    !> Closes the table. A disk that is full for the last rows may be noticed only here. The fault is EXIT_OUTPUT, an
    !> earlier one stays; a table that is not open is left alone.

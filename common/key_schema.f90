@@ -18,10 +18,10 @@ module key_schema
    character, parameter :: BETWEEN = '|'                  !< Divides words.
    integer, parameter :: LONGEST_WORD = 32
 
-   !> A key of a group.
+   !> A key of a group. A text that fills its component may have been cut: a test keeps the last letter of each blank.
    type :: key_t
       character(12) :: group
-      character(21) :: name
+      character(24) :: name
       character :: kind                  !< n number, i integer, t text, w one of the words; capital: a list of them
       character(14) :: preset            !< Its default, or REQUIRED or NONE.
       real(wp) :: lower, upper           !< Range of a number.
@@ -32,6 +32,7 @@ module key_schema
       !> When it has an effect, conditions between blanks: `key=word|word` another key has one of these words or none,
       !> `+key` another key is given, `-key` it is not, `:p_w` the unknown exists.
       character(48) :: acts = ''
+      character(16) :: refers = ''       !< Kind t: the group whose name it gives; 'material' stands for all laws.
    end type key_t
 contains
    !> Refuses an unknown group and, in a known one, a missing key and everything that check_entries refuses. Faults are

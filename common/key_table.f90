@@ -109,14 +109,18 @@ contains
       value = (number_of_word == 1) .eqv. index(words, yes//'|') == 1
    end subroutine flag
 
-   subroutine text(self, name, value, meaning, acts)
+   !> `refers`: the group whose name it gives, see key_t.
+   subroutine text(self, name, value, meaning, acts, refers)
       class(key_table_t), intent(inout) :: self
       character(*), intent(in) :: name, meaning
       character(*), intent(inout) :: value
-      character(*), intent(in), optional :: acts
+      character(*), intent(in), optional :: acts, refers
       character(LENGTH) :: found
+      type(key_t) :: key
 
-      call self%list(key_t('', name, 't', value, 0, 0, meaning), acts)
+      key = key_t('', name, 't', value, 0, 0, meaning)
+      if (present(refers)) key%refers = refers
+      call self%list(key, acts)
       found = value
       call get_text(self%group, name, found)
       value = found

@@ -5,7 +5,7 @@ module wall_clock
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: clock, lap
+   public :: clock, add_elapsed
 contains
    !> Seconds since an arbitrary moment.
    real(wp) function clock()
@@ -15,13 +15,13 @@ contains
       clock = real(ticks, wp)/real(rate, wp)
    end function clock
 
-   !> Adds the time since t0 and starts anew. Both in seconds, of clock.
-   subroutine lap(total, t0)
+   !> Adds the time since t0 to a total and sets t0 to the present. Both in seconds, of clock.
+   subroutine add_elapsed(total, t0)
       real(wp), intent(inout) :: total, t0
       real(wp) :: now
 
       now = clock()
       total = total + now - t0
       t0 = now
-   end subroutine lap
+   end subroutine add_elapsed
 end module wall_clock

@@ -10,7 +10,7 @@ program mud_host
    use kinds, only: wp
    use wall_clock, only: clock
    use generalised_alpha, only: STATIC, DYNAMIC
-   use effect_pilots, only: ask_effects, settle_scene, apply_effects
+   use effect_pilots, only: ask_effects, reduce_scene, apply_effects
    use effect_types, only: effect_t
    use effects_table, only: print_effects, print_pilots, write_effects, write_influences
    use level_output, only: level_output_t, folder_of_mesh
@@ -24,7 +24,7 @@ program mud_host
    use pilot_budget, only: pilots_account_t
    use price_estimates, only: answer_t
    use price_table, only: print_price, print_errors, write_price
-   use process_settings, only: settle_process
+   use process_settings, only: apply_process_settings
    use run_output, only: run_output_t
    use run_setup, only: prepare_run
    use run_size, only: size_of_run
@@ -71,7 +71,7 @@ program mud_host
    double precision :: t0
 
    call limits_are_errors()
-   call settle_process()
+   call apply_process_settings()
    call read_command_line(options, 'scene', USAGE, file, fault)
    if (fault%code == 0 .and. option_given(options, '--template')) then
       call print_template(output_unit)
@@ -155,7 +155,7 @@ contains
          if (only_effects) call write_effects(folder, effects, fault)
          if (only_effects) call write_influences(folder, effects, pilots, fault)
       end if
-      call settle_scene(scene, fault)
+      call reduce_scene(scene, fault)
       if (only_effects .or. .not. allocated(effects) .or. fault%code /= 0) return
       scene%effects = effects
       call apply_effects(effects, scene)

@@ -13,7 +13,7 @@ module triax_control
                           saturation, slope_is_exact, axial_strain, volumetric_strain, mean_stress, deviator_stress
    implicit none (type, external)
    private
-   public :: plan_t, tally_t, plan_way, advance, lead, quantity, CONTROL_TOLERANCE
+   public :: plan_t, tally_t, plan_path, advance, lead, quantity, CONTROL_TOLERANCE
 
    !> Constraints are met to this unless a case says otherwise, relative to the effective stress they prescribe: a
    !> hundred thousand times below the library's own default tolerance, and far above rounding (1e-16 times the ratio
@@ -65,7 +65,7 @@ module triax_control
 
 contains
    !> Plans a path segment of a stage from the present state of the sample. Constraints: see triax_stage.
-   subroutine plan_way(soil, stage, target, point, plan)
+   subroutine plan_path(soil, stage, target, point, plan)
       type(soil_t), intent(in) :: soil
       type(stage_t), intent(in) :: stage
       real(wp), intent(in) :: target   !< Value of what leads, at the end. [-] or [unit of stress of the law].
@@ -129,7 +129,7 @@ contains
          if (good) plan%given(:6) = .true.
          if (good) plan%given_change(:6) = strain
       end if
-   end subroutine plan_way
+   end subroutine plan_path
 
    !> Equal parts of a change, none larger than an increment but for rounding.
    pure integer function equal_parts(change, increment)

@@ -9,7 +9,7 @@ module triax_stage
    use, intrinsic :: iso_fortran_env, only: wp => real64
    implicit none (type, external)
    private
-   public :: stage_t, quantity_t, set_constraints, quantity_rows, leads_of, sealed_control, shear_control, &
+   public :: stage_t, quantity_t, set_constraints, quantity_rows, leads_of, keeps_volume, shear_control, &
              general_control
    public :: CONTROL_NAMES, QUANTITIES, STRAIN_PATH, STRESS_PATH, LINEAR, CONSTANT_NET_STRESS
    public :: BY_EPS_A, BY_EPS_V, BY_GAMMA, BY_Q, BY_TAU, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
@@ -108,11 +108,11 @@ contains
    end function leads_of
 
    !> True if the control holds the volume: a saturated sample then is undrained.
-   pure logical function sealed_control(control)
+   pure logical function keeps_volume(control)
       integer, intent(in) :: control   !< Place in CONTROL_NAMES.
 
-      sealed_control = control == UNDRAINED .or. control == SHEAR_CONSTANT_VOLUME
-   end function sealed_control
+      keeps_volume = control == UNDRAINED .or. control == SHEAR_CONSTANT_VOLUME
+   end function keeps_volume
 
    !> True for simple shear, led by the components 13.
    pure logical function shear_control(control)

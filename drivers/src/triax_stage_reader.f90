@@ -9,7 +9,7 @@ module triax_stage_reader
    use spelling, only: nearest_name
    use key_schema, only: describe_key, get_text, get_number, get_numbers, line_of, given, word_is
    use triax_keys, only: CASE_KEYS, keys_in
-   use triax_stage, only: stage_t, set_constraints, leads_of, sealed_control, CONTROL_NAMES, QUANTITIES, LINEAR, &
+   use triax_stage, only: stage_t, set_constraints, leads_of, keeps_volume, CONTROL_NAMES, QUANTITIES, LINEAR, &
                           BY_EPS_A, BY_GAMMA, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES, PER_PRESSURE, ROWS
    implicit none (type, external)
    private
@@ -56,7 +56,7 @@ contains
       call get_number(group, 'output_interval', stage%interval, found)
       if (found .and. QUANTITIES(stage%lead)%unit == PER_PRESSURE) stage%suction_interval = stage%interval
       call get_number(group, 'stop_r_u', stage%stop_r_u, found)
-      if (found .and. .not. (sealed_control(stage%control) .or. stage%keeps_air)) then
+      if (found .and. .not. (keeps_volume(stage%control) .or. stage%keeps_air)) then
          call refuse(group, 'stop_r_u', 'has no effect with control '//name_of(stage%control)// &
                      ', in which no pore pressure builds up; remove it.', fault)
       else if (2.0_wp/stage%increment > MAX_INCREMENTS .and. QUANTITIES(stage%lead)%unit /= PER_PRESSURE) then

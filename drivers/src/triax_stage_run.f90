@@ -7,8 +7,8 @@ module triax_stage_run
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use faults, only: fault_t, raise, EXIT_RUN
    use texts, only: short, whole
-   use triax_stage, only: stage_t, sealed_control, shear_control, QUANTITIES
-   use triax_control, only: plan_t, tally_t, plan_way, advance, lead, quantity
+   use triax_stage, only: stage_t, keeps_volume, shear_control, QUANTITIES
+   use triax_control, only: plan_t, tally_t, plan_path, advance, lead, quantity
    use triax_point, only: soil_t, point_t, AXIAL, RADIAL
    implicit none (type, external)
    private
@@ -53,8 +53,8 @@ contains
       run%pressure = pressure
       run%pressure_start = pressure
       run%confining = confining_stress(stage, point)
-      run%sealed = sealed_control(stage%control) .and. point%suction <= 0.0_wp .and. &
-                      .not. (stage%moves_suction .and. max(stage%suction_end, stage%suction_change) > 0.0_wp)
+      run%sealed = keeps_volume(stage%control) .and. point%suction <= 0.0_wp .and. &
+                   .not. (stage%moves_suction .and. max(stage%suction_end, stage%suction_change) > 0.0_wp)
       run%p_w_start = point%p_a - point%suction
       if (stage%stop_r_u > 0.0_wp .and. .not. (run%sealed .or. stage%keeps_air)) then
          call raise(fault, EXIT_RUN, 'stop_r_u needs a saturated sample; the suction is '//short(point%suction)// &
@@ -161,12 +161,12 @@ contains
       end if
       if (run%open) then
          run%direction = sign(1.0_wp, run%goal - quantity(soil, stage, stage%cycle_by, point))
-         call plan_way(soil, stage, &
-                       quantity(soil, stage, stage%lead, point) + run%direction*stage%increment/stage%parts, &
-                       point, run%plan)
+         call plan_path(soil, stage, &
+                        quantity(soil, stage, stage%lead, point) + run%direction*stage%increment/stage%parts, &
+                        point, run%plan)
          run%plan%increments = 1
       else
-         call plan_way(soil, stage, run%goal, point, run%plan)
+         call plan_path(soil, stage, run%goal, point, run%plan)
          run%finished = run%plan%increments == 0
       end if
    end subroutine next_way

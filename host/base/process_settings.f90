@@ -7,7 +7,7 @@ module process_settings
    use dynamic_loader, only: dlsym
    implicit none (type, external)
    private
-   public :: settle_process
+   public :: apply_process_settings
 
    integer(c_int), parameter :: TRIM_THRESHOLD = -1, MMAP_THRESHOLD = -3   !< Of mallopt (malloc.h of glibc).
    integer(c_int), parameter :: KEPT = 2**30, LARGEST = 2**25              !< [bytes] The largest glibc takes: 32 MiB.
@@ -26,7 +26,7 @@ module process_settings
 contains
    !> Applies the settings, once at the start of the program. A setting that the libraries do not know is left out
    !> without a message.
-   subroutine settle_process()
+   subroutine apply_process_settings()
       procedure(set_threads), pointer :: threads
       procedure(set_memory), pointer :: memory
       type(c_funptr) :: found
@@ -43,5 +43,5 @@ contains
          done = memory(TRIM_THRESHOLD, KEPT)
          done = memory(MMAP_THRESHOLD, LARGEST)
       end if
-   end subroutine settle_process
+   end subroutine apply_process_settings
 end module process_settings

@@ -9,7 +9,7 @@ module contact_interfaces
                               contact_evaluate, points_of, slid_work
    use contact_plate, only: plate_motion_t, plate_response_t, new_plate_response, plate_displacements, &
                             plate_positions, plate_slopes, gather_on_plate, force_on_plate
-   use plate_springs, only: spring_geometry, new_spring_result, pull_springs, lengths_of_nodes
+   use plate_springs, only: spring_geometry, new_spring_result, evaluate_springs, lengths_of_nodes
    use contact_types, only: contact_options_t, contact_status_t, CONTACT_OK
    use degrees_of_freedom, only: dofs_t, unknowns_of_body
    use unknown_fields, only: AT_U_Z, DISPLACEMENTS
@@ -246,7 +246,7 @@ contains
       type(contact_status_t), intent(out) :: status
 
       if (allocated(t%spring)) then
-         call pull_springs(t%spring, x(:DISPLACEMENTS, t%slave%node), displacements_of_master(t, x), result)
+         call evaluate_springs(t%spring, x(:DISPLACEMENTS, t%slave%node), displacements_of_master(t, x), result)
          status = contact_status_t()
       else if (t%rubs) then
          t%friction%slave_dx = x(:DISPLACEMENTS, t%slave%node) - t%slave_u

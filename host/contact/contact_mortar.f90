@@ -15,8 +15,8 @@ module contact_mortar
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: overlap_t, point_t, find_overlap, end_slope, integration_point, pair_points, unit_push, pair_gaps, &
-             penetration, hats, hat_slopes
+   public :: overlap_t, point_t, find_overlap, end_slope, integration_point, pair_points, &
+             unit_force_on_nodes, pair_gaps, penetration, hats, hat_slopes
    public :: POINTS, POSITION, SHARE, LARGEST_SEGMENTS, LARGEST_POINTS
 
    integer, parameter :: POINTS = 4   !< Gauss points of a segment.
@@ -286,7 +286,7 @@ contains
          associate (p => points(k))
             m = hats(p%s)
             dm = hat_slopes(p%s)
-            of_point = unit_push(p)
+            of_point = unit_force_on_nodes(p)
             do a = 1, 3
                if (m(a) <= 0.0_wp) cycle
                weight(a) = weight(a) + p%area*m(a)*p%length
@@ -302,7 +302,7 @@ contains
 
    !> Forces on the nodes of a pair [-], slave first, of a unit force that pushes the surfaces apart at a point.
    !> docs/theory/contact.md section 2.3.
-   pure function unit_push(p) result(push)
+   pure function unit_force_on_nodes(p) result(push)
       type(point_t), intent(in) :: p
       real(wp) :: push(12)
 
@@ -310,7 +310,7 @@ contains
       push(2:6:2) = -p%t(1)*p%ns
       push(7:11:2) = -p%t(2)*p%nm
       push(8:12:2) = p%t(1)*p%nm
-   end function unit_push
+   end function unit_force_on_nodes
 
    !> Deepest penetration of a pair of edges [m], 0 if it is open: at the ends of the segments too, where corners are.
    !> docs/theory/contact.md sections 2.1 and 2.4.

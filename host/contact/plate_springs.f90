@@ -7,7 +7,7 @@ module plate_springs
    use contact_penalty, only: contact_result_t, new_result
    implicit none (type, external)
    private
-   public :: spring_geometry, new_spring_result, pull_springs, lengths_of_nodes
+   public :: spring_geometry, new_spring_result, evaluate_springs, lengths_of_nodes
 contains
    !> Numbers of nodes: each has its place on the plate.
    pure function spring_geometry(nodes) result(geometry)
@@ -39,7 +39,7 @@ contains
    end function new_spring_result
 
    !> Forces and energy at displacements. docs/theory/contact.md section 4.
-   pure subroutine pull_springs(stiffness, u, of_plate, result)
+   pure subroutine evaluate_springs(stiffness, u, of_plate, result)
       real(wp), intent(in) :: stiffness(:)            !< (nodes) [kN/m]
       real(wp), intent(in) :: u(:, :), of_plate(:, :)   !< (2, nodes) of the nodes, and of their places on the plate [m]
       type(contact_result_t), intent(inout) :: result
@@ -49,7 +49,7 @@ contains
       result%force(:size(pull)) = pull
       result%force(size(pull) + 1:) = -pull
       result%energy = 0.5_wp*dot_product(pull, reshape(u - of_plate, [size(pull)]))
-   end subroutine pull_springs
+   end subroutine evaluate_springs
 
    !> Share of every node in the length of a boundary, as its shape functions give it [m]. (nodes)
    pure function lengths_of_nodes(edges, x) result(lengths)

@@ -7,7 +7,7 @@ module carried_slopes
    use material_point, only: response_t, swollen
    implicit none (type, external)
    private
-   public :: slopes_t, new_slopes, keep_slopes, follow_slopes, same_again, BY_MATERIAL, BY_SLOPES, AS_BEFORE
+   public :: slopes_t, new_slopes, keep_slopes, follow_slopes, kept_response, BY_MATERIAL, BY_SLOPES, AS_BEFORE
 
    ! What gives the response of the points in a pass over the elements.
    integer, parameter :: BY_MATERIAL = 0   !< The material.
@@ -76,7 +76,7 @@ contains
 
    !> The answer that a pass by the material left in the state at the end of the step, with the slopes it kept.
    !> docs/theory/host.md section 5.4. n points of the mesh from `first` on.
-   pure subroutine same_again(n, first, slopes, stress, e, s_w, answer)
+   pure subroutine kept_response(n, first, slopes, stress, e, s_w, answer)
       integer, intent(in) :: n, first
       type(slopes_t), intent(in) :: slopes
       real(wp), intent(in) :: stress(:, :), e(:), s_w(:)   !< (6, n) [kPa], (n), (n) [-].
@@ -89,7 +89,7 @@ contains
          answer%s_w(g) = s_w(g)
          call slopes_of(first + g - 1, g, slopes, answer)
       end do
-   end subroutine same_again
+   end subroutine kept_response
 
    pure subroutine slopes_of(p, g, slopes, answer)
       integer, intent(in) :: p, g

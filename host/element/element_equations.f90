@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Residual and exact tangent of one element: B^T response and B^T slope B over its quadrature points.
 module element_equations
-   use wall_clock, only: clock, lap
+   use wall_clock, only: clock, add_elapsed
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use kinds, only: wp
    use material_point, only: material_t, response_t, report_t, MOST_POINTS
@@ -11,8 +11,8 @@ module element_equations
    use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, solid_response, PLACES, RR, TT, RZ, &
                              U
    use generalised_alpha, only: scheme_t, DYNAMIC
-   use carried_slopes, only: slopes_t, keep_slopes, follow_slopes, same_again, BY_MATERIAL, BY_SLOPES
-   use tangent_fallback, only: stiffen, NO_FALLBACK
+   use carried_slopes, only: slopes_t, keep_slopes, follow_slopes, kept_response, BY_MATERIAL, BY_SLOPES
+   use tangent_fallback, only: replace_soft_tangents, NO_FALLBACK
    implicit none (type, external)
    private
    public :: element_t, compute_element, element_size, MAX_DOF, STRAIN_TOO_LARGE
@@ -124,7 +124,7 @@ contains
                             d_suction, material)
          return
       else if (out%source /= BY_MATERIAL) then
-         call same_again(n, first, slopes, new%stress(:, first:last), new%e(first:last), new%s(first:last), material)
+         call kept_response(n, first, slopes, new%stress(:, first:last), new%e(first:last), new%s(first:last), material)
          return
       end if
       region = domain%region_of(element)
@@ -147,7 +147,7 @@ contains
          t0 = clock()
          call law%update(n, old%stress(:, first:last), before, strain, suction, d_suction, &
                          with_tangent .or. slopes%kept, material, after, report)
-         call lap(out%seconds, t0)
+         call add_elapsed(out%seconds, t0)
          out%rate_evaluations = report%n_rate
          if (report%code /= 0) then
             out%bad = report
@@ -156,7 +156,7 @@ contains
          end if
          if (slopes%kept) call keep_slopes(n, first, material, slopes)
          if (with_tangent .and. out%fallback /= NO_FALLBACK) &
-            call stiffen(law, out%fallback, n, after, suction(:n) + d_suction(:n), material, out%replaced)
+            call replace_soft_tangents(law, out%fallback, n, after, suction(:n) + d_suction(:n), material, out%replaced)
       end subroutine ask
    end subroutine update_points
 

@@ -9,7 +9,7 @@ module equation_assembly
    use element_equations, only: element_t, compute_element, element_size
    use tangent_fallback, only: NO_FALLBACK
    use material_point, only: report_t
-   use porous_domain, only: domain_t, state_t, is_present, stand_still, COUPLED
+   use porous_domain, only: domain_t, state_t, is_present, keep_element_state, COUPLED
    use sparsity_pattern, only: pattern_t
    use generalised_alpha, only: scheme_t
    use unknown_fields, only: DISPLACEMENTS
@@ -105,7 +105,7 @@ contains
       !$omp reduction(+:seconds)
       do e = 1, ne
          if (.not. is_present(old, e)) then
-            call stand_still(domain, e, old, new)
+            call keep_element_state(domain, e, old, new)
             call leave_out(e)
             cycle
          end if

@@ -13,7 +13,7 @@ module porous_domain
    implicit none (type, external)
    private
    public :: domain_t, region_t, fluids_t, gauss_t, state_t, source_i, prepare_domain, new_state_of, copy_state, &
-             take_over, mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, stand_still
+             take_over, mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, keep_element_state
    public :: COUPLED, DRAINED, UNDRAINED, DRY
 
    ! What the fluids in the pores of a region do, in the order of the words of &region drainage.
@@ -283,8 +283,8 @@ contains
       if (state%joins(element)) gravity = state%growth*state%gravity
    end function gravity_on
 
-   !> The points of an element that is not part of the ground are as before.
-   subroutine stand_still(domain, element, old, new)
+   !> Copies the old state of the points of an element that is not part of the ground into the new state.
+   subroutine keep_element_state(domain, element, old, new)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
       type(state_t), intent(in) :: old
@@ -300,7 +300,7 @@ contains
       associate (from => domain%before_state(element) + 1, to => domain%before_state(element + 1))
          new%state(from:to) = old%state(from:to)
       end associate
-   end subroutine stand_still
+   end subroutine keep_element_state
 
    !> A state that is accepted takes the place of the one before. What is large changes hands: `new` is left with
    !> stresses and state variables of the step before, all of which a pass by the material writes.

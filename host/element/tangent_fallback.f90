@@ -8,7 +8,7 @@ module tangent_fallback
    use material_point, only: material_t, response_t
    implicit none (type, external)
    private
-   public :: stiffen, NO_FALLBACK, OPEN_POINTS, SOFT_POINTS
+   public :: replace_soft_tangents, NO_FALLBACK, OPEN_POINTS, SOFT_POINTS
 
    integer, parameter :: NO_FALLBACK = 0   !< The tangents of the material are used.
    integer, parameter :: OPEN_POINTS = 1   !< Elastic where the volumetric stiffness is almost zero.
@@ -17,7 +17,7 @@ module tangent_fallback
    integer, parameter :: PLANE = 4         !< Components rr, zz, tt, rz.
 contains
    !> Replaces the tangents of a batch of points that are too soft; counts them. docs/theory/host.md section 5.3.
-   subroutine stiffen(law, level, n, state, suction, response, replaced)
+   subroutine replace_soft_tangents(law, level, n, state, suction, response, replaced)
       class(material_t), intent(in) :: law
       integer, intent(in) :: level                 !< OPEN_POINTS or SOFT_POINTS
       integer, intent(in) :: n   !< Number of points.
@@ -39,7 +39,7 @@ contains
          response%dsig_deps(:, :, g) = elastic
          replaced = replaced + 1
       end do
-   end subroutine stiffen
+   end subroutine replace_soft_tangents
 
    !> Mean stress per volumetric strain, times nine [kPa].
    pure real(wp) function volume_stiffness(tangent)

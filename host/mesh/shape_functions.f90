@@ -53,24 +53,24 @@ contains
       used = 0
       select case (count)
       case (3)
-         call orbit(1.0_wp/6, 1.0_wp/3)
+         call add_three_points(1.0_wp/6, 1.0_wp/3)
       case (6)
-         call orbit(0.44594849091596488632_wp, 0.22338158967801146570_wp)
-         call orbit(0.091576213509770743460_wp, 0.10995174365532186764_wp)
+         call add_three_points(0.44594849091596488632_wp, 0.22338158967801146570_wp)
+         call add_three_points(0.091576213509770743460_wp, 0.10995174365532186764_wp)
       case (7)
          points(:, 1) = 1.0_wp/3
          weights(1) = 0.1125_wp
          used = 1
-         call orbit((6 + ROOT)/21, (155 + ROOT)/1200)
-         call orbit((6 - ROOT)/21, (155 - ROOT)/1200)
+         call add_three_points((6 + ROOT)/21, (155 + ROOT)/1200)
+         call add_three_points((6 - ROOT)/21, (155 - ROOT)/1200)
       case default
-         call orbit(0.24928674517091042129_wp, 0.11678627572637936603_wp)
-         call orbit(0.063089014491502227340_wp, 0.050844906370206816921_wp)
+         call add_three_points(0.24928674517091042129_wp, 0.11678627572637936603_wp)
+         call add_three_points(0.063089014491502227340_wp, 0.050844906370206816921_wp)
          call six(0.053145049844816947353_wp, 0.31035245103378440542_wp, 0.082851075618373575194_wp)
       end select
    contains
       !> The three points with two barycentric coordinates equal to a.
-      subroutine orbit(a, weight)
+      subroutine add_three_points(a, weight)
          real(wp), intent(in) :: a, weight
 
          points(:, used + 1) = [a, a]
@@ -78,7 +78,7 @@ contains
          points(:, used + 3) = [a, 1 - 2*a]
          weights(used + 1:used + 3) = 0.5_wp*weight
          used = used + 3
-      end subroutine orbit
+      end subroutine add_three_points
 
       !> The six permutations of (a, b, 1 - a - b).
       subroutine six(a, b, weight)

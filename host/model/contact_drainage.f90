@@ -13,7 +13,7 @@ module contact_drainage
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: drainage_t, prepare_drainage, freeze_drainage, is_released
+   public :: drainage_t, prepare_drainage, find_impervious_nodes, is_released
 
    !> Nothing is allocated where every contact has fixed drainage.
    type :: drainage_t
@@ -65,7 +65,7 @@ contains
 
    !> The impervious nodes at given displacements. What the last evaluation of the contacts left behind stays.
    !> docs/theory/contact.md section 5. Fault EXIT_CONVERGENCE: a kernel refuses the displacements.
-   subroutine freeze_drainage(model, drainage, contacts, x, fault)
+   subroutine find_impervious_nodes(model, drainage, contacts, x, fault)
       type(model_t), intent(in) :: model
       type(drainage_t), intent(inout) :: drainage
       type(contacts_t), intent(inout) :: contacts
@@ -94,7 +94,7 @@ contains
             end do
          end associate
       end do
-   end subroutine freeze_drainage
+   end subroutine find_impervious_nodes
 
    !> Whether the contact has released the value that a &fix prescribes at a node.
    pure logical function is_released(drainage, fix, node)

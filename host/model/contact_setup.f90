@@ -14,7 +14,7 @@ module contact_setup
    use faults, only: fault_t, raise, EXIT_INPUT
    implicit none (type, external)
    private
-   public :: prepare_contacts, seat_plates, contacts_act
+   public :: prepare_contacts, place_heavy_plates, contacts_act
 contains
    !> Prepares the contacts of a model; a fault names the contact and what is wrong with its surfaces. Fault EXIT_INPUT,
    !> where contact_prepare refuses them. Without contacts nothing is allocated.
@@ -77,7 +77,7 @@ contains
 
    !> A heavy plate starts where the penalty alone carries what acts on it downwards: so it is held from the first
    !> iteration on. docs/theory/contact.md section 4. Sets u_z of plates with a face of their own that looks down.
-   subroutine seat_plates(model, contacts, state)
+   subroutine place_heavy_plates(model, contacts, state)
       type(model_t), intent(in) :: model
       type(contacts_t), intent(in) :: contacts
       type(state_t), intent(inout) :: state
@@ -111,7 +111,7 @@ contains
             area = area + max(0.0_wp, part)
          end do
       end function area_below
-   end subroutine seat_plates
+   end subroutine place_heavy_plates
 
    !> Which contacts take part in a stage.
    subroutine contacts_act(model, stage, contacts)

@@ -36,7 +36,7 @@ contains
             if (k > 0) call judge(keys, keys(k), fields_of(scene), scene%groups(g), warnings)
          end do
       end do
-      call look_for_users(keys, scene, warnings)
+      call list_unused_definitions(keys, scene, warnings)
    end subroutine list_idle_keys
 
    !> The conditions of a key that a group gives.
@@ -88,34 +88,42 @@ contains
       if (any(scene%effects%kind == OF_P_C .and. scene%effects%present)) fields = WITH_P_C
    end function fields_of
 
-   !> Materials, curves, permeabilities and histories that no group names.
-   subroutine look_for_users(keys, scene, warnings)
+   !> Definitions, of a kind that keys refer to, that no key of the scene names.
+   subroutine list_unused_definitions(keys, scene, warnings)
       type(key_t), intent(in) :: keys(:)
       type(scene_t), intent(in) :: scene
       character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
-      character(12) :: key
-      integer :: g, k
-      logical :: used
+      character(12) :: kind
+      integer :: g
 
       do g = 1, size(scene%groups)
          associate (group => scene%groups(g))
-            key = group%name(:12)
-            if (is_law(group%name)) key = 'material'
-            if (.not. any([character(12) :: 'material', 'retention', 'permeability', 'history'] == key)) cycle
-            used = .false.
-            do k = 1, size(scene%groups)
-               if (key == 'history' .and. given(scene%groups(k), 'gravity_history')) &
-                  used = used .or. text_of(keys, scene%groups(k), 'gravity_history') == name_of(group)
-               if (k == g .or. .not. given(scene%groups(k), trim(key))) cycle
-               if (is_law(scene%groups(k)%name)) cycle
-               if (key == 'material' .and. scene%groups(k)%name == 'strength') cycle
-               used = used .or. text_of(keys, scene%groups(k), trim(key)) == name_of(group)
-            end do
-            if (.not. used) call add_warning(at_line(group%file, group%line)//'&'//trim(group%name)//' '''// &
-               name_of(group)//''' has no effect: no group names it as its '//trim(key)//'.', warnings)
+            kind = group%name(:12)
+            if (is_law(group%name)) kind = 'material'
+            if (.not. any(keys%refers == kind)) cycle
+            if (.not. is_referred_to(keys, scene%groups, kind, name_of(group))) call add_warning( &
+               at_line(group%file, group%line)//'&'//trim(group%name)//' '''//name_of(group)// &
+               ''' has no effect: no group names it as its '//trim(kind)//'.', warnings)
          end associate
       end do
-   end subroutine look_for_users
+   end subroutine list_unused_definitions
+
+   !> Whether a group gives the name of a definition by a key that refers to its kind.
+   logical function is_referred_to(keys, groups, kind, name)
+      type(key_t), intent(in) :: keys(:)
+      type(group_t), intent(in) :: groups(:)
+      character(*), intent(in) :: kind, name
+      integer :: g, k
+
+      is_referred_to = .false.
+      do g = 1, size(groups)
+         do k = 1, size(keys)
+            if (keys(k)%group /= groups(g)%name .or. keys(k)%refers /= kind) cycle
+            if (given(groups(g), keys(k)%name)) is_referred_to = is_referred_to .or. &
+               text_of(keys, groups(g), keys(k)%name) == name
+         end do
+      end do
+   end function is_referred_to
 
    !> Name of a group, of laws as well.
    pure function name_of(group) result(name)

@@ -6,9 +6,9 @@ module checkpoints
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
    use run_state, only: run_t
-   use control_state, only: new_control_state, numbers_of, take_numbers, count_of_numbers
+   use control_state, only: new_control_state, numbers_of, set_numbers, count_of_numbers
    use degrees_of_freedom, only: dofs_t
-   use output_tables, only: tables_t, settle_tables
+   use output_tables, only: tables_t, flush_tables
    use model_types, only: model_t, gravity_at
    use porous_domain, only: copy_state
    use sparsity_pattern, only: make_pattern
@@ -45,7 +45,7 @@ contains
       logical :: good
 
       ! What the checkpoint counts on comes first.
-      call settle_tables(tables, fault)
+      call flush_tables(tables, fault)
       if (fault%code /= 0) return
       call new_file(file, tables%folder//'/'//CHECKPOINT, guarded=.true.)
       call put_origin(file, KIND_OF_FILE)
@@ -189,7 +189,7 @@ contains
                                       size(model%contacts))
       allocate (list(count_of_numbers(run%control)))
       call get(file, 'control', list)
-      if (file%good) call take_numbers(list, run%control)
+      if (file%good) call set_numbers(list, run%control)
    end subroutine take_control
 
    !> What was seen of the effects that are off.

@@ -8,7 +8,7 @@ module force_answers
    use faults, only: fault_t
    use force_errors, only: error_of_support, error_on_path, error_of_peaks, VALUES
    use generalised_alpha, only: make_scheme, scheme_t, STATIC, QUASI_STATIC, DYNAMIC
-   use history_distance, only: farthest, peaks_apart
+   use history_distance, only: farthest, peak_difference
    use model_types, only: model_t
    use output_tables, only: reactions_of
    use scene_types, only: stage_t
@@ -231,7 +231,7 @@ contains
          if (forces(i)%stage > 0) then
             forces(i)%error = abs(farthest(one(1, :), one(2, :), two(1, :), two(2, :)))/forces(i)%change
          else
-            forces(i)%error = peaks_apart(one(1, :), one(2, :), two(1, :), two(2, :))/forces(i)%change
+            forces(i)%error = peak_difference(one(1, :), one(2, :), two(1, :), two(2, :))/forces(i)%change
          end if
       end do
    end subroutine measure_forces

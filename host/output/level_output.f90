@@ -12,7 +12,7 @@ module level_output
    use level_store, only: write_levels
    use mesh_levels, only: level_reporter_t, words_of_error
    use model_types, only: model_t
-   use pilot_runs, only: pilot_t, watch_run
+   use pilot_runs, only: pilot_t, run_observed_pilot
    use price_estimates, only: answer_t, bound_of, worst_answer, STATE_WORDS
    use run_output, only: run_output_t
    use run_state, only: run_t
@@ -61,7 +61,7 @@ contains
       self%at = level
       output%folder = folder_of_mesh(self%folder, level)
       output%quiet = self%quiet
-      call watch_run(scene, huge(1.0_wp), self%model, self%run_of_level, pilot, most_seconds, output)
+      call run_observed_pilot(scene, huge(1.0_wp), self%model, self%run_of_level, pilot, most_seconds, output)
    end subroutine run_with_files
 
    !> answers.csv of the last mesh, the table of meshes, and what a restart needs. Fault EXIT_OUTPUT: one cannot be

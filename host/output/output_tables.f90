@@ -10,7 +10,7 @@ module output_tables
    use contact_interfaces, only: contacts_t
    use porous_domain, only: state_t, domain_t
    use files, only: make_folder
-   use csv, only: csv_t, new_csv, check_csv, resume_csv, write_row, settle_csv, close_csv, is_open, &
+   use csv, only: csv_t, new_csv, check_csv, resume_csv, write_row, flush_csv, close_csv, is_open, &
                        NUMBERS
    use run_observer, only: step_report_t
    use run_state, only: run_t
@@ -22,7 +22,7 @@ module output_tables
    public :: COLUMNS_OF_A_POINT
    public :: tables_t, open_tables, check_tables, write_history, write_ledger, write_contacts, write_fields, &
              write_points
-   public :: write_contact_nodes, write_reactions, close_reactions, reactions_of, close_tables, settle_tables
+   public :: write_contact_nodes, write_reactions, close_reactions, reactions_of, close_tables, flush_tables
 
    character(4), parameter :: COLUMNS(14) = [character(4) :: 'u_r', 'u_z', 'p_w', 'p_c', 'v_r', 'v_z', 'a_r', 'a_z', &
       's_rr', 's_zz', 's_tt', 's_rz', 'e', 'S_w']
@@ -114,15 +114,15 @@ contains
    end function history_columns
 
    !> Brings the tables to the disk. Fault EXIT_OUTPUT where that fails.
-   subroutine settle_tables(tables, fault)
+   subroutine flush_tables(tables, fault)
       type(tables_t), intent(inout) :: tables
       type(fault_t), intent(inout) :: fault
 
-      call settle_csv(tables%history, fault)
-      if (fault%code == 0) call settle_csv(tables%ledger, fault)
-      if (fault%code == 0 .and. is_open(tables%contact)) call settle_csv(tables%contact, fault)
-      if (fault%code == 0 .and. is_open(tables%reactions)) call settle_csv(tables%reactions, fault)
-   end subroutine settle_tables
+      call flush_csv(tables%history, fault)
+      if (fault%code == 0) call flush_csv(tables%ledger, fault)
+      if (fault%code == 0 .and. is_open(tables%contact)) call flush_csv(tables%contact, fault)
+      if (fault%code == 0 .and. is_open(tables%reactions)) call flush_csv(tables%reactions, fault)
+   end subroutine flush_tables
 
    !> A row of histories.csv: time and the columns of every named point. Units [s, m, kPa, m/s, m/s2, kPa, -, -],
    !> stresses tension positive. Fault EXIT_OUTPUT: it cannot be written.

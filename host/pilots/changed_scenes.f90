@@ -3,7 +3,7 @@
 !> docs/theory/host.md section 12.
 module changed_scenes
    use kinds, only: wp
-   use effect_pilots, only: settle_scene, apply_effects
+   use effect_pilots, only: reduce_scene, apply_effects
    use effect_types, only: effect_t
    use faults, only: fault_t
    use scene_accuracy, only: shorten_given_steps
@@ -15,7 +15,7 @@ module changed_scenes
 contains
    !> The scene of a file, settled, with `fineness` times the accuracy of its controlled stages and given steps
    !> `fineness` times as long, on a mesh of its own; with the effects of a table where one was made. Faults: those of
-   !> read_scene and settle_scene.
+   !> read_scene and reduce_scene.
    subroutine read_changed(file, asked, fineness, mesh, effects, scene, fault)
       character(*), intent(in) :: file
       real(wp), intent(in) :: asked      !< Accuracy of the controlled stages before the change [-]; 0: none.
@@ -31,7 +31,7 @@ contains
       cells = ''
       if (mesh > 0.0_wp) write (cells, '(es12.5)') mesh
       call read_scene(file, scene, fault, trim(adjustl(accuracy)), trim(adjustl(cells)))
-      if (fault%code == 0) call settle_scene(scene, fault)
+      if (fault%code == 0) call reduce_scene(scene, fault)
       if (fault%code == 0 .and. allocated(effects)) call apply_effects(effects, scene)
       if (fault%code == 0) call shorten_given_steps(scene%stages, fineness)
    end subroutine read_changed

@@ -5,19 +5,19 @@ module effect_pilots
    use, intrinsic :: iso_fortran_env, only: output_unit
    use kinds, only: wp
    use effect_monitor, only: is_watched
-   use effect_switches, only: list_effects, settle_open_keys, switch, switch_by_hand
+   use effect_switches, only: list_effects, set_open_keys, switch, switch_by_hand
    use effect_types, only: effect_t, indicator_place, OF_P_C, OF_SEEPAGE, OF_FLOW, OF_INERTIA, OF_GRAVITY
    use faults, only: fault_t, raise, EXIT_INPUT
-   use pilot_budget, only: pilots_account_t, book, left, estimate, expect_run, NO_LIMIT
+   use pilot_budget, only: pilots_account_t, book, left, estimate, estimate_run, NO_LIMIT
    use pilot_differences, only: difference_t, difference, influence_t
    use pilot_runs, only: pilot_t, run_pilot
-   use pilot_scenes, only: make_cheap, can_coarsen
+   use pilot_scenes, only: coarsen_scene, can_coarsen
    use scene_types, only: scene_t, WITH_P_C
    use texts, only: short, whole
    use generalised_alpha, only: DYNAMIC
    implicit none (type, external)
    private
-   public :: ask_effects, settle_scene, apply_effects
+   public :: ask_effects, reduce_scene, apply_effects
 
    !> An influence is taken so many times as large, for the coarseness of the pilot.
    real(wp), parameter :: PILOT_FACTOR = 2.0_wp
@@ -49,15 +49,15 @@ module effect_pilots
 contains
    !> The scene in its cheapest reading, and without what `without` names. Fault EXIT_INPUT: an effect of `without`
    !> cannot be taken out.
-   subroutine settle_scene(scene, fault)
+   subroutine reduce_scene(scene, fault)
       type(scene_t), intent(inout) :: scene
       type(fault_t), intent(inout) :: fault
       character(200) :: why
 
-      call settle_open_keys(scene)
+      call set_open_keys(scene)
       call switch_by_hand(scene, why)
       if (why /= '') call raise(fault, EXIT_INPUT, trim(scene%file)//': without = '//trim(why)//'.')
-   end subroutine settle_scene
+   end subroutine reduce_scene
 
    !> A settled scene with the effects as a table says. An effect that cannot be switched stays as it is.
    subroutine apply_effects(table, scene)
@@ -74,7 +74,7 @@ contains
    !> Pilots of a scene as it was read. `whole_scene`: the pilots are the scene itself, neither coarser nor faster; they
    !> may cost `share` of the expected run [-], or some seconds if that is more (pilot_budget). What is not tried is as
    !> the scene says it. The table's `on` says what the run should have; only what no key says may differ from the
-   !> scene. docs/theory/host.md section 11. Fault EXIT_INPUT: as of settle_scene, or the pilot of the scene fails; a
+   !> scene. docs/theory/host.md section 11. Fault EXIT_INPUT: as of reduce_scene, or the pilot of the scene fails; a
    !> failure of another pilot stands in its row.
    subroutine ask_effects(scene, whole_scene, share, quiet, table, account, fault)
       type(scene_t), intent(in) :: scene
@@ -89,7 +89,7 @@ contains
 
       table = list_effects(scene)
       settled = scene
-      call settle_scene(settled, fault)
+      call reduce_scene(settled, fault)
       if (fault%code /= 0) return
       allocate (account%influences(0))
       account%share = merge(NO_LIMIT, share, whole_scene)
@@ -155,8 +155,8 @@ contains
       run_before = account%run_work
       do k = merge(LEVELS, 0, .not. whole_scene), 0, -1
          finer_scene = reading
-         if (.not. whole_scene) call make_cheap(account%cells, 2**k, finer_scene)
-         call expect_run(reading, finer_scene, base%pilot%done, account)
+         if (.not. whole_scene) call coarsen_scene(account%cells, 2**k, finer_scene)
+         call estimate_run(reading, finer_scene, base%pilot%done, account)
          ! The next pilot, and that with its steps prescribed.
          if (base%pilot%done) account%over_share = 4*base%pilot%work > rest()
          if (account%over_share) exit
@@ -523,7 +523,7 @@ contains
 
       if (size(settled%points) == 0 .or. .not. can_coarsen(base%scene) .or. base%pilot%work > left(account)) return
       coarser = base%scene
-      call make_cheap(2, 1, coarser)
+      call coarsen_scene(2, 1, coarser)
       call run_pilot(coarser, MOST_TIMES_THE_BASE*base%pilot%work, pilot)
       call book(pilot, account)
       if (.not. pilot%done) return

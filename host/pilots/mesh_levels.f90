@@ -10,7 +10,7 @@ module mesh_levels
    use level_runs, only: level_runner_t
    use price_estimates, only: quote_t, is_certain, bound_of, worst_answer, STATE_WORDS, &
                               NOT_CONVERGING
-   use scene_price, only: family_t, price_t, begin_price, begin_again, add_level, quotes_of
+   use scene_price, only: family_t, price_t, begin_price, repeat_first_meshes, add_level, quotes_of
    use scene_refinement, only: finest_of
    use texts, only: short, whole
    use wall_clock, only: clock
@@ -120,7 +120,7 @@ contains
             short(price%fineness)//' times the steps and '//short(price%newton)//' times the tolerance.'
          price%answers%steps = price%fineness*price%answers%steps
          price%answers%newton = price%newton*price%answers%newton
-         call begin_again(family, price, fault, runner)
+         call repeat_first_meshes(family, price, fault, runner)
       end subroutine share_out
    end subroutine refine_until
 

@@ -9,7 +9,7 @@ module pilot_budget
    use scene_types, only: scene_t, stage_t
    implicit none (type, external)
    private
-   public :: pilots_account_t, book, left, estimate, expect_run, NO_LIMIT
+   public :: pilots_account_t, book, left, estimate, estimate_run, NO_LIMIT
 
    real(wp), parameter :: NO_LIMIT = huge(1.0_wp)
    real(wp), parameter :: ALWAYS = 10.0_wp       !< Work that pilots may take of any scene [s].
@@ -52,7 +52,7 @@ contains
 
    !> Before the first pilot of a reading: where all steps are given, keys say what the run costs, in pilots like this
    !> one; where it is many times as dear as that, the pilot may take what it takes.
-   pure subroutine expect_run(scene, cheap, known, account)
+   pure subroutine estimate_run(scene, cheap, known, account)
       type(scene_t), intent(in) :: scene, cheap
       logical, intent(in) :: known   !< A pilot has told it.
       type(pilots_account_t), intent(inout) :: account
@@ -68,7 +68,7 @@ contains
       if (can_coarsen(scene)) times = times*elements_of(scene)/elements_of(cheap)
       ! A pilot that costs less than LEAST of its share of the run cannot be too dear.
       if (account%share*times*LEAST >= 1.0_wp) account%run_work = 0.5_wp*NO_LIMIT/max(1.0_wp, account%share)
-   end subroutine expect_run
+   end subroutine estimate_run
 
    pure real(wp) function elements_of(scene)
       type(scene_t), intent(in) :: scene

@@ -25,7 +25,7 @@ module pilot_runs
    use wall_clock, only: clock
    implicit none (type, external)
    private
-   public :: pilot_t, stage_ends_t, run_pilot, watch_run, PHASES
+   public :: pilot_t, stage_ends_t, run_pilot, run_observed_pilot, PHASES
 
    integer, parameter :: NODES_WITHOUT_POINTS = 50    !< Answers of a scene that names no points.
    ! A pass over an element with its share of the solution, on a usual processor: measured, rounded [s].
@@ -88,11 +88,11 @@ contains
       type(model_t) :: model
       type(run_t) :: run
 
-      call watch_run(scene, most_work, model, run, pilot, most_seconds)
+      call run_observed_pilot(scene, most_work, model, run, pilot, most_seconds)
    end subroutine run_pilot
 
    !> The same, and keeps the model and the run, which another observer may see.
-   subroutine watch_run(scene, most_work, model, run, pilot, most_seconds, also)
+   subroutine run_observed_pilot(scene, most_work, model, run, pilot, most_seconds, also)
       type(scene_t), intent(in) :: scene
       real(wp), intent(in) :: most_work   !< That it may take [s].
       type(model_t), intent(out) :: model
@@ -135,7 +135,7 @@ contains
       pilot%iterations = run%iterations
       pilot%cuts = run%cuts
       pilot%megabytes = memory_of(run)
-   end subroutine watch_run
+   end subroutine run_observed_pilot
 
    !> Chooses the nodes whose answers are kept, and keeps their values at the start. Raises no fault.
    subroutine run_begins(self, model, run, fault)

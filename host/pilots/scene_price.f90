@@ -15,7 +15,7 @@ module scene_price
    use texts, only: short, whole
    implicit none (type, external)
    private
-   public :: family_t, price_t, price_scene, find_family, begin_price, begin_again, add_level, quotes_of
+   public :: family_t, price_t, price_scene, find_family, begin_price, repeat_first_meshes, add_level, quotes_of
 
    !> Fineness of meshes and steps in the table, times those of the scene.
    real(wp), parameter :: MESHES(5) = [0.25_wp, 0.5_wp, 1.0_wp, 2.0_wp, 4.0_wp]
@@ -141,7 +141,7 @@ contains
       !> The two coarsest meshes that differ and on which the scene runs, none coarser than that of the scene.
       subroutine first_pair()
          do
-            call begin_again(family, price, fault, runner)
+            call repeat_first_meshes(family, price, fault, runner)
             if (fault%code == 0 .or. family%coarsest >= 1.0_wp) exit
             if (.not. family%quiet) write (output_unit, '(a)') '   '//trim(fault%text)//' Finer meshes are taken.'
             fault = fault_t()
@@ -160,7 +160,7 @@ contains
    end subroutine begin_price
 
    !> The first two meshes anew, with the steps and Newton's tolerance that the price names. Faults: those of add_level.
-   subroutine begin_again(family, price, fault, runner)
+   subroutine repeat_first_meshes(family, price, fault, runner)
       type(family_t), intent(in) :: family
       type(price_t), intent(inout) :: price
       type(fault_t), intent(inout) :: fault
@@ -170,7 +170,7 @@ contains
       allocate (price%levels(0), price%meshes(0))
       call add_level(family, family%coarsest, UNTIL_DONE, price, fault, runner)
       if (fault%code == 0) call add_level(family, 2*family%coarsest, UNTIL_DONE, price, fault, runner)
-   end subroutine begin_again
+   end subroutine repeat_first_meshes
 
    !> A run on the next mesh, and the errors of the answers, where they are listed, by all meshes. Faults: those of
    !> read_changed and of the run, which then is none of the levels; EXIT_INPUT: it has the same cells.

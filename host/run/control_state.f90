@@ -7,7 +7,7 @@ module control_state
    use unknown_fields, only: FIELDS
    implicit none (type, external)
    private
-   public :: control_state_t, new_control_state, numbers_of, take_numbers, count_of_numbers
+   public :: control_state_t, new_control_state, numbers_of, set_numbers, count_of_numbers
    public :: LIMITS, LIMIT_NAMES, BY_DISPLACEMENTS, BY_PRESSURE, BY_SUCTION, BY_TIMES, BY_LARGEST, BY_SMALLEST, &
              BY_GROWTH
 
@@ -69,7 +69,7 @@ contains
           + size(state%error_before) + size(state%memory%s_rate) + 6*size(state%low) + size(state%touching)
    end function count_of_numbers
 
-   !> Everything as one list, for a checkpoint. Each number in its own unit, in the order that take_numbers reads.
+   !> Everything as one list, for a checkpoint. Each number in its own unit, in the order that set_numbers reads.
    pure function numbers_of(state) result(list)
       type(control_state_t), intent(in) :: state
       real(wp) :: list(count_of_numbers(state))
@@ -85,7 +85,7 @@ contains
    end function numbers_of
 
    !> The state again; its arrays must have their sizes.
-   subroutine take_numbers(list, state)
+   subroutine set_numbers(list, state)
       real(wp), intent(in) :: list(:)   !< (count_of_numbers)
       type(control_state_t), intent(inout) :: state
       integer :: at
@@ -136,5 +136,5 @@ contains
          values = reshape(list(at + 1:at + size(values)), shape(values))
          at = at + size(values)
       end subroutine take
-   end subroutine take_numbers
+   end subroutine set_numbers
 end module control_state

@@ -21,7 +21,7 @@ module ground_stages
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: change_ground, growth_at, acting_load, hold_absent
+   public :: change_ground, growth_at, acting_load, fix_absent_unknowns
 contains
    !> The elements of a stage, which join with it and which leave, and the forces that those held up; also where a run
    !> is taken up within the stage, from run%at%x_start. docs/theory/host.md section 14. Fault EXIT_MATERIAL: the
@@ -138,7 +138,7 @@ contains
    end function acting_load
 
    !> Unknowns that no present element has stay as they are.
-   pure subroutine hold_absent(dofs, run, constraint)
+   pure subroutine fix_absent_unknowns(dofs, run, constraint)
       type(dofs_t), intent(in) :: dofs
       type(run_t), intent(in) :: run
       type(constraint_t), intent(inout) :: constraint
@@ -152,5 +152,5 @@ contains
          constraint%target(i) = run%state%x(dofs%field(i), dofs%node(i))
          if (dofs%field(i) > DISPLACEMENTS) constraint%air(dofs%node(i)) = .false.
       end do
-   end subroutine hold_absent
+   end subroutine fix_absent_unknowns
 end module ground_stages

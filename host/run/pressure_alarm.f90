@@ -14,7 +14,7 @@ module pressure_alarm
    use scene_types, only: stage_t
    implicit none (type, external)
    private
-   public :: warn_of_oscillation, warn_lost_pressure, warn_of_inflow, outlier
+   public :: warn_of_oscillation, warn_lost_pressure, warn_of_inflow, outstanding_corner
 
    !> By how much a corner may differ from all sides around it, share of the range of all pressures: linear and
    !> parabolic fields leave nothing, a field that the mesh follows little [-].
@@ -44,7 +44,7 @@ contains
             if (flows(e)) counts(mesh%t6(:, e)) = .true.
          end do
          where (.not. counts) p = p(mesh%t6(1, findloc(flows, .true., dim=1)))
-         call outlier(mesh%t6(:, pack([(e, e=1, size(flows))], flows)), p, share, node)
+         call outstanding_corner(mesh%t6(:, pack([(e, e=1, size(flows))], flows)), p, share, node)
          if (share <= ALARMING_SHARE) return
          told = .true.
          write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//', time '//short(state%time)// &
@@ -102,7 +102,7 @@ contains
    !> The corner of the mesh that stands out most, and by which share of the range of all pressures; 0 where no corner
    !> does or the range is too small to matter. A corner stands out by what it is above, or below, the middles of all
    !> sides around it beyond what these differ from the other ends of their sides. docs/theory/host.md section 3.1.
-   pure subroutine outlier(t6, p, share, node)
+   pure subroutine outstanding_corner(t6, p, share, node)
       integer, intent(in) :: t6(:, :)   !< (6, elements)
       real(wp), intent(in) :: p(:)       !< At the nodes [kPa]. (nodes)
       real(wp), intent(out) :: share   !< [-]
@@ -128,5 +128,5 @@ contains
       where (highest < -0.5_wp*huge(1.0_wp)) lowest = 0.0_wp   ! no corner
       node = maxloc(lowest, 1)
       share = max(0.0_wp, lowest(node)/(maxval(p) - minval(p)))
-   end subroutine outlier
+   end subroutine outstanding_corner
 end module pressure_alarm

@@ -6,7 +6,7 @@ module run_setup
    use absorbing_boundaries, only: prepare_absorbers
    use boundary_conditions, only: new_constraint
    use contact_drainage, only: prepare_drainage
-   use contact_setup, only: prepare_contacts, seat_plates
+   use contact_setup, only: prepare_contacts, place_heavy_plates
    use effect_monitor, only: begin_monitor
    use equation_assembly, only: make_assembly
    use held_ground, only: keep_flow
@@ -33,7 +33,7 @@ contains
       call initial_state(model, run%state, fault, run%tension)
       if (fault%code == 0) call prepare_contacts(model, run%system%contacts, fault)
       if (fault%code == 0) call prepare_drainage(model, run%drainage, fault)
-      if (fault%code == 0) call seat_plates(model, run%system%contacts, run%state)
+      if (fault%code == 0) call place_heavy_plates(model, run%system%contacts, run%state)
       if (fault%code == 0) call prepare_absorbers(model, run%state, run%constraint%dashpots, fault)
       run%next = run%state
       if (any(model%domain%regions%stiffness_damping > 0.0_wp)) &

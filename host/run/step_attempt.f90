@@ -7,7 +7,7 @@ module step_attempt
    use faults, only: fault_t, raise
    use boundary_conditions, only: constrain_step, follow_accelerations, starting_accelerations
    use boundary_loads, only: rain_at
-   use contact_drainage, only: freeze_drainage
+   use contact_drainage, only: find_impervious_nodes
    use contact_interfaces, only: begin_friction
    use contact_types, only: contact_message
    use convergence, only: control_t, log_t
@@ -15,7 +15,7 @@ module step_attempt
    use free_bodies, only: bodies_on_contact
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, DYNAMIC
    use given_pressures, only: follow_undrained
-   use ground_stages, only: acting_load, change_ground, growth_at, hold_absent
+   use ground_stages, only: acting_load, change_ground, growth_at, fix_absent_unknowns
    use held_ground, only: hold_ground, set_incoming_waves
    use model_types, only: model_t, gravity_at
    use newton_step, only: take_step, start_accelerations, unbalanced_forces, &
@@ -34,7 +34,7 @@ module step_attempt
    real(wp), parameter :: LEAST_SPACINGS = 16.0_wp      !< Of the numbers at the present time: its rounding.
 contains
    !> Sets a run at the start of stage `number`: prescribed values, absorbing boundaries, control of the steps, first
-   !> accelerations. docs/theory/host.md section 4.1. Faults: those of freeze_drainage, hold_ground and, for the
+   !> accelerations. docs/theory/host.md section 4.1. Faults: those of find_impervious_nodes, hold_ground and, for the
    !> accelerations, explain_failure.
    subroutine begin_stage(model, number, run, fault)
       type(model_t), intent(in) :: model
@@ -63,8 +63,8 @@ contains
    end subroutine begin_stage
 
    !> From run%state to run%next; where it fails the next step is smaller, or the fault says why there is none.
-   !> docs/theory/host.md section 4.4. Faults: that of freeze_drainage; that of explain_failure where no cut is left,
-   !> the linear solver failed, or the matrix is singular by no soft point.
+   !> docs/theory/host.md section 4.4. Faults: that of find_impervious_nodes; that of explain_failure where no cut is
+   !> left, the linear solver failed, or the matrix is singular by no soft point.
    subroutine try_step(model, stage, control, dt, run, log, accepted, fault)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
@@ -170,7 +170,7 @@ contains
       type(fault_t), intent(inout) :: fault
       character(400) :: text
 
-      call freeze_drainage(model, run%drainage, run%system%contacts, run%state%x, fault)
+      call find_impervious_nodes(model, run%drainage, run%system%contacts, run%state%x, fault)
       if (fault%code /= 0) return
       if (.not. begin_friction(run%system%contacts, run%state%x)) then
          call contact_message(run%system%contacts%status, text)
@@ -179,7 +179,7 @@ contains
       end if
       call constrain_step(model, stage, model%dofs, run%drainage, time, run%at%x_start, run%state%x, &
                           run%constraint)
-      call hold_absent(model%dofs, run, run%constraint)
+      call fix_absent_unknowns(model%dofs, run, run%constraint)
    end subroutine prescribe
 
    subroutine first_accelerations(model, stage, run, fault)

@@ -3,7 +3,7 @@
 !> docs/theory/host.md section 9.
 module step_booking
    use kinds, only: wp
-   use wall_clock, only: clock, lap
+   use wall_clock, only: clock, add_elapsed
    use contact_interfaces, only: mean_contact_forces, accept_friction
    use effect_monitor, only: monitor_step, warning_of
    use exit_codes, only: EXIT_EFFECT
@@ -32,7 +32,7 @@ contains
       allocate (contact_force(0))
       if (allocated(run%system%contacts%interfaces)) then
          contact_force = mean_contact_forces(run%system%contacts, model%dofs, run%state%x, run%next%x)
-         call lap(run%system%seconds(T_CONTACT), t0)
+         call add_elapsed(run%system%seconds(T_CONTACT), t0)
       end if
       call book_step(model%domain, model%dofs, scheme, run%constraint, run%system%reaction, contact_force, run%state, &
                      run%next, run%damping_stress, run%ledger)

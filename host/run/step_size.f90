@@ -6,7 +6,7 @@ module step_size
    use contact_interfaces, only: probe_contacts
    use control_state, only: new_control_state, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
    use error_norms, only: bent_share, keep_rates, shift_rates, local_errors, remember, forget, kept_of_motion, &
-                          ripple_in, rms
+                          alternating_part, rms
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, QUASI_STATIC, DYNAMIC
    use model_types, only: model_t
    use run_state, only: run_t
@@ -260,9 +260,11 @@ contains
          if (stage%kind /= DYNAMIC .or. changes .or. c%fresh == 0 .or. .not. c%memory%dt > 0.0_wp) return
          ! The same jump of accelerations errs by the square of the step, one of rates by the step.
          longer = dt/c%memory%dt
-         ripple(:DISPLACEMENTS, :) = ripple_in(error(:DISPLACEMENTS, :), longer**2*c%error_before(:DISPLACEMENTS, :))
-         if (c%memory%known) ripple(DISPLACEMENTS + 1:, :) = ripple_in(error(DISPLACEMENTS + 1:, :), &
-                                                                 longer*c%error_before(DISPLACEMENTS + 1:, :))
+         ripple(:DISPLACEMENTS, :) = alternating_part(error(:DISPLACEMENTS, :), &
+                                                       longer**2*c%error_before(:DISPLACEMENTS, :))
+         if (c%memory%known) &
+            ripple(DISPLACEMENTS + 1:, :) = alternating_part(error(DISPLACEMENTS + 1:, :), &
+                                                             longer*c%error_before(DISPLACEMENTS + 1:, :))
       end associate
       error = error - ripple
    end subroutine take_ripple_out

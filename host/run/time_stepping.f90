@@ -3,7 +3,7 @@
 module time_stepping
    use, intrinsic :: iso_fortran_env, only: error_unit
    use kinds, only: wp
-   use wall_clock, only: clock, lap
+   use wall_clock, only: clock, add_elapsed
    use faults, only: fault_t
    use contact_interfaces, only: stretch_ties
    use contact_setup, only: contacts_act
@@ -47,7 +47,7 @@ contains
       t0 = clock()
       if (present(observer)) call observer%run_begins(model, run, fault)
       if (fault%code /= 0) return
-      call lap(run%seconds_output, t0)
+      call add_elapsed(run%seconds_output, t0)
       do i = max(1, run%at%stage), size(model%stages)
          call run_stage(model, i, run, fault, observer)
          if (warns(observer)) call warn_of_created_energy(model%stages(i), run%ledger)
@@ -56,7 +56,7 @@ contains
          last = fault_t()
          if (present(observer)) call observer%stage_done(model, run, i, fault%code == 0, last)
          if (fault%code == 0) fault = last
-         call lap(run%seconds_output, t0)
+         call add_elapsed(run%seconds_output, t0)
          if (fault%code /= 0) exit
       end do
       last = fault_t()
@@ -169,7 +169,7 @@ contains
          ! A run that is taken up here has no factors and no slopes.
          if (checkpoint) run%system%factored = .false.
          if (checkpoint) run%assembly%slopes%known = .false.
-         call lap(run%seconds_output, t0)
+         call add_elapsed(run%seconds_output, t0)
       end if
       call check_creation(model%stages(number), run%state%time, report%last, run%ledger, fault)
    end subroutine close_step

@@ -18,7 +18,7 @@ module effect_switches
    use porous_domain, only: COUPLED, DRAINED, UNDRAINED, DRY
    implicit none (type, external)
    private
-   public :: list_effects, settle_open_keys, switch, switch_by_hand
+   public :: list_effects, set_open_keys, switch, switch_by_hand
 
    real(wp), parameter :: EARTH = 9.81_wp             !< [m/s2] Where gravity is put in.
    real(wp), parameter :: ROUNDING = 1.0e-12_wp
@@ -30,7 +30,7 @@ module effect_switches
 contains
    !> The cheapest reading of what the scene leaves open: the fields that its regions have laws for, no weight, and no
    !> inertia where no key needs it. docs/theory/host.md section 11.
-   pure subroutine settle_open_keys(scene)
+   pure subroutine set_open_keys(scene)
       type(scene_t), intent(inout) :: scene
       integer :: i
 
@@ -42,7 +42,7 @@ contains
       do i = 1, size(scene%stages)
          if (scene%stages(i)%kind == 0) scene%stages(i)%kind = merge(DYNAMIC, QUASI_STATIC, needs_inertia(scene, i))
       end do
-   end subroutine settle_open_keys
+   end subroutine set_open_keys
 
    !> Whether a stage has keys that act with inertia alone: waves that leave or come in, an acceleration, a velocity at
    !> the start, damping.
@@ -81,7 +81,7 @@ contains
       integer :: kind, stage
 
       settled = scene
-      call settle_open_keys(settled)
+      call set_open_keys(settled)
       allocate (list(0))
       do kind = 1, EFFECTS
          do stage = 1, merge(size(scene%stages), 1, kind == OF_INERTIA)

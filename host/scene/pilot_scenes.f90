@@ -5,7 +5,7 @@ module pilot_scenes
    use scene_types, only: scene_t
    implicit none (type, external)
    private
-   public :: make_cheap, can_coarsen
+   public :: coarsen_scene, can_coarsen
 
    integer, parameter :: LEAST_STEPS = 20                !< Of a stage whose dt is given.
    real(wp), parameter :: LEAST_ACCURACY = 0.3_wp        !< Of steps that are controlled [-].
@@ -19,7 +19,7 @@ contains
 
    !> `cells` times as long cells, `steps` times as long steps, as far as at least LEAST_STEPS are left of a stage, or
    !> `steps` times the accuracy of those that are controlled. Long steps must not make a contact gain energy.
-   pure subroutine make_cheap(cells, steps, scene)
+   pure subroutine coarsen_scene(cells, steps, scene)
       integer, intent(in) :: cells, steps   !< Factors, at least 1.
       type(scene_t), intent(inout) :: scene
       real(wp) :: times
@@ -44,7 +44,7 @@ contains
             end if
          end associate
       end do
-   end subroutine make_cheap
+   end subroutine coarsen_scene
 
    !> Fewer cells of the same grading from end to end.
    pure subroutine coarsen(times, cells, ratio)

@@ -8,7 +8,7 @@ module scene_fingerprint
    use texts, only: lower_case
    implicit none (type, external)
    private
-   public :: fingerprint_of, hash_t, add_text, text_of_hash, sealed, is_free
+   public :: fingerprint_of, hash_t, add_text, text_of_hash, with_fingerprints, is_free
 
    integer, parameter :: BLOCK = 65536
    ! Two polynomial hashes modulo primes below 2**31: products stay below 2**63.
@@ -59,7 +59,7 @@ contains
    end function text_of_hash
 
    !> Groups with a fingerprint of the files that they name in place of the names, so that nothing has to be read again.
-   function sealed(groups) result(copies)
+   function with_fingerprints(groups) result(copies)
       type(group_t), intent(in) :: groups(:)   !< (groups of the scene)
       type(group_t), allocatable :: copies(:)
       type(hash_t) :: hash
@@ -77,7 +77,7 @@ contains
             end associate
          end do
       end do
-   end function sealed
+   end function with_fingerprints
 
    !> Continues a hash by the characters of a text.
    pure subroutine add_text(text, hash)

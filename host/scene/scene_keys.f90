@@ -124,7 +124,8 @@ contains
                   'interpolation (linear: Taylor-Hood)', ':p_w')
       call k%whole('quadrature', scene%quadrature, 3, 12, 'points of an element: 3, 6, 7 or 12')
       call k%number('gravity', scene%gravity, ZERO, 1000*ONE, 'acceleration towards -z [m/s2]')
-      call k%text('gravity_history', scene%gravity_history, 'name of a &history: factor on gravity', '+gravity')
+      call k%text('gravity_history', scene%gravity_history, 'name of a &history: factor on gravity', '+gravity', &
+                  refers='history')
       call k%flag('effects', scene%derive_effects, 'given|auto', 'auto', &
                   'auto: pilots determine what the keys leave open, see host/README.md')
       call k%number('effects_tolerance', scene%effects_tolerance, 1.0e-6_wp, ONE, &
@@ -263,10 +264,12 @@ contains
 
       region%scene_item_t = item_of(k%group)
       call k%text('group', region%group_name, 'group of elements; without it those that no other region names')
-      call k%text('material', region%material_name, 'name of a material, as &mud or &elastic', REQUIRED)
+      call k%text('material', region%material_name, 'name of a material, as &mud or &elastic', REQUIRED, &
+                  refers='material')
       call k%text('retention', region%retention_name, 'name of a &retention, or "material": its own', &
-                  'drainage=coupled|drained|undrained :p_c')
-      call k%text('permeability', region%permeability_name, 'name of a &permeability', 'drainage=coupled :p_w')
+                  'drainage=coupled|drained|undrained :p_c', refers='retention')
+      call k%text('permeability', region%permeability_name, 'name of a &permeability', 'drainage=coupled :p_w', &
+                  refers='permeability')
       call k%word('drainage', region%drainage, 'coupled|drained|undrained|dry', &
                   'fluids flow, stay at given pressures, stay in every element, or are absent', ':p_w')
       call k%number('rho_s', region%rho_s, ZERO, 1000*ONE, 'density of the grains [Mg/m3]')
@@ -288,7 +291,8 @@ contains
       call k%text('material', strength%material_name, 'name of the material whose strength changes with time', REQUIRED)
       call k%text('parameter', strength%parameter_name, &
                   'what changes: M_c of a &mud; of a &umat props(1), props(2), ...', REQUIRED)
-      call k%text('history', strength%amplitude_name, 'factor on the parameter, 1 at the start', REQUIRED)
+      call k%text('history', strength%amplitude_name, 'factor on the parameter, 1 at the start', REQUIRED, &
+                  refers='history')
       scene%strengths = [scene%strengths, strength]
    end subroutine take_strength
 
@@ -418,7 +422,7 @@ contains
       call k%number('value', fix%value, -BIG, BIG, 'prescribed value, at the datum [m, kPa]', 'hold=no')
       call k%number('value_slope', fix%value_slope, -BIG, BIG, 'change of the value with z [-, kPa/m]', 'hold=no')
       call k%number('datum', fix%datum, -BIG, BIG, 'z of the datum [m]', '+value_slope')
-      call k%text('history', fix%amplitude_name, 'factor on the value', 'hold=no')
+      call k%text('history', fix%amplitude_name, 'factor on the value', 'hold=no', refers='history')
       call k%flag('hold', fix%hold, 'no|yes', 'yes', 'yes: held at its value at the start of the stage')
       call k%flag('motion', fix%acceleration, 'value|acceleration', 'acceleration', &
                   'what the value of u_r, u_z is: displacement, or acceleration [m/s2]')
@@ -445,7 +449,7 @@ contains
       call k%number('datum', load%datum, -BIG, BIG, 'z of the datum [m]', '+value_slope')
       call k%number('ponding', load%ponding, ZERO, 1000*ONE, &
                     'rain: depth of water that the surface holds before the rest runs off [m]', 'kind=rain')
-      call k%text('history', load%amplitude_name, 'factor on the value')
+      call k%text('history', load%amplitude_name, 'factor on the value', refers='history')
       call k%texts('stages', load%stages, STAGES)
       scene%loads = [scene%loads, load]
    end subroutine take_load
@@ -465,7 +469,7 @@ contains
                     'speed of shear waves behind the boundary [m/s]; default: the soil''s')
       call k%number('v_r', absorber%incoming(1), -BIG, BIG, 'velocity along r of the incoming wave [m/s]')
       call k%number('v_z', absorber%incoming(2), -BIG, BIG, 'velocity along z of the incoming wave [m/s]')
-      call k%text('history', absorber%amplitude_name, 'factor on v_r and v_z')
+      call k%text('history', absorber%amplitude_name, 'factor on v_r and v_z', refers='history')
       call k%texts('stages', absorber%stages, STAGES)
       scene%absorbers = [scene%absorbers, absorber]
    end subroutine take_absorber
@@ -515,7 +519,7 @@ contains
       call k%number('penalty', plate%penalty, TINY_, BIG, &
                     'traction of a unit of distance between a group and its place on the plate [kN/m3]', &
                     'motion=plane')
-      call k%text('history', plate%amplitude_name, 'factor on force, force_r and moment')
+      call k%text('history', plate%amplitude_name, 'factor on force, force_r and moment', refers='history')
       if (count([k%given('group'), k%given('r'), k%given('outline')]) /= 1) then
          call raise(fault, EXIT_INPUT, place_of(plate)//'a plate has a face of its own, r = begin, end (in the '// &
                     'plane also outline), or it is joined to a boundary, group = name: give one of the two.')

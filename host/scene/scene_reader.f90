@@ -5,7 +5,7 @@ module scene_reader
    use key_table, only: key_table_t
    use namelists, only: group_t, read_groups
    use exit_codes, only: EXIT_GROUP
-   use scene_fingerprint, only: fingerprint_of, sealed
+   use scene_fingerprint, only: fingerprint_of, with_fingerprints
    use scene_accuracy, only: ask_key
    use scene_goals, only: check_goals
    use scene_keys, only: check_keys, make_lists, take_group
@@ -38,7 +38,7 @@ contains
       if (fault%code /= 0) return
       scene%file = file
       scene%fingerprint = fingerprint_of(groups)
-      scene%groups = sealed(groups)
+      scene%groups = with_fingerprints(groups)
       call make_lists(scene)
       ! &scene says how others are read.
       table%group = groups(findloc([(groups(i)%name, i=1, size(groups))], 'scene', dim=1))

@@ -16,7 +16,7 @@ module convergence
    implicit none (type, external)
    private
    public :: control_t, log_t, measure, good_enough, field_scales, body_scale, is_body, rounding_in
-   public :: look_for_stagnation, is_in_vain, residual_norms, forces_of_fields
+   public :: note_stagnation, is_in_vain, residual_norms, forces_of_fields
    public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_STAGE, measure_in, linear_tolerance
 
    integer, parameter :: BY_FORCES = 1       !< The errors of the fields, see above.
@@ -112,7 +112,7 @@ contains
    !> substeps of a point change with its strain, so that its stress is known to that tolerance and no better. Where a
    !> step changes little of the forces, that is much of the change.
    !> Updates the log. docs/theory/host.md section 5.1.
-   pure subroutine look_for_stagnation(control, log)
+   pure subroutine note_stagnation(control, log)
       type(control_t), intent(in) :: control
       type(log_t), intent(inout) :: log
       real(wp) :: error
@@ -126,7 +126,7 @@ contains
       end if
       log%stagnated = log%since_best >= PATIENCE .and. &
                       error <= min(MOST_ROUGH, control%roughness*max(1.0_wp, log%forces_over_scale))
-   end subroutine look_for_stagnation
+   end subroutine note_stagnation
 
    !> Whether the iteration leads nowhere: many iterations have not halved the smallest error. Other measures than those
    !> of the fields do not tell. docs/theory/host.md section 5.2.

@@ -3,7 +3,7 @@
 !> time goes. docs/theory/host.md section 6.
 module linear_system
    use kinds, only: wp
-   use wall_clock, only: clock, lap
+   use wall_clock, only: clock, add_elapsed
    use conjugate_residuals, only: solve_by_factors, INACCURATE
    use contact_interfaces, only: contacts_t, evaluate_contacts, fit_pattern
    use convergence, only: field_scales, body_scale, is_body
@@ -15,7 +15,7 @@ module linear_system
    use unknown_fields, only: FIELDS, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: system_t, solve_step, asked_for, look_at_contacts, MOST_STEPS
+   public :: system_t, solve_step, asked_for, update_contacts, MOST_STEPS
    public :: T_ASSEMBLY, T_FACTORISATION, T_SOLUTION, T_REST, T_MATERIAL, T_CONTACT
 
    integer, parameter :: TIMERS = 6, T_ASSEMBLY = 1, T_FACTORISATION = 2, T_SOLUTION = 3, T_REST = 4, T_MATERIAL = 5, &
@@ -74,7 +74,7 @@ contains
       if (system%factored) then
          call solve_by_factors(system%sparse, assembly%values, rhs, weight, tolerance, MOST_STEPS, dx, &
                                steps, status)
-         call lap(system%seconds(T_SOLUTION), t0)
+         call add_elapsed(system%seconds(T_SOLUTION), t0)
          system%factored = status == SOLVED .and. steps < WORN_STEPS
          if (status == SOLVED) return
       end if
@@ -83,7 +83,7 @@ contains
          system%analysed = .true.
       end if
       call factorise(system%sparse, assembly%values, status)
-      call lap(system%seconds(T_FACTORISATION), t0)
+      call add_elapsed(system%seconds(T_FACTORISATION), t0)
       system%factored = status == SOLVED
       if (status /= SOLVED) return
       system%indefinite = system%sparse%indefinite
@@ -94,7 +94,7 @@ contains
                             steps, status)
       ! What rounding leaves is Newton's to judge.
       if (status == INACCURATE) status = SOLVED
-      call lap(system%seconds(T_SOLUTION), t0)
+      call add_elapsed(system%seconds(T_SOLUTION), t0)
    end subroutine solve_step
 
    !> Magnitude of the right side of every field, rows of prescribed values included; that of the displacements is one.
@@ -113,7 +113,7 @@ contains
 
    !> Contacts at given displacements, and room for them in the matrix; false if their kernels refuse.
    !> system%contacts%status then says why.
-   logical function look_at_contacts(system, dofs, pattern, x, slopes, assembly) result(good)
+   logical function update_contacts(system, dofs, pattern, x, slopes, assembly) result(good)
       type(system_t), intent(inout) :: system
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(inout) :: pattern
@@ -132,5 +132,5 @@ contains
       allocate (assembly%values(size(pattern%col)), source=0.0_wp)
       system%analysed = .false.
       system%factored = .false.
-   end function look_at_contacts
+   end function update_contacts
 end module linear_system

@@ -3,11 +3,11 @@
 !> docs/theory/host.md section 5.
 module newton_step
    use kinds, only: wp
-   use wall_clock, only: clock, lap
+   use wall_clock, only: clock, add_elapsed
    use conjugate_residuals, only: solve_by_factors, INACCURATE
    use contact_interfaces, only: add_contacts, contact_forces, follow_friction, friction_turns, &
                                  rounding_of_ties
-   use convergence, only: control_t, log_t, measure, good_enough, look_for_stagnation, is_in_vain, &
+   use convergence, only: control_t, log_t, measure, good_enough, note_stagnation, is_in_vain, &
                           linear_tolerance, rounding_in, residual_norms, forces_of_fields, &
                           BY_FORCES, BY_CHANGE
    use dashpots, only: add_dashpots
@@ -17,7 +17,7 @@ module newton_step
    use carried_slopes, only: AS_BEFORE
    use generalised_alpha, only: scheme_t, make_scheme, predict, advance_rates, STATIC, DYNAMIC
    use limited_pressures, only: choose_sides
-   use linear_system, only: system_t, solve_step, asked_for, look_at_contacts, MOST_STEPS, T_ASSEMBLY, &
+   use linear_system, only: system_t, solve_step, asked_for, update_contacts, MOST_STEPS, T_ASSEMBLY, &
                             T_REST, T_MATERIAL, T_CONTACT
    use porous_domain, only: domain_t, state_t
    use prescribed_values, only: constraint_t, constrain, loads_of_water
@@ -98,7 +98,7 @@ contains
             ! What turned to the other side of its limit, a pressure or a sliding node, has not been solved for yet.
             if (.not. turned) then
                if (good_enough(control, log)) exit
-               call look_for_stagnation(control, log)
+               call note_stagnation(control, log)
                if (log%stagnated) exit
             end if
             if (log%iterations >= control%max_iterations .or. is_in_vain(log) .or. &
@@ -146,7 +146,7 @@ contains
       call follow_friction(system%contacts, fresh=.true.)
       system%reassemble_tangent = log%iterations > 1
       assembly%slopes%known = control%carries_slopes
-      call lap(system%seconds(T_REST), t0)
+      call add_elapsed(system%seconds(T_REST), t0)
    contains
       !> What a further iteration would correct: the last correction, as much smaller as its residual has become. One
       !> share for all fields: a load that acts at once leaves the flow a residual of rounding before the correction.
@@ -167,16 +167,16 @@ contains
          real(wp) :: spent
 
          spent = 0.0_wp
-         call lap(system%seconds(T_REST), t0)
-         pass = look_at_contacts(system, dofs, pattern, old%x + scheme%l_f*(new%x - old%x), slopes, assembly)
+         call add_elapsed(system%seconds(T_REST), t0)
+         pass = update_contacts(system, dofs, pattern, old%x + scheme%l_f*(new%x - old%x), slopes, assembly)
          if (.not. pass) log%outcome = CONTACT_FAILED
          if (.not. pass) return
-         call lap(system%seconds(T_CONTACT), t0)
+         call add_elapsed(system%seconds(T_CONTACT), t0)
          call assemble(domain, dofs, pattern, scheme, old, new, slopes, assembly)
          system%n_pass = system%n_pass + 1
          log%rate_evaluations = log%rate_evaluations + assembly%rate_evaluations
          pass = assembly%bad_element == 0
-         call lap(spent, t0)
+         call add_elapsed(spent, t0)
          system%seconds(T_MATERIAL) = system%seconds(T_MATERIAL) + spent*assembly%material
          system%seconds(T_ASSEMBLY) = system%seconds(T_ASSEMBLY) + spent*(1 - assembly%material)
          if (.not. pass) log%outcome = MATERIAL_FAILED
@@ -268,10 +268,10 @@ contains
       allocate (without(merge(dofs%n, 0, allocated(touched))))
       if (allocated(touched)) without(:) = assembly%residual
       if (allocated(system%contacts%interfaces)) then
-         call lap(system%seconds(T_REST), t0)
+         call add_elapsed(system%seconds(T_REST), t0)
          call add_contacts(system%contacts, pattern, scheme%l_f, slopes, assembly%residual, assembly%scale, &
                            assembly%values)
-         call lap(system%seconds(T_CONTACT), t0)
+         call add_elapsed(system%seconds(T_CONTACT), t0)
       end if
       rhs = constraint%load_0 + scheme%l_f*(constraint%load_1 - constraint%load_0) - constraint%offset
       call loads_of_water(dofs, constraint%air, rhs)
@@ -318,7 +318,7 @@ contains
       state%a = 0.0_wp
       work%a = 0.0_wp
       allocate (rhs(dofs%n), dx(dofs%n))
-      if (.not. look_at_contacts(system, dofs, pattern, state%x, .false., assembly)) then
+      if (.not. update_contacts(system, dofs, pattern, state%x, .false., assembly)) then
          log%outcome = CONTACT_FAILED
          return
       end if
@@ -377,7 +377,7 @@ contains
       held = constraint
       held%load_1 = held%load_0
       call begin_passes(domain, scheme, held, control_t(), assembly)
-      good = look_at_contacts(system, dofs, pattern, state%x, .false., assembly)
+      good = update_contacts(system, dofs, pattern, state%x, .false., assembly)
       if (good) call assemble(domain, dofs, pattern, scheme, state, work, .false., assembly)
       if (good) good = assembly%bad_element == 0
       if (.not. good) return

@@ -17,7 +17,8 @@ module error_norms
    implicit none (type, external)
    private
    public :: rate_memory_t, new_memory, keep_rates, shift_rates, local_errors, remember, forget, &
-             constant_of_accelerations, constant_of_rates, kept_of_motion, ripple_in, rms, bent_share, bent_error, PATH
+             constant_of_accelerations, constant_of_rates, kept_of_motion, alternating_part, rms, bent_share, &
+             bent_error, PATH
 
    real(wp), parameter :: LONGEST = 2.0_wp   !< Times the last step: no rate is carried over a longer one.
    !> Share of the curvature of a path that a straight step leaves out (deviation in the middle of the step).
@@ -210,12 +211,12 @@ contains
 
    !> Part of an error that the one before takes back: where their signs differ, what both have, with the sign of `now`.
    !> Such errors belong to waves too fast for the steps: docs/theory/host.md section 4.5.
-   elemental real(wp) function ripple_in(now, before) result(ripple)
+   elemental real(wp) function alternating_part(now, before) result(ripple)
       real(wp), intent(in) :: now, before   !< Of the same unit and the same length of step.
 
       ripple = 0.0_wp
       if (now*before < 0.0_wp) ripple = sign(min(abs(now), abs(before)), now)
-   end function ripple_in
+   end function alternating_part
 
    !> Root mean square over the nodes. values: (components, nodes); the squares of all components are added up.
    pure real(wp) function rms(values)

@@ -4,7 +4,7 @@ module history_distance
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: farthest, peaks_apart
+   public :: farthest, peak_difference
 
 contains
    !> The second less the first, where they are farthest apart at the times of the first: straight lines between the
@@ -33,7 +33,7 @@ contains
    !> Largest difference of the peaks of two histories, magnitudes, one for each time that the first is not 0. The
    !> second is looked at from the middle of the gap before to the middle of the gap after. A gap shorter than what is
    !> not 0 before it is none: a body that rattles is in contact. In the unit of the values.
-   pure real(wp) function peaks_apart(time, values, other_time, other_values) result(apart)
+   pure real(wp) function peak_difference(time, values, other_time, other_values) result(apart)
       real(wp), intent(in) :: time(:), values(:)               !< Ascending [s] (times)
       real(wp), intent(in) :: other_time(:), other_values(:)   !< As many each; times ascending [s].
       real(wp) :: from, until
@@ -75,5 +75,5 @@ contains
             if (.not. abs(values(end_of_contact + 1)) > 0.0_wp) return
          end do
       end function end_of_contact
-   end function peaks_apart
+   end function peak_difference
 end module history_distance

@@ -76,7 +76,7 @@ Summary = _structure(_text, "mud_summary", mud_report=Report)
 STATUS_NAMES = {
     value: name for name, value in _constants(re.search(r"enum mud_status\s*\{.*?\}", _text, re.DOTALL)[0]).items()
 }
-_doubles, _ints = POINTER(c_double), POINTER(c_int)
+_doubles = POINTER(c_double)
 _SIGNATURES = {
     "mud_abi_version": [],
     "mud_version": [c_char_p, c_int],

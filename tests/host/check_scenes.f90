@@ -3,12 +3,12 @@
 !> scenes then take minutes. Names each scene before it is read, so that a crash has a name; then exit code and message.
 program check_scenes
    use, intrinsic :: iso_fortran_env, only: input_unit, output_unit
-   use effect_pilots, only: settle_scene
+   use effect_pilots, only: reduce_scene
    use faults, only: fault_t
    use files, only: limits_are_errors
    use model_builder, only: build_model
    use model_types, only: model_t
-   use process_settings, only: settle_process
+   use process_settings, only: apply_process_settings
    use run_setup, only: prepare_run
    use run_state, only: run_t
    use scene_reader, only: read_scene
@@ -18,7 +18,7 @@ program check_scenes
    integer :: iostat
 
    call limits_are_errors()
-   call settle_process()
+   call apply_process_settings()
    do
       read (input_unit, '(a)', iostat=iostat) file
       if (iostat /= 0) exit
@@ -35,7 +35,7 @@ contains
       type(fault_t) :: fault
 
       call read_scene(file, scene, fault)
-      if (fault%code == 0) call settle_scene(scene, fault)
+      if (fault%code == 0) call reduce_scene(scene, fault)
       if (fault%code == 0) call build_model(scene, model, fault)
       if (fault%code == 0) call prepare_run(model, run, fault)
       write (output_unit, '(i0,1x,a)') fault%code, trim(fault%text)

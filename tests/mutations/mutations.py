@@ -18,7 +18,7 @@ PARAMS, REGISTRY, STATE = "core/base/mud_params.f90", "core/base/mud_registry.f9
 CONSISTENT = "core/integration/mud_consistent.f90"
 ORDER, ERROR_CONTROL = "core/integration/mud_order.f90", "core/integration/mud_error_control.f90"
 DRIVING = "core/integration/mud_driving.f90"
-MARGIN, ISOTROPIC_MEMORY = "core/laws/mud_margin.f90", "core/integration/mud_isotropic_memory.f90"
+MARGIN = "core/laws/mud_margin.f90"
 SCANNING, BRANCHES = "core/laws/mud_scanning.f90", "core/integration/mud_branches.f90"
 
 MUTATIONS = [

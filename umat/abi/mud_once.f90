@@ -76,18 +76,18 @@ contains
       number = told(SPOILED)
       told(SPOILED) = told(SPOILED) + 1_int32
       !$omp end atomic
-      if (number == 0) code = c_atexit(c_funloc(remind))
+      if (number == 0) code = c_atexit(c_funloc(write_last_sentence))
    end subroutine report_at_exit
 
    !> The last sentence of a process.
-   subroutine remind() bind(c, name='')
+   subroutine write_last_sentence() bind(c, name='')
       character(12) :: number
 
       write (number, '(i0)') told(SPOILED)
       call write_message('MUD: at the end of this process: refused increments whose stress was set to NaN: '// &
                  trim(number)//'. Unless the host has repeated them with smaller ones, its results from the first '// &
                  'of them on (see above) are no results')
-   end subroutine remind
+   end subroutine write_last_sentence
 
    !> True if an environment variable has this value. False where it is not set or longer than 32 characters.
    logical function environment_is(name, value)

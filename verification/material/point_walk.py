@@ -91,18 +91,22 @@ class Row(dict):
 
 
 class Walker:
-    """Runs paths with the program of a build, at most `jobs` at a time. A path that takes more than `seconds` of the processor has failed."""
+    """Runs paths with the program of a build, each once and at most `jobs` at a time. A path that takes more than `seconds` of the processor has failed."""
 
     def __init__(self, build=ROOT / "build/release", jobs=2, seconds=None):
         self.seconds = seconds
         self.program = pathlib.Path(build) / "verification/material/memory_rules/mud_walk"
         if not self.program.exists():
             raise SystemExit(f"there is no {self.program}: build the target mud_walk first")
+        self.begun = {}
         self.pool = concurrent.futures.ThreadPoolExecutor(jobs)
 
     def start(self, path):
         """A future of the path's rows."""
-        return self.pool.submit(self._run, path)
+        text = "\n".join(["case walk", *path.lines]) + "\n"
+        if text not in self.begun:
+            self.begun[text] = self.pool.submit(self._run, text)
+        return self.begun[text]
 
     def run(self, path):
         return self.start(path).result()
@@ -113,8 +117,7 @@ class Walker:
             return dict(zip(paths, self.run_all(list(paths.values()))))
         return [future.result() for future in [self.start(path) for path in paths]]
 
-    def _run(self, path):
-        text = "\n".join(["case walk", *path.lines]) + "\n"
+    def _run(self, text):
         limited = self.seconds and (lambda: resource.setrlimit(resource.RLIMIT_CPU, (self.seconds, self.seconds + 5)))
         done = subprocess.run([self.program], input=text, capture_output=True, text=True, check=False, preexec_fn=limited)
         if self.seconds and done.returncode in (-signal.SIGXCPU, 128 + signal.SIGXCPU, -signal.SIGKILL):

@@ -3,7 +3,6 @@
 import numpy as np
 
 from .balances import between
-from .laws import M
 from .scene import SceneError
 from .space import NUMBERS, PRESSURE
 

@@ -14,7 +14,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from . import calls
-from .space import GRADIENT, NUMBERS, PRESSURE, STRAIN
+from .space import GRADIENT, NUMBERS, PRESSURE
 
 DIRECTIONS = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1], [1, 1, -1], [1, -1, 1], [-1, 1, 1]], float)
 DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1)[:, None]

@@ -4,7 +4,7 @@ module mud_blocks
    use mud_kinds, only: wp
    use mud_cutoff, only: held_tangent, soil_void_ratio, MODE_HELD
    use mud_elastic, only: bulk_modulus, shear_modulus, elastic_tangent
-   use mud_increment, only: increment_t, has_aside, direction_at
+   use mud_increment, only: increment_t, has_elastic_part, direction_at
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, MODE_ELASTIC
@@ -53,7 +53,7 @@ contains
          return
       end if
       call continuum_tangent(par, trial%w(inc%scheme%stages), blocks%dsig_deps, blocks%dsig_dpc)
-      if (has_aside(inc, trial%mode)) call project(inc, trial%mode, trial%w(inc%scheme%stages), blocks%dsig_deps)
+      if (has_elastic_part(inc, trial%mode)) call project(inc, trial%mode, trial%w(inc%scheme%stages), blocks%dsig_deps)
    end subroutine continuum_blocks
 
    !> Tangent of a rate of which only the strain along nu loads (inside the domain none), the rest being elastic.

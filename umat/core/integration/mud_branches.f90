@@ -10,7 +10,8 @@ module mud_branches
    use mud_params, only: params_t
    use mud_registry, only: MAX_TURNS
    use mud_retention, only: saturation_t, change_with_turn, log_suction, curve_at
-   use mud_scanning, only: path_t, go_on, pass, branch_of, begin_at_turn, saturation_after, keep_turns, find_least
+   use mud_scanning, only: path_t, move_along, list_passed, branch_of, begin_at_turn, saturation_after, &
+                           keep_turns, find_least
    use mud_state, only: state_t, counters_t
    implicit none (type, external)
    private
@@ -132,7 +133,7 @@ contains
       integer :: i, k
 
       path = start
-      call pass(log_to, path, passed, k)
+      call list_passed(log_to, path, passed, k)
       before = from
       do i = 1, k + 1
          behind = to
@@ -157,7 +158,7 @@ contains
       integer :: curve, at_last, i, k
 
       path = start
-      call go_on(par, log_at(par, inc, 0.5_wp*(from + to)), path)
+      call move_along(par, log_at(par, inc, 0.5_wp*(from + to)), path)
       branch = branch_of(par, path)
       before = from + INSIDE*(to - from)
       last = to - INSIDE*(to - from)
@@ -230,7 +231,7 @@ contains
       type(path_t) :: path
 
       path = course%path
-      call go_on(course%material, log_x, path)
+      call move_along(course%material, log_x, path)
       if (begins_at_turn(course, path)) then
          course%branch = begin_at_turn(course%material, path, course%slope)
       else

@@ -12,7 +12,7 @@ module mud_event_functions
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio
-   use mud_return_point, only: place_t, place_at, forwardness, beyond_target
+   use mud_return_point, only: place_t, place_at, projection_on_chord, beyond_target
    use mud_state, only: counters_t
    use mud_tensor, only: ddot, norm, deviator
    use mud_trial, only: trial_t
@@ -92,7 +92,7 @@ contains
       case (EVENT_MECHANISM)
          f = w%iso_drive/trial%w(1)%iso_drive
       case (EVENT_TURN)
-         f = forwardness(par, place_of(par, inc, trial, w, y))
+         f = projection_on_chord(par, place_of(par, inc, trial, w, y))
       case (EVENT_RETURN)
          call stress_ratio(par, y(1:6), p, r)
          f = -beyond_target(par, trial%process, r, bounding_ratio(par, psi_at(par, inc, time, p)))

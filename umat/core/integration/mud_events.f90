@@ -14,7 +14,7 @@ module mud_events
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: MODE_ELASTIC
-   use mud_return_point, only: place_t, forwardness, note_progress, note_farthest
+   use mud_return_point, only: place_t, projection_on_chord, note_progress, note_farthest
    use mud_state, only: counters_t
    use mud_substep, only: LARGEST_FACTOR, cubic_point
    use mud_trial, only: trial_t, take_step
@@ -201,11 +201,11 @@ contains
 
       associate (inc => it%inc, trial => it%trial, memory => it%state%memory)
          place = place_of(par, inc, trial, trial%w(inc%scheme%stages), trial%y)
-         if (forwardness(par, place) >= 0.0_wp) then
+         if (projection_on_chord(par, place) >= 0.0_wp) then
             call note_progress(place, memory)
             return
          end if
-         if (forwardness(par, place_of(par, inc, trial, trial%w(1), trial%y0)) > 0.0_wp) then
+         if (projection_on_chord(par, place_of(par, inc, trial, trial%w(1), trial%y0)) > 0.0_wp) then
             probe = trial
             size = h
             call land_on(par, inc, EVENT_TURN, par%tolerance, size, probe, it%counters, landed)

@@ -16,7 +16,7 @@ module mud_increment
    implicit none (type, external)
    private
    public :: increment_t, new_increment, take_phase, end_in_domain, direction_at, void_ratio_at, suction_at, rate_of, &
-             store_rate, loading_strain, changes_of_loading_strain, turning_of, has_aside, NY, SHORTEST_PHASE
+             store_rate, loading_strain, changes_of_loading_strain, turning_of, has_elastic_part, NY, SHORTEST_PHASE
 
    !> Length of the integrated vector: sigma'(6), z(6), plastic shear, of the cyclic preloading ln chi' and, since the
    !> substep began, contraction, and fluidity.
@@ -56,7 +56,7 @@ contains
       type(rate_t), intent(in), optional :: near   !< As rate_at has it.
       real(wp) :: loading(6), aside(6)
 
-      if (has_aside(inc, mode)) then
+      if (has_elastic_part(inc, mode)) then
          call loading_strain(inc, mode, time, loading, aside)
          call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), suction_at(inc, time), y(7:12), r_in, &
                       loading, inc%d_pc, mode, w, near, y(14), inc%rests, y(16))
@@ -90,12 +90,12 @@ contains
 
    !> True if a part of the strain is elastic: all of it inside the elastic domain, some where that is pulled.
    !> docs/theory/memory-rules.md section 4.1.
-   pure logical function has_aside(inc, mode)
+   pure logical function has_elastic_part(inc, mode)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
 
-      has_aside = mode == MODE_ELASTIC .or. (inc%rho > 0.0_wp .and. .not. inc%inside .and. mode == MODE_ORDINARY)
-   end function has_aside
+      has_elastic_part = mode == MODE_ELASTIC .or. (inc%rho > 0.0_wp .and. .not. inc%inside .and. mode == MODE_ORDINARY)
+   end function has_elastic_part
 
    !> The part of the strain rate that loads, along nu, and the elastic rest. All [-]; docs/theory/memory-rules.md
    !> section 4.1.
@@ -137,7 +137,7 @@ contains
       real(wp) :: along, per_rho, nu(2), nu_rate(2), turn_rate, turn, on_d, on_length, d_on_u
       integer :: j
 
-      if (.not. has_aside(inc, mode)) then
+      if (.not. has_elastic_part(inc, mode)) then
          call whole_strain(inc%d_strain, loading)
          return
       else if (mode == MODE_ELASTIC) then
@@ -180,7 +180,7 @@ contains
       real(wp), intent(in) :: time
       type(turning_t) :: turning
 
-      if (has_aside(inc, mode) .and. mode /= MODE_ELASTIC) then
+      if (has_elastic_part(inc, mode) .and. mode /= MODE_ELASTIC) then
          turning = turning_at(inc%rho, inc%from_centre, inc%d_strain, time - inc%exit)
       else
          turning = NO_TURNING

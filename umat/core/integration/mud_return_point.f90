@@ -11,7 +11,7 @@ module mud_return_point
    use mud_tensor, only: ddot, norm, square
    implicit none (type, external)
    private
-   public :: place_t, place_at, note_progress, note_farthest, forwardness, interrupt, watched_process, &
+   public :: place_t, place_at, note_progress, note_farthest, projection_on_chord, interrupt, watched_process, &
              beyond_target, target_limit, is_limited, resume_process
 
    !> A substep tells the direction of its process where its loading direction is within 45 degrees of the chord from
@@ -76,14 +76,14 @@ contains
    !> sideways while it reloads: n then still points forwards while r falls, which is no progress. Its sign counts: x
    !> and length are [-], t:chord is in the unit of t. -1 without a loading direction. docs/theory/memory-rules.md
    !> section 3.2.
-   pure real(wp) function forwardness(par, place)
+   pure real(wp) function projection_on_chord(par, place)
       type(params_t), intent(in) :: par
       type(place_t), intent(in) :: place
 
-      forwardness = -1.0_wp
+      projection_on_chord = -1.0_wp
       if (.not. place%loading .or. abs(place%along) <= 0.0_wp) return   ! suction alone tells nothing
-      forwardness = min(place%x, place%x + par%x_floor - SMALLEST_COSINE*place%length, place%along)
-   end function forwardness
+      projection_on_chord = min(place%x, place%x + par%x_floor - SMALLEST_COSINE*place%length, place%along)
+   end function projection_on_chord
 
    !> The present process is interrupted; the next has no direction yet. A full stack drops its two newest entries,
    !> which are the smallest loop. docs/theory/memory-rules.md section 3.3.

@@ -3,7 +3,7 @@
 !> faster than anything else changes. A pair integrates what is left of the rates, the parts are integrated exactly.
 !> Whatever the parts are, the order of the pair stays; docs/theory/integration.md section 2.2.
 module mud_transient
-   use mud_increment, only: increment_t, rate_of, store_rate, direction_at, has_aside, NY
+   use mud_increment, only: increment_t, rate_of, store_rate, direction_at, has_elastic_part, NY
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_rate, only: rate_t
@@ -57,7 +57,7 @@ contains
       type(counters_t), intent(inout) :: counters
       real(wp) :: length, across, now(NY), far(NY), half(NY)
 
-      if (transient%sought .or. .not. has_aside(inc, MODE_ORDINARY) .or. .not. first%loading) return
+      if (transient%sought .or. .not. has_elastic_part(inc, MODE_ORDINARY) .or. .not. first%loading) return
       length = norm(inc%d_strain)
       if (length*h < LONG*inc%rho .or. length*(inc%to - time) < LN_2*inc%rho) return
       across = norm(direction_at(inc, time) - inc%d_strain/length)   ! twice the sine of half the angle

@@ -14,8 +14,8 @@ module mud_scanning
    use mud_tensor, only: is_finite
    implicit none (type, external)
    private
-   public :: path_t, begin_path, go_on, pass, branch_of, saturation_after, keep_turns, begin_at_turn, find_least, &
-             check_curves, check_saturation, preset_saturation
+   public :: path_t, begin_path, move_along, list_passed, branch_of, saturation_after, keep_turns, begin_at_turn, &
+             find_least, check_curves, check_saturation, preset_saturation
 
    real(wp), parameter :: PRESET_ROUNDING = 1.0e-6_wp   !< Of a preset of six digits, as a share of S_max [-].
    !> Suctions at which the main curves are compared: from S_w = S_max but some 1e-8 to a million times P_a; ln(x/P_a)
@@ -48,7 +48,7 @@ contains
    !> The turning points with which a point moves to a suction: a reversal adds the present one, and what is passed on
    !> the way is forgotten with the loop that it closes. The present point is then where the branch that remains was
    !> joined. Nothing happens where it does not move. docs/theory/material.md section 2.1.1.
-   pure subroutine go_on(par, to, path)
+   pure subroutine move_along(par, to, path)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: to   !< ln(x/P_a), NO_SUCTION where there is none [-].
       type(path_t), intent(inout) :: path
@@ -56,12 +56,12 @@ contains
       integer :: n
       real(wp) :: passed(MAX_TURNS/2)
 
-      call pass(to, path, passed, n)
+      call list_passed(to, path, passed, n)
       if (to <= NO_SUCTION) path = path_t(NO_SUCTION, par%s_max, NO_TURNS)
-   end subroutine go_on
+   end subroutine move_along
 
    !> The same, and the suctions of the n turning points that are passed, in their order; without suction they are kept.
-   pure subroutine pass(to, path, passed, n)
+   pure subroutine list_passed(to, path, passed, n)
       real(wp), intent(in) :: to
       type(path_t), intent(inout) :: path
       real(wp), intent(out) :: passed(MAX_TURNS/2)   !< ln(x/P_a); beyond n without meaning [-].
@@ -89,7 +89,7 @@ contains
             passed(n) = path%log_x
          end do
       end associate
-   end subroutine pass
+   end subroutine list_passed
 
    !> Parameters whose saturation is that along the branch of a point. Closed form of docs/theory/material.md section
    !> 2.1.1; nothing is refused.
@@ -214,7 +214,7 @@ contains
       log_x = log_suction(par, p_c, e)
       s_w = path%s_w
       rests = abs(log_x - path%log_x) <= 0.0_wp
-      call go_on(par, log_x, path)
+      call move_along(par, log_x, path)
       branch = branch_of(par, path)
       sat = saturation(branch, p_c, e)
       if (rests) sat%s_w = s_w

@@ -69,19 +69,23 @@ def honest_text():
         lines.append((r["scene"], r["accuracy"], r["steps"], name, r["true_error"], r["estimated_error"], r["ratio"],
                       "yes" if inside else "**no**"))
     known = [r for r in rows if r["ratio"] and not honest.is_force(r["answer"])]
-    within = sum(LEAST <= float(r["ratio"]) <= MOST for r in known)
-    above = [r for r in known if float(r["ratio"]) > MOST]
-    forces = [float(r["ratio"]) for r in rows if r["ratio"] and honest.is_force(r["answer"])]
+    forces = [r for r in rows if r["ratio"] and honest.is_force(r["answer"])]
     met = [r for r in known if not minor(r, rows)]
     twice = [r for r in met if float(r["true_error"]) > 2*float(r["accuracy"])]
-    return tables.markdown(("scene", "accuracy", "steps", "answer", "true error", "estimated", "true/estimated",
-                            "in the band"), lines) + (
-        f"\n{within} of {len(known)} displacements and pressures lie in the band; {len(above)} have an error of more than "
-        f"five times the estimate, the others outside are estimated too large. Of {len(forces)} forces of supports and thrusts "
-        f"{sum(LEAST <= x <= MOST for x in forces)} lie in the band, {sum(x > MOST for x in forces)} have an error of more "
-        f"than five times the estimate. Of {len(met)} displacements and pressures that change by more than 5 % of "
-        f"the largest change of their field {len(twice)} have an error of more than twice the accuracy that was set"
-        + "".join(f"; {r['scene']} {r['accuracy']} {r['answer']} ({r['true_error']})" for r in twice) + ".\n")
+
+    def counts(what, those):
+        ratios = [float(r["ratio"]) for r in those]
+        return what, len(ratios), sum(LEAST <= x <= MOST for x in ratios), sum(x > MOST for x in ratios), sum(x < LEAST for x in ratios)
+
+    return "\n".join((
+        tables.markdown(("scene", "accuracy", "steps", "answer", "true error", "estimated", "true/estimated",
+                         "in the band"), lines),
+        tables.markdown(("answers", "number", "in the band", "true error above five estimates", "estimated too large"),
+                        (counts("displacements and pressures", known), counts("forces of supports and thrusts", forces))),
+        f"Of {len(met)} displacements and pressures that change by more than 5 % of the largest change of their field "
+        f"{len(twice)} have an error of more than twice the accuracy that was set:\n",
+        tables.markdown(("scene", "accuracy", "answer", "true error"),
+                        [(r["scene"], r["accuracy"], r["answer"], r["true_error"]) for r in twice])))
 
 
 def scenes_text():

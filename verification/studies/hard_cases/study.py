@@ -26,20 +26,6 @@ HOST_ORDER = sorted(SETTINGS, key=lambda setting: {"default": 0, "paper's remedy
 SECONDS = 30   # of the processor, for one path; with the defaults the longest takes about three
 
 
-class Remembering(Walker):
-    """Runs a path once: the settings of one rule share the run with the tight tolerance. One that takes too long did not end."""
-
-    def __init__(self, build):
-        super().__init__(build, jobs=1, seconds=SECONDS)
-        self.known = {}
-
-    def start(self, path):
-        text = "\n".join(path.lines)
-        if text not in self.known:
-            self.known[text] = super().start(path)
-        return self.known[text]
-
-
 def commit():
     return subprocess.run(["git", "describe", "--always", "--dirty"], cwd=HERE, capture_output=True, text=True).stdout.strip() or "unknown"
 
@@ -69,7 +55,8 @@ def main(names):
 
     folder = results.folder(__file__)
     if "point" in parts:
-        walker = Remembering(os.environ.get("MUD_BUILD_DIR") or ROOT / "build/release")
+        # The settings of one rule share the runs with the tight tolerance: a walker runs a path once.
+        walker = Walker(os.environ.get("MUD_BUILD_DIR") or ROOT / "build/release", jobs=1, seconds=SECONDS)
         work_off(folder / "results.csv", [f"made by study.py at commit {commit()}; per cent but for rates and cuts"], report.NAMES,
                  [(case, setting) for case in report.CASES for setting in SETTINGS if asked(case, setting)],
                  lambda case, setting: evaluate(walker, case, setting))

@@ -85,7 +85,7 @@ contains
       failed = .false.
       event_size = size
       do i = 1, events
-         call go_on(soil, s, place(i), failed)
+         call move_along(soil, s, place(i), failed)
          if (failed) exit
          event_size = size*growth**(i - 1)
          if (random_events) event_size = -size*log(uniform(random))
@@ -96,14 +96,14 @@ contains
          end do
          if (failed) exit
       end do
-      if (.not. failed) call go_on(soil, s, last, failed)
+      if (.not. failed) call move_along(soil, s, last, failed)
       write (output_unit, '(a, ",", i0, 7(",", es14.7), 5(",", i0))') trim(id), merge(1, 0, failed), soil%stress, &
          state_of(soil, 'void_ratio'), nint(state_of(soil, 'n_substep')), nint(state_of(soil, 'n_reject')), &
          nint(state_of(soil, 'n_rate')), nint(state_of(soil, 'n_reset')), soil%halvings
    end subroutine run_case
 
    !> Along the path to s = goal, in increments that end on multiples of the increment.
-   subroutine go_on(soil, s, goal, failed)
+   subroutine move_along(soil, s, goal, failed)
       type(point_t), intent(inout) :: soil
       real(wp), intent(inout) :: s
       real(wp), intent(in) :: goal
@@ -117,7 +117,7 @@ contains
          call step(soil, strain_at(path, next, top) - strain_at(path, s, top), failed)
          s = next
       end do
-   end subroutine go_on
+   end subroutine move_along
 
    !> A straight strain step in increments of the increment's length.
    subroutine advance(soil, way, failed)
