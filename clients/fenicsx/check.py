@@ -182,6 +182,34 @@ def gmsh():
          ("top.u_z", "base.p_w"), 1e-4)
 
 
+def tagged():
+    """A mesh of Gmsh in three dimensions: materials and sides by tags; the answer is that of a column in the plane."""
+    scene = here/"scenes/tagged.nml"
+    column = text(scene, ("geometry = 'box'", "geometry = 'plane_strain'"), ("group = 'lower'", "group = 'block_1_1'"),
+                  ("group = 'upper'", "group = 'block_1_2'"), ("&fix group = 'front' field = 'u_y' /\n", ""),
+                  ("&fix group = 'back' field = 'u_y' /\n", ""), (" y = 0 ", " "), (" y = 0.4 ", " "))
+    column = re.sub(r"&mesh file = '[^']*'", "&mesh r = 0, 0.5 r_cells = 2 z = 0, 0.5, 1 z_cells = 10, 10", column)
+    near("a mesh of Gmsh in three dimensions, two materials", solid("tagged", scene), host("tagged_host", column),
+         ("top.u_z", "base.p_w"), HOST, 2.0)
+    one = table(folder/"tagged/histories.csv") if (folder/"tagged/histories.csv").exists() else None
+    same("the same on two ranks: histories", solid("tagged_two", scene, "--no-fields", ranks=2), one)
+
+
+def plane():
+    """Quadrilaterals in the plane."""
+    scene = text(clients.root/"verification/host/terzaghi/scene.nml", ("duration = 100", "duration = 40"))
+    got = solid("plane", scene, "--cells", "quadrilaterals", "--no-fields")
+    wanted = got and {"time": got["time"], "base.p_w": [closed.terzaghi(0.0, t) for t in got["time"]]}
+    near("Terzaghi in quadrilaterals in the plane", got, wanted, ("base.p_w",), 3e-3, 0.1)
+
+
+def incoming():
+    """A wave that comes in from damped layers' base."""
+    scene = text(clients.root/"verification/host/layered_site/scene.nml", ("duration = 1.2", "duration = 0.6 dt = 2e-3"))
+    got = solid("incoming", scene, "--thickness", "1", "--no-fields")
+    near("a wave that comes in through an absorbing base", got, host("incoming_host", scene), ("surface.u_r",), HOST)
+
+
 def waves():
     """A pulse that leaves through an absorbing base, and a column of MUD shaken between tied sides."""
     scene = text(clients.root/"verification/host/waves/column.nml", ("duration = 0.4", "duration = 0.2"))
@@ -313,8 +341,8 @@ def scaling():
                     f"at most {worst}, allowed 40")
 
 
-parts = [points, blocks, consolidation, liakopoulos, layers, gmsh, waves, strip, indentation, ground, ranks, steps,
-         refusals, scaling]
+parts = [points, blocks, consolidation, liakopoulos, layers, gmsh, tagged, plane, waves, incoming, strip, indentation,
+         ground, ranks, steps, refusals, scaling]
 words = sys.argv[1:]
 for part in parts:
     if not words or any(part.__name__.startswith(word) for word in words):

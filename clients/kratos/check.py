@@ -5,8 +5,10 @@ import json
 import pathlib
 import subprocess
 
+import cases
 import clients
 import project
+import references
 
 here = pathlib.Path(__file__).parent
 PACKAGES = ["KratosGeoMechanicsApplication==10.4.4", "KratosLinearSolversApplication==10.4.4"]
@@ -175,4 +177,5 @@ if code == 0:
                     [[-table["sigma_r"][-1]]], 2e-4)
 else:
     clients.verdict(False, "ground under K_0 stress", f"exit code {code}")
+cases.check("kratos", PACKAGES[0], lambda case, divided: references.run(python, case, divided), references.FINER)
 clients.finish()

@@ -5,9 +5,9 @@ import ctypes
 import pathlib
 import re
 import subprocess
-import tomllib
 import xml.etree.ElementTree
 
+import cases
 import clients
 import project
 import references
@@ -171,31 +171,5 @@ if code == 0:
     clients.compare("and its horizontal stress follows the surcharge as in mud_triax", [[after[0]]],
                     [[-table["sigma_r"][-1]]], 2e-4)
 
-PERMEABLE = 1.0e-6  # both: permeability over viscosity [m2/(kPa s)]
-# Two cases of verification/references: linear elements, one and four for each of the mesh, and what the order leaves.
-for case, pressures, boundary, order, allowed in (
-        ("well", {"left": 0.0, "right": 30.0}, "left", 2, 2e-4),
-        ("sheet_pile", {"below_pile": 10.0, "top": 0.0}, "top", 1, 2e-3)):
-    given = clients.root / "verification/references" / case
-    declared = tomllib.loads((given / "case.toml").read_text())
-    wanted = next(float(row["value"]) for row in csv.DictReader(
-        line for line in (given / "reference.csv").read_text().splitlines() if line[0] != "#")
-        if row["quantity"] == "discharge")
-    found = []
-    for halved in (False, True):
-        folder = clients.work_folder(f"opengeosys/{case}_{2 if halved else 1}")
-        mesh = references.linear(given / "mesh.msh", halved)
-        references.write_meshes(folder, mesh, pressures)
-        (folder / "flow.prj").write_text(references.flow(declared["properties"], pressures, case == "well"))
-        if clients.run([python.parent / "ogs", "flow.prj"], folder / "log.txt", cwd=folder, timeout=600) == 0:
-            found.append(references.discharge(mesh, field(folder / "r_1.vtu", "pressure"), boundary,
-                                              PERMEABLE, case == "well"))
-    if len(found) < 2:
-        clients.verdict(False, f"reference case {case}", "a run did not come to its end")
-        continue
-    limit = found[1] + (found[1] - found[0])/(2**order - 1)
-    print(f"{case}: discharge {found[0]:.8g}, {found[1]:.8g}, extrapolated {limit:.8g}, reference {wanted:.8g} "
-          f"({found[0]/wanted - 1:.2%}, {found[1]/wanted - 1:.2%}, {limit/wanted - 1:.3%})")
-    clients.verdict(abs(limit/wanted - 1) <= allowed, f"reference case {case}",
-                    f"{abs(limit/wanted - 1):.1e} of the discharge, allowed {allowed:.1e}")
+cases.check("opengeosys", PACKAGES[0], lambda case, divided: references.run(python, case, divided), references.FINER)
 clients.finish()

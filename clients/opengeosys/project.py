@@ -44,13 +44,13 @@ def curve(name, values):
     return f"<curve><name>{name}</name><coords>{times}</coords><values>{' '.join(map(repr, values))}</values></curve>\n"
 
 
-def condition(component, parameter, mesh="nodes", kind="Dirichlet"):
+def condition(component, parameter, mesh="nodes", kind="Dirichlet", word="parameter"):
     return (f"<boundary_condition><mesh>{mesh}</mesh><type>{kind}</type><component>{component}</component>"
-            f"<parameter>{parameter}</parameter></boundary_condition>\n")
+            f"<{word}>{parameter}</{word}></boundary_condition>\n")
 
 
-def variable(name, components, start, conditions):
-    return (f"<process_variable><name>{name}</name><components>{components}</components><order>1</order>"
+def variable(name, components, start, conditions, order=1):
+    return (f"<process_variable><name>{name}</name><components>{components}</components><order>{order}</order>"
             f"<initial_condition>{start}</initial_condition><boundary_conditions>\n{conditions}"
             "</boundary_conditions></process_variable>\n")
 
@@ -110,7 +110,7 @@ def project(library, props, presets, strains, stress, suction=None, saturation=1
         outputs = ("sigma_total", "saturation")
     steps = len(strains) - 1
     process = (UNSATURATED if unsaturated else SMALL_DEFORMATION).format(relation=law, zero="0 0 0")
-    return whole(["cube", "nodes"], process, media, tolerances, float(steps), steps, outputs, parameters, curves,
+    return whole(["cube", "nodes"], process, media, tolerances, equal_steps(float(steps), steps), outputs, parameters, curves,
                  variables)
 
 
@@ -132,11 +132,36 @@ def soil_with_water(porosity, saturation, permeability=1.0e-12):
                          thermal_conductivity="<type>EffectiveThermalConductivityPorosityMixing</type>"))
 
 
-def whole(meshes, process, media, tolerances, end, steps, outputs, parameters, curves, variables):
-    mesh = "".join(f"<mesh>{name}.vtu</mesh>" for name in meshes)
+def equal_steps(end, number):
+    return fixed_steps([(number, end/number)])
+
+
+def fixed_steps(pairs):
+    """(number, length) of equal steps in turn."""
+    return "FixedTimeStepping", sum(number*length for number, length in pairs), "<timesteps>" + "".join(
+        f"<pair><repeat>{number}</repeat><delta_t>{length!r}</delta_t></pair>\n" for number, length in pairs
+    ) + "</timesteps>"
+
+
+def steps_by_iterations(end, first, longest):
+    """Steps that grow while few iterations are needed, and are cut where Newton's method fails."""
+    return "IterationNumberBasedTimeStepping", end, (
+        f"<initial_dt>{first!r}</initial_dt><minimum_dt>{first*1e-6!r}</minimum_dt><maximum_dt>{longest!r}</maximum_dt>"
+        "<number_iterations>1 8 16 30</number_iterations><multiplier>1.5 1.1 0.8 0.3</multiplier>")
+
+
+def whole(meshes, process, media, tolerances, stepping, outputs, parameters, curves, variables, axisymmetric=False,
+          solver="Newton", kept=None, script=""):
+    """Text of a project. kept: times of output, every step without; script: of conditions in Python."""
+    around = ' axially_symmetric="true"' if axisymmetric else ""
+    mesh = "".join(f"<mesh{around}>{name}.vtu</mesh>" for name in meshes)
+    kind, end, steps = stepping
+    each = 1 if kept is None else 10**9
+    times = "" if kept is None else f"<fixed_output_times>{' '.join(map(repr, kept))}</fixed_output_times>"
+    script = script and f"<python_script>{script}</python_script>"
     wanted = "".join(f"<variable>{name}</variable>" for name in outputs)
     return f"""<?xml version="1.0"?>
-<OpenGeoSysProject>
+<OpenGeoSysProject>{script}
 <meshes>{mesh}</meshes>
 <processes>{process}</processes>
 <media><medium>{media}</medium></media>
@@ -144,16 +169,17 @@ def whole(meshes, process, media, tolerances, end, steps, outputs, parameters, c
 <convergence_criterion><type>PerComponentDeltaX</type><norm_type>INFINITY_N</norm_type>{tolerances}
 </convergence_criterion>
 <time_discretization><type>BackwardEuler</type></time_discretization>
-<time_stepping><type>FixedTimeStepping</type><t_initial>0</t_initial><t_end>{end!r}</t_end>
-<timesteps><pair><repeat>{steps}</repeat><delta_t>{end/steps!r}</delta_t></pair></timesteps></time_stepping>
+<time_stepping><type>{kind}</type><t_initial>0</t_initial><t_end>{end!r}</t_end>
+{steps}</time_stepping>
 </process></processes>
 <output><type>VTK</type><prefix>r</prefix><suffix>_{{:timestep}}</suffix><data_mode>Ascii</data_mode>
-<timesteps><pair><repeat>1</repeat><each_steps>1</each_steps></pair></timesteps><variables>{wanted}</variables></output>
+<timesteps><pair><repeat>1</repeat><each_steps>{each}</each_steps></pair></timesteps>{times}
+<variables>{wanted}</variables></output>
 </time_loop>
 <parameters>{parameters}</parameters>
 <curves>{curves}</curves>
 <process_variables>{variables}</process_variables>
-<nonlinear_solvers><nonlinear_solver><name>newton</name><type>Newton</type><max_iter>30</max_iter>
+<nonlinear_solvers><nonlinear_solver><name>newton</name><type>{solver}</type><max_iter>30</max_iter>
 <linear_solver>direct</linear_solver></nonlinear_solver></nonlinear_solvers>
 <linear_solvers><linear_solver><name>direct</name><eigen><solver_type>SparseLU</solver_type></eigen></linear_solver>
 </linear_solvers>
@@ -193,7 +219,7 @@ def ground(library, props, height, density, k_0, surcharge, added, steps):
     law = relation("MUD", library, props, [])
     process = SMALL_DEFORMATION.format(relation=law, zero=f"0 {-GRAVITY!r}")
     return whole(["column", "nodes", "bottom", "top"], process, solid_alone(density), "<abstols>1e-10 1e-10</abstols>",
-                 float(steps + 1), steps + 1, ("displacement", "sigma"), parameters, curves, variables)
+                 equal_steps(float(steps + 1), steps + 1), ("displacement", "sigma"), parameters, curves, variables)
 
 
 def column(library, props, void_ratio, stress, pull, suction, permeability, end, steps):
@@ -211,5 +237,5 @@ def column(library, props, void_ratio, stress, pull, suction, permeability, end,
     variables += variable("temperature", 1, "warm", condition(0, "warm"))
     law = relation("MUD_StressSaturation", library, props, ["void_ratio"])
     return whole(["column", "nodes", "bottom", "top"], UNSATURATED.format(relation=law, zero="0 0"),
-                 soil_with_water(None, pull/suction, permeability), "<abstols>1e-9 1e-6 1e-10 1e-10</abstols>", end,
-                 steps, ("displacement", "pressure"), parameters, "", variables)
+                 soil_with_water(None, pull/suction, permeability), "<abstols>1e-9 1e-6 1e-10 1e-10</abstols>",
+                 equal_steps(end, steps), ("displacement", "pressure"), parameters, "", variables)

@@ -9,6 +9,7 @@ from checking import build, check, needs_release, nightly, root, work
 
 needs_release("the pages of verification/host run the same scenes in every build")
 sys.path.insert(0, str(root / "verification/references"))
+import others  # noqa: E402
 import run  # noqa: E402
 import tables  # noqa: E402 (run knows its folder)
 
@@ -60,3 +61,11 @@ def test_the_table_of_the_page_is_that_of_the_cases():
         declared, reference = run.read(case)
         row = f"| [{case}]({case}/case.toml) | {declared['title']} | {declared['reference'].split(':')[0]} |"
         check(f"{case} has its row in the page", row in text, row)
+
+
+def test_the_table_of_other_programs_is_that_of_their_checks():
+    text = (root / "verification/references/README.md").read_text(encoding="utf-8")
+    check("others.py --update has written it", others.table() in text, others.table())
+    refused = [case for name in others.PROGRAMS for case, found in others.kept(name)["cases"].items()
+               if found == "no convergence"]
+    check("no run of another program broke off", not refused, refused)
