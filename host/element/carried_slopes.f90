@@ -16,7 +16,6 @@ module carried_slopes
    integer, parameter :: PLANE = 4         !< Components rr, zz, tt, rz.
 
    type :: slopes_t
-      logical :: kept = .false.              !< Whether passes by the material keep theirs.
       logical :: known = .false.             !< Those of the state where the next step begins are here.
       real(wp), allocatable :: strain(:, :, :)   !< (4, 4, points) d sigma'/d strain [kPa]
       real(wp), allocatable :: suction(:, :)     !< (4, points) d sigma'/d p_c [-]

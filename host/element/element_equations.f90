@@ -146,7 +146,7 @@ contains
 
          t0 = clock()
          call law%update(n, old%stress(:, first:last), before, strain, suction, d_suction, &
-                         with_tangent .or. slopes%kept, material, after, report)
+                         with_tangent .or. allocated(slopes%strain), material, after, report)
          call add_elapsed(out%seconds, t0)
          out%rate_evaluations = report%n_rate
          if (report%code /= 0) then
@@ -154,7 +154,7 @@ contains
             out%bad_point = report%point
             return
          end if
-         if (slopes%kept) call keep_slopes(n, first, material, slopes)
+         if (allocated(slopes%strain)) call keep_slopes(n, first, material, slopes)
          if (with_tangent .and. out%fallback /= NO_FALLBACK) &
             call replace_soft_tangents(law, out%fallback, n, after, suction(:n) + d_suction(:n), material, out%replaced)
       end subroutine ask

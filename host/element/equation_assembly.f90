@@ -34,7 +34,7 @@ module equation_assembly
       integer :: source = BY_MATERIAL                !< What gives the response of the points in the next pass.
       type(slopes_t) :: slopes                       !< Slopes that are kept between passes.
       integer :: fallback = NO_FALLBACK              !< What replaces soft tangents, see tangent_fallback.
-      integer :: replaced = 0                        !< Points whose tangent was replaced in the last pass.
+      integer :: replaced = 0                        !< Points whose tangent was replaced in the last matrix.
       integer, allocatable :: soft(:)                !< Such points of every element.
       logical, allocatable :: air(:)                 !< Nodes whose air pressure is prescribed.
       ! Outcome.
@@ -58,19 +58,15 @@ contains
       allocate (assembly%residual(dofs%n), assembly%scale(dofs%n), assembly%floor(dofs%n), source=0.0_wp)
       allocate (assembly%values(size(pattern%col)), source=0.0_wp)
       allocate (assembly%air(size(domain%mesh%x, 2)), source=.false.)
+      assembly%slopes = new_slopes(size(domain%mesh%t6, 2)*domain%rule)
    end subroutine make_assembly
 
    !> Before the first pass of a step: whether it follows the slopes of the step before, where they are known. From
    !> here on the slopes are those of this step's passes. docs/theory/host.md section 5.4.
-   pure subroutine follow_slopes_first(domain, wanted, assembly)
-      type(domain_t), intent(in) :: domain
-      logical, intent(in) :: wanted   !< Else no pass keeps slopes.
+   pure subroutine follow_slopes_first(assembly)
       type(assembly_t), intent(inout) :: assembly
 
-      if (wanted .and. .not. allocated(assembly%slopes%strain)) &
-         assembly%slopes = new_slopes(size(domain%mesh%t6, 2)*domain%rule)
-      assembly%source = merge(BY_SLOPES, BY_MATERIAL, wanted .and. assembly%slopes%known)
-      assembly%slopes%kept = wanted
+      assembly%source = merge(BY_SLOPES, BY_MATERIAL, assembly%slopes%known)
       assembly%slopes%known = .false.
    end subroutine follow_slopes_first
 
@@ -120,7 +116,7 @@ contains
          if (domain%with_c) call balance_of_water(domain, assembly%air, e, n, with_tangent, out)
          assembly%r(:, e) = out%r(:m)
          assembly%stretch(:, e) = out%stretch(:m)
-         if (assembly%fallback /= NO_FALLBACK) assembly%soft(e) = out%replaced
+         if (with_tangent .and. assembly%fallback /= NO_FALLBACK) assembly%soft(e) = out%replaced
          if (assembly%with_change) assembly%d_r(:, e) = out%change(:m)
          if (with_tangent) then
             do i = 1, n
@@ -138,8 +134,10 @@ contains
          assembly%bad = out%bad
          return
       end if
-      assembly%replaced = 0
-      if (assembly%fallback /= NO_FALLBACK) assembly%replaced = sum(assembly%soft)
+      if (with_tangent) then
+         assembly%replaced = 0
+         if (assembly%fallback /= NO_FALLBACK) assembly%replaced = sum(assembly%soft)
+      end if
       call add_up(threads, pattern, with_tangent, assembly)
       if (assembly%with_change) call add_up_change(dofs, pattern, assembly)
       ! The threads share the loop evenly.

@@ -27,7 +27,7 @@ module checkpoints
       ' is an HDF5 file, but no checkpoint of mud_host; name the '//CHECKPOINT//' of a run.', &
       'Finish the run with the program that began it.')
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
-   integer, parameter :: N_COUNTERS = 16, AT_FRAMES = 14, AT_PAIRS = 15, AT_SUDDEN = 16   !< Of the list of counters.
+   integer, parameter :: N_COUNTERS = 15, AT_FRAMES = 13, AT_PAIRS = 14, AT_SUDDEN = 15   !< Of the list of counters.
    character(*), parameter :: DAMAGED = ' is damaged: an entry is missing, has another extent or a wrong '// &
                                         'checksum; use an older copy, or start anew.'
    character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
@@ -338,9 +338,8 @@ contains
 
       associate (c => run%at)
          counters = real([integer(int64) :: c%stage, c%step, c%cuts, c%good, run%steps, run%iterations, run%cuts, &
-                          run%rate_evaluations, merge(1, 0, run%system%reassemble_tangent), tables%history%bytes, &
-                          tables%ledger%bytes, &
-                          tables%contact%bytes, tables%reactions%bytes, size(tables%frames%times), pairs_of(run), &
+                          run%rate_evaluations, tables%history%bytes, tables%ledger%bytes, tables%contact%bytes, &
+                          tables%reactions%bytes, size(tables%frames%times), pairs_of(run), &
                           merge(1, 0, allocated(c%sudden))], wp)
       end associate
    end function counters_of
@@ -349,9 +348,8 @@ contains
    pure logical function possible(counters, stages)
       real(wp), intent(in) :: counters(N_COUNTERS)
       integer, intent(in) :: stages
-      real(wp), parameter :: LARGEST(N_COUNTERS) = [spread(real(huge(0), wp), 1, 7), 2.0_wp**53, 1.0_wp, &
-                                                    spread(2.0_wp**53, 1, 4), spread(real(huge(0), wp)/2, 1, 2), &
-                                                    1.0_wp]
+      real(wp), parameter :: LARGEST(N_COUNTERS) = [spread(real(huge(0), wp), 1, 7), spread(2.0_wp**53, 1, 5), &
+                                                    spread(real(huge(0), wp)/2, 1, 2), 1.0_wp]
 
       ! A comparison with what is no number may end the program.
       possible = all(ieee_is_finite(counters))
@@ -372,10 +370,9 @@ contains
       run%iterations = nint(counters(6))
       run%cuts = nint(counters(7))
       run%rate_evaluations = nint(counters(8), int64)
-      run%system%reassemble_tangent = nint(counters(9)) == 1
-      tables%history%bytes = nint(counters(10), int64)
-      tables%ledger%bytes = nint(counters(11), int64)
-      tables%contact%bytes = nint(counters(12), int64)
-      tables%reactions%bytes = nint(counters(13), int64)
+      tables%history%bytes = nint(counters(9), int64)
+      tables%ledger%bytes = nint(counters(10), int64)
+      tables%contact%bytes = nint(counters(11), int64)
+      tables%reactions%bytes = nint(counters(12), int64)
    end subroutine take_counters
 end module checkpoints

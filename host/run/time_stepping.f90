@@ -82,7 +82,7 @@ contains
       associate (stage => model%stages(number), at => run%at)
          call follow_newton(stage, model%domain%regions)
          control = control_t(stage%tolerance, stage%max_iterations, stage%no_predictor, stage%measure, &
-                             stage%controlled, roughness(model%domain%regions))
+                             roughness(model%domain%regions))
          warned = .false.
          ! A run that is taken up again is in the middle of its stage.
          call contacts_act(model, stage, run%system%contacts)

@@ -46,7 +46,6 @@ module convergence
       integer :: max_iterations = 12
       logical :: no_predictor = .false.              !< Predict no change.
       integer :: measure = BY_FORCES          !< What has to fall below the tolerance.
-      logical :: carries_slopes = .false.     !< The first pass of a step follows the slopes of the one before.
       real(wp) :: roughness = 0.0_wp          !< Tolerance of the stress integration, the largest of the regions [-].
    end type control_t
 

@@ -32,7 +32,6 @@ module linear_system
       logical, allocatable :: fixed(:), air(:)   !< What was fixed when the factors were made.
       logical :: indefinite = .false.         !< The last solution found its matrix so, see factorise.
       integer :: active = 0                   !< Nodes in contact when the factors were made.
-      logical :: reassemble_tangent = .false.    !< In every iteration: the last step needed several.
       real(wp) :: largest(FIELDS) = 0.0_wp    !< Largest scale of every field so far.
       real(wp) :: rounding(FIELDS) = 0.0_wp   !< Least scale of the present step, see convergence.
       real(wp), allocatable :: reaction(:)    !< Residual with the constrained rows kept.

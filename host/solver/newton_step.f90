@@ -60,7 +60,7 @@ contains
       t0 = clock()
       allocate (rhs(dofs%n), dx(dofs%n))
       new%time = old%time + scheme%dt
-      call begin_passes(domain, scheme, constraint, control, assembly)
+      call begin_passes(scheme, constraint, control, assembly)
       call follow_friction(system%contacts, fresh=.true.)
       if (assembly%with_change .and. allocated(system%contacts%interfaces)) then
          log%outcome = merge(CONVERGED, CONTACT_FAILED, contact_forces(system%contacts, dofs, old%x, touched))
@@ -104,12 +104,11 @@ contains
             if (log%iterations >= control%max_iterations .or. is_in_vain(log) .or. &
                 .not. all(log%error < HOPELESS)) then
                log%outcome = NOT_CONVERGED
-               system%reassemble_tangent = .true.
                return
             end if
             ! The slopes at the present values, where the last pass left them out.
             if (.not. with_tangent) then
-               if (control%carries_slopes) assembly%source = AS_BEFORE
+               assembly%source = AS_BEFORE
                if (.not. pass(.true.)) return
             end if
          else
@@ -140,12 +139,11 @@ contains
          call follow_friction(system%contacts, fresh=.false.)
          call add_correction(dofs, dx, new%x, log%correction)
          call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
-         with_tangent = system%reassemble_tangent .and. .not. control%carries_slopes
+         with_tangent = .false.
       end do
       call keep_what_is_left()
       call follow_friction(system%contacts, fresh=.true.)
-      system%reassemble_tangent = log%iterations > 1
-      assembly%slopes%known = control%carries_slopes
+      assembly%slopes%known = .true.
       call add_elapsed(system%seconds(T_REST), t0)
    contains
       !> What a further iteration would correct: the last correction, as much smaller as its residual has become. One
@@ -202,8 +200,7 @@ contains
    end function needs_stiffness
 
    !> What the passes of a step over the elements are asked for.
-   pure subroutine begin_passes(domain, scheme, constraint, control, assembly)
-      type(domain_t), intent(in) :: domain
+   pure subroutine begin_passes(scheme, constraint, control, assembly)
       type(scheme_t), intent(in) :: scheme
       type(constraint_t), intent(in) :: constraint
       type(control_t), intent(in) :: control
@@ -213,7 +210,7 @@ contains
       assembly%with_change = control%measure == BY_CHANGE
       assembly%rounding_share = merge(rounding_in(scheme%kind)/control%tolerance, 0.0_wp, assembly%with_change)
       assembly%fallback = NO_FALLBACK
-      call follow_slopes_first(domain, control%carries_slopes, assembly)
+      call follow_slopes_first(assembly)
    end subroutine begin_passes
 
    !> What the rounding of the degree of saturation at both ends of a step leaves of its rate, in the norm of the free
@@ -376,7 +373,8 @@ contains
       scheme = make_scheme(STATIC, 1.0_wp, 1.0_wp)
       held = constraint
       held%load_1 = held%load_0
-      call begin_passes(domain, scheme, held, control_t(), assembly)
+      assembly%slopes%known = .false.   ! the stresses that are there, not those of a step
+      call begin_passes(scheme, held, control_t(), assembly)
       good = update_contacts(system, dofs, pattern, state%x, .false., assembly)
       if (good) call assemble(domain, dofs, pattern, scheme, state, work, .false., assembly)
       if (good) good = assembly%bad_element == 0

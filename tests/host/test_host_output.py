@@ -268,7 +268,7 @@ def test_uninterrupted_run():
         ("damaged bit", flip, text, "damaged"),
         ("damaged structure", flip_structure, text, "damaged"),
         ("stage that is not there", foreign_counters(0, 7.0), text, "damaged"),
-        ("negative counter", foreign_counters(13, -1.0), text, "damaged"),
+        ("negative counter", foreign_counters(12, -1.0), text, "damaged"),
         ("counter that is no number", foreign_counters(0, float("nan")), text, "damaged"),
         ("no counters", lambda: altered(lambda file: file.__delitem__("counters")), text, "damaged"),
         ("missing entry", lambda: altered(drop), text, "damaged"),
@@ -329,7 +329,7 @@ def test_uninterrupted_run():
     done = run(scene, long, "--restart", bad)
     told = re.search(r" (\d+) rate evaluations", done.stdout)
     check("counter beyond 32 bits", done.returncode == 0 and told and int(told[1]) > 2*FAR, done.stdout + done.stderr)
-    altered(lambda f: f["counters"].__setitem__(9, float(FAR)))
+    altered(lambda f: f["counters"].__setitem__(8, float(FAR)))
     done = run(scene, long, "--check", "--restart", bad)
     check("length beyond 32 bits: too short", done.returncode == 17
           and "histories.csv is missing, shorter" in done.stderr, done.stderr)
