@@ -6,7 +6,7 @@ Writes table_1.csv; a run whose row is there is left.
 
     table_1.py [--build build/release] [--results FOLDER]
 
-Twenty minutes of one core.
+A quarter of an hour of one core.
 """
 import argparse
 import os
