@@ -101,9 +101,10 @@ def check(bench):
     bench.near("record.txt", [[float(word) for word in line.split()] for line in lines], np.column_stack(make_record.acceleration()), NONE)
     if bench.quick:
         short = [("duration = 12 dt = 0.01 ", "duration = 2 dt = 0.02 "), ("duration = 1500", "duration = 1")]
-        h, ledger, reactions = run(bench, "and fluidity", changes=short)
+        motion, sand = RUNS[0]
+        h, ledger, reactions = run(bench, sand, motion, changes=short)
         moving = {name: column[ledger["stage"] < 3] for name, column in ledger.items()}   # then the base is stopped at once
-        balances(bench, "first 2 s", h, moving, reactions, drained=False)
+        balances(bench, f"{motion}, {sand}", h, moving, reactions, drained=False)
         return
     told, found = recorded(bench), {}
     for motion, sand in RUNS[:2]:
