@@ -9,6 +9,7 @@ program mud_host
    use checkpoints, only: read_checkpoint
    use kinds, only: wp
    use wall_clock, only: clock
+   use warnings, only: print_warning
    use generalised_alpha, only: STATIC, DYNAMIC
    use effect_pilots, only: ask_effects, reduce_scene, apply_effects
    use effect_types, only: effect_t
@@ -101,6 +102,7 @@ program mud_host
    if (fault%code == 0) call build_model(scene, model, fault)
    if (fault%code == 0) call prepare_run(model, run, fault)
    if (fault%code == 0 .and. .not. quiet) call announce()
+   if (fault%code == 0) call warn_of_scene()
    if (option_given(options, '--price') .and. .not. only_check) then
       if (fault%code == 0) call find_price()
       call leave()
@@ -217,7 +219,7 @@ contains
          '                        mesh included: error and time of meshes and accuracies, the cheapest way to', &
          '                        10, 3 and 1 %; writes price.csv and price_answers.csv, and ends', &
          '  --check               reads and checks scene and checkpoint, runs nothing', &
-         '  --quiet               prints errors only', &
+         '  --quiet               prints errors and warnings only', &
          '  --template            prints every group and key of a scene']
       integer :: k
 
@@ -246,7 +248,6 @@ contains
    end subroutine check_restart
 
    subroutine announce()
-      character(WARNING_LENGTH), allocatable :: warnings(:)
       integer :: i
 
       write (output_unit, '(a)') trim(model%name)//': '//whole(size(model%domain%mesh%t6, 2))//' elements, '// &
@@ -264,11 +265,17 @@ contains
          'is '//short(100*scene%accuracy)//' %; the numbers above are of the mesh as it stands.'
       if (scene%derive_effects .and. only_check) write (output_unit, '(a)') 'effects = ''auto'': pilots find out '// &
          'what the keys leave open when the run begins; --effects shows it without a run.'
-      call list_warnings(scene, model, run%tension, warnings)
-      do i = 1, size(warnings)
-         write (output_unit, '(a)') 'Warning: '//trim(warnings(i))
-      end do
    end subroutine announce
+
+   subroutine warn_of_scene()
+      character(WARNING_LENGTH), allocatable :: doubts(:)
+      integer :: i
+
+      call list_warnings(scene, model, run%tension, doubts)
+      do i = 1, size(doubts)
+         call print_warning(doubts(i))
+      end do
+   end subroutine warn_of_scene
 
    !> The run again at a quarter of the accuracy, given steps a quarter as long, in a folder of its own: the difference
    !> takes the estimate's place.

@@ -2,7 +2,7 @@
 !> The estimated error of every answer of a run, and what limited the steps where they are controlled.
 !> docs/theory/host.md section 4.5.
 module answer_errors
-   use, intrinsic :: iso_fortran_env, only: error_unit
+   use warnings, only: print_warning
    use kinds, only: wp
    use control_state, only: control_state_t, LIMIT_NAMES, BY_LARGEST, BY_SMALLEST
    use csv, only: csv_t, new_csv, write_row, close_csv
@@ -128,9 +128,9 @@ contains
       do i = 1, size(forces)
          call compare(trim(forces(i)%name), forces(i)%error, 0.0_wp)
       end do
-      if (asked > 0.0_wp .and. newton > NEWTON_SHARE*asked) write (error_unit, '(a)') 'mud_host: warning: '// &
+      if (asked > 0.0_wp .and. newton > NEWTON_SHARE*asked) call print_warning( &
          'Newton''s method leaves '//short(100*newton)//' % of an answer, more than a tenth of the accuracy of '// &
-         short(100*asked)//' %: leave tolerance of &stage out, or give a smaller one.'
+         short(100*asked)//' %: leave tolerance of &stage out, or give a smaller one.')
       if (worst == '') return
       measured = trim(merge('measured ', 'estimated', verified))//' error of '//worst//' is '//short(100*largest)// &
                  ' % of its largest change'
@@ -140,7 +140,7 @@ contains
                     largest, of_worst))
          return
       end if
-      write (error_unit, '(a)') 'mud_host: warning: the steps in time are too long: the '//measured//'. '//SHORTER
+      call print_warning('the steps in time are too long: the '//measured//'. '//SHORTER)
    contains
       subroutine compare(name, error, by_newton)
          character(*), intent(in) :: name

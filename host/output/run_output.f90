@@ -9,6 +9,7 @@ module run_output
    use texts, only: short, whole
    use checkpoints, only: write_checkpoint
    use effect_monitor, only: warning_of
+   use warnings, only: print_warning
    use effect_types, only: NEVER
    use effects_table, only: write_effects
    use field_files, only: write_frame
@@ -159,18 +160,17 @@ contains
       end do
    end subroutine run_ends
 
-   !> Prints a text, unless the run is quiet; one that passes in the place of the progress line.
+   !> Prints a warning; a text that passes takes the place of the progress line, unless the run is quiet.
    subroutine warn(self, text, passing)
       class(run_output_t), intent(inout) :: self
       character(*), intent(in) :: text
       logical, intent(in), optional :: passing
 
-      if (self%quiet) return
       if (present(passing)) then
-         call show_line(text, self%progress)
+         if (.not. self%quiet) call show_line(text, self%progress)
          return
       end if
       call clear_progress(self%progress)
-      write (output_unit, '(a)') text
+      call print_warning(text)
    end subroutine warn
 end module run_output

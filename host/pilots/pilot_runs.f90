@@ -2,7 +2,6 @@
 !> Runs a scene without files and words, and keeps what its answers did.
 !> docs/theory/host.md section 11.
 module pilot_runs
-   use, intrinsic :: iso_fortran_env, only: output_unit
    use kinds, only: wp
    use effect_monitor, only: indicator_of, mass_of_nodes
    use effect_types, only: effect_t, EFFECTS, OF_FLOW
@@ -23,6 +22,7 @@ module pilot_runs
    use time_stepping, only: run_stages
    use unknown_fields, only: FIELDS
    use wall_clock, only: clock
+   use warnings, only: print_warning
    implicit none (type, external)
    private
    public :: pilot_t, stage_ends_t, run_pilot, run_observed_pilot, PHASES
@@ -287,6 +287,6 @@ contains
       end if
       if (present(passing)) return
       ! The run itself warns where it is needed.
-      if (.not. self%silent) write (output_unit, '(a)') text
+      if (.not. self%silent) call print_warning(text)
    end subroutine warn
 end module pilot_runs

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Warning of a run in which a surface has penetrated another one without contact pressure.
 module contact_alarm
-   use, intrinsic :: iso_fortran_env, only: error_unit
+   use warnings, only: print_warning
    use kinds, only: wp
    use contact_interfaces, only: contacts_t
    use model_types, only: model_t
@@ -27,11 +27,11 @@ contains
          associate (t => contacts%interfaces(i))
             if (.not. t%acts .or. t%told .or. t%result%unpressed <= ALARMING_DEPTH) cycle
             t%told = .true.
-            write (error_unit, '(a)') 'mud_host: warning: contact '//trim(model%contacts(i)%name)//', time '// &
+            call print_warning('contact '//trim(model%contacts(i)%name)//', time '// &
                short(time)//' s: near ('//short(t%result%unpressed_at(1))//', '//short(t%result%unpressed_at(2))// &
                ') m the surfaces have penetrated each other by '//short(100*t%result%unpressed)// &
                ' % of an edge without pressure, which its gaps do not see. Set gap = ''combined'' in &contact, or '// &
-               'refine the slave there.'
+               'refine the slave there.')
          end associate
       end do
    end subroutine warn_of_penetration

@@ -2,7 +2,7 @@
 !> Ends a run that has created energy: its results may then be wrong by any factor, although every step has
 !> converged. docs/theory/host.md section 9.
 module energy_alarm
-   use, intrinsic :: iso_fortran_env, only: error_unit
+   use warnings, only: print_warning
    use kinds, only: wp
    use energy_ledger, only: ledger_t, allowed_creation, ALARMING_SHARE
    use exit_codes, only: EXIT_ENERGY
@@ -44,8 +44,8 @@ contains
 
       if (stage%kind /= DYNAMIC .or. ledger%most_created <= allowed_creation(ALARMING_SHARE, ledger)) return
       if (ledger%most_created > allowed_creation(stage%created_energy, ledger)) return
-      write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//' has created '//amount(ledger)// &
-         '. Do not use its results: '//REMEDY//'.'
+      call print_warning('stage '//trim(stage%name)//' has created '//amount(ledger)// &
+         '. Do not use its results: '//REMEDY//'.')
    end subroutine warn_of_created_energy
 
    !> Energy in kJ and as a share.

@@ -3,7 +3,7 @@
 !> a node of a seepage face lets water in (section 7.7), or in which a material made for compression has lost its mean
 !> effective stress and has no guard that would have kept it.
 module pressure_alarm
-   use, intrinsic :: iso_fortran_env, only: error_unit
+   use warnings, only: print_warning
    use kinds, only: wp
    use generalised_alpha, only: STATIC
    use material_point, only: lost_pressure, PRESSURE_LOST
@@ -47,11 +47,11 @@ contains
          call outstanding_corner(mesh%t6(:, pack([(e, e=1, size(flows))], flows)), p, share, node)
          if (share <= ALARMING_SHARE) return
          told = .true.
-         write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//', time '//short(state%time)// &
+         call print_warning('stage '//trim(stage%name)//', time '//short(state%time)// &
             ' s: the pore water pressure at ('//short(mesh%x(1, node))//', '//short(mesh%x(2, node))//') m, '// &
             short(p(node))//' kPa, differs from those around it by '//short(100*share)// &
-            ' % of the range of all pressures. Pressures that oscillate from node to node are wrong: refine '// &
-            'the mesh there, take longer steps or, where hardly any water drains, set pressures = ''linear'' in &scene.'
+            ' % of the range of all pressures. Pressures that oscillate from node to node are wrong: refine the '// &
+            'mesh there, take longer steps or, where hardly any water drains, set pressures = ''linear'' in &scene.')
       end associate
    end subroutine warn_of_oscillation
 
@@ -71,9 +71,10 @@ contains
                p = (e - 1)*model%domain%rule + g
                if (.not. lost_pressure(law, stress(:, p))) cycle
                told = .true.
-               write (error_unit, '(a)') 'mud_host: warning: time '//short(state%time)// &
+               call print_warning('time '//short(state%time)// &
                   ' s: the mean effective stress p'' at ('//short(model%domain%gauss(g, e)%x(1))//', '// &
-                  short(model%domain%gauss(g, e)%x(2))//') m is '//short(-sum(stress(:3, p))/3)//' kPa: '//PRESSURE_LOST
+                  short(model%domain%gauss(g, e)%x(2))//') m is '//short(-sum(stress(:3, p))/3)//' kPa: '// &
+                  PRESSURE_LOST)
                return
             end do
          end associate
@@ -92,10 +93,10 @@ contains
       if (told .or. drinks == 0) return
       told = .true.
       associate (x => model%domain%mesh%x(:, model%dofs%node(drinks)))
-         write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//', time '//short(time)// &
+         call print_warning('stage '//trim(stage%name)//', time '//short(time)// &
             ' s: the node at ('//short(x(1))//', '//short(x(2))//') m of a seepage face, or under rain, left its '// &
             'limit three times within the step, and keeps it although water enters there. Shorten the steps or '// &
-            'refine the mesh there.'
+            'refine the mesh there.')
       end associate
    end subroutine warn_of_inflow
 

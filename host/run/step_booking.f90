@@ -59,7 +59,7 @@ contains
          if (.not. news(i)) cycle
          if (model%stop_on_warning) call raise(fault, EXIT_EFFECT, warning_of(run%monitor%table(i))// &
             ' effects_on_warning = ''stop'' ends the run.')
-         if (present(observer)) call observer%warn('Warning: '//warning_of(run%monitor%table(i)))
+         if (present(observer)) call observer%warn(warning_of(run%monitor%table(i)))
       end do
    end subroutine watch_effects
 end module step_booking

@@ -3,7 +3,7 @@
 !> tolerance of the stresses cannot be reached, since the substeps of a point change with its strain.
 !> docs/theory/host.md section 5.1.
 module stress_tolerance
-   use, intrinsic :: iso_fortran_env, only: error_unit
+   use warnings, only: print_warning
    use kinds, only: wp
    use convergence, only: log_t
    use porous_domain, only: region_t
@@ -54,9 +54,9 @@ contains
 
       if (told .or. .not. log%stagnated) return
       told = .true.
-      write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//', time '//short(time)// &
+      call print_warning('stage '//trim(stage%name)//', time '//short(time)// &
          ' s: Newton''s method stays at an error of '//short(maxval(log%error))//' and cannot reach its tolerance '// &
          'of '//short(stage%tolerance)//', because stresses are integrated to '//short(rough)// &
-         '. The step is accepted. Give &stage a tolerance above the error reached, or the material a smaller one.'
+         '. The step is accepted. Give &stage a tolerance above the error reached, or the material a smaller one.')
    end subroutine warn_stagnation
 end module stress_tolerance

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Runs the stages of a model: steps, cuts with exact restoration, ledger; an observer sees every step.
 module time_stepping
-   use, intrinsic :: iso_fortran_env, only: error_unit
+   use warnings, only: print_warning
    use kinds, only: wp
    use wall_clock, only: clock, add_elapsed
    use faults, only: fault_t
@@ -179,9 +179,9 @@ contains
    subroutine warn_of_sudden_loads(stage)
       type(stage_t), intent(in) :: stage
 
-      write (error_unit, '(a)') 'mud_host: warning: stage '//trim(stage%name)//': its loads act at once and the '// &
+      call print_warning('stage '//trim(stage%name)//': its loads act at once and the '// &
          'first step did not converge: they are applied evenly over the stage. A material with a '// &
-         'memory may answer otherwise than at once; give the loads a &history to say how they grow.'
+         'memory may answer otherwise than at once; give the loads a &history to say how they grow.')
    end subroutine warn_of_sudden_loads
 
    !> Whether there is an observer that may print warnings.

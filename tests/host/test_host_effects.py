@@ -34,7 +34,7 @@ def run(text, name, *more):
     done = start(text, name, *more)
     check(f"{name} runs", done.returncode == 0, done.stderr)
     table = work / name / "effects.csv"
-    return done.stdout, {row["effect"]: row for row in tables.rows(table)} if table.exists() else {}
+    return done.stdout + done.stderr, {row["effect"]: row for row in tables.rows(table)} if table.exists() else {}
 
 
 def is_on(what, table, effect, on, by="pilot"):

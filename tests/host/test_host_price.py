@@ -253,6 +253,6 @@ def test_a_point_keeps_its_node_on_every_mesh():
     places = []
     for fineness in ("1", "4"):
         done = run(ring, work / f"ring{fineness}", "--fineness", fineness, "--accuracy", "0.3", "--check")
-        said = next(line for line in done.stdout.splitlines() if "point inside" in line)
+        said = next(line for line in done.stderr.splitlines() if "point inside" in line)
         places.append(said.split("node at ")[1].split(" m and")[0])
     check("one node", places[0] == places[1], places)
