@@ -4,7 +4,7 @@
 module answer_errors
    use warnings, only: print_warning
    use kinds, only: wp
-   use control_state, only: control_state_t, LIMIT_NAMES, BY_LARGEST, BY_SMALLEST
+   use control_state, only: control_state_t, is_answer, LEAST_PRESSURE, LIMIT_NAMES, BY_LARGEST, BY_SMALLEST
    use csv, only: csv_t, new_csv, write_row, close_csv
    use exit_codes, only: EXIT_ACCURACY
    use faults, only: fault_t, raise
@@ -13,6 +13,7 @@ module answer_errors
    use generalised_alpha, only: DYNAMIC
    use model_types, only: accuracy_of, model_t
    use named_answers, only: is_prescribed
+   use newton_errors, only: NEWTON_SHARE
    use price_estimates, only: answer_t, STATE_WORDS
    use scene_goals, only: is_goal
    use stress_tolerance, only: roughness
@@ -26,12 +27,7 @@ module answer_errors
    !> Of an answer: the warning is given from here on. In dynamic stages the magnitudes of errors add up, to ten times
    !> the true one in long shaking.
    real(wp), parameter :: ALARMING_ERROR = 0.1_wp, ALARMING_IN_MOTION = 0.3_wp
-   real(wp), parameter :: NEWTON_SHARE = 0.1_wp      !< Of the accuracy: more should Newton's method not leave.
    real(wp), parameter :: BEYOND = 3.0_wp            !< Or from this multiple of the accuracy that was asked for.
-   !> Share of the root mean square change of its field below which a change is no answer: triangles that are not
-   !> symmetric make as much of a displacement across where there is none.
-   real(wp), parameter :: LEAST_SHARE = 1.0e-3_wp
-   real(wp), parameter :: LEAST_PRESSURE = 0.01_wp   !< Smaller changes of pressures are no answers [kPa].
    character(18), parameter :: OF_ALL(DISPLACEMENTS:FIELDS) = [character(18) :: 'displacements', 'p_w', 'p_c']
    character(170), parameter :: UNSEEN(DISPLACEMENTS:FIELDS) = [character(170) :: &
       ', since loads or prescribed values act at once; the response of a material with a memory may depend on how '// &
@@ -78,15 +74,6 @@ contains
       end do
    end function worst_unknown
 
-   !> Whether a change is large enough to be judged.
-   pure logical function is_answer(control, field, change)
-      type(control_state_t), intent(in) :: control
-      integer, intent(in) :: field
-      real(wp), intent(in) :: change   !< [m or kPa]
-
-      is_answer = change > LEAST_SHARE*control%scale(field) .and. (field <= DISPLACEMENTS .or. change > LEAST_PRESSURE)
-   end function is_answer
-
    !> Judges every answer, or the goals where the scene names them, by its own change, of the fields where no point is
    !> named: what steps and Newton's method leave of it. What changes by less than LEAST_SHARE of its field is no
    !> answer. A warning where Newton's method leaves more than a tenth of the accuracy. Given steps: a warning on
@@ -130,14 +117,14 @@ contains
       end do
       if (asked > 0.0_wp .and. newton > NEWTON_SHARE*asked) call print_warning( &
          'Newton''s method leaves '//short(100*newton)//' % of an answer, more than a tenth of the accuracy of '// &
-         short(100*asked)//' %: leave tolerance of &stage out, or give a smaller one.')
+         short(100*asked)//' %: '//of_tolerance(model)//'.')
       if (worst == '') return
       measured = trim(merge('measured ', 'estimated', verified))//' error of '//worst//' is '//short(100*largest)// &
                  ' % of its largest change'
       if (asked > 0.0_wp) then
          call raise(fault, EXIT_ACCURACY, 'The accuracy is not met: the '//measured//', '//short(100*asked)// &
-                    ' % was asked for. '//what_limited(control)//' The results are written. '//remedy(control, asked, &
-                    largest, of_worst))
+                    ' % was asked for. '//what_limited(control)//' The results are written. '//remedy(model, control, &
+                    asked, largest, of_worst))
          return
       end if
       call print_warning('the steps in time are too long: the '//measured//'. '//SHORTER)
@@ -210,14 +197,15 @@ contains
    end function what_limited
 
    !> What to change in the scene: by what kept most steps short, or where Newton's method leaves most.
-   function remedy(control, asked, found, by_newton) result(text)
+   function remedy(model, control, asked, found, by_newton) result(text)
+      type(model_t), intent(in) :: model
       type(control_state_t), intent(in) :: control
       real(wp), intent(in) :: asked, found   !< Accuracy, and the error of the worst answer [-].
       real(wp), intent(in) :: by_newton      !< What Newton's method leaves of that answer [-].
       character(:), allocatable :: text
 
       if (by_newton > 0.5_wp*found) then
-         text = 'Newton''s method leaves '//short(100*by_newton)//' %: leave tolerance of &stage out.'
+         text = 'Newton''s method leaves '//short(100*by_newton)//' %: '//of_tolerance(model)//'.'
          return
       end if
       select case (maxloc(control%limits, 1))
@@ -230,6 +218,16 @@ contains
       end select
       text = text//short(asked*asked/found)//'; --verify measures the error.'
    end function remedy
+
+   !> What to do about an error of Newton's method.
+   function of_tolerance(model) result(text)
+      type(model_t), intent(in) :: model
+      character(:), allocatable :: text
+
+      text = 'give &stage a smaller tolerance'
+      if (any(model%stages%controlled .and. .not. model%stages%open_tolerance)) text = &
+         'leave tolerance of &stage out, or give a smaller one'
+   end function of_tolerance
 
    !> answers.csv: largest change [m, kPa], estimated error of the steps and of Newton's method [-] of every answer, the
    !> latter empty for forces: docs/theory/host.md section 4.5; error of the mesh [-] of those that meshes were compared

@@ -4,10 +4,10 @@ module control_state
    use kinds, only: wp
    use error_norms, only: rate_memory_t, new_memory
    use step_control, only: controller_t
-   use unknown_fields, only: FIELDS
+   use unknown_fields, only: FIELDS, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: control_state_t, new_control_state, numbers_of, set_numbers, count_of_numbers
+   public :: control_state_t, new_control_state, is_answer, numbers_of, set_numbers, count_of_numbers, LEAST_PRESSURE
    public :: LIMITS, LIMIT_NAMES, BY_DISPLACEMENTS, BY_PRESSURE, BY_SUCTION, BY_TIMES, BY_LARGEST, BY_SMALLEST, &
              BY_GROWTH
 
@@ -18,6 +18,10 @@ module control_state
    character(30), parameter :: LIMIT_NAMES(LIMITS) = [character(30) :: 'error of the displacements', 'error of p_w', &
       'error of p_c', 'times that steps end at', 'dt_max', 'smallest step', 'growth of the step']
    integer, parameter :: SCALARS = 12
+   !> Share of the root mean square change of its field below which a change is no answer: triangles that are not
+   !> symmetric make as much of a displacement across where there is none.
+   real(wp), parameter :: LEAST_SHARE = 1.0e-3_wp
+   real(wp), parameter :: LEAST_PRESSURE = 0.01_wp   !< Smaller changes of pressures are no answers [kPa].
 
    type :: control_state_t
       type(controller_t) :: controller
@@ -60,6 +64,15 @@ contains
       allocate (state%point_ripple(FIELDS, named), state%error_before(FIELDS, nodes), source=0.0_wp)
       allocate (state%newton(FIELDS, named), source=0.0_wp)
    end function new_control_state
+
+   !> Whether a change is large enough to be judged.
+   pure logical function is_answer(control, field, change)
+      type(control_state_t), intent(in) :: control
+      integer, intent(in) :: field
+      real(wp), intent(in) :: change   !< [m or kPa]
+
+      is_answer = change > LEAST_SHARE*control%scale(field) .and. (field <= DISPLACEMENTS .or. change > LEAST_PRESSURE)
+   end function is_answer
 
    !> Length of the list of a checkpoint.
    pure integer function count_of_numbers(state) result(n)

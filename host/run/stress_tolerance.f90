@@ -5,7 +5,7 @@
 module stress_tolerance
    use warnings, only: print_warning
    use kinds, only: wp
-   use convergence, only: log_t
+   use convergence, only: control_t, log_t
    use porous_domain, only: region_t
    use texts, only: short
    use scene_types, only: stage_t
@@ -16,10 +16,10 @@ module stress_tolerance
    integer, parameter :: SCHEME_STAYS = 0
    real(wp), parameter :: LEAST = 1.0e-10_wp   !< No stress is integrated to less [-].
 contains
-   !> Before a stage: stresses are integrated to the tolerance of the material or to that of Newton's method, whichever
+   !> Before a step: stresses are integrated to the tolerance of the material or to that of Newton's method, whichever
    !> is smaller. docs/theory/host.md section 5.1.
-   subroutine follow_newton(stage, regions)
-      type(stage_t), intent(in) :: stage
+   subroutine follow_newton(tolerance, regions)
+      real(wp), intent(in) :: tolerance   !< Newton's [-].
       type(region_t), intent(inout) :: regions(:)
       real(wp) :: wanted
       integer :: i
@@ -27,7 +27,7 @@ contains
       do i = 1, size(regions)
          associate (law => regions(i)%law)
             if (.not. law%tolerance > 0.0_wp) cycle
-            wanted = min(regions(i)%stress_tolerance, max(stage%tolerance, LEAST))
+            wanted = min(regions(i)%stress_tolerance, max(tolerance, LEAST))
             if (abs(wanted - law%tolerance) > epsilon(1.0_wp)*wanted) call law%integrate_to(wanted, SCHEME_STAYS)
          end associate
       end do
@@ -46,9 +46,10 @@ contains
 
    !> After an accepted step whose error stagnated: once a stage, on standard error, also where the run is quiet.
    !> docs/theory/host.md section 5.1. Raises no fault.
-   subroutine warn_stagnation(stage, time, log, rough, told)
+   subroutine warn_stagnation(stage, control, time, log, told)
       type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: time, rough   !< [s]; tolerance of the stress integration [-].
+      type(control_t), intent(in) :: control
+      real(wp), intent(in) :: time   !< [s]
       type(log_t), intent(in) :: log
       logical, intent(inout) :: told
 
@@ -56,7 +57,7 @@ contains
       told = .true.
       call print_warning('stage '//trim(stage%name)//', time '//short(time)// &
          ' s: Newton''s method stays at an error of '//short(maxval(log%error))//' and cannot reach its tolerance '// &
-         'of '//short(stage%tolerance)//', because stresses are integrated to '//short(rough)// &
+         'of '//short(control%tolerance)//', because stresses are integrated to '//short(control%roughness)// &
          '. The step is accepted. Give &stage a tolerance above the error reached, or the material a smaller one.')
    end subroutine warn_stagnation
 end module stress_tolerance

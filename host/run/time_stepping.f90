@@ -11,7 +11,7 @@ module time_stepping
    use generalised_alpha, only: scheme_t, make_scheme, step_error
    use model_types, only: model_t
    use porous_domain, only: copy_state, take_over
-   use newton_errors, only: gather_newton
+   use newton_errors, only: gather_newton, newton_tolerance
    use run_observer, only: run_observer_t, step_report_t
    use run_state, only: run_t
    use sparse_factors, only: release
@@ -80,9 +80,7 @@ contains
       logical :: accepted, warned
 
       associate (stage => model%stages(number), at => run%at)
-         call follow_newton(stage, model%domain%regions)
-         control = control_t(stage%tolerance, stage%max_iterations, stage%no_predictor, stage%measure, &
-                             roughness(model%domain%regions))
+         control = control_t(stage%tolerance, stage%max_iterations, stage%no_predictor, stage%measure)
          warned = .false.
          ! A run that is taken up again is in the middle of its stage.
          call contacts_act(model, stage, run%system%contacts)
@@ -94,11 +92,14 @@ contains
          if (fault%code /= 0) return
          do
             if (is_over(stage, run)) exit
+            control%tolerance = newton_tolerance(model, stage, run%control, at%factor < 1.0_wp)
+            call follow_newton(control%tolerance, model%domain%regions)
+            control%roughness = roughness(model%domain%regions)
             dt = next_step(model, stage, run)
             call try_step(model, stage, control, dt, run, log, accepted, fault)
             if (fault%code == 0 .and. accepted) then
                if (warns(observer) .and. at%step == 0 .and. allocated(at%sudden)) call warn_of_sudden_loads(stage)
-               if (warns(observer)) call warn_stagnation(stage, run%next%time, log, control%roughness, warned)
+               if (warns(observer)) call warn_stagnation(stage, control, run%next%time, log, warned)
                call close_step(model, number, dt, log, run, fault, observer)
             end if
             if (fault%code == 0 .and. .not. accepted .and. present(observer)) call observer%warn('Stage '// &

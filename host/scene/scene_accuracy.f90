@@ -44,8 +44,8 @@ contains
       if (given(group, 'steps')) stage%controlled = by_error
       if (.not. (given(group, 'dt') .or. stage%controlled)) call raise(fault, EXIT_INPUT, at_line(group%file, &
          group%line)//'&stage with steps = ''given'' needs dt [s].')
-      if (stage%controlled .and. .not. given(group, 'tolerance')) &
-         stage%tolerance = min(NEWTON_LARGEST, NEWTON_SHARE*stage%accuracy)
+      stage%open_tolerance = stage%controlled .and. .not. given(group, 'tolerance')
+      if (stage%open_tolerance) stage%tolerance = min(NEWTON_LARGEST, NEWTON_SHARE*stage%accuracy)
    end subroutine ask_steps
 
    !> Shortens the given steps of stages to a share of their length; growing ones grow as much in the same time.

@@ -102,6 +102,7 @@ module scene_types
       real(wp), allocatable :: ends(:)               !< Steps end here, after the start of the stage [s]: of pilots.
       integer :: cuts = 10, max_iterations = 12, every = 1, fields = 0
       real(wp) :: rho_inf = -1.0_wp, tolerance = 1.0e-3_wp, created_energy = 0.01_wp
+      logical :: open_tolerance = .false.            !< The scene leaves Newton's tolerance to the accuracy.
       integer :: measure = BY_STAGE                  !< See convergence.
       logical :: film = .true.                       !< No key says when fields are written.
       logical :: no_predictor = .false., solve_start = .true., zero_displacements = .false.
