@@ -20,8 +20,9 @@ module mud_phases
 
    !> Where a phase ends.
    type :: cut_t
-      integer :: kind    !< CUT_*
+      integer :: kind    !< CUT_*: what moves it.
       real(wp) :: time   !< Pseudo-time [-].
+      logical :: turns = .false.   !< x turns there.
    end type cut_t
 contains
    !> Integrates an increment that is not zero. On return it%inc is in the phase that ended it, and with hysteresis
@@ -50,13 +51,14 @@ contains
             call integrate_phase(par, end_shift, it)
          end if
          if (it%status%code /= MUD_OK) return
-         if (cuts(i)%kind == CUT_TURN) call turn_around(course, it)
+         if (cuts(i)%turns) call turn_around(course, it)
          from = cuts(i)%time
       end do
       if (it%inc%rho > 0.0_wp) it%state%from_centre = end_in_domain(it%inc)
    end subroutine integrate_phases
 
    !> The cuts of an increment in their order, its end the last. A phase that would be very short is joined to the next.
+   !> Cuts at one place move with the one at which rates change most: it is inserted first.
    pure subroutine list_cuts(par, inc, course, cuts, n)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -68,25 +70,29 @@ contains
 
       n = 1
       cuts(1) = cut_t(CUT_END, 1.0_wp)
-      if (par%hysteresis) then
-         call insert(cut_t(CUT_TURN, course%turn), cuts, n)
-         call list_kinks(inc, course, times, k)
-         do i = 1, k
-            call insert(cut_t(CUT_KINK, times(i)), cuts, n)
-         end do
-      end if
-      if (passes_zero(par, inc)) call insert(cut_t(CUT_NO_SUCTION, -inc%p_c0/inc%d_pc), cuts, n)
       if (inc%rho > 0.0_wp) call insert(cut_t(CUT_EXIT, inc%exit), cuts, n)
+      if (passes_zero(par, inc)) call insert(cut_t(CUT_NO_SUCTION, -inc%p_c0/inc%d_pc), cuts, n)
+      if (.not. par%hysteresis) return
+      if (course%turn < 1.0_wp) call insert(cut_t(CUT_TURN, course%turn, turns=.true.), cuts, n)
+      call list_kinks(inc, course, times, k)
+      do i = 1, k
+         call insert(cut_t(CUT_KINK, times(i)), cuts, n)
+      end do
    end subroutine list_cuts
 
-   !> A cut at its place among others, unless it would leave a very short phase.
+   !> A cut at its place among others; where it would leave a very short phase the one that is there does for both.
    pure subroutine insert(cut, cuts, n)
       type(cut_t), intent(in) :: cut
       type(cut_t), intent(inout) :: cuts(MAX_CUTS)
       integer, intent(inout) :: n
       integer :: i
 
-      if (cut%time < SHORTEST_PHASE .or. any(abs(cuts(1:n)%time - cut%time) < SHORTEST_PHASE)) return
+      if (cut%time < SHORTEST_PHASE) return
+      i = findloc(abs(cuts(1:n)%time - cut%time) < SHORTEST_PHASE, .true., dim=1)
+      if (i > 0) then
+         cuts(i)%turns = cuts(i)%turns .or. cut%turns
+         return
+      end if
       do i = n, 1, -1
          if (cuts(i)%time < cut%time) exit
          cuts(i + 1) = cuts(i)
