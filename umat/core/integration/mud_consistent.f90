@@ -53,9 +53,8 @@ module mud_consistent
       !> Of the memories of interrupted processes; those up to number `settled` were there when the increment began.
       real(wp) :: interrupted(DIRECTIONS, 6, MAX_INTERRUPTED)
       integer :: settled
-      !> With cyclic preloading, of the contraction of the present process and of interrupted ones, and of ln chi' where
-      !> the substep began.
-      real(wp) :: chi_own(DIRECTIONS), chi_stack(DIRECTIONS, MAX_INTERRUPTED), log_chi0(DIRECTIONS)
+      !> With cyclic preloading, of the contraction of the present process and of ln chi' where the substep began.
+      real(wp) :: chi_own(DIRECTIONS), log_chi0(DIRECTIONS)
       !> of the isotropic memory's margin less its measure; not read where the isotropic mechanism acts
       real(wp) :: margin(DIRECTIONS)
       real(wp) :: parts(DIRECTIONS)          !< of the void ratio at which the grains of a held point part
@@ -136,22 +135,21 @@ contains
                      *(sens%chi_own + chi_own*(sens%y(:, 14) - sens%log_chi0)) + sens%y(:, 15)
    end subroutine changes_of_contraction
 
-   !> Derivatives of the contraction across a jump of the memory from `before` to `after`.
+   !> Derivatives of the contraction across a jump of the memory from `before` to `after`. A process that is interrupted
+   !> and resumed within the increment resumes with what it had then: nearly always it began before the increment.
    pure subroutine jump_of_contraction(jump, before, after, sens)
       integer, intent(in) :: jump
       type(memory_t), intent(in) :: before, after
-      type(sensitivity_t), intent(inout) :: sens   !< settled is that ahead of the jump
+      type(sensitivity_t), intent(inout) :: sens
       real(wp) :: all(DIRECTIONS), others
 
       others = before%chi - before%chi_own
       all = sens%chi_own + others*sens%y(:, 14)
       select case (jump)
       case (JUMP_REVERSAL)
-         if (after%depth /= before%depth) sens%chi_stack(:, after%depth) = sens%chi_own
          sens%chi_own = 0.0_wp
       case (JUMP_RETURN)
          sens%chi_own = 0.0_wp
-         if (after%depth >= sens%settled) sens%chi_own = sens%chi_stack(:, after%depth + 1)
          if (before%interrupted(after%depth + 1)%chi >= before%chi) sens%chi_own = all
       case default
          sens%chi_own = 0.0_wp
