@@ -81,46 +81,77 @@ def missed(rows):
             f"beyond three times the accuracy" + (f" ({', '.join(there)})." if there else "."))
 
 
-def of_paper(suction):
-    """What the paper's step and tolerance change of the settlement on its mesh, its time over that of controlled steps
-    there, and that of twice the cells over that of its own."""
-    rows = {(float(r["fineness"]), r["setting"]): r for r in committed("table_1.csv")
-            if int(r["suction"]) == suction and r["peak"]}
-    paper, same = rows[1.0, "paper"], rows[1.0, "1e-2"]
-    return (float(paper["peak"])/float(same["peak"]) - 1, float(paper["seconds"])/float(same["seconds"]),
-            float(rows[2.0, "1e-2"]["seconds"])/float(same["seconds"]))
+def runs(suction, mesh):
+    """Rows of the benchmark by fineness and setting."""
+    return {(float(r["fineness"]), r["setting"]): r for r in committed("table_1.csv")
+            if int(r["suction"]) == suction and r["mesh"] == mesh and r["peak"]}
+
+
+def change(rows, key, other, what="peak"):
+    """By how much a run is off another."""
+    return float(rows[key][what])/float(rows[other][what]) - 1
 
 
 def settlement(suction):
-    """Finest mesh, its largest settlement [mm], shares of it that mesh, steps and Newton's method may leave, the order
-    that three meshes show, and by how much the paper's mesh differs."""
-    rows = {(float(r["fineness"]), r["setting"]): float(r["peak"]) for r in committed("table_1.csv")
-            if int(r["suction"]) == suction and r["peak"]}
+    """Row of the finest graded mesh, shares of its largest settlement that mesh, steps and Newton's method may leave,
+    and the order that three meshes show; of two meshes the order is the least that an estimate takes."""
+    rows = runs(suction, "graded")
     meshes = sorted(f for f, setting in rows if setting == "1e-2")[-3:]
-    coarse, middle, fine = (rows[f, "1e-2"] for f in meshes)
-    before, last = abs(middle/fine - coarse/fine), abs(1 - middle/fine)
-    order = math.log2(before/last)
-    mesh = last/(2**min(max(order, ORDERS[0]), ORDERS[1]) - 1) if order >= WEAK else max(before, last)
-    half = rows[0.5, "1e-2"]
-    steps = 4/3*abs(rows[0.5, "2.5e-3"]/half - 1) if (0.5, "2.5e-3") in rows else None
-    return meshes[-1], fine, mesh, steps, abs(rows[0.5, "newton"]/half - 1), order, rows[1.0, "1e-2"]/fine - 1
+    *coarse, middle, fine = (float(rows[f, "1e-2"]["peak"]) for f in meshes)
+    mesh, order = abs(1 - middle/fine)/(2**ORDERS[0] - 1), None
+    if coarse:
+        before, last = abs(middle - coarse[0])/fine, abs(1 - middle/fine)
+        order = math.log2(before/last)
+        mesh = last/(2**min(max(order, ORDERS[0]), ORDERS[1]) - 1) if order >= WEAK else max(before, last)
+    steps, newton = (share*abs(change(rows, (0.5, setting), (0.5, "1e-2"))) if (0.5, setting) in rows else None
+                     for setting, share in (("2.5e-3", 4/3), ("newton", 1)))
+    return rows[meshes[-1], "1e-2"], mesh, steps, newton, order
 
 
 def table_1_text():
-    """Settlements with their bars, and what the paper's mesh, step and tolerance change and cost."""
+    """Settlements with their bars."""
     lines = []
     for suction in SUCTIONS:
-        finest, peak, mesh, steps, newton, order, its_mesh = settlement(suction)
-        settings, time_of_steps, time_of_mesh = of_paper(suction)
-        bar = mesh + (steps or 0) + newton
-        lines.append((suction, f"{finest:g}", f"{peak:.4g}", f"{100*bar:.2g}", f"{100*mesh:.2g}",
-                      f"{100*steps:.2g}" if steps is not None else "not known", f"{100*newton:.2g}", f"{order:.2g}",
-                      f"{100*its_mesh:+.2g}", f"{100*settings:+.2g}", f"{time_of_steps:.2g}", f"{time_of_mesh:.2g}"))
-    good = [line[0] for line in lines if float(line[3]) <= 1 and line[5] != "not known"]
-    return tables.markdown(
-        ("suction [kPa]", "times the cells", "settlement [mm]", "bar [%]", "of it mesh", "steps", "Newton", "order",
-         "the paper's mesh [%]", "its step and tolerance [%]", "time of these", "time of twice its cells"), lines) + textwrap.fill(
+        row, mesh, steps, newton, order = settlement(suction)
+        lines.append((suction, row["elements"], f"{float(row['peak']):#.4g}",
+                      f"{100*(mesh + (steps or 0) + (newton or 0)):.2g}", f"{100*mesh:.2g}",
+                      *("not run" if x is None else f"{100*x:.2g}" for x in (steps, newton)),
+                      "assumed" if order is None else f"{order:.2g}"))
+    good = [line[0] for line in lines if float(line[3]) <= 1 and "not run" not in line]
+    return tables.markdown(("suction [kPa]", "elements", "settlement [mm]", "bar [%]", "of it mesh", "steps", "Newton",
+                            "order"), lines) + textwrap.fill(
         f"Settlement to 1 % at {len(good)} of {len(lines)} suctions: {', '.join(map(str, good)) or 'none'} kPa.", 118)
+
+
+def settings_text():
+    """What the paper's mesh, step and tolerances err and cost, and what the graded mesh of half fineness does."""
+    lines = []
+    for suction in SUCTIONS:
+        exact, paper, graded = float(settlement(suction)[0]["peak"]), runs(suction, "paper"), runs(suction, "graded")
+        own, same, coarse = paper[1.0, "paper"], paper[1.0, "1e-2"], graded[0.5, "1e-2"]
+
+        def off(row, exact=exact):
+            return f"{100*(float(row['peak'])/exact - 1):+.2g}"
+        lines.append((suction, off(same), f"{100*change(paper, (1.0, 'paper'), (1.0, '1e-2')):+.2g}",
+                      f"{float(own['seconds'])/float(same['seconds']):.2g}", off(coarse),
+                      f"{float(coarse['seconds'])/float(same['seconds']):.2g}"))
+    elements = runs(table_1.FRONT, "graded")[0.5, "1e-2"]["elements"]
+    return tables.markdown(("suction [kPa]", "the paper's mesh [%]", "its step and tolerance [%]", "time of these",
+                            f"{elements} graded elements [%]", "time of these"), lines)
+
+
+def newton_text():
+    """The largest settlement with the default tolerance of Newton's method and with a hundredth of it."""
+    rows = runs(table_1.FRONT, "paper")
+    meshes = sorted({f for f, setting in rows if setting == "newton"})
+    lines, worst = [], 0.0
+    for accuracy, tight in (("1e-2", "newton"), ("2.5e-3", "2.5e-3 newton")):
+        for said, setting in (("default", accuracy), (table_1.NEWTON, tight)):
+            lines.append((accuracy, said, *(f"{float(rows[f, setting]['peak']):.5f}" if (f, setting) in rows else ""
+                                            for f in meshes)))
+        worst = max(worst, *(abs(change(rows, (f, accuracy), (f, tight))) for f in meshes if (f, tight) in rows))
+    return tables.markdown(("accuracy", "Newton's tolerance", *(f"{f:g} times the cells" for f in meshes)), lines) + (
+        f"The two rows of an accuracy differ by at most {100*worst:.2g} %.")
 
 
 def texts(bench):
@@ -136,14 +167,14 @@ def texts(bench):
         "times": tables.markdown(("scene", "fineness", "quoted [s]", "taken [s]", "ratio", "exit code"),
                                  [tuple(r[n] for n in study.TIMES) for r in times]),
         "counts": "\n".join(textwrap.fill(line, 118, subsequent_indent="  ") for line in said.split("\n")),
-        "table_1": table_1_text()}}
+        "table_1": table_1_text(), "settings": settings_text(), "newton": newton_text()}}
 
 
 def draw(bench, results, plt):
     """For the README of the top: error against time of the indentation at 30 kPa, the mesh included."""
     from tools.pictures import COLOURS
     rows = [r for r in committed("table_1.csv") if int(r["suction"]) == table_1.FRONT and r["peak"]]
-    exact = float(next(r["peak"] for r in rows if (float(r["fineness"]), r["setting"]) == (4, "2.5e-3")))
+    exact, bar = float(settlement(table_1.FRONT)[0]["peak"]), 100*sum(settlement(table_1.FRONT)[1:4])
     figure, axis = plt.subplots(figsize=(6.2, 3.8))
 
     paper = next(r for r in rows if r["setting"] == "paper")
@@ -153,14 +184,16 @@ def draw(bench, results, plt):
 
     def cost(row):
         return float(row["seconds"])/float(paper["seconds"])
-    for fineness, mark, colour in ((0.25, "o-", 0), (0.5, "s-", 1), (1, "D-", 2), (2, "^-", 3)):
-        there = sorted(((cost(r), off(r)) for r in rows if float(r["fineness"]) == fineness
-                        and r["setting"] in ("4e-2", "1e-2", "2.5e-3")))
-        elements = next(r["elements"] for r in rows if float(r["fineness"]) == fineness)
-        axis.loglog(*zip(*there), mark, color=COLOURS[colour], markersize=5, label=f"{elements} elements")
+    for mesh, fineness, mark, colour in (("paper", 0.25, "o-", 0), ("paper", 0.5, "s-", 1), ("paper", 1, "D-", 2),
+                                         ("paper", 2, "^-", 3), ("graded", 0.5, "s--", 1), ("graded", 1, "D--", 2)):
+        these = runs(table_1.FRONT, mesh)
+        there = sorted((cost(r), off(r)) for (f, setting), r in these.items()
+                       if f == fineness and setting in ("4e-2", "1e-2", "2.5e-3"))
+        words = f"{these[fineness, '1e-2']['elements']} elements" + (", graded to the rim" if mesh == "graded" else "")
+        axis.loglog(*zip(*there), mark, color=COLOURS[colour], markersize=5, label=words,
+                    markerfacecolor="none" if mesh == "graded" else None)
     axis.loglog([cost(paper)], [off(paper)], "*", color=COLOURS[4], markersize=13,
                 label="settings of the paper")
-    bar = 100*settlement(table_1.FRONT)[2]
     axis.axhspan(0.1, bar, color="0.9")
     axis.text(axis.get_xlim()[0]*1.1, 0.85*bar, "what the reference leaves", color="0.4", fontsize=8, va="top")
     axis.set_ylim(0.2, 40)
