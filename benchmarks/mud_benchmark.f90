@@ -29,6 +29,7 @@ program mud_benchmark
    character(*), parameter :: TANGENT_NAMES(0:3) = ['none      ', 'elastic   ', 'continuum ', 'consistent']
    !> Rates that random walks meet, by what their arc of directions crosses.
    character(24), parameter :: MET_KINDS(2) = ['walk_one_root           ', 'walk_floor_or_cap       ']
+   character(*), parameter :: USAGE = 'usage: mud_benchmark [ROUNDS | PATH STRAIN SCHEME TOLERANCE TANGENT WALKS]'
    integer, parameter :: POINTS = 400, EVALUATIONS = 200
    type(variant_t), allocatable :: variants(:)
    type(met_rates_t) :: met(400, size(MET_KINDS))
@@ -38,6 +39,7 @@ program mud_benchmark
    if (command_argument_count() >= 6) then
       call walk_one()
    else
+      if (command_argument_count() > 1) error stop USAGE
       if (command_argument_count() == 1) rounds = nint(number(1))
       call list_variants()
       call run()
@@ -66,7 +68,7 @@ contains
 
       call get_command_argument(argument, text)
       read (text, *, iostat=status) number
-      if (status /= 0) error stop 'usage: mud_benchmark [ROUNDS | PATH STRAIN SCHEME TOLERANCE TANGENT WALKS]'
+      if (status /= 0) error stop USAGE
    end function number
 
    !> The variant without tangent (batch: with one thread) stands before those that are compared with it.
