@@ -11,13 +11,13 @@ module material_point
    private
    public :: material_t, material_slot_t, response_t, report_t, remark_t, state_index, swollen
    public :: lost_pressure, PRESSURE_LOST
-   public :: MOST_POINTS, MOST_GUARDS, NAME_LENGTH, DOUBT_LENGTH, WITHOUT_TANGENT, WITH_TANGENT, NO_PRESET
+   public :: MOST_POINTS, MOST_GUARDS, NAME_LENGTH, DOUBT_LENGTH, WITH_TANGENT, NO_PRESET
 
    integer, parameter :: MOST_POINTS = 12   !< Of a batch: the quadrature points of an element.
    integer, parameter :: MOST_GUARDS = 16   !< Counters of a law beside the three that every law has.
    integer, parameter :: NAME_LENGTH = 24
    integer, parameter :: DOUBT_LENGTH = 500
-   logical, parameter :: WITHOUT_TANGENT = .false., WITH_TANGENT = .true.
+   logical, parameter :: WITH_TANGENT = .true.
    !> Where a law's degree of saturation has no history.
    character(*), parameter :: NO_PRESET = 'the degree of saturation of this material follows from the suction: '// &
       'leave saturation out of &initial, or give the material hysteresis = 1 (&mud)'

@@ -2,7 +2,6 @@
 """What the checks of all foreign programs share: the library, the expected answers, installation, comparison."""
 import csv
 import ctypes
-import hashlib
 import json
 import os
 import pathlib
@@ -62,11 +61,6 @@ def statev(**presets):
             sys.exit(f"STATEV have no entry {name}")
         values[index] = value
     return values
-
-
-def place_of(name):
-    """Place of a name in STATEV, from 0."""
-    return mud().mud_index(MUD_STATEV, name.encode())
 
 
 def describe(host):
@@ -248,7 +242,3 @@ def debian(packages):
 
 def may_not_install():
     return os.environ.get("MUD_CLIENTS_INSTALL") == "no"
-
-
-def fingerprint(*texts):
-    return hashlib.sha256("\n".join(texts).encode()).hexdigest()[:12]

@@ -41,11 +41,6 @@ class Path:
         self.lines.append("lead " + " ".join("T" if letter == "s" else "F" for letter in letters))
         return self
 
-    def lead_q(self):
-        """Triaxial: led by q, eps_v, eps_22 - eps_33 and the shear strains."""
-        self.lines.append("lead_q")
-        return self
-
     def go(self, n, change, suction=0.0):
         """n equal increments of the led quantities, `change` in all."""
         self.lines.append(f"go {n} " + " ".join(repr(float(x)) for x in (*change, suction)))

@@ -63,7 +63,6 @@ class Finding:
 @dataclasses.dataclass
 class Diagnosis:
     findings: list[Finding]
-    correlations: list[tuple[str, str, float]]  #: pairs beyond CORRELATED
     names: list[str]  #: of the matrix
     matrix: np.ndarray  #: correlations of the fitted variables
     sentences: list[str]  #: plain words
@@ -117,7 +116,6 @@ def diagnose(
     ]
     return Diagnosis(
         findings,
-        pairs,
         names,
         matrix,
         [*_several(fit), *_sentences(findings, pairs, fit.task)],

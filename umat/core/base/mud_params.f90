@@ -18,7 +18,7 @@ module mud_params
    private
    public :: params_t, scanning_t, branch_t, least_t, read_params, completed, is_length, options_t, options_of, &
              check_bounds, default_props
-   public :: NO_FLOOR, NOT_SCANNING, STRICTNESS, NO_BRANCH, NO_OFFSET, MAX_LEAST
+   public :: NO_FLOOR, STRICTNESS, NO_BRANCH, NO_OFFSET, MAX_LEAST
 
    real(wp), parameter :: NO_FLOOR = 1.0e-15_wp   !< The only floor of (r - r_in):n with the guard off [-].
 
@@ -62,7 +62,6 @@ module mud_params
 
    real(wp), parameter :: NO_OFFSET = -huge(1.0_wp)
    type(branch_t), parameter :: NO_BRANCH = branch_t(.true., 0.0_wp, 0.0_wp, NO_OFFSET, 1.0_wp, .false.)
-   type(scanning_t), parameter :: NOT_SCANNING = scanning_t(.false., 1, NO_BRANCH, .false., 0.0_wp, 0.0_wp, 0.0_wp)
    real(wp), parameter :: WETTING_SHARE = 0.5_wp   !< P_aw of P_a where it is not given [-].
 
    !> What a point has more numbers of STATEV with.

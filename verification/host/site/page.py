@@ -74,7 +74,7 @@ def check(bench):
     pressed = VOIDS / (1 + VOIDS) / K_W * WIDTH * SIMPSON @ rise
     bench.near("settlement times width less what the water is pressed together, against the outflow",
                settled * WIDTH - pressed, ledger["outflow"][-1], VOLUME, "m3")
-    fine, fine_ledger, _ = run(bench, [("dt = 0.01 ", "dt = 0.005 ")])
+    fine, _, _ = run(bench, [("dt = 0.01 ", "dt = 0.005 ")])
     for depth, name in DEPTHS.items():
         bench.near(f"{depth}: r_u, against half the step", pore_pressure_ratio(h, name),
                    np.interp(h["time"], fine["time"], pore_pressure_ratio(fine, name)), HALF)

@@ -5,7 +5,6 @@
 !>    set PARAMETER VALUE             a material parameter (a number)
 !>    start S11 S22 S33 S12 S13 S23 SUCTION E     effective stress, compression positive, suction [kPa], void ratio
 !>    lead F F F T F F                T: the component is led by its stress, F: by its strain
-!>    lead_q                          triaxial about axis 1: led by q, eps_v, eps_22 - eps_33 and the shear strains
 !>    go N D1 D2 D3 D4 D5 D6 DSUCTION N equal increments; engineering shear
 !>    turn R11 R21 R31 R12 ... R33    rigid rotation
 !>    row LABEL                       writes the state
@@ -15,7 +14,7 @@
 program mud_walk
    use, intrinsic :: iso_fortran_env, only: input_unit, output_unit, iostat_end
    use kinds, only: wp
-   use walk_point, only: point_t, prepare, set_property, start, lead_components, lead_deviator, go, turn, state_of, &
+   use walk_point, only: point_t, prepare, set_property, start, lead_components, go, turn, state_of, &
       states_of
    implicit none (type, external)
    type(point_t) :: point
@@ -62,9 +61,6 @@ contains
       case ('lead')
          read (line, *, iostat=code) word, by_stress
          if (code == 0) call lead_components(point, by_stress)
-      case ('lead_q')
-         code = 0
-         call lead_deviator(point)
       case ('go')
          read (line, *, iostat=code) word, n, values(1:7)
          if (code == 0) call go(point, n, values(1:6)/n, values(7)/n, failed)

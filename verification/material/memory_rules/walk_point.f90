@@ -9,7 +9,7 @@ module walk_point
    use dense, only: solve
    implicit none (type, external)
    private
-   public :: point_t, control_t, prepare, set_property, start, lead_components, lead_deviator, go, turn, state_of, states_of
+   public :: point_t, control_t, prepare, set_property, start, lead_components, go, turn, state_of, states_of
 
    integer, parameter :: ROOM = 256                      !< For PROPS and STATEV; checked.
    integer, parameter :: MAX_ITERATIONS = 25, MAX_BACKTRACKS = 6, MAX_HALVINGS = 12
@@ -114,19 +114,6 @@ contains
       end do
       point%goal = matmul(point%control%stress, point%stress)
    end subroutine lead_components
-
-   !> Triaxial with the axis 1: the values are d q, d eps_v, d(eps_22 - eps_33) and three shear strains.
-   pure subroutine lead_deviator(point)
-      type(point_t), intent(inout) :: point
-
-      call lead_components(point, spread(.false., 1, 6))
-      point%control%by_stress(1) = .true.
-      point%control%stress(1, :) = [1.0_wp, -0.5_wp, -0.5_wp, 0.0_wp, 0.0_wp, 0.0_wp]
-      point%control%strain(1:3, :) = 0.0_wp
-      point%control%strain(2, 1:3) = 1.0_wp
-      point%control%strain(3, 2:3) = [1.0_wp, -1.0_wp]
-      point%goal = matmul(point%control%stress, point%stress)
-   end subroutine lead_deviator
 
    !> n equal increments of the led strains, stresses and suction.
    subroutine go(point, n, change, d_suction, failed)

@@ -10,7 +10,7 @@ A "segment" is a straight piece of strain and suction path, s in [0, 1].
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.integrate import DOP853, LSODA, Radau
@@ -56,7 +56,6 @@ class State:
     resets: int = 0
     nrate: int = 0
     nsteps: int = 0
-    fallbacks: int = 0
     log: list = field(default_factory=list)
 
     def __post_init__(self):
@@ -97,7 +96,6 @@ def reset(st, rt, P, where):
         new = r + m * (st.r_in_before - r) if P.rule == "threshold" else r - m * st.J * rt.n
         if dd(r - new, rt.n) < 0.0:
             new = r
-            st.fallbacks += 1
         st.eqp = 0.0
     elif P.rule == "return_point":
         new = r
@@ -346,8 +344,3 @@ def undrained(d_eps_a):
 
 def oedometric(d_eps_a):
     return np.diag([d_eps_a, 0.0, 0.0])
-
-
-def all_off(P=Params()):
-    """Every effect that has a switch, off."""
-    return replace(P, isotropic=False, retention=False, bonding=False, fabric=False, lode=False)
