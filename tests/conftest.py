@@ -19,8 +19,10 @@ def pytest_collectstart(collector):
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_runtest_setup():
+def pytest_runtest_setup(item):
     checking.failures.clear()
+    # Of the module that runs: all of them are imported by now.
+    checking.work = getattr(item.module, "work", checking.work)
 
 
 @pytest.hookimpl(wrapper=True)

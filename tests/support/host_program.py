@@ -3,7 +3,8 @@
 import os
 import subprocess
 
-from checking import build, check, work
+import checking
+from checking import build, check
 
 HOST = build / "host/mud_host"
 ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1"}
@@ -11,8 +12,9 @@ ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1"}
 
 def start(name, text, *more):
     """The process at its end: exit code and what it said."""
-    (work / f"{name}.nml").write_text(text)
-    return subprocess.run([HOST, work / f"{name}.nml", "--output", work / name, "--quiet", *more], capture_output=True,
+    scene = checking.work / f"{name}.nml"
+    scene.write_text(text)
+    return subprocess.run([HOST, scene, "--output", checking.work / name, "--quiet", *more], capture_output=True,
                           text=True, env=ENVIRONMENT)
 
 
