@@ -68,6 +68,7 @@ contains
             if (size(model%goals) > 0) then
                if (.not. is_goal(model%goals, trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f)), .false.)) cycle
             end if
+            if (control%high(f, i) < control%low(f, i)) cycle   ! No step yet.
             change = control%high(f, i) - control%low(f, i)
             if (is_answer(control, f, change)) largest_share = max(largest_share, control%newton(f, i)/change)
          end do
