@@ -14,7 +14,7 @@ PAGE = Page(
               "column for compressible water in "
               "`dynamic_consolidation.csv`",
     seconds=11, quick=6, pictures=("dynamic_consolidation.png",))
-MAKES = (Script("dynamic_consolidation.py", ("dynamic_consolidation.csv",), 18, "scipy, mpmath"),)
+MAKES = (Script("dynamic_consolidation.py", ("dynamic_consolidation.csv",), 18),)
 
 M, K_OVER_ETA, POROSITY, RHO_S, RHO_W, LOAD = 1.2e4, 1e-8 / 1e-6, 0.8 / 1.8, 2.7, 1.0, 10.0
 RHO = (1 - POROSITY) * RHO_S + POROSITY * RHO_W

@@ -10,7 +10,7 @@ PAGE = Page(
     input="`manufactured.f90`: every field is chosen, the loads that make it a solution are derived",
     reference="the chosen fields; the module itself against `samples.csv`, derived another way with 60 digits",
     seconds=20)
-MAKES = (Script("make_mms.py", ("manufactured.f90", "samples.csv"), 6, "sympy, mpmath"),)
+MAKES = (Script("make_mms.py", ("manufactured.f90", "samples.csv"), 6),)
 
 NONE = Tolerance("tests/host/run/test_manufactured.pf asks for orders 3, 2 and 2 within 0.2: meshes and steps that are "
                  "not infinitely fine")

@@ -13,7 +13,7 @@ PAGE = Page(
           "time, trapezoidal; 125, 250 and 500 per metre",
     reference="roots of the determinant of the linearised equations; `growth.csv` by eigenvalues",
     seconds=6, quick=3, pictures=("seepage_inertia.png",))
-MAKES = (Script("growth.py", ("growth.csv", "history.csv", "agreement.csv"), 15, "scipy, mpmath"),)
+MAKES = (Script("growth.py", ("growth.csv", "history.csv", "agreement.csv"), 15),)
 
 E0, RHO_S, RHO_W, RHO_A, K_W, K_A, PERMEABILITY, ETA_W, ETA_A = (0.8, 2.65, 1.0, 1.2e-3, 2.2e6, 101.325, 5e-10, 1e-6,
                                                                  1.8e-8)

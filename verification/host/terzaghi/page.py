@@ -14,7 +14,7 @@ PAGE = Page(
     reference="Terzaghi's series; `terzaghi.csv` for compressible water, checked by numerical inversion of the "
               "transforms",
     seconds=8, quick=4, pictures=("terzaghi.png",))
-MAKES = (Script("terzaghi.py", ("terzaghi.csv",), 3, "mpmath"),)
+MAKES = (Script("terzaghi.py", ("terzaghi.csv",), 3),)
 
 M, CONDUCTIVITY, LOAD, DEPTH = 1.2e4, 1e-12 / 1e-6, 100.0, 1.0   # E (1-nu)/((1+nu)(1-2nu)), k/eta_w
 C_V = M * CONDUCTIVITY

@@ -12,9 +12,9 @@ PAGE = Page(
               "in closed form along a segment, Dormand-Prince 8(5,3) with every memory reset located as an event "
               "(LSODA as a second integrator)",
     seconds=5)
-MAKES = (Script("make_rates.py", ("paths_rates.csv",), 20, "scipy"),
-         Script("make_paths.py", ("paths.csv",), 100, "scipy"),
-         Script("printed_numbers.py", ("printed_numbers.csv",), 20, "scipy"))
+MAKES = (Script("make_rates.py", ("paths_rates.csv",), 20),
+         Script("make_paths.py", ("paths.csv",), 100),
+         Script("printed_numbers.py", ("printed_numbers.csv",), 20))
 
 NONE = Tolerance("tests/umat/contract/test_reference.pf holds rates to 1e-10 and paths to the tolerance asked for, "
                  "each "
