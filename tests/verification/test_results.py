@@ -77,3 +77,31 @@ def test_scripts_write_where_made_files_belong():
               done.stdout + done.stderr)
     changed = set(before.items()) ^ set(committed().items())
     check("without --update no file of their folders is touched", not changed, changed)
+
+
+def test_a_night_goes_on_after_an_interruption(monkeypatch, capsys):
+    made, output = [], work / "interrupted"
+
+    def make(name, build, output, update, only, arguments):
+        if only == ["third.py"] and made.count("third.py") == 0:
+            made.append("third.py")
+            raise KeyboardInterrupt
+        made.extend(only)
+        return only != ["second.py"]
+
+    output.mkdir()
+    monkeypatch.setattr(runner, "make", make)
+    monkeypatch.setattr(runner, "core", lambda: "a")
+    taken = {"host/one": ["first.py", "second.py"], "host/two": ["third.py"]}
+    with pytest.raises(KeyboardInterrupt):
+        runner.make_night(taken, build, output, False)
+    good = runner.make_night(taken, build, output, False)
+    check("what was made is not made again, what failed or was cut off is", made == [
+        "first.py", "second.py", "third.py", "second.py", "third.py"], made)
+    check("it is told", "host/one/first.py: made before the interruption" in capsys.readouterr().out)
+    check("and it counts", good == [True, False, True], good)
+    monkeypatch.setattr(runner, "core", lambda: "b")
+    made.clear()
+    made.append("third.py")
+    runner.make_night(taken, build, output, False)
+    check("another core makes everything again", "first.py" in made, made)

@@ -5,7 +5,8 @@
     verification/run material host/cylinder   a section, a page; the name alone does where there is one of it
     verification/run --list                   what there is, and which data are older than the model (umat/core)
     verification/run --all --make --update    overnight: makes the data of every page again, the cheap ones first, then
-                                              runs and writes the pages, as far as both fit into three hours
+                                              runs and writes the pages, as far as both fit into three hours; after an
+                                              interruption the same command goes on where it stood
     verification/run --quick                  short versions of what the check run takes, without pictures
 
 Every page prints its checks, each with what it is off by, what is allowed, value and reference; the last line is
@@ -197,10 +198,12 @@ def make(name, build, output, update, only, arguments):
             continue
         results = output / name / "made"
         results.mkdir(parents=True, exist_ok=True)
+        start = time.monotonic()
         code = subprocess.run([sys.executable, HERE / name / script.name, *arguments], cwd=results,
                               env={**os.environ, "MUD_BUILD_DIR": str(build), "MUD_VERIFICATION_OUTPUT": str(results),
                                    "PYTHONPATH": os.pathsep.join(filter(None, (str(HERE), os.environ.get("PYTHONPATH"))))
                                    }).returncode
+        print(f"   {script.name}: {time.monotonic() - start:.0f} s", flush=True)
         good = good and code == 0
         if code:
             print(f"   FAILED {script.name}: exit code {code}")
@@ -266,6 +269,21 @@ def in_a_night(chosen):
     return taken
 
 
+def make_night(taken, build, output, update):
+    """Makes {page: scripts} in their order; True for every script that ended well. OUTPUT/night.csv keeps which did, and
+    with which core: a night that goes on after an interruption leaves them out. Who ends the night removes it."""
+    kept, now, good = output / "night.csv", core(), []
+    before = {row["script"] for row in tables.rows(kept) if now and row["core"] == now} if kept.exists() else set()
+    for key, name, script in ((f"{name}/{script}", name, script) for name in taken for script in taken[name]):
+        if key in before:
+            print(f"{key}: made before the interruption", flush=True)
+        good.append(key in before or make(name, build, output, update, [script], []))
+        if good[-1] and key not in before:
+            with open(kept, "a", encoding="utf-8") as file:
+                file.write(f"{key},{now}\n" if file.tell() else f"script,core\n{key},{now}\n")
+    return good
+
+
 def chosen_of(words, parser):
     """Names of pages from the words of the command line."""
     every, chosen = names(), []
@@ -315,8 +333,8 @@ def main():
         return 0
     if options.all and options.make:
         taken = in_a_night(chosen)
-        good = [make(name, build, output, options.update, scripts, []) for name, scripts in taken.items()]
-        print(f"{good.count(True)} pages made again, {good.count(False)} failed", flush=True)
+        good = make_night(taken, build, output, options.update)
+        print(f"{good.count(True)} scripts ended well, {good.count(False)} failed", flush=True)
     elif options.make:
         good = [make(name, build, output, options.update, options.only, options.arguments) for name in chosen]
         return 0 if all(good) else 1
@@ -335,6 +353,8 @@ def main():
             update_page(outcome, output)
     if options.update:
         update_index()
+    if options.all and options.make:
+        (output / "night.csv").unlink(missing_ok=True)
     failed = sum(o.failed for o in outcomes)
     for outcome in outcomes:
         if outcome.failed:
