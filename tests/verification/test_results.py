@@ -47,6 +47,9 @@ def test_a_night_has_room_for_every_script_and_page(capsys, monkeypatch):
     left = [key for key in scripts if key[1] not in taken.get(key[0], ())]
     check("only what cannot run here is left out", all(runner.missing(scripts[key]) for key in left), said)
     check("and it is told", all(f"{page} --make --only {script}" in said for page, script in left), said)
+    order = {name: [script.name for script in getattr(runner.load(name), "MAKES", ())] for name in names}
+    check("scripts of a page keep their order: one reads what another made", all(
+        some == [script for script in order[name] if script in some] for name, some in taken.items()), taken)
     total = sum(script.seconds for (page, name), script in scripts.items() if name != PEERS) + sum(
         runner.load(name).PAGE.seconds for name in names)
     check("with every package there is room for all but the other program, and for the pages", total <= runner.NIGHT,

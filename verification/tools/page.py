@@ -39,7 +39,8 @@ class Tolerance:
 
 @dataclass(frozen=True)
 class Script:
-    """A program of the folder that makes committed files of it; `verification/run PAGE --make` runs it."""
+    """A program of the folder that makes committed files of it; `verification/run PAGE --make` runs those of a page in
+    their order."""
     name: str
     files: tuple
     seconds: float

@@ -253,25 +253,26 @@ def older(name):
 
 
 def in_a_night(chosen):
-    """{page: scripts} that fit into a night beside the pages, the cheap ones first; what does not fit, or cannot run here, is said."""
-    dear = sorted(((script.seconds, name, script) for name in chosen for script in getattr(load(name), "MAKES", ())),
-                  key=lambda entry: entry[:2])
+    """{page: scripts} that fit into a night beside the pages: the cheap pages first, the scripts of a page in their
+    order, for one may read what another made. What does not fit, or cannot run here, is said."""
+    makes = {name: getattr(load(name), "MAKES", ()) for name in chosen}
     taken, spent = {}, sum(load(name).PAGE.seconds for name in chosen)   # the pages run afterwards
-    for seconds, name, script in dear:
-        if absent := missing(script):
-            print(f"left out, {', '.join(absent)} is not here: verification/run {name} --make --only {script.name}")
-        elif spent + seconds <= NIGHT:
-            taken.setdefault(name, []).append(script.name)
-            spent += seconds
-        else:
-            print(f"left out, {seconds:g} s: verification/run {name} --make --only {script.name}")
+    for name in sorted(makes, key=lambda name: sum(script.seconds for script in makes[name])):
+        for script in makes[name]:
+            if absent := missing(script):
+                print(f"left out, {', '.join(absent)} is not here: verification/run {name} --make --only {script.name}")
+            elif spent + script.seconds <= NIGHT:
+                taken.setdefault(name, []).append(script.name)
+                spent += script.seconds
+            else:
+                print(f"left out, {script.seconds:g} s: verification/run {name} --make --only {script.name}")
     print(f"scripts of {len(taken)} pages and {len(chosen)} pages, about {spent:.0f} s of one core", flush=True)
     return taken
 
 
 def make_night(taken, build, output, update):
-    """Makes {page: scripts} in their order; True for every script that ended well. OUTPUT/night.csv keeps which did, and
-    with which core: a night that goes on after an interruption leaves them out. Who ends the night removes it."""
+    """Makes {page: scripts} in their order; True for every script that ended well. OUTPUT/night.csv keeps which did,
+    and with which core: a night that goes on after an interruption leaves them out. Who ends the night removes it."""
     kept, now, good = output / "night.csv", core(), []
     before = {row["script"] for row in tables.rows(kept) if now and row["core"] == now} if kept.exists() else set()
     for key, name, script in ((f"{name}/{script}", name, script) for name in taken for script in taken[name]):
