@@ -4,12 +4,14 @@ import math
 
 import recorded
 from point_steps import ACROSS, MIDDLE, times
-from point_walk import Path, Walker
+from point_walk import Path, Soil, Walker
+from tools.bench import ROOT, parameters
 from tools.page import Page, Script
 from tools.pictures import COLOURS
 
 PAGE = Page(
-    claim="what the published set gives for G/G_max and damping against shear strain, beside Darendeli's curves for sand at 1 atm",
+    claim="what the published set and `karlsruhe_cyclic` give for G/G_max and damping against shear strain, beside Darendeli's curves "
+          "for sand at 1 atm",
     kind=("experiment", "regression"),
     input="one drained cycle of simple shear about p' 100 kPa, e 0.8: shear strain +-gamma, normal stresses held; secant between the turns, "
           "damping = area of the loop/(2 pi G gamma^2); G_max by eq. (3)",
@@ -20,8 +22,19 @@ MAKES = (Script("make_results.py", ("results.csv",), 3),)
 
 SIZES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
 LITERATURE = "Darendeli"
+CYCLIC = "karlsruhe_cyclic"
+SET = parameters(ROOT / f"drivers/materials/{CYCLIC}.nml")
 P_ATM = 101.325
-G_MAX = 125 * P_ATM * (2.97 - MIDDLE) ** 2 / (1 + MIDDLE) * math.sqrt(100 / P_ATM)   # eq. (3), published parameters
+G_0 = {CYCLIC: SET["G_0"]}   # of the others 125, the published one
+
+
+def soils():
+    return {**recorded.soils(), CYCLIC: Soil(properties=tuple(SET.items()))}
+
+
+def largest_modulus(name):
+    """Eq. (3) [kPa]"""
+    return G_0.get(name, 125) * P_ATM * (2.97 - MIDDLE) ** 2 / (1 + MIDDLE) * math.sqrt(100 / P_ATM)
 
 
 def cycle(soil, size, parts=100):
@@ -33,12 +46,12 @@ def cycle(soil, size, parts=100):
     return path
 
 
-def stiffness_damping(rows, size):
-    """(G/G_max, damping [%])"""
+def stiffness_damping(name, rows, size):
+    """(G/G_max, damping [%]) of the soil of that name."""
     tau, gamma = [row["stress"][3] for row in rows], [row["strain"][3] for row in rows]
     modulus = (max(tau) - min(tau)) / (2 * size)
     work = sum(0.5 * (a + b) * (d - c) for a, b, c, d in zip(tau, tau[1:], gamma, gamma[1:]))
-    return modulus / G_MAX, 100 * work / (2 * math.pi * modulus * size ** 2)
+    return modulus / largest_modulus(name), 100 * work / (2 * math.pi * modulus * size ** 2)
 
 
 def darendeli(size, pressure=1.0, cycles=10, frequency=1.0):
@@ -55,12 +68,12 @@ def darendeli(size, pressure=1.0, cycles=10, frequency=1.0):
 
 def measure(bench):
     walker, found = Walker(bench.build), {}
-    runs = {(size, name): walker.start(cycle(soil, size)) for size in SIZES for name, soil in recorded.soils().items()}
+    runs = {(size, name): walker.start(cycle(soil, size)) for size in SIZES for name, soil in soils().items()}
     for k, quantity in enumerate(("G/G_max", "damping [%]")):
         for size in SIZES:
             found[f"{quantity} at {size:.0e}", LITERATURE] = darendeli(size)[k]
-            for name in recorded.PARAMETERS:
-                found[f"{quantity} at {size:.0e}", name] = stiffness_damping(runs[size, name].result(), size)[k]
+            for name in soils():
+                found[f"{quantity} at {size:.0e}", name] = stiffness_damping(name, runs[size, name].result(), size)[k]
     return found
 
 
@@ -71,7 +84,7 @@ def check(bench):
 
 
 def texts(bench):
-    return {"README.md": {"values": recorded.table(bench, (LITERATURE, *recorded.PARAMETERS))}}
+    return {"README.md": {"values": recorded.table(bench, (LITERATURE, *soils()))}}
 
 
 def draw(bench, _, plt):
@@ -79,10 +92,10 @@ def draw(bench, _, plt):
     figure, axes = plt.subplots(1, 2, figsize=(10, 4.2))
     sizes = [10 ** (-6 + k / 4) for k in range(17)]
     curves = {LITERATURE: [darendeli(size) for size in sizes]}
-    for name, soil in recorded.soils().items():
+    for name, soil in soils().items():
         runs = walker.run_all([cycle(soil, size) for size in sizes])
-        curves[name] = [stiffness_damping(rows, size) for rows, size in zip(runs, sizes)]
-    for (name, values), colour, style in zip(curves.items(), ("black", COLOURS[0], COLOURS[1]), ("--", "-", "-")):
+        curves[name] = [stiffness_damping(name, rows, size) for rows, size in zip(runs, sizes)]
+    for (name, values), colour, style in zip(curves.items(), ("black", *COLOURS), ("--", "-", "-", "-")):
         for axis, k in zip(axes, (0, 1)):
             axis.semilogx(sizes, [v[k] for v in values], style, color=colour, label=name)
     axes[0].set(xlabel="shear strain amplitude [-]", ylabel="G/G_max [-]", ylim=(0, 1.05))
