@@ -256,15 +256,14 @@ def test_restart_runs():
     run(text, "again")
     files = {path.name: path.read_bytes() for path in (work / "again").iterdir() if path.suffix == ".csv"}
     kept = work / "again/checkpoint.h5"
-    done = start(text, "again", "--restart", kept) if kept.exists() else None
-    if done:
-        check("restart: runs", done.returncode == 0, done.stderr)
-        for name, content in files.items():
-            if name != "effects.csv":
-                check(f"restart: {name}", (work / "again" / name).read_bytes() == content)
-        row = {row["effect"]: row for row in tables.rows(work / "again/effects.csv")}["inertia in load"]
-        check("restart: what was seen before is in the table",
-              row["crossed_at"] and float(row["largest_seen"]) > 0, row)
+    done = start(text, "again", "--restart", kept)
+    check("restart: runs", done.returncode == 0, done.stderr)
+    for name, content in files.items():
+        if name != "effects.csv":
+            check(f"restart: {name}", (work / "again" / name).read_bytes() == content)
+    row = {row["effect"]: row for row in tables.rows(work / "again/effects.csv")}["inertia in load"]
+    check("restart: what was seen before is in the table",
+          row["crossed_at"] and float(row["largest_seen"]) > 0, row)
 
 
 @at_length
@@ -462,7 +461,7 @@ def test_auto_a_pressure_that_no_region_can_have():
     check("given: nothing watches", "effects_on_warning of &scene has no effect" in said, said)
     check("without what is not there", "without = 'p_c' of &scene has no effect" in said, said)
     said, _ = run(column("gravity = 0", **wet).replace(AUTO, "fields = 'u-p_w-p_c' without = 'p_w', 'p_c'").replace(
-        "&stage name = 'load'", "&stage name = 'load' analysis = 'dynamic'"), "both")
+        "&stage name = 'load'", "&stage name = 'load' analysis = 'dynamic'"), "both", "--check")
     check("without two, of which one takes the other along", "no effect" in said
           and "'p_c' of &scene has no" not in said, said)
 

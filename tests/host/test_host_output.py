@@ -425,7 +425,7 @@ def test_uninterrupted_run():
     (whole / "fields_999999.h5").unlink()
     done = subprocess.run([*plot, "--fields", "p_x"], capture_output=True, text=True)
     check("picture of no field", done.returncode == 1 and "no field p_x" in done.stderr, done.stderr)
-    done = subprocess.run([*plot, "--window", "7", "8"], capture_output=True, text=True)
+    done = subprocess.run([*plot, "--window", "7", "8", "--fields", "p_w"], capture_output=True, text=True)
     check("picture of no time", done.returncode == 1 and "no history between" in done.stderr, done.stderr)
     done = subprocess.run([*plot[:2], one, "--window", "2", "3", "--fields", "p_w"], capture_output=True, text=True)
     check("picture beside a plate", done.returncode == 0 and (one / "fields.png").exists(), done.stderr)

@@ -30,7 +30,7 @@ RESTART = root / "tests/host/scenes/restart.nml"
 
 
 def test_price_ends_well():
-    # Consolidation: the mesh error of the scene's own mesh is the distance to a mesh four times as fine.
+    # Consolidation: the mesh error of the scene's own mesh is the distance to a mesh three times as fine.
     done = run(TERZAGHI, work / "price", "--price")
     check("--price ends well", done.returncode == 0, done.stderr)
     rows, answers = numbers(work / "price/price.csv"), numbers(work / "price/price_answers.csv")
@@ -45,7 +45,7 @@ def test_price_ends_well():
                                           if one["mesh"] < other["mesh"] and one["steps"] == other["steps"]))
     here, fine = work / "here", work / "fine"
     run(TERZAGHI, here, "--fineness", "1")
-    run(TERZAGHI, fine, "--fineness", "4")
+    run(TERZAGHI, fine, "--fineness", "3")
     one, other = (tables.columns(folder / "histories.csv") for folder in (here, fine))
     for row in answers:
         if row["state"] == "ok":
