@@ -93,14 +93,19 @@ contains
       real(wp), intent(out) :: tau      !< with the sign of w
       type(trial_t), intent(out) :: at
       logical, intent(out) :: found
-      real(wp) :: side, low, high, first, last, start
-      logical :: guarded, crossed
+      real(wp) :: side, low, high, last, start
+      logical :: guarded, crossed, known
 
-      call evaluate_direction(par, eq, arc, 0.0_wp, w%moduli_t, at)
-      side = sign(1.0_wp, w%beta)
-      first = side*at%residual
       guarded = par%floored .and. par%cap_d > 0.0_wp .and. par%cap_h > 0.0_wp
       w%several = .not. guarded
+      ! Where r along t is below the dilatancy surface of every Lode angle D is not negative there, and beta positive.
+      known = guarded .and. guess > 0.0_wp .and. guess < 1.0_wp .and. &
+              arc%r_t <= merge(min(par%c, 1.0_wp), 1.0_wp, par%lode)*eq%r_d_1
+      side = 1.0_wp
+      if (.not. known) then
+         call evaluate_direction(par, eq, arc, 0.0_wp, w%moduli_t, at)
+         side = sign(1.0_wp, w%beta)
+      end if
       last = 1.0_wp
       found = .false.
       if (guarded) then
@@ -115,12 +120,12 @@ contains
          if (found) then
             w%several = .not. single_root(par, eq, arc, side, at, w)
             if (.not. w%several) return
-            call scan_arc(par, eq, arc, side, first, last, .true., low, high, crossed)
+            call scan_arc(par, eq, arc, side, last, .true., low, high, crossed)
             if (.not. crossed) return
          end if
       end if
       if (.not. found) then
-         call scan_arc(par, eq, arc, side, first, last, .false., low, high, found)
+         call scan_arc(par, eq, arc, side, last, .false., low, high, found)
          if (.not. found) return
       end if
       call newton(par, eq, arc, side, low, high, 0.5_wp*(low + high), w, tau, at)
@@ -181,7 +186,7 @@ contains
       type(trial_t) :: there
       real(wp) :: x_q
 
-      single_root = max(arc%r_q, abs(at%sine))*hypot(arc%x_t, arc%x_q) <= NEARLY_ALONG*par%x_floor
+      single_root = max(arc%r_q, abs(at%sine))*sqrt(arc%x_t**2 + arc%x_q**2) <= NEARLY_ALONG*par%x_floor
       if (single_root .or. w%capped_h .or. w%capped_d) return
       ! Always floored (on less than a right angle x cannot become positive between two negative ends), or never near.
       single_root = arc%x_t**2 + arc%x_q**2 < par%x_floor**2 .or. max(arc%x_t, w%x) < 0.0_wp .or. &
@@ -204,11 +209,11 @@ contains
    !> again, more closely, where the chords beside it, prolonged, meet zero in it: a residual that bends once between
    !> two points cannot rise above both of them. (240,000 random states: the same roots as with a scan of 64 points, all
    !> but one of them those of a scan of 2048.)
-   pure subroutine scan_arc(par, eq, arc, side, first, last, is_root, lower, upper, crossed)
+   pure subroutine scan_arc(par, eq, arc, side, last, is_root, lower, upper, crossed)
       type(params_t), intent(in) :: par
       type(equation_t), intent(in) :: eq
       type(arc_t), intent(in) :: arc
-      real(wp), intent(in) :: side, first, last   !< first: the residual at tau = 0, in units of its side [kPa]
+      real(wp), intent(in) :: side, last
       logical, intent(in) :: is_root
       real(wp), intent(out) :: lower, upper       !< tau of the interval's ends, without sign
       logical, intent(out) :: crossed
@@ -220,7 +225,7 @@ contains
       if (is_root) intervals = POINTS + 1   ! the known root itself is no crossing
       step = last/intervals
       call residuals(par, eq, arc, side, 0.0_wp, step, f(1:POINTS), above)
-      f(-1:0) = first
+      f(-1:0) = residual_at_t(par, eq, arc, side)
       f(POINTS + 1:) = merge(0.0_wp, f(POINTS), is_root)
       do i = 0, intervals - 1
          from = i*step
@@ -247,6 +252,23 @@ contains
          return
       end do
    end subroutine scan_arc
+
+   !> The residual at w = 0, in units of its side [kPa].
+   pure real(wp) function residual_at_t(par, eq, arc, side) result(residual)
+      type(params_t), intent(in) :: par
+      type(equation_t), intent(in) :: eq
+      type(arc_t), intent(in) :: arc
+      real(wp), intent(in) :: side
+      type(moduli_t) :: m
+      type(trial_t) :: at
+
+      m%lode = 1.0_wp
+      m%a_d = eq%a_0
+      m%r_b = eq%r_b_1
+      m%r_d = eq%r_d_1
+      call evaluate_direction(par, eq, arc, 0.0_wp, m, at)
+      residual = side*at%residual
+   end function residual_at_t
 
    !> The residual in units of its side, and a number that is not negative where it is positive at an admissible angle,
    !> at equal steps of tau from `from` on: the same equation as in evaluate_direction, of all points together.

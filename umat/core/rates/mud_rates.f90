@@ -88,10 +88,9 @@ contains
       w%iso_kept = .false.
       w%iso_drive = -1.0_wp
       if (present(near)) then
-         ! where nothing but dp' drives the mechanism
-         if (near%iso_active .and. .not. par%remembers .and. abs(w%iso%b*d_pc) <= 0.0_wp) then
+         if (near%iso_active .and. .not. par%remembers) then
             call load(par, d_v, d_e, d_norm, d_pc, mode, .true., w)
-            if (is_certain(par, d_v, d_e, w)) w%iso_drive = w%iso%a*w%d_p/w%p
+            if (is_certain(par, d_v, d_e, w)) w%iso_drive = w%iso%a*w%d_p/w%p + w%b_rate
             if (w%iso_drive <= 0.0_wp) call start_direction(near, w)
          end if
       end if
