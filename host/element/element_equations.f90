@@ -5,7 +5,8 @@ module element_equations
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use kinds, only: wp
    use material_point, only: material_t, response_t, report_t, MOST_POINTS
-   use element_sums, only: sums_t, clear_sums, add_response, add_tangent, residual_of, matrix_of
+   use element_sums, only: sums_t, rows_t, clear_sums, weighted_rows, add_response, add_forces, add_tangent, &
+                           residual_of, matrix_of
    use porous_domain, only: domain_t, region_t, state_t, gauss_t, mixture_density, given_pressures_at, gravity_on, &
                             COUPLED
    use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, solid_response, PLACES, RR, TT, RZ, &
@@ -231,6 +232,7 @@ contains
       type(skeleton_t) :: skeleton
       type(pore_t) :: pore
       type(sums_t) :: sums
+      type(rows_t) :: rows
       real(wp) :: response(PLACES), tangent(PLACES, PLACES), change(6, 4), rate, drift(2)
       integer :: g, i, p, n, n_p, n_fields
 
@@ -273,13 +275,14 @@ contains
             end if
             new%stress(:, p) = material%stress(:, g)
             new%e(p) = skeleton%e
-            call add_response(gp, n_fields, response, sums%r)
-            if (out%with_change) call add_response(gp, DISPLACEMENTS, &
+            rows = weighted_rows(gp)
+            call add_response(rows, n_fields, response, sums%r)
+            if (out%with_change) call add_forces(rows, &
                change_of(domain, region, k(g), gravity_on(old, element), old%stress(:, p), old%e(p), old%s(p), &
                          response), &
                change)
             if (scheme%kind == DYNAMIC) call add_flight_scale(domain, region, k(g), scheme, skeleton, gp, out%stretch)
-            if (with_tangent) call add_tangent(gp, n_fields, tangent, sums%k)
+            if (with_tangent) call add_tangent(gp, rows, n_fields, tangent, sums%k)
          end associate
       end do
       out%r(n + 1:) = 0.0_wp

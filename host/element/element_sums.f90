@@ -8,7 +8,7 @@ module element_sums
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: sums_t, clear_sums, add_response, add_tangent, residual_of, matrix_of
+   public :: sums_t, rows_t, clear_sums, weighted_rows, add_response, add_forces, add_tangent, residual_of, matrix_of
 
    integer, parameter :: NODES = 6
    integer, parameter :: U_R = 1, U_Z = 2, WATER = 3, SUCTION = 4   !< Fields of an element.
@@ -21,6 +21,12 @@ module element_sums
       real(wp) :: r(NODES, 4)             !< Residual.
       real(wp) :: k(NODES, 4, NODES, 4)   !< Its slopes: node and field of the row, node and field of the column.
    end type sums_t
+
+   !> Rows of B at a point, times its weight [m3, m2].
+   type :: rows_t
+      real(wp), dimension(NODES) :: n, d_r, d_z, hoop   !< Of the displacements; hoop: n/r.
+      real(wp), dimension(NODES) :: m, dm_r, dm_z       !< Of the pressures.
+   end type rows_t
 contains
    !> Sums of no point yet.
    pure subroutine clear_sums(with_tangent, sums)
@@ -31,29 +37,57 @@ contains
       if (with_tangent) sums%k = 0.0_wp
    end subroutine clear_sums
 
-   !> r = r + weight B^T response. Units of response: those of point_response.
-   pure subroutine add_response(gp, fields, response, r)
+   !> The rows of B at a point, times its weight.
+   pure type(rows_t) function weighted_rows(gp) result(b)
       type(gauss_t), intent(in) :: gp
+
+      b%d_r = gp%weight*gp%dn(:, 1)
+      b%d_z = gp%weight*gp%dn(:, 2)
+      b%hoop = gp%weight*gp%n_over_r
+      b%n = gp%weight*gp%n
+      b%m = gp%weight*gp%m
+      b%dm_r = gp%weight*gp%dm(:, 1)
+      b%dm_z = gp%weight*gp%dm(:, 2)
+   end function weighted_rows
+
+   !> r = r + weight B^T response. Units of response: those of point_response.
+   pure subroutine add_response(b, fields, response, r)
+      type(rows_t), intent(in) :: b
       integer, intent(in) :: fields           !< Of the element: 2, 3 or 4.
       real(wp), intent(in) :: response(PLACES)
       real(wp), intent(inout) :: r(NODES, 4)
 
-      associate (d_r => gp%dn(:, 1), d_z => gp%dn(:, 2))
-         r(:, U_R) = r(:, U_R) + gp%weight*(d_r*response(RR) + gp%n_over_r*response(TT) + d_z*response(RZ) &
-                                            + gp%n*response(U + 1))
-         r(:, U_Z) = r(:, U_Z) + gp%weight*(d_z*response(ZZ) + d_r*response(RZ) + gp%n*response(U + 2))
-      end associate
-      if (fields < WATER) return
-      associate (d_r => gp%dm(:, 1), d_z => gp%dm(:, 2))
-         r(:, WATER) = r(:, WATER) + gp%weight*(gp%m*response(PW) + d_r*response(GW + 1) + d_z*response(GW + 2))
-         if (fields < SUCTION) return
-         r(:, SUCTION) = r(:, SUCTION) + gp%weight*(gp%m*response(PC) + d_r*response(GA + 1) + d_z*response(GA + 2))
-      end associate
+      call add_forces(b, response, r)
+      call add_balances(b, fields, response, r)
    end subroutine add_response
 
+   !> The rows of the displacements in it.
+   pure subroutine add_forces(b, response, r)
+      type(rows_t), intent(in) :: b
+      real(wp), intent(in) :: response(PLACES)
+      real(wp), intent(inout) :: r(NODES, 4)
+
+      r(:, U_R) = r(:, U_R) + (b%d_r*response(RR) + b%hoop*response(TT) + b%d_z*response(RZ) + b%n*response(U + 1))
+      r(:, U_Z) = r(:, U_Z) + (b%d_z*response(ZZ) + b%d_r*response(RZ) + b%n*response(U + 2))
+   end subroutine add_forces
+
+   !> The rows of the pressures in it.
+   pure subroutine add_balances(b, fields, response, r)
+      type(rows_t), intent(in) :: b
+      integer, intent(in) :: fields
+      real(wp), intent(in) :: response(PLACES)
+      real(wp), intent(inout) :: r(NODES, 4)
+
+      if (fields < WATER) return
+      r(:, WATER) = r(:, WATER) + (b%m*response(PW) + b%dm_r*response(GW + 1) + b%dm_z*response(GW + 2))
+      if (fields < SUCTION) return
+      r(:, SUCTION) = r(:, SUCTION) + (b%m*response(PC) + b%dm_r*response(GA + 1) + b%dm_z*response(GA + 2))
+   end subroutine add_balances
+
    !> k = k + weight B^T tangent B. A gradient of pressure changes the fluxes alone (docs/theory/host.md section 3.3).
-   pure subroutine add_tangent(gp, fields, tangent, k)
+   pure subroutine add_tangent(gp, b, fields, tangent, k)
       type(gauss_t), intent(in) :: gp
+      type(rows_t), intent(in) :: b
       integer, intent(in) :: fields
       real(wp), intent(in) :: tangent(PLACES, PLACES)
       real(wp), intent(inout) :: k(NODES, 4, NODES, 4)
@@ -61,26 +95,24 @@ contains
       integer :: j
 
       if (fields < WATER) then
-         call add_tangent_of_skeleton(gp, tangent(:FORCES, :FORCES), k)
+         call add_tangent_of_skeleton(gp, b, tangent(:FORCES, :FORCES), k)
          return
       end if
       do j = 1, NODES
          part = gp%dn(j, 1)*tangent(:, RR) + gp%n_over_r(j)*tangent(:, TT) + gp%dn(j, 2)*tangent(:, RZ) &
                 + gp%n(j)*tangent(:, U + 1)
-         call add_response(gp, fields, part, k(:, :, j, U_R))
+         call add_response(b, fields, part, k(:, :, j, U_R))
          part = gp%dn(j, 2)*tangent(:, ZZ) + gp%dn(j, 1)*tangent(:, RZ) + gp%n(j)*tangent(:, U + 2)
-         call add_response(gp, fields, part, k(:, :, j, U_Z))
-         call slopes_of_pressure(gp, j, PW, GW, tangent, part)
-         call add_response(gp, fields, part, k(:, :, j, WATER))
-         if (fields < SUCTION) cycle
-         call slopes_of_pressure(gp, j, PC, GA, tangent, part)
-         call add_response(gp, fields, part, k(:, :, j, SUCTION))
+         call add_response(b, fields, part, k(:, :, j, U_Z))
       end do
+      call add_tangent_of_pressure(gp, b, fields, PW, GW, tangent, k(:, :, :, WATER))
+      if (fields >= SUCTION) call add_tangent_of_pressure(gp, b, fields, PC, GA, tangent, k(:, :, :, SUCTION))
    end subroutine add_tangent
 
    !> The same without pressures: nothing is spent on their places.
-   pure subroutine add_tangent_of_skeleton(gp, tangent, k)
+   pure subroutine add_tangent_of_skeleton(gp, b, tangent, k)
       type(gauss_t), intent(in) :: gp
+      type(rows_t), intent(in) :: b
       real(wp), intent(in) :: tangent(FORCES, FORCES)
       real(wp), intent(inout) :: k(NODES, 4, NODES, 4)
       real(wp) :: part(PLACES)
@@ -90,23 +122,33 @@ contains
       do j = 1, NODES
          part(:FORCES) = gp%dn(j, 1)*tangent(:, RR) + gp%n_over_r(j)*tangent(:, TT) + gp%dn(j, 2)*tangent(:, RZ) &
                          + gp%n(j)*tangent(:, U + 1)
-         call add_response(gp, DISPLACEMENTS, part, k(:, :, j, U_R))
+         call add_forces(b, part, k(:, :, j, U_R))
          part(:FORCES) = gp%dn(j, 2)*tangent(:, ZZ) + gp%dn(j, 1)*tangent(:, RZ) + gp%n(j)*tangent(:, U + 2)
-         call add_response(gp, DISPLACEMENTS, part, k(:, :, j, U_Z))
+         call add_forces(b, part, k(:, :, j, U_Z))
       end do
    end subroutine add_tangent_of_skeleton
 
-   !> How the response changes with a pressure at node j.
-   pure subroutine slopes_of_pressure(gp, j, value, gradient, tangent, part)
+   !> The columns of a pressure. Its gradient changes no force: what its value does to them is the same at every node.
+   pure subroutine add_tangent_of_pressure(gp, b, fields, value, gradient, tangent, k)
       type(gauss_t), intent(in) :: gp
-      integer, intent(in) :: j, value, gradient   !< Node; place of the value, place before its gradient.
+      type(rows_t), intent(in) :: b
+      integer, intent(in) :: fields, value, gradient   !< Place of the value, place before its gradient.
       real(wp), intent(in) :: tangent(PLACES, PLACES)
-      real(wp), intent(out) :: part(PLACES)
+      real(wp), intent(inout) :: k(NODES, 4, NODES)
+      real(wp) :: forces(NODES, 4), part(PLACES)
+      integer :: j
 
-      part(:BOTH) = gp%m(j)*tangent(:BOTH, value)
-      part(BOTH + 1:) = gp%m(j)*tangent(BOTH + 1:, value) + gp%dm(j, 1)*tangent(BOTH + 1:, gradient + 1) &
-                        + gp%dm(j, 2)*tangent(BOTH + 1:, gradient + 2)
-   end subroutine slopes_of_pressure
+      forces = 0.0_wp
+      call add_forces(b, tangent(:, value), forces)
+      do j = 1, NODES
+         k(:, U_R, j) = k(:, U_R, j) + gp%m(j)*forces(:, U_R)
+         k(:, U_Z, j) = k(:, U_Z, j) + gp%m(j)*forces(:, U_Z)
+         part(:BOTH) = gp%m(j)*tangent(:BOTH, value)
+         part(BOTH + 1:) = gp%m(j)*tangent(BOTH + 1:, value) + gp%dm(j, 1)*tangent(BOTH + 1:, gradient + 1) &
+                           + gp%dm(j, 2)*tangent(BOTH + 1:, gradient + 2)
+         call add_balances(b, fields, part, k(:, :, j))
+      end do
+   end subroutine add_tangent_of_pressure
 
    !> The residual in the order of the element's unknowns: displacements node by node, then the n_p values of a pressure
    !> after those of the other.

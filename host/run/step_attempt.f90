@@ -66,7 +66,7 @@ contains
    !> docs/theory/host.md section 4.4. Faults: that of find_impervious_nodes; that of explain_failure where no cut is
    !> left, the linear solver failed, or the matrix is singular by no soft point.
    subroutine try_step(model, stage, control, dt, run, log, accepted, fault)
-      type(model_t), intent(in) :: model
+      type(model_t), intent(inout) :: model   !< The tolerance of its laws follows Newton's method.
       type(stage_t), intent(in) :: stage
       type(control_t), intent(in) :: control
       real(wp), intent(in) :: dt   !< [s]

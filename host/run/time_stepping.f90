@@ -15,7 +15,7 @@ module time_stepping
    use run_observer, only: run_observer_t, step_report_t
    use run_state, only: run_t
    use sparse_factors, only: release
-   use stress_tolerance, only: follow_newton, roughness, warn_stagnation
+   use stress_tolerance, only: follow_newton, roughness
    use step_attempt, only: begin_stage, try_step
    use step_size, only: next_step, bend_of_step, keep_step, is_over
    use step_landings, only: LAST_STEP
@@ -184,6 +184,23 @@ contains
          'first step did not converge: they are applied evenly over the stage. A material with a '// &
          'memory may answer otherwise than at once; give the loads a &history to say how they grow.')
    end subroutine warn_of_sudden_loads
+
+   !> After an accepted step whose error stagnated: once a stage, on standard error, also where the run is quiet.
+   !> docs/theory/host.md section 5.1. Raises no fault.
+   subroutine warn_stagnation(stage, control, time, log, told)
+      type(stage_t), intent(in) :: stage
+      type(control_t), intent(in) :: control
+      real(wp), intent(in) :: time   !< [s]
+      type(log_t), intent(in) :: log
+      logical, intent(inout) :: told
+
+      if (told .or. .not. log%stagnated) return
+      told = .true.
+      call print_warning('stage '//trim(stage%name)//', time '//short(time)// &
+         ' s: Newton''s method stays at an error of '//short(maxval(log%error))//' and cannot reach its tolerance '// &
+         'of '//short(control%tolerance)//', because stresses are integrated to '//short(control%roughness)// &
+         '. The step is accepted. Give &stage a tolerance above the error reached, or the material a smaller one.')
+   end subroutine warn_stagnation
 
    !> Whether there is an observer that may print warnings.
    logical function warns(observer)

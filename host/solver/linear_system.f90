@@ -34,6 +34,7 @@ module linear_system
       integer :: active = 0                   !< Nodes in contact when the factors were made.
       real(wp) :: largest(FIELDS) = 0.0_wp    !< Largest scale of every field so far.
       real(wp) :: rounding(FIELDS) = 0.0_wp   !< Least scale of the present step, see convergence.
+      real(wp) :: first_error = 0.0_wp        !< Of the last step, after its first correction, see convergence.
       real(wp), allocatable :: reaction(:)    !< Residual with the constrained rows kept.
       real(wp), allocatable :: left(:)        !< (unknowns) What Newton's method left of the last step [m, kPa].
       real(wp) :: seconds(TIMERS) = 0.0_wp    !< Wall time, by T_...

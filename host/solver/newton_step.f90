@@ -14,13 +14,14 @@ module newton_step
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t, assemble, follow_slopes_first
    use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
-   use carried_slopes, only: AS_BEFORE
+   use carried_slopes, only: AS_BEFORE, BY_SLOPES
    use generalised_alpha, only: scheme_t, make_scheme, predict, advance_rates, STATIC, DYNAMIC
    use limited_pressures, only: choose_sides
    use linear_system, only: system_t, solve_step, asked_for, update_contacts, MOST_STEPS, T_ASSEMBLY, &
                             T_REST, T_MATERIAL, T_CONTACT
    use porous_domain, only: domain_t, state_t
    use prescribed_values, only: constraint_t, constrain, loads_of_water
+   use stress_tolerance, only: follow_newton, roughness, is_tight
    use sparse_factors, only: analyse, factorise, SOLVED, SINGULAR
    use sparsity_pattern, only: pattern_t, place_of
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_C
@@ -32,6 +33,7 @@ module newton_step
    integer, parameter :: CONVERGED = 0, NOT_CONVERGED = 1, MATERIAL_FAILED = 2, BODY_FREE = 3, SOLVER_FAILED = 4, &
                          CONTACT_FAILED = 5
    real(wp), parameter :: ROUNDING = 1.0e-12_wp       !< Of all contributions: no residual to begin with is smaller.
+   real(wp), parameter :: STRESS_SHARE = 1.0e-3_wp    !< Of an error: stresses of the next pass are integrated to it.
    real(wp), parameter :: HOPELESS = 1.0e10_wp        !< Error beyond which no further iteration helps.
 contains
    !> From `old` to `new` over scheme%dt; `new` is of use only after CONVERGED. docs/theory/host.md section 5.
@@ -39,7 +41,7 @@ contains
    !> MATERIAL_FAILED or CONTACT_FAILED where these refuse the iterate (see assembly, contacts); BODY_FREE with a
    !> singular matrix; SOLVER_FAILED.
    subroutine take_step(domain, dofs, pattern, scheme, constraint, control, old, new, assembly, system, log)
-      type(domain_t), intent(in) :: domain
+      type(domain_t), intent(inout) :: domain   !< The tolerance of its laws changes, see stress_tolerance.
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(inout) :: pattern   !< Grows with the contacts.
       type(scheme_t), intent(in) :: scheme
@@ -52,15 +54,18 @@ contains
       type(log_t), intent(out) :: log
       real(wp), allocatable :: rhs(:), dx(:)
       real(wp), allocatable :: touched(:)   !< Forces of contacts before, where steps are measured by what they change.
-      real(wp) :: norm, norm_0, t0
+      real(wp) :: norm, norm_0, begun, t0   !< begun: the norm that a reduction is a share of.
       real(wp) :: before(FIELDS)            !< Norms of the residual that the last correction answered.
       integer :: status
-      logical :: with_tangent, guessed, turned
+      logical :: with_tangent, guessed, turned, rough, again
 
       t0 = clock()
       allocate (rhs(dofs%n), dx(dofs%n))
       new%time = old%time + scheme%dt
       call begin_passes(scheme, constraint, control, assembly)
+      ! Laws that change over the step are its own.
+      rough = is_tight(domain%regions) .and. .not. allocated(new%laws)
+      if (rough) call follow_error(merge(system%first_error, huge(1.0_wp), assembly%source == BY_SLOPES))
       call follow_friction(system%contacts, fresh=.true.)
       if (assembly%with_change .and. allocated(system%contacts%interfaces)) then
          log%outcome = merge(CONVERGED, CONTACT_FAILED, contact_forces(system%contacts, dofs, old%x, touched))
@@ -69,6 +74,7 @@ contains
       call predict(scheme, control%no_predictor, old%x, old%v, old%a, new%x)
       call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
       norm_0 = -1.0_wp
+      begun = 0.0_wp
       with_tangent = .true.
       guessed = .not. control%no_predictor
       do
@@ -91,15 +97,20 @@ contains
             norm = norm2(pack(rhs, .not. constraint%fixed))
             ! A step that is driven by prescribed values alone begins with a residual that is almost zero.
             if (log%iterations == 1) then
-               log%balanced = max(norm_0, norm) <= rounding_in(scheme%kind)*norm2(assembly%scale)
-               norm_0 = max(norm_0, norm, ROUNDING*norm2(assembly%scale))
+               norm_0 = max(norm_0, norm)
+               log%balanced = norm_0 <= rounding_in(scheme%kind)*norm2(assembly%scale)
+               begun = max(norm_0, ROUNDING*norm2(assembly%scale))
             end if
-            log%reduction = norm/max(norm_0, tiny(1.0_wp))
+            log%reduction = norm/max(begun, tiny(1.0_wp))
             ! What turned to the other side of its limit, a pressure or a sliding node, has not been solved for yet.
             if (.not. turned) then
-               if (good_enough(control, log)) exit
                call note_stagnation(control, log)
-               if (log%stagnated) exit
+               if (rough) then
+                  call look_closer(again)
+                  if (again) cycle
+               else if (good_enough(control, log) .or. log%stagnated) then
+                  exit
+               end if
             end if
             if (log%iterations >= control%max_iterations .or. is_in_vain(log) .or. &
                 .not. all(log%error < HOPELESS)) then
@@ -141,6 +152,7 @@ contains
          call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
          with_tangent = .false.
       end do
+      system%first_error = maxval(log%first_error)
       call keep_what_is_left()
       call follow_friction(system%contacts, fresh=.true.)
       assembly%slopes%known = .true.
@@ -158,6 +170,26 @@ contains
          if (answered > 0.0_wp) share = maxval(residual_norms(dofs, constraint, rhs)/forces)/answered
          system%left = dx*min(1.0_wp, share)
       end subroutine keep_what_is_left
+
+      !> Stresses of the next pass are integrated to a share of an error of Newton's method: the first passes cost less.
+      !> docs/theory/host.md section 5.1.
+      subroutine follow_error(error)
+         real(wp), intent(in) :: error
+
+         rough = error > control%tolerance/STRESS_SHARE
+         call follow_newton(merge(STRESS_SHARE*min(error, 1.0_wp), control%tolerance, rough), domain%regions)
+      end subroutine follow_error
+
+      !> After a pass that was not integrated as the step asks for. `again`: it is, and the error is looked at again.
+      subroutine look_closer(again)
+         logical, intent(out) :: again
+
+         again = good_enough(control, log)
+         call follow_error(merge(0.0_wp, maxval(log%error), again .or. log%since_best > 0))
+         if (rough) return
+         log%stagnated = .false.
+         log%since_best = 0
+      end subroutine look_closer
 
       !> Residual, with minus sign in rhs, and slopes; false if the material refuses.
       logical function pass(slopes)
