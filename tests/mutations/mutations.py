@@ -211,7 +211,7 @@ MUTATIONS = [
     ("open stress ratio beyond the bounding surface", (BOUNDING, "if (beyond > 0.0_wp) r_limited", "if (beyond > 1.0e9_wp) r_limited")),
     ("an open point never closes",
      (CUTOFF, "closing_rate(inc, openings, w) <= 0.0_wp", "closing_rate(inc, openings, w) <= huge(1.0_wp)")),
-    ("tension is not reported", (POINT, "if (has_tension(state1%sigma)) counters%tensile = 1", "continue")),
+    ("tension is not reported", (POINT, "if (has_tension(it%state%sigma)) it%counters%tensile = 1", "continue")),
     # elastic domain
     ("the elastic domain forgets the strain inside",
      (INCREMENT, "         from_centre = inc%from_centre + inc%d_strain\n", "         from_centre = inc%from_centre\n")),
@@ -221,7 +221,7 @@ MUTATIONS = [
     ("the tangent does not know where the elastic domain ends",
      (DRIVING, "driving%exit = changes_of_exit", "driving%exit = 0.0_wp*changes_of_exit")),
     # kinks of suction, and the step control
-    ("suction passes zero inside a substep", (PHASES, "cut_t(CUT_NO_SUCTION, -inc%p_c0/inc%d_pc)", "cut_t(CUT_NO_SUCTION, 0.0_wp*inc%p_c0)")),
+    ("suction passes zero inside a substep", (PHASES, "cut_t(CUT_NO_SUCTION, -inc%p_c0/inc%d_pc, ", "cut_t(CUT_NO_SUCTION, 0.0_wp*inc%p_c0, ")),
     ("the third order is never taken", (ORDER, "if (share*h*(1.0_wp + LAST_SLIVER) >= rest) then", "if (share*h >= -rest) then")),
     ("kinks are allowed what smooth substeps are", (ERROR_CONTROL, "ACROSS_KINK = 0.3_wp", "ACROSS_KINK = 1.0_wp")),
     # tables

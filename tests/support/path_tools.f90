@@ -2,6 +2,7 @@
 !> Material, start and path of one point, as the contract tests use them.
 module path_tools
    use mud_bonding, only: is_bonded
+   use mud_integration, only: integration_t
    use mud_kinds, only: wp
    use mud_params, only: params_t, read_params, default_props
    use mud_point, only: update_point, TANGENT_NONE
@@ -13,11 +14,12 @@ module path_tools
    use mud_tensor, only: IDENTITY, trace, norm
    use mud_blocks, only: blocks_t
    use mud_start, only: initial_state
+   use mud_trace, only: trace_t
    use random_states, only: random_t, uniform
    implicit none (type, external)
    private
-   public :: material, isotropic, general_start, advance, rate_of_state, undrained, axial_only, triaxial, mean_stress, &
-             shear_stress, distance, full, rotation
+   public :: material, isotropic, general_start, update_between, advance, rate_of_state, undrained, axial_only, &
+             triaxial, mean_stress, shear_stress, distance, full, rotation
 
 contains
    !> The parameters of the paper, so without elastic domain, with some entries changed; an entry that is not accepted
@@ -61,6 +63,32 @@ contains
       if (status%code /= 0) error stop 'path_tools: a start of the test is not accepted'
    end function general_start
 
+   !> One increment from a state that stays. Arguments as in update_point, counters added up.
+   subroutine update_between(par, before, d_strain, d_pc, tangent, after, blocks, counters, reached, status, record)
+      type(params_t), intent(in) :: par
+      type(state_t), intent(in) :: before
+      real(wp), intent(in) :: d_strain(6), d_pc
+      integer, intent(in) :: tangent
+      type(state_t), intent(inout) :: after
+      type(blocks_t), intent(inout) :: blocks
+      type(counters_t), intent(inout) :: counters
+      real(wp), intent(out) :: reached
+      type(mud_status_t), intent(out) :: status
+      type(trace_t), intent(inout), optional :: record
+      type(integration_t) :: it
+
+      it%traced = present(record)
+      if (present(record)) it%trace = record
+      it%state = before
+      it%counters = counters
+      call update_point(par, d_strain, d_pc, tangent, it, blocks)
+      after = it%state
+      counters = it%counters
+      reached = it%reached
+      status = it%status
+      if (present(record)) record = it%trace
+   end subroutine update_between
+
    !> Goes along a straight path in equal increments; stops at the first one that fails.
    subroutine advance(par, state, d_strain, d_pc, increments, counters, code)
       type(params_t), intent(in) :: par
@@ -79,8 +107,8 @@ contains
       if (present(code)) code = 0
       do i = 1, increments
          sums = counters_t()
-         call update_point(par, state, d_strain/increments, d_pc/increments, TANGENT_NONE, next, blocks, sums, &
-               reached, status)
+         call update_between(par, state, d_strain/increments, d_pc/increments, TANGENT_NONE, next, blocks, sums, &
+                             reached, status)
          if (present(counters)) call add(counters, sums)
          if (status%code /= 0) then
             if (.not. present(code)) then

@@ -4,6 +4,7 @@
 module mud_kernel
    use, intrinsic :: iso_c_binding, only: c_int, c_double
    use mud_bounding, only: limited
+   use mud_integration, only: integration_t
    use mud_kinds, only: wp
    use mud_params, only: params_t, options_t, read_params
    use mud_point, only: update_point, LAST_RATE => TANGENT_CONTINUUM
@@ -11,7 +12,7 @@ module mud_kernel
    use mud_start, only: initial_state
    use mud_rates, only: stress_ratio
    use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, VARIABLES, S_LAYOUT, S_VOID_RATIO, S_SATURATION, &
-      S_SUCTION, S_DSIGMA_DPC, &
+      S_SUCTION, S_DSIGMA_DPC, S_N_RATE, S_N_TENSILE, &
       S_DSW_DPC, S_DSW_DEV, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, S_TURNS
    use mud_scanning, only: check_curves, check_saturation
    use mud_state, only: state_t, counters_t, pack_state, unpack_state, statev_size, E_LOWER, E_UPPER
@@ -121,26 +122,27 @@ contains
       type(output_t), intent(inout) :: output
       type(report_t), intent(out) :: report
       type(trace_t), intent(inout), optional :: trace   !< Stress compression positive as the core has it.
-      type(state_t) :: state0, state1
+      type(integration_t) :: it
       type(blocks_t) :: blocks
-      type(counters_t) :: counters
-      type(mud_status_t) :: status
-      real(wp) :: reached
       integer :: kind
 
-      reached = 0.0_wp
       kind = tangent
       if (kind == TANGENT_FROM_PROPS) kind = par%tangent
-      call read_state(par, stress, statev, suction, state0, output%statev, status)
-      if (status%code == MUD_OK .and. (kind < 0 .or. kind > LAST_TANGENT)) then
-         status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(tangent, wp), 0.0_wp, real(LAST_TANGENT, wp))
+      call read_state(par, stress, statev, suction, it%state, output%statev, it%status)
+      if (it%status%code == MUD_OK .and. (kind < 0 .or. kind > LAST_TANGENT)) then
+         it%status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(tangent, wp), 0.0_wp, real(LAST_TANGENT, wp))
       end if
-      if (status%code == MUD_OK) then
-         call update_point(par, state0, from_umat_strain(d_strain), d_suction, kind, state1, blocks, counters, &
-                           reached, status, trace)
+      if (it%status%code == MUD_OK) then
+         if (present(trace)) then
+            it%traced = .true.
+            it%trace = trace
+         end if
+         call update_point(par, from_umat_strain(d_strain), d_suction, kind, it, blocks)
+         if (present(trace)) trace = it%trace
       end if
-      if (status%code == MUD_OK) call write_output(par%options_t, state1, blocks, counters, kind > 0, output, status)
-      report = report_of(status, counters, reached)
+      if (it%status%code == MUD_OK) call write_output(par%options_t, it%state, blocks, it%counters, kind > 0, output, &
+                                                     it%status)
+      report = report_of(it%status, it%counters, it%reached)
    end subroutine kernel_point
 
    !> Slopes with which a state goes on in a direction of strain and suction of any length. No strain: that in which the
@@ -230,11 +232,21 @@ contains
          if (par%hysteresis .and. status%code == MUD_OK) then
             call check_saturation(par, state%p_c, state%e, state%s_w, status)
          end if
-         call copy_statev(statev_size(par%options_t), statev, packed)
+         call keep_totals(statev_size(par%options_t), statev, packed)
          state%sigma = -stress
          state%p_c = suction
       end if
    end subroutine read_state
+
+   !> What pack_state does not write: totals of the counters, and numbers of options that are off.
+   pure subroutine keep_totals(n, from, to)
+      integer, intent(in) :: n   !< As of statev_size.
+      real(wp), intent(in), contiguous :: from(:)
+      real(wp), intent(inout), contiguous :: to(:)
+
+      to(S_N_RATE:S_N_TENSILE) = from(S_N_RATE:S_N_TENSILE)
+      if (n > NSTATV_WITHOUT_HYSTERESIS) to(S_TURNS:n) = from(S_TURNS:n)
+   end subroutine keep_totals
 
    !> The numbers of a point, most at once: their count is known. Units as in mud_registry; from and to have the n
    !> numbers of statev_size, and what is behind them stays.

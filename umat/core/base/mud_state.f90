@@ -11,7 +11,7 @@ module mud_state
       S_ELASTIC_DOMAIN, S_GAP, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED, S_TURNS, S_N_CLEARED, S_TURN, MAX_TURNS, S_CHI, &
       S_CHI_OWN, S_CHI_STACK, S_MARGIN, S_FLUIDITY
    use mud_status, only: mud_status_t, fail, MUD_BAD_STATE, MUD_BAD_NSTATV, ON_STATEV
-   use mud_tensor, only: is_finite, all_finite
+   use mud_tensor, only: is_finite, all_finite, all_zero
    implicit none (type, external)
    private
    public :: memory_t, interrupted_t, turns_t, state_t, counters_t, guard_count, pack_state, unpack_state, &
@@ -102,14 +102,20 @@ contains
       type(options_t), intent(in) :: options
       type(state_t), intent(inout) :: state
       type(mud_status_t), intent(out) :: status
-      integer :: i
+      integer :: i, used
+      logical :: finite
 
       if (size(statev) < statev_size(options)) then
          status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(size(statev), wp), real(statev_size(options), wp), &
                        huge(1.0_wp))
          return
       end if
-      if (.not. all_finite(statev(1:NSTATV_WITHOUT_HYSTERESIS))) then
+      used = S_STACK - 1 + ENTRY_SIZE*stored_processes(statev)
+      finite = all_finite(statev(1:used))
+      ! beyond the interrupted processes there are zeros
+      if (finite .and. .not. all_zero(statev(used + 1:NSTATV_WITHOUT_HYSTERESIS))) &
+         finite = all_finite(statev(used + 1:NSTATV_WITHOUT_HYSTERESIS))
+      if (.not. finite) then
          i = findloc(is_finite(statev(1:NSTATV_WITHOUT_HYSTERESIS)), .false., dim=1)
          status = fail(MUD_BAD_STATE, ON_STATEV, i, statev(i), -huge(1.0_wp), huge(1.0_wp))
          return
@@ -126,13 +132,11 @@ contains
       call require(statev, S_TARGET, -LARGEST_RATIO, LARGEST_RATIO, status)
       call require(statev, S_X_BEFORE, -LARGEST_RATIO, LARGEST_RATIO, status)
       call require(statev, S_X_RUNNING, -LARGEST_RATIO, LARGEST_RATIO, status)
-      do i = 0, 5
-         call require(statev, S_FABRIC + i, -LARGEST_FABRIC, LARGEST_FABRIC, status)
-         call require(statev, S_MEMORY + i, -LARGEST_RATIO, LARGEST_RATIO, status)
-         call require(statev, S_MEMORY_BEFORE + i, -LARGEST_RATIO, LARGEST_RATIO, status)
-         call require(statev, S_DIRECTION + i, -LARGEST_DIRECTION, LARGEST_DIRECTION, status)
-         call require(statev, S_ELASTIC_DOMAIN + i, -LARGEST_FROM_CENTRE, LARGEST_FROM_CENTRE, status)
-      end do
+      call require_tensor(statev, S_FABRIC, LARGEST_FABRIC, status)
+      call require_tensor(statev, S_MEMORY, LARGEST_RATIO, status)
+      call require_tensor(statev, S_MEMORY_BEFORE, LARGEST_RATIO, status)
+      call require_tensor(statev, S_DIRECTION, LARGEST_DIRECTION, status)
+      call require_tensor(statev, S_ELASTIC_DOMAIN, LARGEST_FROM_CENTRE, status)
       if (status%code /= 0) return
       call unpack_stack(statev, state%memory, status)
       if (options%hysteresis) call unpack_turns(statev, state%turns, status)
@@ -164,18 +168,16 @@ contains
 
    !> Reads the interrupted processes; places beyond their number are not looked at.
    pure subroutine unpack_stack(statev, memory, status)
-      real(wp), intent(in) :: statev(:)
+      real(wp), intent(in), contiguous :: statev(:)
       type(memory_t), intent(inout) :: memory
       type(mud_status_t), intent(inout) :: status
-      integer :: k, i, first
+      integer :: k, first
 
-      memory%depth = nint(statev(S_INTERRUPTED))
+      memory%depth = stored_processes(statev)
       do k = 1, memory%depth
          first = S_STACK + ENTRY_SIZE*(k - 1)
-         do i = 0, 5
-            call require(statev, first + i, -LARGEST_RATIO, LARGEST_RATIO, status)
-            call require(statev, first + 6 + i, -LARGEST_DIRECTION, LARGEST_DIRECTION, status)
-         end do
+         call require_tensor(statev, first, LARGEST_RATIO, status)
+         call require_tensor(statev, first + 6, LARGEST_DIRECTION, status)
          call require(statev, first + 12, -LARGEST_RATIO, LARGEST_RATIO, status)
          memory%interrupted(k)%r_in = statev(first:first + 5)
          memory%interrupted(k)%direction = statev(first + 6:first + 11)
@@ -281,6 +283,35 @@ contains
       if (statev(entry) >= lower .and. statev(entry) <= upper) return   ! and never where it is not a number
       status = fail(MUD_BAD_STATE, ON_STATEV, entry, statev(entry), lower, upper)
    end subroutine require
+
+   !> The same of the six components of a tensor that are finite, of magnitude up to a limit.
+   pure subroutine require_tensor(statev, first, limit, status)
+      real(wp), intent(in), contiguous :: statev(:)
+      integer, intent(in) :: first   !< Entry of the first.
+      real(wp), intent(in) :: limit
+      type(mud_status_t), intent(inout) :: status
+      integer :: i
+      logical :: within
+
+      within = .true.
+      do i = first, first + 5
+         within = within .and. abs(statev(i)) <= limit
+      end do
+      if (within) return
+      do i = first, first + 5
+         call require(statev, i, -limit, limit, status)
+      end do
+   end subroutine require_tensor
+
+   !> Number of interrupted processes in STATEV; 0 where that is no such number.
+   pure integer function stored_processes(statev) result(n)
+      real(wp), intent(in) :: statev(:)
+
+      n = 0
+      if (.not. is_finite(statev(S_INTERRUPTED))) return
+      if (statev(S_INTERRUPTED) > 0.0_wp .and. statev(S_INTERRUPTED) <= real(MAX_INTERRUPTED, wp)) &
+         n = nint(statev(S_INTERRUPTED))
+   end function stored_processes
 
    !> Writes a state and the sums of the counters to STATEV; the tangent outputs are the caller's. statev(:) has at
    !> least the numbers of statev_size, which is not checked; units as in mud_registry, tensors with the sign of the

@@ -6,9 +6,9 @@ module mud_tensor
    use mud_kinds, only: wp
    implicit none (type, external)
    private
-   public :: IDENTITY, SHEAR_WEIGHT, ddot, trace, deviator, norm, square, is_finite, all_finite, outer_add, rotate, &
-             LANES, contractions, tensors_t, contracted, traces, ZERO_TENSORS, UNIT_STRAINS, ANY_TENSORS, &
-             strain_directions
+   public :: IDENTITY, SHEAR_WEIGHT, ddot, trace, deviator, norm, square, is_finite, all_finite, all_zero, outer_add, &
+             outer_sum, rotate, LANES, contractions, tensors_t, contracted, traces, ZERO_TENSORS, UNIT_STRAINS, &
+             ANY_TENSORS, strain_directions
 
    !> Directions of a derivative that are worked on side by side: six strains, the suction and an idle one, for an even
    !> number the compiler takes two at a time.
@@ -150,6 +150,19 @@ contains
       all_finite = iand(marks, CARRIED) == 0
    end function all_finite
 
+   !> True if every number is +0, without a branch for each. x(:) of any size; true of none.
+   pure logical function all_zero(x)
+      real(wp), intent(in), contiguous :: x(:)
+      integer(int64) :: marks
+      integer :: i
+
+      marks = 0
+      do i = 1, size(x)
+         marks = ior(marks, transfer(x(i), 0_int64))
+      end do
+      all_zero = marks == 0
+   end function all_zero
+
    !> c <- c + a (x) b for a map from ENGINEERING strain to stress: the factor two of b:eps and the one of
    !> gamma = 2 eps cancel, so plain products of components are right. c is in the unit of a times that of b.
    pure subroutine outer_add(a, b, c)
@@ -161,6 +174,17 @@ contains
          c(:, j) = c(:, j) + a*b(j)
       end do
    end subroutine outer_add
+
+   !> c = a (x) b + d (x) e, of the same kind. c is in the unit of a times that of b.
+   pure subroutine outer_sum(a, b, d, e, c)
+      real(wp), intent(in) :: a(6), b(6), d(6), e(6)
+      real(wp), intent(out) :: c(6, 6)
+      integer :: j
+
+      do j = 1, 6
+         c(:, j) = a*b(j) + d*e(j)
+      end do
+   end subroutine outer_sum
 
    !> R a R^T for a rotation matrix R(3,3). b is in the unit of a; that r is a rotation is not checked.
    pure function rotate(a, r) result(b)

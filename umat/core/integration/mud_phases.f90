@@ -22,7 +22,7 @@ module mud_phases
    type :: cut_t
       integer :: kind    !< CUT_*: what moves it.
       real(wp) :: time   !< Pseudo-time [-].
-      logical :: turns = .false.   !< x turns there.
+      logical :: turns   !< x turns there.
    end type cut_t
 contains
    !> Integrates an increment that is not zero. On return it%inc is in the phase that ended it, and with hysteresis
@@ -69,14 +69,14 @@ contains
       integer :: i, k
 
       n = 1
-      cuts(1) = cut_t(CUT_END, 1.0_wp)
-      if (inc%rho > 0.0_wp) call insert(cut_t(CUT_EXIT, inc%exit), cuts, n)
-      if (passes_zero(par, inc)) call insert(cut_t(CUT_NO_SUCTION, -inc%p_c0/inc%d_pc), cuts, n)
+      cuts(1) = cut_t(CUT_END, 1.0_wp, turns=.false.)
+      if (inc%rho > 0.0_wp) call insert(cut_t(CUT_EXIT, inc%exit, turns=.false.), cuts, n)
+      if (passes_zero(par, inc)) call insert(cut_t(CUT_NO_SUCTION, -inc%p_c0/inc%d_pc, turns=.false.), cuts, n)
       if (.not. par%hysteresis) return
       if (course%turn < 1.0_wp) call insert(cut_t(CUT_TURN, course%turn, turns=.true.), cuts, n)
       call list_kinks(inc, course, times, k)
       do i = 1, k
-         call insert(cut_t(CUT_KINK, times(i)), cuts, n)
+         call insert(cut_t(CUT_KINK, times(i), turns=.false.), cuts, n)
       end do
    end subroutine list_cuts
 

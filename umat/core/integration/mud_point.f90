@@ -14,9 +14,8 @@ module mud_point
    use mud_params, only: params_t
    use mud_phases, only: integrate_phases
    use mud_start, only: finish_state, has_tension
-   use mud_state, only: state_t, counters_t, E_LOWER, E_UPPER, E_OPEN
-   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO
-   use mud_trace, only: trace_t
+   use mud_state, only: E_LOWER, E_UPPER, E_OPEN
+   use mud_status, only: fail, MUD_OK, MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO
    implicit none (type, external)
    private
    public :: update_point, TANGENT_NONE, TANGENT_ELASTIC, TANGENT_CONTINUUM, TANGENT_CONSISTENT
@@ -24,43 +23,32 @@ module mud_point
    integer, parameter :: TANGENT_NONE = 0, TANGENT_ELASTIC = 1, TANGENT_CONTINUUM = 2, TANGENT_CONSISTENT = 3
 
 contains
-   !> Integrates d_strain and d_pc. On failure state1 and blocks are undefined and state0 is what it was. MUD_BAD_INPUT,
-   !> MUD_INCREMENT_TOO_LARGE and MUD_VOID_RATIO_LIMIT refuse the increment beforehand, MUD_TOO_MANY_SUBSTEPS,
-   !> MUD_MINIMUM_STEP, MUD_NOT_FINITE and MUD_NO_DIRECTION end it. docs/theory/integration.md section 1.
-   pure subroutine update_point(par, state0, d_strain, d_pc, tangent, state1, blocks, counters, reached, status, &
-                                record)
+   !> Integrates d_strain and d_pc from it%state, which is then at the end; counters and reached are of the update.
+   !> it%traced, it%trace: the record that is wanted. On failure, it%status, state and blocks are undefined.
+   !> MUD_BAD_INPUT, MUD_INCREMENT_TOO_LARGE and MUD_VOID_RATIO_LIMIT refuse the increment beforehand,
+   !> MUD_TOO_MANY_SUBSTEPS, MUD_MINIMUM_STEP, MUD_NOT_FINITE and MUD_NO_DIRECTION end it. docs/theory/integration.md
+   !> section 1.
+   pure subroutine update_point(par, d_strain, d_pc, tangent, it, blocks)
       type(params_t), intent(in) :: par
-      type(state_t), intent(in) :: state0
       real(wp), intent(in) :: d_strain(6)         !< tensor shear, compression positive [-]
       real(wp), intent(in) :: d_pc                !< [kPa]
       integer, intent(in) :: tangent              !< TANGENT_*
-      type(state_t), intent(inout) :: state1
+      type(integration_t), intent(inout) :: it    !< new but for its state and what is to be traced
       type(blocks_t), intent(inout) :: blocks     !< untouched for TANGENT_NONE, but for the S_w blocks
-      type(counters_t), intent(inout) :: counters
-      real(wp), intent(out) :: reached            !< share of the increment integrated [-]
-      type(mud_status_t), intent(out) :: status
-      type(trace_t), intent(inout), optional :: record
-      type(integration_t) :: it
       type(course_t) :: course
-      real(wp) :: with_turn(2), e, largest
+      real(wp) :: with_turn(2), e, largest, p_c
 
-      reached = 0.0_wp
-      call check_increment(par, state0, d_strain, d_pc, status)
-      if (status%code /= MUD_OK) return
-      call new_increment(par, state0%e, state0%p_c, state0%from_centre, d_strain, d_pc, it%inc)
-      largest = merge(E_OPEN, E_UPPER, state0%gap > 0.0_wp)
+      call check_increment(par, it%state, d_strain, d_pc, it%status)
+      if (it%status%code /= MUD_OK) return
+      call new_increment(par, it%state%e, it%state%p_c, it%state%from_centre, d_strain, d_pc, it%inc)
+      largest = merge(E_OPEN, E_UPPER, it%state%gap > 0.0_wp)
       e = void_ratio_at(it%inc, 1.0_wp)
       if (e <= E_LOWER .or. e >= largest) then
-         status = fail(MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO, 0, e, E_LOWER, largest)
+         it%status = fail(MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO, 0, e, E_LOWER, largest)
          return
       end if
 
-      it%state = state0
-      it%counters = counters
-      if (present(record)) then
-         it%traced = .true.
-         it%trace = record
-      end if
+      p_c = it%state%p_c + d_pc
       if (par%hysteresis) then
          call begin_course(par, it%inc, it%state, it%counters, course)
          call begin(course%branch, tangent, it)
@@ -68,14 +56,10 @@ contains
          call begin(par, tangent, it)
       end if
       if (it%size > 0.0_wp) call integrate_phases(par, course, it)
-      counters = it%counters
-      reached = it%reached
-      status = it%status
-      if (present(record)) record = it%trace
-      if (status%code /= MUD_OK) return
-      reached = 1.0_wp
+      if (it%status%code /= MUD_OK) return
+      it%reached = 1.0_wp
       it%state%e = e
-      it%state%p_c = state0%p_c + d_pc
+      it%state%p_c = p_c
       if (par%hysteresis) then
          call end_course(it%inc, course, it%state, with_turn)
          call finish_state(course%branch, it%state, blocks)
@@ -86,8 +70,7 @@ contains
          call finish_state(par, it%state, blocks)
          call fill_blocks(par, tangent, it, blocks)
       end if
-      state1 = it%state
-      if (has_tension(state1%sigma)) counters%tensile = 1
+      if (has_tension(it%state%sigma)) it%counters%tensile = 1
    end subroutine update_point
 
    !> A stress below its limit is lifted; nothing is integrated yet.

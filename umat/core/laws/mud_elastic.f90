@@ -5,8 +5,8 @@ module mud_elastic
    use mud_params, only: params_t
    implicit none (type, external)
    private
-   public :: bulk_modulus, bulk_slope, shear_modulus, shear_slope, swelling_slope, elastic_tangent, BULK_EXPONENT, &
-             SHEAR_EXPONENT, STIFF_ABOVE
+   public :: bulk_modulus, bulk_slope, shear_modulus, shear_slope, swelling_slope, elastic_tangent, add_elastic, &
+             BULK_EXPONENT, SHEAR_EXPONENT, STIFF_ABOVE
 
    real(wp), parameter :: BULK_EXPONENT = 2.0_wp/3.0_wp, SHEAR_EXPONENT = 0.5_wp   !< Of p' in K and in G [-].
    real(wp), parameter :: STIFF_ABOVE = 2.97_wp   !< Void ratio of eq. (3) at which G vanishes [-].
@@ -57,13 +57,23 @@ contains
    pure function elastic_tangent(k, g) result(c)
       real(wp), intent(in) :: k, g
       real(wp) :: c(6, 6)
-      integer :: i
 
       c = 0.0_wp
-      c(1:3, 1:3) = k - 2.0_wp/3.0_wp*g
-      do i = 1, 3
-         c(i, i) = c(i, i) + 2.0_wp*g
-         c(i + 3, i + 3) = g
-      end do
+      call add_elastic(k, g, c)
    end function elastic_tangent
+
+   !> The same, added to c [kPa].
+   pure subroutine add_elastic(k, g, c)
+      real(wp), intent(in) :: k, g
+      real(wp), intent(inout) :: c(6, 6)
+      real(wp) :: normal(3, 3)
+      integer :: i
+
+      normal = k - 2.0_wp/3.0_wp*g
+      do i = 1, 3
+         normal(i, i) = normal(i, i) + 2.0_wp*g
+         c(i + 3, i + 3) = c(i + 3, i + 3) + g
+      end do
+      c(1:3, 1:3) = c(1:3, 1:3) + normal
+   end subroutine add_elastic
 end module mud_elastic

@@ -4,11 +4,11 @@
 !> mud_sensitivity would.
 module mud_tangent
    use mud_direction_equation, only: turn_t, find_turn
-   use mud_elastic, only: elastic_tangent
+   use mud_elastic, only: add_elastic
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_rate, only: rate_t
-   use mud_tensor, only: IDENTITY, ddot, outer_add
+   use mud_tensor, only: IDENTITY, ddot, outer_sum
    implicit none (type, external)
    private
    public :: continuum_tangent
@@ -24,10 +24,10 @@ contains
       real(wp), dimension(6) :: beta_n, f_y, f_a, f_b, f_l, f_d, along_n, along_r, on_p
       real(wp) :: m(3, 3), drag, on_p_pc, b_pc
       type(turn_t) :: turn
+      integer :: j
 
       b_pc = 0.0_wp
       if (w%iso_active) b_pc = w%iso%b
-      c = 0.0_wp
       c_pc = 0.0_wp
       on_p = w%k_e*IDENTITY
       on_p_pc = -w%k_e*b_pc
@@ -45,15 +45,18 @@ contains
          along_n = -2.0_wp*w%g*(f_l + (w%l/w%y)*f_y - (w%l/w%gamma)*f_a)
          along_r = -2.0_wp*w%g*(w%l/w%gamma)*(f_b - (w%beta/w%y)*f_y)
          ! r also carries d p' through dt = 2G d e_dev - r K_e (d eps_v - dB)
-         call outer_add(w%n, on_strain(along_n), c)
-         call outer_add(w%r, on_strain(along_r) + (2.0_wp*w%g*drag*w%k_e)*IDENTITY, c)
+         call outer_sum(w%n, on_strain(along_n), w%r, on_strain(along_r) + (2.0_wp*w%g*drag*w%k_e)*IDENTITY, c)
          c_pc = w%n*on_suction(along_n) + w%r*(on_suction(along_r) - 2.0_wp*w%g*drag*w%k_e*b_pc)
          f_l = -w%k_e*(w%d*f_l + w%l*f_d)
          on_p = on_p + on_strain(f_l)
          on_p_pc = on_p_pc + on_suction(f_l)
+      else
+         c = 0.0_wp
       end if
-      c = c + elastic_tangent(0.0_wp, w%g*(1.0_wp - 2.0_wp*w%g*drag))
-      call outer_add(IDENTITY, on_p, c)
+      call add_elastic(0.0_wp, w%g*(1.0_wp - 2.0_wp*w%g*drag), c)
+      do j = 1, 6
+         c(1:3, j) = c(1:3, j) + on_p(j)
+      end do
       c_pc = c_pc + IDENTITY*on_p_pc
    contains
       !> gradient:dn as a functional of dt; its place among the contractions of turn.
