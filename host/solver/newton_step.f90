@@ -21,7 +21,7 @@ module newton_step
                             T_REST, T_MATERIAL, T_CONTACT
    use porous_domain, only: domain_t, state_t
    use prescribed_values, only: constraint_t, constrain, loads_of_water
-   use stress_tolerance, only: follow_newton, roughness, is_tight
+   use stress_tolerance, only: follow_newton, is_tight
    use sparse_factors, only: analyse, factorise, SOLVED, SINGULAR
    use sparsity_pattern, only: pattern_t, place_of
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_C
@@ -57,13 +57,14 @@ contains
       real(wp) :: norm, norm_0, begun, t0   !< begun: the norm that a reduction is a share of.
       real(wp) :: before(FIELDS)            !< Norms of the residual that the last correction answered.
       integer :: status
-      logical :: with_tangent, guessed, turned, rough, again
+      logical :: with_tangent, guessed, turned, rough
 
       t0 = clock()
       allocate (rhs(dofs%n), dx(dofs%n))
       new%time = old%time + scheme%dt
       call begin_passes(scheme, constraint, control, assembly)
       ! Laws that change over the step are its own.
+      call follow_newton(control%tolerance, domain%regions)
       rough = is_tight(domain%regions) .and. .not. allocated(new%laws)
       if (rough) call follow_error(merge(system%first_error, huge(1.0_wp), assembly%source == BY_SLOPES))
       call follow_friction(system%contacts, fresh=.true.)
@@ -104,13 +105,14 @@ contains
             log%reduction = norm/max(begun, tiny(1.0_wp))
             ! What turned to the other side of its limit, a pressure or a sliding node, has not been solved for yet.
             if (.not. turned) then
-               call note_stagnation(control, log)
-               if (rough) then
-                  call look_closer(again)
-                  if (again) cycle
-               else if (good_enough(control, log) .or. log%stagnated) then
-                  exit
+               if (good_enough(control, log)) then
+                  if (.not. rough) exit
+                  call follow_error(0.0_wp)   ! It is looked at again, with stresses as the step asks for.
+                  cycle
                end if
+               call note_stagnation(control, log)
+               if (log%stagnated) exit
+               if (rough) call follow_error(merge(0.0_wp, maxval(log%error), log%since_best > 0))
             end if
             if (log%iterations >= control%max_iterations .or. is_in_vain(log) .or. &
                 .not. all(log%error < HOPELESS)) then
@@ -179,17 +181,6 @@ contains
          rough = error > control%tolerance/STRESS_SHARE
          call follow_newton(merge(STRESS_SHARE*min(error, 1.0_wp), control%tolerance, rough), domain%regions)
       end subroutine follow_error
-
-      !> After a pass that was not integrated as the step asks for. `again`: it is, and the error is looked at again.
-      subroutine look_closer(again)
-         logical, intent(out) :: again
-
-         again = good_enough(control, log)
-         call follow_error(merge(0.0_wp, maxval(log%error), again .or. log%since_best > 0))
-         if (rough) return
-         log%stagnated = .false.
-         log%since_best = 0
-      end subroutine look_closer
 
       !> Residual, with minus sign in rhs, and slopes; false if the material refuses.
       logical function pass(slopes)
