@@ -85,7 +85,7 @@ def test_scripts_write_where_made_files_belong():
 def test_a_night_goes_on_after_an_interruption(monkeypatch, capsys):
     made, output = [], work / "interrupted"
 
-    def make(name, build, output, update, only, arguments):
+    def make(name, build, output, update, only, arguments, log):
         if only == ["third.py"] and made.count("third.py") == 0:
             made.append("third.py")
             raise KeyboardInterrupt

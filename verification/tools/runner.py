@@ -19,12 +19,14 @@ into the source tree but with
 """
 import argparse
 import concurrent.futures
+import contextlib
 import importlib.util
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
+import threading
 import time
 import traceback
 from dataclasses import dataclass, field
@@ -45,7 +47,8 @@ SAME = Tolerance("generated from the committed files")
 
 
 AGES = HERE / "made.csv"   # script,core: with which core a script last made its data
-NIGHT = 3*3600.0           # s, of the scripts and the pages that --all --make runs
+NIGHT = 3*3600.0           # s of one core, of the scripts and the pages that --all --make runs
+ONE = threading.Lock()     # Held where pages that are made side by side would meet: loading, and what is written down.
 
 
 @dataclass
@@ -89,6 +92,12 @@ def load(name):
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+def scripts_of(name):
+    """What made committed files of a page."""
+    with ONE:
+        return getattr(load(name), "MAKES", ())
 
 
 def declared():
@@ -184,10 +193,11 @@ def update_page(outcome, output):
 
 # ---- --make
 
-def make(name, build, output, update, only, arguments):
-    """Runs the scripts of a page in its folder of the output; True if all ended well."""
+def make(name, build, output, update, only, arguments, log=False):
+    """Runs the scripts of a page in its folder of the output; True if all ended well. log: what a script prints goes
+    to SCRIPT.log there, as beside others."""
     good = True
-    for script in getattr(load(name), "MAKES", ()):
+    for script in scripts_of(name):
         if only and script.name not in only:
             continue
         print(f"{name}: {script.name}, about {script.seconds:g} s" + (f", needs {script.needs}" if script.needs
@@ -199,27 +209,38 @@ def make(name, build, output, update, only, arguments):
         results = output / name / "made"
         results.mkdir(parents=True, exist_ok=True)
         start = time.monotonic()
-        code = subprocess.run([sys.executable, HERE / name / script.name, *arguments], cwd=results,
-                              env={**os.environ, "MUD_BUILD_DIR": str(build), "MUD_VERIFICATION_OUTPUT": str(results),
-                                   "PYTHONPATH": os.pathsep.join(filter(None, (str(HERE), os.environ.get("PYTHONPATH"))))
-                                   }).returncode
-        print(f"   {script.name}: {time.monotonic() - start:.0f} s", flush=True)
+        with open(results / f"{script.name}.log", "w", encoding="utf-8") if log else contextlib.nullcontext() as file:
+            code = subprocess.run([sys.executable, HERE / name / script.name, *arguments], cwd=results, stdout=file,
+                                  stderr=file, env={**os.environ, "MUD_BUILD_DIR": str(build),
+                                                    "MUD_VERIFICATION_OUTPUT": str(results), "PYTHONPATH":
+                                                    os.pathsep.join(filter(None, (str(HERE),
+                                                                                  os.environ.get("PYTHONPATH"))))
+                                                    }).returncode
+        said = [f"{name}: {script.name} took {time.monotonic() - start:.0f} s"]
         good = good and code == 0
         if code:
-            print(f"   FAILED {script.name}: exit code {code}")
-            continue
-        if update:
-            note_age(name, script)
-        for pattern in script.files:
-            for made in sorted(results.glob(pattern)):
-                file = made.relative_to(results)
-                kept = HERE / name / file
-                same = kept.exists() and kept.read_bytes() == made.read_bytes()
-                print(f"   {'same   ' if same else 'changed'} {file}")
-                if update and not same:
-                    kept.parent.mkdir(parents=True, exist_ok=True)
-                    shutil.copyfile(made, kept)
+            said.append(f"   FAILED {script.name}: exit code {code}" + (f", see {file.name}" if log else ""))
+        else:
+            said += take(name, script, results, update)
+        print("\n".join(said), flush=True)
     return good
+
+
+def take(name, script, results, update):
+    """Says which files of a script have changed; with update they go into the tree."""
+    said = []
+    if update:
+        note_age(name, script)
+    for pattern in script.files:
+        for made in sorted(results.glob(pattern)):
+            file = made.relative_to(results)
+            kept = HERE / name / file
+            same = kept.exists() and kept.read_bytes() == made.read_bytes()
+            said.append(f"   {'same   ' if same else 'changed'} {file}")
+            if update and not same:
+                kept.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(made, kept)
+    return said
 
 
 def missing(script):
@@ -241,21 +262,22 @@ def ages():
 
 
 def note_age(name, script):
-    made = {**ages(), f"{name}/{script.name}": core()}
-    AGES.write_text("script,core\n" + "".join(f"{key},{made[key]}\n" for key in sorted(made)), encoding="utf-8")
+    with ONE:
+        made = {**ages(), f"{name}/{script.name}": core()}
+        AGES.write_text("script,core\n" + "".join(f"{key},{made[key]}\n" for key in sorted(made)), encoding="utf-8")
 
 
 def older(name):
     """Scripts of a page whose committed data were made with another core, or it is not known with which."""
     known, now = ages(), core()
-    return [script.name for script in getattr(load(name), "MAKES", ()) if not now
+    return [script.name for script in scripts_of(name) if not now
             or known.get(f"{name}/{script.name}") != now]
 
 
 def in_a_night(chosen):
     """{page: scripts} that fit into a night beside the pages: the cheap pages first, the scripts of a page in their
     order, for one may read what another made. What does not fit, or cannot run here, is said."""
-    makes = {name: getattr(load(name), "MAKES", ()) for name in chosen}
+    makes = {name: scripts_of(name) for name in chosen}
     taken, spent = {}, sum(load(name).PAGE.seconds for name in chosen)   # the pages run afterwards
     for name in sorted(makes, key=lambda name: sum(script.seconds for script in makes[name])):
         for script in makes[name]:
@@ -270,19 +292,37 @@ def in_a_night(chosen):
     return taken
 
 
-def make_night(taken, build, output, update):
-    """Makes {page: scripts} in their order; True for every script that ended well. OUTPUT/night.csv keeps which did,
-    and with which core: a night that goes on after an interruption leaves them out. Who ends the night removes it."""
-    kept, now, good = output / "night.csv", core(), []
+def make_night(taken, build, output, update, jobs=1):
+    """Makes {page: scripts}, of each page in their order, jobs pages at the same time (then the dear ones first); True
+    for every script that ended well. OUTPUT/night.csv keeps which did, and with which core: a night that goes on after
+    an interruption leaves them out. Who ends the night removes it."""
+    kept, now = output / "night.csv", core()
     before = {row["script"] for row in tables.rows(kept) if now and row["core"] == now} if kept.exists() else set()
-    for key, name, script in ((f"{name}/{script}", name, script) for name in taken for script in taken[name]):
-        if key in before:
-            print(f"{key}: made before the interruption", flush=True)
-        good.append(key in before or make(name, build, output, update, [script], []))
-        if good[-1] and key not in before:
-            with open(kept, "a", encoding="utf-8") as file:
-                file.write(f"{key},{now}\n" if file.tell() else f"script,core\n{key},{now}\n")
-    return good
+
+    stopped = threading.Event()
+
+    def page(name):
+        good = []
+        for script in taken[name]:
+            key = f"{name}/{script}"
+            if stopped.is_set():
+                break
+            if key in before:
+                print(f"{key}: made before the interruption", flush=True)
+            good.append(key in before or make(name, build, output, update, [script], [], jobs > 1))
+            if good[-1] and key not in before and not stopped.is_set():
+                with ONE, open(kept, "a", encoding="utf-8") as file:
+                    file.write(f"{key},{now}\n" if file.tell() else f"script,core\n{key},{now}\n")
+        return good
+
+    if jobs == 1:
+        return [good for name in taken for good in page(name)]
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        try:
+            return [good for some in pool.map(page, list(taken)[::-1]) for good in some]
+        except BaseException:
+            stopped.set()   # The scripts that run end, or the keyboard ends them too; no other begins.
+            raise
 
 
 def chosen_of(words, parser):
@@ -309,7 +349,7 @@ def main():
     parser.add_argument("--only", nargs="+", metavar="SCRIPT", help="with --make: only these scripts")
     parser.add_argument("--pass", nargs=argparse.REMAINDER, default=[], dest="arguments", metavar="ARGUMENT",
                         help="with --make: everything behind this goes to the scripts (series.py --help)")
-    parser.add_argument("-j", type=int, default=1, metavar="N", help="pages at the same time (1)")
+    parser.add_argument("-j", type=int, default=1, metavar="N", help="pages at the same time, with --all --make their scripts too (1)")
     parser.add_argument("--build", type=pathlib.Path, default=os.environ.get("MUD_BUILD_DIR") or ROOT / "build/release",
                         help="build folder with the programs (build/release)")
     parser.add_argument("--output", type=pathlib.Path, default=ROOT / "build/verification",
@@ -334,7 +374,7 @@ def main():
         return 0
     if options.all and options.make:
         taken = in_a_night(chosen)
-        good = make_night(taken, build, output, options.update)
+        good = make_night(taken, build, output, options.update, options.j)
         print(f"{good.count(True)} scripts ended well, {good.count(False)} failed", flush=True)
     elif options.make:
         good = [make(name, build, output, options.update, options.only, options.arguments) for name in chosen]

@@ -87,6 +87,8 @@ def scene(suction, fields, series, adapt=None, steps=STEPS):
         # Hydrostatic; nothing presses the grains of the surface together but a stated surcharge.
         water.update(p_w_slope=f"{-0.997 * 9.81:.8g}", surcharge=SURCHARGE)
         groups.append(("load", dict(group="'top'", kind="'pressure'", value=str(SURCHARGE))))
+        # Sand that is about to flow: with the continuum tangent the published rules need five times the rates to sit.
+        change(groups, "mud", tangent=None)
         if fields == "u-p_w":
             del water["p_c"]
             groups = [g for g in groups if g[1].get("field") != "'p_c'"]
