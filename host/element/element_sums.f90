@@ -12,7 +12,6 @@ module element_sums
 
    integer, parameter :: NODES = 6
    integer, parameter :: U_R = 1, U_Z = 2, WATER = 3, SUCTION = 4   !< Fields of an element.
-   integer, parameter :: BOTH = 8         !< Places before the fluxes: gradients of pressure change none of them.
    integer, parameter :: FORCES = U + 2   !< Places of stress and force, before those of the fluids.
    integer, parameter :: LAST_U = 2*NODES
 
@@ -84,7 +83,8 @@ contains
       r(:, SUCTION) = r(:, SUCTION) + (b%m*response(PC) + b%dm_r*response(GA + 1) + b%dm_z*response(GA + 2))
    end subroutine add_balances
 
-   !> k = k + weight B^T tangent B. A gradient of pressure changes the fluxes alone (docs/theory/host.md section 3.3).
+   !> k = k + weight B^T tangent B. Of the strain a force per volume and the balances know the change of volume alone, and
+   !> a gradient of pressure changes the fluxes alone (docs/theory/host.md section 3.3): nothing is spent on the rest.
    pure subroutine add_tangent(gp, b, fields, tangent, k)
       type(gauss_t), intent(in) :: gp
       type(rows_t), intent(in) :: b
@@ -94,39 +94,46 @@ contains
       real(wp) :: part(PLACES)
       integer :: j
 
-      if (fields < WATER) then
-         call add_tangent_of_skeleton(gp, b, tangent(:FORCES, :FORCES), k)
-         return
-      end if
       do j = 1, NODES
-         part = gp%dn(j, 1)*tangent(:, RR) + gp%n_over_r(j)*tangent(:, TT) + gp%dn(j, 2)*tangent(:, RZ) &
-                + gp%n(j)*tangent(:, U + 1)
-         call add_response(b, fields, part, k(:, :, j, U_R))
-         part = gp%dn(j, 2)*tangent(:, ZZ) + gp%dn(j, 1)*tangent(:, RZ) + gp%n(j)*tangent(:, U + 2)
-         call add_response(b, fields, part, k(:, :, j, U_Z))
+         part(RR:RZ) = gp%dn(j, 1)*tangent(RR:RZ, RR) + gp%n_over_r(j)*tangent(RR:RZ, TT) &
+                       + gp%dn(j, 2)*tangent(RR:RZ, RZ)
+         part(U + 1:FORCES) = (gp%dn(j, 1) + gp%n_over_r(j))*tangent(U + 1:FORCES, RR) &
+                              + gp%n(j)*tangent(U + 1:FORCES, U + 1)
+         call add_forces(b, part, k(:, :, j, U_R))
+         part(RR:RZ) = gp%dn(j, 2)*tangent(RR:RZ, ZZ) + gp%dn(j, 1)*tangent(RR:RZ, RZ)
+         part(U + 1:FORCES) = gp%dn(j, 2)*tangent(U + 1:FORCES, RR) + gp%n(j)*tangent(U + 1:FORCES, U + 2)
+         call add_forces(b, part, k(:, :, j, U_Z))
       end do
+      if (fields < WATER) return
+      call add_balances_of_displacements(gp, b, fields, tangent, k)
       call add_tangent_of_pressure(gp, b, fields, PW, GW, tangent, k(:, :, :, WATER))
       if (fields >= SUCTION) call add_tangent_of_pressure(gp, b, fields, PC, GA, tangent, k(:, :, :, SUCTION))
    end subroutine add_tangent
 
-   !> The same without pressures: nothing is spent on their places.
-   pure subroutine add_tangent_of_skeleton(gp, b, tangent, k)
+   !> The rows of the pressures in the columns of the displacements: by the change of volume, and by the acceleration
+   !> where it drives seepage. What these do to the balances is the same at every node.
+   pure subroutine add_balances_of_displacements(gp, b, fields, tangent, k)
       type(gauss_t), intent(in) :: gp
       type(rows_t), intent(in) :: b
-      real(wp), intent(in) :: tangent(FORCES, FORCES)
+      integer, intent(in) :: fields
+      real(wp), intent(in) :: tangent(PLACES, PLACES)
       real(wp), intent(inout) :: k(NODES, 4, NODES, 4)
-      real(wp) :: part(PLACES)
-      integer :: j
+      real(wp), dimension(NODES, 4) :: volume, accel_r, accel_z
+      integer :: j, f
 
-      part = 0.0_wp
+      volume = 0.0_wp
+      accel_r = 0.0_wp
+      accel_z = 0.0_wp
+      call add_balances(b, fields, tangent(:, RR), volume)
+      call add_balances(b, fields, tangent(:, U + 1), accel_r)
+      call add_balances(b, fields, tangent(:, U + 2), accel_z)
       do j = 1, NODES
-         part(:FORCES) = gp%dn(j, 1)*tangent(:, RR) + gp%n_over_r(j)*tangent(:, TT) + gp%dn(j, 2)*tangent(:, RZ) &
-                         + gp%n(j)*tangent(:, U + 1)
-         call add_forces(b, part, k(:, :, j, U_R))
-         part(:FORCES) = gp%dn(j, 2)*tangent(:, ZZ) + gp%dn(j, 1)*tangent(:, RZ) + gp%n(j)*tangent(:, U + 2)
-         call add_forces(b, part, k(:, :, j, U_Z))
+         do f = WATER, fields
+            k(:, f, j, U_R) = k(:, f, j, U_R) + ((gp%dn(j, 1) + gp%n_over_r(j))*volume(:, f) + gp%n(j)*accel_r(:, f))
+            k(:, f, j, U_Z) = k(:, f, j, U_Z) + (gp%dn(j, 2)*volume(:, f) + gp%n(j)*accel_z(:, f))
+         end do
       end do
-   end subroutine add_tangent_of_skeleton
+   end subroutine add_balances_of_displacements
 
    !> The columns of a pressure. Its gradient changes no force: what its value does to them is the same at every node.
    pure subroutine add_tangent_of_pressure(gp, b, fields, value, gradient, tangent, k)
@@ -143,9 +150,9 @@ contains
       do j = 1, NODES
          k(:, U_R, j) = k(:, U_R, j) + gp%m(j)*forces(:, U_R)
          k(:, U_Z, j) = k(:, U_Z, j) + gp%m(j)*forces(:, U_Z)
-         part(:BOTH) = gp%m(j)*tangent(:BOTH, value)
-         part(BOTH + 1:) = gp%m(j)*tangent(BOTH + 1:, value) + gp%dm(j, 1)*tangent(BOTH + 1:, gradient + 1) &
-                           + gp%dm(j, 2)*tangent(BOTH + 1:, gradient + 2)
+         part(PW:PC) = gp%m(j)*tangent(PW:PC, value)
+         part(PC + 1:) = gp%m(j)*tangent(PC + 1:, value) + gp%dm(j, 1)*tangent(PC + 1:, gradient + 1) &
+                         + gp%dm(j, 2)*tangent(PC + 1:, gradient + 2)
          call add_balances(b, fields, part, k(:, :, j))
       end do
    end subroutine add_tangent_of_pressure
