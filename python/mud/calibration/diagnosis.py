@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
+import pathlib
 from collections.abc import Mapping
 
 import numpy as np
@@ -185,7 +186,7 @@ def _sentences(findings: list[Finding], pairs: list[tuple[str, str, float]], tas
             told.append(
                 f"These tests do not determine {name}: a change by 10 % moves the curves by {finding.sensitivity:.3f} "
                 f"standard deviations. It keeps the value {finding.value:.4g} of "
-                f"{'material ' + task.start if task.start else 'the library'}."
+                f"{'material ' + pathlib.Path(task.start).stem if task.start else 'the library'}."
             )
     told += [
         f"{a} and {b} are only determined together (correlation {c:+.3f}): another pair fits equally well."
@@ -266,4 +267,4 @@ def origin_of(name: str, diagnosis: Diagnosis, task: Task) -> str:
         )
     if follows is not None:
         return f"{pinned} of the start kept while {follows} was fitted"
-    return f"of material {task.start}" if task.start else "default of the library"
+    return f"of material {pathlib.Path(task.start).stem}" if task.start else "default of the library"

@@ -46,7 +46,7 @@ class Task:
     items: list[Item]
     title: str = ""
     reference: str = ""  #: where the tests come from
-    start: str | None = None  #: material whose values are the start, and stay where nothing is fitted
+    start: str | pathlib.Path | None = None  #: material whose values are the start, and stay where nothing is fitted
     known: dict[str, float] = dataclasses.field(default_factory=dict)
     groups: list[str] | None = None  #: groups that are fitted; None: those that the tests depend on
     bounds: dict[str, tuple[float, float]] = dataclasses.field(default_factory=dict)  #: in place of the usual ones
@@ -100,6 +100,7 @@ def make_task(
     """A task of tables: each a mapping of ``file`` and ``kind``, and if wanted ``first``, ``last`` (range of the leading
     quantity: strain as a fraction, stress in kPa), ``scatter`` ({"q": [3.0, 0.05]}: kPa or fraction, and share of the value),
     ``branch`` (of retention), ``only`` (names of tests), ``weight`` and ``name`` (of the one test of a table). held_out : names of tests, chosen before the fit.
+    folder : of the files of the tables and, if it is a file, of ``start``.
     """
     items: list[Item] = []
     for table in tables:
@@ -136,6 +137,9 @@ def make_task(
         raise InputError(
             f"two tests are called {double}; rename one of them, because held-out tests are chosen by name"
         )
+    if others.get("start"):
+        file = pathlib.Path(folder) / str(others["start"])
+        others["start"] = file if file.is_file() else others["start"]
     return Task(name=name, items=items, **others)
 
 
