@@ -14,11 +14,13 @@ sys.path[:0] = [str(ROOT / "python"), str(ROOT / "common")]
 import tables  # noqa: E402
 from library import renew  # noqa: E402
 from mud.calibration.misfit import misfit_of  # noqa: E402
-from mud.calibration.simulation import SETTINGS, simulate  # noqa: E402
+from mud.calibration.simulation import SETTINGS, earth_pressure, simulate  # noqa: E402
 from mud.calibration.task import read_task  # noqa: E402
 from mud.calibration.variables import parameters_of  # noqa: E402
+from mud.element_test import Stage, element_test  # noqa: E402
 from mud.material import Material  # noqa: E402
 
+VOID_RATIO = 0.85
 BEGIN, END = "<!-- conflicts -->", "<!-- end conflicts -->"
 HEAD = (
     "set",
@@ -29,12 +31,20 @@ HEAD = (
     "N of TCUI1, 4, 8, 10, 19, 20",
     "G/G_max at 1e-4, 1e-3",
     "damping at 1e-3",
+    "K0 at OCR 1, 2, 8",
 )
 
 
 def rms(values):
     there = [v for v in values if np.isfinite(v)]
     return float(np.sqrt(np.mean(np.square(there))))
+
+
+def unloaded(material):
+    """K0 of a sample of the tests' void ratio at 400 kPa and, unloaded without radial strain, at 200 and 50 kPa."""
+    stages = [Stage("oedometer", sigma_a_end=end, increment=5.0) for end in (400.0, 200.0, 50.0)]
+    run = element_test(material, *stages, sigma_a=50.0, sigma_r=50 * earth_pressure(material), void_ratio=VOID_RATIO)
+    return [run["sigma_r"][i] / run["sigma_a"][i] for i in run.end_of_stages()[1:]]
 
 
 def line(name, material, task):
@@ -65,6 +75,7 @@ def line(name, material, task):
         ", ".join(count),
         f"{modulus[0][0]:.2f}, {modulus[0][1]:.2f}",
         f"{modulus[1]:.2f}",
+        ", ".join(f"{ratio:.2f}" for ratio in unloaded(material)),
     )
 
 
@@ -76,6 +87,8 @@ def table():
         values = {key: float(value) for key, value in row.items()}
         material = Material(**parameters_of({**task.fixed_variables, **values}, task.base))
         lines.append(line(name, material, task))
+    start = Material(ROOT / "calibration" / task.start)
+    lines.append(line("oedometer 1.6, cycles 3, modulus 2.5: the start", start, task))
     lines.append(line("**`karlsruhe_cyclic`**", Material("karlsruhe_cyclic"), task))
     return "\n".join(f"| {' | '.join(cells)} |" for cells in (HEAD, ["---"] * len(HEAD), *lines))
 

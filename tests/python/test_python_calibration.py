@@ -479,3 +479,25 @@ def test_the_page_lists_the_library_of_materials_as_its_files_say():
                 if row[key]:  # recorded with four digits; tolerances of the integration
                     check( f"{name}, {told.name}: {key} is as recorded", abs(
                         float(row[key]) - value) < room, (row[key], value) )
+
+
+def test_a_task_starts_from_a_material_file_beside_it():
+    write = work / "beside"
+    write.mkdir(exist_ok=True)
+    (write / "own_start.nml").write_text("&material name = 'own' K_0 = 77 /\n")
+    task = make_task("k", make_tables("true.csv"), folder=write, start="own_start.nml", known={"M_c": truth["M_c"]})
+    check("its values are the start", task.base["K_0"] == 77.0, task.base["K_0"])
+    check("a name is that of the library", make_task("k", make_tables("true.csv"), folder=write, start="toyoura",
+                                                     known={"M_c": truth["M_c"]}).base["K_0"]
+          == mud.Material("toyoura")["K_0"])
+
+
+def test_lateral_stress_of_the_cyclic_set_rises_on_unloading():
+    from mud.calibration.soundness import unloading
+    from mud.calibration.task import read_task
+    items = [item for item in read_task(root / "calibration/karlsruhe_cyclic.toml").items if item.test.kind == "drained"]
+    told = {name: unloading(mud.Material(name), items, {item.test.name: None for item in items})
+            for name in ("karlsruhe", "karlsruhe_cyclic")}
+    check("K0 rises", not any("K0" in line for line in told["karlsruhe_cyclic"]), told["karlsruhe_cyclic"])
+    check("of the set without a bound on K_0 a warning says that it does not",
+          any("K0 does not rise" in line for line in told["karlsruhe"]), told["karlsruhe"])

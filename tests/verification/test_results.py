@@ -3,6 +3,7 @@
 committed table has a row, all scripts and pages fit into a night, and they leave the tree alone."""
 import subprocess
 import sys
+import threading
 
 import pytest
 from checking import build, check, light, nightly, root, work
@@ -59,6 +60,27 @@ def test_a_night_has_room_for_every_script_and_page(capsys, monkeypatch):
     spent = sum(scripts[name, script].seconds for name, some in taken.items() for script in some) + sum(
         runner.load(name).PAGE.seconds for name in names)
     check("a shorter night takes fewer scripts and all pages", spent <= runner.NIGHT and taken, spent)
+
+
+def test_a_night_makes_pages_side_by_side(monkeypatch):
+    together, begun, output = threading.Barrier(2, timeout=60), [], work / "side_by_side"
+
+    def make(name, build, output, update, only, arguments, log):
+        begun.append(name)
+        if name != "host/cheap":
+            together.wait()
+        return log
+
+    output.mkdir()
+    with monkeypatch.context() as patch:
+        patch.setattr(runner, "make", make)
+        good = runner.make_night({"host/cheap": ["a.py"], "host/dear": ["b.py"], "host/dearest": ["c.py"]}, build,
+                                 output, False, 2)
+    check("two at the same time, what they print apart, the dear ones first",
+          good == [True]*3 and begun[-1] == "host/cheap", (good, begun))
+    made = runner.make("host/patch", build, output, False, ["make_mesh.py"], [], True)
+    check("a log lies beside what a script made", made and (output / "host/patch/make_mesh.py.log").exists()
+          and (output / "host/patch/made/patch.msh").exists(), sorted(output.rglob("*")))
 
 
 @pytest.mark.skipif(light or not nightly, reason="./check --tier nightly runs the scripts that take seconds")
