@@ -195,7 +195,7 @@ def update_page(outcome, output):
 
 def make(name, build, output, update, only, arguments, log=False):
     """Runs the scripts of a page in its folder of the output; True if all ended well. log: what a script prints goes
-    to SCRIPT.log there, as beside others."""
+    to SCRIPT.log of that folder, as beside others."""
     good = True
     for script in scripts_of(name):
         if only and script.name not in only:
@@ -209,7 +209,7 @@ def make(name, build, output, update, only, arguments, log=False):
         results = output / name / "made"
         results.mkdir(parents=True, exist_ok=True)
         start = time.monotonic()
-        with open(results / f"{script.name}.log", "w", encoding="utf-8") if log else contextlib.nullcontext() as file:
+        with open(output / name / f"{script.name}.log", "w", encoding="utf-8") if log else contextlib.nullcontext() as file:
             code = subprocess.run([sys.executable, HERE / name / script.name, *arguments], cwd=results, stdout=file,
                                   stderr=file, env={**os.environ, "MUD_BUILD_DIR": str(build),
                                                     "MUD_VERIFICATION_OUTPUT": str(results), "PYTHONPATH":

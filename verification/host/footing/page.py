@@ -15,7 +15,7 @@ PAGE = Page(
           "2.5 mm to 3 cm; dense sand has e 0.75",
     reference="the same scenes with the tolerance 1e-8",
     seconds=70, quick=8, pictures=("footing.png",))
-MAKES = (Script("matrix.py", ("matrix.csv",), 350),)
+MAKES = (Script("matrix.py", ("matrix.csv",), 280),)
 
 SOILS = {"loose, dry": "loose, dry, surcharge 2, rough", "dense, dry": "dense, dry, surcharge 2, rough",
          "saturated, drained": "loose, drained, surcharge 2, rough", "suction 30": "loose, suction 30, surcharge 2, rough"}

@@ -18,7 +18,7 @@ PAGE = Page(
     reference="the same path without the event; for cycles, the symmetry of the material; for the size of an effect, docs/theory/memory-rules.md",
     seconds=55, quick=11, pictures=("loops.png", "symmetric.png", "biased.png", "noise.png"))
 
-MAKES = (Script("make_results.py", ("results.csv",), 700),)
+MAKES = (Script("make_results.py", ("results.csv",), 170),)
 
 DEFAULT = "return_point:2e-5"
 RULES = ("classic:0", "threshold:0", "repositioning:0", "return_point:0",

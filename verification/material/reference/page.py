@@ -13,7 +13,7 @@ PAGE = Page(
               "(LSODA as a second integrator)",
     seconds=5)
 MAKES = (Script("make_rates.py", ("paths_rates.csv",), 20),
-         Script("make_paths.py", ("paths.csv",), 100),
+         Script("make_paths.py", ("paths.csv",), 125),
          Script("printed_numbers.py", ("printed_numbers.csv",), 20))
 
 NONE = Tolerance("tests/umat/contract/test_reference.pf holds rates to 1e-10 and paths to the tolerance asked for, "

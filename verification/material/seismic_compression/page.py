@@ -14,7 +14,7 @@ PAGE = Page(
           "relative density 45 % of Toyoura sand (`make_results.py`)",
     reference="Rong & McCartney (2019), digitised; another sand, of e 0.64; for the regression `results.csv`",
     seconds=20, quick=4, pictures=("seismic_compression.png",))
-MAKES = (Script("make_results.py", ("results.csv",), 180),)
+MAKES = (Script("make_results.py", ("results.csv",), 75),)
 
 CURVE = Tolerance("three points and two exponents; what the fit leaves", absolute=0.01)
 SAME = Tolerance("rounding of another machine within the tolerance of 1e-3 of the stress integration", absolute=0.05)

@@ -14,7 +14,7 @@ PAGE = Page(
     input="`study.py`: ten scenes that leave open fields, gravity or inertia",
     reference="the choice that the physics of each scene asks for, and the run with the same choice by hand",
     seconds=30, quick=8)
-MAKES = (Script("study.py", ("results.csv",), 150),)
+MAKES = (Script("study.py", ("results.csv",), 40),)
 
 COUNT = Tolerance("a count")
 SAME = Tolerance("a scene with its effects chosen is the scene with the same keys by hand", absolute=0.0)

@@ -23,7 +23,7 @@ PAGE = Page(
     reference="the run with everything, at its end and on the way, as a share of the range of each answer",
     seconds=90, quick=0, pictures=("effects.png",))
 
-MAKES = (Script("times.py", ("times.csv",), 240),)
+MAKES = (Script("times.py", ("times.csv",), 150),)
 
 COUNT = Tolerance("a count")
 CARELESS = 0.05    # what a trap must err by, so that it is one

@@ -18,7 +18,7 @@ PAGE = Page(
     reference="a criterion a case: a bound of the state, a closed form, or the same path without the event; the same path nudged by 1e-9; the same path "
               "with scheme 3 and tolerance 1e-8",
     seconds=400, quick=14, pictures=("hard_cases.png", "point_cases.png", "host_cases.png"))
-MAKES = (Script("study.py", ("results.csv", "host.csv"), 900), Script("nonsense_scenes.py", ("nonsense.csv",), 290),
+MAKES = (Script("study.py", ("results.csv", "host.csv"), 1100), Script("nonsense_scenes.py", ("nonsense.csv",), 110),
          Script("peers.py", ("peers.csv",), 600, "openseespy"))
 
 # Cases of less than half a second each.

@@ -16,7 +16,7 @@ PAGE = Page(
     input="`study.py`: plates and deformable blocks, 2 mm to 20 cm above elastic soil and MUD, at 1e-1, 1e-2 and 1e-3",
     reference="free fall; given steps of 4e-6 s on elastic soil, 2e-5 s on MUD, on the same mesh",
     seconds=20, quick=4, pictures=("landing.png",))
-MAKES = (Script("study.py", ("results.csv", "picture.csv"), 900),)
+MAKES = (Script("study.py", ("results.csv", "picture.csv"), 560),)
 
 ASKED = Tolerance("the accuracy asked for, 1e-1", absolute=0.1)
 LANDS = Tolerance("the step that closes the contact ends where it closes; accuracy 1e-1", absolute=0.001)

@@ -13,7 +13,7 @@ PAGE = Page(
           "made them)",
     reference="the same path without noise and without elastic domain, Dormand-Prince at tolerance 1e-9",
     seconds=3, quick=1, pictures=("single.png", "many.png", "transverse.png"))
-MAKES = (Script("study.py", ("*.csv",), 600),)
+MAKES = (Script("study.py", ("*.csv",), 220),)
 
 
 def check(bench):
