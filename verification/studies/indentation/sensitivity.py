@@ -91,6 +91,11 @@ def evaluated(results):
     return with_tight(rows, base), base
 
 
+def looked_at(rows):
+    """Suctions at which a variation ran that is no part of the series."""
+    return [s for s in SUCTIONS if any(r["suction"] == s and r["variation"] != TIGHT for r in rows.values())]
+
+
 def texts(results):
     """The text of SENSITIVITY.md by its mark."""
     return {"sensitivity": report(*evaluated(results))}
@@ -121,7 +126,7 @@ def tried(rows, base, suction):
 def with_tight(rows, base):
     """The rows, and those of the series that are a variation: Newton's tolerance 1e-5."""
     tight = {r["name"].replace("_tight", "_" + TIGHT): {**r, "variation": TIGHT} for r in base.values()
-             if r["series"].endswith("_tight") and r["suction"] in SUCTIONS and r["fields"] == FIELDS}
+             if r["series"].endswith("_tight") and r["suction"] in looked_at(rows) and r["fields"] == FIELDS}
     return {**rows, **tight}
 
 
@@ -133,7 +138,7 @@ def cells(a, b):
 
 def report(rows, base):
     text = ["## Largest changes of Table 1", "", *strongest(rows, base), ""]
-    for s in SUCTIONS:
+    for s in looked_at(rows):
         paper, missing = PUBLISHED[s], []
         text += [f"## Suction {s} kPa", "", "| | relative CPU time | relative work | relative difference of "
                                             "displacement | iterations with "
@@ -146,7 +151,7 @@ def report(rows, base):
             elif name in STANDARD and not same(s, name):
                 missing.append(variation.what)
         text += ["", f"Not run at {s} kPa: {'; '.join(missing)}.", ""] if missing else [""]
-    further = [v.what for name, v in VARIATIONS.items() if not any(ran(rows, s, name) for s in SUCTIONS)
+    further = [v.what for name, v in VARIATIONS.items() if not any(ran(rows, s, name) for s in looked_at(rows))
                and name not in STANDARD]
     if further:
         text += [f"Not run; available by `--only`: {'; '.join(further)}.", ""]
@@ -169,7 +174,7 @@ def strongest(rows, base):
             "variations move it by more than a tenth "
             "of its value (displacement: by more than the remedy does).", "",
             "| suction [kPa] | " + " | ".join(title for _, title, _ in MOVED) + " |", "|" + (len(MOVED) + 1) * "---|"]
-    for s in SUCTIONS:
+    for s in looked_at(rows):
         start, found_here, line = columns(*pair(rows, base, s, "")), tried(rows, base, s), []
         for key, _, form in MOVED:
             found = {VARIATIONS[name].what: c[key] - start[key] for name, c in found_here.items()
@@ -228,7 +233,7 @@ def noise(rows, base):
             "without the remedy [mm].", "",
             "| suction | change by the remedy | " + " | ".join(what for _, what in NUMERICS) + " | the column is |",
             "|" + 6 * "---|"]
-    for s in SUCTIONS:
+    for s in looked_at(rows):
         effect, by = moves(rows, base, s)
         shown = [" and ".join("missing" if math.isnan(v) else f"{v:.4f}" for v in two) for two in by]
         word = "noise" if is_noise(rows, base, s) else "not known yet" if any(map(math.isnan, sum(by, ()))) else "an effect of the remedy"
@@ -251,7 +256,7 @@ def towards(rows, base):
             "less. Otherwise unexplained. CPU times depend on the load of the machine: the closest variation is chosen "
             "by work, and both must meet the paper's.", "",
             "| suction | column | paper | series | closest variation | its value | |", "|" + 7 * "---|"]
-    for s in SUCTIONS:
+    for s in looked_at(rows):
         found = {name: c for name, c in tried(rows, base, s).items() if VARIATIONS[name].open}
         for key, (place, title, *_) in COLUMN_NAMES.items():
             if isinstance(PUBLISHED[s][place], (int, float)):
@@ -314,8 +319,8 @@ def bars(rows, base):
     """For the picture: by suction, effect of the remedy and (what, change with, change without) of every variation
     [mm]."""
     answer = {}
-    used = [name for name in VARIATIONS if any(ran(rows, s, name) for s in SUCTIONS)]
-    for s in SUCTIONS:
+    used = [name for name in VARIATIONS if any(ran(rows, s, name) for s in looked_at(rows))]
+    for s in looked_at(rows):
         a, b = pair(rows, base, s, "")
         if not (ended(a) and ended(b)):
             continue
