@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The paper's Table 1: eight suctions with and without the remedy, beside the paper's numbers, with Figs 2 to 5.
 
-`verification/run indentation --make --only series.py [--pass OPTION ...]` runs what is not finished (about ten minutes
-on two cores) and writes its results. An interrupted analysis goes on from its checkpoint; a finished one is kept until
-its scene or the program changes. Its folder, in build/indentation, holds everything, also of a failed one. Without
-options the table has rows of the present program alone. Exit code 1 if a balance is violated or the rows come from
-several versions of the program.
+`verification/run indentation --make --only series.py [--pass OPTION ...]` runs what is not finished (a quarter of an
+hour on two cores) and writes its results. An interrupted analysis goes on from its checkpoint; a finished one is kept
+until its scene or the program changes. Its folder, in build/indentation, holds everything, also of a failed one.
+Without options the table has rows of the present program alone. Exit code 1 if a balance is violated or the rows come
+from several versions of the program.
 """
 import math
 import sys
