@@ -83,8 +83,8 @@ contains
       r(:, SUCTION) = r(:, SUCTION) + (b%m*response(PC) + b%dm_r*response(GA + 1) + b%dm_z*response(GA + 2))
    end subroutine add_balances
 
-   !> k = k + weight B^T tangent B. Of the strain a force per volume and the balances know the change of volume alone, and
-   !> a gradient of pressure changes the fluxes alone (docs/theory/host.md section 3.3): nothing is spent on the rest.
+   !> k = k + weight B^T tangent B. Of the strain a force per volume and the balances know the change of volume alone,
+   !> and a gradient of pressure changes the fluxes alone (docs/theory/host.md section 3.3): nothing goes to the rest.
    pure subroutine add_tangent(gp, b, fields, tangent, k)
       type(gauss_t), intent(in) :: gp
       type(rows_t), intent(in) :: b

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 !> Manufactured solutions of the coupled equations for u, p_w, p_c: axisymmetric, with the axis, or plane strain.
 !> Made by make_mms.py from manufactured.f90.in: the lines between "derived" marks are written by its computer algebra.
 !>
