@@ -83,6 +83,20 @@ def test_a_night_makes_pages_side_by_side(monkeypatch):
           and (output / "host/patch/made/patch.msh").exists(), sorted(output.rglob("*")))
 
 
+def test_a_page_that_cannot_tell_its_data_stops_no_other(monkeypatch, capsys):
+    told = []
+
+    def update_texts(name, output):
+        if name == "host/bad":
+            raise ValueError("not enough rows")
+        told.append(name)
+
+    monkeypatch.setattr(runner, "update_texts", update_texts)
+    failed = runner.renew_texts(["host/bad", "host/good"], work)
+    check("the others are written, it is named, and why", failed == ["host/bad"] and told == ["host/good"]
+          and "not enough rows" in capsys.readouterr().out, (failed, told))
+
+
 @pytest.mark.skipif(light or not nightly, reason="./check --tier nightly runs the scripts that take seconds")
 def test_scripts_write_where_made_files_belong():
     quick = [(name, script) for name in runner.names() for script in getattr(runner.load(name), "MAKES", ())

@@ -182,6 +182,19 @@ def update_texts(name, output):
         write(folder / file, text)
 
 
+def renew_texts(chosen, output):
+    """Writes the texts of pages; names of those that could not be made of their data, which is told and stops no
+    other."""
+    failed = []
+    for name in chosen:
+        try:
+            update_texts(name, output)
+        except Exception:   # A night has made data that the page did not expect.
+            failed.append(name)
+            print(f"FAILED {name}: its texts\n{traceback.format_exc()}", flush=True)
+    return failed
+
+
 def update_page(outcome, output):
     """Table of checks and pictures."""
     folder = HERE / outcome.name
@@ -384,8 +397,7 @@ def main():
     print(f"{len(chosen)} pages, about "
           f"{sum(page.quick if options.quick else page.seconds for page in (load(n).PAGE for n in chosen)):.0f} s "
           f"of one core", flush=True)
-    for name in chosen if options.update else ():
-        update_texts(name, output)
+    unwritten = renew_texts(chosen, output) if options.update else []
     outcomes = []
     for outcome in run_pages(chosen, build, output, options.quick, options.j):
         outcomes.append(outcome)
@@ -396,7 +408,7 @@ def main():
         update_index()
     if options.all and options.make:
         (output / "night.csv").unlink(missing_ok=True)
-    failed = sum(o.failed for o in outcomes)
+    failed = sum(o.failed for o in outcomes) + len(unwritten)
     for outcome in outcomes:
         if outcome.failed:
             print(f"FAILED {outcome.name}: {outcome.failed} of {len(outcome.checks) + bool(outcome.error)}")
