@@ -38,13 +38,16 @@ contains
          select case (log%outcome)
          case (MATERIAL_FAILED)
             e = run%assembly%bad_element
+            place = place//'the material of element '//whole(e)//', point '//whole(run%assembly%bad_point)
+            ! No law was asked: that is a failure of the iteration.
             if (run%assembly%bad%code == STRAIN_TOO_LARGE) then
-               text = 'a strain of the step is beyond 1; the iteration did not converge or the step is far too long.'
-            else
-               call m%regions(m%region_of(e))%law%message(run%assembly%bad, text)
+               call raise(fault, EXIT_CONVERGENCE, place//', is strained by more than 1 in the step: the iteration '// &
+                          'did not converge or the step is far too long'//unstressed(run)//weakened(model, time)// &
+                          '; use a smaller dt or more cuts.')
+               return
             end if
-            call raise(fault, EXIT_MATERIAL, place//'the material of element '//whole(e)//', point '// &
-                       whole(run%assembly%bad_point)//', refuses: '//trim(text)//unstressed(run))
+            call m%regions(m%region_of(e))%law%message(run%assembly%bad, text)
+            call raise(fault, EXIT_MATERIAL, place//', refuses: '//trim(text)//unstressed(run))
          case (CONTACT_FAILED)
             call contact_message(run%system%contacts%status, text)
             call raise(fault, EXIT_CONVERGENCE, place//trim(text)//'.')

@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 from checking import build, check, root, work
+from host_program import start
 
 sys.path.insert(0, str(root / "common"))
 import tables  # noqa: E402
@@ -270,3 +271,19 @@ def test_small_mesh():
     doubtful = SCENE.replace("surface = 0", "surface = 0 sigma = 1, 1, 1")
     check("told at the start of a run", len(warnings(doubtful)) == 1)
     check("told by a quiet run as well", len(warnings(doubtful, "--quiet")) == 1)
+
+
+def test_an_iterate_that_strains_soil_by_more_than_one_is_no_convergence():
+    # No law is asked there: the iteration fails, not the material.
+    pulled = """&scene name = 'pulled' geometry = 'plane_strain' fields = 'u' /
+&mesh r = 0, 1 r_cells = 1 z = 0, 1 z_cells = 1 /
+&elastic name = 'soil' young = 1.0e4 poisson = 0.25 /
+&region material = 'soil' void_ratio = 0 /
+&stage name = 's' analysis = 'static' duration = 1 dt = 1 cuts = 0 /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'top' field = 'u_z' value = 2 /
+"""
+    done = start("pulled", pulled)
+    check("exit code 14 and where", done.returncode == 14
+          and "the material of element 1, point 1, is strained by more than 1 in the step" in done.stderr, done.stderr)
