@@ -63,7 +63,7 @@ MISTAKES = [
     ("long name", SCENE, "'load'", f"'{'l'*65}'", 2, ("a name has 1 to 64",)),
     ("huge mesh", SCENE, "r_cells = 8\n   z = 0, 0.25\n   z_cells = 2",
      "r_cells = 100000\n   z = 0, 0.25\n   z_cells = 100000", 10, ("r_cells, z_cells: 2e10 elements", "at most 5e6")),
-    ("absurd strain", SCENE, "value = 100", "value = 1.0e8", 15, ("beyond 1",)),
+    ("absurd strain", SCENE, "value = 100", "value = 1.0e8", 14, ("strained by more than 1",)),
 ]
 # Histories from a file: what a line holds, what is said, and where.
 TABLES = [
