@@ -14,10 +14,10 @@ sys.path[:0] = [str(ROOT / "python"), str(ROOT / "common")]
 import tables  # noqa: E402
 from library import renew  # noqa: E402
 from mud.calibration.misfit import misfit_of  # noqa: E402
-from mud.calibration.simulation import SETTINGS, earth_pressure, simulate  # noqa: E402
+from mud.calibration.simulation import SETTINGS, simulate  # noqa: E402
+from mud.calibration.soundness import LOADED, UNLOADED, compressed  # noqa: E402
 from mud.calibration.task import read_task  # noqa: E402
 from mud.calibration.variables import parameters_of  # noqa: E402
-from mud.element_test import Stage, element_test  # noqa: E402
 from mud.material import Material  # noqa: E402
 
 VOID_RATIO = 0.85
@@ -42,8 +42,7 @@ def rms(values):
 
 def unloaded(material):
     """K0 of a sample of the tests' void ratio at 400 kPa and, unloaded without radial strain, at 200 and 50 kPa."""
-    stages = [Stage("oedometer", sigma_a_end=end, increment=5.0) for end in (400.0, 200.0, 50.0)]
-    run = element_test(material, *stages, sigma_a=50.0, sigma_r=50 * earth_pressure(material), void_ratio=VOID_RATIO)
+    run = compressed(material, VOID_RATIO, LOADED, 200.0, UNLOADED)
     return [run["sigma_r"][i] / run["sigma_a"][i] for i in run.end_of_stages()[1:]]
 
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..element_test import Stage, element_test
+from ..element_test import Stage, TestResult, element_test
 from ..errors import MudError
 from ..material import Material
 from .fit import PRIOR, Fit
@@ -24,6 +24,13 @@ LEAST_RATIO = 0.15  # and a stress must be off by this share,
 LEAST_OFF, FAR = 1.0, 1.5  # another quantity by so many deviations of the measurement more than so many times the next test
 MAD = 1.4826  # of a normal distribution, its deviation over its median absolute deviation
 FEWEST = 4  # tests among which one can disagree
+
+
+def compressed(material: Material, void_ratio: float, *sigma_a: float) -> TestResult:
+    """A sample from UNLOADED, with Jaky's K0, to one axial stress [kPa] after the other without radial strain."""
+    stages = [Stage("oedometer", sigma_a_end=end, increment=5.0) for end in sigma_a]
+    start = {"sigma_a": UNLOADED, "sigma_r": earth_pressure(material) * UNLOADED}
+    return element_test(material, *stages, **start, void_ratio=void_ratio)
 
 
 def unloading(material: Material, items: Sequence[Item], answers: Mapping[str, Answer]) -> list[str]:
@@ -49,14 +56,7 @@ def unloading(material: Material, items: Sequence[Item], answers: Mapping[str, A
         return told
     e = float(np.median(ratios))
     try:
-        run = element_test(
-            material,
-            Stage("oedometer", sigma_a_end=LOADED, increment=5.0),
-            Stage("oedometer", sigma_a_end=UNLOADED, increment=5.0),
-            sigma_a=UNLOADED,
-            sigma_r=earth_pressure(material) * UNLOADED,
-            void_ratio=e,
-        )
+        run = compressed(material, e, LOADED, UNLOADED)
     except MudError as problem:
         return [*told, f"Compression without radial strain to {LOADED:g} kPa and back stops at e {e:.3f}: {problem}"]
     top, back = run.end_of_stages()[1:]
