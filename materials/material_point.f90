@@ -64,6 +64,7 @@ module material_point
       logical :: has_retention = .false.    !< It knows its saturation itself; no curve beside it.
       logical :: saturation_is_state = .false.   !< It has a history: retention() is where it starts, no more.
       logical :: unguarded = .false.        !< Made for a mean effective stress above 0, and nothing keeps it there.
+      logical :: turns_at_once = .false.    !< A strain that turns changes its rates at once, however small it is.
       logical :: exact_tangent = .false.    !< d sigma'/d strain is the derivative of the update itself.
       integer :: n_guards = 0
       real(wp) :: tolerance = 0.0_wp        !< Of the stress integration, relative; 0: the law has none.

@@ -320,8 +320,22 @@ contains
       if (any(model%stages%controlled)) write (unit, '(a)') '   '//what_limited(control)
       if (any(model%stages%kind == DYNAMIC) .and. .not. verified) write (unit, '(a)') '   Not seen: vibrations of '// &
          'fewer than about ten steps a period. The steps damp them; a shorter dt_max shows them.'
+      if (any(model%stages%kind == DYNAMIC) .and. turns_at_once(model)) write (unit, '(a)') '   Not seen: jumps of '// &
+         'the rates of soil without an elastic domain (rho_e = 0), at every turn of its strain, were it that of a '// &
+         'vibration: answers change irregularly with the steps. The default of rho_e avoids them.'
       write (unit, '(a)') 'In these errors: '//parts_of(model, control, verified)//'; mesh not estimated: --price'// &
          trim(merge('; nor is the stress integration.', '.                               ', roughness( &
                     model%domain%regions) > 0.0_wp))
    end subroutine print_answers
+
+   !> Whether a region has a material whose rates jump where its strain turns.
+   pure logical function turns_at_once(model)
+      type(model_t), intent(in) :: model
+      integer :: i
+
+      turns_at_once = .false.
+      do i = 1, size(model%domain%regions)
+         turns_at_once = turns_at_once .or. model%domain%regions(i)%law%turns_at_once
+      end do
+   end function turns_at_once
 end module answer_errors

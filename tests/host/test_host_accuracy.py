@@ -234,6 +234,19 @@ def test_a_ripple_counts_once():
     check("pulse on saturated soil: errors that alternate do not add up", steps < 400, steps)
 
 
+def test_jumps_of_soil_without_an_elastic_domain_are_told():
+    scene = RESTART.read_text().replace("max_iterations = 5", "").replace("max_iterations = 3", "")
+    for name, rho in (("with", ""), ("without", "rho_e = 0")):
+        path = written(f"domain_{name}", scene.replace("tangent = 3", f"tangent = 3 {rho}"))
+        done = run(path, work / f"domain_{name}")
+        check(f"{name} a domain: runs", done.returncode == 0, done.stderr)
+        check(f"{name} a domain: its jumps are told where they are",
+              ("Not seen: jumps of the rates of soil without" in done.stdout) == bool(rho), done.stdout)
+    static = written("domain_static", RAMP.replace("e_0 = 0.735", "e_0 = 0.735 rho_e = 0"))
+    done = run(static, work / "domain_static")
+    check("without motion nothing vibrates", done.returncode == 0 and "Not seen" not in done.stdout, done.stdout)
+
+
 def test_vibration_runs():
     # Free vibration of period 1 s: the true error of the history over the estimated one lies within the band.
     scene = written("swing", VIBRATION.read_text().replace("rho_inf = 0.8", ""))

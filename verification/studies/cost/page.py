@@ -12,7 +12,7 @@ PAGE = Page(
     claim="a run with controlled steps estimates its true error within a factor of five and meets the accuracy that "
           "was set within a factor of two, with the exceptions that are listed; what an error costs in the indentation",
     kind=("study", "exact"),
-    input="twenty-five scenes and four paths of the driver (`honest.py`); the indentation at a suction of 30 "
+    input="twenty-six scenes and four paths of the driver (`honest.py`); the indentation at a suction of 30 "
           "kPa, one contributor at a time on a coarse mesh (`study.py`)",
     reference="a closed form (vibration), else given fine steps on the same mesh",
     seconds=10, quick=6, pictures=("price.png",))

@@ -53,7 +53,7 @@ class Setting(NamedTuple):
 BASE = Setting(dt=1.2e-4)
 PAPER = Setting(dt=3e-5, rho_inf=0.8)
 # The references: finer in everything but the mesh; another rho_inf tells how far they can be trusted.
-REFERENCE = Setting(dt=3e-5, newton=1e-5, stress=1e-7, scheme=2)
+REFERENCE = Setting(dt=7.5e-6, newton=1e-6, stress=1e-7, scheme=2)
 SECOND = REFERENCE._replace(rho_inf=0.5)
 ANALYSES = {
     ("reference", "rho_inf 0"): REFERENCE,
