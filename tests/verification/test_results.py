@@ -40,21 +40,24 @@ def test_no_data_of_a_page_is_empty():
 
 
 def test_a_night_has_room_for_every_script_and_page(capsys, monkeypatch):
-    # What --all --make leaves out needs a program that is not here, and nothing is left out for its time.
+    # What --all --make leaves out needs a program that is not here or says that it runs alone.
     names = runner.names()
     taken = runner.in_a_night(names)
     said = capsys.readouterr().out
     scripts = {(name, script.name): script for name in names for script in getattr(runner.load(name), "MAKES", ())}
     left = [key for key in scripts if key[1] not in taken.get(key[0], ())]
-    check("only what cannot run here is left out", all(runner.missing(scripts[key]) for key in left), said)
+    check("only what cannot run here, or runs alone, is left out", all(
+        runner.missing(scripts[key]) or scripts[key].alone for key in left), said)
     check("and it is told", all(f"{page} --make --only {script}" in said for page, script in left), said)
     order = {name: [script.name for script in getattr(runner.load(name), "MAKES", ())] for name in names}
     check("scripts of a page keep their order: one reads what another made", all(
         some == [script for script in order[name] if script in some] for name, some in taken.items()), taken)
-    total = sum(script.seconds for (page, name), script in scripts.items() if name != PEERS) + sum(
+    total = sum(script.seconds for (page, name), script in scripts.items() if name != PEERS and not script.alone) + sum(
         runner.load(name).PAGE.seconds for name in names)
     check("with every package there is room for all but the other program, and for the pages", total <= runner.NIGHT,
           total)
+    check("no script that runs alone is in a night, however short it were", not any(
+        script.alone for (page, name), script in scripts.items() if name in taken.get(page, ())), taken)
     monkeypatch.setattr(runner, "NIGHT", total/2)
     taken = runner.in_a_night(names)
     spent = sum(scripts[name, script].seconds for name, some in taken.items() for script in some) + sum(

@@ -45,6 +45,7 @@ class Script:
     files: tuple
     seconds: float
     needs: str = ""   # Python packages beyond requirements.txt
+    alone: bool = False   # Too dear for a night: runs where --only names it.
 
 
 @dataclass(frozen=True)

@@ -208,10 +208,12 @@ def update_page(outcome, output):
 
 def make(name, build, output, update, only, arguments, log=False):
     """Runs the scripts of a page in its folder of the output; True if all ended well. log: what a script prints goes
-    to SCRIPT.log of that folder, as beside others."""
+    to SCRIPT.log of that folder, as beside others. Without `only` those that run alone are left out."""
     good = True
     for script in scripts_of(name):
-        if only and script.name not in only:
+        if script.alone and not only:
+            print(f"{name}: {script.name} runs alone, about {script.seconds:g} s: --make --only {script.name}")
+        if script.name not in only if only else script.alone:
             continue
         print(f"{name}: {script.name}, about {script.seconds:g} s" + (f", needs {script.needs}" if script.needs
                                                                       else ""), flush=True)
@@ -289,14 +291,14 @@ def older(name):
 
 def in_a_night(chosen):
     """{page: scripts} that fit into a night beside the pages: the cheap pages first, the scripts of a page in their
-    order, for one may read what another made. What does not fit, or cannot run here, is said."""
+    order, for one may read what another made. What does not fit, runs alone or cannot run here is said."""
     makes = {name: scripts_of(name) for name in chosen}
     taken, spent = {}, sum(load(name).PAGE.seconds for name in chosen)   # the pages run afterwards
     for name in sorted(makes, key=lambda name: sum(script.seconds for script in makes[name])):
         for script in makes[name]:
             if absent := missing(script):
                 print(f"left out, {', '.join(absent)} is not here: verification/run {name} --make --only {script.name}")
-            elif spent + script.seconds <= NIGHT:
+            elif not script.alone and spent + script.seconds <= NIGHT:
                 taken.setdefault(name, []).append(script.name)
                 spent += script.seconds
             else:

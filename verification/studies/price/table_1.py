@@ -5,9 +5,9 @@ settlement at all suctions with what mesh, steps and Newton's method leave of it
 Newton's tolerance changes. Each run ends shortly after its largest settlement. Writes table_1.csv; a run whose row is
 there is left.
 
-    table_1.py [--build build/release] [--results FOLDER] [--fine]
+    table_1.py [--build build/release] [--results FOLDER]
 
-A quarter of an hour of one core; --fine adds the finest mesh at a suction of 3 kPa.
+A quarter of an hour of one core.
 """
 import argparse
 import os
@@ -37,7 +37,6 @@ FRONT = 30                        # kPa: the suction whose front is drawn
 NAMES = ("suction", "mesh", "fineness", "setting", "outcome", "elements", "steps", "seconds", "peak", "peak_time",
          "p_w")
 LIMIT = 2400                      # s of a run
-FINEST = [(3, "graded", 2, "1e-2")]
 
 
 def text(suction, setting, mesh="paper"):
@@ -57,9 +56,8 @@ def text(suction, setting, mesh="paper"):
     return render(scene(suction, "u-p_w-p_c", "remedy", adapt))
 
 
-def wanted(fine=True):
-    """All runs: (suction, mesh, fineness, setting)."""
-    # At suction 0 the plate finds no seat on a finer mesh: the soil under the rim has next to no stress.
+def wanted():
+    """All runs: (suction, mesh, fineness, setting). Finer meshes at 0 and 3 kPa: table_1_fine.py."""
     runs = [(s, "graded", f, "1e-2") for f in (0.5, 1) for s in SUCTIONS]
     runs += [(s, "graded", 0.5, setting) for setting in ("newton", "2.5e-3") for s in SUCTIONS]
     runs += [(s, "paper", 1, "1e-2") for s in SUCTIONS]
@@ -67,22 +65,22 @@ def wanted(fine=True):
     runs += [(FRONT, "paper", 2, a) for a in ("1e-2", "newton", "2.5e-3")]
     runs += [(FRONT, "paper", f, "4e-2") for f in (0.25, 0.5, 1, 2)]
     runs += [(FRONT, "graded", f, a) for f in (0.5, 1) for a in ("4e-2", "2.5e-3")]
-    runs += [(s, "graded", 2, "1e-2") for s in SUCTIONS[:1:-1]] + FINEST
+    runs += [(s, "graded", 2, "1e-2") for s in SUCTIONS[:1:-1]]
     runs += [(s, "paper", 1, "paper") for s in SUCTIONS]
-    return [key for key in dict.fromkeys(runs) if fine or key not in FINEST]
+    return list(dict.fromkeys(runs))
 
 
-def run(host, key, folder):
-    """Row of a run."""
+def run(host, key, folder, limit=LIMIT):
+    """Row of a run, of at most limit seconds."""
     suction, mesh, fineness, setting = key
     (folder / "scene.nml").write_text(text(suction, setting, mesh), encoding="utf-8")
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     try:
         done = subprocess.run([host, folder / "scene.nml", "--fineness", f"{fineness:g}", "--output", folder],
-                              text=True, capture_output=True, timeout=LIMIT, env={**os.environ, "OMP_NUM_THREADS": "1"})
+                              text=True, capture_output=True, timeout=limit, env={**os.environ, "OMP_NUM_THREADS": "1"})
         outcome, said = str(done.returncode), done.stdout
     except subprocess.TimeoutExpired:
-        return (*key, f"more than {LIMIT} s", *[""]*6)
+        return (*key, f"more than {limit} s", *[""]*6)
     spent = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
     if done.returncode not in (0, MISSED):
         return (*key, outcome, *[""]*2, f"{spent:.2f}", *[""]*3)
@@ -94,25 +92,25 @@ def run(host, key, folder):
             f"{-1e3*u.min():.6g}", f"{1e3*(t[u.argmin()] - 2):.5g}", f"{p.max() - p[0]:.5g}")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+def make(name, keys, limit=LIMIT):
+    """Runs what the table `name` of the results has not yet."""
+    parser = argparse.ArgumentParser()
     parser.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
     parser.add_argument("--results", default=made_in(__file__), type=pathlib.Path)
-    parser.add_argument("--fine", action="store_true", help="the finest mesh at a suction of 3 kPa, too")
     args = parser.parse_args()
-    table = args.results / "table_1.csv"
+    table = args.results / name
     have = [tuple(r[n] for n in NAMES) for r in tables.rows(table)] if table.exists() else []
     done = {(int(r[0]), r[1], float(r[2]), r[3]) for r in have}
     host = pathlib.Path(os.environ.get("MUD_HOST") or args.build / "host/mud_host")
-    for key in wanted(args.fine):
+    for key in keys:
         if key in done:
             continue
         with tempfile.TemporaryDirectory() as folder:
-            row = run(host, key, pathlib.Path(folder))
+            row = run(host, key, pathlib.Path(folder), limit)
         have.append(row)
         tables.write(table, NAMES, have)
         print(*row, flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    make("table_1.csv", wanted())
