@@ -10,6 +10,7 @@ from checking import build, check, light, nightly, root, work
 
 sys.path.insert(0, str(root / "verification"))
 from tools import results, runner  # noqa: E402
+from tools.page import Script  # noqa: E402
 
 PEERS = "peers.py"   # Needs OpenSees, which a night does without.
 
@@ -63,6 +64,20 @@ def test_a_night_has_room_for_every_script_and_page(capsys, monkeypatch):
     spent = sum(scripts[name, script].seconds for name, some in taken.items() for script in some) + sum(
         runner.load(name).PAGE.seconds for name in names)
     check("a shorter night takes fewer scripts and all pages", spent <= runner.NIGHT and taken, spent)
+
+
+def test_a_script_that_runs_alone_runs_where_it_is_named(capsys, monkeypatch):
+    page = work / "pages/studies/dear"
+    page.mkdir(parents=True)
+    (page / "dear.py").write_text("open('ran', 'w').close()\n")
+    monkeypatch.setattr(runner, "HERE", work / "pages")
+    monkeypatch.setattr(runner, "scripts_of", lambda name: (Script("dear.py", (), 9000, alone=True),))
+    ran = work / "alone/studies/dear/made/ran"
+    runner.make("studies/dear", build, work / "alone", False, [], [])
+    said = capsys.readouterr().out
+    check("a page that is made leaves it out and says so", not ran.exists() and "dear.py runs alone" in said, said)
+    runner.make("studies/dear", build, work / "alone", False, ["dear.py"], [])
+    check("it runs where it is named", ran.exists(), capsys.readouterr().out)
 
 
 def test_a_night_makes_pages_side_by_side(monkeypatch):

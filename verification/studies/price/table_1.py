@@ -92,9 +92,9 @@ def run(host, key, folder, limit=LIMIT):
             f"{-1e3*u.min():.6g}", f"{1e3*(t[u.argmin()] - 2):.5g}", f"{p.max() - p[0]:.5g}")
 
 
-def make(name, keys, limit=LIMIT):
-    """Runs what the table `name` of the results has not yet."""
-    parser = argparse.ArgumentParser()
+def make(name, keys, about, limit=LIMIT):
+    """Runs what the table `name` of the results has not yet; about: what --help says first."""
+    parser = argparse.ArgumentParser(description=about)
     parser.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
     parser.add_argument("--results", default=made_in(__file__), type=pathlib.Path)
     args = parser.parse_args()
@@ -113,4 +113,4 @@ def make(name, keys, limit=LIMIT):
 
 
 if __name__ == "__main__":
-    make("table_1.csv", wanted())
+    make("table_1.csv", wanted(), __doc__.split("\n")[0])

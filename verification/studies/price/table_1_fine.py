@@ -12,4 +12,4 @@ FINE = [(3, "graded", 2, "1e-2"), (0, "graded", 2, "1e-2"), (3, "graded", 4, "1e
 LIMIT = 10000   # s of a run
 
 if __name__ == "__main__":
-    make("table_1_fine.csv", FINE, LIMIT)
+    make("table_1_fine.csv", FINE, __doc__.split("\n")[0], LIMIT)
