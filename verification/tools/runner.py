@@ -211,9 +211,10 @@ def make(name, build, output, update, only, arguments, log=False):
     to SCRIPT.log of that folder, as beside others. Without `only` those that run alone are left out."""
     good = True
     for script in scripts_of(name):
+        if only and script.name not in only:
+            continue
         if script.alone and not only:
             print(f"{name}: {script.name} runs alone, about {script.seconds:g} s: --make --only {script.name}")
-        if script.name not in only if only else script.alone:
             continue
         print(f"{name}: {script.name}, about {script.seconds:g} s" + (f", needs {script.needs}" if script.needs
                                                                       else ""), flush=True)

@@ -28,7 +28,7 @@ FACTOR = Tolerance("a factor of three", absolute=math.log10(3.0))
 FEW = Tolerance("at most one of twenty", absolute=0.05)
 ORDERS = 1.0, 2.0       # of convergence that an estimate takes, host.md section 12
 WEAK = 0.5              # an order below it says nothing: the distance of the meshes is the bar
-NONE = 0.2              # below it the meshes do not converge, host.md section 12
+NONE, FAR = 0.2, 0.02   # below that order and beyond that distance meshes do not converge, host.md section 12
 
 
 def committed(name):
@@ -118,7 +118,8 @@ def table_1_text():
         lines.append((suction, row["elements"], f"{float(row['peak']):#.4g}",
                       f"{100*(mesh + (steps or 0) + (newton or 0)):.2g}", f"{100*mesh:.2g}",
                       *("not run" if x is None else f"{100*x:.2g}" for x in (steps, newton)),
-                      "assumed" if order is None else f"{order:.2g}" + ", does not converge"*(order < NONE)))
+                      "assumed" if order is None else
+                      f"{order:.2g}" + ", does not converge"*(order < NONE and mesh > FAR)))
     good = [line[0] for line in lines if float(line[3]) <= 1 and "not run" not in line]
     return tables.markdown(("suction [kPa]", "elements", "settlement [mm]", "bar [%]", "of it mesh", "steps", "Newton",
                             "order"), lines) + textwrap.fill(
