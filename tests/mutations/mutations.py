@@ -4,6 +4,7 @@
 TENSOR, RATES, POINT = "core/base/mud_tensor.f90", "core/rates/mud_rates.f90", "core/integration/mud_point.f90"
 DIRECTION, EQUATION = "core/rates/mud_direction.f90", "core/rates/mud_direction_equation.f90"
 INCREMENT, REVERSAL = "core/integration/mud_increment.f90", "core/integration/mud_reversal.f90"
+TRANSIENT = "core/integration/mud_transient.f90"
 SUBSTEP, TRIAL = "core/integration/mud_substep.f90", "core/integration/mud_trial.f90"
 RETURN_POINT, EVENTS = "core/integration/mud_return_point.f90", "core/integration/mud_events.f90"
 TRANSITIONS, PHASES = "core/integration/mud_transitions.f90", "core/integration/mud_phases.f90"
@@ -217,6 +218,14 @@ MUTATIONS = [
      (INCREMENT, "         from_centre = inc%from_centre + inc%d_strain\n", "         from_centre = inc%from_centre\n")),
     ("strain beside the loading direction is lost",
      (INCREMENT, "aside = inc%d_strain - loading", "aside = 0.0_wp*loading")),
+    ("a straight strain without the centre's part in its derivative",
+     (INCREMENT, "loading%of_centre = decay*length/inc%rho", "loading%of_centre = 0.0_wp*decay")),
+    ("a straight strain that loads across nu from the start",
+     (INCREMENT, "loading%of_strain = 1.0_wp - decay", "loading%of_strain = 1.0_wp")),
+    ("what fades is not taken from the changes of rates",
+     (TRANSIENT, "factors = factors - weight*[left(i), left(i)**2]", "factors = factors - 0.0_wp*weight*[left(i), left(i)**2]")),
+    ("what fades does not change with the pseudo-time",
+     (TRANSIENT, "along(:, 1) = along(:, 1) - weight*d_left(:, i)", "along(:, 1) = along(:, 1) - 0.0_wp*weight*d_left(:, i)")),
     ("no bounding surface inside the elastic domain", (EVENT_FUNCTIONS, "LARGEST_EXCESS = 0.2_wp", "LARGEST_EXCESS = 1.0e9_wp")),
     ("the tangent does not know where the elastic domain ends",
      (DRIVING, "driving%exit = changes_of_exit", "driving%exit = 0.0_wp*changes_of_exit")),

@@ -11,7 +11,8 @@ module mud_consistent
    use mud_driving, only: driving_t, whole_increment, change_of_place, DIRECTIONS, AT_REST
    use mud_isotropic_memory, only: margins_at_stages, changes_of_measure, changes_by_shear
    use mud_fluidity, only: recovery
-   use mud_increment, only: increment_t, void_ratio_at, suction_at, changes_of_loading_strain, turning_of, NY
+   use mud_increment, only: increment_t, void_ratio_at, suction_at, changes_of_loading_strain, live_numbers, &
+      NY
    use mud_params, only: params_t
    use mud_preloading, only: NO_CONTRACTION
    use mud_rate, only: rate_t
@@ -23,10 +24,9 @@ module mud_consistent
    use mud_state, only: memory_t
    use mud_substep, only: MAX_STAGES, stage_point, solution
    use mud_tensor, only: IDENTITY, trace, deviator, norm, contracted, tensors_t, ZERO_TENSORS, ANY_TENSORS
-   use mud_transient, only: fading_t, NO_FADING, without_turn, half_way, begin_fading, take_changes_of_fading, &
+   use mud_transient, only: fading_t, NO_FADING, without_turn, half_way, begin_fading, change_of_left, &
       add_changes_of_faded
-   use mud_trial, only: trial_t, stage_of_trial
-   use mud_elastic_domain, only: turning_t
+   use mud_trial, only: trial_t
    use mud_linearise, only: linearised_t, linearise, changes_t
    implicit none (type, external)
    private
@@ -38,8 +38,6 @@ module mud_consistent
    integer, parameter :: JUMP_REVERSAL = 1   !< A new process begins.
    integer, parameter :: JUMP_RETURN = 2     !< An interrupted process goes on.
    integer, parameter :: JUMP_NEW = 3        !< The point leaves the tension cut-off: no past.
-
-   integer, parameter :: STRESSES = 6*DIRECTIONS   !< That many derivatives are those of the stress: they stand first.
 
    !> Derivatives along the directions of driving_t.
    type :: sensitivity_t
@@ -100,7 +98,7 @@ contains
       real(wp), intent(in) :: h, end_shift(DIRECTIONS)
       logical, intent(in) :: last
       type(sensitivity_t), intent(inout) :: sens
-      real(wp) :: dh(DIRECTIONS), first(DIRECTIONS, NY)
+      real(wp) :: dh(DIRECTIONS), rates(DIRECTIONS, NY, MAX_STAGES)
 
       sens%log_chi0 = sens%y(:, 14)
       sens%y(:, 15) = 0.0_wp
@@ -111,13 +109,14 @@ contains
                                    sens%driving, sens%y)
       else
          call change_of_stage(par, inc, trial%mode, trial%w(1), trial%y0, trial%time, sens%at_rest, .false., &
-                              sens%shift, sens%r_in, sens%driving, sens%y, first)
+                              sens%shift, sens%r_in, sens%driving, sens%y, rates(:, :, 1))
          if (trial%transient%known) then
-            if (trial%transient%since >= trial%time) call change_of_transient(par, inc, trial, first, sens)
+            if (trial%transient%since >= trial%time) &
+               call change_of_transient(par, inc, trial, rates(:, :, 1), sens)
          end if
          ! at the end of the whole increment only the stress is asked for
          call through_stages(par, inc, trial, h, last .and. inc%to >= 1.0_wp, sens%shift, dh, sens%r_in, &
-                             sens%driving, sens%fading, first, sens%y, sens%margin)
+                             sens%driving, sens%fading, rates, sens%y, sens%margin)
       end if
       sens%at_rest = .false.
       sens%shift = sens%shift + dh
@@ -170,17 +169,17 @@ contains
       real(wp), intent(out) :: change(NY)
       real(wp), intent(out) :: of_margin   !< Of the isotropic memory's margin less its measure [-].
       real(wp), dimension(DIRECTIONS) :: none, one, margin
-      real(wp) :: first(DIRECTIONS, NY), y(DIRECTIONS, NY)
+      real(wp) :: rates(DIRECTIONS, NY, MAX_STAGES), y(DIRECTIONS, NY)
 
       none = 0.0_wp
       one = 1.0_wp
       margin = 0.0_wp
-      first = 0.0_wp
+      rates(:, :, 1) = 0.0_wp
       y = 0.0_wp
       if (trial%mode == MODE_HELD) then
          call changes_through_hold(par, inc, trial%parts, none, trial%y0(1:6), trial%time, h, none, one, AT_REST, y)
       else
-         call through_stages(par, inc, trial, h, .false., none, one, AT_REST%d_strain, AT_REST, NO_FADING, first, y, &
+         call through_stages(par, inc, trial, h, .false., none, one, AT_REST%d_strain, AT_REST, NO_FADING, rates, y, &
                              margin)
       end if
       change = y(1, :)
@@ -189,7 +188,7 @@ contains
 
    !> The scheme applied to all directions as one long vector, from the changes of its first rate: its start moves by
    !> `shift` in pseudo-time, its size changes by dh.
-   pure subroutine through_stages(par, inc, trial, h, ends, shift, dh, r_in, driving, fading, first, y1, margin)
+   pure subroutine through_stages(par, inc, trial, h, ends, shift, dh, r_in, driving, fading, rates, y1, margin)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
@@ -198,12 +197,13 @@ contains
       logical, intent(in) :: ends
       type(driving_t), intent(in) :: driving
       type(fading_t), intent(in) :: fading
-      real(wp), intent(in) :: first(DIRECTIONS*NY)
+      real(wp), intent(inout) :: rates(DIRECTIONS*NY, MAX_STAGES)   !< The first is given.
       real(wp), intent(inout) :: y1(DIRECTIONS*NY)
       real(wp), intent(inout) :: margin(DIRECTIONS)   !< Of the isotropic memory's margin less its measure.
-      real(wp) :: rates(DIRECTIONS*NY, MAX_STAGES), y0(DIRECTIONS*NY), y(DIRECTIONS*NY), point(NY), time, &
-         dt(DIRECTIONS), of_margin(DIRECTIONS, MAX_STAGES), of_stages(MAX_STAGES), at_stages(MAX_STAGES), start
-      integer :: i, last, row
+      real(wp) :: y(DIRECTIONS*NY), time, dt(DIRECTIONS), &
+         of_margin(DIRECTIONS, MAX_STAGES), of_stages(MAX_STAGES), at_stages(MAX_STAGES), start, &
+         left(MAX_STAGES + 1), d_left(DIRECTIONS, MAX_STAGES + 1)
+      integer :: i, last, row, live, n
       logical :: moves, follows
 
       ! the last stage of such a pair serves the error estimate and the next substep, not the solution
@@ -213,38 +213,42 @@ contains
       follows = inc%rests .and. .not. ends
       if (follows) then
          call margins_at_stages(par, inc, trial, h, at_stages, of_stages, start)
-         of_margin(:, 1) = stage_of_margin(1, trial%y0, trial%time, shift, margin, y1, first)
+         of_margin(:, 1) = stage_of_margin(1, trial%y0, trial%time, shift, margin, y1, rates(:, 1))
       end if
-      rates(:, 1) = first
-      if (trial%transient%known) call take_changes_of_fading(trial%transient, fading, trial%time, shift, rates(:, 1))
-      call finish_stage(trial, h, 1, moves, dh, rates)
+      live = live_numbers(par)
+      n = DIRECTIONS*live
+      if (trial%transient%known) &
+         call change_of_left(trial%transient, fading, trial%time, shift, left(1), d_left(:, 1))
+      call finish_stage(trial, h, 1, live, moves, dh, rates)
       do i = 2, last
-         call stage_point(inc%scheme, i, y1, rates, h, y)
-         call stage_of_trial(inc, i, h, trial, point)
+         call stage_point(inc%scheme, i, y1(1:n), rates, h, y(1:n))
          time = trial%time + inc%scheme%node(i)*h
          dt = shift + inc%scheme%node(i)*dh
-         if (trial%transient%known) &
-            call add_changes_of_faded(trial%transient, fading, trial%time, time, shift, dt, y)
-         call change_of_stage(par, inc, trial%mode, trial%w(i), point, time, .false., ends .and. i == last, dt, r_in, &
-                              driving, y, rates(:, i))
-         if (follows) then
-            row = (i - 1)*(i - 2)/2
-            of_margin(:, i) = stage_of_margin(i, point, time, dt, margin + matmul(of_margin(:, 1:i - 1), &
-               inc%scheme%a(row + 1:row + i - 1)), y, rates(:, i))
-         end if
-         if (trial%transient%known) call take_changes_of_fading(trial%transient, fading, time, dt, rates(:, i))
-         call finish_stage(trial, h, i, moves, dh, rates)
+         row = (i - 1)*(i - 2)/2
+         associate (weights => inc%scheme%a(row + 1:row + i - 1))
+            if (trial%transient%known) then
+               call change_of_left(trial%transient, fading, time, dt, left(i), d_left(:, i))
+               call add_changes_of_faded(trial%transient, fading, i - 1, h, weights, left, d_left, live, y(1:n))
+            end if
+            call change_of_stage(par, inc, trial%mode, trial%w(i), trial%points(:, i), time, .false., &
+                                 ends .and. i == last, dt, r_in, driving, y, rates(:, i))
+            if (follows) of_margin(:, i) = stage_of_margin(i, trial%points(:, i), time, dt, &
+               margin + matmul(of_margin(:, 1:i - 1), weights), y, rates(:, i))
+         end associate
+         call finish_stage(trial, h, i, live, moves, dh, rates)
       end do
-      if (ends) then
-         y0(1:STRESSES) = y1(1:STRESSES)
-         call solution(inc%scheme, y0(1:STRESSES), rates, h, y1(1:STRESSES))
-      else
-         y0 = y1
-         call solution(inc%scheme, y0, rates, h, y1)
-      end if
-      if (trial%transient%known) call add_changes_of_faded(trial%transient, fading, trial%time, trial%time + h, shift, &
-                                                           shift + dh, y1)
-      if (follows) margin = margin + matmul(of_margin(:, 1:last), inc%scheme%b(1:last))
+      if (ends) live = 6   ! stresses stand first
+      n = DIRECTIONS*live
+      y(1:n) = y1(1:n)
+      associate (weights => inc%scheme%b(1:last))
+         call solution(inc%scheme, y(1:n), rates, h, y1(1:n))
+         if (trial%transient%known) then
+            call change_of_left(trial%transient, fading, trial%time + h, shift + dh, left(last + 1), &
+                                d_left(:, last + 1))
+            call add_changes_of_faded(trial%transient, fading, last, h, weights, left, d_left, live, y1(1:n))
+         end if
+         if (follows) margin = margin + matmul(of_margin(:, 1:last), weights)
+      end associate
    contains
       !> What the rate of stage i gives over the whole substep to the margin of the isotropic memory less its measure.
       pure function stage_of_margin(i, point, time, dt, before, y, rate) result(change)
@@ -305,35 +309,36 @@ contains
    end subroutine change_of_transient
 
    !> What its size, which changes by dh, and the stiff direction add to stage i.
-   pure subroutine finish_stage(trial, h, i, moves, dh, rates)
+   pure subroutine finish_stage(trial, h, i, live, moves, dh, rates)
       type(trial_t), intent(in) :: trial
-      integer, intent(in) :: i
-      logical, intent(in) :: moves   !< dh is not zero
+      integer, intent(in) :: i, live   !< live: numbers that may change
+      logical, intent(in) :: moves     !< dh is not zero
       real(wp), intent(in) :: h, dh(DIRECTIONS)
       real(wp), intent(inout) :: rates(DIRECTIONS, NY, MAX_STAGES)
       integer :: k
 
       if (moves) then
-         do k = 1, NY
+         do k = 1, live
             rates(:, k, i) = rates(:, k, i) + (trial%rates(k, i)/h)*dh
          end do
       end if
-      if (trial%relaxation%speed > 0.0_wp) call relax_changes(trial, h, i, rates)
+      if (trial%relaxation%speed > 0.0_wp) call relax_changes(trial, h, i, live, rates)
    end subroutine finish_stage
 
    !> The stiff direction of a linearly implicit stage i.
-   pure subroutine relax_changes(trial, h, i, rates)
+   pure subroutine relax_changes(trial, h, i, live, rates)
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h
-      integer, intent(in) :: i
+      integer, intent(in) :: i, live
       real(wp), intent(inout) :: rates(DIRECTIONS, NY, MAX_STAGES)
       real(wp) :: along_one(NY, MAX_STAGES)
       integer :: j
 
+      along_one(live + 1:, 1:i) = 0.0_wp
       do j = 1, DIRECTIONS
-         along_one(:, 1:i) = rates(j, :, 1:i)
+         along_one(1:live, 1:i) = rates(j, 1:live, 1:i)
          call relax(trial%relaxation, h, along_one(:, 1:i))
-         rates(j, :, i) = along_one(:, i)
+         rates(j, 1:live, i) = along_one(1:live, i)
       end do
    end subroutine relax_changes
 
@@ -350,13 +355,11 @@ contains
       real(wp), intent(out) :: rates(DIRECTIONS, NY)
       type(linearised_t) :: lin
       type(changes_t) :: changes
-      type(turning_t) :: turning
       real(wp) :: e
       logical :: rests
 
       e = void_ratio_at(inc, time)
-      turning = turning_of(inc, mode, time)
-      call changes_along(inc, mode, time, e, turning, dt, driving, changes)
+      call changes_along(inc, mode, time, e, dt, driving, changes)
       call linearise_stage(par, inc, w, point, time, e, changes%loading, lin)
       rests = at_rest
       if (at_rest) rests = are_zero(changes)
@@ -389,10 +392,9 @@ contains
 
    !> How the arguments of a rate change, beside stress, fabric and memory, at a pseudo-time that itself changes by dt.
    !> time and dt are shares of inc, e is the void ratio [-]; units of the changes as in changes_t.
-   pure subroutine changes_along(inc, mode, time, e, turning, dt, driving, changes)
+   pure subroutine changes_along(inc, mode, time, e, dt, driving, changes)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
-      type(turning_t), intent(in) :: turning   !< of the elastic domain there
       real(wp), intent(in) :: time, e, dt(DIRECTIONS)
       type(driving_t), intent(in) :: driving
       type(changes_t), intent(inout) :: changes   !< all of it is set
@@ -401,7 +403,7 @@ contains
       changes%scans = driving%scans
       if (driving%scans) changes%turn = driving%turn
       call change_of_place(inc, time, e, dt, driving, changes%e, changes%p_c)
-      call changes_of_loading_strain(inc, mode, turning, driving%d_strain, driving%from_centre, dt - driving%exit, &
+      call changes_of_loading_strain(inc, mode, time, driving%d_strain, driving%from_centre, dt - driving%exit, &
                                      changes%loading)
    end subroutine changes_along
 
@@ -520,14 +522,12 @@ contains
       type(sensitivity_t), intent(inout) :: sens
       type(linearised_t) :: lin
       type(changes_t) :: changes
-      type(turning_t) :: turning
       real(wp) :: rates(DIRECTIONS, NY), dn(DIRECTIONS, 6), dr(DIRECTIONS, 6), m, e
       integer :: i
 
       m = interrupted_share(par, before%eps_q_p)
       e = void_ratio_at(inc, trial%time)
-      turning = turning_of(inc, MODE_ORDINARY, trial%time)
-      call changes_along(inc, MODE_ORDINARY, trial%time, e, turning, sens%shift, sens%driving, changes)
+      call changes_along(inc, MODE_ORDINARY, trial%time, e, sens%shift, sens%driving, changes)
       call linearise_stage(par, inc, trigger, trial%y0, trial%time, e, changes%loading, lin)
       call changes_of_rate(par, trigger, lin, .false., sens%y, sens%r_in, sens%driving%d_strain, &
                            sens%driving%from_centre, changes, .false., rates, dn)

@@ -11,16 +11,14 @@ module mud_elastic_domain
    implicit none (type, external)
    private
    public :: turning_t, exit_share, changes_of_exit, loading_direction, turning_at, combination_t, &
-             combination_of_turning
+             combination_of_turning, decay_at
 
    !> The direction nu at one pseudo-time.
    type :: turning_t
       real(wp) :: nu(6)
-      ! for its changes: nu is dividend over divisor
-      real(wp) :: dividend(6)
       real(wp) :: d(6)           !< strain from the centre at the start [-]
       real(wp) :: u(6), length   !< direction and size of the increment [-]
-      real(wp) :: rho, time, cosine, decay, share, divisor
+      real(wp) :: rho, time, cosine, decay, share, divisor   !< of find_tractrix [-]
    end type turning_t
 
    !> Changes of nu as a sum: of_d times those of d, of_increment times those of the increment, and parts along d and u.
@@ -70,17 +68,27 @@ contains
    !> and an increment that is not 0 are not checked. Tractrix of docs/theory/memory-rules.md section 4.2.
    pure function loading_direction(rho, d, increment, time) result(nu)
       real(wp), intent(in) :: rho, d(6), increment(6), time
-      real(wp) :: nu(6), length, cosine, decay, divisor
+      real(wp) :: nu(6), length, cosine, decay, share, divisor
 
       nu = d/rho
       if (time <= 0.0_wp) return
       length = norm(increment)
       cosine = min(ddot(d, increment)/(rho*length), 1.0_wp)
-      decay = exp(-length*time/rho)
-      divisor = 1.0_wp + cosine + (1.0_wp - cosine)*decay**2
-      nu = (2.0_wp*decay*(d/rho) &
-            + ((1.0_wp - decay)*(1.0_wp + decay + cosine*(1.0_wp - decay))/length)*increment)/divisor
+      call find_tractrix(rho, length, cosine, time, decay, share, divisor)
+      nu = (2.0_wp*decay*nu + (share/length)*increment)/divisor
    end function loading_direction
+
+   !> The tractrix: nu is 2 q times its direction at the start and `share` times that of the increment, over a divisor,
+   !> with the decay q of tan(phi/2) at a share `time` of an increment of a length. cosine is that of the angle at the
+   !> start. All [-]. docs/theory/memory-rules.md section 4.2.
+   pure subroutine find_tractrix(rho, length, cosine, time, decay, share, divisor)
+      real(wp), intent(in) :: rho, length, cosine, time
+      real(wp), intent(out) :: decay, share, divisor
+
+      decay = decay_at(rho, length, time)
+      divisor = 1.0_wp + cosine + (1.0_wp - cosine)*decay**2
+      share = (1.0_wp - decay)*(1.0_wp + decay + cosine*(1.0_wp - decay))
+   end subroutine find_tractrix
 
    !> nu at a pseudo-time, and what its changes share. Arguments as in loading_direction, all [-].
    !> docs/theory/memory-rules.md section 4.2.
@@ -94,15 +102,18 @@ contains
       turning%length = norm(increment)
       turning%u = increment/turning%length
       turning%cosine = min(ddot(d, turning%u)/rho, 1.0_wp)
-      turning%decay = 1.0_wp
-      if (time > 0.0_wp) turning%decay = exp(-turning%length*time/rho)
-      associate (cosine => turning%cosine, decay => turning%decay)
-         turning%divisor = 1.0_wp + cosine + (1.0_wp - cosine)*decay**2
-         turning%share = (1.0_wp - decay)*(1.0_wp + decay + cosine*(1.0_wp - decay))
-         turning%dividend = 2.0_wp*decay*(d/rho) + turning%share*turning%u
-         turning%nu = turning%dividend/turning%divisor
-      end associate
+      call find_tractrix(rho, turning%length, turning%cosine, time, turning%decay, turning%share, turning%divisor)
+      turning%nu = (2.0_wp*turning%decay*(d/rho) + turning%share*turning%u)/turning%divisor
    end function turning_at
+
+   !> Share of tan(phi/2) that is left at a share `time` of an increment of a length. All [-].
+   !> docs/theory/memory-rules.md section 4.2.
+   pure real(wp) function decay_at(rho, length, time) result(decay)
+      real(wp), intent(in) :: rho, length, time
+
+      decay = 1.0_wp
+      if (time > 0.0_wp) decay = exp(-length*time/rho)
+   end function decay_at
 
    !> What the changes of nu with d, which stays on the sphere, and the increment are made of. All [-]. Derivative of
    !> docs/theory/memory-rules.md section 4.2.
@@ -135,7 +146,7 @@ contains
             ddecay = decay_slope*by%length(j)
             ddivisor = divisor_cosine*dcosine + divisor_decay*ddecay
             dshare = share_decay*ddecay + share_cosine*dcosine
-            ! nu = dividend/divisor, the dividend a sum of d and u
+            ! nu is a sum of d and u over a divisor
             by%along_d(j) = on_d*(ddecay - (decay*per_divisor)*ddivisor)
             by%along_u(j) = per_divisor*(dshare - (turning%share*per_divisor)*ddivisor) - by%of_increment*by%length(j)
          end do

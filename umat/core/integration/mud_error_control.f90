@@ -44,11 +44,11 @@ contains
       logical, intent(in) :: may_grow             !< no attempt at this substep was rejected
       type(control_t), intent(inout) :: control
       real(wp), intent(out) :: tolerance, factor
-      logical :: jump, changes
+      logical :: jump, changes, kink
 
       jump = .false.
-      changes = .false.
-      if (trial%mode == MODE_ORDINARY .and. par%guarded) changes = changes_root(trial%w(1:inc%scheme%stages))
+      call compare_stages(trial%w(1:inc%scheme%stages), changes, kink)
+      changes = changes .and. trial%mode == MODE_ORDINARY .and. par%guarded
       if (.not. may_grow) jump = error > control%error*(h/control%h)**FIRST_ORDER
       if (jump .and. changes) control%jumps = control%jumps + 1
       control%error = error
@@ -58,7 +58,7 @@ contains
       if (par%scheme == SCHEME_AUTOMATIC .and. inc%scheme%order == THIRD_ORDER%order .and. &
           trial%mode /= MODE_HELD .and. trial%relaxation%speed <= 0.0_wp) then
          tolerance = STRICTNESS*tolerance
-         if (has_kink(trial%w(1:inc%scheme%stages)) .and. .not. changes) &
+         if (kink .and. .not. changes) &
             tolerance = max(ACROSS_KINK*tolerance, min(tolerance, LEAST_ACROSS))
       end if
       if (changes .and. control%jumps > RESOLVED_JUMPS) &
@@ -83,22 +83,34 @@ contains
       if (planned <= 0.0_wp) proposal = 0.0_wp
    end function proposal
 
-   !> True where stages of a substep stand on different sides of a kink of the rates: the floor, a cap, the isotropic
-   !> mechanism.
-   pure logical function has_kink(w)
+   !> Whether stages of a substep are at different roots of the direction equation, of which several are possible only
+   !> between floor, cap and neither, and whether they stand on different sides of a kink of the rates: the floor, a
+   !> cap, the isotropic mechanism. Stages as rate_t has them. docs/theory/integration.md section 3.1.
+   pure subroutine compare_stages(w, several_roots, kink)
       type(rate_t), intent(in) :: w(:)
+      logical, intent(out) :: several_roots, kink
+      logical :: several, guard, mechanism
+      integer :: i
 
-      has_kink = any(w%floored .neqv. w(1)%floored) .or. any(w%capped_h .neqv. w(1)%capped_h) .or. &
-                 any(w%capped_d .neqv. w(1)%capped_d) .or. any(w%iso_active .neqv. w(1)%iso_active)
-   end function has_kink
+      several = .false.
+      guard = .false.
+      mechanism = .false.
+      do i = 1, size(w)
+         several = several .or. w(i)%several
+         guard = guard .or. (w(i)%floored .neqv. w(1)%floored) .or. (w(i)%capped_h .neqv. w(1)%capped_h) .or. &
+                 (w(i)%capped_d .neqv. w(1)%capped_d)
+         mechanism = mechanism .or. (w(i)%iso_active .neqv. w(1)%iso_active)
+      end do
+      several_roots = several .and. guard
+      kink = guard .or. mechanism
+   end subroutine compare_stages
 
-   !> True where stages of a substep are at different roots of the direction equation: several are possible only between
-   !> floor, cap and neither. Stages as rate_t has them. docs/theory/integration.md section 3.1.
+   !> True where stages of a substep are at different roots of the direction equation. As in compare_stages.
+   !> docs/theory/integration.md section 3.1.
    pure logical function changes_root(w)
       type(rate_t), intent(in) :: w(:)
+      logical :: kink
 
-      changes_root = any(w%several) .and. (any(w%floored .neqv. w(1)%floored) .or. &
-                                           any(w%capped_h .neqv. w(1)%capped_h) .or. &
-                                           any(w%capped_d .neqv. w(1)%capped_d))
+      call compare_stages(w, changes_root, kink)
    end function changes_root
 end module mud_error_control

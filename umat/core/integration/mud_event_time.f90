@@ -13,7 +13,7 @@ module mud_event_time
    use mud_event_functions, only: psi_at
    use mud_event_table, only: EVENTS, EVENT_OPENS, EVENT_PARTS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, &
       EVENT_YIELD, NO_RATE, RATE_THERE, RATE_IF_CLOSED
-   use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, turning_of, NY
+   use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, NY
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, p_follows
@@ -22,7 +22,6 @@ module mud_event_time
    use mud_state, only: counters_t
    use mud_tensor, only: ddot, trace, contractions, tensors_t, ANY_TENSORS
    use mud_trial, only: trial_t
-   use mud_elastic_domain, only: turning_t
    use mud_linearise, only: linearised_t, changes_t
    implicit none (type, external)
    private
@@ -49,7 +48,6 @@ contains
       type(linearised_t) :: lin
       type(rate_t) :: w
       type(counters_t) :: uncounted
-      type(turning_t) :: turning
       type(tensors_t) :: r_in
       real(wp) :: with_size(NY), y(DIRECTIONS, NY), dt(DIRECTIONS), slopes(DIRECTIONS), e, time, dh, &
          margin(DIRECTIONS), margin_with_size
@@ -59,7 +57,6 @@ contains
       mode = trial%mode
       if (mode == MODE_HELD) mode = closing_mode(inc)
       e = void_ratio_at(inc, time)
-      turning = turning_of(inc, mode, time)
       select case (EVENTS(event)%looks_at)
       case (RATE_THERE)
          call rate_of(par, inc, time, trial%y, trial%r_in, mode, w, uncounted)
@@ -75,7 +72,7 @@ contains
       r_in%of(BY_SIZE, :) = 0.0_wp
       dt = sens%shift
       dt(BY_SIZE) = 1.0_wp
-      call changes_along(inc, mode, time, e, turning, dt, sens%driving, changes)
+      call changes_along(inc, mode, time, e, dt, sens%driving, changes)
       if (EVENTS(event)%looks_at /= NO_RATE) &
          call linearise_stage(par, inc, w, trial%y, time, e, changes%loading, lin)
       slopes = slopes_of_event(par, inc, event, trial, time, w, lin, y, r_in, margin, sens%driving, changes)

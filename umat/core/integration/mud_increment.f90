@@ -4,19 +4,20 @@ module mud_increment
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_state, only: counters_t
-   use mud_tensor, only: IDENTITY, LANES, ddot, trace, deviator, norm, tensors_t
+   use mud_tensor, only: IDENTITY, LANES, ddot, trace, deviator, norm, tensors_t, contracted
    use mud_loading, only: loading_t, no_strain, whole_strain
    use mud_bonding, only: is_bonded
    use mud_fluidity, only: recovery
    use mud_rate, only: rate_t
    use mud_rates, only: rate_at, MODE_ORDINARY, MODE_ELASTIC
    use mud_elastic_domain, only: turning_t, turning_at, combination_t, combination_of_turning, &
-      loading_direction, exit_share
+      loading_direction, exit_share, decay_at
    use mud_substep, only: scheme_t, SCHEMES
    implicit none (type, external)
    private
    public :: increment_t, new_increment, take_phase, end_in_domain, direction_at, void_ratio_at, suction_at, rate_of, &
-             store_rate, loading_strain, changes_of_loading_strain, turning_of, has_elastic_part, NY, SHORTEST_PHASE
+             store_rate, loading_strain, changes_of_loading_strain, has_elastic_part, live_numbers, NY, &
+             SHORTEST_PHASE, STRAIGHT
 
    !> Length of the integrated vector: sigma'(6), z(6), plastic shear, of the cyclic preloading ln chi' and, since the
    !> substep began, contraction, and fluidity.
@@ -25,9 +26,8 @@ module mud_increment
    !> like a reversal [-].
    real(wp), parameter :: ACROSS = 1.0e-12_wp
    real(wp), parameter :: SHORTEST_PHASE = 1.0e-9_wp   !< A shorter phase is left out [-].
-
-   type(turning_t), parameter :: NO_TURNING = turning_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
-      0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
+   !> A strain this close to nu does not turn it: what that moves is rounding [-].
+   real(wp), parameter :: STRAIGHT = 1.0e-10_wp
 
    !> An increment, and the phase of it that is being integrated. Pseudo-time runs from 0 to 1 over the whole of it.
    type :: increment_t
@@ -35,6 +35,7 @@ module mud_increment
       real(wp) :: rho               !< Radius of the elastic domain, 0: none [-].
       real(wp) :: exit              !< Where the strain leaves the elastic domain, 1: it does not [-].
       real(wp) :: from_centre(6)    !< Strain from its centre, there or, if it stays inside, at the start [-].
+      logical :: straight           !< From there on all of the strain loads: it leads along nu.
       ! the phase
       real(wp) :: from, to          !< Its place [-].
       logical :: bonded             !< Bonding is on and there is suction.
@@ -56,7 +57,7 @@ contains
       type(rate_t), intent(in), optional :: near   !< As rate_at has it.
       real(wp) :: loading(6), aside(6)
 
-      if (has_elastic_part(inc, mode)) then
+      if (has_elastic_part(inc, mode) .and. .not. (inc%straight .and. mode == MODE_ORDINARY)) then
          call loading_strain(inc, mode, time, loading, aside)
          call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), suction_at(inc, time), y(7:12), r_in, &
                       loading, inc%d_pc, mode, w, near, y(14), inc%rests, y(16))
@@ -74,6 +75,15 @@ contains
       if (w%iso_kept) counters%iso_kept = counters%iso_kept + 1
       if (w%no_root) counters%no_root = counters%no_root + 1
    end subroutine rate_of
+
+   !> How many numbers of the integrated vector may change: those of effects that are off stand last.
+   pure integer function live_numbers(par) result(n)
+      type(params_t), intent(in) :: par
+
+      n = 13
+      if (par%preloading) n = 15
+      if (par%fluid) n = 16
+   end function live_numbers
 
    !> A rate as one of the integrated vector. sigma' [kPa], the others [-], per unit of pseudo-time.
    pure subroutine store_rate(w, dy)
@@ -126,13 +136,14 @@ contains
 
    !> Changes of the part that loads with the strain rate and the elastic domain at the start, at a pseudo-time that
    !> itself changes by dt. All [-]; derivative of docs/theory/memory-rules.md sections 4.1, 4.2.
-   pure subroutine changes_of_loading_strain(inc, mode, turning, strain, centre, dt, loading)
+   pure subroutine changes_of_loading_strain(inc, mode, time, strain, centre, dt, loading)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
-      type(turning_t), intent(in) :: turning   !< of the pseudo-time; not used inside the domain
+      real(wp), intent(in) :: time             !< a share of inc
       type(tensors_t), intent(in) :: strain, centre   !< changes of both
       real(wp), intent(in) :: dt(LANES)        !< of the pseudo-time since the exit
       type(loading_t), intent(inout) :: loading
+      type(turning_t) :: turning
       type(combination_t) :: by
       real(wp) :: along, per_rho, nu(2), nu_rate(2), turn_rate, turn, on_d, on_length, d_on_u
       integer :: j
@@ -143,7 +154,11 @@ contains
       else if (mode == MODE_ELASTIC) then
          call no_strain(inc%d_strain, loading)
          return
+      else if (inc%straight) then
+         call changes_of_straight_strain(inc, time, strain, loading)
+         return
       end if
+      turning = turning_at(inc%rho, inc%from_centre, inc%d_strain, time - inc%exit)
       call combination_of_turning(turning, centre, strain, by)
       along = ddot(turning%nu, inc%d_strain)
       ! nu as a sum of d and u
@@ -151,6 +166,7 @@ contains
       nu(2) = turning%share/turning%divisor
       loading%basis(:, 1) = turning%d
       loading%basis(:, 2) = turning%u
+      loading%turns = .true.
       loading%part = along*nu
       loading%whole = [0.0_wp, turning%length]
       loading%of_strain = along*by%of_increment
@@ -172,20 +188,23 @@ contains
       end do
    end subroutine changes_of_loading_strain
 
-   !> How the elastic domain stands at a pseudo-time, where a part of the strain loads. Zeros where no part is elastic
-   !> or all of it; time is a share of inc [-]. docs/theory/memory-rules.md section 4.2.
-   pure function turning_of(inc, mode, time) result(turning)
+   !> The same of a strain a along nu, all of which loads: (nu:a) nu changes with a by 1 - q across nu and by 1 along
+   !> it, with the centre by q |a|/rho, where q, the tractrix's decay, is what is left of nu's first direction. All [-];
+   !> limit of docs/theory/memory-rules.md section 4.2 for d along a.
+   pure subroutine changes_of_straight_strain(inc, time, strain, loading)
       type(increment_t), intent(in) :: inc
-      integer, intent(in) :: mode
       real(wp), intent(in) :: time
-      type(turning_t) :: turning
+      type(tensors_t), intent(in) :: strain
+      type(loading_t), intent(inout) :: loading
+      real(wp) :: length, decay
 
-      if (has_elastic_part(inc, mode) .and. mode /= MODE_ELASTIC) then
-         turning = turning_at(inc%rho, inc%from_centre, inc%d_strain, time - inc%exit)
-      else
-         turning = NO_TURNING
-      end if
-   end function turning_of
+      length = norm(inc%d_strain)
+      decay = decay_at(inc%rho, length, time - inc%exit)
+      call whole_strain(inc%d_strain, loading)
+      loading%of_strain = 1.0_wp - decay
+      loading%of_centre = decay*length/inc%rho
+      loading%along(:, 1) = (decay/length**2)*contracted(strain, inc%d_strain)
+   end subroutine changes_of_straight_strain
 
    !> An increment of a point with void ratio e, suction p_c and a strain from_centre of the elastic domain. e and
    !> strain [-], tensor shear, compression positive; p_c and d_pc in the unit of p_atm. The phase is not set, nothing
@@ -206,6 +225,7 @@ contains
       inc%rho = par%rho_e
       inc%exit = 1.0_wp
       inc%from_centre = 0.0_wp
+      inc%straight = .false.
       if (inc%rho <= 0.0_wp) return
       inc%from_centre = from_centre
       length = norm(from_centre)
@@ -217,6 +237,8 @@ contains
       else
          inc%from_centre = inc%from_centre + inc%exit*d_strain
          inc%from_centre = (inc%rho/norm(inc%from_centre))*inc%from_centre
+         ! twice the sine of half the angle
+         inc%straight = norm(inc%from_centre/inc%rho - d_strain/norm(d_strain)) < STRAIGHT
       end if
    end subroutine new_increment
 

@@ -4,7 +4,7 @@
 module mud_order
    use mud_consistent, only: linearise_stage
    use mud_cutoff, only: MODE_HELD
-   use mud_increment, only: increment_t, void_ratio_at, turning_of, changes_of_loading_strain
+   use mud_increment, only: increment_t, void_ratio_at, changes_of_loading_strain
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
    use mud_rates, only: MODE_ORDINARY
@@ -15,7 +15,6 @@ module mud_order
    use mud_substep, only: SECOND_ORDER, THIRD_ORDER, AS_SECOND_ORDER, LINEARLY_IMPLICIT, step_factor
    use mud_tensor, only: LANES, tensors_t, ZERO_TENSORS
    use mud_trial, only: trial_t, error_norm
-   use mud_elastic_domain, only: turning_t
    use mud_linearise, only: linearised_t, changes_t, NRATES
    implicit none (type, external)
    private
@@ -97,18 +96,16 @@ contains
       type(trial_t), intent(inout) :: trial
       type(linearised_t) :: lin
       type(changes_t) :: changes
-      type(turning_t) :: turning
       real(wp) :: y(LANES, NRATES), rates(LANES, NRATES), unmoved(LANES), of_fluidity
       integer :: j
 
-      turning = turning_of(inc, trial%mode, trial%time)
       ! the strain rate is held
       unmoved = 0.0_wp
       changes%e = 0.0_wp
       changes%p_c = 0.0_wp
       changes%d_pc = 0.0_wp
       changes%scans = .false.
-      call changes_of_loading_strain(inc, trial%mode, turning, REST, REST, unmoved, changes%loading)
+      call changes_of_loading_strain(inc, trial%mode, trial%time, REST, REST, unmoved, changes%loading)
       call linearise_stage(par, inc, trial%w(1), trial%y0, trial%time, void_ratio_at(inc, trial%time), &
                            changes%loading, lin)
       y = 0.0_wp

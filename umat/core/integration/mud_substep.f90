@@ -86,7 +86,7 @@ contains
       real(wp), intent(in) :: h
       real(wp), intent(out), contiguous :: y(:)
 
-      call combine(scheme%a((i - 1)*(i - 2)/2 + 1:i*(i - 1)/2), y0, rates, h, y)
+      call combine(size(y), size(rates, 1), i - 1, scheme%a((i - 1)*(i - 2)/2 + 1:i*(i - 1)/2), y0, rates, h, y)
    end subroutine stage_point
 
    !> The solution of a step h. y0(n), y(n), rates(n or more, stages or more) per unit of time; h in that unit.
@@ -97,7 +97,7 @@ contains
       real(wp), intent(in) :: h
       real(wp), intent(out), contiguous :: y(:)
 
-      call combine(scheme%b(1:scheme%stages), y0, rates, h, y)
+      call combine(size(y), size(rates, 1), scheme%stages, scheme%b(1:scheme%stages), y0, rates, h, y)
    end subroutine solution
 
    !> Solution minus embedded solution of a step h. error(n), n at most 21, rates(n, stages or more) per unit of time; h
@@ -108,7 +108,8 @@ contains
       real(wp), intent(in) :: h
       real(wp), intent(out), contiguous :: error(:)
 
-      call combine(scheme%error(1:scheme%stages), ZERO(1:size(error)), rates, h, error)
+      call combine(size(error), size(rates, 1), scheme%stages, scheme%error(1:scheme%stages), ZERO(1:size(error)), &
+                   rates, h, error)
    end subroutine error_vector
 
    !> The state at a share of a step h, by the cubic that has the states and rates of both its ends (Hermite's
@@ -122,32 +123,31 @@ contains
           + share*(share - 1.0_wp)*((1.0_wp - 2.0_wp*share)*(y1 - y0) + (share - 1.0_wp)*h*rate0 + share*h*rate1)
    end function cubic_point
 
-   !> y = y0 + h times the weighted sum of the first rates; the first two in one go.
-   pure subroutine combine(weights, y0, rates, h, y)
-      real(wp), intent(in), contiguous :: weights(:), y0(:), rates(:, :)
-      real(wp), intent(in) :: h
-      real(wp), intent(out), contiguous :: y(:)
-      real(wp) :: first, second
+   !> y = y0 + h times the weighted sum of the first rates.
+   pure subroutine combine(n, leading, stages, weights, y0, rates, h, y)
+      integer, intent(in) :: n, leading, stages
+      real(wp), intent(in) :: weights(stages), y0(n), rates(leading, stages), h
+      real(wp), intent(out) :: y(n)
       integer :: i, j
 
-      if (size(weights) == 0) then
+      if (stages == 0) then
          y = y0
-         return
-      end if
-      first = h*weights(1)
-      if (size(weights) == 1) then
-         do i = 1, size(y)
-            y(i) = y0(i) + first*rates(i, 1)
+      else if (stages == 1) then
+         do i = 1, n
+            y(i) = y0(i) + (h*weights(1))*rates(i, 1)
          end do
-         return
+      else if (stages == 2) then
+         do i = 1, n
+            y(i) = y0(i) + (h*weights(1))*rates(i, 1) + (h*weights(2))*rates(i, 2)
+         end do
+      else
+         do i = 1, n
+            y(i) = y0(i) + (h*weights(1))*rates(i, 1) + (h*weights(2))*rates(i, 2) + (h*weights(3))*rates(i, 3)
+         end do
+         do j = 4, stages
+            if (abs(weights(j)) > 0.0_wp) y = y + (h*weights(j))*rates(1:n, j)
+         end do
       end if
-      second = h*weights(2)
-      do i = 1, size(y)
-         y(i) = y0(i) + first*rates(i, 1) + second*rates(i, 2)
-      end do
-      do j = 3, size(weights)
-         if (abs(weights(j)) > 0.0_wp) y = y + (h*weights(j))*rates(1:size(y), j)
-      end do
    end subroutine combine
 
    !> Factor on the step for an error of a tolerance; no growth right after a rejection. error and tolerance in the same

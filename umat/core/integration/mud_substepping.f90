@@ -197,7 +197,7 @@ contains
       real(wp) :: length
 
       turn_of = 0.0_wp
-      if (inc%rho <= 0.0_wp .or. inc%inside) return
+      if (inc%rho <= 0.0_wp .or. inc%inside .or. inc%straight) return
       length = norm(inc%d_strain)
       if (length > 0.0_wp) turn_of = 1.0_wp - ddot(direction_at(inc, inc%from), inc%d_strain)/length
    end function turn_of

@@ -3,7 +3,7 @@
 !> faster than anything else changes. A pair integrates what is left of the rates, the parts are integrated exactly.
 !> Whatever the parts are, the order of the pair stays; docs/theory/integration.md section 2.2.
 module mud_transient
-   use mud_increment, only: increment_t, rate_of, store_rate, direction_at, has_elastic_part, NY
+   use mud_increment, only: increment_t, rate_of, store_rate, direction_at, has_elastic_part, NY, STRAIGHT
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_rate, only: rate_t
@@ -13,7 +13,7 @@ module mud_transient
    implicit none (type, external)
    private
    public :: transient_t, fading_t, NO_FADING, find_transient, without_turn, half_way, begin_fading, &
-             take_fading, add_faded, take_changes_of_fading, add_changes_of_faded
+             take_fading, add_faded, change_of_left, add_changes_of_faded
 
    !> Rates that fade, per unit of pseudo-time.
    type :: transient_t
@@ -36,8 +36,6 @@ module mud_transient
    !> Shorter attempts, as shares of the radius, follow the turn as it is, and so does a last piece that ends before the
    !> turn is half-way [-].
    real(wp), parameter :: LONG = 0.3_wp
-   !> The strain does not turn where nu is this close to its direction: what that moves is rounding [-].
-   real(wp), parameter :: STRAIGHT = 1.0e-10_wp
    !> The second part, of the second power of the angle, is left out where the stress that the centre lags behind moves
    !> by less than this share of the tolerance [-].
    real(wp), parameter :: ONE_TERM = 0.1_wp
@@ -60,7 +58,8 @@ contains
       if (transient%sought .or. .not. has_elastic_part(inc, MODE_ORDINARY) .or. .not. first%loading) return
       length = norm(inc%d_strain)
       if (length*h < LONG*inc%rho .or. length*(inc%to - time) < LN_2*inc%rho) return
-      across = norm(direction_at(inc, time) - inc%d_strain/length)   ! twice the sine of half the angle
+      across = 0.0_wp   ! twice the sine of half the angle
+      if (.not. inc%straight) across = norm(direction_at(inc, time) - inc%d_strain/length)
       if (0.5_wp*across**2 > LARGEST) return
       transient%sought = .true.
       transient%known = .true.
@@ -154,66 +153,56 @@ contains
           *(transient%parts(:, 1) + (0.5_wp*(before + after))*transient%parts(:, 2))
    end subroutine add_faded
 
-   !> Changes of a rate, of which what fades is taken; its pseudo-time changes by dt. Arguments as in take_fading;
-   !> derivative of docs/theory/integration.md section 2.2.
-   pure subroutine take_changes_of_fading(transient, fading, time, dt, rate)
+   !> Changes of a vector: what fades is taken of the rates that lead to it, and added as it is. `weights` are those of
+   !> the rates, h the size of the substep; left and d_left belong to them, then to where the vector stands: at the
+   !> start of the substep, at its stages, there. y as the integrated vector, its first columns. Derivative of
+   !> docs/theory/integration.md section 2.2.
+   pure subroutine add_changes_of_faded(transient, fading, n, h, weights, left, d_left, live, y)
       type(transient_t), intent(in) :: transient
       type(fading_t), intent(in) :: fading
-      real(wp), intent(in) :: time, dt(LANES)
-      real(wp), intent(inout) :: rate(LANES, NY)
-      real(wp) :: left, d_left(LANES)
+      integer, intent(in) :: n, live   !< live: numbers that may change
+      real(wp), intent(in) :: h, weights(n), left(n + 1), d_left(LANES, n + 1)
+      real(wp), intent(inout) :: y(LANES, live)
+      real(wp) :: factors(2), along(LANES, 2), weight
       integer :: i
 
-      if (transient%speed*(time - transient%since) > GONE) return
-      if (transient%terms == 0) then
-         left = exp(-transient%speed*(time - transient%since))
-         rate = rate - left*fading%parts(:, :, 1)
-         return
-      end if
-      call change_of_left(transient, fading, time, dt, left, d_left)
-      do i = 1, NY
-         rate(:, i) = rate(:, i) - left*(fading%parts(:, i, 1) + left*fading%parts(:, i, 2)) &
-                      - d_left*(transient%parts(i, 1) + 2.0_wp*left*transient%parts(i, 2))
+      if (left(1) <= 0.0_wp) return
+      associate (before => left(1), after => left(n + 1))
+         factors(1) = (before - after)/transient%speed
+         factors(2) = 0.5_wp*(before + after)*factors(1)
+         if (transient%terms == 0) then
+            factors(1) = factors(1) - h*dot_product(weights, left(1:n))
+            do i = 1, live
+               y(:, i) = y(:, i) + factors(1)*fading%parts(:, i, 1)
+            end do
+            return
+         end if
+         along(:, 1) = (d_left(:, 1) - d_left(:, n + 1) - factors(1)*fading%speed)/transient%speed
+         along(:, 2) = (before*d_left(:, 1) - after*d_left(:, n + 1) - factors(2)*fading%speed)/transient%speed
+      end associate
+      do i = 1, n
+         weight = h*weights(i)
+         factors = factors - weight*[left(i), left(i)**2]
+         along(:, 1) = along(:, 1) - weight*d_left(:, i)
+         along(:, 2) = along(:, 2) - (2.0_wp*weight*left(i))*d_left(:, i)
       end do
-   end subroutine take_changes_of_fading
-
-   !> Changes of a vector to which what fades is added; both pseudo-times change. Arguments as in add_faded; derivative
-   !> of docs/theory/integration.md section 2.2.
-   pure subroutine add_changes_of_faded(transient, fading, from, to, d_from, d_to, y)
-      type(transient_t), intent(in) :: transient
-      type(fading_t), intent(in) :: fading
-      real(wp), intent(in) :: from, to, d_from(LANES), d_to(LANES)
-      real(wp), intent(inout) :: y(LANES, NY)
-      real(wp) :: before, after, first, second
-      real(wp), dimension(LANES) :: d_before, d_after, d_first, d_second
-      integer :: i
-
-      if (transient%speed*(from - transient%since) > GONE) return
-      if (transient%terms == 0) then
-         before = exp(-transient%speed*(from - transient%since))
-         after = exp(-transient%speed*(to - transient%since))
-         y = y + ((before - after)/transient%speed)*fading%parts(:, :, 1)
-         return
-      end if
-      call change_of_left(transient, fading, from, d_from, before, d_before)
-      call change_of_left(transient, fading, to, d_to, after, d_after)
-      first = (before - after)/transient%speed
-      second = 0.5_wp*(before + after)*first
-      d_first = (d_before - d_after - first*fading%speed)/transient%speed
-      d_second = (before*d_before - after*d_after - second*fading%speed)/transient%speed
-      do i = 1, NY
-         y(:, i) = y(:, i) + first*fading%parts(:, i, 1) + second*fading%parts(:, i, 2) &
-                   + d_first*transient%parts(i, 1) + d_second*transient%parts(i, 2)
+      do i = 1, live
+         y(:, i) = y(:, i) + factors(1)*fading%parts(:, i, 1) + factors(2)*fading%parts(:, i, 2) &
+                   + along(:, 1)*transient%parts(i, 1) + along(:, 2)*transient%parts(i, 2)
       end do
    end subroutine add_changes_of_faded
 
-   !> What is left of the first part at a pseudo-time that changes by dt, and its change [-].
+   !> What is left of the first part at a pseudo-time that changes by dt, and its change [-]; zeros where that is below
+   !> rounding. Derivative of docs/theory/integration.md section 2.2.
    pure subroutine change_of_left(transient, fading, time, dt, left, change)
       type(transient_t), intent(in) :: transient
       type(fading_t), intent(in) :: fading
       real(wp), intent(in) :: time, dt(LANES)
       real(wp), intent(out) :: left, change(LANES)
 
+      left = 0.0_wp
+      change = 0.0_wp
+      if (transient%speed*(time - transient%since) > GONE) return
       left = exp(-transient%speed*(time - transient%since))
       change = -left*((time - transient%since)*fading%speed + transient%speed*(dt - fading%since))
    end subroutine change_of_left

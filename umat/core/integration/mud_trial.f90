@@ -13,7 +13,7 @@ module mud_trial
    use mud_transient, only: transient_t, take_fading, add_faded
    implicit none (type, external)
    private
-   public :: trial_t, take_step, stage_of_trial, error_norm
+   public :: trial_t, take_step, error_norm
 
    real(wp), parameter :: PLASTIC_SHEAR_SCALE = 0.01_wp   !< Of the error norm [-].
    real(wp), parameter :: CONTRACTION_SCALE = 0.01_wp     !< Likewise [-].
@@ -25,6 +25,7 @@ module mud_trial
    type :: trial_t
       real(wp) :: rates(NY, MAX_STAGES)
       real(wp) :: y0(NY), y(NY)
+      real(wp) :: points(NY, 2:MAX_STAGES)   !< Where the stages beyond the first stand.
       type(rate_t) :: w(MAX_STAGES) !< What each stage's rate went through; the first is that of the memory as it is.
       integer :: mode
       logical :: pressed            !< The bounding surface was met inside the elastic domain: ordinary rates follow.
@@ -50,7 +51,7 @@ contains
       real(wp), intent(in) :: h
       type(trial_t), intent(inout) :: trial
       type(counters_t), intent(inout) :: counters
-      real(wp) :: y(NY)
+      real(wp) :: time
       integer :: i
 
       if (trial%mode == MODE_HELD) then
@@ -62,31 +63,17 @@ contains
       if (trial%transient%known) call take_fading(trial%transient, trial%time, trial%rates(:, 1))
       if (trial%relaxation%speed > 0.0_wp) call relax(trial%relaxation, h, trial%rates(:, 1:1))
       do i = 2, inc%scheme%stages
-         call stage_of_trial(inc, i, h, trial, y)
-         call rate_of(par, inc, trial%time + inc%scheme%node(i)*h, y, trial%r_in, trial%mode, trial%w(i), &
-                      counters, trial%w(1))
+         time = trial%time + inc%scheme%node(i)*h
+         call stage_point(inc%scheme, i, trial%y0, trial%rates, h, trial%points(:, i))
+         if (trial%transient%known) call add_faded(trial%transient, trial%time, time, trial%points(:, i))
+         call rate_of(par, inc, time, trial%points(:, i), trial%r_in, trial%mode, trial%w(i), counters, trial%w(1))
          call store_rate(trial%w(i), trial%rates(:, i))
-         if (trial%transient%known) &
-            call take_fading(trial%transient, trial%time + inc%scheme%node(i)*h, trial%rates(:, i))
+         if (trial%transient%known) call take_fading(trial%transient, time, trial%rates(:, i))
          if (trial%relaxation%speed > 0.0_wp) call relax(trial%relaxation, h, trial%rates(:, 1:i))
       end do
       call solution(inc%scheme, trial%y0, trial%rates, h, trial%y)
       if (trial%transient%known) call add_faded(trial%transient, trial%time, trial%time + h, trial%y)
    end subroutine take_step
-
-   !> Where stage i of a trial substep h stands. h is a share of inc [-], y as in trial_t. docs/theory/integration.md
-   !> sections 2 and 2.2.
-   pure subroutine stage_of_trial(inc, i, h, trial, y)
-      type(increment_t), intent(in) :: inc
-      integer, intent(in) :: i
-      real(wp), intent(in) :: h
-      type(trial_t), intent(in) :: trial
-      real(wp), intent(out) :: y(NY)
-
-      call stage_point(inc%scheme, i, trial%y0, trial%rates, h, y)
-      if (trial%transient%known) &
-         call add_faded(trial%transient, trial%time, trial%time + inc%scheme%node(i)*h, y)
-   end subroutine stage_of_trial
 
    !> Relative error of a trial substep; the void ratio is exact. A held point's is that of its stress, p_min times its
    !> stress ratio. [-]; h is the size of the trial, a share of its increment. docs/theory/integration.md section 3.

@@ -17,13 +17,12 @@ module mud_linearise
    use mud_tensor, only: LANES, contractions, trace
    implicit none (type, external)
    private
-   public :: linearised_t, linearise, changes_t, lanes_t, rest, change_point, along_ratio, NRATES
+   public :: linearised_t, linearise, changes_t, lanes_t, sum_t, NO_SUM, rest, change_point, along_ratio, NRATES
 
    !> What all directions share.
    type, extends(turn_t) :: linearised_t
       logical :: held_p                     !< p' is at its lower bound: it does not follow the stress.
-      real(wp) :: d_v, d_pc
-      real(wp) :: aside_v                   !< Trace of the elastic strain rate beside (elastic domain pulled along).
+      real(wp) :: d_v, whole_v, d_pc        !< Traces of the strain rate that loads and of the whole one; suction rate.
       real(wp) :: curvature(3)              !< of f [1/kPa2, 1/kPa, -]
       real(wp) :: with_turn(3)              !< of f, df/dp_c, df/de with ln x of the branch's turn [-, 1/kPa, -]
       real(wp) :: psi_f, psi_p, m_b_psi     !< slopes of psi by f and p', of M^b by psi [-, 1/kPa, -]
@@ -44,6 +43,14 @@ module mud_linearise
       real(wp) :: turn(LANES)                      !< of ln x of that turn [-]
    end type changes_t
 
+   !> Changes of a tensor as a sum. Of those of the whole strain rate, of stress, and of what loads as far as it is not
+   !> along fixed tensors, by factors; of the fixed tensors, n, r and the unit tensor by numbers that change.
+   type :: sum_t
+      real(wp) :: of_whole, of_loading, of_stress
+      real(wp), dimension(LANES) :: first, second, n, r, p
+   end type sum_t
+   type(sum_t), parameter :: NO_SUM = sum_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
+
    !> What lies between the changes of a rate's arguments and those of its results.
    type :: lanes_t
       real(wp), dimension(LANES) :: mean, v          !< a third of the trace of stress; trace of the strain rate
@@ -52,9 +59,7 @@ module mud_linearise
       real(wp), dimension(LANES) :: k, g, psi, m_b, k_e, b, volumetric, dd, dh, beta, gamma
       real(wp), dimension(LANES) :: n_dr, h_dr, d_dr, gamma_dr   !< n:dr, and of the gradients along n
       real(wp), dimension(LANES) :: dl, flow         !< of L and of L D
-      !> The turn dn by tensors: strain rate and stress by factors; e, n, r and the unit tensor.
-      real(wp) :: turn_strain, turn_stress
-      real(wp), dimension(LANES) :: turn_e, turn_n, turn_r, turn_p
+      type(sum_t) :: turn                            !< dn
    end type lanes_t
 contains
    !> Prepares the derivative of a rate w that was evaluated at (sigma, e, p_c) for the strain rate of loading and d_pc.
@@ -72,7 +77,7 @@ contains
       lin%held_p = .not. p_follows(par, sigma)
       traces = [trace(loading%basis(:, 1)), trace(loading%basis(:, 2))]
       lin%d_v = loading%part(1)*traces(1) + loading%part(2)*traces(2)
-      lin%aside_v = loading%whole(1)*traces(1) + loading%whole(2)*traces(2) - lin%d_v
+      lin%whole_v = loading%whole(1)*traces(1) + loading%whole(2)*traces(2)
       lin%d_pc = d_pc
       lin%curvature = 0.0_wp
       lin%with_turn = 0.0_wp

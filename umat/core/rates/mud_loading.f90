@@ -6,11 +6,12 @@ module mud_loading
    use mud_tensor, only: LANES, tensors_t, contracted, traces, ddot, trace, UNIT_STRAINS, ANY_TENSORS
    implicit none (type, external)
    private
-   public :: loading_t, whole_strain, no_strain, free_contracted, loading_traces, add_loading
+   public :: loading_t, whole_strain, no_strain, loading_contracted, loading_traces, add_loading
 
    !> The rates themselves and the parts of their changes, [-] per unit of pseudo-time.
    type :: loading_t
       real(wp) :: basis(6, 2)             !< the fixed tensors: what loads is the sum of part times them
+      logical :: turns                    !< it turns; otherwise the second tensor is zero
       real(wp) :: part(2), whole(2)       !< of what loads, of the whole strain rate
       real(wp) :: of_strain, of_centre    !< factors of the changes of strain rate and centre
       real(wp) :: along(LANES, 2)         !< changes along the fixed tensors
@@ -23,6 +24,7 @@ contains
 
       loading%basis(:, 1) = d_strain
       loading%basis(:, 2) = 0.0_wp
+      loading%turns = .false.
       loading%whole = [1.0_wp, 0.0_wp]
       loading%part = loading%whole
       loading%of_strain = 1.0_wp
@@ -40,24 +42,25 @@ contains
       loading%of_strain = 0.0_wp
    end subroutine no_strain
 
-   !> Contractions with a of what is not along the fixed tensors, in the unit of a. strain and centre are the changes
-   !> [-] that loading refers to. Derivative of docs/theory/memory-rules.md section 4.2.
-   pure function free_contracted(loading, strain, centre, a) result(c)
+   !> Contractions of the changes with a, in its unit. strain and centre are the changes [-] that loading refers to.
+   !> Derivative of docs/theory/memory-rules.md section 4.2.
+   pure function loading_contracted(loading, strain, centre, a) result(c)
       type(loading_t), intent(in) :: loading
       type(tensors_t), intent(in) :: strain, centre
       real(wp), intent(in) :: a(6)
       real(wp) :: c(LANES)
 
+      c = ddot(loading%basis(:, 1), a)*loading%along(:, 1)
+      if (loading%turns) c = c + ddot(loading%basis(:, 2), a)*loading%along(:, 2)
       if (strain%kind == UNIT_STRAINS) then
-         c(1:6) = loading%of_strain*a
-         c(7:) = 0.0_wp
+         c(1:6) = c(1:6) + loading%of_strain*a
       else
-         c = loading%of_strain*contracted(strain, a)
+         c = c + loading%of_strain*contracted(strain, a)
       end if
       if (centre%kind == ANY_TENSORS) c = c + loading%of_centre*contracted(centre, a)
-   end function free_contracted
+   end function loading_contracted
 
-   !> Traces of the changes [-]. Arguments as in free_contracted; derivative of docs/theory/memory-rules.md section 4.2.
+   !> Traces of the changes [-]. Arguments as in loading_contracted, and its source.
    pure function loading_traces(loading, strain, centre) result(c)
       type(loading_t), intent(in) :: loading
       type(tensors_t), intent(in) :: strain, centre

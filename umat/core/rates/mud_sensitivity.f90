@@ -10,10 +10,10 @@
 module mud_sensitivity
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
-   use mud_linearise, only: linearised_t, changes_t, lanes_t, rest, change_point, along_ratio, NRATES
+   use mud_linearise, only: linearised_t, changes_t, lanes_t, sum_t, NO_SUM, rest, change_point, along_ratio, NRATES
    use mud_rate, only: rate_t
    use mud_tensor, only: LANES, tensors_t, ddot, contractions, contracted, traces, ZERO_TENSORS
-   use mud_loading, only: free_contracted, loading_traces, add_loading
+   use mud_loading, only: loading_contracted, loading_traces, add_loading
    use mud_critical_state, only: dilatancy_slope
    use mud_fluidity, only: growth, growth_slopes
    use mud_hardening, only: KINEMATIC_EXPONENT
@@ -49,10 +49,7 @@ contains
          if (.not. at_rest) call change_moduli(par, w, lin, y, r_in, changes, x)
          call turn_direction(w, lin, strain, centre, changes, x)
       else
-         x%turn_e = 0.0_wp
-         x%turn_n = 0.0_wp
-         x%turn_r = 0.0_wp
-         x%turn_p = 0.0_wp
+         x%turn = NO_SUM
          x%dl = 0.0_wp
          x%flow = 0.0_wp
       end if
@@ -72,11 +69,11 @@ contains
                rates(:, 16) = growth(par, w%fluid)*x%dl + w%l*(slopes(1)*x%p + slopes(2)*y(:, 16))
             end associate
          end if
-         if (par%fabric .and. w%d < 0.0_wp) call fill_fabric(par, w, lin, y, strain, centre, changes, x, rates(:, 7:12))
+         if (par%fabric .and. w%d < 0.0_wp) call fill_fabric(par, w, y, strain, centre, changes, x, rates(:, 7:12))
       end if
       if (.not. present(dn)) return
       dn = 0.0_wp
-      if (w%loading) call fill_turn(w, lin, y, strain, centre, changes, x, dn)
+      if (w%loading) call add_up(w, y, strain, centre, changes, x%turn, dn)
    end subroutine changes_of_rate
 
    !> Changes of n:t, t = 2 G e - V r the elastic rate of the stress ratio times p', for a rate that loads [kPa]. Part
@@ -92,12 +89,7 @@ contains
 
       x%v = loading_traces(changes%loading, strain, centre)
       call change_point(w, lin, y, changes, x)
-      associate (loading => changes%loading)
-         c = (2.0_wp*w%g)*(free_contracted(loading, strain, centre, w%n) &
-                           + ddot(loading%basis(:, 1), w%n)*loading%along(:, 1) &
-                           + ddot(loading%basis(:, 2), w%n)*loading%along(:, 2))
-      end associate
-      c = c + (2.0_wp*lin%on_e(1))*x%g &
+      c = (2.0_wp*w%g)*loading_contracted(changes%loading, strain, centre, w%n) + (2.0_wp*lin%on_e(1))*x%g &
           - w%r_n*x%volumetric - (w%k_e*(lin%d_v - w%b_rate))*along_ratio(lin, y, x%p, w%n, w%r_n)
    end function changes_of_drive
 
@@ -161,34 +153,29 @@ contains
       type(changes_t), intent(in) :: changes
       type(lanes_t), intent(inout) :: x
       real(wp), dimension(LANES) :: n_e, h_e, d_e, gamma_e
-      real(wp), dimension(4) :: on_1, on_2, on_g, on_v
-      real(wp) :: elastic, on_e, on_dr, n_t, h_t, d_t, gamma_t, s_1, s_2, s_3, dy, dh, dd, a, b
+      real(wp), dimension(4) :: on_g, on_v
+      real(wp) :: elastic, on_e, on_dr, n_t, h_t, d_t, gamma_t, s_1, s_2, s_3, dy, dh, dd, a, b, e
       integer :: j
 
       elastic = w%k_e*(lin%d_v - w%b_rate)
       on_e = 2.0_wp*w%y*w%g
       on_dr = w%beta - w%y*elastic
-      x%turn_strain = on_e*lin%per_gamma
-      x%turn_stress = lin%per_gamma*on_dr*lin%per_p
+      x%turn%of_whole = 0.0_wp
+      x%turn%of_loading = on_e*lin%per_gamma
+      x%turn%of_stress = lin%per_gamma*on_dr*lin%per_p
+      n_e = loading_contracted(changes%loading, strain, centre, w%n)
+      h_e = loading_contracted(changes%loading, strain, centre, lin%h_n)
+      d_e = loading_contracted(changes%loading, strain, centre, lin%d_n)
+      gamma_e = loading_contracted(changes%loading, strain, centre, lin%gamma_n)
+      on_g = 2.0_wp*w%y*lin%on_e
+      on_v = w%y*lin%on_r
       associate (loading => changes%loading)
-         n_e = free_contracted(loading, strain, centre, w%n)
-         h_e = free_contracted(loading, strain, centre, lin%h_n)
-         d_e = free_contracted(loading, strain, centre, lin%d_n)
-         gamma_e = free_contracted(loading, strain, centre, lin%gamma_n)
-         on_1 = on_e*on_gradients(w, lin, loading%basis(:, 1))
-         on_2 = on_e*on_gradients(w, lin, loading%basis(:, 2))
-         on_g = 2.0_wp*w%y*lin%on_e
-         on_v = w%y*lin%on_r
          do j = 1, LANES
             ! n, h_n, d_n, gamma_n : (y dt + beta dr)
-            n_t = on_e*n_e(j) + on_1(1)*loading%along(j, 1) + on_2(1)*loading%along(j, 2) + on_g(1)*x%g(j) &
-                  - on_v(1)*x%volumetric(j) + on_dr*x%n_dr(j)
-            h_t = on_e*h_e(j) + on_1(2)*loading%along(j, 1) + on_2(2)*loading%along(j, 2) + on_g(2)*x%g(j) &
-                  - on_v(2)*x%volumetric(j) + on_dr*x%h_dr(j)
-            d_t = on_e*d_e(j) + on_1(3)*loading%along(j, 1) + on_2(3)*loading%along(j, 2) + on_g(3)*x%g(j) &
-                  - on_v(3)*x%volumetric(j) + on_dr*x%d_dr(j)
-            gamma_t = on_e*gamma_e(j) + on_1(4)*loading%along(j, 1) + on_2(4)*loading%along(j, 2) &
-                      + on_g(4)*x%g(j) - on_v(4)*x%volumetric(j) + on_dr*x%gamma_dr(j)
+            n_t = on_e*n_e(j) + on_g(1)*x%g(j) - on_v(1)*x%volumetric(j) + on_dr*x%n_dr(j)
+            h_t = on_e*h_e(j) + on_g(2)*x%g(j) - on_v(2)*x%volumetric(j) + on_dr*x%h_dr(j)
+            d_t = on_e*d_e(j) + on_g(3)*x%g(j) - on_v(3)*x%volumetric(j) + on_dr*x%d_dr(j)
+            gamma_t = on_e*gamma_e(j) + on_g(4)*x%g(j) - on_v(4)*x%volumetric(j) + on_dr*x%gamma_dr(j)
             s_1 = -n_t
             s_2 = -gamma_t - w%gamma*x%gamma(j)
             s_3 = -(w%k_e*w%d)*h_t - (w%k_e*w%h_b)*d_t - w%gamma*x%beta(j)   ! beta_n = K_e (D h_n + d_n/h)
@@ -199,26 +186,19 @@ contains
             dd = x%dd(j) + lin%per_gamma*(d_t + lin%on_t(3)*dy + lin%on_r(3)*b)
             x%dl(j) = (dh - w%l*dy)*lin%per_y
             x%flow(j) = w%d*x%dl(j) + w%l*dd
-            x%turn_e(j) = (2.0_wp*lin%per_gamma)*(w%y*x%g(j) + w%g*dy)
-            x%turn_n(j) = -lin%per_gamma*a
-            x%turn_r(j) = lin%per_gamma*(b - w%y*x%volumetric(j) - elastic*dy) - x%turn_stress*x%p(j)
-            x%turn_p(j) = -(x%turn_strain/3.0_wp)*x%v(j) - x%turn_stress*x%mean(j)
+            e = (2.0_wp*lin%per_gamma)*(w%y*x%g(j) + w%g*dy)
+            x%turn%first(j) = loading%part(1)*e + x%turn%of_loading*loading%along(j, 1)
+            x%turn%second(j) = loading%part(2)*e + x%turn%of_loading*loading%along(j, 2)
+            x%turn%n(j) = -lin%per_gamma*a
+            x%turn%r(j) = lin%per_gamma*(b - w%y*x%volumetric(j) - elastic*dy) - x%turn%of_stress*x%p(j)
+            ! deviators
+            x%turn%p(j) = -(x%turn%of_loading*x%v(j) + lin%d_v*e)*(1.0_wp/3.0_wp) - x%turn%of_stress*x%mean(j)
          end do
       end associate
    end subroutine turn_direction
 
-   !> Contractions of n, h_n, d_n and gamma_n with a tensor.
-   pure function on_gradients(w, lin, a) result(c)
-      type(rate_t), intent(in) :: w
-      type(linearised_t), intent(in) :: lin
-      real(wp), intent(in) :: a(6)
-      real(wp) :: c(4)
-
-      c = [ddot(w%n, a), ddot(lin%h_n, a), ddot(lin%d_n, a), ddot(lin%gamma_n, a)]
-   end function on_gradients
-
-   !> Changes of the rate of stress: d sigma' = 2 d(G e) - 2 G L dn - 2 n d(G L) + I dp', with what the elastic strain
-   !> beside gives.
+   !> Changes of the rate of stress: d sigma' = 2 d(G e) - 2 G L dn - 2 n d(G L) + I dp', e the deviator of the whole
+   !> strain rate.
    pure subroutine fill_stress(w, lin, y, strain, centre, changes, x, rates)
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
@@ -227,120 +207,83 @@ contains
       type(changes_t), intent(in) :: changes
       type(lanes_t), intent(in) :: x
       real(wp), intent(out) :: rates(LANES, 6)
-      real(wp), dimension(LANES) :: on_n, on_r, on_p, on_1, on_2, v
-      real(wp) :: drag, on_loading, on_stress, on_e, aside_1, aside_2, aside_k
-      integer :: i, j
+      type(sum_t) :: s
+      real(wp) :: drag, v(LANES)
+      integer :: j
 
-      drag = 0.0_wp
-      on_loading = 0.0_wp
-      on_stress = 0.0_wp
-      if (w%loading) then
-         drag = 2.0_wp*w%g*w%l
-         on_loading = -drag*x%turn_strain
-         on_stress = -drag*x%turn_stress
-      end if
-      aside_k = w%k - 2.0_wp/3.0_wp*w%g
+      drag = -2.0_wp*w%g*w%l
       v = traces(strain)
-      associate (loading => changes%loading)
-         aside_1 = 2.0_wp*(loading%whole(1) - loading%part(1))
-         aside_2 = 2.0_wp*(loading%whole(2) - loading%part(2))
+      s%of_whole = 2.0_wp*w%g
+      s%of_loading = drag*x%turn%of_loading
+      s%of_stress = drag*x%turn%of_stress
+      associate (whole => changes%loading%whole)
          do j = 1, LANES
-            on_e = 2.0_wp*x%g(j) - drag*x%turn_e(j)
-            on_n(j) = -drag*x%turn_n(j) - 2.0_wp*(w%l*x%g(j) + w%g*x%dl(j))
-            on_r(j) = -drag*x%turn_r(j)
-            on_p(j) = x%volumetric(j) - (2.0_wp/3.0_wp*w%g)*x%v(j) - (w%l*w%d)*x%k_e(j) - w%k_e*x%flow(j) &
-                      - drag*x%turn_p(j) - (lin%d_v/3.0_wp)*on_e &
-                      + lin%aside_v*(x%k(j) - (2.0_wp/3.0_wp)*x%g(j)) + aside_k*(v(j) - x%v(j))
-            on_1(j) = loading%part(1)*on_e + aside_1*x%g(j) + on_loading*loading%along(j, 1)
-            on_2(j) = loading%part(2)*on_e + aside_2*x%g(j) + on_loading*loading%along(j, 2)
+            s%first(j) = drag*x%turn%first(j) + (2.0_wp*whole(1))*x%g(j)
+            s%second(j) = drag*x%turn%second(j) + (2.0_wp*whole(2))*x%g(j)
+            s%n(j) = drag*x%turn%n(j) - 2.0_wp*(w%l*x%g(j) + w%g*x%dl(j))
+            s%r(j) = drag*x%turn%r(j)
+            s%p(j) = drag*x%turn%p(j) + x%volumetric(j) - (w%l*w%d)*x%k_e(j) - w%k_e*x%flow(j) &
+                     + (lin%whole_v - lin%d_v)*x%k(j) + w%k*(v(j) - x%v(j)) &
+                     - (2.0_wp/3.0_wp*lin%whole_v)*x%g(j) - (2.0_wp/3.0_wp*w%g)*v(j)   ! deviators
          end do
-         associate (b => loading%basis)
-            do j = 1, LANES
-               do i = 1, 3
-                  rates(j, i) = on_stress*y(j, i) + b(i, 1)*on_1(j) + b(i, 2)*on_2(j) + w%n(i)*on_n(j) &
-                                + w%r(i)*on_r(j) + on_p(j)
-               end do
-               do i = 4, 6
-                  rates(j, i) = on_stress*y(j, i) + b(i, 1)*on_1(j) + b(i, 2)*on_2(j) + w%n(i)*on_n(j) &
-                                + w%r(i)*on_r(j)
-               end do
-            end do
-         end associate
-         call add_loading(strain, centre, 2.0_wp*w%g + on_loading*loading%of_strain, on_loading*loading%of_centre, &
-                          rates)
       end associate
+      call add_up(w, y, strain, centre, changes, s, rates)
    end subroutine fill_stress
 
    !> Changes of the rate of fabric: d z' = c_z (z_max n + z) d(L D) + c_z L D (z_max dn + dz).
-   pure subroutine fill_fabric(par, w, lin, y, strain, centre, changes, x, rates)
+   pure subroutine fill_fabric(par, w, y, strain, centre, changes, x, rates)
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
-      type(linearised_t), intent(in) :: lin
       real(wp), intent(in) :: y(LANES, NRATES)
       type(tensors_t), intent(in) :: strain, centre
       type(changes_t), intent(in) :: changes
       type(lanes_t), intent(in) :: x
       real(wp), intent(out) :: rates(LANES, 6)
-      real(wp), dimension(LANES) :: on_n, on_r, on_z, on_p, on_1, on_2
-      real(wp) :: turning, turned, on_e, on_loading, on_stress
+      type(sum_t) :: s
+      real(wp) :: turning, turned
       integer :: i, j
 
       turning = par%c_z*w%l*w%d
       turned = turning*par%z_max
-      on_loading = turned*x%turn_strain
-      on_stress = turned*x%turn_stress
-      associate (loading => changes%loading, b => changes%loading%basis)
-         do j = 1, LANES
-            on_e = turned*x%turn_e(j)
-            on_z(j) = par%c_z*x%flow(j)
-            on_n(j) = turned*x%turn_n(j) + par%z_max*on_z(j)
-            on_r(j) = turned*x%turn_r(j)
-            on_p(j) = turned*x%turn_p(j) - (lin%d_v/3.0_wp)*on_e
-            on_1(j) = loading%part(1)*on_e + on_loading*loading%along(j, 1)
-            on_2(j) = loading%part(2)*on_e + on_loading*loading%along(j, 2)
-         end do
-         do j = 1, LANES
-            do i = 1, 3
-               rates(j, i) = on_stress*y(j, i) + b(i, 1)*on_1(j) + b(i, 2)*on_2(j) + w%n(i)*on_n(j) &
-                             + w%r(i)*on_r(j) + w%z(i)*on_z(j) + turning*y(j, 6 + i) + on_p(j)
-            end do
-            do i = 4, 6
-               rates(j, i) = on_stress*y(j, i) + b(i, 1)*on_1(j) + b(i, 2)*on_2(j) + w%n(i)*on_n(j) &
-                             + w%r(i)*on_r(j) + w%z(i)*on_z(j) + turning*y(j, 6 + i)
-            end do
-         end do
-         call add_loading(strain, centre, on_loading*loading%of_strain, on_loading*loading%of_centre, rates)
-      end associate
+      s%of_whole = 0.0_wp
+      s%of_loading = turned*x%turn%of_loading
+      s%of_stress = turned*x%turn%of_stress
+      do j = 1, LANES
+         s%first(j) = turned*x%turn%first(j)
+         s%second(j) = turned*x%turn%second(j)
+         s%n(j) = turned*x%turn%n(j) + (par%c_z*par%z_max)*x%flow(j)
+         s%r(j) = turned*x%turn%r(j)
+         s%p(j) = turned*x%turn%p(j)
+      end do
+      call add_up(w, y, strain, centre, changes, s, rates)
+      do i = 1, 6
+         rates(:, i) = rates(:, i) + (par%c_z*w%z(i))*x%flow + turning*y(:, 6 + i)
+      end do
    end subroutine fill_fabric
 
-   !> Changes of the loading direction.
-   pure subroutine fill_turn(w, lin, y, strain, centre, changes, x, dn)
+   !> The sum of what s says. strain and centre are the changes [-] that the loading refers to, y has those of stress.
+   pure subroutine add_up(w, y, strain, centre, changes, s, total)
       type(rate_t), intent(in) :: w
-      type(linearised_t), intent(in) :: lin
       real(wp), intent(in) :: y(LANES, NRATES)
       type(tensors_t), intent(in) :: strain, centre
       type(changes_t), intent(in) :: changes
-      type(lanes_t), intent(in) :: x
-      real(wp), intent(out) :: dn(LANES, 6)
-      real(wp), dimension(LANES) :: on_1, on_2, on_p
+      type(sum_t), intent(in) :: s
+      real(wp), intent(out) :: total(LANES, 6)
       integer :: i, j
 
       associate (loading => changes%loading, b => changes%loading%basis)
-         on_1 = loading%part(1)*x%turn_e + x%turn_strain*loading%along(:, 1)
-         on_2 = loading%part(2)*x%turn_e + x%turn_strain*loading%along(:, 2)
-         on_p = x%turn_p - (lin%d_v/3.0_wp)*x%turn_e
          do j = 1, LANES
             do i = 1, 3
-               dn(j, i) = x%turn_stress*y(j, i) + b(i, 1)*on_1(j) + b(i, 2)*on_2(j) + w%n(i)*x%turn_n(j) &
-                          + w%r(i)*x%turn_r(j) + on_p(j)
+               total(j, i) = s%of_stress*y(j, i) + b(i, 1)*s%first(j) + b(i, 2)*s%second(j) + w%n(i)*s%n(j) &
+                             + w%r(i)*s%r(j) + s%p(j)
             end do
             do i = 4, 6
-               dn(j, i) = x%turn_stress*y(j, i) + b(i, 1)*on_1(j) + b(i, 2)*on_2(j) + w%n(i)*x%turn_n(j) &
-                          + w%r(i)*x%turn_r(j)
+               total(j, i) = s%of_stress*y(j, i) + b(i, 1)*s%first(j) + b(i, 2)*s%second(j) + w%n(i)*s%n(j) &
+                             + w%r(i)*s%r(j)
             end do
          end do
-         call add_loading(strain, centre, x%turn_strain*loading%of_strain, x%turn_strain*loading%of_centre, dn)
+         call add_loading(strain, centre, s%of_whole + s%of_loading*loading%of_strain, &
+                          s%of_loading*loading%of_centre, total)
       end associate
-   end subroutine fill_turn
-
+   end subroutine add_up
 end module mud_sensitivity
