@@ -2,7 +2,7 @@
 !> mud_host SCENE.nml: coupled finite elements of unsaturated soil.
 program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit, int64
-   use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
+   use arguments, only: option_t, read_command_line, option_given, option_value, option_values, WORD_LENGTH
    use answer_verification, only: history_t, read_history, differences
    use answer_errors, only: worst_unknown, write_answers, print_answers, judge_answers
    use changed_scenes, only: read_changed
@@ -44,7 +44,7 @@ program mud_host
    use texts, only: short, whole
    implicit none (type, external)
    character(*), parameter :: USAGE = 'usage: mud_host SCENE.nml [options] | --template | --help'
-   type(option_t) :: options(12) = [ &
+   type(option_t) :: options(14) = [ &
       option_t('--help', letter='-h', answers=.true.), &
       option_t('--template', answers=.true.), &
       option_t('--quiet'), &
@@ -55,6 +55,8 @@ program mud_host
       option_t('--ablate'), &
       option_t('--price'), &
       option_t('--accuracy', 'a share, as 1e-2'), &
+      option_t('--step-tolerance', 'a share, as 1e-2'), &
+      option_t('--set', 'a key and its value, as stage.cuts=9'), &
       option_t('--fineness', 'a factor, as 2'), &
       option_t('--restart', 'a checkpoint')]
    character(WORD_LENGTH) :: file
@@ -93,8 +95,12 @@ program mud_host
    if (fault%code == 0 .and. option_given(options, '--verify') .and. restart /= '') call raise(fault, EXIT_INPUT, &
       '--verify repeats a whole run: leave --restart out.')
    t0 = clock()
-   if (fault%code == 0) call read_scene(trim(file), scene, fault, option_value(options, '--accuracy'), &
-                                         option_value(options, '--fineness'))
+   if (fault%code == 0) call read_scene(trim(file), scene, fault, step_tolerance(), &
+                                         option_value(options, '--fineness'), option_values(options, '--set'))
+   ! These read the scene again.
+   if (fault%code == 0 .and. option_given(options, '--set') .and. (scene%refined .or. &
+       option_given(options, '--verify') .or. option_given(options, '--price'))) call raise(fault, EXIT_INPUT, &
+      '--set changes one run; --verify, --price and mesh = ''auto'' make several: change the file of the scene.')
    if (fault%code == 0 .and. scene%refined .and. option_given(options, '--verify')) call raise(fault, EXIT_INPUT, &
       '--verify measures the error of the steps of one mesh; mesh = ''auto'' measures it itself: leave --verify out.')
    if (fault%code == 0) call find_effects()
@@ -143,6 +149,14 @@ contains
       end if
       stop, quiet=.true.
    end subroutine leave
+
+   !> The tolerance of the steps that the command line asks for, empty if it asks for none.
+   function step_tolerance() result(text)
+      character(:), allocatable :: text
+
+      text = option_value(options, '--step-tolerance')
+      if (text == '') text = option_value(options, '--accuracy')
+   end function step_tolerance
 
    !> Determines which effects the scene needs, where the scene leaves that open or the command line asks for it, and
    !> sets its keys.
@@ -198,7 +212,7 @@ contains
    end subroutine refine
 
    subroutine print_help()
-      character(*), parameter :: LINES(22) = [character(104) :: &
+      character(*), parameter :: LINES(27) = [character(104) :: &
          'Solves the boundary-value problem of a scene. Units m, s, kPa, Mg; tension positive.', &
          '  --output FOLDER       folder of the results, made if missing; default: output, with --restart that of', &
          '                        the checkpoint', &
@@ -206,9 +220,14 @@ contains
          '                        levels.h5', &
          '  --accuracy A          relative error wanted in the histories of the points; in place of the key', &
          '                        accuracy of &scene', &
+         '  --step-tolerance A    the same by another name', &
          '  --fineness F          F times the cells of the mesh along each axis, in place of the key fineness of', &
          '                        &mesh; one mesh, also where the scene says mesh = ''auto'' (which refines until', &
          '                        accuracy holds for the total error)', &
+         '  --set GROUP.KEY=VALUE sets a key of the scene, in place of its value; may be repeated. A list is', &
+         '                        divided by commas. Of groups that occur several times fix[2].value=1 sets the', &
+         '                        second, elastic[soil].young=2e4 the one with this name, stage.cuts=9 all. Not', &
+         '                        with --verify, --price and mesh = ''auto''', &
          '  --verify              repeats the run at a quarter of the accuracy, given steps a quarter as long, and', &
          '                        reports the difference as the error of points and forces; not with --restart', &
          '  --effects             runs coarse pilots of the scene, with every effect and without each; prints', &
