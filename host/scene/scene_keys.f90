@@ -135,6 +135,7 @@ contains
                   'subtract: the initial flow is maintained', ':p_w')
       call k%number('step_tolerance', scene%step_tolerance, 1.0e-8_wp, 0.5_wp, &
                     'local tolerance of controlled steps [-], see host/README.md')
+      call k%texts('goals', scene%goals, 'answers that mud_study measures, as ''top.u_z''; default: all')
       call k%whole('threads', scene%threads, 0, 1024, 'threads over elements; 0: by size, at most OMP_NUM_THREADS')
       call k%flag('factors', scene%reuse_factors, 'reuse|fresh', 'reuse', &
                   'factors of the matrix: reused while they serve, or new in every iteration')
@@ -595,7 +596,7 @@ contains
    subroutine refuse_old_keys(group, fault)
       type(group_t), intent(in) :: group   !< &scene.
       type(fault_t), intent(inout) :: fault
-      character(*), parameter :: OLD(8) = [character(20) :: 'accuracy', 'goals', 'mesh', 'budget', 'effects', &
+      character(*), parameter :: OLD(7) = [character(20) :: 'accuracy', 'mesh', 'budget', 'effects', &
          'effects_tolerance', 'effects_pilot_share', 'effects_on_warning']
       character(*), parameter :: MEASURES = ' --accuracy A" measures the errors of the answers, and refines steps '// &
          'and mesh until they are below A.'
@@ -608,7 +609,7 @@ contains
          if (i == 1) then
             text = 'the local tolerance of the steps is now step_tolerance; "mud_study accuracy '//trim(group%file)// &
                    MEASURES
-         else if (i <= 4) then
+         else if (i <= 3) then
             text = 'leave it out; "mud_study accuracy '//trim(group%file)//MEASURES
          else
             text = 'leave it out, and give analysis, fields and gravity; "mud_study effects '//trim(group%file)// &
