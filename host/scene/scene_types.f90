@@ -99,7 +99,7 @@ module scene_types
       logical :: controlled = .false.                !< Steps are chosen from their error.
       real(wp) :: accuracy = 0.0_wp                  !< Asked for, in the histories of the named points [-].
       real(wp) :: output_dt = 0.0_wp
-      real(wp), allocatable :: ends(:)               !< Steps end here, after the start of the stage [s]: of pilots.
+      real(wp), allocatable :: ends(:)               !< Given steps end here, after the start of the stage [s].
       integer :: cuts = 10, max_iterations = 12, every = 1, fields = 0
       real(wp) :: rho_inf = -1.0_wp, tolerance = 1.0e-3_wp, created_energy = 0.01_wp
       logical :: open_tolerance = .false.            !< The scene leaves Newton's tolerance to the accuracy.

@@ -26,7 +26,7 @@ def parser() -> argparse.ArgumentParser:
         one.add_argument("--accuracy", type=_share, default=1e-2, metavar="A", help="error asked for [-], default 1e-2")
         one.add_argument("--budget", type=float, default=3600.0, metavar="SECONDS",
                          help="no run ends later than this; default 3600")
-        one.add_argument("--goals", default="", metavar="LIST", help="answers that count, as top.u_z,plate.force_z; "
+        one.add_argument("--goals", nargs="+", metavar="ANSWER", help="answers that count, as top.u_z plate.force_z; "
                          "default: goals of the scene, else unknowns of points and plates")
         one.add_argument("--output", type=pathlib.Path, metavar="FOLDER",
                          help="folder of the study; finished runs in it are not repeated; default: study_SCENE")
@@ -44,7 +44,7 @@ def _share(text):
 
 def accuracy(scene: Scene, args) -> int:
     """The study `accuracy`: table, picture, the line."""
-    study = Study(scene, args.accuracy, [g.strip() for g in args.goals.split(",") if g.strip()])
+    study = Study(scene, args.accuracy, args.goals)
     result = study.search()
     if not result.pairs:
         print(f"mud_study: {result.state}: {result.sentence}", file=sys.stderr)
