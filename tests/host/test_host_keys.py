@@ -100,3 +100,17 @@ def test_a_key_set_from_outside_is_that_of_the_scene():
     rows, folder = run(loaded, "set", "--set", "load[2].value=30", "--set", "elastic[soil].young=1",
                        "--set", "elastic[soil].young=2e4")
     near("30 kPa over twice G", rows[-1]["corner.u_r"], 30 / (2 * SHEAR))
+
+
+def test_steps_end_where_a_file_says():
+    ends = (0.125, 0.25, 0.875)
+    (work / "ends.txt").write_text("# since the start of the stage\n0.125 0.125\n0.25 0.125\n0.875 0.625\n")
+    # After a stage of 1 s; the last step ends with the stage, as the file does not say so.
+    text = (BLOCK.format(1, 1).replace("&point", "&stage name = 't' analysis = 'quasi_static' duration = 1 dt = 0.125 "
+                                       "steps = 'given' step_ends = 'ends.txt' /\n&point") + held)
+    rows, _ = run(text, "ends")
+    times = [float(row["time"]) for row in rows]
+    check("steps end where the file says", times == [0, 1, *(1 + t for t in ends), 2], times)
+    done = start("ends_free", text.replace("steps = 'given'", "steps = 'controlled'"))
+    check("controlled steps end where their error says", done.returncode == 2 and "step_ends of &stage t needs" in
+          done.stderr, done.stderr)
