@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Scenes that a careless choice of effects spoils, and scenes that need few of them. Every scene leaves open what it can
-(`effects = 'auto'`): fields, gravity, inertia and the switches of the material. They are small, so that pilots may cost as
-much as they like."""
+"""Scenes that a careless choice of effects spoils, and scenes that need few of them, for `mud_study effects`. Every scene
+leaves open what it can: fields, gravity, inertia and the switches of the material."""
 from dataclasses import dataclass
 
 AUTO = ""
