@@ -7,6 +7,8 @@ program mud_host
    use answer_errors, only: worst_unknown, write_answers, print_answers, judge_answers
    use changed_scenes, only: read_changed
    use checkpoints, only: read_checkpoint
+   use contact_alarm, only: warn_of_overlap
+   use contact_setup, only: contacts_act
    use kinds, only: wp
    use wall_clock, only: clock
    use warnings, only: print_warning
@@ -275,6 +277,10 @@ contains
       do i = 1, size(doubts)
          call print_warning(doubts(i))
       end do
+      if (.not. only_check) return
+      ! A run says it where the stage begins.
+      call contacts_act(model, model%stages(1), run%system%contacts)
+      call warn_of_overlap(model, 1, run%system%contacts, run%state%x)
    end subroutine warn_of_scene
 
    !> The run again at a quarter of the accuracy, given steps a quarter as long, in a folder of its own: the difference

@@ -22,7 +22,7 @@ module time_stepping
    use step_booking, only: book_accepted_step, watch_effects
    use energy_alarm, only: check_creation, warn_of_created_energy
    use ground_stages, only: change_ground
-   use contact_alarm, only: warn_of_penetration
+   use contact_alarm, only: warn_of_penetration, warn_of_overlap
    use pressure_alarm, only: warn_of_oscillation, warn_lost_pressure, warn_of_inflow
    use unknown_fields, only: DISPLACEMENTS
    use scene_types, only: stage_t
@@ -87,6 +87,7 @@ contains
          if (at%stage == number) then
             call change_ground(model, number, .false., run, fault)
          else
+            if (warns(observer)) call warn_of_overlap(model, number, run%system%contacts, run%state%x)
             call begin_stage(model, number, run, fault)
          end if
          if (fault%code /= 0) return
@@ -145,7 +146,7 @@ contains
          at%step = at%step + 1
          run%steps = run%steps + 1
          if (warns(observer)) call warn_of_penetration(model, run%next%time, run%system%contacts)
-         if (warns(observer)) call warn_of_oscillation(model, stage, run%next, run%told_oscillation)
+         if (warns(observer)) call warn_of_oscillation(model, stage, run%next, run%lines, run%told_oscillation)
          if (warns(observer)) call warn_lost_pressure(model, run%next, run%told_pressure)
          if (warns(observer)) call warn_of_inflow(model, stage, run%next%time, run%constraint%drinks, run%told_inflow)
          call book_accepted_step(model, scheme, run)

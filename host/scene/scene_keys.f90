@@ -121,7 +121,7 @@ contains
                   'axisymmetric in r, z or plane strain in x, y')
       call k%word('fields', scene%fields, 'u|u-p_w|u-p_w-p_c', 'unknowns; absent ones cost nothing')
       call k%flag('pressures', scene%linear_pressures, 'quadratic|linear', 'linear', &
-                  'interpolation (linear: Taylor-Hood)', ':p_w')
+                  'interpolation; linear (Taylor-Hood) is stable where water cannot drain yet', ':p_w')
       call k%whole('quadrature', scene%quadrature, 3, 12, 'points of an element: 3, 6, 7 or 12')
       call k%number('gravity', scene%gravity, ZERO, 1000*ONE, 'acceleration towards -z [m/s2]')
       call k%text('gravity_history', scene%gravity_history, 'name of a &history: factor on gravity', '+gravity', &

@@ -187,7 +187,7 @@ module scene_types
       character(NAME_LENGTH) :: name = ''
       character(FINGERPRINT_LENGTH) :: fingerprint = ''
       type(group_t), allocatable :: groups(:)        !< As they were read, files by their contents.
-      logical :: axisymmetric = .true., linear_pressures = .false.
+      logical :: axisymmetric = .true., linear_pressures = .true.
       integer :: fields = WITH_U, quadrature = 6, threads = 0
       real(wp) :: gravity = 0.0_wp
       character(LENGTH) :: gravity_history = ''

@@ -39,7 +39,7 @@ module convergence
    real(wp), parameter :: PROGRESS = 0.5_wp    !< Of the smallest error so far: more is no progress.
    real(wp), parameter :: MOST_ROUGH = 1.0e-3_wp   !< Error above which no roughness is blamed for it.
    real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Of strain rates and parts of fluxes, see above.
-   real(wp), parameter :: ABSOLUTE_FLOOR = 1.0e-12_wp   !< [kN] or [m3/s]: nothing smaller is a force.
+   real(wp), parameter :: NO_FORCE = 1.0e-150_wp   !< [kN] or [m3/s]: nothing is divided by zero.
 
    type :: control_t
       real(wp) :: tolerance = 1.0e-3_wp
@@ -146,7 +146,7 @@ contains
       real(wp) :: s(FIELDS), floor(FIELDS)
 
       call add_scales(dofs, constraint, assembly, assembly%with_change, s, floor)
-      scales = max(sqrt(s), max(HISTORY_SHARE, assembly%rounding_share)*largest, sqrt(floor), ABSOLUTE_FLOOR)
+      scales = max(sqrt(s), max(HISTORY_SHARE, assembly%rounding_share)*largest, sqrt(floor), NO_FORCE)
       scales(:DISPLACEMENTS) = max(scales(:DISPLACEMENTS), assembly%unresolved)
    end function field_scales
 
@@ -201,7 +201,7 @@ contains
          end do
       end do
       body_scale = max(body_scale, max(HISTORY_SHARE, assembly%rounding_share)*largest(AT_U_Z), &
-                       ABSOLUTE_FLOOR, assembly%unresolved)
+                       NO_FORCE, assembly%unresolved)
    contains
       pure real(wp) function own(unknown)
          integer, intent(in) :: unknown
@@ -219,7 +219,7 @@ contains
       real(wp) :: forces(FIELDS), s(FIELDS), floor(FIELDS)
 
       call add_scales(dofs, constraint, assembly, .false., s, floor)
-      forces = max(sqrt(s), sqrt(floor), ABSOLUTE_FLOOR)
+      forces = max(sqrt(s), sqrt(floor), NO_FORCE)
    end function forces_of_fields
 
    !> Norms of a residual over the unknowns that are free, displacements together. [kN, m3/s]

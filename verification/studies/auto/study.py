@@ -80,7 +80,7 @@ def scenes():
                 + stage(1000) + "&fix group = 'top' field = 'p_a' value = 15 history = 'h' /\n" + pressure("top", 15) + HELD
                 + points(("top", 0, 0), ("middle", 0, -1)),
                 {"inertia in run": "off", "p_w": "on", "p_c": "on", "gravity": "on"},
-                "fields = 'u-p_w-p_c' gravity = 9.81", "analysis = 'quasi_static'")
+                "fields = 'u-p_w-p_c' pressures = 'quadratic' gravity = 9.81", "analysis = 'quasi_static'")
     yield Scene("slow footing, dry", "100 kPa within 1000 s; 20 kPa of weight below it", head("dry")
                 + rectangle("0, 1, 6", "4, 8", "-6, 0", 10) + ELASTIC.format("2e4")
                 + "&region material = 's' void_ratio = 0.7 /\n" + ramp("0, 1000") + stage(1000) + pressure("top_1", 100)
@@ -96,13 +96,13 @@ def scenes():
                 + "&region material = 's' permeability = 'k' void_ratio = 0.7 /\n" + ramp("0, 86400") + stage(1e6)
                 + pressure("top_1", 100) + "&fix group = 'top' field = 'p_w' /\n" + HELD
                 + points(("centre", 0, 0), ("below", 0, -1)),
-                {"inertia in run": "off", "p_w": "on"}, "fields = 'u-p_w'", "analysis = 'quasi_static'")
+                {"inertia in run": "off", "p_w": "on"}, "fields = 'u-p_w' pressures = 'quadratic'", "analysis = 'quasi_static'")
     yield Scene("slow ramp, permeable", "10 kPa within 1000 s on soil that drains in a second", head("ramp", "gravity = 0")
                 + rectangle("0, 2", 20, "0, 2", 50) + ELASTIC.format("1e4") + DARCY.format("1e-10")
                 + "&region material = 's' permeability = 'k' void_ratio = 0.8 /\n" + ramp("0, 1000") + stage(1000)
                 + pressure("top", 10) + "&fix group = 'top' field = 'p_w' /\n" + HELD
                 + points(("top", 0, 2), ("middle", 0, 1)),
-                {"inertia in run": "off", "p_w": "off"}, "fields = 'u-p_w' without = 'p_w'", "analysis = 'quasi_static'")
+                {"inertia in run": "off", "p_w": "off"}, "fields = 'u-p_w' pressures = 'quadratic' without = 'p_w'", "analysis = 'quasi_static'")
     yield Scene("column shaken at its base", "a motion of the base acts with inertia alone", head("shaken", "gravity = 0")
                 + rectangle("0, 1", 1, "-10, 0", 10) + ELASTIC.format("1e5") + "&region material = 's' void_ratio = 0.7 /\n"
                 + ramp("0, 0.1, 0.3, 0.5, 0.6, 1", "0, 1, -1, 1, 0, 0") + stage(1)
@@ -120,7 +120,7 @@ def scenes():
                 "&fix group = 'all' field = 'p_a' /\n" + ramp("0, 3600") + stage(172800)
                 + "&load group = 'top' kind = 'water' value = 2e-7 history = 'h' /\n" + HELD
                 + points(("top", 0, 0), ("middle", 0, -1)),
-                {"inertia in run": "off", "p_w": "on", "p_c": "on"}, "fields = 'u-p_w-p_c'", "analysis = 'quasi_static'")
+                {"inertia in run": "off", "p_w": "on", "p_c": "on"}, "fields = 'u-p_w-p_c' pressures = 'quadratic'", "analysis = 'quasi_static'")
     yield Scene("footing on sand", "a plate pushed 5 mm within 100 s into dry Toyoura sand", head("sand", "gravity = 9.81")
                 + rectangle("0, 0.5, 3", "4, 6", "-3, 0", 8) + SAND + "&region material = 's' void_ratio = 0.75 /\n"
                 "&initial stress = 'geostatic' k_0 = 0.5 surcharge = 10 /\n&load group = 'top_2' kind = 'pressure' value = 10 /\n"
@@ -140,7 +140,7 @@ def scenes():
                 + "&region material = 's' permeability = 'k' void_ratio = 1 /\n" + ramp("0, 864000") + stage("3e7", "")
                 + pressure("top_1", 60) + "&fix group = 'top' field = 'p_w' /\n" + HELD
                 + points(("centre", 0, 0), ("toe", 5, 0), ("below", 0, -3)),
-                {"inertia in run": "off", "p_w": "on"}, "fields = 'u-p_w'", "analysis = 'quasi_static'")
+                {"inertia in run": "off", "p_w": "on"}, "fields = 'u-p_w' pressures = 'quadratic'", "analysis = 'quasi_static'")
 
 
 def run(host, text, folder):
