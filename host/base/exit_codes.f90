@@ -4,7 +4,7 @@ module exit_codes
    implicit none (type, external)
    private
    public :: EXIT_MESH, EXIT_GROUP, EXIT_ELEMENT, EXIT_FREE_BODY, EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_SOLVER, &
-             EXIT_ENERGY, EXIT_EFFECT, EXIT_ACCURACY
+             EXIT_ENERGY
 
    integer, parameter :: EXIT_MESH = 10         !< A mesh that cannot be read or built.
    integer, parameter :: EXIT_GROUP = 11        !< A group, material, history or stage that nobody defines.
@@ -14,6 +14,4 @@ module exit_codes
    integer, parameter :: EXIT_MATERIAL = 15     !< The material refuses the smallest step.
    integer, parameter :: EXIT_SOLVER = 16       !< The linear solver ran out of memory.
    integer, parameter :: EXIT_ENERGY = 18       !< The run created energy (17 is EXIT_RESTART of `faults`).
-   integer, parameter :: EXIT_EFFECT = 19       !< An effect that the pilots removed exceeds its limit.
-   integer, parameter :: EXIT_ACCURACY = 20     !< An answer misses the accuracy asked for; the results are complete.
 end module exit_codes

@@ -20,7 +20,6 @@ module triangle_mesh
       real(wp), allocatable :: x(:, :)      !< (2, nodes): r and z, or x and y [m]
       integer, allocatable :: t6(:, :)      !< (6, elements)
       type(group_of_t), allocatable :: groups(:)
-      integer, allocatable :: first(:, :)   !< t6 before its triangles were split; not allocated: they were not.
    end type mesh_t
 contains
    !> Place of a group, 0 if there is none of that name.

@@ -1,7 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Keys of a scene that change nothing because another key says so, and definitions that nobody uses.
 module idle_keys
-   use effect_types, only: OF_P_W, OF_P_C
    use faults, only: at_line
    use key_schema, only: key_t, given, line_of, place_of, text_of
    use material_registry, only: is_law
@@ -33,7 +32,7 @@ contains
          if (is_law(scene%groups(g)%name)) cycle
          do i = 1, scene%groups(g)%count
             k = place_of(keys, scene%groups(g)%name, scene%groups(g)%entries(i)%key)
-            if (k > 0) call judge(keys, keys(k), fields_of(scene), scene%groups(g), warnings)
+            if (k > 0) call judge(keys, keys(k), scene%fields, scene%groups(g), warnings)
          end do
       end do
       call list_unused_definitions(keys, scene, warnings)
@@ -77,16 +76,6 @@ contains
                           ' has no effect'//why//'.', warnings)
       end subroutine idle
    end subroutine judge
-
-   !> Fields of a scene, with those that pilots have removed: what these need was not in vain.
-   pure integer function fields_of(scene) result(fields)
-      type(scene_t), intent(in) :: scene
-
-      fields = scene%fields
-      if (.not. allocated(scene%effects)) return
-      if (any(scene%effects%kind == OF_P_W .and. scene%effects%present)) fields = max(fields, WITH_P_W)
-      if (any(scene%effects%kind == OF_P_C .and. scene%effects%present)) fields = WITH_P_C
-   end function fields_of
 
    !> Definitions, of a kind that keys refer to, that no key of the scene names.
    subroutine list_unused_definitions(keys, scene, warnings)

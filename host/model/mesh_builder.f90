@@ -23,7 +23,6 @@ contains
       type(mesh_t), intent(out) :: mesh
       type(fault_t), intent(inout) :: fault
       type(mesh_t) :: finer
-      integer, allocatable :: first(:, :)
       real(wp) :: elements
       integer :: k
 
@@ -31,11 +30,9 @@ contains
          call read_gmsh(trim(scene%mesh_file), mesh, fault)
          if (fault%code /= 0) return
          mesh%x = scene%scale*mesh%x
-         first = mesh%t6
          do k = 1, scene%splits
             call split_mesh(mesh, finer)
             mesh = finer
-            mesh%first = first
          end do
          return
       end if

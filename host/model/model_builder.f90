@@ -13,9 +13,10 @@ module model_builder
    use given_pressures, only: add_centers, give_pressures, check_places
    use mesh_builder, only: build_mesh
    use model_types, only: model_t
+   use named_points, only: find_point
    use porous_domain, only: domain_t, prepare_domain
    use region_builder, only: build_regions
-   use scene_types, only: scene_t, point_t, WITH_P_W, WITH_P_C
+   use scene_types, only: scene_t, WITH_P_W, WITH_P_C
    use stage_builder, only: choose_schemes
    use shape_functions, only: RULES
    use texts, only: whole
@@ -28,8 +29,7 @@ module model_builder
    real(wp), parameter :: OF_ELASTIC = 7.0e-6_wp, OF_PLASTIC = 5.0e-5_wp
    real(wp), parameter :: WORTH_A_THREAD = 4.0e-3_wp   !< A slice of Linux' scheduler [s].
 contains
-   !> The keys of the scene must be settled (effect_switches). Mesh, regions, boundaries, unknowns and unit loads of a
-   !> scene. Faults: those of its parts, of check_bodies; EXIT_INPUT: no quadrature rule of so many points;
+   !> Mesh, regions, boundaries, unknowns and unit loads of a scene. Faults: those of its parts, of check_bodies and find_point; EXIT_INPUT: no quadrature rule of so many points;
    !> EXIT_ELEMENT: see prepare_domain.
    subroutine build_model(scene, model, fault)
       type(scene_t), intent(in) :: scene
@@ -51,10 +51,10 @@ contains
       if (fault%code == 0) call check_bodies(model, fault)
       if (fault%code == 0) call give_pressures(model)
       if (fault%code == 0) call prepare_domain(model%domain, fault)
-      if (fault%code /= 0) return
       do i = 1, size(model%points)
-         call find_point(model%domain, model%points(i))
+         if (fault%code == 0) call find_point(model%domain, model%points(i), fault)
       end do
+      if (fault%code /= 0) return
       call choose_schemes(model)
       call number_unknowns(model%domain, ties_of(model), model%dofs)
       call shape_loads(model, model%dofs)
@@ -102,32 +102,4 @@ contains
       end associate
    end subroutine build_domain
 
-   !> The node and the quadrature point nearest to a point.
-   subroutine find_point(m, point)
-      type(domain_t), intent(in) :: m
-      type(point_t), intent(inout) :: point
-      logical :: vertex(size(m%mesh%x, 2))
-      integer :: e, g, i
-
-      ! On every mesh that was split the same node.
-      if (allocated(m%mesh%first)) then
-         vertex = has_pressures(m%mesh%first)
-      else
-         vertex = has_pressures(m%mesh%t6)
-      end if
-      point%node = minloc([(norm2(m%mesh%x(:, i) - point%x), i=1, size(m%mesh%x, 2))], 1, mask=vertex)
-      point%gauss = minloc([((norm2(m%gauss(g, e)%x - point%x), g=1, m%rule), e=1, size(m%mesh%t6, 2))], 1)
-   contains
-      !> Where pressures are linear only vertices have them.
-      pure function has_pressures(triangles) result(has)
-         integer, intent(in) :: triangles(:, :)
-         logical :: has(size(m%mesh%x, 2))
-         integer :: k
-
-         has = .false.
-         do k = 1, size(triangles, 2)
-            has(triangles(1:m%n_p, k)) = .true.
-         end do
-      end function has_pressures
-   end subroutine find_point
 end module model_builder

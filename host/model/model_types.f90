@@ -8,7 +8,7 @@ module model_types
    use scene_types, only: scene_t, amplitude_at
    implicit none (type, external)
    private
-   public :: model_t, factor_at, gravity_at, accuracy_of
+   public :: model_t, factor_at, gravity_at
 
    !> The scene with the places of what it names, and what is made of it.
    type, extends(scene_t) :: model_t
@@ -35,11 +35,4 @@ contains
       gravity_at = factor_at(model, model%gravity_amplitude, time)*model%domain%gravity
    end function gravity_at
 
-   !> Accuracy asked of the controlled stages, the largest [-]; 0: all steps are given.
-   pure real(wp) function accuracy_of(model) result(accuracy)
-      type(model_t), intent(in) :: model
-
-      accuracy = 0.0_wp
-      if (any(model%stages%controlled)) accuracy = maxval(model%stages%accuracy, mask=model%stages%controlled)
-   end function accuracy_of
 end module model_types

@@ -59,7 +59,6 @@ contains
       call look_at_units(scene, warnings)
       call look_at_regions(scene, model, warnings)
       call look_at_materials(scene, model, warnings)
-      call look_at_points(model, warnings)
       call look_at_initials(model, tension, warnings)
       call list_boundary_warnings(model, warnings)
       call look_at_retentions(scene, model, warnings)
@@ -183,56 +182,6 @@ contains
          end associate
       end do
    end function extent
-
-   !> Points that are no nodes.
-   subroutine look_at_points(model, warnings)
-      type(model_t), intent(in) :: model
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
-      real(wp) :: near
-      integer :: i
-
-      near = SAME_PLACE*extent(model%domain%mesh)
-      do i = 1, size(model%points)
-         associate (point => model%points(i), node => model%domain%mesh%x(:, model%points(i)%node))
-            if (norm2(point%x - node) <= near) cycle
-            call add_warning('&point '//trim(point%name)//': '//at(point%x)//trim(merge('lies outside the mesh; ', &
-               'is no node of the mesh;', .not. inside(model%domain%mesh, point%x)))//' its columns are those of '// &
-               'the node at '//at(node)//'and of the quadrature point nearest to the point.', warnings)
-         end associate
-      end do
-   contains
-      pure function at(x) result(text)
-         real(wp), intent(in) :: x(2)
-         character(:), allocatable :: text
-
-         text = '('//short(x(1))//', '//short(x(2))//') m '
-      end function at
-   end subroutine look_at_points
-
-   !> Whether a place lies in an element, sides taken as straight.
-   pure logical function inside(mesh, x)
-      type(mesh_t), intent(in) :: mesh
-      real(wp), intent(in) :: x(2)
-      real(wp), parameter :: ON_THE_LINE = 1.0e-9_wp
-      real(wp) :: corner(2, 3), area(3)
-      integer :: e, k
-
-      inside = .true.
-      do e = 1, size(mesh%t6, 2)
-         corner = mesh%x(:, mesh%t6(:3, e))
-         do k = 1, 3
-            area(k) = cross(corner(:, mod(k, 3) + 1) - corner(:, k), x - corner(:, k))
-         end do
-         if (all(area >= -ON_THE_LINE*sum(abs(area)))) return
-      end do
-      inside = .false.
-   contains
-      pure real(wp) function cross(a, b)
-         real(wp), intent(in) :: a(2), b(2)
-
-         cross = a(1)*b(2) - a(2)*b(1)
-      end function cross
-   end function inside
 
    subroutine look_at_initials(model, tension, warnings)
       type(model_t), intent(in) :: model

@@ -11,6 +11,7 @@ module checkpoints
    use output_tables, only: tables_t, flush_tables
    use model_types, only: model_t, gravity_at
    use porous_domain, only: copy_state
+   use run_summary, only: new_peaks
    use sparsity_pattern, only: make_pattern
    use hdf5_file, only: h5_t, new_file, write_file, close_file, put, put_text, get, get_text, extent_of
    use restart_files, only: restart_kind_t, put_origin, open_restart, codes_of
@@ -22,7 +23,7 @@ module checkpoints
    public :: write_checkpoint, read_checkpoint, CHECKPOINT
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
-   type(restart_kind_t), parameter :: KIND_OF_FILE = restart_kind_t('checkpoint of mud_host', '14', &
+   type(restart_kind_t), parameter :: KIND_OF_FILE = restart_kind_t('checkpoint of mud_host', '15', &
       CHECKPOINT//' of a run', &
       ' is an HDF5 file, but no checkpoint of mud_host; name the '//CHECKPOINT//' of a run.', &
       'Finish the run with the program that began it.')
@@ -80,8 +81,8 @@ contains
          'what acted at once at the start of the stage and is applied evenly over it')
       if (allocated(run%damping_stress)) call put(file, 'damping_stress', run%damping_stress, 'kPa', &
          'stress of the damping in proportion to the stiffness')
-      if (allocated(model%effects)) call put(file, 'monitor', [run%monitor%table%largest, run%monitor%table%crossed], &
-         '-', 'indicators of the effects that the pilots removed, times at which they passed their limits [s]')
+      if (size(model%points) > 0) call put(file, 'peaks', [tables%peaks%value, tables%peaks%time], &
+         'm, kPa, s', 'largest unknowns of the named points so far, and when')
       call put(file, 'control', numbers_of(run%control), '-', 'control of the time step: see control_state')
       if (allocated(run%constraint%dashpots)) call put(file, 'offset', run%constraint%offset, 'kN, m3/s', &
                                                       'flow that is subtracted, forces that hold the ground')
@@ -126,6 +127,7 @@ contains
          allocate (tables%frames%times(nint(counters(AT_FRAMES))))
          call get(file, 'frames', tables%frames%times)
          call get(file, 'x_start', run%at%x_start)
+         call take_peaks(file, size(model%points), tables)
          call get(file, 'x', run%state%x)
          call get(file, 'v', run%state%v)
          call get(file, 'a', run%state%a)
@@ -142,7 +144,6 @@ contains
          end if
          if (allocated(run%damping_stress)) call get(file, 'damping_stress', run%damping_stress)
          if (allocated(run%constraint%dashpots)) call get(file, 'offset', run%constraint%offset)
-         if (file%good .and. allocated(model%effects)) call take_monitor(file, run)
          if (file%good) call take_tractions(file, run)
          if (file%good) call take_control(file, model, run)
          if (file%good .and. counters(AT_PAIRS) > 0.5_wp) &
@@ -177,6 +178,22 @@ contains
       end do
    end function state_rows
 
+   !> Largest values of the named points so far.
+   subroutine take_peaks(file, points, tables)
+      type(h5_t), intent(inout) :: file
+      integer, intent(in) :: points
+      type(tables_t), intent(inout) :: tables
+      real(wp), allocatable :: list(:)
+
+      tables%peaks = new_peaks(points)
+      associate (n => size(tables%peaks%value))
+         allocate (list(2*n))
+         if (n > 0) call get(file, 'peaks', list)
+         tables%peaks%value = reshape(list(:n), shape(tables%peaks%value))
+         tables%peaks%time = reshape(list(n + 1:), shape(tables%peaks%time))
+      end associate
+   end subroutine take_peaks
+
    !> The control of the time step.
    subroutine take_control(file, model, run)
       type(h5_t), intent(inout) :: file
@@ -185,25 +202,11 @@ contains
       real(wp), allocatable :: list(:)
 
       if (.not. file%good) return
-      run%control = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(model%points), &
-                                      size(model%contacts))
+      run%control = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(model%contacts))
       allocate (list(count_of_numbers(run%control)))
       call get(file, 'control', list)
       if (file%good) call set_numbers(list, run%control)
    end subroutine take_control
-
-   !> What was seen of the effects that are off.
-   subroutine take_monitor(file, run)
-      type(h5_t), intent(inout) :: file
-      type(run_t), intent(inout) :: run
-      real(wp) :: seen(2*size(run%monitor%table))
-      integer :: n
-
-      n = size(run%monitor%table)
-      call get(file, 'monitor', seen)
-      run%monitor%table%largest = seen(:n)
-      run%monitor%table%crossed = seen(n + 1:2*n)
-   end subroutine take_monitor
 
    !> The matrix with all the room that contacts have asked for: its ordering, and so every digit, depends on it.
    subroutine take_pairs(file, pairs, dofs, run)
@@ -257,9 +260,6 @@ contains
                     'the run, but for threads and checkpoint_*; what may differ is the duration of the stage under '// &
                     'way ('//trim(model%stages(number)%name)//'), later stages with the &fix and &load '// &
                     'of these alone, and histories after '//short(stage(1))//' s.')
-      else if (allocated(model%effects)) then
-         call raise(fault, EXIT_RESTART, foreign()//'with effects = ''auto'' what is left out was found by '// &
-                    'pilots of the whole scene; set the effects by hand to go on with more stages or other durations.')
       else if (stage(2) + model%stages(number)%duration < stage(1)*(1 - ROUNDING)) then
          call raise(fault, EXIT_RESTART, foreign()//'the run stands at '//short(stage(1))//' s, after the end of '// &
                     'stage '//trim(model%stages(number)%name)//' at '// &

@@ -7,36 +7,38 @@ module output_tables
    use energy_ledger, only: ledger_t, imbalance
    use field_files, only: frames_t, write_mesh, check_mesh, all_pressures
    use model_types, only: model_t
+   use named_points, only: unknowns_at, motion_at
    use contact_interfaces, only: contacts_t
    use porous_domain, only: state_t, domain_t
    use files, only: make_folder
+   use effect_indicators, only: indicator_columns
    use csv, only: csv_t, new_csv, check_csv, resume_csv, write_row, flush_csv, close_csv, is_open, &
                        NUMBERS
    use run_observer, only: step_report_t
    use run_state, only: run_t
-   use scene_types, only: NAME_LENGTH, FINGERPRINT_LENGTH
+   use run_summary, only: peaks_t, new_peaks
+   use scene_types, only: point_t, NAME_LENGTH, FINGERPRINT_LENGTH
    use faults, only: fault_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: COLUMNS_OF_A_POINT
    public :: tables_t, open_tables, check_tables, write_history, write_ledger, write_contacts, write_fields, &
              write_points
    public :: write_contact_nodes, write_reactions, close_reactions, reactions_of, close_tables, flush_tables
 
    character(4), parameter :: COLUMNS(14) = [character(4) :: 'u_r', 'u_z', 'p_w', 'p_c', 'v_r', 'v_z', 'a_r', 'a_z', &
       's_rr', 's_zz', 's_tt', 's_rz', 'e', 'S_w']
-   integer, parameter :: COLUMNS_OF_A_POINT = size(COLUMNS)   !< In histories.csv; the unknowns come first.
    character(*), parameter :: LEDGER_COLUMNS = 'time,dt,stage,iterations,'// &
       'error_u_r,error_u_z,error_p_w,error_p_c,first_u_r,first_u_z,first_p_w,first_p_c,reduction,correction,'// &
       'rates,kinetic,skeleton,pores,gravity,loads,supports,seepage,damping,friction,imbalance,'// &
-      'outflow,outflow_air,step_error,bend'
+      'outflow,outflow_air,step_error,'
 
    type :: tables_t
       character(:), allocatable :: folder
       type(csv_t) :: history, ledger, contact   !< The last is open if the scene has contacts or plates.
       type(csv_t) :: reactions                  !< Of the stage under way, if it prescribes or loads anything.
       type(frames_t) :: frames
+      type(peaks_t) :: peaks                    !< Of the named points, for the end of the run.
       character(FINGERPRINT_LENGTH) :: origin = ''   !< Fingerprint of the scene that began the run.
       character(NAME_LENGTH) :: stage = ''           !< Stage that was under way at the checkpoint.
    end type tables_t
@@ -56,10 +58,11 @@ contains
       else
          call make_folder(folder)
          tables%frames = frames_t([real(wp) ::])
+         tables%peaks = new_peaks(size(model%points))
          tables%origin = model%fingerprint
       end if
       call open_one('histories.csv', history_columns(model), tables%history)
-      call open_one('ledger.csv', LEDGER_COLUMNS, tables%ledger)
+      call open_one('ledger.csv', LEDGER_COLUMNS//indicator_columns(model), tables%ledger)
       if (has_contact_table(model)) call open_one('contact.csv', contact_columns(model), tables%contact)
       if (fault%code == 0 .and. .not. resume) &
          call write_mesh(folder, trim(model%name), model%fingerprint, model%domain, fault)
@@ -134,16 +137,15 @@ contains
       integer :: i
 
       if (size(model%points) == 0) return
-      write (tables%history%row, NUMBERS) state%time, (values(model%points(i)%node, model%points(i)%gauss), &
-                                                       i=1, size(model%points))
+      write (tables%history%row, NUMBERS) state%time, (values(model%points(i)), i=1, size(model%points))
       call write_row(tables%history, fault)
    contains
-      pure function values(k, p)
-         integer, intent(in) :: k, p
+      pure function values(point)
+         type(point_t), intent(in) :: point
          real(wp) :: values(size(COLUMNS))
 
-         values = [state%x(:, k), state%v(:DISPLACEMENTS, k), state%a(:DISPLACEMENTS, k), &
-                   state%stress(1:4, p), state%e(p), state%s(p)]
+         values = [unknowns_at(point, state%x), motion_at(point, state%v), motion_at(point, state%a), &
+                   state%stress(1:4, point%gauss), state%e(point%gauss), state%s(point%gauss)]
       end function values
    end subroutine write_history
 
@@ -206,7 +208,7 @@ contains
             report%stage, log%iterations, log%error, log%first_error, log%reduction, log%correction, &
             real(log%rate_evaluations, wp), ledger%kinetic, ledger%skeleton, ledger%pores, ledger%gravity, &
             ledger%loads, ledger%supports, ledger%seepage, ledger%damping, ledger%friction, imbalance(ledger), &
-            ledger%outflow, ledger%outflow_air, report%error, report%bend
+            ledger%outflow, ledger%outflow_air, report%error, report%indicators
       end associate
       call write_row(tables%ledger, fault)
    end subroutine write_ledger
@@ -260,8 +262,8 @@ contains
       call close_csv(table, fault)
    end subroutine write_fields
 
-   !> points.csv: the node of every point of the scene and the place of its stresses, the nearest quadrature point, both
-   !> at the start [m]. Fault EXIT_OUTPUT: it cannot be written.
+   !> points.csv: the place of every point of the scene, and that of its stresses, the nearest quadrature point, both at
+   !> the start [m]. Fault EXIT_OUTPUT: it cannot be written.
    subroutine write_points(folder, model, fault)
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model
@@ -274,7 +276,7 @@ contains
       do i = 1, size(model%points)
          if (fault%code /= 0) exit
          associate (one => model%points(i), rule => model%domain%rule)
-            write (table%row, '(a,",",*(es24.16e3,:,","))') trim(one%name), model%domain%mesh%x(:, one%node), &
+            write (table%row, '(a,",",*(es24.16e3,:,","))') trim(one%name), one%x, &
                model%domain%gauss(mod(one%gauss - 1, rule) + 1, (one%gauss - 1)/rule + 1)%x
          end associate
          call write_row(table, fault)

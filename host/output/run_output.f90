@@ -8,10 +8,7 @@ module run_output
    use hdf5_file, only: HAS_HDF5
    use texts, only: short, whole
    use checkpoints, only: write_checkpoint
-   use effect_monitor, only: warning_of
    use warnings, only: print_warning
-   use effect_types, only: NEVER
-   use effects_table, only: write_effects
    use field_files, only: write_frame
    use model_types, only: model_t
    use output_tables, only: tables_t, open_tables, write_history, write_ledger, write_contacts, write_fields, &
@@ -20,6 +17,7 @@ module run_output
    use progress_line, only: progress_t, show_progress, show_line, clear_progress
    use run_observer, only: run_observer_t, step_report_t
    use run_state, only: run_t
+   use run_summary, only: note_peaks, print_summary, counted
    implicit none (type, external)
    private
    public :: run_output_t
@@ -43,7 +41,7 @@ module run_output
    end type run_output_t
 contains
    !> Opens the files; a new run writes its start. Fault EXIT_INPUT: checkpoints are asked for and there is no HDF5;
-   !> faults of open_tables, write_effects and write_frame.
+   !> faults of open_tables and write_frame.
    subroutine run_begins(self, model, run, fault)
       class(run_output_t), intent(inout) :: self
       type(model_t), intent(in) :: model
@@ -59,7 +57,6 @@ contains
       self%progress%quiet = self%quiet
       self%last_checkpoint = clock()
       call open_tables(self%folder, model, self%resume, self%tables, fault)
-      if (fault%code == 0 .and. allocated(model%effects)) call write_effects(self%folder, run%monitor%table, fault)
       if (fault%code /= 0 .or. run%steps > 0) return
       call write_points(self%folder, model, fault)
       if (fault%code == 0) call write_history(self%tables, model, run%state, fault)
@@ -77,6 +74,7 @@ contains
       type(fault_t), intent(inout) :: fault
 
       checkpoint = .false.
+      call note_peaks(model, run%state, self%tables%peaks)
       associate (stage => model%stages(report%stage), step => run%at%step)
          call write_ledger(self%tables, run%state%time, report, run%ledger, fault)
          call write_contacts(self%tables, model, run%system%contacts, report%dt, run%state, run%ledger%contact, fault)
@@ -129,8 +127,8 @@ contains
 
       call clear_progress(self%progress)
       name = trim(model%stages(stage)%name)
-      if (complete .and. .not. self%quiet) write (output_unit, '(a)') 'Stage '//name//': '//whole(run%at%step)// &
-         ' steps, time '//short(run%state%time)//' s, '//whole(run%iterations)//' linear solves and '// &
+      if (complete .and. .not. self%quiet) write (output_unit, '(a)') 'Stage '//name//': '// &
+         counted(run%at%step, 'step')//', time '//short(run%state%time)//' s, '//whole(run%iterations)//' linear solves and '// &
          whole(run%cuts)//' cuts so far.'
       call close_reactions(self%tables, fault)
       call write_fields(self%folder, model%domain, name, run%state, fault)
@@ -138,26 +136,15 @@ contains
       if (fault%code == 0) call write_frame(self%folder, model%domain, run%state, self%tables%frames, fault)
    end subroutine stage_done
 
-   !> Closes the files and repeats what was seen of the effects that are off. Fault EXIT_OUTPUT: a file cannot be
-   !> written.
+   !> Closes the files and says what came of it. Fault EXIT_OUTPUT: a file cannot be written.
    subroutine run_ends(self, model, run, fault)
       class(run_output_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
-      type(fault_t) :: last
-      integer :: i
 
       call close_tables(self%tables, fault)
-      if (.not. allocated(model%effects)) return
-      call write_effects(self%folder, run%monitor%table, last)
-      if (fault%code == 0) fault = last
-      if (self%quiet .or. .not. any(run%monitor%table%crossed > NEVER)) return
-      write (output_unit, '(a)') 'Effects that the pilots removed and that exceeded their limits in this run:'
-      do i = 1, size(run%monitor%table)
-         if (run%monitor%table(i)%crossed > NEVER) &
-            write (output_unit, '(a)') '   '//warning_of(run%monitor%table(i))
-      end do
+      if (.not. self%quiet) call print_summary(output_unit, model, run, self%tables%peaks)
    end subroutine run_ends
 
    !> Prints a warning; a text that passes takes the place of the progress line, unless the run is quiet.

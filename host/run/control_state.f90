@@ -4,24 +4,17 @@ module control_state
    use kinds, only: wp
    use error_norms, only: rate_memory_t, new_memory
    use step_control, only: controller_t
-   use unknown_fields, only: FIELDS, DISPLACEMENTS
+   use unknown_fields, only: FIELDS
    implicit none (type, external)
    private
-   public :: control_state_t, new_control_state, is_answer, numbers_of, set_numbers, count_of_numbers, LEAST_PRESSURE
-   public :: LIMITS, LIMIT_NAMES, BY_DISPLACEMENTS, BY_PRESSURE, BY_SUCTION, BY_TIMES, BY_LARGEST, BY_SMALLEST, &
-             BY_GROWTH
+   public :: control_state_t, new_control_state, numbers_of, set_numbers, count_of_numbers
+   public :: LIMITS, LIMIT_NAMES, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
 
-   !> What kept a step from being longer.
-   integer, parameter :: LIMITS = 7
-   integer, parameter :: BY_DISPLACEMENTS = 1, BY_PRESSURE = 2, BY_SUCTION = 3, BY_TIMES = 4, BY_LARGEST = 5, &
-                         BY_SMALLEST = 6, BY_GROWTH = 7
+   !> What kept a step from being longer: the first three in the order of the fields.
+   integer, parameter :: LIMITS = 7, BY_TIMES = 4, BY_LARGEST = 5, BY_SMALLEST = 6, BY_GROWTH = 7
    character(30), parameter :: LIMIT_NAMES(LIMITS) = [character(30) :: 'error of the displacements', 'error of p_w', &
       'error of p_c', 'times that steps end at', 'dt_max', 'smallest step', 'growth of the step']
-   integer, parameter :: SCALARS = 12
-   !> Share of the root mean square change of its field below which a change is no answer: triangles that are not
-   !> symmetric make as much of a displacement across where there is none.
-   real(wp), parameter :: LEAST_SHARE = 1.0e-3_wp
-   real(wp), parameter :: LEAST_PRESSURE = 0.01_wp   !< Smaller changes of pressures are no answers [kPa].
+   integer, parameter :: SCALARS = 9
 
    type :: control_state_t
       type(controller_t) :: controller
@@ -30,56 +23,34 @@ module control_state
       integer :: fresh = 0                       !< Accepted steps since then.
       real(wp) :: start_up = 0.0_wp              !< Span in which changes are expected to grow yet [s].
       integer :: rejected = 0                    !< Steps repeated because of their error, in the whole run.
+      real(wp) :: error = 0.0_wp                 !< Of the last controlled step, share of the change of its field [-].
       real(wp) :: scale(FIELDS) = 0.0_wp         !< Largest change of the fields in the run [m, kPa].
-      real(wp) :: gathered(FIELDS) = 0.0_wp      !< Error of the fields that the steps have left [m, kPa].
-      real(wp) :: ripple(FIELDS) = 0.0_wp        !< Of the largest that alternates, as far as it has not faded.
-      real(wp) :: largest(FIELDS) = 0.0_wp       !< The largest so far.
-      real(wp) :: unseen(FIELDS) = 0.0_wp        !< Change in steps whose error nothing estimates [m, kPa]: of
-                                                 !< displacements where the material has a memory, of pressures
-                                                 !< in a stage of one step.
       real(wp) :: limits(LIMITS) = 0.0_wp        !< Steps by what kept them short.
-      real(wp) :: damped_0 = 0.0_wp              !< Dissipated by damping where the stage began [kJ].
-      real(wp) :: motion = 0.0_wp                !< Kinetic energy over the time of the stage [kJ s].
-      real(wp), allocatable :: touching(:)       !< 1: the contact was closed at the start of the step, else 0.
       logical :: located = .false.               !< The attempt before was repeated to end where a contact closes.
-      ! Of the fields at the named points, (FIELDS, points).
-      real(wp), allocatable :: low(:, :), high(:, :), point_gathered(:, :), point_largest(:, :)
-      real(wp), allocatable :: point_ripple(:, :)   !< The same of what alternates.
-      real(wp), allocatable :: error_before(:, :)   !< (FIELDS, nodes) of the last step of a motion [m, kPa].
-      real(wp), allocatable :: newton(:, :)      !< What Newton's method has left at them [m, kPa].
+      real(wp), allocatable :: touching(:)       !< 1: the contact was closed at the start of the step, else 0.
       real(wp), allocatable :: x_first(:, :)     !< Unknowns at the start of the stage.
    end type control_state_t
 contains
-   !> State of a control that has taken no step.
-   pure function new_control_state(nodes, points, named, contacts) result(state)
-      integer, intent(in) :: nodes, points, named, contacts   !< Nodes, quadrature points, named points, contacts.
+   !> State of a control that has taken no step; what `before` has counted goes on.
+   pure function new_control_state(nodes, points, contacts, before) result(state)
+      integer, intent(in) :: nodes, points, contacts   !< Nodes, quadrature points, contacts.
+      type(control_state_t), intent(in), optional :: before
       type(control_state_t) :: state
 
       state%memory = new_memory(FIELDS, nodes, points)
       allocate (state%x_first(FIELDS, nodes), source=0.0_wp)
       allocate (state%touching(contacts), source=0.0_wp)
-      allocate (state%low(FIELDS, named), source=huge(1.0_wp))
-      allocate (state%high(FIELDS, named), source=-huge(1.0_wp))
-      allocate (state%point_gathered(FIELDS, named), state%point_largest(FIELDS, named), source=0.0_wp)
-      allocate (state%point_ripple(FIELDS, named), state%error_before(FIELDS, nodes), source=0.0_wp)
-      allocate (state%newton(FIELDS, named), source=0.0_wp)
+      if (.not. present(before)) return
+      state%rejected = before%rejected
+      state%limits = before%limits
    end function new_control_state
-
-   !> Whether a change is large enough to be judged.
-   pure logical function is_answer(control, field, change)
-      type(control_state_t), intent(in) :: control
-      integer, intent(in) :: field
-      real(wp), intent(in) :: change   !< [m or kPa]
-
-      is_answer = change > LEAST_SHARE*control%scale(field) .and. (field <= DISPLACEMENTS .or. change > LEAST_PRESSURE)
-   end function is_answer
 
    !> Length of the list of a checkpoint.
    pure integer function count_of_numbers(state) result(n)
       type(control_state_t), intent(in) :: state   !< After new_control_state.
 
-      n = SCALARS + 5*FIELDS + LIMITS + size(state%x_first) + size(state%memory%rate) &
-          + size(state%error_before) + size(state%memory%s_rate) + 6*size(state%low) + size(state%touching)
+      n = SCALARS + FIELDS + LIMITS + size(state%x_first) + size(state%memory%rate) + size(state%memory%s_rate) &
+          + size(state%touching)
    end function count_of_numbers
 
    !> Everything as one list, for a checkpoint. Each number in its own unit, in the order that set_numbers reads.
@@ -89,11 +60,8 @@ contains
 
       associate (c => state%controller, m => state%memory)
          list = [c%dt, c%last_ratio, merge(1.0_wp, 0.0_wp, c%held), state%t_sudden, real(state%fresh, wp), &
-                 state%start_up, real(state%rejected, wp), merge(1.0_wp, 0.0_wp, m%known), m%dt, &
-                 m%span, state%damped_0, state%motion, state%unseen, state%scale, state%gathered, &
-                 state%ripple, state%largest, state%limits, state%touching, state%x_first, m%rate, m%s_rate, &
-                 state%low, state%high, state%point_gathered, state%point_ripple, state%point_largest, state%newton, &
-                 state%error_before]
+                 state%start_up, real(state%rejected, wp), merge(1.0_wp, 0.0_wp, m%known), m%dt, state%scale, &
+                 state%limits, state%touching, state%x_first, m%rate, m%s_rate]
       end associate
    end function numbers_of
 
@@ -113,27 +81,13 @@ contains
          state%rejected = nint(list(7))
          m%known = list(8) > 0.5_wp
          m%dt = list(9)
-         m%span = list(10)
-         state%damped_0 = list(11)
-         state%motion = list(12)
          at = SCALARS
-         call take_row(state%unseen)
          call take_row(state%scale)
-         call take_row(state%gathered)
-         call take_row(state%ripple)
-         call take_row(state%largest)
          call take_row(state%limits)
          call take_row(state%touching)
          call take(state%x_first)
          call take(m%rate)
          call take_row(m%s_rate)
-         call take(state%low)
-         call take(state%high)
-         call take(state%point_gathered)
-         call take(state%point_ripple)
-         call take(state%point_largest)
-         call take(state%newton)
-         call take(state%error_before)
       end associate
    contains
       subroutine take_row(values)

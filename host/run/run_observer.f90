@@ -14,8 +14,8 @@ module run_observer
    type :: step_report_t
       integer :: stage = 0                 !< Number of the stage.
       real(wp) :: dt = 0.0_wp              !< [s]
-      real(wp) :: error = 0.0_wp           !< Estimate of the step's own error, share of its change [-].
-      real(wp) :: bend = 0.0_wp            !< Share by which the rate of the unknowns changes in a static step [-].
+      real(wp) :: error = 0.0_wp           !< Estimate of a controlled step's own, share of the change of its field [-].
+      real(wp), allocatable :: indicators(:)   !< Of effect_indicators.
       logical :: last = .false.            !< The stage ends with it.
       type(log_t) :: log
    end type step_report_t

@@ -7,7 +7,6 @@ module run_setup
    use boundary_conditions, only: new_constraint
    use contact_drainage, only: prepare_drainage
    use contact_setup, only: prepare_contacts, place_heavy_plates
-   use effect_monitor, only: begin_monitor
    use equation_assembly, only: make_assembly
    use held_ground, only: keep_flow
    use initial_conditions, only: initial_state
@@ -38,7 +37,6 @@ contains
       run%next = run%state
       if (any(model%domain%regions%stiffness_damping > 0.0_wp)) &
          allocate (run%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
-      if (fault%code == 0 .and. allocated(model%effects)) call begin_monitor(model, run%state, run%monitor)
       if (fault%code == 0 .and. model%subtract_flow) call keep_flow(model, run, fault)
    end subroutine prepare_run
 end module run_setup

@@ -5,7 +5,6 @@ module run_state
    use kinds, only: wp
    use contact_drainage, only: drainage_t
    use control_state, only: control_state_t
-   use effect_monitor, only: monitor_t
    use energy_ledger, only: ledger_t
    use equation_assembly, only: assembly_t
    use initial_conditions, only: tension_t
@@ -47,7 +46,6 @@ module run_state
       type(stage_state_t) :: at
       type(tension_t) :: tension               !< Of the initial state, for a warning.
       type(control_state_t) :: control         !< Of the time step, in stages that choose it.
-      type(monitor_t) :: monitor               !< Of effects that are off; with effects = 'auto' alone.
       integer :: steps = 0, iterations = 0, cuts = 0
       integer(int64) :: rate_evaluations = 0   !< Of the material.
       ! Warnings that are said once.

@@ -5,18 +5,14 @@ module step_booking
    use kinds, only: wp
    use wall_clock, only: clock, add_elapsed
    use contact_interfaces, only: mean_contact_forces, accept_friction
-   use effect_monitor, only: monitor_step, warning_of
-   use exit_codes, only: EXIT_EFFECT
-   use faults, only: fault_t, raise
    use energy_ledger, only: book_step, book_creation, count_creation, imbalance
    use generalised_alpha, only: scheme_t, DYNAMIC
    use linear_system, only: T_CONTACT
    use model_types, only: model_t
-   use run_observer, only: run_observer_t, step_report_t
    use run_state, only: run_t
    implicit none (type, external)
    private
-   public :: book_accepted_step, watch_effects
+   public :: book_accepted_step
 contains
    !> Adds a step to the ledger: energies, work, outflow, contacts. docs/theory/host.md section 9.
    subroutine book_accepted_step(model, scheme, run)
@@ -43,23 +39,4 @@ contains
       if (scheme%kind == DYNAMIC) call count_creation(model%stages(run%at%stage)%created_energy, run%ledger)
    end subroutine book_accepted_step
 
-   !> Monitors a step that is accepted but not yet taken over, and warns. docs/theory/host.md section 11. Fault
-   !> EXIT_EFFECT: one passes its limit and the scene says effects_on_warning = "stop".
-   subroutine watch_effects(model, report, run, fault, observer)
-      type(model_t), intent(in) :: model
-      type(step_report_t), intent(in) :: report
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-      class(run_observer_t), intent(inout), optional :: observer
-      logical :: news(size(run%monitor%table))
-      integer :: i
-
-      call monitor_step(model, report%stage, report%dt, run%state, run%next, run%monitor, news)
-      do i = 1, size(news)
-         if (.not. news(i)) cycle
-         if (model%stop_on_warning) call raise(fault, EXIT_EFFECT, warning_of(run%monitor%table(i))// &
-            ' effects_on_warning = ''stop'' ends the run.')
-         if (present(observer)) call observer%warn(warning_of(run%monitor%table(i)))
-      end do
-   end subroutine watch_effects
 end module step_booking

@@ -35,7 +35,7 @@ contains
       close = LAST_STEP*min(stage%duration, max(run%control%controller%dt, SHORTEST*stage%duration))
       do i = 1, size(model%amplitudes)
          next = min(next, straight_until(model%amplitudes(i), now, close, min(next, now + reach), &
-                                         CHORD_SHARE*stage%accuracy))
+                                         CHORD_SHARE*stage%step_tolerance))
       end do
       do i = 1, size(model%fixes)
          if (.not. acts_in(model%fixes(i)%stages, stage%name)) cycle
@@ -97,7 +97,7 @@ contains
          associate (h => model%amplitudes(i))
             if (.not. any(abs(h%times - time) < LAST_STEP*dt)) cycle
             turn = amplitude_at(h, time + dt) - 2*amplitude_at(h, time) + amplitude_at(h, time - dt)
-            is_break = is_break .or. abs(turn) > stage%accuracy*(maxval(h%values) - minval(h%values))
+            is_break = is_break .or. abs(turn) > stage%step_tolerance*(maxval(h%values) - minval(h%values))
          end associate
       end do
       do i = 1, size(model%fixes)

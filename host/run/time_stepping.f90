@@ -8,18 +8,18 @@ module time_stepping
    use contact_interfaces, only: stretch_ties
    use contact_setup, only: contacts_act
    use convergence, only: control_t, log_t
-   use generalised_alpha, only: scheme_t, make_scheme, step_error
+   use generalised_alpha, only: scheme_t, make_scheme
    use model_types, only: model_t
    use porous_domain, only: copy_state, take_over
-   use newton_errors, only: gather_newton, newton_tolerance
+   use effect_indicators, only: indicators_of
    use run_observer, only: run_observer_t, step_report_t
    use run_state, only: run_t
    use sparse_factors, only: release
    use stress_tolerance, only: follow_newton, roughness
    use step_attempt, only: begin_stage, try_step
-   use step_size, only: next_step, bend_of_step, keep_step, is_over
+   use step_size, only: next_step, keep_step, is_over
    use step_landings, only: LAST_STEP
-   use step_booking, only: book_accepted_step, watch_effects
+   use step_booking, only: book_accepted_step
    use energy_alarm, only: check_creation, warn_of_created_energy
    use ground_stages, only: change_ground
    use contact_alarm, only: warn_of_penetration, warn_of_overlap
@@ -34,7 +34,7 @@ module time_stepping
    integer, parameter :: GOOD_STEPS = 2           !< Accepted steps in a row after which a cut step grows back.
 contains
    !> All stages, from where the run stands. docs/theory/host.md section 4. Faults: those of begin_stage, try_step,
-   !> watch_effects, check_creation and the observer; the first ends the run, and the observer is still told.
+   !> check_creation and the observer; the first ends the run, and the observer is still told.
    subroutine run_stages(model, run, fault, observer)
       type(model_t), intent(inout) :: model   !< The laws follow the tolerance of the stages.
       type(run_t), intent(inout) :: run
@@ -93,7 +93,6 @@ contains
          if (fault%code /= 0) return
          do
             if (is_over(stage, run)) exit
-            control%tolerance = newton_tolerance(model, stage, run%control, at%factor < 1.0_wp)
             call follow_newton(control%tolerance, model%domain%regions)
             control%roughness = roughness(model%domain%regions)
             dt = next_step(model, stage, run)
@@ -150,12 +149,10 @@ contains
          if (warns(observer)) call warn_lost_pressure(model, run%next, run%told_pressure)
          if (warns(observer)) call warn_of_inflow(model, stage, run%next%time, run%constraint%drinks, run%told_inflow)
          call book_accepted_step(model, scheme, run)
-         report = step_report_t(number, dt, step_error(scheme, run%state%x, run%state%a, run%next%x, run%next%a), &
-                                bend_of_step(model, stage, dt, run), &
+         report = step_report_t(number, dt, run%control%error, &
+                                indicators_of(model, number, dt, run%constraint%mass, run%state, run%next), &
                                 at%t_start + stage%duration - run%next%time <= LAST_STEP*dt, log)
-         if (allocated(run%monitor%table)) call watch_effects(model, report, run, fault, observer)
          call keep_step(model, stage, dt, run)
-         call gather_newton(model, stage%kind, run%system%left, run%control)
          call take_over(run%next, run%state)
          if (.not. stage%controlled) at%nominal = min(at%nominal*stage%dt_growth, max(stage%dt_max, stage%dt))
          at%good = at%good + 1

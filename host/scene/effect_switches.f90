@@ -1,172 +1,36 @@
 ! SPDX-License-Identifier: MIT
-!> Effects of a scene taken out or put in, each by the keys that say it: the scene that results is one that a user
-!> could have written. docs/theory/host.md section 11.
+!> Effects that the key `without` takes out of a scene, each by the keys that say it: the scene that results is one
+!> that a user could have written. docs/theory/host.md section 11.
 module effect_switches
    use kinds, only: wp
-   use effect_types, only: effect_t, EFFECT_NAMES, EFFECTS, OF_INERTIA, OF_SEEPAGE, OF_P_W, OF_P_C, OF_GRAVITY, &
-      OF_CONTACT, OF_DAMPING, OF_ABSORBING, OF_DRAINAGE, OF_LIMITS, OF_FRICTION, OF_STRENGTH, OF_VOID_RATIO, &
-      OF_HYSTERESIS, OF_BONDING, OF_ELASTIC_DOMAIN, OF_FLOW
-   use faults, only: fault_t
-   use key_schema, only: given
-   use library_tables, only: property_index, property_range
+   use effect_names, only: EFFECTS, OF_INERTIA, OF_SEEPAGE, OF_P_W, OF_P_C, OF_GRAVITY, OF_CONTACT, OF_DAMPING, &
+      OF_ABSORBING, OF_DRAINAGE, OF_LIMITS, OF_FRICTION, OF_STRENGTH, OF_VOID_RATIO, OF_HYSTERESIS, OF_ELASTIC_DOMAIN
+   use faults, only: fault_t, raise, EXIT_INPUT
+   use library_tables, only: property_index
    use namelists, only: set_entry
    use parameter_groups, only: read_parameters
    use scene_types, only: scene_t, NAME_LENGTH, WITH_U, WITH_P_W, WITH_P_C, PRESCRIBED_P_A, LOAD_WATER, LOAD_RAIN, &
-                          LOAD_AIR, acts_in
-   use generalised_alpha, only: STATIC, QUASI_STATIC, DYNAMIC
+                          LOAD_AIR
+   use generalised_alpha, only: QUASI_STATIC, DYNAMIC
    use unknown_fields, only: AT_P_W, AT_P_C
-   use porous_domain, only: COUPLED, DRAINED, UNDRAINED, DRY
    implicit none (type, external)
    private
-   public :: list_effects, set_open_keys, switch, switch_by_hand
+   public :: remove_effects
 
-   real(wp), parameter :: EARTH = 9.81_wp             !< [m/s2] Where gravity is put in.
    real(wp), parameter :: ROUNDING = 1.0e-12_wp
-   !> Switches of the material, in the order of their effects: 0 is off (of memory_rule: classic), the library's default
-   !> on; of hysteresis, whose default is off, SWITCHED_ON.
+   !> Switches of the material, in the order of their effects: 0 is off (of memory_rule: classic).
    character(11), parameter :: SWITCHES(OF_HYSTERESIS:OF_ELASTIC_DOMAIN) = [character(11) :: 'hysteresis', 'bonding', &
       'fabric', 'isotropic', 'lode', 'memory_rule', 'rho_e']
-   real(wp), parameter :: SWITCHED_ON = 1.0_wp
 contains
-   !> The cheapest reading of what the scene leaves open: the fields that its regions have laws for, no weight, and no
-   !> inertia where no key needs it. docs/theory/host.md section 11.
-   pure subroutine set_open_keys(scene)
-      type(scene_t), intent(inout) :: scene
-      integer :: i
-
-      if (.not. scene%fields_by_hand) then
-         scene%fields = WITH_U
-         if (holds_water(scene)) scene%fields = WITH_P_W
-         if (any(scene%regions%retention_name /= '')) scene%fields = WITH_P_C
-      end if
-      do i = 1, size(scene%stages)
-         if (scene%stages(i)%kind == 0) scene%stages(i)%kind = merge(DYNAMIC, QUASI_STATIC, needs_inertia(scene, i))
-      end do
-   end subroutine set_open_keys
-
-   !> Whether a stage has keys that act with inertia alone: waves that leave or come in, an acceleration, a velocity at
-   !> the start, damping.
-   pure logical function needs_inertia(scene, stage) result(needed)
+   logical function is_present(scene, effect) result(present)
       type(scene_t), intent(in) :: scene
-      integer, intent(in) :: stage
-      integer :: i
-
-      needed = any(scene%regions%damping > 0.0_wp .or. scene%regions%stiffness_damping > 0.0_wp)
-      if (stage == 1) needed = needed .or. any(abs(scene%initials%v_z) > 0.0_wp .or. abs(scene%initials%wave) > 0.0_wp)
-      do i = 1, size(scene%absorbers)
-         needed = needed .or. acts_in(scene%absorbers(i)%stages, scene%stages(stage)%name)
-      end do
-      do i = 1, size(scene%fixes)
-         needed = needed .or. (scene%fixes(i)%acceleration .and. &
-                               acts_in(scene%fixes(i)%stages, scene%stages(stage)%name))
-      end do
-   end function needs_inertia
-
-   !> Whether the keys of a region ask for water: where it flows, or is kept.
-   pure logical function holds_water(scene)
-      type(scene_t), intent(in) :: scene
-
-      holds_water = any(scene%regions%permeability_name /= '' .or. scene%regions%drainage == DRAINED .or. &
-                        scene%regions%drainage == UNDRAINED)
-   end function holds_water
-
-   !> The effects of a scene, in the order of the list: present or not, said by a key or left open. Inertia has a row a
-   !> stage. What has no meaning for the scene has no row. To be called before the open keys are settled.
-   !> docs/theory/host.md section 11.
-   function list_effects(scene) result(list)
-      type(scene_t), intent(in) :: scene
-      type(effect_t), allocatable :: list(:)
-      type(scene_t) :: settled
-      type(effect_t) :: row
-      integer :: kind, stage
-
-      settled = scene
-      call set_open_keys(settled)
-      allocate (list(0))
-      do kind = 1, EFFECTS
-         do stage = 1, merge(size(scene%stages), 1, kind == OF_INERTIA)
-            row = effect_t(kind=kind, name=EFFECT_NAMES(kind))
-            if (kind == OF_INERTIA) then
-               row%stage = stage
-               row%name = trim(row%name)//' in '//scene%stages(stage)%name
-            end if
-            if (.not. has_meaning(settled, kind, any(settled%stages%kind == DYNAMIC .or. &
-                                                     scene%stages%kind == 0))) cycle
-            ! A static stage is a way to equilibrium, which has no time.
-            if (kind == OF_INERTIA .and. settled%stages(stage)%kind == STATIC) cycle
-            row%present = is_present(settled, kind, stage)
-            row%by_hand = .not. is_open(scene, kind, stage)
-            row%on = row%present
-            list = [list, row]
-         end do
-      end do
-      list = [list, flows_of(settled)]
-   end function list_effects
-
-   !> A row for every region whose fluids may flow or not, where there are others: alone it is p_w that may go.
-   function flows_of(scene) result(list)
-      type(scene_t), intent(in) :: scene
-      type(effect_t), allocatable :: list(:)
-      integer :: i, region
-
-      allocate (list(0))
-      if (.not. scene%derive_effects .or. scene%fields == WITH_U .or. size(scene%regions) < 2) return
-      region = 0
-      do i = 1, size(scene%groups)
-         if (scene%groups(i)%name /= 'region') cycle
-         region = region + 1   ! in their order
-         if (.not. given(scene%groups(i), 'drainage')) &
-            list = [list, effect_t(kind=OF_FLOW, region=region, present=.true., on=.true., by_hand=.false., &
-                                   name='flow in '//scene%regions(region)%group_name)]
-      end do
-   end function flows_of
-
-   !> Whether a row of the table would say anything.
-   logical function has_meaning(scene, kind, may_move)
-      type(scene_t), intent(in) :: scene
-      integer, intent(in) :: kind
-      logical, intent(in) :: may_move   !< A stage has inertia, or leaves it open.
-
-      select case (kind)
-      case (OF_SEEPAGE)
-         has_meaning = scene%fields /= WITH_U .and. may_move
-      case (OF_P_W)
-         has_meaning = holds_water(scene)
-      case (OF_P_C)
-         has_meaning = any(scene%regions%retention_name /= '')
-      case (OF_CONTACT)
-         has_meaning = size(scene%contacts) > 0
-      case (OF_DRAINAGE)
-         has_meaning = size(scene%contacts) > 0 .and. scene%fields /= WITH_U
-      case (OF_DAMPING)
-         has_meaning = is_present(scene, kind, 1)
-      case (OF_ABSORBING)
-         has_meaning = size(scene%absorbers) > 0
-      case (OF_LIMITS, OF_FRICTION, OF_STRENGTH)
-         has_meaning = is_present(scene, kind, 1)
-      case (OF_VOID_RATIO)
-         has_meaning = is_present(scene, kind, 1)
-      case (OF_HYSTERESIS)
-         ! The library's own curve alone has main curves.
-         has_meaning = any_mud(scene) .and. scene%fields == WITH_P_C
-      case (OF_BONDING:)
-         has_meaning = any_mud(scene)
-         ! Bonding is by suction.
-         if (kind == OF_BONDING) has_meaning = has_meaning .and. scene%fields == WITH_P_C
-      case default
-         has_meaning = .true.
-      end select
-   end function has_meaning
-
-   logical function is_present(scene, kind, stage) result(present)
-      type(scene_t), intent(in) :: scene
-      integer, intent(in) :: kind, stage
+      integer, intent(in) :: effect   !< One of OF_...
       integer :: i
 
       present = .false.
-      select case (kind)
+      select case (effect)
       case (OF_INERTIA)
-         present = scene%stages(stage)%kind == DYNAMIC
+         present = any(scene%stages%kind == DYNAMIC)
       case (OF_SEEPAGE)
          present = scene%seepage_inertia
       case (OF_P_W)
@@ -193,132 +57,80 @@ contains
          if (scene%fields == WITH_P_C) &
             present = any([(parameter_of(scene, i, 'Omega') > 0.0_wp, i=1, size(scene%materials))])
       case default
-         present = any([(parameter_of(scene, i, trim(SWITCHES(kind))) > 0.0_wp, i=1, size(scene%materials))])
+         present = any([(parameter_of(scene, i, trim(SWITCHES(effect))) > 0.0_wp, i=1, size(scene%materials))])
       end select
    end function is_present
 
-   !> Whether no key says it.
-   logical function is_open(scene, kind, stage) result(open)
-      type(scene_t), intent(in) :: scene
-      integer, intent(in) :: kind, stage
+   !> Takes the effects of the key `without` out. Those that the scene does not have become its list `absent`. Fault
+   !> EXIT_INPUT: one of them cannot be.
+   subroutine remove_effects(scene, fault)
+      type(scene_t), intent(inout) :: scene
+      type(fault_t), intent(inout) :: fault
+      logical :: here(size(scene%without))
+      character(200) :: why
       integer :: i
 
-      open = .false.
-      if (any(scene%without == EFFECT_NAMES(kind))) return
-      select case (kind)
-      case (OF_INERTIA)
-         open = scene%stages(stage)%kind == 0
-      case (OF_SEEPAGE)
-         open = .not. scene%seepage_by_hand
-      case (OF_P_W, OF_P_C)
-         open = .not. scene%fields_by_hand
-      case (OF_GRAVITY)
-         open = .not. scene%gravity_by_hand
-      case (OF_BONDING:)
-         open = scene%derive_effects .and. .not. any([(given(scene%materials(i)%group, trim(SWITCHES(kind))), &
-                                                       i=1, size(scene%materials))])
-      case default
-         ! The scene holds it because somebody wrote it down.
-      end select
-   end function is_open
-
-   !> The effects that the key `without` takes out. Those that the scene does not have become its list `absent`.
-   subroutine switch_by_hand(scene, why)
-      type(scene_t), intent(inout) :: scene
-      character(*), intent(out) :: why   !< Why one of them cannot be; empty if all could.
-      logical :: here(size(scene%without))
-      integer :: i, k, stage
-
-      why = ''
-      do i = 1, size(scene%without)
-         k = findloc(EFFECT_NAMES, scene%without(i), dim=1)
-         here(i) = any([(is_present(scene, k, stage), stage=1, size(scene%stages))])
-      end do
+      here = [(is_present(scene, findloc(EFFECTS, scene%without(i), dim=1)), i=1, size(here))]
       scene%absent = pack(scene%without, .not. here)
-      do i = 1, size(scene%without)
-         k = findloc(EFFECT_NAMES, scene%without(i), dim=1)
-         do stage = 1, merge(size(scene%stages), 1, k == OF_INERTIA)
-            if (why == '') call switch(scene, effect_t(kind=k, stage=stage), .false., why)
-         end do
-         if (why /= '') then
-            why = trim(scene%without(i))//': '//trim(why)
-            return
-         end if
+      do i = 1, size(here)
+         call remove(scene, findloc(EFFECTS, scene%without(i), dim=1), why)
+         if (why /= '') call raise(fault, EXIT_INPUT, trim(scene%file)//': without = '//trim(scene%without(i))// &
+                                   ': '//trim(why)//'.')
       end do
-   end subroutine switch_by_hand
+   end subroutine remove_effects
 
-   !> Takes an effect out of a scene whose keys are settled, or puts it in.
-   subroutine switch(scene, effect, on, why)
+   !> Takes an effect out of a scene.
+   subroutine remove(scene, effect, why)
       type(scene_t), intent(inout) :: scene
-      type(effect_t), intent(in) :: effect
-      logical, intent(in) :: on
-      character(*), intent(out) :: why   !< Why it cannot be; empty if it could.
+      integer, intent(in) :: effect        !< One of OF_...
+      character(*), intent(out) :: why     !< Why it cannot be; empty if it could.
 
       why = ''
-      select case (effect%kind)
+      select case (effect)
       case (OF_INERTIA)
-         scene%stages(effect%stage)%kind = merge(DYNAMIC, QUASI_STATIC, on)
-         if (.not. on .and. .not. any(scene%stages%kind == DYNAMIC)) scene%seepage_inertia = .false.
+         where (scene%stages%kind == DYNAMIC) scene%stages%kind = QUASI_STATIC
+         scene%seepage_inertia = .false.
       case (OF_SEEPAGE)
-         scene%seepage_inertia = on
+         scene%seepage_inertia = .false.
       case (OF_P_W)
-         if (on) then
-            if (any(scene%regions%permeability_name == '' .and. scene%regions%drainage == COUPLED)) &
-               why = 'a region has no permeability'
-            if (why == '' .and. scene%fields == WITH_U) scene%fields = WITH_P_W
-         else
-            call drop_field(scene, AT_P_W, LOAD_WATER)
-            scene%fields = WITH_U
-            scene%seepage_inertia = .false.
-            if (size(scene%contacts) > 0) scene%contacts%drains_by_state = .false.
-            if (size(scene%ties) > 0) scene%ties%pressures = .false.
-         end if
+         call drop_field(scene, AT_P_W, LOAD_WATER)
+         scene%fields = WITH_U
+         scene%seepage_inertia = .false.
+         if (size(scene%contacts) > 0) scene%contacts%drains_by_state = .false.
+         if (size(scene%ties) > 0) scene%ties%pressures = .false.
       case (OF_P_C)
-         if (on) then
-            if (any(scene%regions%retention_name == '' .and. scene%regions%drainage /= DRY)) &
-               why = 'a region has no retention'
-            if (scene%fields == WITH_U) why = 'it needs p_w'
-            if (why == '') scene%fields = WITH_P_C
-         else
-            why = water_given_by_others(scene)
-            if (why /= '') return
-            call drop_field(scene, AT_P_C, LOAD_AIR)
-            scene%fields = min(scene%fields, WITH_P_W)
-         end if
+         why = water_given_by_others(scene)
+         if (why /= '') return
+         call drop_field(scene, AT_P_C, LOAD_AIR)
+         scene%fields = min(scene%fields, WITH_P_W)
       case (OF_GRAVITY)
-         if (.not. on .and. (any(scene%initials%geostatic) .or. any(scene%plates%heavy))) &
+         if (any(scene%initials%geostatic) .or. any(scene%plates%heavy)) &
             why = 'the scene asks for weight: geostatic stress or a heavy plate'
-         if (why == '') scene%gravity = merge(EARTH, 0.0_wp, on)
+         if (why == '') scene%gravity = 0.0_wp
       case (OF_CONTACT)
-         if (.not. on) scene%contacts = scene%contacts(:0)
+         scene%contacts = scene%contacts(:0)
       case (OF_DAMPING)
          scene%regions%damping = 0.0_wp
          scene%regions%stiffness_damping = 0.0_wp
       case (OF_ABSORBING)
          scene%absorbers = scene%absorbers(:0)
       case (OF_DRAINAGE)
-         scene%contacts%drains_by_state = on
+         scene%contacts%drains_by_state = .false.
       case (OF_LIMITS)
          ! The limit is prescribed, and all rain flows in.
-         if (.not. on) then
-            scene%fixes%limits = .false.
-            where (scene%loads%kind == LOAD_RAIN) scene%loads%kind = LOAD_WATER
-         end if
+         scene%fixes%limits = .false.
+         where (scene%loads%kind == LOAD_RAIN) scene%loads%kind = LOAD_WATER
       case (OF_FRICTION)
-         if (.not. on) then
-            scene%contacts%options%friction = 0.0_wp
-            scene%contacts%options%cohesion = 0.0_wp
-         end if
+         scene%contacts%options%friction = 0.0_wp
+         scene%contacts%options%cohesion = 0.0_wp
       case (OF_STRENGTH)
-         if (.not. on) scene%strengths = scene%strengths(:0)
+         scene%strengths = scene%strengths(:0)
       case (OF_VOID_RATIO)
          call freeze_retention(scene, why)
-      case (OF_FLOW)
-         scene%regions(effect%region)%drainage = merge(COUPLED, DRAINED, on)
       case default
-         call set_switch(scene, effect%kind, on)
+         call switch_off(scene, trim(SWITCHES(effect)))
       end select
-   end subroutine switch
+   end subroutine remove
 
    !> Where p_a and p_c are prescribed, p_w is as well: without these two its boundary would be closed. Empty: nowhere.
    pure function water_given_by_others(scene) result(why)
@@ -345,20 +157,16 @@ contains
       scene%loads = pack(scene%loads, scene%loads%kind < first_load .or. scene%loads%kind > LOAD_AIR)
    end subroutine drop_field
 
-   subroutine set_switch(scene, kind, on)
+   !> A switch of the material is 0.
+   subroutine switch_off(scene, name)
       type(scene_t), intent(inout) :: scene
-      integer, intent(in) :: kind
-      logical, intent(in) :: on
-      real(wp) :: value, lower, upper
+      character(*), intent(in) :: name
       integer :: i
 
-      call property_range(property_index(trim(SWITCHES(kind))), lower, upper, value)
-      if (kind == OF_HYSTERESIS) value = SWITCHED_ON
-      if (.not. on) value = 0.0_wp
       do i = 1, size(scene%materials)
-         if (scene%materials(i)%group%name == 'mud') call set_number(scene, i, trim(SWITCHES(kind)), value)
+         if (scene%materials(i)%group%name == 'mud') call set_number(scene, i, name, 0.0_wp)
       end do
-   end subroutine set_switch
+   end subroutine switch_off
 
    !> The retention curve that holds at the initial void ratio, whatever happens to it.
    subroutine freeze_retention(scene, why)
@@ -398,13 +206,6 @@ contains
       write (text, '(es24.16)') value
       call set_entry(scene%materials(material)%group, name, trim(adjustl(text)))
    end subroutine set_number
-
-   logical function any_mud(scene)
-      type(scene_t), intent(in) :: scene
-      integer :: i
-
-      any_mud = any([(scene%materials(i)%group%name == 'mud', i=1, size(scene%materials))])
-   end function any_mud
 
    !> Value of a parameter of MUD, from the group, its file or the library; 0 of other laws, and where the group is
    !> refused, which is told where the model is built.

@@ -4,16 +4,16 @@
 !> warnings about keys without effect come. Defaults are those of scene_types.
 module scene_keys
    use kinds, only: wp
-   use effect_types, only: EFFECT_WORDS
+   use effect_names, only: EFFECT_WORDS
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use key_schema, only: key_t, REQUIRED, UNBOUNDED, check_group, given
+   use key_schema, only: key_t, REQUIRED, UNBOUNDED, check_group, given, line_of
    use key_table, only: key_table_t
    use material_registry, only: is_law, law_names, law_keys
    use namelists, only: group_t, MAX_VALUES, LENGTH
    use number_pairs, only: read_pairs
    use permeability_laws, only: permeability_t
    use retention_groups, only: RETENTION_KEYS
-   use scene_accuracy, only: ask_steps, ask_stress
+   use scene_tolerances, only: ask_steps, ask_stress
    use scene_types, only: scene_t, scene_law_t, scene_region_t, scene_item_t, initial_t, amplitude_t, stage_t, fix_t, &
                           load_t, plate_t, contact_pair_t, absorber_t, tie_t, point_t, strength_t, place_of, &
                           LOAD_FORCE_Z, LOAD_MOMENT, PRESCRIBED_TURN
@@ -126,15 +126,6 @@ contains
       call k%number('gravity', scene%gravity, ZERO, 1000*ONE, 'acceleration towards -z [m/s2]')
       call k%text('gravity_history', scene%gravity_history, 'name of a &history: factor on gravity', '+gravity', &
                   refers='history')
-      call k%flag('effects', scene%derive_effects, 'given|auto', 'auto', &
-                  'auto: pilots determine what the keys leave open, see host/README.md')
-      call k%number('effects_tolerance', scene%effects_tolerance, 1.0e-6_wp, ONE, &
-                    'largest influence of an effect that is left out [-]', 'effects=auto')
-      call k%number('effects_pilot_share', scene%effects_pilot_share, ZERO, BIG, &
-                    'pilots of effects = ''auto'' may cost this share of the run [-]; else nothing is left out', &
-                    'effects=auto')
-      call k%flag('effects_on_warning', scene%stop_on_warning, 'warn|stop', 'stop', &
-                  'action if an effect that pilots removed matters in the run', 'effects=auto')
       call k%texts('without', scene%without, 'effects that are taken out by hand', words=EFFECT_WORDS)
       call k%flag('seepage_inertia', scene%seepage_inertia, 'no|yes', 'yes', &
                   'acceleration of the skeleton in Darcy''s law', ':p_w')
@@ -142,13 +133,8 @@ contains
                   'rate of saturation by void ratio and suction, or by suction alone', ':p_c')
       call k%flag('initial_flow', scene%subtract_flow, 'drain|subtract', 'subtract', &
                   'subtract: the initial flow is maintained', ':p_w')
-      call k%number('accuracy', scene%accuracy, 1.0e-8_wp, 0.5_wp, &
-                    'relative error wanted in the histories of the points [-], see host/README.md')
-      call k%texts('goals', scene%goals, 'answers that accuracy is for, as ''top.u_z''; default: all')
-      call k%flag('mesh', scene%refined, 'given|auto', 'auto', &
-                  'auto: refined until accuracy holds for mesh, steps and Newton''s method together')
-      call k%number('budget', scene%budget, TINY_, BIG, &
-                    'no mesh is begun that would end after this wall time [s]; default: none', 'mesh=auto')
+      call k%number('step_tolerance', scene%step_tolerance, 1.0e-8_wp, 0.5_wp, &
+                    'local tolerance of controlled steps [-], see host/README.md')
       call k%whole('threads', scene%threads, 0, 1024, 'threads over elements; 0: by size, at most OMP_NUM_THREADS')
       call k%flag('factors', scene%reuse_factors, 'reuse|fresh', 'reuse', &
                   'factors of the matrix: reused while they serve, or new in every iteration')
@@ -159,9 +145,6 @@ contains
       call k%number('checkpoint_seconds', scene%checkpoint_seconds, ZERO, BIG, &
                     'checkpoint.h5 after so much wall time [s]; 0: none')
       call k%flag('checkpoint_end', scene%checkpoint_end, 'no|yes', 'yes', 'checkpoint.h5 when the last stage ends')
-      scene%fields_by_hand = k%given('fields') .or. .not. scene%derive_effects
-      scene%gravity_by_hand = k%given('gravity') .or. scene%gravity_history /= '' .or. .not. scene%derive_effects
-      scene%seepage_by_hand = k%given('seepage_inertia') .or. .not. scene%derive_effects
    end subroutine take_scene
 
    subroutine take_mesh(k, scene)
@@ -181,8 +164,8 @@ contains
          call k%numbers('z', mesh%z, -BIG, BIG, 'breaks along z [m], ascending', '-file')
          call k%wholes('z_cells', mesh%z_cells, 1, 100000, 'cells between two breaks of z', '-file')
          call k%numbers('z_ratio', mesh%z_ratio, 0.01_wp, 100*ONE, RATIO, '-file')
-         call k%number('fineness', mesh%fineness, 0.01_wp, 64*ONE, 'times as many cells along each axis, breaks at '// &
-                       'points; of a file 1, 2, 4, 8')
+         call k%number('fineness', mesh%fineness, 0.01_wp, 64*ONE, 'times as many cells along each axis; of a file '// &
+                       '1, 2, 4, 8')
          mesh%scale_given = k%given('scale')
          ! A path is relative to the file of the scene.
          if (k%given('file') .and. index(mesh%mesh_file, '/') /= 1) &
@@ -230,7 +213,7 @@ contains
 
       call k%text('name', law%name, LAW_NAME, REQUIRED)
       law%group = k%group
-      call ask_stress(scene%accuracy, law%group)
+      call ask_stress(scene%step_tolerance, law%group)
       scene%materials = [scene%materials, law]
    end subroutine take_material
 
@@ -369,13 +352,12 @@ contains
       integer :: steps
 
       call k%text('name', stage%name, 'name of the stage', REQUIRED)
-      call k%word('analysis', stage%kind, 'static|quasi_static|dynamic', &
-                  'kind of the stage; needed unless effects = ''auto''')
+      call k%word('analysis', stage%kind, 'static|quasi_static|dynamic', 'kind of the stage', REQUIRED)
       call k%number('duration', stage%duration, TINY_, BIG, 'duration [s]', REQUIRED)
       call k%number('dt', stage%dt, TINY_, BIG, 'time step [s]; where steps are controlled the first one')
       steps = 0
       call k%word('steps', steps, 'given|controlled', &
-                  'given: dt; controlled: by their error, default with accuracy or without dt')
+                  'given: dt; controlled: by their error, default with step_tolerance or without dt')
       call k%number('output_dt', stage%output_dt, TINY_, BIG, &
                     'controlled steps end at multiples of it, with fields [s]')
       call k%number('dt_growth', stage%dt_growth, ONE, 10*ONE, 'factor on the step after every accepted one')
@@ -399,10 +381,7 @@ contains
       call k%whole('fields', stage%fields, 0, MANY, &
                    'fields are written every so many steps; 0: at the end; without: controlled steps at 50 times')
       stage%film = .not. (k%given('fields') .or. k%given('output_dt'))
-      if (stage%kind == 0 .and. .not. scene%derive_effects) call raise(fault, EXIT_INPUT, &
-         at_line(k%group%file, k%group%line)//'&stage needs analysis (static, quasi_static or dynamic); '// &
-         'effects = ''auto'' in &scene would find it out.')
-      call ask_steps(k%group, scene%accuracy, steps == 2, stage, fault)
+      call ask_steps(k%group, scene%step_tolerance, steps == 2, stage, fault)
       scene%stages = [scene%stages, stage]
    end subroutine take_stage
 
@@ -578,8 +557,8 @@ contains
       type(point_t) :: point
 
       call k%text('name', point%name, 'name in histories.csv', REQUIRED)
-      call k%number('r', point%x(1), -BIG, BIG, 'the nearest node is taken [m]', REQUIRED)
-      call k%number('z', point%x(2), -BIG, BIG, 'the nearest node is taken [m]', REQUIRED)
+      call k%number('r', point%x(1), -BIG, BIG, 'place of the point, in the mesh [m]', REQUIRED)
+      call k%number('z', point%x(2), -BIG, BIG, 'place of the point, in the mesh [m]', REQUIRED)
       scene%points = [scene%points, point]
    end subroutine take_point
 
@@ -594,6 +573,8 @@ contains
 
       allocate (keys, source=keys_of_scenes())
       do g = 1, size(groups)
+         if (groups(g)%name == 'scene') call refuse_old_keys(groups(g), fault)
+         if (fault%code /= 0) return
          if (is_law(groups(g)%name)) then
             ! The law checks its own keys when it is built.
             if (.not. given(groups(g), 'name')) call raise(fault, EXIT_INPUT, at_line(groups(g)%file, &
@@ -609,6 +590,34 @@ contains
          if (fault%code /= 0) return
       end do
    end subroutine check_keys
+
+   !> Fault EXIT_INPUT: a key that older scenes have, with what says it today.
+   subroutine refuse_old_keys(group, fault)
+      type(group_t), intent(in) :: group   !< &scene.
+      type(fault_t), intent(inout) :: fault
+      character(*), parameter :: OLD(8) = [character(20) :: 'accuracy', 'goals', 'mesh', 'budget', 'effects', &
+         'effects_tolerance', 'effects_pilot_share', 'effects_on_warning']
+      character(*), parameter :: MEASURES = ' --accuracy A" measures the errors of the answers, and refines steps '// &
+         'and mesh until they are below A.'
+      character(:), allocatable :: text
+      integer :: i
+
+      text = ''
+      do i = 1, size(OLD)
+         if (.not. given(group, trim(OLD(i))) .or. fault%code /= 0) cycle
+         if (i == 1) then
+            text = 'the local tolerance of the steps is now step_tolerance; "mud_study accuracy '//trim(group%file)// &
+                   MEASURES
+         else if (i <= 4) then
+            text = 'leave it out; "mud_study accuracy '//trim(group%file)//MEASURES
+         else
+            text = 'leave it out, and give analysis, fields and gravity; "mud_study effects '//trim(group%file)// &
+                   '" measures what each effect changes and writes the scene without those that do not matter.'
+         end if
+         call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, trim(OLD(i))))//trim(OLD(i))// &
+                    ' is no key of &scene any more: '//text)
+      end do
+   end subroutine refuse_old_keys
 
    !> Every key with its default and meaning, as a scene to start from.
    subroutine print_template(unit)

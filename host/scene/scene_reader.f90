@@ -6,12 +6,12 @@ module scene_reader
    use namelists, only: group_t, read_groups
    use exit_codes, only: EXIT_GROUP
    use scene_fingerprint, only: fingerprint_of, with_fingerprints
-   use scene_accuracy, only: ask_key
-   use scene_goals, only: check_goals
+   use scene_tolerances, only: ask_key
    use scene_keys, only: check_keys, make_lists, take_group
+   use effect_switches, only: remove_effects
    use kinds, only: wp
    use scene_names, only: check_names
-   use scene_refinement, only: refine_scene
+   use scene_refinement, only: refine_mesh
    use scene_types, only: scene_t, scene_item_t, place_of
    implicit none (type, external)
    private
@@ -19,18 +19,18 @@ module scene_reader
 contains
    !> Reads and checks a scene; a fault names file, line, value, range and the nearest name. Fault EXIT_INPUT: the file
    !> cannot be read, or a group, key or value is refused; EXIT_GROUP: a stage that nobody defines.
-   subroutine read_scene(file, scene, fault, accuracy, fineness)
+   subroutine read_scene(file, scene, fault, step_tolerance, fineness)
       character(*), intent(in) :: file
       type(scene_t), intent(out) :: scene
       type(fault_t), intent(inout) :: fault
-      character(*), intent(in), optional :: accuracy   !< In place of that of the scene; empty: none.
-      character(*), intent(in), optional :: fineness   !< Of the mesh, likewise.
+      character(*), intent(in), optional :: step_tolerance   !< In place of that of the scene; empty: none.
+      character(*), intent(in), optional :: fineness         !< Of the mesh, likewise.
       type(group_t), allocatable :: groups(:)
       type(key_table_t) :: table
       integer :: i
 
       call read_groups(file, groups, fault)
-      if (present(accuracy) .and. fault%code == 0) call ask_key('scene', 'accuracy', accuracy, groups)
+      if (present(step_tolerance) .and. fault%code == 0) call ask_key('scene', 'step_tolerance', step_tolerance, groups)
       if (present(fineness) .and. fault%code == 0) call ask_key('mesh', 'fineness', fineness, groups)
       if (fault%code == 0) call check_keys(groups, fault)
       if (fault%code == 0) call check_names(groups, fault)
@@ -50,26 +50,9 @@ contains
          call take_group(table, scene, fault)
       end do
       if (fault%code == 0) call check_stages(scene, fault)
-      if (fault%code == 0) call check_goals(scene, fault)
-      ! A fineness from outside asks for one mesh.
-      if (present(fineness)) scene%refined = scene%refined .and. fineness == ''
-      if (fault%code == 0) call check_refined(scene, fault)
-      if (fault%code == 0 .and. scene%mesh%fineness > 0.0_wp) call refine_scene(scene, fault)
+      if (fault%code == 0) call remove_effects(scene, fault)
+      if (fault%code == 0 .and. scene%mesh%fineness > 0.0_wp) call refine_mesh(scene%mesh, fault)
    end subroutine read_scene
-
-   !> Fault EXIT_INPUT: a mesh is to be refined, and the scene does not say until when, or says which mesh to take.
-   subroutine check_refined(scene, fault)
-      type(scene_t), intent(in) :: scene
-      type(fault_t), intent(inout) :: fault
-
-      if (.not. scene%refined) return
-      if (.not. scene%accuracy > 0.0_wp) call raise(fault, EXIT_INPUT, trim(scene%file)//': mesh = ''auto'' of '// &
-         '&scene needs accuracy, the total error at which refinement ends, as 0.03.')
-      if (scene%mesh%fineness > 0.0_wp) call raise(fault, EXIT_INPUT, place_of(scene%mesh)//'fineness of &mesh '// &
-         'and mesh = ''auto'' of &scene contradict each other; leave one out.')
-      if (size(scene%points) == 0) call raise(fault, EXIT_INPUT, trim(scene%file)//': mesh = ''auto'' of &scene '// &
-         'compares the histories of points on several meshes; give the scene a &point.')
-   end subroutine check_refined
 
    !> Groups that occur once, and those without which there is nothing to do.
    subroutine check_counts(file, groups, fault)

@@ -6,7 +6,6 @@ module scene_types
    use kinds, only: wp
    use contact_types, only: contact_options_t
    use convergence, only: BY_STAGE
-   use effect_types, only: effect_t
    use faults, only: at_line
    use namelists, only: group_t, LENGTH
    use permeability_laws, only: permeability_t
@@ -94,15 +93,13 @@ module scene_types
 
    type :: stage_t
       character(NAME_LENGTH) :: name = ''
-      integer :: kind = 0                            !< Of generalised_alpha; 0: to be found by pilots.
+      integer :: kind = 0                            !< Of generalised_alpha.
       real(wp) :: duration = 0.0_wp, dt = 0.0_wp, dt_growth = 1.0_wp, dt_max = NEVER
       logical :: controlled = .false.                !< Steps are chosen from their error.
-      real(wp) :: accuracy = 0.0_wp                  !< Asked for, in the histories of the named points [-].
+      real(wp) :: step_tolerance = 0.0_wp            !< Of those steps [-].
       real(wp) :: output_dt = 0.0_wp
-      real(wp), allocatable :: ends(:)               !< Steps end here, after the start of the stage [s]: of pilots.
       integer :: cuts = 10, max_iterations = 12, every = 1, fields = 0
       real(wp) :: rho_inf = -1.0_wp, tolerance = 1.0e-3_wp, created_energy = 0.01_wp
-      logical :: open_tolerance = .false.            !< The scene leaves Newton's tolerance to the accuracy.
       integer :: measure = BY_STAGE                  !< See convergence.
       logical :: film = .true.                       !< No key says when fields are written.
       logical :: no_predictor = .false., solve_start = .true., zero_displacements = .false.
@@ -179,7 +176,8 @@ module scene_types
    type :: point_t
       character(NAME_LENGTH) :: name = ''
       real(wp) :: x(2) = 0.0_wp
-      integer :: node = 0, gauss = 0                 !< Nearest ones.
+      integer :: nodes(6) = 0, gauss = 0             !< Of its element; nearest quadrature point.
+      real(wp) :: weights(6) = 0.0_wp, pressure_weights(6) = 0.0_wp   !< Of the nodes.
    end type point_t
 
    type :: scene_t
@@ -194,20 +192,12 @@ module scene_types
       logical :: seepage_inertia = .false., full_saturation_rate = .true., subtract_flow = .false.
       logical :: reuse_factors = .true.
       integer :: ordering = 1                        !< See sparse_factors.
-      real(wp) :: accuracy = 0.0_wp                  !< 0: not asked for.
-      character(LENGTH), allocatable :: goals(:)     !< Answers that it is for; none: all, of meshes without forces.
-      logical :: refined = .false.                   !< The mesh is refined until the accuracy holds.
-      real(wp) :: budget = NEVER                     !< Wall time that this may take [s].
+      real(wp) :: step_tolerance = 0.0_wp            !< 0: not given.
       integer :: checkpoint_steps = 0
       real(wp) :: checkpoint_seconds = 0.0_wp
       logical :: checkpoint_end = .false.
-      logical :: derive_effects = .false.            !< Effects that the keys leave open are found by pilots.
-      logical :: stop_on_warning = .false.           !< A warning about a removed effect ends the run.
-      real(wp) :: effects_tolerance = 0.01_wp, effects_pilot_share = 0.1_wp
       character(LENGTH), allocatable :: without(:)   !< Effects that are taken out by hand.
       character(LENGTH), allocatable :: absent(:)    !< Those of them that the scene did not have.
-      type(effect_t), allocatable :: effects(:)      !< What pilots have found; not allocated: none ran.
-      logical :: fields_by_hand = .true., gravity_by_hand = .true., seepage_by_hand = .true.   !< these say it.
       type(scene_mesh_t) :: mesh
       type(fluids_t) :: fluids
       type(permeability_t), allocatable :: permeabilities(:)

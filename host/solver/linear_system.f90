@@ -38,7 +38,6 @@ module linear_system
       real(wp) :: rounding(FIELDS) = 0.0_wp   !< Least scale of the present step, see convergence.
       real(wp) :: first_error = 0.0_wp        !< Of the last step, after its first correction, see convergence.
       real(wp), allocatable :: reaction(:)    !< Residual with the constrained rows kept.
-      real(wp), allocatable :: left(:)        !< (unknowns) What Newton's method left of the last step [m, kPa].
       real(wp) :: seconds(TIMERS) = 0.0_wp    !< Wall time, by T_...
       integer :: n_pass = 0
    end type system_t

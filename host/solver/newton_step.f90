@@ -57,7 +57,6 @@ contains
       real(wp), allocatable :: touched(:)   !< Forces of contacts before, where steps are measured by what they change.
       real(wp) :: norm, norm_0, begun, t0   !< begun: the norm that a reduction is a share of.
       real(wp) :: rounded(FIELDS)           !< What the rounding of the unknowns makes [kN, m3/s].
-      real(wp) :: before(FIELDS)            !< Norms of the residual that the last correction answered.
       integer :: status
       logical :: with_tangent, guessed, turned, rough
 
@@ -140,7 +139,6 @@ contains
             system%rounding = max(system%rounding, rounded/control%tolerance)
             assembly%unresolved = max(assembly%unresolved, rounded(1)/control%tolerance)
          end if
-         before = residual_norms(dofs, constraint, rhs)
          ! Other measures may ask for more than a linear solution that is exact to a share of the forces.
          if (all(control%measure /= [BY_FORCES, BY_CHANGE])) system%factored = .false.
          call solve_step(dofs, pattern, constraint, assembly, linear_tolerance(control), rhs, system, dx, status)
@@ -161,24 +159,10 @@ contains
          with_tangent = .false.
       end do
       system%first_error = maxval(log%first_error)
-      call keep_what_is_left()
       call follow_friction(system%contacts, fresh=.true.)
       assembly%slopes%known = .true.
       call add_elapsed(system%seconds(T_REST), t0)
    contains
-      !> What a further iteration would correct: the last correction, as much smaller as its residual has become. One
-      !> share for all fields: a load that acts at once leaves the flow a residual of rounding before the correction.
-      subroutine keep_what_is_left()
-         real(wp) :: forces(FIELDS), answered, share
-
-         forces = forces_of_fields(dofs, constraint, assembly)
-         answered = maxval(before/forces)
-         ! Where every unknown is prescribed nothing was to be answered.
-         share = 0.0_wp
-         if (answered > 0.0_wp) share = maxval(residual_norms(dofs, constraint, rhs)/forces)/answered
-         system%left = dx*min(1.0_wp, share)
-      end subroutine keep_what_is_left
-
       !> Stresses of the next pass are integrated to a share of an error of Newton's method: the first passes cost less.
       !> docs/theory/host.md section 5.1.
       subroutine follow_error(error)

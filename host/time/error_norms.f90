@@ -3,8 +3,7 @@
 !>
 !> Generalised-alpha stores rates that belong not to the ends of a step but to a moment D dt off, with D = l_f - l_a for
 !> accelerations and l_f - l_p for first-order rates. Where a controlled step of a flow changes, the stored rates are
-!> moved there first: so second order is kept. Given steps leave them where they are, and what that errs by is
-!> estimated too. Accelerations stay as they are: what their change of place errs by is of third order,
+!> moved there first: so second order is kept. Given steps leave them where they are. Accelerations stay as they are: what their change of place errs by is of third order,
 !> and to extrapolate them would multiply the jumps of a contact.
 !>
 !> The leading error of a step is C dt**3 times the third derivative, C = 1/12 + 3/8 D**2 for accelerations and
@@ -16,21 +15,16 @@ module error_norms
    use generalised_alpha, only: scheme_t, STATIC, QUASI_STATIC, DYNAMIC
    implicit none (type, external)
    private
-   public :: rate_memory_t, new_memory, keep_rates, shift_rates, local_errors, remember, forget, &
-             constant_of_accelerations, constant_of_rates, kept_of_motion, alternating_part, rms, bent_share, &
-             bent_error, PATH
+   public :: rate_memory_t, new_memory, shift_rates, local_errors, remember, forget, constant_of_accelerations, &
+             constant_of_rates, rms
 
    real(wp), parameter :: LONGEST = 2.0_wp   !< Times the last step: no rate is carried over a longer one.
-   !> Share of the curvature of a path that a straight step leaves out (deviation in the middle of the step).
-   real(wp), parameter :: PATH = 0.125_wp
    real(wp), parameter :: BENT = 1.0_wp/12   !< Mean deviation of a bent path from the straight step, of dt**2 x''.
 
    !> Rates one step back.
    type :: rate_memory_t
       logical :: known = .false.            !< There are such rates, with nothing sudden since.
-      logical :: moves = .false.            !< Rates are moved where a step of another length expects them.
       real(wp) :: dt = 0.0_wp               !< Step from them to the present ones, which both belong to [s].
-      real(wp) :: span = 0.0_wp             !< Time between the moments that they belong to: dt where moved [s].
       real(wp), allocatable :: rate(:, :)   !< (fields, nodes)
       real(wp), allocatable :: s_rate(:)    !< (points)
       ! The present ones as the last step left them; attempts of different length move them from here.
@@ -63,28 +57,6 @@ contains
       c = 1.0_wp/12 + (scheme%l_p - scheme%l_f)**2
    end function constant_of_rates
 
-   !> Share of earlier errors that a step leaves in a motion that loses energy, exp(-dt/4 D/int K dt): of a mode with
-   !> the damping ratio xi exp(-xi omega dt). [-] docs/theory/host.md section 4.5.
-   pure real(wp) function kept_of_motion(dt, damped, motion) result(kept)
-      real(wp), intent(in) :: dt       !< [s]
-      real(wp), intent(in) :: damped   !< Dissipated by damping in the stage so far [kJ].
-      real(wp), intent(in) :: motion   !< Kinetic energy over the time of the stage so far [kJ s].
-
-      kept = 1.0_wp
-      if (motion > 0.0_wp) kept = exp(-dt/4*max(0.0_wp, damped)/motion)
-   end function kept_of_motion
-
-   !> Keeps the rates of the present state as the last step left them. v: (fields, nodes); s_rate: (points).
-   pure subroutine keep_rates(memory, v, s_rate)
-      type(rate_memory_t), intent(inout) :: memory
-      real(wp), intent(in) :: v(:, :), s_rate(:)   !< [m/s, kPa/s], [1/s]
-
-      if (memory%based) return
-      memory%base_rate = v
-      memory%base_s_rate = s_rate
-      memory%based = .true.
-   end subroutine keep_rates
-
    !> Moves the rates of the present state to where a step of another length expects them. docs/theory/host.md section
    !> 4.5. Rates stay in static steps and where none are known from before; in dynamic steps those of the displacements
    !> stay.
@@ -95,8 +67,11 @@ contains
       real(wp) :: share
       integer :: first
 
-      call keep_rates(memory, v, s_rate)
-      memory%moves = .true.
+      if (.not. memory%based) then
+         memory%base_rate = v
+         memory%base_s_rate = s_rate
+         memory%based = .true.
+      end if
       if (scheme%kind == STATIC .or. .not. memory%known) return
       first = merge(1, 3, scheme%kind == QUASI_STATIC)
       share = (scheme%l_f - scheme%l_p)*(min(scheme%dt, LONGEST*memory%dt) - memory%dt)/memory%dt
@@ -113,7 +88,7 @@ contains
       real(wp), intent(in) :: x0(:, :), v0(:, :), a0(:, :), x1(:, :), v1(:, :), a1(:, :)
       real(wp), intent(out) :: error(:, :)   !< (FIELDS, nodes) [m, kPa]; 0 where not known.
       logical, intent(out) :: known(:)   !< (FIELDS)
-      real(wp) :: off, span
+      real(wp) :: off
       integer :: first
 
       error = 0.0_wp
@@ -131,14 +106,6 @@ contains
          end if
          if (.not. memory%known) return
          off = scheme%l_f - scheme%l_p
-         if (.not. memory%moves) then
-            ! The second part: rates that stay where a step of another length left them.
-            span = dt + off*(dt - memory%dt)
-            error(first:, :) = constant_of_rates(scheme)*dt**3*((v1(first:, :) - v0(first:, :))/span &
-                               - (v0(first:, :) - memory%rate(first:, :))/memory%span)/(0.5_wp*(span + memory%span)) &
-                               - (scheme%l_f - 0.5_wp)*off*dt*(dt - memory%dt)*(v1(first:, :) - v0(first:, :))/span
-            return
-         end if
          error(first:, :) = constant_of_rates(scheme)*dt**3*((v1(first:, :) - v0(first:, :))/dt &
                             - (memory%base_rate(first:, :) - memory%rate(first:, :))/memory%dt) &
                             /(0.5_wp*(dt + memory%dt) + off*(min(dt, LONGEST*memory%dt) - memory%dt))
@@ -146,42 +113,17 @@ contains
    end subroutine local_errors
 
    !> Error of a static step [unit of the rate times s]: its ends are in equilibrium, and within it the material follows
-   !> a straight path instead of a bent one. docs/theory/host.md section 4.5.
+   !> a straight path instead of a bent one: the bend, dt**2/12 of its second derivative in the mean, as far as the
+   !> stiffness changes along it, which is the share by which the rate does. docs/theory/host.md section 4.5.
    pure function static_error(rate, rate_before, dt, dt_before) result(error)
       real(wp), intent(in) :: rate(:, :), rate_before(:, :)   !< (fields, nodes) of this step and of the last one.
       real(wp), intent(in) :: dt, dt_before                   !< Their lengths [s].
-      real(wp) :: error(size(rate, 1), size(rate, 2))
+      real(wp) :: error(size(rate, 1), size(rate, 2)), share
 
-      error = bent_error(share_of_bend(rate, rate_before, dt, dt_before), rate, rate_before, dt, dt_before)
+      error = (rate - rate_before)/(0.5_wp*(dt + dt_before))
+      share = min(1.0_wp, dt*norm2(error)/max(norm2(rate), norm2(rate_before), tiny(1.0_wp)))
+      error = BENT*share*dt**2*error
    end function static_error
-
-   !> What a static step leaves out of a quantity that follows the path: the bend, dt**2/12 of its second derivative in
-   !> the mean, as far as the stiffness changes along it. docs/theory/host.md section 4.5.
-   elemental real(wp) function bent_error(share, rate, rate_before, dt, dt_before) result(error)
-      real(wp), intent(in) :: share               !< By which the stiffness changes in the step [-].
-      real(wp), intent(in) :: rate, rate_before   !< Of the quantity, in this step and in the last one.
-      real(wp), intent(in) :: dt, dt_before       !< Their lengths [s].
-
-      error = BENT*share*dt**2*(rate - rate_before)/(0.5_wp*(dt + dt_before))
-   end function bent_error
-
-   !> The share by which the stiffness changes in a static step is that by which the rate of the unknowns does [-].
-   pure real(wp) function share_of_bend(rate, rate_before, dt, dt_before) result(share)
-      real(wp), intent(in) :: rate(:, :), rate_before(:, :), dt, dt_before   !< As of static_error.
-
-      share = min(1.0_wp, dt*norm2((rate - rate_before)/(0.5_wp*(dt + dt_before))) &
-                          /max(norm2(rate), norm2(rate_before), tiny(1.0_wp)))
-   end function share_of_bend
-
-   !> The same of a step from x0 to x1; 0 where no rate is known from before.
-   pure real(wp) function bent_share(memory, dt, x0, x1) result(share)
-      type(rate_memory_t), intent(in) :: memory
-      real(wp), intent(in) :: dt                   !< [s]
-      real(wp), intent(in) :: x0(:, :), x1(:, :)   !< (FIELDS, nodes) [m, kPa]
-
-      share = 0.0_wp
-      if (memory%known) share = share_of_bend((x1 - x0)/dt, memory%rate, dt, memory%dt)
-   end function bent_share
 
    !> Keeps the rates of the start of an accepted step. x: (fields, nodes) values at both ends of the step [m, kPa]; v0:
    !> their rates at its start [1/s of it]; s_rate: (points) rate of S_w there [1/s]. In static steps the rates are
@@ -191,9 +133,6 @@ contains
       type(rate_memory_t), intent(inout) :: memory
       real(wp), intent(in) :: x0(:, :), x1(:, :), v0(:, :), s_rate(:)
 
-      memory%span = scheme%dt
-      if (memory%known .and. .not. memory%moves) &
-         memory%span = scheme%dt + (scheme%l_f - scheme%l_p)*(scheme%dt - memory%dt)
       memory%rate = v0
       if (scheme%kind == STATIC) memory%rate = (x1 - x0)/scheme%dt
       memory%s_rate = s_rate
@@ -208,15 +147,6 @@ contains
 
       memory%known = .false.
    end subroutine forget
-
-   !> Part of an error that the one before takes back: where their signs differ, what both have, with the sign of `now`.
-   !> Such errors belong to waves too fast for the steps: docs/theory/host.md section 4.5.
-   elemental real(wp) function alternating_part(now, before) result(ripple)
-      real(wp), intent(in) :: now, before   !< Of the same unit and the same length of step.
-
-      ripple = 0.0_wp
-      if (now*before < 0.0_wp) ripple = sign(min(abs(now), abs(before)), now)
-   end function alternating_part
 
    !> Root mean square over the nodes. values: (components, nodes); the squares of all components are added up.
    pure real(wp) function rms(values)

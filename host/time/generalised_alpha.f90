@@ -7,7 +7,7 @@ module generalised_alpha
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: scheme_t, make_scheme, predict, advance_rates, rate_of, step_error
+   public :: scheme_t, make_scheme, predict, advance_rates, rate_of
    public :: STATIC, QUASI_STATIC, DYNAMIC
 
    integer, parameter :: STATIC = 1         !< Equilibrium alone: no rates, pressures held.
@@ -98,18 +98,4 @@ contains
       rate_of = (x1 - x0)/(scheme%gamma_1*scheme%dt) - (1 - scheme%gamma_1)/scheme%gamma_1*v0
    end function rate_of
 
-   !> Estimate of a dynamic step's own error as a share of its change (Zienkiewicz & Xie 1991): what linear
-   !> accelerations would have given besides. A hook for a step control; it is written to the ledger. x: (2 or more,
-   !> nodes), displacements first [m]; a: (2, nodes) [m/s2]. The norm of all nodes [-]; 0 where the step is not dynamic
-   !> or nothing moves.
-   pure real(wp) function step_error(scheme, x0, a0, x1, a1)
-      type(scheme_t), intent(in) :: scheme
-      real(wp), intent(in) :: x0(:, :), a0(:, :), x1(:, :), a1(:, :)
-      real(wp) :: change
-
-      step_error = 0.0_wp
-      change = norm2(x1(1:2, :) - x0(1:2, :))
-      if (scheme%kind /= DYNAMIC .or. .not. change > 0.0_wp) return
-      step_error = scheme%dt**2*abs(scheme%beta - 1.0_wp/6)*norm2(a1 - a0)/change
-   end function step_error
 end module generalised_alpha

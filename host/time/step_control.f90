@@ -10,12 +10,11 @@ module step_control
 
    real(wp), parameter :: REJECTED_ABOVE = 1.2_wp   !< Ratio of error to allowance beyond which a step is repeated.
    real(wp), parameter :: LARGEST_FACTOR = 2.0_wp, SMALLEST_FACTOR = 0.2_wp
-   integer, parameter :: MOST_REJECTIONS = 3        !< Where its caller does not say otherwise.
+   integer, parameter :: MOST_REJECTIONS = 10       !< In a row: 0.2**10 is as good as nothing.
    real(wp), parameter :: SAFETY = 0.9_wp           !< Of the step that the error asks for.
    !> A longer step that gains less than this is not taken: the factors of the matrix serve equal steps.
    real(wp), parameter :: DEADBAND = 1.2_wp
-   ! Error over allowance grows with the square of the step (second order, allowance in proportion to the step).
-   real(wp), parameter :: ORDER = 2.0_wp
+   real(wp), parameter :: ORDER = 3.0_wp            !< A step of second order errs by its third power.
    real(wp), parameter :: INTEGRAL = 0.7_wp/ORDER, PROPORTIONAL = 0.4_wp/ORDER
    real(wp), parameter :: LEAST_RATIO = 1.0e-10_wp  !< Smaller ratios are no errors.
 
@@ -23,7 +22,6 @@ module step_control
       real(wp) :: dt = 0.0_wp           !< Next step [s].
       real(wp) :: last_ratio = 1.0_wp   !< Of the last accepted step.
       integer :: rejections = 0         !< In a row, of the step under way.
-      integer :: most_rejections = MOST_REJECTIONS   !< In a row: then the step stands, whatever its error.
       logical :: held = .false.         !< The last attempt was rejected: no growth.
    end type controller_t
 contains
@@ -46,7 +44,7 @@ contains
       real(wp) :: factor, r
 
       ! Where something begins out of rest nothing is there yet to compare its error with.
-      accepted = .not. ratio > REJECTED_ABOVE .or. controller%rejections >= controller%most_rejections
+      accepted = .not. ratio > REJECTED_ABOVE .or. controller%rejections >= MOST_REJECTIONS
       if (.not. accepted) then
          controller%rejections = controller%rejections + 1
          controller%dt = dt*max(SMALLEST_FACTOR, min(SAFETY, SAFETY*ratio**(-1/ORDER)))

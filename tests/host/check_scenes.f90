@@ -3,7 +3,6 @@
 !> scenes then take minutes. Names each scene before it is read, so that a crash has a name; then exit code and message.
 program check_scenes
    use, intrinsic :: iso_fortran_env, only: input_unit, output_unit
-   use effect_pilots, only: reduce_scene
    use faults, only: fault_t
    use files, only: limits_are_errors
    use model_builder, only: build_model
@@ -35,7 +34,6 @@ contains
       type(fault_t) :: fault
 
       call read_scene(file, scene, fault)
-      if (fault%code == 0) call reduce_scene(scene, fault)
       if (fault%code == 0) call build_model(scene, model, fault)
       if (fault%code == 0) call prepare_run(model, run, fault)
       write (output_unit, '(i0,1x,a)') fault%code, trim(fault%text)

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> What an accuracy asks of the keys that a scene leaves out: steps, Newton's tolerance, stress integration. What the
-!> scene sets by hand stays. docs/theory/host.md section 4.5.
-module scene_accuracy
+!> What the tolerance of the steps asks of the keys that a scene leaves out: steps, Newton's method, stress integration.
+!> What the scene sets by hand stays. docs/theory/host.md section 4.5.
+module scene_tolerances
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use namelists, only: group_t, set_entry
@@ -9,10 +9,10 @@ module scene_accuracy
    use scene_types, only: stage_t
    implicit none (type, external)
    private
-   public :: ask_key, ask_steps, ask_stress, shorten_given_steps
+   public :: ask_key, ask_steps, ask_stress
 
-   real(wp), parameter :: DEFAULT_ACCURACY = 1.0e-2_wp   !< Of stages without dt in scenes that ask for none.
-   real(wp), parameter :: NEWTON_SHARE = 0.1_wp          !< Newton's tolerance as a share of the accuracy.
+   real(wp), parameter :: DEFAULT_TOLERANCE = 1.0e-2_wp  !< Of stages without dt in scenes that give none.
+   real(wp), parameter :: NEWTON_SHARE = 0.1_wp          !< Newton's tolerance as a share of the steps'.
    real(wp), parameter :: NEWTON_LARGEST = 1.0e-4_wp     !< Its bound: the residuals of all steps add up.
    real(wp), parameter :: STRESS_SHARE = 0.1_wp          !< Tolerance of MUD's stress integration, likewise.
    real(wp), parameter :: STRESS_LEAST = 1.0e-10_wp, STRESS_LARGEST = 1.0e-3_wp   !< Its bounds.
@@ -31,48 +31,34 @@ contains
    end subroutine ask_key
 
    !> Steps and tolerance of a stage. docs/theory/host.md section 4.5. Fault EXIT_INPUT: steps = "given" without dt.
-   subroutine ask_steps(group, accuracy, by_error, stage, fault)
+   subroutine ask_steps(group, tolerance, by_error, stage, fault)
       type(group_t), intent(in) :: group
-      real(wp), intent(in) :: accuracy   !< Of the scene; 0: not asked for.
+      real(wp), intent(in) :: tolerance  !< Of the scene; 0: not given.
       logical, intent(in) :: by_error    !< The key steps says it.
       type(stage_t), intent(inout) :: stage
       type(fault_t), intent(inout) :: fault
 
-      stage%accuracy = accuracy
-      if (.not. accuracy > 0.0_wp) stage%accuracy = DEFAULT_ACCURACY
-      stage%controlled = accuracy > 0.0_wp .or. .not. given(group, 'dt')
+      stage%step_tolerance = tolerance
+      if (.not. tolerance > 0.0_wp) stage%step_tolerance = DEFAULT_TOLERANCE
+      stage%controlled = tolerance > 0.0_wp .or. .not. given(group, 'dt')
       if (given(group, 'steps')) stage%controlled = by_error
       if (.not. (given(group, 'dt') .or. stage%controlled)) call raise(fault, EXIT_INPUT, at_line(group%file, &
          group%line)//'&stage with steps = ''given'' needs dt [s].')
-      stage%open_tolerance = stage%controlled .and. .not. given(group, 'tolerance')
-      if (stage%open_tolerance) stage%tolerance = min(NEWTON_LARGEST, NEWTON_SHARE*stage%accuracy)
+      if (stage%controlled .and. .not. given(group, 'tolerance')) &
+         stage%tolerance = min(NEWTON_LARGEST, NEWTON_SHARE*stage%step_tolerance)
    end subroutine ask_steps
 
-   !> Shortens the given steps of stages to a share of their length; growing ones grow as much in the same time.
-   pure subroutine shorten_given_steps(stages, share)
-      type(stage_t), intent(inout) :: stages(:)
-      real(wp), intent(in) :: share   !< 0 to 1
-      integer :: i
-
-      do i = 1, size(stages)
-         if (stages(i)%controlled) cycle
-         stages(i)%dt = share*stages(i)%dt
-         if (stages(i)%dt_max < huge(1.0_wp)) stages(i)%dt_max = share*stages(i)%dt_max
-         stages(i)%dt_growth = stages(i)%dt_growth**share
-      end do
-   end subroutine shorten_given_steps
-
    !> Tolerance and scheme of MUD. docs/theory/host.md section 4.5; nothing for other laws.
-   subroutine ask_stress(accuracy, group)
-      real(wp), intent(in) :: accuracy   !< Of the scene [-]; 0: nothing.
+   subroutine ask_stress(tolerance, group)
+      real(wp), intent(in) :: tolerance   !< Of the scene [-]; 0: nothing.
       type(group_t), intent(inout) :: group
       character(16) :: text
 
-      if (.not. accuracy > 0.0_wp .or. group%name /= 'mud') return
+      if (.not. tolerance > 0.0_wp .or. group%name /= 'mud') return
       if (.not. given(group, 'tolerance')) then
-         write (text, '(es10.3)') min(STRESS_LARGEST, max(STRESS_LEAST, STRESS_SHARE*accuracy))
+         write (text, '(es10.3)') min(STRESS_LARGEST, max(STRESS_LEAST, STRESS_SHARE*tolerance))
          call set_entry(group, 'tolerance', trim(adjustl(text)))
       end if
-      if (.not. given(group, 'scheme') .and. accuracy < TIGHT) call set_entry(group, 'scheme', '2')
+      if (.not. given(group, 'scheme') .and. tolerance < TIGHT) call set_entry(group, 'scheme', '2')
    end subroutine ask_stress
-end module scene_accuracy
+end module scene_tolerances

@@ -1,0 +1,133 @@
+! SPDX-License-Identifier: MIT
+!> Where the named points of a scene lie: in which element, and with which weights of its nodes. No point is moved to a
+!> node: so every mesh of a scene tells of the same places.
+module named_points
+   use kinds, only: wp
+   use exit_codes, only: EXIT_GROUP
+   use faults, only: fault_t, raise
+   use porous_domain, only: domain_t
+   use scene_types, only: point_t
+   use shape_functions, only: quadratic, linear
+   use texts, only: short
+   use unknown_fields, only: FIELDS, DISPLACEMENTS
+   implicit none (type, external)
+   private
+   public :: find_point, unknowns_at, motion_at
+
+   real(wp), parameter :: SAME_PLACE = 1.0e-9_wp   !< Share of the mesh: a point nearer to a node is there.
+   real(wp), parameter :: ON_THE_SIDE = 1.0e-9_wp  !< Of a local coordinate: rounding of a place on a side.
+   integer, parameter :: MOST_ITERATIONS = 20      !< For the local coordinates in an element with bent sides.
+contains
+   !> Nodes, weights and nearest quadrature point of a point. Fault EXIT_GROUP: it lies outside the mesh.
+   subroutine find_point(m, point, fault)
+      type(domain_t), intent(in) :: m
+      type(point_t), intent(inout) :: point
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: distance(size(m%mesh%x, 2)), local(2), dn(2, 6), dn_linear(2, 3)
+      logical :: in_ground(size(distance)), found
+      integer :: e, g, i, node
+
+      associate (mesh => m%mesh)
+         in_ground = .false.
+         do e = 1, size(mesh%t6, 2)
+            in_ground(mesh%t6(:, e)) = .true.
+         end do
+         distance = [(norm2(mesh%x(:, i) - point%x), i=1, size(distance))]
+         node = minloc(distance, 1, mask=in_ground)
+         found = distance(node) <= SAME_PLACE*maxval(abs(mesh%x - spread(mesh%x(:, node), 2, size(mesh%x, 2))))
+         if (found) then
+            e = findloc(any(mesh%t6 == node, dim=1), .true., dim=1)
+            local = place_in_triangle(findloc(mesh%t6(:, e), node, dim=1))
+         else
+            do e = 1, size(mesh%t6, 2)
+               call find_local(mesh%x(:, mesh%t6(:, e)), point%x, local, found)
+               if (found) exit
+            end do
+         end if
+         if (.not. found) then
+            call raise(fault, EXIT_GROUP, '&point '//trim(point%name)//': ('//short(point%x(1))//', '// &
+                       short(point%x(2))//') m lies outside the mesh; the nearest node is at ('// &
+                       short(mesh%x(1, node))//', '//short(mesh%x(2, node))//') m.')
+            return
+         end if
+         point%nodes = mesh%t6(:, e)
+         call quadratic(local(1), local(2), point%weights, dn)
+         point%pressure_weights = point%weights
+         if (m%n_p == 3) then
+            point%pressure_weights = 0.0_wp
+            call linear(local(1), local(2), point%pressure_weights(:3), dn_linear)
+         end if
+         point%gauss = minloc([((norm2(m%gauss(g, e)%x - point%x), g=1, m%rule), e=1, size(mesh%t6, 2))], 1)
+      end associate
+   end subroutine find_point
+
+   !> Local coordinates of a node of a triangle.
+   pure function place_in_triangle(node) result(local)
+      integer, intent(in) :: node   !< 1 to 6
+      real(wp) :: local(2)
+      real(wp), parameter :: PLACES(2, 6) = reshape([0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.5_wp, 0.0_wp, &
+                                                     0.5_wp, 0.5_wp, 0.0_wp, 0.5_wp], [2, 6])
+
+      local = PLACES(:, node)
+   end function place_in_triangle
+
+   !> Local coordinates of a place, by Newton's method, and whether it lies in the element.
+   pure subroutine find_local(x, place, local, inside)
+      real(wp), intent(in) :: x(2, 6), place(2)   !< Nodes [m]; [m].
+      real(wp), intent(out) :: local(2)           !< xi, eta
+      logical, intent(out) :: inside
+      real(wp) :: n(6), dn(2, 6), j(2, 2), det, left(2), size_of, step(2)
+      integer :: k
+
+      local = 1.0_wp/3
+      inside = .false.
+      size_of = maxval(maxval(x, dim=2) - minval(x, dim=2))
+      ! A bent side leaves the box of its nodes by less than the element.
+      if (any(place < minval(x, dim=2) - size_of) .or. any(place > maxval(x, dim=2) + size_of)) return
+      do k = 1, MOST_ITERATIONS
+         call quadratic(local(1), local(2), n, dn)
+         j = matmul(x, transpose(dn))
+         det = j(1, 1)*j(2, 2) - j(1, 2)*j(2, 1)
+         if (.not. abs(det) > epsilon(1.0_wp)*size_of**2) return
+         left = place - matmul(x, n)
+         step = [j(2, 2)*left(1) - j(1, 2)*left(2), j(1, 1)*left(2) - j(2, 1)*left(1)]/det
+         if (any(abs(step) > 10.0_wp)) return
+         local = local + step
+         if (all(abs(step) < 0.1_wp*ON_THE_SIDE)) then
+            inside = all(local >= -ON_THE_SIDE) .and. sum(local) <= 1 + ON_THE_SIDE
+            return
+         end if
+      end do
+   end subroutine find_local
+
+   !> The unknowns at a point [m, kPa].
+   pure function unknowns_at(point, x) result(values)
+      type(point_t), intent(in) :: point
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes)
+      real(wp) :: values(FIELDS)
+
+      values(:DISPLACEMENTS) = weighted(x(:DISPLACEMENTS, :), point%nodes, point%weights)
+      values(DISPLACEMENTS + 1:) = weighted(x(DISPLACEMENTS + 1:, :), point%nodes, point%pressure_weights)
+   end function unknowns_at
+
+   !> Velocities or accelerations there [m/s, m/s2].
+   pure function motion_at(point, v) result(values)
+      type(point_t), intent(in) :: point
+      real(wp), intent(in) :: v(:, :)   !< (2 or more, nodes)
+      real(wp) :: values(DISPLACEMENTS)
+
+      values = weighted(v(:DISPLACEMENTS, :), point%nodes, point%weights)
+   end function motion_at
+
+   pure function weighted(x, nodes, weights) result(values)
+      real(wp), intent(in) :: x(:, :), weights(6)
+      integer, intent(in) :: nodes(6)
+      real(wp) :: values(size(x, 1))
+      integer :: k
+
+      values = 0.0_wp
+      do k = 1, 6
+         values = values + weights(k)*x(:, nodes(k))
+      end do
+   end function weighted
+end module named_points

@@ -1,0 +1,118 @@
+! SPDX-License-Identifier: MIT
+!> What a run says at its end: the largest value of every answer, the steps and what kept them short, the warnings again,
+!> and that errors are not known to it.
+module run_summary
+   use kinds, only: wp
+   use control_state, only: LIMITS, LIMIT_NAMES
+   use model_types, only: model_t
+   use named_points, only: unknowns_at
+   use porous_domain, only: state_t
+   use run_state, only: run_t
+   use texts, only: short, whole
+   use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
+   use warnings, only: repeat_warnings
+   implicit none (type, external)
+   private
+   public :: peaks_t, new_peaks, note_peaks, print_summary, with_unit, counted
+
+   !> Largest magnitudes of the unknowns at the named points so far, with their signs, and when.
+   type :: peaks_t
+      real(wp), allocatable :: value(:, :), time(:, :)   !< (FIELDS, points) [m, kPa], [s]
+   end type peaks_t
+contains
+   !> Peaks before the first step.
+   pure function new_peaks(points) result(peaks)
+      integer, intent(in) :: points
+      type(peaks_t) :: peaks
+
+      allocate (peaks%value(FIELDS, points), peaks%time(FIELDS, points), source=0.0_wp)
+   end function new_peaks
+
+   !> After every accepted step.
+   pure subroutine note_peaks(model, state, peaks)
+      type(model_t), intent(in) :: model
+      type(state_t), intent(in) :: state
+      type(peaks_t), intent(inout) :: peaks
+      real(wp) :: x(FIELDS)
+      integer :: i, f
+
+      do i = 1, size(model%points)
+         x = unknowns_at(model%points(i), state%x)
+         do f = 1, FIELDS
+            if (.not. abs(x(f)) > abs(peaks%value(f, i))) cycle
+            peaks%value(f, i) = x(f)
+            peaks%time(f, i) = state%time
+         end do
+      end do
+   end subroutine note_peaks
+
+   !> The summary; nothing of answers that no step has changed, of steps where all are given.
+   subroutine print_summary(unit, model, run, peaks)
+      integer, intent(in) :: unit   !< Number of a Fortran unit.
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(peaks_t), intent(in) :: peaks
+      character(:), allocatable :: text
+      integer :: i, f
+
+      if (run%steps == 0) return
+      do i = 1, size(model%points)
+         do f = 1, FIELDS
+            if (.not. abs(peaks%value(f, i)) > 0.0_wp .or. all(model%dofs%of(f, model%points(i)%nodes) == 0)) cycle
+            write (unit, '(a)') trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f))//' '// &
+               with_unit(peaks%value(f, i), trim(merge('m  ', 'kPa', f <= DISPLACEMENTS)))//' at '// &
+               with_unit(peaks%time(f, i), 's')
+         end do
+      end do
+      text = counted(run%steps, 'step')
+      associate (c => run%control)
+         if (any(model%stages%controlled)) then
+            text = text//', '//counted(c%rejected, 'repetition')//' because of an error; kept short by'
+            do i = 1, LIMITS
+               if (c%limits(i) > 0.0_wp) text = text//' '//trim(LIMIT_NAMES(i))//' ('//whole(nint(c%limits(i)))//'),'
+            end do
+            text = text(:len(text) - 1)
+         end if
+      end associate
+      write (unit, '(a)') text//'.'
+      call repeat_warnings(unit)
+      write (unit, '(a)') 'The errors of these answers are not known; "mud_study accuracy '//trim(model%file)// &
+         '" measures them.'
+   end subroutine print_summary
+
+   !> A value in the multiple of its unit that a reader would choose: metres and seconds also in thousandths and
+   !> millionths.
+   pure function with_unit(value, unit) result(text)
+      real(wp), intent(in) :: value   !< [m], [s] or another unit.
+      character(*), intent(in) :: unit
+      character(:), allocatable :: text
+
+      if (unit == 'kPa' .or. abs(value) >= 0.1_wp .or. .not. abs(value) > 0.0_wp) then
+         text = three_digits(value)//' '//unit
+      else if (abs(value) >= 1.0e-4_wp) then
+         text = three_digits(1.0e3_wp*value)//' m'//unit
+      else
+         text = three_digits(1.0e6_wp*value)//' u'//unit
+      end if
+   end function with_unit
+
+   pure function three_digits(value) result(text)
+      real(wp), intent(in) :: value
+      character(:), allocatable :: text
+      character(32) :: digits
+      real(wp) :: rounded
+
+      write (digits, '(es11.2e3)') value
+      read (digits, *) rounded
+      text = short(rounded)
+   end function three_digits
+
+   !> "1 step", "2 steps".
+   pure function counted(number, noun) result(text)
+      integer, intent(in) :: number
+      character(*), intent(in) :: noun
+      character(:), allocatable :: text
+
+      text = whole(number)//' '//noun//trim(merge(' ', 's', number == 1))
+   end function counted
+end module run_summary
