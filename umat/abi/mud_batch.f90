@@ -5,6 +5,7 @@ module mud_batch
    use mud_host_increment, only: host_increment, kind_of, is_present, is_total
    use mud_kernel, only: report_t, output_t, kernel_begin, failed_report
    use mud_kinds, only: wp
+   use mud_once, only: may_use_threads
    use mud_params, only: params_t
    use mud_prepared, only: prepared_t, find_materials
    use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, S_OPEN, S_SATURATION, S_SUCTION, S_VOID_RATIO
@@ -358,12 +359,15 @@ contains
       place = value
    end subroutine give_summary
 
-   !> The number asked for; 0 or less means what OpenMP would take.
+   !> The number asked for; 0 or less means what OpenMP would take. 1 in a process that may not use threads.
    integer function thread_count(threads)
       !$ use omp_lib, only: omp_get_max_threads
       integer(c_int), intent(in) :: threads
 
       thread_count = max(threads, 1)
       !$ if (threads <= 0) thread_count = omp_get_max_threads()
+      if (thread_count > 1) then
+         if (.not. may_use_threads()) thread_count = 1
+      end if
    end function thread_count
 end module mud_batch
