@@ -17,7 +17,7 @@ from .errors import InputError, Unchangeable, fault_of
 from .points import Points, need, tangent_kind
 from .registry import parameters, states
 
-TENSION = ", tension: tension is positive here"
+_TENSION = ", tension: tension is positive here"
 _SUCTION = states["suction"].index
 _STATE, _SLOPES = slice(6, 6 + len(states)), slice(6 + len(states), None)
 _BLOCKS = 50  # doubles of mud_blocks: 36, 6, 6, 1, 1
@@ -251,7 +251,7 @@ class Material(Points, Mapping):
         )
         if code != 0:
             raise fault_of(code, sentence)
-        if TENSION in sentence:  # the library only warns
+        if _TENSION in sentence:  # the library only warns
             raise InputError(sentence.removeprefix("warning: "))
         return start, statev
 

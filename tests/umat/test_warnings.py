@@ -128,6 +128,21 @@ def test_a_doubtful_start_is_told_once_a_process_by_every_entry():
             check(f"{door} says nothing of {given}", told(door, 101.325, *given) == [])
 
 
+def test_python_tells_a_doubtful_start_and_refuses_tension_in_the_same_words():
+    script = "import sys, numpy as np, mud; sand = mud.Material(); begin = getattr(sand, sys.argv[1]); " \
+             "mean = float(sys.argv[2]); one = [mean]*3 + [0.0]*3; " \
+             "begin(np.array([one]*3 if 'batch' in sys.argv[1] else one), void_ratio=%s)"
+    tension = "the mean effective stress of the start is 40, tension: tension is positive here"
+    for name, mean, e, words, ends in (("initial_state", -80, "3.2", "void ratio of the start is 3.2", True),
+                                       ("init_batch", -80, "np.full(3, 3.2)", "void ratio of the start is 3.2", True),
+                                       ("init_batch", 40, "None", "mud_init_points at point 0: " + tension, True),
+                                       ("initial_state", 40, "None", "InputError: " + tension, False)):
+        done = subprocess.run([sys.executable, "-c", script % e, name, str(mean)], capture_output=True, text=True,
+                              env={**plain, "MUD_LIBRARY_DIR": str(build), "PYTHONPATH": str(root / "python")})
+        check(f"{name} at {mean} with void ratio {e}", (done.returncode == 0) == ends and words in done.stderr and
+              done.stderr.count("remark of") == 1, done.stderr)
+
+
 def test_the_limits_of_a_start_follow_the_unit_of_stress():
     # In MPa 51 is as 51000 in kPa.
     for mean, number in ((-51.0, 1), (-49.0, 0)):
