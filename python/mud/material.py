@@ -17,6 +17,7 @@ from .errors import InputError, Unchangeable, fault_of
 from .points import Points, need, tangent_kind
 from .registry import parameters, states
 
+_TENSION = ", tension: tension is positive here"
 _SUCTION = states["suction"].index
 _STATE, _SLOPES = slice(6, 6 + len(states)), slice(6 + len(states), None)
 _BLOCKS = 50  # doubles of mud_blocks: 36, 6, 6, 1, 1
@@ -230,19 +231,13 @@ class Material(Points, Mapping):
         """Stress (6,) and STATEV (n_states,) of a point that begins.
 
         stress : (6,) effective stress [kPa], tension positive; a mean within p_atm/100 of zero is lifted to p_min, more
-            tension is refused.
+            tension is refused. What else is doubtful about a start (umat/README.md) is told on standard error.
         suction : p_a - p_w [kPa].
         void_ratio : [-]; None: e_0 of the material.
         saturation : [-], with hysteresis; None: on the main drying curve.
         """
         start = np.array(stress, dtype=float)
         need(start, (6,), "stress")
-        mean = float(start[:3].mean())
-        if mean > 0.01 * self["p_atm"]:
-            raise InputError(
-                f"the mean stress of the start is {mean:g}, tension: tension is positive here, and sand bears none; give "
-                f"compression with the sign minus, as {-mean:g}"
-            )
         statev = np.zeros(len(states))
         code, sentence = _native.text_of(
             _native.mud.mud_init,
@@ -256,6 +251,8 @@ class Material(Points, Mapping):
         )
         if code != 0:
             raise fault_of(code, sentence)
+        if _TENSION in sentence:  # the library only warns
+            raise InputError(sentence.removeprefix("warning: "))
         return start, statev
 
     def update(
