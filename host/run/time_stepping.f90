@@ -17,7 +17,7 @@ module time_stepping
    use sparse_factors, only: release
    use stress_tolerance, only: follow_newton, roughness
    use step_attempt, only: begin_stage, try_step
-   use step_size, only: next_step, keep_step, is_over
+   use step_size, only: negligible_changes, next_step, keep_step, is_over
    use step_landings, only: LAST_STEP
    use step_booking, only: book_accepted_step
    use energy_alarm, only: check_creation, warn_of_created_energy
@@ -95,6 +95,7 @@ contains
             if (is_over(stage, run)) exit
             call follow_newton(control%tolerance, model%domain%regions)
             control%roughness = roughness(model%domain%regions)
+            control%negligible = negligible_changes(stage, run)
             dt = next_step(model, stage, run)
             call try_step(model, stage, control, dt, run, log, accepted, fault)
             if (fault%code == 0 .and. accepted) then

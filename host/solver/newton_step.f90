@@ -154,7 +154,8 @@ contains
          t0 = clock()
          log%iterations = log%iterations + 1
          call follow_friction(system%contacts, fresh=.false.)
-         call add_correction(dofs, dx, new%x, log%correction)
+         log%before = log%changed
+         call add_correction(dofs, dx, new%x, log%correction, log%changed)
          call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
          with_tangent = .false.
       end do
@@ -450,20 +451,23 @@ contains
       end do
    end subroutine add_bodies
 
-   pure subroutine add_correction(dofs, dx, x, share)
+   pure subroutine add_correction(dofs, dx, x, share, largest)
       type(dofs_t), intent(in) :: dofs
       real(wp), intent(in) :: dx(:)
       real(wp), intent(inout) :: x(:, :)
-      real(wp), intent(out) :: share
+      real(wp), intent(out) :: share             !< |dx|/|x| of the worst field [-].
+      real(wp), intent(out) :: largest(FIELDS)   !< |dx| of every field [m, kPa].
       real(wp) :: change(FIELDS), total(FIELDS)
       integer :: f, i
 
       change = 0.0_wp
+      largest = 0.0_wp
       do i = 1, size(x, 2)
          do f = 1, FIELDS
             if (dofs%of(f, i) == 0) cycle
             x(f, i) = x(f, i) + dx(dofs%of(f, i))
             change(f) = change(f) + dx(dofs%of(f, i))**2
+            largest(f) = max(largest(f), abs(dx(dofs%of(f, i))))
          end do
       end do
       total = norm2(x, dim=2)
