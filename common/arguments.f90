@@ -6,7 +6,7 @@ module arguments
    use texts, only: whole
    implicit none (type, external)
    private
-   public :: option_t, read_command_line, parse_words, option_given, option_value, WORD_LENGTH
+   public :: option_t, read_command_line, parse_words, option_given, option_value, option_values, WORD_LENGTH
 
    integer, parameter :: WORD_LENGTH = 1024   !< Longest word of a command line.
 
@@ -17,7 +17,8 @@ module arguments
       character(2) :: letter = ''       !< Short form.
       logical :: answers = .false.      !< Only asks for a text, as --help: what follows is not read.
       logical :: given = .false.
-      character(WORD_LENGTH) :: value = ''
+      character(WORD_LENGTH) :: value = ''                   !< The last one.
+      character(WORD_LENGTH), allocatable :: values(:)       !< All of them, in their order.
    end type option_t
 contains
    !> The command line of this program; see parse_words. A word that is too long is a fault (EXIT_INPUT). options(:) are
@@ -95,6 +96,8 @@ contains
             call raise(fault, EXIT_INPUT, trim(options(k)%name)//' needs '//trim(options(k)%takes)//'; '//hint//'.')
             return
          end if
+         if (.not. allocated(options(k)%values)) allocate (options(k)%values(0))
+         options(k)%values = [options(k)%values, options(k)%value]
       end do
       if (operand == '') call raise(fault, EXIT_INPUT, 'No '//subject//' is named; '//hint//'.')
    end subroutine parse_words
@@ -133,4 +136,15 @@ contains
 
       value = trim(options(place_of(options, name))%value)
    end function option_value
+
+   !> Values of an option that may be given several times, in their order; none if it is not given. The name must be one
+   !> of options(:).
+   pure function option_values(options, name) result(values)
+      type(option_t), intent(in) :: options(:)
+      character(*), intent(in) :: name
+      character(WORD_LENGTH), allocatable :: values(:)
+
+      allocate (values(0))
+      if (allocated(options(place_of(options, name))%values)) values = options(place_of(options, name))%values
+   end function option_values
 end module arguments

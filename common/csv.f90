@@ -8,8 +8,8 @@ module csv
    use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
    implicit none (type, external)
    private
-   public :: csv_t, open_csv, new_csv, check_csv, resume_csv, write_row, write_line, flush_csv, close_csv, is_open
-   public :: columns_of, NUMBERS
+   public :: csv_t, open_csv, new_csv, check_csv, resume_csv, write_row, write_line, hand_over, flush_csv, close_csv
+   public :: is_open, columns_of, NUMBERS
 
    character(*), parameter :: NUMBERS = '(*(es24.16e3,:,","))'   !< Format of a row of numbers.
    integer, parameter :: CELL = 25                               !< Characters of a number in such a row.
@@ -136,6 +136,16 @@ contains
          call raise_unwritten(table, fault)
       end if
    end subroutine put_text
+
+   !> Hands what was written to the system: a program that is killed leaves whole rows. A fault (EXIT_OUTPUT) where that
+   !> fails; a table that is not open is left alone.
+   subroutine hand_over(table, fault)
+      type(csv_t), intent(inout) :: table
+      type(fault_t), intent(inout) :: fault
+
+      if (.not. is_open(table) .or. fault%code /= 0) return
+      if (fflush(table%file) /= 0) call raise_unwritten(table, fault)
+   end subroutine hand_over
 
    !> Flushes what was written to the disk. A fault (EXIT_OUTPUT) where that fails; not of a pipe.
    subroutine flush_csv(table, fault)

@@ -1,13 +1,13 @@
 ! SPDX-License-Identifier: MIT
 !> Files that are written completely or not at all, and other calls of the system (POSIX) that Fortran lacks.
 module files
-   use, intrinsic :: iso_c_binding, only: c_int, c_int8_t, c_size_t, c_long, c_char, c_ptr, c_null_char, c_associated, &
-                                          c_loc, c_funptr, c_null_funptr, c_intptr_t
+   use, intrinsic :: iso_c_binding, only: c_int, c_int8_t, c_size_t, c_long, c_short, c_char, c_ptr, c_null_char, &
+                                          c_associated, c_loc, c_funptr, c_null_funptr, c_intptr_t
    use, intrinsic :: iso_fortran_env, only: output_unit
    implicit none (type, external)
    private
    public :: write_whole, name_part, remove_part, PART, read_whole, bytes_of, make_folder, folder_of, to_terminal, &
-             limits_are_errors
+             terminal_width, limits_are_errors
    public :: fopen, open_output, fwrite, fflush, fileno, fclose, fsync, truncate
 
    character(*), parameter :: PART = '.part'   !< Ends the name of a file that is being written.
@@ -105,6 +105,14 @@ module files
          import :: c_int
          integer(c_int), value :: descriptor
       end function isatty
+
+      !> Rows, columns and two sizes in pixels of a terminal; -1 where the system knows the request by another number.
+      integer(c_int) function ioctl(descriptor, request, sizes) bind(c)
+         import :: c_int, c_long, c_short
+         integer(c_int), value :: descriptor
+         integer(c_long), value :: request
+         integer(c_short), intent(inout) :: sizes(4)
+      end function ioctl
    end interface
 contains
    !> Replaces a file atomically: a reader finds either the complete old file or the complete new one. The new file gets
@@ -254,4 +262,14 @@ contains
    logical function to_terminal()
       to_terminal = isatty(1_c_int) == 1
    end function to_terminal
+
+   !> Columns of the terminal that standard output is; 80 where the system does not say.
+   integer function terminal_width() result(width)
+      integer(c_long), parameter :: TIOCGWINSZ = int(z'5413', c_long)   ! Linux
+      integer(c_short) :: sizes(4)
+
+      width = 80
+      sizes = 0
+      if (ioctl(1_c_int, TIOCGWINSZ, sizes) == 0 .and. sizes(2) > 0) width = int(sizes(2))
+   end function terminal_width
 end module files

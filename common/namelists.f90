@@ -8,7 +8,7 @@ module namelists
    use texts, only: lower_case, whole, mark_length
    implicit none (type, external)
    private
-   public :: entry_t, group_t, read_groups, groups_of_text, find_entry, set_entry, MAX_VALUES, LENGTH
+   public :: entry_t, group_t, read_groups, groups_of_text, find_entry, set_entry, set_values, MAX_VALUES, LENGTH
 
    integer, parameter :: LENGTH = 256      !< Longest key, value or path.
    integer, parameter :: MAX_VALUES = 1000   !< Longest list of values.
@@ -306,18 +306,28 @@ contains
    pure subroutine set_entry(group, key, value)
       type(group_t), intent(inout) :: group
       character(*), intent(in) :: key, value
+      character(LENGTH) :: values(1)
+
+      values = value
+      call set_values(group, key, values)
+   end subroutine set_entry
+
+   !> The same with a list of values.
+   pure subroutine set_values(group, key, values)
+      type(group_t), intent(inout) :: group
+      character(*), intent(in) :: key
+      character(LENGTH), intent(in) :: values(:)
       type(entry_t) :: entry
 
       entry%key = key
       entry%line = group%line
-      entry%count = 1
-      allocate (entry%values(1))
-      entry%values = value
+      entry%count = size(values)
+      entry%values = values
       if (find_entry(group, key) > 0) then
          group%entries(find_entry(group, key)) = entry
       else
          group%entries = [group%entries(:group%count), entry]
          group%count = group%count + 1
       end if
-   end subroutine set_entry
+   end subroutine set_values
 end module namelists

@@ -2,7 +2,7 @@
 !> mud_host SCENE.nml: coupled finite elements of unsaturated soil.
 program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit, int64
-   use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
+   use arguments, only: option_t, read_command_line, option_given, option_value, option_values, WORD_LENGTH
    use checkpoints, only: read_checkpoint
    use contact_alarm, only: warn_of_overlap
    use contact_setup, only: contacts_act
@@ -25,18 +25,21 @@ program mud_host
    use idle_keys, only: WARNING_LENGTH
    use time_stepping, only: run_stages
    use files, only: limits_are_errors, folder_of
+   use interrupts, only: catch_interrupts
    use faults, only: fault_t, raise, EXIT_INPUT
    use texts, only: short, whole
    implicit none (type, external)
    character(*), parameter :: USAGE = 'usage: mud_host SCENE.nml [options] | --template | --help'
-   type(option_t) :: options(9) = [ &
+   type(option_t) :: options(11) = [ &
       option_t('--help', letter='-h', answers=.true.), &
       option_t('--template', answers=.true.), &
       option_t('--quiet'), &
+      option_t('--verbose'), &
       option_t('--check'), &
       option_t('--output', 'a folder'), &
       option_t('--step-tolerance', 'a share, as 1e-2'), &
       option_t('--accuracy', 'a share, as 1e-2'), &
+      option_t('--set', 'a key and its value, as stage.cuts=9'), &
       option_t('--fineness', 'a factor, as 2'), &
       option_t('--restart', 'a checkpoint')]
    character(WORD_LENGTH) :: file
@@ -46,10 +49,11 @@ program mud_host
    type(run_t) :: run
    type(run_output_t) :: output
    type(fault_t) :: fault
-   logical :: quiet, only_check
+   logical :: quiet, verbose, only_check
    double precision :: t0
 
    call limits_are_errors()
+   call catch_interrupts()
    call apply_process_settings()
    call read_command_line(options, 'scene', USAGE, file, fault)
    if (fault%code == 0 .and. option_given(options, '--template')) then
@@ -60,6 +64,7 @@ program mud_host
       stop
    end if
    quiet = option_given(options, '--quiet')
+   verbose = option_given(options, '--verbose')
    only_check = option_given(options, '--check')
    restart = option_value(options, '--restart')
    folder = option_value(options, '--output')
@@ -68,11 +73,12 @@ program mud_host
       if (restart /= '') folder = folder_of(restart)
    end if
    if (fault%code == 0 .and. option_given(options, '--accuracy')) call raise(fault, EXIT_INPUT, &
-      '--accuracy is no option of a run: --step-tolerance sets the local tolerance of its steps; "mud_study accuracy '// &
+      '--accuracy is no option of a run: --step-tolerance sets the local tolerance of its steps; '// &
+      '"mud_study accuracy '// &
       trim(file)//' --accuracy '//option_value(options, '--accuracy')//'" measures the errors of the answers.')
    t0 = clock()
    if (fault%code == 0) call read_scene(trim(file), scene, fault, option_value(options, '--step-tolerance'), &
-                                         option_value(options, '--fineness'))
+                                         option_value(options, '--fineness'), option_values(options, '--set'))
    if (fault%code == 0) call build_model(scene, model, fault)
    if (fault%code == 0) call prepare_run(model, run, fault)
    if (fault%code == 0 .and. .not. quiet) call announce()
@@ -86,7 +92,7 @@ program mud_host
       if (output%resume) call read_checkpoint(restart, model, run, output%tables, fault)
       if (fault%code == 0) call run_stages(model, run, fault, output)
    end if
-   if (.not. (quiet .or. only_check) .and. run%steps > 0) call account()
+   if (verbose .and. run%steps > 0) call account()
    call leave()
 contains
    !> Ends the program.
@@ -101,7 +107,7 @@ contains
    end subroutine leave
 
    subroutine print_help()
-      character(*), parameter :: LINES(11) = [character(105) :: &
+      character(*), parameter :: LINES(15) = [character(105) :: &
          'Solves the boundary-value problem of a scene. Units m, s, kPa, Mg; tension positive.', &
          '  --output FOLDER       folder of the results, made if missing; default: output, with --restart that of', &
          '                        the checkpoint', &
@@ -109,8 +115,12 @@ contains
          '  --step-tolerance A    local tolerance of controlled steps, in place of the key step_tolerance of &scene', &
          '  --fineness F          F times the cells of the mesh along each axis, in place of the key fineness of', &
          '                        &mesh', &
+         '  --set GROUP.KEY=VALUE sets a key of the scene, in place of its value; may be repeated. A list is', &
+         '                        divided by commas. Of groups that occur several times fix[2].value=1 sets the', &
+         '                        second, elastic[soil].young=2e4 the one with this name, stage.cuts=9 all', &
          '  --check               reads and checks scene and checkpoint, runs nothing', &
          '  --quiet               prints errors and warnings only', &
+         '  --verbose             prints memory, times of the parts of the run and counters as well', &
          '  --template            prints every group and key of a scene', &
          'What steps and mesh err by is not known to a run: "mud_study accuracy SCENE" measures it.']
       integer :: k
@@ -135,7 +145,7 @@ contains
       write (output_unit, '(a)') trim(model%name)//': '//whole(size(model%domain%mesh%t6, 2))//' elements, '// &
          whole(size(model%domain%mesh%x, 2))//' nodes, '//whole(model%dofs%n)//' unknowns, '// &
          whole(size(run%pattern%col))//' entries, '//whole(model%domain%threads)//' threads.'
-      write (output_unit, '(a)') size_of_run(model, run)
+      if (verbose) write (output_unit, '(a)') size_of_run(model, run)
       do i = 1, size(model%stages)
          if (model%stages(i)%kind /= STATIC) write (output_unit, '(a)') 'Stage '//trim(model%stages(i)%name)//': '// &
             trim(merge('dynamic     ', 'quasi_static', model%stages(i)%kind == DYNAMIC))//', rho_inf '// &

@@ -13,8 +13,7 @@ work = pathlib.Path(__file__).resolve().parents[2] / "build/site"
 PAGES = ("index", "README", "gallery", "c_header", "python_package", "fortran", "docs/theory/material",
          "docs/theory/host", "docs/theory/memory-rules", "docs/theory/contact", "docs/troubleshooting",
          "docs/tutorials/element_test", "docs/tutorials/own_sand", "umat/README", "host/README",
-         "verification/studies/hard_cases/README", "verification/studies/cost/README",
-         "verification/studies/effects/README", "verification/studies/ledgers/README")
+         "verification/studies/hard_cases/README", "verification/studies/cost/README")
 OFFLINE = "--host-resolver-rules=MAP * ~NOTFOUND"
 WIDTH, HEIGHT = 1280, 4200
 

@@ -29,8 +29,8 @@ module model_builder
    real(wp), parameter :: OF_ELASTIC = 7.0e-6_wp, OF_PLASTIC = 5.0e-5_wp
    real(wp), parameter :: WORTH_A_THREAD = 4.0e-3_wp   !< A slice of Linux' scheduler [s].
 contains
-   !> Mesh, regions, boundaries, unknowns and unit loads of a scene. Faults: those of its parts, of check_bodies and find_point; EXIT_INPUT: no quadrature rule of so many points;
-   !> EXIT_ELEMENT: see prepare_domain.
+   !> Mesh, regions, boundaries, unknowns and unit loads of a scene. Faults: those of its parts, of check_bodies and
+   !> find_point; EXIT_INPUT: no quadrature rule of so many points; EXIT_ELEMENT: see prepare_domain.
    subroutine build_model(scene, model, fault)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(out) :: model

@@ -15,7 +15,10 @@ module named_points
    public :: find_point, unknowns_at, motion_at
 
    real(wp), parameter :: SAME_PLACE = 1.0e-9_wp   !< Share of the mesh: a point nearer to a node is there.
-   real(wp), parameter :: ON_THE_SIDE = 1.0e-9_wp  !< Of a local coordinate: rounding of a place on a side.
+   real(wp), parameter :: SETTLED = 1.0e-10_wp     !< Local coordinates are known to this.
+   !> A point outside the mesh by less than this share of an element takes the values that the element continues to: its
+   !> coordinates may have been rounded, or stand for a side that is bent.
+   real(wp), parameter :: ROUNDED = 0.05_wp
    integer, parameter :: MOST_ITERATIONS = 20      !< For the local coordinates in an element with bent sides.
 contains
    !> Nodes, weights and nearest quadrature point of a point. Fault EXIT_GROUP: it lies outside the mesh.
@@ -23,9 +26,9 @@ contains
       type(domain_t), intent(in) :: m
       type(point_t), intent(inout) :: point
       type(fault_t), intent(inout) :: fault
-      real(wp) :: distance(size(m%mesh%x, 2)), local(2), dn(2, 6), dn_linear(2, 3)
-      logical :: in_ground(size(distance)), found
-      integer :: e, g, i, node
+      real(wp) :: distance(size(m%mesh%x, 2)), place(2), local(2), dn(2, 6), dn_linear(2, 3), within, most
+      logical :: in_ground(size(distance))
+      integer :: e, g, i, node, k
 
       associate (mesh => m%mesh)
          in_ground = .false.
@@ -34,17 +37,22 @@ contains
          end do
          distance = [(norm2(mesh%x(:, i) - point%x), i=1, size(distance))]
          node = minloc(distance, 1, mask=in_ground)
-         found = distance(node) <= SAME_PLACE*maxval(abs(mesh%x - spread(mesh%x(:, node), 2, size(mesh%x, 2))))
-         if (found) then
+         e = 0
+         most = -ROUNDED
+         if (distance(node) <= SAME_PLACE*maxval(abs(mesh%x - spread(mesh%x(:, node), 2, size(mesh%x, 2))))) then
             e = findloc(any(mesh%t6 == node, dim=1), .true., dim=1)
             local = place_in_triangle(findloc(mesh%t6(:, e), node, dim=1))
          else
-            do e = 1, size(mesh%t6, 2)
-               call find_local(mesh%x(:, mesh%t6(:, e)), point%x, local, found)
-               if (found) exit
+            do k = 1, size(mesh%t6, 2)
+               call find_local(mesh%x(:, mesh%t6(:, k)), point%x, place, within)
+               if (within <= most) cycle
+               e = k
+               local = place
+               most = within
+               if (within >= 0.0_wp) exit
             end do
          end if
-         if (.not. found) then
+         if (e == 0) then
             call raise(fault, EXIT_GROUP, '&point '//trim(point%name)//': ('//short(point%x(1))//', '// &
                        short(point%x(2))//') m lies outside the mesh; the nearest node is at ('// &
                        short(mesh%x(1, node))//', '//short(mesh%x(2, node))//') m.')
@@ -71,16 +79,16 @@ contains
       local = PLACES(:, node)
    end function place_in_triangle
 
-   !> Local coordinates of a place, by Newton's method, and whether it lies in the element.
-   pure subroutine find_local(x, place, local, inside)
+   !> Local coordinates of a place, by Newton's method, and the least of its three area coordinates: negative outside.
+   pure subroutine find_local(x, place, local, within)
       real(wp), intent(in) :: x(2, 6), place(2)   !< Nodes [m]; [m].
       real(wp), intent(out) :: local(2)           !< xi, eta
-      logical, intent(out) :: inside
+      real(wp), intent(out) :: within             !< -1: far away.
       real(wp) :: n(6), dn(2, 6), j(2, 2), det, left(2), size_of, step(2)
       integer :: k
 
       local = 1.0_wp/3
-      inside = .false.
+      within = -1.0_wp
       size_of = maxval(maxval(x, dim=2) - minval(x, dim=2))
       ! A bent side leaves the box of its nodes by less than the element.
       if (any(place < minval(x, dim=2) - size_of) .or. any(place > maxval(x, dim=2) + size_of)) return
@@ -93,8 +101,8 @@ contains
          step = [j(2, 2)*left(1) - j(1, 2)*left(2), j(1, 1)*left(2) - j(2, 1)*left(1)]/det
          if (any(abs(step) > 10.0_wp)) return
          local = local + step
-         if (all(abs(step) < 0.1_wp*ON_THE_SIDE)) then
-            inside = all(local >= -ON_THE_SIDE) .and. sum(local) <= 1 + ON_THE_SIDE
+         if (all(abs(step) < SETTLED)) then
+            within = min(local(1), local(2), 1 - sum(local))
             return
          end if
       end do

@@ -12,7 +12,7 @@ module output_tables
    use porous_domain, only: state_t, domain_t
    use files, only: make_folder
    use effect_indicators, only: indicator_columns
-   use csv, only: csv_t, new_csv, check_csv, resume_csv, write_row, flush_csv, close_csv, is_open, &
+   use csv, only: csv_t, new_csv, check_csv, resume_csv, write_row, hand_over, flush_csv, close_csv, is_open, &
                        NUMBERS
    use run_observer, only: step_report_t
    use run_state, only: run_t
@@ -23,7 +23,7 @@ module output_tables
    implicit none (type, external)
    private
    public :: tables_t, open_tables, check_tables, write_history, write_ledger, write_contacts, write_fields, &
-             write_points
+             write_points, hand_over_tables
    public :: write_contact_nodes, write_reactions, close_reactions, reactions_of, close_tables, flush_tables
 
    character(4), parameter :: COLUMNS(14) = [character(4) :: 'u_r', 'u_z', 'p_w', 'p_c', 'v_r', 'v_z', 'a_r', 'a_z', &
@@ -115,6 +115,17 @@ contains
          end do
       end do
    end function history_columns
+
+   !> After the rows of a step. Fault EXIT_OUTPUT: a disk is full.
+   subroutine hand_over_tables(tables, fault)
+      type(tables_t), intent(inout) :: tables
+      type(fault_t), intent(inout) :: fault
+
+      call hand_over(tables%history, fault)
+      call hand_over(tables%ledger, fault)
+      call hand_over(tables%contact, fault)
+      call hand_over(tables%reactions, fault)
+   end subroutine hand_over_tables
 
    !> Brings the tables to the disk. Fault EXIT_OUTPUT where that fails.
    subroutine flush_tables(tables, fault)

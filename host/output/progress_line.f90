@@ -1,25 +1,24 @@
 ! SPDX-License-Identifier: MIT
-!> Progress line of a run: rewritten in place on a terminal, otherwise a new line from time to time.
+!> Progress line of a run, rewritten in place on a terminal; nothing where the output is a file.
 module progress_line
    use, intrinsic :: iso_fortran_env, only: output_unit
    use wall_clock, only: clock
    use run_state, only: run_t
    use kinds, only: wp
    use model_types, only: model_t
-   use files, only: to_terminal
+   use files, only: to_terminal, terminal_width
    use texts, only: short, whole
    use scene_types, only: stage_t
    implicit none (type, external)
    private
    public :: progress_t, show_progress, show_line, clear_progress, steps_left, span_of
 
-   real(wp), parameter :: PERIODS(2) = [0.5_wp, 30.0_wp]   !< Between two lines: on a terminal, elsewhere [s].
+   real(wp), parameter :: PERIOD = 0.5_wp                  !< Between two lines [s].
    real(wp), parameter :: MEMORY = 0.9_wp                  !< Share of the past in the mean time of a step.
-   integer, parameter :: WIDTH = 79
 
    type :: progress_t
       logical :: quiet = .true.
-      logical :: standing = .false.         !< A line stands on the terminal.
+      integer :: standing = 0               !< Columns of the line that stands on the terminal.
       real(wp) :: last_line = -huge(1.0_wp) !< When it was written.
       real(wp) :: last_step = -1.0_wp
       real(wp) :: pace = 0.0_wp             !< Seconds a step, the last ones counting most.
@@ -32,24 +31,22 @@ contains
       type(progress_t), intent(inout) :: progress
       character(:), allocatable :: line
       real(wp) :: now, left
-      logical :: terminal, known
+      logical :: known
       integer :: i
 
       if (progress%quiet) return
+      if (.not. to_terminal()) return
       now = clock()
-      terminal = to_terminal()
       if (progress%last_step >= 0.0_wp) then
          if (progress%pace > 0.0_wp) then
             progress%pace = MEMORY*progress%pace + (1 - MEMORY)*(now - progress%last_step)
          else
             progress%pace = now - progress%last_step
          end if
-      else if (.not. terminal) then
-         progress%last_line = now
       end if
       progress%last_step = now
       ! The first step has no pace yet.
-      if (.not. progress%pace > 0.0_wp .or. now - progress%last_line < PERIODS(merge(1, 2, terminal))) return
+      if (.not. progress%pace > 0.0_wp .or. now - progress%last_line < PERIOD) return
       progress%last_line = now
       associate (stage => model%stages(run%at%stage), at => run%at)
          left = steps_left(stage, at%nominal*at%factor, at%t_start + stage%duration - run%state%time)
@@ -62,36 +59,31 @@ contains
                 whole(nint(100*(run%state%time - at%t_start)/stage%duration))//' %; about '// &
                 span_of(left*progress%pace)//' left for '//trim(merge('all stages', 'this stage', known))
       end associate
-      call write_line(line, terminal, progress)
+      call write_line(line, progress)
    end subroutine show_progress
 
    !> A text in the place of the line, as often as that. Nothing where the run is quiet.
    subroutine show_line(text, progress)
       character(*), intent(in) :: text
       type(progress_t), intent(inout) :: progress
-      logical :: terminal
 
       if (progress%quiet) return
-      terminal = to_terminal()
-      if (clock() - progress%last_line < PERIODS(merge(1, 2, terminal))) return
+      if (.not. to_terminal()) return
+      if (clock() - progress%last_line < PERIOD) return
       progress%last_line = clock()
-      call write_line(text, terminal, progress)
+      call write_line(text, progress)
    end subroutine show_line
 
-   !> A line in place on a terminal, else a new one.
-   subroutine write_line(text, terminal, progress)
+   !> A line in the place of the one before, as long as the terminal is wide: one that wraps could not be taken back.
+   subroutine write_line(text, progress)
       character(*), intent(in) :: text
-      logical, intent(in) :: terminal
       type(progress_t), intent(inout) :: progress
-      character(:), allocatable :: line
+      integer :: columns
 
-      line = text(:min(len(text), WIDTH))
-      if (terminal) then
-         write (output_unit, '(a)', advance='no') achar(13)//line//repeat(' ', WIDTH - len(line))
-         progress%standing = .true.
-      else
-         write (output_unit, '(a)') line
-      end if
+      columns = min(len(text), max(1, terminal_width() - 1))
+      write (output_unit, '(a)', advance='no') achar(13)//text(:columns)// &
+         repeat(' ', max(0, progress%standing - columns))
+      progress%standing = columns
       flush (output_unit)
    end subroutine write_line
 
@@ -99,8 +91,9 @@ contains
    subroutine clear_progress(progress)
       type(progress_t), intent(inout) :: progress
 
-      if (progress%standing) write (output_unit, '(a)', advance='no') achar(13)//repeat(' ', WIDTH)//achar(13)
-      progress%standing = .false.
+      if (progress%standing > 0) write (output_unit, '(a)', advance='no') achar(13)//repeat(' ', progress%standing) &
+                                                                          //achar(13)
+      progress%standing = 0
    end subroutine clear_progress
 
    !> Steps that the rest of a stage takes if none is cut: a geometric series up to the largest step.

@@ -5,15 +5,17 @@ module run_output
    use kinds, only: wp
    use wall_clock, only: clock
    use faults, only: fault_t, raise, EXIT_INPUT
+   use folder_lock, only: lock_folder, unlock_folder
+   use interrupts, only: interrupted, EXIT_INTERRUPTED
    use hdf5_file, only: HAS_HDF5
    use texts, only: short, whole
-   use checkpoints, only: write_checkpoint
+   use checkpoints, only: write_checkpoint, CHECKPOINT
    use warnings, only: print_warning
    use field_files, only: write_frame
    use model_types, only: model_t
    use output_tables, only: tables_t, open_tables, write_history, write_ledger, write_contacts, write_fields, &
                             write_points, &
-                            write_contact_nodes, write_reactions, close_reactions, close_tables
+                            write_contact_nodes, write_reactions, close_reactions, close_tables, hand_over_tables
    use progress_line, only: progress_t, show_progress, show_line, clear_progress
    use run_observer, only: run_observer_t, step_report_t
    use run_state, only: run_t
@@ -56,7 +58,10 @@ contains
       end if
       self%progress%quiet = self%quiet
       self%last_checkpoint = clock()
+      call lock_folder(self%folder, .not. self%resume, fault)
+      if (fault%code /= 0) return
       call open_tables(self%folder, model, self%resume, self%tables, fault)
+      if (fault%code /= 0) call unlock_folder(self%folder)
       if (fault%code /= 0 .or. run%steps > 0) return
       call write_points(self%folder, model, fault)
       if (fault%code == 0) call write_history(self%tables, model, run%state, fault)
@@ -82,6 +87,7 @@ contains
             call write_history(self%tables, model, run%state, fault)
             if (fault%code == 0) call write_reactions(self%tables, model, run, report%dt, fault)
          end if
+         call hand_over_tables(self%tables, fault)
          if (fault%code /= 0) return
          if (stage%output_dt > 0.0_wp .and. .not. report%last) then
             if (abs((run%state%time - run%at%t_start)/stage%output_dt - anint((run%state%time - run%at%t_start) &
@@ -100,10 +106,15 @@ contains
       if (model%checkpoint_seconds > 0.0_wp) &
          checkpoint = clock() - self%last_checkpoint >= model%checkpoint_seconds .or. checkpoint
       if (model%checkpoint_end .and. report%last) checkpoint = report%stage == size(model%stages) .or. checkpoint
+      if (interrupted()) checkpoint = HAS_HDF5 .or. checkpoint
       if (checkpoint) then
          call write_checkpoint(model, run, self%tables, fault)
          self%last_checkpoint = clock()
          if (fault%code /= 0) return
+      end if
+      if (interrupted() .and. .not. (report%last .and. report%stage == size(model%stages))) then
+         call tell_interruption(self, run, fault)
+         return
       end if
       call show_progress(model, run, self%progress)
    contains
@@ -114,6 +125,18 @@ contains
          picture_of = floor(PICTURES*(time/model%stages(report%stage)%duration)*(1 + ON_TIME))
       end function picture_of
    end subroutine step_done
+
+   !> Ends a run that is interrupted. Fault EXIT_INTERRUPTED.
+   subroutine tell_interruption(self, run, fault)
+      class(run_output_t), intent(in) :: self
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+      character(:), allocatable :: text
+
+      text = 'Interrupted at '//short(run%state%time)//' s: the results up to there are complete'
+      if (HAS_HDF5) text = text//'; --restart '//self%folder//'/'//CHECKPOINT//' goes on'
+      call raise(fault, EXIT_INTERRUPTED, text//'.')
+   end subroutine tell_interruption
 
    !> The end of a stage; after a failure too, for what was computed. Fault EXIT_OUTPUT: a file cannot be written.
    subroutine stage_done(self, model, run, stage, complete, fault)
@@ -128,8 +151,9 @@ contains
       call clear_progress(self%progress)
       name = trim(model%stages(stage)%name)
       if (complete .and. .not. self%quiet) write (output_unit, '(a)') 'Stage '//name//': '// &
-         counted(run%at%step, 'step')//', time '//short(run%state%time)//' s, '//whole(run%iterations)//' linear solves and '// &
-         whole(run%cuts)//' cuts so far.'
+         counted(run%at%step, 'step')//', time '//short(run%state%time)//' s, '// &
+         counted(run%iterations, 'linear solve')//' and '// &
+         counted(run%cuts, 'cut')//' so far.'
       call close_reactions(self%tables, fault)
       call write_fields(self%folder, model%domain, name, run%state, fault)
       if (fault%code == 0) call write_contact_nodes(self%folder, model, run%system%contacts, name, run%state, fault)
@@ -144,6 +168,7 @@ contains
       type(fault_t), intent(inout) :: fault
 
       call close_tables(self%tables, fault)
+      call unlock_folder(self%folder)
       if (.not. self%quiet) call print_summary(output_unit, model, run, self%tables%peaks)
    end subroutine run_ends
 

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> What a run says at its end: the largest value of every answer, the steps and what kept them short, the warnings again,
-!> and that errors are not known to it.
+!> What a run says at its end: the largest value of every answer, the steps and what kept them short, the warnings
+!> again, and that errors are not known to it.
 module run_summary
    use kinds, only: wp
    use control_state, only: LIMITS, LIMIT_NAMES

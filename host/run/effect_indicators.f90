@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> What effects that a run does not have would act on: columns of ledger.csv. A few sums over nodes and points; nothing is
-!> asked of the material. docs/theory/host.md section 11.
+!> What effects that a run does not have would act on: columns of ledger.csv. A few sums over nodes and points; nothing
+!> is asked of the material. docs/theory/host.md section 11.
 module effect_indicators
    use kinds, only: wp
    use energy_ledger, only: kinetic_energy
@@ -26,9 +26,9 @@ contains
    end function indicator_columns
 
    !> Of a step: the speed that inertia would act on, root of twice the kinetic energy [kJ**(1/2)]; the largest
-   !> acceleration of a node [m/s2], for that of the skeleton in Darcy's law; the largest tension of the water [kPa], for
-   !> suction; the inverse of the least mean effective stress of a material that yields [1/kPa], for gravity; of every
-   !> region the largest rate of volume [1/s], for flow. 0 where there is none.
+   !> acceleration of a node [m/s2], for that of the skeleton in Darcy's law; the largest tension of the water [kPa],
+   !> for suction; the inverse of the least mean effective stress of a material that yields [1/kPa], for gravity; of
+   !> every region the largest rate of volume [1/s], for flow. 0 where there is none.
    function indicators_of(model, stage, dt, mass, old, new) result(values)
       type(model_t), intent(in) :: model
       integer, intent(in) :: stage           !< Number of the present one.

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Length of the steps of a stage: given, or chosen so that the error that a step makes by itself stays below a tolerance,
-!> as an integrator of differential equations does. What the steps leave together is not known to a run.
+!> Length of the steps of a stage: given, or chosen so that the error that a step makes by itself stays below a
+!> tolerance, as an integrator of differential equations does. What the steps leave together is not known to a run.
 !> docs/theory/host.md section 4.5.
 module step_size
    use kinds, only: wp
@@ -127,6 +127,7 @@ contains
       dt = run%at%nominal*run%at%factor
       left = run%at%t_start + stage%duration - run%state%time
       if (.not. stage%controlled) then
+         if (allocated(stage%ends)) dt = min(left, run%at%factor*(next_end(stage, run) - run%state%time))
          if (dt > left*(1 - LAST_STEP)) dt = left
          return
       end if
@@ -151,6 +152,17 @@ contains
       if (stage%controlled) changes(DISPLACEMENTS + 1:) = NEWTON_SHARE*stage%step_tolerance**LOCAL &
                                                           *run%control%scale(DISPLACEMENTS + 1:)
    end function negligible_changes
+
+   !> The next of the times that given steps end at [s].
+   pure real(wp) function next_end(stage, run)
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(in) :: run
+
+      next_end = run%at%t_start + stage%duration
+      associate (ends => run%at%t_start + stage%ends)
+         next_end = min(next_end, minval(ends, mask=ends > run%state%time + LAST_STEP*run%at%nominal))
+      end associate
+   end function next_end
 
    !> Before an attempt: rates of the present state where the step expects them. docs/theory/host.md section 4.5; where
    !> steps are given they stay.

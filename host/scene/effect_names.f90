@@ -10,7 +10,8 @@ module effect_names
    integer, parameter :: NAMES = 20, LENGTH = 26
    integer, parameter :: OF_INERTIA = 1, OF_SEEPAGE = 2, OF_P_W = 3, OF_P_C = 4, OF_GRAVITY = 5, OF_CONTACT = 6, &
       OF_DAMPING = 7, OF_ABSORBING = 8, OF_DRAINAGE = 9, OF_LIMITS = 10, OF_FRICTION = 11, &
-      OF_STRENGTH = 12, OF_VOID_RATIO = 13, OF_HYSTERESIS = 14, OF_ELASTIC_DOMAIN = 20   ! What lies between: switches of the material.
+      OF_STRENGTH = 12, OF_VOID_RATIO = 13, OF_HYSTERESIS = 14, &
+      OF_ELASTIC_DOMAIN = 20   ! What lies between: switches of the material.
    character(LENGTH), parameter :: EFFECTS(NAMES) = [character(LENGTH) :: 'inertia', &
       'relative_acceleration', 'p_w', 'p_c', 'gravity', 'contact', 'damping', 'absorbing', 'contact_drainage', &
       'seepage_face', 'friction', 'strength', 'void_ratio_in_retention', 'hysteresis', 'bonding', 'fabric', &

@@ -14,7 +14,7 @@ module scene_fingerprint
    ! Two polynomial hashes modulo primes below 2**31: products stay below 2**63.
    integer(int64), parameter :: PRIMES(2) = [2147483647_int64, 2147483629_int64], BASES(2) = [65599_int64, 31337_int64]
    character(*), parameter :: FREE(*) = [character(18) :: 'threads', 'checkpoint_steps', 'checkpoint_seconds', &
-                                    'checkpoint_end']
+                                    'checkpoint_end', 'goals']
 
    type :: hash_t
       integer(int64) :: parts(2) = 1

@@ -135,6 +135,7 @@ contains
                   'subtract: the initial flow is maintained', ':p_w')
       call k%number('step_tolerance', scene%step_tolerance, 1.0e-8_wp, 0.5_wp, &
                     'local tolerance of controlled steps [-], see host/README.md')
+      call k%texts('goals', scene%goals, 'answers that mud_study measures, as ''top.u_z''; default: all')
       call k%whole('threads', scene%threads, 0, 1024, 'threads over elements; 0: by size, at most OMP_NUM_THREADS')
       call k%flag('factors', scene%reuse_factors, 'reuse|fresh', 'reuse', &
                   'factors of the matrix: reused while they serve, or new in every iteration')
@@ -349,6 +350,8 @@ contains
       type(scene_t), intent(inout) :: scene
       type(fault_t), intent(inout) :: fault
       type(stage_t) :: stage
+      character(LENGTH) :: ends
+      real(wp), allocatable :: lengths(:)
       integer :: steps
 
       call k%text('name', stage%name, 'name of the stage', REQUIRED)
@@ -358,6 +361,9 @@ contains
       steps = 0
       call k%word('steps', steps, 'given|controlled', &
                   'given: dt; controlled: by their error, default with step_tolerance or without dt')
+      ends = ''
+      call k%text('step_ends', ends, 'given steps: file with the end of every step since the start of the stage '// &
+                  'and its length [s]', 'steps=given')
       call k%number('output_dt', stage%output_dt, TINY_, BIG, &
                     'controlled steps end at multiples of it, with fields [s]')
       call k%number('dt_growth', stage%dt_growth, ONE, 10*ONE, 'factor on the step after every accepted one')
@@ -382,6 +388,14 @@ contains
                    'fields are written every so many steps; 0: at the end; without: controlled steps at 50 times')
       stage%film = .not. (k%given('fields') .or. k%given('output_dt'))
       call ask_steps(k%group, scene%step_tolerance, steps == 2, stage, fault)
+      if (k%given('step_ends')) call read_pairs(trim(ends), trim(k%group%file), k%group%line, &
+                                                'the end of a step and its length [s]', stage%ends, lengths, fault)
+      if (fault%code == 0 .and. k%given('step_ends')) then
+         if (stage%controlled .or. size(stage%ends) == 0 .or. any(stage%ends(2:) <= &
+             stage%ends(:size(stage%ends) - 1))) call raise(fault, EXIT_INPUT, at_line(k%group%file, k%group%line)// &
+            'step_ends of &stage '//trim(stage%name)//' needs steps = ''given'', and times in '//trim(ends)// &
+            ' that ascend [s].')
+      end if
       scene%stages = [scene%stages, stage]
    end subroutine take_stage
 
@@ -595,7 +609,7 @@ contains
    subroutine refuse_old_keys(group, fault)
       type(group_t), intent(in) :: group   !< &scene.
       type(fault_t), intent(inout) :: fault
-      character(*), parameter :: OLD(8) = [character(20) :: 'accuracy', 'goals', 'mesh', 'budget', 'effects', &
+      character(*), parameter :: OLD(7) = [character(20) :: 'accuracy', 'mesh', 'budget', 'effects', &
          'effects_tolerance', 'effects_pilot_share', 'effects_on_warning']
       character(*), parameter :: MEASURES = ' --accuracy A" measures the errors of the answers, and refines steps '// &
          'and mesh until they are below A.'
@@ -608,7 +622,7 @@ contains
          if (i == 1) then
             text = 'the local tolerance of the steps is now step_tolerance; "mud_study accuracy '//trim(group%file)// &
                    MEASURES
-         else if (i <= 4) then
+         else if (i <= 3) then
             text = 'leave it out; "mud_study accuracy '//trim(group%file)//MEASURES
          else
             text = 'leave it out, and give analysis, fields and gravity; "mud_study effects '//trim(group%file)// &

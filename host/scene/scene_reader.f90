@@ -12,6 +12,7 @@ module scene_reader
    use kinds, only: wp
    use scene_names, only: check_names
    use scene_refinement, only: refine_mesh
+   use scene_settings, only: apply_settings
    use scene_types, only: scene_t, scene_item_t, place_of
    implicit none (type, external)
    private
@@ -19,17 +20,19 @@ module scene_reader
 contains
    !> Reads and checks a scene; a fault names file, line, value, range and the nearest name. Fault EXIT_INPUT: the file
    !> cannot be read, or a group, key or value is refused; EXIT_GROUP: a stage that nobody defines.
-   subroutine read_scene(file, scene, fault, step_tolerance, fineness)
+   subroutine read_scene(file, scene, fault, step_tolerance, fineness, settings)
       character(*), intent(in) :: file
       type(scene_t), intent(out) :: scene
       type(fault_t), intent(inout) :: fault
       character(*), intent(in), optional :: step_tolerance   !< In place of that of the scene; empty: none.
       character(*), intent(in), optional :: fineness         !< Of the mesh, likewise.
+      character(*), intent(in), optional :: settings(:)      !< Other keys, as GROUP.KEY=VALUE.
       type(group_t), allocatable :: groups(:)
       type(key_table_t) :: table
       integer :: i
 
       call read_groups(file, groups, fault)
+      if (present(settings) .and. fault%code == 0) call apply_settings(settings, groups, fault)
       if (present(step_tolerance) .and. fault%code == 0) call ask_key('scene', 'step_tolerance', step_tolerance, groups)
       if (present(fineness) .and. fault%code == 0) call ask_key('mesh', 'fineness', fineness, groups)
       if (fault%code == 0) call check_keys(groups, fault)

@@ -98,6 +98,7 @@ module scene_types
       logical :: controlled = .false.                !< Steps are chosen from their error.
       real(wp) :: step_tolerance = 0.0_wp            !< Of those steps [-].
       real(wp) :: output_dt = 0.0_wp
+      real(wp), allocatable :: ends(:)               !< Given steps end here, after the start of the stage [s].
       integer :: cuts = 10, max_iterations = 12, every = 1, fields = 0
       real(wp) :: rho_inf = -1.0_wp, tolerance = 1.0e-3_wp, created_energy = 0.01_wp
       integer :: measure = BY_STAGE                  !< See convergence.
@@ -193,6 +194,7 @@ module scene_types
       logical :: reuse_factors = .true.
       integer :: ordering = 1                        !< See sparse_factors.
       real(wp) :: step_tolerance = 0.0_wp            !< 0: not given.
+      character(LENGTH), allocatable :: goals(:)     !< Answers that mud_study measures; a run takes no notice.
       integer :: checkpoint_steps = 0
       real(wp) :: checkpoint_seconds = 0.0_wp
       logical :: checkpoint_end = .false.

@@ -3,8 +3,8 @@
 !>
 !> Generalised-alpha stores rates that belong not to the ends of a step but to a moment D dt off, with D = l_f - l_a for
 !> accelerations and l_f - l_p for first-order rates. Where a controlled step of a flow changes, the stored rates are
-!> moved there first: so second order is kept. Given steps leave them where they are. Accelerations stay as they are: what their change of place errs by is of third order,
-!> and to extrapolate them would multiply the jumps of a contact.
+!> moved there first: so second order is kept. Given steps leave them where they are. Accelerations stay as they are:
+!> what their change of place errs by is of third order, and to extrapolate them would multiply the jumps of a contact.
 !>
 !> The leading error of a step is C dt**3 times the third derivative, C = 1/12 + 3/8 D**2 for accelerations and
 !> 1/12 + D**2 for first-order rates (the phase error and the error of the decay that the principal

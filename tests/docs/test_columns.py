@@ -20,7 +20,7 @@ BLOCK = """&scene name = 'block' geometry = 'plane_strain' fields = 'u-p_w' /
 &load group = 'top' kind = 'pressure' value = 10 /
 &point name = 'top' r = 0 z = 1 /
 """
-KINDS = {"histories", "ledger", "contact", "reactions", "nodes", "points", "answers"}
+KINDS = {"histories", "ledger", "contact", "reactions", "nodes", "points"}
 
 
 def described(text):

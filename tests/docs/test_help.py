@@ -48,6 +48,7 @@ def test_every_executable_script_of_the_tree_is_tried_here():
     if not light:   # scripts are the same in every build
         for name in PYTHON:
             helps(name, sys.executable, root / name)
+        helps("mud_study", sys.executable, "-m", "mud.study")
         helps("mud_calibrate", sys.executable, "-m", "mud.calibration.command")
         for name in SHELL:
             helps(name, root / name)

@@ -136,7 +136,7 @@ def test_displacements_begin_anew_with_those_of_the_plate():
 
 def test_springs_of_a_tie_ask_for_no_steps():
     # Shaken after its weight has settled it: neither zeroed displacements nor stiffer springs make the body vibrate.
-    text = GROUND.replace("gravity=10", "gravity=10 accuracy=3e-2") + "&initial stress='geostatic' k_0=0.5 /\n"
+    text = GROUND.replace("gravity=10", "gravity=10 step_tolerance=3e-2") + "&initial stress='geostatic' k_0=0.5 /\n"
     text += TIED.format(more=" weight='yes' moment=4 history='wave'{penalty}") + "&point name='edge' r=1 z=0 /\n"
     text += "&history name='wave' times=0,1,1.05,1.15,1.2 values=0,0,1,-1,0 /\n"
     text += "&stage name='rest' analysis='static' duration=1 dt=1 zero_displacements='yes' /\n"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Keys of a scene that no page of the verification uses, against answers known in closed form."""
 from checking import check, root, work
-from host_program import ran
+from host_program import ran, start
 import tables  # noqa: E402 (checking knows its folder)
 
 # E = 1e4 kPa, nu = 0.25: G = 4000 kPa, constrained modulus M = 12000 kPa. A block of 1 m in plane strain.
@@ -91,3 +91,26 @@ def test_search_radius():
         _, folder = run(near_by, f"radius_{radius}")
         thrust = max(row["soil_plate.thrust"] for row in tables.numbers(folder / "contact.csv"))
         check(f"search radius {radius}", (thrust > 0) == meets, thrust)
+
+
+def test_a_key_set_from_outside_is_that_of_the_scene():
+    # By number, by name, and once more: the last value counts.
+    loaded = (once + "&fix group = 'all' field = 'u_z' /\n&fix group = 'bottom' field = 'u_r' /\n"
+              "&load group = 'top' kind = 'shear_z' value = 1 /\n&load group = 'top' kind = 'shear_r' value = 1 /\n")
+    rows, folder = run(loaded, "set", "--set", "load[2].value=30", "--set", "elastic[soil].young=1",
+                       "--set", "elastic[soil].young=2e4")
+    near("30 kPa over twice G", rows[-1]["corner.u_r"], 30 / (2 * SHEAR))
+
+
+def test_steps_end_where_a_file_says():
+    ends = (0.125, 0.25, 0.875)
+    (work / "ends.txt").write_text("# since the start of the stage\n0.125 0.125\n0.25 0.125\n0.875 0.625\n")
+    # After a stage of 1 s; the last step ends with the stage, as the file does not say so.
+    text = (BLOCK.format(1, 1).replace("&point", "&stage name = 't' analysis = 'quasi_static' duration = 1 dt = 0.125 "
+                                       "steps = 'given' step_ends = 'ends.txt' /\n&point") + held)
+    rows, _ = run(text, "ends")
+    times = [float(row["time"]) for row in rows]
+    check("steps end where the file says", times == [0, 1, *(1 + t for t in ends), 2], times)
+    done = start("ends_free", text.replace("steps = 'given'", "steps = 'controlled'"))
+    check("controlled steps end where their error says", done.returncode == 2 and "step_ends of &stage t needs" in
+          done.stderr, done.stderr)

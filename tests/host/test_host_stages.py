@@ -163,15 +163,6 @@ def test_sudden_loads_that_grow_over_a_stage_are_taken_up():
           done.stderr)
 
 
-def test_pilots_take_ground_as_it_joins_and_leaves():
-    for name in ("excavation", "embankment", "water"):
-        text = scene(name)
-        run(f"{name}_plain", text)
-        run(f"{name}_auto", text.replace("&scene ", "&scene effects = 'auto' "))
-        plain, auto = ((work / f"{name}_{kind}/histories.csv").read_bytes() for kind in ("plain", "auto"))
-        check(f"{name}: nothing that counts is removed", plain == auto)
-
-
 def test_fields_say_what_is_ground():
     h5py = __import__("pytest").importorskip("h5py")
     folder = work / "layers"

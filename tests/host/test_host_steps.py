@@ -77,7 +77,7 @@ def landing(folder):
     return np.array([-min(rows["plate.v_z"]), max(abs(rows["face.thrust"])), -min(history(folder, "centre.u_z"))])
 
 
-# A bar that moves and meets a wall where its stage begins: its first step is judged like any other, whose changes do not grow yet.
+# A bar that moves and meets a wall where its stage begins: its first step is judged like any other.
 BAR = (root / "verification/host/contact/bar.nml").read_text().replace("rho_inf = 0.8", "").replace("dt = 2.0e-6", "") \
     .replace("duration = 1.5e-3", "duration = 4e-4").replace("z_cells = 50", "z_cells = 25")
 
@@ -184,7 +184,7 @@ def test_a_run_is_given_a_step_tolerance_and_no_accuracy():
         done = run(TERZAGHI, work / "none", *words)
         check(f"{words}: refused", done.returncode == 2 and said in done.stderr, done.stderr)
     for key, said in (("accuracy = 1e-2", "step_tolerance"), ("mesh = 'auto'", "mud_study accuracy"),
-                      ("goals = 'base.p_w'", "mud_study accuracy"), ("effects = 'auto'", "mud_study effects")):
+                      ("budget = 9", "mud_study accuracy"), ("effects = 'auto'", "mud_study effects")):
         scene = written("old", TERZAGHI.read_text().replace("&scene\n", f"&scene\n   {key}\n"))
         done = run(scene, work / "none")
         check(f"{key}: told with the word of today", done.returncode == 2 and said in done.stderr
@@ -227,7 +227,8 @@ def test_given_steps_stay():
     check("consolidation without dt: the tolerance is told",
           "Stage consolidation: steps are controlled, tolerance 0.01." in done.stdout, done.stdout)
     check("given steps: no tolerance is told", "are controlled" not in run(TERZAGHI, work / "told", "--check").stdout)
-    done = run(written("rain", RAIN.read_text().replace("   dt = 100\n", "")), work / "rain", "--step-tolerance", "1e-3")
+    done = run(written("rain", RAIN.read_text().replace("   dt = 100\n", "")), work / "rain",
+               "--step-tolerance", "1e-3")
     check("rain without dt, 1e-3", done.returncode == 0, done.stderr)
     done = run(written("none", TERZAGHI.read_text().replace("dt = 1.0e-3", "steps = 'given'")), work / "none")
     check("given steps need dt", done.returncode == 2 and "needs dt" in done.stderr, done.stderr)

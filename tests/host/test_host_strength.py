@@ -107,7 +107,7 @@ def test_shearing_at_the_critical_state_follows_the_strength():
 
 
 def test_steps_of_their_own_end_at_its_kinks():
-    text = BLOCK.replace("name = 'block'", "name = 'block' accuracy = 1e-2").replace(
+    text = BLOCK.replace("name = 'block'", "name = 'block' step_tolerance = 1e-2").replace(
         "times = 0, 1, 2 values = 1, 1, 0", "times = 0, 1.237, 1.613, 2 values = 1, 1, 0.6, 0.6").replace(
         "duration = 1 dt = 0.04", "duration = 1")
     rows = tables.numbers(work / "kinks/histories.csv") if ran("kinks", text) else []
@@ -138,16 +138,9 @@ def test_what_it_works_with():
     if ran("never", never) and ran("without", plain.replace("fields = 'u'", "fields = 'u' without = 'strength'")):
         check("without strength: as without the group, byte for byte", (work / "without/histories.csv").read_bytes()
               == (work / "never/histories.csv").read_bytes())
-    # Yielding ground whose strength fades: the pilots, the price and the repetition run, and tell the effect.
-    soft = SAMPLE.replace("values = 1, 0.2", "values = 1, 0.7").replace("dt = 0.01", "dt = 0.05")
-    if ran("effects", soft, "--ablate"):
-        found = {row["effect"]: row for row in tables.rows(work / "effects/effects.csv")}
-        check("the table of effects has a row", float(found["strength"]["influence"]) > 0.5, found.get("strength"))
-    ran("price", soft.replace("r_cells = 1 z = 0, 1 z_cells = 1", "r_cells = 4 z = 0, 1 z_cells = 4"), "--price")
-    ran("verify", soft.replace("fields = 'u'", "fields = 'u' accuracy = 1e-2").replace(" dt = 0.05", "").replace(
-        " tolerance = 1e-6", ""), "--verify")
+    soft = SAMPLE.replace("values = 1, 0.2", "values = 1, 0.7")
     # The ledger: slow settling creates and loses no energy.
-    if ran("ledger", soft.replace("dt = 0.05", "dt = 0.005")):
+    if ran("ledger", soft.replace("dt = 0.01", "dt = 0.005")):
         last = tables.numbers(work / "ledger/ledger.csv")[-1]
         check("the balance of energy is closed", abs(last["imbalance"]) < 1e-6*abs(last["loads"]), last)
 

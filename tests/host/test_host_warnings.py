@@ -42,8 +42,6 @@ def warnings(text, *words):
 
 
 DOUBTS = [
-    ("point that is no node", "r = 0 z = -2", "r = 0.1 z = -1.9", ["no node of the mesh", "node at (0, -2) m"]),
-    ("point outside", "r = 0 z = -2", "r = 0.1 z = 0.5", ["outside the mesh", "node at (0, 0) m"]),
     ("tension in MUD", "p_w_slope = -9.81", "p_w = 30", ["tensile at", "points of MUD"]),
     ("surface below the mesh", "surface = 0", "surface = -1", ["surface = -1 m lies below", "'all' at 0 m"]),
     ("permeability", "intrinsic = 1e-11", "intrinsic = 1.1e-8", ["intrinsic = 1.1e-8 m2", "conductivity"]),

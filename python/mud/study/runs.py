@@ -1,0 +1,270 @@
+# SPDX-License-Identifier: MIT
+"""Runs of a scene, each made once: on other meshes, with other steps, with other keys; a folder keeps what is finished."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import pathlib
+import resource
+import shutil
+import subprocess
+import time
+from dataclasses import dataclass, field
+
+from ..errors import InputError
+from ..host import HostRun
+from .histories import Histories
+
+try:
+    import f90nml
+except ImportError as problem:
+    raise ImportError("studies read scenes with f90nml: pip install 'mud-soil[study]'") from problem
+
+LOOSEST = 0.1  # step tolerance above which nothing differs: steps of flows grow as fast as they may
+# What the host takes where the scene says nothing, of a step tolerance A: a tenth, at most this (host/README.md).
+NEWTON_LARGEST, STRESS_LARGEST, SHARE = 1e-4, 1e-3, 0.1
+GIVEN_NEWTON = 1e-3  # the same of stages with given steps
+COMPLETE = (0, 20)  # exit codes of runs whose results are complete
+WORDS_EVERY = 10.0  # a run that lasts longer says every so many seconds where it is [s]
+LOCALISED = 0.05  # share of the work that is done where the soil has lost ellipticity [-]
+
+
+class Failed(Exception):
+    """A run that ended before its time; the sentence says why."""
+
+
+class BudgetUsedUp(Exception):
+    """The time is over."""
+
+
+@dataclass(frozen=True)
+class Key:
+    """What a run is: times the cells along each axis, tolerance of the steps, tenths of the other tolerances, keys."""
+
+    fineness: float
+    tolerance: float
+    newton: int = 0
+    stress: int = 0
+    settings: tuple[str, ...] = ()
+
+    @property
+    def folder(self) -> str:
+        name = f"F{self.fineness:g}_a{self.tolerance:.3g}"
+        name += f"_newton{self.newton}" * (self.newton > 0) + f"_stress{self.stress}" * (self.stress > 0)
+        if self.settings:
+            name += "_" + hashlib.sha256("\n".join(self.settings).encode()).hexdigest()[:8]
+        return name
+
+    def __str__(self):
+        words = [f"fineness {self.fineness:g}", f"step tolerance {self.tolerance:.2g}"]
+        tighter = [w for w, n in (("Newton's method", self.newton), ("the stress integration", self.stress)) if n]
+        if tighter:
+            words.append("a tenth of the tolerance of " + " and ".join(tighter))
+        return ", ".join([*words, *self.settings])
+
+
+@dataclass
+class Run:
+    """A run that is finished."""
+
+    key: Key
+    seconds: float  # by the clock
+    processor: float  # all threads
+    histories: Histories = field(repr=False)
+    localised: str = ""  # what the run says of shear bands without a width of their own
+
+
+class Scene:
+    """A scene and its finished runs."""
+
+    def __init__(self, path, folder, host="", budget=float("inf"), quiet=False):
+        self.path, self.folder, self.quiet = pathlib.Path(path), pathlib.Path(folder), quiet
+        self.host = find_host(host)
+        if not self.path.is_file():
+            raise InputError(f"{self.path}: there is no such scene")
+        try:
+            self.groups = f90nml.read(self.path)
+        except Exception as problem:
+            raise InputError(f"{self.path} cannot be read as groups of a scene: {problem}") from problem
+        for name in ("scene", "mesh", "stage"):
+            if name not in self.groups:
+                raise InputError(f"{self.path}: the group &{name} is missing")
+        self.began, self.budget = time.monotonic(), budget
+        self.runs: dict[Key, Run] = {}
+        self.failed: dict[Key, str] = {}
+        self.made = 0
+        self._origin = self._fingerprint()
+
+    def list_of(self, group: str) -> list:
+        """Groups of a name, in their order."""
+        found = self.groups.get(group, [])
+        return list(found) if isinstance(found, list) else [found]
+
+    @property
+    def left(self) -> float:
+        """Time that is left [s]."""
+        return self.budget - (time.monotonic() - self.began)
+
+    @property
+    def spent(self) -> float:
+        """Processor time of all finished runs, also of those made earlier [s]."""
+        return sum(run.processor for run in self.runs.values())
+
+    def say(self, words: str, end: str = "\n"):
+        if not self.quiet:
+            print(words, end=end, flush=True)
+
+    def known(self, *key, **more) -> Run | None:
+        return self.runs.get(Key(*key, **more))
+
+    def run(self, fineness, tolerance, newton=0, stress=0, settings=(), keep=False) -> Run:
+        """A finished run: known, found in the folder, or made. `keep`: with the fields that the scene asks for."""
+        key = Key(float(f"{fineness:.6g}"), float(f"{tolerance:.4g}"), newton, stress, tuple(settings))
+        if key in self.failed:
+            raise Failed(self.failed[key])
+        if key not in self.runs:
+            told = self._found(key) or self._make(key, keep)
+            if told["code"] not in COMPLETE:
+                self.failed[key] = f"the run with {key} ends with exit code {told['code']}: {told['words']}"
+                raise Failed(self.failed[key])
+            folder = self.folder / key.folder
+            self.runs[key] = Run(key, told["seconds"], told["processor"], Histories(folder), told["localised"])
+        return self.runs[key]
+
+    def words_of(self, key: Key) -> list[str]:
+        """Options of mud_host that make a run what its key says."""
+        words = ["--fineness", f"{key.fineness:.6g}", "--step-tolerance", f"{key.tolerance:.4g}"]
+        settings = list(key.settings)
+        for i, stage in enumerate(self.list_of("stage"), 1):
+            given = stage.get("steps", "").lower() == "given"
+            if given:
+                settings += self._given_steps(i, stage, key.tolerance)
+            if key.newton:
+                default = GIVEN_NEWTON if given else min(NEWTON_LARGEST, SHARE * key.tolerance)
+                settings.append(f"stage[{i}].tolerance={max(stage.get('tolerance', default) / 10**key.newton, 1e-14):.3e}")
+        if key.stress:
+            for i, law in enumerate(self.list_of("mud"), 1):
+                default = min(STRESS_LARGEST, SHARE * key.tolerance)
+                settings.append(f"mud[{i}].tolerance={max(law.get('tolerance', default) / 10**key.stress, 1e-12):.3e}")
+        return words + [word for setting in settings for word in ("--set", setting)]
+
+    def _given_steps(self, i, stage, tolerance):
+        """Steps that the scene gives are those of the tolerance 1e-2; with another they change as its square root."""
+        times = (tolerance / 1e-2) ** 0.5
+        if abs(times - 1) < 1e-3 or "dt" not in stage:
+            return []
+        settings = [f"stage[{i}].dt={min(times * stage['dt'], stage['duration']):.6e}"]
+        if "dt_max" in stage:
+            settings.append(f"stage[{i}].dt_max={times * stage['dt_max']:.6e}")
+        if "dt_growth" in stage:
+            settings.append(f"stage[{i}].dt_growth={min(stage['dt_growth'] ** times, 10):.8f}")
+        return settings
+
+    def _fingerprint(self):
+        """Of the scene, the files that it names and the program."""
+        hashed = hashlib.sha256(self.path.read_bytes())
+        hashed.update(pathlib.Path(self.host).read_bytes())
+        for name in self.groups:
+            for group in self.list_of(name):
+                for key in ("file", "library"):
+                    named = self.path.parent / str(group.get(key, ""))
+                    if key in group and named.is_file():
+                        hashed.update(named.read_bytes())
+        return hashed.hexdigest()
+
+    def _found(self, key):
+        """What the folder tells of a run that was finished by an earlier call."""
+        try:
+            told = json.loads((self.folder / key.folder / "run.json").read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return None
+        if told["origin"] != self._origin or told["words"] != self.words_of(key):
+            return None
+        self.say(f"   found: {key}, {told['seconds']:.3g} s")
+        return {**told, "words": told["said"]}
+
+    def _make(self, key, keep):
+        folder = self.folder / key.folder
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        words = self.words_of(key)
+        command = [self.host, self.path, *words, "--output", folder]
+        if not keep:
+            command += ["--set", "stage.fields=0"]
+        if self.left <= 0:
+            raise BudgetUsedUp
+        self.made += 1
+        self.say(f"   run {self.made}: {key} ...", end="")
+        start, before = time.monotonic(), _processor()
+        with open(folder / "said.txt", "w", encoding="utf-8") as said, open(folder / "errors.txt", "w") as errors:
+            process = subprocess.Popen(command, stdout=said, stderr=errors)
+            try:
+                while process.poll() is None:
+                    self._wait(process, start, folder)
+            except BaseException:
+                process.kill()
+                process.wait()
+                self.say(" stopped")
+                raise
+        seconds = time.monotonic() - start
+        self.say(f" {seconds:.3g} s")
+        told = {
+            "origin": self._origin,
+            "words": words,
+            "seconds": seconds,
+            "processor": _processor() - before,
+            "code": process.returncode,
+            "said": (folder / "errors.txt").read_text(encoding="utf-8", errors="replace").strip()[-500:],
+            "localised": _localised(folder),
+        }
+        if process.returncode >= 0:  # one that was killed is repeated
+            part = folder / "run.json.part"
+            part.write_text(json.dumps(told, indent=1), encoding="utf-8")
+            part.replace(folder / "run.json")
+        return {**told, "words": told["said"]}
+
+    def _wait(self, process, start, folder):
+        try:
+            process.wait(timeout=min(WORDS_EVERY, max(self.left, 0.01)))
+        except subprocess.TimeoutExpired:
+            if self.left <= 0:
+                raise BudgetUsedUp from None
+            lines = (folder / "said.txt").read_text(encoding="utf-8", errors="replace").splitlines()
+            left = f", {self.left:.0f} s left" if self.left < float("inf") else ""
+            self.say(f"\n      {time.monotonic() - start:.0f} s{left}: {lines[-1] if lines else ''}", end="")
+
+
+def _processor():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def _localised(folder):
+    """What a run says of localisation: a sentence, or the share of the shear work in its ledger. Empty: nothing."""
+    for line in (folder / "errors.txt").read_text(encoding="utf-8", errors="replace").splitlines():
+        if "localis" in line.lower():
+            return line.strip()
+    try:
+        share = HostRun(folder).ledger.get("localised")
+    except InputError:
+        return ""
+    if share is None or not len(share) or share.dtype.kind != "f" or share.max() <= LOCALISED:
+        return ""
+    return f"{100 * share.max():.2g} % of the shear work is done where the soil has lost ellipticity"
+
+
+def find_host(host: str = "") -> str:
+    """Path of mud_host: as named, MUD_HOST, that of the search path, that of a tree that is built."""
+    tree = pathlib.Path(__file__).resolve().parents[3] / "build/release/host/mud_host"
+    for name in (host, os.environ.get("MUD_HOST", "")):
+        if name:
+            found = shutil.which(name)
+            if not found:
+                raise InputError(f"there is no program {name}; name mud_host by --host or MUD_HOST")
+            return found
+    found = shutil.which("mud_host") or (str(tree) if tree.exists() else "")
+    if not found:
+        raise InputError("mud_host is not found; name it by --host or MUD_HOST, or put it into the search path")
+    return found

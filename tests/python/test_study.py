@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: MIT
+"""mud_study: errors that it tells are those of closed forms, finished runs are found again, every end has its sentence
+and its exit code."""
+import os
+import re
+import subprocess
+import sys
+
+import numpy as np
+
+from checking import build, check, needs_plain_library, needs_release, root, work
+
+needs_plain_library()
+needs_release("studies are Python over many runs of mud_host, the same in every build")
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(root / "python"), "MUD_LIBRARY_DIR": str(build), "OMP_NUM_THREADS": "1",
+               "MUD_HOST": str(build / "host/mud_host"), "MPLBACKEND": "Agg"}
+sys.path.insert(0, str(root / "python"))
+os.environ["MUD_LIBRARY_DIR"] = str(build)
+import tables  # noqa: E402 (checking knows its folder)
+from mud.host import HostRun  # noqa: E402
+from mud.study import histories  # noqa: E402
+
+PARTS = ("change", "steps", "mesh", "newton", "stress")
+
+# A bar of 1 m with c = 50 m/s (E = 5000 kPa, 2 Mg/m3), fixed at its base, and a smooth pulse of 8 ms at its top.
+SPEED, MODULUS, PULSE, LOAD = 50.0, 5000.0, 0.008, 5.0
+TIMES = np.linspace(0, PULSE, 21)
+SHAPE = np.sin(np.pi * TIMES / PULSE) ** 2
+BAR = f"""&scene name = 'bar' geometry = 'plane_strain' fields = 'u' /
+&mesh r = 0, 0.1 r_cells = 1 z = 0, 1 z_cells = 8 /
+&elastic name = 'soil' young = {MODULUS} poisson = 0 /
+&region material = 'soil' void_ratio = 0 rho_s = 2 /
+&history name = 'p' times = {', '.join(f'{t:.6f}' for t in TIMES)} values = {', '.join(f'{x:.8f}' for x in SHAPE)} /
+&stage name = 'wave' analysis = 'dynamic' duration = 0.03 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&load group = 'top' kind = 'pressure' value = {LOAD} history = 'p' /
+&point name = 'top' r = 0 z = 1 /
+&point name = 'mid' r = 0 z = 0.5 /
+"""
+# A block under a weight that comes at once: the answer of elements of second order is exact.
+BLOCK = """&scene name = 'block' fields = 'u' /
+&mesh r = 0, 1 r_cells = 2 z = 0, 1 z_cells = 2 /
+&elastic name = 'soil' young = 1e4 poisson = 0.3 /
+&region material = 'soil' void_ratio = 0 /
+&stage name = 'load' analysis = 'static' duration = 1 {} /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&load group = 'top' kind = 'pressure' value = 10 /
+&point name = 'top' r = 0 z = 1 /
+"""
+
+
+def study(command, text, name, *more, code=0):
+    """A study of a scene: what it printed, its table by answer, its folder."""
+    scene = work / f"{name}.nml"
+    scene.write_text(text)
+    folder = work / f"study_{name}"
+    done = subprocess.run([sys.executable, "-m", "mud.study", command, scene, "--output", folder, *more],
+                          capture_output=True, text=True, env=ENVIRONMENT, cwd=work)
+    check(f"{name}: exit code {code}", done.returncode == code, (done.returncode, done.stderr[-400:]))
+    return done, errors_of(folder), folder
+
+
+def errors_of(folder):
+    path = folder / "accuracy.csv"
+    if not path.exists():
+        return {}
+    rows = tables.rows(path)
+    check("columns of accuracy.csv", list(rows[0]) == ["answer", *PARTS, "total"], rows[0])
+    return {row["answer"]: {part: float(row[part]) for part in (*PARTS, "total")} for row in rows}
+
+
+def run_of(folder, done):
+    """The folder of the run that the last line names."""
+    fineness, tolerance = re.search(r"fineness (\S+), step tolerance (\S+),", done.stdout.splitlines()[-1]).groups()
+    found = [one for one in folder.glob(f"F{fineness}_a*")
+             if np.isclose(float(one.name.split("_a")[1].split("_")[0]), float(tolerance), rtol=0.06)]
+    return min(found, key=lambda one: len(one.name))
+
+
+def pulse_in_bar(z, t):
+    """Displacement of the bar by d'Alembert: the velocity p/(rho c) runs down, comes back from the base with the other
+    sign, and once more from the free top. z [m], t [s] of any shape."""
+    def travelled(tau):
+        fine = np.linspace(0, PULSE, 4001)
+        path = np.r_[0, np.cumsum(0.5 * (f(fine[1:]) + f(fine[:-1])) * np.diff(fine))]
+        return np.interp(tau, fine, path)
+
+    def f(tau):
+        return np.interp(tau, TIMES, SHAPE)
+
+    scale = -LOAD / (2 * SPEED)   # p/(rho c) [m/s], rho = 2 Mg/m3
+    u = np.zeros_like(t)
+    for k in range(4):   # every path down, and its image from the base
+        u += (-1) ** k * (travelled(t - (2 * k + 1 - z) / SPEED) - travelled(t - (2 * k + 1 + z) / SPEED))
+    return scale * u
+
+
+def test_the_error_told_of_a_pulse_is_that_of_dalembert():
+    done, errors, folder = study("accuracy", BAR, "bar", "--accuracy", "3e-2")
+    run = HostRun(run_of(folder, done))
+    for name, z in (("top", 1.0), ("mid", 0.5)):
+        time, u = run.histories["time"], run.histories[f"{name}.u_z"]
+        exact = pulse_in_bar(z, time)
+        true = np.max(np.abs(u - exact)) / np.max(np.abs(exact))
+        told = errors[f"{name}.u_z"]["total"]
+        check(f"{name}: told {told:.4f} for {true:.4f}", told / 5 < true < 3 * told and true < 6e-2, (told, true))
+    parts = errors["top.u_z"]
+    check("the total is the sum of its parts", np.isclose(
+        parts["total"], sum(parts[x] for x in ("steps", "mesh", "newton", "stress")), rtol=2e-3), parts)
+    last = done.stdout.splitlines()[-1]
+    check("the last line is the sum and its cost", last.startswith("total ") and all(
+        word in last for word in ("= mesh", "+ steps", "+ Newton", "+ stress integration", "times that run")), last)
+    check("a picture", (folder / "accuracy.png").stat().st_size > 10000)
+
+
+def test_finished_runs_are_found_again_and_others_repeated():
+    done, _, folder = study("accuracy", BLOCK.format(""), "again")
+    made = done.stdout.count("   run ")
+    done, _, _ = study("accuracy", BLOCK.format(""), "again")
+    check("all are found", done.stdout.count("   run ") == 0 and done.stdout.count("found:") == made, done.stdout)
+    # A run that was killed leaves no run.json; one of another scene does not count.
+    (folder / "F1_a0.01/run.json").unlink()
+    done, _, _ = study("accuracy", BLOCK.format(""), "again")
+    check("what was killed is repeated", done.stdout.count("   run ") == 1, done.stdout)
+    done, _, _ = study("accuracy", BLOCK.format("").replace("1e4", "2e4"), "again")
+    check("another scene is run anew", done.stdout.count("   run ") == made, done.stdout)
+
+
+def test_every_end_has_its_sentence_and_its_exit_code():
+    done, _, _ = study("accuracy", BAR, "dear", "--accuracy", "1e-4", "--budget", "1.5", code=23)
+    check("budget", "budget used up" in done.stderr, done.stderr)
+    done, errors, _ = study("accuracy", BLOCK.format("max_iterations = 1 cuts = 0 tolerance = 1e-14").replace(
+        "&elastic name = 'soil' young = 1e4 poisson = 0.3 /", "&mud name = 'soil' /").replace("'static'", "'quasi_static'"),
+        "fails", code=3)
+    check("a run that fails", "exit code 14" in done.stderr and not errors, done.stderr)
+    done, _, _ = study("accuracy", BLOCK.format("").replace("value = 10", "value = 0"), "still", code=3)
+    check("nothing moves", "no named point" in done.stderr, done.stderr)
+    done, _, _ = study("accuracy", BLOCK.format(""), "goal", "--goals", "top.u_x", code=3)
+    check("an answer that is none", "there is no answer top.u_x; there are top.u_r" in done.stderr, done.stderr)
+    done, _, _ = study("accuracy", "&scene name = 'a' /\n", "part", code=2)
+    check("half a scene", "the group &mesh is missing" in done.stderr, done.stderr)
+
+
+def test_a_pulse_between_two_steps_is_a_difference():
+    # The rougher history steps over it and agrees at all its times.
+    good, rough = object.__new__(histories.Histories), object.__new__(histories.Histories)
+    t = np.linspace(0, 1, 101)
+    good.values, good.forces = {"p.u_z": (t, np.exp(-((t - 0.45) / 0.01) ** 2))}, {}
+    rough.values, rough.forces = {"p.u_z": (t[::10], np.zeros(11))}, {}
+    check("a pulse that is missed", histories.distance(rough, good, "p.u_z") > 0.5)
+
+
+def test_cubics_between_steps_err_less_than_straight_lines():
+    t = np.linspace(0, np.pi / 3, 11)
+    at = 0.5 * (t[1:-2] + t[2:-1])
+    cubics = np.max(np.abs(histories.between(t, np.sin(t), at) - np.sin(at)))
+    lines = np.max(np.abs(np.interp(at, t, np.sin(t)) - np.sin(at)))
+    check("a tenth of the error", cubics < lines / 10, (cubics, lines))
+    check("no overshoot", np.max(histories.between(np.arange(4.0), np.array([0.0, 0, 1, 1]), np.linspace(0, 3, 99))) <= 1)
