@@ -36,8 +36,8 @@ contains
       present = there(model%domain%region_of)
    end function ground_of
 
-   !> Edges of a group with the ground on their left that is present in the first of some stages; check_sides sees to the
-   !> others. (3, edges)
+   !> Edges of a group with the ground on their left that is present in the first of some stages; check_sides sees to
+   !> the others. (3, edges)
    pure function facing_edges(model, group, stages) result(edges)
       type(model_t), intent(in) :: model
       integer, intent(in) :: group              !< Of the mesh.
