@@ -121,7 +121,8 @@ FACE = """&scene name = 'face' geometry = 'plane_strain' fields = 'u-p_w' gravit
 
 # A pulse on a slow load, between the steps of the pilots, and so small beside what its history was before the run that
 # they do not end there: they cannot see it, the watch does; `stop` ends the run.
-missed = dict(times="-1, 0, 5, 5.012, 5.02, 5.028", values="2000, 0, 0.05, 0.05, 1, 0.05", stage="duration = 10 dt = 0.004")
+missed = dict(times="-1, 0, 5, 5.012, 5.02, 5.028", values="2000, 0, 0.05, 0.05, 1, 0.05",
+              stage="duration = 10 dt = 0.004")
 
 # Where the named points are prescribed, the forces of the supports that move are the answers; where nothing changes
 # there is nothing to judge by, and nothing goes.
