@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Times that controlled steps end at: breaks of load histories, supports that come and go, output, end of the stage; and
-!> where given steps end early, so that they jump over nothing.
+!> Times that controlled steps end at: breaks of load histories, supports that come and go, output, end of the stage.
+!> Given steps end early where they would jump over something.
 !>
 !> Of a load history of a few breaks every one counts; of a record of thousands only those matter that a straight line
 !> over them would miss by more than a share of the accuracy. One rule serves both.
@@ -14,7 +14,8 @@ module step_landings
    use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: next_time, end_of_given, is_break, begins_suddenly, changes_within, straight_until, LAST_STEP, SHORTEST, CHORD_SHARE
+   public :: next_time, end_of_given
+   public :: is_break, begins_suddenly, changes_within, straight_until, LAST_STEP, SHORTEST, CHORD_SHARE
 
    real(wp), parameter :: LAST_STEP = 1.0e-6_wp   !< A rest of a span below this share of a step is rounding.
    real(wp), parameter :: SHORTEST = 1.0e-8_wp    !< Smallest step as a share of the stage.
