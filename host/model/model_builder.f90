@@ -12,6 +12,7 @@ module model_builder
    use strength_builder, only: build_strengths
    use given_pressures, only: add_centers, give_pressures, check_places
    use mesh_builder, only: build_mesh
+   use mesh_look, only: check_carried
    use model_types, only: model_t
    use porous_domain, only: domain_t, prepare_domain
    use region_builder, only: build_regions
@@ -46,6 +47,7 @@ contains
       if (fault%code == 0) call choose_threads(scene%threads, model%domain)
       if (fault%code == 0) call build_boundaries(model, fault)
       if (fault%code == 0) call build_strengths(model, fault)
+      if (fault%code == 0) call check_carried(model, fault)
       if (fault%code == 0) call check_places(model, fault)
       if (fault%code == 0) call check_staged_ground(model, fault)
       if (fault%code == 0) call check_sides(model, fault)

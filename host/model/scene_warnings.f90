@@ -10,6 +10,7 @@ module scene_warnings
    use initial_conditions, only: tension_t, balance_t
    use key_schema, only: line_of, given, get_number
    use material_elastic, only: elastic_t
+   use mesh_look, only: look_at_slits
    use model_types, only: model_t
    use namelists, only: group_t
    use scene_types, only: scene_t, place_of
@@ -58,6 +59,7 @@ contains
 
       allocate (warnings(0))
       call look_at_sizes(scene, model, warnings)
+      call look_at_slits(model, warnings)
       call look_at_units(scene, warnings)
       call look_at_regions(scene, model, warnings)
       call look_at_materials(scene, model, warnings)

@@ -5,7 +5,7 @@ module answer_errors
    use warnings, only: print_warning
    use kinds, only: wp
    use control_state, only: control_state_t, is_answer, LEAST_PRESSURE, LIMIT_NAMES, BY_LARGEST, BY_SMALLEST
-   use csv, only: csv_t, new_csv, write_row, close_csv
+   use csv, only: csv_t, new_csv, write_row, close_csv, quoted
    use exit_codes, only: EXIT_ACCURACY
    use faults, only: fault_t, raise
    use force_answers, only: force_answer_t
@@ -249,7 +249,7 @@ contains
          do f = 1, FIELDS
             if (fault%code /= 0) exit
             if (.not. estimate(model, control, i, f, change, error)) cycle
-            write (table%row, '(a,3(",",es14.6e3),a)') trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f)), &
+            write (table%row, '(a,3(",",es14.6e3),a)') quoted(trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f))), &
                change, error, control%newton(f, i)/change, &
                of_mesh(trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f)))
             call write_row(table, fault)
@@ -257,7 +257,7 @@ contains
       end do
       do i = 1, size(forces)
          if (fault%code /= 0) exit
-         write (table%row, '(a,2(",",es14.6e3),",",a)') trim(forces(i)%name), forces(i)%change, forces(i)%error, &
+         write (table%row, '(a,2(",",es14.6e3),",",a)') quoted(trim(forces(i)%name)), forces(i)%change, forces(i)%error, &
             of_mesh(trim(forces(i)%name))
          call write_row(table, fault)
       end do

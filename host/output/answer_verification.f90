@@ -3,7 +3,7 @@
 !> docs/theory/host.md section 4.5.
 module answer_verification
    use kinds, only: wp
-   use csv, only: columns_of
+   use csv, only: cells_of
    use faults, only: fault_t, raise, EXIT_OUTPUT
    use files, only: read_whole
    use history_distance, only: farthest
@@ -55,8 +55,8 @@ contains
       if (good) good = index(text, new_line('a')) > 0
       if (good) then
          last = index(text, new_line('a'))
-         allocate (names(columns_of(text(:last))))
-         read (text(:last - 1), *, iostat=status) names
+         call cells_of(text(:last - 1), names)
+         status = 0
          column = [(i, i=1, size(names))]
          if (present(only)) column = pack(column, [(any(only == names(i)), i=1, size(names))])
          names = names(column)

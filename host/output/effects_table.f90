@@ -4,7 +4,7 @@ module effects_table
    use kinds, only: wp
    use pilot_budget, only: pilots_account_t
    use effect_types, only: effect_t, NEVER, OF_GRAVITY
-   use csv, only: csv_t, new_csv, write_line, close_csv
+   use csv, only: csv_t, new_csv, write_line, close_csv, quoted
    use faults, only: fault_t
    use texts, only: short, whole
    implicit none (type, external)
@@ -88,10 +88,10 @@ contains
                    'time_ratio,limit,largest_seen,crossed_at,remark', file, fault)
       do i = 1, size(table)
          associate (t => table(i))
-            row = trim(t%name)//','//trim(merge('yes', 'no ', t%present))//','//trim(merge('on ', 'off', t%on))//','// &
+            row = quoted(trim(t%name))//','//trim(merge('yes', 'no ', t%present))//','//trim(merge('on ', 'off', t%on))//','// &
                   trim(by(t))//','
             if (t%influence >= 0.0_wp) then
-               row = row//short(t%influence)//','//short(t%change)//','//trim(t%answer)//','//whole(t%unknowns)//','// &
+               row = row//short(t%influence)//','//short(t%change)//','//quoted(trim(t%answer))//','//whole(t%unknowns)//','// &
                      short(t%seconds)//','
             else
                row = row//',,,,,'
@@ -121,8 +121,8 @@ contains
       call new_csv(folder//'/effects_answers.csv', 'effect,in_scene,answer,range,change,influence', file, fault)
       do i = 1, size(account%influences)
          associate (t => account%influences(i), effect => table(account%influences(i)%effect))
-            call write_line(file, trim(effect%name)//','//trim(merge('yes', 'no ', effect%present))//','// &
-                            trim(t%answer)//','//short(t%range)//','//short(t%change)//','//short(t%share), fault)
+            call write_line(file, quoted(trim(effect%name))//','//trim(merge('yes', 'no ', effect%present))//','// &
+                            quoted(trim(t%answer))//','//short(t%range)//','//short(t%change)//','//short(t%share), fault)
          end associate
       end do
       call close_csv(file, fault)

@@ -4,7 +4,7 @@
 module level_output
    use, intrinsic :: iso_fortran_env, only: output_unit
    use answer_errors, only: worst_unknown, write_answers
-   use csv, only: csv_t, new_csv, write_row, close_csv
+   use csv, only: csv_t, new_csv, write_row, close_csv, quoted
    use faults, only: fault_t
    use files, only: make_folder
    use force_answers, only: force_answer_t, list_forces
@@ -112,7 +112,7 @@ contains
                table%row(at + 1:) = ',,,,,,not estimated'
             else
                write (table%row(at + 1:), '(4(",",es14.6e3),2(",",a))') bound_of(a), a%mesh, a%steps, a%newton, &
-                  trim(a%name), trim(STATE_WORDS(a%state))
+                  quoted(trim(a%name)), trim(STATE_WORDS(a%state))
             end if
          end associate
          call write_row(table, fault)

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> The price of accuracy, printed and as files.
 module price_table
-   use csv, only: csv_t, new_csv, write_row, close_csv
+   use csv, only: csv_t, new_csv, write_row, close_csv, quoted
    use faults, only: fault_t
    use kinds, only: wp
    use error_words, only: percent, rounded
@@ -156,7 +156,7 @@ contains
             write (table%row, '(14(es14.6e3,","),i0,",",a)') q%mesh, q%fineness, q%fineness*price%asked, q%elements, &
                q%error, q%error_of_mesh, q%error_of_steps, q%error_of_newton, q%error/ERROR_RANGE, &
                q%error*ERROR_RANGE, q%seconds, q%seconds*TIME_LOW, q%seconds*TIME_HIGH, q%megabytes, &
-               merge(1, 0, is_scene(q)), trim(price%answers(max(1, q%answer))%name)
+               merge(1, 0, is_scene(q)), quoted(trim(price%answers(max(1, q%answer))%name))
          end associate
          call write_row(table, fault)
       end do
@@ -167,7 +167,7 @@ contains
       do k = 1, size(price%answers)
          if (fault%code /= 0) exit
          associate (a => price%answers(k))
-            write (table%row, '(a,",",6(es14.6e3,","),a)') trim(a%name), &
+            write (table%row, '(a,",",6(es14.6e3,","),a)') quoted(trim(a%name)), &
                price%levels(size(price%levels))%mesh, a%range, a%mesh, a%steps, &
                a%newton, a%order, trim(STATE_WORDS(a%state))
          end associate

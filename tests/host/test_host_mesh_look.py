@@ -195,3 +195,132 @@ def test_the_built_in_mesh_names_the_faces_between_its_blocks():
         done = start("cut", text.format(group))
         check(f"{group} is a group, and refused", done.returncode == 11 and f"edge at {edges} m" in done.stderr,
               done.stderr)
+
+
+BLOCK = """&scene name = 'block' geometry = 'plane_strain' /
+&mesh file = 'block.msh' /
+&elastic name = 'e' young = 1e4 poisson = 0.2 /
+&region material = 'e' void_ratio = 0 /
+&stage name = 's' analysis = 'static' duration = 1 dt = 1 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&load group = 'top' kind = 'pressure' value = 20 /
+&point name = 'top' r = 0 z = 2 /
+"""
+
+
+def block(**changes):
+    """A block of 1 m by 2 m, with what a test changes of it."""
+    grid = Grid(1, 2)
+    parts = {"nodes": grid.nodes, "surfaces": [("soil", grid.cell(0, 0) + grid.cell(0, 1))],
+             "curves": [("left", [grid.edge((0, 1), (0, 0)), grid.edge((0, 2), (0, 1))]),
+                        ("bottom", [grid.edge((0, 0), (1, 0))]), ("top", [grid.edge((1, 2), (0, 2))])],
+             "points": []}
+    for name, change in changes.items():
+        parts[name] = change(parts[name])
+    return gmsh(**parts)
+
+
+def looked(name, mesh, text=BLOCK, *more):
+    (work / "block.msh").write_text(mesh, encoding="utf-8")
+    return start(name, text, *more)
+
+
+def test_groups_that_hold_nothing_or_mean_two_things_are_refused():
+    empty = lambda groups: [*groups, ("drain", [])]  # noqa: E731
+    for line in ("&fix group = 'drain' field = 'u_z' /", "&load group = 'drain' kind = 'force_z' value = -5 /",
+                 "&initial group = 'drain' v_z = 1 /", "&absorbing group = 'drain' /",
+                 "&contact name = 'c' slave = 'drain' master = 'top' /",
+                 "&region group = 'drain' material = 'e' void_ratio = 0 /"):
+        for more in (["--check"], []):
+            done = looked("empty", block(curves=empty), BLOCK + line + "\n", *more)
+            check(f"{line} {more}: refused", done.returncode == 11
+                  and "group 'drain' of the mesh is empty" in done.stderr, done.stderr)
+    check("an empty group that nobody uses is no matter", looked("unused", block(curves=empty)).returncode == 0)
+    corner = block(points=lambda _: [("bottom", [(1,)])])
+    done = looked("two", corner)
+    check("a point and a curve of one name", done.returncode == 11 and "'bottom' of several dimensions" in done.stderr
+          and "scene" not in done.stderr, done.stderr)
+    done = looked("two", corner, BLOCK.replace("'bottom'", "'all'"))
+    check("of no matter where none of them is used", done.returncode == 0, done.stderr)
+    # Two curves of one name, as Gmsh allows: one group.
+    halves = block(curves=lambda groups: [groups[1], groups[2], ("left", groups[0][1][:1]), ("left", groups[0][1][1:])])
+    one, two = (tables.columns(work / "one/histories.csv") for _ in range(2)
+                if looked("one", halves if _ else block()).returncode == 0)
+    check("curves of one name are one group", one["top.u_z"][-1] == two["top.u_z"][-1], (one, two))
+
+
+def test_a_physical_group_called_all():
+    done = looked("all", block(curves=lambda groups: [*groups, ("all", groups[2][1])]))
+    check("of a curve: refused", done.returncode == 10 and "physical group is called 'all'" in done.stderr, done.stderr)
+    done = looked("all", block(surfaces=lambda groups: [("all", groups[0][1])]))
+    check("of all triangles: what a scene calls so", done.returncode == 0, done.stderr)
+
+
+def test_names_with_commas_stand_in_quotes():
+    text = BLOCK.replace("group = 'bottom'", "group = 'bottom, fixed'")
+    text = text.replace("value = 20", "value = 20 history = 'h'")
+    text = text.replace("dt = 1", "dt = 0.5") + "&history name = 'h' times = 0, 1 values = 0, 1 /\n"
+    mesh = block(curves=lambda groups: [(name.replace("bottom", "bottom, fixed"), edges) for name, edges in groups])
+    done = looked("commas", mesh, text, "--verify")
+    check("it runs, and its tables are read back", done.returncode == 0, done.stderr)
+    rows = tables.columns(work / "commas/reactions_s.csv")
+    check("the force stands under its name", abs(rows["bottom, fixed.force_z"][-1] - 20) < 1e-9, rows)
+    answers = {row["answer"]: row for row in tables.rows(work / "commas/answers.csv")}
+    check("and in the answers", abs(float(answers["s: bottom, fixed.force_z"]["largest_change"]) - 10) < 1e-9, answers)
+
+
+def test_nodes_at_one_place_that_nothing_joins_are_told():
+    # The upper cell has nodes of its own.
+    grid = Grid(1, 2)
+    own = {node: node + 100 for node, x in grid.nodes.items() if x[1] == 1}
+    nodes = {**grid.nodes, **{own[node]: grid.nodes[node] for node in own}}
+    upper = [tuple(own.get(node, node) for node in one) for one in grid.cell(0, 1)]
+    left = [grid.edge((0, 1), (0, 0)), tuple(own.get(node, node) for node in grid.edge((0, 2), (0, 1)))]
+    slit = block(nodes=lambda _: nodes, surfaces=lambda _: [("low", grid.cell(0, 0)), ("high", upper)],
+                 curves=lambda groups: [("left", left), *groups[1:], ("under", [grid.edge((1, 1), (0, 1))]),
+                                        ("over", [tuple(own[node] for node in grid.edge((0, 1), (1, 1)))])])
+    text = BLOCK.replace("&fix group = 'bottom' field = 'u_z'", "&fix group = 'all' field = 'u_z'")
+    for more in (["--check"], []):
+        done = looked("slit", slit, text, *more)
+        check(f"told {more}", done.returncode == 0 and "3 pairs of boundary nodes at one place" in done.stderr
+              and ", 1) m" in done.stderr, done.stderr)
+    for joint in ("&contact name = 'c' slave = 'under' master = 'over' /",):
+        done = looked("joined", slit, text + joint, "--check")
+        check(f"{joint} joins", done.returncode == 0 and "one place" not in done.stderr, done.stderr)
+    check("a whole mesh is no matter", looked("whole", block()).stderr == "", looked("whole", block()).stderr)
+
+
+def test_a_load_on_nodes_of_no_element_is_refused():
+    for line in ("&load group = 'anchor' kind = 'force_z' value = -5 /", "&fix group = 'anchor' field = 'u_r' /"):
+        far = block(nodes=lambda nodes: {**nodes, 99: (4.0, 3.0, 0.0)}, points=lambda _: [("anchor", [(99,)])])
+        for more in (["--check"], []):
+            done = looked("anchor", far, BLOCK + line, *more)
+            check(f"{line} {more}", done.returncode == 11 and "1 of the 1 nodes of group 'anchor' belong to no element"
+                  in done.stderr and "(4, 3) m" in done.stderr, done.stderr)
+
+
+def test_planes_of_a_mesh():
+    check("x, y", looked("xy", block()).returncode == 0)
+    turned = lambda order: lambda nodes: {n: tuple(x[i] for i in order) for n, x in nodes.items()}  # noqa: E731
+    check("x, z runs", looked("xz", block(nodes=turned((0, 2, 1)))).returncode == 0)
+    one, two = (tables.columns(work / f"{name}/histories.csv") for name in ("xy", "xz"))
+    check("x, z as x, y", all((one[key] == two[key]).all() for key in one), (one, two))
+    shifted = looked("shifted", block(nodes=lambda nodes: {n: (x, y, 7.5) for n, (x, y, _) in nodes.items()}))
+    check("x, y at another z", shifted.returncode == 0, shifted.stderr)
+    for what, change in (("a tilted plane", lambda nodes: {n: (x, 0.8*y, 0.6*y) for n, (x, y, _) in nodes.items()}),
+                         ("y, z", turned((2, 0, 1)))):
+        done = looked("tilted", block(nodes=change))
+        check(f"{what} is refused by name", done.returncode == 10 and "lies in no plane x, y or x, z" in done.stderr,
+              done.stderr)
+
+
+def test_meshes_with_quadrilaterals_or_partitions():
+    quads = block().replace("2 1 9 4\n", "2 1 16 4\n")
+    done = looked("quads", quads)
+    check("quadrilaterals", done.returncode == 10 and "has quadrilaterals; mesh it without Recombine" in done.stderr
+          and "splitQuadrangles()" in done.stderr and "gmsh -2" not in done.stderr, done.stderr)
+    parts = block().replace("$Nodes\n", "$PartitionedEntities\n2\n0\n0 0 0 0\n$EndPartitionedEntities\n$Nodes\n")
+    done = looked("parts", parts)
+    check("a partitioned mesh", done.returncode == 10 and "is partitioned; mesh it again without -part" in done.stderr,
+          done.stderr)
