@@ -10,7 +10,7 @@ module step_size
    use generalised_alpha, only: make_scheme, STATIC, QUASI_STATIC, DYNAMIC
    use model_types, only: model_t
    use run_state, only: run_t
-   use step_landings, only: next_time, is_break, begins_suddenly, changes_within, LAST_STEP, SHORTEST
+   use step_landings, only: next_time, end_of_given, is_break, begins_suddenly, changes_within, LAST_STEP, SHORTEST
    use step_control, only: new_controller, judge, LARGEST_FACTOR
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
    use scene_types, only: stage_t
@@ -129,6 +129,8 @@ contains
       if (.not. stage%controlled) then
          if (allocated(stage%ends)) dt = min(left, run%at%factor*(next_end(stage, run) - run%state%time))
          if (dt > left*(1 - LAST_STEP)) dt = left
+         if (.not. allocated(stage%ends)) dt = end_of_given(model, stage, run%state%time, run%state%time + dt) &
+                                               - run%state%time
          return
       end if
       dt = min(run%control%controller%dt, stage%dt_max)
