@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: MIT
+"""Effective stresses of a test, and p and q as the library has them: by what heads say and by what the test holds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..errors import InputError
+
+SHEAR = ("drained", "undrained")
+MOVES = 0.02  # share of the radial stress that u changes at least, if that shall tell anything
+STAYS = 0.25  # share of the change of u that the radial stress may change where it is held
+HELD = 0.15  # share by which a radial stress that is held may leave its median
+BETTER = 0.5  # share of the spread of the usual p and q that another meaning leaves at most
+MEAN, HALF_SUM = "(sigma_1 + 2 sigma_3)/3", "(sigma_1 + sigma_3)/2"
+DIFFERENCE, HALF_DIFFERENCE = "sigma_1 - sigma_3", "(sigma_1 - sigma_3)/2"
+# Meanings of p and q: share of q by which p lies above sigma_3, what q must be multiplied with. The first is the library's.
+MEANINGS = {
+    (MEAN, DIFFERENCE): (1 / 3, 1.0),
+    (HALF_SUM, DIFFERENCE): (1 / 2, 1.0),
+    (HALF_SUM, HALF_DIFFERENCE): (1.0, 2.0),
+    (MEAN, HALF_DIFFERENCE): (2 / 3, 2.0),
+}
+ASK = "write effective stresses with a prime, as sigma_3' or p', and total ones as sigma_3_total"
+
+
+def effective_stresses(
+    where: str,
+    kind: str,
+    stresses: Mapping[tuple[str, str], tuple[str, np.ndarray]],
+    columns: dict[str, np.ndarray],
+    excess: bool,
+) -> list[tuple[str, str]]:
+    """Adds the effective stresses to the columns of a test; what was understood for that.
+
+    stresses : (quantity, what its head says: effective, total or nothing) -> head and values. excess : u counts from the start.
+    A total stress without a pore pressure is left out.
+    """
+    told, u = [], columns.get("u")
+    unsaid = [quantity for quantity, state in stresses if not state and (quantity, "effective") not in stresses]
+    state, reason = _unsaid(where, kind, stresses, unsaid, columns)
+    for quantity in dict.fromkeys(quantity for quantity, _ in stresses):
+        found = {
+            (said or state if quantity in unsaid else said): stresses[quantity, said]
+            for q, said in stresses
+            if q == quantity
+        }
+        if "effective" in found:
+            columns[quantity] = found["effective"][1]
+            told += [
+                (title, f"not used: {found['effective'][0]} is the effective one")
+                for s, (title, _) in found.items()
+                if s != "effective"
+            ]
+        elif u is None:
+            told.append((found["total"][0], "not read: a total stress, and the table has no pore pressure"))
+        else:
+            columns[quantity] = found["total"][1] - u
+    titles = ", ".join(stresses[quantity, ""][0] for quantity in unsaid)
+    given = ", ".join(title for (_, said), (title, _) in stresses.items() if said == "total" and u is not None)
+    since = ", the excess pore pressure, so that the stresses must count from the back pressure" if excess else ""
+    if unsaid and reason:
+        told.append(
+            (
+                titles,
+                f"{state}, because {reason}"
+                + (f": u is taken off{since}" if state == "total" and u is not None else ""),
+            )
+        )
+    if given:
+        told.append((given, f"total: u is taken off{since}"))
+    return told
+
+
+def _unsaid(
+    where: str,
+    kind: str,
+    stresses: Mapping[tuple[str, str], tuple[str, np.ndarray]],
+    unsaid: list[str],
+    columns: Mapping[str, np.ndarray],
+) -> tuple[str, str]:
+    """(effective or total, why) of stresses whose heads say neither."""
+    said, u = {state for _, state in stresses if state}, columns.get("u")
+    titles = ", ".join(stresses[quantity, ""][0] for quantity in unsaid)
+    if not unsaid:
+        return "", ""
+    if len(said) == 2:
+        raise InputError(f"{where}: {titles} beside effective and total stresses: which are they? {ASK}")
+    if said:
+        return (
+            ("total", "others are called effective")
+            if "effective" in said
+            else ("effective", "others are called total")
+        )
+    if u is None or not np.any(u):
+        return "effective", ""
+    values = {quantity: stresses[quantity, ""][1] for quantity in unsaid}
+    largest = max(float(np.max(np.abs(v))) for v in values.values())
+    moves = np.ptp(u) > MOVES * largest
+    if moves and kind in SHEAR and ("sigma_r" in values or "p" in values and "q" in columns):
+        radial = (
+            [values["sigma_r"]]
+            if "sigma_r" in values
+            else [values["p"] - k * columns["q"] for k, _ in MEANINGS.values()]
+        )
+        total, effective = (min(float(np.ptp(r + part)) for r in radial) for part in (0.0, u))
+        what = "sigma_3" if "sigma_r" in values else "the radial stress of p and q"
+        if total < STAYS * np.ptp(u) and total < effective:
+            return "total", f"{what} stays while u changes"
+        if effective < STAYS * np.ptp(u):
+            return "effective", f"{what} + u, the cell pressure, stays"
+    elif not moves or kind in ("oedometer", "isotropic", "stiffness"):
+        if any(np.median(v - u) <= 0 for v in values.values()):
+            return "effective", "less than the pore pressure u"
+        return "total", "no head says effective and the table has a pore pressure u"
+    raise InputError(
+        f"{where}: are {titles} total or effective? The pore pressure u changes, and nothing in the table tells it; {ASK}"
+    )
+
+
+def usual_p_and_q(where: str, kind: str, columns: dict[str, np.ndarray]) -> list[tuple[str, str]]:
+    """Brings p and q of a shear test to (sigma_1 + 2 sigma_3)/3 and sigma_1 - sigma_3; what was understood for that.
+
+    Their meaning shows where the radial stress is given, or held: in a drained test the effective one, in an undrained test
+    with a pore pressure the total one.
+    """
+    told: list[tuple[str, str]] = []
+    if kind not in SHEAR or "q" not in columns:
+        return told
+    if {"sigma_a", "sigma_r"} <= set(columns):
+        difference = columns["sigma_a"] - columns["sigma_r"]
+        off = {factor: float(np.linalg.norm(factor * columns["q"] - difference)) for factor in (1.0, 2.0)}
+        factor = min(off, key=off.get)
+        if off[factor] > HELD * np.linalg.norm(difference):
+            raise InputError(
+                f"{where}: q is neither {DIFFERENCE} nor half of it; are both stresses effective, or both total?"
+            )
+        if factor == 2:
+            columns["q"] = 2 * columns["q"]
+            told.append(("q", f"{HALF_DIFFERENCE}, because both stresses are given: doubled"))
+    if "p" not in columns:
+        return told
+    p, q = columns["p"], columns["q"]
+    if "sigma_r" in columns:
+        held, reason = columns["sigma_r"], "so says sigma_3"
+    elif kind == "drained":
+        held, reason = 0.0, "so the radial stress is held, as in a drained test"
+    elif "u" in columns:
+        held, reason = -columns["u"], "so the cell pressure, the radial stress + u, is held"
+    else:
+        return [*told, ("p, q", f"{MEAN} and {DIFFERENCE}, as no pore pressure or radial stress shows another meaning")]
+    spread = {}
+    for meaning, (share, _) in MEANINGS.items():
+        rest = p - share * q - held
+        spread[meaning] = float(np.std(rest)) if "sigma_r" not in columns else float(np.sqrt(np.mean(rest**2)))
+    usual, best = next(iter(MEANINGS)), min(spread, key=spread.get)
+    middle = abs(float(np.median(p - MEANINGS[best][0] * q)))
+    if best == usual or spread[best] > min(BETTER * spread[usual], HELD * middle) or spread[usual] < MOVES * middle:
+        return told
+    share, factor = MEANINGS[best]
+    columns["q"] = factor * q
+    columns["p"] = p - share * q + columns["q"] / 3
+    told.append(("p, q", f"p = {best[0]} and q = {best[1]}, because {reason}: turned into {MEAN} and {DIFFERENCE}"))
+    return told
