@@ -331,6 +331,13 @@ def test_a_logged_record_is_read_in_one_run():
         "oedometer",
     )[0]
     check("of equal stresses the last row stays", settled["e"].tolist() == [0.8, 0.792, 0.78], settled["e"])
+    held = np.repeat((8, 30, 120, 480, 120, 30, 240), 60) + scatter.normal(0, 0.15, 420)
+    test = read_table(written(table("sigma_a_kPa,e", held, 0.8 - 0.0001 * np.arange(420))), "oedometer")[0]
+    way = np.sign(np.diff(test["sigma_a"]))
+    check("stresses that are held turn nowhere", np.sum(way[1:] * way[:-1] < 0) == 2, test["sigma_a"])
+    head = "control,cycle_by,amplitude_kPa,cycle,p_0_kPa,e_0,eps_v\n"
+    twice = written(head + "".join(f"drained,q,20,{n},90,0.8,0.00{n}\n" for n in (1, 2, 2, 3)))
+    says("an equal row of a cyclic test", read_table(twice, "cyclic")[0], ("1 row dropped, the first in line 4",))
     curve = read_table(written("suction_kPa,S_w\n1,1\n1,0.99\n5,0.7\n20,0.3\n"), "retention")[0]
     check("points of a retention curve at one suction stay", len(curve.lines) == 4, curve.lines)
 
@@ -452,6 +459,12 @@ def test_units():
             )
         ),
     )
+    columns = EPS, [7 * v for v in VOLUME], VOLUME, Q, CELL, E_0
+    test = drained(
+        "a volume beside its strain",
+        written(table("eps_a_percent,Volume change [cm3],eps_v_percent,q_kPa,sigma_3_kPa,e_0", *columns)),
+    )
+    check("is not read", ("Volume change [cm3]", "not read") in test.understood, test.understood)
     for head, name in (
         ("suction [furlong]", "furlong"),
         ("suction / ell", "ell"),

@@ -59,7 +59,6 @@ def _sheet(title: str, rows: list[tuple[int, list[str]]], kind: str, understood:
     rows = _second_line_of_units(rows[first:], understood)
     width = max((i + 1 for i, cell in enumerate(rows[0][1]) if cell.strip()), default=0)
     heads = [head_of(cell, kind) for cell in rows[0][1][:width]]
-    understood += [(head.title, head.told()) for head in heads if head.quantity and not head.is_plain()]
     body = [(number, cells[:width] if _blank(cells[width:]) else cells) for number, cells in rows[1:]]
     return Sheet(title, rows[0][0], heads, body, understood)
 

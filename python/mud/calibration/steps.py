@@ -12,37 +12,38 @@ USUAL, REACH, MOST = 3.0, 0.01, 0.02  # usual steps, shares of the whole reach t
 ROUNDING = 1e-9  # of the reach
 
 
-def noise_of(values: np.ndarray) -> float:
-    """By how much the values of a record may step back without a meaning.
-
-    Three usual steps, at most 1 % of the reach. Where steps change their sign again and again, six deviations of the steps
-    from their neighbours' median too, at most 2 % of the reach.
-    """
-    steps, reach = np.diff(values), float(np.ptp(values))
+def scatter_of(values: np.ndarray) -> float:
+    """Six deviations of the steps from their neighbours' median, where steps change their sign again and again; else 0."""
+    steps = np.diff(values)
     moving = steps[steps != 0]
-    if not len(moving):
+    if len(moving) < FEW or np.mean(moving[1:] * moving[:-1] < 0) <= RECURS:
         return 0.0
-    noise = min(USUAL * float(np.median(np.abs(moving))), REACH * reach)
-    if len(moving) >= FEW and np.mean(moving[1:] * moving[:-1] < 0) > RECURS:
-        local = np.median(np.lib.stride_tricks.sliding_window_view(np.pad(moving, 2, mode="edge"), 5), axis=1)
-        noise += min(DEVIATIONS * ROBUST * float(np.median(np.abs(moving - local))), MOST * reach)
-    return noise
+    local = np.median(np.lib.stride_tricks.sliding_window_view(np.pad(moving, 2, mode="edge"), 5), axis=1)
+    return min(DEVIATIONS * ROBUST * float(np.median(np.abs(moving - local))), MOST * float(np.ptp(values)))
 
 
-def path_of(values: np.ndarray, equal_stay: bool = False) -> tuple[np.ndarray, np.ndarray, float]:
+def noise_of(values: np.ndarray) -> float:
+    """By how much the values of a record may step back without a meaning: three usual steps, at most 1 % of the reach, and
+    its scatter, at most 2 %."""
+    size = np.abs(np.diff(values))
+    usual = float(np.median(size[size > 0])) if np.any(size > 0) else 0.0
+    return min(USUAL * usual, REACH * float(np.ptp(values))) + scatter_of(values)
+
+
+def path_of(values: np.ndarray, noise: np.ndarray, equal_stay: bool = False) -> tuple[np.ndarray, np.ndarray, float]:
     """(rows that go on, rows among them behind which the path turns by more than noise, largest step back that was left out).
 
-    The first of equal rows stays; with ``equal_stay`` all of them do.
+    noise : (rows,). The first of equal rows stays; with ``equal_stay`` all of them do.
     """
-    noise, tiny = noise_of(values), ROUNDING * float(np.ptp(values))
-    begun = np.flatnonzero(np.abs(values - values[0]) > noise)
+    tiny = ROUNDING * float(np.ptp(values))
+    begun = np.flatnonzero(np.abs(values - values[0]) > noise[0])
     way = np.sign(values[begun[0]] - values[0]) if len(begun) else 1.0
     kept, turns, back, i = [0], [], 0.0, 1
     while i < len(values):
         ahead = way * (values[i] - values[kept[-1]])
         if ahead > tiny or equal_stay and ahead == 0:
             kept.append(i)
-        elif ahead < -max(noise, tiny):
+        elif ahead < -max(noise[kept[-1]], tiny):
             turns.append(kept[-1])  # from there on again, the other way
             way, i = -way, kept[-1]
         i += 1
@@ -58,9 +59,10 @@ def without_noise(values: np.ndarray, by_stress: bool, equal_stay: bool) -> tupl
     """``path_of`` a strain, or of the logarithm of a stress: there the last of equal rows stays, when the sample has settled,
     and what was left out is a share."""
     if not by_stress:
-        return path_of(values, equal_stay)
+        return path_of(values, np.full(len(values), noise_of(values)), equal_stay)
     positive = values[values > 0]
-    least = 0.1 * float(positive.min()) if len(positive) else 1.0
-    kept, turns, back = path_of(np.log(np.maximum(values, least))[::-1], equal_stay)
+    stress = np.maximum(values, 0.1 * float(positive.min()) if len(positive) else 1.0)[::-1]
+    noise = np.maximum(noise_of(np.log(stress)), scatter_of(stress) / stress)  # a share, or as large at every stress
+    kept, turns, back = path_of(np.log(stress), noise, equal_stay)
     last = len(values) - 1
     return last - kept[::-1], last - turns[::-1], back

@@ -46,7 +46,7 @@ HELD = 0.15  # share by which p - q/3 may leave its median where the radial stre
 TOTAL = 0.02  # share of p at the start by which p - q/3 moves at least in an undrained test that is sheared
 # What leads the path of a test, and whether by its logarithm.
 LEADS = {"drained": ("eps_a", False), "undrained": ("eps_a", False), "oedometer": ("sigma_a", True)}
-LEADS |= {"isotropic": ("p", True), "retention": ("suction", True)}
+LEADS |= {"isotropic": ("p", True), "retention": ("suction", True), "cyclic": ("cycle", False)}
 SLOPE_MISFIT = 0.5  # share of eps_v by which e may contradict it before the signs are doubted
 DILATES = 1e-3  # volumetric strain below its negative is dilatancy, not scatter
 
@@ -136,6 +136,7 @@ def _tests_of(path: pathlib.Path, kind: str, sheet: Sheet, title: str) -> list[L
     # Without a unit that is known beside a column of the same quantity with one: a column of something else.
     heads = [Head(h.title) if h.strange and (h.quantity, h.state) in good else h for h in sheet.heads]
     _check_heads(f"{place}:{sheet.line}", kind, heads)
+    sheet.understood += [(head.title, head.told()) for head in heads if head.quantity and not head.is_plain()]
     names = [head.quantity for head in heads]
     groups: dict[str, list[tuple[int, list[str]]]] = {}
     name = ""
