@@ -14,7 +14,7 @@ os.environ["MUD_LIBRARY_DIR"] = str(build)
 os.environ["MPLBACKEND"] = "Agg"
 sys.path[:0] = [str(root / "python")]
 import mud  # noqa: E402
-from mud.calibration import Effort, calibrate, make_task, write_material  # noqa: E402
+from mud.calibration import Effort, calibrate, make_task, read_task, write_material  # noqa: E402
 from mud.namelist import quoted  # noqa: E402
 
 STAGE = "&initial p_eff = 80 void_ratio = 0.8 /\n&stage control = 'undrained' eps_a_end = 0.002 /\n"
@@ -91,6 +91,15 @@ def test_a_fitted_material_with_an_apostrophe_is_read_again():
     written = write_material(calibrate(task, Effort(samples=1, starts=1, joint=2, members=0), 1, None), work / "quoted")
     check("it is read", mud.Material(written).title == "Casagrande's sand (fitted)", written.read_text()[:400])
     check("mud_triax reads it too", driven_elsewhere(written), written.read_text()[:400])
+
+
+def test_a_task_is_read_in_any_letters():
+    for encoding in ("utf-8-sig", "latin-1"):
+        text = "title = 'Sand der Düne'\n[[tables]]\nfile = 'task.csv'\nkind = 'stiffness'\n"
+        (work / "task.toml").write_bytes(text.encode(encoding))
+        (work / "task.csv").write_bytes("test,p_kPa,e,G_max_MPa\nDüne,100,0.8,90\n".encode(encoding))
+        task = read_task(work / "task.toml")
+        check(f"in {encoding}", (task.title, task.items[0].test.name) == ("Sand der Düne", "Düne"), task)
 
 
 def driven_elsewhere(file):
