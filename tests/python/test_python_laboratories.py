@@ -105,6 +105,19 @@ def test_pore_pressure_is_taken_off_in_every_kind_of_table():
         written(table(START + "q_kPa,p_kPa,u_kPa,e_0", EPS, VOLUME, Q, P, 400, E_0)),
         ("effective, because less than the pore pressure",),
     )
+    around = tuple(400 + x for x in (0, 6, -5, 4, -3))
+    head = START + "q_kPa,sigma_3_kPa,u_kPa,e_0"
+    drained(
+        "a small stress beside a back pressure that is not steady",
+        written(table(head, EPS, VOLUME, Q, CELL, around, E_0)),
+        ("effective, because less",),
+    )
+    fallen = (0, 70, 99, 100.4, 100.2)
+    test = read_table(
+        written(table("eps_a_percent,q_kPa,sigma_3_kPa,u_kPa,e_0", EPS, (0, 25, 4, 2, 2), 100, fallen, 0.95)),
+        "undrained",
+    )[0]
+    check("sand that has liquefied", np.allclose(test["sigma_r"], 100 - np.array(fallen)), test["sigma_r"])
     head = "eps_a_percent,q_kPa,p_kPa,u_kPa,e_0"
     total = tuple(AT_REST + q / 3 for q in Q)
     undrained(
@@ -129,6 +142,16 @@ def test_pore_pressure_is_taken_off_in_every_kind_of_table():
         ),
         ("count from the back pressure",),
     )
+    names = "eps_a_percent,q_kPa,cell pressure [kPa],back pressure [kPa],{}pore pressure [kPa],e_0"
+    part = EPS, Q, AT_REST + 60, 60
+    undrained("back and excess pressure", written(table(names.format("excess "), *part, U, E_0)), ("as their sum",))
+    undrained(
+        "back and pore pressure",
+        written(table(names.format(""), *part, more(U, 60), E_0)),
+        ("not used: pore pressure",),
+    )
+    told = refusal(written(table(names.replace("{}pore pressure", "water level"), *part, U, E_0)), "undrained")
+    check("a back pressure alone is no pore pressure there", "u_kPa (zeros where there is none)" in told, told)
     wild = written(table(head, EPS, Q, (200, 260, 190, 300, 210), U, E_0))
     check(
         "an undrained p that nothing explains is asked for",

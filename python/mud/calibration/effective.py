@@ -26,16 +26,38 @@ MEANINGS = {
 ASK = "write effective stresses with a prime, as sigma_3' or p', and total ones as sigma_3_total"
 
 
+def pore_pressure(
+    kind: str, given: Mapping[str, tuple[str, np.ndarray]]
+) -> tuple[np.ndarray | None, str, list[tuple[str, str]]]:
+    """(pore pressure or None, what must be known of it, what was understood).
+
+    given : what its head says (nothing, back: back pressure, excess) -> head and values. A back pressure alone is the pore
+    pressure where water can leave.
+    """
+    titles = {state: title for state, (title, _) in given.items()}
+    told = [(titles[state], f"not used: {titles['']} is the whole pore pressure") for state in given if state and "" in given]
+    if "" in given:
+        return given[""][1], "", told
+    if {"back", "excess"} <= set(given):
+        told.append((f"{titles['back']}, {titles['excess']}", "the pore pressure, as their sum"))
+        return given["back"][1] + given["excess"][1], "", told
+    if "excess" in given:
+        return given["excess"][1], ", the excess pore pressure, so that the stresses must count from the back pressure", told
+    if "back" in given and kind != "undrained":
+        return given["back"][1], "", told
+    return None, "", [(title, "not read: of an undrained test it is not the pore pressure") for title in titles.values()]
+
+
 def effective_stresses(
     where: str,
     kind: str,
     stresses: Mapping[tuple[str, str], tuple[str, np.ndarray]],
     columns: dict[str, np.ndarray],
-    excess: bool,
+    since: str = "",
 ) -> list[tuple[str, str]]:
     """Adds the effective stresses to the columns of a test; what was understood for that.
 
-    stresses : (quantity, what its head says: effective, total or nothing) -> head and values. excess : u counts from the start.
+    stresses : (quantity, what its head says: effective, total or nothing) -> head and values. since : of ``pore_pressure``.
     A total stress without a pore pressure is left out.
     """
     told, u = [], columns.get("u")
@@ -60,7 +82,6 @@ def effective_stresses(
             columns[quantity] = found["total"][1] - u
     titles = ", ".join(stresses[quantity, ""][0] for quantity in unsaid)
     given = ", ".join(title for (_, said), (title, _) in stresses.items() if said == "total" and u is not None)
-    since = ", the excess pore pressure, so that the stresses must count from the back pressure" if excess else ""
     if unsaid and reason:
         told.append(
             (
@@ -97,6 +118,8 @@ def _unsaid(
     if u is None or not np.any(u):
         return "effective", ""
     values = {quantity: stresses[quantity, ""][1] for quantity in unsaid}
+    if any(v[0] <= u[0] for v in values.values()):
+        return "effective", "less than the pore pressure u"
     largest = max(float(np.max(np.abs(v))) for v in values.values())
     moves = np.ptp(u) > MOVES * largest
     if moves and kind in SHEAR and ("sigma_r" in values or "p" in values and "q" in columns):
@@ -112,8 +135,6 @@ def _unsaid(
         if effective < STAYS * np.ptp(u):
             return "effective", f"{what} + u, the cell pressure, stays"
     elif not moves or kind in ("oedometer", "isotropic", "stiffness"):
-        if any(np.median(v - u) <= 0 for v in values.values()):
-            return "effective", "less than the pore pressure u"
         return "total", "no head says effective and the table has a pore pressure u"
     raise InputError(
         f"{where}: are {titles} total or effective? The pore pressure u changes, and nothing in the table tells it; {ASK}"

@@ -80,7 +80,8 @@ WORDS = {
         "radialespannung horizontalspannung seitenspannung seitendruck"
     ),
     "sigma_r total": "cellpressure chamberpressure zelldruck",
-    "u": "porepressure porewaterpressure pwp porenwasserdruck porendruck backpressure gegendruck saettigungsdruck",
+    "u": "porepressure porewaterpressure pwp porenwasserdruck porendruck",
+    "u back": "backpressure gegendruck saettigungsdruck",
     "u excess": "du δu excessporepressure excessporewaterpressure excesspwp porenwasserueberdruck porenueberdruck",
     "p_0": "p0 initialmeanstress consolidationstress consolidationpressure konsolidationsspannung",
     "amplitude": "stressamplitude strainamplitude spannungsamplitude dehnungsamplitude",
@@ -90,8 +91,7 @@ WORDS = {
         "anfaenglicheporenzahl porenzahlzubeginn"
     ),
     "suction": (
-        "pc matricsuction suctionpressure capillarypressure saugspannung saugdruck matrixsaugspannung "
-        "kapillardruck"
+        "pc matricsuction suctionpressure capillarypressure saugspannung saugdruck matrixsaugspannung " "kapillardruck"
     ),
     "S_w": "sw degreeofsaturation saturation saturationdegree saettigung saettigungsgrad wassersaettigung",
     "stress_ratio": (
@@ -147,7 +147,7 @@ class Head:
 
     title: str  #: as the sheet has it
     quantity: str = ""
-    state: str = ""  #: of a stress: effective, total or unsaid; of u: excess or unsaid
+    state: str = ""  #: of a stress: effective, total or unsaid; of u: back, excess or unsaid
     unit: str = ""  #: a key of UNITS
     strange: str = ""  #: what stands where a unit should, and is none
     near: str = ""  #: the quantity where ``strange`` may as well be a part of another name
@@ -213,7 +213,7 @@ def head_of(title: str, kind: str) -> Head:
                 quantity, state, unit, near, strange = stem, said, unit_of(rest), "", ""
             elif sure:
                 quantity, state, strange = stem, said, rest
-            else:
+            elif not unit:
                 near, strange = stem, rest
     if not quantity and re.sub(r"[\s\-]", "", text).lower() in UNIT_IN_NAME:
         quantity, unit = UNIT_IN_NAME[re.sub(r"[\s\-]", "", text).lower()]
@@ -250,8 +250,8 @@ def _quantity(text: str, kind: str) -> tuple[str, str]:
             quantity, own = right, own_left or own_right
             break
     state = said[0] if said else own
-    if quantity in STRESSES or state == "excess":
-        return quantity, state
+    if quantity in STRESSES or own and quantity == "u":
+        return quantity, state if quantity in STRESSES else own
     # The effective degree of saturation is another quantity; q, strains and pore pressures are the same.
     return ("", "") if state == "effective" and quantity in ("S_w", "e", "e_0") else (quantity, "")
 

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..errors import InputError
-from .effective import SHEAR, effective_stresses, usual_p_and_q
+from .effective import SHEAR, effective_stresses, pore_pressure, usual_p_and_q
 from .heads import STRESSES, Head
 from .sheets import Sheet, read_sheets
 from .steps import noise_of, without_noise
@@ -224,6 +224,7 @@ def _test(
     where = f"{place}, test {name}"
     columns: dict[str, np.ndarray] = {}
     stresses: dict[tuple[str, str], tuple[str, np.ndarray]] = {}
+    pressures: dict[str, tuple[str, np.ndarray]] = {}
     words = {"control": "", "cycle_by": ""}
     understood: list[tuple[str, str]] = []
     numbers = np.array([number for number, _ in rows])
@@ -251,10 +252,14 @@ def _test(
             raise InputError(f"{where}: an amplitude of {words['cycle_by']} is a strain, not a stress")
         if head.quantity in STRESSES:
             stresses[head.quantity, head.state] = head.title, values
+        elif head.quantity == "u":
+            pressures[head.state] = head.title, values
         else:
             columns[head.quantity] = values
-    excess = any(head.quantity == "u" and head.state == "excess" for head in heads)
-    understood += effective_stresses(where, kind, stresses, columns, excess)
+    pressure, since, told = pore_pressure(kind, pressures)
+    if pressure is not None:
+        columns["u"] = pressure
+    understood += [*told, *effective_stresses(where, kind, stresses, columns, since)]
     understood += usual_p_and_q(where, kind, columns)
     test = LaboratoryTest(name, kind, columns, source, numbers, understood=understood, **words)
     _derive_stresses(test, "u" in columns)
