@@ -223,6 +223,15 @@ def test_heads_say_what_is_effective():
         written(table(head, EPS, VOLUME, more(AXIAL, 60), CELL, 60, E_0)),
         ("effective, because others are called total",),
     )
+    cell = START + "p_kPa,q_kPa,cell pressure [kPa],u_kPa,e_0"
+    for name, p in (("total", more(P, BACK)), ("effective", P), ("total", more(SUM, BACK))):
+        path = written(table(cell, EPS, VOLUME, p, Q, CELL + BACK, BACK, E_0))
+        drained(f"{name} p beside a cell pressure", path, (name, "u is taken off"))
+    told = refusal(written(table(cell, EPS, VOLUME, P, Q, CELL + BACK, 0.3 * BACK, E_0)), "drained")
+    check("p that does not fit cell pressure and u is refused", "contradict each other" in told, told)
+    beside = START + "sigma_1_kPa,cell pressure [kPa],u_kPa,e_0"
+    path = written(table(beside, EPS, VOLUME, more(AXIAL, BACK), CELL + BACK, BACK, E_0))
+    drained("sigma_1 beside a cell pressure", path, ("total, because beside a cell pressure",))
     plain = written(table(START + "sigma_1_kPa,sigma_3_kPa,e_0", EPS, VOLUME, AXIAL, CELL, E_0))
     drained("without a pore pressure", plain, ("taken as effective stresses: the table has no pore pressure u",))
     alone = written(table(START + "q_kPa,cell pressure [kPa],e_0", EPS, VOLUME, Q, CELL, E_0))

@@ -60,38 +60,28 @@ def effective_stresses(
     stresses : (quantity, what its head says: effective, total or nothing) -> head and values. since : of ``pore_pressure``.
     A total stress without a pore pressure is left out.
     """
-    told, u = [], columns.get("u")
+    told, u, taken = [], columns.get("u"), []
     unsaid = [quantity for quantity, state in stresses if not state and (quantity, "effective") not in stresses]
     state, reason = _unsaid(where, kind, stresses, unsaid, columns)
     for quantity in dict.fromkeys(quantity for quantity, _ in stresses):
-        found = {
-            (said or state if quantity in unsaid else said): stresses[quantity, said]
-            for q, said in stresses
-            if q == quantity
-        }
-        if "effective" in found:
-            columns[quantity] = found["effective"][1]
-            told += [
-                (title, f"not used: {found['effective'][0]} is the effective one")
-                for s, (title, _) in found.items()
-                if s != "effective"
-            ]
+        unsaid_is = state if quantity in unsaid else "total"
+        found = {said or unsaid_is: given for (name, said), given in stresses.items() if name == quantity}
+        best = next(said for said in ("effective", "total", "cell") if said in found)
+        title, values = found.pop(best)
+        kind_of = best.replace("cell", "total")
+        told += [(other, f"not used: {title} is the {kind_of} one") for other, _ in found.values()]
+        if best == "effective":
+            columns[quantity] = values
         elif u is None:
-            told.append((found["total"][0], "not read: a total stress, and the table has no pore pressure"))
+            told.append((title, "not read: a total stress, and the table has no pore pressure"))
         else:
-            columns[quantity] = found["total"][1] - u
-    titles = ", ".join(stresses[quantity, ""][0] for quantity in unsaid)
-    given = ", ".join(title for (_, said), (title, _) in stresses.items() if said == "total" and u is not None)
-    if unsaid and reason:
-        told.append(
-            (
-                titles,
-                f"{state}, because {reason}"
-                + (f": u is taken off{since}" if state == "total" and u is not None else ""),
-            )
-        )
-    if given:
-        told.append((given, f"total: u is taken off{since}"))
+            columns[quantity] = values - u
+            taken += [] if (quantity, "") in stresses else [title]
+    off = f": u is taken off{since}" if state == "total" and u is not None else ""
+    if reason:
+        told.append((", ".join(stresses[quantity, ""][0] for quantity in unsaid), f"{state}, because {reason}{off}"))
+    if taken:
+        told.append((", ".join(taken), f"total: u is taken off{since}"))
     return told
 
 
@@ -102,32 +92,27 @@ def _unsaid(
     unsaid: list[str],
     columns: Mapping[str, np.ndarray],
 ) -> tuple[str, str]:
-    """(effective or total, why) of stresses whose heads say neither."""
-    said, u = {state for _, state in stresses if state}, columns.get("u")
+    """(effective or total, why) of stresses whose heads say neither; the reason is empty where none is needed."""
+    said, u, q = {state for _, state in stresses} & {"effective", "total"}, columns.get("u"), columns.get("q")
     titles = ", ".join(stresses[quantity, ""][0] for quantity in unsaid)
-    if not unsaid:
-        return "", ""
+    values = {quantity: stresses[quantity, ""][1] for quantity in unsaid}
+    if not unsaid or not said and (u is None or not np.any(u)):
+        return "effective", ""
     if len(said) == 2:
         raise InputError(f"{where}: {titles} beside effective and total stresses: which are they? {ASK}")
     if said:
-        return (
-            ("total", "others are called effective")
-            if "effective" in said
-            else ("effective", "others are called total")
-        )
-    if u is None or not np.any(u):
-        return "effective", ""
-    values = {quantity: stresses[quantity, ""][1] for quantity in unsaid}
+        return ("total", "others are called effective") if "effective" in said else ("effective", "others are called total")
     if any(v[0] <= u[0] for v in values.values()):
         return "effective", "less than the pore pressure u"
-    largest = max(float(np.max(np.abs(v))) for v in values.values())
-    moves = np.ptp(u) > MOVES * largest
-    if moves and kind in SHEAR and ("sigma_r" in values or "p" in values and "q" in columns):
-        radial = (
-            [values["sigma_r"]]
-            if "sigma_r" in values
-            else [values["p"] - k * columns["q"] for k, _ in MEANINGS.values()]
-        )
+    cell = stresses.get(("sigma_r", "cell"), ("", None))[1]
+    moves = np.ptp(u) > MOVES * max(float(np.max(np.abs(v))) for v in values.values())
+    if cell is not None and q is not None and "p" in values:
+        total, effective = (min(_size(values["p"] + part - k * q - cell) for k, _ in MEANINGS.values()) for part in (0.0, u))
+        return ("total" if total < effective else "effective"), "so p and q fit the cell pressure"
+    if cell is not None:
+        return "total", "beside a cell pressure"
+    if moves and kind in SHEAR and ("sigma_r" in values or "p" in values and q is not None):
+        radial = [values["sigma_r"]] if "sigma_r" in values else [values["p"] - k * q for k, _ in MEANINGS.values()]
         total, effective = (min(float(np.ptp(r + part)) for r in radial) for part in (0.0, u))
         what = "sigma_3" if "sigma_r" in values else "the radial stress of p and q"
         if total < STAYS * np.ptp(u) and total < effective:
@@ -139,6 +124,10 @@ def _unsaid(
     raise InputError(
         f"{where}: are {titles} total or effective? The pore pressure u changes, and nothing in the table tells it; {ASK}"
     )
+
+
+def _size(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
 
 
 def usual_p_and_q(where: str, kind: str, columns: dict[str, np.ndarray]) -> list[tuple[str, str]]:
@@ -175,9 +164,11 @@ def usual_p_and_q(where: str, kind: str, columns: dict[str, np.ndarray]) -> list
     spread = {}
     for meaning, (share, _) in MEANINGS.items():
         rest = p - share * q - held
-        spread[meaning] = float(np.std(rest)) if "sigma_r" not in columns else float(np.sqrt(np.mean(rest**2)))
+        spread[meaning] = _size(rest if "sigma_r" in columns else rest - np.mean(rest))
     usual, best = next(iter(MEANINGS)), min(spread, key=spread.get)
     middle = abs(float(np.median(p - MEANINGS[best][0] * q)))
+    if "sigma_r" in columns and spread[best] > HELD * _size(columns["sigma_r"]):
+        raise InputError(f"{where}: p, q and sigma_3 contradict each other; are p and sigma_3 both effective, or both total?")
     if best == usual or spread[best] > min(BETTER * spread[usual], HELD * middle) or spread[usual] < MOVES * middle:
         return told
     share, factor = MEANINGS[best]

@@ -79,7 +79,7 @@ WORDS = {
         "horizontalstress confiningstress confiningpressure confpressure confstress radialspannung "
         "radialespannung horizontalspannung seitenspannung seitendruck"
     ),
-    "sigma_r total": "cellpressure chamberpressure zelldruck",
+    "sigma_r cell": "cellpressure chamberpressure zelldruck",
     "u": "porepressure porewaterpressure pwp porenwasserdruck porendruck",
     "u back": "backpressure gegendruck saettigungsdruck",
     "u excess": "du δu excessporepressure excessporewaterpressure excesspwp porenwasserueberdruck porenueberdruck",
@@ -117,7 +117,7 @@ OF_A_KIND = {
     "retention": {"sr": "S_w"},
     "oedometer": dict.fromkeys(("stress", "pressure", "spannung", "druck"), "sigma_a"),
     "isotropic": dict.fromkeys(("stress", "pressure", "spannung", "druck"), "p")
-    | dict.fromkeys(("cellpressure", "chamberpressure", "zelldruck"), "p total")
+    | dict.fromkeys(("cellpressure", "chamberpressure", "zelldruck"), "p cell")
     | dict.fromkeys(("strain", "dehnung"), "eps_v"),
 }
 # Words before a symbol that leave it to the symbol what is meant.
@@ -147,7 +147,7 @@ class Head:
 
     title: str  #: as the sheet has it
     quantity: str = ""
-    state: str = ""  #: of a stress: effective, total or unsaid; of u: back, excess or unsaid
+    state: str = ""  #: of a stress: effective, total, cell (pressure) or unsaid; of u: back, excess or unsaid
     unit: str = ""  #: a key of UNITS
     strange: str = ""  #: what stands where a unit should, and is none
     near: str = ""  #: the quantity where ``strange`` may as well be a part of another name
@@ -169,7 +169,7 @@ class Head:
     def told(self) -> str:
         """What it is understood as."""
         unit = f" in {self.unit}".replace("percent", "%") if self.unit else ", no unit"
-        return f"{self.state} {self.quantity}".strip() + unit
+        return f"{self.state} {self.quantity}".strip().replace("cell ", "total ") + unit
 
     def wrong_unit(self) -> str:
         """Why its unit cannot be, or nothing."""
