@@ -164,10 +164,10 @@ class Material(Points, Mapping):
         for name, value in values.items():
             entry = parameters[name]
             if isinstance(value, str):
-                if value not in entry.options:
+                if value.lower() not in entry.options:
                     allowed = ", ".join(entry.options) or "numbers"
                     raise InputError(f"{entry.name} = '{value}': {entry.meaning}; allowed: {allowed}")
-                value = entry.options[value]
+                value = entry.options[value.lower()]
             self.props[entry.index] = value
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -209,7 +209,7 @@ class Material(Points, Mapping):
     def group(self) -> str:
         """The material as a ``&material`` group of a case file: every parameter that is not the default."""
         lines = [f"   {name} = {value!r}" for name, value in self.items() if value != parameters[name].default]
-        return "\n".join(["&material", f"   name = '{self.title}'", *lines, "/", ""])
+        return "\n".join(["&material", f"   name = {namelist.quoted(self.title, namelist.LONGEST)}", *lines, "/", ""])
 
     def converted(self, factor: float) -> Material:
         """The same material in another unit of stress, ``factor`` of which make one of the present unit (0.001: MPa of kPa)."""
